@@ -1,0 +1,13 @@
+"""Mistakes of the user, told all at once and without a traceback."""
+
+
+class InputError(ValueError):
+    """Input that cannot be used as it stands.
+
+    ``problems`` holds one message per mistake. Each names the place, what was found, what was expected and
+    what to write instead.
+    """
+
+    def __init__(self, *problems: str) -> None:
+        super().__init__("\n".join(problems))
+        self.problems = problems

@@ -1,0 +1,29 @@
+"""Units at the border: everything inside is SI, angles are in radians."""
+
+GRAVITY = 9.81
+"""Acceleration of gravity [m/s²] that the reference paper uses (its R0 = 7.36 m for p = 1 rad/s, μ = 3)."""
+
+_ACCELERATION_IN_M_S2 = {
+    "m/s2": 1.0,
+    "cm/s2": 0.01,
+    "gal": 0.01,
+    "mm/s2": 0.001,
+}
+
+
+def acceleration_factor(unit: str, gravity: float = GRAVITY) -> float:
+    """Factor that turns an acceleration in ``unit`` into m/s².
+
+    Spellings such as ``cm/s/s``, ``cm/s²``, ``CM/SEC**2`` and ``G`` are understood; "g" is ``gravity`` [m/s²], the
+    same that the pier weighs with, so that ratios ü_g/g survive. Raises ``ValueError`` for anything else.
+    """
+    key = unit.strip().lower().replace("²", "2").replace("^", "").replace("**", "").replace("sec", "s")
+    key = key.replace("/s/s", "/s2").replace(" ", "")
+    if key == "g":
+        return gravity
+    if key in ("g/10", "0.1g"):
+        return gravity / 10.0
+    if key not in _ACCELERATION_IN_M_S2:
+        known = ", ".join(["g", "g/10", *_ACCELERATION_IN_M_S2])
+        raise ValueError(f'unknown acceleration unit "{unit}"; write one of {known}')
+    return _ACCELERATION_IN_M_S2[key]
