@@ -1,0 +1,154 @@
+"""Equations of motion of the pier on two springs, once for all contacts and both kinematics (THEORY.md)."""
+
+import math
+
+from rockbatch.core.kernel import kernel
+from rockbatch.core.springs import within_yield, z_rate
+from rockbatch.core.types import Contact, Geometry, State
+
+
+@kernel
+def geometry(m, theta):
+    """Pivots and levers at rotation ``theta`` (model: paper, eqs. 3–7; finite: THEORY.md)."""
+    b, h = m.half_width, m.height
+    if m.finite:
+        s, c = math.sin(theta), math.cos(theta)
+        drop = h * (1.0 - c)
+        arm_left, arm_right = b * c + h * s, -b * c + h * s
+        return Geometry(
+            b * s + drop, -b * s + drop,
+            arm_left, arm_right,
+            -b * s + h * c, b * s + h * c,
+            arm_left, arm_right,
+            h * c, -h * s,
+            b * s, b * c,
+        )  # fmt: skip
+    return Geometry(
+        b * theta, -b * theta,
+        b, -b,
+        0.0, 0.0,
+        b + h * theta, -b + h * theta,
+        h, 0.0,
+        b * theta, b,
+    )  # fmt: skip
+
+
+@kernel
+def accelerations(m, y, contact, at, horizontal, vertical):
+    """v̈ [m/s²] and θ̈ [rad/s²] of state ``y`` under ground accelerations [m/s²]; ``at`` is its geometry."""
+    force_left = m.yield_force * y.z_left
+    force_right = m.yield_force * y.z_right
+    side = contact.right - contact.left
+    lever = at.lever + side * at.swing
+    moment = -force_left * at.moment_left - force_right * at.moment_right - lever * horizontal
+    effective = m.height
+    if m.finite:
+        effective = lever
+        moment -= lever * (at.lever_slope + side * at.swing_slope) * y.omega * y.omega
+    v_acceleration = -m.gravity - vertical - force_left - force_right
+    if contact.held == 0:
+        return v_acceleration, moment / (m.inertia + effective * effective)
+    # A held pivot neither lifts nor presses: its acceleration is zero (Filippov's sliding mode).
+    if contact.held < 0:
+        return v_acceleration, -(v_acceleration + at.bend_left * y.omega * y.omega) / at.arm_left
+    return v_acceleration, -(v_acceleration + at.bend_right * y.omega * y.omega) / at.arm_right
+
+
+@kernel
+def rates(m, y, contact, horizontal, vertical):
+    """Right-hand side: the rates of all state variables."""
+    at = geometry(m, y.theta)
+    v_acceleration, theta_acceleration = accelerations(m, y, contact, at, horizontal, vertical)
+    left = contact.left * (y.v_rate + at.arm_left * y.omega)
+    right = contact.right * (y.v_rate + at.arm_right * y.omega)
+    return State(
+        y.v_rate,
+        y.omega,
+        v_acceleration,
+        theta_acceleration,
+        z_rate(y.z_left, left, contact.left_yields, m.yield_deflection, m.exponent),
+        z_rate(y.z_right, right, contact.right_yields, m.yield_deflection, m.exponent),
+    )
+
+
+@kernel
+def pivot_acceleration(m, y, contact, side, horizontal, vertical):
+    """Vertical acceleration [m/s²] of the pivot on ``side`` (−1 left, 1 right)."""
+    at = geometry(m, y.theta)
+    v_acceleration, theta_acceleration = accelerations(m, y, contact, at, horizontal, vertical)
+    if side < 0:
+        return v_acceleration + at.arm_left * theta_acceleration + at.bend_left * y.omega * y.omega
+    return v_acceleration + at.arm_right * theta_acceleration + at.bend_right * y.omega * y.omega
+
+
+@kernel
+def _along(y, k, h):
+    return State(
+        y.v + h * k.v,
+        y.theta + h * k.theta,
+        y.v_rate + h * k.v_rate,
+        y.omega + h * k.omega,
+        y.z_left + h * k.z_left,
+        y.z_right + h * k.z_right,
+    )
+
+
+@kernel
+def step(m, y, k1, contact, ground, h):
+    """One Runge–Kutta step of order 4 from ``y`` over ``h`` [s]; ``k1`` are the rates at ``y``."""
+    half = 0.5 * h
+    horizontal_middle = ground.horizontal + half * ground.horizontal_slope
+    vertical_middle = ground.vertical + half * ground.vertical_slope
+    k2 = rates(m, _along(y, k1, half), contact, horizontal_middle, vertical_middle)
+    k3 = rates(m, _along(y, k2, half), contact, horizontal_middle, vertical_middle)
+    k4 = rates(
+        m,
+        _along(y, k3, h),
+        contact,
+        ground.horizontal + h * ground.horizontal_slope,
+        ground.vertical + h * ground.vertical_slope,
+    )
+    sixth = h / 6.0
+    return State(
+        y.v + sixth * (k1.v + 2.0 * (k2.v + k3.v) + k4.v),
+        y.theta + sixth * (k1.theta + 2.0 * (k2.theta + k3.theta) + k4.theta),
+        y.v_rate + sixth * (k1.v_rate + 2.0 * (k2.v_rate + k3.v_rate) + k4.v_rate),
+        y.omega + sixth * (k1.omega + 2.0 * (k2.omega + k3.omega) + k4.omega),
+        within_yield(y.z_left + sixth * (k1.z_left + 2.0 * (k2.z_left + k3.z_left) + k4.z_left), contact.left_yields),
+        within_yield(
+            y.z_right + sixth * (k1.z_right + 2.0 * (k2.z_right + k3.z_right) + k4.z_right), contact.right_yields
+        ),
+    )
+
+
+@kernel
+def without(contact, side):
+    """Contacts once the pivot on ``side`` is free."""
+    held = 0 if contact.held == side else contact.held
+    if side < 0:
+        return Contact(0.0, contact.right, 0.0, contact.right_yields, held)
+    return Contact(contact.left, 0.0, contact.left_yields, 0.0, held)
+
+
+@kernel
+def touching(contact, side, yields):
+    """Contacts once the pivot on ``side`` is on its spring, on the branch that ``yields`` says."""
+    held = 0 if contact.held == side else contact.held
+    if side < 0:
+        return Contact(1.0, contact.right, yields, contact.right_yields, held)
+    return Contact(contact.left, 1.0, contact.left_yields, yields, held)
+
+
+@kernel
+def holding(contact, side, yields):
+    """Contacts once the pivot on ``side`` is held between contact and flight; only one can be."""
+    if contact.held == -side:
+        contact = touching(contact, -side, yields)
+    free = without(contact, side)
+    return Contact(free.left, free.right, free.left_yields, free.right_yields, side)
+
+
+@kernel
+def on_ground(contact):
+    """Number of pivots that are not in the air."""
+    return int(contact.left + contact.right) + abs(contact.held)

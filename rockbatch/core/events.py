@@ -1,0 +1,120 @@
+"""What can happen to a pivot: signals that are positive while nothing does, and fall through zero when it does.
+
+Each pivot has two signals. On its spring: −z (separation) and the spring law's kink (reversal of the velocity, or
+yield). Free: the gap to the waiting support (landing). Held: the two conditions under which it stops being held.
+"""
+
+from typing import NamedTuple
+
+from rockbatch.core.equations import geometry, holding, pivot_acceleration, touching, without
+from rockbatch.core.kernel import kernel
+from rockbatch.core.types import BOUC_WEN, ELASTIC
+
+NO_ACCELERATION = 1e-12
+"""Of g: what the balance of a pier at rest leaves as rounding; it must not decide which way a pivot goes."""
+
+
+class Signals(NamedTuple):
+    """Four signals; those of contacts first, then those of spring laws."""
+
+    left: float
+    right: float
+    left_law: float
+    right_law: float
+
+
+@kernel
+def at_rest(m):
+    """Velocity [m/s] below which a pivot counts as having none: rounding, next to g/ω_v."""
+    return 1e-12 * m.gravity * (m.yield_deflection / m.yield_force) ** 0.5 * 0.7071067811865476
+
+
+@kernel
+def _velocity(velocity, acceleration, rest):
+    """A velocity that is nothing but rounding says nothing: the acceleration decides where it goes."""
+    if abs(velocity) > rest:
+        return velocity
+    return rest if acceleration > 0.0 else (-rest if acceleration < 0.0 else 0.0)
+
+
+@kernel
+def _on_spring(m, z, z_rate, yields, velocity, acceleration, rest):
+    """Values and slopes of the two signals of a pivot on its spring."""
+    if abs(velocity) <= rest:
+        if abs(acceleration) <= NO_ACCELERATION * m.gravity:
+            acceleration = 0.0
+        z_rate = _velocity(velocity, acceleration, rest) / m.yield_deflection
+    contact = -z
+    contact_slope = -z_rate
+    if m.law == ELASTIC:
+        return contact, contact_slope, 1.0, 0.0
+    if yields != 0.0:  # until the velocity turns upwards
+        return contact, contact_slope, -velocity, -acceleration
+    if m.law == BOUC_WEN:  # until it turns downwards
+        return contact, contact_slope, velocity, acceleration
+    return contact, contact_slope, 1.0 + z, z_rate
+
+
+@kernel
+def _held(m, y, contact, side, horizontal, vertical):
+    """Held while contact would lift the pivot and freedom would press it down."""
+    lifted = pivot_acceleration(m, y, touching(contact, side, 0.0), side, horizontal, vertical)
+    pressed = -pivot_acceleration(m, y, without(contact, side), side, horizontal, vertical)
+    return lifted, pressed
+
+
+@kernel
+def signals(m, y, k, contact, rest_left, rest_right, rest, horizontal, vertical):
+    """Values and slopes of all signals in state ``y`` with rates ``k``; ``rest_*`` are the supports' positions [m]."""
+    at = geometry(m, y.theta)
+    left_velocity = y.v_rate + at.arm_left * y.omega
+    right_velocity = y.v_rate + at.arm_right * y.omega
+    turning = y.omega * y.omega
+    left_acceleration = k.v_rate + at.arm_left * k.omega + at.bend_left * turning
+    right_acceleration = k.v_rate + at.arm_right * k.omega + at.bend_right * turning
+
+    left_law, left_law_slope, right_law, right_law_slope = 1.0, 0.0, 1.0, 0.0
+    if contact.left != 0.0:
+        left, left_slope, left_law, left_law_slope = _on_spring(
+            m, y.z_left, k.z_left, contact.left_yields, left_velocity, left_acceleration, rest
+        )
+    else:
+        left = y.v + at.lift_left - rest_left
+        left_slope = _velocity(left_velocity, left_acceleration, rest)
+    if contact.right != 0.0:
+        right, right_slope, right_law, right_law_slope = _on_spring(
+            m, y.z_right, k.z_right, contact.right_yields, right_velocity, right_acceleration, rest
+        )
+    else:
+        right = y.v + at.lift_right - rest_right
+        right_slope = _velocity(right_velocity, right_acceleration, rest)
+    if contact.held < 0:
+        left, left_law = _held(m, y, contact, -1, horizontal, vertical)
+        left_slope = 0.0
+    elif contact.held > 0:
+        right, right_law = _held(m, y, contact, 1, horizontal, vertical)
+        right_slope = 0.0
+    return Signals(left, right, left_law, right_law), Signals(left_slope, right_slope, left_law_slope, right_law_slope)
+
+
+@kernel
+def quiet(f0, d0, f1, d1):
+    """Whether a signal surely stayed positive over a step, from its ends alone."""
+    return f0 > 0.0 and f1 > 0.0 and not (d0 < 0.0 and d1 > 0.0)
+
+
+@kernel
+def settle(m, y, contact, side, horizontal, vertical):
+    """Contacts of a pivot that is at its support with no velocity: the accelerations decide.
+
+    Contact equations that press it down keep it there; else free ones that lift it let it go; else neither has a
+    solution, and it is held (Filippov's sliding mode).
+    """
+    yields = 1.0 if m.law == BOUC_WEN else 0.0
+    on = touching(contact, side, yields)
+    if pivot_acceleration(m, y, on, side, horizontal, vertical) < 0.0:
+        return on
+    off = without(contact, side)
+    if pivot_acceleration(m, y, off, side, horizontal, vertical) > 0.0:
+        return off
+    return holding(contact, side, yields)

@@ -1,0 +1,285 @@
+"""A run on a rigid base (Housner 1963): rocking about two corners, impacts, rest, and lift-off again."""
+
+import math
+
+from rockbatch.core.kernel import entry, kernel
+from rockbatch.core.outcome import fallen, patience, undecided
+from rockbatch.core.roots import TRIALS, hermite, largest_within, secant, turning_point, weight
+from rockbatch.core.types import (
+    BEFORE_EVENT,
+    CHATTER,
+    FLIGHT,
+    IMPACT_LEFT,
+    IMPACT_RIGHT,
+    LIFT_OFF,
+    REST,
+    SAMPLE,
+    SURVIVED,
+    UNDECIDED,
+    Ground,
+    RigidRun,
+)
+
+EVENTS_IN_A_STEP = 20_000
+HISTORY_COLUMNS = 4  # t, theta, omega, kind of row
+NEGLIGIBLE = 1e-13  # of α: height of the bounces that are summed up instead of followed
+
+
+@kernel
+def acceleration(m, theta, side, horizontal, vertical):
+    """θ̈ [rad/s²] while rocking about the corner on ``side`` (−1 left, 1 right)."""
+    angle = side * m.alpha - theta
+    lean = (1.0 + vertical / m.gravity) * math.sin(angle) + horizontal / m.gravity * math.cos(angle)
+    return -m.p * m.p * lean
+
+
+@kernel
+def rocking_step(m, theta, omega, k1, side, ground, h):
+    """One Runge–Kutta step of order 4 over ``h`` [s]; ``k1`` is θ̈ at its start. Returns θ, θ̇."""
+    half = 0.5 * h
+    a_middle = ground.horizontal + half * ground.horizontal_slope
+    c_middle = ground.vertical + half * ground.vertical_slope
+    omega2 = omega + half * k1
+    k2 = acceleration(m, theta + half * omega, side, a_middle, c_middle)
+    omega3 = omega + half * k2
+    k3 = acceleration(m, theta + half * omega2, side, a_middle, c_middle)
+    omega4 = omega + h * k3
+    a_end = ground.horizontal + h * ground.horizontal_slope
+    c_end = ground.vertical + h * ground.vertical_slope
+    k4 = acceleration(m, theta + h * omega3, side, a_end, c_end)
+    return (
+        theta + h / 6.0 * (omega + 2.0 * (omega2 + omega3) + omega4),
+        omega + h / 6.0 * (k1 + 2.0 * (k2 + k3) + k4),
+    )
+
+
+@kernel
+def lift_off(m, ground, h):
+    """Time in [0, h] from which the ground overcomes |ü_g| = (g + v̈_g) tan α, −1 if it does not; and the side.
+
+    Exact, since the ground acceleration is linear in time. A positive ü_g throws the block to the left.
+    """
+    tangent = math.tan(m.alpha)
+    first, side = -1.0, 0.0
+    for sign in (-1.0, 1.0):
+        excess = sign * ground.horizontal - (m.gravity + ground.vertical) * tangent
+        slope = sign * ground.horizontal_slope - ground.vertical_slope * tangent
+        at = -1.0
+        if excess > 0.0 or (excess == 0.0 and slope > 0.0):
+            at = 0.0
+        elif slope > 0.0 and excess + slope * h > 0.0:
+            at = min(-excess / slope, h)
+        if at >= 0.0 and (first < 0.0 or at < first):
+            first, side = at, -sign
+    return first, side
+
+
+@kernel
+def time_to_rest(m, omega, horizontal, vertical):
+    """Height [rad] of the next bounce, and the time [s] of all that are left (Zeno), if the ground allows rest.
+
+    Small bounces see constant accelerations κ± towards rest on either side, take 2 θ̇/κ± each, and shrink by e.
+    Infinite where there is no rest.
+    """
+    speed = abs(omega)
+    here = 1.0 if omega > 0.0 else -1.0
+    towards = -here * acceleration(m, 0.0, here, horizontal, vertical)
+    back = here * acceleration(m, 0.0, -here, horizontal, vertical)
+    if towards <= 0.0 or back <= 0.0:
+        return math.inf, math.inf
+    total = 2.0 * speed * (1.0 / towards + m.restitution / back)
+    return 0.5 * speed * speed / min(towards, back), total / (1.0 - m.restitution * m.restitution)
+
+
+@kernel
+def _landing(m, theta, omega, k1, side, ground, h, end_theta, end_omega):
+    """Time in (0, h] at which the block is back on both corners, −1 if it is not."""
+    f0, d0 = side * theta, side * omega
+    f1, d1 = side * end_theta, side * end_omega
+    a, fa, b, fb = 0.0, f0, h, f1
+    if f0 <= 0.0:  # has just left both corners
+        if f1 > 0.0:
+            return -1.0
+        a = turning_point(0.0, d0, f1, d1, h) if d0 > 0.0 and d1 < 0.0 else 0.5 * h
+        fa = side * rocking_step(m, theta, omega, k1, side, ground, a)[0]
+        while fa <= 0.0:
+            a *= 0.5
+            if a < 1e-12 * h:
+                return 0.0
+            fa = side * rocking_step(m, theta, omega, k1, side, ground, a)[0]
+    elif f1 > 0.0:
+        if not (d0 < 0.0 and d1 > 0.0):
+            return -1.0
+        b = turning_point(f0, d0, f1, d1, h)
+        if hermite(f0, d0, f1, d1, h, b) > 0.0:
+            return -1.0
+        fb = side * rocking_step(m, theta, omega, k1, side, ground, b)[0]
+        if fb > 0.0:
+            return -1.0
+    for _ in range(TRIALS):
+        if fb == 0.0:
+            return b
+        x = secant(a, fa, b, fb)
+        fx = side * rocking_step(m, theta, omega, k1, side, ground, x)[0]
+        moved = abs(x - b)
+        if fx * fb < 0.0:
+            a, fa = b, fb
+        else:
+            fa *= weight(fx, fb)
+        b, fb = x, fx
+        if moved <= 1e-14 * h:
+            break
+    return b
+
+
+@kernel
+def _write(history, row, t, theta, omega, kind):
+    """Row of a history, where there is room for it."""
+    if row < history.shape[0]:
+        line = history[row]
+        line[0] = t
+        line[1] = theta
+        line[2] = omega
+        line[3] = kind
+    return row + 1
+
+
+@entry
+def rock_on_rigid_base(m, theta, omega, horizontal, vertical, dt, substeps, quiet_samples, history, locate):
+    """Run of the pier ``m`` (Block) under one motion.
+
+    Parameters
+    ----------
+    theta, omega : float
+        Rotation [rad] and angular velocity [rad/s] at the start; 0, 0 is rest.
+    horizontal, vertical, dt, substeps, quiet_samples, locate
+        As for the pier on two springs.
+    history : ndarray, shape (rows, 4)
+        Filled with every sample and both sides of every event, as far as it goes; empty for none.
+
+    Returns
+    -------
+    RigidRun
+    """
+    h = dt / substeps
+    recording = history.shape[0] > 0
+    has_vertical = len(vertical) > 0
+    npts = len(horizontal)
+    samples = npts - 1 + quiet_samples
+    longest = samples + patience(m.p, dt)
+    resting = theta == 0.0 and omega == 0.0
+    side = 1.0 if theta > 0.0 or (theta == 0.0 and omega > 0.0) else -1.0
+    peak, t_peak = abs(theta), 0.0
+    impacts, lift_offs = 0, 0
+    t_flight = math.nan
+    t_rest = 0.0 if resting else math.nan
+    status = SURVIVED
+    t = 0.0
+    rows = 0
+    if recording:
+        rows = _write(history, rows, t, theta, omega, SAMPLE)
+
+    sample = 0
+    while sample < samples or (sample < longest and not resting and undecided(theta, omega, m.alpha, m.p)):
+        a0 = horizontal[sample] if sample < npts else 0.0
+        a1 = horizontal[sample + 1] if sample + 1 < npts else 0.0
+        a_slope = (a1 - a0) / dt
+        c0, c1, c_slope = 0.0, 0.0, 0.0
+        if has_vertical:
+            c0 = vertical[sample] if sample < npts else 0.0
+            c1 = vertical[sample + 1] if sample + 1 < npts else 0.0
+            c_slope = (c1 - c0) / dt
+            if min(c0, c1) <= -m.gravity:  # the ground drops away from under the block
+                x = 0.0 if c0 <= -m.gravity else (-m.gravity - c0) / c_slope
+                t_flight = sample * dt + x
+                t = t_flight
+                status = FLIGHT
+                break
+        if resting and lift_off(m, Ground(a0, a_slope, c0, c_slope), dt)[0] < 0.0:
+            sample += 1
+            t = sample * dt
+            if recording:
+                rows = _write(history, rows, t, theta, omega, SAMPLE)
+            continue
+        for substep in range(substeps):
+            start = substep * h
+            done = 0.0
+            events = 0
+            while done < h:
+                x = start + done
+                left = h - done
+                ground = Ground(a0 + x * a_slope, a_slope, c0 + x * c_slope, c_slope)
+                if resting:
+                    at, side_up = lift_off(m, ground, left)
+                    if at < 0.0 or at >= left:
+                        break
+                    side = side_up
+                    resting = False
+                    t_rest = math.nan
+                    lift_offs += 1
+                    done += at
+                    if recording:
+                        rows = _write(history, rows, sample * dt + start + done, theta, omega, LIFT_OFF)
+                    continue
+                k1 = acceleration(m, theta, side, ground.horizontal, ground.vertical)
+                end_theta, end_omega = rocking_step(m, theta, omega, k1, side, ground, left)
+                landed = False
+                if side * end_theta <= 0.0 or (side * omega < 0.0 and side * end_omega > 0.0):
+                    if locate:
+                        at = _landing(m, theta, omega, k1, side, ground, left, end_theta, end_omega)
+                    else:
+                        at = left if side * end_theta <= 0.0 else -1.0
+                    if at >= 0.0:
+                        landed = True
+                        if at < left:
+                            left = at
+                            end_theta, end_omega = rocking_step(m, theta, omega, k1, side, ground, left)
+                found, peak = largest_within(theta, omega, end_theta, end_omega, left, peak)
+                if found >= 0.0:
+                    t_peak = sample * dt + x + found
+                theta, omega = end_theta, end_omega
+                done = done + left if landed else h
+                if not landed:
+                    continue
+
+                impacts += 1
+                t = sample * dt + start + done
+                theta = 0.0
+                if recording:
+                    rows = _write(history, rows, t, theta, omega, BEFORE_EVENT)
+                omega *= m.restitution
+                kind = IMPACT_LEFT if side > 0.0 else IMPACT_RIGHT
+                height, remaining = time_to_rest(
+                    m,
+                    omega,
+                    ground.horizontal + left * a_slope,
+                    ground.vertical + left * c_slope,
+                )
+                if omega == 0.0 or (height < NEGLIGIBLE * m.alpha and remaining < h):
+                    t_rest = t + (remaining if omega != 0.0 else 0.0)
+                    omega = 0.0
+                    resting = True
+                    kind = REST
+                else:
+                    side = 1.0 if omega > 0.0 else -1.0
+                if recording:
+                    rows = _write(history, rows, t, theta, omega, kind)
+                events += 1
+                if events > EVENTS_IN_A_STEP:
+                    status = CHATTER
+                    break
+            if status == SURVIVED:
+                t = sample * dt + start + h
+                status = fallen(theta)
+            if status != SURVIVED:
+                break
+        if status != SURVIVED:
+            break
+        sample += 1
+        t = sample * dt
+        if recording:
+            rows = _write(history, rows, t, theta, omega, SAMPLE)
+
+    if status == SURVIVED and sample >= longest and not resting and undecided(theta, omega, m.alpha, m.p):
+        status = UNDECIDED
+    return RigidRun(status, t, peak, t_peak, impacts, lift_offs, t_flight, t_rest, rows)
