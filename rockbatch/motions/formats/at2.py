@@ -1,0 +1,253 @@
+"""PEER strong-motion files (.AT2): four header lines, then the values of one component.
+
+Registered with ObsPy as waveform format "AT2". Header dialects that occur: ``NPTS= 4316, DT= .0100 SEC, …``,
+the same without the comma, ``1991 0.0100 NPTS, DT``.
+"""
+
+import os
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, BinaryIO
+
+import numpy as np
+
+from rockbatch.errors import InputError
+from rockbatch.motions.component import Component
+from rockbatch.motions.formats.record_file import RecordFile
+from rockbatch.motions.motion import Samples
+from rockbatch.motions.orientation import UNKNOWN, orientation_of, split_stem
+from rockbatch.units import acceleration_factor
+
+if TYPE_CHECKING:
+    from obspy import Stream
+
+SUFFIXES = frozenset({".at2"})
+
+_NUMBER = r"(?:\d+\.?\d*|\.\d+)(?:[ED][-+]?\d+)?"
+_COUNT_AND_STEP = tuple(
+    re.compile(pattern, re.IGNORECASE)
+    for pattern in (
+        rf"\bNPTS\s*[=:]?\s*(?P<npts>\d+)\b.*?\bDT\s*[=:]?\s*(?P<dt>{_NUMBER})",
+        rf"^\s*(?P<npts>\d+)\s*,?\s+(?P<dt>{_NUMBER})\s*,?\s*NPTS\s*,?\s*DT\b",
+        rf"\bNPTS\s*,\s*DT\s*[=:]?\s*(?P<npts>\d+)[,\s]+(?P<dt>{_NUMBER})",
+    )
+)
+_UNIT = re.compile(r"\bUNITS?\s*(?:OF|[=:])\s*\(?\s*([A-Z0-9/*^²]+)", re.IGNORECASE)
+_DATE = re.compile(r"\d{1,2}/\d{1,2}/\d{2,4}|\d{4}-\d{2}-\d{2}")
+_SIGNED = re.compile(rf"[-+]?{_NUMBER}", re.IGNORECASE)
+_HEADER_LINES = 10  # the count stands in line 4; a few lines of grace for hand-edited headers
+_HEADER_BYTES = 2048
+_WIDEST = 40  # characters of a number; longer ones are no numbers, and would cost the patterns long
+_MANY = 100  # values that do not have the same number of decimals by chance
+
+
+@dataclass(frozen=True)
+class _At2:
+    """What an AT2 file says; ``values`` in its own ``unit``, shape (npts,)."""
+
+    event: str
+    date: str
+    station: str
+    component: str
+    unit: str | None
+    dt: float
+    values: Samples
+
+
+def is_at2(filename: Any) -> bool:
+    """Whether a path or a file-like object holds a PEER AT2 file; never raises."""
+    try:
+        if hasattr(filename, "read"):
+            position = filename.tell()
+            try:
+                head = filename.read(_HEADER_BYTES)
+            finally:
+                filename.seek(position)
+        else:
+            with open(os.fspath(filename), "rb") as file:  # open() takes a number for an open file
+                head = file.read(_HEADER_BYTES)
+        return looks_like_at2(head)
+    except Exception:  # whatever ObsPy hands over while it looks for a format: it is no AT2 file
+        return False
+
+
+def looks_like_at2(head: bytes) -> bool:
+    """Whether the first bytes are an AT2 header: a count with a time step, below a unit or PEER's name."""
+    lines = head[:_HEADER_BYTES].decode("latin-1").splitlines()[:_HEADER_LINES]
+    for i, line in enumerate(lines):
+        if _count_and_step(line):
+            above = " ".join(lines[:i]).upper()
+            return i > 0 and ("UNITS OF" in above or "PEER" in above)
+    return False
+
+
+def read_at2(filename: str | os.PathLike[str] | BinaryIO, headonly: bool = False, **kwargs: Any) -> "Stream":
+    """Read an AT2 file into an ObsPy Stream of one Trace: ObsPy calls this for ``obspy.read("x.AT2")``.
+
+    The data stay in the file's unit; ``stats.at2`` has ``event``, ``date``, ``station``, ``component`` and
+    ``unit``. Raises ``InputError`` for a file that cannot be used, with the line, what was found and what was
+    expected.
+    """
+    from obspy import Stream, Trace
+    from obspy.core import AttribDict
+
+    if hasattr(filename, "read"):
+        place, data = getattr(filename, "name", "AT2 data"), filename.read()
+    else:
+        place, data = filename, Path(filename).read_bytes()
+    try:
+        record = _parse(data.decode("latin-1"))
+    except InputError as error:
+        raise InputError(*(f"{place}: {problem}" for problem in error.problems)) from None
+    header = {
+        "delta": record.dt,
+        "station": "".join(c for c in record.station.upper() if c.isalnum())[:5],
+        "channel": record.component.upper(),
+        "at2": AttribDict(
+            event=record.event,
+            date=record.date,
+            station=record.station,
+            component=record.component,
+            unit=record.unit or "",
+        ),
+    }
+    if headonly:
+        return Stream([Trace(header={**header, "npts": len(record.values)})])
+    return Stream([Trace(data=record.values, header=header)])
+
+
+def read_component(file: RecordFile) -> list[Component]:
+    """The component of an AT2 file, in m/s²; its g is the study's gravity."""
+    record = _parse(file.data.decode("latin-1"))
+    unit = record.unit or file.options.unit
+    if unit is None:
+        raise InputError('no unit in the header ("… IN UNITS OF G"); state it in the study, e.g. unit = "g"')
+    try:
+        factor = acceleration_factor(unit, file.gravity)
+    except ValueError as error:
+        raise InputError(f"header: {error}") from None
+    orientation = orientation_of(record.component) or split_stem(file.stem)[1] or UNKNOWN
+    parts = (record.event, record.date, record.station)
+    return [
+        Component(
+            name=file.stem,
+            dt=record.dt,
+            acceleration=record.values * factor,
+            orientation=orientation,
+            station=", ".join(part.upper() for part in parts) if record.station and record.date else "",
+            source=file.source,
+        )
+    ]
+
+
+def _parse(text: str) -> _At2:
+    """What the text of an AT2 file says; ``InputError`` with the line where it cannot be used."""
+    lines = text.rstrip("\x00\x1a").splitlines()
+    at = next((i for i, line in enumerate(lines[:_HEADER_LINES]) if _count_and_step(line)), None)
+    found = None if at is None else _count_and_step(lines[at])
+    if at is None or found is None:
+        raise InputError(
+            f"lines 1–{min(len(lines), _HEADER_LINES)}: no number of points and time step found; "
+            'expected a line such as "NPTS= 4316, DT= .0100 SEC"'
+        )
+    npts, dt = int(found["npts"]), float(found["dt"].upper().replace("D", "E"))
+    if npts < 1 or not (np.isfinite(dt) and dt > 0):
+        raise InputError(f'line {at + 1}: found "{lines[at].strip()}"; expected a count and a time step above 0')
+    header = " ".join(lines[:at])
+    if quantity := re.search(r"\b(?:VELOCITY|DISPLACEMENT) TIME\b", header, re.IGNORECASE):
+        raise InputError(f'header: found "{quantity[0]}…"; expected accelerations: take the .AT2 file of this record')
+    unit = _UNIT.search(header)
+    event, date, station, component = _title(lines[1]) if at > 1 else ("", "", "", "")
+    values = _values(lines, at + 1, npts)
+    return _At2(event, date, station, component, unit[1] if unit else None, dt, values)
+
+
+def _count_and_step(line: str) -> re.Match[str] | None:
+    """The groups ``npts`` and ``dt`` of a header line, in any dialect."""
+    return next((match for pattern in _COUNT_AND_STEP if (match := pattern.search(line[:200]))), None)
+
+
+def _title(line: str) -> tuple[str, str, str, str]:
+    """Event, date, station and component of header line 2; empty where it does not say.
+
+    "Duzce Turkey, 11/12/1999, Lamont 362, E" and "CAPE MENDOCINO 04/25/92 1806, CAPE MENDOCINO, 000 (CDMG
+    …)".
+    """
+    fields = [field.strip() for field in re.sub(r"\(.*", "", line).split(",")]
+    at = next((i for i, field in enumerate(fields) if _DATE.search(field)), None)
+    if at is None:
+        return ("", "", "", fields[-1] if len(fields) > 1 and orientation_of(fields[-1]) else "")
+    start = _DATE.search(fields[at])
+    assert start is not None
+    event = ", ".join(filter(None, [*fields[:at], fields[at][: start.start()].strip()]))
+    component = fields[-1] if len(fields) > at + 1 and orientation_of(fields[-1]) else ""
+    station = ", ".join(fields[at + 1 : -1] if component else fields[at + 1 :])
+    return event, fields[at][start.start() :], station, component
+
+
+def _values(lines: list[str], first: int, npts: int) -> Samples:
+    """The ``npts`` numbers from line ``first`` on, or ``InputError``: never one more or less."""
+    body = [line for line in lines[first:] if not line.isspace()]
+    tokens = " ".join(body).split()
+    try:
+        if any("_" in line for line in body):  # Python would read 1_0 as ten
+            raise ValueError
+        values = np.array([float(token) for token in tokens])
+    except ValueError:
+        tokens = _fixed_width([line.rstrip() for line in body if line], npts) or [
+            token.upper().replace("D", "E") for token in tokens
+        ]
+        values = np.array([_number(token, lines, first) for token in tokens])
+    if len(values) != npts:
+        raise InputError(f"the header says NPTS = {npts}, but the file holds {len(values)} values; fetch it again")
+    if not np.isfinite(values).all():
+        i = int(np.flatnonzero(~np.isfinite(values))[0])
+        raise InputError(f'value {i + 1} of {npts} is "{tokens[i]}"; expected finite numbers')
+    if _is_cut_short(tokens):
+        raise InputError(f'the last value is "{tokens[-1]}", shorter than all others: the file is cut; fetch it again')
+    return values
+
+
+def _number(token: str, lines: list[str], first: int) -> float:
+    """``token`` as a number, or ``InputError`` with the line that it stands in."""
+    if (len(token) <= _WIDEST and _SIGNED.fullmatch(token)) or token.lower().lstrip("+-") in (
+        "nan",
+        "inf",
+        "infinity",
+    ):
+        return float(token)
+    original = token.lower()
+    line = next((i for i in range(first, len(lines)) if original in lines[i].lower().replace("d", "e")), first)
+    raise InputError(
+        f'line {line + 1}: found "{token[:40]}"; expected numbers separated by blanks, or in equal columns'
+    )
+
+
+def _fixed_width(lines: list[str], npts: int) -> list[str] | None:
+    """Fields of Fortran columns whose values touch, such as 5E15.7; ``None`` unless they come to ``npts``.
+
+    The count tells how many fields a full line has, and so how wide they are.
+    """
+    longest = max(map(len, lines), default=0)
+    full = len(lines) - 1
+    for width in range(1, _WIDEST + 1):
+        per_line = longest // width
+        if longest % width or not per_line * full < npts <= per_line * (full + 1):
+            continue
+        fields = [line[at : at + width].strip() for line in lines for at in range(0, len(line), width)]
+        if len(fields) == npts and all(map(_SIGNED.fullmatch, fields)):
+            return [field.upper().replace("D", "E") for field in fields]
+    return None
+
+
+def _is_cut_short(tokens: list[str]) -> bool:
+    """Whether the last number has fewer characters after its point than all others, which agree."""
+
+    def tail(token: str) -> int:
+        return len(token) - token.rfind(".")
+
+    if len(tokens) < _MANY or "." not in tokens[-2]:
+        return False
+    usual = tail(tokens[-2])
+    return tail(tokens[-1]) < usual and all(tail(token) == usual for token in tokens[:-1])

@@ -1,0 +1,103 @@
+"""MiniSEED: counts, which a StationXML file in the same folder, or the study, turns into accelerations."""
+
+import re
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rockbatch.errors import InputError
+from rockbatch.motions.component import Component
+from rockbatch.motions.formats import stationxml
+from rockbatch.motions.formats.record_file import RecordFile
+from rockbatch.motions.formats.with_obspy import read_stream, without_offset
+from rockbatch.motions.motion import Unusable
+from rockbatch.motions.orientation import UNKNOWN, Orientation, orientation_of
+from rockbatch.units import acceleration_factor
+
+if TYPE_CHECKING:
+    from obspy import Trace
+
+SUFFIXES = frozenset({".mseed", ".ms", ".miniseed"})
+
+
+def is_miniseed(head: bytes) -> bool:
+    """Whether the first bytes are those of a MiniSEED 2 record: sequence number and quality."""
+    return re.match(rb"[0-9 ]{6}[DRQM][ \x00]", head) is not None
+
+
+def read_miniseed(file: RecordFile) -> list[Component | Unusable]:
+    """One component per channel; a channel that cannot be used is an ``Unusable`` beside the others."""
+    stream = read_stream(file.data, "MSEED")
+    lengths = {trace.stats.mseed.record_length for trace in stream}
+    if len(lengths) == 1 and len(file.data) % (length := lengths.pop()):  # ObsPy drops the rest unsaid
+        raise InputError(
+            f"{len(file.data)} bytes are not a whole number of its records of {length} bytes: the file is cut"
+        )
+    segments: dict[str, list[Trace]] = {}
+    for trace in stream:
+        segments.setdefault(trace.id, []).append(trace)
+    known = stationxml.channels_beside(file.path.parent)
+    readings: list[Component | Unusable] = []
+    for channel_id, traces in segments.items():
+        name = channel_id if len(segments) > 1 else file.stem
+        try:
+            if len(traces) > 1:
+                raise InputError(f"{channel_id} has gaps or overlaps: {len(traces)} pieces; join them first")
+            readings.append(_component(name, file, traces[0], known))
+        except InputError as error:
+            readings.append(Unusable(name, file.source, str(error)))
+    return readings
+
+
+def _component(name: str, file: RecordFile, trace: "Trace", known: list[stationxml.Channel]) -> Component:
+    """One channel as a component, by its StationXML entry or by what the study states."""
+    stats = trace.stats
+    if not np.issubdtype(trace.data.dtype, np.number):
+        raise InputError(f"{trace.id} holds text, not samples")
+    start = stats.starttime.timestamp
+    entries = [channel for channel in known if channel.id == trace.id]
+    entry = next((channel for channel in entries if channel.start <= start < channel.end), None)
+    orientation = orientation_of(stats.channel) or UNKNOWN
+    if entry is not None and entry.sensitivity:
+        unit, sensitivity = entry.unit, entry.sensitivity
+        origin = f"sensitivity {sensitivity:g} counts per {unit} from StationXML"
+        orientation = _oriented(trace.id, orientation, entry)
+    elif file.options.unit is not None or file.options.sensitivity is not None:
+        unit, sensitivity = file.options.unit or "m/s2", file.options.sensitivity or 1.0
+        origin = f"sensitivity {sensitivity:g} counts per {unit} as stated"
+    elif entries:
+        lack = "no sensitivity" if entry is not None else f"no epoch that covers {stats.starttime}"
+        raise InputError(f"the StationXML beside it has {lack} for {trace.id}; add it, or state sensitivity = …")
+    else:
+        raise InputError(
+            f"counts without a sensitivity: put the StationXML of {stats.network}.{stats.station} "
+            f"(an .xml with channel {trace.id}) into the folder, or state sensitivity = … "
+            "(counts per m/s²) in the study"
+        )
+    try:
+        factor = acceleration_factor(unit, file.gravity)
+    except ValueError:
+        raise InputError(f"{trace.id} measures {unit or 'an unknown quantity'}, not an acceleration") from None
+    acceleration, offset = without_offset(trace.data * (factor / sensitivity))
+    return Component(
+        name=name,
+        dt=float(stats.delta),
+        acceleration=acceleration,
+        orientation=orientation,
+        station=f"{stats.network}.{stats.station}.{stats.location}.{stats.channel[:-1]}",
+        source=file.source if name == file.stem else f"{file.source} ({trace.id})",
+        start=start,
+        notes=(origin, offset),
+    )
+
+
+def _oriented(channel_id: str, by_code: Orientation, entry: stationxml.Channel) -> Orientation:
+    """Orientation by azimuth and dip, where StationXML has them; else by the channel's code."""
+    if entry.dip is None:
+        return by_code
+    if abs(entry.dip) > 80:
+        return Orientation(by_code.label, vertical=True, down=entry.dip > 0)
+    if abs(entry.dip) > 10:
+        raise InputError(f"{channel_id} is inclined (dip {entry.dip:g}°): neither horizontal nor vertical")
+    azimuth = by_code.azimuth if entry.azimuth is None else entry.azimuth % 360.0
+    return Orientation(by_code.label, azimuth=azimuth)

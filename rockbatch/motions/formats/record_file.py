@@ -1,0 +1,75 @@
+"""A file as all readers get it, and what the user says about files that do not say it themselves."""
+
+import math
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from rockbatch.errors import InputError
+from rockbatch.units import GRAVITY, acceleration_factor
+
+
+@dataclass(frozen=True)
+class ReadOptions:
+    """What a study states about files that do not state it themselves; what a file says goes first.
+
+    Attributes
+    ----------
+    unit : str or None
+        Unit of the numbers, such as "cm/s2" or "g".
+    dt : float or None
+        Sampling interval [s] of text columns without time.
+    columns : tuple of str or None
+        What the columns of text files are: "time", a component such as "000", "NS" or "up", or "-" (leave
+        out).
+    sensitivity : float or None
+        Counts per ``unit`` (per m/s² where no unit is stated) of MiniSEED and SAC files.
+    """
+
+    unit: str | None = None
+    dt: float | None = None
+    columns: tuple[str, ...] | None = None
+    sensitivity: float | None = None
+
+    def __post_init__(self) -> None:
+        wrong = []
+        if self.unit is not None:
+            try:
+                acceleration_factor(self.unit)
+            except ValueError as error:
+                wrong.append(f'unit = "{self.unit}": {error}')
+        if self.dt is not None and not (math.isfinite(self.dt) and self.dt > 0):
+            wrong.append(f"dt = {self.dt:g}: must be a number above 0 [s]")
+        if self.sensitivity is not None and not (math.isfinite(self.sensitivity) and self.sensitivity != 0):
+            wrong.append(f"sensitivity = {self.sensitivity:g}: must be a number other than 0 [counts per unit]")
+        if self.columns is not None:
+            object.__setattr__(self, "columns", tuple(self.columns))
+            if all(name in ("-", "time", "t") for name in self.columns):
+                wrong.append(
+                    f'columns = {list(self.columns)}: no component among them; write e.g. ["time", "000", "090", "up"]'
+                )
+        if wrong:
+            raise InputError(*wrong)
+
+
+@dataclass(frozen=True)
+class RecordFile:
+    """A file to be read: where it lies, its bytes, and what the study says about it."""
+
+    path: Path
+    source: str
+    data: bytes
+    options: ReadOptions = field(default_factory=ReadOptions)
+    gravity: float = GRAVITY
+
+    @property
+    def stem(self) -> str:
+        """File name without its suffix."""
+        return self.path.stem
+
+    @property
+    def text(self) -> str:
+        """The bytes as text: UTF-8, or Latin-1 where they are not."""
+        try:
+            return self.data.decode("utf-8-sig")
+        except UnicodeDecodeError:
+            return self.data.decode("latin-1")

@@ -1,0 +1,59 @@
+"""SAC (binary): one component, in a unit that its header does not tell reliably."""
+
+from rockbatch.errors import InputError
+from rockbatch.motions.component import Component
+from rockbatch.motions.formats.record_file import RecordFile
+from rockbatch.motions.formats.with_obspy import read_stream, without_offset
+from rockbatch.motions.orientation import UNKNOWN, Orientation, orientation_of, split_stem
+from rockbatch.units import acceleration_factor
+
+SUFFIXES = frozenset({".sac"})
+
+_VERSION_AT = 76 * 4  # header word NVHDR, 6 or 7
+
+
+def is_sac(head: bytes) -> bool:
+    """Whether the first bytes are a binary SAC header, in either byte order."""
+    word = head[_VERSION_AT : _VERSION_AT + 4]
+    return len(word) == 4 and any(int.from_bytes(word, order) in (6, 7) for order in ("little", "big"))
+
+
+def read_sac(file: RecordFile) -> list[Component]:
+    """The component of a SAC file, in the unit that the study states: data / sensitivity × unit.
+
+    SAC's own entry for the kind of data (IDEP) is not used: files in g that claim nm/s² are common.
+    """
+    options = file.options
+    if options.unit is None and options.sensitivity is None:
+        raise InputError(
+            'SAC files do not tell their unit reliably; state it in the study, e.g. unit = "g" '
+            "(or sensitivity = … for counts per m/s²)"
+        )
+    (trace,) = read_stream(file.data, "SAC")
+    stats = trace.stats
+    factor = acceleration_factor(options.unit or "m/s2", file.gravity) / (options.sensitivity or 1.0)
+    acceleration, offset = without_offset(trace.data.astype(float) * factor)
+    orientation = orientation_of(stats.channel) or _by_angles(stats.sac) or split_stem(file.stem)[1] or UNKNOWN
+    codes = (stats.network, stats.station, stats.location, stats.channel[:-1])
+    return [
+        Component(
+            name=file.stem,
+            dt=float(stats.delta),
+            acceleration=acceleration,
+            orientation=orientation,
+            station=".".join(codes) if stats.station else "",
+            source=file.source,
+            start=stats.starttime.timestamp,
+            notes=(f"unit {options.unit or 'm/s2'} as stated", offset),
+        )
+    ]
+
+
+def _by_angles(sac: dict[str, float]) -> Orientation | None:
+    """Orientation by CMPAZ (from north) and CMPINC (from upward vertical) [degrees], where both are set."""
+    if "cmpinc" not in sac or "cmpaz" not in sac:
+        return None
+    azimuth, inclination = float(sac["cmpaz"]), float(sac["cmpinc"])
+    if inclination in (0.0, 180.0):
+        return Orientation("", vertical=True, down=inclination == 180.0)
+    return Orientation("", azimuth=azimuth % 360.0)

@@ -1,0 +1,76 @@
+"""What a ground motion is: one horizontal component, perhaps with its station's vertical one."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+Samples = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A ground motion in SI units, sampled evenly and linear between its samples.
+
+    Attributes
+    ----------
+    name : str
+        Name in tables: the stem of the horizontal component's file, its channel id, or the pulse's name.
+    dt : float
+        Sampling interval [s].
+    horizontal : ndarray, shape (npts,)
+        Horizontal ground acceleration ü_g [m/s²], positive to the right.
+    vertical : ndarray, shape (npts,), or None
+        Vertical ground acceleration v̈_g [m/s²], positive up; ``None`` where there is none.
+    source : str
+        Where the horizontal component came from: a file, a package, or "pulse".
+    vertical_source : str
+        Likewise for the vertical one; empty where there is none.
+    notes : tuple of str
+        What was done to the data on its way here, in words.
+    """
+
+    name: str
+    dt: float
+    horizontal: Samples
+    vertical: Samples | None = None
+    source: str = ""
+    vertical_source: str = ""
+    notes: tuple[str, ...] = ()
+
+    @property
+    def npts(self) -> int:
+        """Number of samples."""
+        return len(self.horizontal)
+
+    @property
+    def duration(self) -> float:
+        """Time from the first to the last sample [s]."""
+        return (self.npts - 1) * self.dt
+
+    @property
+    def pga(self) -> float:
+        """Peak horizontal ground acceleration [m/s²]."""
+        return float(np.abs(self.horizontal).max())
+
+    @property
+    def pga_vertical(self) -> float | None:
+        """Peak vertical ground acceleration [m/s²], ``None`` where there is no vertical component."""
+        return None if self.vertical is None else float(np.abs(self.vertical).max())
+
+
+@dataclass(frozen=True)
+class Unusable:
+    """A file that could not be used, and why; it stays in the tables as a row with its reason."""
+
+    name: str
+    source: str
+    reason: str
+
+
+@dataclass(frozen=True)
+class MotionSet:
+    """Everything that was found: motions in order, and what could not be used."""
+
+    motions: list[Motion] = field(default_factory=list)
+    unusable: list[Unusable] = field(default_factory=list)

@@ -1,0 +1,160 @@
+"""Ground motions that are a formula: pulses.
+
+Each pulse starts at t = 0 and lasts T_p; with T = ``period``, f = 1/T, ω = 2π/T and a = ``amplitude``:
+
+=======================  ======  ============================================================================
+shape                    T_p     acceleration, 0 ≤ t ≤ T_p
+=======================  ======  ============================================================================
+sine                     T       a sin ωt (type A: the ground moves once forward)
+cosine                   T       a cos ωt (type B: forward and back); starts and ends at a
+half-sine                T/2     a sin ωt
+ricker                   8T/3    a (1 − 2x) exp(−x), x = (πf(t − t0))², t0 = 4T/3, below 1e-6 a at both ends;
+                                 f is where its Fourier spectrum peaks
+mavroeidis-papageorgiou  γT      derivative of v(t) = A/2 [1 + cos(2πf/γ τ)] cos(2πf τ + ν), τ = t − γT/2,
+                                 with A such that the largest absolute value of the formula is a
+=======================  ======  ============================================================================
+
+Sine and cosine: Palmeri & Makris (2007), Figs. 5 and 6. Mavroeidis & Papageorgiou (2003), BSSA 93(3),
+1099–1131, eq. 3.
+"""
+
+import difflib
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from rockbatch.errors import InputError
+from rockbatch.motions.motion import Motion, Samples
+
+SHAPES = ("sine", "cosine", "half-sine", "ricker", "mavroeidis-papageorgiou")
+
+_ON_A_SAMPLE = 1e-9  # of dt: a pulse whose end falls on a sample includes it, whatever the rounding
+
+
+def pulse(
+    shape: str,
+    *,
+    name: str,
+    amplitude: float,
+    period: float,
+    dt: float,
+    duration: float,
+    gamma: float | None = None,
+    nu: float | None = None,
+) -> Motion:
+    """A pulse, sampled: its formula at t_i = i·dt up to its end, then zeros up to ``duration``.
+
+    Parameters
+    ----------
+    shape : str
+        One of ``SHAPES``; formulas at the head of this module.
+    name : str
+        Name in tables.
+    amplitude : float
+        Peak acceleration a of the formula [m/s²]; samples may miss the peak itself.
+    period : float
+        T [s].
+    dt, duration : float
+        Sampling interval and length of the motion [s]; it has round(duration/dt) + 1 samples.
+    gamma, nu : float
+        Number of oscillations γ > 1 and phase ν [rad], for "mavroeidis-papageorgiou" only.
+
+    Raises
+    ------
+    InputError
+        With every value that cannot be.
+    """
+    problems = _problems(shape, amplitude, period, dt, duration, gamma, nu)
+    if not name.strip():
+        problems.append("name is empty: write the name that the pulse shall have in tables")
+    if problems:
+        raise InputError(*problems)
+    formula, length = _formula(shape, amplitude, period, gamma, nu)
+    t = np.arange(round(duration / dt) + 1, dtype=np.float64) * dt
+    acceleration = np.zeros_like(t)
+    inside = t <= length + _ON_A_SAMPLE * dt
+    acceleration[inside] = formula(t[inside])
+    note = f"{shape} pulse, peak {amplitude:g} m/s², T = {period:g} s"
+    if gamma is not None and nu is not None:
+        note += f", gamma = {gamma:g}, nu = {nu:g} rad"
+    return Motion(name, dt, acceleration, source="pulse", notes=(note,))
+
+
+def _problems(
+    shape: str,
+    amplitude: float,
+    period: float,
+    dt: float,
+    duration: float,
+    gamma: float | None,
+    nu: float | None,
+) -> list[str]:
+    """What is wrong about the values of a pulse, one sentence each."""
+    wrong = [
+        f"{name} = {value:g}: must be a number above 0 [s]"
+        for name, value in (("period", period), ("dt", dt), ("duration", duration))
+        if not (math.isfinite(value) and value > 0)
+    ]
+    times_are_sound = not wrong
+    if not math.isfinite(amplitude) or amplitude == 0:
+        wrong.append(f"amplitude = {amplitude:g}: must be a number other than 0 [m/s²]")
+    oscillates = shape == "mavroeidis-papageorgiou"
+    if shape not in SHAPES:
+        close = difflib.get_close_matches(shape, SHAPES, 1)
+        hint = f'; did you mean "{close[0]}"?' if close else ""
+        wrong.append(f'shape = "{shape}": must be one of {", ".join(SHAPES)}{hint}')
+    elif oscillates:
+        if gamma is None or not (math.isfinite(gamma) and gamma > 1):
+            wrong.append(f"gamma = {gamma}: a {shape} pulse needs its number of oscillations, above 1")
+        if nu is None or not math.isfinite(nu):
+            wrong.append(f"nu = {nu}: a {shape} pulse needs its phase [rad]")
+    elif gamma is not None or nu is not None:
+        wrong.append(f'gamma and nu have no meaning for shape = "{shape}": leave them out')
+    if times_are_sound and dt >= period:
+        wrong.append(f"dt = {dt:g} s: must be below the period, {period:g} s (a fiftieth of it does well)")
+    if not wrong:
+        _, length = _formula(shape, amplitude, period, gamma, nu)
+        if duration < length * (1 - 1e-9):
+            wrong.append(f"duration = {duration:g} s: the pulse lasts {length:g} s; write that or more")
+    return wrong
+
+
+def _formula(
+    shape: str, a: float, period: float, gamma: float | None, nu: float | None
+) -> tuple[Callable[[Samples], Samples], float]:
+    """Acceleration [m/s²] as a function of time [s], and how long it lasts [s]."""
+    omega = 2.0 * math.pi / period
+    if shape == "sine":
+        return lambda t: a * np.sin(omega * t), period
+    if shape == "cosine":
+        return lambda t: a * np.cos(omega * t), period
+    if shape == "half-sine":
+        return lambda t: a * np.sin(omega * t), period / 2
+    if shape == "ricker":
+        t0 = 4.0 * period / 3.0
+
+        def ricker(t: Samples) -> Samples:
+            x = (math.pi * (t - t0) / period) ** 2
+            return a * (1.0 - 2.0 * x) * np.exp(-x)
+
+        return ricker, 2.0 * t0
+    assert gamma is not None
+    assert nu is not None
+    length = gamma * period
+    factor = a / _peak(gamma, nu)
+    return lambda t: factor * _mavroeidis_papageorgiou(t / period, gamma, nu), length
+
+
+def _mavroeidis_papageorgiou(cycles: Samples, gamma: float, nu: float) -> Samples:
+    """−dv/dτ / (−A ω/2) of the velocity pulse, at t/T = ``cycles``: zero at both ends, in its value."""
+    tau = 2.0 * np.pi * (cycles - gamma / 2.0)
+    return -(np.sin(tau / gamma) * np.cos(tau + nu) / gamma + np.sin(tau + nu) * (1.0 + np.cos(tau / gamma)))
+
+
+def _peak(gamma: float, nu: float) -> float:
+    """Largest absolute value of the dimensionless pulse, to 1e-9: a grid, and a finer one at its peak."""
+    cycles = np.linspace(0.0, gamma, math.ceil(2000 * gamma) + 1)
+    i = int(np.abs(_mavroeidis_papageorgiou(cycles, gamma, nu)).argmax())
+    fine = np.linspace(cycles[max(i - 1, 0)], cycles[min(i + 1, len(cycles) - 1)], 2001)
+    return float(np.abs(_mavroeidis_papageorgiou(fine, gamma, nu)).max())

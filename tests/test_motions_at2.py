@@ -1,0 +1,200 @@
+"""PEER AT2 files: header dialects, exact counts, and nothing but a clear error for damaged ones."""
+
+import io
+from importlib.metadata import entry_points
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from motion_files import at2_text, wiggle
+
+from rockbatch.errors import InputError
+from rockbatch.motions.formats.at2 import is_at2, read_at2
+
+VALUES = wiggle(12)
+
+
+def read(text: str):
+    return read_at2(io.BytesIO(text.encode("latin-1")))[0]
+
+
+@pytest.mark.parametrize(
+    ("count", "dt"),
+    [
+        ("NPTS=     12, DT=   .0100 SEC", 0.01),
+        ("NPTS=  12, DT= .02000 SEC", 0.02),
+        ("NPTS=     12, DT=   .0050 SEC,                     ", 0.005),
+        ("NPTS=   12  DT=   .0050 SEC,", 0.005),
+        ("NPTS=     12, DT=   .0100 SEC,  -5 POLE @      .03000 HZ,   0 POLE @      .00000", 0.01),
+        ("    12    0.0100    NPTS, DT", 0.01),
+        ("12 .005 NPTS, DT", 0.005),
+        ("npts= 12, dt= 0.00390625 sec", 0.00390625),
+        ("NPTS=12,DT=.01SEC", 0.01),
+        ("NPTS= 12, DT= 5.0E-03 SEC", 0.005),
+        ("NPTS, DT = 12, .0024", 0.0024),
+    ],
+)
+def test_every_dialect_of_the_count_line_gives_count_and_step(count, dt):
+    trace = read(at2_text(VALUES, count=count))
+    assert trace.stats.npts == 12
+    # ObsPy keeps 1/dt as well; the step that it gives back is off by rounding at most
+    assert trace.stats.delta == pytest.approx(dt, rel=1e-15)
+    np.testing.assert_allclose(trace.data, VALUES, rtol=1e-6)  # seven digits in the file
+
+
+@pytest.mark.parametrize("newline", ["\n", "\r\n"])
+def test_line_ends_and_latin_1_do_not_matter(newline):
+    trace = read(at2_text(VALUES, title="Düzce, 11/12/1999, Göynük, E", newline=newline))
+    assert trace.stats.at2.station == "Göynük"
+    assert trace.stats.npts == 12
+
+
+@pytest.mark.parametrize(
+    ("title", "event", "date", "station", "component"),
+    [
+        ("Duzce Turkey, 11/12/1999, Lamont 362, E", "Duzce Turkey", "11/12/1999", "Lamont 362", "E"),
+        ("San Simeon CA, 12/22/2003, Dam - Toe, UP", "San Simeon CA", "12/22/2003", "Dam - Toe", "UP"),
+        (
+            "CAPE MENDOCINO 04/25/92 1806, CAPE MENDOCINO, 000 (CDMG STATION 89005)",
+            "CAPE MENDOCINO",
+            "04/25/92 1806",
+            "CAPE MENDOCINO",
+            "000",
+        ),
+        ("Erzincan, 3/13/1992, Erzincan, NS (rotated)", "Erzincan", "3/13/1992", "Erzincan", "NS"),
+        ("no commas at all", "", "", "", ""),
+    ],
+)
+def test_event_date_station_and_component_come_from_line_2(title, event, date, station, component):
+    at2 = read(at2_text(VALUES, title=title)).stats.at2
+    assert (at2.event, at2.date, at2.station, at2.component) == (event, date, station, component)
+
+
+def test_values_that_touch_in_fortran_columns_are_told_apart():
+    values = -np.abs(wiggle(13))
+    columns = at2_text(values, number=lambda v: f"{v:14.7E}"[:14].rjust(14))
+    assert "E-02-" in columns  # they do touch
+    np.testing.assert_allclose(read(columns).data, values, rtol=1e-6)
+
+
+def test_columns_of_numbers_without_any_blank_between_positive_ones_follow_the_count():
+    text = at2_text(range(7), number=lambda v: f"{v:4.2f}")
+    assert "0.001.002.003.004.00" in text
+    np.testing.assert_array_equal(read(text).data, range(7))
+
+
+def test_fortran_double_precision_exponents_are_numbers():
+    values = wiggle(12)
+    np.testing.assert_allclose(
+        read(at2_text(values, number=lambda v: f"{v:15.6e}".replace("e", "D"))).data, values, 1e-6
+    )
+
+
+@pytest.mark.parametrize("said", [11, 13])
+def test_a_count_that_is_off_by_one_is_an_error_with_both_counts(said):
+    with pytest.raises(InputError, match=rf"NPTS = {said}.*holds 12 values"):
+        read(at2_text(VALUES, count=f"NPTS= {said}, DT= .01 SEC"))
+
+
+def test_a_file_cut_within_its_last_number_is_an_error_though_the_count_is_right():
+    text = at2_text(wiggle(200)).rstrip()
+    for cut in range(1, 10):
+        with pytest.raises(InputError, match=r"cut|found"):
+            read(text[:-cut])
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", "no number of points and time step"),
+        ("<html>\n<body>please log in</body>\n", "no number of points and time step"),
+        (at2_text(VALUES).replace("E-0", "X-0", 1), r"line \d+: found"),
+        (at2_text([*VALUES[:5], np.nan, *VALUES[5:]], number=lambda v: f" {v:.7e}"), 'value 6 of 13 is "nan"'),
+        (at2_text([*VALUES[:5], np.inf, *VALUES[5:]], number=lambda v: f" {v:.7e}"), 'value 6 of 13 is "inf"'),
+        (at2_text(VALUES, count="NPTS= 12, DT= 0.0 SEC"), "line 4.*time step above 0"),
+        (at2_text(VALUES, unit="VELOCITY TIME SERIES IN UNITS OF CM/S"), "VELOCITY TIME.*accelerations"),
+        (at2_text(range(12), number=lambda v: f" 1_{v:.0f}"), r'line 5: found "1_0"'),
+    ],
+)
+def test_what_cannot_be_used_is_refused_with_place_and_finding(text, message):
+    with pytest.raises(InputError, match=message):
+        read(text)
+
+
+def test_the_error_names_the_file(tmp_path):
+    path = tmp_path / "short.AT2"
+    path.write_text(at2_text(VALUES, count="NPTS= 99, DT= .01 SEC"))
+    with pytest.raises(InputError, match=r"short\.AT2: the header says NPTS = 99"):
+        read_at2(str(path))
+
+
+def test_a_header_alone_can_be_read():
+    trace = read_at2(io.BytesIO(at2_text(VALUES).encode()), headonly=True)[0]
+    assert (trace.stats.npts, len(trace.data)) == (12, 0)
+
+
+def test_only_at2_files_are_taken_for_at2(tmp_path):
+    path = tmp_path / "x.AT2"
+    path.write_text(at2_text(VALUES))
+    assert is_at2(str(path))
+    assert is_at2(path)
+    buffer = io.BytesIO(path.read_bytes())
+    buffer.seek(3)
+    is_at2(buffer)
+    assert buffer.tell() == 3  # other formats look at the file next
+    for other in (b"", b"\x00\xff" * 900, b"0.0 1.0\n0.1 2.0\n", b"NPTS= 4, DT= .1\n1 2 3 4", b"Origin Time  2018"):
+        assert not is_at2(io.BytesIO(other))
+    for nonsense in (None, 7, tmp_path, tmp_path / "missing", io.StringIO("text")):
+        assert not is_at2(nonsense)
+
+
+@pytest.mark.skipif(
+    not any(entry.name == "AT2" for entry in entry_points(group="obspy.plugin.waveform")),
+    reason="rockbatch is not installed, so ObsPy does not know its plugin",
+)
+@pytest.mark.parametrize("format", [None, "AT2"])
+def test_obspy_reads_at2_with_and_without_the_format_named(tmp_path, format):
+    obspy = pytest.importorskip("obspy")
+    path = tmp_path / "x.AT2"
+    path.write_text(at2_text(VALUES))
+    stream = obspy.read(str(path), format=format)
+    assert stream[0].stats._format == "AT2"
+    assert stream[0].stats.channel == "228"
+    np.testing.assert_allclose(obspy.read(io.BytesIO(path.read_bytes()), format=format)[0].data, VALUES, rtol=1e-6)
+
+
+numbers = st.floats(-10, 10, allow_subnormal=False).map(lambda v: 0.0 if abs(v) < 1e-30 else v)
+
+
+@settings(max_examples=150, deadline=None)
+@given(st.lists(numbers, min_size=1, max_size=60), st.sampled_from([".0100", "0.005", ".02000"]))
+def test_what_is_written_is_read_back(values, dt):
+    trace = read(at2_text(values, dt=dt))
+    assert trace.stats.npts == len(values)
+    np.testing.assert_allclose(trace.data, values, rtol=1e-6, atol=0)  # E15.7 has seven digits
+
+
+GOOD = at2_text(wiggle(150)).encode()
+
+
+@settings(max_examples=400, deadline=None)
+@given(st.data())
+def test_a_damaged_file_gives_an_input_error_or_all_of_its_points_never_anything_else(data):
+    damaged = bytearray(GOOD[: data.draw(st.integers(0, len(GOOD)), "length")])
+    for at, byte in data.draw(st.lists(st.tuples(st.integers(0, len(GOOD)), st.integers(0, 255)), max_size=4)):
+        if at < len(damaged):
+            damaged[at] = byte
+    try:
+        trace = read_at2(io.BytesIO(bytes(damaged)))[0]
+    except InputError:
+        return
+    assert np.isfinite(trace.data).all()
+    assert trace.stats.npts == len(trace.data)
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.integers(0, len(GOOD.rstrip()) - 1))
+def test_a_truncated_file_is_never_taken_for_a_whole_one(length):
+    with pytest.raises(InputError):
+        read_at2(io.BytesIO(GOOD[:length]))

@@ -1,0 +1,180 @@
+"""Text columns: the unit is declared or the file is not used; time is even or the file is not used."""
+
+import numpy as np
+import pytest
+from motion_files import at2_text, wiggle
+
+from rockbatch.errors import InputError
+from rockbatch.motions import ReadOptions, read_motions
+
+T = np.arange(60) * 0.005
+NS, EW, UD = (wiggle(60, seed, 100.0) for seed in (1, 2, 3))
+
+
+def write(folder, header, *columns, name="REC.txt", separator="  ", form="{:.6e}"):
+    rows = [separator.join(form.format(value) for value in row) for row in zip(*columns, strict=True)]
+    (folder / name).write_text("\n".join([*([header] if header else []), *rows, ""]))
+
+
+def one(folder, **options):
+    found = read_motions(folder, options=ReadOptions(**options))
+    assert not found.unusable
+    (motion,) = found.motions
+    return motion
+
+
+def reason(folder, **options):
+    found = read_motions(folder, options=ReadOptions(**options))
+    assert not found.motions
+    (unusable,) = found.unusable
+    return unusable.reason
+
+
+LONG = """# Strong motion recording
+#    closest distance to fault (km): 16.62
+# Data fields are TAB-separated
+# Column 1: Time (s)
+# Column 2: North-south acceleration (cm/s/s) (+ is northward)
+# Column 3: East-west acceleration (cm/s/s) (+ is eastward)
+# Column 4: Up-down acceleration (cm/s/s) (+ is upward)
+#"""
+
+
+@pytest.mark.parametrize(
+    ("header", "separator"),
+    [
+        ("#    time(sec)      N-S(cm/s/s)      E-W(cm/s/s)      U-D(cm/s/s)", "   "),
+        (LONG, "\t"),
+        ("time [s], NS [cm/s2], EW [cm/s2], UD [cm/s2]", ","),
+        ("# time(s);NS(gal);EW(gal);UD(gal)", "; "),
+    ],
+)
+def test_a_header_that_declares_columns_and_units_is_enough(tmp_path, header, separator):
+    write(tmp_path, header, T, NS, EW, UD, separator=separator)
+    found = read_motions(tmp_path)
+    assert not found.unusable
+    assert [motion.name for motion in found.motions] == ["REC.NS", "REC.EW"]
+    for motion, values in zip(found.motions, (NS, EW), strict=True):
+        assert motion.dt == 0.005
+        np.testing.assert_allclose(motion.horizontal, values / 100, rtol=1e-6, atol=1e-12)  # seven digits
+        np.testing.assert_allclose(motion.vertical, UD / 100, rtol=1e-6, atol=1e-12)
+
+
+def test_decimal_commas_are_read_between_semicolons(tmp_path):
+    rows = [f"{t:.3f};{a:.4f}".replace(".", ",") for t, a in zip(T, NS, strict=True)]
+    (tmp_path / "x.csv").write_text("time (s); 000 (gal)\n" + "\n".join(rows))
+    np.testing.assert_allclose(one(tmp_path).horizontal, NS / 100, atol=1e-6)
+
+
+def test_time_in_milliseconds_is_time(tmp_path):
+    write(tmp_path, "# time(ms) NS(gal)", 1000 * T, NS)
+    assert one(tmp_path).dt == 0.005
+
+
+def test_what_the_header_does_not_say_the_study_can_state(tmp_path):
+    write(tmp_path, "", T, NS, EW, UD)
+    options = {"unit": "cm/s2", "columns": ("time", "000", "-", "up")}
+    motion = one(tmp_path, **options)
+    assert motion.name == "REC.000"
+    np.testing.assert_allclose(motion.horizontal, NS / 100, rtol=1e-6, atol=1e-12)
+    assert motion.vertical is not None
+
+
+def test_one_column_takes_step_and_unit_from_the_study_and_direction_from_its_name(tmp_path):
+    write(tmp_path, "", NS, name="STA_N.dat")
+    write(tmp_path, "", UD, name="STA_Z.dat")
+    motion = one(tmp_path, unit="cm/s2", dt=0.01)
+    assert (motion.dt, motion.name, motion.vertical_source) == (0.01, "STA_N", "STA_Z.dat")
+
+
+def test_two_columns_of_which_one_grows_evenly_are_time_and_acceleration_and_it_is_said(tmp_path):
+    write(tmp_path, "", T, NS, name="STA_E.acc")
+    motion = one(tmp_path, unit="m/s2")
+    assert motion.dt == 0.005
+    assert any("taken as time" in note for note in motion.notes)
+
+
+def test_a_unit_line_in_the_header_counts(tmp_path):
+    write(tmp_path, "# unit: mm/s2\n# t a", T, NS)
+    np.testing.assert_allclose(one(tmp_path).horizontal, NS / 1000, rtol=1e-6, atol=1e-12)
+
+
+def test_a_remark_with_a_unit_in_it_declares_nothing(tmp_path):
+    write(tmp_path, "# PGA (g): 0.5", NS)
+    assert "unit" in reason(tmp_path, dt=0.01)
+
+
+@pytest.mark.parametrize("header", ["", "# t NS", "# time(s) NS", "t,NS"])
+def test_without_a_unit_the_file_is_not_used_and_the_reason_says_what_to_add(tmp_path, header):
+    write(tmp_path, header, T, NS)
+    assert 'state it in the study, e.g. unit = "cm/s2"' in reason(tmp_path)
+
+
+def test_a_column_that_is_no_acceleration_is_left_out_with_a_reason(tmp_path):
+    write(tmp_path, "# time(s) NS(cm/s2) EW(cm/s)", T, NS, EW)
+    found = read_motions(tmp_path)
+    assert [motion.name for motion in found.motions] == ["REC.NS"]
+    assert 'unknown acceleration unit "cm/s"' in found.unusable[0].reason
+
+
+def test_four_columns_that_nobody_names_are_not_guessed(tmp_path):
+    write(tmp_path, "", T, NS, EW, UD)
+    assert 'columns = ["time", "000", "090", "up"]' in reason(tmp_path, unit="g")
+
+
+def test_a_wrong_number_of_stated_columns_is_told(tmp_path):
+    write(tmp_path, "", T, NS, EW)
+    assert "found 3 columns" in reason(tmp_path, unit="g", columns=("time", "000"))
+
+
+def test_no_time_and_no_step_is_refused_with_the_remedy(tmp_path):
+    write(tmp_path, "# NS(gal)", NS)
+    assert "dt = 0.01" in reason(tmp_path)
+
+
+def test_a_lost_sample_makes_time_uneven(tmp_path):
+    write(tmp_path, "# time(s) NS(gal)", np.delete(T, 30), np.delete(NS, 30))
+    assert "does not grow evenly" in reason(tmp_path)
+
+
+def test_time_printed_with_few_digits_is_even(tmp_path):
+    t = np.round(np.arange(60) / 30.0, 3)  # 0.033, 0.067, 0.1: off by 1.5 % of a step
+    write(tmp_path, "# time(s) NS(gal)", t, NS, form="{:.6f}")
+    assert one(tmp_path).dt == pytest.approx(1 / 30, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("# time(s) NS(gal)\n0 1\n0.1 2\n0.2\n", "line 4: found 1 numbers; expected 2"),
+        ("# time(s) NS(gal)\n0 1\n0.1 x\n0.2 3\n", 'line 3: found "0.1 x"'),
+        ("# time(s) NS(gal)\n0 1\n0.1 nan\n0.2 3\n", "row 2 of numbers, column 2"),
+        ("# time(s) NS(gal)\n0 1\n", "at least two samples"),
+        ("# time(h) NS(gal)\n0 1\n1 2\n", 'unit of time "h"'),
+        ("just a letter to a friend\n", "no columns of numbers"),
+        ("# time(s) NS(gal)\n0 1\n0.1 2_0\n", 'line 3: found "0.1 2_0"'),
+    ],
+)
+def test_a_file_that_is_not_whole_is_refused_with_the_place(tmp_path, text, message):
+    (tmp_path / "x.txt").write_text(text)
+    assert message in reason(tmp_path)
+
+
+def test_an_at2_file_saved_as_text_is_read_as_at2(tmp_path):
+    (tmp_path / "RSN1_X_Y228.txt").write_text(at2_text(wiggle(50)))
+    assert one(tmp_path).npts == 50
+
+
+def test_a_small_text_file_reads_the_same_in_latin_1_and_utf_8_with_a_mark(tmp_path):
+    text = "# time(s) NS(cm/s²)\n0 1\n0.1 2\n0.2 3\n"
+    for name, data in (("a.txt", text.encode("latin-1")), ("b.txt", text.encode("utf-8-sig"))):
+        (tmp_path / name).write_bytes(data)
+    first, second = read_motions(tmp_path).motions
+    np.testing.assert_array_equal(first.horizontal, second.horizontal)
+    np.testing.assert_allclose(first.horizontal, [0.01, 0.02, 0.03])
+
+
+def test_stated_options_that_cannot_be_are_told_all_at_once():
+    with pytest.raises(InputError) as caught:
+        ReadOptions(unit="furlongs", dt=-1.0, columns=("time", "-"), sensitivity=0.0)
+    assert len(caught.value.problems) == 4

@@ -1,0 +1,256 @@
+"""Folders: pairing of components, common samples, names, order, and a reason for every file that is not used."""
+
+import os
+
+import numpy as np
+import pytest
+from motion_files import wiggle, write_at2
+
+from rockbatch.errors import InputError
+from rockbatch.motions import ReadOptions, read_motions
+from rockbatch.motions.component import Component
+from rockbatch.motions.orientation import Orientation
+from rockbatch.motions.pairing import to_motions
+
+
+def title(component: str, station: str = "Test Station") -> str:
+    return f"Made-up, 1/17/1994, {station}, {component}"
+
+
+def vertical_of(found) -> dict[str, str]:
+    return {motion.name: motion.vertical_source for motion in found.motions}
+
+
+def test_components_of_one_rsn_are_paired_and_g_is_the_studys(tmp_path):
+    values = {"RRS228": wiggle(50, 1), "RRS318": wiggle(50, 2), "RRS-UP": wiggle(50, 3)}
+    for name, data in values.items():
+        write_at2(tmp_path, f"RSN1063_NORTHR_{name}.AT2", data, title=title(name[3:].lstrip("-")))
+    found = read_motions(tmp_path, gravity=10.0)
+    assert vertical_of(found) == {
+        "RSN1063_NORTHR_RRS228": "RSN1063_NORTHR_RRS-UP.AT2",
+        "RSN1063_NORTHR_RRS318": "RSN1063_NORTHR_RRS-UP.AT2",
+    }
+    np.testing.assert_allclose(found.motions[0].horizontal, values["RRS228"] * 10.0, rtol=1e-6)
+    np.testing.assert_allclose(found.motions[0].vertical, values["RRS-UP"] * 10.0, rtol=1e-6)
+    assert not found.unusable
+
+
+def test_without_rsn_the_header_pairs_whatever_the_files_are_called(tmp_path):
+    write_at2(tmp_path, "first.at2", wiggle(50, 1), title=title("228"))
+    write_at2(tmp_path, "second.at2", wiggle(50, 2), title=title("UP"))
+    write_at2(tmp_path, "third.at2", wiggle(50, 3), title=title("UP", "Elsewhere"))
+    found = read_motions(tmp_path)
+    assert vertical_of(found) == {"first": "second.at2"}
+    assert [(u.name, "without a horizontal" in u.reason) for u in found.unusable] == [("third", True)]
+
+
+def test_without_a_header_the_stem_pairs(tmp_path):
+    for name, seed in (("A_E.AT2", 1), ("A_Z.AT2", 2), ("B_E.AT2", 3)):
+        write_at2(tmp_path, name, wiggle(50, seed), title="nothing said")
+    assert vertical_of(read_motions(tmp_path)) == {"A_E": "A_Z.AT2", "B_E": ""}
+
+
+def test_components_in_different_folders_are_not_paired(tmp_path):
+    write_at2(tmp_path / "a", "RSN7_X_Y000.AT2", wiggle(50), title=title("0"))
+    write_at2(tmp_path / "b", "RSN7_X_Y-UP.AT2", wiggle(50), title=title("UP"))
+    found = read_motions(tmp_path)
+    assert vertical_of(found) == {"RSN7_X_Y000": ""}
+    assert found.unusable[0].source == "b/RSN7_X_Y-UP.AT2"
+
+
+def test_a_dwn_component_is_turned_up_and_it_is_said(tmp_path):
+    up = wiggle(50, 2)
+    write_at2(tmp_path, "RSN7_X_Y000.AT2", wiggle(50), title=title("0"))
+    write_at2(tmp_path, "RSN7_X_YDWN.AT2", -up, title=title("DWN"))
+    (motion,) = read_motions(tmp_path, gravity=1.0).motions
+    np.testing.assert_allclose(motion.vertical, up, rtol=1e-6)
+    assert "vertical: DWN is positive down, sign reversed" in motion.notes
+
+
+def test_unequal_lengths_are_cut_to_the_common_span_and_it_is_said(tmp_path):
+    write_at2(tmp_path, "RSN7_X_Y--L.AT2", wiggle(50, 1), title=title("L"))
+    write_at2(tmp_path, "RSN7_X_Y--T.AT2", wiggle(44, 2), title=title("T"))
+    write_at2(tmp_path, "RSN7_X_Y--V.AT2", wiggle(48, 3), title=title("V"))
+    longer, shorter = read_motions(tmp_path).motions
+    assert (longer.npts, shorter.npts) == (48, 44)
+    assert longer.vertical is not None
+    assert len(longer.vertical) == 48
+    np.testing.assert_allclose(longer.horizontal / 9.81, wiggle(50, 1)[:48], rtol=1e-6)  # from the first sample
+    assert "common span: 0.47 s of 0.49 s horizontal and 0.47 s vertical" in longer.notes
+
+
+def test_a_vertical_that_ends_before_the_horizontal_peak_is_not_used(tmp_path):
+    write_at2(tmp_path, "RSN7_X_Y000.AT2", wiggle(100, 1), title=title("0"))
+    write_at2(tmp_path, "RSN7_X_Y-UP.AT2", wiggle(100, 2)[:20], title=title("UP"))
+    (motion,) = read_motions(tmp_path).motions
+    assert (motion.npts, motion.vertical) == (100, None)
+    assert any("does not last over the horizontal peak" in note for note in motion.notes)
+
+
+def test_the_coarser_component_is_interpolated_and_keeps_its_own_samples(tmp_path):
+    fine, coarse = wiggle(101, 1), wiggle(51, 2)
+    write_at2(tmp_path, "RSN7_X_Y000.AT2", fine, title=title("0"), dt=".0050")
+    write_at2(tmp_path, "RSN7_X_Y-UP.AT2", coarse, title=title("UP"), dt=".0100")
+    (motion,) = read_motions(tmp_path, gravity=1.0).motions
+    assert (motion.dt, motion.npts) == (0.005, 101)
+    assert motion.vertical is not None
+    np.testing.assert_allclose(motion.vertical[::2], coarse, rtol=1e-6)
+    np.testing.assert_allclose(motion.vertical[1::2], (coarse[:-1] + coarse[1:]) / 2, rtol=1e-5, atol=1e-9)
+    assert any(note.startswith("vertical interpolated linearly to dt = 0.005 s") for note in motion.notes)
+
+
+def component(values, dt=0.01, vertical=False, start=None, **more):
+    return Component("c", dt, np.asarray(values, float), Orientation("x", vertical), "S", "/f", "c.x", start, **more)
+
+
+def test_a_coarse_horizontal_is_brought_to_the_vertical_samples():
+    (motion,) = to_motions([component([0, 1, 0], 0.02), component([0, 1, 2, 3, 4], 0.01, True)]).motions
+    np.testing.assert_allclose(motion.horizontal, [0, 0.5, 1, 0.5, 0])
+    np.testing.assert_array_equal(motion.vertical, [0, 1, 2, 3, 4])
+    assert motion.dt == 0.01
+    assert any(note.startswith("horizontal interpolated") for note in motion.notes)
+
+
+def test_starts_between_samples_are_met_by_interpolating_the_vertical():
+    ramp = np.arange(10.0)
+    (motion,) = to_motions([component(ramp, start=100.0), component(ramp, vertical=True, start=100.005)]).motions
+    np.testing.assert_allclose(motion.horizontal, ramp[1:])
+    np.testing.assert_allclose(motion.vertical, ramp[1:] - 0.5, atol=1e-4)  # times since 1970 to 1e-7 s
+
+
+def test_steps_without_a_common_measure_cost_no_horizontal_peak():
+    spike = [0, 0, 1, 0, 0]
+    (motion,) = to_motions([component(spike, 0.02), component(np.arange(6), 0.015, True)]).motions
+    assert motion.dt == 0.01  # the horizontal samples halved: no coarser than 0.015 s
+    np.testing.assert_allclose(motion.horizontal, [0, 0, 0, 0.5, 1, 0.5, 0, 0])
+    np.testing.assert_allclose(motion.vertical, np.arange(8) / 1.5)
+
+
+def test_two_verticals_of_one_station_are_ambiguous_and_neither_is_used(tmp_path):
+    write_at2(tmp_path, "RSN7_X_Y000.AT2", wiggle(50), title=title("0"))
+    write_at2(tmp_path, "RSN7_X_Y-UP.AT2", wiggle(50), title=title("UP"))
+    write_at2(tmp_path, "RSN7_X_Y-UP-copy.AT2", wiggle(50), title=title("UP"))
+    found = read_motions(tmp_path)
+    assert found.motions[0].vertical is None
+    assert len(found.unusable) == 2
+    assert all("several vertical components" in u.reason for u in found.unusable)
+
+
+def test_verticals_can_be_left_out(tmp_path):
+    write_at2(tmp_path, "RSN7_X_Y000.AT2", wiggle(50), title=title("0"))
+    write_at2(tmp_path, "RSN7_X_Y-UP.AT2", wiggle(50), title=title("UP"))
+    found = read_motions(tmp_path, vertical=False)
+    assert found.motions[0].vertical is None
+    assert not found.unusable
+
+
+def test_every_file_is_a_motion_or_has_a_reason_and_read_me_files_are_neither(tmp_path):
+    write_at2(tmp_path, "good.AT2", wiggle(50), title="nothing")
+    write_at2(tmp_path, "short.AT2", wiggle(50), count="NPTS= 60, DT= .01 SEC")
+    write_at2(tmp_path, "one.AT2", [0.1], title="nothing")
+    for name in ("empty.AT2", "notes.docx", "meta.json", "README.md", ".hidden.AT2", "StationXML.xml"):
+        (tmp_path / name).touch()
+    (tmp_path / ".git").mkdir()
+    (tmp_path / ".git" / "x.AT2").touch()
+    found = read_motions(tmp_path)
+    assert [motion.name for motion in found.motions] == ["good"]
+    reasons = {u.source: u.reason for u in found.unusable}
+    assert list(reasons) == ["empty.AT2", "meta.json", "notes.docx", "one.AT2", "short.AT2"]
+    assert reasons["empty.AT2"] == "the file is empty"
+    assert reasons["meta.json"] == "not a format that rockbatch reads"
+    assert "at least two" in reasons["one.AT2"]
+    assert "NPTS = 60" in reasons["short.AT2"]
+
+
+def test_links_that_lead_out_are_not_followed_and_it_is_said(tmp_path):
+    outside = write_at2(tmp_path / "outside", "x.AT2", wiggle(50))
+    inside = tmp_path / "inside"
+    write_at2(inside, "a.AT2", wiggle(50), title="nothing")
+    (inside / "b.AT2").symlink_to(outside)
+    (inside / "c").symlink_to(outside.parent)
+    (inside / "d.AT2").symlink_to(inside / "d.AT2")
+    os.mkfifo(inside / "e.AT2")
+    found = read_motions(inside)
+    assert [motion.name for motion in found.motions] == ["a"]
+    reasons = {u.source: u.reason for u in found.unusable}
+    assert "leads out" in reasons["b.AT2"]
+    assert "leads out" in reasons["c"]
+    assert reasons["d.AT2"] == reasons["e.AT2"] == "not a regular file"
+
+
+def test_a_reader_that_fails_costs_one_file_and_its_exception_is_named(tmp_path, monkeypatch):
+    write_at2(tmp_path, "good.AT2", wiggle(50), title="nothing")
+    (tmp_path / "bad.txt").write_text("1 2\n")
+    from rockbatch.motions import folder
+
+    honest = folder.read_record
+
+    def failing(file):
+        if file.path.suffix == ".txt":
+            raise ZeroDivisionError("by design")
+        return honest(file)
+
+    monkeypatch.setattr(folder, "read_record", failing)
+    found = read_motions(tmp_path)
+    assert len(found.motions) == 1
+    assert found.unusable[0].reason == "its reader failed: ZeroDivisionError: by design"
+
+
+def test_the_order_is_that_of_the_paths_and_sources_are_short(tmp_path):
+    for name in ("b/z.AT2", "b/a.AT2", "a/k.AT2", "c.AT2"):
+        write_at2((tmp_path / name).parent, name.rsplit("/", 1)[-1], wiggle(50), title="nothing")
+    found = read_motions(tmp_path)
+    assert [motion.source for motion in found.motions] == ["a/k.AT2", "b/a.AT2", "b/z.AT2", "c.AT2"]
+
+
+def test_several_paths_are_read_in_the_given_order_and_no_file_twice(tmp_path):
+    first = write_at2(tmp_path / "a", "x.AT2", wiggle(50), title="nothing")
+    write_at2(tmp_path / "b", "y.AT2", wiggle(50), title="nothing")
+    found = read_motions([tmp_path / "b", first, tmp_path / "a"])
+    assert [motion.source for motion in found.motions] == ["b/y.AT2", "x.AT2"]
+
+
+def test_motions_of_one_name_get_their_folder_in_front(tmp_path):
+    for folder in ("a", "b"):
+        write_at2(tmp_path / folder, "x.AT2", wiggle(50), title="nothing")
+    write_at2(tmp_path / "b", "y.AT2", wiggle(50), title="nothing")
+    assert [motion.name for motion in read_motions(tmp_path).motions] == ["a/x", "b/x", "y"]
+
+
+def test_a_missing_path_is_an_error_with_a_suggestion_and_all_are_told_at_once(tmp_path):
+    (tmp_path / "records").mkdir()
+    with pytest.raises(InputError) as caught:
+        read_motions([tmp_path / "recods", tmp_path / "nowhere"])
+    assert len(caught.value.problems) == 2
+    assert f"did you mean {tmp_path / 'records'}?" in caught.value.problems[0]
+
+
+def test_an_empty_folder_is_an_empty_set(tmp_path):
+    found = read_motions(tmp_path)
+    assert (found.motions, found.unusable) == ([], [])
+
+
+@pytest.mark.parametrize("scale", [100.0, 0.0005])
+def test_an_unlikely_peak_is_noted_not_refused(tmp_path, scale):
+    write_at2(tmp_path, "x.AT2", wiggle(50, scale=scale), title="nothing")
+    assert any("check the unit" in note for note in read_motions(tmp_path).motions[0].notes)
+
+
+def test_a_component_without_direction_is_horizontal_and_it_is_said(tmp_path):
+    write_at2(tmp_path, "mine.AT2", wiggle(50), title="nothing")
+    assert "direction not stated: taken as horizontal" in read_motions(tmp_path).motions[0].notes
+
+
+@pytest.mark.parametrize(
+    ("unit", "factor"), [("G", 10.0), ("CM/SEC/SEC", 0.01), ("CM/S**2", 0.01), ("G. FILTER POINTS: HP=0.07 Hz", 10.0)]
+)
+def test_the_unit_line_of_at2_is_obeyed(tmp_path, unit, factor):
+    write_at2(tmp_path, "x.AT2", wiggle(50), unit=f"ACCELERATION TIME HISTORY IN UNITS OF {unit}")
+    (motion,) = read_motions(tmp_path, gravity=10.0).motions
+    np.testing.assert_allclose(motion.horizontal, wiggle(50) * factor, rtol=1e-6)
+
+
+def test_at2_without_a_unit_takes_the_stated_one_or_none(tmp_path):
+    write_at2(tmp_path, "x.AT2", wiggle(50), unit="ACCELERATION TIME SERIES")
+    assert 'unit = "g"' in read_motions(tmp_path).unusable[0].reason
+    assert len(read_motions(tmp_path, options=ReadOptions(unit="g")).motions) == 1

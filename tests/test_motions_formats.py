@@ -1,0 +1,248 @@
+"""MiniSEED, SAC and K-NET files through ObsPy: units, orientation, and refusals that say what to add."""
+
+import contextlib
+import pickle
+import struct
+from pathlib import Path
+
+import numpy as np
+import pytest
+from motion_files import wiggle
+from obspy import Stream, Trace, UTCDateTime
+
+from rockbatch.errors import InputError
+from rockbatch.motions import ReadOptions, read_motions
+from rockbatch.motions.formats import FORMATS, with_obspy
+
+START = UTCDateTime(2019, 7, 6, 3, 19, 23)
+COUNTS = (wiggle(500) * 1e6).astype(np.int32)
+
+
+def trace(channel: str, data=COUNTS, start=START, rate: float = 100.0) -> Trace:
+    header = {"network": "CI", "station": "LRL", "channel": channel, "starttime": start, "sampling_rate": rate}
+    return Trace(np.array(data), header)
+
+
+def write_mseed(path: Path, *traces: Trace) -> None:
+    Stream(list(traces)).write(str(path), format="MSEED")
+
+
+def station_xml(folder: Path, *channels: str) -> None:
+    (folder / "stations.xml").write_text(
+        '<?xml version="1.0"?><FDSNStationXML xmlns="http://www.fdsn.org/xml/station/1"><Network code="CI">'
+        f'<Station code="LRL">{"".join(channels)}</Station></Network></FDSNStationXML>'
+    )
+
+
+def channel_xml(
+    code: str, azimuth: float = 0.0, dip: float = 0.0, unit: str = "M/S**2", value: float = 2e5, end: str = "2599-12-31"
+) -> str:
+    return (
+        f'<Channel code="{code}" locationCode="" startDate="2017-11-15T19:20:00" endDate="{end}T00:00:00">'
+        f"<Azimuth>{azimuth}</Azimuth><Dip>{dip}</Dip><Response><InstrumentSensitivity><Value>{value}</Value>"
+        f"<InputUnits><Name>{unit}</Name></InputUnits></InstrumentSensitivity></Response></Channel>"
+    )
+
+
+def only_reason(found) -> str:
+    assert not found.motions
+    (unusable,) = found.unusable
+    return unusable.reason
+
+
+def test_miniseed_counts_become_m_s2_by_the_station_xml_beside_it(tmp_path):
+    write_mseed(tmp_path / "n.mseed", trace("HNN"))
+    write_mseed(tmp_path / "z.mseed", trace("HNZ", COUNTS * 2))
+    station_xml(tmp_path, channel_xml("HNN", 0.0), channel_xml("HNZ", 0.0, -90.0, value=1e5))
+    (motion,) = read_motions(tmp_path).motions
+    expected = (COUNTS - COUNTS.mean()) / 2e5
+    np.testing.assert_allclose(motion.horizontal, expected, atol=1e-12)
+    np.testing.assert_allclose(motion.vertical, 4 * expected, atol=1e-12)
+    assert (motion.name, motion.dt, motion.source, motion.vertical_source) == ("n", 0.01, "n.mseed", "z.mseed")
+    assert any("from StationXML" in note for note in motion.notes)
+    assert any("mean over the record" in note for note in motion.notes)
+
+
+def test_a_vertical_channel_with_positive_dip_points_down(tmp_path):
+    write_mseed(tmp_path / "all.mseed", trace("HNN"), trace("HNZ"))
+    station_xml(tmp_path, channel_xml("HNN"), channel_xml("HNZ", dip=90.0))
+    (motion,) = read_motions(tmp_path).motions
+    assert motion.vertical is not None
+    np.testing.assert_allclose(motion.vertical, -motion.horizontal)
+    assert any("positive down" in note for note in motion.notes)
+
+
+def test_a_file_of_several_channels_names_them_by_channel_id(tmp_path):
+    write_mseed(tmp_path / "all.mseed", trace("HNE"), trace("HNN"), trace("HNZ"))
+    found = read_motions(tmp_path, options=ReadOptions(sensitivity=1e5))
+    assert [motion.name for motion in found.motions] == ["CI.LRL..HNE", "CI.LRL..HNN"]
+    assert all(motion.vertical is not None for motion in found.motions)
+
+
+def test_counts_without_sensitivity_are_refused_with_the_remedy(tmp_path):
+    write_mseed(tmp_path / "n.mseed", trace("HNN"))
+    reason = only_reason(read_motions(tmp_path))
+    assert "StationXML of CI.LRL" in reason
+    assert "sensitivity = " in reason
+
+
+@pytest.mark.parametrize(
+    ("channel", "message"),
+    [
+        (channel_xml("HNN", end="2018-01-01"), "no epoch that covers 2019"),
+        (channel_xml("HNN", unit="M/S"), "measures M/S, not an acceleration"),
+        (channel_xml("HNN", dip=-35.3), "inclined"),
+        (channel_xml("HNN", value=0.0), "no sensitivity"),
+        (channel_xml("HNE"), "counts without a sensitivity"),
+    ],
+)
+def test_a_station_xml_that_does_not_serve_says_why(tmp_path, channel, message):
+    write_mseed(tmp_path / "n.mseed", trace("HNN"))
+    station_xml(tmp_path, channel)
+    assert message in only_reason(read_motions(tmp_path))
+
+
+def test_a_broken_xml_file_costs_only_the_sensitivity(tmp_path):
+    write_mseed(tmp_path / "n.mseed", trace("HNN"))
+    (tmp_path / "stations.xml").write_text("<unclosed")
+    assert len(read_motions(tmp_path, options=ReadOptions(unit="cm/s2", sensitivity=10.0)).motions) == 1
+
+
+def test_unit_and_sensitivity_can_be_stated(tmp_path):
+    write_mseed(tmp_path / "n.mseed", trace("HNN"))
+    options = ReadOptions(unit="cm/s2", sensitivity=10.0)
+    (motion,) = read_motions(tmp_path, options=options).motions
+    np.testing.assert_allclose(motion.horizontal, (COUNTS - COUNTS.mean()) / 1000, atol=1e-12)
+
+
+def test_a_gap_costs_that_channel_and_no_other(tmp_path):
+    later = trace("HNN", start=START + 60)
+    write_mseed(tmp_path / "all.mseed", trace("HNE"), trace("HNN"), later)
+    found = read_motions(tmp_path, options=ReadOptions(unit="cm/s2"))
+    assert [motion.name for motion in found.motions] == ["CI.LRL..HNE"]
+    assert [(u.name, "gaps" in u.reason) for u in found.unusable] == [("CI.LRL..HNN", True)]
+
+
+def test_a_truncated_miniseed_file_is_refused(tmp_path):
+    write_mseed(tmp_path / "n.mseed", trace("HNN", np.random.default_rng(0).integers(-(2**27), 2**27, 5000)))
+    whole = (tmp_path / "n.mseed").read_bytes()
+    for cut, message in ((700, "the file is cut"), (4000, "damaged")):
+        (tmp_path / "n.mseed").write_bytes(whole[: len(whole) - cut])
+        assert message in only_reason(read_motions(tmp_path, options=ReadOptions(unit="cm/s2")))
+
+
+def test_components_with_absolute_times_share_the_time_that_both_were_on(tmp_path):
+    write_mseed(tmp_path / "n.mseed", trace("HNN"))
+    write_mseed(tmp_path / "z.mseed", trace("HNZ", start=START + 0.5))
+    (motion,) = read_motions(tmp_path, options=ReadOptions(unit="cm/s2")).motions
+    a = (COUNTS - COUNTS.mean()) / 100
+    np.testing.assert_allclose(motion.horizontal, a[50:], atol=1e-12)
+    np.testing.assert_allclose(motion.vertical, a[:-50], atol=1e-12)
+    assert any("common span" in note for note in motion.notes)
+
+
+def test_a_vertical_of_another_day_is_no_partner(tmp_path):
+    write_mseed(tmp_path / "n.mseed", trace("HNN"))
+    write_mseed(tmp_path / "z.mseed", trace("HNZ", start=START + 86400))
+    found = read_motions(tmp_path, options=ReadOptions(unit="cm/s2"))
+    assert found.motions[0].vertical is None
+    assert "without a horizontal" in found.unusable[0].reason
+
+
+@pytest.mark.parametrize("byteorder", ["<", ">"])
+def test_sac_files_are_read_in_the_stated_unit(tmp_path, byteorder):
+    data = wiggle(300) + 0.02
+    trace("HNE", data.astype(np.float32), rate=50.0).write(str(tmp_path / "e.sac"), format="SAC", byteorder=byteorder)
+    (motion,) = read_motions(tmp_path, options=ReadOptions(unit="g"), gravity=10.0).motions
+    assert motion.dt == 0.02  # not the single precision 0.0199999996 of its header
+    np.testing.assert_allclose(motion.horizontal, (data - data.mean()) * 10.0, atol=1e-6)  # single precision
+
+
+def test_sac_without_a_stated_unit_is_refused_with_the_remedy(tmp_path):
+    trace("HNE", wiggle(300).astype(np.float32)).write(str(tmp_path / "e.sac"), format="SAC")
+    assert 'unit = "g"' in only_reason(read_motions(tmp_path))
+
+
+def knet_text(direction: str = "E-W", seconds: int = 2, offset: int = 4000) -> tuple[str, np.ndarray]:
+    counts = np.round(wiggle(200) * 1e5).astype(int) + offset
+    rows = "\n".join("".join(f"{value:9d}" for value in counts[i : i + 8]) for i in range(0, 200, 8))
+    header = (
+        "Origin Time       2018/01/24 19:51:00\nLat.              41.0\nLong.             142.5\n"
+        "Depth. (km)       30\nMag.              6.2\nStation Code      TST003\nStation Lat.      41.4053\n"
+        "Station Long.     141.1691\nStation Height(m) 4\nRecord Time       2018/01/24 19:51:38\n"
+        f"Sampling Freq(Hz) 100Hz\nDuration Time(s)  {seconds}\nDir.              {direction}\n"
+        "Scale Factor      7845(gal)/8223790\nMax. Acc. (gal)   22.485\n"
+        "Last Correction   2018/01/24 19:51:38\nMemo.             \n"
+    )
+    return header + rows + "\n", counts
+
+
+def test_knet_counts_times_scale_without_their_offset_are_m_s2(tmp_path):
+    for direction, suffix in (("E-W", "EW"), ("U-D", "UD")):
+        text, counts = knet_text(direction)
+        (tmp_path / f"TST0031801241951.{suffix}").write_text(text)
+    (motion,) = read_motions(tmp_path).motions
+    expected = (counts - counts.mean()) * 7845 / 8223790 / 100
+    np.testing.assert_allclose(motion.horizontal, expected, atol=1e-12)
+    assert motion.name == "TST0031801241951"
+    assert motion.vertical_source == "TST0031801241951.UD"
+    assert any(note.startswith("offset 0.03") for note in motion.notes)
+
+
+def test_components_that_differ_by_suffix_only_keep_it_in_their_names(tmp_path):
+    for direction, suffix in (("E-W", "EW"), ("N-S", "NS")):
+        (tmp_path / f"TST.{suffix}").write_text(knet_text(direction)[0])
+    assert [motion.name for motion in read_motions(tmp_path).motions] == ["TST.EW", "TST.NS"]
+
+
+def test_kiknet_borehole_and_surface_are_two_stations(tmp_path):
+    for direction, suffix in ((2, "EW1"), (3, "UD1"), (5, "EW2"), (6, "UD2")):
+        (tmp_path / f"TST.{suffix}").write_text(knet_text(str(direction))[0])
+    found = read_motions(tmp_path)
+    assert [(m.name, m.vertical_source) for m in found.motions] == [("TST.EW1", "TST.UD1"), ("TST.EW2", "TST.UD2")]
+    assert "borehole" in found.motions[0].notes[0]
+    assert "surface" in found.motions[1].notes[0]
+
+
+def test_a_knet_file_shorter_than_its_header_says_is_refused_with_both_counts(tmp_path):
+    (tmp_path / "TST.EW").write_text(knet_text(seconds=4)[0])
+    reason = only_reason(read_motions(tmp_path))
+    assert "400 values" in reason
+    assert "holds 200" in reason
+
+
+@pytest.mark.parametrize("suffix", sorted({suffix for known in FORMATS for suffix in known.suffixes}))
+@pytest.mark.parametrize("content", [b"", b"\x00" * 3000, b"hello\nworld\n", struct.pack("<400I", *range(400))])
+def test_foreign_content_behind_any_suffix_is_one_line_with_a_reason(tmp_path, suffix, content):
+    (tmp_path / f"x{suffix}").write_bytes(content)
+    reason = only_reason(read_motions(tmp_path, options=ReadOptions(unit="g", dt=0.01)))
+    assert reason
+    assert "reader failed" not in reason
+
+
+class _Trap:
+    """Makes a file when it is unpickled."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+
+    def __reduce__(self):
+        return (Path.touch, (self.path,))
+
+
+@pytest.mark.parametrize("suffix", sorted({suffix for known in FORMATS for suffix in known.suffixes} | {".pickle"}))
+def test_a_pickle_is_never_opened_as_one_whatever_its_suffix(tmp_path, suffix):
+    sprung = tmp_path / "sprung"
+    # ObsPy, left to sniff, unpickles what has its module's name within the first hundred bytes
+    payload = pickle.dumps(("obspy.core.stream", _Trap(sprung)), protocol=0)
+    assert b"obspy.core.stream" in payload[:100]
+    folder = tmp_path / "records"
+    folder.mkdir()
+    (folder / f"x{suffix}").write_bytes(payload)
+    only_reason(read_motions(folder, options=ReadOptions(unit="g", dt=0.01)))
+    for name in ("MSEED", "SAC", "KNET"):
+        with contextlib.suppress(InputError):
+            with_obspy.read_stream(payload, name)
+    assert not sprung.exists()
+    pickle.loads(payload)
+    assert sprung.exists()  # the trap was set

@@ -1,0 +1,95 @@
+"""Labels of components: verticals, azimuths and channel codes of many agencies."""
+
+import pytest
+
+from rockbatch.motions.orientation import orientation_of, same_azimuth, split_stem
+
+
+@pytest.mark.parametrize(
+    "label", ["UP", "up", "UD", "U-D", "U", "V", "-V", "Z", "VER", "Vert", "HNZ", "BNZ", "Up-down"]
+)
+def test_these_are_vertical_and_positive_up(label):
+    found = orientation_of(label)
+    assert found is not None
+    assert found.vertical
+    assert not found.down
+
+
+@pytest.mark.parametrize("label", ["DWN", "DN", "down"])
+def test_these_are_vertical_and_positive_down(label):
+    found = orientation_of(label)
+    assert found is not None
+    assert found.vertical
+    assert found.down
+
+
+@pytest.mark.parametrize(
+    ("label", "azimuth"),
+    [
+        ("360", 0),
+        ("000", 0),
+        ("0", 0),
+        ("21", 21),
+        ("360 DEG", 0),
+        ("NS", 0),
+        ("N-S", 0),
+        ("North-south acceleration", 0),
+        ("E", 90),
+        ("EW", 90),
+        ("S62W", 242),
+        ("N62W", 298),
+        ("S28E", 152),
+        ("N10E", 10),
+        ("HNE", 90),
+        ("HLN", 0),
+    ],
+)
+def test_these_are_horizontal_with_an_azimuth(label, azimuth):
+    found = orientation_of(label)
+    assert found is not None
+    assert not found.vertical
+    assert found.azimuth == azimuth
+
+
+@pytest.mark.parametrize("label", ["L", "T", "H1", "H2", "HN1", "LN", "TR", "x"])
+def test_these_are_horizontal_without_an_azimuth(label):
+    found = orientation_of(label)
+    assert found is not None
+    assert not found.vertical
+    assert found.azimuth is None
+
+
+@pytest.mark.parametrize("label", ["", "acc", "361", "999", "foo", "12345"])
+def test_these_say_nothing(label):
+    assert orientation_of(label) is None
+
+
+@pytest.mark.parametrize(
+    ("stem", "station", "label"),
+    [
+        ("RSN1063_NORTHR_RRS228", "RSN1063_NORTHR_RRS", "228"),
+        ("RSN1063_NORTHR_RRS-UP", "RSN1063_NORTHR_RRS", "UP"),
+        ("RSN1633_MANJIL_ABBAR--T", "RSN1633_MANJIL_ABBAR", "T"),
+        ("RSN4843_CHUETSU_65006EW", "RSN4843_CHUETSU_65006", "EW"),
+        ("RSN4013_SANSIMEO_36258021", "RSN4013_SANSIMEO_36258", "021"),
+        ("RSN57_SFERN_ORRDWN", "RSN57_SFERN_ORR", "DWN"),
+        ("20220917134114_TSMIP_TTN021_E", "20220917134114_TSMIP_TTN021", "E"),
+        ("CI.LRL..HNZ", "CI.LRL", "HNZ"),
+    ],
+)
+def test_the_end_of_a_stem_tells_station_and_component(stem, station, label):
+    part, found = split_stem(stem)
+    assert found is not None
+    assert (part, found.label) == (station, label)
+
+
+@pytest.mark.parametrize("stem", ["record", "run_12", "site_5", "AOM0031801241951"])
+def test_a_stem_without_component_is_left_whole(stem):
+    assert split_stem(stem) == (stem, None)
+
+
+def test_azimuths_agree_within_a_degree_across_north():
+    assert same_azimuth(0.0, 359.5)
+    assert same_azimuth(228.0, 229.0)
+    assert not same_azimuth(0.0, 180.0)
+    assert not same_azimuth(None, 0.0)

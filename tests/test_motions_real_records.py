@@ -1,0 +1,123 @@
+"""Real records in agencies' own formats: what a reader must find in them (skipped where they are missing)."""
+
+import json
+from functools import cache
+
+import numpy as np
+import pytest
+from motion_files import RECORDS, needs_records
+
+from rockbatch.motions import ReadOptions, read_motions
+from rockbatch.motions.component import Component
+from rockbatch.motions.formats import RecordFile, read_record
+
+pytestmark = needs_records
+
+G = 9.80665  # the records' own tables are in this g
+
+READABLE = (".at2", ".mseed", ".sac", ".ew", ".ns", ".ud", ".ew2", ".ns2", ".ud2", ".bbp", ".acc")
+STATED = {".sac": ReadOptions(unit="g"), ".acc": ReadOptions(unit="m/s2")}
+
+
+def described() -> list:
+    """One case per component that a meta.json describes, in a format that is read."""
+    cases = []
+    for meta in sorted(RECORDS.glob("*/*/meta.json")):
+        for entry in json.loads(meta.read_text())["components"]:
+            path = meta.parent / entry["file"]
+            if path.suffix.lower() in READABLE:
+                cases.append(pytest.param(path, entry, id=f"{path.parent.name}-{entry['label']}"))
+    return cases
+
+
+@cache
+def components(path) -> list[Component]:
+    options = STATED.get(path.suffix.lower(), ReadOptions())
+    readings = read_record(RecordFile(path, path.name, path.read_bytes(), options, G))
+    assert all(isinstance(reading, Component) for reading in readings)
+    return list(readings)
+
+
+@pytest.mark.parametrize(("path", "entry"), described())
+def test_count_step_and_signed_peak_are_those_of_the_description(path, entry):
+    found = components(path)
+    if len(found) > 1:  # one file of three components, labelled N, E and U there
+        found = [c for c in found if c.orientation.label[0] == entry["label"][0]]
+    (component,) = found
+    a = component.acceleration / G
+    assert component.orientation.vertical == (entry["kind"] == "V")
+    assert len(a) == entry["npts"]
+    assert component.dt == pytest.approx(entry["dt"], rel=1e-9)
+    # 1 %: offsets are means over the record here, over the first seconds there; peaks are printed to 1e-4 g
+    peak = a[np.abs(a).argmax()]
+    assert peak == pytest.approx(entry["signed_peak_g"], rel=0.01, abs=6e-5)
+    assert np.abs(a).argmax() * component.dt == pytest.approx(entry["t_peak_s"], abs=component.dt / 2 + 0.005)
+
+
+@pytest.mark.parametrize(
+    ("name", "dt", "pga"),
+    [
+        ("RSN779_LOMAP_LGP000", 0.005, 0.570),
+        ("RSN821_ERZINCAN_ERZ-NS", 0.005, 0.515),
+        ("RSN825_CAPEMEND_CPM000", 0.02, 1.497),
+        ("RSN1086_NORTHR_SYL360", 0.02, 0.843),
+        ("RSN1063_NORTHR_RRS228", 0.01, 0.874),
+        ("RSN1120_KOBE_TAK000", 0.01, 0.618),
+    ],
+)
+def test_table_1_of_the_paper_has_its_peaks(name, dt, pga):
+    motions = {motion.name: motion for motion in read_motions(RECORDS / "table1").motions}
+    assert motions[name].dt == dt
+    assert motions[name].pga / 9.81 == pytest.approx(pga, abs=6e-4)
+
+
+def test_table_1_has_two_verticals_and_nothing_is_left_over():
+    found = read_motions(RECORDS / "table1")
+    assert len(found.motions) == 6
+    assert sorted(motion.vertical_source for motion in found.motions if motion.vertical is not None) == [
+        "RSN1063_NORTHR_RRS-UP.AT2",
+        "RSN1086_NORTHR_SYL-UP.AT2",
+    ]
+    assert not found.unusable
+
+
+def test_the_suite_is_eleven_station_events_of_three_components():
+    found = read_motions(RECORDS / "suite")
+    assert len(found.motions) == 22
+    assert all(motion.vertical is not None for motion in found.motions)
+    assert {unusable.name for unusable in found.unusable} <= {"meta"}
+
+
+def test_down_verticals_of_the_suite_are_turned():
+    turned = [
+        m.name for m in read_motions(RECORDS / "suite" / "at2").motions if any("sign reversed" in n for n in m.notes)
+    ]
+    assert turned == [
+        "RSN164_IMPVALL.H_H-CPE147",
+        "RSN164_IMPVALL.H_H-CPE237",
+        "RSN57_SFERN_ORR021",
+        "RSN57_SFERN_ORR291",
+        "RSN70_SFERN_L01021",
+        "RSN70_SFERN_L01111",
+    ]
+
+
+def test_manjil_is_cut_to_what_its_components_share():
+    motions = {m.name: m for m in read_motions(RECORDS / "suite" / "at2").motions}
+    assert motions["RSN1633_MANJIL_ABBAR--L"].npts == 2671
+    assert motions["RSN1633_MANJIL_ABBAR--T"].npts == 2300
+
+
+def test_ground_comes_nearly_to_rest_in_records_whose_offset_was_removed():
+    found = read_motions(RECORDS / "formats" / "tohoku2011_tkyh12")
+    for motion in found.motions:
+        assert abs(motion.horizontal.mean()) < 1e-12
+
+
+def test_every_file_of_every_agency_is_a_motion_or_has_a_reason():
+    found = read_motions(RECORDS / "formats", options=ReadOptions(unit="g"))
+    files = [p for p in (RECORDS / "formats").rglob("*") if p.is_file() and p.suffix != ".xml"]
+    sources = {m.source for m in found.motions} | {m.vertical_source for m in found.motions}
+    sources |= {u.source for u in found.unusable}
+    assert {p.relative_to(RECORDS / "formats").as_posix() for p in files} <= sources
+    assert not any("reader failed" in u.reason for u in found.unusable)
