@@ -1,0 +1,7 @@
+"""The study file: what is asked, checked as a whole before anything runs."""
+
+from rockbatch.study.cases import PIER_KEYS
+from rockbatch.study.load import load_study
+from rockbatch.study.spec import Case, FemaSpec, MotionSpec, Numerics, PulseSpec, Reference, Study
+
+__all__ = ["PIER_KEYS", "Case", "FemaSpec", "MotionSpec", "Numerics", "PulseSpec", "Reference", "Study", "load_study"]

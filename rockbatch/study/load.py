@@ -1,0 +1,136 @@
+"""From the study file to a checked Study."""
+
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from rockbatch.study.cases import BASE_KEYS, CASE, PIER, Expanded, read_cases, read_piers
+from rockbatch.study.motions import FEMA, MOTIONS, PULSE, SOURCES, read_motions_table
+from rockbatch.study.spec import Case, Numerics, Reference, Study
+from rockbatch.toml.kinds import choice, count, not_negative, positive, shown, text
+from rockbatch.toml.reader import Key, Table, TomlFile
+
+TOP = {
+    "title": Key(text, '"Pier 4, longitudinal"'),
+    "notes": Key(text, '"Soil class C."'),
+}
+SECTIONS = ("pier", "motions", "numerics", "output", "case", "reference")
+NUMERICS = {
+    "tolerance": Key(positive, "1e-4"),
+    "substeps": Key(count, "4"),
+    "quiet_s": Key(not_negative, "2.0"),
+}
+OUTPUT = {"histories": Key(choice("none", "all"), '"all"')}
+REFERENCE = {
+    "record": Key(text, '"*LGP*"', required=True),
+    "case": Key(text, '"rigid"', required=True),
+    "theta_max_over_alpha": Key(positive, "0.114", required=True),
+    "source": Key(text, '"Palmeri & Makris (2007)"', required=True),
+}
+SELECTING = {name: replace(key, many=False) for name, key in (PIER | BASE_KEYS).items()}
+"""Keys that tell a reference's case from its siblings."""
+
+HOMES = {
+    name: home
+    for home, names in (
+        ("[pier]", PIER),
+        ("[motions]", MOTIONS.keys() | SOURCES),
+        ("[[motions.fema_p695]]", FEMA),
+        ("[[motions.pulse]]", PULSE),
+        ("[numerics]", NUMERICS),
+        ("[output]", OUTPUT),
+        ("[[case]]", CASE.keys() | BASE_KEYS),
+        ("[[reference]]", REFERENCE),
+    )
+    for name in names
+    if name not in ("name", "case")  # these have several, or are sections
+}
+
+
+def load_study(path: str | os.PathLike[str], *, motions: str | os.PathLike[str] | None = None) -> Study:
+    """Read and check the study file ``path``.
+
+    Parameters
+    ----------
+    path : path-like
+        A TOML file; paths in it are relative to its folder.
+    motions : path-like, optional
+        A file or folder that replaces all motions of the study.
+
+    Returns
+    -------
+    Study
+        Each combination of pier, [[case]] and listed values is one case: all of the first pier's, then the
+        second's; within a [[case]] the last listed key varies fastest.
+
+    Raises
+    ------
+    InputError
+        With every mistake in the order of the file: the line, what was found, what was expected, and what to
+        write instead.
+    """
+    file = TomlFile.read(Path(path))
+    file.homes = HOMES
+    top = Table(file, (), "", file.data).read(TOP, other=SECTIONS)
+    motion_spec = read_motions_table(file, None if motions is None else Path(motions))
+    numerics = _numerics(file)
+    piers, varied_pier = read_piers(file)
+    cases, varied_case = read_cases(file, piers)
+    varied = varied_pier + varied_case
+    references = _references(file, cases, varied)
+    file.finish()
+    return Study(
+        title=top.get("title", file.path.stem),
+        notes=top.get("notes", ""),
+        path=file.path,
+        text=file.text,
+        motions=motion_spec,
+        numerics=numerics,
+        cases=tuple(Case(each.name, each.pier, each.base, _pick(varied, each.values)) for each in cases),
+        references=references,
+        varied=varied,
+        histories=_histories(file),
+    )
+
+
+def _numerics(file: TomlFile) -> Numerics:
+    table = file.table("numerics")
+    if table is None:
+        return Numerics()
+    read = table.read(NUMERICS)
+    if "tolerance" in read and "substeps" in read:
+        table.complain("tolerance and substeps are given: a fixed step has no tolerance; keep one", "substeps")
+    if "substeps" in read:
+        read["tolerance"] = None
+    return Numerics(**read)
+
+
+def _histories(file: TomlFile) -> str:
+    table = file.table("output")
+    return "none" if table is None else str(table.read(OUTPUT).get("histories", "none"))
+
+
+def _references(file: TomlFile, cases: Sequence[Expanded], varied: Iterable[str]) -> tuple[Reference, ...]:
+    named = [table.data.get("name", table.data.get("base")) for table in file.tables("case", title="name")]
+    known = choice(*dict.fromkeys(name for name in named if isinstance(name, str)))
+    keys = REFERENCE | {"case": replace(REFERENCE["case"], kind=known)} | SELECTING
+    references = []
+    for table in file.tables("reference", title="record"):
+        read = table.read(keys)
+        columns = {name: value for name, value in read.items() if name in SELECTING}
+        alike = [each.values for each in cases if each.name == read.get("case")]
+        for name, value in columns.items():
+            there = dict.fromkeys(values[name] for values in alike if name in values)
+            if alike and value not in there:
+                case = shown(read["case"])
+                instead = f"write {' or '.join(map(shown, there))}, or leave it out" if there else "leave it out"
+                table.complain(f"{name} = {shown(value)}: no case {case} has it; {instead}", name)
+        if REFERENCE.keys() <= read.keys():
+            own = {name: read[name] for name in REFERENCE}
+            references.append(Reference(columns=_pick(varied, columns), **own))
+    return tuple(references)
+
+
+def _pick(names: Iterable[str], values: Mapping[str, float | str]) -> dict[str, float | str]:
+    return {name: values[name] for name in names if name in values}

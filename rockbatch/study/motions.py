@@ -1,0 +1,155 @@
+"""The ground motions of a study file: [motions], [[motions.fema_p695]] and [[motions.pulse]]."""
+
+import math
+from pathlib import Path
+from typing import Any
+
+from rockbatch.errors import InputError
+from rockbatch.motions.formats import ReadOptions
+from rockbatch.motions.pulses import SHAPES, pulse
+from rockbatch.study.spec import FemaSpec, MotionSpec, PulseSpec
+from rockbatch.toml.kinds import KindError, boolean, choice, nonzero, number, positive, shown, text
+from rockbatch.toml.reader import Key, Setting, Table, TomlFile, nearby
+from rockbatch.units import GRAVITY, acceleration_factor
+
+
+def _unit(value: Any) -> str:
+    try:
+        acceleration_factor(text(value))
+    except KindError:
+        raise
+    except ValueError as error:
+        raise KindError(str(error).rpartition("; write ")[2]) from None
+    return str(value)
+
+
+def _azimuth(value: Any) -> float:
+    if not 0 <= number(value) <= 360:
+        raise KindError("an azimuth within 0..360 degrees")
+    return float(value)
+
+
+MOTIONS = {
+    "path": Key(text, '"../motions"', many=True),
+    "vertical": Key(boolean, "true"),
+    "polarity": Key(choice("+", "-"), '["+", "-"]', many=True),
+    "scale": Key(positive, "[1.0]", many=True),
+    "unit": Key(_unit, '"cm/s2"'),
+    "dt": Key(positive, "0.01"),
+    "columns": Key(text, '["time", "000", "090", "up"]', many=True, distinct=False),
+    "sensitivity": Key(nonzero, "428000.0"),
+}
+SOURCES = ("path", "fema_p695", "pulse")
+FEMA = {"station": Key(text, '"SYL"', required=True), "azimuth": Key(_azimuth, "360", required=True)}
+PULSE = {
+    "name": Key(text, '"sine 0.5 s"', required=True),
+    "shape": Key(choice(*SHAPES), '"sine"', required=True),
+    "amplitude_g": Key(nonzero, "0.5", required=True),
+    "period_s": Key(positive, "1.0", required=True),
+    "dt_s": Key(positive, "0.005", required=True),
+    "duration_s": Key(positive, "10.0", required=True),
+    "gamma": Key(positive, "1.5"),
+    "nu": Key(number, "0.0"),
+}
+REQUIRED_OF_PULSE = {name for name, key in PULSE.items() if key.required}
+_MOST_SAMPLES = 10_000_000
+
+
+def read_motions_table(file: TomlFile, replaced_by: Path | None = None) -> MotionSpec:
+    """All of [motions]. ``replaced_by`` stands for every source in it, whose paths then need not exist."""
+    table = file.table("motions")
+    read = table.read(MOTIONS, other=SOURCES) if table else {}
+    entries = read.pop("path", [])
+    for name in ("polarity", "scale", "columns"):
+        if name in read:
+            read[name] = tuple(setting.value for setting in read[name])
+    if table and "columns" in read:
+        try:
+            ReadOptions(columns=read["columns"])
+        except InputError as error:
+            for problem in error.problems:
+                table.complain(problem, "columns")
+    fema = _fema(file)
+    pulses = _pulses(file)
+    if replaced_by is not None:
+        if not replaced_by.exists():
+            file.complain((), f"--motions {replaced_by}: {_missing(replaced_by, str(replaced_by))}")
+        return MotionSpec(paths=(replaced_by,), **read)
+    if not (table and table.data.keys() & set(SOURCES)):
+        file.complain(
+            ("motions",),
+            '[motions]: there are no ground motions; write path = "../motions" in [motions], or a '
+            "[[motions.fema_p695]], or a [[motions.pulse]]",
+        )
+    paths = tuple(_path(table, entry) for entry in entries) if table else ()
+    return MotionSpec(paths=paths, **read, fema_p695=fema, pulses=pulses)
+
+
+def _path(table: Table, entry: Setting) -> Path:
+    path = table.file.path.parent / Path(entry.value).expanduser()
+    if not path.exists():
+        missing = _missing(path, entry.value, "; paths are relative to the study file")
+        table.complain_about(entry, f"path = {shown(entry.value, 200)}: {missing}")
+    return path
+
+
+def _missing(path: Path, written: str, rule: str = "") -> str:
+    return f"no such file or folder ({path.resolve()}){rule}{nearby(path, written)}"
+
+
+def _fema(file: TomlFile) -> tuple[FemaSpec, ...]:
+    components: list[FemaSpec] = []
+    for table in file.tables("motions", "fema_p695", title="station"):
+        read = table.read(FEMA)
+        if FEMA.keys() <= read.keys():
+            component = FemaSpec(**read)
+            if component in components:
+                table.complain(f"azimuth = {component.azimuth:g}: given twice; leave one out", "azimuth")
+            components.append(component)
+    return tuple(components)
+
+
+def _pulses(file: TomlFile) -> tuple[PulseSpec, ...]:
+    pulses: list[PulseSpec] = []
+    names: list[str] = []
+    for table in file.tables("motions", "pulse", title="name"):
+        read = table.read(PULSE)
+        _check_pulse(table, read)
+        if "name" in read:
+            if read["name"] in names:
+                table.complain(f"name = {shown(read['name'])}: given twice; give each pulse its own name", "name")
+            names.append(read["name"])
+        if read.keys() >= REQUIRED_OF_PULSE:
+            pulses.append(PulseSpec(**read))
+    return tuple(pulses)
+
+
+def _check_pulse(table: Table, read: dict[str, Any]) -> None:
+    """What the keys of one pulse say about each other; the pulse itself knows most of it."""
+    before = len(table.file.problems)
+    if "shape" in read:
+        for name in ("gamma", "nu"):
+            if read["shape"] == "mavroeidis-papageorgiou" and name not in table.data:
+                table.complain(f"{name} is missing; write for example {name} = {PULSE[name].example}")
+            elif read["shape"] != "mavroeidis-papageorgiou" and name in table.data:
+                table.complain(f"{name}: does not apply to shape = {shown(read['shape'])}; leave it out", name)
+    if read.get("duration_s", 0.0) / read.get("dt_s", math.inf) > _MOST_SAMPLES:
+        table.complain(f"dt_s = {read['dt_s']:g}: more than {_MOST_SAMPLES:,} samples; write a larger dt_s", "dt_s")
+    if len(table.file.problems) > before or not read.keys() >= REQUIRED_OF_PULSE:
+        return
+    try:
+        pulse(
+            read["shape"],
+            name=read["name"],
+            amplitude=read["amplitude_g"] * GRAVITY,
+            period=read["period_s"],
+            dt=read["dt_s"],
+            duration=read["duration_s"],
+            gamma=read.get("gamma"),
+            nu=read.get("nu"),
+        )
+    except InputError as error:
+        for problem in error.problems:
+            symbol, rest = problem.split(" ", 1)
+            name = next((key for key in (symbol, f"{symbol}_s", f"{symbol}_g") if key in read), "name")
+            table.complain(f"{name} {rest}", name)

