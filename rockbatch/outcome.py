@@ -1,0 +1,54 @@
+"""What one run comes to."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a run comes to. SI units, angles in radians; ``None`` where it does not apply.
+
+    Attributes
+    ----------
+    status : str
+        "ok", "overturned", "flight" (the run was stopped by it) or "failed".
+    reason : str
+        Why it failed; empty otherwise.
+    theta_max, t_max : float
+        Greatest rotation |θ| [rad] until the end of the run, and its time [s].
+    theta_max_error : float or None
+        Estimated error of ``theta_max`` [rad]; ``None`` with a fixed step.
+    theta_res, base_tilt : float or None
+        Residual rotation, static on the deformed base, and tilt of the base itself [rad].
+    settlement : float or None
+        Mean plastic settlement of the supports since the start [m].
+    impacts, separations : int
+        Counts; on the rigid base a separation is a lift-off from rest.
+    t_flight : float or None
+        First time at which neither pivot was in contact [s].
+    t_end : float
+        End of the run [s].
+    ductility_left, ductility_right : float or None
+        Yield demand: greatest deflection of each support over its yield deflection.
+    dissipated_left, dissipated_right : float or None
+        Plastic work in each spring [J/kg].
+    substeps : int
+        Steps per sample.
+    """
+
+    status: str
+    reason: str
+    theta_max: float
+    t_max: float
+    impacts: int
+    separations: int
+    t_flight: float | None
+    t_end: float
+    substeps: int
+    theta_max_error: float | None = None
+    theta_res: float | None = None
+    base_tilt: float | None = None
+    settlement: float | None = None
+    ductility_left: float | None = None
+    ductility_right: float | None = None
+    dissipated_left: float | None = None
+    dissipated_right: float | None = None

@@ -1,0 +1,35 @@
+"""HTML that is escaped by construction: whatever is not :class:`Markup` is text."""
+
+import html
+import math
+
+
+class Markup(str):
+    """Text that is HTML already."""
+
+
+def escape(content: object) -> str:
+    """``content`` as HTML; only :class:`Markup` goes through as it is."""
+    return content if isinstance(content, Markup) else html.escape(str(content))
+
+
+def join(*children: object, between: str = "") -> Markup:
+    """Children one after the other, escaped."""
+    return Markup(between.join(escape(child) for child in children))
+
+
+def tag(name: str, *children: object, **attributes: object) -> Markup:
+    """An element; ``class_`` becomes ``class``, ``aria_label`` ``aria-label``; None and False leave one out."""
+    written = [
+        f" {key.rstrip('_').replace('_', '-')}" + ("" if value is True else f'="{html.escape(str(value))}"')
+        for key, value in attributes.items()
+        if value is not None and value is not False
+    ]
+    return Markup(f"<{name}{''.join(written)}>{join(*children)}</{name}>")
+
+
+def number(value: object, form: str = ".4g") -> str:
+    """A float in the given format, anything else as it is; empty where there is none."""
+    if value is None or (isinstance(value, float) and math.isnan(value)):
+        return ""
+    return format(value, form) if isinstance(value, float) else str(value)

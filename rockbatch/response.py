@@ -1,0 +1,88 @@
+"""What a simulation returns: the histories of one record on one foundation."""
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from rockbatch.structure import Base, Pier
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Samples = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Response:
+    """Histories of one run. SI units; angles in radians; energy per unit mass.
+
+    Attributes
+    ----------
+    record, case : str
+        Names of the ground motion and of the foundation case.
+    columns : dict
+        Values of the study's varied keys that apply to this run, such as ``{"beta": 40.0}``.
+    pier : Pier
+        The block.
+    base : RigidBase, ElasticBase or YieldingBase
+        What it stands on.
+    status : str
+        "ok", "overturned", "flight" (the run was stopped by it) or "failed".
+    history : DataFrame, one row per instant
+        ``t`` [s]; ``theta`` [rad], positive tilts right; ``omega`` = dθ/dt [rad/s]; ``v`` [m], the centre of
+        mass above the position of unstressed springs; ``z_left``, ``z_right``, spring forces over the yield
+        force, −1..0; ``v_left``, ``v_right`` [m], the pivots, up positive; ``energy`` [J/kg], relative to the
+        start; ``ag_h``, ``ag_v`` [m/s²], the ground, positive right and up. On the rigid base ``v``, ``z_*``
+        and ``v_*`` are NaN.
+    events : DataFrame, one row per event
+        ``t`` [s], ``kind`` ("separation", "impact", …) and ``pivot`` ("left", "right").
+    """
+
+    record: str
+    case: str
+    columns: dict[str, float | str]
+    pier: Pier
+    base: Base
+    status: str
+    history: "pd.DataFrame" = field(repr=False)
+    events: "pd.DataFrame" = field(repr=False)
+
+    @property
+    def t(self) -> Samples:
+        """Time [s], shape (n,)."""
+        return self._history("t")
+
+    @property
+    def theta(self) -> Samples:
+        """Rotation θ [rad], shape (n,); positive lifts the left pivot and tilts the block to the right."""
+        return self._history("theta")
+
+    @property
+    def omega(self) -> Samples:
+        """Angular velocity dθ/dt [rad/s], shape (n,)."""
+        return self._history("omega")
+
+    @property
+    def v(self) -> Samples:
+        """Centre of mass above the position of unstressed springs [m], shape (n,); NaN on the rigid base."""
+        return self._history("v")
+
+    @property
+    def z_left(self) -> Samples:
+        """Force of the left spring over its yield force, −1..0, shape (n,); NaN on the rigid base."""
+        return self._history("z_left")
+
+    @property
+    def z_right(self) -> Samples:
+        """Force of the right spring over its yield force, −1..0, shape (n,); NaN on the rigid base."""
+        return self._history("z_right")
+
+    @property
+    def energy(self) -> Samples:
+        """Total energy per unit mass [J/kg], relative to the start, shape (n,)."""
+        return self._history("energy")
+
+    def _history(self, column: str) -> Samples:
+        return self.history[column].to_numpy(dtype=np.float64)

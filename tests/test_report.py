@@ -1,0 +1,408 @@
+"""The report shows what was computed, escapes what it is told, and needs nothing but itself."""
+
+import json
+import re
+import subprocess
+import sys
+import xml.etree.ElementTree as ET
+from html.parser import HTMLParser
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+from report_samples import FIG7, FOUNDATIONS, case_entry, response, three_piers, write_results
+
+from rockbatch.errors import InputError
+from rockbatch.report import write_report
+from rockbatch.report.finished import read
+from rockbatch.report.markup import escape, tag
+from rockbatch.report.svg import MARKERS, SERIES, style_of, thin
+from rockbatch.structure import ElasticBase, Pier, RigidBase, YieldingBase
+
+NASTY = ["<script>alert(1)</script>", "$x_1$ & a&b", '"><img src=x onerror=alert(1)>', r"\frac{1}{2} </title></svg>"]
+VOID = {"meta", "br", "img", "input", "link"}
+
+
+class Page(HTMLParser):
+    """The elements of a page: every table as rows of texts, and what does not nest."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__(convert_charrefs=True)
+        self.tags: list[str] = []
+        self.attributes: list[tuple[str, str | None]] = []
+        self.open: list[str] = []
+        self.mismatched: list[str] = []
+        self.tables: dict[str, list[list[str]]] = {}
+        self.headings: list[str] = []
+        self.words: list[str] = []
+        self.section = ""
+        self.feed(text)
+        self.close()
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append(tag)
+        self.attributes += attrs
+        if tag not in VOID:
+            self.open.append(tag)
+        if tag == "section":
+            self.section = dict(attrs)["id"] or ""
+        if tag == "h2":
+            self.headings.append("")
+        if tag == "tr":
+            self.tables.setdefault(self.section, []).append([])
+        if tag in ("td", "th"):
+            self.tables[self.section][-1].append("")
+
+    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append(tag)
+        self.attributes += attrs
+
+    def handle_endtag(self, tag: str) -> None:
+        if not self.open or self.open.pop() != tag:
+            self.mismatched.append(tag)
+
+    def handle_data(self, data: str) -> None:
+        if "style" not in self.open and "script" not in self.open:
+            self.words.append(data)
+        if "td" in self.open or "th" in self.open:
+            self.tables[self.section][-1][-1] += data
+        if "h2" in self.open:
+            self.headings[-1] += data
+
+    @property
+    def text(self) -> str:
+        return "".join(self.words).replace("\u00a0", " ")
+
+
+def report(directory: Path, *responses, **results) -> str:
+    write_results(directory, **results)
+    return write_report(directory, responses).read_text(encoding="utf-8")
+
+
+def figures(text: str) -> list[ET.Element]:
+    """The inline figures; raises where one is not well-formed XML."""
+    return [ET.fromstring(svg) for svg in re.findall(r"<svg.*?</svg>", text, flags=re.DOTALL)]
+
+
+def svg_texts(figure: ET.Element) -> list[str]:
+    return ["".join(node.itertext()) for node in figure.iter() if node.tag.endswith("text")]
+
+
+def histories(**columns):
+    pier = Pier(alpha=0.2, p=1.0)
+    entries = [("rigid", RigidBase())] + [("soil", YieldingBase(beta=50.0, eta=eta)) for eta in (5.0, 3.0, 2.5, 2.2)]
+    cases = [case_entry(n, {} if n == "rigid" else {"eta": base.eta}, pier, base) for n, base in entries]
+    responses = [
+        response("sine", name, base, **({} if name == "rigid" else {"eta": base.eta})) for name, base in entries
+    ]
+    return responses, {"records": [("sine", 1.0)], "cases": cases, "varied": ("eta",)}
+
+
+def test_every_peak_stands_in_the_tables_in_order_of_pga(tmp_path):
+    page = Page(report(tmp_path, records=FIG7[::-1]))
+    head, *body = page.tables["numbers"]
+    assert [row[0] for row in body] == [name for name, _ in FIG7]
+    peaks = {(run.record, run.series.label): run.theta for run in read(tmp_path).runs}
+    for row in body:
+        for label, shown in zip(head[2:], row[2:], strict=True):
+            assert float(shown) == pytest.approx(peaks[row[0], label], abs=0.5e-4)  # four decimals are shown
+    assert len(page.tables["peaks"]) == 1 + 30
+
+
+def test_outcomes_other_than_ok_are_words_and_never_rotations(tmp_path):
+    changes = {
+        ("RRS228", "2"): {"status": "overturned", "theta_max_over_alpha": 7.7},
+        ("SYL360", "3"): {"status": "flight", "flight_s": 3.214},
+        ("CPM000", "rigid"): {"status": "overturned"},
+        ("CPM000", "4"): {"status": "failed", "theta_max_over_alpha": "", "reason": "more than 20,000 events"},
+        ("ERZ-NS", "1"): {"flight_s": 1.5},  # guided: went on, and has its peak
+    }
+    text = report(tmp_path, changes=changes)
+    page = Page(text)
+    cells = {row[0]: row[2:] for row in page.tables["numbers"]}
+    assert cells["RRS228"][2] == "overturned"
+    assert cells["SYL360"][3] == "flight at 3.214 s"
+    assert cells["CPM000"][0] == "overturned"
+    assert cells["CPM000"][4] == "failed"
+    assert re.fullmatch(r"0\.\d{4}f", cells["ERZ-NS"][1])
+    assert "The pier overturns in 2 of 30 runs, first RRS228, case 2" in page.text
+    assert "In one run both pivots leave the ground, and the analysis stops there: SYL360, case 3" in page.text
+    assert [cell.replace("\u00a0", " ") for cell in page.tables["unusable"][1]] == [
+        "CPM000",
+        "4: β = 80, η = 3.5",
+        "more than 20,000 events",
+    ]
+    (figure,) = figures(text)
+    assert {"overturned", "flight: both pivots off the ground"} <= set(svg_texts(figure))
+
+
+def test_the_axis_is_not_stretched_by_a_pier_that_overturned(tmp_path):
+    calm = figures(report(tmp_path))[0]
+    violent = {("RRS228", "2"): {"status": "overturned", "theta_max_over_alpha": 1e3}}
+    with_overturned = figures(report(tmp_path, changes=violent))[0]
+    ticks = [{text for text in svg_texts(f) if re.fullmatch(r"0\.\d+", text)} for f in (calm, with_overturned)]
+    assert ticks[0] == ticks[1] != set()
+
+
+def test_each_value_of_a_pier_key_has_its_own_figure_and_table(tmp_path):
+    text = report(tmp_path, cases=three_piers(), varied=("p",))
+    page = Page(text)
+    assert len(figures(text)) == 3
+    for p in ("0.38", "0.36", "0.35"):
+        assert f"p = {p} rad/s. Largest rotation" in page.text
+    assert len(page.tables["numbers"]) == 3 * (1 + len(FIG7))
+    # foundations are the same on the three piers: five columns each, not fifteen
+    assert {len(row) for row in page.tables["numbers"]} == {2 + 5}
+
+
+def test_values_of_a_list_become_labels_and_foundations_differ_in_shape_and_colour(tmp_path):
+    pier = Pier(alpha=0.13, p=0.38)
+    grid = [(beta, eta) for beta in (40.0, 80.0) for eta in (2.5, 3.5)]
+    cases = [
+        case_entry("soil", {"beta": beta, "eta": eta}, pier, YieldingBase(beta=beta, eta=eta)) for beta, eta in grid
+    ]
+    text = report(tmp_path, cases=cases, varied=("beta", "eta"))
+    head = [cell.replace("\u00a0", " ") for cell in Page(text).tables["numbers"][0]]
+    assert head[2:] == [f"soil: β = {beta:g}, η = {eta:g}" for beta, eta in grid]
+    styles = [style_of(index) for index in range(len(MARKERS) * len(SERIES))]
+    assert len(set(styles)) == len(styles)
+    first = styles[:7]
+    assert len({marker for marker, _ in first}) == len({colour for _, colour in first}) == 7
+
+
+def test_beta_of_a_given_stiffness_is_not_taken_for_a_constant_of_the_foundation(tmp_path):
+    # springs of ω_v = 20 and 30 rad/s are β = 40 and 60 under one pier, 50 and 75 under the other
+    cases = [
+        case_entry(name, {"p": p}, Pier(alpha=0.13, p=p), YieldingBase(beta=omega_v / p, eta=eta))
+        for p in (0.5, 0.4)
+        for name, omega_v, eta in (("1", 20.0, 2.5), ("2", 30.0, 3.5))
+    ]
+    write_results(tmp_path, cases=cases, varied=("p",))
+    assert {run.series.label.replace("\u00a0", " ") for run in read(tmp_path).runs} == {"1: η = 2.5", "2: η = 3.5"}
+
+
+def test_references_are_compared_with_every_run_they_fit(tmp_path):
+    changes = {("RSN779_LOMAP_LGP000", "rigid"): {"theta_max_over_alpha": 0.12}}
+    reference = {"columns": {}, "theta_max_over_alpha": 0.1, "source": "Palmeri & Makris (2007)"}
+    references = [
+        reference | {"record": "*LGP*", "case": "rigid"},
+        reference | {"record": "*LGP*", "case": "rigid", "columns": {"p": 0.35}},
+        reference | {"record": "*TCU*", "case": "rigid"},
+    ]
+    text = report(tmp_path, cases=three_piers(), varied=("p",), changes=changes, references=references)
+    _, *rows = Page(text).tables["references"]
+    found = ["RSN779_LOMAP_LGP000", "rigid"]
+    agreement = ["0.1200", "0.1", "+20.0", "Palmeri & Makris (2007)"]
+    assert rows == [
+        *([*found, p, *agreement] for p in ("0.38", "0.36", "0.35")),
+        [*found, "0.35", *agreement],
+        ["*TCU*", "rigid", "", "no such run", "0.1", "", "Palmeri & Makris (2007)"],
+    ]
+
+
+def test_names_and_reasons_are_shown_as_they_are_and_never_run(tmp_path):
+    text = report(
+        tmp_path,
+        records=[(name, 0.3 + 0.1 * i) for i, name in enumerate(NASTY)],
+        unusable=[{"name": NASTY[2], "source": NASTY[0], "reason": NASTY[1]}],
+        command=["rockbatch", "run", NASTY[0]],
+    )
+    page = Page(text)
+    assert page.tags.count("script") == 1
+    assert "img" not in page.tags
+    assert not page.mismatched
+    assert not page.open
+    assert [row[0] for row in page.tables["numbers"][1:]] == NASTY
+    assert page.tables["unusable"][1] == [NASTY[2], NASTY[0], NASTY[1]]
+    titles = " ".join(svg_texts(figures(text)[0]))
+    assert "$x_1$ & a&b" in titles
+    assert "<script>alert(1)</script>" in titles
+
+
+def test_glyphs_that_matplotlib_lacks_are_written_without_a_warning(tmp_path):
+    assert "熊本益城" in " ".join(svg_texts(figures(report(tmp_path, records=[("熊本益城", 0.8)]))[0]))
+
+
+def test_the_page_asks_for_nothing_outside_itself(tmp_path):
+    responses, results = histories()
+    text = report(tmp_path, *responses, **results)
+    page = Page(text)
+    assert not {"link", "img", "iframe", "object", "base"} & set(page.tags)
+    for name, value in page.attributes:
+        if name in ("src", "href", "xlink:href"):
+            assert value is not None
+            assert value.startswith("#")
+    assert "@import" not in text
+    assert re.findall(r"url\((?!#)", text) == []
+
+
+def test_colours_of_figures_come_from_the_page_so_that_dark_mode_reaches_them(tmp_path):
+    responses, results = histories()
+    text = report(tmp_path, *responses, **results)
+    style = text[text.index("<style>") : text.index("</style>")]
+    defined = set(re.findall(r"(--\w+):", style)) | {"--w"}
+    for svg in re.findall(r"<svg.*?</svg>", text, flags=re.DOTALL):
+        assert not re.findall(r"#[0-9a-fA-F]{6}\b", svg)
+        assert set(re.findall(r"var\((--\w+)\)", svg)) <= defined
+
+
+def test_histories_have_a_column_per_foundation_with_the_rigid_base_behind(tmp_path):
+    responses, results = histories()
+    text = report(tmp_path, *responses, **results)
+    peaks, drawn = figures(text)
+    texts = svg_texts(drawn)
+    assert [t.replace("\u00a0", " ") for t in texts if t.startswith("η")] == [
+        f"η = {e}" for e in ("5", "3", "2.5", "2.2")
+    ]
+    assert texts.count("t [s]") == 4
+    assert texts.count("L") == texts.count("R") == 4
+    assert "thin line: rigid base" in Page(text).text
+    # every column: band, rigid and own curves; the rigid line has the colour of the text
+    inked = [
+        n
+        for n in drawn.iter()
+        if "stroke: var(--ink)" in n.get("style", "") and "stroke-width: 0.7" in n.get("style", "")
+    ]
+    assert len(inked) == 4 * 3
+    assert peaks is not drawn
+
+
+def test_an_elastic_and_a_lone_rigid_response_are_drawn_without_loops(tmp_path):
+    write_results(tmp_path)
+    for base in (RigidBase(), ElasticBase(beta=50.0)):
+        write_report(tmp_path, [response("ERZ-NS", base.name, base)])
+        drawn = figures((tmp_path / "report.html").read_text(encoding="utf-8"))[1]
+        assert "θ/α" in svg_texts(drawn)
+        assert "L" not in svg_texts(drawn)
+
+
+def test_thinning_keeps_every_extremum_and_both_ends():
+    t = np.linspace(0, 40, 50_001)
+    y = np.sin(3 * t) + 0.01 * np.sin(500 * t)
+    spikes = np.random.default_rng(7).choice(t.size, 20, replace=False)
+    y[spikes] += np.where(np.arange(20) % 2, 5.0, -5.0)
+    x, kept = thin(t, y, 200)
+    assert x.size <= 4 * 200
+    assert (x[0], x[-1]) == (t[0], t[-1])
+    assert np.all(np.diff(x) > 0)
+    assert (kept.min(), kept.max()) == (y.min(), y.max())
+    edges = np.linspace(0, t.size, 200 + 1).astype(int)
+    for start, end in pairwise(edges):
+        inside = (x >= t[start]) & (x <= t[end - 1])
+        assert (kept[inside].min(), kept[inside].max()) == (y[start:end].min(), y[start:end].max())
+
+
+def test_thinning_bears_stretches_without_values():
+    y = np.full(10_000, np.nan)
+    y[5_000:] = np.arange(5_000.0)
+    _, kept = thin(np.arange(10_000.0), y, 50)
+    assert np.nanmax(kept) == 4_999
+
+
+def test_the_same_results_give_the_same_bytes(tmp_path):
+    responses, results = histories()
+    first = report(tmp_path, *responses, **results)
+    assert write_report(tmp_path, responses).read_text(encoding="utf-8") == first
+
+
+def test_fifty_records_on_five_foundations_stay_below_two_megabytes(tmp_path):
+    records = [(f"RSN{i}_EVENT_STATION{i:03d}_WITH_A_LONG_NAME", 0.1 + 0.02 * i) for i in range(50)]
+    text = report(tmp_path, records=records)
+    assert len(text.encode()) < 2e6
+    texts = svg_texts(figures(text)[0])
+    assert sum(t.startswith("PGA = ") for t in texts) == 50
+
+
+def test_both_directions_and_scales_are_told_apart(tmp_path):
+    text = report(tmp_path, polarities=("+", "-"), scales=(1.0, 2.0))
+    page = Page(text)
+    assert len(figures(text)) == 2
+    assert page.tables["numbers"][0][2:4] == ["rigid (+)", "rigid (-)"]
+    assert "as recorded and reversed, scaled by 1, 2: 120 runs." in page.text
+    # PGA is that of the scaled motion
+    doubled = page.tables["numbers"][1 + len(FIG7) + 1]
+    assert doubled[:2] == ["ERZ-NS", "1.030"]
+
+
+def test_a_study_without_any_usable_record_still_has_a_report(tmp_path):
+    unusable = [{"name": "x", "source": "motions/x.AT2", "reason": "motions/x.AT2: empty file"}]
+    page = Page(report(tmp_path, records=[], unusable=unusable))
+    assert "No ground motion could be used" in page.text
+    assert page.tables["unusable"][1] == ["x", "motions/x.AT2", "motions/x.AT2: empty file"]
+
+
+def test_sections_come_in_the_order_in_which_they_are_asked_for(tmp_path):
+    reference = {"record": "*", "case": "1", "columns": {}, "theta_max_over_alpha": 0.1, "source": "s"}
+    unusable = [{"name": "x", "source": "x", "reason": "empty"}]
+    responses, results = histories()
+    page = Page(report(tmp_path, *responses, references=[reference], unusable=unusable, **results))
+    assert page.headings == [
+        "Summary", "Peak rotations", "Peak rotations in numbers", "Compared with published values", "Notes",
+        "Histories", "All results", "Foundations", "Ground motions", "Not used", "How to reproduce",
+    ]  # fmt: skip
+    assert "rockbatch run configs/fig7.toml --jobs 2" in page.text
+    assert '[[case]]\nname = "rigid"' in page.text
+
+
+def test_all_that_is_wrong_with_a_folder_is_said_at_once(tmp_path):
+    with pytest.raises(InputError) as caught:
+        write_report(tmp_path)
+    assert [problem.split(":")[0] for problem in caught.value.problems] == [
+        str(tmp_path / "run.json"), str(tmp_path / "peaks.csv"),
+    ]  # fmt: skip
+
+    write_results(tmp_path, changes={("ERZ-NS", "1"): {"t_max_s": "soon"}})
+    document = json.loads((tmp_path / "run.json").read_text(encoding="utf-8"))
+    del document["machine"]
+    (tmp_path / "run.json").write_text(json.dumps(document), encoding="utf-8")
+    with pytest.raises(InputError) as caught:
+        write_report(tmp_path)
+    missing, cell = caught.value.problems
+    assert "has no machine" in missing
+    assert cell == f'{tmp_path / "peaks.csv"}:3: t_max_s = "soon": expected a number or nothing'
+
+
+def test_files_of_different_runs_are_refused(tmp_path):
+    pier = Pier(alpha=0.13, p=0.38)
+    write_results(tmp_path, cases=[case_entry("other", {}, pier, FOUNDATIONS[1][1])])
+    other = (tmp_path / "run.json").read_text(encoding="utf-8")
+    write_results(tmp_path)
+    (tmp_path / "run.json").write_text(other, encoding="utf-8")
+    with pytest.raises(InputError, match="belong to different runs"):
+        write_report(tmp_path)
+
+
+def test_a_report_that_fails_leaves_the_earlier_one_and_no_litter(tmp_path, monkeypatch):
+    earlier = report(tmp_path)
+
+    def no_space(*_):
+        raise OSError("no space left on device")
+
+    monkeypatch.setattr("rockbatch.report.os.replace", no_space)
+    with pytest.raises(OSError, match="no space"):
+        write_report(tmp_path)
+    assert (tmp_path / "report.html").read_text(encoding="utf-8") == earlier
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["peaks.csv", "report.html", "run.json"]
+
+
+def test_a_record_called_na_keeps_its_name(tmp_path):
+    assert Page(report(tmp_path, records=[("NA", 0.3), ("nan", 0.4)])).tables["numbers"][1][0] == "NA"
+
+
+def test_the_report_never_loads_the_compiler_or_pyplot(tmp_path):
+    write_results(tmp_path)
+    code = (
+        "import sys; from pathlib import Path; from rockbatch.report import write_report;"
+        f"write_report(Path({str(tmp_path)!r}));"
+        "assert 'matplotlib' in sys.modules;"
+        "print([m for m in ('numba', 'rockbatch.core', 'matplotlib.pyplot', 'scipy', 'obspy') if m in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+def test_markup_escapes_all_but_markup():
+    assert tag("p", "<b>", tag("i", "a & b"), title='"') == '<p title="&quot;">&lt;b&gt;<i>a &amp; b</i></p>'
+    assert tag("td", class_="n", hidden=False, open=True) == '<td class="n" open></td>'
+    assert escape(1.5) == "1.5"
