@@ -1,0 +1,36 @@
+"""The command line: subcommands, and how mistakes are told."""
+
+import argparse
+import sys
+from collections.abc import Sequence
+
+from rockbatch import __version__
+from rockbatch.commands import motions, run
+from rockbatch.errors import InputError
+
+COMMANDS = {"run": run, "motions": motions}
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line; returns the exit code (0 fine, 1 some record or check failed, 2 wrong input, 130)."""
+    parser = argparse.ArgumentParser(
+        prog="rockbatch", description="Peak rotations of stepping bridge piers under a folder of ground motions."
+    )
+    parser.add_argument("--version", action="version", version=f"rockbatch {__version__}")
+    subparsers = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    for name, command in COMMANDS.items():
+        command.add_arguments(subparsers.add_parser(name, help=command.HELP, description=command.HELP))
+    parsed = parser.parse_args(arguments)
+    try:
+        return COMMANDS[parsed.command].main(parsed)
+    except InputError as error:
+        for problem in error.problems:
+            print(f"rockbatch: {problem}", file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        print("rockbatch: interrupted", file=sys.stderr)
+        return 130
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,130 @@
+"""``rockbatch run``: a study file to peaks.csv, run.json and report.html."""
+
+import argparse
+import datetime
+import platform
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+from rockbatch import __version__
+
+HELP = "run every record of a study in every case; write the table of peaks and the report"
+PACKAGES = ("numba", "numpy", "pandas", "obspy", "matplotlib")
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("study", type=Path, metavar="STUDY.toml", help="the study file")
+    parser.add_argument("--out", type=Path, metavar="DIR", help="folder for the results (default: reports/STUDY)")
+    parser.add_argument("--jobs", type=_jobs, metavar="N", help="threads (default: all processors)")
+    parser.add_argument(
+        "--motions", type=Path, metavar="PATH", help="file or folder of records instead of the study's motions"
+    )
+
+
+def _jobs(text: str) -> int:
+    jobs = int(text)
+    if jobs < 1:
+        raise argparse.ArgumentTypeError(f"{text}: must be at least 1")
+    return jobs
+
+
+def main(arguments: argparse.Namespace) -> int:
+    from rockbatch.study import load_study
+
+    started = time.monotonic()
+    study = load_study(arguments.study, motions=arguments.motions)
+    directory = arguments.out or Path("reports") / arguments.study.stem
+
+    from rockbatch.batch import compile_kernels, cores, ground_motions, outcomes, plan, table_of
+    from rockbatch.commands.progress import Progress
+    from rockbatch.commands.summary import summary
+    from rockbatch.core.kernel import is_compiled
+    from rockbatch.results import describe, write_results
+
+    motions = ground_motions(study)
+    for file in motions.unusable:
+        _say(f"not used: {file.source}: {file.reason}")
+    jobs = arguments.jobs or cores()
+    runs = plan(study, motions)
+    factors = (
+        (len(motions.motions), "record"),
+        (len(study.motions.polarity), "direction"),
+        (len(study.motions.scale), "scale"),
+        (len(study.cases), "case"),
+    )
+    counted = " × ".join(_count(n, noun) for n, noun in factors if n > 1 or noun in ("record", "case"))
+    _say(f"{counted} = {_count(len(runs), 'run')} on {_count(jobs, 'thread')}")
+    if not is_compiled():
+        _say("compiling the kernels (once per installation, about 15 s)")
+    compile_kernels(runs, study.numerics)
+    finished: dict[int, Any] = {}
+    interrupted = False
+    with Progress(len(runs)) as progress:
+        try:
+            for index, outcome in outcomes(runs, study.numerics, jobs):
+                finished[index] = outcome
+                progress()
+        except KeyboardInterrupt:
+            interrupted = True
+    table = table_of(study, motions, runs, finished)
+    info = {
+        "rockbatch": __version__,
+        "created": datetime.datetime.now().astimezone().isoformat(timespec="seconds"),
+        "command": ["rockbatch", *sys.argv[1:]],
+        **describe(study, motions),
+        "versions": _versions(),
+        "machine": f"{platform.system()} {platform.machine()}, {cores()} processors",
+        "runs": len(finished),
+        "jobs": jobs,
+        "wall_s": round(time.monotonic() - started, 3),
+    }
+    write_results(directory, table, info)
+    if interrupted:
+        _say(f"interrupted: {len(finished)} of {len(runs)} runs are in {directory / 'peaks.csv'}")
+        return 130
+
+    from rockbatch.report import write_report
+
+    report = write_report(directory, responses(study, runs, finished))
+    print(summary(table, study.varied))
+    failed = int((table["status"] == "failed").sum())
+    _say(f"{directory / 'peaks.csv'}\n{directory / 'run.json'}\n{report}")
+    if failed:
+        _say(f"{_count(failed, 'row')} with status failed; the column reason says why")
+    return 1 if failed else 0
+
+
+def responses(study: Any, runs: list[Any], finished: dict[int, Any]) -> list[Any]:
+    """Histories of every run, where the study asks for them."""
+    if study.histories == "none":
+        return []
+    from rockbatch.histories import histories
+
+    return [
+        histories(
+            run.case.pier,
+            run.case.base,
+            run.motion,
+            finished[i],
+            study.numerics.quiet_s,
+            run.case.name,
+            run.case.columns,
+        )
+        for i, run in enumerate(runs)
+    ]
+
+
+def _count(n: int, noun: str) -> str:
+    return f"{n} {noun}" if n == 1 else f"{n} {noun}s"
+
+
+def _versions() -> dict[str, str]:
+    from importlib.metadata import version
+
+    return {"python": platform.python_version(), **{name: version(name) for name in PACKAGES}}
+
+
+def _say(text: str) -> None:
+    print(text, file=sys.stderr, flush=True)

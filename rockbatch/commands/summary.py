@@ -1,0 +1,43 @@
+"""The table of Fig. 7 in the terminal: θ_max/α of every record in every case, a block for each pier."""
+
+from typing import TYPE_CHECKING, Any
+
+from rockbatch.study import PIER_KEYS
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+def summary(table: "pd.DataFrame", varied: tuple[str, ...]) -> str:
+    """Blocks of text, the status beside the value where it is not "ok"; files that could not be used are left out."""
+    runs = table[table["case"] != ""]
+    pier_keys = [name for name in varied if name in PIER_KEYS]
+    case_keys = [name for name in varied if name not in PIER_KEYS]
+    rows = ["record", *(name for name in ("polarity", "scale") if runs[name].nunique() > 1)]
+    if not pier_keys:
+        return "Peak rotation theta_max/alpha\n" + _block(runs, rows, case_keys)
+    blocks = [
+        f"Peak rotation theta_max/alpha, {_named(pier_keys, values)}\n" + _block(block, rows, case_keys)
+        for values, block in runs.groupby(pier_keys, sort=False)
+    ]
+    return "\n\n".join(blocks)
+
+
+def _block(runs: "pd.DataFrame", rows: list[str], case_keys: list[str]) -> str:
+    import pandas as pd
+
+    cells: dict[str, dict[str, str]] = {}
+    for _, run in runs.iterrows():
+        line = " ".join(f"{run[name]:g}" if name == "scale" else str(run[name]) for name in rows)
+        varied = _named(case_keys, [run[name] for name in case_keys])
+        cell = f"{run['theta_max_over_alpha']:.4f}"
+        if run["status"] != "ok":
+            cell = f"{run['status']} {cell}"
+        cells.setdefault(line, {})[f"{run['case']} {varied}".strip()] = cell
+    return pd.DataFrame.from_dict(cells, orient="index").fillna("").to_string()
+
+
+def _named(keys: list[str], values: Any) -> str:
+    """``beta=40 eta=2.5``, without keys that do not apply."""
+    pairs = [(key, value) for key, value in zip(keys, values, strict=True) if value == value and value != ""]
+    return " ".join(f"{key}={value}" if isinstance(value, str) else f"{key}={value:g}" for key, value in pairs)

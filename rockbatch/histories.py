@@ -1,0 +1,140 @@
+"""Histories of one run: what the core wrote, with names, units and what follows from it."""
+
+import math
+
+import numpy as np
+
+from rockbatch.core import types
+from rockbatch.errors import InputError
+from rockbatch.motions.motion import Motion, Samples
+from rockbatch.outcome import Outcome
+from rockbatch.response import Response
+from rockbatch.simulation import call_rigid_base, call_springs, run_fixed, run_to_tolerance, springs
+from rockbatch.structure import Base, ElasticBase, Pier, RigidBase, problems
+
+_EVENTS = {
+    types.SEPARATION_LEFT: ("separation", "left"),
+    types.SEPARATION_RIGHT: ("separation", "right"),
+    types.IMPACT_LEFT: ("impact", "left"),
+    types.IMPACT_RIGHT: ("impact", "right"),
+    types.IMPACT_BOTH: ("impact", "both"),
+    types.SPRING_LEFT: ("spring", "left"),
+    types.SPRING_RIGHT: ("spring", "right"),
+    types.HELD_LEFT: ("contact", "left"),
+    types.HELD_RIGHT: ("contact", "right"),
+    types.LIFT_OFF: ("lift-off", ""),
+    types.REST: ("rest", ""),
+}
+
+
+def simulate(
+    pier: Pier,
+    foundation: Base,
+    motion: Motion,
+    *,
+    tolerance: float = 1e-4,
+    substeps: int | None = None,
+    quiet_s: float = 2.0,
+    case: str | None = None,
+) -> Response:
+    """Histories of one run.
+
+    Parameters
+    ----------
+    pier, foundation, motion
+        What rocks, on what, under what; a motion's vertical component is used if it has one.
+    tolerance : float
+        On θ_max/α; the steps per sample are chosen to meet it.
+    substeps : int, optional
+        Steps per sample instead, for a fixed step.
+    quiet_s : float
+        Time after the record [s].
+    case : str, optional
+        Name of the foundation; its kind by default.
+
+    Raises
+    ------
+    InputError
+        If the pier cannot stand on the foundation, with the limits.
+    """
+    wrong = problems(pier, foundation)
+    if wrong:
+        raise InputError(*wrong)
+    if substeps is None:
+        outcome = run_to_tolerance(pier, foundation, motion, tolerance, quiet_s)
+    else:
+        outcome = run_fixed(pier, foundation, motion, substeps, quiet_s)
+    return histories(pier, foundation, motion, outcome, quiet_s, case or foundation.name, {})
+
+
+def histories(
+    pier: Pier,
+    base: Base,
+    motion: Motion,
+    outcome: Outcome,
+    quiet_s: float,
+    case: str,
+    columns: dict[str, float | str],
+) -> Response:
+    """Histories of a run whose outcome is known: the same run again, with the same steps, written down."""
+    import pandas as pd
+
+    call = call_rigid_base if isinstance(base, RigidBase) else call_springs
+    capacity = motion.npts + 64 * (outcome.impacts + outcome.separations + 64)
+    run, rows = call(pier, base, motion, outcome.substeps, quiet_s, capacity)
+    if run.rows > capacity:
+        run, rows = call(pier, base, motion, outcome.substeps, quiet_s, run.rows)
+    rows = rows[: run.rows]
+    happened = [(float(row[0]), *_EVENTS[int(row[-1])]) for row in rows[rows[:, -1] > 0]]
+    if outcome.t_flight is not None:
+        happened.append((outcome.t_flight, "flight", ""))
+        happened.sort(key=lambda event: event[0])
+    state = _rigid_state(pier, rows) if isinstance(base, RigidBase) else _springs_state(pier, base, rows)
+    t = rows[:, 0]
+    vertical = np.zeros(len(t)) if motion.vertical is None else _ground(motion.vertical, motion.dt, t)
+    history = pd.DataFrame({"t": t, **state, "ag_h": _ground(motion.horizontal, motion.dt, t), "ag_v": vertical})
+    events = pd.DataFrame(happened, columns=["t", "kind", "pivot"])
+    return Response(motion.name, case, columns, pier, base, outcome.status, history, events)
+
+
+def _ground(acceleration: Samples, dt: float, t: Samples) -> Samples:
+    """Ground acceleration at times ``t``: linear between samples, zero from the sample after the last."""
+    samples = np.append(acceleration, 0.0)
+    return np.interp(t, np.arange(len(samples)) * dt, samples)
+
+
+def _rigid_state(pier: Pier, rows: Samples) -> dict[str, Samples]:
+    theta, omega = rows[:, 1], rows[:, 2]
+    absent = np.full(len(rows), np.nan)
+    climbed = np.cos(pier.alpha - np.abs(theta)) - math.cos(pier.alpha)
+    energy = 0.5 * (pier.inertia + pier.size**2) * omega**2 + pier.gravity * pier.size * climbed
+    none = dict.fromkeys(("v", "z_left", "z_right", "v_left", "v_right"), absent)
+    return {"theta": theta, "omega": omega, **none, "energy": energy}
+
+
+def _springs_state(pier: Pier, base: ElasticBase, rows: Samples) -> dict[str, Samples]:
+    """State, pivots, and the energy stored since the start (THEORY.md): kinetic, potential and elastic."""
+    m = springs(pier, base)
+    v, theta, v_rate, omega, z_left, z_right, on_left, on_right = rows[:, 1:9].T
+    b, h = m.half_width, m.height
+    rise, drop, lever = b * theta, np.zeros(len(rows)), np.full(len(rows), h)
+    if m.finite:
+        rise, drop = b * np.sin(theta), h * (1.0 - np.cos(theta))
+        lever = h * np.cos(theta) + (on_right - on_left) * rise
+    elastic = z_left**2 + z_right**2
+    energy = (
+        0.5 * v_rate**2
+        + 0.5 * (m.inertia + lever**2) * omega**2
+        + m.gravity * (v - v[0])
+        + 0.5 * m.yield_force * m.yield_deflection * (elastic - elastic[0])
+    )
+    return {
+        "theta": theta,
+        "omega": omega,
+        "v": v,
+        "z_left": z_left,
+        "z_right": z_right,
+        "v_left": v + rise + drop,
+        "v_right": v - rise + drop,
+        "energy": energy,
+    }

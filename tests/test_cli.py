@@ -1,0 +1,151 @@
+"""The command line as users and their scripts meet it: files, messages, exit codes."""
+
+import csv
+import json
+import subprocess
+import sys
+import time
+
+import pytest
+
+from rockbatch.cli import main
+
+STUDY = """
+title = "A <pulse> & a pier"
+
+[pier]
+alpha = 0.2
+p = 1.0
+
+[[motions.pulse]]
+name = "one-sine"
+shape = "sine"
+amplitude_g = 1.0
+period_s = 0.5
+dt_s = 0.01
+duration_s = 4.0
+
+[[case]]
+name = "rigid"
+base = "rigid"
+
+[[case]]
+name = "pads"
+base = "yielding"
+beta = 50
+eta = 2.5
+"""
+
+AT2 = """PEER NGA STRONG MOTION DATABASE RECORD
+Nowhere-01, 1/2/1999, Field, 090
+ACCELERATION TIME SERIES IN UNITS OF G
+NPTS=    {count}, DT=   .0100 SEC
+"""
+
+
+@pytest.fixture
+def study(tmp_path):
+    path = tmp_path / "study.toml"
+    path.write_text(STUDY, encoding="utf-8")
+    return path
+
+
+def at2(values, count=None):
+    return AT2.format(count=len(values) if count is None else count) + "\n".join(f"{v:15.7E}" for v in values) + "\n"
+
+
+def test_run_writes_the_table_the_report_and_what_was_run(study, tmp_path, capsys):
+    out = tmp_path / "results"
+    assert main(["run", str(study), "--out", str(out), "--jobs", "1"]) == 0
+    assert sorted(file.name for file in out.iterdir()) == ["peaks.csv", "report.html", "run.json"]
+    with open(out / "peaks.csv", encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [(row["record"], row["case"], row["status"]) for row in rows] == [
+        ("one-sine", "rigid", "ok"),
+        ("one-sine", "pads", "ok"),
+    ]
+    info = json.loads((out / "run.json").read_text(encoding="utf-8"))
+    assert info["study"]["text"] == STUDY
+    assert info["runs"] == 2
+    printed = capsys.readouterr()
+    assert f"{float(rows[0]['theta_max_over_alpha']):.4f}" in printed.out
+    assert "2 of 2" not in printed.out  # progress goes to stderr
+
+
+def test_the_table_is_the_same_bytes_with_any_number_of_jobs(study, tmp_path):
+    for jobs in ("1", "3"):
+        assert main(["run", str(study), "--out", str(tmp_path / jobs), "--jobs", jobs]) == 0
+    assert (tmp_path / "1/peaks.csv").read_bytes() == (tmp_path / "3/peaks.csv").read_bytes()
+
+
+def test_motions_replace_those_of_the_study_and_a_bad_file_is_a_row_with_its_reason(study, tmp_path, capsys):
+    records = tmp_path / "records"
+    records.mkdir()
+    shake = [0.4 * (-1) ** (i // 20) for i in range(200)]
+    (records / "GOOD090.AT2").write_text(at2(shake), encoding="latin-1")
+    (records / "BAD090.AT2").write_text(at2(shake, count=201), encoding="latin-1")
+    assert main(["run", str(study), "--out", str(tmp_path / "out"), "--motions", str(records)]) == 1
+    with open(tmp_path / "out/peaks.csv", encoding="utf-8", newline="") as file:
+        rows = {(row["record"], row["case"]): row for row in csv.DictReader(file)}
+    assert rows["GOOD090", "rigid"]["status"] == "ok"
+    assert rows["GOOD090", "pads"]["status"] in ("ok", "overturned", "flight")
+    bad = rows["BAD090", ""]
+    assert bad["status"] == "failed"
+    assert "201" in bad["reason"]
+    assert "200" in bad["reason"]
+    assert "BAD090" in capsys.readouterr().err
+    assert "BAD090" in (tmp_path / "out/report.html").read_text(encoding="utf-8")
+
+
+def test_wrong_input_runs_nothing_and_exits_with_2(study, tmp_path, capsys):
+    study.write_text(STUDY.replace("eta = 2.5", "eta = 0.9\nbeat = 40"), encoding="utf-8")
+    assert main(["run", str(study), "--out", str(tmp_path / "out")]) == 2
+    assert not (tmp_path / "out").exists()
+    told = capsys.readouterr().err
+    assert "study.toml:24" in told
+    assert "beta" in told  # did you mean
+    assert "Traceback" not in told
+
+
+def test_a_missing_study_is_told_and_exits_with_2(tmp_path, capsys):
+    assert main(["run", str(tmp_path / "none.toml")]) == 2
+    assert "none.toml" in capsys.readouterr().err
+
+
+def test_motions_shows_what_is_there_and_what_is_not_used(tmp_path, capsys):
+    (tmp_path / "GOOD090.AT2").write_text(at2([0.1, -0.5, 0.2] * 50), encoding="latin-1")
+    (tmp_path / "notes.doc").write_text("not a record", encoding="utf-8")
+    assert main(["motions", str(tmp_path)]) == 1
+    shown = capsys.readouterr().out
+    assert "GOOD090" in shown
+    assert "0.500" in shown
+    assert "notes.doc: " in shown
+
+
+def test_help_loads_neither_compiler_nor_tables_nor_obspy():
+    """Start-up stays light: what costs is loaded inside the command that needs it."""
+    code = "import sys; from rockbatch.cli import main\ntry: main(['--help'])\nexcept SystemExit: pass\n"
+    heavy = "numba", "numpy", "pandas", "obspy", "h5py", "matplotlib", "scipy"
+    code += f"print([m for m in {heavy!r} if m in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-1] == "[]"
+
+
+def test_an_interrupt_keeps_what_is_finished(study, tmp_path, monkeypatch, capsys):
+    import rockbatch.batch
+
+    real = rockbatch.batch.outcome_of
+
+    def interrupted(run, numerics):
+        if run.case.name == "pads" and interrupted.armed:
+            time.sleep(0.2)  # the other run is finished by then
+            raise KeyboardInterrupt
+        return real(run, numerics)
+
+    interrupted.armed = False
+    monkeypatch.setattr(rockbatch.batch, "outcome_of", interrupted)
+    monkeypatch.setattr(rockbatch.batch, "compile_kernels", lambda runs, numerics: setattr(interrupted, "armed", True))
+    assert main(["run", str(study), "--out", str(tmp_path / "out"), "--jobs", "2"]) == 130
+    rows = (tmp_path / "out/peaks.csv").read_text(encoding="utf-8").splitlines()
+    assert [row.split(",")[1] for row in rows[1:]] == ["rigid"]
+    assert "interrupted" in capsys.readouterr().err
