@@ -4,7 +4,20 @@ import math
 
 from rockbatch.core.kernel import entry, kernel
 from rockbatch.core.outcome import fallen, patience, undecided
-from rockbatch.core.roots import TRIALS, hermite, largest_within, secant, turning_point, weight
+from rockbatch.core.roots import (
+    AFTER,
+    BEFORE,
+    CLOSE,
+    LEAST,
+    NEVER,
+    NOW,
+    TRIALS,
+    Bracket,
+    largest_within,
+    narrowed,
+    outlook,
+    secant,
+)
 from rockbatch.core.types import (
     BEFORE_EVENT,
     CHATTER,
@@ -96,40 +109,34 @@ def _landing(m, theta, omega, k1, side, ground, h, end_theta, end_omega):
     """Time in (0, h] at which the block is back on both corners, −1 if it is not."""
     f0, d0 = side * theta, side * omega
     f1, d1 = side * end_theta, side * end_omega
-    a, fa, b, fb = 0.0, f0, h, f1
-    if f0 <= 0.0:  # has just left both corners
-        if f1 > 0.0:
-            return -1.0
-        a = turning_point(0.0, d0, f1, d1, h) if d0 > 0.0 and d1 < 0.0 else 0.5 * h
-        fa = side * rocking_step(m, theta, omega, k1, side, ground, a)[0]
-        while fa <= 0.0:
-            a *= 0.5
-            if a < 1e-12 * h:
-                return 0.0
-            fa = side * rocking_step(m, theta, omega, k1, side, ground, a)[0]
-    elif f1 > 0.0:
-        if not (d0 < 0.0 and d1 > 0.0):
-            return -1.0
-        b = turning_point(f0, d0, f1, d1, h)
-        if hermite(f0, d0, f1, d1, h, b) > 0.0:
-            return -1.0
-        fb = side * rocking_step(m, theta, omega, k1, side, ground, b)[0]
-        if fb > 0.0:
-            return -1.0
-    for _ in range(TRIALS):
-        if fb == 0.0:
-            return b
-        x = secant(a, fa, b, fb)
+    look, x = outlook(f0, d0, f1, d1, h)
+    if look == NEVER:
+        return -1.0
+    if look == NOW:
+        return 0.0
+    bracket = Bracket(0.0, f0, h, f1)
+    if look == AFTER:
         fx = side * rocking_step(m, theta, omega, k1, side, ground, x)[0]
-        moved = abs(x - b)
-        if fx * fb < 0.0:
-            a, fa = b, fb
-        else:
-            fa *= weight(fx, fb)
-        b, fb = x, fx
-        if moved <= 1e-14 * h:
+        while fx <= 0.0:
+            x *= 0.5
+            if x < LEAST * h:
+                return 0.0
+            fx = side * rocking_step(m, theta, omega, k1, side, ground, x)[0]
+        bracket = Bracket(x, fx, h, f1)
+    elif look == BEFORE:
+        fx = side * rocking_step(m, theta, omega, k1, side, ground, x)[0]
+        if fx > 0.0:
+            return -1.0
+        bracket = Bracket(0.0, f0, x, fx)
+    for _ in range(TRIALS):
+        if bracket.fb == 0.0:
             break
-    return b
+        x = secant(bracket)
+        moved = abs(x - bracket.b)
+        bracket = narrowed(bracket, x, side * rocking_step(m, theta, omega, k1, side, ground, x)[0])
+        if moved <= CLOSE * h:
+            break
+    return bracket.b
 
 
 @kernel

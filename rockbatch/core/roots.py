@@ -1,10 +1,19 @@
 """Crossings and extrema inside a step: cubic Hermite to see them, regula falsi to locate them."""
 
 import math
+from typing import NamedTuple
 
 from rockbatch.core.kernel import kernel
 
-TRIALS = 80  # regula falsi with Anderson and Björck's weight needs about six
+TRIALS = 80  # regula falsi needs about six
+LEAST = 1e-12  # of a step: a signal that has not left its surface by then has not left it
+CLOSE = 1e-14  # of a step: how far apart the last two trials may be
+
+NEVER = 0
+NOW = 1
+WITHIN = 2
+AFTER = 3
+BEFORE = 4
 
 
 @kernel
@@ -34,17 +43,51 @@ def turning_point(f0, d0, f1, d1, h):
     return h * min(max(s, 0.0), 1.0)
 
 
-@kernel
-def secant(a, fa, b, fb):
-    """Trial point between ``a`` and ``b``, whose values differ in sign."""
-    return (a * fb - b * fa) / (fb - fa)
+class Bracket(NamedTuple):
+    """Two times whose signals differ in sign; ``b`` is the latest trial."""
+
+    a: float
+    fa: float
+    b: float
+    fb: float
 
 
 @kernel
-def weight(f_new, f_old):
-    """Anderson and Björck's factor on the value at the end that stays, after a trial on the other end's side."""
-    m = 1.0 - f_new / f_old
-    return m if m > 0.0 else 0.5
+def secant(bracket):
+    """Trial time within the bracket."""
+    return (bracket.a * bracket.fb - bracket.b * bracket.fa) / (bracket.fb - bracket.fa)
+
+
+@kernel
+def narrowed(bracket, x, fx):
+    """Bracket after the trial ``x``: regula falsi with the weight of Anderson and Björck (1973)."""
+    if fx * bracket.fb < 0.0:
+        return Bracket(bracket.b, bracket.fb, x, fx)
+    weight = 1.0 - fx / bracket.fb
+    return Bracket(bracket.a, bracket.fa * (weight if weight > 0.0 else 0.5), x, fx)
+
+
+@kernel
+def outlook(f0, d0, f1, d1, h):
+    """What values and slopes at the ends of a step say about a signal that was positive: a code and a time.
+
+    NEVER: it does not fall through zero. NOW: it does at the very start. WITHIN: between start and end. AFTER: it
+    starts on its own surface, which counts only once it has left it, as it should have at the time given. BEFORE: it
+    is positive at both ends and may dip below zero at the time given.
+    """
+    if f0 <= 0.0:
+        if d0 < 0.0 or (d0 == 0.0 and f1 < 0.0):
+            return NOW, 0.0
+        if d0 == 0.0 or f1 > 0.0:
+            return NEVER, 0.0
+        return AFTER, turning_point(0.0, d0, f1, d1, h) if d1 < 0.0 else 0.5 * h
+    if f1 <= 0.0:
+        return WITHIN, h
+    if d0 < 0.0 and d1 > 0.0:
+        x = turning_point(f0, d0, f1, d1, h)
+        if hermite(f0, d0, f1, d1, h, x) <= 0.0:
+            return BEFORE, x
+    return NEVER, 0.0
 
 
 @kernel

@@ -8,7 +8,21 @@ from rockbatch.core.events import at_rest, quiet, settle, signals
 from rockbatch.core.impact import land, land_flat
 from rockbatch.core.kernel import entry, kernel
 from rockbatch.core.outcome import fallen, patience, undecided
-from rockbatch.core.roots import TRIALS, hermite, largest_within, lowest_within, secant, turning_point, weight
+from rockbatch.core.roots import (
+    AFTER,
+    BEFORE,
+    CLOSE,
+    LEAST,
+    NEVER,
+    NOW,
+    TRIALS,
+    Bracket,
+    largest_within,
+    lowest_within,
+    narrowed,
+    outlook,
+    secant,
+)
 from rockbatch.core.springs import plastic_work, static_deflection
 from rockbatch.core.types import (
     BEFORE_EVENT,
@@ -142,42 +156,34 @@ def _advance(m, y, k1, contact, ground, supports, rest, x, which):
 @kernel
 def _crossing(m, y, k1, contact, ground, supports, rest, h, which, f0, d0, f1, d1):
     """Time in [0, h] at which signal ``which`` falls through zero, −1 if it does not."""
-    a, fa, b, fb = 0.0, f0, h, f1
-    if f0 <= 0.0:  # starts on its own surface: only what happens away from it counts
-        if d0 < 0.0 or (d0 == 0.0 and f1 < 0.0):
-            return 0.0
-        if d0 == 0.0 or f1 > 0.0:
-            return -1.0
-        a = turning_point(0.0, d0, f1, d1, h) if d1 < 0.0 else 0.5 * h
-        fa = _advance(m, y, k1, contact, ground, supports, rest, a, which)
-        while fa <= 0.0:
-            a *= 0.5
-            if a < 1e-12 * h:
-                return 0.0
-            fa = _advance(m, y, k1, contact, ground, supports, rest, a, which)
-    elif f1 > 0.0:  # at both ends above the surface: below it in between?
-        if not (d0 < 0.0 and d1 > 0.0):
-            return -1.0
-        b = turning_point(f0, d0, f1, d1, h)
-        if hermite(f0, d0, f1, d1, h, b) > 0.0:
-            return -1.0
-        fb = _advance(m, y, k1, contact, ground, supports, rest, b, which)
-        if fb > 0.0:
-            return -1.0
-    for _ in range(TRIALS):
-        if fb == 0.0:
-            return b
-        x = secant(a, fa, b, fb)
+    look, x = outlook(f0, d0, f1, d1, h)
+    if look == NEVER:
+        return -1.0
+    if look == NOW:
+        return 0.0
+    bracket = Bracket(0.0, f0, h, f1)
+    if look == AFTER:
         fx = _advance(m, y, k1, contact, ground, supports, rest, x, which)
-        moved = abs(x - b)
-        if fx * fb < 0.0:
-            a, fa = b, fb
-        else:
-            fa *= weight(fx, fb)
-        b, fb = x, fx
-        if moved <= 1e-14 * h:
+        while fx <= 0.0:
+            x *= 0.5
+            if x < LEAST * h:
+                return 0.0
+            fx = _advance(m, y, k1, contact, ground, supports, rest, x, which)
+        bracket = Bracket(x, fx, h, f1)
+    elif look == BEFORE:
+        fx = _advance(m, y, k1, contact, ground, supports, rest, x, which)
+        if fx > 0.0:
+            return -1.0
+        bracket = Bracket(0.0, f0, x, fx)
+    for _ in range(TRIALS):
+        if bracket.fb == 0.0:  # else it would pass for a time before the root
             break
-    return b
+        x = secant(bracket)
+        moved = abs(x - bracket.b)
+        bracket = narrowed(bracket, x, _advance(m, y, k1, contact, ground, supports, rest, x, which))
+        if moved <= CLOSE * h:
+            break
+    return bracket.b
 
 
 @kernel

@@ -6,8 +6,8 @@ from fnmatch import fnmatchcase
 from typing import Any, NamedTuple
 
 from rockbatch.report.finished import NUMBERS, SYMBOLS, TEXTS, Finished, Run
-from rockbatch.study import PIER_KEYS
 from rockbatch.report.markup import Markup, join, number, tag
+from rockbatch.study import PIER_KEYS
 
 THETA = join("θ", tag("sub", "max"), "/α")
 THETA_FORMAT = ".4f"
