@@ -87,31 +87,36 @@ def _packed(motion: Motion, quiet_s: float) -> tuple[Samples, Samples, float, in
 
 
 def call_springs(
-    pier: Pier, base: Any, motion: Motion, substeps: int, quiet_s: float, rows: int = 0
+    pier: Pier, base: Any, motion: Motion, substeps: int, quiet_s: float, rows: int = 0, locate: bool = True
 ) -> tuple[SpringRun, Samples]:
     """Run on two springs, and its history of at most ``rows`` rows."""
     horizontal, vertical, dt, quiet = _packed(motion, quiet_s)
     history = np.empty((rows, SPRINGS_COLUMNS))
-    run = rock_on_springs(springs(pier, base), horizontal, vertical, dt, substeps, quiet, history, True)
+    run = rock_on_springs(springs(pier, base), horizontal, vertical, dt, substeps, quiet, history, locate)
     return run, history
 
 
 def call_rigid_base(
-    pier: Pier, base: Any, motion: Motion, substeps: int, quiet_s: float, rows: int = 0
+    pier: Pier, base: Any, motion: Motion, substeps: int, quiet_s: float, rows: int = 0, locate: bool = True
 ) -> tuple[RigidRun, Samples]:
     """Run on a rigid base from rest, and its history of at most ``rows`` rows."""
     horizontal, vertical, dt, quiet = _packed(motion, quiet_s)
     history = np.empty((rows, RIGID_COLUMNS))
     restitution = housner_restitution(pier) if base.restitution is None else base.restitution
     block = Block(float(pier.alpha), float(pier.p), float(pier.gravity), float(restitution))
-    run = rock_on_rigid_base(block, 0.0, 0.0, horizontal, vertical, dt, substeps, quiet, history, True)
+    run = rock_on_rigid_base(block, 0.0, 0.0, horizontal, vertical, dt, substeps, quiet, history, locate)
     return run, history
 
 
-def run_fixed(pier: Pier, base: Base, motion: Motion, substeps: int, quiet_s: float = 2.0) -> Outcome:
-    """Run with ``substeps`` steps per sample, without an error estimate."""
+def run_fixed(
+    pier: Pier, base: Base, motion: Motion, substeps: int, quiet_s: float = 2.0, locate: bool = True
+) -> Outcome:
+    """Run with ``substeps`` steps per sample, without an error estimate.
+
+    With ``locate=False`` events take place at the end of their step: first order, for comparison only.
+    """
     if isinstance(base, RigidBase):
-        rigid, _ = call_rigid_base(pier, base, motion, substeps, quiet_s)
+        rigid, _ = call_rigid_base(pier, base, motion, substeps, quiet_s, locate=locate)
         status, reason = _STATUS[rigid.status]
         return Outcome(
             status=status,
@@ -124,7 +129,7 @@ def run_fixed(pier: Pier, base: Base, motion: Motion, substeps: int, quiet_s: fl
             t_end=rigid.t_end,
             substeps=substeps,
         )
-    run, _ = call_springs(pier, base, motion, substeps, quiet_s)
+    run, _ = call_springs(pier, base, motion, substeps, quiet_s, locate=locate)
     status, reason = _STATUS[run.status]
     outcome = Outcome(
         status=status,
