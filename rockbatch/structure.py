@@ -110,7 +110,7 @@ class RigidBase:
     """Ground that neither gives nor yields (Housner 1963).
 
     ``restitution`` is the factor e on the angular velocity at an impact; ``None`` means Housner's
-    e = 1 − 2μ/(1+μ) sin²α, which conserves the angular momentum about the new pivot.
+    e = 1 − 2μ/(1+μ) sin²α, which conserves the angular momentum about the new pivot, or 0 where that is negative.
     """
 
     restitution: float | None = None

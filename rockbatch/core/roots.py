@@ -72,15 +72,15 @@ def outlook(f0, d0, f1, d1, h):
     """What values and slopes at the ends of a step say about a signal that was positive: a code and a time.
 
     NEVER: it does not fall through zero. NOW: it does at the very start. WITHIN: between start and end. AFTER: it
-    starts on its own surface, which counts only once it has left it, as it should have at the time given. BEFORE: it
-    is positive at both ends and may dip below zero at the time given.
+    starts on its own surface, which counts only once it has left it; that may be at the time given or, halving it,
+    earlier. BEFORE: it is positive at both ends and may dip below zero at the time given.
     """
     if f0 <= 0.0:
         if d0 < 0.0 or (d0 == 0.0 and f1 < 0.0):
             return NOW, 0.0
         if d0 == 0.0 or f1 > 0.0:
             return NEVER, 0.0
-        return AFTER, turning_point(0.0, d0, f1, d1, h) if d1 < 0.0 else 0.5 * h
+        return AFTER, 0.5 * h
     if f1 <= 0.0:
         return WITHIN, h
     if d0 < 0.0 and d1 > 0.0:

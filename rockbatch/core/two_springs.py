@@ -243,6 +243,7 @@ def _handle(m, y, contact, supports, which, rest, horizontal, vertical):
         after = touching(contact, side, yields_when_loaded)
     else:
         after = settle(m, landed, contact, side, horizontal, vertical)
+        supports = Supports(position, supports.right) if left else Supports(supports.left, position)
     return landed, after, supports, IMPACT_LEFT if left else IMPACT_RIGHT
 
 
