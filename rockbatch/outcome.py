@@ -1,5 +1,6 @@
 """What one run comes to."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 
@@ -15,8 +16,8 @@ class Outcome:
         Why it failed; empty otherwise.
     theta_max, t_max : float
         Greatest rotation |θ| [rad] until the end of the run, and its time [s].
-    theta_max_error : float or None
-        Estimated error of ``theta_max`` [rad]; ``None`` with a fixed step.
+    theta_max_error, theta_res_error : float or None
+        Estimated errors of ``theta_max`` and ``theta_res`` [rad]; ``None`` with a fixed step.
     theta_res, base_tilt : float or None
         Residual rotation, static on the deformed base, and tilt of the base itself [rad].
     settlement : float or None
@@ -33,6 +34,10 @@ class Outcome:
         Plastic work in each spring [J/kg].
     substeps : int
         Steps per sample.
+    settlement_other_law : float or None
+        Settlement [m] by the other law of yielding springs, where it was asked for.
+    energies : mapping of str to float, or None
+        Energy ledger at the end [J/kg], and the greatest ``remainder`` on the way, where it was asked for.
     """
 
     status: str
@@ -46,9 +51,12 @@ class Outcome:
     substeps: int
     theta_max_error: float | None = None
     theta_res: float | None = None
+    theta_res_error: float | None = None
     base_tilt: float | None = None
     settlement: float | None = None
     ductility_left: float | None = None
     ductility_right: float | None = None
     dissipated_left: float | None = None
     dissipated_right: float | None = None
+    settlement_other_law: float | None = None
+    energies: Mapping[str, float] | None = None

@@ -27,20 +27,26 @@ from rockbatch.core.types import (
 )
 from rockbatch.motions.motion import Motion, Samples
 from rockbatch.outcome import Outcome
-from rockbatch.structure import Base, ElasticBase, Pier, RigidBase, YieldingBase
+from rockbatch.structure import Base, ElasticBase, Pier, RigidBase, YieldingBase, highest_frequency
 
 FREQUENCY_STEP = 0.2
-"""Largest ω_v h of a first run; the second, with half the step, is then below 0.1, where outcomes were never wrong."""
+"""Largest ω h of a first run; the second, with half the step, is then below 0.1, where outcomes were never wrong."""
+
+STABLE_STEP = 2.0
+"""Largest ω h that is run at all: Runge–Kutta 4 blows up an oscillator beyond 2√2."""
 
 HALVINGS = 8
 """How often the step is halved before a run counts as not settled."""
+
+ROUNDING = 1e-12
+"""Least error of θ/α that is ever claimed."""
 
 _STATUS = {
     SURVIVED: ("ok", ""),
     OVERTURNED: ("overturned", ""),
     FLIGHT: ("flight", ""),
     CHATTER: ("failed", "more than 20,000 contact events within one step; use more substeps or another epsilon"),
-    NOT_FINITE: ("failed", "the integration left the range of numbers; use more substeps"),
+    NOT_FINITE: ("failed", "the integration blew up; use more substeps, or look for a spike in the record"),
     UNDECIDED: ("failed", "left alone after the record, the pier stays at the point of overturning"),
 }
 
@@ -78,8 +84,14 @@ def housner_restitution(pier: Pier) -> float:
     return max(0.0, 1.0 - 2.0 * pier.mu / (1.0 + pier.mu) * math.sin(pier.alpha) ** 2)
 
 
-def _packed(motion: Motion, quiet_s: float) -> tuple[Samples, Samples, float, int]:
-    """A motion as the core takes it: contiguous float64 arrays, the interval, and the samples of rest after it.
+def block(pier: Pier, base: RigidBase) -> Block:
+    """What the core takes for ``pier`` on a rigid base: plain floats."""
+    restitution = housner_restitution(pier) if base.restitution is None else base.restitution
+    return Block(float(pier.alpha), float(pier.p), float(pier.gravity), float(restitution))
+
+
+def packed(motion: Motion) -> tuple[Samples, Samples, float]:
+    """A motion as the core takes it: contiguous float64 arrays, the vertical one empty for none, and the interval.
 
     Any other type or layout would silently compile the kernels once more.
     """
@@ -87,14 +99,19 @@ def _packed(motion: Motion, quiet_s: float) -> tuple[Samples, Samples, float, in
     vertical = _NO_SAMPLES
     if motion.vertical is not None:
         vertical = np.ascontiguousarray(motion.vertical, dtype=np.float64)
-    return horizontal, vertical, float(motion.dt), math.ceil(quiet_s / motion.dt - 1e-9)
+    return horizontal, vertical, float(motion.dt)
+
+
+def _quiet_samples(quiet_s: float, dt: float) -> int:
+    return math.ceil(quiet_s / dt - 1e-9)
 
 
 def call_springs(
     pier: Pier, base: Any, motion: Motion, substeps: int, quiet_s: float, rows: int = 0, locate: bool = True
 ) -> tuple[SpringRun, Samples]:
     """Run on two springs, and its history of at most ``rows`` rows."""
-    horizontal, vertical, dt, quiet = _packed(motion, quiet_s)
+    horizontal, vertical, dt = packed(motion)
+    quiet = _quiet_samples(quiet_s, dt)
     history = np.empty((rows, SPRINGS_COLUMNS))
     run = rock_on_springs(springs(pier, base), horizontal, vertical, dt, substeps, quiet, history, locate)
     return run, history
@@ -104,11 +121,11 @@ def call_rigid_base(
     pier: Pier, base: Any, motion: Motion, substeps: int, quiet_s: float, rows: int = 0, locate: bool = True
 ) -> tuple[RigidRun, Samples]:
     """Run on a rigid base from rest, and its history of at most ``rows`` rows."""
-    horizontal, vertical, dt, quiet = _packed(motion, quiet_s)
+    horizontal, vertical, dt = packed(motion)
+    quiet = _quiet_samples(quiet_s, dt)
     history = np.empty((rows, RIGID_COLUMNS))
-    restitution = housner_restitution(pier) if base.restitution is None else base.restitution
-    block = Block(float(pier.alpha), float(pier.p), float(pier.gravity), float(restitution))
-    run = rock_on_rigid_base(block, 0.0, 0.0, horizontal, vertical, dt, substeps, quiet, history, locate)
+    m = block(pier, base)
+    run = rock_on_rigid_base(m, 0.0, 0.0, horizontal, vertical, dt, substeps, quiet, history, locate)
     return run, history
 
 
@@ -117,8 +134,16 @@ def run_fixed(
 ) -> Outcome:
     """Run with ``substeps`` steps per sample, without an error estimate.
 
-    With ``locate=False`` events take place at the end of their step: first order, for comparison only.
+    With ``locate=False`` events take place at the end of their step: first order, for comparison only. A step beyond
+    the method's stability is not run; the outcome says how many it takes.
     """
+    least = least_substeps(pier, base, motion.dt)
+    if substeps < least:
+        reason = (
+            f"{substeps} substeps of a sample of {motion.dt:g} s are too few for the springs' frequency: "
+            f"the integration would blow up; at least {least}, better {first_substeps(pier, base, motion.dt)}"
+        )
+        return Outcome("failed", reason, math.nan, math.nan, 0, 0, None, 0.0, substeps)
     if isinstance(base, RigidBase):
         rigid, _ = call_rigid_base(pier, base, motion, substeps, quiet_s, locate=locate)
         status, reason = _STATUS[rigid.status]
@@ -173,33 +198,57 @@ def _known(value: float) -> float | None:
 
 def first_substeps(pier: Pier, base: Base, dt: float) -> int:
     """Steps per sample [of ``dt`` s] that the model's highest frequency asks for."""
+    return _substeps_for(FREQUENCY_STEP, pier, base, dt)
+
+
+def least_substeps(pier: Pier, base: Base, dt: float) -> int:
+    """Steps per sample [of ``dt`` s] below which the integration would blow up."""
+    return _substeps_for(STABLE_STEP, pier, base, dt)
+
+
+def _substeps_for(largest: float, pier: Pier, base: Base, dt: float) -> int:
     if isinstance(base, RigidBase):
         return 1
-    return max(1, math.ceil(base.beta * pier.p * dt / FREQUENCY_STEP))
+    return max(1, math.ceil(highest_frequency(pier, base) * dt / largest - 1e-9))
 
 
 def run_to_tolerance(pier: Pier, base: Base, motion: Motion, tolerance: float, quiet_s: float = 2.0) -> Outcome:
-    """Run with ever smaller steps until two results agree to ``tolerance`` on θ_max/α; the finer one is kept.
+    """Run with ever smaller steps until two results agree to ``tolerance`` on θ_max/α and θ_res/α.
 
-    The first step respects ω_v (:data:`FREQUENCY_STEP`): two coarse runs that agree prove nothing otherwise. A run
-    that has not settled after :data:`HALVINGS` keeps its best values and fails with the reason.
+    The finer result is kept, and the difference is its estimated error: the coarser one's, hence on the safe side. The
+    first step respects the springs' frequency (:data:`FREQUENCY_STEP`): two coarse runs that agree prove nothing
+    otherwise. A run that has not settled after :data:`HALVINGS` keeps its best values and fails with the reason.
     """
     coarse = run_fixed(pier, base, motion, first_substeps(pier, base, motion.dt), quiet_s)
-    error = math.inf
     for _ in range(HALVINGS):
-        fine = run_fixed(pier, base, motion, 2 * coarse.substeps, quiet_s)
-        error = abs(fine.theta_max - coarse.theta_max) / pier.alpha
-        if fine.status != coarse.status:
-            error = math.inf
-        elif fine.status == "overturned":  # its greatest rotation is where the run ended
+        fine = _with_errors(run_fixed(pier, base, motion, 2 * coarse.substeps, quiet_s), coarse, pier.alpha)
+        if _settled(fine, coarse, tolerance * pier.alpha):
             return fine
-        elif error <= tolerance:
-            return replace(fine, theta_max_error=error * pier.alpha)
         coarse = fine
     if coarse.status == "failed":
         return coarse
-    change = f"theta_max/alpha by {error:.1e}" if math.isfinite(error) else "its outcome"
-    reason = (
-        f"not settled: the last halving of the step changed {change}; at {coarse.substeps} substeps: {coarse.status}"
-    )
+    changes = [
+        f"{name}/alpha by {error / pier.alpha:.1e}"
+        for name, error in (("theta_max", coarse.theta_max_error), ("theta_res", coarse.theta_res_error))
+        if error is not None and error > tolerance * pier.alpha
+    ]
+    what = " and ".join(changes) or "the outcome"
+    reason = f"not settled: halving the step still changed {what}; at {coarse.substeps} substeps: {coarse.status}"
     return replace(coarse, status="failed", reason=reason)
+
+
+def _with_errors(fine: Outcome, coarse: Outcome, alpha: float) -> Outcome:
+    """``fine`` with what it changed against ``coarse``; rounding is the least that it can be wrong by."""
+    if fine.status != coarse.status or fine.status in ("overturned", "failed"):  # θ_max is where the run ended
+        return fine
+    least = ROUNDING * alpha
+    residual = None
+    if fine.theta_res is not None and coarse.theta_res is not None:
+        residual = max(abs(fine.theta_res - coarse.theta_res), least)
+    return replace(fine, theta_max_error=max(abs(fine.theta_max - coarse.theta_max), least), theta_res_error=residual)
+
+
+def _settled(fine: Outcome, coarse: Outcome, tolerance: float) -> bool:
+    if fine.status != coarse.status or fine.status == "failed":
+        return False
+    return max(fine.theta_max_error or 0.0, fine.theta_res_error or 0.0) <= tolerance

@@ -163,6 +163,14 @@ class YieldingBase(ElasticBase):
     name = "yielding"
 
 
+def highest_frequency(pier: Pier, base: ElasticBase) -> float:
+    """Greatest circular frequency [rad/s] in full contact: vertical, ω_v, or rocking (THEORY.md, 14)."""
+    omega_v = base.beta * pier.p
+    mu, alpha = pier.mu, pier.alpha
+    stiffness = mu * (math.sin(alpha) * omega_v) ** 2 - (1 + mu) * pier.p**2 * math.cos(alpha)
+    return max(omega_v, math.sqrt(max(stiffness, 0.0) / (1 + mu * math.cos(alpha) ** 2)))
+
+
 Base = RigidBase | ElasticBase | YieldingBase
 
 

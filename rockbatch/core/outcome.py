@@ -10,10 +10,10 @@ ON_ITS_SIDE = 0.5 * math.pi
 
 @kernel
 def fallen(theta):
-    """OVERTURNED once the pier lies on its side, NOT_FINITE for a rotation that is no number, else SURVIVED."""
+    """OVERTURNED once the pier lies on its side, NOT_FINITE for what no pier turns within a step, else SURVIVED."""
     if abs(theta) < ON_ITS_SIDE:
         return SURVIVED
-    return OVERTURNED if abs(theta) >= ON_ITS_SIDE else NOT_FINITE
+    return OVERTURNED if abs(theta) < 2.0 * ON_ITS_SIDE else NOT_FINITE
 
 
 @kernel

@@ -27,6 +27,7 @@ from rockbatch.core.types import (
     LIFT_OFF,
     REST,
     SAMPLE,
+    STEP,
     SURVIVED,
     UNDECIDED,
     Ground,
@@ -98,7 +99,7 @@ def time_to_rest(m, omega, horizontal, vertical):
     here = 1.0 if omega > 0.0 else -1.0
     towards = -here * acceleration(m, 0.0, here, horizontal, vertical)
     back = here * acceleration(m, 0.0, -here, horizontal, vertical)
-    if towards <= 0.0 or back <= 0.0:
+    if towards <= 0.0 or back <= 0.0 or m.restitution == 1.0:
         return math.inf, math.inf
     total = 2.0 * speed * (1.0 / towards + m.restitution / back)
     return 0.5 * speed * speed / min(towards, back), total / (1.0 - m.restitution * m.restitution)
@@ -162,7 +163,7 @@ def rock_on_rigid_base(m, theta, omega, horizontal, vertical, dt, substeps, quie
     horizontal, vertical, dt, substeps, quiet_samples, locate
         As for the pier on two springs.
     history : ndarray, shape (rows, 4)
-        Filled with every sample and both sides of every event, as far as it goes; empty for none.
+        Filled with every sample, every step and both sides of every event, as far as it goes; empty for none.
 
     Returns
     -------
@@ -278,6 +279,8 @@ def rock_on_rigid_base(m, theta, omega, horizontal, vertical, dt, substeps, quie
             if status == SURVIVED:
                 t = sample * dt + start + h
                 status = fallen(theta)
+                if recording and (substep < substeps - 1 or status != SURVIVED):
+                    rows = _write(history, rows, t, theta, omega, STEP)
             if status != SURVIVED:
                 break
         if status != SURVIVED:

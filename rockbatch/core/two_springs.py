@@ -41,6 +41,7 @@ from rockbatch.core.types import (
     SEPARATION_RIGHT,
     SPRING_LEFT,
     SPRING_RIGHT,
+    STEP,
     SURVIVED,
     UNDECIDED,
     Contact,
@@ -50,7 +51,7 @@ from rockbatch.core.types import (
 )
 
 EVENTS_IN_A_STEP = 20_000  # more than any decaying sequence of impacts needs
-HISTORY_COLUMNS = 10  # t, v, theta, v_rate, omega, z_left, z_right, contact left, contact right, kind of row
+HISTORY_COLUMNS = 13  # t, the six of State, the five of Contact, kind of row
 
 
 class Supports(NamedTuple):
@@ -261,7 +262,10 @@ def _write(history, row, t, y, contact, kind):
         line[6] = y.z_right
         line[7] = contact.left
         line[8] = contact.right
-        line[9] = kind
+        line[9] = contact.left_yields
+        line[10] = contact.right_yields
+        line[11] = contact.held
+        line[12] = kind
     return row + 1
 
 
@@ -283,8 +287,8 @@ def rock_on_springs(m, horizontal, vertical, dt, substeps, quiet_samples, histor
         Sampling interval [s]; each is ``substeps`` steps.
     quiet_samples : int
         Samples after the record. The run goes on while the pier, left alone, might still overturn.
-    history : ndarray, shape (rows, 10)
-        Filled with every sample and both sides of every event, as far as it goes; empty for none.
+    history : ndarray, shape (rows, 13)
+        Filled with every sample, every step and both sides of every event, as far as it goes; empty for none.
     locate : bool
         Locate events inside the step. Without, they take place at its end (first order; for comparison only).
 
@@ -409,6 +413,8 @@ def rock_on_springs(m, horizontal, vertical, dt, substeps, quiet_samples, histor
             if status == SURVIVED:
                 t = sample * dt + start + h
                 status = fallen(y.theta)
+                if recording and (substep < substeps - 1 or status != SURVIVED):
+                    rows = _write(history, rows, t, y, contact, STEP)
             if status != SURVIVED:
                 break
         if status != SURVIVED:

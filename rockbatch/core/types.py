@@ -15,9 +15,10 @@ CHATTER = 3
 NOT_FINITE = 4
 UNDECIDED = 5
 
-# Kinds of rows in a history: a sample, or the two sides of an event
+# Kinds of rows in a history: a sample, the end of a step between samples, or the two sides of an event
 SAMPLE = 0
 BEFORE_EVENT = -1
+STEP = -2
 SEPARATION_LEFT = 1
 SEPARATION_RIGHT = 2
 IMPACT_LEFT = 3

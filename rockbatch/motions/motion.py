@@ -1,9 +1,12 @@
 """What a ground motion is: one horizontal component, perhaps with its station's vertical one."""
 
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
+
+from rockbatch.errors import InputError
 
 Samples = npt.NDArray[np.float64]
 
@@ -28,6 +31,8 @@ class Motion:
         Likewise for the vertical one; empty where there is none.
     notes : tuple of str
         What was done to the data on its way here, in words.
+
+    Raises ``InputError`` for samples that are no numbers and components of different lengths.
     """
 
     name: str
@@ -37,6 +42,31 @@ class Motion:
     source: str = ""
     vertical_source: str = ""
     notes: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        wrong = []
+        if not (math.isfinite(self.dt) and self.dt > 0):
+            wrong.append(f'motion "{self.name}": dt = {self.dt:g}: must be a number above 0 [s]')
+        for what, samples in (("horizontal", self.horizontal), ("vertical", self.vertical)):
+            if samples is None:
+                continue
+            if np.ndim(samples) != 1 or len(samples) == 0:
+                wrong.append(
+                    f'motion "{self.name}": {what} acceleration has shape {np.shape(samples)}: must be samples in a row'
+                )
+            elif not np.isfinite(samples).all():
+                first = int(np.argmin(np.isfinite(samples)))
+                wrong.append(
+                    f'motion "{self.name}": {what} sample {first} (t = {first * self.dt:g} s) is {samples[first]}: '
+                    "must be a number; repair the record or leave it out"
+                )
+        if not wrong and self.vertical is not None and len(self.vertical) != len(self.horizontal):
+            wrong.append(
+                f'motion "{self.name}": {len(self.horizontal)} horizontal and {len(self.vertical)} vertical samples: '
+                "bring them to one length"
+            )
+        if wrong:
+            raise InputError(*wrong)
 
     @property
     def npts(self) -> int:

@@ -1,0 +1,208 @@
+"""The energy ledger of a run that was written down: where the input went, and what is left over (THEORY.md).
+
+An observer: it takes the rows of a history, step by step, and integrates the power of each term by Simpson's rule, with
+the state in the middle of a step from the cubic Hermite polynomial through its ends. Runs that do not ask for it pay
+nothing. What is left over tests the equations, the events and the impacts at once.
+"""
+
+import math
+
+import numpy as np
+
+from rockbatch.core.equations import accelerations, geometry, rates
+from rockbatch.core.kernel import entry, kernel
+from rockbatch.core.rigid_base import acceleration
+from rockbatch.core.types import IMPACT_BOTH, IMPACT_LEFT, IMPACT_RIGHT, LIFT_OFF, Contact, State
+
+TERMS = 9  # kinetic, potential, elastic, input, plastic, impact, p_delta, constraint, remainder
+
+
+@kernel
+def _state(row):
+    return State(row[1], row[2], row[3], row[4], row[5], row[6])
+
+
+@kernel
+def _contact(row):
+    return Contact(row[7], row[8], row[9], row[10], int(row[11]))
+
+
+@kernel
+def _ground_at(samples, dt, middle, t):
+    """Ground acceleration at ``t``, in the sampling interval in which ``middle`` lies; zero after the record."""
+    if len(samples) == 0:
+        return 0.0
+    j = int(middle / dt)
+    first = samples[j] if j < len(samples) else 0.0
+    second = samples[j + 1] if j + 1 < len(samples) else 0.0
+    return first + (second - first) * (t / dt - j)
+
+
+@kernel
+def _lever(at, contact):
+    return at.lever + (contact.right - contact.left) * at.swing
+
+
+@kernel
+def _stored(m, y, contact):
+    """Kinetic, potential and elastic energy per unit mass [J/kg]."""
+    lever = _lever(geometry(m, y.theta), contact) if m.finite else m.height
+    kinetic = 0.5 * y.v_rate * y.v_rate + 0.5 * (m.inertia + lever * lever) * y.omega * y.omega
+    elastic = 0.5 * m.yield_force * m.yield_deflection * (y.z_left * y.z_left + y.z_right * y.z_right)
+    return kinetic, m.gravity * y.v, elastic
+
+
+@kernel
+def _powers(m, y, k, contact, horizontal, vertical):
+    """Power of input, plastic work, P–Δ and constraint [W/kg]."""
+    at = geometry(m, y.theta)
+    force_left = m.yield_force * y.z_left
+    force_right = m.yield_force * y.z_right
+    shaken = -horizontal * _lever(at, contact) * y.omega - vertical * y.v_rate
+    plastic = contact.left * force_left * (y.v_rate + at.arm_left * y.omega - m.yield_deflection * k.z_left)
+    plastic += contact.right * force_right * (y.v_rate + at.arm_right * y.omega - m.yield_deflection * k.z_right)
+    p_delta = 0.0
+    if not m.finite:
+        p_delta = -m.height * y.theta * (force_left + force_right) * y.omega
+    constraint = 0.0
+    if contact.held != 0:
+        released = Contact(contact.left, contact.right, contact.left_yields, contact.right_yields, 0)
+        _, free = accelerations(m, y, released, at, horizontal, vertical)
+        lever = _lever(at, contact) if m.finite else m.height
+        constraint = (m.inertia + lever * lever) * (k.omega - free) * y.omega
+    return shaken, plastic, p_delta, constraint
+
+
+@kernel
+def _impact_loss(m, before, kind):
+    """½ (1 − ε²) v̇_i²/(1 + a²/I) of a landing; of both pivots at once, 1 − ε² of the kinetic energy."""
+    at = geometry(m, before.theta)
+    inertia = m.inertia + at.lever * at.lever
+    lost = 0.5 * (1.0 - m.epsilon * m.epsilon)
+    if kind == IMPACT_BOTH:
+        return lost * (before.v_rate * before.v_rate + inertia * before.omega * before.omega)
+    arm = at.arm_left if kind == IMPACT_LEFT else at.arm_right
+    velocity = before.v_rate + arm * before.omega
+    return lost * velocity * velocity / (1.0 + arm * arm / inertia)
+
+
+@kernel
+def _middle(y, k, y_end, k_end, h):
+    """State in the middle of a step, from the cubic Hermite polynomial."""
+    eighth = 0.125 * h
+    return State(
+        0.5 * (y.v + y_end.v) + eighth * (k.v - k_end.v),
+        0.5 * (y.theta + y_end.theta) + eighth * (k.theta - k_end.theta),
+        0.5 * (y.v_rate + y_end.v_rate) + eighth * (k.v_rate - k_end.v_rate),
+        0.5 * (y.omega + y_end.omega) + eighth * (k.omega - k_end.omega),
+        0.5 * (y.z_left + y_end.z_left) + eighth * (k.z_left - k_end.z_left),
+        0.5 * (y.z_right + y_end.z_right) + eighth * (k.z_right - k_end.z_right),
+    )
+
+
+@entry
+def ledger_on_springs(m, rows, horizontal, vertical, dt):
+    """Ledger of a run on two springs.
+
+    Parameters
+    ----------
+    m : Springs
+    rows : ndarray, shape (n, 13)
+        History as the run wrote it, every step.
+    horizontal, vertical, dt
+        The motion of the run; ``vertical`` may be empty.
+
+    Returns
+    -------
+    ndarray, shape (n, 9)
+        The :data:`TERMS` at every row [J/kg]; stored energies relative to the start, the others summed since.
+    """
+    out = np.zeros((len(rows), TERMS))
+    y = _state(rows[0])
+    kinetic0, potential0, elastic0 = _stored(m, y, _contact(rows[0]))
+    shaken, plastic, impact, p_delta, constraint = 0.0, 0.0, 0.0, 0.0, 0.0
+    for i in range(1, len(rows)):
+        y_end = _state(rows[i])
+        contact = _contact(rows[i])
+        kind = int(rows[i, 12])
+        if kind > 0:  # the other side of an event
+            at = geometry(m, y.theta)
+            if kind in (IMPACT_LEFT, IMPACT_RIGHT, IMPACT_BOTH):
+                impact += _impact_loss(m, y, kind)
+            if m.finite:
+                was, now = _lever(at, _contact(rows[i - 1])), _lever(at, contact)
+                both = at.lever * at.lever * (y_end.omega * y_end.omega - y.omega * y.omega)
+                constraint += 0.5 * (now * now * y_end.omega * y_end.omega - was * was * y.omega * y.omega - both)
+        else:
+            t, t_end = rows[i - 1, 0], rows[i, 0]
+            h = t_end - t
+            t_middle = 0.5 * (t + t_end)
+            ah, ah_end = _ground_at(horizontal, dt, t_middle, t), _ground_at(horizontal, dt, t_middle, t_end)
+            av, av_end = _ground_at(vertical, dt, t_middle, t), _ground_at(vertical, dt, t_middle, t_end)
+            ah_middle, av_middle = 0.5 * (ah + ah_end), 0.5 * (av + av_end)
+            k = rates(m, y, contact, ah, av)
+            k_end = rates(m, y_end, contact, ah_end, av_end)
+            middle = _middle(y, k, y_end, k_end, h)
+            k_middle = rates(m, middle, contact, ah_middle, av_middle)
+            s0, w0, d0, c0 = _powers(m, y, k, contact, ah, av)
+            s1, w1, d1, c1 = _powers(m, middle, k_middle, contact, ah_middle, av_middle)
+            s2, w2, d2, c2 = _powers(m, y_end, k_end, contact, ah_end, av_end)
+            shaken += h / 6.0 * (s0 + 4.0 * s1 + s2)
+            plastic += h / 6.0 * (w0 + 4.0 * w1 + w2)
+            p_delta += h / 6.0 * (d0 + 4.0 * d1 + d2)
+            constraint += h / 6.0 * (c0 + 4.0 * c1 + c2)
+        kinetic, potential, elastic = _stored(m, y_end, contact)
+        line = out[i]
+        line[0], line[1], line[2] = kinetic - kinetic0, potential - potential0, elastic - elastic0
+        line[3], line[4], line[5], line[6], line[7] = shaken, plastic, impact, p_delta, constraint
+        line[8] = line[0] + line[1] + line[2] - shaken + plastic + impact - p_delta - constraint
+        y = y_end
+    return out
+
+
+@entry
+def ledger_on_rigid_base(m, rows, horizontal, vertical, dt):
+    """Ledger of a run on a rigid base, over the moment of inertia about a pivot, I0/M + R0².
+
+    ``m`` is a Block, ``rows`` of shape (n, 4) its history; otherwise as :func:`ledger_on_springs`. At rest, where the
+    block is held by both corners, nothing changes.
+    """
+    out = np.zeros((len(rows), TERMS))
+    theta, omega = rows[0, 1], rows[0, 2]
+    kinetic0 = 0.5 * omega * omega
+    height0 = math.cos(m.alpha - abs(theta))
+    shaken, impact = 0.0, 0.0
+    for i in range(1, len(rows)):
+        end_theta, end_omega = rows[i, 1], rows[i, 2]
+        kind = int(rows[i, 3])
+        if kind > 0:
+            if kind != LIFT_OFF:
+                impact += 0.5 * (omega * omega - end_omega * end_omega)
+        elif theta != 0.0 or omega != 0.0 or end_theta != 0.0 or end_omega != 0.0:
+            t, t_end = rows[i - 1, 0], rows[i, 0]
+            h = t_end - t
+            t_middle = 0.5 * (t + t_end)
+            side = 1.0 if theta + end_theta > 0.0 else -1.0
+            ah, ah_end = _ground_at(horizontal, dt, t_middle, t), _ground_at(horizontal, dt, t_middle, t_end)
+            av, av_end = _ground_at(vertical, dt, t_middle, t), _ground_at(vertical, dt, t_middle, t_end)
+            k = acceleration(m, theta, side, ah, av)
+            k_end = acceleration(m, end_theta, side, ah_end, av_end)
+            middle_theta = 0.5 * (theta + end_theta) + 0.125 * h * (omega - end_omega)
+            middle_omega = 0.5 * (omega + end_omega) + 0.125 * h * (k - k_end)
+            s0 = _push(m, theta, side, ah, av) * omega
+            s1 = _push(m, middle_theta, side, 0.5 * (ah + ah_end), 0.5 * (av + av_end)) * middle_omega
+            s2 = _push(m, end_theta, side, ah_end, av_end) * end_omega
+            shaken += h / 6.0 * (s0 + 4.0 * s1 + s2)
+        line = out[i]
+        line[0] = 0.5 * end_omega * end_omega - kinetic0
+        line[1] = m.p * m.p * (math.cos(m.alpha - abs(end_theta)) - height0)
+        line[3], line[5] = shaken, impact
+        line[8] = line[0] + line[1] - shaken + impact
+        theta, omega = end_theta, end_omega
+    return out
+
+
+@kernel
+def _push(m, theta, side, horizontal, vertical):
+    """Angular acceleration [rad/s²] that the ground's motion alone gives."""
+    return acceleration(m, theta, side, horizontal, vertical) - acceleration(m, theta, side, 0.0, 0.0)
