@@ -1,5 +1,6 @@
 """Every record in every case: the runs of a study, side by side in threads."""
 
+import math
 import os
 from collections.abc import Callable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
@@ -8,18 +9,22 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rockbatch.errors import InputError
+from rockbatch.histories import energies, written
 from rockbatch.motions import Motion, MotionSet, ReadOptions, pulse, read_motions
 from rockbatch.outcome import Outcome
-from rockbatch.results import as_table, row, unusable_rows
+from rockbatch.results import TERMS, as_table, row, unusable_rows
 from rockbatch.simulation import run_fixed, run_to_tolerance
-from rockbatch.structure import RigidBase
-from rockbatch.study import Case, Numerics, Study, load_study
+from rockbatch.structure import RigidBase, YieldingBase
+from rockbatch.study import Case, Numerics, Output, Study, load_study
 
 if TYPE_CHECKING:
     import pandas as pd
 
 AHEAD = 8
 """Runs handed to each thread beforehand, so that none waits and an interrupt has little to undo."""
+
+
+NOTHING_MORE = Output()
 
 
 @dataclass(frozen=True)
@@ -84,13 +89,25 @@ def plan(study: Study, motions: MotionSet) -> list[Run]:
     return runs
 
 
-def outcome_of(run: Run, numerics: Numerics) -> Outcome:
-    """Simulate one run."""
-    pier, base = run.case.pier, run.case.base
+def outcome_of(run: Run, numerics: Numerics, output: Output = NOTHING_MORE) -> Outcome:
+    """Simulate one run, with what ``output`` asks for."""
+    pier, base, motion, quiet_s = run.case.pier, run.case.base, run.motion, numerics.quiet_s
     if numerics.substeps is not None:
-        return run_fixed(pier, base, run.motion, numerics.substeps, numerics.quiet_s)
-    assert numerics.tolerance is not None  # load_study gives one of the two
-    return run_to_tolerance(pier, base, run.motion, numerics.tolerance, numerics.quiet_s)
+        outcome = run_fixed(pier, base, motion, numerics.substeps, quiet_s)
+    else:
+        assert numerics.tolerance is not None  # load_study gives one of the two
+        outcome = run_to_tolerance(pier, base, motion, numerics.tolerance, quiet_s)
+    if math.isnan(outcome.theta_max):  # nothing was run
+        return outcome
+    if output.both_laws and isinstance(base, YieldingBase):
+        other = replace(base, spring="epp" if base.spring == "bouc-wen" else "bouc-wen")
+        by_other_law = run_fixed(pier, other, motion, outcome.substeps, quiet_s)
+        outcome = replace(outcome, settlement_other_law=by_other_law.settlement)
+    if output.ledger:
+        terms = energies(pier, base, motion, written(pier, base, motion, outcome, quiet_s))
+        at_end = dict(zip(TERMS, map(float, terms[-1]), strict=True))
+        outcome = replace(outcome, energies=at_end | {"remainder": float(abs(terms[:, -1]).max())})
+    return outcome
 
 
 def cores() -> int:
@@ -98,13 +115,15 @@ def cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def compile_kernels(runs: list[Run], numerics: Numerics) -> None:
+def compile_kernels(runs: list[Run], numerics: Numerics, output: Output) -> None:
     """Have every kernel that ``runs`` need compiled, or loaded, before the clock starts."""
     for run in {isinstance(run.case.base, RigidBase): run for run in runs}.values():
-        outcome_of(run, numerics)
+        outcome_of(run, numerics, output)
 
 
-def outcomes(runs: list[Run], numerics: Numerics, jobs: int) -> Iterator[tuple[int, Outcome]]:
+def outcomes(
+    runs: list[Run], numerics: Numerics, jobs: int, output: Output = NOTHING_MORE
+) -> Iterator[tuple[int, Outcome]]:
     """Index and outcome of every run, as they finish, on ``jobs`` threads; the kernels release the interpreter.
 
     What a run comes to does not depend on ``jobs``, only the order does.
@@ -115,7 +134,7 @@ def outcomes(runs: list[Run], numerics: Numerics, jobs: int) -> Iterator[tuple[i
         try:
             while True:
                 while len(pending) < AHEAD * jobs and (entry := next(waiting, None)):
-                    pending[pool.submit(outcome_of, entry[1], numerics)] = entry[0]
+                    pending[pool.submit(outcome_of, entry[1], numerics, output)] = entry[0]
                 if not pending:
                     return
                 done, _ = wait(pending, return_when=FIRST_COMPLETED)
@@ -155,7 +174,7 @@ def run(
     found = ground_motions(study)
     runs = plan(study, found)
     finished: dict[int, Outcome] = {}
-    for index, outcome in outcomes(runs, study.numerics, jobs or cores()):
+    for index, outcome in outcomes(runs, study.numerics, jobs or cores(), study.output):
         finished[index] = outcome
         if progress:
             progress(len(finished), len(runs))
@@ -167,4 +186,4 @@ def table_of(study: Study, motions: MotionSet, runs: list[Run], finished: dict[i
     rows = [
         row(runs[i].motion.name, runs[i].polarity, runs[i].scale, runs[i].case, finished[i]) for i in sorted(finished)
     ]
-    return as_table([*rows, *unusable_rows(motions)], study.varied)
+    return as_table([*rows, *unusable_rows(motions)], study)

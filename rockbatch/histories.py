@@ -5,11 +5,22 @@ import math
 import numpy as np
 
 from rockbatch.core import types
+from rockbatch.core.ledger import ledger_on_rigid_base, ledger_on_springs
 from rockbatch.errors import InputError
 from rockbatch.motions.motion import Motion, Samples
 from rockbatch.outcome import Outcome
 from rockbatch.response import Response
-from rockbatch.simulation import call_rigid_base, call_springs, run_fixed, run_to_tolerance, springs
+from rockbatch.results import TERMS
+from rockbatch.simulation import (
+    block,
+    call_rigid_base,
+    call_springs,
+    least_substeps,
+    packed,
+    run_fixed,
+    run_to_tolerance,
+    springs,
+)
 from rockbatch.structure import Base, ElasticBase, Pier, RigidBase, problems
 
 _EVENTS = {
@@ -36,6 +47,7 @@ def simulate(
     substeps: int | None = None,
     quiet_s: float = 2.0,
     case: str | None = None,
+    ledger: bool = False,
 ) -> Response:
     """Histories of one run.
 
@@ -51,6 +63,8 @@ def simulate(
         Time after the record [s].
     case : str, optional
         Name of the foundation; its kind by default.
+    ledger : bool
+        Keep the energy ledger too (THEORY.md, 9).
 
     Raises
     ------
@@ -58,13 +72,38 @@ def simulate(
         If the pier cannot stand on the foundation, with the limits.
     """
     wrong = problems(pier, foundation)
+    if not tolerance > 0:
+        wrong.append(f"tolerance = {tolerance:g}: must be above 0 (on theta_max/alpha)")
+    if not (math.isfinite(quiet_s) and quiet_s >= 0):
+        wrong.append(f"quiet_s = {quiet_s:g}: must be 0 or more [s]")
+    if substeps is not None and not wrong and substeps < (least := least_substeps(pier, foundation, motion.dt)):
+        wrong.append(f"substeps = {substeps}: must be a whole number of at least {least} for this pier and motion")
     if wrong:
         raise InputError(*wrong)
     if substeps is None:
         outcome = run_to_tolerance(pier, foundation, motion, tolerance, quiet_s)
     else:
         outcome = run_fixed(pier, foundation, motion, substeps, quiet_s)
-    return histories(pier, foundation, motion, outcome, quiet_s, case or foundation.name, {})
+    return histories(pier, foundation, motion, outcome, quiet_s, case or foundation.name, {}, ledger)
+
+
+def written(pier: Pier, base: Base, motion: Motion, outcome: Outcome, quiet_s: float) -> Samples:
+    """Every step of a run whose outcome is known, written down: the rows of the core, shape (n, 13) or (n, 4)."""
+    call = call_rigid_base if isinstance(base, RigidBase) else call_springs
+    capacity = outcome.substeps * motion.npts + 64 * (outcome.impacts + outcome.separations + 64)
+    run, rows = call(pier, base, motion, outcome.substeps, quiet_s, capacity)
+    if run.rows > capacity:
+        run, rows = call(pier, base, motion, outcome.substeps, quiet_s, run.rows)
+    return rows[: run.rows]
+
+
+def energies(pier: Pier, base: Base, motion: Motion, rows: Samples) -> Samples:
+    """Energy ledger [J/kg] at every row of a run: :data:`rockbatch.results.TERMS`, shape (n, 9)."""
+    horizontal, vertical, dt = packed(motion)
+    if isinstance(base, RigidBase):
+        about_pivot = pier.inertia + pier.size**2
+        return about_pivot * ledger_on_rigid_base(block(pier, base), rows, horizontal, vertical, dt)
+    return ledger_on_springs(springs(pier, base), rows, horizontal, vertical, dt)
 
 
 def histories(
@@ -75,16 +114,18 @@ def histories(
     quiet_s: float,
     case: str,
     columns: dict[str, float | str],
+    ledger: bool = False,
 ) -> Response:
     """Histories of a run whose outcome is known: the same run again, with the same steps, written down."""
     import pandas as pd
 
-    call = call_rigid_base if isinstance(base, RigidBase) else call_springs
-    capacity = motion.npts + 64 * (outcome.impacts + outcome.separations + 64)
-    run, rows = call(pier, base, motion, outcome.substeps, quiet_s, capacity)
-    if run.rows > capacity:
-        run, rows = call(pier, base, motion, outcome.substeps, quiet_s, run.rows)
-    rows = rows[: run.rows]
+    rows = written(pier, base, motion, outcome, quiet_s)
+    shown = rows[:, -1] != types.STEP
+    table = None
+    if ledger:
+        table = pd.DataFrame(energies(pier, base, motion, rows)[shown], columns=list(TERMS))
+        table.insert(0, "t", rows[shown, 0])
+    rows = rows[shown]
     happened = [(float(row[0]), *_EVENTS[int(row[-1])]) for row in rows[rows[:, -1] > 0]]
     if outcome.t_flight is not None:
         happened.append((outcome.t_flight, "flight", ""))
@@ -94,7 +135,7 @@ def histories(
     vertical = np.zeros(len(t)) if motion.vertical is None else _ground(motion.vertical, motion.dt, t)
     history = pd.DataFrame({"t": t, **state, "ag_h": _ground(motion.horizontal, motion.dt, t), "ag_v": vertical})
     events = pd.DataFrame(happened, columns=["t", "kind", "pivot"])
-    return Response(motion.name, case, columns, pier, base, outcome.status, history, events)
+    return Response(motion.name, case, columns, pier, base, outcome.status, history, events, table)
 
 
 def _ground(acceleration: Samples, dt: float, t: Samples) -> Samples:

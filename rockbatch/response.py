@@ -38,6 +38,10 @@ class Response:
         and ``v_*`` are NaN.
     events : DataFrame, one row per event
         ``t`` [s], ``kind`` ("separation", "impact", …) and ``pivot`` ("left", "right").
+    ledger : DataFrame or None
+        Energies [J/kg] at the rows of ``history``, where they were asked for: stored ``kinetic``, ``potential``,
+        ``elastic``, relative to the start; summed since, ``input``, ``plastic``, ``impact``, ``p_delta`` (first-order
+        kinematics), ``constraint`` (finite kinematics); and the ``remainder`` of their balance, the integrator's error.
     """
 
     record: str
@@ -48,6 +52,7 @@ class Response:
     status: str
     history: "pd.DataFrame" = field(repr=False)
     events: "pd.DataFrame" = field(repr=False)
+    ledger: "pd.DataFrame | None" = field(default=None, repr=False)
 
     @property
     def t(self) -> Samples:

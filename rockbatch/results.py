@@ -1,7 +1,7 @@
 """The tables of a study: rows of peaks.csv, what run.json says about them, and both on disk."""
 
 import json
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -34,6 +34,7 @@ COLUMNS = (
 """Columns that stay; then come those of the keys that the study varies, then :data:`MORE_COLUMNS`."""
 
 MORE_COLUMNS = (
+    "theta_res_error",
     "t_end_s",
     "base_tilt_rad",
     "ductility_left",
@@ -42,6 +43,9 @@ MORE_COLUMNS = (
     "dissipated_right_J_kg",
     "reason",
 )
+
+TERMS = ("kinetic", "potential", "elastic", "input", "plastic", "impact", "p_delta", "constraint", "remainder")
+"""Terms of the energy ledger, in the order in which the core returns them."""
 
 _COUNTS = ("impacts", "separations", "substeps")
 
@@ -65,6 +69,7 @@ def row(record: str, polarity: str, scale: float, case: Case, outcome: Outcome) 
         "flight_s": outcome.t_flight,
         "substeps": outcome.substeps,
         **case.columns,
+        "theta_res_error": _over(outcome.theta_res_error, alpha),
         "t_end_s": outcome.t_end,
         "base_tilt_rad": outcome.base_tilt,
         "ductility_left": outcome.ductility_left,
@@ -72,6 +77,8 @@ def row(record: str, polarity: str, scale: float, case: Case, outcome: Outcome) 
         "dissipated_left_J_kg": outcome.dissipated_left,
         "dissipated_right_J_kg": outcome.dissipated_right,
         "reason": outcome.reason,
+        "settlement_other_law_m": outcome.settlement_other_law,
+        **{f"energy_{term}_J_kg": value for term, value in (outcome.energies or {}).items()},
     }
 
 
@@ -87,11 +94,22 @@ def unusable_rows(motions: MotionSet) -> list[dict[str, Any]]:
     ]
 
 
-def as_table(rows: Iterable[Mapping[str, Any]], varied: Sequence[str]) -> "pd.DataFrame":
+def columns(study: Study) -> list[str]:
+    """Columns of the table of ``study``: those that stay, its varied keys, more, and what it asks for."""
+    asked = []
+    if study.output.both_laws:
+        asked.append("settlement_other_law_m")
+    if study.output.ledger:
+        asked += [f"energy_{term}_J_kg" for term in TERMS]
+    return [*COLUMNS, *study.varied, *MORE_COLUMNS, *asked]
+
+
+def as_table(rows: Iterable[Mapping[str, Any]], study: Study) -> "pd.DataFrame":
     """The rows of peaks.csv as a DataFrame: NaN where a number does not apply, counts that can be missing."""
     import pandas as pd
 
-    table = pd.DataFrame(list(rows), columns=[*COLUMNS, *varied, *MORE_COLUMNS])
+    varied = study.varied
+    table = pd.DataFrame(list(rows), columns=columns(study))
     texts = ["record", "case", "polarity", "status", "reason"]
     table[texts] = table[texts].fillna("")
     for name in table.columns.difference([*texts, *varied, *_COUNTS]):

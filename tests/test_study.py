@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from rockbatch.errors import InputError
 from rockbatch.structure import ElasticBase, Pier, RigidBase, YieldingBase
-from rockbatch.study import FemaSpec, Numerics, PulseSpec, Reference, Study, load_study
+from rockbatch.study import FemaSpec, Numerics, Output, PulseSpec, Reference, Study, load_study
 from rockbatch.study.cases import BASE_KEYS, CASE
 from rockbatch.study.cases import PIER as PIER_KEYS
 from rockbatch.study.load import NUMERICS, REFERENCE, TOP
@@ -55,7 +55,7 @@ def test_a_study_without_options_has_the_documented_defaults(tmp_path):
     study = study_of(tmp_path, PIER, PULSE, case(base="rigid"))
     assert study.title == "study"
     assert study.notes == ""
-    assert study.histories == "none"
+    assert study.output == Output()
     assert study.numerics == Numerics(tolerance=1e-4, substeps=None, quiet_s=2.0)
     assert (study.motions.vertical, study.motions.polarity, study.motions.scale) == (True, ("+",), (1.0,))
     assert study.motions.pulses == (PulseSpec("sine", "sine", 0.4, 1.0, 0.01, 5.0),)

@@ -58,12 +58,12 @@ def main(arguments: argparse.Namespace) -> int:
     _say(f"{counted} = {_count(len(runs), 'run')} on {_count(jobs, 'thread')}")
     if not is_compiled():
         _say("compiling the kernels (once per installation, about 15 s)")
-    compile_kernels(runs, study.numerics)
+    compile_kernels(runs, study.numerics, study.output)
     finished: dict[int, Any] = {}
     interrupted = False
     with Progress(len(runs)) as progress:
         try:
-            for index, outcome in outcomes(runs, study.numerics, jobs):
+            for index, outcome in outcomes(runs, study.numerics, jobs, study.output):
                 finished[index] = outcome
                 progress()
         except KeyboardInterrupt:
@@ -98,7 +98,7 @@ def main(arguments: argparse.Namespace) -> int:
 
 def responses(study: Any, runs: list[Any], finished: dict[int, Any]) -> list[Any]:
     """Histories of every run, where the study asks for them."""
-    if study.histories == "none":
+    if study.output.histories == "none":
         return []
     from rockbatch.histories import histories
 

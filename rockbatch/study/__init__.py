@@ -2,6 +2,17 @@
 
 from rockbatch.study.cases import PIER_KEYS
 from rockbatch.study.load import load_study
-from rockbatch.study.spec import Case, FemaSpec, MotionSpec, Numerics, PulseSpec, Reference, Study
+from rockbatch.study.spec import Case, FemaSpec, MotionSpec, Numerics, Output, PulseSpec, Reference, Study
 
-__all__ = ["PIER_KEYS", "Case", "FemaSpec", "MotionSpec", "Numerics", "PulseSpec", "Reference", "Study", "load_study"]
+__all__ = [
+    "PIER_KEYS",
+    "Case",
+    "FemaSpec",
+    "MotionSpec",
+    "Numerics",
+    "Output",
+    "PulseSpec",
+    "Reference",
+    "Study",
+    "load_study",
+]

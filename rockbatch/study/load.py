@@ -7,8 +7,8 @@ from pathlib import Path
 
 from rockbatch.study.cases import BASE_KEYS, CASE, PIER, Expanded, read_cases, read_piers
 from rockbatch.study.motions import FEMA, MOTIONS, PULSE, SOURCES, read_motions_table
-from rockbatch.study.spec import Case, Numerics, Reference, Study
-from rockbatch.toml.kinds import choice, count, not_negative, positive, shown, text
+from rockbatch.study.spec import Case, Numerics, Output, Reference, Study
+from rockbatch.toml.kinds import boolean, choice, count, not_negative, positive, shown, text
 from rockbatch.toml.reader import Key, Table, TomlFile
 
 TOP = {
@@ -21,7 +21,11 @@ NUMERICS = {
     "substeps": Key(count, "4"),
     "quiet_s": Key(not_negative, "2.0"),
 }
-OUTPUT = {"histories": Key(choice("none", "all"), '"all"')}
+OUTPUT = {
+    "histories": Key(choice("none", "all"), '"all"'),
+    "ledger": Key(boolean, "true"),
+    "both_laws": Key(boolean, "true"),
+}
 REFERENCE = {
     "record": Key(text, '"*LGP*"', required=True),
     "case": Key(text, '"rigid"', required=True),
@@ -90,7 +94,7 @@ def load_study(path: str | os.PathLike[str], *, motions: str | os.PathLike[str] 
         cases=tuple(Case(each.name, each.pier, each.base, _pick(varied, each.values)) for each in cases),
         references=references,
         varied=varied,
-        histories=_histories(file),
+        output=_output(file),
     )
 
 
@@ -106,9 +110,9 @@ def _numerics(file: TomlFile) -> Numerics:
     return Numerics(**read)
 
 
-def _histories(file: TomlFile) -> str:
+def _output(file: TomlFile) -> Output:
     table = file.table("output")
-    return "none" if table is None else str(table.read(OUTPUT).get("histories", "none"))
+    return Output() if table is None else Output(**table.read(OUTPUT))
 
 
 def _references(file: TomlFile, cases: Sequence[Expanded], varied: Iterable[str]) -> tuple[Reference, ...]:

@@ -71,6 +71,25 @@ class Numerics:
 
 
 @dataclass(frozen=True)
+class Output:
+    """What a study asks for beyond the peaks; each costs time, and none is the default.
+
+    Attributes
+    ----------
+    histories : "none" or "all"
+        The runs whose histories the report shows.
+    ledger : bool
+        The energy ledger of every run (THEORY.md, 9).
+    both_laws : bool
+        The settlement of yielding springs by the other spring law too (THEORY.md, 7).
+    """
+
+    histories: str = "none"
+    ledger: bool = False
+    both_laws: bool = False
+
+
+@dataclass(frozen=True)
 class Case:
     """One pier on one base. ``columns`` holds the values of those varied keys that apply to it."""
 
@@ -96,7 +115,6 @@ class Study:
     """A study file, checked, with every combination of pier, case and listed values as one :class:`Case`.
 
     ``path`` and ``text`` are the file and its text, ``varied`` the names of the keys that were lists.
-    ``histories`` is "none" or "all": the runs whose histories the report shows.
     """
 
     title: str
@@ -108,4 +126,4 @@ class Study:
     cases: tuple[Case, ...]
     references: tuple[Reference, ...]
     varied: tuple[str, ...]
-    histories: str = "none"
+    output: Output = Output()
