@@ -164,7 +164,7 @@ class YieldingBase(ElasticBase):
 
 
 def highest_frequency(pier: Pier, base: ElasticBase) -> float:
-    """Greatest circular frequency [rad/s] in full contact: vertical, ω_v, or rocking (THEORY.md, 14)."""
+    """Greatest circular frequency [rad/s] in full contact: vertical, ω_v, or rocking (THEORY.md, 13)."""
     omega_v = base.beta * pier.p
     mu, alpha = pier.mu, pier.alpha
     stiffness = mu * (math.sin(alpha) * omega_v) ** 2 - (1 + mu) * pier.p**2 * math.cos(alpha)

@@ -141,7 +141,7 @@ def test_rigid_block_comes_to_rest_and_lifts_off_again():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("block", range(6))
+@pytest.mark.parametrize("block", range(12))
 def test_random_hard_cases_agree_with_the_reference(block):
     """Wherever the error control says it is satisfied to 1e-6 α, it is: outcome, counts, and peak within twice that.
 
