@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from rockbatch.core.outcome import ON_ITS_SIDE
 from rockbatch.core.rigid_base import HISTORY_COLUMNS as RIGID_COLUMNS
 from rockbatch.core.rigid_base import rock_on_rigid_base
 from rockbatch.core.two_springs import HISTORY_COLUMNS as SPRINGS_COLUMNS
@@ -37,6 +38,9 @@ STABLE_STEP = 2.0
 
 HALVINGS = 8
 """How often the step is halved before a run counts as not settled."""
+
+MOST_STEPS = 1e8
+"""Steps that a run may take to settle, about a quarter of a minute of work."""
 
 ROUNDING = 1e-12
 """Least error of θ/α that is ever claimed."""
@@ -150,7 +154,7 @@ def run_fixed(
         return Outcome(
             status=status,
             reason=reason,
-            theta_max=rigid.theta_max,
+            theta_max=min(rigid.theta_max, ON_ITS_SIDE),
             t_max=rigid.t_max,
             impacts=rigid.impacts,
             separations=rigid.lift_offs,
@@ -163,7 +167,7 @@ def run_fixed(
     outcome = Outcome(
         status=status,
         reason=reason,
-        theta_max=run.theta_max,
+        theta_max=min(run.theta_max, ON_ITS_SIDE),
         t_max=run.t_max,
         impacts=run.impacts,
         separations=run.separations,
@@ -217,24 +221,30 @@ def run_to_tolerance(pier: Pier, base: Base, motion: Motion, tolerance: float, q
 
     The finer result is kept, and the difference is its estimated error: the coarser one's, hence on the safe side. The
     first step respects the springs' frequency (:data:`FREQUENCY_STEP`): two coarse runs that agree prove nothing
-    otherwise. A run that has not settled after :data:`HALVINGS` keeps its best values and fails with the reason.
+    otherwise. A run that has not settled after :data:`HALVINGS`, or would take more than :data:`MOST_STEPS`, keeps its
+    best values and fails with the reason.
     """
     coarse = run_fixed(pier, base, motion, first_substeps(pier, base, motion.dt), quiet_s)
     for _ in range(HALVINGS):
+        steps = 2.0 * coarse.substeps * motion.npts
+        if steps > MOST_STEPS:
+            return _not_settled(coarse, tolerance * pier.alpha, f"; the next try would take {steps:.0e} steps")
         fine = _with_errors(run_fixed(pier, base, motion, 2 * coarse.substeps, quiet_s), coarse, pier.alpha)
         if _settled(fine, coarse, tolerance * pier.alpha):
             return fine
         coarse = fine
-    if coarse.status == "failed":
-        return coarse
-    changes = [
-        f"{name}/alpha by {error / pier.alpha:.1e}"
-        for name, error in (("theta_max", coarse.theta_max_error), ("theta_res", coarse.theta_res_error))
-        if error is not None and error > tolerance * pier.alpha
-    ]
+    return _not_settled(coarse, tolerance * pier.alpha, "")
+
+
+def _not_settled(finest: Outcome, tolerance: float, more: str) -> Outcome:
+    """The finest run that there is, with its values, as one that failed; ``tolerance`` in rad."""
+    if finest.status == "failed":
+        return finest
+    errors = (("theta_max", finest.theta_max_error), ("theta_res", finest.theta_res_error))
+    changes = [f"{name} by {error:.1e} rad" for name, error in errors if error is not None and error > tolerance]
     what = " and ".join(changes) or "the outcome"
-    reason = f"not settled: halving the step still changed {what}; at {coarse.substeps} substeps: {coarse.status}"
-    return replace(coarse, status="failed", reason=reason)
+    reason = f"not settled: halving the step still changed {what}; at {finest.substeps} substeps: {finest.status}{more}"
+    return replace(finest, status="failed", reason=reason)
 
 
 def _with_errors(fine: Outcome, coarse: Outcome, alpha: float) -> Outcome:

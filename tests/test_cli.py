@@ -144,7 +144,9 @@ def test_an_interrupt_keeps_what_is_finished(study, tmp_path, monkeypatch, capsy
 
     interrupted.armed = False
     monkeypatch.setattr(rockbatch.batch, "outcome_of", interrupted)
-    monkeypatch.setattr(rockbatch.batch, "compile_kernels", lambda runs, numerics, output: setattr(interrupted, "armed", True))
+    monkeypatch.setattr(
+        rockbatch.batch, "compile_kernels", lambda runs, numerics, output: setattr(interrupted, "armed", True)
+    )
     assert main(["run", str(study), "--out", str(tmp_path / "out"), "--jobs", "2"]) == 130
     rows = (tmp_path / "out/peaks.csv").read_text(encoding="utf-8").splitlines()
     assert [row.split(",")[1] for row in rows[1:]] == ["rigid"]

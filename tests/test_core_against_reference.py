@@ -143,12 +143,12 @@ def test_rigid_block_comes_to_rest_and_lifts_off_again():
 @pytest.mark.slow
 @pytest.mark.parametrize("block", range(12))
 def test_random_hard_cases_agree_with_the_reference(block):
-    """Wherever the error control says it is satisfied to 1e-6 α, it is: outcome, counts, and peak within twice that.
+    """Wherever the error control says it is satisfied to 1e-6 α, it is: outcome, and peak within the reported error.
 
-    Twice: the estimate is the change at the last halving, of which fourth order leaves a fifteenth; where a case has
-    not reached it, the change itself is the measure.
+    1e-9 α is the reference's own error. Counts agree but for a hop so low that it is within the errors of either (one
+    of 64 in case 206, which a finer step loses too; one of 30 in case 138, which the reference misses).
     """
-    compared = 0
+    compared, other_counts = 0, 0
     for seed in range(20 * block, 20 * block + 20):
         pier, base, motion = hard_case(seed)
         outcome = run_to_tolerance(pier, base, motion, tolerance=1e-6, quiet_s=1.0)
@@ -157,8 +157,12 @@ def test_random_hard_cases_agree_with_the_reference(block):
             continue  # where an overturning pier stops is a matter of definition
         expected = reference(pier, base, motion, quiet_s=1.0)
         assert expected.status == "ok", seed
-        assert outcome.theta_max == pytest.approx(expected.theta_max, abs=2e-6 * pier.alpha), seed
-        assert outcome.impacts == expected.impacts, seed
-        assert outcome.separations == expected.separations, seed
+        assert outcome.theta_max_error <= 1e-6 * pier.alpha, seed
+        within = outcome.theta_max_error + 1e-9 * pier.alpha
+        assert outcome.theta_max == pytest.approx(expected.theta_max, rel=0, abs=within), seed
+        assert abs(outcome.impacts - expected.impacts) <= 1, seed
+        assert outcome.separations - outcome.impacts == expected.separations - expected.impacts, seed
+        other_counts += outcome.impacts != expected.impacts
         compared += 1
+    assert other_counts <= 1
     assert compared >= 8

@@ -35,11 +35,11 @@ def errors(base, motion, substeps, locate):
     """Errors of the contact events' times [s], of the rotation at the end and of the greatest one [rad]."""
     expected = reference(FIG5, base, motion)
     times = np.array([t for t, kind, _ in expected.events if kind in ("separation", "impact")])
-    history = np.empty((20_000, HISTORY_COLUMNS))
+    history = np.empty((400_000, HISTORY_COLUMNS))
     vertical = np.empty(0) if motion.vertical is None else motion.vertical
     run = rock_on_springs(springs(FIG5, base), motion.horizontal, vertical, motion.dt, substeps, 0, history, locate)
     rows = history[: run.rows]
-    found = rows[np.isin(rows[:, 9], CONTACT_EVENTS), 0]
+    found = rows[np.isin(rows[:, -1], CONTACT_EVENTS), 0]
     assert len(found) == len(times)
     return np.abs(found - times).max(), abs(rows[-1, 4] - expected.omega), abs(run.theta_max - expected.theta_max)
 
@@ -78,12 +78,12 @@ def test_several_events_in_one_step_are_taken_in_their_order():
     expected = reference(FIG5, base, motion)
     run, rows = call_springs(FIG5, base, motion, 2, 0.0, 2000)
     rows = rows[: run.rows]
-    found = rows[np.isin(rows[:, 9], CONTACT_EVENTS)]
+    found = rows[np.isin(rows[:, -1], CONTACT_EVENTS)]
     steps = np.floor(found[:, 0] / (dt / 2))
     assert np.bincount(steps.astype(int)).max() >= 2  # two contact events among them
     kinds = {"separation": {"left": 1, "right": 2}, "impact": {"left": 3, "right": 4}}
     events = [(t, kinds[kind][pivot]) for t, kind, pivot in expected.events if kind in kinds]
-    assert [int(row[9]) for row in found] == [kind for _, kind in events]
+    assert [int(row[-1]) for row in found] == [kind for _, kind in events]
     np.testing.assert_allclose(found[:, 0], [t for t, _ in events], rtol=0, atol=0.02 * dt / 2)
 
 
@@ -174,7 +174,7 @@ def test_a_brief_separation_inside_one_large_step_is_seen():
         if fine.separations == 0:
             continue
         events = rows[: coarse.rows]
-        events = events[events[:, 9] > 0]
+        events = events[events[:, -1] > 0]
         assert coarse.separations > 0, amplitude
         inside += int(math.floor(events[0, 0] / 0.04) == math.floor(events[2, 0] / 0.04))
     assert inside >= 1
@@ -187,11 +187,11 @@ def test_no_event_fires_twice():
         pier, base, motion = hard_case(seed)
         if base.epsilon == 0.0:
             continue
-        run, rows = call_springs(pier, base, motion, 8, 0.5, 20_000)
+        run, rows = call_springs(pier, base, motion, 8, 0.5, 400_000)
         rows = rows[: min(run.rows, len(rows))]
         for left in (True, False):
             own = {1: 1, 3: -1, 5: -1} if left else {2: 1, 4: -1, 5: -1}
-            turns = [own[int(kind)] for kind in rows[:, 9] if int(kind) in own]
+            turns = [own[int(kind)] for kind in rows[:, -1] if int(kind) in own]
             assert turns == [1, -1] * (len(turns) // 2) + [1] * (len(turns) % 2), seed
             checked += len(turns)
     assert checked > 500

@@ -188,7 +188,7 @@ def _crossing(m, y, k1, contact, ground, supports, rest, h, which, f0, d0, f1, d
 
 
 @kernel
-def _handle(m, y, contact, supports, which, rest, horizontal, vertical):
+def handle(m, y, contact, supports, which, rest, horizontal, vertical):
     """What event ``which`` makes of state, contacts and supports: returns them and the kind of event."""
     side = -1 if which % 2 == 0 else 1
     at = geometry(m, y.theta)
@@ -386,7 +386,7 @@ def rock_on_springs(m, horizontal, vertical, dt, substeps, quiet_samples, histor
                 before = contact
                 if recording:
                     rows = _write(history, rows, t, y, contact, BEFORE_EVENT)
-                y, contact, supports, kind = _handle(m, y, contact, supports, which, rest, a_end, c_end)
+                y, contact, supports, kind = handle(m, y, contact, supports, which, rest, a_end, c_end)
                 if recording:
                     rows = _write(history, rows, t, y, contact, kind)
                 landed = 0

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from rockbatch.files import write_whole
+from rockbatch.report import accuracy
 from rockbatch.report.finished import read
 from rockbatch.report.page import page
 from rockbatch.response import Response
@@ -17,7 +18,8 @@ def write_report(directory: Path, responses: Sequence[Response] = ()) -> Path:
     Parameters
     ----------
     directory : Path
-        Folder with ``peaks.csv`` and ``run.json``, as ``rockbatch run`` leaves them.
+        Folder with ``peaks.csv`` and ``run.json``, as ``rockbatch run`` leaves them; what ``rockbatch accuracy``
+        measured for the same study is shown where its ``accuracy.csv`` is there too.
     responses : sequence of Response
         Runs whose histories are shown, as in Figs. 5 and 6 of Palmeri & Makris (2007).
 
@@ -29,5 +31,7 @@ def write_report(directory: Path, responses: Sequence[Response] = ()) -> Path:
     """
     directory = Path(directory)
     target = directory / "report.html"
-    write_whole(target, page(read(directory), responses))
+    finished = read(directory)
+    levels = accuracy.read(directory / "accuracy.csv", finished.info["study"]["sha256"])
+    write_whole(target, page(finished, responses, levels))
     return target

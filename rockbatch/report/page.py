@@ -3,17 +3,17 @@
 import base64
 import hashlib
 import shlex
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from importlib.resources import files
 
-from rockbatch.report import histories, peaks, tables
+from rockbatch.report import accuracy, histories, peaks, tables
 from rockbatch.report.finished import Finished, Run, quantity
 from rockbatch.report.markup import Markup, join, number, tag
 from rockbatch.report.summary import counted, summary
 from rockbatch.response import Response
 
 
-def page(finished: Finished, responses: Sequence[Response] = ()) -> str:
+def page(finished: Finished, responses: Sequence[Response] = (), levels: Sequence[accuracy.Level] = ()) -> str:
     """The whole report as HTML: one file, no address outside it."""
     style, script = (
         files(__package__).joinpath(name).read_text(encoding="utf-8") for name in ("style.css", "script.js")
@@ -30,6 +30,7 @@ def page(finished: Finished, responses: Sequence[Response] = ()) -> str:
         ("Foundations", "foundations", tables.foundations(finished)),
         ("Ground motions", "records", _records(finished)),
         ("Not used", "unusable", _unusable(finished)),
+        ("Speed and error", "accuracy", _accuracy(levels)),
         ("How to reproduce", "reproduce", _reproduce(finished)),
     ]
     sections = [section for section in sections if section[2]]
@@ -157,7 +158,38 @@ def _all(finished: Finished) -> Markup:
     if not finished.rows:
         return join()
     lead = tag("p", "Every row of ", tag("code", "peaks.csv"), ". Click a heading to sort.", class_="scripted")
-    return join(lead, tables.peaks(finished))
+    return join(lead, _ratcheting(finished), tables.peaks(finished))
+
+
+def _ratcheting(finished: Finished) -> Markup:
+    """That settlement hangs on the spring law, and by how much where both were run."""
+    if not any(case["parameters"].get("spring") for case in finished.info["cases"]):
+        return Markup("")
+    told = "Bouc–Wen springs ratchet: they settle a little with every cycle, elastic–perfectly plastic ones do not. "
+    name = "settlement_other_law_m"
+    if not any(name in row for row in finished.rows):
+        told += (
+            "Settlement and residual rotation depend on that; [output] both_laws = true in the study shows how much."
+        )
+        return tag("p", told)
+    pairs = [(run, _numbers_of(run.row, "settlement_m", name)) for run in finished.runs]
+    both = [(abs(values[0] - values[1]), run, values) for run, values in pairs if values]
+    if not both:
+        return tag("p", told)
+    _, run, (own, other) = max(both, key=lambda entry: entry[0])
+    told += (
+        f"The settlement differs most in {run.record}, {run.series.label}: {1000 * own:.1f} mm by the study's law, "
+        f"{1000 * other:.1f} mm by the other one."
+    )
+    return tag("p", told)
+
+
+def _numbers_of(row: Mapping[str, object], *names: str) -> list[float]:
+    """Numbers in columns of a row; none of them where one is missing."""
+    try:
+        return [float(str(row[name])) for name in names]
+    except ValueError:
+        return []
 
 
 def _records(finished: Finished) -> Markup:
@@ -167,6 +199,21 @@ def _records(finished: Finished) -> Markup:
 def _unusable(finished: Finished) -> Markup:
     failed = any(run.status == "failed" for run in finished.runs)
     return tables.unusable(finished) if finished.info["unusable"] or failed else join()
+
+
+def _accuracy(levels: Sequence[accuracy.Level]) -> Markup:
+    if not levels:
+        return join()
+    runs = counted(int(levels[0].runs or 0), "run")
+    settled = number(max(level.reference_change or 0.0 for level in levels), ".0e")
+    caption = (
+        f"Measured on {levels[0].machine}, in one thread, over {runs} of this study (SciPy's solvers: at most two of "
+        "them, on springs), against runs with ever smaller steps, the last halving of which changed the peak by "
+        f"{settled} at most. k: steps per sample; SciPy: its rtol. Runs that overturn, or end otherwise than they "
+        "should, have no error; the table counts the latter."
+    )
+    lead = accuracy.lead(levels)
+    return join(_paragraphs(lead), _figure(accuracy.draw(levels), [caption]), accuracy.levels_table(levels))
 
 
 def _reproduce(finished: Finished) -> Markup:

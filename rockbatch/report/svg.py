@@ -30,6 +30,7 @@ _VARIABLES = {
 # Labels whose subscripts the page sets; Matplotlib's own would bring its own fonts
 _SUBSCRIPTS = {
     "θmax/α": ("θ", "max", "/α"),
+    "error of θmax/α": ("error of θ", "max", "/α"),
     "üg/g": ("ü", "g", "/g"),
     "v/δy": ("v/δ", "y", ""),
     "F/Fy": ("F/F", "y", ""),

@@ -1,0 +1,231 @@
+"""A dimensional proof of the equations: every scalar function takes quantities with units and gives the right ones.
+
+The kernels run as plain Python here, with pint's quantities in place of floats. A term in the wrong dimension, or a
+factor too few, cannot be added; and every argument given in a wrong unit is noticed.
+"""
+
+from types import ModuleType
+
+import pint
+import pytest
+from numba.core.registry import CPUDispatcher
+
+from rockbatch.core import equations, events, impact, rigid_base, springs
+from rockbatch.core.types import BOUC_WEN, ELASTIC, EPP, Block, Contact, Geometry, Ground, Springs, State
+
+U = pint.UnitRegistry()
+M, S, RAD, ONE = U.metre, U.second, U.radian, U.dimensionless
+SPEED, ACCELERATION, JERK = M / S, M / S**2, M / S**3
+
+UNITS = {  # of the fields, by the tuples' own comments
+    Springs: (M, M, M**2, ACCELERATION, M, ACCELERATION, ONE, ONE),
+    State: (M, RAD, SPEED, RAD / S, ONE, ONE),
+    Ground: (ACCELERATION, JERK, ACCELERATION, JERK),
+    Geometry: (M,) * 12,
+    Block: (RAD, 1 / S, ACCELERATION, ONE),
+}
+RATES = (SPEED, RAD / S, ACCELERATION, RAD / S**2, 1 / S, 1 / S)
+
+PIER = (1.5, 7.2, 18.0, 9.81, 0.01, 14.7, 5.0, 0.1)
+MOVING = (-0.004, 0.02, -0.01, 0.15, -0.3, -0.6)
+SHAKING = (2.0, -30.0, -1.0, 12.0)
+BLOCK = (0.2, 1.0, 9.81, 0.9)
+
+BOTH = Contact(1.0, 1.0, 1.0, 0.0, 0)
+CONTACTS = [
+    pytest.param(BOTH, id="both"),
+    pytest.param(Contact(1.0, 0.0, 1.0, 0.0, 0), id="left"),
+    pytest.param(Contact(0.0, 1.0, 0.0, 0.0, 0), id="right"),
+    pytest.param(Contact(0.0, 0.0, 0.0, 0.0, 0), id="flight"),
+    pytest.param(Contact(0.0, 1.0, 0.0, 1.0, -1), id="left-held"),
+    pytest.param(Contact(1.0, 0.0, 1.0, 0.0, 1), id="right-held"),
+]
+KINEMATICS = pytest.mark.parametrize("finite", [False, True], ids=["first-order", "finite"])
+LAWS = pytest.mark.parametrize("law", [ELASTIC, BOUC_WEN, EPP], ids=["elastic", "bouc-wen", "epp"])
+
+
+@pytest.fixture(autouse=True)
+def plain_python(monkeypatch):
+    """All kernels of these modules as the Python functions they were written as.
+
+    A lever that is absent is written as 0.0; an exact zero has every dimension, so it gets that of its neighbours.
+    """
+    modules: tuple[ModuleType, ...] = (springs, equations, impact, events, rigid_base)
+    compiled_geometry = equations.geometry
+
+    def geometry(m, theta):
+        found = compiled_geometry.py_func(m, theta)
+        return Geometry(*(0.0 * M if isinstance(value, float) and value == 0.0 else value for value in found))
+
+    for module in modules:
+        for name, kernel in list(vars(module).items()):
+            if kernel is compiled_geometry:
+                monkeypatch.setattr(module, name, geometry)
+            elif isinstance(kernel, CPUDispatcher):
+                monkeypatch.setattr(module, name, kernel.py_func)
+
+
+def quantities(kind, values, wrong=None):
+    """Values with the units of the fields of ``kind``; the field ``wrong`` as if it had one more kilogram."""
+    units = UNITS[kind]
+    return [
+        value * unit * (U.kilogram if name == wrong else 1)
+        for name, value, unit in zip(kind._fields, values, units, strict=False)
+    ]
+
+
+def pier(finite, law=BOUC_WEN, wrong=None):
+    return Springs(*quantities(Springs, PIER, wrong), law, finite, True)
+
+
+def state(wrong=None):
+    return State(*quantities(State, MOVING, wrong))
+
+
+def ground(wrong=None):
+    return Ground(*quantities(Ground, SHAKING, wrong))
+
+
+def assert_units(values, units):
+    """Each value has the dimension of its unit; a plain number is one without."""
+    for value, unit in zip(values, units, strict=True):
+        assert U.Quantity(value).check(unit), f"{value} is not in {unit}"
+
+
+# What the equations give
+
+
+@KINEMATICS
+def test_levers_and_pivots_are_lengths(finite):
+    assert_units(equations.geometry(pier(finite), state().theta), UNITS[Geometry])
+
+
+@KINEMATICS
+@pytest.mark.parametrize("contact", CONTACTS)
+def test_rates_are_the_states_units_per_second_whatever_the_contact(finite, contact):
+    shaking = ground()
+    found = equations.rates(pier(finite), state(), contact, shaking.horizontal, shaking.vertical)
+    assert_units(found, RATES)
+    for side in (-1, 1):
+        pivot = equations.pivot_acceleration(pier(finite), state(), contact, side, shaking.horizontal, shaking.vertical)
+        assert_units([pivot], [ACCELERATION])
+
+
+@KINEMATICS
+def test_a_step_ends_in_a_state(finite):
+    m, y, shaking = pier(finite), state(), ground()
+    k1 = equations.rates(m, y, BOTH, shaking.horizontal, shaking.vertical)
+    assert_units(equations.step(m, y, k1, BOTH, shaking, 0.001 * S), UNITS[State])
+
+
+@KINEMATICS
+def test_a_landing_ends_in_a_state(finite):
+    for side in (-1, 1):
+        assert_units(impact.land(pier(finite), state(), side), UNITS[State])
+    assert_units(impact.land_flat(pier(finite), state()), UNITS[State])
+
+
+@pytest.mark.parametrize("n", [1.0, 2.5, 5.0])
+def test_the_spring_law_gives_rates_deflections_and_work(n):
+    """Work is divided by the yield force, hence a length; the static deflection by δ_y, hence a number."""
+    exponent = n * ONE
+    for yields in (0.0, 1.0):
+        rate = springs.z_rate(-0.6 * ONE, -0.1 * SPEED, yields, 0.01 * M, exponent)
+        assert_units([rate, springs.within_yield(-0.6 * ONE, yields)], [1 / S, ONE])
+    assert_units([springs.static_deflection(0.4 * ONE, exponent)], [ONE])
+    work = springs.plastic_work(-0.2 * ONE, -0.6 * ONE, 0.001 * M, 0.01 * M, exponent)
+    assert_units([work], [M])
+
+
+@KINEMATICS
+@LAWS
+@pytest.mark.parametrize("contact", CONTACTS)
+def test_signals_compare_like_with_like_and_their_slopes_are_per_second(finite, law, contact):
+    """In contact −z, else the gap; on a spring the pivot's velocity, for an EPP spring its way to yield 1 + z."""
+    m, y, shaking = pier(finite, law), state(), ground()
+    k = equations.rates(m, y, contact, shaking.horizontal, shaking.vertical)
+    rest = events.at_rest(m)
+    values, slopes = events.signals(m, y, k, contact, 0.001 * M, 0.002 * M, rest, shaking.horizontal, shaking.vertical)
+    assert_units([rest], [SPEED])
+    for pivot, side in (("left", -1), ("right", 1)):
+        on_spring, yields = getattr(contact, pivot) != 0.0, getattr(contact, f"{pivot}_yields") != 0.0
+        first, law_signal = getattr(values, pivot), getattr(values, f"{pivot}_law")
+        if contact.held == side:
+            assert_units([first, law_signal], [ACCELERATION, ACCELERATION])
+            continue
+        unit = ONE if on_spring else M
+        assert_units([first, getattr(slopes, pivot)], [unit, unit / S])
+        if on_spring and law != ELASTIC:
+            unit = SPEED if yields or law == BOUC_WEN else ONE
+            assert_units([law_signal, getattr(slopes, f"{pivot}_law")], [unit, unit / S])
+
+
+def test_the_rigid_bases_equations_give_rotations_and_times():
+    m, shaking = Block(*quantities(Block, BLOCK)), ground()
+    theta, omega, h = 0.05 * RAD, -0.1 * RAD / S, 0.01 * S
+    k1 = rigid_base.acceleration(m, theta, 1.0, shaking.horizontal, shaking.vertical)
+    assert_units([k1], [RAD / S**2])
+    assert_units(rigid_base.rocking_step(m, theta, omega, k1, 1.0, shaking, h), [RAD, RAD / S])
+    assert_units(rigid_base.time_to_rest(m, omega, 0.1 * ACCELERATION, shaking.vertical), [RAD, S])
+    later, _ = rigid_base.lift_off(m, Ground(1.8 * ACCELERATION, 40.0 * JERK, 0.0 * ACCELERATION, 0.0 * JERK), h)
+    assert 0.0 * S < later < h
+    assert_units([later], [S])
+
+
+# What they refuse
+
+
+def step_and_land(m, y, shaking):
+    """A step and a landing: between them they need every argument."""
+    k1 = equations.rates(m, y, BOTH, shaking.horizontal, shaking.vertical)
+    equations.step(m, y, k1, BOTH, shaking, 0.001 * S)
+    impact.land(m, y, 1)
+
+
+def rock(m, shaking):
+    """A step on the rigid base and the bounces that are left."""
+    theta, omega = 0.05 * RAD, -0.1 * RAD / S
+    k1 = rigid_base.acceleration(m, theta, 1.0, shaking.horizontal, shaking.vertical)
+    rigid_base.rocking_step(m, theta, omega, k1, 1.0, shaking, 0.01 * S)
+    rigid_base.time_to_rest(m, omega, 0.1 * ACCELERATION, shaking.vertical)
+
+
+def test_right_units_are_not_refused():
+    for finite in (False, True):
+        step_and_land(pier(finite), state(), ground())
+    rock(Block(*quantities(Block, BLOCK)), ground())
+
+
+@KINEMATICS
+@pytest.mark.parametrize("field", Springs._fields[:8])
+def test_a_pier_with_one_wrong_unit_is_refused(finite, field):
+    with pytest.raises(pint.DimensionalityError):
+        step_and_land(pier(finite, wrong=field), state(), ground())
+
+
+@KINEMATICS
+@pytest.mark.parametrize("field", State._fields)
+def test_a_state_with_one_wrong_unit_is_refused(finite, field):
+    with pytest.raises(pint.DimensionalityError):
+        step_and_land(pier(finite), state(wrong=field), ground())
+
+
+@KINEMATICS
+@pytest.mark.parametrize("field", Ground._fields)
+def test_a_ground_motion_with_one_wrong_unit_is_refused(finite, field):
+    with pytest.raises(pint.DimensionalityError):
+        step_and_land(pier(finite), state(), ground(wrong=field))
+
+
+@KINEMATICS
+def test_a_step_in_metres_is_refused(finite):
+    m, y, shaking = pier(finite), state(), ground()
+    k1 = equations.rates(m, y, BOTH, shaking.horizontal, shaking.vertical)
+    with pytest.raises(pint.DimensionalityError):
+        equations.step(m, y, k1, BOTH, shaking, 0.001 * M)
+
+
+@pytest.mark.parametrize("field", Block._fields)
+def test_a_block_with_one_wrong_unit_is_refused(field):
+    with pytest.raises(pint.DimensionalityError):
+        rock(Block(*quantities(Block, BLOCK, wrong=field)), ground())
