@@ -8,6 +8,7 @@ from core_samples import FIG5, broadband, hard_case, pulse, steady
 from reference_solver import reference
 
 import rockbatch as rb
+from rockbatch import simulate
 from rockbatch.core.roots import hermite, largest_within, turning_point
 from rockbatch.core.two_springs import HISTORY_COLUMNS, rock_on_springs
 from rockbatch.core.types import IMPACT_LEFT, IMPACT_RIGHT, SEPARATION_LEFT, SEPARATION_RIGHT, SURVIVED
@@ -55,6 +56,24 @@ def test_order_is_four_across_events(base, motion):
     assert orders[0] == pytest.approx(4.0, abs=0.2)
     assert orders[2] == pytest.approx(4.0, abs=0.2)
     assert orders[1] > 3.5
+
+
+def test_order_is_four_across_the_impacts_of_a_rigid_block():
+    """Lift-off, impacts and the peak of Fig. 5's rigid block, for 1 to 4 steps per 0.02 s: beyond, rounding rules."""
+    expected = reference(FIG5, RigidBase(), COARSE_SINE)
+    gaps = [abs(run_fixed(FIG5, RigidBase(), COARSE_SINE, k, 0.0).theta_max - expected.theta_max) for k in (1, 4)]
+    assert math.log2(gaps[0] / gaps[1]) / 2 == pytest.approx(4.0, abs=0.2)
+
+
+@pytest.mark.parametrize("kinematics", ["first-order", "finite"])
+def test_order_is_four_in_full_contact(kinematics):
+    """A pulse too weak to lift a pivot: no events, the smooth equations alone, against 64 times finer steps."""
+    weak = Motion("weak", 0.02, 0.02 * COARSE_SINE.horizontal)
+    base = ElasticBase(50.0, 0.4, kinematics)
+    ends = [simulate(FIG5, base, weak, substeps=k, quiet_s=0.0).history.iloc[-1] for k in (4, 16, 256)]
+    gaps = [abs(end["theta"] - ends[-1]["theta"]) for end in ends[:2]]
+    assert run_fixed(FIG5, base, weak, 4, 0.0).separations == 0
+    assert math.log2(gaps[0] / gaps[1]) / 2 == pytest.approx(4.0, abs=0.2)
 
 
 @pytest.mark.parametrize(("base", "motion"), ORDER_CASES[:3])
