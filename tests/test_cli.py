@@ -151,3 +151,30 @@ def test_an_interrupt_keeps_what_is_finished(study, tmp_path, monkeypatch, capsy
     rows = (tmp_path / "out/peaks.csv").read_text(encoding="utf-8").splitlines()
     assert [row.split(",")[1] for row in rows[1:]] == ["rigid"]
     assert "interrupted" in capsys.readouterr().err
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="pseudo-terminals are of Unix")
+@pytest.mark.parametrize(("size", "drawn"), [((30, 100), True), ((0, 0), False)])
+def test_progress_is_a_bar_with_the_time_left_on_a_terminal_that_has_a_size(size, drawn):
+    """A terminal without a size gets plain lines, as a file does."""
+    import fcntl
+    import os
+    import pty
+    import struct
+    import termios
+
+    from rockbatch.commands.progress import Progress
+
+    ours, theirs = pty.openpty()
+    fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", *size, 0, 0))
+    with os.fdopen(theirs, "w") as terminal, Progress(3, terminal) as progress:
+        for _ in range(3):
+            time.sleep(0.12)
+            progress()
+        terminal.flush()
+        assert (progress.bar is not None) == drawn
+        if drawn:
+            shown = os.read(ours, 100_000).decode()
+            assert "/3 [" in shown
+            assert "<" in shown  # time spent < time left
+    os.close(ours)

@@ -1,5 +1,6 @@
 """How far a batch is: a bar with the time left on a terminal, plain lines elsewhere."""
 
+import os
 import sys
 import time
 from types import TracebackType
@@ -18,7 +19,7 @@ class Progress:
         self.started = time.monotonic()
         self.last_line = self.started
         self.bar: Any = None
-        if self.stream.isatty():
+        if _can_draw(self.stream):
             from tqdm import tqdm
 
             self.bar = tqdm(total=total, unit="run", file=self.stream, dynamic_ncols=True, leave=False)
@@ -42,3 +43,8 @@ class Progress:
             self.last_line = now
             left = (now - self.started) * (self.total - self.done) / self.done
             print(f"{self.done} of {self.total} runs, {left:.0f} s left", file=self.stream, flush=True)
+
+
+def _can_draw(stream: TextIO) -> bool:
+    """Whether ``stream`` is a terminal that has a size; some that are made by programs have none."""
+    return stream.isatty() and min(os.get_terminal_size(stream.fileno())) > 0

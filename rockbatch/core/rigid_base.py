@@ -263,7 +263,7 @@ def rock_on_rigid_base(m, theta, omega, horizontal, vertical, dt, substeps, quie
                     ground.horizontal + left * a_slope,
                     ground.vertical + left * c_slope,
                 )
-                if omega == 0.0 or (height < NEGLIGIBLE * m.alpha and remaining < h):
+                if omega == 0.0 or (height < NEGLIGIBLE * m.alpha and remaining < dt):
                     t_rest = t + (remaining if omega != 0.0 else 0.0)
                     omega = 0.0
                     resting = True
