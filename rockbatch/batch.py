@@ -6,19 +6,25 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, replace
 from pathlib import Path
+from threading import Event
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from rockbatch.errors import InputError
 from rockbatch.histories import energies, written
 from rockbatch.motions import Motion, MotionSet, ReadOptions, pulse, read_motions
 from rockbatch.outcome import Outcome
 from rockbatch.results import TERMS, as_table, row, unusable_rows
-from rockbatch.simulation import run_fixed, run_to_tolerance
+from rockbatch.simulation import least_substeps, run_fixed, run_to_tolerance, steps_of
 from rockbatch.structure import RigidBase, YieldingBase
 from rockbatch.study import Case, Numerics, Output, Study, load_study
 
 if TYPE_CHECKING:
     import pandas as pd
+
+MOST_STEPS_OF_A_LEDGER = 1_000_000
+"""Longer runs have no ledger in the table: each is written down whole, 100 bytes a step."""
 
 AHEAD = 8
 """Runs handed to each thread beforehand, so that none waits and an interrupt has little to undo."""
@@ -89,22 +95,22 @@ def plan(study: Study, motions: MotionSet) -> list[Run]:
     return runs
 
 
-def outcome_of(run: Run, numerics: Numerics, output: Output = NOTHING_MORE) -> Outcome:
-    """Simulate one run, with what ``output`` asks for."""
+def outcome_of(run: Run, numerics: Numerics, output: Output = NOTHING_MORE, stop: Event | None = None) -> Outcome:
+    """Simulate one run, with what ``output`` asks for; ``InterruptedError`` if ``stop`` is set before it is done."""
     pier, base, motion, quiet_s = run.case.pier, run.case.base, run.motion, numerics.quiet_s
     if numerics.substeps is not None:
         outcome = run_fixed(pier, base, motion, numerics.substeps, quiet_s)
     else:
         assert numerics.tolerance is not None  # load_study gives one of the two
-        outcome = run_to_tolerance(pier, base, motion, numerics.tolerance, quiet_s)
+        outcome = run_to_tolerance(pier, base, motion, numerics.tolerance, quiet_s, stop)
     if math.isnan(outcome.theta_max):  # nothing was run
         return outcome
     if output.both_laws and isinstance(base, YieldingBase):
         other = replace(base, spring="epp" if base.spring == "bouc-wen" else "bouc-wen")
         by_other_law = run_fixed(pier, other, motion, outcome.substeps, quiet_s)
         outcome = replace(outcome, settlement_other_law=by_other_law.settlement)
-    if output.ledger:
-        terms = energies(pier, base, motion, written(pier, base, motion, outcome, quiet_s))
+    if output.ledger and steps_of(motion, outcome.substeps, quiet_s) <= MOST_STEPS_OF_A_LEDGER:
+        terms = energies(pier, base, motion, written(pier, base, motion, outcome, quiet_s, every_step=True))
         at_end = dict(zip(TERMS, map(float, terms[-1]), strict=True))
         outcome = replace(outcome, energies=at_end | {"remainder": float(abs(terms[:, -1]).max())})
     return outcome
@@ -115,10 +121,12 @@ def cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def compile_kernels(runs: list[Run], numerics: Numerics, output: Output) -> None:
+def compile_kernels(runs: list[Run], output: Output = NOTHING_MORE) -> None:
     """Have every kernel that ``runs`` need compiled, or loaded, before the clock starts."""
+    still = Motion("still", 0.01, np.zeros(2))
     for run in {isinstance(run.case.base, RigidBase): run for run in runs}.values():
-        outcome_of(run, numerics, output)
+        substeps = least_substeps(run.case.pier, run.case.base, still.dt)
+        outcome_of(replace(run, motion=still), Numerics(None, substeps, 0.0), output)
 
 
 def outcomes(
@@ -130,18 +138,27 @@ def outcomes(
     """
     waiting = iter(enumerate(runs))
     pending: dict[Future[Outcome], int] = {}
-    with ThreadPoolExecutor(jobs) as pool:
-        try:
-            while True:
-                while len(pending) < AHEAD * jobs and (entry := next(waiting, None)):
-                    pending[pool.submit(outcome_of, entry[1], numerics, output)] = entry[0]
-                if not pending:
-                    return
-                done, _ = wait(pending, return_when=FIRST_COMPLETED)
-                for future in done:
-                    yield pending.pop(future), future.result()
-        finally:
-            pool.shutdown(wait=True, cancel_futures=True)
+    stop = Event()
+    pool = ThreadPoolExecutor(jobs)
+    try:
+        while True:
+            while len(pending) < AHEAD * jobs and (entry := next(waiting, None)):
+                pending[pool.submit(outcome_of, entry[1], numerics, output, stop)] = entry[0]
+            if not pending:
+                return
+            done, _ = wait(pending, return_when=FIRST_COMPLETED)
+            for future in done:
+                yield pending.pop(future), future.result()
+    except KeyboardInterrupt:  # what is finished by then is kept
+        stop.set()
+        pool.shutdown(wait=True, cancel_futures=True)
+        for future, index in pending.items():
+            if not future.cancelled() and future.exception() is None:
+                yield index, future.result()
+        raise
+    finally:
+        stop.set()
+        pool.shutdown(wait=True, cancel_futures=True)
 
 
 def run(
@@ -169,6 +186,8 @@ def run(
     InputError
         With every mistake in the study.
     """
+    if jobs is not None and jobs < 1:
+        raise InputError(f"jobs = {jobs}: must be at least 1, or left out for all processors")
     if not isinstance(study, Study):
         study = load_study(Path(study), motions=motions)
     found = ground_motions(study)

@@ -20,6 +20,7 @@ from rockbatch.simulation import (
     run_fixed,
     run_to_tolerance,
     springs,
+    steps_of,
 )
 from rockbatch.structure import Base, ElasticBase, Pier, RigidBase, problems
 
@@ -36,6 +37,10 @@ _EVENTS = {
     types.LIFT_OFF: ("lift-off", ""),
     types.REST: ("rest", ""),
 }
+
+
+MOST_ROWS = 10_000_000
+"""Rows of a history that are held in memory, about a gigabyte."""
 
 
 def simulate(
@@ -76,6 +81,8 @@ def simulate(
         wrong.append(f"tolerance = {tolerance:g}: must be above 0 (on theta_max/alpha)")
     if not (math.isfinite(quiet_s) and quiet_s >= 0):
         wrong.append(f"quiet_s = {quiet_s:g}: must be 0 or more [s]")
+    if substeps is not None and (isinstance(substeps, bool) or not isinstance(substeps, int)):
+        wrong.append(f"substeps = {substeps}: must be a whole number")
     if substeps is not None and not wrong and substeps < (least := least_substeps(pier, foundation, motion.dt)):
         wrong.append(f"substeps = {substeps}: must be a whole number of at least {least} for this pier and motion")
     if wrong:
@@ -87,13 +94,21 @@ def simulate(
     return histories(pier, foundation, motion, outcome, quiet_s, case or foundation.name, {}, ledger)
 
 
-def written(pier: Pier, base: Base, motion: Motion, outcome: Outcome, quiet_s: float) -> Samples:
-    """Every step of a run whose outcome is known, written down: the rows of the core, shape (n, 13) or (n, 4)."""
+def written(pier: Pier, base: Base, motion: Motion, outcome: Outcome, quiet_s: float, every_step: bool) -> Samples:
+    """A run whose outcome is known, written down: the rows of the core, shape (n, 13) or (n, 4).
+
+    Raises ``InputError`` where ``every_step`` would need more than :data:`MOST_ROWS` rows.
+    """
     call = call_rigid_base if isinstance(base, RigidBase) else call_springs
-    capacity = outcome.substeps * motion.npts + 64 * (outcome.impacts + outcome.separations + 64)
-    run, rows = call(pier, base, motion, outcome.substeps, quiet_s, capacity)
+    samples = steps_of(motion, 1, quiet_s)
+    capacity = int(outcome.substeps * samples if every_step else samples) + 64 * (
+        outcome.impacts + outcome.separations + 64
+    )
+    if capacity > MOST_ROWS:
+        raise InputError(f"{motion.name}: an energy ledger of {capacity} rows; leave it out or use fewer substeps")
+    run, rows = call(pier, base, motion, outcome.substeps, quiet_s, capacity, every_step=every_step)
     if run.rows > capacity:
-        run, rows = call(pier, base, motion, outcome.substeps, quiet_s, run.rows)
+        run, rows = call(pier, base, motion, outcome.substeps, quiet_s, run.rows, every_step=every_step)
     return rows[: run.rows]
 
 
@@ -119,7 +134,7 @@ def histories(
     """Histories of a run whose outcome is known: the same run again, with the same steps, written down."""
     import pandas as pd
 
-    rows = written(pier, base, motion, outcome, quiet_s)
+    rows = written(pier, base, motion, outcome, quiet_s, every_step=ledger)
     shown = rows[:, -1] != types.STEP
     table = None
     if ledger:

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from threading import Event
 from typing import Any
 
 import numpy as np
@@ -111,25 +112,39 @@ def _quiet_samples(quiet_s: float, dt: float) -> int:
 
 
 def call_springs(
-    pier: Pier, base: Any, motion: Motion, substeps: int, quiet_s: float, rows: int = 0, locate: bool = True
+    pier: Pier,
+    base: Any,
+    motion: Motion,
+    substeps: int,
+    quiet_s: float,
+    rows: int = 0,
+    locate: bool = True,
+    every_step: bool = False,
 ) -> tuple[SpringRun, Samples]:
-    """Run on two springs, and its history of at most ``rows`` rows."""
+    """Run on two springs, and its history of at most ``rows`` rows; with ``every_step`` also between samples."""
     horizontal, vertical, dt = packed(motion)
     quiet = _quiet_samples(quiet_s, dt)
     history = np.empty((rows, SPRINGS_COLUMNS))
-    run = rock_on_springs(springs(pier, base), horizontal, vertical, dt, substeps, quiet, history, locate)
+    run = rock_on_springs(springs(pier, base), horizontal, vertical, dt, substeps, quiet, history, locate, every_step)
     return run, history
 
 
 def call_rigid_base(
-    pier: Pier, base: Any, motion: Motion, substeps: int, quiet_s: float, rows: int = 0, locate: bool = True
+    pier: Pier,
+    base: Any,
+    motion: Motion,
+    substeps: int,
+    quiet_s: float,
+    rows: int = 0,
+    locate: bool = True,
+    every_step: bool = False,
 ) -> tuple[RigidRun, Samples]:
-    """Run on a rigid base from rest, and its history of at most ``rows`` rows."""
+    """Run on a rigid base from rest, and its history as :func:`call_springs` has it."""
     horizontal, vertical, dt = packed(motion)
     quiet = _quiet_samples(quiet_s, dt)
     history = np.empty((rows, RIGID_COLUMNS))
     m = block(pier, base)
-    run = rock_on_rigid_base(m, 0.0, 0.0, horizontal, vertical, dt, substeps, quiet, history, locate)
+    run = rock_on_rigid_base(m, 0.0, 0.0, horizontal, vertical, dt, substeps, quiet, history, locate, every_step)
     return run, history
 
 
@@ -147,7 +162,12 @@ def run_fixed(
             f"{substeps} substeps of a sample of {motion.dt:g} s are too few for the springs' frequency: "
             f"the integration would blow up; at least {least}, better {first_substeps(pier, base, motion.dt)}"
         )
-        return Outcome("failed", reason, math.nan, math.nan, 0, 0, None, 0.0, substeps)
+        return _not_run(reason, substeps)
+    steps = steps_of(motion, substeps, quiet_s)
+    if steps > MOST_STEPS:
+        return _not_run(
+            f"would take {steps:.0e} steps, more than {MOST_STEPS:.0e}; shorten the record or quiet_s", substeps
+        )
     if isinstance(base, RigidBase):
         rigid, _ = call_rigid_base(pier, base, motion, substeps, quiet_s, locate=locate)
         status, reason = _STATUS[rigid.status]
@@ -196,6 +216,15 @@ def run_fixed(
     return outcome
 
 
+def _not_run(reason: str, substeps: int) -> Outcome:
+    return Outcome("failed", reason, math.nan, math.nan, 0, 0, None, 0.0, substeps)
+
+
+def steps_of(motion: Motion, substeps: int, quiet_s: float) -> float:
+    """Number of steps of a run to the end of its quiet time."""
+    return substeps * (motion.npts + quiet_s / motion.dt)
+
+
 def _known(value: float) -> float | None:
     return None if math.isnan(value) else value
 
@@ -216,17 +245,22 @@ def _substeps_for(largest: float, pier: Pier, base: Base, dt: float) -> int:
     return max(1, math.ceil(highest_frequency(pier, base) * dt / largest - 1e-9))
 
 
-def run_to_tolerance(pier: Pier, base: Base, motion: Motion, tolerance: float, quiet_s: float = 2.0) -> Outcome:
+def run_to_tolerance(
+    pier: Pier, base: Base, motion: Motion, tolerance: float, quiet_s: float = 2.0, stop: Event | None = None
+) -> Outcome:
     """Run with ever smaller steps until two results agree to ``tolerance`` on θ_max/α and θ_res/α.
 
-    The finer result is kept, and the difference is its estimated error: the coarser one's, hence on the safe side. The
+    The finer result is kept, and the difference is its estimated error: the coarser one's, hence on the safe side.
+    Where no plastic base remembers every impact, on rigid and elastic bases, their counts have to agree too. The
     first step respects the springs' frequency (:data:`FREQUENCY_STEP`): two coarse runs that agree prove nothing
     otherwise. A run that has not settled after :data:`HALVINGS`, or would take more than :data:`MOST_STEPS`, keeps its
-    best values and fails with the reason.
+    best values and fails with the reason. Once ``stop`` is set, there is no further try, and ``InterruptedError``.
     """
     coarse = run_fixed(pier, base, motion, first_substeps(pier, base, motion.dt), quiet_s)
     for _ in range(HALVINGS):
-        steps = 2.0 * coarse.substeps * motion.npts
+        if stop is not None and stop.is_set():
+            raise InterruptedError("stopped between two tries of a run")
+        steps = steps_of(motion, 2 * coarse.substeps, quiet_s)
         if steps > MOST_STEPS:
             return _not_settled(coarse, tolerance * pier.alpha, f"; the next try would take {steps:.0e} steps")
         fine = _with_errors(run_fixed(pier, base, motion, 2 * coarse.substeps, quiet_s), coarse, pier.alpha)
@@ -260,5 +294,8 @@ def _with_errors(fine: Outcome, coarse: Outcome, alpha: float) -> Outcome:
 
 def _settled(fine: Outcome, coarse: Outcome, tolerance: float) -> bool:
     if fine.status != coarse.status or fine.status == "failed":
+        return False
+    forgets = fine.status == "ok" and fine.ductility_left is None  # an early peak tells nothing of what came after it
+    if forgets and (fine.impacts, fine.separations) != (coarse.impacts, coarse.separations):
         return False
     return max(fine.theta_max_error or 0.0, fine.theta_res_error or 0.0) <= tolerance

@@ -136,17 +136,15 @@ def test_an_interrupt_keeps_what_is_finished(study, tmp_path, monkeypatch, capsy
 
     real = rockbatch.batch.outcome_of
 
-    def interrupted(run, numerics, output):
+    def interrupted(run, numerics, output, stop):
         if run.case.name == "pads" and interrupted.armed:
             time.sleep(0.2)  # the other run is finished by then
             raise KeyboardInterrupt
-        return real(run, numerics, output)
+        return real(run, numerics, output, stop)
 
     interrupted.armed = False
     monkeypatch.setattr(rockbatch.batch, "outcome_of", interrupted)
-    monkeypatch.setattr(
-        rockbatch.batch, "compile_kernels", lambda runs, numerics, output: setattr(interrupted, "armed", True)
-    )
+    monkeypatch.setattr(rockbatch.batch, "compile_kernels", lambda runs, output: setattr(interrupted, "armed", True))
     assert main(["run", str(study), "--out", str(tmp_path / "out"), "--jobs", "2"]) == 130
     rows = (tmp_path / "out/peaks.csv").read_text(encoding="utf-8").splitlines()
     assert [row.split(",")[1] for row in rows[1:]] == ["rigid"]

@@ -121,7 +121,7 @@ def test_a_study_that_asks_gets_the_ledger_and_the_other_law_as_columns(tmp_path
     assert pads["settlement_m"] > 1.02 * other  # Bouc–Wen springs ratchet
 
 
-def test_a_study_that_does_not_ask_has_no_such_columns(tmp_path):
+def test_a_study_that_does_without_has_no_such_columns(tmp_path):
     path = tmp_path / "study.toml"
-    path.write_text(STUDY, encoding="utf-8")
+    path.write_text(STUDY + "[output]\nboth_laws = false\n", encoding="utf-8")
     assert not [name for name in rb.run(path).columns if "energy" in name or "other_law" in name]

@@ -39,13 +39,17 @@ def main(arguments: argparse.Namespace) -> int:
 
     from rockbatch.batch import compile_kernels, cores, ground_motions, outcomes, plan, table_of
     from rockbatch.commands.progress import Progress
-    from rockbatch.commands.summary import summary
+    from rockbatch.commands.summary import other_law, summary
     from rockbatch.core.kernel import is_compiled
     from rockbatch.results import describe, write_results
 
     motions = ground_motions(study)
     for file in motions.unusable:
         _say(f"not used: {file.source}: {file.reason}")
+    for motion in motions.motions:
+        for note in motion.notes:
+            if "check the unit" in note:
+                _say(f"{motion.name}: {note}")
     jobs = arguments.jobs or cores()
     runs = plan(study, motions)
     factors = (
@@ -58,7 +62,7 @@ def main(arguments: argparse.Namespace) -> int:
     _say(f"{counted} = {_count(len(runs), 'run')} on {_count(jobs, 'thread')}")
     if not is_compiled():
         _say("compiling the kernels (once per installation, about 15 s)")
-    compile_kernels(runs, study.numerics, study.output)
+    compile_kernels(runs, study.output)
     finished: dict[int, Any] = {}
     interrupted = False
     with Progress(len(runs)) as progress:
@@ -88,7 +92,10 @@ def main(arguments: argparse.Namespace) -> int:
     from rockbatch.report import write_report
 
     report = write_report(directory, responses(study, runs, finished))
-    print(summary(table, study.varied))
+    by_pga = [motion.name for motion in sorted(motions.motions, key=lambda motion: motion.pga)]
+    print(summary(table, study.varied, by_pga))
+    if warning := other_law(table):
+        _say(warning)
     failed = int((table["status"] == "failed").sum())
     _say(f"{directory / 'peaks.csv'}\n{directory / 'run.json'}\n{report}")
     if failed:

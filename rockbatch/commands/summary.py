@@ -1,5 +1,6 @@
 """The table of Fig. 7 in the terminal: θ_max/α of every record in every case, a block for each pier."""
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from rockbatch.study import PIER_KEYS
@@ -8,9 +9,11 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
-def summary(table: "pd.DataFrame", varied: tuple[str, ...]) -> str:
-    """Blocks of text, the status beside the value where it is not "ok"; files that could not be used are left out."""
+def summary(table: "pd.DataFrame", varied: tuple[str, ...], records: Sequence[str]) -> str:
+    """Blocks of text, a line for each of ``records`` in their order, the status beside the value where it is not "ok"."""
     runs = table[table["case"] != ""]
+    place = {name: i for i, name in enumerate(records)}
+    runs = runs.sort_values("record", key=lambda names: names.map(place), kind="stable")
     pier_keys = [name for name in varied if name in PIER_KEYS]
     case_keys = [name for name in varied if name not in PIER_KEYS]
     rows = ["record", *(name for name in ("polarity", "scale") if runs[name].nunique() > 1)]
@@ -21,6 +24,24 @@ def summary(table: "pd.DataFrame", varied: tuple[str, ...]) -> str:
         for values, block in runs.groupby(pier_keys, sort=False)
     ]
     return "\n\n".join(blocks)
+
+
+def other_law(table: "pd.DataFrame") -> str:
+    """A warning where the settlement hangs on the spring law, by a tenth and a millimetre or more; empty elsewhere."""
+    import numpy as np
+
+    if "settlement_other_law_m" not in table:
+        return ""
+    own, other = table["settlement_m"], table["settlement_other_law_m"]
+    gap = (own - other).abs()
+    differ = gap > (0.1 * own.abs()).clip(lower=1e-3)
+    if not differ.any():
+        return ""
+    worst = table.iloc[int(np.nanargmax(gap.to_numpy()))]
+    return (
+        f"settlement hangs on the spring law in {int(differ.sum())} runs, most in {worst['record']}, {worst['case']}: "
+        f"{1000 * worst['settlement_m']:.1f} mm, by the other law {1000 * worst['settlement_other_law_m']:.1f} mm"
+    )
 
 
 def _block(runs: "pd.DataFrame", rows: list[str], case_keys: list[str]) -> str:

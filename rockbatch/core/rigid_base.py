@@ -152,23 +152,31 @@ def _write(history, row, t, theta, omega, kind):
     return row + 1
 
 
-@entry
-def rock_on_rigid_base(m, theta, omega, horizontal, vertical, dt, substeps, quiet_samples, history, locate):
+def rock_on_rigid_base(
+    m, theta, omega, horizontal, vertical, dt, substeps, quiet_samples, history, locate, every_step=False
+):
     """Run of the pier ``m`` (Block) under one motion.
 
     Parameters
     ----------
     theta, omega : float
         Rotation [rad] and angular velocity [rad/s] at the start; 0, 0 is rest.
-    horizontal, vertical, dt, substeps, quiet_samples, locate
+    horizontal, vertical, dt, substeps, quiet_samples, locate, every_step
         As for the pier on two springs.
     history : ndarray, shape (rows, 4)
-        Filled with every sample, every step and both sides of every event, as far as it goes; empty for none.
+        Filled with every sample and both sides of every event, as far as it goes; empty for none.
 
     Returns
     -------
     RigidRun
     """
+    return RigidRun(
+        *_run(m, theta, omega, horizontal, vertical, dt, substeps, quiet_samples, history, locate, every_step)
+    )
+
+
+@entry
+def _run(m, theta, omega, horizontal, vertical, dt, substeps, quiet_samples, history, locate, every_step):
     h = dt / substeps
     recording = history.shape[0] > 0
     has_vertical = len(vertical) > 0
@@ -279,7 +287,7 @@ def rock_on_rigid_base(m, theta, omega, horizontal, vertical, dt, substeps, quie
             if status == SURVIVED:
                 t = sample * dt + start + h
                 status = fallen(theta)
-                if recording and (substep < substeps - 1 or status != SURVIVED):
+                if recording and (status != SURVIVED or (every_step and substep < substeps - 1)):
                     rows = _write(history, rows, t, theta, omega, STEP)
             if status != SURVIVED:
                 break
@@ -292,4 +300,4 @@ def rock_on_rigid_base(m, theta, omega, horizontal, vertical, dt, substeps, quie
 
     if status == SURVIVED and sample >= longest and not resting and undecided(theta, omega, m.alpha, m.p):
         status = UNDECIDED
-    return RigidRun(status, t, peak, t_peak, impacts, lift_offs, t_flight, t_rest, rows)
+    return (status, t, peak, t_peak, impacts, lift_offs, t_flight, t_rest, rows)

@@ -274,8 +274,7 @@ def _unstressed(m, position, z, on_spring, waiting):
     return position - m.yield_deflection * z if on_spring != 0.0 else waiting
 
 
-@entry
-def rock_on_springs(m, horizontal, vertical, dt, substeps, quiet_samples, history, locate):
+def rock_on_springs(m, horizontal, vertical, dt, substeps, quiet_samples, history, locate, every_step=False):
     """Run of the pier ``m`` (Springs) under one motion.
 
     Parameters
@@ -288,14 +287,22 @@ def rock_on_springs(m, horizontal, vertical, dt, substeps, quiet_samples, histor
     quiet_samples : int
         Samples after the record. The run goes on while the pier, left alone, might still overturn.
     history : ndarray, shape (rows, 13)
-        Filled with every sample, every step and both sides of every event, as far as it goes; empty for none.
+        Filled with every sample and both sides of every event, as far as it goes; empty for none.
     locate : bool
         Locate events inside the step. Without, they take place at its end (first order; for comparison only).
+    every_step : bool
+        Also write the steps between samples.
 
     Returns
     -------
     SpringRun
     """
+    # A compiled function hands out plain tuples only: making a named one runs Python code, where Ctrl-C may strike.
+    return SpringRun(*_run(m, horizontal, vertical, dt, substeps, quiet_samples, history, locate, every_step))
+
+
+@entry
+def _run(m, horizontal, vertical, dt, substeps, quiet_samples, history, locate, every_step):
     nan = math.nan
     h = dt / substeps
     recording = history.shape[0] > 0
@@ -413,7 +420,7 @@ def rock_on_springs(m, horizontal, vertical, dt, substeps, quiet_samples, histor
             if status == SURVIVED:
                 t = sample * dt + start + h
                 status = fallen(y.theta)
-                if recording and (substep < substeps - 1 or status != SURVIVED):
+                if recording and (status != SURVIVED or (every_step and substep < substeps - 1)):
                     rows = _write(history, rows, t, y, contact, STEP)
             if status != SURVIVED:
                 break
@@ -430,7 +437,7 @@ def rock_on_springs(m, horizontal, vertical, dt, substeps, quiet_samples, histor
     base_left = _unstressed(m, y.v + at_end.lift_left, y.z_left, contact.left, supports.left)
     base_right = _unstressed(m, y.v + at_end.lift_right, y.z_right, contact.right, supports.right)
     loading = _branches(m, loading, contact, Contact(0.0, 0.0, 0.0, 0.0, 0), y)
-    return SpringRun(
+    return (
         status,
         t,
         extremes.peak,

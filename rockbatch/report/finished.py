@@ -17,6 +17,9 @@ NUMBERS = (
     "impacts", "separations", "flight_s", "substeps", "t_end_s", "base_tilt_rad", "ductility_left",
     "ductility_right", "dissipated_left_J_kg", "dissipated_right_J_kg",
 )  # fmt: skip
+ASKED_FOR = ("theta_res_error", "settlement_other_law_m")
+"""Numbers that are there where a study asks for them; and the terms of the energy ledger, ``energy_…``."""
+
 SECTIONS = (
     "rockbatch", "created", "command", "study", "versions", "machine", "numerics", "varied", "cases",
     "records", "unusable", "references", "runs", "jobs", "wall_s",
@@ -169,7 +172,8 @@ def _read_rows(path: Path, varied: list[str], problems: list[str]) -> list[dict[
 
 def _row(raw: dict[str, str], varied: list[str], place: str, problems: list[str]) -> dict[str, Any]:
     row: dict[str, Any] = dict(raw)
-    for name in NUMBERS:
+    more = [name for name in raw if name in ASKED_FOR or str(name).startswith("energy_")]
+    for name in (*NUMBERS, *more):
         try:
             value = float(raw[name]) if raw[name] else math.nan
         except (TypeError, ValueError):

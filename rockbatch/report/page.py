@@ -3,7 +3,7 @@
 import base64
 import hashlib
 import shlex
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from importlib.resources import files
 
 from rockbatch.report import accuracy, histories, peaks, tables
@@ -172,24 +172,16 @@ def _ratcheting(finished: Finished) -> Markup:
             "Settlement and residual rotation depend on that; [output] both_laws = true in the study shows how much."
         )
         return tag("p", told)
-    pairs = [(run, _numbers_of(run.row, "settlement_m", name)) for run in finished.runs]
-    both = [(abs(values[0] - values[1]), run, values) for run, values in pairs if values]
+    pairs = [(run, run.row["settlement_m"], run.row.get(name)) for run in finished.runs]
+    both = [(abs(own - other), run, own, other) for run, own, other in pairs if own is not None and other is not None]
     if not both:
         return tag("p", told)
-    _, run, (own, other) = max(both, key=lambda entry: entry[0])
+    _, run, own, other = max(both, key=lambda entry: entry[0])
     told += (
         f"The settlement differs most in {run.record}, {run.series.label}: {1000 * own:.1f} mm by the study's law, "
         f"{1000 * other:.1f} mm by the other one."
     )
     return tag("p", told)
-
-
-def _numbers_of(row: Mapping[str, object], *names: str) -> list[float]:
-    """Numbers in columns of a row; none of them where one is missing."""
-    try:
-        return [float(str(row[name])) for name in names]
-    except ValueError:
-        return []
 
 
 def _records(finished: Finished) -> Markup:

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Sequence
 from fnmatch import fnmatchcase
 from typing import Any, NamedTuple
 
-from rockbatch.report.finished import NUMBERS, SYMBOLS, TEXTS, Finished, Run
+from rockbatch.report.finished import ASKED_FOR, NUMBERS, SYMBOLS, TEXTS, Finished, Run
 from rockbatch.report.markup import Markup, join, number, tag
 from rockbatch.study import PIER_KEYS
 
@@ -93,7 +93,9 @@ def peaks(finished: Finished) -> Markup:
             "theta_res_over_alpha",
             Head(_sub("θ", "res", "/α"), ".5f", "theta_res_over_alpha: residual over slenderness"),
         ),
+        ("theta_res_error", Head("±", ".0e", "theta_res_error: estimated error of the residual over slenderness")),
         ("settlement_mm", Head("settlement [mm]", ".2f", "settlement_m × 1000")),
+        ("other_law_mm", Head("by the other law [mm]", ".2f", "settlement_other_law_m × 1000: Bouc–Wen or EPP")),
         ("base_tilt_mrad", Head("base tilt [mrad]", ".3f", "base_tilt_rad × 1000")),
         ("ductility_left", Head("demand L", ".2f", "ductility_left: largest deflection over yield deflection")),
         ("ductility_right", Head("demand R", ".2f", "ductility_right: largest deflection over yield deflection")),
@@ -106,9 +108,15 @@ def peaks(finished: Finished) -> Markup:
         ("substeps", Head("substeps", note="integration steps per sampling interval")),
         ("reason", Head("reason")),
     ]
-    thousandths = {"settlement_mm": "settlement_m", "base_tilt_mrad": "base_tilt_rad"}
-    known = {key for key, _ in heads} | {*TEXTS, *NUMBERS}
-    heads += [(key, Head(key)) for key in (finished.rows[0] if finished.rows else ()) if key not in known]
+    thousandths = {
+        "settlement_mm": "settlement_m",
+        "other_law_mm": "settlement_other_law_m",
+        "base_tilt_mrad": "base_tilt_rad",
+    }
+    columns = finished.rows[0] if finished.rows else {}
+    known = {key for key, _ in heads} | {*TEXTS, *NUMBERS, *ASKED_FOR}
+    heads = [(key, head) for key, head in heads if thousandths.get(key, key) in columns]
+    heads += [(key, _energy(key)) for key in columns if key not in known]
 
     def cell(row: dict[str, Any], key: str) -> object:
         if key in thousandths:
@@ -124,6 +132,14 @@ def peaks(finished: Finished) -> Markup:
     shown = [(key, head) for key, head in heads if key not in same]
     rows = [[cell(row, key) for key, _ in shown] for row in finished.rows]
     return table([head for _, head in shown], rows, sortable=True)
+
+
+def _energy(key: str) -> Head:
+    """Head of a term of the energy ledger, or of a column that is not known here."""
+    if not key.startswith("energy_"):
+        return Head(key)
+    term = key.removeprefix("energy_").removesuffix("_J_kg").replace("_", "-")
+    return Head(f"{term} [J/kg]", ".0e" if term == "remainder" else ".4f", key)
 
 
 def _symbol(key: str) -> str:

@@ -72,7 +72,7 @@ class Numerics:
 
 @dataclass(frozen=True)
 class Output:
-    """What a study asks for beyond the peaks; each costs time, and none is the default.
+    """What a study asks for beyond the peaks; each costs time.
 
     Attributes
     ----------
@@ -81,12 +81,12 @@ class Output:
     ledger : bool
         The energy ledger of every run (THEORY.md, 9).
     both_laws : bool
-        The settlement of yielding springs by the other spring law too (THEORY.md, 7).
+        The settlement of yielding springs by the other spring law too (THEORY.md, 7); a third run at the kept step.
     """
 
     histories: str = "none"
     ledger: bool = False
-    both_laws: bool = False
+    both_laws: bool = True
 
 
 @dataclass(frozen=True)
