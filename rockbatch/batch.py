@@ -30,7 +30,7 @@ AHEAD = 8
 """Runs handed to each thread beforehand, so that none waits and an interrupt has little to undo."""
 
 
-NOTHING_MORE = Output()
+NOTHING_MORE = Output(both_laws=False)
 
 
 @dataclass(frozen=True)
