@@ -97,6 +97,24 @@ def test_motions_replace_those_of_the_study_and_a_bad_file_is_a_row_with_its_rea
     assert "BAD090" in (tmp_path / "out/report.html").read_text(encoding="utf-8")
 
 
+def test_a_run_that_is_refused_is_a_row_with_its_reason_and_has_no_history(study, tmp_path, monkeypatch):
+    """One step a sample is beyond the stability of β = 5000: nothing of it is run, not for its picture either."""
+    extra = '[numerics]\nsubsteps = 1\n[output]\nhistories = "all"\n'
+    study.write_text(STUDY.replace("beta = 50\n", "beta = 5000\n") + extra, encoding="utf-8")
+    import rockbatch.histories
+
+    real, written = rockbatch.histories.histories, []
+    monkeypatch.setattr(rockbatch.histories, "histories", lambda *given: (written.append(given[5]), real(*given))[1])
+    assert main(["run", str(study), "--out", str(tmp_path / "out")]) == 1
+    assert written == ["rigid"]
+    with open(tmp_path / "out/peaks.csv", encoding="utf-8", newline="") as file:
+        rigid, pads = csv.DictReader(file)
+    assert rigid["status"] == "ok"
+    assert (pads["status"], pads["theta_max_over_alpha"]) == ("failed", "")
+    assert "substeps" in pads["reason"]
+    assert "would blow up" in (tmp_path / "out/report.html").read_text(encoding="utf-8")
+
+
 def test_wrong_input_runs_nothing_and_exits_with_2(study, tmp_path, capsys):
     study.write_text(STUDY.replace("eta = 2.5", "eta = 0.9\nbeat = 40"), encoding="utf-8")
     assert main(["run", str(study), "--out", str(tmp_path / "out")]) == 2

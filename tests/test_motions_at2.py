@@ -1,7 +1,6 @@
 """PEER AT2 files: header dialects, exact counts, and nothing but a clear error for damaged ones."""
 
 import io
-from importlib.metadata import entry_points
 
 import numpy as np
 import pytest
@@ -149,10 +148,6 @@ def test_only_at2_files_are_taken_for_at2(tmp_path):
         assert not is_at2(nonsense)
 
 
-@pytest.mark.skipif(
-    not any(entry.name == "AT2" for entry in entry_points(group="obspy.plugin.waveform")),
-    reason="rockbatch is not installed, so ObsPy does not know its plugin",
-)
 @pytest.mark.parametrize("format", [None, "AT2"])
 def test_obspy_reads_at2_with_and_without_the_format_named(tmp_path, format):
     obspy = pytest.importorskip("obspy")

@@ -2,6 +2,7 @@
 
 import argparse
 import datetime
+import math
 import platform
 import sys
 import time
@@ -104,7 +105,7 @@ def main(arguments: argparse.Namespace) -> int:
 
 
 def responses(study: Any, runs: list[Any], finished: dict[int, Any]) -> list[Any]:
-    """Histories of every run, where the study asks for them."""
+    """Histories of every run, where the study asks for them; a run that was refused has none."""
     if study.output.histories == "none":
         return []
     from rockbatch.histories import histories
@@ -120,6 +121,7 @@ def responses(study: Any, runs: list[Any], finished: dict[int, Any]) -> list[Any
             run.case.columns,
         )
         for i, run in enumerate(runs)
+        if not math.isnan(finished[i].theta_max)
     ]
 
 
