@@ -11,11 +11,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rockbatch.batch import Run, cores, outcome_of
+from rockbatch.batch import cores, outcomes_of
 from rockbatch.outcome import Outcome
-from rockbatch.simulation import first_substeps, run_fixed
+from rockbatch.plan import Run
+from rockbatch.simulation import Scene, Stop, first_substeps, run_all_fixed, run_fixed
 from rockbatch.structure import RigidBase
-from rockbatch.study import Numerics, Study
+from rockbatch.study import Study
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -48,6 +49,10 @@ ACCEPTED = 1e-9
 """Largest change with which it still serves as one, where rounding or sensitivity keeps it from settling."""
 
 HALVINGS = 10
+
+
+Simulate = Callable[[Sequence[Run]], list[tuple[str, float]]]
+"""From runs to their status and θ_max [rad]."""
 
 
 @dataclass(frozen=True)
@@ -98,10 +103,10 @@ def measure(study: Study, references: Sequence[Reference], scipy: bool = True) -
 
     numerics = study.numerics
 
-    def fixed(substeps: int, locate: bool) -> Callable[[Run], tuple[str, float]]:
-        def simulate(run: Run) -> tuple[str, float]:
-            outcome = run_fixed(run.case.pier, run.case.base, run.motion, substeps, numerics.quiet_s, locate)
-            return outcome.status, outcome.theta_max
+    def fixed(substeps: int, locate: bool) -> Simulate:
+        def simulate(runs: Sequence[Run]) -> list[tuple[str, float]]:
+            scenes = [Scene(run.case.pier, run.case.base, run.motion) for run in runs]
+            return _ends(run_all_fixed(scenes, [substeps] * len(scenes), numerics.quiet_s, Stop(), locate))
 
         return simulate
 
@@ -111,7 +116,7 @@ def measure(study: Study, references: Sequence[Reference], scipy: bool = True) -
             setting = {"method": method, "substeps": substeps, "tolerance": None}
             rows.append(setting | _measured(references, fixed(substeps, locate), REPEATS))
     setting = {"method": "study", "substeps": numerics.substeps, "tolerance": numerics.tolerance}
-    rows.append(setting | _measured(references, lambda run: _as_set(run, numerics), REPEATS))
+    rows.append(setting | _measured(references, lambda runs: _ends(outcomes_of(runs, numerics)), REPEATS))
     if scipy:
         rows += _yardstick(references, numerics.quiet_s)
     table = pd.DataFrame(rows, columns=list(COLUMNS))
@@ -122,9 +127,8 @@ def measure(study: Study, references: Sequence[Reference], scipy: bool = True) -
     return table
 
 
-def _as_set(run: Run, numerics: Numerics) -> tuple[str, float]:
-    outcome = outcome_of(run, numerics)  # without the extras of the study's table
-    return outcome.status, outcome.theta_max
+def _ends(outcomes: Sequence[Outcome | None]) -> list[tuple[str, float]]:
+    return [(outcome.status, outcome.theta_max) for outcome in outcomes if outcome is not None]  # none was stopped
 
 
 def _yardstick(references: Sequence[Reference], quiet_s: float) -> list[dict[str, Any]]:
@@ -141,10 +145,13 @@ def _yardstick(references: Sequence[Reference], quiet_s: float) -> list[dict[str
     if not chosen:
         return []
 
-    def solver(method: str, tolerance: float) -> Callable[[Run], tuple[str, float]]:
-        return lambda run: solve(run.case.pier, run.case.base, run.motion, method, tolerance, quiet_s)  # type: ignore[arg-type]
+    def solver(method: str, tolerance: float) -> Simulate:
+        return lambda runs: [
+            solve(run.case.pier, run.case.base, run.motion, method, tolerance, quiet_s)  # type: ignore[arg-type]
+            for run in runs
+        ]
 
-    solver("LSODA", 1e-3)(chosen[0].run)  # compiles what is called from Python
+    solver("LSODA", 1e-3)([chosen[0].run])  # compiles what is called from Python
     return [
         {"method": f"SciPy {method}", "substeps": None, "tolerance": tolerance}
         | _measured(chosen, solver(method, tolerance), 1)
@@ -153,14 +160,13 @@ def _yardstick(references: Sequence[Reference], quiet_s: float) -> list[dict[str
     ]
 
 
-def _measured(
-    references: Sequence[Reference], simulate: Callable[[Run], tuple[str, float]], repeats: int
-) -> dict[str, Any]:
-    """Errors and times of ``simulate`` (status and θ_max of a run) over the referenced runs."""
+def _measured(references: Sequence[Reference], simulate: Simulate, repeats: int) -> dict[str, Any]:
+    """Errors and times of ``simulate`` over the referenced runs."""
+    runs = [one.run for one in references]
     times = []
     for _ in range(repeats):
         start = time.thread_time()
-        found = [simulate(one.run) for one in references]
+        found = simulate(runs)
         times.append(time.thread_time() - start)
     done = sum(math.isfinite(theta_max) for _, theta_max in found)  # a step that would blow up is not run
     same = [status == one.outcome.status for one, (status, _) in zip(references, found, strict=True)]

@@ -12,15 +12,15 @@ from rockbatch.outcome import Outcome
 from rockbatch.response import Response
 from rockbatch.results import TERMS
 from rockbatch.simulation import (
+    Scene,
     block,
-    call_rigid_base,
-    call_springs,
+    ground_of,
     least_substeps,
-    packed,
     run_fixed,
     run_to_tolerance,
     springs,
     steps_of,
+    written_run,
 )
 from rockbatch.structure import Base, ElasticBase, Pier, RigidBase, problems
 
@@ -99,26 +99,28 @@ def written(pier: Pier, base: Base, motion: Motion, outcome: Outcome, quiet_s: f
 
     Raises ``InputError`` where ``every_step`` would need more than :data:`MOST_ROWS` rows.
     """
-    call = call_rigid_base if isinstance(base, RigidBase) else call_springs
+    scene = Scene(pier, base, motion)
     samples = steps_of(motion, 1, quiet_s)
     capacity = int(outcome.substeps * samples if every_step else samples) + 64 * (
         outcome.impacts + outcome.separations + 64
     )
     if capacity > MOST_ROWS:
         raise InputError(f"{motion.name}: an energy ledger of {capacity} rows; leave it out or use fewer substeps")
-    run, rows = call(pier, base, motion, outcome.substeps, quiet_s, capacity, every_step=every_step)
+    run, rows = written_run(scene, outcome.substeps, quiet_s, capacity, every_step=every_step)
     if run.rows > capacity:
-        run, rows = call(pier, base, motion, outcome.substeps, quiet_s, run.rows, every_step=every_step)
+        run, rows = written_run(scene, outcome.substeps, quiet_s, run.rows, every_step=every_step)
     return rows[: run.rows]
 
 
 def energies(pier: Pier, base: Base, motion: Motion, rows: Samples) -> Samples:
     """Energy ledger [J/kg] at every row of a run: :data:`rockbatch.results.TERMS`, shape (n, 9)."""
-    horizontal, vertical, dt = packed(motion)
+    ground, dt = ground_of(motion), float(motion.dt)
+    ledger = np.zeros((len(rows), len(TERMS)))
     if isinstance(base, RigidBase):
-        about_pivot = pier.inertia + pier.size**2
-        return about_pivot * ledger_on_rigid_base(block(pier, base), rows, horizontal, vertical, dt)
-    return ledger_on_springs(springs(pier, base), rows, horizontal, vertical, dt)
+        ledger_on_rigid_base(block(pier, base), rows, ground, dt, ledger)
+        return (pier.inertia + pier.size**2) * ledger
+    ledger_on_springs(springs(pier, base), rows, ground, dt, ledger)
+    return ledger
 
 
 def histories(
@@ -174,7 +176,7 @@ def _springs_state(pier: Pier, base: ElasticBase, rows: Samples) -> dict[str, Sa
     v, theta, v_rate, omega, z_left, z_right, on_left, on_right = rows[:, 1:9].T
     b, h = m.half_width, m.height
     rise, drop, lever = b * theta, np.zeros(len(rows)), np.full(len(rows), h)
-    if m.finite:
+    if m.finite is not None:
         rise, drop = b * np.sin(theta), h * (1.0 - np.cos(theta))
         lever = h * np.cos(theta) + (on_right - on_left) * rise
     elastic = z_left**2 + z_right**2

@@ -1,5 +1,6 @@
 """What one run comes to."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -60,3 +61,8 @@ class Outcome:
     dissipated_right: float | None = None
     settlement_other_law: float | None = None
     energies: Mapping[str, float] | None = None
+
+    @property
+    def was_run(self) -> bool:
+        """Whether there is anything but a reason: a run that would blow up or take too long is not begun."""
+        return not math.isnan(self.theta_max)

@@ -1,9 +1,13 @@
 """The tables of a study: rows of peaks.csv, what run.json says about them, and both on disk."""
 
+import csv
 import json
+import math
+import sys
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, Self
 
 from rockbatch.files import write_whole
 from rockbatch.motions import MotionSet, measures
@@ -47,7 +51,8 @@ MORE_COLUMNS = (
 TERMS = ("kinetic", "potential", "elastic", "input", "plastic", "impact", "p_delta", "constraint", "remainder")
 """Terms of the energy ledger, in the order in which the core returns them."""
 
-_COUNTS = ("impacts", "separations", "substeps")
+TEXTS = ("record", "case", "polarity", "status", "reason")
+COUNTS = ("impacts", "separations", "substeps")
 
 
 def row(record: str, polarity: str, scale: float, case: Case, outcome: Outcome) -> dict[str, Any]:
@@ -110,11 +115,10 @@ def as_table(rows: Iterable[Mapping[str, Any]], study: Study) -> "pd.DataFrame":
 
     varied = study.varied
     table = pd.DataFrame(list(rows), columns=columns(study))
-    texts = ["record", "case", "polarity", "status", "reason"]
-    table[texts] = table[texts].fillna("")
-    for name in table.columns.difference([*texts, *varied, *_COUNTS]):
+    table[list(TEXTS)] = table[list(TEXTS)].fillna("")
+    for name in table.columns.difference([*TEXTS, *varied, *COUNTS]):
         table[name] = table[name].astype("float64")
-    for name in _COUNTS:
+    for name in COUNTS:
         table[name] = table[name].astype("Int64")
     return table
 
@@ -217,8 +221,65 @@ def _describe_motion(motion: Motion, gravity: float) -> dict[str, Any]:
     }
 
 
-def write_results(directory: Path, table: "pd.DataFrame", info: Mapping[str, Any]) -> None:
-    """Write peaks.csv and run.json into ``directory``, each whole or not at all."""
-    directory.mkdir(parents=True, exist_ok=True)
-    write_whole(directory / "peaks.csv", table.to_csv(index=False, float_format="%.10g", lineterminator="\n"))
-    write_whole(directory / "run.json", json.dumps(info, indent=1, ensure_ascii=False) + "\n")
+PEAKS = "peaks.csv"
+INFO = "run.json"
+
+
+class PeaksFile:
+    """``peaks.csv``, written as the runs finish, in the order of the study.
+
+    It grows as ``peaks.csv.part`` and takes its name at the end of the context, also of one that is left by an
+    exception: what is finished is kept. Whoever looks finds the earlier file or the new one.
+    """
+
+    def __init__(self, directory: Path, study: Study) -> None:
+        directory.mkdir(parents=True, exist_ok=True)
+        self.path = directory / PEAKS
+        self.columns = columns(study)
+        self.finished = 0
+        self.failed = 0
+        self._next = 0
+        self._waiting: dict[int, Mapping[str, Any]] = {}
+        self._part = directory / f"{PEAKS}.part"
+
+    def __enter__(self) -> Self:
+        self._file = self._part.open("w", encoding="utf-8", newline="")
+        self._writer = csv.writer(self._file, lineterminator="\n")
+        self._writer.writerow(self.columns)
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        for number in sorted(self._waiting):  # some before them were interrupted
+            self._write(self._waiting[number])
+        self._file.close()
+        self._part.replace(self.path)
+
+    def add(self, number: int, cells: Mapping[str, Any]) -> None:
+        """Row of run ``number``; it is written once all runs before it are."""
+        self.finished += 1
+        self._waiting[number] = cells
+        while self._next in self._waiting:
+            self._write(self._waiting.pop(self._next))
+            self._next += 1
+
+    def end_with(self, rows: Iterable[Mapping[str, Any]]) -> None:
+        """Rows that belong to no run, after all others."""
+        for number, cells in enumerate(rows, start=sys.maxsize):
+            self._waiting[number] = cells
+
+    def _write(self, cells: Mapping[str, Any]) -> None:
+        self._writer.writerow([_cell(cells.get(name)) for name in self.columns])
+        self.failed += cells["status"] == "failed"
+
+
+def _cell(value: Any) -> Any:
+    if isinstance(value, float):
+        return "" if math.isnan(value) else f"{value:.10g}"
+    return value
+
+
+def write_info(directory: Path, info: Mapping[str, Any]) -> None:
+    """Write run.json into ``directory``, whole or not at all."""
+    write_whole(directory / INFO, json.dumps(info, indent=1, ensure_ascii=False) + "\n")

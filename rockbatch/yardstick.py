@@ -12,7 +12,8 @@ import numpy as np
 
 from rockbatch.core.equations import rates
 from rockbatch.core.events import at_rest, signals
-from rockbatch.core.two_springs import Supports, handle, static_state
+from rockbatch.core.transitions import Supports, handle
+from rockbatch.core.two_springs import static_state
 from rockbatch.core.types import BOUC_WEN, Contact, State
 from rockbatch.motions.motion import Motion
 from rockbatch.simulation import springs
@@ -53,7 +54,7 @@ def solve(
 
     t, y = 0.0, static_state(m)
     branch = 1.0 if m.law == BOUC_WEN else 0.0
-    contact, supports = Contact(1.0, 1.0, branch, branch, 0), Supports(math.nan, math.nan)
+    contact, supports = Contact(1.0, 1.0, branch, branch, 0.0), Supports(math.nan, math.nan)
 
     def rhs(s: float, y: Any) -> Any:
         return rates(m, State(*y.tolist()), contact, horizontal(s), vertical(s))

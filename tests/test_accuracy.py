@@ -9,9 +9,10 @@ import pytest
 
 import rockbatch.accuracy
 from rockbatch.accuracy import COLUMNS, SUBSTEPS, measure, reference, spread
-from rockbatch.batch import ground_motions, plan
+from rockbatch.batch import ground_motions
 from rockbatch.cli import main
 from rockbatch.motions import Motion, pulse
+from rockbatch.plan import Plan
 from rockbatch.simulation import run_fixed
 from rockbatch.structure import ElasticBase, Pier, YieldingBase
 from rockbatch.study import load_study
@@ -75,7 +76,7 @@ def measured(tmp_path_factory):
     path = tmp_path_factory.mktemp("accuracy") / "study.toml"
     path.write_text(STUDY, encoding="utf-8")
     study = load_study(path)
-    references = [reference(run, study.numerics.quiet_s) for run in plan(study, ground_motions(study))]
+    references = [reference(run, study.numerics.quiet_s) for run in Plan(study, ground_motions(study))]
     assert None not in references
     return study, references, measure(study, references, scipy=False)
 
@@ -138,7 +139,7 @@ def test_runs_that_end_otherwise_are_counted_and_have_no_error(measured):
 
 def test_steps_that_are_too_long_to_be_run_have_neither_error_nor_time(measured):
     study, _, _ = measured
-    run = plan(study, ground_motions(study))[1]
+    run = Plan(study, ground_motions(study))[1]
     stiff = replace(run, case=replace(run.case, base=YieldingBase(beta=500.0, eta=2.5)))
     table = measure(study, [reference(stiff, 2.0)], scipy=False).set_index(["method", "substeps"])
     assert table.loc[("located", 1), "status_differs"] == 1  # ω_v h = 10

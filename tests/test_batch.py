@@ -5,7 +5,11 @@ import pandas as pd
 import pytest
 
 import rockbatch as rb
-from rockbatch.results import COLUMNS, MORE_COLUMNS
+import rockbatch.batch
+from rockbatch.batch import ground_motions, groups, outcomes, row_of
+from rockbatch.plan import Plan
+from rockbatch.results import COLUMNS, MORE_COLUMNS, PeaksFile, as_table
+from rockbatch.study import load_study
 
 STUDY = """
 title = "two pulses, three bases"
@@ -110,3 +114,64 @@ def test_a_folder_without_any_motion_is_a_mistake_that_says_so(study, tmp_path):
     (tmp_path / "empty").mkdir()
     with pytest.raises(rb.InputError, match="no ground motion"):
         rb.run(study, motions=tmp_path / "empty")
+
+
+def plan_of(study):
+    loaded = load_study(study)
+    return loaded, Plan(loaded, ground_motions(loaded))
+
+
+def test_a_plan_makes_each_run_when_it_is_asked_for(study):
+    """Counted and indexed like a list; runs beside each other share the arrays of their motion."""
+    _, runs = plan_of(study)
+    assert len(runs) == 24
+    table = [(run.motion.name, run.polarity, run.scale, run.case.columns) for run in runs]
+    assert [(run.motion.name, run.polarity, run.scale, run.case.columns) for run in runs[5:9]] == table[5:9]
+    assert runs[-1].motion.name == "one-cosine"
+    assert runs[0].motion is runs[2].motion
+    assert runs[3].motion is not runs[2].motion
+    assert runs[9].motion.horizontal == pytest.approx(-runs[3].motion.horizontal)
+    with pytest.raises(IndexError):
+        runs[24]
+
+
+@pytest.mark.parametrize("jobs", [1, 2, 7])
+def test_groups_take_every_run_once_and_in_order(study, jobs):
+    loaded, runs = plan_of(study)
+    found = list(groups(runs, loaded.numerics, jobs))
+    assert [i for group in found for i in group] == list(range(24))
+
+
+def test_a_group_is_closed_when_its_work_is_a_second(study, monkeypatch):
+    loaded, runs = plan_of(study)
+    monkeypatch.setattr(rockbatch.batch, "STEPS_OF_A_GROUP", 1.0)
+    assert [len(group) for group in groups(runs, loaded.numerics, 1)] == [1] * 24
+
+
+def test_the_table_on_disk_is_in_the_order_of_the_study_however_the_runs_finish(study, tmp_path):
+    """Written as they come, in order; the file has its name only when all is in it."""
+    loaded, runs = plan_of(study)
+    rows = [row_of(runs[i], outcome) for i, outcome in sorted(outcomes(runs, loaded.numerics, 2))]
+    with PeaksFile(tmp_path, loaded) as peaks:
+        for i in np.random.default_rng(0).permutation(24):
+            peaks.add(int(i), rows[i])
+        assert not (tmp_path / "peaks.csv").exists()
+    assert [path.name for path in tmp_path.glob("peaks*")] == ["peaks.csv"]
+    table = pd.read_csv(tmp_path / "peaks.csv", dtype={"polarity": str})
+    expected = as_table(rows, loaded)
+    for name in ("record", "polarity", "scale", "case", "impacts", "substeps"):
+        assert table[name].tolist() == expected[name].tolist()
+    assert table["theta_max_over_alpha"].to_numpy() == pytest.approx(
+        expected["theta_max_over_alpha"].to_numpy(), rel=1e-9
+    )
+
+
+def test_what_is_finished_is_in_the_table_though_runs_before_it_are_not(study, tmp_path):
+    loaded, runs = plan_of(study)
+    rows = [row_of(runs[i], outcome) for i, outcome in sorted(outcomes(runs[:3], loaded.numerics, 1))]
+    with pytest.raises(KeyboardInterrupt), PeaksFile(tmp_path, loaded) as peaks:  # noqa: PT012
+        peaks.add(2, rows[2])
+        peaks.add(0, rows[0])
+        raise KeyboardInterrupt
+    assert pd.read_csv(tmp_path / "peaks.csv")["beta"].isna().tolist() == [True, False]
+    assert peaks.finished == 2

@@ -152,17 +152,17 @@ def test_help_loads_neither_compiler_nor_tables_nor_obspy():
 def test_an_interrupt_keeps_what_is_finished(study, tmp_path, monkeypatch, capsys):
     import rockbatch.batch
 
-    real = rockbatch.batch.outcome_of
+    real = rockbatch.batch.outcomes_of
 
-    def interrupted(run, numerics, output, stop):
-        if run.case.name == "pads" and interrupted.armed:
+    def interrupted(runs, *arguments):
+        if runs[0].case.name == "pads":
             time.sleep(0.2)  # the other run is finished by then
             raise KeyboardInterrupt
-        return real(run, numerics, output, stop)
+        return real(runs, *arguments)
 
-    interrupted.armed = False
-    monkeypatch.setattr(rockbatch.batch, "outcome_of", interrupted)
-    monkeypatch.setattr(rockbatch.batch, "compile_kernels", lambda runs, output: setattr(interrupted, "armed", True))
+    monkeypatch.setattr(rockbatch.batch, "outcomes_of", interrupted)
+    monkeypatch.setattr(rockbatch.batch, "groups", lambda runs, *_: iter([range(i, i + 1) for i in range(len(runs))]))
+    monkeypatch.setattr(rockbatch.batch, "compile_kernels", lambda study: None)
     assert main(["run", str(study), "--out", str(tmp_path / "out"), "--jobs", "2"]) == 130
     rows = (tmp_path / "out/peaks.csv").read_text(encoding="utf-8").splitlines()
     assert [row.split(",")[1] for row in rows[1:]] == ["rigid"]

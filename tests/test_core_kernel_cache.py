@@ -36,9 +36,9 @@ def test_an_edit_in_a_called_kernel_changes_the_next_run(tmp_path):
     assert run_copy(tmp_path) == before  # from the cache
     source = package / "core" / "springs.py"
     text = source.read_text(encoding="utf-8")
-    assert text.count("rate = velocity / yield_deflection") == 1
+    assert text.count("rate = velocity * stiffness") == 1
     source.write_text(
-        text.replace("rate = velocity / yield_deflection", "rate = 2.0 * velocity / yield_deflection"),
+        text.replace("rate = velocity * stiffness", "rate = 2.0 * velocity * stiffness"),
         encoding="utf-8",
     )
     assert abs(run_copy(tmp_path) / before - 1.0) > 0.01

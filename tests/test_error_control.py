@@ -1,7 +1,6 @@
 """Error control: what is called settled, what is not, and what is refused before it is run."""
 
 import math
-import threading
 
 import numpy as np
 import pytest
@@ -10,22 +9,30 @@ from core_samples import FIG5, TOWER, broadband, hard_case, pulse
 import rockbatch.simulation as simulation
 from rockbatch.motions.motion import Motion
 from rockbatch.outcome import Outcome
-from rockbatch.simulation import first_substeps, least_substeps, run_fixed, run_to_tolerance
+from rockbatch.simulation import (
+    Scene,
+    first_substeps,
+    least_substeps,
+    run_all_to_tolerance,
+    run_fixed,
+    run_to_tolerance,
+)
 from rockbatch.structure import ElasticBase, Pier, RigidBase, YieldingBase
 
 SINE = pulse("sine", 0.5, dt=0.01, end=3.0)
 
 
 def scripted(monkeypatch, *outcomes):
-    """Let ``run_fixed`` return these, one after the other, the last for ever; returns the substeps asked for."""
+    """Let ``run_all_fixed`` return these, one after the other, the last for ever; returns the substeps asked for."""
     asked = []
 
-    def run(pier, base, motion, substeps, quiet_s=2.0):
-        asked.append(substeps)
-        told = {"reason": "", "t_max": 1.0, "t_flight": None, "t_end": 5.0, "substeps": substeps}
-        return Outcome(**told, **outcomes[min(len(asked), len(outcomes)) - 1])
+    def run(scenes, substeps, quiet_s, stop):
+        (steps,) = substeps
+        asked.append(steps)
+        told = {"reason": "", "t_max": 1.0, "t_flight": None, "t_end": 5.0, "substeps": steps}
+        return [Outcome(**told, **outcomes[min(len(asked), len(outcomes)) - 1])]
 
-    monkeypatch.setattr(simulation, "run_fixed", run)
+    monkeypatch.setattr(simulation, "run_all_fixed", run)
     return asked
 
 
@@ -105,11 +112,11 @@ def test_a_run_of_too_many_steps_is_not_begun():
         assert "steps" in outcome.reason
 
 
-def test_a_run_stops_between_two_tries():
-    stop = threading.Event()
+@pytest.mark.parametrize("base", [RigidBase(), ElasticBase(20.0)], ids=["rigid", "elastic"])
+def test_runs_that_are_stopped_have_no_outcome(base):
+    stop = simulation.Stop()
     stop.set()
-    with pytest.raises(InterruptedError):
-        run_to_tolerance(FIG5, RigidBase(), SINE, 1e-4, stop=stop)
+    assert run_all_to_tolerance([Scene(FIG5, base, SINE)] * 3, 1e-4, 2.0, stop) == [None] * 3
 
 
 @pytest.mark.slow

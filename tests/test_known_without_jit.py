@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from core_samples import FIG5, broadband, pulse
 
-from rockbatch.core.two_springs import rock_on_springs
+from rockbatch.core.two_springs import static_state
 from rockbatch.core.types import (
     IMPACT_LEFT,
     IMPACT_RIGHT,
@@ -25,7 +25,7 @@ from rockbatch.core.types import (
     SPRING_RIGHT,
 )
 from rockbatch.motions.motion import Motion
-from rockbatch.simulation import call_rigid_base, call_springs
+from rockbatch.simulation import Scene, written_run
 from rockbatch.structure import ElasticBase, Pier, RigidBase, YieldingBase
 
 DT = 0.02
@@ -49,16 +49,15 @@ MUST_HAPPEN = {
 
 def results() -> dict[str, Any]:
     """What the core returns, the kinds of events and the last row of the history of every case; whether compiled."""
-    found: dict[str, Any] = {"compiled": hasattr(rock_on_springs, "py_func")}
+    found: dict[str, Any] = {"compiled": hasattr(static_state, "py_func")}
     for name, (pier, base, motion) in CASES.items():
-        call = call_rigid_base if isinstance(base, RigidBase) else call_springs
-        run, history = call(pier, base, motion, 8, 0.0, 5000)
+        run, history = written_run(Scene(pier, base, motion), 8, 0.0, 5000)
         rows = history[: run.rows]
         found[name] = {
             "run": run._asdict(),
             "events": [int(kind) for kind in rows[:, -1] if kind > SAMPLE],
             "end": list(rows[-1]),
-            "held": call is call_springs and bool(rows[:, HELD].any()),
+            "held": not isinstance(base, RigidBase) and bool(rows[:, HELD].any()),
         }
     return found
 

@@ -42,13 +42,14 @@ def main(arguments: argparse.Namespace) -> int:
     directory = arguments.out or Path("reports") / arguments.study.stem
 
     from rockbatch.accuracy import measure, reference, spread
-    from rockbatch.batch import ground_motions, plan
+    from rockbatch.batch import ground_motions
     from rockbatch.commands.progress import Progress
     from rockbatch.errors import InputError
     from rockbatch.files import write_whole
+    from rockbatch.plan import Plan
 
     motions = ground_motions(study)
-    runs = plan(study, motions)
+    runs = Plan(study, motions)
     chosen = spread(runs, arguments.runs)
     _say(f"{len(chosen)} of {len(runs)} runs: first their references, then a minute or so of measurements")
     found = []
@@ -113,7 +114,7 @@ def _same_study(directory: Path, digest: str, motions: Any) -> bool:
     return same and (directory / "peaks.csv").exists()
 
 
-def _report(directory: Path, study: Any, runs: list[Any]) -> Path:
+def _report(directory: Path, study: Any, runs: Any) -> Path:
     from rockbatch.batch import cores, outcomes
     from rockbatch.commands.run import responses
     from rockbatch.report import write_report

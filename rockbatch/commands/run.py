@@ -38,11 +38,13 @@ def main(arguments: argparse.Namespace) -> int:
     study = load_study(arguments.study, motions=arguments.motions)
     directory = arguments.out or Path("reports") / arguments.study.stem
 
-    from rockbatch.batch import compile_kernels, cores, ground_motions, outcomes, plan, table_of
+    from rockbatch.batch import compile_kernels, cores, ground_motions, outcomes, row_of
     from rockbatch.commands.progress import Progress
     from rockbatch.commands.summary import other_law, summary
     from rockbatch.core.kernel import is_compiled
-    from rockbatch.results import describe, write_results
+    from rockbatch.plan import Plan
+    from rockbatch.results import PEAKS, PeaksFile, describe, unusable_rows, write_info
+    from rockbatch.saved import read_saved
 
     motions = ground_motions(study)
     for file in motions.unusable:
@@ -52,7 +54,7 @@ def main(arguments: argparse.Namespace) -> int:
             if "check the unit" in note:
                 _say(f"{motion.name}: {note}")
     jobs = arguments.jobs or cores()
-    runs = plan(study, motions)
+    runs = Plan(study, motions)
     factors = (
         (len(motions.motions), "record"),
         (len(study.motions.polarity), "direction"),
@@ -63,17 +65,20 @@ def main(arguments: argparse.Namespace) -> int:
     _say(f"{counted} = {_count(len(runs), 'run')} on {_count(jobs, 'thread')}")
     if not is_compiled():
         _say("compiling the kernels (once per installation, about 15 s)")
-    compile_kernels(runs, study.output)
+    compile_kernels(study)
+    keep = study.output.histories != "none"
     finished: dict[int, Any] = {}
     interrupted = False
-    with Progress(len(runs)) as progress:
+    with PeaksFile(directory, study) as peaks, Progress(len(runs)) as progress:
         try:
             for index, outcome in outcomes(runs, study.numerics, jobs, study.output):
-                finished[index] = outcome
+                peaks.add(index, row_of(runs[index], outcome))
+                if keep:
+                    finished[index] = outcome
                 progress()
         except KeyboardInterrupt:
             interrupted = True
-    table = table_of(study, motions, runs, finished)
+        peaks.end_with(unusable_rows(motions))
     info = {
         "rockbatch": __version__,
         "created": datetime.datetime.now().astimezone().isoformat(timespec="seconds"),
@@ -81,30 +86,30 @@ def main(arguments: argparse.Namespace) -> int:
         **describe(study, motions),
         "versions": _versions(),
         "machine": f"{platform.system()} {platform.machine()}, {cores()} processors",
-        "runs": len(finished),
+        "runs": peaks.finished,
         "jobs": jobs,
         "wall_s": round(time.monotonic() - started, 3),
     }
-    write_results(directory, table, info)
+    write_info(directory, info)
     if interrupted:
-        _say(f"interrupted: {len(finished)} of {len(runs)} runs are in {directory / 'peaks.csv'}")
+        _say(f"interrupted: {peaks.finished} of {len(runs)} runs are in {directory / PEAKS}")
         return 130
 
     from rockbatch.report import write_report
 
     report = write_report(directory, responses(study, runs, finished))
     by_pga = [motion.name for motion in sorted(motions.motions, key=lambda motion: motion.pga)]
+    table = read_saved(directory).peaks
     print(summary(table, study.varied, by_pga))
     if warning := other_law(table):
         _say(warning)
-    failed = int((table["status"] == "failed").sum())
     _say(f"{directory / 'peaks.csv'}\n{directory / 'run.json'}\n{report}")
-    if failed:
-        _say(f"{_count(failed, 'row')} with status failed; the column reason says why")
-    return 1 if failed else 0
+    if peaks.failed:
+        _say(f"{_count(peaks.failed, 'row')} with status failed; the column reason says why")
+    return 1 if peaks.failed else 0
 
 
-def responses(study: Any, runs: list[Any], finished: dict[int, Any]) -> list[Any]:
+def responses(study: Any, runs: Any, finished: dict[int, Any]) -> list[Any]:
     """Histories of every run, where the study asks for them; a run that was refused has none."""
     if study.output.histories == "none":
         return []

@@ -9,9 +9,15 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
+MOST_RUNS = 1000
+"""Larger studies are told by their worst runs."""
+
+
 def summary(table: "pd.DataFrame", varied: tuple[str, ...], records: Sequence[str]) -> str:
     """Blocks of text, a line for each of ``records`` in their order, the status beside the value where it is not "ok"."""
     runs = table[table["case"] != ""]
+    if len(runs) > MOST_RUNS:
+        return _worst(runs, varied)
     place = {name: i for i, name in enumerate(records)}
     runs = runs.sort_values("record", key=lambda names: names.map(place), kind="stable")
     pier_keys = [name for name in varied if name in PIER_KEYS]
@@ -24,6 +30,14 @@ def summary(table: "pd.DataFrame", varied: tuple[str, ...], records: Sequence[st
         for values, block in runs.groupby(pier_keys, sort=False)
     ]
     return "\n\n".join(blocks)
+
+
+def _worst(runs: "pd.DataFrame", varied: tuple[str, ...]) -> str:
+    """How the runs of a large study ended, and the ten with the greatest rotations."""
+    ended = ", ".join(f"{count} {status}" for status, count in runs["status"].value_counts().items())
+    shown = ["record", "polarity", "scale", "case", *varied, "status", "theta_max_over_alpha", "theta_max_error"]
+    largest = runs.nlargest(10, "theta_max_over_alpha")[shown]
+    return f"{len(runs)} runs: {ended}\nThe largest theta_max/alpha\n{largest.to_string(index=False)}"
 
 
 def other_law(table: "pd.DataFrame") -> str:

@@ -2,16 +2,16 @@
 
 import math
 
-from rockbatch.core.kernel import kernel
+from rockbatch.core.kernel import inlined, kernel
 from rockbatch.core.springs import within_yield, z_rate
-from rockbatch.core.types import Contact, Geometry, State
+from rockbatch.core.types import LEFT, Contact, Geometry, State
 
 
-@kernel
+@inlined
 def geometry(m, theta):
     """Pivots and levers at rotation ``theta`` (model: paper, eqs. 3–7; finite: THEORY.md)."""
     b, h = m.half_width, m.height
-    if m.finite:
+    if m.finite is not None:
         s, c = math.sin(theta), math.cos(theta)
         drop = h * (1.0 - c)
         arm_left, arm_right = b * c + h * s, -b * c + h * s
@@ -33,7 +33,7 @@ def geometry(m, theta):
     )  # fmt: skip
 
 
-@kernel
+@inlined
 def accelerations(m, y, contact, at, horizontal, vertical):
     """v̈ [m/s²] and θ̈ [rad/s²] of state ``y`` under ground accelerations [m/s²]; ``at`` is its geometry."""
     force_left = m.yield_force * y.z_left
@@ -42,19 +42,19 @@ def accelerations(m, y, contact, at, horizontal, vertical):
     lever = at.lever + side * at.swing
     moment = -force_left * at.moment_left - force_right * at.moment_right - lever * horizontal
     effective = m.height
-    if m.finite:
+    if m.finite is not None:
         effective = lever
         moment -= lever * (at.lever_slope + side * at.swing_slope) * y.omega * y.omega
     v_acceleration = -m.gravity - vertical - force_left - force_right
-    if contact.held == 0:
-        return v_acceleration, moment / (m.inertia + effective * effective)
+    if contact.held == 0.0:
+        return v_acceleration, moment * (1.0 / (m.inertia + effective * effective))
     # A held pivot neither lifts nor presses: its acceleration is zero (Filippov's sliding mode).
-    if contact.held < 0:
+    if contact.held < 0.0:
         return v_acceleration, -(v_acceleration + at.bend_left * y.omega * y.omega) / at.arm_left
     return v_acceleration, -(v_acceleration + at.bend_right * y.omega * y.omega) / at.arm_right
 
 
-@kernel
+@inlined
 def rates(m, y, contact, horizontal, vertical):
     """Right-hand side: the rates of all state variables."""
     at = geometry(m, y.theta)
@@ -66,22 +66,22 @@ def rates(m, y, contact, horizontal, vertical):
         y.omega,
         v_acceleration,
         theta_acceleration,
-        z_rate(y.z_left, left, contact.left_yields, m.yield_deflection, m.exponent),
-        z_rate(y.z_right, right, contact.right_yields, m.yield_deflection, m.exponent),
+        z_rate(y.z_left, left, contact.left_yields, m.stiffness, m.exponent),
+        z_rate(y.z_right, right, contact.right_yields, m.stiffness, m.exponent),
     )
 
 
 @kernel
 def pivot_acceleration(m, y, contact, side, horizontal, vertical):
-    """Vertical acceleration [m/s²] of the pivot on ``side`` (−1 left, 1 right)."""
+    """Vertical acceleration [m/s²] of the pivot on ``side`` (LEFT or RIGHT)."""
     at = geometry(m, y.theta)
     v_acceleration, theta_acceleration = accelerations(m, y, contact, at, horizontal, vertical)
-    if side < 0:
+    if side == LEFT:
         return v_acceleration + at.arm_left * theta_acceleration + at.bend_left * y.omega * y.omega
     return v_acceleration + at.arm_right * theta_acceleration + at.bend_right * y.omega * y.omega
 
 
-@kernel
+@inlined
 def _along(y, k, h):
     return State(
         y.v + h * k.v,
@@ -93,7 +93,7 @@ def _along(y, k, h):
     )
 
 
-@kernel
+@inlined
 def step(m, y, k1, contact, ground, h):
     """One Runge–Kutta step of order 4 from ``y`` over ``h`` [s]; ``k1`` are the rates at ``y``."""
     half = 0.5 * h
@@ -124,8 +124,8 @@ def step(m, y, k1, contact, ground, h):
 @kernel
 def without(contact, side):
     """Contacts once the pivot on ``side`` is free."""
-    held = 0 if contact.held == side else contact.held
-    if side < 0:
+    held = 0.0 if contact.held == side else contact.held
+    if side == LEFT:
         return Contact(0.0, contact.right, 0.0, contact.right_yields, held)
     return Contact(contact.left, 0.0, contact.left_yields, 0.0, held)
 
@@ -133,8 +133,8 @@ def without(contact, side):
 @kernel
 def touching(contact, side, yields):
     """Contacts once the pivot on ``side`` is on its spring, on the branch that ``yields`` says."""
-    held = 0 if contact.held == side else contact.held
-    if side < 0:
+    held = 0.0 if contact.held == side else contact.held
+    if side == LEFT:
         return Contact(1.0, contact.right, yields, contact.right_yields, held)
     return Contact(contact.left, 1.0, contact.left_yields, yields, held)
 
@@ -151,4 +151,4 @@ def holding(contact, side, yields):
 @kernel
 def on_ground(contact):
     """Number of pivots that are not in the air."""
-    return int(contact.left + contact.right) + abs(contact.held)
+    return int(contact.left + contact.right + abs(contact.held))

@@ -4,23 +4,12 @@ Each pivot has two signals. On its spring: −z (separation) and the spring law'
 yield). Free: the gap to the waiting support (landing). Held: the two conditions under which it stops being held.
 """
 
-from typing import NamedTuple
-
 from rockbatch.core.equations import geometry, holding, pivot_acceleration, touching, without
-from rockbatch.core.kernel import kernel
-from rockbatch.core.types import BOUC_WEN, ELASTIC
+from rockbatch.core.kernel import inlined, kernel
+from rockbatch.core.types import BOUC_WEN, ELASTIC, LEFT, RIGHT, Signals
 
 NO_ACCELERATION = 1e-12
 """Of g: what the balance of a pier at rest leaves as rounding; it must not decide which way a pivot goes."""
-
-
-class Signals(NamedTuple):
-    """Four signals; those of contacts first, then those of spring laws."""
-
-    left: float
-    right: float
-    left_law: float
-    right_law: float
 
 
 @kernel
@@ -29,7 +18,7 @@ def at_rest(m):
     return 1e-12 * m.gravity * (m.yield_deflection / m.yield_force) ** 0.5 * 0.7071067811865476
 
 
-@kernel
+@inlined
 def _velocity(velocity, acceleration, rest):
     """A velocity that is nothing but rounding says nothing: the acceleration decides where it goes."""
     if abs(velocity) > rest:
@@ -37,13 +26,13 @@ def _velocity(velocity, acceleration, rest):
     return rest if acceleration > 0.0 else (-rest if acceleration < 0.0 else 0.0)
 
 
-@kernel
+@inlined
 def _on_spring(m, z, z_rate, yields, velocity, acceleration, rest):
     """Values and slopes of the two signals of a pivot on its spring."""
     if abs(velocity) <= rest:
         if abs(acceleration) <= NO_ACCELERATION * m.gravity:
             acceleration = 0.0
-        z_rate = _velocity(velocity, acceleration, rest) / m.yield_deflection
+        z_rate = _velocity(velocity, acceleration, rest) * m.stiffness
     contact = -z
     contact_slope = -z_rate
     if m.law == ELASTIC:
@@ -63,7 +52,7 @@ def _held(m, y, contact, side, horizontal, vertical):
     return lifted, pressed
 
 
-@kernel
+@inlined
 def signals(m, y, k, contact, rest_left, rest_right, rest, horizontal, vertical):
     """Values and slopes of all signals in state ``y`` with rates ``k``; ``rest_*`` are the supports' positions [m]."""
     at = geometry(m, y.theta)
@@ -88,16 +77,16 @@ def signals(m, y, k, contact, rest_left, rest_right, rest, horizontal, vertical)
     else:
         right = y.v + at.lift_right - rest_right
         right_slope = _velocity(right_velocity, right_acceleration, rest)
-    if contact.held < 0:
-        left, left_law = _held(m, y, contact, -1, horizontal, vertical)
+    if contact.held < 0.0:
+        left, left_law = _held(m, y, contact, LEFT, horizontal, vertical)
         left_slope = 0.0
-    elif contact.held > 0:
-        right, right_law = _held(m, y, contact, 1, horizontal, vertical)
+    elif contact.held > 0.0:
+        right, right_law = _held(m, y, contact, RIGHT, horizontal, vertical)
         right_slope = 0.0
     return Signals(left, right, left_law, right_law), Signals(left_slope, right_slope, left_law_slope, right_law_slope)
 
 
-@kernel
+@inlined
 def quiet(f0, d0, f1, d1):
     """Whether a signal surely stayed positive over a step, from its ends alone."""
     return f0 > 0.0 and f1 > 0.0 and not (d0 < 0.0 and d1 > 0.0)

@@ -2,14 +2,14 @@
 
 from rockbatch.core.equations import geometry
 from rockbatch.core.kernel import kernel
-from rockbatch.core.types import State
+from rockbatch.core.types import LEFT, State
 
 
 @kernel
 def land(m, y, side):
-    """State after the pivot on ``side`` (−1 left, 1 right) has met its waiting support."""
+    """State after the pivot on ``side`` (LEFT or RIGHT) has met its waiting support."""
     at = geometry(m, y.theta)
-    arm = at.arm_left if side < 0 else at.arm_right
+    arm = at.arm_left if side == LEFT else at.arm_right
     inertia = m.inertia + at.lever * at.lever
     velocity = y.v_rate + arm * y.omega
     impulse = -(1.0 - m.epsilon) * velocity / (1.0 + arm * arm / inertia)

@@ -42,12 +42,18 @@ CACHE_FOLDER = _usable_folder()
 _OPTIONS: dict[str, Any] = {
     "error_model": "numpy",  # a division by zero gives inf, as in every array library, and costs no branch
     "nogil": True,  # runs go side by side in threads
+    "_nrt": False,  # kernels allocate nothing, and need not count who else holds their arrays
 }
 
 
 def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
     """Compile a building block; it is inlined into the entries that use it."""
     return numba.njit(**_OPTIONS)(function)
+
+
+def inlined(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Compile a building block that becomes part of its callers: loops over it can be turned into vector code."""
+    return numba.njit(forceinline=True, **_OPTIONS)(function)
 
 
 def entry(function: Callable[..., Any]) -> Callable[..., Any]:

@@ -7,14 +7,10 @@ nothing. What is left over tests the equations, the events and the impacts at on
 
 import math
 
-import numpy as np
-
 from rockbatch.core.equations import accelerations, geometry, rates
 from rockbatch.core.kernel import entry, kernel
 from rockbatch.core.rigid_base import acceleration
 from rockbatch.core.types import IMPACT_BOTH, IMPACT_LEFT, IMPACT_RIGHT, LIFT_OFF, Contact, State
-
-TERMS = 9  # kinetic, potential, elastic, input, plastic, impact, p_delta, constraint, remainder
 
 
 @kernel
@@ -24,18 +20,17 @@ def _state(row):
 
 @kernel
 def _contact(row):
-    return Contact(row[7], row[8], row[9], row[10], int(row[11]))
+    return Contact(row[7], row[8], row[9], row[10], row[11])
 
 
 @kernel
-def _ground_at(samples, dt, middle, t):
-    """Ground acceleration at ``t``, in the sampling interval in which ``middle`` lies; zero after the record."""
-    if len(samples) == 0:
-        return 0.0
-    j = int(middle / dt)
-    first = samples[j] if j < len(samples) else 0.0
-    second = samples[j + 1] if j + 1 < len(samples) else 0.0
-    return first + (second - first) * (t / dt - j)
+def _ground_at(ground, dt, middle, t):
+    """Ground accelerations, horizontal and vertical, at ``t``, in the sampling interval in which ``middle`` lies."""
+    sample = int(middle / dt)
+    if sample >= len(ground):
+        return 0.0, 0.0
+    after = t - sample * dt
+    return ground[sample, 0] + after * ground[sample, 1], ground[sample, 2] + after * ground[sample, 3]
 
 
 @kernel
@@ -46,7 +41,7 @@ def _lever(at, contact):
 @kernel
 def _stored(m, y, contact):
     """Kinetic, potential and elastic energy per unit mass [J/kg]."""
-    lever = _lever(geometry(m, y.theta), contact) if m.finite else m.height
+    lever = _lever(geometry(m, y.theta), contact) if m.finite is not None else m.height
     kinetic = 0.5 * y.v_rate * y.v_rate + 0.5 * (m.inertia + lever * lever) * y.omega * y.omega
     elastic = 0.5 * m.yield_force * m.yield_deflection * (y.z_left * y.z_left + y.z_right * y.z_right)
     return kinetic, m.gravity * y.v, elastic
@@ -62,13 +57,13 @@ def _powers(m, y, k, contact, horizontal, vertical):
     plastic = contact.left * force_left * (y.v_rate + at.arm_left * y.omega - m.yield_deflection * k.z_left)
     plastic += contact.right * force_right * (y.v_rate + at.arm_right * y.omega - m.yield_deflection * k.z_right)
     p_delta = 0.0
-    if not m.finite:
+    if m.finite is None:
         p_delta = -m.height * y.theta * (force_left + force_right) * y.omega
     constraint = 0.0
     if contact.held != 0:
         released = Contact(contact.left, contact.right, contact.left_yields, contact.right_yields, 0)
         _, free = accelerations(m, y, released, at, horizontal, vertical)
-        lever = _lever(at, contact) if m.finite else m.height
+        lever = _lever(at, contact) if m.finite is not None else m.height
         constraint = (m.inertia + lever * lever) * (k.omega - free) * y.omega
     return shaken, plastic, p_delta, constraint
 
@@ -101,7 +96,7 @@ def _middle(y, k, y_end, k_end, h):
 
 
 @entry
-def ledger_on_springs(m, rows, horizontal, vertical, dt):
+def ledger_on_springs(m, rows, ground, dt, out):
     """Ledger of a run on two springs.
 
     Parameters
@@ -109,15 +104,14 @@ def ledger_on_springs(m, rows, horizontal, vertical, dt):
     m : Springs
     rows : ndarray, shape (n, 13)
         History as the run wrote it, every step.
-    horizontal, vertical, dt
-        The motion of the run; ``vertical`` may be empty.
-
-    Returns
-    -------
-    ndarray, shape (n, 9)
-        The :data:`TERMS` at every row [J/kg]; stored energies relative to the start, the others summed since.
+    ground : ndarray, shape (npts, 4)
+        The motion of the run, of :func:`rockbatch.core.ground.ground_rows`.
+    dt : float
+        Its sampling interval [s].
+    out : ndarray of zeros, shape (n, 9)
+        Filled with kinetic, potential, elastic, input, plastic, impact, p_delta, constraint and remainder [J/kg] at
+        every row; stored energies relative to the start, the others summed since.
     """
-    out = np.zeros((len(rows), TERMS))
     y = _state(rows[0])
     kinetic0, potential0, elastic0 = _stored(m, y, _contact(rows[0]))
     shaken, plastic, impact, p_delta, constraint = 0.0, 0.0, 0.0, 0.0, 0.0
@@ -129,7 +123,7 @@ def ledger_on_springs(m, rows, horizontal, vertical, dt):
             at = geometry(m, y.theta)
             if kind in (IMPACT_LEFT, IMPACT_RIGHT, IMPACT_BOTH):
                 impact += _impact_loss(m, y, kind)
-            if m.finite:
+            if m.finite is not None:
                 was, now = _lever(at, _contact(rows[i - 1])), _lever(at, contact)
                 both = at.lever * at.lever * (y_end.omega * y_end.omega - y.omega * y.omega)
                 constraint += 0.5 * (now * now * y_end.omega * y_end.omega - was * was * y.omega * y.omega - both)
@@ -137,8 +131,8 @@ def ledger_on_springs(m, rows, horizontal, vertical, dt):
             t, t_end = rows[i - 1, 0], rows[i, 0]
             h = t_end - t
             t_middle = 0.5 * (t + t_end)
-            ah, ah_end = _ground_at(horizontal, dt, t_middle, t), _ground_at(horizontal, dt, t_middle, t_end)
-            av, av_end = _ground_at(vertical, dt, t_middle, t), _ground_at(vertical, dt, t_middle, t_end)
+            ah, av = _ground_at(ground, dt, t_middle, t)
+            ah_end, av_end = _ground_at(ground, dt, t_middle, t_end)
             ah_middle, av_middle = 0.5 * (ah + ah_end), 0.5 * (av + av_end)
             k = rates(m, y, contact, ah, av)
             k_end = rates(m, y_end, contact, ah_end, av_end)
@@ -157,17 +151,15 @@ def ledger_on_springs(m, rows, horizontal, vertical, dt):
         line[3], line[4], line[5], line[6], line[7] = shaken, plastic, impact, p_delta, constraint
         line[8] = line[0] + line[1] + line[2] - shaken + plastic + impact - p_delta - constraint
         y = y_end
-    return out
 
 
 @entry
-def ledger_on_rigid_base(m, rows, horizontal, vertical, dt):
+def ledger_on_rigid_base(m, rows, ground, dt, out):
     """Ledger of a run on a rigid base, over the moment of inertia about a pivot, I0/M + R0².
 
     ``m`` is a Block, ``rows`` of shape (n, 4) its history; otherwise as :func:`ledger_on_springs`. At rest, where the
     block is held by both corners, nothing changes.
     """
-    out = np.zeros((len(rows), TERMS))
     theta, omega = rows[0, 1], rows[0, 2]
     kinetic0 = 0.5 * omega * omega
     height0 = math.cos(m.alpha - abs(theta))
@@ -183,8 +175,8 @@ def ledger_on_rigid_base(m, rows, horizontal, vertical, dt):
             h = t_end - t
             t_middle = 0.5 * (t + t_end)
             side = 1.0 if theta + end_theta > 0.0 else -1.0
-            ah, ah_end = _ground_at(horizontal, dt, t_middle, t), _ground_at(horizontal, dt, t_middle, t_end)
-            av, av_end = _ground_at(vertical, dt, t_middle, t), _ground_at(vertical, dt, t_middle, t_end)
+            ah, av = _ground_at(ground, dt, t_middle, t)
+            ah_end, av_end = _ground_at(ground, dt, t_middle, t_end)
             k = acceleration(m, theta, side, ah, av)
             k_end = acceleration(m, end_theta, side, ah_end, av_end)
             middle_theta = 0.5 * (theta + end_theta) + 0.125 * h * (omega - end_omega)
@@ -199,7 +191,6 @@ def ledger_on_rigid_base(m, rows, horizontal, vertical, dt):
         line[3], line[5] = shaken, impact
         line[8] = line[0] + line[1] - shaken + impact
         theta, omega = end_theta, end_omega
-    return out
 
 
 @kernel

@@ -2,22 +2,12 @@
 
 import math
 
+import numpy as np
+
+from rockbatch.core.ground import ground_rows
 from rockbatch.core.kernel import entry, kernel
 from rockbatch.core.outcome import fallen, patience, undecided
-from rockbatch.core.roots import (
-    AFTER,
-    BEFORE,
-    CLOSE,
-    LEAST,
-    NEVER,
-    NOW,
-    TRIALS,
-    Bracket,
-    largest_within,
-    narrowed,
-    outlook,
-    secant,
-)
+from rockbatch.core.roots import BISECT_AFTER, CLOSE, TRIALS, falls, largest_within
 from rockbatch.core.types import (
     BEFORE_EVENT,
     CHATTER,
@@ -30,6 +20,7 @@ from rockbatch.core.types import (
     STEP,
     SURVIVED,
     UNDECIDED,
+    Block,
     Ground,
     RigidRun,
 )
@@ -37,6 +28,8 @@ from rockbatch.core.types import (
 EVENTS_IN_A_STEP = 20_000
 HISTORY_COLUMNS = 4  # t, theta, omega, kind of row
 NEGLIGIBLE = 1e-13  # of α: height of the bounces that are summed up instead of followed
+
+_NO_HISTORY = np.empty((0, HISTORY_COLUMNS))
 
 
 @kernel
@@ -107,37 +100,24 @@ def time_to_rest(m, omega, horizontal, vertical):
 
 @kernel
 def _landing(m, theta, omega, k1, side, ground, h, end_theta, end_omega):
-    """Time in (0, h] at which the block is back on both corners, −1 if it is not."""
-    f0, d0 = side * theta, side * omega
-    f1, d1 = side * end_theta, side * end_omega
-    look, x = outlook(f0, d0, f1, d1, h)
-    if look == NEVER:
-        return -1.0
-    if look == NOW:
-        return 0.0
-    bracket = Bracket(0.0, f0, h, f1)
-    if look == AFTER:
-        fx = side * rocking_step(m, theta, omega, k1, side, ground, x)[0]
-        while fx <= 0.0:
-            x *= 0.5
-            if x < LEAST * h:
-                return 0.0
-            fx = side * rocking_step(m, theta, omega, k1, side, ground, x)[0]
-        bracket = Bracket(x, fx, h, f1)
-    elif look == BEFORE:
-        fx = side * rocking_step(m, theta, omega, k1, side, ground, x)[0]
-        if fx > 0.0:
-            return -1.0
-        bracket = Bracket(0.0, f0, x, fx)
-    for _ in range(TRIALS):
-        if bracket.fb == 0.0:
+    """Time in [0, h] at which the block is back on both corners, −1 if it is not."""
+    a, f_a, d_a = 0.0, side * theta, side * omega
+    b, f_b, d_b = h, side * end_theta, side * end_omega
+    at = falls(f_a, d_a, f_b, d_b, h)
+    for trial in range(TRIALS):
+        if at < 0.0 or at <= CLOSE * h:
             break
-        x = secant(bracket)
-        moved = abs(x - bracket.b)
-        bracket = narrowed(bracket, x, side * rocking_step(m, theta, omega, k1, side, ground, x)[0])
-        if moved <= CLOSE * h:
-            break
-    return bracket.b
+        x = a + at if trial < BISECT_AFTER or trial % 2 == 0 else 0.5 * (a + b)
+        theta_x, omega_x = rocking_step(m, theta, omega, k1, side, ground, x)
+        f_x, d_x = side * theta_x, side * omega_x
+        if falls(f_a, d_a, f_x, d_x, x - a) >= 0.0:
+            b, f_b, d_b = x, f_x, d_x
+        else:
+            a, f_a, d_a = x, f_x, d_x
+        at = falls(f_a, d_a, f_b, d_b, b - a)
+        if at >= 0.0 and abs(a + at - x) <= CLOSE * h:
+            return x
+    return a + at if at >= 0.0 else -1.0
 
 
 @kernel
@@ -152,35 +132,79 @@ def _write(history, row, t, theta, omega, kind):
     return row + 1
 
 
-def rock_on_rigid_base(
-    m, theta, omega, horizontal, vertical, dt, substeps, quiet_samples, history, locate, every_step=False
-):
-    """Run of the pier ``m`` (Block) under one motion.
+def run_line(m, theta, omega, dt, substeps, quiet_samples, first_row, npts):
+    """A run as :func:`rock_one_by_one` takes it: numbers only.
 
     Parameters
     ----------
+    m : Block
     theta, omega : float
         Rotation [rad] and angular velocity [rad/s] at the start; 0, 0 is rest.
-    horizontal, vertical, dt, substeps, quiet_samples, locate, every_step
+    dt, substeps, quiet_samples, first_row, npts
+        As for the pier on two springs.
+    """
+    return (*m, theta, omega, dt, substeps, quiet_samples, first_row, npts)
+
+
+def rock_one_by_one(lines, ground, stop, locate=True, every_step=False, history=_NO_HISTORY):
+    """Runs of piers on a rigid base.
+
+    Parameters
+    ----------
+    lines : ndarray, shape (runs, 11)
+        Of :func:`run_line`.
+    ground, stop, locate, every_step
         As for the pier on two springs.
     history : ndarray, shape (rows, 4)
-        Filled with every sample and both sides of every event, as far as it goes; empty for none.
+        For a single run: filled with every sample and both sides of every event, as far as it goes.
 
     Returns
     -------
-    RigidRun
+    ndarray, shape (runs, 9)
+        As RigidRun has it; NaN for those that were stopped.
     """
-    return RigidRun(
-        *_run(m, theta, omega, horizontal, vertical, dt, substeps, quiet_samples, history, locate, every_step)
-    )
+    results = np.full((len(lines), len(RigidRun._fields)), np.nan)
+    _rock_all(lines, ground, locate, every_step, history, stop, results)
+    return results
+
+
+def rock_on_rigid_base(
+    m, theta, omega, horizontal, vertical, dt, substeps, quiet_samples, history, locate, every_step=False
+):
+    """One run, of the pier ``m`` (Block) under one motion; RigidRun.
+
+    ``horizontal`` and ``vertical`` are ground accelerations [m/s²], shape (npts,), the vertical one may be empty; for
+    the others see :func:`run_line` and :func:`rock_one_by_one`.
+    """
+    lines = np.array([run_line(m, theta, omega, dt, substeps, quiet_samples, 0, len(horizontal))])
+    ground = ground_rows(horizontal, vertical, dt)
+    return rigid_run(rock_one_by_one(lines, ground, np.zeros(1, np.uint8), locate, every_step, history)[0])
+
+
+def rigid_run(line):
+    """RigidRun of a line of results."""
+    run = RigidRun(*line.tolist())
+    counts = ("status", "impacts", "lift_offs", "rows")
+    return run._replace(**{name: int(getattr(run, name)) for name in counts})
 
 
 @entry
-def _run(m, theta, omega, horizontal, vertical, dt, substeps, quiet_samples, history, locate, every_step):
+def _rock_all(lines, ground, locate, every_step, history, stop, results):
+    for i in range(len(lines)):
+        if stop[0] != 0:
+            return
+        line = lines[i]
+        m = Block(line[0], line[1], line[2], line[3])
+        first = int(line[9])
+        motion = ground[first : first + int(line[10])]
+        _rock(m, line[4], line[5], motion, line[6], int(line[7]), int(line[8]), locate, every_step, history, results[i])
+
+
+@kernel
+def _rock(m, theta, omega, motion, dt, substeps, quiet_samples, locate, every_step, history, result):
     h = dt / substeps
     recording = history.shape[0] > 0
-    has_vertical = len(vertical) > 0
-    npts = len(horizontal)
+    npts = len(motion)
     samples = npts - 1 + quiet_samples
     longest = samples + patience(m.p, dt)
     resting = theta == 0.0 and omega == 0.0
@@ -197,20 +221,15 @@ def _run(m, theta, omega, horizontal, vertical, dt, substeps, quiet_samples, his
 
     sample = 0
     while sample < samples or (sample < longest and not resting and undecided(theta, omega, m.alpha, m.p)):
-        a0 = horizontal[sample] if sample < npts else 0.0
-        a1 = horizontal[sample + 1] if sample + 1 < npts else 0.0
-        a_slope = (a1 - a0) / dt
-        c0, c1, c_slope = 0.0, 0.0, 0.0
-        if has_vertical:
-            c0 = vertical[sample] if sample < npts else 0.0
-            c1 = vertical[sample + 1] if sample + 1 < npts else 0.0
-            c_slope = (c1 - c0) / dt
-            if min(c0, c1) <= -m.gravity:  # the ground drops away from under the block
-                x = 0.0 if c0 <= -m.gravity else (-m.gravity - c0) / c_slope
-                t_flight = sample * dt + x
-                t = t_flight
-                status = FLIGHT
-                break
+        a0, a_slope, c0, c_slope = 0.0, 0.0, 0.0, 0.0
+        if sample < npts:
+            a0, a_slope, c0, c_slope = motion[sample, 0], motion[sample, 1], motion[sample, 2], motion[sample, 3]
+        if min(c0, c0 + c_slope * dt) <= -m.gravity:  # the ground drops away from under the block
+            x = 0.0 if c0 <= -m.gravity else (-m.gravity - c0) / c_slope
+            t_flight = sample * dt + x
+            t = t_flight
+            status = FLIGHT
+            break
         if resting and lift_off(m, Ground(a0, a_slope, c0, c_slope), dt)[0] < 0.0:
             sample += 1
             t = sample * dt
@@ -300,4 +319,12 @@ def _run(m, theta, omega, horizontal, vertical, dt, substeps, quiet_samples, his
 
     if status == SURVIVED and sample >= longest and not resting and undecided(theta, omega, m.alpha, m.p):
         status = UNDECIDED
-    return (status, t, peak, t_peak, impacts, lift_offs, t_flight, t_rest, rows)
+    result[0] = status
+    result[1] = t
+    result[2] = peak
+    result[3] = t_peak
+    result[4] = impacts
+    result[5] = lift_offs
+    result[6] = t_flight
+    result[7] = t_rest
+    result[8] = rows

@@ -1,19 +1,12 @@
-"""Crossings and extrema inside a step: cubic Hermite to see them, regula falsi to locate them."""
+"""Crossings and extrema inside a step, by the cubic Hermite polynomial through its ends."""
 
 import math
-from typing import NamedTuple
 
-from rockbatch.core.kernel import kernel
+from rockbatch.core.kernel import inlined, kernel
 
-TRIALS = 80  # regula falsi needs about six
-LEAST = 1e-12  # of a step: a signal that has not left its surface by then has not left it
-CLOSE = 1e-14  # of a step: how far apart the last two trials may be
-
-NEVER = 0
-NOW = 1
-WITHIN = 2
-AFTER = 3
-BEFORE = 4
+TRIALS = 60  # a handful is enough
+CLOSE = 1e-12  # of a step: how well the time of an event is known
+BISECT_AFTER = 8  # trials, from which every other one halves the interval
 
 
 @kernel
@@ -43,51 +36,61 @@ def turning_point(f0, d0, f1, d1, h):
     return h * min(max(s, 0.0), 1.0)
 
 
-class Bracket(NamedTuple):
-    """Two times whose signals differ in sign; ``b`` is the latest trial."""
-
-    a: float
-    fa: float
-    b: float
-    fb: float
+@kernel
+def _root(f0, d0, f1, d1, h, start, end):
+    """Zero in [start, end] of the cubic, positive at ``start`` and not at ``end``: Newton, halving where it leaps out."""
+    difference = f1 - f0
+    c1 = h * d0
+    c3 = c1 + h * d1 - 2.0 * difference
+    c2 = difference - c1 - c3
+    low, high = start / h, end / h
+    s = 0.5 * (low + high)
+    for _ in range(TRIALS):
+        f = f0 + s * (c1 + s * (c2 + s * c3))
+        if f > 0.0:
+            low = s
+        else:
+            high = s
+        slope = c1 + s * (2.0 * c2 + s * 3.0 * c3)
+        s_next = s - f / slope
+        if not low <= s_next <= high:
+            s_next = 0.5 * (low + high)
+        if abs(s_next - s) <= 0.01 * CLOSE:
+            return h * s_next
+        s = s_next
+    return h * s
 
 
 @kernel
-def secant(bracket):
-    """Trial time within the bracket."""
-    return (bracket.a * bracket.fb - bracket.b * bracket.fa) / (bracket.fb - bracket.fa)
+def falls(f0, d0, f1, d1, h):
+    """When, in [0, h], a signal falls through zero, by the cubic through values and slopes at both ends; −1 if never.
 
-
-@kernel
-def narrowed(bracket, x, fx):
-    """Bracket after the trial ``x``: regula falsi with the weight of Anderson and Björck (1973)."""
-    if fx * bracket.fb < 0.0:
-        return Bracket(bracket.b, bracket.fb, x, fx)
-    weight = 1.0 - fx / bracket.fb
-    return Bracket(bracket.a, bracket.fa * (weight if weight > 0.0 else 0.5), x, fx)
-
-
-@kernel
-def outlook(f0, d0, f1, d1, h):
-    """What values and slopes at the ends of a step say about a signal that was positive: a code and a time.
-
-    NEVER: it does not fall through zero. NOW: it does at the very start. WITHIN: between start and end. AFTER: it
-    starts on its own surface, which counts only once it has left it; that may be at the time given or, halving it,
-    earlier. BEFORE: it is positive at both ends and may dip below zero at the time given.
+    A signal that starts on its own surface, or a rounding below it, counts once it has left it. Where the cubic does
+    not show that it has, half of the time is the guess.
     """
     if f0 <= 0.0:
         if d0 < 0.0 or (d0 == 0.0 and f1 < 0.0):
-            return NOW, 0.0
+            return 0.0
         if d0 == 0.0 or f1 > 0.0:
-            return NEVER, 0.0
-        return AFTER, 0.5 * h
+            return -1.0
+        if d1 < 0.0:
+            x = turning_point(f0, d0, f1, d1, h)
+            if hermite(f0, d0, f1, d1, h, x) > 0.0:
+                return _root(f0, d0, f1, d1, h, x, h)
+        return 0.5 * h
     if f1 <= 0.0:
-        return WITHIN, h
+        return _root(f0, d0, f1, d1, h, 0.0, h)
     if d0 < 0.0 and d1 > 0.0:
         x = turning_point(f0, d0, f1, d1, h)
         if hermite(f0, d0, f1, d1, h, x) <= 0.0:
-            return BEFORE, x
-    return NEVER, 0.0
+            return _root(f0, d0, f1, d1, h, 0.0, x)
+    return -1.0
+
+
+@inlined
+def excess(d0, d1, h):
+    """The most by which a Hermite cubic with slopes d0 and d1 goes beyond its ends: |s (1 − s)²| ≤ 4/27."""
+    return 4.0 / 27.0 * h * (abs(d0) + abs(d1))
 
 
 @kernel

@@ -1,131 +1,110 @@
-"""A run on two springs: fixed steps of Runge–Kutta 4, events located inside the step, the rest of it redone."""
+"""Runs on two springs, side by side: fixed steps of Runge–Kutta 4, events located inside the step, the rest redone.
+
+A step, or what an event has left of it, is a piece. The lanes' pass takes all of them at once; where it reports that
+something may have happened, the piece is looked at here: it stands, or a shorter one is tried until its end is the
+event's time. Also these trials are taken by the pass, together with the other lanes' steps.
+"""
 
 import math
-from typing import NamedTuple
 
-from rockbatch.core.equations import geometry, on_ground, rates, step, touching, without
-from rockbatch.core.events import at_rest, quiet, settle, signals
-from rockbatch.core.impact import land, land_flat
+import numpy as np
+
+from rockbatch.core.equations import geometry, on_ground, rates, step
+from rockbatch.core.events import at_rest, quiet, signals
+from rockbatch.core.ground import ground_rows
 from rockbatch.core.kernel import entry, kernel
-from rockbatch.core.outcome import fallen, patience, undecided
-from rockbatch.core.roots import (
-    AFTER,
+from rockbatch.core.lanes import (
     BEFORE,
-    CLOSE,
-    LEAST,
-    NEVER,
+    BEFORE_RATES,
+    CALM,
+    CONTACT,
+    EVENTFUL,
+    GROUND,
+    LANES,
+    LENGTH,
+    LOWEST,
+    MODEL,
+    NEWS,
     NOW,
-    TRIALS,
-    Bracket,
-    largest_within,
-    lowest_within,
-    narrowed,
-    outlook,
-    secant,
+    PEAK,
+    PEAK_TIME,
+    RATES,
+    SAMPLE_TIME,
+    SLOPES,
+    START,
+    STEP,
+    SUBSTEP,
+    SUBSTEPS,
+    TURNED,
+    WATCH,
+    WATCHED,
+    model_of,
+    one_pass,
+    put_all,
+    put_state,
+    rows,
+    state_of,
+    watch,
 )
-from rockbatch.core.springs import plastic_work, static_deflection
+from rockbatch.core.loading import Loading, branches
+from rockbatch.core.outcome import fallen, patience, undecided
+from rockbatch.core.roots import BISECT_AFTER, CLOSE, TRIALS, falls, largest_within, lowest_within
+from rockbatch.core.springs import static_deflection
+from rockbatch.core.transitions import Supports, handle
 from rockbatch.core.types import (
     BEFORE_EVENT,
     BOUC_WEN,
     CHATTER,
-    EPP,
     FLIGHT,
-    HELD_LEFT,
-    HELD_RIGHT,
     IMPACT_BOTH,
     IMPACT_LEFT,
     IMPACT_RIGHT,
     OVERTURNED,
     SAMPLE,
-    SEPARATION_LEFT,
-    SEPARATION_RIGHT,
-    SPRING_LEFT,
-    SPRING_RIGHT,
-    STEP,
     SURVIVED,
     UNDECIDED,
     Contact,
     Ground,
+    Signals,
     SpringRun,
     State,
 )
+from rockbatch.core.types import STEP as BETWEEN_SAMPLES
 
-EVENTS_IN_A_STEP = 20_000  # more than any decaying sequence of impacts needs
+EVENTS_IN_A_SAMPLE = 20_000  # more than any decaying sequence of impacts needs
 HISTORY_COLUMNS = 13  # t, the six of State, the five of Contact, kind of row
 
+RUNNING = -1
+ACCEPT = -1.0  # verdicts on a piece, besides the number of an event
+SEARCH = -2.0
 
-class Supports(NamedTuple):
-    """Unstressed positions [m] at which the supports of free pivots wait."""
+# What only this module needs of a lane
+HELD = rows(1)  # Contact.held
+SUPPORTS = rows(2)
+REST = rows(1)  # velocity that counts as none [m/s]
+DONE = rows(1)  # of the step so far [s]
+EVENTS = rows(1)  # since the last sample
+VERDICT = rows(1)  # on the piece that is being taken: ACCEPT or the number of an event; SEARCH: not yet known
+TRIAL = rows(1)  # how many there were
+EARLY = rows(9)  # latest time in the piece before the event: length, signals, slopes
+LATE = rows(9)  # earliest time after it
+LOADING = rows(6)
+PLASTIC = rows(1)  # unstressed position of both supports at the start [m]
+IMPACTS = rows(1)
+SEPARATIONS = rows(1)
+FLIGHT_TIME = rows(1)
+DT = rows(1)
+SAMPLE_NUMBER = rows(1)  # of the last sample
+SAMPLES = rows(1)  # of record and quiet time
+LONGEST = rows(1)  # samples that a pier is waited for
+FIRST_ROW = rows(1)  # of the motion among the ground's rows
+NPTS = rows(1)
+ALPHA = rows(1)
+P = rows(1)
+RUN = rows(1)  # which run is in the lane
+CELLS = rows.cells
 
-    left: float
-    right: float
-
-
-class Extremes(NamedTuple):
-    """Greatest |θ| [rad] and when, lowest positions of the pivots on their springs [m]."""
-
-    peak: float
-    t_peak: float
-    low_left: float
-    low_right: float
-
-
-class Loading(NamedTuple):
-    """Where each spring's present branch began: unstressed position [m] and z; and the plastic work/F_y so far [m]."""
-
-    left: float
-    z_left: float
-    work_left: float
-    right: float
-    z_right: float
-    work_right: float
-
-
-@kernel
-def _include(extremes, y, reached, contact, at, at_end, t, h):
-    """Extremes with those of the piece of a step that starts at ``t`` in state ``y`` and ends after ``h``."""
-    found, peak = largest_within(y.theta, y.omega, reached.theta, reached.omega, h, extremes.peak)
-    t_peak = t + found if found >= 0.0 else extremes.t_peak
-    low_left, low_right = extremes.low_left, extremes.low_right
-    if contact.left != 0.0:
-        low_left = lowest_within(
-            y.v + at.lift_left, y.v_rate + at.arm_left * y.omega,
-            reached.v + at_end.lift_left, reached.v_rate + at_end.arm_left * reached.omega,
-            h, low_left,
-        )  # fmt: skip
-    if contact.right != 0.0:
-        low_right = lowest_within(
-            y.v + at.lift_right, y.v_rate + at.arm_right * y.omega,
-            reached.v + at_end.lift_right, reached.v_rate + at_end.arm_right * reached.omega,
-            h, low_right,
-        )  # fmt: skip
-    return Extremes(peak, t_peak, low_left, low_right)
-
-
-@kernel
-def _branch(m, was, now, begun, z_begun, place, z, work):
-    """Start of a spring's branch and its plastic work, brought up to an event at position ``place`` and ``z``."""
-    if was == now:
-        return begun, z_begun, work
-    unstressed = place - m.yield_deflection * z
-    if was != 0.0:
-        work += plastic_work(z_begun, z, begun - unstressed, m.yield_deflection, m.exponent)
-    return unstressed, z, work
-
-
-@kernel
-def _branches(m, loading, before, after, y):
-    """Loading of both springs, brought up to an event that changed the contacts from ``before`` to ``after``."""
-    at = geometry(m, y.theta)
-    left, z_left, work_left = _branch(
-        m, before.left_yields, after.left_yields,
-        loading.left, loading.z_left, y.v + at.lift_left, y.z_left, loading.work_left,
-    )  # fmt: skip
-    right, z_right, work_right = _branch(
-        m, before.right_yields, after.right_yields,
-        loading.right, loading.z_right, y.v + at.lift_right, y.z_right, loading.work_right,
-    )  # fmt: skip
-    return Loading(left, z_left, work_left, right, z_right, work_right)
+_NO_HISTORY = np.empty((0, HISTORY_COLUMNS))
 
 
 @kernel
@@ -137,123 +116,235 @@ def static_state(m):
 
 
 @kernel
-def _advance(m, y, k1, contact, ground, supports, rest, x, which):
-    """State after ``x`` [s] and its signal ``which``."""
-    reached = step(m, y, k1, contact, ground, x)
-    found, _ = signals(
-        m,
-        reached,
-        k1,
-        contact,
-        supports.left,
-        supports.right,
-        rest,
-        ground.horizontal + x * ground.horizontal_slope,
-        ground.vertical + x * ground.vertical_slope,
-    )
-    return found[which]
+def _contact_of(table, i):
+    at = CONTACT + i
+    return Contact(table[at], table[at + LANES], table[at + 2 * LANES], table[at + 3 * LANES], table[HELD + i])
 
 
 @kernel
-def _crossing(m, y, k1, contact, ground, supports, rest, h, which, f0, d0, f1, d1):
-    """Time in [0, h] at which signal ``which`` falls through zero, −1 if it does not."""
-    look, x = outlook(f0, d0, f1, d1, h)
-    if look == NEVER:
-        return -1.0
-    if look == NOW:
-        return 0.0
-    bracket = Bracket(0.0, f0, h, f1)
-    if look == AFTER:
-        fx = _advance(m, y, k1, contact, ground, supports, rest, x, which)
-        while fx <= 0.0:
-            x *= 0.5
-            if x < LEAST * h:
-                return 0.0
-            fx = _advance(m, y, k1, contact, ground, supports, rest, x, which)
-        bracket = Bracket(x, fx, h, f1)
-    elif look == BEFORE:
-        fx = _advance(m, y, k1, contact, ground, supports, rest, x, which)
-        if fx > 0.0:
-            return -1.0
-        bracket = Bracket(0.0, f0, x, fx)
-    for _ in range(TRIALS):
-        if bracket.fb == 0.0:  # else it would pass for a time before the root
-            break
-        x = secant(bracket)
-        moved = abs(x - bracket.b)
-        bracket = narrowed(bracket, x, _advance(m, y, k1, contact, ground, supports, rest, x, which))
-        if moved <= CLOSE * h:
-            break
-    return bracket.b
+def _supports_of(table, i):
+    return Supports(table[SUPPORTS + i], table[SUPPORTS + LANES + i])
 
 
 @kernel
-def handle(m, y, contact, supports, which, rest, horizontal, vertical):
-    """What event ``which`` makes of state, contacts and supports: returns them and the kind of event."""
-    side = -1 if which % 2 == 0 else 1
-    at = geometry(m, y.theta)
-    left = side < 0
-    velocity = y.v_rate + (at.arm_left if left else at.arm_right) * y.omega
-    position = y.v + (at.lift_left if left else at.lift_right)
-    yields_when_loaded = 1.0 if m.law == BOUC_WEN else 0.0
+def _loading_of(table, i):
+    at = LOADING + i
+    return Loading(
+        table[at], table[at + LANES], table[at + 2 * LANES],
+        table[at + 3 * LANES], table[at + 4 * LANES], table[at + 5 * LANES],
+    )  # fmt: skip
 
-    if contact.held == side:
-        if which < 2:
-            return y, touching(contact, side, yields_when_loaded), supports, HELD_LEFT if left else HELD_RIGHT
-        freed = Supports(position, supports.right) if left else Supports(supports.left, position)
-        return y, without(contact, side), freed, SEPARATION_LEFT if left else SEPARATION_RIGHT
 
-    if which >= 2:  # the spring changes its branch
-        if left:
-            z = -1.0 if m.law == EPP and contact.left_yields == 0.0 else y.z_left
-            changed = State(y.v, y.theta, y.v_rate, y.omega, z, y.z_right)
-            return changed, touching(contact, side, 1.0 - contact.left_yields), supports, SPRING_LEFT
-        z = -1.0 if m.law == EPP and contact.right_yields == 0.0 else y.z_right
-        changed = State(y.v, y.theta, y.v_rate, y.omega, y.z_left, z)
-        return changed, touching(contact, side, 1.0 - contact.right_yields), supports, SPRING_RIGHT
+@kernel
+def _signals_of(table, at):
+    return Signals(table[at], table[at + LANES], table[at + 2 * LANES], table[at + 3 * LANES])
 
-    if (contact.left if left else contact.right) != 0.0:  # separation
-        if left:
-            unstressed = State(y.v, y.theta, y.v_rate, y.omega, 0.0, y.z_right)
-            waiting = Supports(position, supports.right)
-        else:
-            unstressed = State(y.v, y.theta, y.v_rate, y.omega, y.z_left, 0.0)
-            waiting = Supports(supports.left, position)
-        after = without(contact, side)
-        kind = SEPARATION_LEFT if left else SEPARATION_RIGHT
-        if velocity <= rest:
-            after = settle(m, unstressed, contact, side, horizontal, vertical)
-            if on_ground(after) == on_ground(contact):
-                kind = HELD_LEFT if left else HELD_RIGHT
-        return unstressed, after, waiting, kind
 
-    # landing; the other pivot may land at the same instant
-    other_free = contact.left == 0.0 and contact.right == 0.0 and contact.held == 0
-    if other_free:
-        gap = y.v + (at.lift_right - supports.right if left else at.lift_left - supports.left)
-        other_velocity = y.v_rate + (at.arm_right if left else at.arm_left) * y.omega
-        if abs(gap) <= 1e-10 * m.yield_deflection and other_velocity < -rest:
-            landed = land_flat(m, y)
-            both = Contact(1.0, 1.0, yields_when_loaded, yields_when_loaded, 0)
-            if abs(m.epsilon * velocity) <= rest:
-                both = settle(m, landed, both, -1, horizontal, vertical)
-                both = settle(m, landed, both, 1, horizontal, vertical)
-            return landed, both, supports, IMPACT_BOTH
-    landed = land(m, y, side)
-    if abs(m.epsilon * velocity) > rest:
-        after = touching(contact, side, yields_when_loaded)
+@kernel
+def _ground_of(table, i, x):
+    """Ground at ``x`` [s] after the sample."""
+    at = GROUND + i
+    a_slope, c_slope = table[at + LANES], table[at + 3 * LANES]
+    return Ground(table[at] + x * a_slope, a_slope, table[at + 2 * LANES] + x * c_slope, c_slope)
+
+
+@kernel
+def _signals_at(table, i, m, y, k, contact, x):
+    """Signals and slopes in state ``y`` with rates ``k``, ``x`` [s] after the sample."""
+    ground = _ground_of(table, i, x)
+    return signals(
+        m, y, k, contact, table[SUPPORTS + i], table[SUPPORTS + LANES + i], table[REST + i],
+        ground.horizontal, ground.vertical,
+    )  # fmt: skip
+
+
+@kernel
+def _put_ground(table, i, ground, sample):
+    """The ground at ``sample``; zero after the record."""
+    if sample < table[NPTS + i]:
+        row = np.uintp(table[FIRST_ROW + i] + sample)  # unsigned: no index from the end is looked for
+        put_all(table, GROUND + i, (ground[row, 0], ground[row, 1], ground[row, 2], ground[row, 3]))
     else:
-        after = settle(m, landed, contact, side, horizontal, vertical)
-        supports = Supports(position, supports.right) if left else Supports(supports.left, position)
-    return landed, after, supports, IMPACT_LEFT if left else IMPACT_RIGHT
+        put_all(table, GROUND + i, (0.0, 0.0, 0.0, 0.0))
+
+
+@kernel
+def _put_contact(table, i, m, contact, supports):
+    """Contacts and supports, and what the pass watches while they stay."""
+    put_all(table, CONTACT + i, (contact.left, contact.right, contact.left_yields, contact.right_yields))
+    table[HELD + i] = contact.held
+    put_all(table, SUPPORTS + i, supports)
+    put_all(table, WATCH + i, watch(m.law, contact, supports, table[REST + i]))
+
+
+@kernel
+def _ready(table, i, m, contact, x, length):
+    """The next piece: from NOW, with RATES, at ``x`` [s] after the sample, over ``length`` [s]."""
+    f, d = _signals_at(table, i, m, state_of(table, NOW + i), state_of(table, RATES + i), contact, x)
+    put_all(table, SLOPES + i, d)
+    laws = (f.left_law > 0.0 or d.left_law > 0.0) and (f.right_law > 0.0 or d.right_law > 0.0)  # a turn leaves zero
+    positive = f.left > 0.0 and f.right > 0.0 and laws
+    table[WATCHED + i] = 0.0 if positive and contact.held == 0.0 else 1.0
+    _next_piece(table, i, x, length)
+
+
+@kernel
+def _next_piece(table, i, x, length):
+    table[START + i] = x
+    table[LENGTH + i] = length
+    table[VERDICT + i] = SEARCH
+    table[TRIAL + i] = 0.0
+
+
+@kernel
+def _begin(table, i, number, runs, ground, exponent, finite):
+    """Run ``number`` into lane ``i``, in its static state."""
+    for j in range(11):
+        table[MODEL + j * LANES + i] = runs[number, j]
+    dt, substeps, quiet_samples, first_row, npts = (
+        runs[number, 11],
+        runs[number, 12],
+        runs[number, 13],
+        runs[number, 14],
+        runs[number, 15],
+    )
+    m = model_of(table, i, exponent, finite)
+    size2 = m.half_width * m.half_width + m.height * m.height
+    p = math.sqrt(m.gravity * math.sqrt(size2) / (m.inertia + size2))
+    y = static_state(m)
+    plastic = y.v - m.yield_deflection * y.z_left
+    table[RUN + i] = number
+    table[DT + i] = dt
+    table[STEP + i] = dt / substeps
+    table[SUBSTEPS + i] = substeps
+    table[FIRST_ROW + i] = first_row
+    table[NPTS + i] = npts
+    table[SAMPLES + i] = npts - 1 + quiet_samples
+    table[LONGEST + i] = table[SAMPLES + i] + patience(p, dt)
+    table[ALPHA + i] = math.atan2(m.half_width, m.height)
+    table[P + i] = p
+    table[REST + i] = at_rest(m)
+    table[SAMPLE_NUMBER + i] = 0.0
+    table[SAMPLE_TIME + i] = 0.0
+    table[SUBSTEP + i] = 0.0
+    table[DONE + i] = 0.0
+    table[EVENTS + i] = 0.0
+    put_all(table, LOADING + i, (plastic, y.z_left, 0.0, plastic, y.z_right, 0.0))
+    table[PLASTIC + i] = plastic
+    table[PEAK + i] = 0.0
+    table[PEAK_TIME + i] = 0.0
+    put_all(table, LOWEST + i, (y.v, y.v))
+    table[IMPACTS + i] = 0.0
+    table[SEPARATIONS + i] = 0.0
+    table[FLIGHT_TIME + i] = math.nan
+    branch = 1.0 if m.law == BOUC_WEN else 0.0
+    contact = Contact(1.0, 1.0, branch, branch, 0.0)
+    _put_contact(table, i, m, contact, Supports(math.nan, math.nan))
+    _put_ground(table, i, ground, 0)
+    under = _ground_of(table, i, 0.0)
+    put_state(table, NOW + i, y)
+    put_state(table, RATES + i, rates(m, y, contact, under.horizontal, under.vertical))
+    _ready(table, i, m, contact, 0.0, table[STEP + i])
+
+
+@kernel
+def _earliest(early, early_slopes, late, late_slopes, h):
+    """Which signal falls through zero first within ``h`` [s], and when; −1 for none."""
+    which, first = -1, h
+    for j in range(4):
+        at = falls(early[j], early_slopes[j], late[j], late_slopes[j], h)
+        if at >= 0.0 and (which < 0 or at < first):
+            which, first = j, at
+    return which, first
+
+
+@kernel
+def _judge(table, i, m, y, end, k_end, contact, locate):
+    """Verdict on the piece from ``y`` to ``end``: ACCEPT, the number of the event at its end, or SEARCH for a shorter
+    one, whose length is set."""
+    x, length = table[START + i], table[LENGTH + i]
+    f1, d1 = _signals_at(table, i, m, end, k_end, contact, x + length)
+    trial = table[TRIAL + i]
+    if trial == 0.0:
+        f0, d0 = _signals_at(table, i, m, y, state_of(table, BEFORE_RATES + i), contact, x)
+        if (
+            quiet(f0.left, d0.left, f1.left, d1.left)
+            and quiet(f0.right, d0.right, f1.right, d1.right)
+            and quiet(f0.left_law, d0.left_law, f1.left_law, d1.left_law)
+            and quiet(f0.right_law, d0.right_law, f1.right_law, d1.right_law)
+        ):
+            return ACCEPT
+        if not locate:
+            for j in range(4):
+                if f1[j] <= 0.0:
+                    return float(j)
+            return ACCEPT
+        a, b = 0.0, length
+        which, at = _earliest(f0, d0, f1, d1, length)
+        f_a, d_a, f_b, d_b = f0, d0, f1, d1
+    else:
+        a, b = table[EARLY + i], table[LATE + i]
+        f_a, d_a = _signals_of(table, EARLY + LANES + i), _signals_of(table, EARLY + 5 * LANES + i)
+        f_b, d_b = _signals_of(table, LATE + LANES + i), _signals_of(table, LATE + 5 * LANES + i)
+        which, at = _earliest(f_a, d_a, f1, d1, length - a)
+        if which >= 0:
+            b, f_b, d_b = length, f1, d1
+        else:
+            a, f_a, d_a = length, f1, d1
+            which, at = _earliest(f_a, d_a, f_b, d_b, b - a)
+    if which < 0:  # nothing falls after all
+        if length == b:
+            return ACCEPT
+        table[VERDICT + i] = ACCEPT
+        table[LENGTH + i] = b
+        return SEARCH
+    at += a
+    close = CLOSE * table[STEP + i]
+    if abs(at - length) <= close:
+        return float(which)
+    if at - a <= close or trial > TRIALS:
+        table[VERDICT + i] = which
+    elif trial > BISECT_AFTER and trial % 2 == 0:
+        at = 0.5 * (a + b)
+    table[LENGTH + i] = at
+    table[TRIAL + i] = trial + 1.0
+    table[EARLY + i], table[LATE + i] = a, b
+    put_all(table, EARLY + LANES + i, f_a)
+    put_all(table, EARLY + 5 * LANES + i, d_a)
+    put_all(table, LATE + LANES + i, f_b)
+    put_all(table, LATE + 5 * LANES + i, d_b)
+    return SEARCH
+
+
+@kernel
+def _include(table, i, m, y, end, contact):
+    """Bring extremes up to those of the piece from ``y`` to ``end``."""
+    x, h = table[START + i], table[LENGTH + i]
+    found, peak = largest_within(y.theta, y.omega, end.theta, end.omega, h, table[PEAK + i])
+    if found >= 0.0:
+        table[PEAK + i] = peak
+        table[PEAK_TIME + i] = table[SAMPLE_TIME + i] + x + found
+    at, at_end = geometry(m, y.theta), geometry(m, end.theta)
+    if contact.left != 0.0:
+        table[LOWEST + i] = lowest_within(
+            y.v + at.lift_left, y.v_rate + at.arm_left * y.omega,
+            end.v + at_end.lift_left, end.v_rate + at_end.arm_left * end.omega,
+            h, table[LOWEST + i],
+        )  # fmt: skip
+    if contact.right != 0.0:
+        table[LOWEST + LANES + i] = lowest_within(
+            y.v + at.lift_right, y.v_rate + at.arm_right * y.omega,
+            end.v + at_end.lift_right, end.v_rate + at_end.arm_right * end.omega,
+            h, table[LOWEST + LANES + i],
+        )  # fmt: skip
 
 
 @kernel
 def _write(history, row, t, y, contact, kind):
-    """Row of a history, where there is room for it."""
+    """Row of a history, where there is room for it; the next row."""
     if row < history.shape[0]:
         line = history[row]
-        line[0] = t
+        line[0] = max(t, history[row - 1, 0]) if row > 0 else t  # sums of pieces are rounded, time does not go back
         line[1] = y.v
         line[2] = y.theta
         line[3] = y.v_rate
@@ -270,186 +361,308 @@ def _write(history, row, t, y, contact, kind):
 
 
 @kernel
+def _happen(table, i, m, y, contact, which, t, x, history, row):
+    """Event ``which`` at ``t`` [s], ``x`` [s] after the sample: status, new contacts and next row of the history."""
+    under = _ground_of(table, i, x)
+    if history.shape[0] > 0:
+        row = _write(history, row, t, y, contact, BEFORE_EVENT)
+    y, after, supports, kind = handle(
+        m, y, contact, _supports_of(table, i), which, table[REST + i], under.horizontal, under.vertical
+    )
+    if history.shape[0] > 0:
+        row = _write(history, row, t, y, after, kind)
+    landed = 2 if kind == IMPACT_BOTH else (1 if kind in (IMPACT_LEFT, IMPACT_RIGHT) else 0)
+    table[IMPACTS + i] += landed
+    # a pivot may land and be lifted at once
+    table[SEPARATIONS + i] += landed - on_ground(after) + on_ground(contact)
+    put_all(table, LOADING + i, branches(m, _loading_of(table, i), contact, after, y))
+    _put_contact(table, i, m, after, supports)
+    put_state(table, NOW + i, y)
+    put_state(table, RATES + i, rates(m, y, after, under.horizontal, under.vertical))
+    if after.left == 0.0 and after.right == 0.0 and after.held == 0.0:
+        if math.isnan(table[FLIGHT_TIME + i]):
+            table[FLIGHT_TIME + i] = t
+        if m.guided == 0.0:
+            beyond = abs(y.theta) >= table[ALPHA + i] and y.theta * y.omega > 0.0
+            return (OVERTURNED if beyond else FLIGHT), after, row
+    table[EVENTS + i] += 1.0
+    return (CHATTER if table[EVENTS + i] > EVENTS_IN_A_SAMPLE else SURVIVED), after, row
+
+
+@kernel
+def _look(table, i, exponent, finite, locate, history, row):
+    """The piece in which something may have happened: status (RUNNING while the step is not done), time, next row."""
+    m = model_of(table, i, exponent, finite)
+    contact = _contact_of(table, i)
+    y = state_of(table, BEFORE + i)
+    x, length, h = table[START + i], table[LENGTH + i], table[STEP + i]
+    if contact.held != 0.0:  # which the pass does not know
+        ground, under = _ground_of(table, i, x), _ground_of(table, i, x + length)
+        end = step(m, y, state_of(table, BEFORE_RATES + i), contact, ground, length)
+        k_end = rates(m, end, contact, under.horizontal, under.vertical)
+        put_state(table, NOW + i, end)
+        put_state(table, RATES + i, k_end)
+    else:
+        end, k_end = state_of(table, NOW + i), state_of(table, RATES + i)
+
+    t = table[SAMPLE_TIME + i] + x + length
+    verdict = table[VERDICT + i]
+    if verdict == SEARCH:
+        verdict = _judge(table, i, m, y, end, k_end, contact, locate)
+        if verdict == SEARCH:
+            put_state(table, NOW + i, y)
+            put_state(table, RATES + i, state_of(table, BEFORE_RATES + i))
+            table[WATCHED + i] = 1.0
+            return RUNNING, t, row
+    _include(table, i, m, y, end, contact)
+    substep = table[SUBSTEP + i]
+    done = table[DONE + i] if x != substep * h else 0.0  # the pass leaves DONE as it was
+    whole = length == h - done
+    done += length
+    if verdict != ACCEPT:
+        whole = False
+        status, contact, row = _happen(table, i, m, end, contact, int(verdict), t, x + length, history, row)
+        if status != SURVIVED:
+            return status, t, row
+    if not whole and done < h:
+        table[DONE + i] = done
+        _ready(table, i, m, contact, substep * h + done, h - done)
+        return RUNNING, t, row
+    substep += 1.0
+    table[SUBSTEP + i] = substep
+    if whole and contact.held == 0.0:
+        # all signals are positive, and the pass has left their slopes
+        table[WATCHED + i] = 0.0
+        _next_piece(table, i, substep * h, h)
+    else:
+        _ready(table, i, m, contact, substep * h, h)
+    t = table[SAMPLE_TIME + i] + substep * h
+    status = fallen(table[NOW + LANES + i])
+    if status != SURVIVED and history.shape[0] > 0:
+        row = _write(history, row, t, state_of(table, NOW + i), contact, BETWEEN_SAMPLES)
+    return status, t, row
+
+
+@kernel
+def _turns(table, i, w, f0, d0, f1, d1, h):
+    """When, in [0, h], the velocity turns that coefficient ``w`` watches, by its values and accelerations; h if never."""
+    sign = table[w]
+    if sign == 0.0 or sign * f1 > table[REST + i]:
+        return h
+    return falls(sign * f0, sign * d0, sign * f1, sign * d1, h) if sign * f0 > table[REST + i] else -1.0
+
+
+@kernel
+def _seek_turn(table, i, m):
+    """Shorten the piece to the moment when the velocity of a spring turns; False where the cubic does not know.
+
+    Both branches of the spring have the same rate then: an error δt of the time makes one of order δt² in z, and the
+    guess of the cubic, wrong by some 1e-4 of a step that resolves the springs, is as good as the time itself.
+    """
+    y, k1 = state_of(table, BEFORE + i), state_of(table, BEFORE_RATES + i)
+    end, k_end = state_of(table, NOW + i), state_of(table, RATES + i)
+    at, at_end = geometry(m, y.theta), geometry(m, end.theta)
+    h = table[LENGTH + i]
+    left = _turns(
+        table, i, WATCH + 4 * LANES + i,
+        y.v_rate + at.arm_left * y.omega,
+        k1.v_rate + at.arm_left * k1.omega + at.bend_left * y.omega * y.omega,
+        end.v_rate + at_end.arm_left * end.omega,
+        k_end.v_rate + at_end.arm_left * k_end.omega + at_end.bend_left * end.omega * end.omega,
+        h,
+    )  # fmt: skip
+    right = _turns(
+        table, i, WATCH + 10 * LANES + i,
+        y.v_rate + at.arm_right * y.omega,
+        k1.v_rate + at.arm_right * k1.omega + at.bend_right * y.omega * y.omega,
+        end.v_rate + at_end.arm_right * end.omega,
+        k_end.v_rate + at_end.arm_right * k_end.omega + at_end.bend_right * end.omega * end.omega,
+        h,
+    )  # fmt: skip
+    first = min(left, right)
+    if not 0.0 < first < h:
+        return False
+    table[LENGTH + i] = first
+    table[VERDICT + i] = 2.0 if left <= right else 3.0
+    table[WATCHED + i] = 1.0
+    put_state(table, NOW + i, y)
+    put_state(table, RATES + i, k1)
+    return True
+
+
+@kernel
+def _done(table, i):
+    """SURVIVED or UNDECIDED where the run in lane ``i`` is over at this sample, RUNNING where it goes on."""
+    sample = table[SAMPLE_NUMBER + i]
+    if sample < table[SAMPLES + i]:
+        return RUNNING
+    if not undecided(table[NOW + LANES + i], table[NOW + 3 * LANES + i], table[ALPHA + i], table[P + i]):
+        return SURVIVED
+    return RUNNING if sample < table[LONGEST + i] else UNDECIDED
+
+
+@kernel
 def _unstressed(m, position, z, on_spring, waiting):
     return position - m.yield_deflection * z if on_spring != 0.0 else waiting
 
 
-def rock_on_springs(m, horizontal, vertical, dt, substeps, quiet_samples, history, locate, every_step=False):
-    """Run of the pier ``m`` (Springs) under one motion.
+@kernel
+def _finish(table, i, exponent, finite, status, t, row, results):
+    """What the run in lane ``i`` comes to: its line of ``results``, as SpringRun has it."""
+    m = model_of(table, i, exponent, finite)
+    y, contact, supports = state_of(table, NOW + i), _contact_of(table, i), _supports_of(table, i)
+    at = geometry(m, y.theta)
+    base_left = _unstressed(m, y.v + at.lift_left, y.z_left, contact.left, supports.left)
+    base_right = _unstressed(m, y.v + at.lift_right, y.z_right, contact.right, supports.right)
+    loading = branches(m, _loading_of(table, i), contact, Contact(0.0, 0.0, 0.0, 0.0, 0.0), y)
+    line = results[int(table[RUN + i])]
+    line[0] = status
+    line[1] = t
+    line[2] = table[PEAK + i]
+    line[3] = table[PEAK_TIME + i]
+    line[4] = table[IMPACTS + i]
+    line[5] = table[SEPARATIONS + i]
+    line[6] = table[FLIGHT_TIME + i]
+    line[7] = base_left - table[PLASTIC + i]
+    line[8] = base_right - table[PLASTIC + i]
+    line[9] = table[LOWEST + i]
+    line[10] = table[LOWEST + LANES + i]
+    line[11] = m.yield_force * loading.work_left
+    line[12] = m.yield_force * loading.work_right
+    line[13] = row
+
+
+@entry
+def _rock(exponent, finite, runs, ground, locate, every_step, history, stop, table, results):
+    """All ``runs``, as :func:`rock_on_springs` has them; lines of ``results`` stay as they are after a stop."""
+    recording = history.shape[0] > 0
+    waiting, lanes, row = 0, 0, 0
+    while True:
+        while lanes < LANES and waiting < len(runs):
+            _begin(table, lanes, waiting, runs, ground, exponent, finite)
+            waiting += 1
+            if recording:
+                row = _write(history, row, 0.0, state_of(table, NOW + lanes), _contact_of(table, lanes), SAMPLE)
+            status = _done(table, lanes)
+            if status == RUNNING:
+                lanes += 1
+            else:
+                _finish(table, lanes, exponent, finite, status, 0.0, row, results)
+        if lanes == 0 or stop[0] != 0:
+            return
+        while lanes == LANES or (lanes > 0 and waiting == len(runs)):
+            one_pass(table, lanes, exponent, finite)
+            lane = lanes
+            while lane > 0:
+                lane -= 1
+                news = table[NEWS + lane]
+                if news == CALM and not recording:
+                    continue
+                status, t = SURVIVED, table[SAMPLE_TIME + lane] + table[START + lane]
+                turned = news == TURNED and locate and table[VERDICT + lane] == SEARCH
+                if turned and _seek_turn(table, lane, model_of(table, lane, exponent, finite)):
+                    continue
+                if news >= EVENTFUL:
+                    status, t, row = _look(table, lane, exponent, finite, locate, history, row)
+                if status == SURVIVED:
+                    sampled = table[SUBSTEP + lane] == table[SUBSTEPS + lane]
+                    if sampled:
+                        t = _next_sample(table, lane, ground)
+                    if recording and (sampled or every_step):
+                        kind = SAMPLE if sampled else BETWEEN_SAMPLES
+                        row = _write(history, row, t, state_of(table, NOW + lane), _contact_of(table, lane), kind)
+                    status = _done(table, lane) if sampled else RUNNING
+                if status != RUNNING:
+                    _finish(table, lane, exponent, finite, status, t, row, results)
+                    lanes -= 1
+                    _move(table, lanes, lane)
+            if stop[0] != 0:
+                return
+
+
+@kernel
+def _next_sample(table, i, ground):
+    """Lane ``i`` at its next sample; the time [s]."""
+    sample = int(table[SAMPLE_NUMBER + i]) + 1
+    t = sample * table[DT + i]
+    table[SAMPLE_NUMBER + i] = sample
+    table[SAMPLE_TIME + i] = t
+    table[SUBSTEP + i] = 0.0
+    table[START + i] = 0.0
+    table[EVENTS + i] = 0.0
+    _put_ground(table, i, ground, sample)
+    return t
+
+
+@kernel
+def _move(table, i, j):
+    """What is in lane ``i`` into lane ``j``."""
+    for at in range(0, CELLS, LANES):
+        table[at + j] = table[at + i]
+
+
+def run_line(m, dt, substeps, quiet_samples, first_row, npts):
+    """A run as :func:`rock_side_by_side` takes it: numbers only.
 
     Parameters
     ----------
-    horizontal, vertical : ndarray, shape (npts,)
-        Ground accelerations [m/s²], linear between samples, zero from the sample after the last; ``vertical`` may be
-        empty.
+    m : Springs
     dt : float
         Sampling interval [s]; each is ``substeps`` steps.
     quiet_samples : int
         Samples after the record. The run goes on while the pier, left alone, might still overturn.
-    history : ndarray, shape (rows, 13)
-        Filled with every sample and both sides of every event, as far as it goes; empty for none.
+    first_row, npts : int
+        Where among the rows of the ground the motion begins, and how many it has.
+    """
+    exponent = 5.0 if m.exponent is None else m.exponent
+    return (*m[:-2], exponent, dt, substeps, quiet_samples, first_row, npts)
+
+
+def rock_side_by_side(exponent, finite, lines, ground, stop, locate=True, every_step=False, history=_NO_HISTORY):
+    """Runs of piers on two springs, as many at a time as there are lanes.
+
+    Parameters
+    ----------
+    exponent, finite
+        Of all their Springs: what their types tell, a number or None, True or None.
+    lines : ndarray, shape (runs, 16)
+        Of :func:`run_line`.
+    ground : ndarray, shape (rows, 4)
+        Of :func:`rockbatch.core.ground.ground_rows`, of all their motions.
+    stop : ndarray of one uint8
+        Ends it at once when another thread sets it.
     locate : bool
         Locate events inside the step. Without, they take place at its end (first order; for comparison only).
+    history : ndarray, shape (rows, 13)
+        For a single run: filled with every sample and both sides of every event, as far as it goes.
     every_step : bool
         Also write the steps between samples.
 
     Returns
     -------
-    SpringRun
+    ndarray, shape (runs, 14)
+        As SpringRun has it; NaN for those that were stopped.
     """
-    # A compiled function hands out plain tuples only: making a named one runs Python code, where Ctrl-C may strike.
-    return SpringRun(*_run(m, horizontal, vertical, dt, substeps, quiet_samples, history, locate, every_step))
+    # A compiled function hands out nothing: making a tuple runs Python code, where Ctrl-C may strike.
+    results = np.full((len(lines), len(SpringRun._fields)), np.nan)
+    _rock(exponent, finite, lines, ground, locate, every_step, history, stop, np.zeros(CELLS), results)
+    return results
 
 
-@entry
-def _run(m, horizontal, vertical, dt, substeps, quiet_samples, history, locate, every_step):
-    nan = math.nan
-    h = dt / substeps
-    recording = history.shape[0] > 0
-    has_vertical = len(vertical) > 0
-    npts = len(horizontal)
-    samples = npts - 1 + quiet_samples
-    rest = at_rest(m)
-    alpha = math.atan2(m.half_width, m.height)
-    size2 = m.half_width * m.half_width + m.height * m.height
-    p = math.sqrt(m.gravity * math.sqrt(size2) / (m.inertia + size2))
-    longest = samples + patience(p, dt)
+def rock_on_springs(m, horizontal, vertical, dt, substeps, quiet_samples, history, locate, every_step=False):
+    """One run, of the pier ``m`` (Springs) under one motion; SpringRun.
 
-    y = static_state(m)
-    branch = 1.0 if m.law == BOUC_WEN else 0.0
-    contact = Contact(1.0, 1.0, branch, branch, 0)
-    supports = Supports(nan, nan)
-    plastic = y.v - m.yield_deflection * y.z_left  # of both supports, in the static state
-    loading = Loading(plastic, y.z_left, 0.0, plastic, y.z_right, 0.0)
-    extremes = Extremes(0.0, 0.0, y.v, y.v)
-    impacts, separations = 0, 0
-    t_flight = nan
-    status = SURVIVED
-    t = 0.0
-    rows = 0
-    if recording:
-        rows = _write(history, rows, t, y, contact, SAMPLE)
+    ``horizontal`` and ``vertical`` are ground accelerations [m/s²], shape (npts,), the vertical one may be empty; for
+    the others see :func:`rock_side_by_side`.
+    """
+    lines = np.array([run_line(m, dt, substeps, quiet_samples, 0, len(horizontal))])
+    ground = ground_rows(horizontal, vertical, dt)
+    never = np.zeros(1, np.uint8)
+    return spring_run(rock_side_by_side(m.exponent, m.finite, lines, ground, never, locate, every_step, history)[0])
 
-    vertical_now = vertical[0] if has_vertical else 0.0
-    k1 = rates(m, y, contact, horizontal[0], vertical_now)
-    f0, d0 = signals(m, y, k1, contact, nan, nan, rest, horizontal[0], vertical_now)
 
-    sample = 0
-    while sample < samples or (sample < longest and undecided(y.theta, y.omega, alpha, p)):
-        a0 = horizontal[sample] if sample < npts else 0.0
-        a1 = horizontal[sample + 1] if sample + 1 < npts else 0.0
-        a_slope = (a1 - a0) / dt
-        c0, c_slope = 0.0, 0.0
-        if has_vertical:
-            c0 = vertical[sample] if sample < npts else 0.0
-            c1 = vertical[sample + 1] if sample + 1 < npts else 0.0
-            c_slope = (c1 - c0) / dt
-        for substep in range(substeps):
-            start = substep * h  # since the sample
-            done = 0.0  # since the start of the step
-            events = 0
-            while done < h:
-                x = start + done
-                ground = Ground(a0 + x * a_slope, a_slope, c0 + x * c_slope, c_slope)
-                left = h - done
-                reached = step(m, y, k1, contact, ground, left)
-                a_end = a0 + (x + left) * a_slope
-                c_end = c0 + (x + left) * c_slope
-                k_end = rates(m, reached, contact, a_end, c_end)
-                f1, d1 = signals(m, reached, k_end, contact, supports.left, supports.right, rest, a_end, c_end)
-                which = -1
-                if not (
-                    quiet(f0.left, d0.left, f1.left, d1.left)
-                    and quiet(f0.right, d0.right, f1.right, d1.right)
-                    and quiet(f0.left_law, d0.left_law, f1.left_law, d1.left_law)
-                    and quiet(f0.right_law, d0.right_law, f1.right_law, d1.right_law)
-                ):
-                    earliest = left
-                    for i in range(4):
-                        if locate:
-                            after = _crossing(
-                                m, y, k1, contact, ground, supports, rest, left, i, f0[i], d0[i], f1[i], d1[i]
-                            )
-                        else:
-                            after = left if f1[i] <= 0.0 else -1.0
-                        if after >= 0.0 and (which < 0 or after < earliest):
-                            which, earliest = i, after
-                    if which >= 0 and earliest < left:
-                        left = earliest
-                        a_end = a0 + (x + left) * a_slope
-                        c_end = c0 + (x + left) * c_slope
-                        reached = step(m, y, k1, contact, ground, left)
-                        k_end = rates(m, reached, contact, a_end, c_end)
-
-                at, at_end = geometry(m, y.theta), geometry(m, reached.theta)
-                extremes = _include(extremes, y, reached, contact, at, at_end, sample * dt + x, left)
-                y, k1 = reached, k_end
-                if which < 0:
-                    f0, d0 = f1, d1
-                    break
-
-                done += left
-                t = sample * dt + start + done
-                before = contact
-                if recording:
-                    rows = _write(history, rows, t, y, contact, BEFORE_EVENT)
-                y, contact, supports, kind = handle(m, y, contact, supports, which, rest, a_end, c_end)
-                if recording:
-                    rows = _write(history, rows, t, y, contact, kind)
-                landed = 0
-                if kind == IMPACT_BOTH:
-                    landed = 2
-                elif kind in (IMPACT_LEFT, IMPACT_RIGHT):
-                    landed = 1
-                impacts += landed
-                separations += landed - on_ground(contact) + on_ground(before)  # a pivot may land and be lifted at once
-                loading = _branches(m, loading, before, contact, y)
-                k1 = rates(m, y, contact, a_end, c_end)
-                f0, d0 = signals(m, y, k1, contact, supports.left, supports.right, rest, a_end, c_end)
-                if contact.left == 0.0 and contact.right == 0.0 and contact.held == 0:
-                    if math.isnan(t_flight):
-                        t_flight = t
-                    if not m.guided:
-                        beyond = abs(y.theta) >= alpha and y.theta * y.omega > 0.0
-                        status = OVERTURNED if beyond else FLIGHT
-                        break
-                events += 1
-                if events > EVENTS_IN_A_STEP:
-                    status = CHATTER
-                    break
-            if status == SURVIVED:
-                t = sample * dt + start + h
-                status = fallen(y.theta)
-                if recording and (status != SURVIVED or (every_step and substep < substeps - 1)):
-                    rows = _write(history, rows, t, y, contact, STEP)
-            if status != SURVIVED:
-                break
-        if status != SURVIVED:
-            break
-        sample += 1
-        t = sample * dt
-        if recording:
-            rows = _write(history, rows, t, y, contact, SAMPLE)
-
-    if status == SURVIVED and sample >= longest and undecided(y.theta, y.omega, alpha, p):
-        status = UNDECIDED
-    at_end = geometry(m, y.theta)
-    base_left = _unstressed(m, y.v + at_end.lift_left, y.z_left, contact.left, supports.left)
-    base_right = _unstressed(m, y.v + at_end.lift_right, y.z_right, contact.right, supports.right)
-    loading = _branches(m, loading, contact, Contact(0.0, 0.0, 0.0, 0.0, 0), y)
-    return (
-        status,
-        t,
-        extremes.peak,
-        extremes.t_peak,
-        impacts,
-        separations,
-        t_flight,
-        base_left - plastic,
-        base_right - plastic,
-        extremes.low_left,
-        extremes.low_right,
-        m.yield_force * loading.work_left,
-        m.yield_force * loading.work_right,
-        rows,
-    )
+def spring_run(line):
+    """SpringRun of a line of results."""
+    run = SpringRun(*line.tolist())
+    counts = ("status", "impacts", "separations", "rows")
+    return run._replace(**{name: int(getattr(run, name)) for name in counts})

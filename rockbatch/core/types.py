@@ -2,10 +2,13 @@
 
 from typing import NamedTuple
 
+# Codes that lanes and histories hold, and those that select a pivot, are floats like all else there: an integer would
+# have kernels compiled once more for each type.
+
 # Spring laws
-ELASTIC = 0
-BOUC_WEN = 1
-EPP = 2
+ELASTIC = 0.0
+BOUC_WEN = 1.0
+EPP = 2.0
 
 # How a run ended
 SURVIVED = 0
@@ -16,36 +19,45 @@ NOT_FINITE = 4
 UNDECIDED = 5
 
 # Kinds of rows in a history: a sample, the end of a step between samples, or the two sides of an event
-SAMPLE = 0
-BEFORE_EVENT = -1
-STEP = -2
-SEPARATION_LEFT = 1
-SEPARATION_RIGHT = 2
-IMPACT_LEFT = 3
-IMPACT_RIGHT = 4
-IMPACT_BOTH = 5
-SPRING_LEFT = 6
-SPRING_RIGHT = 7
-HELD_LEFT = 8
-HELD_RIGHT = 9
-LIFT_OFF = 10
-REST = 11
+SAMPLE = 0.0
+BEFORE_EVENT = -1.0
+STEP = -2.0
+SEPARATION_LEFT = 1.0
+SEPARATION_RIGHT = 2.0
+IMPACT_LEFT = 3.0
+IMPACT_RIGHT = 4.0
+IMPACT_BOTH = 5.0
+SPRING_LEFT = 6.0
+SPRING_RIGHT = 7.0
+HELD_LEFT = 8.0
+HELD_RIGHT = 9.0
+LIFT_OFF = 10.0
+REST = 11.0
+
+# Pivots
+LEFT = -1.0
+RIGHT = 1.0
 
 
 class Springs(NamedTuple):
-    """A pier on two springs, per unit mass (symbols: THEORY.md)."""
+    """A pier on two springs, per unit mass (symbols: THEORY.md).
+
+    The last two are told apart by their types, hence when kernels are compiled: a call of ``pow``, ``sin`` or ``cos``
+    in an unused branch would cost the common model, n = 5 and first-order, its vector instructions.
+    """
 
     half_width: float  # b [m]
     height: float  # h [m]
     inertia: float  # I0/M [m²]
     gravity: float  # g [m/s²]
     yield_deflection: float  # δ_y [m]; the static deflection for elastic springs
+    stiffness: float  # K/F_y = 1/δ_y [1/m]
     yield_force: float  # F_y/M [m/s²]
-    exponent: float  # n of Bouc–Wen
     epsilon: float  # restitution of the landing pivot
-    law: int  # ELASTIC, BOUC_WEN or EPP
-    finite: bool  # finite kinematics, else first-order
-    guided: bool  # flight goes on, else it ends the run
+    law: float  # ELASTIC, BOUC_WEN or EPP
+    guided: float  # 1: flight goes on, 0: it ends the run
+    exponent: float | None  # n of Bouc–Wen; None for the paper's 5
+    finite: bool | None  # True: finite kinematics; None: first-order
 
 
 class Block(NamedTuple):
@@ -75,7 +87,16 @@ class Contact(NamedTuple):
     right: float
     left_yields: float  # the spring is on its inelastic branch
     right_yields: float
-    held: int  # pivot that is pressed down while free and lifted while in contact: −1 left, 1 right, 0 none
+    held: float  # pivot that is pressed down while free and lifted while in contact: −1 left, 1 right, 0 none
+
+
+class Signals(NamedTuple):
+    """Four numbers, positive until something happens to a pivot (see ``events``): contacts first, then spring laws."""
+
+    left: float
+    right: float
+    left_law: float
+    right_law: float
 
 
 class Ground(NamedTuple):
