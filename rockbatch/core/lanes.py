@@ -141,6 +141,12 @@ def watch(law, contact, supports, rest):
 
 
 @inlined
+def _dips(f0, d0, f1, d1, h):
+    """Above 0 where a Hermite cubic may fall through zero and rise again between its ends."""
+    return min(min(-d0, d1), excess(d0, d1, h) - min(f0, f1))
+
+
+@inlined
 def _passed_over(table, i, exponent, finite):
     """Lane ``i`` over its piece of a step."""
     m = model_of(table, i, exponent, finite)
@@ -182,13 +188,15 @@ def _passed_over(table, i, exponent, finite):
     w = WATCH + i
     before_left = table[w] * y.z_left + table[w + LANES] * left + table[w + 2 * LANES]
     beyond_left = excess(table[SLOPES + i], contact_left_slope, length)
+    law = table[w + 3 * LANES] * y.z_left + table[w + 4 * LANES] * left_rate + table[w + 5 * LANES]
+    back_left = _dips(law, table[SLOPES + 2 * LANES + i], law_left, law_left_slope, length)
     w += 6 * LANES
     before_right = table[w] * y.z_right + table[w + LANES] * right + table[w + 2 * LANES]
     beyond_right = excess(table[SLOPES + LANES + i], contact_right_slope, length)
+    law = table[w + 3 * LANES] * y.z_right + table[w + 4 * LANES] * right_rate + table[w + 5 * LANES]
+    back_right = _dips(law, table[SLOPES + 3 * LANES + i], law_right, law_right_slope, length)
     gap = min(min(before_left, contact_left) - beyond_left, min(before_right, contact_right) - beyond_right)
-    back = max(
-        min(-table[SLOPES + 2 * LANES + i], law_left_slope), min(-table[SLOPES + 3 * LANES + i], law_right_slope)
-    )
+    back = max(back_left, back_right)
     # An extreme inside the piece may be a new one
     peak = table[PEAK + i]
     tilt, tilt_end = abs(y.theta), abs(end.theta)

@@ -12,7 +12,7 @@ import numpy as np
 from rockbatch.core.equations import geometry, on_ground, rates, step
 from rockbatch.core.events import at_rest, quiet, signals
 from rockbatch.core.ground import ground_rows
-from rockbatch.core.kernel import entry, kernel
+from rockbatch.core.kernel import entry, inlined, kernel
 from rockbatch.core.lanes import (
     BEFORE,
     BEFORE_RATES,
@@ -552,32 +552,40 @@ def _rock(exponent, finite, runs, ground, locate, every_step, history, stop, tab
             return
         while lanes == LANES or (lanes > 0 and waiting == len(runs)):
             one_pass(table, lanes, exponent, finite)
-            lane = lanes
-            while lane > 0:
-                lane -= 1
-                news = table[NEWS + lane]
-                if news == CALM and not recording:
-                    continue
-                status, t = SURVIVED, table[SAMPLE_TIME + lane] + table[START + lane]
-                turned = news == TURNED and locate and table[VERDICT + lane] == SEARCH
-                if turned and _seek_turn(table, lane, model_of(table, lane, exponent, finite)):
-                    continue
-                if news >= EVENTFUL:
-                    status, t, row = _look(table, lane, exponent, finite, locate, history, row)
-                if status == SURVIVED:
-                    sampled = table[SUBSTEP + lane] == table[SUBSTEPS + lane]
-                    if sampled:
-                        t = _next_sample(table, lane, ground)
-                    if recording and (sampled or every_step):
-                        kind = SAMPLE if sampled else BETWEEN_SAMPLES
-                        row = _write(history, row, t, state_of(table, NOW + lane), _contact_of(table, lane), kind)
-                    status = _done(table, lane) if sampled else RUNNING
-                if status != RUNNING:
+            lane = 0
+            while lane < lanes:
+                status, t = RUNNING, 0.0
+                if table[NEWS + lane] != CALM or recording:
+                    status, t, row = _attend(table, lane, exponent, finite, ground, locate, every_step, history, row)
+                if status == RUNNING:
+                    lane += 1
+                else:
                     _finish(table, lane, exponent, finite, status, t, row, results)
                     lanes -= 1
                     _move(table, lanes, lane)
             if stop[0] != 0:
                 return
+
+
+@inlined
+def _attend(table, i, exponent, finite, ground, locate, every_step, history, row):
+    """What the pass has left to do in lane ``i``: status, time, next row."""
+    news = table[NEWS + i]
+    status, t = SURVIVED, table[SAMPLE_TIME + i] + table[START + i]
+    if news >= EVENTFUL:
+        turned = news == TURNED and locate and table[VERDICT + i] == SEARCH
+        if turned and _seek_turn(table, i, model_of(table, i, exponent, finite)):
+            return RUNNING, t, row
+        status, t, row = _look(table, i, exponent, finite, locate, history, row)
+        if status != SURVIVED:
+            return status, t, row
+    sampled = table[SUBSTEP + i] == table[SUBSTEPS + i]
+    if sampled:
+        t = _next_sample(table, i, ground)
+    if history.shape[0] > 0 and (sampled or every_step):
+        kind = SAMPLE if sampled else BETWEEN_SAMPLES
+        row = _write(history, row, t, state_of(table, NOW + i), _contact_of(table, i), kind)
+    return (_done(table, i) if sampled else RUNNING), t, row
 
 
 @kernel
