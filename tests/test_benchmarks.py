@@ -1,0 +1,96 @@
+"""The benchmarks run, and measure what they say. Times are never asserted."""
+
+import importlib
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+
+from rockbatch.motions import pulse
+from rockbatch.simulation import run_to_tolerance
+from rockbatch.structure import Pier, YieldingBase
+
+BENCHMARKS = Path(__file__).parents[1] / "benchmarks"
+
+
+@pytest.fixture
+def benchmark(monkeypatch):
+    """Imports a module of the benchmarks as a script beside them does."""
+    monkeypatch.syspath_prepend(str(BENCHMARKS))
+    return importlib.import_module
+
+
+def cells(lines):
+    """Rows of the tables among ``lines``, without their heads."""
+    rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines if line.startswith("|")]
+    return [row for row, below in zip(rows, [*rows[1:], [""]], strict=True) if "---" not in row + below]
+
+
+def test_tasks_are_repeated_in_turn(benchmark):
+    module = benchmark("interleaved")
+    order = []
+    times = module.interleaved({"a": lambda: order.append("a"), "b": lambda: order.append("b")}, repeats=2)
+    assert order == ["a", "b"] * 3  # the first call of each compiles
+    assert len(times["a"]) == len(times["b"]) == 2
+
+
+def test_a_ratio_is_of_the_best_times_and_the_median_of_each_repeat(benchmark):
+    assert benchmark("interleaved").ratio([2.0, 8.0, 9.0], [1.0, 2.0, 3.0], scale=0.5) == "1 | 1.5"
+
+
+def test_every_solver_is_as_accurate_as_asked(benchmark):
+    module = benchmark("solvers")
+    rows = cells(module.main(repeats=1, side_by_side=4, seconds=3.0))
+    assert rows[0][0] == module.UNIT
+    assert rows[0][4:] == ["1", "1"]
+    assert len(rows) == 8
+    absent = [row for row in rows if row[1] == "not installed"]
+    assert len(absent) == 2 * (find_spec("sksundae") is None) + (find_spec("heyoka") is None)
+    for row in rows:
+        if row not in absent:
+            assert float(row[3]) <= module.ACCURACY
+
+
+@pytest.mark.parametrize(
+    ("package", "solver", "tolerance", "error"),
+    [
+        ("scipy", lambda peers, rocking: peers.scipy(rocking, 1e-10, "DOP853"), 1e-8, 1e-7),
+        ("scipy", lambda peers, rocking: peers.scipy(rocking, 1e-10, "LSODA"), 1e-8, 1e-7),
+        ("sksundae", lambda peers, rocking: peers.cvode(rocking, 1e-10, "Adams"), 1e-8, 1e-7),
+        ("sksundae", lambda peers, rocking: peers.cvode(rocking, 1e-10, "BDF"), 1e-8, 1e-7),
+        ("heyoka", lambda peers, rocking: peers.heyoka(rocking, 1e-12), 1e-10, 1e-9),
+    ],
+    ids=["SciPy DOP853", "SciPy LSODA", "CVODE Adams", "CVODE BDF", "heyoka"],
+)
+def test_another_solver_finds_the_same_peak(benchmark, package, solver, tolerance, error):
+    """Within what both claim: ``tolerance`` of rockbatch, and ``error`` for what the solver gathers over the run."""
+    pytest.importorskip(package)
+    peers = benchmark("peers")
+    pier, base = Pier(0.15, 1.0), YieldingBase(30.0, 0.05, eta=2.5)
+    motion = pulse("ricker", name="ricker", amplitude=0.6 * 9.81, period=1.0, dt=0.02, duration=4.0)
+    outcome = run_to_tolerance(pier, base, motion, tolerance)
+    status, theta_max = solver(peers, peers.Rocking(pier, base, motion))()
+    assert status == outcome.status == "ok"
+    assert outcome.impacts > 0
+    assert theta_max == pytest.approx(outcome.theta_max, rel=0, abs=(tolerance + error) * pier.alpha)
+
+
+def test_the_bare_step_is_compared_for_every_law_step_and_component(benchmark):
+    rows = cells(benchmark("bare_step").main(repeats=1, runs=2, seconds=3.0))
+    assert len({tuple(row[:3]) for row in rows}) == len(rows) == 3 * 2 * 3
+    assert all(float(row[3]) > 0 for row in rows)
+    assert any(float(row[5]) > 0 for row in rows)  # events per step: something happens within 3 s
+
+
+def test_scaling_has_its_four_tables(benchmark):
+    module = benchmark("scaling")
+    lines = module.main(repeats=1, most_runs=64, runs=2, seconds=4.0)
+    assert sum(line.startswith("| ---") for line in lines) == 4
+    assert all(float(row[1]) > 0 for row in cells(lines))
+
+
+def test_the_small_pier_of_the_mixed_runs_overturns_early_and_the_tower_does_not(benchmark):
+    module = benchmark("scaling")
+    motion = module.record()
+    assert set(module.one_group(module.many(4, motion, module.SMALL))) == {"overturned"}
+    assert set(module.one_group(module.many(4, motion))) == {"ok"}
