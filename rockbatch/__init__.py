@@ -6,10 +6,13 @@ __version__ = "0.1.0"
 
 if TYPE_CHECKING:
     from rockbatch.batch import run
+    from rockbatch.checks import Rule
+    from rockbatch.design import check
     from rockbatch.errors import InputError
     from rockbatch.histories import simulate
     from rockbatch.motions import Motion, pulse, read_motions
     from rockbatch.response import Response
+    from rockbatch.store import open_results
     from rockbatch.structure import ElasticBase, Pier, RigidBase, YieldingBase
     from rockbatch.study import load_study
 
@@ -20,8 +23,11 @@ _HOMES = {
     "Pier": "rockbatch.structure",
     "Response": "rockbatch.response",
     "RigidBase": "rockbatch.structure",
+    "Rule": "rockbatch.checks",
     "YieldingBase": "rockbatch.structure",
+    "check": "rockbatch.design",
     "load_study": "rockbatch.study",
+    "open_results": "rockbatch.store",
     "pulse": "rockbatch.motions",
     "read_motions": "rockbatch.motions",
     "run": "rockbatch.batch",
@@ -35,8 +41,11 @@ __all__ = [
     "Pier",
     "Response",
     "RigidBase",
+    "Rule",
     "YieldingBase",
+    "check",
     "load_study",
+    "open_results",
     "pulse",
     "read_motions",
     "run",

@@ -5,10 +5,10 @@ import sys
 from collections.abc import Sequence
 
 from rockbatch import __version__
-from rockbatch.commands import accuracy, motions, run
+from rockbatch.commands import accuracy, check, motions, report, run
 from rockbatch.errors import InputError
 
-COMMANDS = {"run": run, "motions": motions, "accuracy": accuracy}
+COMMANDS = {"run": run, "motions": motions, "check": check, "report": report, "accuracy": accuracy}
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

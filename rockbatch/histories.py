@@ -9,7 +9,7 @@ from rockbatch.core.ledger import ledger_on_rigid_base, ledger_on_springs
 from rockbatch.errors import InputError
 from rockbatch.motions.motion import Motion, Samples
 from rockbatch.outcome import Outcome
-from rockbatch.response import Response
+from rockbatch.response import EVENT_TYPES, Response
 from rockbatch.results import TERMS
 from rockbatch.simulation import (
     Scene,
@@ -97,7 +97,7 @@ def simulate(
 def written(pier: Pier, base: Base, motion: Motion, outcome: Outcome, quiet_s: float, every_step: bool) -> Samples:
     """A run whose outcome is known, written down: the rows of the core, shape (n, 13) or (n, 4).
 
-    Raises ``InputError`` where ``every_step`` would need more than :data:`MOST_ROWS` rows.
+    Raises ``InputError`` where they would be more than :data:`MOST_ROWS`.
     """
     scene = Scene(pier, base, motion)
     samples = steps_of(motion, 1, quiet_s)
@@ -105,7 +105,8 @@ def written(pier: Pier, base: Base, motion: Motion, outcome: Outcome, quiet_s: f
         outcome.impacts + outcome.separations + 64
     )
     if capacity > MOST_ROWS:
-        raise InputError(f"{motion.name}: an energy ledger of {capacity} rows; leave it out or use fewer substeps")
+        instead = "leave out the energy ledger or use fewer substeps" if every_step else "cut the record"
+        raise InputError(f"{motion.name}: a history of {capacity} rows, more than {MOST_ROWS}; {instead}")
     run, rows = written_run(scene, outcome.substeps, quiet_s, capacity, every_step=every_step)
     if run.rows > capacity:
         run, rows = written_run(scene, outcome.substeps, quiet_s, run.rows, every_step=every_step)
@@ -132,27 +133,43 @@ def histories(
     case: str,
     columns: dict[str, float | str],
     ledger: bool = False,
+    polarity: str = "+",
+    scale: float = 1.0,
 ) -> Response:
-    """Histories of a run whose outcome is known: the same run again, with the same steps, written down."""
+    """Histories of a run whose outcome is known: the same run again, with the same steps, written down.
+
+    ``motion`` is scaled and turned already; ``polarity`` and ``scale`` say how.
+    """
     import pandas as pd
 
     rows = written(pier, base, motion, outcome, quiet_s, every_step=ledger)
     shown = rows[:, -1] != types.STEP
+    shown[-1] = True  # an overturned pier may fall between samples
     table = None
     if ledger:
         table = pd.DataFrame(energies(pier, base, motion, rows)[shown], columns=list(TERMS))
         table.insert(0, "t", rows[shown, 0])
     rows = rows[shown]
-    happened = [(float(row[0]), *_EVENTS[int(row[-1])]) for row in rows[rows[:, -1] > 0]]
-    if outcome.t_flight is not None:
-        happened.append((outcome.t_flight, "flight", ""))
-        happened.sort(key=lambda event: event[0])
     state = _rigid_state(pier, rows) if isinstance(base, RigidBase) else _springs_state(pier, base, rows)
     t = rows[:, 0]
     vertical = np.zeros(len(t)) if motion.vertical is None else _ground(motion.vertical, motion.dt, t)
     history = pd.DataFrame({"t": t, **state, "ag_h": _ground(motion.horizontal, motion.dt, t), "ag_v": vertical})
-    events = pd.DataFrame(happened, columns=["t", "kind", "pivot"])
-    return Response(motion.name, case, columns, pier, base, outcome.status, history, events, table)
+    events = pd.DataFrame(_events(rows, outcome.t_flight), columns=list(EVENT_TYPES)).astype(EVENT_TYPES)
+    return Response(motion.name, case, columns, pier, base, outcome.status, history, events, table, polarity, scale)
+
+
+def _events(rows: Samples, t_flight: float | None) -> list[tuple[float, str, str, int, int]]:
+    """Time, kind and pivot of every event, and the rows before and after it."""
+    kinds = rows[:, -1]
+    found = []
+    for after in np.flatnonzero(kinds > 0):
+        jumps = kinds[after - 1] == types.BEFORE_EVENT
+        found.append((float(rows[after, 0]), *_EVENTS[int(kinds[after])], int(after - jumps), int(after)))
+    if t_flight is not None:
+        last = int(np.searchsorted(rows[:, 0], t_flight, side="right")) - 1
+        found.append((t_flight, "flight", "", last, last))
+        found.sort(key=lambda event: event[0])
+    return found
 
 
 def _ground(acceleration: Samples, dt: float, t: Samples) -> Samples:
@@ -166,7 +183,7 @@ def _rigid_state(pier: Pier, rows: Samples) -> dict[str, Samples]:
     absent = np.full(len(rows), np.nan)
     climbed = np.cos(pier.alpha - np.abs(theta)) - math.cos(pier.alpha)
     energy = 0.5 * (pier.inertia + pier.size**2) * omega**2 + pier.gravity * pier.size * climbed
-    none = dict.fromkeys(("v", "z_left", "z_right", "v_left", "v_right"), absent)
+    none = dict.fromkeys(("v", "z_left", "z_right", "v_left", "v_right", "force_left", "force_right"), absent)
     return {"theta": theta, "omega": omega, **none, "energy": energy}
 
 
@@ -194,5 +211,7 @@ def _springs_state(pier: Pier, base: ElasticBase, rows: Samples) -> dict[str, Sa
         "z_right": z_right,
         "v_left": v + rise + drop,
         "v_right": v - rise + drop,
+        "force_left": m.yield_force * z_left,
+        "force_right": m.yield_force * z_right,
         "energy": energy,
     }

@@ -13,6 +13,9 @@ if TYPE_CHECKING:
 
 Samples = npt.NDArray[np.float64]
 
+EVENT_TYPES = {"t": "float64", "kind": "str", "pivot": "str", "before": "int64", "after": "int64"}
+"""Columns of the table of events."""
+
 
 @dataclass(frozen=True, eq=False)
 class Response:
@@ -33,15 +36,21 @@ class Response:
     history : DataFrame, one row per instant
         ``t`` [s]; ``theta`` [rad], positive tilts right; ``omega`` = dθ/dt [rad/s]; ``v`` [m], the centre of
         mass above the position of unstressed springs; ``z_left``, ``z_right``, spring forces over the yield
-        force, −1..0; ``v_left``, ``v_right`` [m], the pivots, up positive; ``energy`` [J/kg], relative to the
-        start; ``ag_h``, ``ag_v`` [m/s²], the ground, positive right and up. On the rigid base ``v``, ``z_*``
-        and ``v_*`` are NaN.
+        force, −1..0; ``v_left``, ``v_right`` [m], the pivots, up positive; ``force_left``, ``force_right`` [N/kg],
+        spring forces per unit mass of the pier, negative in compression; ``energy`` [J/kg], relative to the start;
+        ``ag_h``, ``ag_v`` [m/s²], the ground, positive right and up. On the rigid base ``v``, ``z_*``, ``v_*`` and
+        ``force_*`` are NaN.
     events : DataFrame, one row per event
-        ``t`` [s], ``kind`` ("separation", "impact", …) and ``pivot`` ("left", "right").
+        ``t`` [s], ``kind`` ("separation", "impact", …), ``pivot`` ("left", "right"), and the places in ``history`` of
+        the rows ``before`` and ``after`` it, alike where nothing jumps.
     ledger : DataFrame or None
         Energies [J/kg] at the rows of ``history``, where they were asked for: stored ``kinetic``, ``potential``,
         ``elastic``, relative to the start; summed since, ``input``, ``plastic``, ``impact``, ``p_delta`` (first-order
         kinematics), ``constraint`` (finite kinematics); and the ``remainder`` of their balance, the integrator's error.
+    polarity : str
+        "-" where the motion's horizontal component was reversed, else "+".
+    scale : float
+        Factor on all components of the motion.
     """
 
     record: str
@@ -53,6 +62,8 @@ class Response:
     history: "pd.DataFrame" = field(repr=False)
     events: "pd.DataFrame" = field(repr=False)
     ledger: "pd.DataFrame | None" = field(default=None, repr=False)
+    polarity: str = "+"
+    scale: float = 1.0
 
     @property
     def t(self) -> Samples:

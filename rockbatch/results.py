@@ -9,6 +9,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
+from rockbatch.checks.verdicts import CHECKS
 from rockbatch.files import write_whole
 from rockbatch.motions import MotionSet, measures
 from rockbatch.motions.motion import Motion
@@ -53,6 +54,9 @@ TERMS = ("kinetic", "potential", "elastic", "input", "plastic", "impact", "p_del
 
 TEXTS = ("record", "case", "polarity", "status", "reason")
 COUNTS = ("impacts", "separations", "substeps")
+
+HISTORIES = "histories.h5"
+"""File of the histories that were kept, beside peaks.csv."""
 
 
 def row(record: str, polarity: str, scale: float, case: Case, outcome: Outcome) -> dict[str, Any]:
@@ -141,7 +145,7 @@ def describe(study: Study, motions: MotionSet) -> dict[str, Any]:
             "quiet_s": study.numerics.quiet_s,
         },
         "varied": list(study.varied),
-        "cases": [_describe_case(case) for case in study.cases],
+        "cases": [describe_case(case) for case in study.cases],
         "records": [_describe_motion(motion, study.cases[0].pier.gravity) for motion in motions.motions],
         "unusable": [{"name": file.name, "source": file.source, "reason": file.reason} for file in motions.unusable],
         "references": [
@@ -157,7 +161,8 @@ def describe(study: Study, motions: MotionSet) -> dict[str, Any]:
     }
 
 
-def _describe_case(case: Case) -> dict[str, Any]:
+def describe_case(case: Case) -> dict[str, Any]:
+    """What run.json says about a case."""
     pier = case.pier
     return {
         "case": case.name,
@@ -243,6 +248,8 @@ class PeaksFile:
         self._part = directory / f"{PEAKS}.part"
 
     def __enter__(self) -> Self:
+        for name in (HISTORIES, CHECKS):  # they belong to the results that are replaced
+            (self.path.parent / name).unlink(missing_ok=True)
         self._file = self._part.open("w", encoding="utf-8", newline="")
         self._writer = csv.writer(self._file, lineterminator="\n")
         self._writer.writerow(self.columns)

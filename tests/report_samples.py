@@ -11,14 +11,16 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from rockbatch.report.finished import NUMBERS
 from rockbatch.response import Response
+from rockbatch.results import COLUMNS as STAYING
+from rockbatch.results import MORE_COLUMNS
 from rockbatch.structure import Base, ElasticBase, Pier, RigidBase, YieldingBase
 
 COLUMNS = (
     "record", "case", "polarity", "scale", "status", "theta_max_over_alpha", "theta_max_error", "t_max_s",
     "theta_res_over_alpha", "settlement_m", "impacts", "separations", "flight_s", "substeps", "reason", "t_end_s",
-    "base_tilt_rad", "ductility_left", "ductility_right", "dissipated_left_J_kg", "dissipated_right_J_kg",
+    "theta_res_error", "base_tilt_rad", "ductility_left", "ductility_right", "dissipated_left_J_kg",
+    "dissipated_right_J_kg",
 )  # fmt: skip
 FIG7 = [
     ("ERZ-NS", 0.515), ("RSN779_LOMAP_LGP000", 0.563), ("RSN1120_KOBE_TAK000", 0.611),
@@ -65,6 +67,7 @@ def write_results(
     varied: tuple[str, ...] = (),
     polarities: tuple[str, ...] = ("+",),
     scales: tuple[float, ...] = (1.0,),
+    vertical: tuple[bool, ...] = (),
     changes: dict[tuple[str, str], dict[str, Any]] | None = None,
     unusable: list[dict[str, str]] | None = None,
     references: list[dict[str, Any]] | None = None,
@@ -77,15 +80,19 @@ def write_results(
     changes = changes or {}
     draw = np.random.default_rng(20070625)
     rows: list[dict[str, Any]] = []
-    for (record, _), polarity, scale, case in itertools.product(records, polarities, scales, cases):
+    columns = (*COLUMNS, *varied, *(["vertical"] if vertical else []))
+    motions = itertools.product(records, polarities, scales, vertical or (None,))
+    for ((record, _), polarity, scale, way), case in itertools.product(motions, cases):
         theta = 0.06 * scale * math.exp(draw.normal(0, 0.4))
         springs = case["base"] != "rigid"
-        row: dict[str, Any] = dict.fromkeys((*COLUMNS, *varied), "")
+        row: dict[str, Any] = dict.fromkeys(columns, "")
         row |= {
             "record": record, "case": case["case"], "polarity": polarity, "scale": scale, "status": "ok",
             "theta_max_over_alpha": theta, "theta_max_error": 3e-6, "t_max_s": draw.uniform(3, 12),
             "impacts": int(draw.integers(4, 60)), "substeps": 4, "t_end_s": 32.0,
         }  # fmt: skip
+        if vertical:
+            row["vertical"] = way
         if springs:
             row |= {
                 "theta_res_over_alpha": draw.normal(0, 0.004), "settlement_m": abs(draw.normal(0.05, 0.02)),
@@ -95,11 +102,10 @@ def write_results(
             }  # fmt: skip
         rows.append(row | case["columns"] | changes.get((record, case["case"]), {}))
     rows += [
-        dict.fromkeys((*COLUMNS, *varied), "") | {"record": u["name"], "status": "failed", "reason": u["reason"]}
-        for u in unusable
+        dict.fromkeys(columns, "") | {"record": u["name"], "status": "failed", "reason": u["reason"]} for u in unusable
     ]
     with (directory / "peaks.csv").open("w", encoding="utf-8", newline="") as file:
-        writer = csv.DictWriter(file, (*COLUMNS, *varied))
+        writer = csv.DictWriter(file, columns)
         writer.writeheader()
         writer.writerows(rows)
 
@@ -177,4 +183,4 @@ def response(record: str, case: str, base: Base, *, pier: Pier | None = None, **
     return Response(record, case, dict(columns), pier, base, "ok", history, events)
 
 
-assert set(NUMBERS) < set(COLUMNS)
+assert set(COLUMNS) == {*STAYING, *MORE_COLUMNS}

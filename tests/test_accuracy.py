@@ -200,7 +200,7 @@ def brief(monkeypatch):
 def test_the_command_writes_its_table_and_the_report_shows_it(study_file, tmp_path, capsys, brief):
     out = tmp_path / "out"
     assert main(["run", str(study_file), "--out", str(out)]) == 0
-    assert "Speed and error" not in (out / "report.html").read_text(encoding="utf-8")
+    assert "Measured on" not in (out / "report.html").read_text(encoding="utf-8")
     assert main(["accuracy", str(study_file), "--out", str(out), "--runs", "5"]) == 0
     with open(out / "accuracy.csv", encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
@@ -216,10 +216,10 @@ def test_the_command_writes_its_table_and_the_report_shows_it(study_file, tmp_pa
     # a later run keeps the section, a changed study loses it
     for change, kept in (("", True), ("\n# another study", False)):
         study_file.write_text(STUDY + change, encoding="utf-8")
-        assert ("Speed and error" in (out / "report.html").read_text(encoding="utf-8")) or not kept
+        assert ("Measured on" in (out / "report.html").read_text(encoding="utf-8")) or not kept
         assert main(["run", str(study_file), "--out", str(out)]) == 0
         text = (out / "report.html").read_text(encoding="utf-8")
-        assert ("Speed and error" in text) is kept
+        assert ("Measured on" in text) is kept
         assert ("k = 16" in text) is kept
 
 
@@ -237,7 +237,7 @@ def test_a_damaged_table_does_not_keep_the_report_from_being_written(study_file,
     out.mkdir()
     (out / "accuracy.csv").write_text("method,study\nlocated\n", encoding="utf-8")
     assert main(["run", str(study_file), "--out", str(out)]) == 0
-    assert "Speed and error" not in (out / "report.html").read_text(encoding="utf-8")
+    assert "Measured on" not in (out / "report.html").read_text(encoding="utf-8")
 
 
 def test_runs_that_never_settle_are_told(study_file, tmp_path, capsys, monkeypatch):

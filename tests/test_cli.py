@@ -57,7 +57,7 @@ def at2(values, count=None):
 def test_run_writes_the_table_the_report_and_what_was_run(study, tmp_path, capsys):
     out = tmp_path / "results"
     assert main(["run", str(study), "--out", str(out), "--jobs", "1"]) == 0
-    assert sorted(file.name for file in out.iterdir()) == ["peaks.csv", "report.html", "run.json"]
+    assert sorted(file.name for file in out.iterdir()) == ["histories.h5", "peaks.csv", "report.html", "run.json"]
     with open(out / "peaks.csv", encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     assert [(row["record"], row["case"], row["status"]) for row in rows] == [
@@ -101,10 +101,12 @@ def test_a_run_that_is_refused_is_a_row_with_its_reason_and_has_no_history(study
     """One step a sample is beyond the stability of β = 5000: nothing of it is run, not for its picture either."""
     extra = '[numerics]\nsubsteps = 1\n[output]\nhistories = "all"\n'
     study.write_text(STUDY.replace("beta = 50\n", "beta = 5000\n") + extra, encoding="utf-8")
-    import rockbatch.histories
+    import rockbatch.keep
 
-    real, written = rockbatch.histories.histories, []
-    monkeypatch.setattr(rockbatch.histories, "histories", lambda *given: (written.append(given[5]), real(*given))[1])
+    real, written = rockbatch.keep.histories, []
+    monkeypatch.setattr(
+        rockbatch.keep, "histories", lambda *given, **more: (written.append(given[5]), real(*given, **more))[1]
+    )
     assert main(["run", str(study), "--out", str(tmp_path / "out")]) == 1
     assert written == ["rigid"]
     with open(tmp_path / "out/peaks.csv", encoding="utf-8", newline="") as file:

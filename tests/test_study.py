@@ -55,7 +55,7 @@ def test_a_study_without_options_has_the_documented_defaults(tmp_path):
     study = study_of(tmp_path, PIER, PULSE, case(base="rigid"))
     assert study.title == "study"
     assert study.notes == ""
-    assert study.output == Output()
+    assert study.output == Output(histories="worst", ledger=False, both_laws=True)
     assert study.numerics == Numerics(tolerance=1e-4, substeps=None, quiet_s=2.0)
     assert (study.motions.vertical, study.motions.polarity, study.motions.scale) == (True, ("+",), (1.0,))
     assert study.motions.pulses == (PulseSpec("sine", "sine", 0.4, 1.0, 0.01, 5.0),)

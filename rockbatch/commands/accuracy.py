@@ -70,7 +70,9 @@ def main(arguments: argparse.Namespace) -> int:
     print(shown(table))
     _say(str(directory / "accuracy.csv"))
     if _same_study(directory, table["study"].iloc[0], motions):
-        _say(str(_report(directory, study, runs)))
+        from rockbatch.report import write_report
+
+        _say(str(write_report(directory)))
     return 0
 
 
@@ -112,15 +114,6 @@ def _same_study(directory: Path, digest: str, motions: Any) -> bool:
     except (OSError, ValueError, KeyError, TypeError):
         return False
     return same and (directory / "peaks.csv").exists()
-
-
-def _report(directory: Path, study: Any, runs: Any) -> Path:
-    from rockbatch.batch import cores, outcomes
-    from rockbatch.commands.run import responses
-    from rockbatch.report import write_report
-
-    finished = {} if study.output.histories == "none" else dict(outcomes(runs, study.numerics, cores()))
-    return write_report(directory, responses(study, runs, finished))
 
 
 def _say(text: str) -> None:

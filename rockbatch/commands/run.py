@@ -2,7 +2,6 @@
 
 import argparse
 import datetime
-import math
 import platform
 import sys
 import time
@@ -12,7 +11,7 @@ from typing import Any
 from rockbatch import __version__
 
 HELP = "run every record of a study in every case; write the table of peaks and the report"
-PACKAGES = ("numba", "numpy", "pandas", "obspy", "matplotlib")
+PACKAGES = ("numba", "numpy", "pandas", "obspy", "h5py")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -43,7 +42,7 @@ def main(arguments: argparse.Namespace) -> int:
     from rockbatch.commands.summary import other_law, summary
     from rockbatch.core.kernel import is_compiled
     from rockbatch.plan import Plan
-    from rockbatch.results import PEAKS, PeaksFile, describe, unusable_rows, write_info
+    from rockbatch.results import INFO, PEAKS, PeaksFile, describe, unusable_rows, write_info
     from rockbatch.saved import read_saved
 
     motions = ground_motions(study)
@@ -66,15 +65,11 @@ def main(arguments: argparse.Namespace) -> int:
     if not is_compiled():
         _say("compiling the kernels (once per installation, about 15 s)")
     compile_kernels(study)
-    keep = study.output.histories != "none"
-    finished: dict[int, Any] = {}
     interrupted = False
     with PeaksFile(directory, study) as peaks, Progress(len(runs)) as progress:
         try:
             for index, outcome in outcomes(runs, study.numerics, jobs, study.output):
                 peaks.add(index, row_of(runs[index], outcome))
-                if keep:
-                    finished[index] = outcome
                 progress()
         except KeyboardInterrupt:
             interrupted = True
@@ -95,39 +90,40 @@ def main(arguments: argparse.Namespace) -> int:
         _say(f"interrupted: {peaks.finished} of {len(runs)} runs are in {directory / PEAKS}")
         return 130
 
+    saved = read_saved(directory)
+    code, histories = _keep_histories(saved, study, runs)
+    by_pga = [motion.name for motion in sorted(motions.motions, key=lambda motion: motion.pga)]
+    print(summary(saved.peaks, study.varied, by_pga))
+    if warning := other_law(saved.peaks):
+        _say(warning)
+    if study.checks:
+        from rockbatch.commands.check import tell
+        from rockbatch.design import verdicts
+
+        code = max(code, tell(directory, verdicts(saved)))
+
     from rockbatch.report import write_report
 
-    report = write_report(directory, responses(study, runs, finished))
-    by_pga = [motion.name for motion in sorted(motions.motions, key=lambda motion: motion.pga)]
-    table = read_saved(directory).peaks
-    print(summary(table, study.varied, by_pga))
-    if warning := other_law(table):
-        _say(warning)
-    _say(f"{directory / 'peaks.csv'}\n{directory / 'run.json'}\n{report}")
+    report = write_report(directory)
+    for path in (directory / PEAKS, directory / INFO, histories, report):
+        if path:
+            _say(str(path))
     if peaks.failed:
         _say(f"{_count(peaks.failed, 'row')} with status failed; the column reason says why")
-    return 1 if peaks.failed else 0
+        code = 1
+    return code
 
 
-def responses(study: Any, runs: Any, finished: dict[int, Any]) -> list[Any]:
-    """Histories of every run, where the study asks for them; a run that was refused has none."""
-    if study.output.histories == "none":
-        return []
-    from rockbatch.histories import histories
+def _keep_histories(saved: Any, study: Any, runs: Any) -> tuple[int, Path | None]:
+    """Write the histories that the study asks for: exit code, and the file; what cannot be written is told."""
+    from rockbatch.errors import InputError
+    from rockbatch.keep import keep_histories
 
-    return [
-        histories(
-            run.case.pier,
-            run.case.base,
-            run.motion,
-            finished[i],
-            study.numerics.quiet_s,
-            run.case.name,
-            run.case.columns,
-        )
-        for i, run in enumerate(runs)
-        if not math.isnan(finished[i].theta_max)
-    ]
+    try:
+        return 0, keep_histories(saved, study, runs)
+    except InputError as error:
+        _say(str(error))
+        return 1, None
 
 
 def _count(n: int, noun: str) -> str:

@@ -1,6 +1,6 @@
 """The table of Fig. 7 in the terminal: θ_max/α of every record in every case, a block for each pier."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from rockbatch.study import PIER_KEYS
@@ -26,7 +26,7 @@ def summary(table: "pd.DataFrame", varied: tuple[str, ...], records: Sequence[st
     if not pier_keys:
         return "Peak rotation theta_max/alpha\n" + _block(runs, rows, case_keys)
     blocks = [
-        f"Peak rotation theta_max/alpha, {_named(pier_keys, values)}\n" + _block(block, rows, case_keys)
+        f"Peak rotation theta_max/alpha, {named(pier_keys, values)}\n" + _block(block, rows, case_keys)
         for values, block in runs.groupby(pier_keys, sort=False)
     ]
     return "\n\n".join(blocks)
@@ -64,7 +64,7 @@ def _block(runs: "pd.DataFrame", rows: list[str], case_keys: list[str]) -> str:
     cells: dict[str, dict[str, str]] = {}
     for _, run in runs.iterrows():
         line = " ".join(f"{run[name]:g}" if name == "scale" else str(run[name]) for name in rows)
-        varied = _named(case_keys, [run[name] for name in case_keys])
+        varied = named(case_keys, [run[name] for name in case_keys])
         cell = f"{run['theta_max_over_alpha']:.4f}"
         if run["status"] != "ok":
             cell = f"{run['status']} {cell}"
@@ -72,7 +72,7 @@ def _block(runs: "pd.DataFrame", rows: list[str], case_keys: list[str]) -> str:
     return pd.DataFrame.from_dict(cells, orient="index").fillna("").to_string()
 
 
-def _named(keys: list[str], values: Any) -> str:
+def named(keys: Iterable[str], values: Iterable[Any]) -> str:
     """``beta=40 eta=2.5``, without keys that do not apply."""
     pairs = [(key, value) for key, value in zip(keys, values, strict=True) if value == value and value != ""]
     return " ".join(f"{key}={value}" if isinstance(value, str) else f"{key}={value:g}" for key, value in pairs)

@@ -3,35 +3,54 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+from rockbatch.checks import read_verdicts
 from rockbatch.files import write_whole
 from rockbatch.report import accuracy
-from rockbatch.report.finished import read
+from rockbatch.report.compare import comparison
+from rockbatch.report.finished import finished, read
 from rockbatch.report.page import page
 from rockbatch.response import Response
+from rockbatch.store import open_results
 
-__all__ = ["write_report"]
+__all__ = ["write_comparison", "write_report"]
 
 
-def write_report(directory: Path, responses: Sequence[Response] = ()) -> Path:
+def write_report(directory: Path, responses: Sequence[Response] | None = None, *, out: Path | None = None) -> Path:
     """Write ``report.html`` beside the results it tells of.
 
     Parameters
     ----------
     directory : Path
-        Folder with ``peaks.csv`` and ``run.json``, as ``rockbatch run`` leaves them; what ``rockbatch accuracy``
-        measured for the same study is shown where its ``accuracy.csv`` is there too.
-    responses : sequence of Response
-        Runs whose histories are shown, as in Figs. 5 and 6 of Palmeri & Makris (2007).
+        Folder with ``peaks.csv`` and ``run.json``, as ``rockbatch run`` leaves them. Histories, verdicts and what
+        ``rockbatch accuracy`` measured are shown where ``histories.h5``, ``checks.csv`` and ``accuracy.csv`` are there.
+    responses : sequence of Response, optional
+        Runs whose histories are shown instead of those in ``histories.h5``.
+    out : Path, optional
+        File to write instead.
 
     Returns
     -------
     Path of the report. An earlier one is replaced as a whole, or not at all.
 
-    Raises ``InputError`` where the two files are missing, damaged or do not belong together.
+    Raises ``InputError`` where the results are missing, damaged or do not belong together.
     """
     directory = Path(directory)
-    target = directory / "report.html"
-    finished = read(directory)
-    levels = accuracy.read(directory / "accuracy.csv", finished.info["study"]["sha256"])
-    write_whole(target, page(finished, responses, levels))
+    target = out or directory / "report.html"
+    results = open_results(directory)
+    study = finished(results)
+    levels = accuracy.read(directory / "accuracy.csv", study.info["study"]["sha256"])
+    shown = results.responses if responses is None else responses
+    write_whole(target, page(study, shown, levels, read_verdicts(directory)))
+    return target
+
+
+def write_comparison(first: Path, second: Path, *, out: Path | None = None) -> Path:
+    """Write one page that sets two studies against each other, run by run, and return its path.
+
+    ``out`` is ``compare-NAME.html`` in the first folder by default, with the name of the second. Raises ``InputError``
+    where results are missing or damaged.
+    """
+    first, second = Path(first), Path(second)
+    target = out or first / f"compare-{second.resolve().name}.html"
+    write_whole(target, comparison((read(first), read_verdicts(first)), (read(second), read_verdicts(second))))
     return target

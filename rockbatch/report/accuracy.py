@@ -5,21 +5,20 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from rockbatch.report.markup import Markup
-from rockbatch.report.svg import INK, MUTED, PAPER, SERIES, drawing, inline
-from rockbatch.report.tables import Head, table
+import numpy as np
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+from rockbatch.report.axes import Axes, Scale
+from rockbatch.report.markup import Markup, join
+from rockbatch.report.svg import curve, key, line, lowered, marker, svg, text
+from rockbatch.report.table import Head, table
 
 LEAST = 1e-14  # errors below are drawn there: rounding
-METHODS = {  # marker, colour, legend, and on which side the notes stand, so that neighbours keep clear of each other
-    "located": ("o", SERIES[0], "events located inside the step", -1),
-    "not located": ("s", SERIES[1], "events at the end of the step", 1),
-    "SciPy DOP853": ("^", SERIES[2], "SciPy DOP853", 1),
-    "SciPy LSODA": ("v", SERIES[3], "SciPy LSODA", -1),
+METHODS = {  # marker, colour, words, and on which side the notes stand, so that neighbours keep clear of each other
+    "located": ("disc", 1, "events located inside the step", -1),
+    "not located": ("square", 2, "events at the end of the step", 1),
+    "SciPy DOP853": ("up", 3, "SciPy DOP853", 1),
+    "SciPy LSODA": ("down", 4, "SciPy LSODA", -1),
 }
 NUMBERS = (
     "substeps", "tolerance", "runs", "error_median", "error_95", "error_max", "seconds_per_run", "status_differs",
@@ -94,72 +93,88 @@ def _milliseconds(level: Level) -> str:
 
 
 def draw(levels: Sequence[Level]) -> Markup:
-    """Error against time per run, both logarithmic, as SVG: the largest error solid, the median dashed."""
-    from matplotlib.figure import Figure
-    from matplotlib.ticker import FuncFormatter
-
-    with drawing("accuracy"):
-        figure = Figure(figsize=(7.5, 4.6))
-        axes = figure.add_axes((0.1, 0.24, 0.86, 0.74))
-        axes.set_xscale("log")
-        axes.set_yscale("log")
-        axes.grid()
-        for axis in (axes.xaxis, axes.yaxis):
-            axis.set_major_formatter(FuncFormatter(_power_of_ten))
-        for method, (marker, colour, label, side) in METHODS.items():
-            at = [level for level in levels if level.method == method and level.seconds_per_run]
-            if not at:
-                continue
-            _line(axes, at, [level.error_median for level in at], linestyle=":", color=colour)
-            style = {"color": colour, "marker": marker, "markersize": 5, "label": label}
-            _line(axes, at, [level.error_max for level in at], **style)
-            for level in at:
-                if level.error_max is not None:
-                    _note(axes, level, colour, side)
-        chosen = next((level for level in levels if level.method == "study"), None)
-        if chosen is not None and chosen.error_max is not None and chosen.seconds_per_run:
-            setting = f"tolerance {chosen.tolerance:g}" if chosen.tolerance else f"{chosen.substeps:.0f} substeps"
-            if chosen.tolerance:
-                axes.axhline(chosen.tolerance, color=MUTED, linewidth=0.8, linestyle="--", zorder=1)
-            style = {"color": INK, "markeredgecolor": PAPER, "marker": "*", "markersize": 14, "linestyle": "none"}
-            _line(axes, [chosen], [chosen.error_max], label=f"this study: {setting}", zorder=4, **style)
-        axes.plot([], [], color=MUTED, label="largest error")
-        axes.plot([], [], color=MUTED, linestyle=":", label="median error")
-        axes.set_xlabel("time per run [ms]")
-        axes.set_ylabel("error of θmax/α")
-        figure.legend(loc="lower center", ncols=3, fontsize=8, borderpad=0.2, columnspacing=1.5)
-        return inline(figure, "Error of θmax/α against time per run")
+    """Error against time per run, both logarithmic: the largest error solid, the median dotted."""
+    timed = [level for level in levels if level.seconds_per_run]
+    times = [1000 * (level.seconds_per_run or 0) for level in timed]
+    errors = [
+        max(error, LEAST) for level in timed for error in (level.error_median, level.error_max) if error is not None
+    ]
+    axes = Axes(44, 12, 560, 268, _decades(times), _decades(errors))
+    drawn = [axes.frame(axes.x.ticks(8), axes.y.ticks(8))]
+    for method, (shape, colour, _, side) in METHODS.items():
+        at = [level for level in timed if level.method == method]
+        drawn += _lines(axes, at, f"s{colour}")
+        drawn += [_point(axes, level, shape, f"s{colour}", side) for level in at if level.error_max is not None]
+    chosen = _chosen(levels)
+    if chosen is not None:
+        if chosen.tolerance:
+            y = float(axes.down(chosen.tolerance))
+            drawn.append(line(axes.left, y, axes.left + axes.width, y, "flown", f"tolerance {chosen.tolerance:g}"))
+        drawn.append(marker("star", *_at(axes, chosen), colour="ink large", title=_said(chosen)))
+    drawn.append(text(axes.left + axes.width / 2, 308, "time per run [ms]", class_="m q"))
+    drawn.append(text(axes.left + 4, 9, join("error of ", lowered("θ", "max", "/α")), class_="q"))
+    present = {level.method for level in timed}
+    entries = [
+        (marker(shape, 11, 7, colour=f"s{colour}"), words)
+        for name, (shape, colour, words, _) in METHODS.items()
+        if name in present
+    ]
+    if chosen is not None:
+        setting = f"tolerance {chosen.tolerance:g}" if chosen.tolerance else f"{chosen.substeps:.0f} substeps"
+        entries.append((marker("star", 11, 7, colour="ink large"), f"this study: {setting}"))
+    entries += [(line(0, 7, 22, 7, "level"), "largest error"), (line(0, 7, 22, 7, "level d2"), "median error")]
+    said = "Error of θmax/α against time per run"
+    return join(svg(616, 312, *drawn, description=said, class_="plot marks accuracy"), key(entries))
 
 
-def _power_of_ten(value: float, position: int) -> str:
-    exponent = round(math.log10(value))
-    if 0 <= exponent <= 4:
-        return f"{10**exponent}"
-    return "10" + str(exponent).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
+def _decades(values: Sequence[float]) -> Scale:
+    """Whole powers of ten around all values."""
+    low, high = min(values, default=1.0), max(values, default=1.0)
+    return Scale(10.0 ** math.floor(math.log10(low)), 10.0 ** (math.floor(math.log10(high)) + 1), log=True)
 
 
-def _line(axes: "Axes", levels: Sequence[Level], errors: Sequence[float | None], **style: object) -> None:
-    x = [1000 * (level.seconds_per_run or math.nan) for level in levels]
-    y = [math.nan if error is None else max(error, LEAST) for error in errors]
-    axes.plot(x, y, **{"linewidth": 1.1, **style})  # type: ignore[arg-type]
+def _at(axes: Axes, level: Level) -> tuple[float, float]:
+    error = max(level.error_max or 0.0, LEAST)
+    return float(axes.across(1000 * (level.seconds_per_run or math.nan))), float(axes.down(error))
 
 
-def _note(axes: "Axes", level: Level, colour: str, side: int) -> None:
-    """The number of steps per sample, or SciPy's tolerance, beside a point."""
-    text = f"k = {level.substeps:.0f}" if level.substeps else f"{level.tolerance:.0e}"
-    at = 1000 * (level.seconds_per_run or math.nan), max(level.error_max or 0.0, LEAST)
-    axes.annotate(
-        text, at, xytext=(6 * side, 4 * side), textcoords="offset points", fontsize=7, color=colour,
-        ha="left" if side > 0 else "right", va="bottom" if side > 0 else "top",
-    )  # fmt: skip
+def _lines(axes: Axes, levels: Sequence[Level], class_: str) -> list[Markup]:
+    """From level to level: the largest error, and the median one."""
+    x = axes.across(np.array([1000 * (level.seconds_per_run or math.nan) for level in levels]))
+    drawn = []
+    for name, dashes in (("error_max", ""), ("error_median", " d2")):
+        errors = [getattr(level, name) for level in levels]
+        y = axes.down(np.array([math.nan if error is None else max(error, LEAST) for error in errors]))
+        if len(levels) > 1:
+            drawn.append(curve(x, y, f"level {class_}{dashes}"))
+    return drawn
+
+
+def _point(axes: Axes, level: Level, shape: str, class_: str, side: int) -> Markup:
+    """A level's marker, and the number of steps per sample, or SciPy's tolerance, beside it."""
+    x, y = _at(axes, level)
+    words = f"k = {level.substeps:.0f}" if level.substeps else f"{level.tolerance:.0e}"
+    place = text(x + 7 * side, y - 4 * side + 3, words, class_=class_ if side > 0 else f"{class_} e")
+    return join(marker(shape, x, y, colour=class_, title=_said(level)), place)
+
+
+def _said(level: Level) -> str:
+    setting = f"k = {level.substeps:.0f}" if level.substeps else f"tolerance {level.tolerance:.0e}"
+    return f"{level.method}, {setting}: {level.error_max:.1e} at most in {_milliseconds(level)} ms"
+
+
+def _chosen(levels: Sequence[Level]) -> Level | None:
+    """The study's own setting, where it was measured."""
+    own = next((level for level in levels if level.method == "study"), None)
+    return own if own is not None and own.error_max is not None and own.seconds_per_run else None
 
 
 def lead(levels: Sequence[Level]) -> str:
     """What the picture shows, in a sentence about the study's own setting; empty without it."""
-    chosen = next((level for level in levels if level.method == "study"), None)
-    if chosen is None or chosen.error_max is None or not chosen.seconds_per_run:
+    chosen = _chosen(levels)
+    if chosen is None:
         return ""
     return (
-        f"With the setting of this study a run takes {1000 * chosen.seconds_per_run:.3g} ms "
+        f"With the setting of this study a run takes {_milliseconds(chosen)} ms "
         f"and its peak is off by {chosen.error_max:.1e} at most, over the runs measured."
     )

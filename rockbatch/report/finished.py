@@ -1,249 +1,177 @@
-"""Finished results as the report sees them: ``peaks.csv`` and ``run.json`` read, named and put in order."""
+"""Finished results as the report sees them: every run with its pier, its foundation and its ground motion."""
 
-import csv
-import json
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rockbatch.errors import InputError
+from rockbatch.report.labels import Key, Series, named, quantity
+from rockbatch.report.markup import number
+from rockbatch.saved import Saved, read_saved
 from rockbatch.study import PIER_KEYS
 
-TEXTS = ("record", "case", "polarity", "status", "reason")
-NUMBERS = (
-    "scale", "theta_max_over_alpha", "theta_max_error", "t_max_s", "theta_res_over_alpha", "settlement_m",
-    "impacts", "separations", "flight_s", "substeps", "t_end_s", "base_tilt_rad", "ductility_left",
-    "ductility_right", "dissipated_left_J_kg", "dissipated_right_J_kg",
-)  # fmt: skip
-ASKED_FOR = ("theta_res_error", "settlement_other_law_m")
-"""Numbers that are there where a study asks for them; and the terms of the energy ledger, ``energy_…``."""
+if TYPE_CHECKING:
+    import pandas as pd
 
-SECTIONS = (
-    "rockbatch", "created", "command", "study", "versions", "machine", "numerics", "varied", "cases",
-    "records", "unusable", "references", "runs", "jobs", "wall_s",
-)  # fmt: skip
-
-SYMBOLS = {
-    "alpha": ("α", "rad"),
-    "p": ("p", "rad/s"),
-    "mu": ("μ", ""),
-    "gravity": ("g", "m/s²"),
-    "size_m": ("R0", "m"),
-    "width_m": ("width", "m"),
-    "height_m": ("height", "m"),
-    "beta": ("β", ""),
-    "eta": ("η", ""),
-    "epsilon": ("ε", ""),
-    "n": ("n", ""),
-    "restitution": ("e", ""),
-    "stiffness_kN_m": ("K", "kN/m"),
-    "yield_kN": ("F_y", "kN"),
-    "mass_t": ("M", "t"),
-}
-BASE_KEYS = ("beta", "eta", "epsilon", "spring", "n", "kinematics", "flight", "restitution")
+NO_PEAK = ("overturned", "flight")
+"""Outcomes without a largest rotation: the run ended before it."""
 
 
-@dataclass(frozen=True)
-class Series:
-    """One foundation: a marker in the figures, a column in the tables."""
-
-    label: str
-    tick: str
-    rigid: bool
-    index: int  # among those of its kind, rigid or not
-
-
-@dataclass(frozen=True)
-class Run:
-    """One row of ``peaks.csv`` that is a run.
-
-    ``theta`` is θ_max/α and ``error`` its estimated error; ``alpha`` the slenderness [rad]; ``pier`` counts the
-    varied piers.
-    """
-
-    record: str
-    polarity: str
-    scale: float
-    status: str
-    theta: float | None
-    error: float | None
-    alpha: float
-    pier: int
-    series: Series
-    row: dict[str, Any]
-
-
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Finished:
     """All that a folder of results holds.
 
-    ``rows`` are those of ``peaks.csv``, also of files that could not be used; ``runs`` those that were
-    simulated. ``piers`` are the words for the varied values of the pier, one for each; [""] where none varies.
+    Attributes
+    ----------
+    saved : Saved
+        The two files.
+    runs : DataFrame
+        The rows of ``peaks.csv`` that were simulated, and more of each: ``series`` and ``pier``, places in the lists
+        below; ``alpha`` [rad]; ``pga_g``, that of the scaled motion; ``with_vertical``, "" unless the study has both.
+    series : list of Series
+        The foundations.
+    piers : list of str
+        Words for the varied values of the pier, one for each; [""] where none varies.
+    places, pier_places : dict
+        Place of each foundation in ``series``, and of the varied values of each pier in ``piers``.
     """
 
-    info: dict[str, Any]
-    rows: list[dict[str, Any]]
-    runs: list[Run]
+    saved: Saved
+    runs: "pd.DataFrame"
+    series: list[Series]
     piers: list[str]
-    foundations: dict[tuple[object, ...], Series]
+    places: dict[Key, int]
+    pier_places: dict[Key, int]
 
-    def series(self, case: str, columns: dict[str, Any]) -> Series | None:
-        """The foundation of a case with the given varied values, if the study has it."""
-        return self.foundations.get(_foundation(case, columns, self.info))
+    @property
+    def info(self) -> dict[str, Any]:
+        """``run.json``."""
+        return self.saved.info
 
-    def record(self, name: str) -> dict[str, Any]:
-        """What ``run.json`` knows about a ground motion; empty if nothing."""
-        return next((record for record in self.info["records"] if record["record"] == name), {})
+    @cached_property
+    def records(self) -> dict[str, dict[str, Any]]:
+        """What ``run.json`` knows about each ground motion."""
+        return {record["record"]: record for record in self.info["records"]}
 
-    def by_pga(self, runs: Sequence[Run]) -> list[str]:
-        """Names of the records in ``runs``, the weakest first."""
-        pga = {record["record"]: record["pga_g"] for record in self.info["records"]}
-        return sorted({run.record for run in runs}, key=lambda name: (pga.get(name, math.inf), name))
+    @cached_property
+    def both_directions(self) -> bool:
+        """Whether motions were run as recorded and reversed."""
+        return bool(self.runs["polarity"].nunique() > 1)
+
+    def place(self, case: str, columns: Mapping[str, Any]) -> tuple[int, int]:
+        """Places in ``series`` and ``piers`` of a case with the given varied values."""
+        varied = self.info["varied"]
+        return self.places[foundation(case, columns, varied)], self.pier_places[_pier(columns, varied)]
+
+    def by_pga(self, names: Sequence[str]) -> list[str]:
+        """``names`` of records, the weakest first."""
+        return sorted(names, key=lambda name: (self.records.get(name, {}).get("pga_g", math.inf), name))
+
+    def groups(self) -> "list[tuple[str, pd.DataFrame]]":
+        """Runs that share a scale, a pier and the vertical component, with the words that tell them from others."""
+        keys = ["scale", "pier", "with_vertical"]
+        scaled = self.runs["scale"].nunique() > 1
+        found = []
+        for _, runs in self.runs.groupby(keys):
+            one = runs.iloc[0]
+            scale = f"motions scaled by {number(float(one['scale']))}" if scaled else ""
+            words = [self.piers[one["pier"]], scale, one["with_vertical"]]
+            found.append((", ".join(filter(None, words)), runs))
+        return found
+
+    def which(self, run: "pd.Series[Any]") -> str:
+        """The foundation of a run, and what else tells it from the runs of the same record, in words."""
+        also = [self.piers[run["pier"]], f"scale {number(float(run['scale']))}" if run["scale"] != 1 else ""]
+        also += ["reversed" if run["polarity"] == "-" else "", run["with_vertical"]]
+        told = ", ".join(filter(None, also))
+        return self.series[run["series"]].label + (f" ({told})" if told else "")
+
+    def where(self, run: "pd.Series[Any]") -> str:
+        """Which run this is, in words."""
+        return f"{run['record']}, case {self.which(run)}"
 
 
 def read(directory: Path) -> Finished:
-    """Read ``peaks.csv`` and ``run.json``; raises ``InputError`` where one is missing or damaged."""
-    problems: list[str] = []
-    info = _read_info(directory / "run.json", problems)
-    rows = _read_rows(directory / "peaks.csv", info.get("varied", []), problems)
-    if problems:
-        raise InputError(*problems)
-    piers, pier_of = _piers(rows, info)
-    foundations = _series(info)
-    cases = {(_foundation(c["case"], c["columns"], info), _pier(c["columns"], info)): c for c in info["cases"]}
-    runs, unknown = [], set()
-    for row in (row for row in rows if row["case"]):
-        foundation, pier = _foundation(row["case"], row, info), _pier(row, info)
-        if (foundation, pier) not in cases:
-            unknown.add(row["case"])
+    """Read the results in a folder; raises ``InputError`` where they are missing, damaged or do not belong together."""
+    return finished(read_saved(directory))
+
+
+def finished(saved: Saved) -> Finished:
+    """Every run of ``saved`` with its pier, its foundation and its ground motion."""
+    info, varied = saved.info, saved.info["varied"]
+    grouped: dict[Key, list[dict[str, Any]]] = {}
+    alphas: dict[tuple[Key, Key], float] = {}
+    for case in info["cases"]:
+        key = foundation(case["case"], case["columns"], varied)
+        grouped.setdefault(key, []).append(case)
+        alphas[key, _pier(case["columns"], varied)] = float(case["pier"]["alpha"])
+    series = named(grouped, [key for key in varied if _of_foundation(key)])
+    places = {key: place for place, key in enumerate(series)}
+
+    runs = saved.peaks[saved.peaks["case"] != ""].copy()
+    kinds = runs.groupby(["case", *varied], sort=False, dropna=False).ngroup() if len(runs) else runs["scale"]
+    piers: dict[Key, int] = {}
+    facts: dict[int, tuple[int, int, float]] = {}
+    unknown = set()
+    for row in as_dicts(runs.assign(kind=kinds).drop_duplicates("kind")):
+        pair = foundation(row["case"], row, varied), _pier(row, varied)
+        if pair not in alphas:
+            unknown.add(str(row["case"]))
             continue
-        alpha = float(cases[foundation, pier]["pier"]["alpha"])
-        peak = (row["theta_max_over_alpha"], row["theta_max_error"])
-        names = (row["record"], row["polarity"], row["scale"], row["status"])
-        runs.append(Run(*names, *peak, alpha, pier_of[pier], foundations[foundation], row))
+        facts[row["kind"]] = places[pair[0]], piers.setdefault(pair[1], len(piers)), alphas[pair]
     if unknown:
         raise InputError(
-            f"{directory}: peaks.csv has runs of case {', '.join(sorted(unknown))} that run.json does not list; "
+            f"{saved.directory}: peaks.csv has runs of case {', '.join(sorted(unknown))} that run.json does not list; "
             "the two files belong to different runs; start `rockbatch run` again"
         )
-    return Finished(info, rows, runs, piers, foundations)
+    for column, name in enumerate(("series", "pier", "alpha")):
+        runs[name] = kinds.map({kind: fact[column] for kind, fact in facts.items()})
+    pga = {record["record"]: record["pga_g"] for record in info["records"]}
+    runs["pga_g"] = runs["record"].map(pga).astype("float64") * runs["scale"]
+    runs["with_vertical"] = _with_vertical(runs)
+    keys = [key for key in varied if key in PIER_KEYS]
+    words = [", ".join(map(quantity, keys, values)) for values in piers] or [""]
+    return Finished(saved, runs, list(series.values()), words, places, piers)
 
 
-def quantity(key: str, value: object) -> str:
-    """A value in words that stay on one line: "β = 40", "p = 0.38 rad/s", "kinematics finite"."""
-    symbol, unit = SYMBOLS.get(key, (key, ""))
-    if isinstance(value, float | int):
-        return f"{symbol} = {value:.10g} {unit}".strip().replace(" ", "\u00a0")
-    return f"{symbol} {value}"
+def as_dicts(runs: "pd.DataFrame") -> list[dict[str, Any]]:
+    """The rows of ``runs``, each by the names of the columns."""
+    return [{str(name): value for name, value in row.items()} for row in runs.to_dict("records")]
 
 
-def _read_info(path: Path, problems: list[str]) -> dict[str, Any]:
-    try:
-        info: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        problems.append(f"{path}: not there; give a folder that `rockbatch run` has written")
-        return {}
-    except ValueError as error:
-        line = getattr(error, "lineno", 1)
-        problems.append(f"{path}:{line}: not JSON ({error}); start `rockbatch run` again")
-        return {}
-    missing = [name for name in SECTIONS if name not in info]
-    if missing:
-        problems.append(f"{path}: has no {', '.join(missing)}; start `rockbatch run` again with this version")
-    return info
+def worst_first(runs: "pd.DataFrame", most: int) -> "pd.DataFrame":
+    """At most so many runs: overturned, ended by flight, then by rotation; failed ones last."""
+    place = runs["status"].map({"overturned": 0, "flight": 1, "failed": 3}).fillna(2)
+    keys = place.to_frame("place").assign(theta=-runs["theta_max_over_alpha"])
+    return runs.loc[keys.sort_values(["place", "theta"], kind="stable").index[:most]]
 
 
-def _read_rows(path: Path, varied: list[str], problems: list[str]) -> list[dict[str, Any]]:
-    try:
-        with path.open(encoding="utf-8", newline="") as file:
-            reader = csv.DictReader(file)
-            head = reader.fieldnames or []
-            missing = [name for name in (*TEXTS, *NUMBERS, *varied) if name not in head]
-            if missing:
-                problems.append(f"{path}:1: has no column {', '.join(missing)}; start `rockbatch run` again")
-                return []
-            return [_row(raw, varied, f"{path}:{reader.line_num}", problems) for raw in reader]
-    except FileNotFoundError:
-        problems.append(f"{path}: not there; give a folder that `rockbatch run` has written")
-        return []
+def foundation(case: str, columns: Mapping[str, Any], varied: Sequence[str]) -> Key:
+    """What tells one foundation from another; ``columns`` maps varied keys to values."""
+    return (case, *(_plain(columns.get(key)) for key in varied if _of_foundation(key)))
 
 
-def _row(raw: dict[str, str], varied: list[str], place: str, problems: list[str]) -> dict[str, Any]:
-    row: dict[str, Any] = dict(raw)
-    more = [name for name in raw if name in ASKED_FOR or str(name).startswith("energy_")]
-    for name in (*NUMBERS, *more):
-        try:
-            value = float(raw[name]) if raw[name] else math.nan
-        except (TypeError, ValueError):
-            problems.append(f'{place}: {name} = "{raw[name]}": expected a number or nothing')
-            value = math.nan
-        row[name] = None if math.isnan(value) else value
-    for name in varied:
-        row[name] = _value(raw[name])
-    return row
+def _of_foundation(key: str) -> bool:
+    return key not in PIER_KEYS and key != "vertical"
 
 
-def _value(text: str) -> float | str:
-    """A varied value: a number, or a word such as "finite"."""
-    try:
-        return float(text)
-    except ValueError:
-        return text
+def _pier(columns: Mapping[str, Any], varied: Sequence[str]) -> Key:
+    return tuple(_plain(columns.get(key)) for key in varied if key in PIER_KEYS)
 
 
-def _pier(columns: dict[str, Any], info: dict[str, Any]) -> tuple[object, ...]:
-    return tuple(columns.get(key) for key in info["varied"] if key in PIER_KEYS)
+def _plain(value: object) -> object:
+    """As peaks.csv has it: ten digits, and nothing where run.json leaves a key out."""
+    if value is None or value != value:
+        return ""
+    return float(f"{value:.10g}") if isinstance(value, float | int) else value
 
 
-def _foundation(case: str, columns: dict[str, Any], info: dict[str, Any]) -> tuple[object, ...]:
-    """What tells one foundation from another: the case and its varied values, those of the pier apart."""
-    # peaks.csv leaves a cell empty where run.json leaves the key out
-    return (case, *(columns.get(key, "") for key in info["varied"] if key not in PIER_KEYS))
-
-
-def _piers(rows: list[dict[str, Any]], info: dict[str, Any]) -> tuple[list[str], dict[tuple[object, ...], int]]:
-    keys = [key for key in info["varied"] if key in PIER_KEYS]
-    values = list(dict.fromkeys(_pier(row, info) for row in rows if row["case"])) or [()]
-    words = [", ".join(map(quantity, keys, value)) for value in values]
-    return words, {value: index for index, value in enumerate(values)}
-
-
-def _series(info: dict[str, Any]) -> dict[tuple[object, ...], Series]:
-    grouped: dict[tuple[object, ...], list[dict[str, Any]]] = {}
-    for case in info["cases"]:
-        grouped.setdefault(_foundation(case["case"], case["columns"], info), []).append(case)
-    constants = {key: _constants(cases) for key, cases in grouped.items()}
-    rigid = {key for key, cases in grouped.items() if cases[0]["base"] == "rigid"}
-
-    names = [key[0] for key in grouped if key not in rigid]
-    short = len(set(names)) == len(names) and all(len(str(name)) <= 3 for name in names)
-    series: dict[tuple[object, ...], Series] = {}
-    count = {True: 0, False: 0}
-    for key in grouped:
-        is_rigid = key in rigid
-        alike = [constants[other] for other in grouped if (other in rigid) == is_rigid]
-        keys = (*BASE_KEYS, *info["varied"])
-        differs = [name for name in keys if len({str(other.get(name)) for other in alike}) > 1]
-        shown = [name for name in dict.fromkeys(differs) if name in constants[key]]
-        words = [quantity(name, constants[key][name]) for name in shown]
-        case = str(key[0])
-        index = count[is_rigid]
-        count[is_rigid] += 1
-        label = f"{case}: {', '.join(words)}" if words else case
-        tick = case if short else chr(ord("a") + index) if index < 26 else str(index + 1)
-        series[key] = Series(label, tick, is_rigid, index)
-    return series
-
-
-def _constants(cases: list[dict[str, Any]]) -> dict[str, object]:
-    """Values that a foundation keeps on every pier; β of a given stiffness, for one, follows the pier."""
-    first = {**cases[0]["parameters"], **cases[0]["columns"]}
-    return {
-        key: value
-        for key, value in first.items()
-        if key not in PIER_KEYS
-        and value is not None
-        and all({**case["parameters"], **case["columns"]}.get(key) == value for case in cases)
-    }
+def _with_vertical(runs: "pd.DataFrame") -> "pd.Series[str] | str":
+    """Words for each run, where the study was run with and without the vertical component."""
+    if "vertical" not in runs or runs["vertical"].nunique() < 2:
+        return ""
+    yes = runs["vertical"].astype(str).str.lower().isin(["true", "1", "1.0", "yes", "with"])
+    return yes.map({True: "with vertical", False: "without vertical"})

@@ -32,4 +32,7 @@ def number(value: object, form: str = ".4g") -> str:
     """A float in the given format, anything else as it is; empty where there is none."""
     if value is None or (isinstance(value, float) and math.isnan(value)):
         return ""
-    return format(value, form) if isinstance(value, float) else str(value)
+    if not isinstance(value, float):
+        return str(value)
+    shown = format(value, form)
+    return shown.removeprefix("-") if shown.startswith("-0") and float(shown) == 0 else shown

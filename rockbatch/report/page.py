@@ -1,164 +1,75 @@
-"""The page: what was studied, what came out, and how to get there again."""
+"""The page of one study: what was studied, whether it passes, what came out, and how to get there again."""
 
-import base64
-import hashlib
 import shlex
 from collections.abc import Sequence
-from importlib.resources import files
 
-from rockbatch.report import accuracy, histories, peaks, tables
-from rockbatch.report.finished import Finished, Run, quantity
+from rockbatch.checks import Verdict
+from rockbatch.report import accuracy, histories, inputs, panels, peaks, statistics, summary, verdicts
+from rockbatch.report.document import Section, document, figure, paragraphs
+from rockbatch.report.finished import Finished
 from rockbatch.report.markup import Markup, join, number, tag
-from rockbatch.report.summary import counted, summary
+from rockbatch.report.summary import counted
+from rockbatch.report.table import THETA
 from rockbatch.response import Response
 
 
-def page(finished: Finished, responses: Sequence[Response] = (), levels: Sequence[accuracy.Level] = ()) -> str:
-    """The whole report as HTML: one file, no address outside it."""
-    style, script = (
-        files(__package__).joinpath(name).read_text(encoding="utf-8") for name in ("style.css", "script.js")
-    )
+def page(
+    finished: Finished,
+    responses: Sequence[Response] = (),
+    levels: Sequence[accuracy.Level] = (),
+    judged: Sequence[Verdict] = (),
+) -> str:
+    """The whole report as HTML."""
     title = finished.info["study"]["title"] or "Rocking piers"
+    checks = [tag("p", summary.worst(finished), class_="lead"), tag("div", verdicts.answer(judged), class_="lead")]
     sections = [
-        ("Summary", "summary", summary(finished)),
-        ("Peak rotations", "figure", _figures(finished)),
-        ("Peak rotations in numbers", "numbers", _numbers(finished)),
-        ("Compared with published values", "references", _references(finished)),
-        ("Notes", "notes", _notes(finished)),
-        ("Histories", "histories", _histories(finished, responses)),
-        ("All results", "peaks", _all(finished)),
-        ("Foundations", "foundations", tables.foundations(finished)),
-        ("Ground motions", "records", _records(finished)),
-        ("Not used", "unusable", _unusable(finished)),
-        ("Speed and error", "accuracy", _accuracy(levels)),
-        ("How to reproduce", "reproduce", _reproduce(finished)),
+        Section("What was studied", "studied", summary.studied(finished)),
+        Section("Does it pass", "checks", join(*checks, summary.quality(finished), verdicts.section(judged))),
+        Section("Peak rotations", "figure", _figures(finished)),
+        Section("Compared with published values", "references", _references(finished)),
+        Section("Every run", "peaks", _all(finished)),
+        Section("The suite in each case", "suite", statistics.section(finished)),
+        Section("Histories", "histories", _histories(finished, responses)),
+        Section("Ground motions", "records", inputs.records(finished) if finished.info["records"] else join()),
+        Section("Not used", "unusable", _unusable(finished)),
+        Section("Speed and error", "accuracy", _accuracy(finished, levels)),
+        Section(
+            "Notes",
+            "notes",
+            paragraphs(*(part.strip() for part in (finished.info["study"]["notes"] or "").split("\n\n"))),
+        ),
+        Section("How to reproduce", "reproduce", _reproduce(finished)),
     ]
-    sections = [section for section in sections if section[2]]
-    links = [tag("a", name, href=f"#{key}") for name, key, _ in sections]
-    # Only the script below may run, and nothing is fetched, whatever a record is called
-    digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
-    policy = f"default-src 'none'; style-src 'unsafe-inline'; script-src 'sha256-{digest}'"
-    head = tag(
-        "head",
-        Markup('<meta charset="utf-8">'),
-        Markup(f'<meta http-equiv="Content-Security-Policy" content="{policy}">'),
-        Markup('<meta name="viewport" content="width=device-width, initial-scale=1">'),
-        Markup('<meta name="color-scheme" content="light dark">'),
-        tag("title", title),
-        tag("style", Markup(style)),
-    )
-    body = tag(
-        "body",
-        tag("header", tag("p", "Rocking response of stepping piers", class_="kind"), tag("h1", title)),
-        tag("nav", *links, aria_label="Sections"),
-        tag("main", *(tag("section", tag("h2", name), content, id=key) for name, key, content in sections)),
-        tag("script", Markup(script)),
-    )
-    return f'<!DOCTYPE html>\n<html lang="en">\n{head}\n{body}\n</html>\n'
-
-
-def _paragraphs(*sentences: object) -> Markup:
-    return join(*(tag("p", sentence) for sentence in sentences if sentence))
-
-
-def _groups(finished: Finished) -> list[tuple[str, list[Run]]]:
-    """Runs that share a pier and a scale, with the words that tell them from the others."""
-    keys = sorted({(run.scale, run.pier) for run in finished.runs})
-    scaled = len({scale for scale, _ in keys}) > 1
-    groups = []
-    for scale, pier in keys:
-        words = [finished.piers[pier], f"motions scaled by {number(scale)}" if scaled else ""]
-        runs = [run for run in finished.runs if (run.scale, run.pier) == (scale, pier)]
-        groups.append((", ".join(filter(None, words)), runs))
-    return groups
-
-
-def _figure(drawn: Markup, caption: Sequence[object]) -> Markup:
-    return tag("figure", tag("div", drawn, class_="wide", tabindex="0"), tag("figcaption", *caption))
+    return document("Rocking response of stepping piers", title, sections)
 
 
 def _figures(finished: Finished) -> Markup:
-    groups = _groups(finished)
-    shown = []
-    for index, (words, runs) in enumerate(groups):
-        # Piers are compared on one axis; larger motions have their own
-        top = peaks.ceiling([run for run in finished.runs if run.scale == runs[0].scale])
-        drawn = peaks.draw(finished, runs, top, f"peaks{index}")
-        caption: list[object] = [tag("strong", f"{words}. ")] if words else []
-        caption += ["Largest rotation over slenderness, records in order of peak ground acceleration"]
-        if any(run.series.rigid for run in runs):
-            caption += ["; lines: rigid base"]
-        if len({run.polarity for run in runs}) > 1:
-            caption += ["; open markers: horizontal component reversed"]
-        caption += ["."]
-        if any(run.status in peaks.HAPPENED for run in runs):
-            caption += [
-                " Symbols in the shaded strip are runs without a largest rotation: "
-                "the pier overturned, or left the ground."
-            ]
-        shown.append(_figure(drawn, caption))
-    return join(*shown)
-
-
-def _numbers(finished: Finished) -> Markup:
-    shown = []
-    for words, runs in _groups(finished):
-        shown.append(join(tag("h3", words) if words else "", tables.at_a_glance(finished, runs)))
-    if not shown:
-        return join()
-    flew = any(run.status == "ok" and run.row["flight_s"] is not None for run in finished.runs)
-    legend = [tables.THETA, ", in order of PGA; the largest of each table in bold."]
-    if flew:
-        legend += [" ", tag("sup", "f"), " both pivots left the ground on the way; the pier was guided down."]
-    return join(tag("p", *legend), *shown)
+    runs = finished.runs
+    if runs.empty:
+        return Markup("")
+    caption = [
+        "Largest rotation over slenderness, ", THETA, ", records in order of peak ground acceleration",
+        "; lines: rigid base" if any(series.rigid for series in finished.series) else "",
+        "; open markers and dashed lines: horizontal component reversed" if finished.both_directions else "", ".",
+    ]  # fmt: skip
+    drawn = panels.figures(finished, caption)
+    flew = ((runs["status"] == "ok") & runs["flight_s"].notna()).any()
+    legend = tag("sup", "f"), " both pivots left the ground on the way; the pier was guided down."
+    return join(drawn, tag("p", *legend, class_="legend") if flew else "")
 
 
 def _references(finished: Finished) -> Markup:
-    return tables.comparison(finished) if finished.info["references"] else join()
-
-
-def _notes(finished: Finished) -> Markup:
-    notes = finished.info["study"]["notes"] or ""
-    return _paragraphs(*(part.strip() for part in notes.split("\n\n")))
-
-
-def _histories(finished: Finished, responses: Sequence[Response]) -> Markup:
-    shown = []
-    for index, group in enumerate(histories.groups(responses)):
-        pier = group[0].pier
-        titles = [_column_title(finished, response) for response in group]
-        drawn = histories.draw(group, titles, f"histories{index}")
-        caption: list[object] = [
-            tag("strong", f"{group[0].record}. "),
-            f"Pier α = {number(pier.alpha)} rad, p = {number(pier.p)} rad/s. ",
-            "Rotation, angular velocity, energy relative to the start, and ground acceleration",
-        ]
-        if len(group) > 1 and group[0].base.name == "rigid":
-            caption += ["; thin line: rigid base"]
-        if group[-1].base.name != "rigid":
-            caption += ["; shaded: rotations at which both supports stay loaded in weak rocking"]
-        caption += ["."]
-        if any(response.base.name == "yielding" for response in group):
-            caption += [
-                " At the foot, force against deflection of the left (L) and right (R) spring, "
-                "over their values at yield."
-            ]
-        shown.append(_figure(drawn, caption))
-    return join(*shown)
-
-
-def _column_title(finished: Finished, response: Response) -> str:
-    series = finished.series(response.case, response.columns)
-    if series is None:
-        return ", ".join([response.case, *(quantity(key, value) for key, value in response.columns.items())])
-    return series.label.replace(": ", "\n", 1)
+    return peaks.published(finished) if finished.info["references"] else join()
 
 
 def _all(finished: Finished) -> Markup:
-    if not finished.rows:
+    if finished.runs.empty:
         return join()
-    lead = tag("p", "Every row of ", tag("code", "peaks.csv"), ". Click a heading to sort.", class_="scripted")
-    return join(lead, _ratcheting(finished), tables.peaks(finished))
+    lead = [
+        "The worst first: overturned, ended by flight, then by rotation. All of it is in ", tag("code", "peaks.csv"), ". ",
+        tag("span", "Click a heading to sort.", class_="scripted"),
+    ]  # fmt: skip
+    return join(tag("p", *lead), _ratcheting(finished), peaks.every_run(finished))
 
 
 def _ratcheting(finished: Finished) -> Markup:
@@ -166,36 +77,48 @@ def _ratcheting(finished: Finished) -> Markup:
     if not any(case["parameters"].get("spring") for case in finished.info["cases"]):
         return Markup("")
     told = "Bouc–Wen springs ratchet: they settle a little with every cycle, elastic–perfectly plastic ones do not. "
-    name = "settlement_other_law_m"
-    if not any(name in row for row in finished.rows):
+    name, runs = "settlement_other_law_m", finished.runs
+    if name not in runs:
         told += (
             "Settlement and residual rotation depend on that; [output] both_laws = true in the study shows how much."
         )
         return tag("p", told)
-    pairs = [(run, run.row["settlement_m"], run.row.get(name)) for run in finished.runs]
-    both = [(abs(own - other), run, own, other) for run, own, other in pairs if own is not None and other is not None]
-    if not both:
-        return tag("p", told)
-    _, run, own, other = max(both, key=lambda entry: entry[0])
-    told += (
-        f"The settlement differs most in {run.record}, {run.series.label}: {1000 * own:.1f} mm by the study's law, "
-        f"{1000 * other:.1f} mm by the other one."
-    )
+    gap = (runs["settlement_m"] - runs[name]).abs()
+    if gap.notna().any():
+        run = runs.iloc[int(gap.argmax())]
+        told += (
+            f"The settlement differs most in {finished.where(run)}: {1000 * run['settlement_m']:.1f} mm by the study's "
+            f"law, {1000 * run[name]:.1f} mm by the other one."
+        )
     return tag("p", told)
 
 
-def _records(finished: Finished) -> Markup:
-    return tables.records(finished) if finished.info["records"] else join()
+def _histories(finished: Finished, responses: Sequence[Response]) -> Markup:
+    if not len(responses):
+        return Markup("")
+    drawn = join(*(figure(*pair) for pair in histories.figures(finished, responses)))
+    hint = "Point at a picture, touch it, or go through it with the arrow keys, to read values."
+    return join(tag("p", hint, class_="scripted"), drawn)
 
 
 def _unusable(finished: Finished) -> Markup:
-    failed = any(run.status == "failed" for run in finished.runs)
-    return tables.unusable(finished) if finished.info["unusable"] or failed else join()
+    failed = (finished.runs["status"] == "failed").any()
+    return inputs.unusable(finished) if finished.info["unusable"] or failed else join()
 
 
-def _accuracy(levels: Sequence[accuracy.Level]) -> Markup:
+def _accuracy(finished: Finished, levels: Sequence[accuracy.Level]) -> Markup:
+    info, errors = finished.info, finished.runs["theta_max_error"].dropna()
+    cost = f"{counted(info['runs'], 'run')} took {number(float(info['wall_s']), '.3g')} s on {counted(info['jobs'], 'thread')}."
+    if len(errors):
+        cost += (
+            f" The error of θmax/α, estimated by halving the step, is {errors.median():.0e} in the median and "
+            f"{errors.max():.0e} at most."
+        )
     if not levels:
-        return join()
+        against = join(
+            "Not measured against references: ", tag("code", "rockbatch accuracy"), " does that for this study."
+        )
+        return paragraphs(cost, against)
     runs = counted(int(levels[0].runs or 0), "run")
     settled = number(max(level.reference_change or 0.0 for level in levels), ".0e")
     caption = (
@@ -204,15 +127,15 @@ def _accuracy(levels: Sequence[accuracy.Level]) -> Markup:
         f"{settled} at most. k: steps per sample; SciPy: its rtol. Runs that overturn, or end otherwise than they "
         "should, have no error; the table counts the latter."
     )
-    lead = accuracy.lead(levels)
-    return join(_paragraphs(lead), _figure(accuracy.draw(levels), [caption]), accuracy.levels_table(levels))
+    return join(
+        paragraphs(cost, accuracy.lead(levels)), figure(accuracy.draw(levels), caption), accuracy.levels_table(levels)
+    )
 
 
 def _reproduce(finished: Finished) -> Markup:
     info = finished.info
     study = info["study"]
     versions = ", ".join(f"{name} {version}" for name, version in info["versions"].items())
-    wall = number(float(info["wall_s"]), ".3g")
     facts = [
         ("Command", tag("code", shlex.join(info["command"]))),
         ("Study", tag("code", study["path"])),
@@ -221,8 +144,6 @@ def _reproduce(finished: Finished) -> Markup:
         ("rockbatch", info["rockbatch"]),
         ("With", versions),
         ("Machine", info["machine"]),
-        ("Cost", f"{counted(info['runs'], 'run')} in {wall} s on {counted(info['jobs'], 'job')}"),
     ]
     listed = tag("dl", *(join(tag("dt", name), tag("dd", value)) for name, value in facts))
-    text = tag("details", tag("summary", "The study file"), tag("pre", tag("code", study["text"])))
-    return join(listed, text)
+    return join(listed, tag("h3", "The study file"), tag("pre", tag("code", study["text"])))

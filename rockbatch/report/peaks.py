@@ -1,153 +1,161 @@
-"""The picture of the paper's Fig. 7: a panel per record, a marker per foundation, the rigid base as a line."""
+"""Peaks in tables: Fig. 7 in numbers, every run with the worst first, and published values beside ours."""
 
 import math
-from collections.abc import Sequence
+from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING, Any
 
-from rockbatch.report.finished import Finished, Run, Series
-from rockbatch.report.markup import Markup
-from rockbatch.report.svg import ALARM, BAND, INK, MUTED, PAPER, arrow, drawing, inline, style_of
+from rockbatch.report.finished import NO_PEAK, Finished, as_dicts, worst_first
+from rockbatch.report.labels import symbol
+from rockbatch.report.markup import Markup, join, number, tag
+from rockbatch.report.table import MOST_ROWS, THETA, THETA_FORMAT, Head, alarm, sub, table, told_apart
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+    from collections.abc import Sequence
 
-WIDTH = 10.0  # inch
-RIGID_LINES = ("-", "--", ":", "-.")
-HAPPENED = {"overturned": "overturned", "flight": "flight: both pivots off the ground"}
+    import pandas as pd
 
+MOST_COLUMNS = 24
 
-def ceiling(runs: Sequence[Run]) -> float:
-    """Top of the axis [θ_max/α] that holds all of ``runs`` that stood."""
-    highest = max((run.theta + (run.error or 0) for run in runs if run.status == "ok" and run.theta), default=0.0)
-    return 1.1 * highest if highest > 0 else 1.0
-
-
-def draw(finished: Finished, runs: Sequence[Run], top: float, name: str) -> Markup:
-    """Peaks of one pier as SVG; ``top`` is the end of the common axis, θ_max/α."""
-    from matplotlib.figure import Figure
-    from matplotlib.ticker import MaxNLocator
-
-    records = finished.by_pga(runs)
-    columns = _columns(len(records))
-    rows = math.ceil(len(records) / columns)
-    panel = 1.75 if columns <= 4 else 1.3
-    width = WIDTH if columns > 2 else 3.6 * columns + 0.6
-    entries = _entries(runs)
-    across = max(1, int(width / (0.6 + 0.07 * max(len(label) for _, label in entries))))
-    legend = 0.1 + 0.175 * math.ceil(len(entries) / across)
-    height = rows * (panel + 0.42) + 0.28 + legend
-
-    with drawing(name):
-        figure = Figure(figsize=(width, height))
-        # Limits are set panel by panel: Matplotlib's shared axes cost time with the square of their number
-        panels = figure.subplots(rows, columns, squeeze=False)
-        figure.subplots_adjust(
-            left=0.68 / width, right=1 - 0.08 / width, top=1 - 0.4 / height, bottom=(0.28 + legend) / height,
-            wspace=0.12, hspace=0.5 / panel,
-        )  # fmt: skip
-        eventful = any(run.status in HAPPENED for run in runs)
-        ticks = {run.series.index + 1: run.series.tick for run in runs if not run.series.rigid}
-        for place, axes in enumerate(panels.flat):
-            if place >= len(records):
-                axes.remove()
-                continue
-            scale = runs[0].scale
-            axes.set_title(_title(finished.record(records[place]), records[place], scale, columns), fontsize=7.5)
-            axes.grid(axis="y")
-            axes.tick_params(labelbottom=place + columns >= len(records), labelleft=place % columns == 0, length=2.5)
-            _panel(axes, [run for run in runs if run.record == records[place]], top, eventful, max(ticks, default=1))
-            axes.set_yticks([tick for tick in MaxNLocator(4).tick_values(0, top) if tick <= top])
-            axes.set_xticks(sorted(ticks), [ticks[slot] for slot in sorted(ticks)])
-            if place % columns == 0:
-                axes.set_ylabel("θmax/α")
-        _legend(figure, entries, across)
-        return inline(figure, f"θmax/α of every foundation, one panel for each of {len(records)} records")
+_COLUMNS = {
+    "status": (1, Head("status")),
+    "theta_max_over_alpha": (1, Head(THETA, ".5f", "theta_max_over_alpha: peak rotation over slenderness")),
+    "theta_max_error": (1, Head("±", ".0e", "theta_max_error: estimated error of the peak rotation over slenderness")),
+    "t_max_s": (1, Head("at t [s]", ".2f", "t_max_s: time of the peak")),
+    "theta_res_over_alpha": (1, Head(sub("θ", "res", "/α"), ".5f", "theta_res_over_alpha: residual over slenderness")),
+    "theta_res_error": (1, Head("±", ".0e", "theta_res_error: estimated error of the residual over slenderness")),
+    "base_tilt_rad": (1000, Head("base tilt [mrad]", ".3f", "base_tilt_rad × 1000: tilt of the base after the record")),
+    "settlement_m": (1000, Head("settlement [mm]", ".2f", "settlement_m × 1000")),
+    "settlement_other_law_m": (1000, Head("by the other law [mm]", ".2f", "settlement_other_law_m × 1000")),
+    "impacts": (1, Head("impacts", ".0f")),
+    "separations": (1, Head("separations", ".0f")),
+    "flight_s": (1, Head("flight [s]", ".3f", "flight_s: first time with both pivots off the ground")),
+    "ductility_left": (1, Head("demand L", ".2f", "ductility_left: largest deflection over yield deflection")),
+    "ductility_right": (1, Head("demand R", ".2f", "ductility_right: largest deflection over yield deflection")),
+    "dissipated_left_J_kg": (1, Head("dissipated L [J/kg]", ".4f", "dissipated_left_J_kg: plastic work")),
+    "dissipated_right_J_kg": (1, Head("dissipated R [J/kg]", ".4f", "dissipated_right_J_kg: plastic work")),
+    "t_end_s": (1, Head("end [s]", ".2f", "t_end_s: time at which the analysis ended")),
+    "substeps": (1, Head("substeps", ".0f", "integration steps per sampling interval")),
+    "reason": (1, Head("reason")),
+}
+"""Factor and head of each column of peaks.csv after the names of the run, in the order of the page."""
 
 
-def _columns(panels: int) -> int:
-    for columns, most in ((1, 1), (2, 4), (3, 9), (4, 16)):
-        if panels <= most:
-            return columns
-    return 6
+def at_a_glance(finished: Finished, runs: "pd.DataFrame", records: "Sequence[str]") -> Markup:
+    """The paper's Fig. 7 in numbers: a row per record, a column per foundation (and direction)."""
+    series = [(place, finished.series[place]) for place in runs["series"].unique()]
+    series.sort(key=lambda pair: (not pair[1].rigid, pair[1].index))
+    signs = sorted(runs["polarity"].unique())
+    if len(series) * len(signs) > MOST_COLUMNS:
+        return Markup("")
+    heads = [Head("record"), Head("PGA [g]", ".3f")]
+    heads += [
+        Head(one.label + (f" ({sign})" if len(signs) > 1 else ""), THETA_FORMAT) for _, one in series for sign in signs
+    ]
+    stood = runs[runs["status"] == "ok"]["theta_max_over_alpha"]
+    shown = runs[runs["record"].isin(records)]
+    found = {(run["record"], run["series"], run["polarity"]): run for run in as_dicts(shown)}
+    rows: list[list[object]] = []
+    for name in records:
+        values = [found.get((name, place, sign)) for place, _ in series for sign in signs]
+        pga = next((run["pga_g"] for run in values if run), math.nan)
+        rows.append([name, pga, *(outcome(run, stood.max()) for run in values)])
+    return table(heads, rows, name="Peak rotations in numbers")
 
 
-def _title(record: dict[str, Any], name: str, scale: float, columns: int) -> str:
-    room = int(120 / max(columns, 3))
-    short = name if len(name) <= room else f"{name[: room // 2]}…{name[-(room // 2 - 1) :]}"
-    return f"{short}\nPGA = {record['pga_g'] * scale:.3f} g" if record else short
+def outcome(run: "dict[str, Any] | None", worst: float = math.nan) -> object:
+    """θ_max/α of a run, or what happened instead."""
+    if run is None:
+        return ""
+    status, theta, flight = run["status"], float(run["theta_max_over_alpha"]), run["flight_s"]
+    if status == "flight" and flight == flight:
+        return alarm(f"flight at {number(flight)} s")
+    if status != "ok" or math.isnan(theta):
+        return alarm(status)
+    value = number(theta, THETA_FORMAT)
+    shown = tag("strong", value) if theta == worst else value
+    if flight == flight:
+        return join(shown, tag("sup", "f", title=f"both pivots in the air first at {number(flight)} s"))
+    return shown if isinstance(shown, Markup) else theta
 
 
-def _panel(axes: "Axes", runs: Sequence[Run], top: float, eventful: bool, slots: int) -> None:
-    edge = 1.16 * top if eventful else top
-    level = 1.08 * top
-    axes.set_ylim(0, edge)
-    axes.set_xlim(0.3, slots + 0.7)
-    if eventful:
-        axes.axhspan(top, edge, color=BAND, linewidth=0)
-    directions = sorted({run.polarity for run in runs})
-    for run in runs:
-        beside = 0.0 if len(directions) == 1 else (-0.15, 0.15)[directions.index(run.polarity)]
-        x = 0.5 if run.series.rigid else run.series.index + 1 + beside
-        if run.series.rigid:
-            height = level if run.status in HAPPENED else run.theta
-            if height is not None and run.status != "failed":
-                style = RIGID_LINES[run.series.index % len(RIGID_LINES)]
-                axes.axhline(height, color=INK, linewidth=1.1, linestyle=style, alpha=_opacity(run))
-        if run.status in HAPPENED:
-            axes.plot([x], [level], **_event(run.status))
-        elif run.status == "failed" or run.theta is None:
-            axes.text(x, 0.02 * top, "no result", rotation=90, fontsize=6.5, color=MUTED, ha="center", va="bottom")
-        elif not run.series.rigid:
-            if run.error and run.error > 0.004 * top:
-                axes.errorbar([x], [run.theta], [run.error], color=INK, capsize=2, linewidth=0.8)
-            axes.plot([x], [run.theta], **_marker(run.series, run.polarity))
-        elif run.error and run.error > 0.004 * top:
-            axes.errorbar([x], [run.theta], [run.error], color=INK, capsize=2, linewidth=0.8)
+def every_run(finished: Finished) -> Markup:
+    """The rows of ``peaks.csv``, the worst first."""
+    runs, varied = finished.runs, finished.info["varied"]
+    names = {"record": Head("record"), "case": Head("case"), **{key: Head(symbol(key), note=key) for key in varied}}
+    # These say something only where they change
+    if finished.both_directions:
+        names["polarity"] = Head("polarity", note="+ as recorded, - horizontal component reversed")
+    if runs["scale"].nunique() > 1:
+        names["scale"] = Head("scale", note="factor on all components")
+    if runs["with_vertical"].nunique() > 1:
+        names["with_vertical"] = Head("vertical component")
+    known = {"record", "case", "polarity", "scale", "vertical", *varied, *_COLUMNS}
+    columns = {name: column for name, column in _COLUMNS.items() if name in runs}
+    columns |= {name: (1, _energy(name)) for name in finished.saved.peaks.columns if name not in known}
+    shown = worst_first(runs, MOST_ROWS)
+    rows = [
+        [*(run[name] for name in names), *(_cell(name, factor, run[name]) for name, (factor, _) in columns.items())]
+        for run in as_dicts(shown)
+    ]
+    heads = [*names.values(), *(head for _, head in columns.values())]
+    return join(told_apart(len(shown), len(runs), "worst"), table(heads, rows, sortable=True, name="Every run"))
 
 
-def _opacity(run: Run) -> float:
-    return 0.55 if run.polarity == "-" else 1.0
+def _cell(name: str, factor: int, value: Any) -> object:
+    if name == "status":
+        return alarm(value) if value != "ok" else value
+    if isinstance(value, str):
+        return value
+    return None if value is None or value != value else factor * float(value)
 
 
-def _marker(series: Series, polarity: str) -> dict[str, Any]:
-    """Reversed motions have open markers."""
-    marker, colour = style_of(series.index)
-    face = PAPER if polarity == "-" else colour
-    size = 8.0 if marker == "*" else 5.5
-    return {"marker": marker, "color": colour, "markerfacecolor": face, "markersize": size, "linestyle": "none"}
+def _energy(name: str) -> Head:
+    """Head of a term of the energy ledger, or of a column that is not known here."""
+    if not name.startswith("energy_"):
+        return Head(name)
+    term = name.removeprefix("energy_").removesuffix("_J_kg").replace("_", "-")
+    return Head(f"{term} [J/kg]", ".0e" if term == "remainder" else ".4f", name)
 
 
-def _event(status: str) -> dict[str, Any]:
-    marker: Any = "X" if status == "overturned" else arrow()
-    return {
-        "marker": marker, "color": ALARM, "markersize": 9, "markeredgecolor": PAPER, "markeredgewidth": 0.5,
-        "linestyle": "none",
-    }  # fmt: skip
+def published(finished: Finished) -> Markup:
+    """Published values beside ours: every run that a reference's record pattern, case and columns fit."""
+    runs = finished.runs
+    more = [key for key in ("polarity", "scale") if runs[key].nunique() > 1]
+    keys = [*finished.info["varied"], *more]
+    heads = [Head("record"), Head("case"), *(Head(symbol(key)) for key in keys)]
+    heads += [Head(join(THETA, ", ours"), THETA_FORMAT), Head(join(THETA, ", published"))]
+    heads += [Head("difference [%]", "+.1f"), Head("source")]
+    rows: list[list[object]] = []
+    for reference in finished.info["references"]:
+        name, case, theirs = reference["record"], reference["case"], reference["theta_max_over_alpha"]
+        fits = [run for run in as_dicts(runs[runs["case"] == case]) if _fits(run, reference)]
+        for run in fits:
+            ours = run["theta_max_over_alpha"] if run["status"] not in (*NO_PEAK, "failed") else None
+            difference = 100 * (ours / theirs - 1) if ours is not None and theirs else None
+            rows.append(
+                [
+                    run["record"],
+                    case,
+                    *(run[key] for key in keys),
+                    outcome(run),
+                    theirs,
+                    difference,
+                    reference["source"],
+                ]
+            )
+        if not fits:
+            values = [reference["columns"].get(key, "") for key in keys]
+            nothing = tag("span", "no such run", class_="muted")
+            rows.append([name, case, *values, nothing, theirs, None, reference["source"]])
+    return table(heads, rows, name="Compared with published values")
 
 
-def _entries(runs: Sequence[Run]) -> list[tuple[dict[str, Any], str]]:
-    """The legend: how each series is drawn, and its name."""
-    entries: dict[str, dict[str, Any]] = {}
-    both = len({run.polarity for run in runs}) > 1
-    for run in sorted(runs, key=lambda run: (not run.series.rigid, run.series.index, run.polarity)):
-        series = run.series
-        named = series.rigid or series.label.split(":")[0] == series.tick
-        label = (series.label if named else f"{series.tick} – {series.label}") + (f" ({run.polarity})" if both else "")
-        if series.rigid:
-            style = RIGID_LINES[series.index % len(RIGID_LINES)]
-            entries[label] = {"color": INK, "linewidth": 1.1, "linestyle": style, "alpha": _opacity(run)}
-        else:
-            entries[label] = _marker(series, run.polarity)
-    for status, words in HAPPENED.items():
-        if any(run.status == status for run in runs):
-            entries[words] = _event(status)
-    return [(style, label) for label, style in entries.items()]
+def _fits(run: dict[str, Any], reference: dict[str, Any]) -> bool:
+    def equal(ours: object, theirs: object) -> bool:
+        if isinstance(ours, float) and isinstance(theirs, float | int):
+            return math.isclose(ours, theirs, rel_tol=1e-9)
+        return ours == theirs
 
-
-def _legend(figure: "Figure", entries: Sequence[tuple[dict[str, Any], str]], across: int) -> None:
-    from matplotlib.lines import Line2D
-
-    handles = [Line2D([], [], **style) for style, _ in entries]
-    labels = [label for _, label in entries]
-    figure.legend(handles, labels, loc="lower center", ncols=across, fontsize=8, borderpad=0, columnspacing=1.5)
+    return fnmatchcase(run["record"], reference["record"]) and all(
+        equal(run.get(key), value) for key, value in reference["columns"].items()
+    )

@@ -1,17 +1,20 @@
 "use strict";
 document.documentElement.classList.add("js");
+
+// Tables: sort by any column, search
 for (const table of document.querySelectorAll("table.sortable")) {
   const body = table.tBodies[0];
   const rows = [...body.rows];
-  const heads = [...table.tHead.rows[0].cells];
+  const heads = [...table.tHead.rows[table.tHead.rows.length - 1].cells];
 
-  // Numbers by value, words by alphabet, nothing last; rows that tie stay in the order of the study
+  // Numbers by value, words by alphabet, nothing last; rows that tie stay in their order
+  const number = (text) => Number(text.replace("∞", "Infinity").split(" of ")[0]);
   const compare = (a, b) => {
     if (a === b) return 0;
     if (a === "" || b === "") return a === "" ? 2 : -2;
-    const x = Number(a), y = Number(b);
+    const x = number(a), y = number(b);
     if (Number.isNaN(x) || Number.isNaN(y)) return a.localeCompare(b, undefined, { numeric: true }) < 0 ? -1 : 1;
-    return Math.sign(x - y);
+    return x === y ? 0 : x < y ? -1 : 1;
   };
   heads.forEach((head, column) => {
     const button = document.createElement("button");
@@ -31,6 +34,7 @@ for (const table of document.querySelectorAll("table.sortable")) {
     });
   });
 
+  if (rows.length < 8) continue;
   const box = document.createElement("label");
   const input = document.createElement("input");
   const count = document.createElement("span");
@@ -39,7 +43,7 @@ for (const table of document.querySelectorAll("table.sortable")) {
   input.placeholder = "record, case, status …";
   count.className = "muted";
   count.setAttribute("aria-live", "polite");
-  box.append("Filter", input, count);
+  box.append("Search", input, count);
   table.parentElement.before(box);
   const filter = () => {
     const words = input.value.toLowerCase().split(/\s+/).filter(Boolean);
@@ -53,4 +57,151 @@ for (const table of document.querySelectorAll("table.sortable")) {
   };
   input.addEventListener("input", filter);
   filter();
+}
+
+// The note that follows the pointer, or the arrow keys
+const tip = document.createElement("div");
+tip.id = "tip";
+tip.hidden = true;
+tip.setAttribute("role", "status");
+document.body.append(tip);
+const say = (words, x, y) => {
+  tip.textContent = words;
+  tip.hidden = false;
+  const room = document.documentElement.clientWidth - tip.offsetWidth - 8;
+  tip.style.left = `${scrollX + Math.max(8, Math.min(x + 14, room))}px`;
+  tip.style.top = `${scrollY + (y > tip.offsetHeight + 24 ? y - tip.offsetHeight - 14 : y + 24)}px`;
+};
+const hush = () => {
+  tip.hidden = true;
+  document.querySelectorAll(".cursor, .at").forEach((node) => node.remove());
+};
+addEventListener("keydown", (event) => { if (event.key === "Escape") hush(); });
+// A finger that is lifted leaves its note; touching elsewhere takes it away
+const left = (event) => { if (event.pointerType !== "touch") hush(); };
+addEventListener("pointerdown", (event) => { if (!event.target.closest("svg.marks, svg.readings")) hush(); });
+
+// Pictures of peaks: the mark nearest to the pointer says what it is
+const marksOf = (node) => [...node.querySelectorAll("[data-says]")];
+for (const title of document.querySelectorAll("svg.marks title")) {
+  title.parentElement.dataset.says = title.textContent;
+  title.remove(); // or the browser would show a second note
+}
+const point = (mark) => {
+  const box = mark.getBoundingClientRect();
+  const wide = box.width > 60;
+  say(mark.dataset.says, wide ? box.left + 20 : box.right, box.top);
+};
+for (const svg of document.querySelectorAll("svg.marks")) {
+  const nearest = (event) => {
+    const away = (mark) => {
+      const box = mark.getBoundingClientRect();
+      const x = Math.max(box.left - event.clientX, event.clientX - box.right, 0);
+      return Math.hypot(x, Math.max(box.top - event.clientY, event.clientY - box.bottom, 0));
+    };
+    const found = marksOf(svg).map((mark) => [away(mark), mark]).sort(([a], [b]) => a - b)[0];
+    if (found && found[0] < 24) point(found[1]); else hush();
+  };
+  svg.addEventListener("pointermove", nearest);
+  svg.addEventListener("pointerdown", nearest);
+  svg.addEventListener("pointerleave", left);
+}
+for (const grid of document.querySelectorAll(".panels")) {
+  let at = -1;
+  grid.addEventListener("keydown", (event) => {
+    const step = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 }[event.key];
+    if (!step) return;
+    event.preventDefault();
+    const marks = marksOf(grid);
+    at = (at + step + marks.length) % marks.length;
+    marks[at].scrollIntoView({ block: "nearest" });
+    const panel = marks[at].closest("figure").querySelector("figcaption").textContent;
+    point(marks[at]);
+    tip.textContent = `${panel}\n${tip.textContent}`;
+  });
+  grid.addEventListener("blur", hush);
+}
+
+// Histories and loops: values are read back from the curves as they are drawn
+const made = (name, attributes) => {
+  const node = document.createElementNS("http://www.w3.org/2000/svg", name);
+  for (const [key, value] of Object.entries(attributes)) node.setAttribute(key, value);
+  return node;
+};
+const pointsOf = (path) => {
+  const points = [];
+  const scale = path.transform.baseVal.consolidate().matrix.a;
+  for (const piece of path.getAttribute("d").split("M").slice(1)) {
+    const [start, steps = ""] = piece.split("l");
+    let [x, y] = start.match(/-?\d+/g).map(Number);
+    points.push([x * scale, y * scale]);
+    const moves = (steps.match(/-?\d+/g) || []).map(Number);
+    for (let i = 0; i < moves.length; i += 2) points.push([(x += moves[i]) * scale, (y += moves[i + 1]) * scale]);
+  }
+  return points;
+};
+const shown = (value, range) => value.toFixed(Math.max(0, Math.min(6, 3 - Math.floor(Math.log10(range)))));
+for (const svg of document.querySelectorAll("svg.readings")) {
+  let all = null;
+  const axes = () => (all ??= [...svg.querySelectorAll("g.axes")].map((group) => {
+    const numbers = (key) => group.dataset[key].split(" ").map(Number);
+    const [left, top, width, height] = numbers("box"), [x0, x1] = numbers("x"), [y0, y1] = numbers("y");
+    return {
+      group, left, top, width, height, kind: group.dataset.kind, xRange: x1 - x0, yRange: y1 - y0,
+      x: (px) => x0 + (px - left) / width * (x1 - x0), y: (py) => y1 - (py - top) / height * (y1 - y0),
+      curves: [...group.querySelectorAll("path")].map((path) => ({ name: path.dataset.name, points: pointsOf(path) })),
+    };
+  }));
+  const place = (group, x, y) => { // from the picture to the window
+    const to = new DOMPoint(x, y).matrixTransform(group.getScreenCTM());
+    return [to.x, to.y];
+  };
+  let cursor = null; // px in the picture
+  const readTime = (px, clientY) => {
+    const timed = axes().filter((one) => one.kind === "time");
+    const { left, width } = timed[0];
+    cursor = Math.max(left, Math.min(left + width, px));
+    hush();
+    const words = [`t = ${shown(timed[0].x(cursor), timed[0].xRange)} s`];
+    for (const one of timed) {
+      one.group.append(made("line", { class: "cursor", x1: cursor, x2: cursor, y1: one.top, y2: one.top + one.height }));
+      for (const { name, points } of one.curves) {
+        const after = points.findIndex(([x]) => x >= cursor);
+        if (after < 0) continue;
+        const [b, a] = [points[after], points[Math.max(0, after - 1)]];
+        const y = b[0] === a[0] ? b[1] : a[1] + (cursor - a[0]) / (b[0] - a[0]) * (b[1] - a[1]);
+        one.group.append(made("circle", { class: "at", cx: cursor, cy: y, r: 2 }));
+        words.push(`${name} = ${shown(one.y(y), one.yRange)}`);
+      }
+    }
+    const [x, y] = place(svg, cursor, timed[0].top);
+    say(words.join("\n"), x, clientY ?? y);
+  };
+  const readPlane = (one, px, py, clientX, clientY) => {
+    hush();
+    const points = one.curves.flatMap((curve) => curve.points);
+    const [x, y] = points.reduce((best, p) => Math.hypot(p[0] - px, p[1] - py) < Math.hypot(best[0] - px, best[1] - py) ? p : best);
+    one.group.append(made("circle", { class: "at", cx: x, cy: y, r: 2 }));
+    say(`v/δy = ${shown(one.x(x), one.xRange)}\nF/Fy = ${shown(one.y(y), one.yRange)}`, clientX, clientY);
+  };
+  const read = (event) => {
+    for (const one of axes()) {
+      const { x, y } = new DOMPoint(event.clientX, event.clientY).matrixTransform(one.group.getScreenCTM().inverse());
+      if (x < one.left - 2 || x > one.left + one.width + 2 || y < one.top || y > one.top + one.height) continue;
+      if (one.kind === "time") readTime(x, event.clientY); else readPlane(one, x, y, event.clientX, event.clientY);
+      return;
+    }
+    hush();
+  };
+  svg.tabIndex = 0;
+  svg.addEventListener("pointermove", read);
+  svg.addEventListener("pointerdown", read);
+  svg.addEventListener("pointerleave", left);
+  svg.addEventListener("blur", hush);
+  svg.addEventListener("keydown", (event) => {
+    const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
+    if (!step) return;
+    event.preventDefault();
+    readTime((cursor ?? axes()[0].left) + step * (event.shiftKey ? 10 : 1));
+  });
 }

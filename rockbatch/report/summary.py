@@ -1,42 +1,51 @@
-"""The opening of the report: what was studied and what came out, in sentences."""
+"""What was studied, what came out and how far to trust it, in sentences."""
 
 import math
+from typing import TYPE_CHECKING, Any
 
-from rockbatch.report.finished import Finished, Run
+from rockbatch.report.finished import Finished, worst_first
+from rockbatch.report.inputs import foundations
 from rockbatch.report.markup import Markup, join, number, tag
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 def counted(count: int, word: str) -> str:
     """A number of things: "one run", "30 runs"."""
-    return f"{count if count != 1 else 'one'} {word}{'' if count == 1 else 's'}"
+    return f"{count:,} {word}s" if count != 1 else f"one {word}"
 
 
-def summary(finished: Finished) -> Markup:
-    """What was studied, the worst result, and how far to trust it, in words."""
-    info = finished.info
-    runs = finished.runs
+def studied(finished: Finished, level: str = "h3") -> Markup:
+    """The pier, the foundations and the records, in words and units; ``level`` is that of the heading within."""
+    info, runs = finished.info, finished.runs
     piers: dict[tuple[float, ...], dict[str, float]] = {}
     for case in info["cases"]:
         pier = case["pier"]
         piers.setdefault(tuple(pier[key] for key in ("alpha", "p", "mu", "gravity")), pier)
-    polarities = {run.polarity for run in runs}
-    scales = sorted({run.scale for run in runs})
-    foundations = counted(len(finished.foundations), "foundation")
-    motions = counted(len(info["records"]), "ground motion")
-    vertical = sum(record["pga_v_g"] is not None for record in info["records"])
-    with_vertical = f"{vertical} with the vertical component"
-    if vertical in (0, len(info["records"])):
-        with_vertical = "with the vertical component" if vertical else "horizontal component only"
+    scales = sorted(runs["scale"].unique()) if len(runs) else []
     extent = (
-        f"{counted(len(piers), 'pier')} on {foundations} under {motions}"
-        f" ({with_vertical})"
-        + (", as recorded and reversed" if len(polarities) > 1 else "")
-        + (f", scaled by {', '.join(map(number, scales))}" if scales not in ([], [1.0]) else "")
+        f"{counted(len(piers), 'pier')} on {counted(len(finished.series), 'foundation')} under "
+        f"{counted(len(info['records']), 'ground motion')} ({_vertical(finished)})"
+        + (", as recorded and reversed" if finished.both_directions else "")
+        + (f", scaled by {', '.join(number(float(scale)) for scale in scales)}" if scales not in ([], [1.0]) else "")
         + f": {counted(len(runs), 'run')}."
     )
     described = tag("ul", *(tag("li", _pier(pier)) for pier in piers.values()))
-    extent = extent[0].upper() + extent[1:]
-    return join(tag("p", _worst(finished), class_="lead"), tag("p", extent), described, _quality(finished))
+    return join(
+        tag("p", extent[0].upper() + extent[1:]), described, tag("p", _motions(finished)), tag(level, "Foundations"),
+        foundations(finished),
+    )  # fmt: skip
+
+
+def _vertical(finished: Finished) -> str:
+    records, runs = finished.info["records"], finished.runs
+    if runs["with_vertical"].nunique() > 1:
+        return "with and without the vertical component"
+    vertical = sum(record["pga_v_g"] is not None for record in records)
+    if vertical in (0, len(records)):
+        return "with the vertical component" if vertical else "horizontal component only"
+    return f"{vertical} with the vertical component"
 
 
 def _pier(pier: dict[str, float]) -> str:
@@ -49,59 +58,69 @@ def _pier(pier: dict[str, float]) -> str:
     )
 
 
-def _where(finished: Finished, run: Run) -> str:
-    varied = finished.piers[run.pier]
-    also = [varied] if varied else []
-    also += [f"scale {number(run.scale)}"] if run.scale != 1 else []
-    also += ["reversed"] if run.polarity == "-" else []
-    return f"{run.record}, case {run.series.label}" + (f" ({', '.join(also)})" if also else "")
+def _motions(finished: Finished) -> str:
+    records = finished.info["records"]
+    if not records:
+        return ""
+
+    def span(key: str, form: str, unit: str) -> str:
+        low, high = (pick(record[key] for record in records) for pick in (min, max))
+        first, last = format(low, form), format(high, form)
+        return f"{first} {unit}" if first == last else f"{first} to {last} {unit}"
+
+    return (
+        f"Peak ground acceleration {span('pga_g', '.3f', 'g')}, velocity {span('pgv_m_s', '.2f', 'm/s')}, displacement "
+        f"{span('pgd_m', '.2f', 'm')}, as recorded; duration {span('duration_s', '.3g', 's')}."
+    )
 
 
-def _worst(finished: Finished) -> Markup:
+def worst(finished: Finished) -> Markup:
     """The worst result in a sentence; an overturned pier comes before any rotation."""
     runs = finished.runs
-    if not runs:
+    if runs.empty:
         return join("No ground motion could be used: there are no results.")
     sentences: list[object] = []
-    over = [run for run in runs if run.status == "overturned"]
-    flown = [run for run in runs if run.status == "flight"]
-    stood = [run for run in runs if run.status == "ok" and run.theta is not None]
-    if over:
-        sentences.append(tag("strong", f"The pier overturns in {len(over)} of {counted(len(runs), 'run')}"))
-        sentences.append(f"{': ' if len(over) == 1 else ', first '}{_where(finished, over[0])}. ")
-    if stood:
-        largest = max(stood, key=lambda run: run.theta or 0)
-        theta = largest.theta or 0
-        alpha = largest.alpha
-        among = " of the runs that end standing" if over or flown else ""
-        when = f", at t = {number(largest.row['t_max_s'])} s" if largest.row["t_max_s"] is not None else ""
-        sentences += [
-            f"The largest rotation{among} is ", tag("strong", "θ", tag("sub", "max"), f" = {number(theta)} α"),
-            f" ({number(theta * alpha, '.3g')} rad, {number(math.degrees(theta * alpha), '.3g')}°): "
-            f"{_where(finished, largest)}{when}.",
-        ]  # fmt: skip
-    if flown:
+    over, flown = (runs[runs["status"] == status] for status in ("overturned", "flight"))
+    stood = runs[(runs["status"] == "ok") & runs["theta_max_over_alpha"].notna()]
+    if len(over):
+        sentences.append(tag("strong", f"The pier overturns in {len(over):,} of {counted(len(runs), 'run')}"))
+        sentences.append(f"{': ' if len(over) == 1 else ', first '}{finished.where(over.iloc[0])}. ")
+    if len(stood):
+        sentences += _largest(finished, worst_first(stood, 1).iloc[0], bool(len(over) or len(flown)))
+    if len(flown):
         sentences.append(
             f" In {counted(len(flown), 'run')} both pivots leave the ground, and the analysis stops there"
-            f"{': ' if len(flown) == 1 else ', first '}{_where(finished, flown[0])}."
+            f"{': ' if len(flown) == 1 else ', first '}{finished.where(flown.iloc[0])}."
         )
     return join(*sentences)
 
 
-def _quality(finished: Finished) -> Markup:
+def _largest(finished: Finished, run: "pd.Series[Any]", among: bool) -> list[object]:
+    theta, alpha = float(run["theta_max_over_alpha"]), float(run["alpha"])
+    when = f", at t = {number(float(run['t_max_s']))} s" if run["t_max_s"] == run["t_max_s"] else ""
+    return [
+        f"The largest rotation{' of the runs that end standing' if among else ''} is ",
+        tag("strong", "θ", tag("sub", "max"), f" = {number(theta)} α"),
+        f" ({number(theta * alpha, '.3g')} rad, {number(math.degrees(theta * alpha), '.3g')}°): "
+        f"{finished.where(run)}{when}.",
+    ]
+
+
+def quality(finished: Finished) -> Markup:
+    """How far to trust the results, and what is missing."""
     numerics = finished.info["numerics"]
-    errors = [run.error for run in finished.runs if run.error is not None]
-    failed = sum(run.status == "failed" for run in finished.runs)
+    largest = finished.runs["theta_max_error"].max() if len(finished.runs) else math.nan
+    failed = int((finished.runs["status"] == "failed").sum())
     unread = len(finished.info["unusable"])
     accuracy = ""
-    if errors:
-        largest, asked = number(max(errors), ".1g"), number(numerics["tolerance"])
-        accuracy = f"The largest estimated error of a peak, in θ/α, is {largest}; {asked} was asked."
-    elif numerics.get("substeps"):
+    if largest == largest:
+        told = number(float(largest), ".1g")
         accuracy = (
-            f"Every sampling interval was integrated in {counted(numerics['substeps'], 'step')}; "
-            "the error was not estimated."
+            f"The largest estimated error of a peak, in θ/α, is {told}; {number(numerics['tolerance'])} was asked."
         )
+    elif numerics.get("substeps"):
+        steps = counted(numerics["substeps"], "step")
+        accuracy = f"Every sampling interval was integrated in {steps}; the error was not estimated."
     missing = ""
     if failed or unread:
         lost = [f"{counted(unread, 'file')} could not be used"] if unread else []

@@ -1,139 +1,145 @@
-"""Matplotlib figures as inline SVG that takes its colours and fonts from the page."""
+"""Pictures as inline SVG: text stays text, colours come from the style sheet, and curves are drawn in tenths of a pixel."""
 
-import io
-import re
-import warnings
-from collections.abc import Iterator
-from contextlib import contextmanager
+import math
+from collections.abc import Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
-from rockbatch.report.markup import Markup, tag
+from rockbatch.report.markup import Markup, join, tag
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-    from matplotlib.path import Path
+Array = npt.NDArray[np.float64]
 
-# Stand-ins that Matplotlib carries through and the style sheet gives a meaning, for light, dark and print
-INK, MUTED, GRID, BAND, ALARM, PAPER = (f"#fe00{i:02x}" for i in range(1, 7))
-SERIES = tuple(f"#fe01{i:02x}" for i in range(1, 8))
-_VARIABLES = {
-    **dict(
-        zip((INK, MUTED, GRID, BAND, ALARM, PAPER), ("ink", "muted", "grid", "band", "alarm", "paper"), strict=True)
-    ),
-    **{colour: f"s{i}" for i, colour in enumerate(SERIES, 1)},
-}
+FINE = 10  # steps of a curve's coordinates to a pixel
+COLOURS = 7
+EVENTS = {"overturned": "overturned", "flight": "flight: both pivots off the ground"}
 
-# Labels whose subscripts the page sets; Matplotlib's own would bring its own fonts
-_SUBSCRIPTS = {
-    "θmax/α": ("θ", "max", "/α"),
-    "error of θmax/α": ("error of θ", "max", "/α"),
-    "üg/g": ("ü", "g", "/g"),
-    "v/δy": ("v/δ", "y", ""),
-    "F/Fy": ("F/F", "y", ""),
-}
+_POLYGONS = {
+    "square": (4, 4.6, 45, 1.0),
+    "up": (3, 5.4, 90, 1.0),
+    "diamond": (4, 5.0, 0, 1.0),
+    "down": (3, 5.4, -90, 1.0),
+    "star": (5, 5.8, 90, 0.42),
+    "left": (3, 5.4, 180, 1.0),
+    "right": (3, 5.4, 0, 1.0),
+    "hexagon": (6, 4.6, 0, 1.0),
+}  # corners, radius, direction of the first, and radius of the corners between them
+_CROSS = "M-1.5-4.5h3v3h3v3h-3v3h-3v-3h-3v-3h3z"
+_DISC = "M-4 0a4 4 0 1 0 8 0a4 4 0 1 0-8 0z"
+_SALTIRE = "M-4.5-2.5l2-2 2.5 2.5 2.5-2.5 2 2L2 0l2.5 2.5-2 2L0 2l-2.5 2.5-2-2L-2 0z"
+_ARROW = "M-1.7 5v-5h-3.3l5-5 5 5h-3.3v5z"
 
-# Numbers of markers and colours have no common factor: 70 pairs before one comes back
-MARKERS = ("o", "s", "^", "D", "v", "P", "*", "<", ">", "h")
+MARKERS = ("disc", "square", "up", "diamond", "down", "cross", "star", "left", "right", "hexagon")
 
 
-def style_of(index: int) -> tuple[str, str]:
-    """Marker and colour of the ``index``-th foundation."""
-    return MARKERS[index % len(MARKERS)], SERIES[index % len(SERIES)]
+def style_of(index: int) -> tuple[str, int]:
+    """Marker and colour of the ``index``-th foundation: no common factor, so 70 pairs before one comes back."""
+    return MARKERS[index % len(MARKERS)], index % COLOURS + 1
 
 
-def arrow() -> "Path":
-    """Marker of a pier that flies: an arrow up."""
-    from matplotlib.path import Path
-
-    corners = [(-0.35, -1), (0.35, -1), (0.35, 0), (1, 0), (0, 1), (-1, 0), (-0.35, 0), (-0.35, -1)]
-    return Path(corners, closed=True)
-
-
-@contextmanager
-def drawing(name: str) -> Iterator[None]:
-    """Settings under which a figure is made and written; ``name`` keeps its ids apart from other figures'."""
-    import matplotlib
-
-    with matplotlib.rc_context():
-        matplotlib.rcdefaults()
-        matplotlib.rcParams.update(
-            {
-                "svg.fonttype": "none",
-                "svg.hashsalt": name,
-                "text.parse_math": False,  # a "$" in a record's name is a dollar
-                "font.size": 8.5,
-                "text.color": INK,
-                "axes.edgecolor": MUTED,
-                "axes.labelcolor": INK,
-                "axes.facecolor": "none",
-                "axes.linewidth": 0.6,
-                "axes.spines.top": False,
-                "axes.spines.right": False,
-                "axes.axisbelow": True,
-                "figure.facecolor": "none",
-                "grid.color": GRID,
-                "grid.linewidth": 0.6,
-                "xtick.color": MUTED,
-                "ytick.color": MUTED,
-                "xtick.labelcolor": INK,
-                "ytick.labelcolor": INK,
-                "xtick.major.size": 2.5,
-                "ytick.major.size": 2.5,
-                "xtick.major.width": 0.6,
-                "ytick.major.width": 0.6,
-                "legend.frameon": False,
-                "lines.solid_joinstyle": "round",
-                "path.simplify_threshold": 0.15,
-            }
-        )
-        yield
+def _polygon(corners: int, radius: float, start: float, waist: float) -> str:
+    points = []
+    for i in range(corners * (2 if waist < 1 else 1)):
+        steps = corners * (2 if waist < 1 else 1)
+        angle = math.radians(start + 360 * i / steps)
+        r = radius * (waist if waist < 1 and i % 2 else 1)
+        points.append(f"{r * math.cos(angle):.1f} {-r * math.sin(angle):.1f}")
+    return f"M{'L'.join(points)}z"
 
 
-def inline(figure: "Figure", description: str) -> Markup:
-    """The figure as an ``<svg>`` element; ``description`` is for those who cannot see it."""
-    from matplotlib.backends.backend_svg import FigureCanvasSVG
+def markers() -> Markup:
+    """Definitions of all markers, once for the page."""
+    shapes = {"disc": _DISC, "cross": _CROSS, "overturned": _SALTIRE, "flight": _ARROW}
+    shapes |= {name: _polygon(*form) for name, form in _POLYGONS.items()}
+    paths = [tag("path", id=f"m-{name}", d=d) for name, d in shapes.items()]
+    return tag("svg", tag("defs", *paths), width=0, height=0, class_="markers", aria_hidden="true")
 
-    buffer = io.StringIO()
-    with warnings.catch_warnings():
-        # Names in any script are written as text: whether Matplotlib's own font has the glyphs does not matter
-        warnings.filterwarnings("ignore", message="Glyph .* missing from")
-        FigureCanvasSVG(figure).print_svg(
-            buffer, metadata={"Date": None, "Creator": None, "Format": None, "Type": None}
-        )
-    svg = buffer.getvalue()
-    svg = svg[svg.index("<svg") :]
-    svg = re.sub(r"<metadata>.*?</metadata>\s*", "", svg, flags=re.DOTALL)
-    svg = re.sub(r'<g id="[^"]*"', "<g", svg)
-    svg = re.sub(r'\b(d|x|y|width|height|transform)="([^"]*)"', _shorter, svg)
-    svg = re.sub(r"font: ([\d.]+px) [^;\"]*", r"font-size: \1", svg)
-    svg = re.sub(r"font-family: [^;\"]*;? ?", "", svg)
-    for colour, variable in _VARIABLES.items():
-        svg = svg.replace(colour, f"var(--{variable})")
-    svg = svg.replace(" xlink:href=", " href=")
-    for label, (base, index, rest) in _SUBSCRIPTS.items():
-        lowered = f'{base}<tspan dy="2" font-size="75%">{index}</tspan>'
-        svg = svg.replace(f">{label}<", f'>{lowered}<tspan dy="-2">{rest}</tspan><' if rest else f">{lowered}<")
-    svg = re.sub(r">\s+<", "><", svg)
-    width, height = figure.get_size_inches() * 72
-    head = (
-        f'<svg xmlns="http://www.w3.org/2000/svg" class="figure" role="img" viewBox="0 0 {width:g} {height:g}" '
-        f'style="--w:{width:.0f}px">{tag("title", description)}'
+
+def marker(name: str, x: float, y: float, *, colour: str, title: str | None = None) -> Markup:
+    """A marker at (x, y); ``colour`` are classes of the style sheet, ``title`` what it says when pointed at."""
+    said = tag("title", title) if title else Markup("")
+    return tag("use", said, href=f"#m-{name}", x=_short(x), y=_short(y), class_=colour)
+
+
+def text(x: float, y: float, *content: object, class_: str = "") -> Markup:
+    """Text at (x, y)."""
+    return tag("text", *content, x=_short(x), y=_short(y), class_=class_ or None)
+
+
+def lowered(base: str, index: str, rest: str = "") -> Markup:
+    """Text with a subscript: ("θ", "max", "/α")."""
+    raised = tag("tspan", rest, dy="-2") if rest else Markup("")
+    return join(base, tag("tspan", index, dy="2", class_="sub"), raised)
+
+
+def rectangle(x: float, y: float, width: float, height: float, class_: str) -> Markup:
+    return tag(
+        "rect", x=_short(x), y=_short(y), width=_short(max(width, 0)), height=_short(max(height, 0)), class_=class_
     )
-    return Markup(head + svg[svg.index(">") + 1 :].strip())
 
 
-def _shorter(attribute: re.Match[str]) -> str:
-    value = re.sub(r"-?\d+\.\d{3,}", lambda m: f"{float(m[0]):.2f}".rstrip("0").rstrip("."), attribute[2])
-    return f'{attribute[1]}="{" ".join(value.split())}"'
+def line(x1: float, y1: float, x2: float, y2: float, class_: str, title: str | None = None) -> Markup:
+    said = tag("title", title) if title else Markup("")
+    return tag("line", said, x1=_short(x1), y1=_short(y1), x2=_short(x2), y2=_short(y2), class_=class_)
 
 
-def thin(
-    x: npt.NDArray[np.float64], y: npt.NDArray[np.float64], buckets: int
-) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+def svg(width: float, height: float, *content: object, description: str, class_: str = "plot") -> Markup:
+    """A picture of that size [px]; ``description`` is for those who cannot see it."""
+    return tag("svg", *content, class_=class_, role="img", aria_label=description, viewBox=f"0 0 {width:g} {height:g}")
+
+
+def key(entries: Sequence[tuple[Markup, str]]) -> Markup:
+    """A legend: each drawing, made for 22 × 14 px, with its words."""
+    pictures = [
+        tag("svg", drawn, class_="plot", viewBox="0 0 22 14", width=22, height=14, aria_hidden="true")
+        for drawn, _ in entries
+    ]
+    return tag(
+        "ul", *(tag("li", *pair) for pair in zip(pictures, (says for _, says in entries), strict=True)), class_="key"
+    )
+
+
+def _short(value: float) -> str:
+    return f"{value:.1f}".removesuffix(".0")
+
+
+def curve(x: Array, y: Array, class_: str, name: str | None = None) -> Markup:
+    """A curve through points in pixels, NaN where it is interrupted; ``name`` is what the script calls it."""
+    return tag("path", d=_relative(x, y), transform=f"scale({1 / FINE:g})", class_=class_, data_name=name)
+
+
+def _relative(x: Array, y: Array) -> str:
+    """Points as a path of whole steps; those that repeat the one before or lie straight between two are left out."""
+    there = np.isfinite(x) & np.isfinite(y)
+    parts = []
+    for piece in np.split(np.arange(len(x)), np.flatnonzero(np.diff(there.astype(np.int8))) + 1):
+        if len(piece) == 0 or not there[piece[0]]:
+            continue
+        points = np.rint(FINE * np.column_stack([x[piece], y[piece]])).astype(np.int64)
+        points = points[_bends(points)]
+        steps = np.diff(points, axis=0)
+        parts.append(f"M{points[0, 0]} {points[0, 1]}" + (f"l{_compact(steps.ravel())}" if len(steps) else "h0"))
+    return "".join(parts)
+
+
+def _bends(points: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
+    """Places of the points without which the drawing would change."""
+    moved = np.flatnonzero(np.any(np.diff(points, axis=0) != 0, axis=1)) + 1
+    kept = np.concatenate(([0], moved))
+    if len(kept) < 3:
+        return kept
+    steps = np.diff(points[kept], axis=0)
+    across = steps[:-1, 0] * steps[1:, 1] - steps[:-1, 1] * steps[1:, 0]
+    along = (steps[:-1] * steps[1:]).sum(axis=1)
+    return kept[np.concatenate(([True], (across != 0) | (along < 0), [True]))]
+
+
+def _compact(numbers: Sequence[int] | npt.NDArray[np.int64]) -> str:
+    return " ".join(map(str, numbers)).replace(" -", "-")
+
+
+def thin(x: Array, y: Array, buckets: int) -> tuple[Array, Array]:
     """Fewer points of a history that draw the same: of each bucket the first, least, largest and last.
 
     Parameters

@@ -3,8 +3,11 @@
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
+from rockbatch.checks.choices import unmet
+from rockbatch.checks.reading import CHECK, read_rules
 from rockbatch.study.cases import BASE_KEYS, CASE, PIER, Expanded, read_cases, read_piers
 from rockbatch.study.motions import FEMA, MOTIONS, PULSE, SOURCES, read_motions_table
 from rockbatch.study.spec import Case, Numerics, Output, Reference, Study
@@ -15,14 +18,14 @@ TOP = {
     "title": Key(text, '"Pier 4, longitudinal"'),
     "notes": Key(text, '"Soil class C."'),
 }
-SECTIONS = ("pier", "motions", "numerics", "output", "case", "reference")
+SECTIONS = ("pier", "motions", "numerics", "output", "case", "reference", "check")
 NUMERICS = {
     "tolerance": Key(positive, "1e-4"),
     "substeps": Key(count, "4"),
     "quiet_s": Key(not_negative, "2.0"),
 }
 OUTPUT = {
-    "histories": Key(choice("none", "all"), '"all"'),
+    "histories": Key(choice("worst", "all", "none"), '"all"'),
     "ledger": Key(boolean, "true"),
     "both_laws": Key(boolean, "true"),
 }
@@ -38,6 +41,7 @@ SELECTING = {name: replace(key, many=False) for name, key in (PIER | BASE_KEYS).
 HOMES = {
     name: home
     for home, names in (
+        ("[[check]]", CHECK),  # first: the keys that it shares belong to the others
         ("[pier]", PIER),
         ("[motions]", MOTIONS.keys() | SOURCES),
         ("[[motions.fema_p695]]", FEMA),
@@ -83,6 +87,15 @@ def load_study(path: str | os.PathLike[str], *, motions: str | os.PathLike[str] 
     cases, varied_case = read_cases(file, piers)
     varied = varied_pier + varied_case
     references = _references(file, cases, varied)
+    output = _output(file)
+    chosen = partial(
+        unmet,
+        cases=list(dict.fromkeys(each.name for each in cases)),
+        scales=motion_spec.scale,
+        polarities=motion_spec.polarity,
+        other_law=output.both_laws,
+    )
+    checks = read_rules(file, chosen if cases else None)
     file.finish()
     return Study(
         title=top.get("title", file.path.stem),
@@ -94,7 +107,8 @@ def load_study(path: str | os.PathLike[str], *, motions: str | os.PathLike[str] 
         cases=tuple(Case(each.name, each.pier, each.base, _pick(varied, each.values)) for each in cases),
         references=references,
         varied=varied,
-        output=_output(file),
+        output=output,
+        checks=checks,
     )
 
 

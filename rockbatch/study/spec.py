@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from pathlib import Path
 
+from rockbatch.checks.rules import Rule
 from rockbatch.structure import Base, Pier
 
 
@@ -76,15 +77,15 @@ class Output:
 
     Attributes
     ----------
-    histories : "none" or "all"
-        The runs whose histories the report shows.
+    histories : "worst", "all" or "none"
+        The runs whose histories are kept: the worst record of each case, all, or none.
     ledger : bool
         The energy ledger of every run (THEORY.md, 9).
     both_laws : bool
         The settlement of yielding springs by the other spring law too (THEORY.md, 7); a third run at the kept step.
     """
 
-    histories: str = "none"
+    histories: str = "worst"
     ledger: bool = False
     both_laws: bool = True
 
@@ -114,7 +115,8 @@ class Reference:
 class Study:
     """A study file, checked, with every combination of pier, case and listed values as one :class:`Case`.
 
-    ``path`` and ``text`` are the file and its text, ``varied`` the names of the keys that were lists.
+    ``path`` and ``text`` are the file and its text, ``varied`` the names of the keys that were lists, ``checks`` the
+    rules that its results are held against.
     """
 
     title: str
@@ -127,3 +129,4 @@ class Study:
     references: tuple[Reference, ...]
     varied: tuple[str, ...]
     output: Output = Output()
+    checks: tuple[Rule, ...] = ()

@@ -68,6 +68,11 @@ class TomlFile:
         except UnicodeDecodeError as error:
             line = content.count(b"\n", 0, error.start) + 1
             raise InputError(f"{path}:{line}: not UTF-8 text; save the file in the encoding UTF-8") from None
+        return cls.parse(path, text)
+
+    @classmethod
+    def parse(cls, path: Path, text: str) -> "TomlFile":
+        """Parse the text of a file, which need not be there any more. Raises :class:`InputError` as :meth:`read` does."""
         try:
             return cls(path, text, tomllib.loads(text), key_lines(text))
         except RecursionError:

@@ -1,0 +1,88 @@
+"""Rules from TOML: the tables [[check]] of a study file or of a file of rules."""
+
+import os
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import Any
+
+from rockbatch.checks.demands import DEMANDS
+from rockbatch.checks.rules import BASES, COUNTING, Rule
+from rockbatch.checks.statistics import STATISTICS
+from rockbatch.errors import InputError
+from rockbatch.toml.kinds import boolean, choice, not_negative, number, positive, shown, text
+from rockbatch.toml.reader import Key, Table, TomlFile
+
+CHECK = {
+    "name": Key(text, '"overturning margin"', required=True),
+    "demand": Key(choice(*DEMANDS), '"theta_max_over_alpha"', required=True),
+    "statistic": Key(choice(*STATISTICS), '"mean"'),
+    "above": Key(not_negative, "0.5"),
+    "at_most": Key(number, "0.5"),
+    "at_least": Key(number, "2.0"),
+    "basis": Key(choice(*BASES), '"code"'),
+    "reason": Key(text, '"EN 1998-2, 7.6.2"', required=True),
+    "case": Key(text, '["soft", "stiff*"]', many=True),
+    "scale": Key(positive, "1.0", many=True),
+    "polarity": Key(choice("+", "-"), '"+"'),
+    "overturned": Key(choice(*COUNTING), '"infinite"'),
+    "flight": Key(choice(*COUNTING), '"unknown"'),
+    "failed": Key(choice(*COUNTING), '"unknown"'),
+    "other_law": Key(boolean, "true"),
+}
+"""Keys of a [[check]]; :class:`Rule` says what they mean."""
+
+TOP = {"title": Key(text, '"Checks of a stepping pier"'), "notes": Key(text, '"Limits as agreed."')}
+
+
+def load_rules(path: str | os.PathLike[str]) -> tuple[Rule, ...]:
+    """The rules of a file: its [[check]] tables; a study file will do, whose other tables are then not looked at.
+
+    Raises ``InputError`` with every mistake and its line.
+    """
+    file = TomlFile.read(Path(path))
+    if "pier" not in file.data:
+        Table(file, (), "", file.data).read(TOP, other=("check",))
+    rules = read_rules(file)
+    if not file.data.get("check"):
+        file.complain((), "no checks; write at least one [[check]] with name, demand, at_most and reason")
+    file.finish()
+    return rules
+
+
+def read_rules(file: TomlFile, unmet: Callable[[Rule], Iterable[str]] | None = None) -> tuple[Rule, ...]:
+    """The usable [[check]] tables of ``file``; mistakes are noted there.
+
+    ``unmet`` tells what a rule chooses and the study does not have, as :func:`rockbatch.checks.choices.unmet` does.
+    """
+    rules: list[Rule] = []
+    names: set[str] = set()
+    for table in file.tables("check", title="name"):
+        before = len(file.problems)
+        read = table.read(CHECK)
+        name = read.get("name")
+        if name in names:
+            table.complain(f"name = {shown(name)}: given twice; give each check its own name", "name")
+        if name is not None:
+            names.add(name)
+        if len(file.problems) == before:
+            values = {key: _plain(value) for key, value in read.items()}
+            try:
+                rule = Rule(**values)
+            except InputError as error:
+                wrong: Iterable[str] = error.problems
+            else:
+                rules.append(rule)
+                wrong = unmet(rule) if unmet else ()
+            for problem in wrong:
+                _complain(table, problem)
+    return tuple(rules)
+
+
+def _plain(value: Any) -> Any:
+    return tuple(setting.value for setting in value) if isinstance(value, list) else value
+
+
+def _complain(table: Table, problem: str) -> None:
+    """Place a problem of a rule, which starts with the name of its key, at that key."""
+    name = problem.split(":")[0].split(" ")[0]
+    table.complain(problem, *([name] if name in table.data else []))

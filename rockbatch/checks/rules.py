@@ -1,0 +1,171 @@
+"""What a check asks: a demand, how its suite is summed up, a limit, and where the limit comes from."""
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from rockbatch.checks.demands import DEMANDS
+from rockbatch.checks.statistics import STATISTICS
+from rockbatch.errors import InputError
+from rockbatch.toml.kinds import KindError, choice, shown
+
+BASES = ("code", "literature", "judgement")
+COUNTING = ("infinite", "unknown", "value", "left out")
+"""How a run counts that did not go through to its end:
+
+infinite
+    Worse than any limit.
+unknown
+    Anything from what is known up to infinity: a peak or a count is at least what it was when the pier overturned or flew.
+value
+    What the table has, as if the run had gone through; unknown where it has nothing.
+left out
+    Not at all; the verdict says how many.
+"""
+USUAL = {"overturned": "infinite", "flight": "unknown", "failed": "unknown"}
+
+
+@dataclass(frozen=True)
+class Rule:
+    """One check.
+
+    A record counts once, with the worse of its polarities; components of one station are records of their own. Each scale is
+    a suite of its own, as is each case.
+
+    Attributes
+    ----------
+    name : str
+        What it is called in the table.
+    demand : str
+        A key of :data:`rockbatch.checks.demands.DEMANDS`.
+    at_most, at_least : float or None
+        The limit, one of the two; ``at_least`` is for properties of the case, such as eta.
+    statistic : str
+        A key of :data:`rockbatch.checks.statistics.STATISTICS`; "max" unless given.
+    above : float or None
+        With "count", what a record has to exceed to count; 0 unless given for events such as flight.
+    reason : str
+        Clause, source, or why, in words.
+    basis : "code", "literature" or "judgement"
+        Where the limit comes from.
+    case : tuple of str
+        Names or globs of the cases to check; all if empty.
+    scale : tuple of float
+        Scales to check; all if empty.
+    polarity : "+", "-" or None
+        The only polarity to look at.
+    overturned, flight, failed : str
+        How such runs count, one of :data:`COUNTING`; a run that has not settled, or was not run, is failed. ``None`` takes
+        the usual: overturned is infinite, the others are unknown; under "asce7-16" all are unacceptable, hence infinite.
+    other_law : bool
+        Whether the settlement by the other spring law bounds it too, as the model's uncertainty.
+
+    Raises ``InputError`` with all that is wrong; each message starts with the name of its attribute.
+    """
+
+    name: str
+    demand: str
+    at_most: float | None = None
+    at_least: float | None = None
+    statistic: str | None = None
+    above: float | None = None
+    reason: str = ""
+    basis: str = "judgement"
+    case: tuple[str, ...] = ()
+    scale: tuple[float, ...] = ()
+    polarity: str | None = None
+    overturned: str | None = None
+    flight: str | None = None
+    failed: str | None = None
+    other_law: bool = False
+
+    def __post_init__(self) -> None:
+        wrong = _unknown_words(self) or _misfits(self)
+        if wrong:
+            raise InputError(*wrong)
+
+    @property
+    def limit(self) -> float:
+        """The limit, whichever way it bounds."""
+        return float(next((one for one in (self.at_most, self.at_least) if one is not None), math.nan))
+
+    @property
+    def sense(self) -> str:
+        """ "at most" or "at least"."""
+        return "at most" if self.at_most is not None else "at least"
+
+    def counts(self, status: str) -> str:
+        """How a run of this status counts, one of :data:`COUNTING`."""
+        usual = "infinite" if self.statistic == "asce7-16" else USUAL[status]
+        return getattr(self, status) or usual
+
+    @property
+    def words(self) -> str:
+        """What is compared with the limit: "mean of theta_max_over_alpha"."""
+        demand = DEMANDS[self.demand]
+        if demand.of_the_case:
+            return self.demand
+        told = STATISTICS[self.statistic or "max"].words
+        if self.statistic != "count":
+            return f"{told} of {self.demand}"
+        return f"{told} with {self.demand}" + ("" if demand.event and not self.above else f" above {self.above:g}")
+
+    @property
+    def counting(self) -> str:
+        """How runs count that do not go through, in words; empty where the demand is about nothing else."""
+        if not DEMANDS[self.demand].of_runs:
+            return ""
+        ways = dict.fromkeys(self.counts(status) for status in USUAL)
+        return "; ".join(f"{', '.join(one for one in USUAL if self.counts(one) == way)}: {way}" for way in ways)
+
+
+def _unknown_words(rule: Rule) -> list[str]:
+    allowed: dict[str, Iterable[str]] = {
+        "demand": DEMANDS, "statistic": STATISTICS, "basis": BASES, "polarity": ("+", "-"),
+        "overturned": COUNTING, "flight": COUNTING, "failed": COUNTING,
+    }  # fmt: skip
+    wrong = []
+    for name, words in allowed.items():
+        value = getattr(rule, name)
+        if value is None:
+            continue
+        try:
+            choice(*words)(value)
+        except KindError as error:
+            meant = f"; did you mean {error.meant}?" if error.meant else ""
+            wrong.append(f"{name} = {shown(value)}: expected {error}{meant}")
+    return wrong
+
+
+def _misfits(rule: Rule) -> list[str]:
+    """What the attributes of a rule say about each other."""
+    demand = DEMANDS[rule.demand]
+    wrong = []
+    if rule.at_most is not None and rule.at_least is not None:
+        wrong.append("at_least: given beside at_most; keep one, and write the other as a check of its own")
+    elif rule.at_most is None and rule.at_least is None:
+        name = "at_least" if rule.demand == "eta" else "at_most"
+        wrong.append(f"{name} is missing, the limit; write for example {name} = {2.0 if rule.demand == 'eta' else 0.5}")
+    elif not demand.of_the_case and rule.at_most is None:
+        wrong.append(f"at_least = {rule.at_least:g}: more of {rule.demand} is worse; write at_most = {rule.at_least:g}")
+    elif not math.isfinite(rule.limit):
+        wrong.append(f"{rule.sense.replace(' ', '_')} = {rule.limit:g}: must be a finite number")
+    if demand.of_the_case and rule.statistic is not None:
+        wrong.append(f"statistic: {rule.demand} is the same for all records; leave it out")
+    if rule.above is not None and rule.statistic != "count":
+        wrong.append('above: is for statistic = "count"; leave it out')
+    elif rule.statistic == "count" and rule.above is None and not (demand.event or demand.of_the_case):
+        wrong.append("above is missing, what a record has to exceed to count; write for example above = 0.5")
+    if demand.event and rule.statistic in ("asce7-16", "en1998-1"):
+        wrong.append(
+            f'statistic = "{rule.statistic}": is for quantities, and {rule.demand} is yes or no; write "max" or "count"'
+        )
+    given = [name for name in USUAL if getattr(rule, name) is not None]
+    if not demand.of_runs:
+        wrong += [f"{name}: says nothing about {rule.demand}; leave it out" for name in given]
+    elif rule.statistic == "asce7-16":
+        wrong += [f"{name}: is unacceptable by ASCE 7-16, 16.4.1.1; leave it out" for name in given]
+    if rule.other_law and demand.other_law is None:
+        told = " and ".join(name for name, each in DEMANDS.items() if each.other_law)
+        wrong.append(f"other_law: is for {told}; leave it out")
+    return wrong

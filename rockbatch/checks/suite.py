@@ -1,0 +1,98 @@
+"""The runs of one case at one scale: what each record demands, and between which bounds."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from rockbatch.checks.demands import DEMANDS, Case
+from rockbatch.checks.rules import USUAL, Rule
+from rockbatch.checks.statistics import Values
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+OTHER_LAW = "settlement_other_law_m"
+NOT_RUN = "not run"
+
+
+class Bounds(NamedTuple):
+    """What each record demands, shape (n,), and the bounds within which it lies; ``estimated``: whether by error estimates.
+
+    Where the upper bound alone is infinite, ``value`` is the lower one.
+    """
+
+    value: Values
+    low: Values
+    high: Values
+    estimated: bool
+
+
+def complete(runs: "pd.DataFrame", records: Sequence[str], polarities: Sequence[str]) -> "pd.DataFrame":
+    """``runs`` of a case at one scale, and a failed one for each that is missing, as after an interrupt."""
+    import pandas as pd
+
+    planned = pd.MultiIndex.from_product([records, polarities], names=["record", "polarity"]).to_frame(index=False)
+    all_of_them = planned.merge(runs, how="outer", on=["record", "polarity"])
+    missing = all_of_them["status"].isna()
+    all_of_them.loc[missing, ["status", "reason"]] = ["failed", NOT_RUN]
+    return all_of_them
+
+
+def by_record(rule: Rule, runs: "pd.DataFrame", case: Case) -> Bounds:
+    """What each record demands: the worse of its polarities. Empty where every run is left out."""
+    bounds, kept = _of_runs(rule, runs, case)
+    names, record = np.unique(runs["record"].to_numpy()[kept].astype(str), return_inverse=True)
+
+    def worst(of_runs: Values) -> Values:
+        found = np.zeros(len(names))  # no demand is negative
+        np.maximum.at(found, record, of_runs[kept])
+        return found
+
+    return Bounds(worst(bounds.value), worst(bounds.low), worst(bounds.high), bounds.estimated)
+
+
+def _of_runs(rule: Rule, runs: "pd.DataFrame", case: Case) -> tuple[Bounds, np.ndarray]:
+    """Bounds of every run, and which of them count at all."""
+    demand = DEMANDS[rule.demand]
+    value, error = demand.of(runs, case)
+    estimated = bool(np.isfinite(error).any())
+    margin = np.nan_to_num(error)
+    low, high = np.maximum(value - margin, 0.0), value + margin
+    status = runs["status"].to_numpy()
+    kept = np.ones(len(runs), dtype=bool)
+    if demand.event:
+        if rule.demand != "failed":  # what a run that was cut short would have come to is open
+            high = np.where((status == "failed") | (status == "flight"), 1.0, high)
+        return Bounds(value, low, high, False), kept
+
+    if rule.other_law and demand.other_law:
+        other = demand.other_law(runs, case)
+        other = np.where(np.isnan(other) & (case["base"] == "yielding"), np.inf, other)
+        low, high = np.fmin(low, other), np.fmax(high, other)
+    unknown = np.zeros(len(runs), dtype=bool)
+    for name in USUAL:
+        has, way = status == name, rule.counts(name)
+        if way == "infinite":
+            value, low, high = (np.where(has, np.inf, each) for each in (value, low, high))
+        elif way == "unknown":
+            unknown |= has
+        elif way == "left out":
+            kept &= ~has
+    missing = np.isnan(value)  # as the residual of a run that was cut short
+    unknown |= missing
+    # A peak or a count is at least what it was when the run was cut short; what has not settled is nothing
+    low = np.where(missing | (unknown & (status == "failed")), 0.0, low)
+    return Bounds(np.where(unknown, low, value), low, np.where(unknown, np.inf, high), estimated), kept
+
+
+def counted(rule: Rule, runs: "pd.DataFrame") -> str:
+    """How many runs did not go through, and how they count: "1 overturned (infinite), 2 flight (unknown)"."""
+    not_run = (runs["reason"] == NOT_RUN).to_numpy()
+    status = np.where(not_run, NOT_RUN, runs["status"].to_numpy())
+    parts = []
+    for name in (*USUAL, NOT_RUN):
+        if n := np.count_nonzero(status == name):
+            way = f" ({rule.counts('failed' if name == NOT_RUN else name)})" if DEMANDS[rule.demand].of_runs else ""
+            parts.append(f"{n} {name}{way}")
+    return ", ".join(parts)

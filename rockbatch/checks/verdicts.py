@@ -1,0 +1,123 @@
+"""What checks came to, as rows of checks.csv."""
+
+import csv
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict, dataclass, fields
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rockbatch.errors import InputError
+from rockbatch.files import write_whole
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+PASS, FAIL, NOT_DECIDED, DOES_NOT_APPLY = "pass", "fail", "not decided", "does not apply"
+CHECKS = "checks.csv"
+"""File of the verdicts, beside peaks.csv."""
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What a check came to for one case at one scale.
+
+    Attributes
+    ----------
+    check, case, columns, scale
+        Name of the rule; the case, its varied values, and the scale of its suite.
+    demand, statistic : str
+        Names of both; ``statistic`` is empty for a demand that is the same for all records.
+    words : str
+        Both in words: "mean of theta_max_over_alpha".
+    records, runs : int
+        Number of records that count, and of all runs of the suite.
+    value, low, high : float
+        The statistic, and the bounds that errors and unknown runs leave; infinite or NaN (no record) where it is so.
+    sense, limit
+        "at most" or "at least", and the limit.
+    ratio : float
+        Demand over limit, or limit over demand where more is better: above 1 is too much.
+    margin : float
+        Distance to the limit in the unit of the demand; negative beyond it.
+    verdict : str
+        "pass", "fail", "not decided" (the bounds straddle the limit, or records are missing) or "does not apply".
+    basis, reason : str
+        Where the limit comes from.
+    counting, counted : str
+        How runs count that do not go through to their end, and how many there were; empty where there is nothing to say.
+    note : str
+        Why nothing was decided, and what else there is to know.
+    """
+
+    check: str
+    case: str
+    columns: dict[str, float | str]
+    scale: float
+    demand: str
+    statistic: str
+    words: str
+    records: int
+    runs: int
+    value: float
+    low: float
+    high: float
+    sense: str
+    limit: float
+    ratio: float
+    margin: float
+    verdict: str
+    basis: str
+    reason: str
+    counting: str
+    counted: str
+    note: str
+
+
+_NAMES = tuple(field.name for field in fields(Verdict))
+_BEFORE, _AFTER = ("check", "case"), tuple(name for name in _NAMES if name not in ("check", "case", "columns"))
+
+
+def as_table(verdicts: Iterable[Verdict]) -> "pd.DataFrame":
+    """One row for each verdict; the varied values have columns of their own."""
+    import pandas as pd
+
+    rows = [asdict(verdict) for verdict in verdicts]
+    varied = dict.fromkeys(name for row in rows for name in row["columns"])
+    return pd.DataFrame([row | row["columns"] for row in rows], columns=[*_BEFORE, *varied, *_AFTER])
+
+
+def write_verdicts(directory: Path, verdicts: Iterable[Verdict]) -> Path:
+    """Write checks.csv into ``directory``, whole or not at all."""
+    path = Path(directory) / CHECKS
+    write_whole(path, as_table(verdicts).to_csv(index=False, float_format="%.10g", lineterminator="\n"))
+    return path
+
+
+def read_verdicts(directory: Path) -> list[Verdict]:
+    """Read checks.csv in ``directory``; empty where there is none, ``InputError`` where it is damaged."""
+    path = Path(directory) / CHECKS
+    try:
+        with path.open(encoding="utf-8", newline="") as file:
+            return [_from_row(row) for row in csv.DictReader(file)]
+    except FileNotFoundError:
+        return []
+    except (KeyError, TypeError, ValueError, csv.Error) as error:
+        raise InputError(f"{path}: damaged ({error}); start `rockbatch check` again") from None
+
+
+def _from_row(row: Mapping[str, str]) -> Verdict:
+    columns = {name: _value(text) for name, text in row.items() if name not in _NAMES and text != ""}
+    kinds: dict[str, Any] = {field.name: field.type for field in fields(Verdict)}
+    read: dict[str, Any] = {}
+    for name in (*_BEFORE, *_AFTER):
+        kind = kinds[name]
+        read[name] = (float(row[name]) if row[name] else math.nan) if kind is float else kind(row[name])
+    return Verdict(columns=columns, **read)
+
+
+def _value(text: str) -> float | str:
+    try:
+        return float(text)
+    except ValueError:
+        return text

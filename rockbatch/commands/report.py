@@ -1,0 +1,26 @@
+"""``rockbatch report``: the report of finished results, made again, or of two studies side by side."""
+
+import argparse
+import sys
+from pathlib import Path
+
+HELP = "make the report of finished results again, or compare two studies"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("directory", type=Path, metavar="DIR", help="folder that `rockbatch run` has written")
+    parser.add_argument("other", type=Path, metavar="OTHER", nargs="?", help="a second one, to compare the first with")
+    parser.add_argument(
+        "--out", type=Path, metavar="FILE", help="file to write (default: DIR/report.html, or DIR/compare-OTHER.html)"
+    )
+
+
+def main(arguments: argparse.Namespace) -> int:
+    from rockbatch.report import write_comparison, write_report
+
+    if arguments.other is None:
+        path = write_report(arguments.directory, out=arguments.out)
+    else:
+        path = write_comparison(arguments.directory, arguments.other, out=arguments.out)
+    print(path, file=sys.stderr)
+    return 0

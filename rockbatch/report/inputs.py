@@ -1,0 +1,73 @@
+"""What went in: foundations, ground motions, and what could not be used."""
+
+from rockbatch.report.finished import Finished
+from rockbatch.report.labels import symbol
+from rockbatch.report.markup import Markup, join, tag
+from rockbatch.report.table import Head, sub, table
+from rockbatch.study import PIER_KEYS
+
+
+def foundations(finished: Finished) -> Markup:
+    """What the piers stand on: parameters, and the deflections that follow from them."""
+    varied_pier = [key for key in finished.info["varied"] if key in PIER_KEYS]
+    heads = [Head("case"), *(Head(symbol(key)) for key in varied_pier), Head("base")]
+    heads += [
+        Head("β", note="vertical over rocking frequency parameter"),
+        Head("η", note="yield over static deflection: capacity of a support over its static load"),
+        Head("ε", note="restitution of the landing pivot's velocity"),
+        Head("spring"),
+        Head("n", note="Bouc–Wen exponent"),
+        Head("kinematics"),
+        Head("in flight"),
+        Head("e", note="factor on the angular velocity at impact; empty: Housner's"),
+        Head(join(sub("ω", "v"), " [rad/s]"), ".2f", "vertical frequency"),
+        Head(join(sub("δ", "s"), " [mm]"), ".2f", "static deflection"),
+        Head(join(sub("δ", "y"), " [mm]"), ".2f", "yield deflection"),
+    ]
+    names = ("beta", "eta", "epsilon", "spring", "n", "kinematics", "flight", "restitution", "omega_v")
+    rows = []
+    for case in finished.info["cases"]:
+        values = case["parameters"]
+        deflections = [values.get(key) for key in ("delta_s_m", "delta_y_m")]
+        millimetres = [None if metres is None else 1000 * metres for metres in deflections]
+        pier = [case["columns"].get(key) for key in varied_pier]
+        rows.append([case["case"], *pier, case["base"], *(values.get(key) for key in names), *millimetres])
+    legend = (
+        "β: vertical over rocking frequency parameter. η: yield over static deflection, the capacity of a support over its "
+        "static load. ε: restitution of the pivot that lands. δ: deflections of a support, static and at yield."
+    )
+    springs = any(case["base"] != "rigid" for case in finished.info["cases"])
+    return join(table(heads, rows, name="Foundations"), tag("p", legend, class_="legend") if springs else "")
+
+
+def records(finished: Finished) -> Markup:
+    """The ground motions as they were used, like the paper's Table 1, the weakest first."""
+    heads = [
+        Head("record"),
+        Head("PGA [g]", ".3f"),
+        Head("PGV [m/s]", ".3f"),
+        Head("PGD [m]", ".3f"),
+        Head("vertical PGA [g]", ".3f"),
+        Head("dt [s]"),
+        Head("points"),
+        Head("duration [s]", ".2f"),
+        Head("horizontal from"),
+        Head("vertical from"),
+        Head("what was done"),
+    ]
+    names = (
+        "record", "pga_g", "pgv_m_s", "pgd_m", "pga_v_g", "dt_s", "npts", "duration_s", "source", "vertical_source",
+    )  # fmt: skip
+    rows: list[list[object]] = []
+    for record in sorted(finished.info["records"], key=lambda record: (record["pga_g"], record["record"])):
+        notes = tag("ul", *(tag("li", note) for note in record["notes"])) if record["notes"] else ""
+        rows.append([*(record[name] for name in names), notes])
+    return table(heads, rows, sortable=True, prose=True, name="Ground motions")
+
+
+def unusable(finished: Finished) -> Markup:
+    """Files and runs that gave no result, and why."""
+    rows = [[entry["name"], "", entry["source"], entry["reason"]] for entry in finished.info["unusable"]]
+    failed = finished.runs[finished.runs["status"] == "failed"]
+    rows += [[run["record"], finished.which(run), "", run["reason"]] for _, run in failed.iterrows()]
+    return table([Head("record"), Head("case"), Head("file"), Head("why")], rows, prose=True, name="Not used")

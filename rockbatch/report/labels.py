@@ -1,0 +1,95 @@
+"""What foundations, piers and quantities are called on the page."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from rockbatch.study import PIER_KEYS
+
+SYMBOLS = {
+    "alpha": ("α", "rad"),
+    "p": ("p", "rad/s"),
+    "mu": ("μ", ""),
+    "gravity": ("g", "m/s²"),
+    "size_m": ("R0", "m"),
+    "width_m": ("width", "m"),
+    "height_m": ("height", "m"),
+    "beta": ("β", ""),
+    "eta": ("η", ""),
+    "epsilon": ("ε", ""),
+    "n": ("n", ""),
+    "restitution": ("e", ""),
+    "stiffness_kN_m": ("K", "kN/m"),
+    "yield_kN": ("F_y", "kN"),
+    "mass_t": ("M", "t"),
+}
+BASE_KEYS = ("beta", "eta", "epsilon", "spring", "n", "kinematics", "flight", "restitution")
+
+Key = tuple[object, ...]
+"""What tells one foundation from another: the case, and its varied values in the order of the study."""
+
+
+@dataclass(frozen=True)
+class Series:
+    """One foundation: a marker in the figures, a column in the tables."""
+
+    label: str
+    tick: str
+    rigid: bool
+    index: int  # among those of its kind, rigid or not
+
+
+def quantity(key: str, value: object) -> str:
+    """A value in words that stay on one line: "β = 40", "p = 0.38 rad/s", "kinematics finite"."""
+    symbol, unit = SYMBOLS.get(key, (key, ""))
+    if isinstance(value, float | int):
+        return f"{symbol} = {value:.10g} {unit}".strip().replace(" ", "\u00a0")
+    return f"{symbol} {value}"
+
+
+def symbol(key: str) -> str:
+    """Head of a column that holds values of a study key: "p [rad/s]"."""
+    letter, unit = SYMBOLS.get(key, ("", ""))
+    return (letter or key) + (f" [{unit}]" if unit else "")
+
+
+def named(cases: Mapping[Key, Sequence[dict[str, Any]]], varied: Sequence[str]) -> dict[Key, Series]:
+    """A series for each foundation, called after what sets it apart from the others.
+
+    ``cases`` are those of run.json, one for each pier on which the foundation was run.
+    """
+    constants = {key: _constants(same) for key, same in cases.items()}
+    rigid = {key for key, same in cases.items() if same[0]["base"] == "rigid"}
+    differing = {
+        kind: _differing([constants[key] for key in cases if (key in rigid) is kind], varied) for kind in (True, False)
+    }
+    names = [key[0] for key in cases if key not in rigid]
+    short = len(set(names)) == len(names) and all(len(str(name)) <= 3 for name in names)
+    series: dict[Key, Series] = {}
+    count = {True: 0, False: 0}
+    for key in cases:
+        kind = key in rigid
+        words = [quantity(name, constants[key][name]) for name in differing[kind] if name in constants[key]]
+        case, index = str(key[0]), count[kind]
+        count[kind] += 1
+        label = f"{case}: {', '.join(words)}" if words else case
+        tick = case if short else chr(ord("a") + index) if index < 26 else str(index + 1)
+        series[key] = Series(label, tick, kind, index)
+    return series
+
+
+def _differing(constants: Sequence[dict[str, object]], varied: Sequence[str]) -> list[str]:
+    keys = dict.fromkeys((*BASE_KEYS, *varied))
+    return [name for name in keys if len({str(values.get(name)) for values in constants}) > 1]
+
+
+def _constants(cases: Sequence[dict[str, Any]]) -> dict[str, object]:
+    """Values that a foundation keeps on every pier; β of a given stiffness, for one, follows the pier."""
+    first = {**cases[0]["parameters"], **cases[0]["columns"]}
+    return {
+        key: value
+        for key, value in first.items()
+        if key not in PIER_KEYS
+        and value is not None
+        and all({**case["parameters"], **case["columns"]}.get(key) == value for case in cases)
+    }

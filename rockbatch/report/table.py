@@ -1,0 +1,79 @@
+"""A table of the page."""
+
+from collections.abc import Iterable, Sequence
+from itertools import groupby
+from typing import NamedTuple
+
+from rockbatch.report.markup import Markup, join, number, tag
+
+WHOLE = ".10g"  # as it was given
+MOST_ROWS = 1000
+
+
+class Head(NamedTuple):
+    """Head of a column: what it says, how its numbers are written, a word of explanation, and what stands over it."""
+
+    says: str
+    form: str = WHOLE
+    note: str | None = None
+    over: str = ""
+
+
+def table(
+    heads: Sequence[Head],
+    rows: Iterable[Sequence[object]],
+    *,
+    sortable: bool = False,
+    prose: bool = False,
+    name: str | None = None,
+) -> Markup:
+    """A table in a container of its own that scrolls when it is too wide. Columns without a value are left out.
+
+    ``prose``: its cells hold words that go over several lines.
+
+    Of more than :data:`MOST_ROWS` rows the first are shown, and it says so.
+    """
+    whole = list(rows)
+    rows = whole[:MOST_ROWS]
+    used = [i for i in range(len(heads)) if i == 0 or any(row[i] not in (None, "") for row in rows)]
+    numeric = {i for i in used if heads[i].form != WHOLE or any(isinstance(row[i], float | int) for row in rows)}
+
+    def cell(kind: str, i: int, content: object, **more: object) -> Markup:
+        return tag(kind, content, class_="n" if i in numeric else None, **more)
+
+    top = [tag("tr", *(cell("th", i, heads[i].says, scope="col", title=heads[i].note) for i in used))]
+    if any(heads[i].over for i in used):
+        spans = [(over, len(list(same))) for over, same in groupby(used, key=lambda i: heads[i].over)]
+        over = (tag("th", says, scope="colgroup" if says else None, colspan=wide) for says, wide in spans)
+        top.insert(0, tag("tr", *over, class_="over"))
+    body = []
+    for row in rows:
+        texts = {i: row[i] if isinstance(row[i], Markup) else number(row[i], heads[i].form) for i in used}
+        first = {"scope": "row"}
+        body.append(tag("tr", *(cell("th", i, texts[i], **first) if i == 0 else cell("td", i, texts[i]) for i in used)))
+    drawn = tag("table", tag("thead", *top), tag("tbody", *body), class_="sortable" if sortable else None)
+    wide = tag(
+        "div", drawn, class_="wide prose" if prose else "wide", tabindex="0", role="region", aria_label=name or "Table"
+    )
+    return join(told_apart(len(rows), len(whole)), wide)
+
+
+def told_apart(shown: int, all_: int, which: str = "first") -> Markup:
+    """That not all rows are shown; nothing where they are."""
+    if shown >= all_:
+        return Markup("")
+    return tag("p", f"The {which} {shown:,} of {all_:,} rows are shown.", class_="muted")
+
+
+def alarm(words: str) -> Markup:
+    """Words that must not be missed; bold, too, for those who do not see the colour."""
+    return tag("span", words, class_="alarm")
+
+
+def sub(base: str, index: str, rest: str = "") -> Markup:
+    """A symbol with its index: θ_max."""
+    return join(base, tag("sub", index), rest)
+
+
+THETA = sub("θ", "max", "/α")
+THETA_FORMAT = ".4f"
