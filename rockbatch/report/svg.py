@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Sequence
-from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
@@ -156,11 +155,9 @@ def thin(x: Array, y: Array, buckets: int) -> tuple[Array, Array]:
     if len(x) <= 4 * buckets:
         return x, y
     edges = np.linspace(0, len(x), buckets + 1).astype(int)
-    kept: set[int] = set()
-    for start, end in pairwise(edges):
-        kept.update((int(start), int(end) - 1))
-        part = y[start:end]
-        if not np.isnan(part).all():
-            kept.update((int(start + np.nanargmin(part)), int(start + np.nanargmax(part))))
-    order = np.array(sorted(kept))
-    return x[order], y[order]
+    first, last = edges[:-1], edges[1:] - 1
+    rising = np.lexsort((y, np.repeat(np.arange(buckets), np.diff(edges))))  # bucket by bucket, NaN at its end
+    numbers = np.add.reduceat(~np.isnan(y), first)
+    largest = first + np.maximum(numbers, 1) - 1
+    kept = np.unique(np.concatenate((first, last, rising[first], rising[largest])))
+    return x[kept], y[kept]
