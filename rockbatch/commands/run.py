@@ -63,7 +63,7 @@ def main(arguments: argparse.Namespace) -> int:
     counted = " × ".join(_count(n, noun) for n, noun in factors if n > 1 or noun in ("record", "case"))
     _say(f"{counted} = {_count(len(runs), 'run')} on {_count(jobs, 'thread')}")
     if not is_compiled():
-        _say("compiling the kernels (once per installation, about 15 s)")
+        _say("compiling the kernels (once per installation, about 20 s)")
     compile_kernels(study)
     interrupted = False
     with PeaksFile(directory, study) as peaks, Progress(len(runs)) as progress:

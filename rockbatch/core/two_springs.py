@@ -74,6 +74,7 @@ from rockbatch.core.types import STEP as BETWEEN_SAMPLES
 EVENTS_IN_A_SAMPLE = 20_000  # more than any decaying sequence of impacts needs
 HISTORY_COLUMNS = 13  # t, the six of State, the five of Contact, kind of row
 
+NONE = np.int64(0)  # a literal 0 would have every function that it is handed to compiled twice
 RUNNING = -1
 ACCEPT = -1.0  # verdicts on a piece, besides the number of an event
 SEARCH = -2.0
@@ -240,7 +241,7 @@ def _begin(table, i, number, runs, ground, exponent, finite):
     branch = 1.0 if m.law == BOUC_WEN else 0.0
     contact = Contact(1.0, 1.0, branch, branch, 0.0)
     _put_contact(table, i, m, contact, Supports(math.nan, math.nan))
-    _put_ground(table, i, ground, 0)
+    _put_ground(table, i, ground, NONE)
     under = _ground_of(table, i, 0.0)
     put_state(table, NOW + i, y)
     put_state(table, RATES + i, rates(m, y, contact, under.horizontal, under.vertical))
@@ -536,7 +537,7 @@ def _finish(table, i, exponent, finite, status, t, row, results):
 def _rock(exponent, finite, runs, ground, locate, every_step, history, stop, table, results):
     """All ``runs``, as :func:`rock_on_springs` has them; lines of ``results`` stay as they are after a stop."""
     recording = history.shape[0] > 0
-    waiting, lanes, row = 0, 0, 0
+    waiting, lanes, row = NONE, NONE, NONE
     while True:
         while lanes < LANES and waiting < len(runs):
             _begin(table, lanes, waiting, runs, ground, exponent, finite)
@@ -552,7 +553,7 @@ def _rock(exponent, finite, runs, ground, locate, every_step, history, stop, tab
             return
         while lanes == LANES or (lanes > 0 and waiting == len(runs)):
             one_pass(table, lanes, exponent, finite)
-            lane = 0
+            lane = NONE
             while lane < lanes:
                 status, t = RUNNING, 0.0
                 if table[NEWS + lane] != CALM or recording:
