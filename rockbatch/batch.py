@@ -11,13 +11,14 @@ import numpy as np
 
 from rockbatch.errors import InputError
 from rockbatch.histories import energies, written
-from rockbatch.motions import Motion, MotionSet, ReadOptions, pulse, read_motions
+from rockbatch.motions import Motion
 from rockbatch.outcome import Outcome
 from rockbatch.plan import Plan, Run
 from rockbatch.results import TERMS, as_table, row, unusable_rows
 from rockbatch.simulation import Scene, Stop, first_substeps, run_all_fixed, run_all_to_tolerance, steps_of
 from rockbatch.structure import YieldingBase
 from rockbatch.study import Numerics, Output, Study, load_study
+from rockbatch.study.suite import ground_motions
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -35,38 +36,6 @@ AHEAD = 2
 """Groups handed to each thread beforehand, so that none waits."""
 
 NOTHING_MORE = Output(both_laws=False)
-
-
-def ground_motions(study: Study) -> MotionSet:
-    """All motions of a study: its files, packaged records and pulses, and what could not be used."""
-    spec = study.motions
-    gravity = study.cases[0].pier.gravity
-    options = ReadOptions(unit=spec.unit, dt=spec.dt, columns=spec.columns, sensitivity=spec.sensitivity)
-    found = read_motions(
-        spec.paths,
-        vertical=spec.vertical,
-        gravity=gravity,
-        options=options,
-        fema=[(record.station, record.azimuth) for record in spec.fema_p695],
-    )
-    pulses = [
-        pulse(
-            shape.shape,
-            name=shape.name,
-            amplitude=shape.amplitude_g * gravity,
-            period=shape.period_s,
-            dt=shape.dt_s,
-            duration=shape.duration_s,
-            gamma=shape.gamma,
-            nu=shape.nu,
-        )
-        for shape in spec.pulses
-    ]
-    if not found.motions and not pulses:
-        reasons = [f"{file.source}: {file.reason}" for file in found.unusable]
-        where = ", ".join(str(path) for path in spec.paths)
-        raise InputError(f"{where}: no ground motion that can be used; `rockbatch motions PATH` shows why", *reasons)
-    return replace(found, motions=[*found.motions, *pulses])
 
 
 def outcomes_of(

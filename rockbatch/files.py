@@ -1,10 +1,16 @@
-"""Files written whole or not at all."""
+"""Files written whole or not at all, and texts from elsewhere that do no harm in them."""
 
+import csv
+import io
 import os
+import re
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+
+_FORMULA = re.compile(r"'*[=+\-@\t\r\n].", re.DOTALL)
+_UNPRINTABLE = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028\u2029\u202a-\u202e\u2066-\u2069\ud800-\udfff]")
 
 
 @contextmanager
@@ -32,3 +38,47 @@ def write_whole(path: Path, text: str) -> None:
     """Write UTF-8 ``text`` to ``path``, whole or not at all."""
     with replacing(path) as temporary:
         temporary.write_text(text, encoding="utf-8", newline="")
+
+
+def legible(text: str) -> str:
+    """``text`` with control characters, and bytes of a file's name that are no text, written as ``\\x1b``: it can be
+    printed, stays on its line, and goes into UTF-8."""
+
+    def escaped(found: re.Match[str]) -> str:
+        code = ord(found[0])
+        byte = code - 0xDC00 if 0xDC80 <= code <= 0xDCFF else code  # how Python carries such a byte
+        return f"\\x{byte:02x}" if byte <= 0xFF else f"\\u{byte:04x}"
+
+    return _UNPRINTABLE.sub(escaped, text)
+
+
+def csv_safe(text: str) -> str:
+    """``text`` as a cell that no spreadsheet takes for a formula (OWASP, "CSV injection").
+
+    Where it begins with = + - @, a tab or a line break, an apostrophe goes before it; also before apostrophes that
+    are followed by one of these, so that :func:`csv_plain` gives the text back. A sign alone stays as it is.
+    """
+    return f"'{text}" if _FORMULA.match(text) else text
+
+
+def csv_plain(cell: str) -> str:
+    """The text that :func:`csv_safe` made ``cell`` of."""
+    return cell[1:] if cell.startswith("'") and _FORMULA.match(cell) else cell
+
+
+def csv_text(columns: Sequence[str], rows: Iterable[Mapping[str, object]]) -> str:
+    """A CSV file: empty cells where a row has nothing or NaN, floats to ten digits, texts that are :func:`csv_safe`."""
+    buffer = io.StringIO()
+    writer = csv.writer(buffer, lineterminator="\n")
+    writer.writerow(columns)
+    writer.writerows([csv_cell(row.get(name)) for name in columns] for row in rows)
+    return buffer.getvalue()
+
+
+def csv_cell(value: object) -> object:
+    """What a CSV writer is given for ``value``: nothing for None and NaN, ten digits of a float, a text that is safe."""
+    if value is None or value != value:
+        return ""
+    if isinstance(value, float):
+        return f"{value:.10g}"
+    return csv_safe(value) if isinstance(value, str) else value

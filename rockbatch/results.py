@@ -2,17 +2,18 @@
 
 import csv
 import json
-import math
 import sys
 from collections.abc import Iterable, Mapping
+from dataclasses import asdict
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
 from rockbatch.checks.verdicts import CHECKS
-from rockbatch.files import write_whole
+from rockbatch.files import csv_cell, write_whole
 from rockbatch.motions import MotionSet, measures
 from rockbatch.motions.motion import Motion
+from rockbatch.motions.spectrum import suite_spectra
 from rockbatch.outcome import Outcome
 from rockbatch.structure import Base, ElasticBase, Pier, RigidBase, YieldingBase
 from rockbatch.study import Case, Study
@@ -51,6 +52,9 @@ MORE_COLUMNS = (
 
 TERMS = ("kinetic", "potential", "elastic", "input", "plastic", "impact", "p_delta", "constraint", "remainder")
 """Terms of the energy ledger, in the order in which the core returns them."""
+
+MOST_SPECTRA = 200
+"""Motions whose spectra go into run.json; each takes about 10 ms."""
 
 TEXTS = ("record", "case", "polarity", "status", "reason")
 COUNTS = ("impacts", "separations", "substeps")
@@ -147,7 +151,9 @@ def describe(study: Study, motions: MotionSet) -> dict[str, Any]:
         "varied": list(study.varied),
         "cases": [describe_case(case) for case in study.cases],
         "records": [_describe_motion(motion, study.cases[0].pier.gravity) for motion in motions.motions],
-        "unusable": [{"name": file.name, "source": file.source, "reason": file.reason} for file in motions.unusable],
+        "spectra": _spectra(motions.motions, study.cases[0].pier.gravity),
+        "unusable": [asdict(file) for file in motions.unusable],
+        "left_out": [asdict(file) for file in motions.left_out],
         "references": [
             {
                 "record": reference.record,
@@ -159,6 +165,11 @@ def describe(study: Study, motions: MotionSet) -> dict[str, Any]:
             for reference in study.references
         ],
     }
+
+
+def _spectra(motions: list[Motion], gravity: float) -> dict[str, Any] | None:
+    """Response spectra of the suite, where that is soon done."""
+    return suite_spectra(motions, gravity) if len(motions) <= MOST_SPECTRA else None
 
 
 def describe_case(case: Case) -> dict[str, Any]:
@@ -220,6 +231,12 @@ def _describe_motion(motion: Motion, gravity: float) -> dict[str, Any]:
         "pga_v_g": None if vertical is None else vertical / gravity,
         "pgv_m_s": measures.pgv(motion.horizontal, motion.dt),
         "pgd_m": measures.pgd(motion.horizontal, motion.dt),
+        "arias_m_s": measures.arias_intensity(motion.horizontal, motion.dt, gravity),
+        "d5_95_s": measures.significant_duration(motion.horizontal, motion.dt),
+        "azimuth_deg": motion.azimuth,
+        "magnitude": motion.magnitude,
+        "distance_km": motion.distance_km,
+        "factor": motion.factor,
         "source": motion.source,
         "vertical_source": motion.vertical_source,
         "notes": list(motion.notes),
@@ -277,14 +294,8 @@ class PeaksFile:
             self._waiting[number] = cells
 
     def _write(self, cells: Mapping[str, Any]) -> None:
-        self._writer.writerow([_cell(cells.get(name)) for name in self.columns])
+        self._writer.writerow([csv_cell(cells.get(name)) for name in self.columns])
         self.failed += cells["status"] == "failed"
-
-
-def _cell(value: Any) -> Any:
-    if isinstance(value, float):
-        return "" if math.isnan(value) else f"{value:.10g}"
-    return value
 
 
 def write_info(directory: Path, info: Mapping[str, Any]) -> None:

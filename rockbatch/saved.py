@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rockbatch.errors import InputError
+from rockbatch.files import csv_plain
 from rockbatch.results import COLUMNS, COUNTS, MORE_COLUMNS, TEXTS
 
 if TYPE_CHECKING:
@@ -103,6 +104,10 @@ def _read_peaks(path: Path, varied: Sequence[str], problems: list[str]) -> "pd.D
         found = _bad_cells(path, head, numbers)
         problems += found or [f"{path}: not a table ({error}); start `rockbatch run` again"]
         return None
+    for name in texts:
+        escaped = table[name].str.startswith("'")
+        if escaped.any():
+            table.loc[escaped, name] = table.loc[escaped, name].map(csv_plain)
     for name in varied:
         table[name] = _values(table[name])
     return table

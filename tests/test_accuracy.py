@@ -9,13 +9,13 @@ import pytest
 
 import rockbatch.accuracy
 from rockbatch.accuracy import COLUMNS, SUBSTEPS, measure, reference, spread
-from rockbatch.batch import ground_motions
 from rockbatch.cli import main
 from rockbatch.motions import Motion, pulse
 from rockbatch.plan import Plan
 from rockbatch.simulation import run_fixed
 from rockbatch.structure import ElasticBase, Pier, YieldingBase
 from rockbatch.study import load_study
+from rockbatch.study.suite import ground_motions
 from rockbatch.yardstick import solve
 
 STUDY = """

@@ -6,10 +6,11 @@ import pytest
 
 import rockbatch as rb
 import rockbatch.batch
-from rockbatch.batch import ground_motions, groups, outcomes, row_of
+from rockbatch.batch import groups, outcomes, row_of
 from rockbatch.plan import Plan
 from rockbatch.results import COLUMNS, MORE_COLUMNS, PeaksFile, as_table
 from rockbatch.study import load_study
+from rockbatch.study.suite import ground_motions
 
 STUDY = """
 title = "two pulses, three bases"

@@ -135,11 +135,13 @@ def test_a_missing_study_is_told_and_exits_with_2(tmp_path, capsys):
 def test_motions_shows_what_is_there_and_what_is_not_used(tmp_path, capsys):
     (tmp_path / "GOOD090.AT2").write_text(at2([0.1, -0.5, 0.2] * 50), encoding="latin-1")
     (tmp_path / "notes.doc").write_text("not a record", encoding="utf-8")
+    (tmp_path / "records.zip").write_text("perhaps records", encoding="utf-8")
     assert main(["motions", str(tmp_path)]) == 1
     shown = capsys.readouterr().out
     assert "GOOD090" in shown
     assert "0.500" in shown
-    assert "notes.doc: " in shown
+    assert "notes.doc: no record: " in shown
+    assert "records.zip: not a format that rockbatch reads" in shown
 
 
 def test_help_loads_neither_compiler_nor_tables_nor_obspy():

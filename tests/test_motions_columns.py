@@ -1,11 +1,16 @@
 """Text columns: the unit is declared or the file is not used; time is even or the file is not used."""
 
+import contextlib
+
 import numpy as np
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 from motion_files import at2_text, wiggle
 
 from rockbatch.errors import InputError
-from rockbatch.motions import ReadOptions, read_motions
+from rockbatch.motions import ReadOptions, Unusable, read_motions
+from rockbatch.motions.formats import RecordFile, read_record
 
 T = np.arange(60) * 0.005
 NS, EW, UD = (wiggle(60, seed, 100.0) for seed in (1, 2, 3))
@@ -66,6 +71,68 @@ def test_decimal_commas_are_read_between_semicolons(tmp_path):
     np.testing.assert_allclose(one(tmp_path).horizontal, NS / 100, atol=1e-6)
 
 
+ROWS = [f"{t:.3f}|{a:.4f}" for t, a in zip(T, NS, strict=True)]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "time (s)|000 (gal)\n".replace("|", ";") + "\n".join(ROWS).replace("|", ";").replace(".", ","),
+        "sep=;\r\ntime (s);000 (gal)\r\n" + "\r\n".join(ROWS).replace("|", ";").replace(".", ",") + "\r\n;;\r\n",
+        "time (s)\t000 (gal)\n" + "\n".join(ROWS).replace("|", "\t").replace(".", ","),
+        "time (s)  000 (gal)\n" + "\n".join(ROWS).replace("|", "   ").replace(".", ","),
+        '"time (s)","000 (gal)"\n' + "\n".join(f'"{row}"' for row in ROWS).replace("|", '","'),
+        "time (s),000 (gal),\n" + "\n".join(ROWS).replace("|", ", "),
+    ],
+    ids=["semicolons", "sep=", "tabs", "blanks", "quotes", "points"],
+)
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
+def test_what_excel_exports_in_any_country_is_read(tmp_path, text, encoding):
+    (tmp_path / "x.csv").write_bytes(text.encode(encoding))
+    motion = one(tmp_path)
+    assert motion.dt == 0.005
+    np.testing.assert_allclose(motion.horizontal, NS / 100, atol=1e-6)  # four decimals of cm/s²
+
+
+@pytest.mark.parametrize(
+    ("data", "message"),
+    [
+        (b"0,005\n0,125\n0,250\n", "a comma may be decimal or between columns"),
+        (b"time (s);000 (gal)\n0,00;1.234,5\n0,01;2.345,6\n", "numbers with both points and commas"),
+        (b"PK\x03\x04" + bytes(40), "export it as CSV"),
+        ("time(s) NS(gal)\n0 1\n1 2\n".encode("utf-16-le"), "to be saved as UTF-8"),
+        (b"\xff\xfe" + "0 1\n".encode("utf-16-le") + b"\x00", "begins as UTF-16 text"),
+        (b"# NPTS = 4\n# time(s) NS(gal)\n0 1\n1 2\n2 3\n", "the header says 4 samples, but there are 3 rows"),
+        (b"# dt = fast\n# NS(gal)\n1\n2\n", "state it in the study, e.g. dt"),
+        (b"# dt = -0.1\n# NS(gal)\n1\n2\n", 'found "dt = -0.1"; expected e.g. dt = 0.01 s'),
+        (b"# time(s)\n1\n2\n", "a column of time and no other"),
+        (b"# time(s) NS(gal)\n0 1\n1 1e300\n", "expected finite numbers"),
+    ],
+)
+def test_what_may_mean_two_things_is_refused_with_the_remedy(tmp_path, data, message):
+    (tmp_path / "x.csv").write_bytes(data)
+    assert message in reason(tmp_path)
+
+
+def test_double_precision_exponents_of_fortran_are_numbers(tmp_path):
+    (tmp_path / "x.txt").write_text("# time(s) NS(gal)\n0.0D0 1.5D+01\n1.0D-2 -2.5d+01\n2.0D-2 0.0D0\n")
+    np.testing.assert_allclose(one(tmp_path).horizontal, [0.15, -0.25, 0.0])
+
+
+def test_a_step_and_a_count_in_the_header_are_taken(tmp_path):
+    (tmp_path / "x.txt").write_text("# NPTS = 3\n# dt = 10 ms\n# unit: gal\n1.0\n2.5\n3.0\n")
+    motion = one(tmp_path, dt=0.5)  # what the file says goes first
+    assert motion.dt == 0.01
+
+
+def test_a_table_cut_within_its_last_number_is_refused(tmp_path):
+    t = np.arange(150) * 0.005
+    write(tmp_path, "# time(s) NS(gal)", t, wiggle(150, 1, 100.0), form="{:.6f}")
+    path = tmp_path / "REC.txt"
+    path.write_text(path.read_text().rstrip()[:-2])
+    assert "the file is cut" in reason(tmp_path)
+
+
 def test_time_in_milliseconds_is_time(tmp_path):
     write(tmp_path, "# time(ms) NS(gal)", 1000 * T, NS)
     assert one(tmp_path).dt == 0.005
@@ -89,7 +156,7 @@ def test_one_column_takes_step_and_unit_from_the_study_and_direction_from_its_na
 
 def test_two_columns_of_which_one_grows_evenly_are_time_and_acceleration_and_it_is_said(tmp_path):
     write(tmp_path, "", T, NS, name="STA_E.acc")
-    motion = one(tmp_path, unit="m/s2")
+    motion = one(tmp_path, unit="gal")
     assert motion.dt == 0.005
     assert any("taken as time" in note for note in motion.notes)
 
@@ -132,15 +199,49 @@ def test_no_time_and_no_step_is_refused_with_the_remedy(tmp_path):
     assert "dt = 0.01" in reason(tmp_path)
 
 
-def test_a_lost_sample_makes_time_uneven(tmp_path):
-    write(tmp_path, "# time(s) NS(gal)", np.delete(T, 30), np.delete(NS, 30))
-    assert "does not grow evenly" in reason(tmp_path)
+@pytest.mark.parametrize("lost", [[29], [30, 40]])
+def test_lost_samples_are_filled_linearly_and_it_is_said(tmp_path, lost):
+    lost = np.array(lost)
+    write(tmp_path, "# time(s) NS(gal)", np.delete(T, lost), np.delete(NS, lost))
+    motion = one(tmp_path)
+    filled = NS.copy()
+    filled[lost] = (NS[lost - 1] + NS[lost + 1]) / 2
+    assert motion.dt == 0.005
+    np.testing.assert_allclose(motion.horizontal, filled / 100, rtol=1e-6, atol=1e-12)
+    assert any(f"{len(lost)} samples put between, none lost" in note for note in motion.notes)
 
 
-def test_time_printed_with_few_digits_is_even(tmp_path):
-    t = np.round(np.arange(60) / 30.0, 3)  # 0.033, 0.067, 0.1: off by 1.5 % of a step
+@pytest.mark.parametrize(
+    ("t", "message"),
+    [
+        (np.concatenate([T[:30], T[30:] + 1.0]), "a gap is not filled"),
+        (np.concatenate([T[:30], T[29:-1]]), "does not grow after sample 30 (t = 0.145)"),
+        (np.concatenate([T[:30], T[30:] - 0.1]), "does not grow after sample 30"),
+    ],
+)
+def test_gaps_and_times_that_stand_still_or_go_back_are_refused_with_the_sample(tmp_path, t, message):
+    write(tmp_path, "# time(s) NS(gal)", t, NS, form="{:.9e}")
+    assert message in reason(tmp_path)
+
+
+def test_uneven_times_without_a_common_step_go_to_the_shortest_and_the_lost_peak_is_said(tmp_path):
+    t = np.cumsum(np.random.default_rng(7).uniform(0.004, 0.008, 60))
+    write(tmp_path, "# time(s) NS(gal)", t, NS, form="{:.12e}")
+    motion = one(tmp_path)
+    assert motion.dt == pytest.approx(np.diff(t).min(), rel=0.02)  # a whole number of steps for the whole time
+    at = t[0] + motion.dt * np.arange(motion.npts)
+    np.testing.assert_allclose(motion.horizontal, np.interp(at, t, NS / 100), atol=1e-9)
+    lost = 1 - motion.pga / np.abs(NS / 100).max()
+    assert any(f"its peak is lower by {lost:.1%}" in note for note in motion.notes)
+
+
+@pytest.mark.parametrize(("rate", "digits"), [(30, 3), (256, 3), (128, 3), (1024, 4)])
+def test_rounding_of_printed_times_is_no_unevenness(tmp_path, rate, digits):
+    t = np.round(np.arange(60) / rate, digits)
     write(tmp_path, "# time(s) NS(gal)", t, NS, form="{:.6f}")
-    assert one(tmp_path).dt == pytest.approx(1 / 30, rel=1e-3)
+    motion = one(tmp_path)
+    assert (motion.npts, motion.notes) == (60, ())
+    assert motion.dt == pytest.approx(1 / rate, rel=10**-digits * rate / 59)  # both ends are rounded
 
 
 @pytest.mark.parametrize(
@@ -148,7 +249,7 @@ def test_time_printed_with_few_digits_is_even(tmp_path):
     [
         ("# time(s) NS(gal)\n0 1\n0.1 2\n0.2\n", "line 4: found 1 numbers; expected 2"),
         ("# time(s) NS(gal)\n0 1\n0.1 x\n0.2 3\n", 'line 3: found "0.1 x"'),
-        ("# time(s) NS(gal)\n0 1\n0.1 nan\n0.2 3\n", "row 2 of numbers, column 2"),
+        ("# time(s) NS(gal)\n0 1\n0.1 nan\n0.2 3\n", 'line 3: found "0.1 nan"; expected finite'),
         ("# time(s) NS(gal)\n0 1\n", "at least two samples"),
         ("# time(h) NS(gal)\n0 1\n1 2\n", 'unit of time "h"'),
         ("just a letter to a friend\n", "no columns of numbers"),
@@ -178,3 +279,13 @@ def test_stated_options_that_cannot_be_are_told_all_at_once():
     with pytest.raises(InputError) as caught:
         ReadOptions(unit="furlongs", dt=-1.0, columns=("time", "-"), sensitivity=0.0)
     assert len(caught.value.problems) == 4
+
+
+@settings(max_examples=300, deadline=1000, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(st.text(alphabet="0123456789.,;-+eE \t\n#tNS()galu:", max_size=200) | st.binary(max_size=200))
+def test_any_text_ends_in_motions_or_reasons(tmp_path, content):
+    path = tmp_path / "x.txt"
+    data = content.encode() if isinstance(content, str) else content
+    with contextlib.suppress(InputError):
+        for reading in read_record(RecordFile(path, path.name, data, ReadOptions(unit="g", dt=0.01))):
+            assert isinstance(reading, Unusable) or np.isfinite(reading.acceleration).all()

@@ -49,7 +49,7 @@ def test_turning_by_half_a_circle_reverses_the_sign():
 @needs_package
 @pytest.mark.parametrize("spelling", ["SYL", "syl", "NORTHR/SYL", "1086", "RSN1086", "RSN 1086"])
 def test_a_station_is_found_by_code_event_or_number(spelling):
-    assert fema_p695.rotated(spelling, 0).station == "RSN1086"
+    assert fema_p695.rotated(spelling, 0).site == "RSN1086"
 
 
 @needs_package

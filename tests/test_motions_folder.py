@@ -148,16 +148,24 @@ def test_every_file_is_a_motion_or_has_a_reason_and_read_me_files_are_neither(tm
     write_at2(tmp_path, "good.AT2", wiggle(50), title="nothing")
     write_at2(tmp_path, "short.AT2", wiggle(50), count="NPTS= 60, DT= .01 SEC")
     write_at2(tmp_path, "one.AT2", [0.1], title="nothing")
-    for name in ("empty.AT2", "notes.docx", "meta.json", "README.md", ".hidden.AT2", "StationXML.xml"):
+    for name in ("empty.AT2", "archive.zip", "README.md", ".hidden.AT2", "StationXML.xml"):
+        (tmp_path / name).touch()
+    for name in ("notes.docx", "meta.json", "good.VT2", "_SearchResults.csv"):
         (tmp_path / name).touch()
     (tmp_path / ".git").mkdir()
     (tmp_path / ".git" / "x.AT2").touch()
     found = read_motions(tmp_path)
     assert [motion.name for motion in found.motions] == ["good"]
     reasons = {u.source: u.reason for u in found.unusable}
-    assert list(reasons) == ["empty.AT2", "meta.json", "notes.docx", "one.AT2", "short.AT2"]
+    assert list(reasons) == ["archive.zip", "empty.AT2", "one.AT2", "short.AT2"]
     assert reasons["empty.AT2"] == "the file is empty"
-    assert reasons["meta.json"] == "not a format that rockbatch reads"
+    assert reasons["archive.zip"] == "not a format that rockbatch reads"
+    assert {left.source: left.reason for left in found.left_out} == {
+        "_SearchResults.csv": "no record: a table about the records",
+        "good.VT2": "no record: the velocity of a record",
+        "meta.json": "no record: text about the records",
+        "notes.docx": "no record: text about the records",
+    }
     assert "at least two" in reasons["one.AT2"]
     assert "NPTS = 60" in reasons["short.AT2"]
 
@@ -231,9 +239,46 @@ def test_an_empty_folder_is_an_empty_set(tmp_path):
 
 
 @pytest.mark.parametrize("scale", [100.0, 0.0005])
-def test_an_unlikely_peak_is_noted_not_refused(tmp_path, scale):
+@pytest.mark.parametrize("confirmed", ["x", "[x]*", "?"])
+def test_an_unlikely_peak_is_used_only_when_it_is_confirmed(tmp_path, scale, confirmed):
     write_at2(tmp_path, "x.AT2", wiggle(50, scale=scale), title="nothing")
-    assert any("check the unit" in note for note in read_motions(tmp_path).motions[0].notes)
+    (refused,) = read_motions(tmp_path).unusable
+    assert "check the unit" in refused.reason
+    assert 'confirm_pga = ["x"]' in refused.reason
+    assert len(read_motions(tmp_path, confirmed=["y*"]).motions) == 0
+    assert len(read_motions(tmp_path, confirmed=[confirmed]).motions) == 1
+    (tmp_path / "motions.toml").write_text('[[record]]\nfile = "x.AT2"\nconfirm_pga = true\n')
+    assert len(read_motions(tmp_path).motions) == 1
+
+
+def test_an_unlikely_vertical_is_asked_for_too(tmp_path):
+    write_at2(tmp_path, "RSN7_X_Y000.AT2", wiggle(50), title=title("0"))
+    write_at2(tmp_path, "RSN7_X_Y-UP.AT2", wiggle(50, scale=100.0), title=title("UP"))
+    (refused,) = read_motions(tmp_path).unusable
+    assert refused.source == "RSN7_X_Y000.AT2, RSN7_X_Y-UP.AT2"
+    assert ", vertical " in refused.reason
+
+
+def test_the_header_pairs_before_the_name_does(tmp_path):
+    """Two stations whose files were given one RSN by mistake stay apart by their headers, each with its vertical."""
+    for station, seed in (("First", 1), ("Second", 2)):
+        write_at2(tmp_path, f"RSN7_{station}_000.AT2", wiggle(50, seed), title=title("0", station))
+        write_at2(tmp_path, f"RSN7_{station}_UP.AT2", wiggle(50, seed + 5), title=title("UP", station))
+    found = read_motions(tmp_path)
+    assert vertical_of(found)["RSN7_First_000"] == "RSN7_First_UP.AT2"
+    assert vertical_of(found)["RSN7_Second_000"] == "RSN7_Second_UP.AT2"
+
+
+def test_the_name_pairs_where_one_header_says_nothing(tmp_path):
+    write_at2(tmp_path, "A_E.AT2", wiggle(50, 1), title=title("E"))
+    write_at2(tmp_path, "A_Z.AT2", wiggle(50, 2), title="nothing said")
+    assert vertical_of(read_motions(tmp_path)) == {"A_E": "A_Z.AT2"}
+
+
+def test_names_that_a_terminal_would_obey_are_shown_instead(tmp_path):
+    write_at2(tmp_path, "\x1b[31mred\n.AT2", wiggle(50), title="nothing")
+    (motion,) = read_motions(tmp_path).motions
+    assert (motion.name, motion.source) == ("\\x1b[31mred\\x0a", "\\x1b[31mred\\x0a.AT2")
 
 
 def test_a_component_without_direction_is_horizontal_and_it_is_said(tmp_path):
@@ -246,7 +291,7 @@ def test_a_component_without_direction_is_horizontal_and_it_is_said(tmp_path):
 )
 def test_the_unit_line_of_at2_is_obeyed(tmp_path, unit, factor):
     write_at2(tmp_path, "x.AT2", wiggle(50), unit=f"ACCELERATION TIME HISTORY IN UNITS OF {unit}")
-    (motion,) = read_motions(tmp_path, gravity=10.0).motions
+    (motion,) = read_motions(tmp_path, gravity=10.0, confirmed=["x"]).motions
     np.testing.assert_allclose(motion.horizontal, wiggle(50) * factor, rtol=1e-6)
 
 

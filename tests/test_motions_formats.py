@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from agency_files import knet_text
 from motion_files import wiggle
 from obspy import Stream, Trace, UTCDateTime
 
@@ -105,20 +106,22 @@ def test_a_station_xml_that_does_not_serve_says_why(tmp_path, channel, message):
 def test_a_broken_xml_file_costs_only_the_sensitivity(tmp_path):
     write_mseed(tmp_path / "n.mseed", trace("HNN"))
     (tmp_path / "stations.xml").write_text("<unclosed")
-    assert len(read_motions(tmp_path, options=ReadOptions(unit="cm/s2", sensitivity=10.0)).motions) == 1
+    assert (
+        len(read_motions(tmp_path, confirmed=["*"], options=ReadOptions(unit="cm/s2", sensitivity=10.0)).motions) == 1
+    )
 
 
 def test_unit_and_sensitivity_can_be_stated(tmp_path):
     write_mseed(tmp_path / "n.mseed", trace("HNN"))
     options = ReadOptions(unit="cm/s2", sensitivity=10.0)
-    (motion,) = read_motions(tmp_path, options=options).motions
+    (motion,) = read_motions(tmp_path, confirmed=["*"], options=options).motions
     np.testing.assert_allclose(motion.horizontal, (COUNTS - COUNTS.mean()) / 1000, atol=1e-12)
 
 
 def test_a_gap_costs_that_channel_and_no_other(tmp_path):
     later = trace("HNN", start=START + 60)
     write_mseed(tmp_path / "all.mseed", trace("HNE"), trace("HNN"), later)
-    found = read_motions(tmp_path, options=ReadOptions(unit="cm/s2"))
+    found = read_motions(tmp_path, confirmed=["*"], options=ReadOptions(unit="cm/s2"))
     assert [motion.name for motion in found.motions] == ["CI.LRL..HNE"]
     assert [(u.name, "gaps" in u.reason) for u in found.unusable] == [("CI.LRL..HNN", True)]
 
@@ -134,7 +137,7 @@ def test_a_truncated_miniseed_file_is_refused(tmp_path):
 def test_components_with_absolute_times_share_the_time_that_both_were_on(tmp_path):
     write_mseed(tmp_path / "n.mseed", trace("HNN"))
     write_mseed(tmp_path / "z.mseed", trace("HNZ", start=START + 0.5))
-    (motion,) = read_motions(tmp_path, options=ReadOptions(unit="cm/s2")).motions
+    (motion,) = read_motions(tmp_path, confirmed=["*"], options=ReadOptions(unit="cm/s2")).motions
     a = (COUNTS - COUNTS.mean()) / 100
     np.testing.assert_allclose(motion.horizontal, a[50:], atol=1e-12)
     np.testing.assert_allclose(motion.vertical, a[:-50], atol=1e-12)
@@ -144,7 +147,7 @@ def test_components_with_absolute_times_share_the_time_that_both_were_on(tmp_pat
 def test_a_vertical_of_another_day_is_no_partner(tmp_path):
     write_mseed(tmp_path / "n.mseed", trace("HNN"))
     write_mseed(tmp_path / "z.mseed", trace("HNZ", start=START + 86400))
-    found = read_motions(tmp_path, options=ReadOptions(unit="cm/s2"))
+    found = read_motions(tmp_path, confirmed=["*"], options=ReadOptions(unit="cm/s2"))
     assert found.motions[0].vertical is None
     assert "without a horizontal" in found.unusable[0].reason
 
@@ -161,20 +164,6 @@ def test_sac_files_are_read_in_the_stated_unit(tmp_path, byteorder):
 def test_sac_without_a_stated_unit_is_refused_with_the_remedy(tmp_path):
     trace("HNE", wiggle(300).astype(np.float32)).write(str(tmp_path / "e.sac"), format="SAC")
     assert 'unit = "g"' in only_reason(read_motions(tmp_path))
-
-
-def knet_text(direction: str = "E-W", seconds: int = 2, offset: int = 4000) -> tuple[str, np.ndarray]:
-    counts = np.round(wiggle(200) * 1e5).astype(int) + offset
-    rows = "\n".join("".join(f"{value:9d}" for value in counts[i : i + 8]) for i in range(0, 200, 8))
-    header = (
-        "Origin Time       2018/01/24 19:51:00\nLat.              41.0\nLong.             142.5\n"
-        "Depth. (km)       30\nMag.              6.2\nStation Code      TST003\nStation Lat.      41.4053\n"
-        "Station Long.     141.1691\nStation Height(m) 4\nRecord Time       2018/01/24 19:51:38\n"
-        f"Sampling Freq(Hz) 100Hz\nDuration Time(s)  {seconds}\nDir.              {direction}\n"
-        "Scale Factor      7845(gal)/8223790\nMax. Acc. (gal)   22.485\n"
-        "Last Correction   2018/01/24 19:51:38\nMemo.             \n"
-    )
-    return header + rows + "\n", counts
 
 
 def test_knet_counts_times_scale_without_their_offset_are_m_s2(tmp_path):

@@ -477,3 +477,25 @@ def test_of_many_records_those_that_overturn_the_pier_have_a_panel_whatever_thei
     over = still | {("R40", "1"): {"theta_max_over_alpha": 0, "status": "overturned"}}
     shown = [">R40</span>" in report(tmp_path, records=records, changes=changes) for changes in (over, still)]
     assert shown == [True, False]
+
+
+@pytest.mark.parametrize("count", [1, 3, 20])
+def test_the_suite_s_spectra_are_drawn_with_names_while_they_are_few_and_as_a_spread_beyond(tmp_path, count):
+    names = [(f"record {i}", 0.1 + 0.01 * i) for i in range(count)]
+    spectra = {"damping": 0.05, "period_s": [0.1, 1.0, 5.0], "sa_g": [[1.0, 0.5 + 0.1 * i, 0.1] for i in range(count)]}
+    write_results(tmp_path, records=names, spectra=spectra)
+    text = write_report(tmp_path).read_text(encoding="utf-8")
+    drawn = text[text.index(f"Response spectra of {count} ground motions") :].split("</ul>")[0]
+    assert drawn.count("<path") > count
+    assert (">record 0<" in drawn) == (count < 20)
+    assert ("84 %" in drawn) == (count == 20)
+    assert ("median" in drawn) == (count > 1)
+
+
+def test_what_was_left_out_is_told_apart_from_what_could_not_be_used(tmp_path):
+    left_out = [{"name": "meta", "source": "a/<meta>.json", "reason": "no record: text about the records"}]
+    write_results(tmp_path, left_out=left_out)
+    text = write_report(tmp_path).read_text(encoding="utf-8")
+    assert "a/&lt;meta&gt;.json" in text
+    assert "Left out" in text
+    assert "could not be used" not in text

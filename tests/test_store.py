@@ -13,7 +13,7 @@ import pytest
 
 import rockbatch as rb
 from rockbatch import hdf5
-from rockbatch.batch import ground_motions, outcomes, row_of
+from rockbatch.batch import outcomes, row_of
 from rockbatch.hdf5 import FORMAT, UNITS, Responses, write
 from rockbatch.histories import histories, simulate
 from rockbatch.keep import keep_histories, kept, worst
@@ -21,6 +21,7 @@ from rockbatch.plan import Plan
 from rockbatch.results import TERMS, PeaksFile, describe, write_info
 from rockbatch.saved import read_saved
 from rockbatch.simulation import run_to_tolerance
+from rockbatch.study.suite import ground_motions
 
 STUDY = """
 title = "Two pulses, three bases"

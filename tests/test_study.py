@@ -1,5 +1,6 @@
 """The study file: what a good one means, and what is said about a bad one."""
 
+import math
 import re
 import tomllib
 from pathlib import Path
@@ -9,6 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rockbatch.errors import InputError
+from rockbatch.motions.baseline import Offset
+from rockbatch.motions.scaling import Target
+from rockbatch.motions.selection import Selection
 from rockbatch.structure import ElasticBase, Pier, RigidBase, YieldingBase
 from rockbatch.study import FemaSpec, Numerics, Output, PulseSpec, Reference, Study, load_study
 from rockbatch.study.cases import BASE_KEYS, CASE
@@ -412,6 +416,61 @@ def test_without_a_readable_pier_a_base_is_still_checked_but_not_against_a_pier(
 def test_tolerance_and_substeps_exclude_each_other(tmp_path):
     problem = problem_of(tmp_path, PIER, PULSE, "[numerics]\nsubsteps = 4\ntolerance = 1e-3\n", RIGID)
     assert problem.startswith("12: [numerics]: tolerance and substeps are given")
+
+
+@pytest.mark.parametrize(
+    ("keys", "said"),
+    [
+        ("axis_deg = 30\nevery_deg = 15", "6: [motions]: axis_deg and every_deg are given"),
+        ("axis_deg = 400", "5: [motions]: axis_deg = 400: expected an azimuth within 0..360"),
+        ("every_deg = 0", "5: [motions]: every_deg = 0: expected an angle within 1..90"),
+        (
+            'offset = "pre-event"',
+            '5: [motions]: offset = "pre-event": over which time? write for example offset_window',
+        ),
+        ('offset = "preevent"', '5: [motions]: offset = "preevent": expected one of "keep", "mean", "pre-event"; did'),
+        ("offset_window_s = [0, 5]", '5: [motions]: offset_window_s: is for offset = "pre-event"'),
+        (
+            'offset = "mean"\noffset_window_s = [0, 5]',
+            '6: [motions]: offset_window_s: does not apply to offset = "mean"',
+        ),
+        (
+            'offset = "pre-event"\noffset_window_s = [5, 5]',
+            "6: [motions]: offset_window_s = [5, 5]: must be two values",
+        ),
+        ("select = 3", "5: [motions]: select = 3: expected a table in braces; write for example select = { pga_g"),
+        ("select = { pga = [0, 1] }", "5: [motions.select]: pga: unknown key; did you mean pga_g?"),
+        ("select = { pga_g = [1, 0.1] }", "5: [motions.select]: pga_g = [1, 0.1]: must be two values in order"),
+        ("select = { pga_g = 0.1 }", "5: [motions.select]: pga_g = 0.1: must be two values in order"),
+        ("select = { pga_g = [0.1, nan] }", "5: [motions.select]: pga_g = nan: expected a finite number"),
+        ("target = {}", "5: [motions.target]: it is missing what to scale to"),
+        ("target = { pga_g = 1, sa_g = 1 }", "5: [motions.target]: pga_g and sa_g are given; write one of"),
+        ("target = { sa_g = 1 }", "5: [motions.target]: period_s is missing beside sa_g"),
+        ("target = { pga_g = 1, period_s = 1 }", "5: [motions.target]: period_s: is for sa_g only"),
+        ("[motions.target]\npga_g = -1", "6: [motions.target]: pga_g = -1: expected a number above 0"),
+        ('strict = "yes"', '5: [motions]: strict = "yes": expected true or false'),
+    ],
+)
+def test_what_makes_a_suite_is_checked_with_its_line(tmp_path, keys, said):
+    assert problem_of(tmp_path, PIER, f"[motions]\n{keys}\n", PULSE, RIGID).startswith(said)
+
+
+def test_what_makes_a_suite_is_read(tmp_path):
+    keys = """[motions]
+axis_deg = 30
+offset = "pre-event"
+offset_window_s = [0, 2.5]
+confirm_pga = ["A*", "B"]
+strict = true
+select = { pga_g = [0.1, inf], magnitude = [6, 8] }
+target = { sa_g = 0.5, period_s = 1.2, damping = 0.02 }
+"""
+    motions = study_of(tmp_path, PIER, keys, PULSE, RIGID).motions
+    assert motions.azimuths == (30.0,)
+    assert motions.offset == Offset("pre-event", (0.0, 2.5))
+    assert (motions.confirm_pga, motions.strict) == (("A*", "B"), True)
+    assert motions.select == Selection(pga_g=(0.1, math.inf), magnitude=(6.0, 8.0))
+    assert motions.target == Target(sa_g=0.5, period_s=1.2, damping=0.02)
 
 
 def test_columns_without_a_component_are_refused(tmp_path):

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rockbatch.errors import InputError
-from rockbatch.files import write_whole
+from rockbatch.files import csv_plain, csv_text, write_whole
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -82,15 +82,21 @@ def as_table(verdicts: Iterable[Verdict]) -> "pd.DataFrame":
     """One row for each verdict; the varied values have columns of their own."""
     import pandas as pd
 
+    columns, rows = _table(verdicts)
+    return pd.DataFrame(rows, columns=columns)
+
+
+def _table(verdicts: Iterable[Verdict]) -> tuple[list[str], list[dict[str, Any]]]:
+    """Columns and rows of checks.csv."""
     rows = [asdict(verdict) for verdict in verdicts]
     varied = dict.fromkeys(name for row in rows for name in row["columns"])
-    return pd.DataFrame([row | row["columns"] for row in rows], columns=[*_BEFORE, *varied, *_AFTER])
+    return [*_BEFORE, *varied, *_AFTER], [row | row["columns"] for row in rows]
 
 
 def write_verdicts(directory: Path, verdicts: Iterable[Verdict]) -> Path:
     """Write checks.csv into ``directory``, whole or not at all."""
     path = Path(directory) / CHECKS
-    write_whole(path, as_table(verdicts).to_csv(index=False, float_format="%.10g", lineterminator="\n"))
+    write_whole(path, csv_text(*_table(verdicts)))
     return path
 
 
@@ -99,10 +105,10 @@ def read_verdicts(directory: Path) -> list[Verdict]:
     path = Path(directory) / CHECKS
     try:
         with path.open(encoding="utf-8", newline="") as file:
-            return [_from_row(row) for row in csv.DictReader(file)]
+            return [_from_row({name: csv_plain(cell) for name, cell in row.items()}) for row in csv.DictReader(file)]
     except FileNotFoundError:
         return []
-    except (KeyError, TypeError, ValueError, csv.Error) as error:
+    except (AttributeError, KeyError, TypeError, ValueError, csv.Error) as error:
         raise InputError(f"{path}: damaged ({error}); start `rockbatch check` again") from None
 
 

@@ -42,11 +42,11 @@ def main(arguments: argparse.Namespace) -> int:
     directory = arguments.out or Path("reports") / arguments.study.stem
 
     from rockbatch.accuracy import measure, reference, spread
-    from rockbatch.batch import ground_motions
     from rockbatch.commands.progress import Progress
     from rockbatch.errors import InputError
     from rockbatch.files import write_whole
     from rockbatch.plan import Plan
+    from rockbatch.study.suite import ground_motions
 
     motions = ground_motions(study)
     runs = Plan(study, motions)

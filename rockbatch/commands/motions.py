@@ -3,12 +3,57 @@
 import argparse
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
-HELP = "show the records in a file or folder: components, dt, duration, peaks, and what could not be used"
+if TYPE_CHECKING:
+    from rockbatch.motions import LeftOut, Motion, MotionSet, Unusable
+
+HELP = "show the records in a file or folder: components, dt, intensity, what was done, and what could not be used"
+
+COLUMNS = (
+    "record",
+    "file_h",
+    "file_v",
+    "dt_s",
+    "npts",
+    "duration_s",
+    "pga_h_g",
+    "pga_v_g",
+    "pgv_h_m_s",
+    "pgd_h_m",
+    "arias_m_s",
+    "d5_95_s",
+    "reason",
+    "azimuth_deg",
+    "magnitude",
+    "distance_km",
+    "processing",
+)
+"""Of the CSV: a row for each record, then for each file that is not used, with the reason."""
+
+_SHOWN = {  # heads of the table in the terminal, and how their numbers are written
+    "record": ("record", ""),
+    "dt_s": ("dt [s]", "g"),
+    "npts": ("npts", "d"),
+    "duration_s": ("[s]", ".2f"),
+    "pga_h_g": ("PGA [g]", ".3f"),
+    "pga_v_g": ("up [g]", ".3f"),
+    "pgv_h_m_s": ("PGV [m/s]", ".3f"),
+    "pgd_h_m": ("PGD [m]", ".3f"),
+    "arias_m_s": ("Arias [m/s]", ".3f"),
+    "d5_95_s": ("D5-95 [s]", ".2f"),
+    "azimuth_deg": ("azimuth", "g"),
+    "file_h": ("horizontal", ""),
+    "file_v": ("vertical", ""),
+}
+_TEXTS = ("record", "file_h", "file_v")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("path", type=Path, nargs="+", metavar="PATH", help="files or folders (recursive)")
+    parser.add_argument("--csv", type=Path, metavar="FILE", help="write the table to FILE too")
+    parser.add_argument("--write-manifest", action="store_true", help="draft PATH/motions.toml from what was found")
+    parser.add_argument("--strict", action="store_true", help="fail if any file cannot be used")
     parser.add_argument("--unit", help='acceleration unit of files that do not state theirs, such as "cm/s2"')
     parser.add_argument("--dt", type=float, help="sampling interval [s] of text columns without a time column")
     parser.add_argument("--columns", help='names of text columns, such as "time,000,090,up"')
@@ -16,41 +61,90 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def main(arguments: argparse.Namespace) -> int:
-    from rockbatch.motions import ReadOptions, measures, read_motions
-    from rockbatch.units import GRAVITY
+    from rockbatch.errors import InputError
+    from rockbatch.motions import ReadOptions, read_motions
 
     columns = tuple(arguments.columns.split(",")) if arguments.columns else None
     options = ReadOptions(unit=arguments.unit, dt=arguments.dt, columns=columns, sensitivity=arguments.sensitivity)
+    if arguments.write_manifest:
+        from rockbatch.motions.manifest_draft import write_draft
+
+        if len(arguments.path) > 1:
+            raise InputError("--write-manifest: give one folder, which it is written into")
+        _say(str(write_draft(arguments.path[0], options)))
     found = read_motions(arguments.path, options=options)
-    lines = [("record", "dt [s]", "npts", "[s]", "PGA [g]", "PGV [m/s]", "PGD [m]", "PGA up [g]", "vertical")]
-    for motion in found.motions:
-        vertical = motion.pga_vertical
-        lines.append(
-            (
-                motion.name,
-                f"{motion.dt:g}",
-                str(motion.npts),
-                f"{motion.duration:.2f}",
-                f"{motion.pga / GRAVITY:.3f}",
-                f"{measures.pgv(motion.horizontal, motion.dt):.3f}",
-                f"{measures.pgd(motion.horizontal, motion.dt):.3f}",
-                "" if vertical is None else f"{vertical / GRAVITY:.3f}",
-                motion.vertical_source,
-            )
-        )
-    widths = [max(len(line[i]) for line in lines) for i in range(len(lines[0]))]
-    for line in lines:
-        names = line[0].ljust(widths[0])
-        numbers = "  ".join(cell.rjust(width) for cell, width in zip(line[1:8], widths[1:8], strict=True))
-        print(f"{names}  {numbers}  {line[8]}".rstrip())
-    noted = [(motion.name, note) for motion in found.motions for note in motion.notes]
-    if noted:
-        print("\nWhat was done")
-        for name, note in noted:
-            print(f"  {name}: {note}")
-    if found.unusable:
-        print("\nNot used")
-        for file in found.unusable:
-            print(f"  {file.source}: {file.reason}")
-    print(f"{len(found.motions)} records, {len(found.unusable)} files not used", file=sys.stderr)
+    rows = [_row(motion) for motion in found.motions]
+    if arguments.csv:
+        _write(arguments.csv, rows, found)
+    print(_table(rows))
+    _list("What was done", [(motion.name, note) for motion in found.motions for note in motion.notes])
+    _list("Not used", [(file.source, file.reason) for file in found.unusable])
+    _list("Left out", [(file.source, file.reason) for file in found.left_out])
+    _say(f"{len(found.motions)} records, {len(found.unusable)} files not used, {len(found.left_out)} left out")
+    if arguments.strict and found.unusable:
+        return 2
     return 1 if found.unusable or not found.motions else 0
+
+
+def _row(motion: "Motion") -> dict[str, Any]:
+    from rockbatch.motions import measures
+    from rockbatch.units import GRAVITY
+
+    a, dt, vertical = motion.horizontal, motion.dt, motion.pga_vertical
+    return {
+        "record": motion.name,
+        "file_h": motion.source,
+        "file_v": motion.vertical_source,
+        "dt_s": dt,
+        "npts": motion.npts,
+        "duration_s": motion.duration,
+        "pga_h_g": motion.pga / GRAVITY,
+        "pga_v_g": None if vertical is None else vertical / GRAVITY,
+        "pgv_h_m_s": measures.pgv(a, dt),
+        "pgd_h_m": measures.pgd(a, dt),
+        "arias_m_s": measures.arias_intensity(a, dt),
+        "d5_95_s": measures.significant_duration(a, dt),
+        "azimuth_deg": motion.azimuth,
+        "magnitude": motion.magnitude,
+        "distance_km": motion.distance_km,
+        "processing": "; ".join(motion.notes),
+    }
+
+
+def _write(path: Path, rows: list[dict[str, Any]], found: "MotionSet") -> None:
+    from rockbatch.errors import InputError
+    from rockbatch.files import csv_text, write_whole
+
+    files: list[Unusable | LeftOut] = [*found.unusable, *found.left_out]
+    not_used = [{"record": file.name, "file_h": file.source, "reason": file.reason} for file in files]
+    try:
+        write_whole(path, csv_text(COLUMNS, [*rows, *not_used]))
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written: {error.strerror or error}") from None
+
+
+def _table(rows: list[dict[str, Any]]) -> str:
+    """The rows in columns of equal width; a column without a value is left out."""
+    used = {key: shown for key, shown in _SHOWN.items() if key == "record" or any(row[key] is not None for row in rows)}
+    lines = [[head for head, _ in used.values()]]
+    lines += [["" if row[key] is None else format(row[key], form) for key, (_, form) in used.items()] for row in rows]
+    widths = [max(len(line[i]) for line in lines) for i in range(len(used))]
+    left = [key in _TEXTS for key in used]
+    return "\n".join(
+        "  ".join(
+            cell.ljust(width) if text else cell.rjust(width)
+            for cell, width, text in zip(line, widths, left, strict=True)
+        ).rstrip()
+        for line in lines
+    )
+
+
+def _list(title: str, entries: list[tuple[str, str]]) -> None:
+    if entries:
+        print(f"\n{title}")
+        for name, words in entries:
+            print(f"  {name}: {words}")
+
+
+def _say(text: str) -> None:
+    print(text, file=sys.stderr)

@@ -5,6 +5,7 @@ import datetime
 import platform
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +22,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--motions", type=Path, metavar="PATH", help="file or folder of records instead of the study's motions"
     )
+    parser.add_argument("--strict", action="store_true", help="run nothing if any record cannot be used")
 
 
 def _jobs(text: str) -> int:
@@ -35,23 +37,24 @@ def main(arguments: argparse.Namespace) -> int:
 
     started = time.monotonic()
     study = load_study(arguments.study, motions=arguments.motions)
+    if arguments.strict:
+        study = replace(study, motions=replace(study.motions, strict=True))
     directory = arguments.out or Path("reports") / arguments.study.stem
 
-    from rockbatch.batch import compile_kernels, cores, ground_motions, outcomes, row_of
+    from rockbatch.batch import compile_kernels, cores, outcomes, row_of
     from rockbatch.commands.progress import Progress
     from rockbatch.commands.summary import other_law, summary
     from rockbatch.core.kernel import is_compiled
     from rockbatch.plan import Plan
     from rockbatch.results import INFO, PEAKS, PeaksFile, describe, unusable_rows, write_info
     from rockbatch.saved import read_saved
+    from rockbatch.study.suite import ground_motions
 
     motions = ground_motions(study)
     for file in motions.unusable:
         _say(f"not used: {file.source}: {file.reason}")
-    for motion in motions.motions:
-        for note in motion.notes:
-            if "check the unit" in note:
-                _say(f"{motion.name}: {note}")
+    if motions.left_out:
+        _say(f"{_count(len(motions.left_out), 'file')} left out, or no records: the report says why")
     jobs = arguments.jobs or cores()
     runs = Plan(study, motions)
     factors = (

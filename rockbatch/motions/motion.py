@@ -31,6 +31,12 @@ class Motion:
         Likewise for the vertical one; empty where there is none.
     notes : tuple of str
         What was done to the data on its way here, in words.
+    azimuth : float or None
+        Of the horizontal component [degrees clockwise from north]; ``None`` where unknown.
+    magnitude, distance_km : float or None
+        Of the event, and the site's distance from it [km]; ``None`` where unknown.
+    factor : float
+        What brought the record to the study's target; it is in the components already.
 
     Raises ``InputError`` for samples that are no numbers and components of different lengths.
     """
@@ -42,6 +48,10 @@ class Motion:
     source: str = ""
     vertical_source: str = ""
     notes: tuple[str, ...] = ()
+    azimuth: float | None = None
+    magnitude: float | None = None
+    distance_km: float | None = None
+    factor: float = 1.0
 
     def __post_init__(self) -> None:
         wrong = []
@@ -67,6 +77,11 @@ class Motion:
             )
         if wrong:
             raise InputError(*wrong)
+
+    @property
+    def files(self) -> str:
+        """Where its components came from."""
+        return ", ".join(source for source in (self.source, self.vertical_source) if source)
 
     @property
     def npts(self) -> int:
@@ -99,8 +114,18 @@ class Unusable:
 
 
 @dataclass(frozen=True)
+class LeftOut:
+    """A file or record that nobody misses, and why: not selected, told not to be used, or no record at all."""
+
+    name: str
+    source: str
+    reason: str
+
+
+@dataclass(frozen=True)
 class MotionSet:
-    """Everything that was found: motions in order, and what could not be used."""
+    """Everything that was found: motions in order, what could not be used, and what was left out on purpose."""
 
     motions: list[Motion] = field(default_factory=list)
     unusable: list[Unusable] = field(default_factory=list)
+    left_out: list[LeftOut] = field(default_factory=list)

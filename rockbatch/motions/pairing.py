@@ -1,22 +1,23 @@
 """From components to motions: every horizontal one with its station's vertical, on common samples."""
 
-import math
 import re
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
+from pathlib import PurePosixPath
 
 import numpy as np
 
+from rockbatch.motions.common_span import on_common_samples, overlap
 from rockbatch.motions.component import Component
-from rockbatch.motions.motion import Motion, MotionSet, Samples, Unusable
+from rockbatch.motions.motion import Motion, MotionSet, Unusable
 from rockbatch.motions.orientation import same_azimuth
+from rockbatch.motions.plausible import ANY, doubt, fits
+from rockbatch.motions.stations import by_station
+from rockbatch.motions.turning import turn_pairs
 from rockbatch.units import GRAVITY
 
-_SAME_STEP = 1e-6  # relative: steps that differ by less are the same, printed otherwise
-_SAME_SAMPLE = 0.01  # of dt: components whose starts are off by less share their samples
 _MOST_OF_IT = 0.95  # of the horizontal peak: what a vertical that ends early may cost
-_HIGHEST, _LOWEST = 5.0, 0.001  # PGA in g beyond which a wrong unit is likelier than the record
 
 
 def to_motions(
@@ -25,33 +26,37 @@ def to_motions(
     *,
     vertical: bool = True,
     gravity: float = GRAVITY,
+    azimuths: Sequence[float] = (),
+    confirmed: Sequence[str] = ANY,
 ) -> MotionSet:
     """Motions of ``components`` in their order, then of those of a package.
 
-    Components are paired that share folder and station; those of a package (no folder) join the files of the
-    same RSN, whose own component of that azimuth goes first. Verticals that find no partner, or that are not
-    the only one, come back as unusable with the reason.
+    Components belong together that share folder and station by their headers, else by their names; those of a
+    package (no folder) join the files of the same RSN, whose own component of that azimuth goes first. With
+    ``azimuths`` [degrees] a station's horizontals are turned to each of them. Verticals that find no partner, or
+    that are not the only one, what cannot be turned, and motions of an unlikely PGA whose name no pattern in
+    ``confirmed`` fits, come back as unusable with the reason.
     """
-    verticals: dict[tuple[str, str], list[Component]] = {}
-    for component in components:
-        if component.orientation.vertical:
-            verticals.setdefault((component.folder, component.station), []).append(component)
-    horizontals = [component for component in components if not component.orientation.vertical]
-    kept, replaced = _without_doubles(horizontals, packaged)
+    kept, replaced = _without_doubles([c for c in components if not c.orientation.vertical], packaged)
+    stations = by_station([*components, *(c for c in kept if not c.folder)])
+    number = {id(c): i for i, station in enumerate(stations) for c in station}
+    verticals = [[c for c in station if c.orientation.vertical] for station in stations]
+    unusable: list[Unusable] = []
+    horizontals = [(number[id(c)], c) for c in kept]
+    if azimuths:
+        horizontals, unusable = _turned(horizontals, azimuths)
 
     used: set[int] = set()
-    unusable: list[Unusable] = []
     motions: list[Motion] = []
-    for component in kept:
+    for station, component in horizontals:
         notes = list(component.notes)
         if not component.orientation.label and component.orientation.azimuth is None:
             notes.append("direction not stated: taken as horizontal")
         notes += replaced.get(id(component), [])
         partner = None
         if vertical:
-            together = [v for v in _candidates(component, verticals) if _overlap(component, v)]
-            ambiguous = len(together) > 1
-            if ambiguous:
+            together = [v for v in _candidates(component, station, verticals) if overlap(component, v)]
+            if len(together) > 1:
                 notes.append(f"no vertical: there are {len(together)} of them for this station")
                 names = ", ".join(v.source for v in together)
                 reason = f"several vertical components of one station ({names}): keep one of them"
@@ -59,13 +64,21 @@ def to_motions(
             elif together:
                 partner = together[0]
             used.update(id(v) for v in together)
-        motions.append(_motion(component, partner, notes, gravity))
+        motions.append(_motion(component, partner, notes))
     if vertical:
         reason = "a vertical component without a horizontal one of its station in its folder"
-        left = [v for group in verticals.values() for v in group if id(v) not in used]
-        unusable += [Unusable(v.name, v.source, f"{reason} ({v.station})") for v in left]
-    named = _told_apart(motions, [component.folder for component in kept])
-    return MotionSet(named, sorted(unusable, key=lambda u: u.source))
+        left = [v for group in verticals for v in group if id(v) not in used]
+        unusable += [Unusable(v.name, v.source, f"{reason} ({v.station or v.site})") for v in left]
+    believed: list[Motion] = []
+    for motion, (_, component) in zip(
+        _told_apart(motions, [c.folder for _, c in horizontals]), horizontals, strict=True
+    ):
+        why = doubt(motion, gravity)
+        if not why or component.confirmed or fits(motion.name, confirmed):
+            believed.append(motion)
+        else:
+            unusable.append(Unusable(motion.name, motion.files, why))
+    return MotionSet(believed, sorted(unusable, key=lambda u: u.source))
 
 
 def _without_doubles(
@@ -77,9 +90,7 @@ def _without_doubles(
     for component in packaged:
         azimuth = component.orientation.azimuth
         same = [
-            file
-            for file in files
-            if file.station == component.station and same_azimuth(file.orientation.azimuth, azimuth)
+            file for file in files if file.site == component.site and same_azimuth(file.orientation.azimuth, azimuth)
         ]
         if not same:
             kept.append(component)
@@ -88,27 +99,36 @@ def _without_doubles(
     return kept, notes
 
 
-def _candidates(horizontal: Component, verticals: dict[tuple[str, str], list[Component]]) -> list[Component]:
-    """Vertical components of the horizontal one's station: of its folder, or of the first that has some."""
-    if horizontal.folder or not horizontal.station:
-        return verticals.get((horizontal.folder, horizontal.station), [])
-    folders = sorted(folder for folder, station in verticals if station == horizontal.station)
-    return verticals[folders[0], horizontal.station] if folders else []
+def _turned(
+    horizontals: Sequence[tuple[int, Component]], azimuths: Sequence[float]
+) -> tuple[list[tuple[int, Component]], list[Unusable]]:
+    """Horizontals of files with the numbers of their stations, turned; a package's are as they were asked for."""
+    grouped: dict[int, list[Component]] = {}
+    for station, component in horizontals:
+        if component.folder:
+            grouped.setdefault(station, []).append(component)
+    turned, unusable = turn_pairs(grouped.values(), azimuths)
+    of_files = [(station, c) for station, group in zip(grouped, turned, strict=True) for c in group]
+    return of_files + [(station, c) for station, c in horizontals if not c.folder], unusable
 
 
-def _overlap(a: Component, b: Component) -> bool:
-    """Whether two components have a time in common, as far as is known."""
-    if a.start is None or b.start is None:
-        return True
-    return a.start < b.start + b.duration and b.start < a.start + a.duration
+def _candidates(horizontal: Component, station: int, verticals: Sequence[Sequence[Component]]) -> Sequence[Component]:
+    """Vertical components of the horizontal one's station; a package's takes those of the first folder with its RSN."""
+    if horizontal.folder or not horizontal.site:
+        return verticals[station]
+    of_site = [v for group in verticals for v in group if v.site == horizontal.site]
+    first = min((v.folder for v in of_site), default="")
+    return [v for v in of_site if v.folder == first]
 
 
-def _motion(h: Component, v: Component | None, notes: Iterable[str], gravity: float) -> Motion:
+def _motion(h: Component, v: Component | None, notes: Iterable[str]) -> Motion:
     """The motion of a horizontal component and its vertical one."""
     said = list(notes)
     dt, horizontal, vertical = h.dt, h.acceleration, None
     if v is not None:
-        dt, horizontal, vertical, how = _on_common_samples(h, v)
+        dt, horizontal, vertical, how = on_common_samples(
+            h, replace(v, acceleration=v.upward), ("horizontal", "vertical")
+        )
         if len(horizontal) < 2 or np.abs(horizontal).max() < _MOST_OF_IT * h.pga:
             said.append(f"no vertical: {v.source} does not last over the horizontal peak")
             dt, horizontal, vertical, v = h.dt, h.acceleration, None, None
@@ -118,9 +138,6 @@ def _motion(h: Component, v: Component | None, notes: Iterable[str], gravity: fl
         said += [f"vertical: {note}" for note in v.notes]
         if v.orientation.down:
             said.append(f"vertical: {v.orientation.label or 'component'} is positive down, sign reversed")
-    pga = float(np.abs(horizontal).max()) / gravity
-    if not _LOWEST <= pga <= _HIGHEST:
-        said.append(f"PGA {pga:.3g} g: check the unit")
     return Motion(
         name=h.name,
         dt=dt,
@@ -129,50 +146,18 @@ def _motion(h: Component, v: Component | None, notes: Iterable[str], gravity: fl
         source=h.source,
         vertical_source=v.source if v is not None else "",
         notes=tuple(said),
+        azimuth=h.orientation.azimuth,
+        magnitude=h.magnitude,
+        distance_km=h.distance_km,
     )
-
-
-def _on_common_samples(h: Component, v: Component) -> tuple[float, Samples, Samples, list[str]]:
-    """Both components on common samples, over their common time: dt, horizontal, vertical, notes.
-
-    Components without absolute times start together. Where samples do not coincide, the horizontal component
-    keeps its own, with as many between them as make it no coarser than the vertical one, and both are
-    interpolated linearly: exact for the horizontal one, and for the vertical one where its samples are met.
-    """
-    offset = 0.0 if h.start is None or v.start is None else v.start - h.start
-    up = v.upward
-    notes = []
-    same_step = abs(h.dt - v.dt) <= _SAME_STEP * h.dt
-    shift = round(offset / h.dt)
-    if same_step and abs(offset / h.dt - shift) <= _SAME_SAMPLE:
-        first, last = max(0, shift), min(len(h.acceleration), len(up) + shift)
-        dt, horizontal, vertical = h.dt, h.acceleration[first:last], up[first - shift : last - shift]
-    else:
-        parts = 1 if same_step else math.ceil(h.dt / v.dt * (1 - _SAME_STEP))
-        dt = h.dt / parts
-        times = np.arange((len(h.acceleration) - 1) * parts + 1) * dt
-        slack = _SAME_SAMPLE * dt
-        times = times[(times >= offset - slack) & (times <= offset + v.duration + slack)]
-        horizontal = np.interp(times / h.dt, np.arange(len(h.acceleration)), h.acceleration)
-        vertical = np.interp((times - offset) / v.dt, np.arange(len(up)), up)
-        moved = ["horizontal"] * (parts > 1) + ["vertical"] * (abs(dt - v.dt) > _SAME_STEP * dt or offset != 0)
-        notes.append(
-            f"{' and '.join(moved)} interpolated linearly to dt = {dt:g} s, from {h.dt:g} s horizontal and "
-            f"{v.dt:g} s vertical"
-        )
-    span = (len(horizontal) - 1) * dt
-    if span < max(h.duration, v.duration) - 0.5 * dt:
-        whole = f"{h.duration:g} s horizontal and {v.duration:g} s vertical"
-        notes.append(f"common span: {span:g} s of {whole}")
-    return dt, horizontal, vertical, notes
 
 
 def _told_apart(motions: list[Motion], folders: list[str]) -> list[Motion]:
     """Motions of the same name get the suffix of their files, then their folder, then a number."""
 
     def with_suffix(i: int, name: str) -> str:
-        file = re.sub(r" \(.*\)$", "", motions[i].source).rsplit("/", 1)[-1]
-        return file if file.startswith(f"{name}.") else name
+        file = PurePosixPath(re.sub(r" \(.*\)$", "", motions[i].source))
+        return file.name + name[len(file.stem) :] if name.startswith(file.stem) else name
 
     def with_folder(i: int, name: str) -> str:
         return f"{folders[i].rsplit('/', 1)[-1]}/{name}" if folders[i] else name

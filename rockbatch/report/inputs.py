@@ -1,5 +1,8 @@
 """What went in: foundations, ground motions, and what could not be used."""
 
+from collections.abc import Sequence
+from typing import Any
+
 from rockbatch.report.finished import Finished
 from rockbatch.report.labels import symbol
 from rockbatch.report.markup import Markup, join, tag
@@ -48,21 +51,34 @@ def records(finished: Finished) -> Markup:
         Head("PGV [m/s]", ".3f"),
         Head("PGD [m]", ".3f"),
         Head("vertical PGA [g]", ".3f"),
+        Head("Arias [m/s]", ".3f", "arias_m_s: Arias intensity"),
+        Head("D5–95 [s]", ".1f", "d5_95_s: significant duration, from 5 to 95 % of the Arias intensity"),
         Head("dt [s]"),
         Head("points"),
         Head("duration [s]", ".2f"),
-        Head("horizontal from"),
-        Head("vertical from"),
-        Head("what was done"),
+        Head("azimuth [°]", note="degrees clockwise from north"),
+        Head("M", note="magnitude"),
+        Head("distance [km]"),
+        Head("factor", ".4g", "what brought the record to the study's target"),
     ]
     names = (
-        "record", "pga_g", "pgv_m_s", "pgd_m", "pga_v_g", "dt_s", "npts", "duration_s", "source", "vertical_source",
+        "record", "pga_g", "pgv_m_s", "pgd_m", "pga_v_g", "arias_m_s", "d5_95_s", "dt_s", "npts", "duration_s",
+        "azimuth_deg", "magnitude", "distance_km", "factor",
     )  # fmt: skip
+    scaled = any(record.get("factor", 1.0) != 1.0 for record in finished.info["records"])
+    ordered = sorted(finished.info["records"], key=lambda record: (record["pga_g"], record["record"]))
+    rows = [[record.get(name) if name != "factor" or scaled else None for name in names] for record in ordered]
+    measured = table(heads, rows, sortable=True, name="Ground motions")
+    return join(measured, tag("h3", "Where they come from, and what was done to them"), _sources(ordered))
+
+
+def _sources(records: Sequence[dict[str, Any]]) -> Markup:
+    heads = [Head("record"), Head("horizontal from"), Head("vertical from"), Head("what was done")]
     rows: list[list[object]] = []
-    for record in sorted(finished.info["records"], key=lambda record: (record["pga_g"], record["record"])):
+    for record in records:
         notes = tag("ul", *(tag("li", note) for note in record["notes"])) if record["notes"] else ""
-        rows.append([*(record[name] for name in names), notes])
-    return table(heads, rows, sortable=True, prose=True, name="Ground motions")
+        rows.append([record["record"], record["source"], record["vertical_source"], notes])
+    return table(heads, rows, prose=True, name="Sources")
 
 
 def unusable(finished: Finished) -> Markup:
@@ -71,3 +87,9 @@ def unusable(finished: Finished) -> Markup:
     failed = finished.runs[finished.runs["status"] == "failed"]
     rows += [[run["record"], finished.which(run), "", run["reason"]] for _, run in failed.iterrows()]
     return table([Head("record"), Head("case"), Head("file"), Head("why")], rows, prose=True, name="Not used")
+
+
+def left_out(finished: Finished) -> Markup:
+    """Files and records that were left out on purpose, or are no records, and why."""
+    rows = [[entry["name"], entry["source"], entry["reason"]] for entry in finished.info["left_out"]]
+    return table([Head("record"), Head("file"), Head("why")], rows, prose=True, name="Left out")

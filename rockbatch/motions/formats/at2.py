@@ -4,16 +4,16 @@ Registered with ObsPy as waveform format "AT2". Header dialects that occur: ``NP
 the same without the comma, ``1991 0.0100 NPTS, DT``.
 """
 
-import os
 import re
 from dataclasses import dataclass
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, BinaryIO
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rockbatch.errors import InputError
 from rockbatch.motions.component import Component
+from rockbatch.motions.formats.fixed_width import is_cut_short
+from rockbatch.motions.formats.obspy_plugin import FileLike, first_bytes, name_and_bytes
 from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.motion import Samples
 from rockbatch.motions.orientation import UNKNOWN, orientation_of, split_stem
@@ -39,7 +39,6 @@ _SIGNED = re.compile(rf"[-+]?{_NUMBER}", re.IGNORECASE)
 _HEADER_LINES = 10  # the count stands in line 4; a few lines of grace for hand-edited headers
 _HEADER_BYTES = 2048
 _WIDEST = 40  # characters of a number; longer ones are no numbers, and would cost the patterns long
-_MANY = 100  # values that do not have the same number of decimals by chance
 
 
 @dataclass(frozen=True)
@@ -57,19 +56,7 @@ class _At2:
 
 def is_at2(filename: Any) -> bool:
     """Whether a path or a file-like object holds a PEER AT2 file; never raises."""
-    try:
-        if hasattr(filename, "read"):
-            position = filename.tell()
-            try:
-                head = filename.read(_HEADER_BYTES)
-            finally:
-                filename.seek(position)
-        else:
-            with open(os.fspath(filename), "rb") as file:  # open() takes a number for an open file
-                head = file.read(_HEADER_BYTES)
-        return looks_like_at2(head)
-    except Exception:  # whatever ObsPy hands over while it looks for a format: it is no AT2 file
-        return False
+    return looks_like_at2(first_bytes(filename))
 
 
 def looks_like_at2(head: bytes) -> bool:
@@ -82,7 +69,7 @@ def looks_like_at2(head: bytes) -> bool:
     return False
 
 
-def read_at2(filename: str | os.PathLike[str] | BinaryIO, headonly: bool = False, **kwargs: Any) -> "Stream":
+def read_at2(filename: FileLike, headonly: bool = False, **kwargs: Any) -> "Stream":
     """Read an AT2 file into an ObsPy Stream of one Trace: ObsPy calls this for ``obspy.read("x.AT2")``.
 
     The data stay in the file's unit; ``stats.at2`` has ``event``, ``date``, ``station``, ``component`` and
@@ -92,10 +79,7 @@ def read_at2(filename: str | os.PathLike[str] | BinaryIO, headonly: bool = False
     from obspy import Stream, Trace
     from obspy.core import AttribDict
 
-    if hasattr(filename, "read"):
-        place, data = getattr(filename, "name", "AT2 data"), filename.read()
-    else:
-        place, data = filename, Path(filename).read_bytes()
+    place, data = name_and_bytes(filename)
     try:
         record = _parse(data.decode("latin-1"))
     except InputError as error:
@@ -137,6 +121,7 @@ def read_component(file: RecordFile) -> list[Component]:
             orientation=orientation,
             station=", ".join(part.upper() for part in parts) if record.station and record.date else "",
             source=file.source,
+            unit=unit,
         )
     ]
 
@@ -204,7 +189,7 @@ def _values(lines: list[str], first: int, npts: int) -> Samples:
     if not np.isfinite(values).all():
         i = int(np.flatnonzero(~np.isfinite(values))[0])
         raise InputError(f'value {i + 1} of {npts} is "{tokens[i]}"; expected finite numbers')
-    if _is_cut_short(tokens):
+    if is_cut_short(tokens):
         raise InputError(f'the last value is "{tokens[-1]}", shorter than all others: the file is cut; fetch it again')
     return values
 
@@ -239,15 +224,3 @@ def _fixed_width(lines: list[str], npts: int) -> list[str] | None:
         if len(fields) == npts and all(map(_SIGNED.fullmatch, fields)):
             return [field.upper().replace("D", "E") for field in fields]
     return None
-
-
-def _is_cut_short(tokens: list[str]) -> bool:
-    """Whether the last number has fewer characters after its point than all others, which agree."""
-
-    def tail(token: str) -> int:
-        return len(token) - token.rfind(".")
-
-    if len(tokens) < _MANY or "." not in tokens[-2]:
-        return False
-    usual = tail(tokens[-2])
-    return tail(tokens[-1]) < usual and all(tail(token) == usual for token in tokens[:-1])

@@ -3,7 +3,7 @@
 from rockbatch.errors import InputError
 from rockbatch.motions.component import Component
 from rockbatch.motions.formats.record_file import RecordFile
-from rockbatch.motions.formats.with_obspy import read_stream, without_offset
+from rockbatch.motions.formats.with_obspy import read_stream
 from rockbatch.motions.orientation import UNKNOWN, orientation_of
 
 SUFFIXES = frozenset({".ew", ".ns", ".ud", ".ew1", ".ns1", ".ud1", ".ew2", ".ns2", ".ud2"})
@@ -17,9 +17,11 @@ def is_knet(head: bytes) -> bool:
 
 
 def read_knet(file: RecordFile) -> list[Component]:
-    """The component of a file in m/s², without offset; KiK-net's borehole and surface are two stations."""
+    """The component of a file in m/s²; KiK-net's borehole and surface are two stations."""
     (trace,) = read_stream(file.data, "KNET")
     stats = trace.stats
+    if "knet" not in stats or not stats.npts:
+        raise InputError("the header or the data are missing; fetch it again")
     expected = stats.knet.duration * stats.sampling_rate
     if abs(stats.npts - expected) >= stats.sampling_rate:  # the header's duration is in whole seconds
         raise InputError(
@@ -27,16 +29,16 @@ def read_knet(file: RecordFile) -> list[Component]:
             f"but the file holds {stats.npts}; fetch it again"
         )
     level = stats.channel[2:]
-    acceleration, offset = without_offset(trace.data * stats.calib)
     return [
         Component(
             name=file.stem,
             dt=float(stats.delta),
-            acceleration=acceleration,
+            acceleration=trace.data * stats.calib,
             orientation=orientation_of(stats.channel[:2]) or UNKNOWN,
             station=f"{stats.station}.{level}" if level else stats.station,
             source=file.source,
             start=stats.starttime.timestamp,
-            notes=(*((_LEVELS[level],) if level in _LEVELS else ()), offset),
+            raw=True,
+            notes=(_LEVELS[level],) if level in _LEVELS else (),
         )
     ]

@@ -9,7 +9,7 @@ from rockbatch.errors import InputError
 from rockbatch.motions.component import Component
 from rockbatch.motions.formats import stationxml
 from rockbatch.motions.formats.record_file import RecordFile
-from rockbatch.motions.formats.with_obspy import read_stream, without_offset
+from rockbatch.motions.formats.with_obspy import read_stream
 from rockbatch.motions.motion import Unusable
 from rockbatch.motions.orientation import UNKNOWN, Orientation, orientation_of
 from rockbatch.units import acceleration_factor
@@ -78,16 +78,17 @@ def _component(name: str, file: RecordFile, trace: "Trace", known: list[stationx
         factor = acceleration_factor(unit, file.gravity)
     except ValueError:
         raise InputError(f"{trace.id} measures {unit or 'an unknown quantity'}, not an acceleration") from None
-    acceleration, offset = without_offset(trace.data * (factor / sensitivity))
     return Component(
         name=name,
         dt=float(stats.delta),
-        acceleration=acceleration,
+        acceleration=trace.data * (factor / sensitivity),
         orientation=orientation,
         station=f"{stats.network}.{stats.station}.{stats.location}.{stats.channel[:-1]}",
         source=file.source if name == file.stem else f"{file.source} ({trace.id})",
         start=start,
-        notes=(origin, offset),
+        unit="" if entry is not None and entry.sensitivity else unit,
+        raw=True,
+        notes=(origin,),
     )
 
 

@@ -1,5 +1,6 @@
 """A file as all readers get it, and what the user says about files that do not say it themselves."""
 
+import codecs
 import math
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -68,8 +69,18 @@ class RecordFile:
 
     @property
     def text(self) -> str:
-        """The bytes as text: UTF-8, or Latin-1 where they are not."""
+        """The bytes as text (``text_of``)."""
+        return text_of(self.data)
+
+
+def text_of(data: bytes) -> str:
+    """Text of a file: UTF-16 where it begins with that mark (Excel's "Unicode text"), UTF-8, or else Latin-1."""
+    if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         try:
-            return self.data.decode("utf-8-sig")
+            return data.decode("utf-16")
         except UnicodeDecodeError:
-            return self.data.decode("latin-1")
+            raise InputError("begins as UTF-16 text, but is not; save it as UTF-8") from None
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return data.decode("latin-1")

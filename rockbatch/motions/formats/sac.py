@@ -3,7 +3,7 @@
 from rockbatch.errors import InputError
 from rockbatch.motions.component import Component
 from rockbatch.motions.formats.record_file import RecordFile
-from rockbatch.motions.formats.with_obspy import read_stream, without_offset
+from rockbatch.motions.formats.with_obspy import read_stream
 from rockbatch.motions.orientation import UNKNOWN, Orientation, orientation_of, split_stem
 from rockbatch.units import acceleration_factor
 
@@ -32,19 +32,20 @@ def read_sac(file: RecordFile) -> list[Component]:
     (trace,) = read_stream(file.data, "SAC")
     stats = trace.stats
     factor = acceleration_factor(options.unit or "m/s2", file.gravity) / (options.sensitivity or 1.0)
-    acceleration, offset = without_offset(trace.data.astype(float) * factor)
     orientation = orientation_of(stats.channel) or _by_angles(stats.sac) or split_stem(file.stem)[1] or UNKNOWN
     codes = (stats.network, stats.station, stats.location, stats.channel[:-1])
     return [
         Component(
             name=file.stem,
             dt=float(stats.delta),
-            acceleration=acceleration,
+            acceleration=trace.data.astype(float) * factor,
             orientation=orientation,
             station=".".join(codes) if stats.station else "",
             source=file.source,
             start=stats.starttime.timestamp,
-            notes=(f"unit {options.unit or 'm/s2'} as stated", offset),
+            unit=options.unit or "m/s2",
+            raw=True,
+            notes=(f"unit {options.unit or 'm/s2'} as stated",),
         )
     ]
 

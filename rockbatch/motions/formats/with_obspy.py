@@ -6,19 +6,33 @@ or an address.
 """
 
 import io
+import sys
 import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from rockbatch.errors import InputError
-from rockbatch.motions.motion import Samples
 
 if TYPE_CHECKING:
     from obspy import Stream
 
 
+@contextmanager
+def _told_to_nobody() -> Iterator[list[str]]:
+    """Collects errors that ObsPy's callbacks from C cannot raise; Python would print them on the terminal."""
+    found: list[str] = []
+    before = sys.unraisablehook
+    sys.unraisablehook = lambda unraised: found.append(f"{type(unraised.exc_value).__name__}: {unraised.exc_value}")
+    try:
+        yield found
+    finally:
+        sys.unraisablehook = before
+
+
 def read_stream(data: bytes, name: str) -> "Stream":
     """ObsPy's reading of ``data`` in the format ``name``; ``InputError`` where it refuses or complains."""
-    with warnings.catch_warnings(record=True) as caught:
+    with warnings.catch_warnings(record=True) as caught, _told_to_nobody() as unraised:
         warnings.simplefilter("always")
         from obspy import read  # which warns of its own use of the standard library
 
@@ -27,16 +41,7 @@ def read_stream(data: bytes, name: str) -> "Stream":
         except Exception as error:  # ObsPy's readers raise all sorts of types on damaged files
             raise InputError(f"ObsPy's {name} reader refuses it: {type(error).__name__}: {error}") from None
     complaints = [str(w.message) for w in caught if not issubclass(w.category, DeprecationWarning | FutureWarning)]
+    complaints += unraised
     if complaints:
         raise InputError(f"damaged: ObsPy's {name} reader says: {' '.join(complaints[0].split())}")
     return stream
-
-
-def without_offset(acceleration: Samples) -> tuple[Samples, str]:
-    """``acceleration`` [m/s²] less its mean over the record, and the note that says so.
-
-    The whole record, not the time before the event: it needs no picking, and the ground's velocity ends at
-    zero.
-    """
-    offset = float(acceleration.mean())
-    return acceleration - offset, f"offset {offset:.4g} m/s² removed (mean over the record)"

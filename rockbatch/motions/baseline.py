@@ -1,0 +1,72 @@
+"""The zero of a record: what is taken off its acceleration, on whose word, and the note that says so.
+
+Nothing else is done to a baseline anywhere: no filter, no fitted line.
+"""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rockbatch.errors import InputError
+from rockbatch.motions.component import Component
+from rockbatch.motions.motion import Samples
+
+RULES = ("as needed", "keep", "mean", "pre-event")
+
+
+@dataclass(frozen=True)
+class Offset:
+    """What is taken off every component.
+
+    Attributes
+    ----------
+    rule : str
+        "as needed": the mean over the record where the format leaves the instrument's zero in it (K-NET, counts),
+        nothing elsewhere; "keep": nothing; "mean": the mean over the record; "pre-event": the mean over ``window_s``.
+    window_s : tuple of two float, or None
+        Start and end of the time before the event [s], both from the first sample; for "pre-event" only.
+    """
+
+    rule: str = "as needed"
+    window_s: tuple[float, float] | None = None
+
+    def __post_init__(self) -> None:
+        if self.rule not in RULES:
+            raise InputError(f'offset = "{self.rule}": must be one of {", ".join(RULES)}')
+        if (self.rule == "pre-event") != (self.window_s is not None):
+            raise InputError('offset = "pre-event" takes offset_window_s = [start, end], and no other offset does')
+        if self.window_s is not None and not 0 <= self.window_s[0] < self.window_s[1] < math.inf:
+            raise InputError(f"offset_window_s = {list(self.window_s)}: must be two times in order, from 0 [s]")
+
+
+def corrected(component: Component, offset: Offset) -> Component:
+    """``component`` with its offset off, and a note of how much; ``InputError`` where the window lies outside."""
+    if offset.rule == "keep":
+        if not component.raw:
+            return component
+        note = f"offset {component.acceleration.mean():.4g} m/s² kept (mean over the record)"
+        return replace(component, raw=False, notes=(*component.notes, note))
+    if offset.rule == "as needed" and not component.raw:
+        return component
+    if offset.window_s is None:
+        acceleration, note = without_offset(component.acceleration)
+    else:
+        start, end = offset.window_s
+        inside = component.acceleration[math.ceil(start / component.dt - 1e-9) : math.floor(end / component.dt) + 1]
+        if end > component.duration or len(inside) == 0:
+            raise InputError(f"offset_window_s = [{start:g}, {end:g}] is not within its {component.duration:g} s")
+        mean = float(inside.mean())
+        acceleration = component.acceleration - mean
+        note = f"offset {mean:.4g} m/s² removed (mean from {start:g} to {end:g} s, before the event)"
+    return replace(component, acceleration=acceleration, raw=False, notes=(*component.notes, note))
+
+
+def without_offset(acceleration: Samples) -> tuple[Samples, str]:
+    """``acceleration`` [m/s²] less its mean over the record, and the note that says so.
+
+    The whole record, not the time before the event: it needs no picking, and the ground's velocity ends at
+    zero.
+    """
+    offset = float(np.mean(acceleration))
+    return acceleration - offset, f"offset {offset:.4g} m/s² removed (mean over the record)"

@@ -1,0 +1,55 @@
+"""Two components of one station on common samples, over the time that they share."""
+
+import math
+
+import numpy as np
+
+from rockbatch.motions.component import Component
+from rockbatch.motions.motion import Samples
+
+_SAME_STEP = 1e-6  # relative: steps that differ by less are the same, printed otherwise
+_SAME_SAMPLE = 0.01  # of dt: components whose starts are off by less share their samples
+
+
+def overlap(a: Component, b: Component) -> bool:
+    """Whether two components have a time in common, as far as is known."""
+    if a.start is None or b.start is None:
+        return True
+    return a.start < b.start + b.duration and b.start < a.start + a.duration
+
+
+def on_common_samples(
+    first: Component, second: Component, names: tuple[str, str]
+) -> tuple[float, Samples, Samples, list[str]]:
+    """Both components on common samples, over their common time: dt, first, second, notes with their ``names``.
+
+    Components without absolute times start together. Where samples do not coincide, the first component keeps
+    its own, with as many between them as make it no coarser than the second one, and both are interpolated
+    linearly: exact for the first one, and for the second one where its samples are met.
+    """
+    a, b = first.acceleration, second.acceleration
+    offset = 0.0 if first.start is None or second.start is None else second.start - first.start
+    notes = []
+    same_step = abs(first.dt - second.dt) <= _SAME_STEP * first.dt
+    shift = round(offset / first.dt)
+    if same_step and abs(offset / first.dt - shift) <= _SAME_SAMPLE:
+        start, end = max(0, shift), min(len(a), len(b) + shift)
+        dt, a, b = first.dt, a[start:end], b[start - shift : end - shift]
+    else:
+        parts = 1 if same_step else math.ceil(first.dt / second.dt * (1 - _SAME_STEP))
+        dt = first.dt / parts
+        times = np.arange((len(a) - 1) * parts + 1) * dt
+        slack = _SAME_SAMPLE * dt
+        times = times[(times >= offset - slack) & (times <= offset + second.duration + slack)]
+        a = np.interp(times / first.dt, np.arange(len(a)), a)
+        b = np.interp((times - offset) / second.dt, np.arange(len(b)), b)
+        moved = [names[0]] * (parts > 1) + [names[1]] * (abs(dt - second.dt) > _SAME_STEP * dt or offset != 0)
+        notes.append(
+            f"{' and '.join(moved)} interpolated linearly to dt = {dt:g} s, from {first.dt:g} s {names[0]} and "
+            f"{second.dt:g} s {names[1]}"
+        )
+    span = (len(a) - 1) * dt
+    if span < max(first.duration, second.duration) - 0.5 * dt:
+        whole = f"{first.duration:g} s {names[0]} and {second.duration:g} s {names[1]}"
+        notes.append(f"common span: {span:g} s of {whole}")
+    return dt, a, b, notes

@@ -1,0 +1,89 @@
+"""The files of folders: which may be records, which are no records, and which are not to be opened."""
+
+import os
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from rockbatch.files import legible
+from rockbatch.motions.formats import has_reader
+
+MANIFESTS = ("motions.toml", "motions.csv")
+
+_COMPANIONS = {
+    "text about the records": (".json", ".md", ".rst", ".pdf", ".doc", ".docx", ".htm", ".html", ".log", ".toml"),
+    "a table about the records": (".xls", ".xlsx", ".ods"),
+    "a picture": (".png", ".jpg", ".jpeg", ".gif", ".svg", ".tif", ".tiff", ".ps", ".eps"),
+    "a program": (".py", ".m", ".ipynb", ".r", ".sh"),
+    "the velocity of a record": (".vt2",),
+    "the displacement of a record": (".dt2",),
+}
+_BY_SUFFIX = {suffix: what for what, suffixes in _COMPANIONS.items() for suffix in suffixes}
+_SEARCH_RESULTS = "_searchresults.csv"  # that PEER's database puts beside the records
+
+
+@dataclass(frozen=True)
+class Found:
+    """A file of a folder.
+
+    Attributes
+    ----------
+    path : Path
+    source : str
+        Its short path for people.
+    refusal : str
+        Why it is not to be opened; empty where it may be a record.
+    companion : str
+        What it is instead of a record; empty where it may be one.
+    """
+
+    path: Path
+    source: str
+    refusal: str = ""
+    companion: str = ""
+
+
+def files_of(given: Sequence[Path]) -> Iterator[Found]:
+    """Files and folders in order, each file once: what lies below a folder, without hidden and read-me files."""
+    seen: set[Path] = set()
+    for root in given:
+        prefix = f"{root.absolute().name}/" if len(given) > 1 and root.is_dir() else ""
+        inside = os.path.realpath(root)
+        for path in sorted(_below(root)) if root.is_dir() else [root]:
+            real = Path(os.path.realpath(path))
+            if real in seen:
+                continue
+            seen.add(real)
+            source = legible(prefix + path.relative_to(root).as_posix() if path != root else path.name)
+            if path != root and not real.is_relative_to(inside):
+                yield Found(path, source, "a link that leads out of the folder; copy the file into it")
+            elif real.is_dir():
+                why = "a link to a folder, not followed" if path.is_symlink() else "a folder that cannot be opened"
+                yield Found(path, source, why)
+            elif not real.is_file():
+                yield Found(path, source, "not a regular file")
+            elif path.suffix.lower() != ".xml":  # StationXML goes with the records beside it
+                yield _regular(path, source)
+
+
+def _regular(path: Path, source: str) -> Found:
+    suffix = path.suffix.lower()
+    if path.name.lower() == _SEARCH_RESULTS:
+        return Found(path, source, companion="a table about the records")
+    if has_reader(suffix) or path.name in MANIFESTS:
+        return Found(path, source)
+    if suffix in _BY_SUFFIX:
+        return Found(path, source, companion=_BY_SUFFIX[suffix])
+    return Found(path, source, "not a format that rockbatch reads")
+
+
+def _below(folder: Path) -> Iterator[Path]:
+    """Everything in a folder and below it that may be a record, and the folders that are not gone into."""
+    closed: list[Path] = []
+    for where, folders, files in os.walk(folder, onerror=lambda error: closed.append(Path(error.filename))):
+        folders[:] = [name for name in folders if not name.startswith(".")]
+        links = [name for name in folders if os.path.islink(os.path.join(where, name))]
+        for name in [*files, *links]:
+            if not name.startswith(".") and Path(name).stem.lower() != "readme":
+                yield Path(where, name)
+    yield from closed

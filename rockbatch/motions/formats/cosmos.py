@@ -1,0 +1,232 @@
+"""COSMOS strong-motion files (text, v01.00 to v01.20): uncorrected V1 and corrected V2 accelerations.
+
+Each channel has lines of text, then integers, real numbers and comments, each under a line that says how many
+there are and in which Fortran format, then its values under a line with their count, unit and format, and a
+line "End-of-data". Velocities and displacements in the same file are read over. The sampling interval is real
+number 62 [ms]; number 34 is that of the recorder. Source: COSMOS (2001), "COSMOS strong motion data format",
+version 1.20.
+"""
+
+import re
+from dataclasses import dataclass
+
+from rockbatch.errors import InputError
+from rockbatch.motions.component import Component
+from rockbatch.motions.formats.fixed_width import fixed_numbers, lines_of
+from rockbatch.motions.formats.header_lines import found, line_at, moment, number
+from rockbatch.motions.formats.obspy_plugin import plugin
+from rockbatch.motions.formats.record_file import RecordFile
+from rockbatch.motions.formats.recording import Recording, to_components
+from rockbatch.motions.motion import Samples, Unusable
+from rockbatch.motions.orientation import orientation_of
+from rockbatch.units import acceleration_factor
+
+SUFFIXES = frozenset({".v0", ".v1", ".v2", ".v3", ".v0c", ".v1c", ".v2c", ".v3c"})
+
+_UNITS = {2: "g", 4: "cm/s2", 10: "gal"}  # the specification's unit codes of accelerations
+_DIRECTIONS = {400: "Up", 401: "Down", 402: "Vert", 600: "Long", 601: "Tran", 700: "H1", 701: "H2"}  # beyond azimuths
+_HEADERS = 100  # integers, and real numbers
+_TITLE = re.compile(
+    r"^(?P<what>\S.*?) *\(Format v(?P<version>\d\d\.\d\d) with +(?P<lines>\d{1,3}) text lines\)", re.I | re.A
+)
+_NUMBERS = re.compile(
+    r"^ *(?P<count>\d{1,5}) +(?P<what>Integer|Real)-header values follow on +\d{1,5} +lines, *Format *= *\((?P<format>[^)]*)\)",
+    re.I | re.A,
+)
+_COMMENTS = re.compile(r"^ *(?P<count>\d{1,5}) +Comment line", re.I | re.A)
+_VALUES = re.compile(
+    r"^ *(?P<npts>\d{1,9}) +(?P<what>[a-z][a-z. ]*?) +(?:pts|points|counts), *approx\.? +(?P<seconds>\d{1,9}) *secs?, *"
+    r"units *= *(?P<unit>[^ ,(]*) *\( *(?P<code>\d{1,3}) *\), *Format *= *\((?P<format>[^)]*)\)",
+    re.I | re.A,
+)
+_FORMAT = re.compile(r" *(?:\dP,?)?(?P<per_line>\d{0,2})[IFED](?P<width>\d{1,2})(?:\.\d{1,2})? *", re.I | re.A)
+_UNKNOWN = re.compile(r"unspecified: *-?\d+, *(?P<real>-?[\d.]{1,12})", re.I | re.A)
+_CODE = re.compile(r"Code: *(?P<network>[^- ]*)-(?P<station>\S*)", re.I)
+_CHANNEL = re.compile(r"^Sta Chan?:? *[\d?]* *: *(?P<label>.*?) *(?:deg\b[^(]*)?(?:\(|$)", re.I)
+_LOCATION = re.compile(r"Location: *(?P<place>\S.*?) *$", re.I)
+_SCNL = re.compile(r"<SCNL>(?P<station>\w*)\.(?P<channel>\w*)\.(?P<network>\w*)\.(?P<location>[\w-]*)", re.A)
+
+
+@dataclass(frozen=True)
+class _Header:
+    """What stands above the values of a channel, and where the lines after it begin.
+
+    ``integers`` and ``reals`` are counted from 1 in the specification, from 0 here; ``unknown`` stands for those
+    that are unknown, and for missing values.
+    """
+
+    what: str
+    text: list[str]
+    integers: list[int]
+    reals: list[float]
+    comments: str
+    unknown: float
+    end: int
+
+
+def is_cosmos(head: bytes) -> bool:
+    """Whether the first bytes are the first line of a COSMOS file, of whatever kind of data."""
+    return _TITLE.match(line_at(lines_of(head.decode("latin-1")), 0)) is not None
+
+
+def read_cosmos(file: RecordFile) -> list[Component | Unusable]:
+    """The channels of a file in m/s², uncorrected ones without offset."""
+    return to_components(file, _parse(file.text))
+
+
+def _parse(text: str) -> list[Recording]:
+    """The channels, one after the other; ``InputError`` with the line where the file is not whole."""
+    lines = lines_of(text)
+    recordings: list[Recording] = []
+    others: list[str] = []
+    header: _Header | None = None
+    at = 0
+    while at < len(lines):
+        if not lines[at].strip():
+            at += 1
+            continue
+        if header is None or _TITLE.match(line_at(lines, at)):
+            header = _header(lines, at)
+            at = header.end
+        series = found(_VALUES, lines, at, "… acceleration pts, approx … secs, units=cm/sec2(04),Format=(8F10.5)")
+        values, end = _values(lines, at, series)
+        if series["what"].lower().startswith("accel"):
+            recordings.append(_recording(header, series, values, at))
+        else:
+            others.append(series["what"])
+        at = end
+    if not recordings:
+        raise InputError(
+            f"holds {' and '.join(others) or 'nothing'}; expected accelerations: take the file that has them"
+        )
+    return recordings
+
+
+def _header(lines: list[str], at: int) -> _Header:
+    """The header that begins at ``lines[at]``."""
+    title = found(_TITLE, lines, at, "Corrected acceleration    (Format v01.20 with 13 text lines)")
+    if "spectr" in title["what"].lower():
+        raise InputError(f"line {at + 1}: spectra; expected accelerations: take the V2 file of this record")
+    end = at + int(title["lines"])
+    text = [line_at(lines, i) for i in range(at, end)]
+    numbers = []
+    for what in ("Integer", "Real"):
+        said = found(_NUMBERS, lines, end, f"100 {what}-header values follow on … lines, Format= …")
+        count = int(said["count"])
+        if said["what"].lower() != what.lower() or count < _HEADERS:
+            raise InputError(f'line {end + 1}: found "{said[0].strip()}"; expected {_HEADERS} {what}-header values')
+        width, per_line = _layout(said["format"], end)
+        numbers.append(fixed_numbers(lines, end + 1, count, width, per_line))
+        end += 1 - -count // per_line
+    comments = int(found(_COMMENTS, lines, end, "… Comment line(s) follow")["count"])
+    said_unknown = next((match for line in text if (match := _UNKNOWN.search(line))), None)
+    return _Header(
+        what=title["what"],
+        text=text,
+        integers=[int(value) for value in numbers[0]],
+        reals=[float(value) for value in numbers[1]],
+        comments="\n".join(lines[end + 1 : end + 1 + comments]),
+        unknown=number(said_unknown["real"], at + len(text) - 1) if said_unknown else -999.0,
+        end=end + 1 + comments,
+    )
+
+
+def _layout(text: str, at: int) -> tuple[int, int]:
+    """Width and numbers per line of a Fortran format such as 8F10.5 or 1PE15.6."""
+    match = _FORMAT.fullmatch(text)
+    width, per_line = (int(match["width"]), int(match["per_line"] or 1)) if match else (0, 0)
+    if width < 1 or per_line < 1:
+        raise InputError(f'line {at + 1}: found the format "({text[:20]})"; expected one such as (8F10.5)')
+    return width, per_line
+
+
+def _values(lines: list[str], at: int, series: re.Match[str]) -> tuple[Samples, int]:
+    """The values that ``lines[at]`` declares, and where the lines after their end begin."""
+    npts = int(series["npts"])
+    if npts < 1:
+        raise InputError(f"line {at + 1}: found {npts} values; expected some")
+    width, per_line = _layout(series["format"], at)
+    values = fixed_numbers(lines, at + 1, npts, width, per_line)
+    end = at + 1 - -npts // per_line
+    found(re.compile(r"^ *End-of-data", re.I), lines, end, f"End-of-data … after {npts} values; fetch it again")
+    return values, end + 1
+
+
+def _recording(header: _Header, series: re.Match[str], values: Samples, at: int) -> Recording:
+    """The accelerations that ``lines[at]`` declares, with what their header says; ``InputError`` for contradictions."""
+    interval = header.reals[61]
+    dt = float(f"{interval / 1000:.12g}")
+    seconds = int(series["seconds"])
+    if not 0 < interval < 1e5 or abs(len(values) * dt - seconds) > 1 + 0.01 * seconds:
+        raise InputError(
+            f"line {at + 1}: {len(values)} values in approximately {seconds} s, but an interval of {interval:g} ms "
+            "(real number 62 of the header); expected both to agree"
+        )
+    peak = header.reals[63]
+    missing = int((values == header.unknown).sum())
+    if missing and (peak == header.unknown or abs(peak) < abs(header.unknown)):
+        raise InputError(
+            f"{missing} of {len(values)} values are {header.unknown:g}, which marks those that are missing"
+        )
+    named = _CODE.search(line_at(header.text, 4))
+    place = _LOCATION.search(line_at(header.text, 8))
+    seed = _SCNL.search(header.comments)
+    network, station = (named["network"], named["station"]) if named else ("", "")
+    location = seed["location"].strip("-") if seed else ""
+    stage = "uncorrected" if header.what.lower().startswith(("raw", "uncorr")) else "corrected"
+    where = place["place"] if place else ""
+    return Recording(
+        label=_label(header, seed["channel"] if seed else ""),
+        dt=dt,
+        values=values,
+        unit=_unit(header, series, at),
+        station=", ".join(filter(None, [f"{network}-{station}", location, where, stage])) if station else "",
+        codes=(network, station, location, seed["channel"] if seed else ""),
+        start=_start(header),
+        uncorrected=stage == "uncorrected",
+        stated_peak=None if peak == header.unknown else peak,
+        notes=(f"location: {where}",) if where else (),
+        header={"station": line_at(header.text, 4).strip(), "event": line_at(header.text, 1).strip()},
+    )
+
+
+def _unit(header: _Header, series: re.Match[str], at: int) -> str:
+    """Unit of the accelerations, by its code, which the header and the text must confirm."""
+    code, text = int(series["code"]), series["unit"]
+    unit = _UNITS.get(code)
+    if unit is None:
+        raise InputError(
+            f'line {at + 1}: found the unit "{text}({code:02d})"; expected cm/sec2(04), g(02) or gal(10): '
+            "take the V1 or V2 file of this record"
+        )
+    try:
+        as_said = acceleration_factor(text or unit) == acceleration_factor(unit)
+    except ValueError:
+        as_said = False
+    if not as_said or header.integers[2] not in (code, int(header.unknown)):
+        raise InputError(
+            f'line {at + 1}: found the unit "{text}({code:02d})", and code {header.integers[2]} as integer 3 of the '
+            "header; expected them to agree"
+        )
+    return unit
+
+
+def _label(header: _Header, channel: str) -> str:
+    """Direction by the header's text, else by its code for the sensor (integer 54), else by the SEED channel."""
+    said = _CHANNEL.search(line_at(header.text, 8))
+    code = header.integers[53]
+    by_code = _DIRECTIONS.get(code, str(code) if 1 <= code <= 360 else "")
+    known = [label for label in (said["label"] if said else "", by_code, channel) if orientation_of(label)]
+    ways = {(way.vertical, way.down) for label in known if (way := orientation_of(label))}
+    if len(ways) > 1:
+        raise InputError(f"directions contradict each other: {' and '.join(known)}; repair the header")
+    return known[0] if known else (said["label"] if said else "")
+
+
+def _start(header: _Header) -> float | None:
+    """Time of the first sample [s since 1970], where the header has it."""
+    year, month, day, hour, minute = (header.integers[i] for i in (39, 41, 42, 43, 44))
+    return moment(year, month, day, hour, minute, header.reals[29])
+
+
+is_cosmos_file, read_cosmos_stream = plugin("COSMOS", is_cosmos, _parse)

@@ -1,0 +1,98 @@
+"""Free-field files of Taiwan's CWA (once CWB), as of its TSMIP network: ``#`` header, then time, U, N and E."""
+
+import re
+
+from rockbatch.errors import InputError
+from rockbatch.motions.component import Component
+from rockbatch.motions.formats.header_lines import moment
+from rockbatch.motions.formats.obspy_plugin import plugin
+from rockbatch.motions.formats.record_file import RecordFile
+from rockbatch.motions.formats.recording import Recording, to_components
+from rockbatch.motions.formats.table import read_table
+from rockbatch.motions.formats.time_steps import on_even_steps
+from rockbatch.motions.motion import Unusable
+
+SUFFIXES = frozenset({".txt", ".dat", ".acc", ".asc"})
+
+_KEY = re.compile(r"(?P<key>[^:]{1,60}?)\s*:\s*(?P<value>.*)")
+_LABEL = re.compile(r"\s*(?P<label>[A-Za-z0-9]{1,8})\(\+\)\s*")
+_MOMENT = re.compile(r"(\d{4})/(\d{1,2})/(\d{1,2})-(\d\d):(\d\d):(\d\d(?:\.\d{1,6})?)", re.ASCII)
+_TAIPEI = 8 * 3600.0  # s ahead of UTC
+_SAME_RATE = 1e-3  # relative: what printing of the times may cost their mean step
+_WITHIN = 1.0  # s: the stated length is rounded, to whole seconds in some files
+
+
+def is_cwa(head: bytes) -> bool:
+    """Whether the first bytes are the header of a free-field file."""
+    return head.lstrip(b"\xef\xbb\xbf \r\n").startswith(b"#") and b"#StationCode:" in head and b"#DataSequence:" in head
+
+
+def read_cwa(file: RecordFile) -> list[Component | Unusable]:
+    """The three components of a file in m/s²."""
+    return to_components(file, _parse(file.text))
+
+
+def _parse(text: str) -> list[Recording]:
+    """The components; ``InputError`` where header and columns do not agree."""
+    lines, table = read_table(text)
+    header = {match["key"]: match["value"].strip() for line in lines if (match := _KEY.match(line))}
+    unit, _, offset = header.get("AmplitudeUnit", "").partition(".")
+    labels = _labels(header.get("DataSequence", ""))
+    if len(labels) + 1 != table.shape[1]:
+        raise InputError(f"found {table.shape[1]} columns; the header says time and {', '.join(labels)}")
+    dt, values, notes = on_even_steps(table[:, 0], table[:, 1:])
+    _check_rate_and_length(header, dt, len(values))
+    station = header.get("StationCode", "")
+    began = header.get("StartTime(GMT+08)") or header.get("StartTime", "")
+    return [
+        Recording(
+            label=label,
+            dt=dt,
+            values=values[:, i],
+            unit=unit.strip(),
+            station=f"{station}, {began}",
+            codes=("TW", station, "", label),
+            start=_start(began, "StartTime(GMT+08)" in header),
+            uncorrected="corr" not in offset.lower(),
+            notes=notes,
+            header={"start": began, "instrument": header.get("InstrumentKind", "")},
+        )
+        for i, label in enumerate(labels)
+    ]
+
+
+def _labels(sequence: str) -> list[str]:
+    """Directions of the columns after time, all positive as they are named: "Time U(+); N(+); E(+)"."""
+    time, _, rest = sequence[:200].strip().partition(" ")
+    matches = [_LABEL.fullmatch(part) for part in rest.split(";")]
+    if time.lower() != "time" or None in matches:
+        raise InputError(f'the header says DataSequence: "{sequence[:60]}"; expected e.g. "Time U(+); N(+); E(+)"')
+    return [match["label"] for match in matches if match]
+
+
+def _check_rate_and_length(header: dict[str, str], dt: float, npts: int) -> None:
+    """``InputError`` unless the stated rate and length, where there are any, are those of the columns."""
+    stated = {}
+    for key in ("SampleRate(Hz)", "RecordLength(sec)"):
+        try:
+            stated[key] = float(header[key])
+        except (KeyError, ValueError):
+            continue
+    rate, length = stated.get("SampleRate(Hz)"), stated.get("RecordLength(sec)")
+    if rate is not None and not abs(rate * dt - 1) <= _SAME_RATE:
+        raise InputError(f"the header says {rate:g} Hz, but time grows by {dt:g} s")
+    if length is not None and not abs(npts * dt - length) <= _WITHIN + dt:
+        raise InputError(f"the header says {length:g} s, but there are {npts * dt:g} s; fetch the file again")
+
+
+def _start(text: str, local: bool) -> float | None:
+    """Time of the first sample [s since 1970]; ``None`` where it is not known."""
+    match = _MOMENT.match(text)
+    if match is None:
+        return None
+    year, month, day, hour, minute = (int(match[i]) for i in range(1, 6))
+    start = moment(year, month, day, hour, minute, float(match[6]))
+    return start - _TAIPEI if start is not None and local else start
+
+
+is_cwa_file, read_cwa_stream = plugin("CWA", is_cwa, _parse)

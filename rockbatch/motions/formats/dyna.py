@@ -1,0 +1,134 @@
+"""DYNA files (.ASC): one component in the format of the ESM, ITACA and AFAD databases (Italy, Europe, Türkiye).
+
+Lines of ``KEY: value`` (64 of them in DYNA 1.2), then one value per line. The keys are those of the format's own
+files; empty ones are unknown.
+"""
+
+import re
+
+import numpy as np
+
+from rockbatch.errors import InputError
+from rockbatch.motions.component import Component
+from rockbatch.motions.formats.fixed_width import is_cut_short, lines_of, number_in
+from rockbatch.motions.formats.header_lines import moment
+from rockbatch.motions.formats.obspy_plugin import plugin
+from rockbatch.motions.formats.record_file import RecordFile
+from rockbatch.motions.formats.recording import Recording, to_components
+from rockbatch.motions.motion import Samples, Unusable
+
+SUFFIXES = frozenset({".asc"})
+
+_MOST_KEYS = 200
+_ROUGHLY = 0.01  # relative: what the stated duration, rounded or off by a sample, may differ
+_PEAK = "PGA_CM/S^2"
+_MOMENT = re.compile(r"(\d{4})/?(\d\d)/?(\d\d)[_ T](\d\d):?(\d\d):?(\d\d(?:\.\d{1,6})?)", re.ASCII)
+
+
+def is_dyna(head: bytes) -> bool:
+    """Whether the first bytes are a DYNA header."""
+    return head.removeprefix(b"\xef\xbb\xbf").startswith(b"EVENT_NAME:") and b"SAMPLING_INTERVAL_S:" in head
+
+
+def read_dyna(file: RecordFile) -> list[Component | Unusable]:
+    """The component of a file in m/s²; the header says whether the instrument's zero is still in it."""
+    return to_components(file, _parse(file.text))
+
+
+def _parse(text: str) -> list[Recording]:
+    """The component, as a list of one; ``InputError`` with all that is wrong with the header, or the line."""
+    lines = lines_of(text)
+    header = _header(lines)
+    npts, dt = _count_and_step(header)
+    values = _values(lines, len(header), npts)
+    unit = header["UNITS"]
+    codes = tuple(header.get(key, "") for key in ("NETWORK", "STATION_CODE", "LOCATION"))
+    stream = header["STREAM"]
+    event = header.get("EVENT_ID") or header["EVENT_NAME"]
+    return [
+        Recording(
+            label=stream,
+            dt=dt,
+            values=values,
+            unit=unit,
+            station=", ".join([".".join((*codes, stream[:-1])), event, header.get("PROCESSING", "")]),
+            codes=(codes[0], codes[1], codes[2], stream),
+            start=_start(header.get("DATE_TIME_FIRST_SAMPLE_YYYYMMDD_HHMMSS", "")),
+            uncorrected="NOT REMOVED" in header.get("BASELINE_CORRECTION", "").upper(),
+            stated_peak=_peak(header) if unit.lower() == "cm/s^2" else None,
+            header={key.lower(): value for key, value in header.items() if value},
+        )
+    ]
+
+
+def _header(lines: list[str]) -> dict[str, str]:
+    """The keys before the first line that has none, each with its value."""
+    header: dict[str, str] = {}
+    for number, line in enumerate(lines[:_MOST_KEYS], start=1):
+        key, colon, value = line.partition(":")
+        if not colon:
+            break
+        if key.strip() in header:
+            raise InputError(f'line {number}: "{key.strip()[:40]}" a second time; expected the values of one component')
+        header[key.strip()] = value.strip()
+    lacking = [key for key in ("SAMPLING_INTERVAL_S", "NDATA", "UNITS", "STREAM") if not header.get(key)]
+    if lacking:
+        raise InputError(f"the header lacks {', '.join(lacking)}")
+    kind = header.get("DATA_TYPE", "ACCELERATION")
+    if kind.upper() != "ACCELERATION":
+        raise InputError(
+            f"the header says DATA_TYPE: {kind[:40]}; expected ACCELERATION: take that file of this record"
+        )
+    return header
+
+
+def _count_and_step(header: dict[str, str]) -> tuple[int, float]:
+    """Number of values and sampling interval [s], which must agree with the stated duration."""
+    npts, dt, duration = (_positive(header, key) for key in ("NDATA", "SAMPLING_INTERVAL_S", "DURATION_S"))
+    if npts is None or dt is None or npts != int(npts):
+        raise InputError(
+            f"the header says NDATA: {header['NDATA'][:40]}, SAMPLING_INTERVAL_S: "
+            f"{header['SAMPLING_INTERVAL_S'][:40]}; expected a whole number and a time above 0"
+        )
+    if duration is not None and abs(npts * dt - duration) > max(2 * dt, _ROUGHLY * duration):
+        raise InputError(f"the header says {npts:.0f} values every {dt:g} s, but also {duration:g} s in all")
+    return int(npts), dt
+
+
+def _positive(header: dict[str, str], key: str) -> float | None:
+    """The value of ``key`` as a number above 0; ``None`` where it is none."""
+    try:
+        value = number_in(header.get(key, ""), 0)
+    except InputError:
+        return None
+    return value if value > 0 else None
+
+
+def _values(lines: list[str], first: int, npts: int) -> Samples:
+    """The values from line ``first`` on, ``npts`` lines with one each, shape (npts,)."""
+    end = next((i for i in range(len(lines), first, -1) if lines[i - 1].strip()), first)
+    if end - first != npts:
+        raise InputError(
+            f"the header says NDATA: {npts}, but {end - first} lines follow it, from line {first + 1} on; "
+            "fetch the file again"
+        )
+    if is_cut_short([line.strip() for line in lines[first:end]]):
+        raise InputError(f'line {end}: found "{lines[end - 1][:40]}", shorter than all others: the file is cut')
+    return np.array([number_in(lines[i], i) for i in range(first, end)])
+
+
+def _start(text: str) -> float | None:
+    """Time of the first sample [s since 1970]; ``None`` where it is not known."""
+    match = _MOMENT.match(text)
+    if match is None:
+        return None
+    year, month, day, hour, minute = (int(match[i]) for i in range(1, 6))
+    return moment(year, month, day, hour, minute, float(match[6]))
+
+
+def _peak(header: dict[str, str]) -> float | None:
+    """The stated peak [cm/s²], without its sign."""
+    return _positive({_PEAK: header.get(_PEAK, "").lstrip("-")}, _PEAK)
+
+
+is_dyna_file, read_dyna_stream = plugin("DYNA", is_dyna, _parse)

@@ -1,0 +1,75 @@
+"""Numbers in the fixed columns of Fortran programs, which need no blank between them: ``-11024.7-9733.1``."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from rockbatch.errors import InputError
+from rockbatch.motions.motion import Samples
+
+HUGE = 1e30
+"""What no acceleration reaches in any unit; its powers and sums stay within the range of floats."""
+
+_MANY = 100  # numbers that do not have the same number of decimals by chance
+
+
+def lines_of(text: str) -> list[str]:
+    """Lines of a file with any of the three line ends, less what old programs write after the last one.
+
+    ``str.splitlines`` would also break at the control characters that Latin-1 texts may hold.
+    """
+    return text.rstrip("\x00\x1a\r\n").replace("\r\n", "\n").replace("\r", "\n").split("\n")
+
+
+def fixed_numbers(lines: Sequence[str], first: int, count: int, width: int, per_line: int) -> Samples:
+    """``count`` numbers from ``lines[first]`` on, ``per_line`` of ``width`` characters each, shape (count,).
+
+    Every line is full but the last, which holds the rest and nothing more. Raises ``InputError`` with the line
+    for anything else; nothing is allocated before the lines are there.
+    """
+    needed = -(-count // per_line)
+    if len(lines) - first < needed:
+        raise InputError(
+            f"{count} values from line {first + 1} on take {needed} lines, but the file ends with line {len(lines)}: "
+            "it is cut; fetch it again"
+        )
+    values = np.empty(count)
+    for i in range(needed):
+        line = lines[first + i].rstrip()
+        expected = min(per_line, count - i * per_line)
+        fields = [line[at : at + width] for at in range(0, len(line), width)]
+        if len(line) != expected * width:
+            raise InputError(
+                f'line {first + i + 1}: found "{line[:40]}…", {len(line)} characters; '
+                f"expected {expected} values of {width} characters each"
+            )
+        values[i * per_line : i * per_line + expected] = [number_in(field, first + i) for field in fields]
+    return values
+
+
+def number_in(field: str, at: int) -> float:
+    """The number in a field of the line with index ``at``, Fortran's D exponents included; else ``InputError``."""
+    try:
+        if "_" in field:  # Python would read 1_0 as ten
+            raise ValueError
+        value = float(field.upper().replace("D", "E"))
+    except ValueError:
+        value = np.nan
+    if not abs(value) < HUGE:
+        raise InputError(f'line {at + 1}: found "{field.strip()[:40]}"; expected a number')
+    return value
+
+
+def is_cut_short(tokens: Sequence[str]) -> bool:
+    """Whether the last number has fewer characters after its point than all others, which agree.
+
+    A file that was cut within it has all its values, and the last one wrong.
+    """
+
+    def tail(token: str) -> int:
+        return len(token) - token.rfind(".")
+
+    if len(tokens) < _MANY or "." not in tokens[-2]:
+        return False
+    usual = tail(tokens[-2])
+    return tail(tokens[-1]) < usual and all(tail(token) == usual for token in tokens[:-1])

@@ -1,0 +1,41 @@
+"""Header lines whose text is fixed: found where they must stand, or told where they are not."""
+
+import re
+from collections.abc import Sequence
+from datetime import UTC, datetime
+
+from rockbatch.errors import InputError
+
+_LONGEST = 200  # characters of a header line that are looked at
+
+
+def found(pattern: re.Pattern[str], lines: Sequence[str], at: int, expected: str) -> re.Match[str]:
+    """The match of ``pattern`` in ``lines[at]``; ``InputError`` where the line is another one, or none."""
+    line = line_at(lines, at)
+    match = pattern.search(line)
+    if match is None:
+        what = f'"{line.strip()[:60]}"' if at < len(lines) else "the end of the file"
+        raise InputError(f'line {at + 1}: found {what}; expected "{expected}"')
+    return match
+
+
+def line_at(lines: Sequence[str], at: int) -> str:
+    """``lines[at]`` as far as a header goes; empty after the last line."""
+    return lines[at][:_LONGEST] if at < len(lines) else ""
+
+
+def number(text: str, at: int) -> float:
+    """A number of digits and a point in the line with index ``at``; ``InputError`` for "1.2.3"."""
+    try:
+        return float(text)
+    except ValueError:
+        raise InputError(f'line {at + 1}: found "{text}"; expected a number') from None
+
+
+def moment(year: int, month: int, day: int, hour: int, minute: int, second: float) -> float | None:
+    """A time in UTC [s since 1970]; ``None`` where the numbers are none, as headers have it that do not know."""
+    try:
+        whole = datetime(year, month, day, hour, minute, tzinfo=UTC).timestamp()
+    except (ValueError, OverflowError):
+        return None
+    return whole + second if 0 <= second < 61 else None  # 60 in a leap second

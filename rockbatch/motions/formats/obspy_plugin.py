@@ -1,0 +1,94 @@
+"""Readers as ObsPy waveform plugins: what ObsPy hands over becomes bytes, what was read a Stream.
+
+A format's module makes its two entry points by ``is_x, read_x = plugin("X", …)``; pyproject.toml registers them.
+"""
+
+import os
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, BinaryIO
+
+from rockbatch.errors import InputError
+from rockbatch.motions.formats.record_file import text_of
+from rockbatch.motions.formats.recording import Recording
+
+if TYPE_CHECKING:
+    from obspy import Stream, Trace
+
+HEAD = 4096
+"""Bytes that a format is known by."""
+
+FileLike = str | os.PathLike[str] | BinaryIO
+
+
+def first_bytes(filename: Any) -> bytes:
+    """The first bytes of a path or file-like object, which stays where it is; none of anything else.
+
+    Never raises: ObsPy hands over whatever it got while it looks for a format.
+    """
+    try:
+        if hasattr(filename, "read"):
+            position = filename.tell()
+            try:
+                return bytes(filename.read(HEAD))
+            finally:
+                filename.seek(position)
+        with open(os.fspath(filename), "rb") as file:  # open() takes a number for an open file
+            return file.read(HEAD)
+    except Exception:
+        return b""
+
+
+def name_and_bytes(filename: FileLike) -> tuple[str, bytes]:
+    """Name for messages, and contents, of a path or file-like object."""
+    if isinstance(filename, str | os.PathLike):
+        return str(filename), Path(filename).read_bytes()
+    return str(getattr(filename, "name", "data")), filename.read()
+
+
+def plugin(
+    name: str, matches: Callable[[bytes], bool], parse: Callable[[str], Sequence[Recording]]
+) -> tuple[Callable[[Any], bool], Callable[..., "Stream"]]:
+    """ObsPy's ``isFormat`` and ``readFormat`` of the format ``name``, by its check and its parser.
+
+    ``readFormat`` raises ``InputError``, with the file's name in front, for files that cannot be used. Data stay
+    in the file's unit, which stands in ``stats`` under the format's name beside what else the header says.
+    """
+
+    def is_format(filename: Any) -> bool:
+        """Whether a path or a file-like object holds a file of this format; never raises."""
+        return matches(first_bytes(filename))
+
+    def read_format(filename: FileLike, headonly: bool = False, **kwargs: Any) -> "Stream":
+        """Read a file of this format into an ObsPy Stream, one Trace per channel."""
+        from obspy import Stream
+
+        place, data = name_and_bytes(filename)
+        try:
+            recordings = parse(text_of(data))
+        except InputError as error:
+            raise InputError(*(f"{place}: {problem}" for problem in error.problems)) from None
+        return Stream([_trace(name, recording, headonly) for recording in recordings])
+
+    return is_format, read_format
+
+
+def _trace(name: str, recording: Recording, headonly: bool) -> "Trace":
+    """One channel as ObsPy has it."""
+    from obspy import Trace, UTCDateTime
+    from obspy.core import AttribDict
+
+    network, station, location, channel = recording.codes
+    header = {
+        "delta": recording.dt,
+        "network": network,
+        "station": station,
+        "location": location,
+        "channel": channel,
+        name.lower(): AttribDict({**recording.header, "unit": recording.unit, "component": recording.label}),
+    }
+    if recording.start is not None:
+        header["starttime"] = UTCDateTime(recording.start)
+    if headonly:
+        return Trace(header={**header, "npts": len(recording.values)})
+    return Trace(data=recording.values, header=header)

@@ -1,0 +1,114 @@
+"""One channel as its file has it, in its own unit, and the way from there to a component in m/s²."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from rockbatch.errors import InputError
+from rockbatch.motions.component import Component
+from rockbatch.motions.formats.record_file import RecordFile
+from rockbatch.motions.motion import Samples, Unusable
+from rockbatch.motions.orientation import Orientation, orientation_of
+from rockbatch.units import acceleration_factor
+
+_SAME_PEAK = 0.01  # relative: header peaks are rounded, and taken before the last decimals of the data were cut
+
+
+@dataclass(frozen=True)
+class Recording:
+    """One channel of a file.
+
+    Attributes
+    ----------
+    label : str
+        Its direction, as the file has it: "N10E", "Up", "HNZ".
+    dt : float
+        Sampling interval [s].
+    values : ndarray, shape (npts,)
+        Accelerations in ``unit``.
+    unit : str
+        As ``units.acceleration_factor`` understands it.
+    station : str
+        What the channels of one station share, other versions of the same record not included.
+    orientation : Orientation or None
+        Where it is not what ``label`` says.
+    codes : tuple of four str
+        Network, station, location and channel, as far as the file has them.
+    start : float or None
+        Time of the first sample [s since 1970, UTC].
+    uncorrected : bool
+        Whether the instrument's offset may still be in the data.
+    stated_peak : float or None
+        Peak that the header states, in ``unit``; its sign is not to be trusted.
+    notes : tuple of str
+        What was done to the data.
+    header : dict
+        What else the header says.
+    """
+
+    label: str
+    dt: float
+    values: Samples
+    unit: str
+    station: str = ""
+    orientation: Orientation | None = None
+    codes: tuple[str, str, str, str] = ("", "", "", "")
+    start: float | None = None
+    uncorrected: bool = False
+    stated_peak: float | None = None
+    notes: tuple[str, ...] = ()
+    header: dict[str, str] = field(default_factory=dict)
+
+
+def to_components(file: RecordFile, recordings: Sequence[Recording]) -> list[Component | Unusable]:
+    """The channels of ``file`` in m/s², named by its stem and, where there are several, their labels.
+
+    A channel whose direction or unit is not understood is an ``Unusable`` beside the others.
+    """
+    readings: list[Component | Unusable] = []
+    for recording in recordings:
+        several = len(recordings) > 1
+        name = f"{file.stem}.{recording.label}" if several else file.stem
+        source = f"{file.source} ({recording.label})" if several else file.source
+        try:
+            readings.append(_component(file, recording, name, source))
+        except InputError as error:
+            readings.append(Unusable(name, source, str(error)))
+    return readings
+
+
+def _component(file: RecordFile, recording: Recording, name: str, source: str) -> Component:
+    """One channel as a component; ``InputError`` for a direction or a unit that is not understood."""
+    orientation = recording.orientation or orientation_of(recording.label)
+    if orientation is None:
+        raise InputError(
+            f'component "{recording.label}": direction not understood; expected e.g. N10E, 228, NS, L, UP or HNZ'
+        )
+    try:
+        factor = acceleration_factor(recording.unit, file.gravity)
+    except ValueError as error:
+        raise InputError(f'component "{recording.label}": {error}') from None
+    notes = [*recording.notes]
+    if recording.stated_peak is not None:
+        notes += _on_stated_peak(recording.values, abs(recording.stated_peak), recording.unit)
+    return Component(
+        name=name,
+        dt=recording.dt,
+        acceleration=recording.values * factor,
+        orientation=orientation,
+        station=recording.station,
+        source=source,
+        start=recording.start,
+        unit=recording.unit,
+        raw=recording.uncorrected,
+        notes=tuple(notes),
+    )
+
+
+def _on_stated_peak(values: Samples, stated: float, unit: str) -> list[str]:
+    """A note where the data do not have the peak that the header states."""
+    found = float(np.abs(values).max(initial=0.0))
+    if abs(found - stated) <= _SAME_PEAK * max(found, stated):
+        return []
+    return [f"its header says a peak of {stated:g} {unit}, its data have {found:g}: check the record"]

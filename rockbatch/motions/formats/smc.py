@@ -1,0 +1,114 @@
+"""USGS SMC files: one component, corrected or not, in cm/s².
+
+Eleven lines of text, six of integers (8I10) and ten of real numbers (5E15.7), as many comments as the integers
+say, then the values, which touch: ``1.5057E+0-2.2223E+0`` (8E10.4, or 5E14.7 where integer 47 says eight
+digits). Source: USGS National Strong-Motion Program, "SMC-format data files" (2001).
+"""
+
+import re
+from datetime import UTC, datetime, timedelta
+
+from rockbatch.errors import InputError
+from rockbatch.motions.component import Component
+from rockbatch.motions.formats.fixed_width import fixed_numbers, lines_of, number_in
+from rockbatch.motions.formats.header_lines import found, line_at
+from rockbatch.motions.formats.obspy_plugin import plugin
+from rockbatch.motions.formats.record_file import RecordFile
+from rockbatch.motions.formats.recording import Recording, to_components
+from rockbatch.motions.motion import Unusable
+
+SUFFIXES = frozenset({".smc"})
+
+_UNIT = "cm/s2"  # which the format prescribes
+_INTEGERS, _REALS, _COMMENTS = 11, 17, 27  # lines at which these begin
+_TITLE = re.compile(r"(?P<kind>[0-6]) (?P<what>[A-Z]+(?: [A-Z]+)*)|\*")
+_KINDS = {"1": "uncorrected", "2": "corrected"}
+_EIGHT_INTEGERS = re.compile(r"(?:[- \d]{9}\d){8}\s*", re.ASCII)
+_STATION = re.compile(r"station\s*=\s*(?P<name>.*?)\s*component\s*=\s*(?P<label>\S*)")
+_VERTICAL = {0: "Up", 180: "Down"}  # degrees from the upward vertical; 90 is horizontal
+
+
+def is_smc(head: bytes) -> bool:
+    """Whether the first bytes are the header of an SMC file, of whatever kind of data."""
+    lines = head.decode("latin-1").splitlines()
+    return (
+        len(lines) > _INTEGERS
+        and _TITLE.fullmatch(lines[0].strip()) is not None
+        and _EIGHT_INTEGERS.fullmatch(lines[_INTEGERS]) is not None
+    )
+
+
+def read_smc(file: RecordFile) -> list[Component | Unusable]:
+    """The component of an SMC file in m/s², an uncorrected one without offset."""
+    return to_components(file, _parse(file.text))
+
+
+def _parse(text: str) -> list[Recording]:
+    """The recording of a file; ``InputError`` with the line where it is not whole."""
+    lines = lines_of(text)
+    title = found(_TITLE, lines, 0, "2 CORRECTED ACCELEROGRAM")
+    if title["kind"] not in _KINDS:
+        raise InputError(f'line 1: found "{title[0]}"; expected accelerations: take the .smc file that has them')
+    station = found(_STATION, lines, 5, "station = …, component= …")
+    integers = [int(value) for value in fixed_numbers(lines, _INTEGERS, 48, 10, 8)]
+    unknown, comments, npts = integers[0], integers[15], integers[16]
+    if comments < 0 or npts < 1:
+        raise InputError(f"lines 13–14: found {comments} comments and {npts} values; expected counts")
+    rate = _real(lines, 2)
+    if rate is None or not 0.1 <= rate <= 1e5:
+        raise InputError(
+            "line 18: no sampling rate, so its samples are pairs of time and value as digitised from film; take the "
+            'corrected file of this record ("2 CORRECTED ACCELEROGRAM")'
+        )
+    width, per_line = (14, 5) if integers[46] == 8 else (10, 8)
+    first = _COMMENTS + comments
+    values = fixed_numbers(lines, first, npts, width, per_line)
+    end = first - -npts // per_line
+    after = next((i for i in range(end, len(lines)) if lines[i].strip()), None)
+    if after is not None:
+        raise InputError(f'line {after + 1}: found "{lines[after][:40]}" after the {npts} values that line 14 declares')
+    year, day, hour, minute, second, ms = integers[1:7]
+    peaks = [abs(peak) for peak in (_real(lines, 30), _real(lines, 32)) if peak is not None]
+    return [
+        Recording(
+            label=_label(integers[12], integers[13], unknown, station["label"]),
+            dt=float(f"{1.0 / rate:.12g}"),
+            values=values,
+            unit=_UNIT,
+            station=f"{station['name']} {integers[29]}, {year}-{day:03d} {hour}:{minute}, {_KINDS[title['kind']]}",
+            codes=("", "".join(c for c in line_at(lines, 2) if c.isascii() and c.isalnum())[:5], "", ""),
+            start=None if unknown in (second, ms) else _start(year, day, hour, minute, second, ms),
+            uncorrected=title["kind"] == "1",
+            stated_peak=max(peaks, default=None),
+            notes=("its header flags a problem: read its comments",) if integers[17] == 1 else (),
+            header={"station": station["name"], "event": line_at(lines, 3)[25:].strip()},
+        )
+    ]
+
+
+def _real(lines: list[str], n: int) -> float | None:
+    """Real number ``n`` of the header, counted from 1; ``None`` where it is written as the first: it is unknown."""
+    at, column = _REALS + (n - 1) // 5, 15 * ((n - 1) % 5)
+    field = line_at(lines, at)[column : column + 15]
+    return None if field.strip() == line_at(lines, _REALS)[:15].strip() else number_in(field, at)
+
+
+def _label(vertical: int, azimuth: int, unknown: int, text: str) -> str:
+    """Direction by the angle from the vertical and the azimuth [degrees], or as the text has it."""
+    if vertical in _VERTICAL:
+        return _VERTICAL[vertical]
+    if vertical not in (90, unknown):
+        raise InputError(f"line 13: inclined, {vertical}° from the vertical; expected 0, 90 or 180")
+    return str(azimuth) if vertical == 90 and 0 <= azimuth <= 360 else text
+
+
+def _start(year: int, day: int, hour: int, minute: int, second: int, ms: int) -> float | None:
+    """Time of the first sample [s since 1970] by the day of the year; ``None`` for numbers that are none."""
+    try:
+        begin = datetime(year, 1, 1, hour, minute, second, tzinfo=UTC) + timedelta(days=day - 1, milliseconds=ms)
+        return begin.timestamp()
+    except (ValueError, OverflowError):
+        return None
+
+
+is_smc_file, read_smc_stream = plugin("SMC", is_smc, _parse)

@@ -1,0 +1,95 @@
+"""Text to a table of numbers: comment and header lines, and columns however a program or Excel separates them."""
+
+import re
+
+import numpy as np
+
+from rockbatch.errors import InputError
+from rockbatch.motions.formats.fixed_width import HUGE, is_cut_short, lines_of
+from rockbatch.motions.motion import Samples
+
+_COMMENT = ("#", "%")
+_LONGEST, _MOST_HEADER = 300, 300  # characters of a header line, and lines, that are looked at
+_NUMERIC = re.compile(r'[-+.,;"\s]*[0-9][-+0-9.,;eEdD"\s]*')
+
+
+def read_table(text: str) -> tuple[list[str], Samples]:
+    """Header lines, without their comment sign, and the table of numbers, shape (npts, columns).
+
+    Columns stand between blanks, tabs, commas or semicolons. Decimal commas are understood where they cannot
+    be anything else: between semicolons, tabs or blanks in a file without a decimal point. Raises
+    ``InputError`` with the line for a row unlike those above it, and for commas that may be either.
+    """
+    header: list[str] = []
+    rows: list[list[float]] = []
+    at: list[int] = []
+    lines = lines_of(text)
+    separators = _separators(lines)
+    for i, line in enumerate(lines):
+        stripped = line.strip()
+        comment = stripped.startswith(_COMMENT)
+        row = None if comment else _numbers(stripped, *separators)
+        if row and (not rows or len(row) == len(rows[0])):
+            rows.append(row)
+            at.append(i)
+        elif row:
+            raise InputError(f"line {i + 1}: found {len(row)} numbers; expected {len(rows[0])} as above")
+        elif stripped.strip(' ;,\t"'):
+            if rows and not comment:
+                raise InputError(f'line {i + 1}: found "{stripped[:60]}"; expected {len(rows[0])} numbers as above')
+            if len(header) < _MOST_HEADER:
+                header.append(stripped.lstrip("#% \t")[:_LONGEST])
+    if not rows:
+        raise InputError("no columns of numbers found in it")
+    table = np.array(rows)
+    wild = ~(np.abs(table) < HUGE).all(axis=1)
+    if wild.any():
+        i = at[int(wild.argmax())]
+        raise InputError(f'line {i + 1}: found "{lines[i].strip()[:60]}"; expected finite numbers')
+    if is_cut_short([lines[i].split()[-1].replace(",", ".") for i in at]):
+        raise InputError(
+            f"line {at[-1] + 1}: its last number is shorter than all others: the file is cut; fetch it again"
+        )
+    return header, table
+
+
+def _separators(lines: list[str]) -> tuple[str, str]:
+    """Characters between columns besides blanks, and the decimal comma where there is one ("" if not)."""
+    if not any("," in line and _NUMERIC.fullmatch(line) for line in lines):
+        return ";", ""
+    body = [line for line in lines if _NUMERIC.fullmatch(line)]
+    semicolon, point, tab = (any(sign in line for line in body) for sign in ";.\t")
+    if semicolon or (tab and any("," in field.strip(" ,") for line in body for field in line.split("\t"))):
+        if point:
+            raise InputError(
+                'found numbers with both points and commas, such as "1.234,5"; write them with points only'
+            )
+        return ";", ","
+    if point or any(re.search(r",\s|\s,|^\s*,|,\s*$", line) for line in body):
+        return ",", ""
+    if any(re.search(r"\S\s+\S", line) for line in body):
+        return "", ","
+    raise InputError(
+        f'found "{next(line for line in body if "," in line).strip()[:40]}": a comma may be decimal or between '
+        'columns; write points in numbers, or ";" between columns'
+    )
+
+
+def _numbers(line: str, between: str, decimal: str) -> list[float] | None:
+    """The numbers of a line, ``None`` if it holds anything else."""
+    if "_" in line:  # Python would read 1_0 as ten
+        return None
+    if '"' in line:
+        line = line.replace('"', " ")
+    if between:
+        line = line.replace(between, " ")
+    if decimal:
+        line = line.replace(decimal, ".")
+    try:
+        return [float(token) for token in line.split()]
+    except ValueError:
+        pass
+    try:
+        return [float(token) for token in line.upper().replace("D", "E").split()]  # Fortran's double precision
+    except ValueError:
+        return None

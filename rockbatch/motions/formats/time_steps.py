@@ -1,0 +1,105 @@
+"""From printed times to an even sampling interval: rounding is not unevenness, unevenness is interpolated and said."""
+
+import numpy as np
+
+from rockbatch.errors import InputError
+from rockbatch.motions.motion import Samples
+
+_EVEN = 0.05  # of the step: what clocks and printing may be off from an even grid; a lost sample is off by 1
+_COARSEST = 0.4  # of the step: coarser printing does not tell rounding from a lost sample (off by 0.5 at least)
+_MOST_DIGITS = 9  # decimals of seconds that are looked for
+_FINEST = 10  # how many parts of the usual step are tried as the grid of uneven times
+_SPREAD = 20.0  # longest, and inverse of the shortest, over the usual step: beyond, something is missing
+_WHOLE = 2.0**53  # up to which floats are told apart as whole numbers
+_GROWTH = 20  # how many times more samples an even grid may take
+
+
+def grows_evenly(t: Samples) -> bool:
+    """Whether times are samples of one interval, as far as their printing tells; shape (npts,), any unit."""
+    return len(t) > 1 and _is_growing(t) and _on_grid(t, np.arange(len(t), dtype=float)) is not None
+
+
+def on_even_steps(t: Samples, values: Samples) -> tuple[float, Samples, tuple[str, ...]]:
+    """Sampling interval, in the unit of ``t``, values on it, and notes on what was done to them.
+
+    ``t`` has shape (npts,), ``values`` shape (npts, channels). Uneven times get an even grid that keeps every
+    sample, of a part of their usual step (lost samples) or of their greatest common step (film, digitised in
+    whole ms); where there is none, the shortest step. What lies between is linear, as a motion is between its samples. Raises
+    ``InputError`` for times that do not grow, and for gaps.
+    """
+    if not _is_growing(t):
+        still = int(np.argmin(np.diff(t) > 0)) if len(t) > 1 else 0
+        raise InputError(f"time does not grow after sample {still + 1} (t = {t[still]:g}); repair the record")
+    steps = np.diff(t)
+    usual, shortest, longest = float(np.median(steps)), float(steps.min()), float(steps.max())
+    if longest > _SPREAD * usual or shortest * _SPREAD < usual:
+        odd = int(steps.argmax() if longest > _SPREAD * usual else steps.argmin())
+        raise InputError(
+            f"time does not grow evenly: by {usual:g} as a rule, by {steps[odd]:g} after sample {odd + 1} "
+            f"(t = {t[odd]:g}); a gap is not filled, cut the record there or repair it"
+        )
+    for step in _candidates(t, usual):
+        at = np.concatenate([[0.0], np.cumsum(np.rint(steps / step))])
+        if at[-1] > _GROWTH * len(t) or np.diff(at).min() < 1:
+            continue
+        dt = _on_grid(t, at)
+        if dt is not None and len(at) == at[-1] + 1:
+            return dt, values, ()
+        if dt is not None:
+            added = int(at[-1]) + 1 - len(t)
+            even = _interpolated(np.arange(at[-1] + 1), at, values)
+            return dt, even, (_said(shortest, longest, dt, f"{added} samples put between, none lost"),)
+    count = int(np.ceil((t[-1] - t[0]) / shortest * (1 - 1e-9)))
+    if count > _GROWTH * len(t):
+        raise InputError(
+            f"time does not grow evenly: steps of {shortest:g} to {longest:g} would take {count} samples "
+            f"for {len(t)}; resample the record"
+        )
+    dt = float(t[-1] - t[0]) / count
+    even = _interpolated(t[0] + dt * np.arange(count + 1), t, values)
+    peaks, kept = np.abs(values).max(axis=0), np.abs(even).max(axis=0)
+    lost = float(((peaks - kept) / np.where(peaks > 0, peaks, 1.0)).max())
+    return dt, even, (_said(shortest, longest, dt, f"its peak is lower by {lost:.1%}"),)
+
+
+def _is_growing(t: Samples) -> bool:
+    """Whether every time is later than the one before."""
+    return len(t) > 1 and bool((np.diff(t) > 0).all())
+
+
+def _candidates(t: Samples, usual: float) -> list[float]:
+    """Steps, from coarse to fine, of which times may be multiples: parts of the usual one, and what is printed."""
+    steps = [usual / parts for parts in range(1, _FINEST + 1)]
+    printed = _resolution(t)
+    if printed > 0 and np.abs(t).max() < _WHOLE * printed:
+        steps.append(printed * float(np.gcd.reduce(np.rint((t - t[0]) / printed).astype(np.int64))))
+    return steps
+
+
+def _on_grid(t: Samples, at: Samples) -> float | None:
+    """Step of the even grid on which sample i has the number at[i]; ``None`` where the times are off it."""
+    dt = float(t[-1] - t[0]) / float(at[-1])
+    printed = _resolution(t)
+    allowed = _EVEN * dt if printed > _COARSEST * dt else max(_EVEN * dt, printed)
+    off = float(np.abs(t - (t[0] + dt * at)).max())
+    return float(f"{dt:.12g}") if off <= allowed else None
+
+
+def _resolution(t: Samples) -> float:
+    """Unit of the last decimal that times are printed with, in their own unit; 0 where there are too many."""
+    shortest = float(np.diff(t).min())
+    for digits in range(_MOST_DIGITS + 1):
+        scaled = t * 10.0**digits
+        if shortest * 10.0**digits > 0.999 and np.abs(scaled - np.rint(scaled)).max() < 1e-3:
+            return 10.0**-digits
+    return 0.0
+
+
+def _interpolated(where: Samples, at: Samples, values: Samples) -> Samples:
+    """``values`` of samples ``at``, linearly at ``where``, channel by channel."""
+    return np.column_stack([np.interp(where, at, channel) for channel in values.T])
+
+
+def _said(shortest: float, longest: float, dt: float, effect: str) -> str:
+    """The note on uneven times."""
+    return f"uneven times (steps of {shortest:g} to {longest:g}) interpolated linearly to dt = {dt:g}; {effect}"

@@ -1,0 +1,268 @@
+"""Manifests: what people know about records that the files do not say, or say wrongly.
+
+``motions.toml`` has a table [[record]] for each file, ``motions.csv`` a line, with the keys of ``RECORD``; both lie in
+the folder that the names of the files start from.
+"""
+
+import csv
+import os
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from rockbatch.errors import InputError
+from rockbatch.motions import kinds
+from rockbatch.motions.component import Component
+from rockbatch.motions.formats import ReadOptions
+from rockbatch.motions.orientation import Orientation
+from rockbatch.toml.kinds import boolean, choice, closest, not_negative, number, positive, shown, text
+from rockbatch.toml.reader import Key, Table, TomlFile
+from rockbatch.units import acceleration_factor
+
+RECORD = {
+    "file": Key(text, '"RSN1063_NORTHR_RRS228.AT2"', required=True),
+    "component": Key(text, '"NS"'),
+    "use": Key(boolean, "false"),
+    "role": Key(choice("horizontal", "vertical"), '"vertical"'),
+    "azimuth": Key(kinds.azimuth, "228"),
+    "unit": Key(kinds.unit, '"cm/s2"'),
+    "dt": Key(positive, "0.01"),
+    "scale": Key(positive, "1.0"),
+    "polarity": Key(choice("+", "-"), '"-"'),
+    "station": Key(text, '"Rinaldi"'),
+    "distance_km": Key(not_negative, "6.5"),
+    "magnitude": Key(number, "6.7"),
+    "confirm_pga": Key(boolean, "true"),
+}
+_TEXTS = ("file", "component", "role", "unit", "polarity", "station")
+_LARGEST = 4 * 2**20  # bytes, some ten thousand records
+_SAME = 1e-9  # relative: factors of units, and steps, that differ by less are the same
+
+
+@dataclass(frozen=True)
+class Entry:
+    """What a manifest says of a file, or of one component in it: the values of its keys, and where they stand."""
+
+    path: Path
+    table: Table
+    values: dict[str, Any]
+
+    @property
+    def component(self) -> str | None:
+        """Label or name of the component that is meant; ``None`` for all of the file."""
+        return self.values.get("component")
+
+    @property
+    def use(self) -> bool:
+        """Whether the file or component shall be used."""
+        return bool(self.values.get("use", True))
+
+
+@dataclass
+class Manifest:
+    """Entries by file (its real path), and the mistakes found, which :meth:`finish` raises."""
+
+    entries: dict[Path, list[Entry]]
+    files: list[TomlFile]
+    refused: list[str]
+
+    @classmethod
+    def read(cls, paths: Iterable[Path]) -> "Manifest":
+        """What the manifests at ``paths`` say together."""
+        manifest = cls({}, [], [])
+        for path in paths:
+            try:
+                file = _open(path)
+            except InputError as error:
+                manifest.refused += error.problems
+            else:
+                manifest._take(file)
+        return manifest
+
+    def _take(self, file: TomlFile) -> None:
+        self.files.append(file)
+        Table(file, (), "", file.data).read({}, other=("record",))
+        folder = Path(os.path.realpath(file.path.parent))
+        for table in file.tables("record", title="file"):
+            values = table.read(RECORD)
+            if "file" not in values:
+                continue
+            path = Path(os.path.realpath(folder / values["file"]))
+            if not path.is_relative_to(folder):
+                table.complain(
+                    f"file = {shown(values['file'])}: lies outside this folder; put a manifest there", "file"
+                )
+            elif not path.is_file():
+                names = [entry.name for entry in path.parent.iterdir()] if path.parent.is_dir() else []
+                meant = closest(path.name, sorted(names))
+                hint = f"; did you mean {(path.parent / meant).relative_to(folder).as_posix()}?" if meant else ""
+                table.complain(f"file = {shown(values['file'])}: no such file in {folder}{hint}", "file")
+            elif any(other.component == values.get("component") for other in self.entries.get(path, [])):
+                table.complain(f"file = {shown(values['file'])}: given twice; write one table for it", "file")
+            else:
+                self.entries.setdefault(path, []).append(Entry(path, table, values))
+
+    def of(self, path: Path) -> list[Entry]:
+        """Entries of a file, those of the whole file first."""
+        found = self.entries.get(Path(os.path.realpath(path)), [])
+        return sorted(found, key=lambda entry: entry.component is not None)
+
+    def finish(self) -> None:
+        """Raise :class:`InputError` with all mistakes of all manifests, if there are any."""
+        problems = list(self.refused)
+        for file in self.files:
+            try:
+                file.finish()
+            except InputError as error:
+                problems += error.problems
+        if problems:
+            raise InputError(*problems)
+
+
+def options_of(entries: Sequence[Entry], options: ReadOptions) -> ReadOptions:
+    """``options`` with the unit and the sampling interval that the manifest has for the whole file."""
+    for entry in entries:
+        if entry.component is None:
+            stated = {key: entry.values[key] for key in ("unit", "dt") if key in entry.values}
+            options = replace(options, **stated)
+    return options
+
+
+def described(
+    components: Sequence[Component], entries: Sequence[Entry], gravity: float
+) -> list[tuple[Component, bool]]:
+    """Components of a file as its entries want them, and whether each is to be used; mistakes are noted."""
+    chosen: list[tuple[Component, bool]] = [(component, True) for component in components]
+    for entry in entries:
+        meant = [i for i, c in enumerate(components) if entry.component in (None, c.name, c.orientation.label)]
+        if not meant and components:
+            known = ", ".join(shown(c.orientation.label or c.name) for c in components)
+            said = f"component = {shown(entry.component)}: the file has {known}"
+            entry.table.complain(f"{said}; write one of these", "component")
+        if len(meant) > 1:
+            for key in {"azimuth", "role"} & entry.values.keys():
+                entry.table.complain(
+                    f"{key}: the file has {len(meant)} components; write component = "
+                    f"{shown(components[0].orientation.label)} with it, and a table for each",
+                    key,
+                )
+        for i in meant:
+            component, used = chosen[i]
+            chosen[i] = (_described(component, entry, gravity), used and entry.use)
+    return chosen
+
+
+def _described(component: Component, entry: Entry, gravity: float) -> Component:
+    values, where = entry.values, entry.table.file.path.name
+    notes = list(component.notes)
+    factor = 1.0
+    if "unit" in values:
+        factor *= _unit_factor(component, entry, gravity)
+        if factor != 1.0:
+            notes.append(f"unit {values['unit']} as {where} says, instead of {component.unit}")
+    if "dt" in values and abs(values["dt"] - component.dt) > _SAME * component.dt:
+        notes.append(f"dt = {values['dt']:g} s as {where} says, instead of {component.dt:g} s")
+        component = replace(component, dt=values["dt"])
+    if values.get("scale", 1.0) != 1.0:
+        factor *= values["scale"]
+        notes.append(f"scaled by {values['scale']:g} as {where} says")
+    if values.get("polarity") == "-":
+        factor = -factor
+        notes.append(f"sign reversed as {where} says")
+    if "station" in values:
+        component = replace(component, station=values["station"], site="")
+    return replace(
+        component,
+        acceleration=component.acceleration * factor if factor != 1.0 else component.acceleration,
+        orientation=_orientation(component.orientation, entry),
+        magnitude=values.get("magnitude", component.magnitude),
+        distance_km=values.get("distance_km", component.distance_km),
+        confirmed=values.get("confirm_pga", component.confirmed),
+        notes=tuple(notes),
+    )
+
+
+def _unit_factor(component: Component, entry: Entry, gravity: float) -> float:
+    """What turns numbers read in the component's unit into those of the manifest's."""
+    if not component.unit:
+        entry.table.complain("unit: the file has a scale of its own; leave it out, or write scale instead", "unit")
+        return 1.0
+    ratio = acceleration_factor(entry.values["unit"], gravity) / acceleration_factor(component.unit, gravity)
+    return 1.0 if abs(ratio - 1.0) <= _SAME else ratio
+
+
+def _orientation(found: Orientation, entry: Entry) -> Orientation:
+    values = entry.values
+    role = values.get("role", "vertical" if found.vertical else "horizontal")
+    if role == "vertical":
+        if "azimuth" in values:
+            entry.table.complain('azimuth: it is a vertical component; write role = "horizontal" if not', "azimuth")
+        return Orientation(found.label or role, vertical=True, down=found.down)
+    azimuth = values["azimuth"] % 360.0 if "azimuth" in values else found.azimuth
+    return Orientation(found.label, azimuth=azimuth)
+
+
+def _open(path: Path) -> TomlFile:
+    """The manifest as TOML, whichever of the two it is."""
+    if path.stat().st_size > _LARGEST:
+        raise InputError(f"{path}: larger than {_LARGEST // 2**20} MiB; a manifest has a few lines for each record")
+    return TomlFile.read(path) if path.suffix == ".toml" else _from_csv(path)
+
+
+def is_manifest(path: Path) -> bool:
+    """Whether a file of a manifest's name is one: a ``motions.csv`` may be a record, if none of its columns is "file"."""
+    if path.suffix == ".toml":
+        return True
+    with path.open("rb") as file:
+        head = file.readline(1000).decode("utf-8-sig", "replace")
+    return "file" in [cell.strip() for cell in next(csv.reader([head], delimiter=_delimiter(head)), [])]
+
+
+def _delimiter(head: str) -> str:
+    return ";" if ";" in head else ","  # Excel's where decimals have a comma
+
+
+def _from_csv(path: Path) -> TomlFile:
+    """A ``motions.csv`` as if it were TOML; empty cells are keys that are not there."""
+    try:
+        content = path.read_text("utf-8-sig")
+    except UnicodeDecodeError:
+        raise InputError(f"{path}: not UTF-8 text; save it as CSV in the encoding UTF-8") from None
+    lines = content.splitlines()
+    delimiter = _delimiter(lines[0])
+    reader = csv.reader(lines, delimiter=delimiter)
+    names = [name.strip() for name in next(reader)]
+    records: list[dict[str, Any]] = []
+    file = TomlFile(path, content, {"record": records}, {})
+    file.lines[("header",)] = 1
+    for name in names:
+        if name not in RECORD:
+            meant = closest(name, RECORD)
+            instead = f"did you mean {meant}?" if meant else "write one of " + ", ".join(RECORD)
+            file.complain(("header",), f"{shown(name)}: unknown column; {instead}")
+    for cells in reader:
+        at: tuple[str | int, ...] = ("record", len(records))
+        if not any(cell.strip() for cell in cells):
+            continue
+        file.lines[at] = reader.line_num
+        if len(cells) > len(names):
+            file.complain(at, f"found {len(cells)} cells; the first line names {len(names)} columns")
+        given = {
+            name: cell.strip() for name, cell in zip(names, cells, strict=False) if name in RECORD and cell.strip()
+        }
+        file.lines.update({(*at, name): reader.line_num for name in given})
+        records.append({name: _value(name, cell, delimiter) for name, cell in given.items()})
+    return file
+
+
+def _value(name: str, cell: str, delimiter: str) -> Any:
+    """A cell as TOML would have it; a text where it is neither number nor truth value, which the key then refuses."""
+    if name in _TEXTS:
+        return cell
+    if cell.lower() in ("true", "false"):
+        return cell.lower() == "true"
+    try:
+        return float(cell.replace(",", ".") if delimiter == ";" else cell)
+    except ValueError:
+        return cell

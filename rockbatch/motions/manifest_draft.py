@@ -1,0 +1,92 @@
+"""A manifest drafted from what was found in a folder, to be completed by hand."""
+
+import json
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+from rockbatch.errors import InputError
+from rockbatch.files import legible, write_whole
+from rockbatch.motions.component import Component
+from rockbatch.motions.folder import Reading, read_files
+from rockbatch.motions.formats import ReadOptions
+from rockbatch.motions.motion import Unusable
+from rockbatch.motions.plausible import HIGHEST, LOWEST
+from rockbatch.motions.stations import by_station
+from rockbatch.units import GRAVITY
+
+_HEAD = """\
+# What is known about these records beside what their files say; rockbatch reads it wherever they are used.
+# Drafted from the files: correct what is wrong, complete what is missing, take out what need not be said.
+#
+# unit, dt     of the file's numbers, in place of its own; dt in s
+# azimuth      degrees clockwise from north;  role = "vertical" or "horizontal";  polarity = "-" reverses the sign
+# scale        factor on the record;  station: components that share it belong together
+# magnitude, distance_km;  confirm_pga = true: a PGA outside 0.001-5 g is right;  use = false: leave it out
+"""
+
+
+def write_draft(folder: Path, options: ReadOptions | None = None) -> Path:
+    """Write ``motions.toml`` into ``folder``; ``InputError`` where there is a manifest, which is never written over."""
+    target = folder / "motions.toml"
+    if not folder.is_dir():
+        raise InputError(f"{folder}: a manifest is for a folder; give the one that the records lie in")
+    for existing in (target, folder / "motions.csv"):
+        if existing.exists():
+            raise InputError(f"{existing} is there already; edit it, or move it away to have a new one drafted")
+    try:
+        write_whole(target, draft(folder, options))
+    except OSError as error:
+        raise InputError(f"{target}: cannot be written: {error.strerror or error}") from None
+    return target
+
+
+def draft(folder: Path, options: ReadOptions | None = None) -> str:
+    """The text of a manifest: a table for each component, a remark for each file that none was found in."""
+    readings, paths = read_files([folder], options=options)
+    components = [reading for reading in readings if isinstance(reading, Component)]
+    stations = {id(c): station[0].station or station[0].site for station in by_station(components) for c in station}
+    blocks = [_HEAD]
+    for reading in readings:
+        path = paths[_file_of(reading, paths)]
+        name = path.relative_to(folder).as_posix()
+        if legible(name) != name:
+            blocks.append(f"# {legible(name)}: give it a name without control characters first\n")
+        elif isinstance(reading, Component):
+            several = sum(_file_of(other, paths) == _file_of(reading, paths) for other in components) > 1
+            blocks.append(_table(reading, name, several, stations[id(reading)]))
+        elif isinstance(reading, Unusable):
+            blocks.append(_remark(name, legible(reading.reason)))
+    return "\n".join(blocks)
+
+
+def _file_of(reading: Reading, paths: Iterable[str]) -> str:
+    """Source of the file that a reading came from; a component's has its label behind."""
+    return reading.source if reading.source in paths else reading.source.rpartition(" (")[0]
+
+
+def _table(component: Component, name: str, several: bool, station: str) -> str:
+    orientation = component.orientation
+    lines: list[tuple[str, Any]] = [("file", name)]
+    if several:
+        lines.append(("component", orientation.label or component.name))
+    lines.append(("role", "vertical" if orientation.vertical else "horizontal"))
+    if orientation.azimuth is not None:
+        lines.append(("azimuth", orientation.azimuth))
+    if component.unit:
+        lines.append(("unit", component.unit))
+    lines.append(("station", station))
+    text = "[[record]]\n" + "".join(f"{key} = {_written(value)}\n" for key, value in lines)
+    if not orientation.vertical and orientation.azimuth is None:
+        text += "# azimuth =\n"
+    if not orientation.vertical and not LOWEST <= component.pga / GRAVITY <= HIGHEST:
+        text += f"# confirm_pga = true   # PGA {component.pga / GRAVITY:.3g} g: check the unit\n"
+    return text + "# magnitude =\n# distance_km =\n"
+
+
+def _remark(name: str, reason: str) -> str:
+    return f"# Not used: {reason}\n# [[record]]\n# file = {_written(name)}\n# use = false\n"
+
+
+def _written(value: Any) -> str:
+    return json.dumps(value, ensure_ascii=False) if isinstance(value, str) else f"{value:g}"

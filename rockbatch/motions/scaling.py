@@ -1,0 +1,73 @@
+"""Records scaled to a target: a PGA, a PGV, or a spectral acceleration."""
+
+from dataclasses import dataclass, replace
+
+from rockbatch.errors import InputError
+from rockbatch.motions import measures
+from rockbatch.motions.motion import Motion, MotionSet, Unusable
+from rockbatch.motions.spectrum import spectral_acceleration
+
+
+@dataclass(frozen=True)
+class Target:
+    """What the horizontal component of every record is scaled to; the vertical one goes with it.
+
+    Attributes
+    ----------
+    pga_g, pgv_m_s, sa_g : float or None
+        Exactly one of them: PGA [g], PGV [m/s], or pseudo-spectral acceleration [g] ...
+    period_s, damping : float
+        ... of an oscillator of this period [s], required with ``sa_g``, and this fraction of critical damping.
+    """
+
+    pga_g: float | None = None
+    pgv_m_s: float | None = None
+    sa_g: float | None = None
+    period_s: float | None = None
+    damping: float = 0.05
+
+    def __post_init__(self) -> None:
+        given = [value for value in (self.pga_g, self.pgv_m_s, self.sa_g) if value is not None]
+        if len(given) != 1 or not given[0] > 0 or (self.sa_g is None) != (self.period_s is None):
+            raise InputError("a target is one of pga_g, pgv_m_s, or sa_g with period_s, above 0")
+
+    def __str__(self) -> str:
+        if self.sa_g is not None:
+            return f"SA({self.period_s:g} s, {100 * self.damping:g} %) = {self.sa_g:g} g"
+        return f"PGA = {self.pga_g:g} g" if self.pga_g is not None else f"PGV = {self.pgv_m_s:g} m/s"
+
+    def factor(self, motion: Motion, gravity: float) -> float:
+        """What brings ``motion`` to the target; infinite for one without motion."""
+        if self.pga_g is not None:
+            wanted, found = self.pga_g * gravity, motion.pga
+        elif self.pgv_m_s is not None:
+            wanted, found = self.pgv_m_s, measures.pgv(motion.horizontal, motion.dt)
+        else:
+            assert self.sa_g is not None
+            assert self.period_s is not None
+            wanted = self.sa_g * gravity
+            found = float(spectral_acceleration(motion.horizontal, motion.dt, [self.period_s], self.damping)[0])
+        return wanted / found if found > 0 else float("inf")
+
+
+def at_target(found: MotionSet, target: Target, gravity: float) -> MotionSet:
+    """All motions scaled to ``target``, with the factor noted; one without motion is unusable."""
+    motions: list[Motion] = []
+    unusable: list[Unusable] = []
+    for motion in found.motions:
+        factor = target.factor(motion, gravity)
+        if factor == float("inf"):
+            unusable.append(Unusable(motion.name, motion.files, f"has no motion that can be scaled to {target}"))
+        else:
+            motions.append(_scaled(motion, factor, f"scaled by {factor:.4g} to {target}"))
+    return replace(found, motions=motions, unusable=[*found.unusable, *unusable])
+
+
+def _scaled(motion: Motion, factor: float, note: str) -> Motion:
+    return replace(
+        motion,
+        horizontal=motion.horizontal * factor,
+        vertical=None if motion.vertical is None else motion.vertical * factor,
+        factor=motion.factor * factor,
+        notes=(*motion.notes, note),
+    )

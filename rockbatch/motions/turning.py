@@ -1,0 +1,90 @@
+"""Pairs of horizontal components turned to other directions.
+
+With a₁ and a₂ the accelerations along two azimuths that are square to each other, the one along azimuth φ is
+a₁ cos(φ − φ₁) + a₂ cos(φ − φ₂), whichever of the two lies to the right of the other.
+"""
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+
+from rockbatch.motions.common_span import on_common_samples, overlap
+from rockbatch.motions.component import Component
+from rockbatch.motions.motion import Samples, Unusable
+from rockbatch.motions.orientation import Orientation, same_azimuth, split_stem
+
+_SQUARE = 1.0  # degree: what two components may lack of a right angle, as agencies round their azimuths
+
+
+def resolved(first: Samples, azimuth1: float, second: Samples, azimuth2: float, azimuth: float) -> Samples:
+    """Acceleration along ``azimuth`` [degrees] of two components square to each other, shape (npts,)."""
+    return first * math.cos(math.radians(azimuth - azimuth1)) + second * math.cos(math.radians(azimuth - azimuth2))
+
+
+def every(step: float) -> tuple[float, ...]:
+    """Azimuths 0, step, 2 step … below 180°: half a turn reverses a component, which is what a polarity is for."""
+    return tuple(i * step for i in range(math.ceil(180.0 / step - 1e-9)))
+
+
+def turn_pairs(
+    stations: Iterable[Sequence[Component]], azimuths: Sequence[float]
+) -> tuple[list[list[Component]], list[Unusable]]:
+    """Horizontal components along ``azimuths`` [degrees] in place of those of each station, and what cannot be turned.
+
+    Each station's components are its horizontal ones. Two that are square to each other are turned; a single one goes
+    on as it is where it points along the only azimuth asked for.
+    """
+    turned: list[list[Component]] = []
+    unusable: list[Unusable] = []
+    for horizontals in stations:
+        why = _obstacle(horizontals)
+        if not why:
+            turned.append([_turned(horizontals[0], horizontals[1], azimuth) for azimuth in azimuths])
+            continue
+        turned.append([])
+        for component in horizontals:
+            if len(azimuths) == 1 and same_azimuth(component.orientation.azimuth, azimuths[0]):
+                turned[-1].append(component)
+            else:
+                unusable.append(Unusable(component.name, component.source, f"cannot be turned: {why}"))
+    return turned, unusable
+
+
+def _obstacle(horizontals: Sequence[Component]) -> str:
+    """Why these components of one station are no pair that can be turned; empty where they are."""
+    for component in horizontals:
+        if component.orientation.azimuth is None:
+            return f"the azimuth of {component.name} is not known; write it in motions.toml"
+    if len(horizontals) != 2:
+        count = "only one" if len(horizontals) == 1 else str(len(horizontals))
+        return f"its station has {count} horizontal component{'s' * (len(horizontals) > 1)}, and two are needed"
+    first, second = horizontals
+    between = abs((_azimuth(second) - _azimuth(first) + 180.0) % 360.0 - 180.0)
+    if abs(between - 90.0) > _SQUARE:
+        return f"{first.name} and {second.name} are {between:g}° apart, not square to each other"
+    return "" if overlap(first, second) else f"{first.name} and {second.name} have no time in common"
+
+
+def _azimuth(component: Component) -> float:
+    assert component.orientation.azimuth is not None
+    return component.orientation.azimuth
+
+
+def _turned(first: Component, second: Component, azimuth: float) -> Component:
+    dt, a, b, notes = on_common_samples(first, second, (first.name, second.name))
+    base = split_stem(first.name)[0]
+    if base != split_stem(second.name)[0]:
+        base = first.name
+    own = [f"{part.name}: {note}" for part in (first, second) for note in part.notes]
+    starts = [part.start for part in (first, second) if part.start is not None]
+    return replace(
+        first,
+        name=f"{base}_az{azimuth:03g}",
+        dt=dt,
+        acceleration=resolved(a, _azimuth(first), b, _azimuth(second), azimuth),
+        orientation=Orientation(f"{azimuth:g}", azimuth=azimuth % 360.0),
+        source=f"{first.source} + {second.source}",
+        start=max(starts) if len(starts) == 2 else None,
+        confirmed=first.confirmed and second.confirmed,
+        notes=(*own, *notes, f"turned to {azimuth:g}° from {first.name} and {second.name}"),
+    )

@@ -1,0 +1,54 @@
+"""The ground motions of a study: read, selected, scaled, and pulses beside them."""
+
+from dataclasses import replace
+
+from rockbatch.errors import InputError
+from rockbatch.motions import MotionSet, ReadOptions, pulse, read_motions
+from rockbatch.motions.scaling import at_target
+from rockbatch.motions.selection import selected
+from rockbatch.study.spec import Study
+
+
+def ground_motions(study: Study) -> MotionSet:
+    """All motions of a study: its files, packaged records and pulses, and what could not be used.
+
+    Records are read, freed of their offsets, turned and paired, then selected, then scaled to the study's target;
+    its ``scale`` and ``polarity`` are left to the runs. Raises ``InputError`` where nothing is left, or in a strict
+    study where anything is unusable.
+    """
+    spec = study.motions
+    gravity = study.cases[0].pier.gravity
+    found = read_motions(
+        spec.paths,
+        vertical=spec.vertical,
+        gravity=gravity,
+        options=ReadOptions(unit=spec.unit, dt=spec.dt, columns=spec.columns, sensitivity=spec.sensitivity),
+        fema=[(record.station, record.azimuth) for record in spec.fema_p695],
+        offset=spec.offset,
+        azimuths=spec.azimuths,
+        confirmed=spec.confirm_pga,
+    )
+    found = selected(found, spec.select, gravity)
+    if spec.target is not None:
+        found = at_target(found, spec.target, gravity)
+    reasons = [f"{file.source}: {file.reason}" for file in found.unusable]
+    if spec.strict and reasons:
+        raise InputError(*reasons, f"{len(reasons)} of the records cannot be used, and the study is strict")
+    pulses = [
+        pulse(
+            shape.shape,
+            name=shape.name,
+            amplitude=shape.amplitude_g * gravity,
+            period=shape.period_s,
+            dt=shape.dt_s,
+            duration=shape.duration_s,
+            gamma=shape.gamma,
+            nu=shape.nu,
+        )
+        for shape in spec.pulses
+    ]
+    if not found.motions and not pulses:
+        reasons += [f"{file.source}: {file.reason}" for file in found.left_out]
+        where = ", ".join(str(path) for path in spec.paths)
+        raise InputError(f"{where}: no ground motion that can be used; `rockbatch motions PATH` shows why", *reasons)
+    return replace(found, motions=[*found.motions, *pulses])

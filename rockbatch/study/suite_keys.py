@@ -1,0 +1,135 @@
+"""Keys of [motions] that make a suite of records: offsets, directions, selection, target, and what is believed."""
+
+import math
+from typing import Any
+
+from rockbatch.motions import kinds
+from rockbatch.motions.baseline import RULES, Offset
+from rockbatch.motions.scaling import Target
+from rockbatch.motions.selection import Selection
+from rockbatch.motions.turning import every
+from rockbatch.toml.kinds import KindError, boolean, choice, not_negative, number, positive, text
+from rockbatch.toml.reader import Key, Setting, Table
+
+
+def _table(value: Any) -> dict[str, Any]:
+    if not isinstance(value, dict):
+        raise KindError("a table in braces")
+    return value
+
+
+def _bound(value: Any) -> float:
+    """An end of a range; inf where there is none."""
+    if isinstance(value, float) and math.isinf(value) and value > 0:
+        return value
+    return number(value)
+
+
+def _fraction(value: Any) -> float:
+    if not 0 <= number(value) < 1:
+        raise KindError("a fraction of critical damping, within 0..1")
+    return float(value)
+
+
+def _angle(value: Any) -> float:
+    if not 1 <= number(value) <= 90:
+        raise KindError("an angle within 1..90 degrees")
+    return float(value)
+
+
+SUITE = {
+    "offset": Key(choice(*RULES[1:]), '"mean"'),
+    "offset_window_s": Key(not_negative, "[0.0, 5.0]", many=True, distinct=False),
+    "axis_deg": Key(kinds.azimuth, "35"),
+    "every_deg": Key(_angle, "15"),
+    "select": Key(_table, "{ pga_g = [0.1, inf] }"),
+    "target": Key(_table, "{ pga_g = 0.4 }"),
+    "confirm_pga": Key(text, '["RSN825_CAPEMEND_CPM000"]', many=True),
+    "strict": Key(boolean, "true"),
+}
+_SELECT = {
+    "pga_g": Key(_bound, "[0.1, 0.6]", many=True, distinct=False),
+    "pgv_m_s": Key(_bound, "[0.3, inf]", many=True, distinct=False),
+    "duration_s": Key(_bound, "[20, 120]", many=True, distinct=False),
+    "magnitude": Key(_bound, "[6.5, 8.0]", many=True, distinct=False),
+}
+_TARGET = {
+    "pga_g": Key(positive, "0.4"),
+    "pgv_m_s": Key(positive, "0.5"),
+    "sa_g": Key(positive, "0.8"),
+    "period_s": Key(positive, "1.0"),
+    "damping": Key(_fraction, "0.05"),
+}
+
+
+def read_suite(motions: Table, read: dict[str, Any]) -> dict[str, Any]:
+    """Fields of a ``MotionSpec`` from the values of the keys ``SUITE`` in [motions]; mistakes are noted."""
+    found: dict[str, Any] = {
+        "offset": _offset(motions, read),
+        "azimuths": _azimuths(motions, read),
+        "select": Selection(),
+    }
+    if "confirm_pga" in read:
+        found["confirm_pga"] = tuple(setting.value for setting in read["confirm_pga"])
+    if "strict" in read:
+        found["strict"] = read["strict"]
+    if "select" in read and (table := motions.file.table(*motions.at, "select")):
+        limits = {name: _range(table, name, given) for name, given in table.read(_SELECT).items()}
+        found["select"] = Selection(**limits)
+    if "target" in read and (table := motions.file.table(*motions.at, "target")):
+        found["target"] = _target(table)
+    return found
+
+
+def _offset(motions: Table, read: dict[str, Any]) -> Offset:
+    rule, window = read.get("offset"), read.get("offset_window_s")
+    if rule == "pre-event" and "offset_window_s" not in motions.data:
+        motions.complain(
+            'offset = "pre-event": over which time? write for example offset_window_s = [0.0, 5.0], '
+            "seconds from the first sample",
+            "offset",
+        )
+    elif "offset_window_s" in motions.data and "offset" not in motions.data:
+        motions.complain('offset_window_s: is for offset = "pre-event"; write that too', "offset_window_s")
+    elif "offset_window_s" in motions.data and rule in ("keep", "mean"):
+        motions.complain(f'offset_window_s: does not apply to offset = "{rule}"; leave it out', "offset_window_s")
+    elif window is not None:
+        limits = _range(motions, "offset_window_s", window)
+        if rule == "pre-event" and limits is not None:
+            return Offset(rule, limits)
+    return Offset(rule) if rule in ("keep", "mean") else Offset()
+
+
+def _azimuths(motions: Table, read: dict[str, Any]) -> tuple[float, ...]:
+    if "axis_deg" in read and "every_deg" in read:
+        motions.complain("axis_deg and every_deg are given; keep the one that records shall be turned to", "every_deg")
+    if "axis_deg" in read:
+        return (read["axis_deg"],)
+    return every(read["every_deg"]) if "every_deg" in read else ()
+
+
+def _range(table: Table, name: str, given: list[Setting]) -> tuple[float, float] | None:
+    """Two values in order; None, with the mistake noted, for anything else."""
+    values = [setting.value for setting in given]
+    written = table.data[name]
+    if len(values) == 2 and values[0] < values[1]:
+        return values[0], values[1]
+    if not isinstance(written, list) or len(values) == len(written):  # else a value is refused already
+        table.complain(f"{name} = {written}: must be two values in order, the least and the largest", name)
+    return None
+
+
+def _target(table: Table) -> Target | None:
+    before = len(table.file.problems)
+    read = table.read(_TARGET)
+    measures = [name for name in ("pga_g", "pgv_m_s", "sa_g") if name in table.data]
+    if len(measures) != 1:
+        found = " and ".join(measures) + " are given" if measures else "it is missing what to scale to"
+        table.complain(f"{found}; write one of pga_g, pgv_m_s, or sa_g with period_s", *measures[1:2])
+    elif measures == ["sa_g"] and "period_s" not in table.data:
+        table.complain("period_s is missing beside sa_g; write for example period_s = 1.0", "sa_g")
+    elif measures != ["sa_g"]:
+        for name in ("period_s", "damping"):
+            if name in table.data:
+                table.complain(f"{name}: is for sa_g only; leave it out", name)
+    return Target(**read) if len(table.file.problems) == before else None

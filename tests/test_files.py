@@ -1,0 +1,41 @@
+"""Texts from elsewhere do no harm: not in a spreadsheet, not in a terminal, not in a file."""
+
+import csv
+import io
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rockbatch.files import csv_plain, csv_safe, csv_text, legible
+
+
+@pytest.mark.parametrize("text", ["=1+1", "+1", "-2+3", "@SUM(A1)", "\t=1", "\r=1", '=HYPERLINK("http://x")'])
+def test_a_cell_that_a_spreadsheet_would_calculate_gets_an_apostrophe(text):
+    assert csv_safe(text) == f"'{text}"
+
+
+@pytest.mark.parametrize("text", ["RSN1063_RRS228", "a=b", "", "+", "-", "'quoted'", "Δ-1"])
+def test_other_texts_and_a_polarity_stay_as_they_are(text):
+    assert csv_safe(text) == text
+
+
+@given(st.text(alphabet="'=+-@\t\nab", max_size=6))
+def test_a_safe_cell_gives_its_text_back_and_is_no_formula(text):
+    cell = csv_safe(text)
+    assert csv_plain(cell) == text
+    assert len(cell) < 2 or cell[0] not in "=+-@\t\r\n"
+
+
+def test_numbers_in_a_csv_stay_numbers_and_texts_cannot_break_it():
+    rows = [{"a": -1.5, "b": '=1,"x"\ny'}, {"a": math.nan, "b": None}, {"b": -3}]
+    written = csv_text(("a", "b"), rows)
+    assert list(csv.reader(io.StringIO(written))) == [["a", "b"], ["-1.5", '\'=1,"x"\ny'], ["", ""], ["", "-3"]]
+
+
+def test_what_a_terminal_would_obey_is_shown_instead():
+    name = b"a\x1b[31m\xff\n.AT2".decode("utf-8", "surrogateescape")
+    assert legible(name) == "a\\x1b[31m\\xff\\x0a.AT2"
+    assert legible("\u202eTA.1") == "\\u202eTA.1"
+    assert legible("Zürich 東京 – π") == "Zürich 東京 – π"

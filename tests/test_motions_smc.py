@@ -1,0 +1,143 @@
+"""USGS SMC: values that touch, angles, unknown numbers, and the kinds that are no accelerations."""
+
+import io
+from datetime import UTC, datetime
+
+import numpy as np
+import pytest
+from fixed_column_files import A, B, C, assert_components_or_input_error, damaged, read, smc_text
+from hypothesis import given, settings
+
+from rockbatch.errors import InputError
+from rockbatch.motions import read_motions
+from rockbatch.motions.formats.smc import is_smc_file, read_smc_stream
+
+START = datetime(1989, 10, 18, 0, 4, 15, tzinfo=UTC).timestamp() + 0.25
+
+
+@pytest.mark.parametrize("newline", ["\n", "\r\n"])
+@pytest.mark.parametrize(("digits", "rtol"), [(-32768, 5e-5), (8, 5e-8)])  # decimals of the mantissa
+def test_values_that_touch_become_m_s2_with_step_azimuth_and_time(digits, rtol, newline):
+    text = smc_text(digits=digits).replace("\n", newline)
+    assert digits == 8 or "E+0-" in text
+    (component,) = read(text, "0111a.smc")
+    np.testing.assert_allclose(component.acceleration, A / 100, rtol=rtol)
+    assert (component.name, component.dt, component.start) == ("0111a", 0.005, START)
+    assert component.orientation.azimuth == 135
+    assert not component.raw
+    assert component.notes == ()
+
+
+@pytest.mark.parametrize(
+    ("vertical", "azimuth", "label", "expected"),
+    [
+        (0, -32768, "up", (True, False, None)),
+        (180, -32768, "down", (True, True, None)),
+        (90, 360, "360", (False, False, 0.0)),
+        (90, -32768, "S62W", (False, False, 242.0)),
+        (-32768, -32768, "up", (True, False, None)),
+        (-32768, -32768, "down", (True, True, None)),
+    ],
+)
+def test_direction_is_by_the_angles_and_else_by_the_text(vertical, azimuth, label, expected):
+    (component,) = read(smc_text(vertical=vertical, azimuth=azimuth, label=label), "x.smc")
+    way = component.orientation
+    assert (way.vertical, way.down, way.azimuth) == expected
+
+
+def test_three_files_of_a_station_are_two_motions_with_their_vertical(tmp_path):
+    for name, values, angles in (("a", A, (90, 360)), ("b", C, (0, -32768)), ("c", B, (90, 270))):
+        text = smc_text(values, vertical=angles[0], azimuth=angles[1], label=name)
+        (tmp_path / f"0111{name}.smc").write_bytes(text.encode("latin-1"))
+    found = read_motions(tmp_path)
+    assert [(motion.name, motion.vertical_source) for motion in found.motions] == [
+        ("0111a", "0111b.smc"),
+        ("0111c", "0111b.smc"),
+    ]
+
+
+def test_another_event_or_the_uncorrected_version_is_another_station():
+    stations = {
+        read(text, "x.smc")[0].station
+        for text in (
+            smc_text(),
+            smc_text(clock=(1989, 292, 0, 4, 15, 250)),
+            smc_text(title="1 UNCORRECTED ACCELEROGRAM"),
+        )
+    }
+    assert len(stations) == 3
+
+
+def test_an_evenly_sampled_uncorrected_file_is_raw():
+    assert read(smc_text(title="1 UNCORRECTED ACCELEROGRAM"), "x.smc")[0].raw
+
+
+@pytest.mark.parametrize("clock", [(1989, 291, 0, 4, 0, -32768), (0, 0, 0, 0, 0, 0), (1989, 291, 25, 4, 15, 0)])
+def test_a_clock_that_is_not_known_to_the_millisecond_gives_no_start(clock):
+    assert read(smc_text(clock=clock), "x.smc")[0].start is None
+
+
+def test_what_the_header_flags_or_contradicts_is_said():
+    assert "flags a problem" in read(smc_text(flag=1), "x.smc")[0].notes[0]
+    assert "header says a peak of" in read(smc_text(peak=980.0), "x.smc")[0].notes[0]
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (smc_text(rate=1.7e38), "no sampling rate, so .* pairs of time and value.*take the corrected file"),
+        (smc_text(title="3 VELOCITY"), "3 VELOCITY.*expected accelerations"),
+        (smc_text(title="5 RESPONSE SPECTRA"), "5 RESPONSE SPECTRA.*expected accelerations"),
+        (smc_text(title="*"), "expected accelerations"),
+        (smc_text(vertical=45), "line 13: inclined, 45° from the vertical"),
+        (smc_text(count=42), "line 35: found .*expected 2 values of 10 characters"),
+        (smc_text(count=40), r"line 35: found .*after the 40 values that line 14 declares"),
+        (smc_text(count=44), "line 35: found .*expected 4 values"),
+        (smc_text(count=999999999), "take 125000000 lines, but the file ends with line 35: it is cut"),
+        (smc_text(count=-32768), "expected counts"),
+        (smc_text(comments=1), "line 29: found .*expected 8 values"),
+        (smc_text(comments=3), "line 3[15]: "),
+        (smc_text(rate=-200.0), "no sampling rate"),
+        (smc_text().replace("2.0000000E+02", "2.00_0000E+02"), "line 18"),
+        (smc_text().replace("station =", "nowhere ="), "line 6: found"),
+    ],
+)
+def test_what_cannot_be_used_is_refused_with_place_and_finding(text, message):
+    with pytest.raises(InputError, match=message):
+        read(text, "x.smc")
+
+
+def test_a_cut_file_is_never_taken_for_a_whole_one():
+    whole = smc_text().rstrip()
+    for length in range(whole.index("|ref"), len(whole)):
+        with pytest.raises(InputError):
+            read(whole[:length], "x.smc")
+
+
+def test_obspy_gets_cm_s2_with_what_the_header_says(tmp_path):
+    path = tmp_path / "x.smc"
+    path.write_bytes(smc_text().encode("latin-1"))
+    assert is_smc_file(str(path))
+    (trace,) = read_smc_stream(str(path))
+    np.testing.assert_allclose(trace.data, A, rtol=5e-5)
+    assert trace.stats.smc.unit == "cm/s2"
+    assert trace.stats.smc.station == "San José, 1295 Shafter, 42n"
+    assert trace.stats.smc.event == "Loma Prieta, CA"
+    assert (trace.stats.station, trace.stats.delta, trace.stats.starttime.timestamp) == ("SAF0A", 0.005, START)
+    path.write_bytes(smc_text(title="3 VELOCITY").encode("latin-1"))
+    with pytest.raises(InputError, match=r"x\.smc: line 1: found"):
+        read_smc_stream(path)
+
+
+@pytest.mark.parametrize("other", [b"", b"\x00" * 3000, b"2 CORRECTED ACCELEROGRAM\n" * 20, b"1 2 3\n" * 20])
+def test_nothing_else_is_taken_for_smc(other):
+    assert not is_smc_file(io.BytesIO(other))
+
+
+GOOD = smc_text().encode("latin-1")
+
+
+@settings(max_examples=300, deadline=1000)
+@given(damaged(GOOD))
+def test_a_damaged_file_ends_in_components_or_an_input_error(data):
+    assert_components_or_input_error(data, "x.smc")
