@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 from rockbatch.errors import InputError
 from rockbatch.motions.component import Component
-from rockbatch.motions.formats.fixed_width import fixed_numbers, lines_of
+from rockbatch.motions.formats.fixed_width import fixed_numbers, one_after_another
 from rockbatch.motions.formats.header_lines import found, line_at, moment, number
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.record_file import RecordFile
@@ -82,18 +82,7 @@ def read_csmip(file: RecordFile) -> list[Component | Unusable]:
 
 def _parse(text: str) -> list[Recording]:
     """The channels, one after the other; ``InputError`` with the line where the file is not whole."""
-    lines = lines_of(text)
-    recordings = []
-    at = 0
-    while at < len(lines):
-        if lines[at].strip():
-            recording, at = _channel(lines, at)
-            recordings.append(recording)
-        else:
-            at += 1
-    if not recordings:
-        raise InputError("the file is empty")
-    return recordings
+    return one_after_another(text, _channel)
 
 
 def _volume(lines: list[str], at: int) -> int | None:

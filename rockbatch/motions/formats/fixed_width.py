@@ -1,11 +1,14 @@
 """Numbers in the fixed columns of Fortran programs, which need no blank between them: ``-11024.7-9733.1``."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import TypeVar
 
 import numpy as np
 
 from rockbatch.errors import InputError
 from rockbatch.motions.motion import Samples
+
+T = TypeVar("T")
 
 HUGE = 1e30
 """What no acceleration reaches in any unit; its powers and sums stay within the range of floats."""
@@ -19,6 +22,25 @@ def lines_of(text: str) -> list[str]:
     ``str.splitlines`` would also break at the control characters that Latin-1 texts may hold.
     """
     return text.rstrip("\x00\x1a\r\n").replace("\r\n", "\n").replace("\r", "\n").split("\n")
+
+
+def one_after_another(text: str, channel: Callable[[list[str], int], tuple[T, int]]) -> list[T]:
+    """The channels of a file: ``channel`` reads the one that begins at a line, and tells where it ends.
+
+    Raises ``InputError`` for a file without any.
+    """
+    lines = lines_of(text)
+    channels = []
+    at = 0
+    while at < len(lines):
+        if lines[at].strip():
+            one, at = channel(lines, at)
+            channels.append(one)
+        else:
+            at += 1
+    if not channels:
+        raise InputError("the file is empty")
+    return channels
 
 
 def fixed_numbers(lines: Sequence[str], first: int, count: int, width: int, per_line: int) -> Samples:

@@ -9,7 +9,7 @@ import re
 
 from rockbatch.errors import InputError
 from rockbatch.motions.component import Component
-from rockbatch.motions.formats.fixed_width import fixed_numbers, lines_of
+from rockbatch.motions.formats.fixed_width import fixed_numbers, one_after_another
 from rockbatch.motions.formats.header_lines import found, moment
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.record_file import RecordFile
@@ -46,19 +46,8 @@ def read_renadic(file: RecordFile) -> list[Component | Unusable]:
 
 def _parse(text: str) -> list[Recording]:
     """The channels, one after the other; ``InputError`` with the line where the file is not whole."""
-    lines = lines_of(text)
-    recordings: list[Recording] = []
-    begins: list[float] = []
-    at = 0
-    while at < len(lines):
-        if lines[at].strip():
-            recording, first, at = _channel(lines, at)
-            recordings.append(recording)
-            begins.append(first)
-        else:
-            at += 1
-    if not recordings:
-        raise InputError("the file is empty")
+    channels = one_after_another(text, _channel)
+    recordings, begins = [recording for recording, _ in channels], [first for _, first in channels]
     if recordings[0].start is None and max(begins) - min(begins) > 0.5 * recordings[0].dt:
         raise InputError(
             f"its channels begin at different times ({', '.join(f'{t:g}' for t in begins)} s) and no trigger time is "
@@ -67,7 +56,7 @@ def _parse(text: str) -> list[Recording]:
     return recordings
 
 
-def _channel(lines: list[str], at: int) -> tuple[Recording, float, int]:
+def _channel(lines: list[str], at: int) -> tuple[tuple[Recording, float], int]:
     """The channel whose title is ``lines[at]``, its first time [s], and where the next one begins."""
     found(_TITLE, lines, at, "UNCORRECTED ACCELEROGRAM DATA, after the last declared value")
     label = found(_CHANNEL, lines, at + 6, "CHAN  1: L")["label"]
@@ -101,7 +90,7 @@ def _channel(lines: list[str], at: int) -> tuple[Recording, float, int]:
         notes=notes,
         header={"station": lines[at + 5].strip(), "event": lines[at + 1].strip()},
     )
-    return recording, first, end + 1
+    return (recording, first), end + 1
 
 
 def _trigger(line: str) -> float | None:
