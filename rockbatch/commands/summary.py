@@ -54,7 +54,7 @@ def other_law(table: "pd.DataFrame") -> str:
     worst = table.iloc[int(np.nanargmax(gap.to_numpy()))]
     return (
         f"settlement hangs on the spring law in {int(differ.sum())} runs, most in {worst['record']}, {worst['case']}: "
-        f"{1000 * worst['settlement_m']:.1f} mm, by the other law {1000 * worst['settlement_other_law_m']:.1f} mm"
+        f"{1000 * worst['settlement_m']:z.1f} mm, by the other law {1000 * worst['settlement_other_law_m']:z.1f} mm"
     )
 
 

@@ -87,8 +87,8 @@ def _ratcheting(finished: Finished) -> Markup:
     if gap.notna().any():
         run = runs.iloc[int(gap.argmax())]
         told += (
-            f"The settlement differs most in {finished.where(run)}: {1000 * run['settlement_m']:.1f} mm by the study's "
-            f"law, {1000 * run[name]:.1f} mm by the other one."
+            f"The settlement differs most in {finished.where(run)}: {1000 * run['settlement_m']:z.1f} mm by the study's "
+            f"law, {1000 * run[name]:z.1f} mm by the other one."
         )
     return tag("p", told)
 
