@@ -10,6 +10,7 @@ from rockbatch.structure import Base, Pier
 
 if TYPE_CHECKING:
     import pandas as pd
+    from matplotlib.figure import Figure
 
 Samples = npt.NDArray[np.float64]
 
@@ -99,6 +100,13 @@ class Response:
     def energy(self) -> Samples:
         """Total energy per unit mass [J/kg], relative to the start, shape (n,)."""
         return self._history("energy")
+
+    def plot(self) -> "Figure":
+        """Rotation, angular velocity, energy and ground motion against time, impacts as strokes, and the loops of both
+        springs: a matplotlib Figure, ``response.plot().savefig("pier.pdf")``."""
+        from rockbatch.plotting import plot
+
+        return plot(self)
 
     def _history(self, column: str) -> Samples:
         return self.history[column].to_numpy(dtype=np.float64)

@@ -81,3 +81,19 @@ def test_an_impossible_pier_is_refused_with_the_limit():
     with pytest.raises(rb.InputError, match="beta must be above") as error:
         rb.simulate(PIER, rb.YieldingBase(beta=3, eta=0.9, epsilon=2), PULSE)
     assert len(error.value.problems) == 3
+
+
+def test_a_plot_shows_the_histories_over_their_units_and_each_loop_while_its_spring_is_loaded(response, tmp_path):
+    figure = response.plot()
+    axes = {ax.get_ylabel(): ax for ax in figure.axes}
+    assert list(axes)[:4] == ["θ/α", "θ̇/(αp)", "E [J/kg]", "üg/g"]
+    t, rotation = axes["θ/α"].lines[0].get_data()
+    assert (t == response.t).all()
+    assert rotation == pytest.approx(response.theta / PIER.alpha)
+    assert len(axes["θ/α"].lines) == 1 + (response.events["kind"] == "impact").sum()
+    loops = figure.axes[4:]
+    assert len(loops) == (0 if isinstance(response.base, rb.RigidBase) else 2)
+    for ax in loops:
+        assert np.nanmax(ax.lines[0].get_ydata()) < 0
+    figure.savefig(tmp_path / "response.png")
+    assert (tmp_path / "response.png").stat().st_size > 10_000
