@@ -65,7 +65,16 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder, "study.toml")
         file.write_text(study(arguments.records), encoding="utf-8")
-        command = [sys.executable, "-m", "rockbatch", "run", str(file), "--out", str(arguments.out or folder)]
+        command = [
+            sys.executable,
+            "-m",
+            "rockbatch",
+            "run",
+            str(file),
+            "--out",
+            str(arguments.out or folder),
+            "--fresh",
+        ]
         if arguments.jobs:
             command += ["--jobs", str(arguments.jobs)]
         start = time.monotonic()

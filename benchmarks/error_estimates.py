@@ -14,7 +14,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 
-from rockbatch.batch import cores
+from rockbatch.engines import cores
 from rockbatch.motions import Motion, fema_p695, read_motions
 from rockbatch.motions.pairing import to_motions
 from rockbatch.outcome import Outcome

@@ -17,7 +17,8 @@ import numpy as np
 from interleaved import interleaved, machine, ratio
 from tower import TOWER, foundations, record
 
-from rockbatch.batch import cores, outcomes, outcomes_of
+from rockbatch.engines import Threads, cores
+from rockbatch.groups import outcomes_of
 from rockbatch.motions import Motion
 from rockbatch.plan import Run
 from rockbatch.structure import Pier
@@ -37,7 +38,7 @@ def many(runs: int, motion: Motion, pier: Pier = TOWER) -> list[Run]:
 
 def all_of(runs: list[Run], jobs: int) -> list[str]:
     """Run them in ``jobs`` threads; how each ended."""
-    return [outcome.status for _, outcome in outcomes(runs, TO_TOLERANCE, jobs)]
+    return [outcome.status for group in Threads(jobs).outcomes(runs, TO_TOLERANCE) for _, outcome in group]
 
 
 def one_group(runs: list[Run], numerics: Numerics = TO_TOLERANCE) -> list[str]:

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rockbatch.batch import cores, outcomes_of
+from rockbatch.engines import cores
+from rockbatch.groups import outcomes_of
 from rockbatch.outcome import Outcome
 from rockbatch.plan import Run
 from rockbatch.simulation import Scene, Stop, first_substeps, run_all_fixed, run_fixed

@@ -5,10 +5,20 @@ import sys
 from collections.abc import Sequence
 
 from rockbatch import __version__
-from rockbatch.commands import accuracy, check, motions, report, run
+from rockbatch.commands import accuracy, check, fragility, merge, motions, report, run, sensitivity, spectrum
 from rockbatch.errors import InputError
 
-COMMANDS = {"run": run, "motions": motions, "check": check, "report": report, "accuracy": accuracy}
+COMMANDS = {
+    "run": run,
+    "merge": merge,
+    "motions": motions,
+    "check": check,
+    "report": report,
+    "accuracy": accuracy,
+    "fragility": fragility,
+    "spectrum": spectrum,
+    "sensitivity": sensitivity,
+}
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -1,14 +1,20 @@
-"""Files written whole or not at all, and texts from elsewhere that do no harm in them."""
+"""Files written whole or not at all, by one process at a time, and texts from elsewhere that do no harm in them."""
 
 import csv
+import errno
 import io
 import os
 import re
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
+from rockbatch.errors import InputError
+
+FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+LOCK = "rockbatch.lock"
+UNFINISHED = ".unfinished"
 _FORMULA = re.compile(r"'*[=+\-@\t\r\n].", re.DOTALL)
 _UNPRINTABLE = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028\u2029\u202a-\u202e\u2066-\u2069\ud800-\udfff]")
 
@@ -19,25 +25,66 @@ def replacing(path: Path) -> Iterator[Path]:
 
     Whoever looks finds the earlier file or the new one, never a part.
     """
-    handle, name = tempfile.mkstemp(prefix=f".{path.name}-", dir=path.parent)
-    os.close(handle)
-    temporary = Path(name)
-    try:
-        yield temporary
-        # mkstemp keeps its file private; results are made to be shared as any other file
-        umask = os.umask(0)
-        os.umask(umask)
-        temporary.chmod(0o666 & ~umask)
-        temporary.replace(path)
-    except BaseException:
-        temporary.unlink()
-        raise
+    with told_when_full(path):
+        handle, name = tempfile.mkstemp(prefix=f".{path.name}-", suffix=UNFINISHED, dir=path.parent)
+        os.close(handle)
+        temporary = Path(name)
+        try:
+            yield temporary
+            # mkstemp keeps its file private; results are made to be shared as any other file
+            umask = os.umask(0)
+            os.umask(umask)
+            temporary.chmod(0o666 & ~umask)
+            with temporary.open("rb+") as file:
+                os.fsync(file.fileno())  # else a power cut might leave the name without the contents
+            temporary.replace(path)
+        except BaseException:
+            temporary.unlink(missing_ok=True)
+            raise
 
 
 def write_whole(path: Path, text: str) -> None:
     """Write UTF-8 ``text`` to ``path``, whole or not at all."""
     with replacing(path) as temporary:
         temporary.write_text(text, encoding="utf-8", newline="")
+
+
+@contextmanager
+def told_when_full(path: Path, kept: str = "what was finished before is kept") -> Iterator[None]:
+    """Turns the operating system's error for a full disk, or a quota, into an ``InputError`` about ``path``."""
+    try:
+        yield
+    except OSError as error:
+        if error.errno not in FULL:
+            raise
+        raise InputError(
+            f"{path}: cannot be written: {os.strerror(error.errno)}; {kept}: make room and give the same command again"
+        ) from error
+
+
+@contextmanager
+def only_writer(folder: Path) -> Iterator[None]:
+    """Nobody else may write into ``folder`` meanwhile; ``InputError`` if another process does already.
+
+    The operating system gives the lock back when its process ends, however it ends.
+    """
+    from filelock import FileLock, Timeout
+
+    lock = FileLock(folder / LOCK)
+    try:
+        lock.acquire(blocking=False)
+    except Timeout:
+        raise InputError(
+            f"{folder}: another process is writing its results there; wait for it, or choose another folder with --out"
+        ) from None
+    try:
+        for left in folder.glob(f".*{UNFINISHED}"):  # by a process that was killed
+            left.unlink(missing_ok=True)
+        yield
+    finally:
+        with suppress(OSError):  # Windows keeps files that are open
+            Path(lock.lock_file).unlink()
+        lock.release()
 
 
 def legible(text: str) -> str:

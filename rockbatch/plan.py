@@ -10,12 +10,16 @@ from rockbatch.study import Case, Study
 
 @dataclass(frozen=True)
 class Run:
-    """One simulation: a motion, already scaled and turned, in a case."""
+    """One simulation: a motion, already scaled and turned, in a case.
+
+    ``recorded`` is the motion before that, if it is at hand: a cluster is then sent each record once.
+    """
 
     motion: Motion
     polarity: str
     scale: float
     case: Case
+    recorded: Motion | None = None
 
 
 def scaled(motion: Motion, scale: float, polarity: str) -> Motion:
@@ -62,7 +66,28 @@ class Plan(Sequence[Run]):
         if last is None or last[0] != variant:
             moved = scaled(self.motions[motion], self.scale[scale], self.polarity[polarity])
             last = self._last = (variant, moved)
-        return Run(last[1], self.polarity[polarity], self.scale[scale], self.cases[case])
+        return Run(last[1], self.polarity[polarity], self.scale[scale], self.cases[case], self.motions[motion])
 
     def __iter__(self) -> Iterator[Run]:
         return (self[i] for i in range(len(self)))
+
+
+class Chosen(Sequence[Run]):
+    """Some of ``runs``, by their indices."""
+
+    def __init__(self, runs: Sequence[Run], indices: Sequence[int]) -> None:
+        self.runs, self.indices = runs, indices
+
+    def __len__(self) -> int:
+        return len(self.indices)
+
+    @overload
+    def __getitem__(self, index: int) -> Run: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> list[Run]: ...
+
+    def __getitem__(self, index: int | slice) -> Run | list[Run]:
+        if isinstance(index, slice):
+            return [self.runs[i] for i in self.indices[index]]
+        return self.runs[self.indices[index]]

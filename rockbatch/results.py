@@ -1,16 +1,12 @@
 """The tables of a study: rows of peaks.csv, what run.json says about them, and both on disk."""
 
-import csv
 import json
-import sys
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict
 from pathlib import Path
-from types import TracebackType
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any
 
-from rockbatch.checks.verdicts import CHECKS
-from rockbatch.files import csv_cell, write_whole
+from rockbatch.files import write_whole
 from rockbatch.motions import MotionSet, measures
 from rockbatch.motions.motion import Motion
 from rockbatch.motions.spectrum import suite_spectra
@@ -244,58 +240,10 @@ def _describe_motion(motion: Motion, gravity: float) -> dict[str, Any]:
 
 
 PEAKS = "peaks.csv"
+PART = f"{PEAKS}.part"
+"""Finished runs of a table that is under way."""
 INFO = "run.json"
-
-
-class PeaksFile:
-    """``peaks.csv``, written as the runs finish, in the order of the study.
-
-    It grows as ``peaks.csv.part`` and takes its name at the end of the context, also of one that is left by an
-    exception: what is finished is kept. Whoever looks finds the earlier file or the new one.
-    """
-
-    def __init__(self, directory: Path, study: Study) -> None:
-        directory.mkdir(parents=True, exist_ok=True)
-        self.path = directory / PEAKS
-        self.columns = columns(study)
-        self.finished = 0
-        self.failed = 0
-        self._next = 0
-        self._waiting: dict[int, Mapping[str, Any]] = {}
-        self._part = directory / f"{PEAKS}.part"
-
-    def __enter__(self) -> Self:
-        for name in (HISTORIES, CHECKS):  # they belong to the results that are replaced
-            (self.path.parent / name).unlink(missing_ok=True)
-        self._file = self._part.open("w", encoding="utf-8", newline="")
-        self._writer = csv.writer(self._file, lineterminator="\n")
-        self._writer.writerow(self.columns)
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        for number in sorted(self._waiting):  # some before them were interrupted
-            self._write(self._waiting[number])
-        self._file.close()
-        self._part.replace(self.path)
-
-    def add(self, number: int, cells: Mapping[str, Any]) -> None:
-        """Row of run ``number``; it is written once all runs before it are."""
-        self.finished += 1
-        self._waiting[number] = cells
-        while self._next in self._waiting:
-            self._write(self._waiting.pop(self._next))
-            self._next += 1
-
-    def end_with(self, rows: Iterable[Mapping[str, Any]]) -> None:
-        """Rows that belong to no run, after all others."""
-        for number, cells in enumerate(rows, start=sys.maxsize):
-            self._waiting[number] = cells
-
-    def _write(self, cells: Mapping[str, Any]) -> None:
-        self._writer.writerow([csv_cell(cells.get(name)) for name in self.columns])
-        self.failed += cells["status"] == "failed"
+REPORT = "report.html"
 
 
 def write_info(directory: Path, info: Mapping[str, Any]) -> None:

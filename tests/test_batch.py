@@ -5,10 +5,13 @@ import pandas as pd
 import pytest
 
 import rockbatch as rb
-import rockbatch.batch
-from rockbatch.batch import groups, outcomes, row_of
+import rockbatch.groups
+from rockbatch.batch import carry_out, study_digests
+from rockbatch.engines import Threads
+from rockbatch.groups import NOTHING_MORE, groups
+from rockbatch.journal import Journal
 from rockbatch.plan import Plan
-from rockbatch.results import COLUMNS, MORE_COLUMNS, PeaksFile, as_table
+from rockbatch.results import COLUMNS, MORE_COLUMNS, columns
 from rockbatch.study import load_study
 from rockbatch.study.suite import ground_motions
 
@@ -145,34 +148,47 @@ def test_groups_take_every_run_once_and_in_order(study, jobs):
 
 def test_a_group_is_closed_when_its_work_is_a_second(study, monkeypatch):
     loaded, runs = plan_of(study)
-    monkeypatch.setattr(rockbatch.batch, "STEPS_OF_A_GROUP", 1.0)
+    monkeypatch.setattr(rockbatch.groups, "STEPS_OF_A_GROUP", 1.0)
     assert [len(group) for group in groups(runs, loaded.numerics, 1)] == [1] * 24
 
 
-def test_the_table_on_disk_is_in_the_order_of_the_study_however_the_runs_finish(study, tmp_path):
-    """Written as they come, in order; the file has its name only when all is in it."""
+def test_only_runs_that_are_wanted_and_not_in_the_journal_are_carried_out(study, tmp_path):
+    """Numbers in the journal go on where an earlier part of it has ended."""
     loaded, runs = plan_of(study)
-    rows = [row_of(runs[i], outcome) for i, outcome in sorted(outcomes(runs, loaded.numerics, 2))]
-    with PeaksFile(tmp_path, loaded) as peaks:
-        for i in np.random.default_rng(0).permutation(24):
-            peaks.add(int(i), rows[i])
-        assert not (tmp_path / "peaks.csv").exists()
-    assert [path.name for path in tmp_path.glob("peaks*")] == ["peaks.csv"]
-    table = pd.read_csv(tmp_path / "peaks.csv", dtype={"polarity": str})
-    expected = as_table(rows, loaded)
-    for name in ("record", "polarity", "scale", "case", "impacts", "substeps"):
-        assert table[name].tolist() == expected[name].tolist()
-    assert table["theta_max_over_alpha"].to_numpy() == pytest.approx(
-        expected["theta_max_over_alpha"].to_numpy(), rel=1e-9
-    )
+    simulated = []
+
+    class Watched(Threads):
+        def outcomes(self, runs, numerics, output=NOTHING_MORE):
+            simulated.append(len(runs))
+            return super().outcomes(runs, numerics, output)
+
+    calls = []
+    with Journal(tmp_path / "peaks.csv.part", columns(loaded), {}) as journal:
+        for wanted in (range(5, 9), range(7, 12), range(7, 12)):
+            carry_out(runs, loaded.numerics, journal, Watched(2), first=100, among=wanted, progress=calls.append)
+        assert list(journal) == list(range(105, 112))
+        assert journal[108]["record"] == runs[8].motion.name
+        assert float(journal[108]["beta"]) == runs[8].case.columns["beta"]
+    assert simulated == [4, 3, 0]
+    assert sum(calls) == 7
 
 
-def test_what_is_finished_is_in_the_table_though_runs_before_it_are_not(study, tmp_path):
-    loaded, runs = plan_of(study)
-    rows = [row_of(runs[i], outcome) for i, outcome in sorted(outcomes(runs[:3], loaded.numerics, 1))]
-    with pytest.raises(KeyboardInterrupt), PeaksFile(tmp_path, loaded) as peaks:  # noqa: PT012
-        peaks.add(2, rows[2])
-        peaks.add(0, rows[0])
-        raise KeyboardInterrupt
-    assert pd.read_csv(tmp_path / "peaks.csv")["beta"].isna().tolist() == [True, False]
-    assert peaks.finished == 2
+def test_what_rows_depend_on_is_told_apart_and_the_rest_is_not(study):
+    """Runs that are finished stay good when a title, a comment or a check is changed."""
+
+    def changed(*replaced):
+        study.write_text(STUDY.replace(*replaced), encoding="utf-8")
+        loaded = load_study(study)
+        now = study_digests(loaded, ground_motions(loaded))
+        return [name for name in now if now[name] != before[name]]
+
+    loaded = load_study(study)
+    before = study_digests(loaded, ground_motions(loaded))
+    assert changed("two pulses", "2 pulses  # cosine and") == []
+    assert changed("[motions]", '[output]\nhistories = "all"\n[motions]') == []
+    assert changed("eta = 2.5", "eta = 2.6") == ["cases"]
+    assert changed("[0.5, 1.0]", "[0.5, 1.1]") == ["scales"]
+    assert changed("amplitude_g = 0.5", "amplitude_g = 0.51") == ["motions"]
+    assert changed('"one-cosine"', '"cosine"') == ["motions"]
+    assert changed("[motions]", "[numerics]\nquiet_s = 3\n[motions]") == ["numerics"]
+    assert changed("[motions]", "[output]\nledger = true\n[motions]") == ["numerics"]

@@ -153,26 +153,6 @@ def test_help_loads_neither_compiler_nor_tables_nor_obspy():
     assert done.stdout.splitlines()[-1] == "[]"
 
 
-def test_an_interrupt_keeps_what_is_finished(study, tmp_path, monkeypatch, capsys):
-    import rockbatch.batch
-
-    real = rockbatch.batch.outcomes_of
-
-    def interrupted(runs, *arguments):
-        if runs[0].case.name == "pads":
-            time.sleep(0.2)  # the other run is finished by then
-            raise KeyboardInterrupt
-        return real(runs, *arguments)
-
-    monkeypatch.setattr(rockbatch.batch, "outcomes_of", interrupted)
-    monkeypatch.setattr(rockbatch.batch, "groups", lambda runs, *_: iter([range(i, i + 1) for i in range(len(runs))]))
-    monkeypatch.setattr(rockbatch.batch, "compile_kernels", lambda study: None)
-    assert main(["run", str(study), "--out", str(tmp_path / "out"), "--jobs", "2"]) == 130
-    rows = (tmp_path / "out/peaks.csv").read_text(encoding="utf-8").splitlines()
-    assert [row.split(",")[1] for row in rows[1:]] == ["rigid"]
-    assert "interrupted" in capsys.readouterr().err
-
-
 @pytest.mark.skipif(sys.platform == "win32", reason="pseudo-terminals are of Unix")
 @pytest.mark.parametrize(("size", "drawn"), [((30, 100), True), ((0, 0), False)])
 def test_progress_is_a_bar_with_the_time_left_on_a_terminal_that_has_a_size(size, drawn):

@@ -27,24 +27,24 @@ BRACKETS = ((2.5, 4.5), (4.5, 6.8), (6.8, 8.0))
 # The slender limit
 
 
-def end_of_pulse(amplitude: float, end: float) -> tuple[float, float]:
-    """x and x′ when a sine pulse has reached its phase ``end``, a multiple of π."""
+def end_of_pulse(amplitude: float, end: float, w: float = W) -> tuple[float, float]:
+    """x and x′ when a sine pulse with ω_p/p = ``w`` has reached its phase ``end``, a multiple of π."""
     psi = math.asin(1.0 / amplitude)
-    tau = (end - psi) / W
-    c, s = -(W**2) / (1 + W**2), W * math.sqrt(amplitude**2 - 1) / (1 + W**2)
-    forced = -amplitude * W * math.cos(end) / (1 + W**2)
+    tau = (end - psi) / w
+    c, s = -(w**2) / (1 + w**2), w * math.sqrt(amplitude**2 - 1) / (1 + w**2)
+    forced = -amplitude * w * math.cos(end) / (1 + w**2)
     return c * math.cosh(tau) + s * math.sinh(tau), forced + c * math.sinh(tau) + s * math.cosh(tau)
 
 
-def outward(amplitude: float, end: float) -> float:
+def outward(amplitude: float, end: float, w: float = W) -> float:
     """Above 0 the block falls without an impact."""
-    x, x_rate = end_of_pulse(amplitude, end)
+    x, x_rate = end_of_pulse(amplitude, end, w)
     return x + x_rate
 
 
-def energy_after_impact(amplitude: float) -> float:
+def energy_after_impact(amplitude: float, w: float = W) -> float:
     """Above 0 the block falls after its first impact, which follows the one-sine."""
-    x, x_rate = end_of_pulse(amplitude, 2 * math.pi)
+    x, x_rate = end_of_pulse(amplitude, 2 * math.pi, w)
     return E**2 * (1 + x_rate**2 - x**2) - 1
 
 

@@ -13,12 +13,14 @@ import pytest
 
 import rockbatch as rb
 from rockbatch import hdf5
-from rockbatch.batch import outcomes, row_of
+from rockbatch.batch import carry_out
+from rockbatch.engines import Threads
 from rockbatch.hdf5 import FORMAT, UNITS, Responses, write
 from rockbatch.histories import histories, simulate
+from rockbatch.journal import Journal
 from rockbatch.keep import keep_histories, kept, worst
 from rockbatch.plan import Plan
-from rockbatch.results import TERMS, PeaksFile, describe, write_info
+from rockbatch.results import TERMS, columns, describe, write_info
 from rockbatch.saved import read_saved
 from rockbatch.simulation import run_to_tolerance
 from rockbatch.study.suite import ground_motions
@@ -81,9 +83,9 @@ def carried_out(folder, text=STUDY):
     study = rb.load_study(path)
     motions = ground_motions(study)
     runs = Plan(study, motions)
-    with PeaksFile(folder, study) as peaks:
-        for number, outcome in outcomes(runs, study.numerics, 1, study.output):
-            peaks.add(number, row_of(runs[number], outcome))
+    with Journal(folder / "peaks.csv.part", columns(study), {}) as journal:
+        carry_out(runs, study.numerics, journal, Threads(1), study.output)
+        journal.write_in_order(folder / "peaks.csv")
     info = {"rockbatch": "0.1.0", "created": CREATED, "versions": {"python": "3.11.2", "numpy": "2.3.1"}}
     info |= {"command": [], "machine": "", "runs": len(runs), "jobs": 1, "wall_s": 1.0, **describe(study, motions)}
     write_info(folder, info)
@@ -303,13 +305,6 @@ def test_a_full_disk_is_told_before_it_is_written_to(tmp_path, monkeypatch):
     assert (tmp_path / "histories.h5").read_bytes() == earlier
 
 
-def test_new_results_do_not_stand_beside_histories_of_earlier_ones(tmp_path):
-    assert keep_histories(*carried_out(tmp_path)) == tmp_path / "histories.h5"
-    assert len(rb.open_results(tmp_path).responses) > 0
-    carried_out(tmp_path)
-    assert len(rb.open_results(tmp_path).responses) == 0
-
-
 # Which runs are kept
 
 
@@ -510,6 +505,7 @@ def test_a_study_that_asks_for_no_histories_never_loads_hdf5(tmp_path):
     carried_out(tmp_path, STUDY.replace('histories = "all"', 'histories = "none"'))
     run = f"""
 import rockbatch as rb
+from rockbatch.journal import Journal
 from rockbatch.keep import keep_histories
 study = rb.load_study({str(tmp_path / "study.toml")!r})
 rb.run(study)

@@ -41,7 +41,7 @@ def complete(runs: "pd.DataFrame", records: Sequence[str], polarities: Sequence[
 
 def by_record(rule: Rule, runs: "pd.DataFrame", case: Case) -> Bounds:
     """What each record demands: the worse of its polarities. Empty where every run is left out."""
-    bounds, kept = _of_runs(rule, runs, case)
+    bounds, kept = of_runs(rule, runs, case)
     names, record = np.unique(runs["record"].to_numpy()[kept].astype(str), return_inverse=True)
 
     def worst(of_runs: Values) -> Values:
@@ -52,7 +52,7 @@ def by_record(rule: Rule, runs: "pd.DataFrame", case: Case) -> Bounds:
     return Bounds(worst(bounds.value), worst(bounds.low), worst(bounds.high), bounds.estimated)
 
 
-def _of_runs(rule: Rule, runs: "pd.DataFrame", case: Case) -> tuple[Bounds, np.ndarray]:
+def of_runs(rule: Rule, runs: "pd.DataFrame", case: Case) -> tuple[Bounds, np.ndarray]:
     """Bounds of every run, and which of them count at all."""
     demand = DEMANDS[rule.demand]
     value, error = demand.of(runs, case)

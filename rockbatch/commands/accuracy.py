@@ -2,9 +2,11 @@
 
 import argparse
 import json
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from rockbatch.commands.messages import say
+from rockbatch.commands.options import add_study, folder, study_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -14,11 +16,7 @@ RUNS = 24
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("study", type=Path, metavar="STUDY.toml", help="the study file")
-    parser.add_argument("--out", type=Path, metavar="DIR", help="folder for the results (default: reports/STUDY)")
-    parser.add_argument(
-        "--motions", type=Path, metavar="PATH", help="file or folder of records instead of the study's motions"
-    )
+    add_study(parser)
     parser.add_argument(
         "--runs",
         type=_runs,
@@ -36,10 +34,9 @@ def _runs(text: str) -> int:
 
 
 def main(arguments: argparse.Namespace) -> int:
-    from rockbatch.study import load_study
 
-    study = load_study(arguments.study, motions=arguments.motions)
-    directory = arguments.out or Path("reports") / arguments.study.stem
+    study = study_of(arguments)
+    directory = folder(arguments)
 
     from rockbatch.accuracy import measure, reference, spread
     from rockbatch.commands.progress import Progress
@@ -51,7 +48,7 @@ def main(arguments: argparse.Namespace) -> int:
     motions = ground_motions(study)
     runs = Plan(study, motions)
     chosen = spread(runs, arguments.runs)
-    _say(f"{len(chosen)} of {len(runs)} runs: first their references, then a minute or so of measurements")
+    say(f"{len(chosen)} of {len(runs)} runs: first their references, then a minute or so of measurements")
     found = []
     with Progress(len(chosen)) as progress:
         for run in chosen:
@@ -63,16 +60,16 @@ def main(arguments: argparse.Namespace) -> int:
             f"{arguments.study}: no run settles with ever smaller steps, so there is nothing to measure errors against"
         )
     if len(references) < len(found):
-        _say(f"left out: {len(found) - len(references)} that do not settle with ever smaller steps")
+        say(f"left out: {len(found) - len(references)} that do not settle with ever smaller steps")
     table = measure(study, references)
     directory.mkdir(parents=True, exist_ok=True)
     write_whole(directory / "accuracy.csv", table.to_csv(index=False, float_format="%.6g", lineterminator="\n"))
     print(shown(table))
-    _say(str(directory / "accuracy.csv"))
+    say(str(directory / "accuracy.csv"))
     if _same_study(directory, table["study"].iloc[0], motions):
         from rockbatch.report import write_report
 
-        _say(str(write_report(directory)))
+        say(str(write_report(directory)))
     return 0
 
 
@@ -114,7 +111,3 @@ def _same_study(directory: Path, digest: str, motions: Any) -> bool:
     except (OSError, ValueError, KeyError, TypeError):
         return False
     return same and (directory / "peaks.csv").exists()
-
-
-def _say(text: str) -> None:
-    print(text, file=sys.stderr, flush=True)

@@ -2,12 +2,13 @@
 
 import argparse
 import math
-import sys
 import textwrap
 from collections.abc import Iterable, Sequence
 from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+from rockbatch.commands.messages import say
 
 if TYPE_CHECKING:
     from rockbatch.checks import Verdict
@@ -31,12 +32,12 @@ def main(arguments: argparse.Namespace) -> int:
     saved = read_saved(arguments.directory)
     found = verdicts(saved, arguments.rules)
     if unusable := len(saved.info["unusable"]):
-        _say(f"files that are no usable records, and in no suite: {unusable}")
+        say(f"files that are no usable records, and in no suite: {unusable}")
     code = tell(arguments.directory, found)
     if (arguments.directory / "report.html").exists():
         from rockbatch.report import write_report
 
-        _say(str(write_report(arguments.directory)))
+        say(str(write_report(arguments.directory)))
     return code
 
 
@@ -48,10 +49,10 @@ def tell(directory: Path, verdicts: Sequence["Verdict"]) -> int:
     print(table(verdicts))
     ways = ("pass", "fail", "not decided", "does not apply")
     count = {way: sum(verdict.verdict == way for verdict in verdicts) for way in ways}
-    _say(", ".join(f"{n} {way}" for way, n in count.items() if n))
-    _say(str(path))
+    say(", ".join(f"{n} {way}" for way, n in count.items() if n))
+    say(str(path))
     if not (count["pass"] or count["fail"] or count["not decided"]):
-        _say("none of the checks applies to these cases")
+        say("none of the checks applies to these cases")
     return 0 if count["pass"] and not (count["fail"] or count["not decided"]) else 1
 
 
@@ -110,7 +111,3 @@ def _asked(verdict: "Verdict") -> str:
     asked = f"{verdict.check}: {verdict.words} {verdict.sense} {verdict.limit:g} [{verdict.basis}] {verdict.reason}"
     counting = f" ({verdict.counting})" if verdict.counting else ""
     return textwrap.fill(asked.rstrip() + counting, WIDTH, initial_indent="  ", subsequent_indent=" " * 6)
-
-
-def _say(text: str) -> None:
-    print(text, file=sys.stderr, flush=True)

@@ -10,7 +10,7 @@ SECONDS_BETWEEN_LINES = 2.0
 
 
 class Progress:
-    """Call it with every finished run; use it as a context."""
+    """Call it with the number of runs that are finished since the last call; use it as a context."""
 
     def __init__(self, total: int, stream: TextIO | None = None) -> None:
         self.total = total
@@ -33,10 +33,10 @@ class Progress:
         if self.bar is not None:
             self.bar.close()
 
-    def __call__(self) -> None:
-        self.done += 1
+    def __call__(self, runs: int = 1) -> None:
+        self.done += runs
         if self.bar is not None:
-            self.bar.update()
+            self.bar.update(runs)
             return
         now = time.monotonic()
         if now - self.last_line >= SECONDS_BETWEEN_LINES:

@@ -1,143 +1,113 @@
 """``rockbatch run``: a study file to peaks.csv, run.json and report.html."""
 
 import argparse
-import datetime
-import platform
-import sys
+import math
+import re
 import time
-from dataclasses import replace
-from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
-from rockbatch import __version__
+from rockbatch.commands.messages import count, say
+from rockbatch.commands.options import add_engine, add_study, engine, folder, study_of
+
+if TYPE_CHECKING:
+    from rockbatch.motions import MotionSet
+    from rockbatch.study import Study
 
 HELP = "run every record of a study in every case; write the table of peaks and the report"
-PACKAGES = ("numba", "numpy", "pandas", "obspy", "h5py")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("study", type=Path, metavar="STUDY.toml", help="the study file")
-    parser.add_argument("--out", type=Path, metavar="DIR", help="folder for the results (default: reports/STUDY)")
-    parser.add_argument("--jobs", type=_jobs, metavar="N", help="threads (default: all processors)")
+    add_study(parser)
+    add_engine(parser)
     parser.add_argument(
-        "--motions", type=Path, metavar="PATH", help="file or folder of records instead of the study's motions"
+        "--shard",
+        type=_shard,
+        metavar="I/N",
+        help="carry out the I-th of N shares only, in a folder of its own, for `rockbatch merge`",
     )
-    parser.add_argument("--strict", action="store_true", help="run nothing if any record cannot be used")
 
 
-def _jobs(text: str) -> int:
-    jobs = int(text)
-    if jobs < 1:
-        raise argparse.ArgumentTypeError(f"{text}: must be at least 1")
-    return jobs
+def _shard(text: str) -> tuple[int, int]:
+    found = re.fullmatch(r"(\d+)/(\d+)", text, re.ASCII)
+    share, shares = map(int, found.groups()) if found else (0, 0)
+    if not 1 <= share <= shares:
+        raise argparse.ArgumentTypeError(f"{text}: must be such as 2/4, the second of four shares")
+    return share, shares
 
 
 def main(arguments: argparse.Namespace) -> int:
-    from rockbatch.study import load_study
 
     started = time.monotonic()
-    study = load_study(arguments.study, motions=arguments.motions)
-    if arguments.strict:
-        study = replace(study, motions=replace(study.motions, strict=True))
-    directory = arguments.out or Path("reports") / arguments.study.stem
+    study = study_of(arguments)
 
-    from rockbatch.batch import compile_kernels, cores, outcomes, row_of
+    from rockbatch.batch import carry_out, study_digests
+    from rockbatch.commands.ending import cost_of_finished, end, what_was_run, write_peaks
     from rockbatch.commands.progress import Progress
-    from rockbatch.commands.summary import other_law, summary
     from rockbatch.core.kernel import is_compiled
+    from rockbatch.groups import compile_kernels
+    from rockbatch.journal import Journal
     from rockbatch.plan import Plan
-    from rockbatch.results import INFO, PEAKS, PeaksFile, describe, unusable_rows, write_info
-    from rockbatch.saved import read_saved
+    from rockbatch.results import PART, columns
     from rockbatch.study.suite import ground_motions
 
     motions = ground_motions(study)
-    for file in motions.unusable:
-        _say(f"not used: {file.source}: {file.reason}")
-    if motions.left_out:
-        _say(f"{_count(len(motions.left_out), 'file')} left out, or no records: the report says why")
-    jobs = arguments.jobs or cores()
+    tell_motions(motions)
     runs = Plan(study, motions)
-    factors = (
-        (len(motions.motions), "record"),
-        (len(study.motions.polarity), "direction"),
-        (len(study.motions.scale), "scale"),
-        (len(study.cases), "case"),
-    )
-    counted = " × ".join(_count(n, noun) for n, noun in factors if n > 1 or noun in ("record", "case"))
-    _say(f"{counted} = {_count(len(runs), 'run')} on {_count(jobs, 'thread')}")
-    if not is_compiled():
-        _say("compiling the kernels (once per installation, about 20 s)")
-    compile_kernels(study)
-    interrupted = False
-    with PeaksFile(directory, study) as peaks, Progress(len(runs)) as progress:
-        try:
-            for index, outcome in outcomes(runs, study.numerics, jobs, study.output):
-                peaks.add(index, row_of(runs[index], outcome))
-                progress()
-        except KeyboardInterrupt:
-            interrupted = True
-        peaks.end_with(unusable_rows(motions))
-    info = {
-        "rockbatch": __version__,
-        "created": datetime.datetime.now().astimezone().isoformat(timespec="seconds"),
-        "command": ["rockbatch", *sys.argv[1:]],
-        **describe(study, motions),
-        "versions": _versions(),
-        "machine": f"{platform.system()} {platform.machine()}, {cores()} processors",
-        "runs": peaks.finished,
-        "jobs": jobs,
-        "wall_s": round(time.monotonic() - started, 3),
+    wanted, directory = range(len(runs)), folder(arguments)
+    if arguments.shard:
+        share, shares = arguments.shard
+        wanted = range(len(runs) * (share - 1) // shares, len(runs) * share // shares)
+        directory = arguments.out or directory / f"shard-{share}-of-{shares}"
+    digest = study_digests(study, motions)
+    info = what_was_run(study, motions, runs, digest)
+    with Journal(directory / PART, columns(study), digest, arguments.fresh) as journal:
+        cost = None if arguments.fresh or len(journal) else cost_of_finished(directory, info)
+        if cost:
+            say(f"{told(study, motions)} are finished in {directory}; nothing is left to run (--fresh runs them again)")
+            return end(directory, study, motions, runs, info | cost)
+        with engine(arguments) as carrier:
+            of_share = f"; share {share} of {shares} is {count(len(wanted), 'run')}" if arguments.shard else ""
+            say(f"{told(study, motions)} on {carrier}{of_share}")
+            kept = sum(number in journal for number in wanted)
+            if kept:
+                say(f"{kept} of them are finished already, {len(wanted) - kept} are left (--fresh starts over)")
+            if not is_compiled():
+                say("compiling the kernels (once per installation, about 20 s)")
+            compile_kernels(study)
+            try:
+                with Progress(len(wanted) - kept) as progress:
+                    carry_out(runs, study.numerics, journal, carrier, study.output, among=wanted, progress=progress)
+            except KeyboardInterrupt:
+                done = sum(number in journal for number in wanted)
+                say(
+                    f"interrupted: {done} of {count(len(wanted), 'run')} are finished and kept in {journal.path}; "
+                    "the same command goes on from there"
+                )
+                return 130
+            cost = {"jobs": carrier.jobs, "kept": kept}
+        if arguments.shard:
+            say(f"{journal.path}: share {share} of {shares} is finished; `rockbatch merge` joins the shares")
+            return 0
+        write_peaks(journal, motions)
+        cost["wall_s"] = round(time.monotonic() - started, 3)
+        return end(directory, study, motions, runs, info | cost)
+
+
+def tell_motions(motions: "MotionSet") -> None:
+    """Tell which files are not used, and how many nobody misses."""
+    for file in motions.unusable:
+        say(f"not used: {file.source}: {file.reason}")
+    if motions.left_out:
+        say(f"{count(len(motions.left_out), 'file')} left out, or no records: the report says why")
+
+
+def told(study: "Study", motions: "MotionSet") -> str:
+    """How many runs there are, and why: "2 records × 5 cases = 10 runs"."""
+    factors = {
+        "record": len(motions.motions),
+        "direction": len(study.motions.polarity),
+        "scale": len(study.motions.scale),
+        "case": len(study.cases),
     }
-    write_info(directory, info)
-    if interrupted:
-        _say(f"interrupted: {peaks.finished} of {len(runs)} runs are in {directory / PEAKS}")
-        return 130
-
-    saved = read_saved(directory)
-    code, histories = _keep_histories(saved, study, runs)
-    by_pga = [motion.name for motion in sorted(motions.motions, key=lambda motion: motion.pga)]
-    print(summary(saved.peaks, study.varied, by_pga))
-    if warning := other_law(saved.peaks):
-        _say(warning)
-    if study.checks:
-        from rockbatch.commands.check import tell
-        from rockbatch.design import verdicts
-
-        code = max(code, tell(directory, verdicts(saved)))
-
-    from rockbatch.report import write_report
-
-    report = write_report(directory)
-    for path in (directory / PEAKS, directory / INFO, histories, report):
-        if path:
-            _say(str(path))
-    if peaks.failed:
-        _say(f"{_count(peaks.failed, 'row')} with status failed; the column reason says why")
-        code = 1
-    return code
-
-
-def _keep_histories(saved: Any, study: Any, runs: Any) -> tuple[int, Path | None]:
-    """Write the histories that the study asks for: exit code, and the file; what cannot be written is told."""
-    from rockbatch.errors import InputError
-    from rockbatch.keep import keep_histories
-
-    try:
-        return 0, keep_histories(saved, study, runs)
-    except InputError as error:
-        _say(str(error))
-        return 1, None
-
-
-def _count(n: int, noun: str) -> str:
-    return f"{n} {noun}" if n == 1 else f"{n} {noun}s"
-
-
-def _versions() -> dict[str, str]:
-    from importlib.metadata import version
-
-    return {"python": platform.python_version(), **{name: version(name) for name in PACKAGES}}
-
-
-def _say(text: str) -> None:
-    print(text, file=sys.stderr, flush=True)
+    counted = [count(n, noun) for noun, n in factors.items() if n > 1 or noun in ("record", "case")]
+    return f"{' × '.join(counted)} = {count(math.prod(factors.values()), 'run')}"

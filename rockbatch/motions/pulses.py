@@ -81,6 +81,11 @@ def pulse(
     return Motion(name, dt, acceleration, source="pulse", notes=(note,))
 
 
+def pulse_length(shape: str, period: float, gamma: float | None = None) -> float:
+    """T_p [s], the table at the head of this module, of a pulse with ``period`` [s]."""
+    return _formula(shape, 1.0, period, gamma, 0.0)[1]
+
+
 def _problems(
     shape: str,
     amplitude: float,

@@ -13,6 +13,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from rockbatch.errors import InputError
 from rockbatch.motions.motion import Motion, Samples
 
 PERIODS = np.geomspace(0.05, 5.0, 41)
@@ -43,8 +44,18 @@ def spectral_acceleration(
     ndarray, shape (n,)
         In m/s², the largest value until the last sample. Periods with fewer than 20 samples are given more of them,
         on the straight lines between the record's.
+
+    Raises
+    ------
+    InputError
+        For periods and damping that are out of range.
     """
     periods = np.asarray(periods, dtype=np.float64)
+    wrong = [f"period = {period:g}: must be a number above 0 [s]" for period in periods if not 0 < period < math.inf]
+    if not 0 <= damping < 1:
+        wrong.append(f"damping = {damping:g}: must be within 0 ≤ damping < 1")
+    if wrong:
+        raise InputError(*wrong)
     parts = np.ones(len(periods), dtype=int)
     while (few := periods < _PER_PERIOD * dt / parts * (1 - 1e-9)).any():
         parts[few] *= 2

@@ -4,7 +4,18 @@ import shlex
 from collections.abc import Sequence
 
 from rockbatch.checks import Verdict
-from rockbatch.report import accuracy, histories, inputs, panels, peaks, spectra, statistics, summary, verdicts
+from rockbatch.report import (
+    accuracy,
+    analyses,
+    histories,
+    inputs,
+    panels,
+    peaks,
+    spectra,
+    statistics,
+    summary,
+    verdicts,
+)
 from rockbatch.report.document import Section, document, figure, paragraphs
 from rockbatch.report.finished import Finished
 from rockbatch.report.markup import Markup, join, number, tag
@@ -29,6 +40,7 @@ def page(
         Section("Compared with published values", "references", _references(finished)),
         Section("Every run", "peaks", _all(finished)),
         Section("The suite in each case", "suite", statistics.section(finished)),
+        *analyses.sections(finished.saved.directory, finished.info["study"]["sha256"]),
         Section("Histories", "histories", _histories(finished, responses)),
         Section("Ground motions", "records", _records(finished)),
         Section("Not used", "unusable", _unusable(finished)),
@@ -115,7 +127,11 @@ def _unusable(finished: Finished) -> Markup:
 
 def _accuracy(finished: Finished, levels: Sequence[accuracy.Level]) -> Markup:
     info, errors = finished.info, finished.runs["theta_max_error"].dropna()
-    cost = f"{counted(info['runs'], 'run')} took {number(float(info['wall_s']), '.3g')} s on {counted(info['jobs'], 'thread')}."
+    kept = info.get("kept", 0)  # of an earlier session, or of other machines: what they took is not known
+    cost = f"{counted(kept, 'run')} had been finished before. " if kept else ""
+    if kept < info["runs"]:
+        took = f"{number(float(info['wall_s']), '.3g')} s on {counted(info['jobs'], 'thread')}"
+        cost += f"{counted(info['runs'] - kept, 'run')} took {took}."
     if len(errors):
         cost += (
             f" The error of θmax/α, estimated by halving the step, is {errors.median():.0e} in the median and "

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,7 +12,7 @@ from rockbatch.checks.statistics import quantile
 from rockbatch.report.finished import NO_PEAK, Finished
 from rockbatch.report.markup import Markup, join, tag
 from rockbatch.report.svg import Array
-from rockbatch.report.table import THETA, THETA_FORMAT, Head, alarm, sub, table
+from rockbatch.report.table import MOST_ROWS, THETA, THETA_FORMAT, Head, alarm, sub, table, told_apart
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -75,16 +76,20 @@ def section(finished: Finished) -> Markup:
     if runs.empty:
         return Markup("")
     names, heads = rows_of(finished, runs, keys)
+    shown = dict(islice(names.items(), MOST_ROWS))
+    if len(shown) < len(names):
+        runs = runs[runs.set_index(keys).index.isin(list(shown))]
     sides = {str(side): dict(list(same.groupby(keys))) for side, same in runs.groupby("with_vertical")}
-    return tables(sides, names, heads)
+    return join(told_apart(len(shown), len(names)), tables(sides, shown, heads))
 
 
 def rows_of(finished: Finished, runs: "pd.DataFrame", keys: list[str]) -> tuple[dict[Hashable, list[str]], list[Head]]:
     """Texts of the first cells of each row, and their heads; ``keys`` are columns of ``runs`` that tell rows apart."""
+    many_scales = runs["scale"].nunique() > 1
     words: dict[str, Callable[[Any], str]] = {
         "series": lambda place: finished.series[place].label,
         "pier": lambda place: finished.piers[place],
-        "scale": lambda scale: f"{scale:g}" if runs["scale"].nunique() > 1 else "",
+        "scale": lambda scale: f"{scale:g}" if many_scales else "",
         "with_vertical": str,
     }
     heads = {

@@ -18,7 +18,8 @@ TOP = {
     "title": Key(text, '"Pier 4, longitudinal"'),
     "notes": Key(text, '"Soil class C."'),
 }
-SECTIONS = ("pier", "motions", "numerics", "output", "case", "reference", "check")
+ANALYSES = ("fragility", "spectrum", "sensitivity")  # each read by its own command
+SECTIONS = ("pier", "motions", "numerics", "output", "case", "reference", "check", *ANALYSES)
 NUMERICS = {
     "tolerance": Key(positive, "1e-4"),
     "substeps": Key(count, "4"),

@@ -114,12 +114,7 @@ def _pulses(file: TomlFile) -> tuple[PulseSpec, ...]:
 def _check_pulse(table: Table, read: dict[str, Any]) -> None:
     """What the keys of one pulse say about each other; the pulse itself knows most of it."""
     before = len(table.file.problems)
-    if "shape" in read:
-        for name in ("gamma", "nu"):
-            if read["shape"] == "mavroeidis-papageorgiou" and name not in table.data:
-                table.complain(f"{name} is missing; write for example {name} = {PULSE[name].example}")
-            elif read["shape"] != "mavroeidis-papageorgiou" and name in table.data:
-                table.complain(f"{name}: does not apply to shape = {shown(read['shape'])}; leave it out", name)
+    check_shape(table, read)
     if read.get("duration_s", 0.0) / read.get("dt_s", math.inf) > _MOST_SAMPLES:
         table.complain(f"dt_s = {read['dt_s']:g}: more than {_MOST_SAMPLES:,} samples; write a larger dt_s", "dt_s")
     if len(table.file.problems) > before or not read.keys() >= REQUIRED_OF_PULSE:
@@ -140,3 +135,12 @@ def _check_pulse(table: Table, read: dict[str, Any]) -> None:
             symbol, rest = problem.split(" ", 1)
             name = next((key for key in (symbol, f"{symbol}_s", f"{symbol}_g") if key in read), "name")
             table.complain(f"{name} {rest}", name)
+
+
+def check_shape(table: Table, read: dict[str, Any]) -> None:
+    """γ and ν are given where the shape of a pulse has them, and only there."""
+    for name in ("gamma", "nu"):
+        if read.get("shape") == "mavroeidis-papageorgiou" and name not in table.data:
+            table.complain(f"{name} is missing; write for example {name} = {PULSE[name].example}")
+        elif read.get("shape", "mavroeidis-papageorgiou") != "mavroeidis-papageorgiou" and name in table.data:
+            table.complain(f"{name}: does not apply to shape = {shown(read['shape'])}; leave it out", name)

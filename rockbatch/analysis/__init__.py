@@ -1,0 +1,1 @@
+"""The next questions about a study, each answered by batches of runs of its own."""

@@ -1,0 +1,50 @@
+"""Whether a run exceeds a limit: a check of the study, asked of one record at a time."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from rockbatch.checks.choices import chooses
+from rockbatch.checks.demands import DEMANDS, Case
+from rockbatch.checks.rules import Rule
+from rockbatch.checks.suite import of_runs
+from rockbatch.study.fragility import OVERTURNING
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+LEFT_OUT, WITHSTOOD, UNDECIDED, EXCEEDED = -1, 0, 1, 2
+"""What a run says about a limit, from the best to the worst: of the polarities of a record the worse one counts.
+
+A run is undecided where the bounds of its demand straddle the limit, by its error estimate or because it flew, failed or
+overturned and the check counts that as unknown; it is left out where the check says so.
+"""
+
+
+def applies(rule: Rule, case: Case) -> bool:
+    """Whether a case, as run.json has it, is asked about this limit."""
+    return chooses(rule, str(case["case"]), 1.0) and case["base"] in DEMANDS[rule.demand].bases
+
+
+def threshold(rule: Rule) -> float:
+    """What the demand of one record must not exceed; a count of records has it in ``above``."""
+    return (rule.above or 0.0) if rule.statistic == "count" else rule.limit
+
+
+def words(rule: Rule) -> str:
+    """The limit of one record in words, "theta_max_over_alpha > 0.5"; empty where the name says it all."""
+    if rule == OVERTURNING:
+        return ""
+    limit = threshold(rule)
+    return rule.demand if DEMANDS[rule.demand].event and limit == 0 else f"{rule.demand} > {limit:g}"
+
+
+def states(rule: Rule, runs: "pd.DataFrame", case: Case) -> npt.NDArray[np.int8]:
+    """What each of the n runs of a case, rows of peaks.csv, says about the limit, shape (n,)."""
+    bounds, kept = of_runs(rule, runs, case)
+    limit = threshold(rule)
+    found = np.where(bounds.low > limit, EXCEEDED, np.where(bounds.high > limit, UNDECIDED, WITHSTOOD))
+    if rule.polarity:
+        kept = kept & (runs["polarity"] == rule.polarity).to_numpy()
+    return np.where(kept, found, LEFT_OUT).astype(np.int8)

@@ -1,0 +1,114 @@
+"""The points of a sensitivity study, and the runs at them."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import Any
+
+from rockbatch.analysis.made import Made
+from rockbatch.analysis.sobol import design
+from rockbatch.motions import Motion
+from rockbatch.outcome import Outcome
+from rockbatch.plan import Run, scaled
+from rockbatch.simulation import housner_restitution
+from rockbatch.study import Case, Study
+from rockbatch.study.sensitivity import Input, SensitivitySpec, Value, applying, own_values, varied
+
+RUNS = "sensitivity_runs.csv"
+COLUMNS = ("record", "polarity", "scale", "status", "theta_max_over_alpha", "reason")
+"""Of :data:`RUNS`."""
+
+
+@dataclass(frozen=True)
+class Point:
+    """A case, with values of its inputs in place of its own."""
+
+    case: int
+    values: Mapping[str, Value]
+
+
+def low_base_high(inputs: Sequence[Input], study: Study, case: Case) -> list[dict[str, Value]]:
+    """The study's own values; then, for each input, its low end and its high one with all others as they are.
+
+    A restitution that is an input and that the study does not give is Housner's of its own pier.
+    """
+    own = own_values(study, case)
+    if own.get("restitution", 0.0) is None:
+        own["restitution"] = housner_restitution(case.pier)
+    base = {each.name: own[each.name] for each in inputs}
+    return [base, *(base | {each.name: level} for each in inputs for level in each.levels)]
+
+
+class Points:
+    """All points of a sensitivity study: for each case those one at a time, then those of Sobol's indices.
+
+    ``inputs`` are those of each case, ``parts`` the places of its two kinds of points.
+    """
+
+    def __init__(self, study: Study, spec: SensitivitySpec) -> None:
+        self.inputs = [applying(spec.inputs, case) for case in study.cases]
+        self.parts: list[tuple[slice, slice]] = []
+        self.all: list[Point] = []
+        for place, (case, inputs) in enumerate(zip(study.cases, self.inputs, strict=True)):
+            ends = [len(self.all)]
+            many = design(inputs, spec.samples, spec.seed) if inputs else []  # a rigid base may have none of them
+            for values in (low_base_high(inputs, study, case), many):
+                self.all += [Point(place, each) for each in values]
+                ends.append(len(self.all))
+            self.parts.append((slice(*ends[:2]), slice(*ends[1:])))
+
+    def __len__(self) -> int:
+        return len(self.all)
+
+
+class Suite:
+    """The motions that count at every point: all of the study, in its polarities unless they are an input, and scales."""
+
+    def __init__(self, study: Study, points: Points, motions: Sequence[Motion]) -> None:
+        self.cases, self.points = study.cases, points
+        turned = any(each.name == "polarity" for inputs in points.inputs for each in inputs)
+        polarities = ("+",) if turned else study.motions.polarity
+        self.members = [
+            (number, polarity, scale)
+            for number in range(len(motions))
+            for polarity in polarities
+            for scale in study.motions.scale
+        ]
+        self._motions = {True: motions, False: [replace(motion, vertical=None) for motion in motions]}
+        self._moved = lru_cache(maxsize=8)(self._move)
+
+    def runs(self) -> Made:
+        """Every motion at every point, the points running fastest: neighbours share their motion."""
+        return Made(len(self.members) * len(self.points), self._run)
+
+    def _run(self, index: int) -> Run:
+        member, place = divmod(index, len(self.points))
+        point = self.points.all[place]
+        number, polarity, scale = self.members[member]
+        polarity = str(point.values.get("polarity", polarity))
+        vertical = bool(point.values.get("vertical", True))
+        motion = self._moved(number, polarity, scale, vertical)
+        return Run(motion, polarity, scale, self.case(point), self._motions[vertical][number])
+
+    def case(self, point: Point) -> Case:
+        """The case at a point."""
+        return varied(self.cases[point.case], point.values)
+
+    def some_cases(self) -> tuple[Case, ...]:
+        """Cases all over the design, which between them need every kernel that the others need."""
+        return tuple(map(self.case, self.points.all[:: 1 + len(self.points) // 64]))
+
+    def _move(self, number: int, polarity: str, scale: float, vertical: bool) -> Motion:
+        return scaled(self._motions[vertical][number], scale, polarity)
+
+
+def row_of(run: Run, outcome: Outcome) -> dict[str, Any]:
+    """What is kept of a run."""
+    return {
+        "record": run.motion.name,
+        "polarity": run.polarity,
+        "scale": run.scale,
+        "status": outcome.status,
+        "theta_max_over_alpha": outcome.theta_max / run.case.pier.alpha,
+        "reason": outcome.reason,
+    }

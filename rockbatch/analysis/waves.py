@@ -1,0 +1,61 @@
+"""Runs in waves, each of which depends on what the one before came to; all of them in one journal."""
+
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext
+from typing import TYPE_CHECKING, Any
+
+from rockbatch.batch import carry_out
+from rockbatch.engines import Engine
+from rockbatch.journal import Journal
+from rockbatch.plan import Run
+from rockbatch.results import COUNTS, TEXTS, as_table
+from rockbatch.study import Study
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+class Waves:
+    """Carries out wave after wave, and gives each back as its rows of peaks.csv, in the order of its runs.
+
+    The numbers of the runs go on from wave to wave: as long as a wave follows from the rows before it alone, a search that
+    was killed goes on where it stopped. Rows always come from the journal, with its ten digits, so that nothing depends on
+    whether they were there already.
+
+    ``progress`` is asked, with the number of runs that a wave has left, for a context that is called with the number of
+    those that are finished.
+    """
+
+    def __init__(
+        self,
+        study: Study,
+        journal: Journal,
+        engine: Engine,
+        progress: Callable[[int], AbstractContextManager[Callable[[int], object] | None]] | None = None,
+    ) -> None:
+        self.study, self.journal, self.engine, self.progress = study, journal, engine, progress
+        self.finished = 0
+
+    def __call__(self, runs: Sequence[Run]) -> "pd.DataFrame":
+        first, self.finished = self.finished, self.finished + len(runs)
+        left = sum(number not in self.journal for number in range(first, self.finished))
+        with self.progress(left) if self.progress and left else nullcontext() as progress:
+            carry_out(
+                runs, self.study.numerics, self.journal, self.engine, self.study.output, first=first, progress=progress
+            )
+        return as_table((_read(self.journal[number]) for number in range(first, self.finished)), self.study)
+
+
+def _read(cells: Mapping[str, str]) -> dict[str, Any]:
+    """Cells as numbers where they are, None where one does not apply."""
+    return {
+        name: text if name in TEXTS else None if text == "" else int(text) if name in COUNTS else _number(text)
+        for name, text in cells.items()
+    }
+
+
+def _number(text: str) -> float | str:
+    try:
+        return float(text)
+    except ValueError:  # a varied key such as kinematics
+        return text

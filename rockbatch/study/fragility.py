@@ -1,0 +1,143 @@
+"""What ``rockbatch fragility`` is asked: the table [fragility] of a study file."""
+
+import fnmatch
+from dataclasses import dataclass, replace
+from typing import Any
+
+from rockbatch.checks.demands import DEMANDS
+from rockbatch.checks.rules import Rule
+from rockbatch.study.spec import Study
+from rockbatch.toml.kinds import KindError, choice, closest, number, positive, shown, text
+from rockbatch.toml.reader import Key, Table, TomlFile
+
+MEASURES = ("PGA", "PGV", "Sa")
+OVERTURNING = Rule("overturning", "overturned", at_most=0, reason="collapse of a rocking pier")
+"""The limit state that every study has."""
+
+
+def _below_one(value: Any) -> float:
+    if not 0 <= number(value) < 1:
+        raise KindError("a number, 0 or above and below 1")
+    return float(value)
+
+
+def _tolerance(value: Any) -> float:
+    if not 1e-6 <= number(value) <= 1:
+        raise KindError("a number from 1e-6 to 1")
+    return float(value)
+
+
+LEVELS = {"PGA": "levels_g", "Sa": "levels_g", "PGV": "levels_m_s"}
+FRAGILITY = {
+    "method": Key(choice("stripes", "ida"), '"ida"'),
+    "measure": Key(choice(*MEASURES), '"PGV"', required=True),
+    "period_s": Key(positive, "1.0"),
+    "damping": Key(_below_one, "0.05"),
+    "levels_g": Key(positive, "[0.2, 0.4, 0.6, 0.8]", many=True),
+    "levels_m_s": Key(positive, "[0.25, 0.5, 1.0, 1.5]", many=True),
+    "tolerance": Key(_tolerance, "0.01"),
+    "checks": Key(text, '["no overturning", "uplift*"]', many=True),
+    "confidence": Key(_below_one, "0.95"),
+}
+"""Keys of [fragility]; :class:`FragilitySpec` says what they mean."""
+
+
+@dataclass(frozen=True)
+class FragilitySpec:
+    """How intensity is measured, where fragility is sampled, and which limits are asked about.
+
+    Attributes
+    ----------
+    method : "stripes" or "ida"
+        Each record scaled to each level; or also the least intensity that exceeds each limit, by bisection.
+    measure : "PGA", "PGV" or "Sa"
+        Intensity measure of the horizontal component; Sa is the pseudo-spectral acceleration.
+    period_s, damping : float
+        Of the oscillator of Sa [s, ratio].
+    levels : tuple of float
+        Rising levels of the measure [g, or m/s for PGV].
+    tolerance : float
+        Relative width to which the bisection brackets the least scale that exceeds a limit.
+    limits : tuple of Rule
+        Overturning, then the checks; each is held against every record by itself.
+    confidence : float
+        Level of the confidence bands.
+    """
+
+    method: str
+    measure: str
+    levels: tuple[float, ...]
+    limits: tuple[Rule, ...]
+    period_s: float = 1.0
+    damping: float = 0.05
+    tolerance: float = 0.01
+    confidence: float = 0.95
+
+    @property
+    def unit(self) -> str:
+        """Unit of the levels."""
+        return "m/s" if self.measure == "PGV" else "g"
+
+    @property
+    def label(self) -> str:
+        """The measure in words: "Sa(1 s, 5 %)"."""
+        return f"Sa({self.period_s:g} s, {100 * self.damping:g} %)" if self.measure == "Sa" else self.measure
+
+
+def read_fragility(study: Study) -> FragilitySpec:
+    """The table [fragility] of a study that is loaded.
+
+    Raises ``InputError`` with every mistake in it, with its line.
+    """
+    file = TomlFile.parse(study.path, study.text)
+    table = file.table("fragility", required='[fragility] with measure = "PGV" and levels_m_s = [0.25, 0.5, 1.0, 1.5]')
+    read = table.read(FRAGILITY) if table else {}
+    limits = _limits(table, study.checks, read.pop("checks", None)) if table else ()
+    levels = _levels(table, read) if table else ()
+    file.finish()
+    return FragilitySpec(levels=levels, limits=(OVERTURNING, *limits), **{"method": "stripes"} | read)
+
+
+def _levels(table: Table, read: dict[str, Any]) -> tuple[float, ...]:
+    """The levels in the unit of the measure; what belongs to another measure is noted."""
+    measure = read.get("measure")
+    given: dict[str, Any] = {name: read.pop(name) for name in ("levels_g", "levels_m_s") if name in read}
+    if measure is None:
+        return ()
+    own = LEVELS[measure]
+    for name in given.keys() - {own}:
+        table.complain(f"{name}: {measure} is given in {'m/s' if measure == 'PGV' else 'g'}; write {own}", name)
+    if own not in table.data and not given:
+        table.complain(f"{own} is missing; write for example {own} = {FRAGILITY[own].example}")
+    if measure == "Sa" and "period_s" not in table.data:
+        table.complain(f"period_s is missing; write for example period_s = {FRAGILITY['period_s'].example}")
+    for name in ("period_s", "damping"):
+        if measure != "Sa" and name in read:
+            table.complain(f'{name}: is for measure = "Sa"; leave it out', name)
+    if "tolerance" in read and read.get("method", "stripes") == "stripes":
+        table.complain('tolerance: is for method = "ida"; leave it out, or write method = "ida"', "tolerance")
+    levels = [setting.value for setting in given.get(own, [])]
+    for setting, before in zip(given.get(own, [])[1:], levels, strict=False):
+        if setting.value < before:
+            table.complain_about(setting, f"{own} = {setting.value:g}: after {before:g}; write them in rising order")
+    if len(levels) == 1:
+        table.complain(f"{own} = {shown(table.data[own])}: one level tells no dispersion; write at least two", own)
+    return tuple(levels)
+
+
+def _limits(table: Table, rules: tuple[Rule, ...], chosen: list[Any] | None) -> tuple[Rule, ...]:
+    """The checks of the study that are asked about, all by default, at all scales; those of the case alone are left out."""
+    able = [rule for rule in rules if not DEMANDS[rule.demand].of_the_case and rule.demand != OVERTURNING.demand]
+    if any(rule.name == OVERTURNING.name for rule in able):
+        table.complain(f"a [[check]] is called {shown(OVERTURNING.name)}, as the limit state is; give it another name")
+    if chosen is not None:
+        names = [rule.name for rule in able]
+        for setting in chosen:
+            if not any(fnmatch.fnmatchcase(name, setting.value) for name in names):
+                meant = closest(setting.value, names)
+                there = f"there is {', '.join(map(shown, names))}" if names else "the study has none about records"
+                instead = f"did you mean {shown(meant)}?" if meant else there
+                table.complain_about(setting, f"checks = {shown(setting.value)}: no [[check]] is called so; {instead}")
+        patterns = [setting.value for setting in chosen]
+        able = [rule for rule in able if any(fnmatch.fnmatchcase(rule.name, one) for one in patterns)]
+    return tuple(replace(rule, scale=()) for rule in able)

@@ -1,0 +1,212 @@
+"""Rocking spectra and overturning maps in a study file: [spectrum] and [[spectrum.map]]."""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from rockbatch.errors import InputError
+from rockbatch.motions.pulses import SHAPES
+from rockbatch.structure import Pier, problems
+from rockbatch.study.cases import read_cases
+from rockbatch.study.motions import check_shape
+from rockbatch.study.ranges import Range, range_of
+from rockbatch.study.spec import Case, Study
+from rockbatch.toml.kinds import KindError, choice, count, number, positive, text
+from rockbatch.toml.reader import Key, Table, TomlFile
+
+AXES = ("two_pi_over_p_s", "p", "size_m")
+"""What a spectrum may run over: 2π/p [s], p [rad/s], or R0 [m]."""
+
+LEAST_POINTS = 2
+"""Of a range: its ends."""
+
+LEAST_TOLERANCE = 1e-9
+"""Of a boundary; halves of intervals that are shorter would soon be no numbers between their ends."""
+
+
+def _oscillations(value: Any) -> float:
+    if number(value) <= 1:
+        raise KindError("a number above 1")
+    return float(value)
+
+
+def _tolerance(value: Any) -> float:
+    if number(value) < LEAST_TOLERANCE:
+        raise KindError(f"a number, {LEAST_TOLERANCE:g} or above")
+    return float(value)
+
+
+SPECTRUM = {
+    "alpha": Key(positive, "[0.10, 0.15, 0.20]", many=True),
+    "two_pi_over_p_s": Key(positive, "[2, 16]", many=True),
+    "p": Key(positive, "[0.4, 3]", many=True),
+    "size_m": Key(positive, "[1, 60]", many=True),
+    "points": Key(count, "41"),
+    "spacing": Key(choice("linear", "log"), '"log"'),
+}
+MAP = {
+    "name": Key(text, '"one-sine"', required=True),
+    "shape": Key(choice(*SHAPES), '"sine"', required=True),
+    "gamma": Key(_oscillations, "1.5"),
+    "nu": Key(number, "0.0"),
+    "frequency": Key(positive, "[1.0, 8.0]", required=True, many=True),
+    "frequencies": Key(count, "29"),
+    "amplitude": Key(positive, "[1.0, 12.0]", required=True, many=True),
+    "amplitudes": Key(count, "45"),
+    "tolerance": Key(_tolerance, "1e-3"),
+}
+
+
+@dataclass(frozen=True)
+class SpectrumSpec:
+    """A rocking spectrum: every base of the study on piers of given slenderness and varied size.
+
+    Attributes
+    ----------
+    axis : str
+        One of :data:`AXES`.
+    cases : tuple of Case
+        α slowest, then the value on the axis, then the bases.
+    varied : tuple of str
+        Keys of ``Case.columns``: α, ``axis``, and what the study varies of its bases.
+    """
+
+    axis: str
+    cases: tuple[Case, ...]
+    varied: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class MapSpec:
+    """An overturning map: amplitudes a_p/(g tan α) over frequencies ω_p/p of one pulse, for every case of the study.
+
+    ``frequency`` and ``amplitude`` are the ranges, with so many values of each in the grid; ``tolerance`` is the width
+    within which boundaries are found, of a_p/(g tan α). ``gamma`` and ``nu`` as in :func:`rockbatch.motions.pulse`.
+    """
+
+    name: str
+    shape: str
+    frequency: Range
+    amplitude: Range
+    frequencies: int = 29
+    amplitudes: int = 45
+    tolerance: float = 1e-3
+    gamma: float | None = None
+    nu: float | None = None
+
+    @property
+    def grid(self) -> tuple[list[float], list[float]]:
+        """Frequencies and amplitudes, evenly spaced."""
+        return (
+            np.linspace(*self.frequency, self.frequencies).tolist(),
+            np.linspace(*self.amplitude, self.amplitudes).tolist(),
+        )
+
+
+def read_spectrum(study: Study) -> tuple[SpectrumSpec | None, tuple[MapSpec, ...]]:
+    """The spectrum and the maps that a study file asks for.
+
+    Raises
+    ------
+    InputError
+        With every mistake in [spectrum], or because there is none.
+    """
+    file = TomlFile.parse(study.path, study.text)
+    table = file.table(
+        "spectrum", required="[spectrum] with alpha = [0.10, 0.15] and two_pi_over_p_s = [2, 16], or a [[spectrum.map]]"
+    )
+    spectrum, maps = None, []
+    if table is not None:
+        if table.data.keys() - {"map"} or "map" not in table.data:
+            spectrum = _spectrum(table, study)
+        maps = _maps(file)
+    file.finish()
+    return spectrum, tuple(maps)
+
+
+def _spectrum(table: Table, study: Study) -> SpectrumSpec | None:
+    read = table.read(SPECTRUM, other=["map"])
+    if "alpha" not in table.data:
+        table.complain(f"alpha is missing; write for example alpha = {SPECTRUM['alpha'].example}")
+    given = [name for name in AXES if name in table.data]
+    if len(given) != 1:
+        ways = " or ".join(f"{name} = {SPECTRUM[name].example}" for name in AXES)
+        table.complain(f"it runs over one range; write {ways}", *given[1:2])
+        return None
+    (axis,) = given
+    ends = range_of(table, axis, read.get(axis))
+    points = _points(table, "points", read.get("points", 41))
+    if "alpha" not in read or ends is None or points is None:
+        return None
+    space = np.geomspace if read.get("spacing") == "log" else np.linspace
+    values = space(*ends, points).tolist()
+    piers = _piers(table, read["alpha"], axis, values, study)
+    before = len(table.file.problems)
+    expanded, varied = read_cases(table.file, piers)
+    del table.file.problems[before:]  # said below, with the slenderness to which it applies
+    told = set()
+    for each in expanded:
+        alpha = each.pier.alpha
+        for problem in problems(each.pier, each.base):
+            if (alpha, each.name) not in told:
+                told.add((alpha, each.name))
+                table.complain(f'alpha = {alpha:g}, case "{each.name}": {problem}', "alpha")
+    mu = ("mu",) if len({pier.mu for pier, _ in piers}) > 1 else ()
+    varied = ("alpha", *mu, axis, *varied)
+    return SpectrumSpec(
+        axis,
+        tuple(
+            Case(e.name, e.pier, e.base, {key: e.values[key] for key in varied if key in e.values}) for e in expanded
+        ),
+        varied,
+    )
+
+
+def _piers(
+    table: Table, alphas: Any, axis: str, values: list[float], study: Study
+) -> list[tuple[Pier, dict[str, Any]]]:
+    """Piers of every slenderness and size, with μ and g of the study's, and their values by key."""
+    piers = []
+    for alpha in alphas:
+        for mu, gravity in dict.fromkeys((case.pier.mu, case.pier.gravity) for case in study.cases):
+            for value in values:
+                try:
+                    if axis == "size_m":
+                        pier = Pier.from_size(alpha.value, value, mu, gravity)
+                    else:
+                        p = value if axis == "p" else 2 * math.pi / value
+                        pier = Pier(alpha.value, p, mu, gravity)
+                except InputError as error:
+                    for problem in error.problems:
+                        table.complain_about(alpha, problem)
+                    break
+                piers.append((pier, {"alpha": alpha.value, "mu": mu, axis: value}))
+    return piers
+
+
+def _maps(file: TomlFile) -> list[MapSpec]:
+    maps: list[MapSpec] = []
+    names: set[str] = set()
+    for table in file.tables("spectrum", "map", title="name"):
+        before = len(file.problems)
+        read = table.read(MAP)
+        check_shape(table, read)
+        for name in ("frequency", "amplitude"):
+            read[name] = range_of(table, name, read.get(name))
+        for name in ("frequencies", "amplitudes"):
+            _points(table, name, read.get(name, LEAST_POINTS))
+        if read.get("name") in names:
+            table.complain(f'name = "{read["name"]}": given twice; give each map its own name', "name")
+        names.add(read.get("name", ""))
+        if len(file.problems) == before:
+            maps.append(MapSpec(**read))
+    return maps
+
+
+def _points(table: Table, name: str, found: int) -> int | None:
+    if found < LEAST_POINTS:
+        table.complain(f"{name} = {found}: expected {LEAST_POINTS} or more, the ends of the range among them", name)
+        return None
+    return found
