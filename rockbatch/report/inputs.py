@@ -77,7 +77,8 @@ def _sources(records: Sequence[dict[str, Any]]) -> Markup:
     rows: list[list[object]] = []
     for record in records:
         notes = tag("ul", *(tag("li", note) for note in record["notes"])) if record["notes"] else ""
-        rows.append([record["record"], record["source"], record["vertical_source"], notes])
+        sources = (record[name] and tag("span", record[name], class_="path") for name in ("source", "vertical_source"))
+        rows.append([record["record"], *sources, notes])
     return table(heads, rows, prose=True, name="Sources")
 
 
