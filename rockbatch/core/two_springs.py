@@ -1,8 +1,8 @@
 """Runs on two springs, side by side: fixed steps of Runge–Kutta 4, events located inside the step, the rest redone.
 
 A step, or what an event has left of it, is a piece. The lanes' pass takes all of them at once; where it reports that
-something may have happened, the piece is looked at here: it stands, or a shorter one is tried until its end is the
-event's time. Also these trials are taken by the pass, together with the other lanes' steps.
+something may have happened, the piece is looked at: it stands, or a shorter one is tried until its end is the event's
+time (``search``), and then the event happens here.
 """
 
 import math
@@ -10,14 +10,13 @@ import math
 import numpy as np
 
 from rockbatch.core.equations import geometry, on_ground, rates, step
-from rockbatch.core.events import at_rest, quiet, signals
+from rockbatch.core.events import at_rest
 from rockbatch.core.ground import ground_rows
 from rockbatch.core.kernel import entry, inlined, kernel
 from rockbatch.core.lanes import (
     BEFORE,
     BEFORE_RATES,
     CALM,
-    CONTACT,
     EVENTFUL,
     GROUND,
     LANES,
@@ -30,13 +29,11 @@ from rockbatch.core.lanes import (
     PEAK_TIME,
     RATES,
     SAMPLE_TIME,
-    SLOPES,
     START,
     STEP,
     SUBSTEP,
     SUBSTEPS,
     TURNED,
-    WATCH,
     WATCHED,
     model_of,
     one_pass,
@@ -44,11 +41,24 @@ from rockbatch.core.lanes import (
     put_state,
     rows,
     state_of,
-    watch,
 )
 from rockbatch.core.loading import Loading, branches
 from rockbatch.core.outcome import fallen, patience, undecided
-from rockbatch.core.roots import BISECT_AFTER, CLOSE, TRIALS, falls, largest_within, lowest_within
+from rockbatch.core.roots import largest_within, lowest_within
+from rockbatch.core.search import (
+    ACCEPT,
+    REST,
+    SEARCH,
+    VERDICT,
+    contact_of,
+    ground_of,
+    judge,
+    next_piece,
+    put_contact,
+    ready,
+    seek_turn,
+    supports_of,
+)
 from rockbatch.core.springs import static_deflection
 from rockbatch.core.transitions import Supports, handle
 from rockbatch.core.types import (
@@ -64,8 +74,6 @@ from rockbatch.core.types import (
     SURVIVED,
     UNDECIDED,
     Contact,
-    Ground,
-    Signals,
     SpringRun,
     State,
 )
@@ -76,19 +84,10 @@ HISTORY_COLUMNS = 13  # t, the six of State, the five of Contact, kind of row
 
 NONE = np.int64(0)  # a literal 0 would have every function that it is handed to compiled twice
 RUNNING = -1
-ACCEPT = -1.0  # verdicts on a piece, besides the number of an event
-SEARCH = -2.0
 
 # What only this module needs of a lane
-HELD = rows(1)  # Contact.held
-SUPPORTS = rows(2)
-REST = rows(1)  # velocity that counts as none [m/s]
 DONE = rows(1)  # of the step so far [s]
 EVENTS = rows(1)  # since the last sample
-VERDICT = rows(1)  # on the piece that is being taken: ACCEPT or the number of an event; SEARCH: not yet known
-TRIAL = rows(1)  # how many there were
-EARLY = rows(9)  # latest time in the piece before the event: length, signals, slopes
-LATE = rows(9)  # earliest time after it
 LOADING = rows(6)
 PLASTIC = rows(1)  # unstressed position of both supports at the start [m]
 IMPACTS = rows(1)
@@ -117,45 +116,11 @@ def static_state(m):
 
 
 @kernel
-def _contact_of(table, i):
-    at = CONTACT + i
-    return Contact(table[at], table[at + LANES], table[at + 2 * LANES], table[at + 3 * LANES], table[HELD + i])
-
-
-@kernel
-def _supports_of(table, i):
-    return Supports(table[SUPPORTS + i], table[SUPPORTS + LANES + i])
-
-
-@kernel
 def _loading_of(table, i):
     at = LOADING + i
     return Loading(
         table[at], table[at + LANES], table[at + 2 * LANES],
         table[at + 3 * LANES], table[at + 4 * LANES], table[at + 5 * LANES],
-    )  # fmt: skip
-
-
-@kernel
-def _signals_of(table, at):
-    return Signals(table[at], table[at + LANES], table[at + 2 * LANES], table[at + 3 * LANES])
-
-
-@kernel
-def _ground_of(table, i, x):
-    """Ground at ``x`` [s] after the sample."""
-    at = GROUND + i
-    a_slope, c_slope = table[at + LANES], table[at + 3 * LANES]
-    return Ground(table[at] + x * a_slope, a_slope, table[at + 2 * LANES] + x * c_slope, c_slope)
-
-
-@kernel
-def _signals_at(table, i, m, y, k, contact, x):
-    """Signals and slopes in state ``y`` with rates ``k``, ``x`` [s] after the sample."""
-    ground = _ground_of(table, i, x)
-    return signals(
-        m, y, k, contact, table[SUPPORTS + i], table[SUPPORTS + LANES + i], table[REST + i],
-        ground.horizontal, ground.vertical,
     )  # fmt: skip
 
 
@@ -167,34 +132,6 @@ def _put_ground(table, i, ground, sample):
         put_all(table, GROUND + i, (ground[row, 0], ground[row, 1], ground[row, 2], ground[row, 3]))
     else:
         put_all(table, GROUND + i, (0.0, 0.0, 0.0, 0.0))
-
-
-@kernel
-def _put_contact(table, i, m, contact, supports):
-    """Contacts and supports, and what the pass watches while they stay."""
-    put_all(table, CONTACT + i, (contact.left, contact.right, contact.left_yields, contact.right_yields))
-    table[HELD + i] = contact.held
-    put_all(table, SUPPORTS + i, supports)
-    put_all(table, WATCH + i, watch(m.law, contact, supports, table[REST + i]))
-
-
-@kernel
-def _ready(table, i, m, contact, x, length):
-    """The next piece: from NOW, with RATES, at ``x`` [s] after the sample, over ``length`` [s]."""
-    f, d = _signals_at(table, i, m, state_of(table, NOW + i), state_of(table, RATES + i), contact, x)
-    put_all(table, SLOPES + i, d)
-    laws = (f.left_law > 0.0 or d.left_law > 0.0) and (f.right_law > 0.0 or d.right_law > 0.0)  # a turn leaves zero
-    positive = f.left > 0.0 and f.right > 0.0 and laws
-    table[WATCHED + i] = 0.0 if positive and contact.held == 0.0 else 1.0
-    _next_piece(table, i, x, length)
-
-
-@kernel
-def _next_piece(table, i, x, length):
-    table[START + i] = x
-    table[LENGTH + i] = length
-    table[VERDICT + i] = SEARCH
-    table[TRIAL + i] = 0.0
 
 
 @kernel
@@ -240,81 +177,12 @@ def _begin(table, i, number, runs, ground, exponent, finite):
     table[FLIGHT_TIME + i] = math.nan
     branch = 1.0 if m.law == BOUC_WEN else 0.0
     contact = Contact(1.0, 1.0, branch, branch, 0.0)
-    _put_contact(table, i, m, contact, Supports(math.nan, math.nan))
+    put_contact(table, i, m, contact, Supports(math.nan, math.nan))
     _put_ground(table, i, ground, NONE)
-    under = _ground_of(table, i, 0.0)
+    under = ground_of(table, i, 0.0)
     put_state(table, NOW + i, y)
     put_state(table, RATES + i, rates(m, y, contact, under.horizontal, under.vertical))
-    _ready(table, i, m, contact, 0.0, table[STEP + i])
-
-
-@kernel
-def _earliest(early, early_slopes, late, late_slopes, h):
-    """Which signal falls through zero first within ``h`` [s], and when; −1 for none."""
-    which, first = -1, h
-    for j in range(4):
-        at = falls(early[j], early_slopes[j], late[j], late_slopes[j], h)
-        if at >= 0.0 and (which < 0 or at < first):
-            which, first = j, at
-    return which, first
-
-
-@kernel
-def _judge(table, i, m, y, end, k_end, contact, locate):
-    """Verdict on the piece from ``y`` to ``end``: ACCEPT, the number of the event at its end, or SEARCH for a shorter
-    one, whose length is set."""
-    x, length = table[START + i], table[LENGTH + i]
-    f1, d1 = _signals_at(table, i, m, end, k_end, contact, x + length)
-    trial = table[TRIAL + i]
-    if trial == 0.0:
-        f0, d0 = _signals_at(table, i, m, y, state_of(table, BEFORE_RATES + i), contact, x)
-        if (
-            quiet(f0.left, d0.left, f1.left, d1.left)
-            and quiet(f0.right, d0.right, f1.right, d1.right)
-            and quiet(f0.left_law, d0.left_law, f1.left_law, d1.left_law)
-            and quiet(f0.right_law, d0.right_law, f1.right_law, d1.right_law)
-        ):
-            return ACCEPT
-        if not locate:
-            for j in range(4):
-                if f1[j] <= 0.0:
-                    return float(j)
-            return ACCEPT
-        a, b = 0.0, length
-        which, at = _earliest(f0, d0, f1, d1, length)
-        f_a, d_a, f_b, d_b = f0, d0, f1, d1
-    else:
-        a, b = table[EARLY + i], table[LATE + i]
-        f_a, d_a = _signals_of(table, EARLY + LANES + i), _signals_of(table, EARLY + 5 * LANES + i)
-        f_b, d_b = _signals_of(table, LATE + LANES + i), _signals_of(table, LATE + 5 * LANES + i)
-        which, at = _earliest(f_a, d_a, f1, d1, length - a)
-        if which >= 0:
-            b, f_b, d_b = length, f1, d1
-        else:
-            a, f_a, d_a = length, f1, d1
-            which, at = _earliest(f_a, d_a, f_b, d_b, b - a)
-    if which < 0:  # nothing falls after all
-        if length == b:
-            return ACCEPT
-        table[VERDICT + i] = ACCEPT
-        table[LENGTH + i] = b
-        return SEARCH
-    at += a
-    close = CLOSE * table[STEP + i]
-    if abs(at - length) <= close:
-        return float(which)
-    if at - a <= close or trial > TRIALS:
-        table[VERDICT + i] = which
-    elif trial > BISECT_AFTER and trial % 2 == 0:
-        at = 0.5 * (a + b)
-    table[LENGTH + i] = at
-    table[TRIAL + i] = trial + 1.0
-    table[EARLY + i], table[LATE + i] = a, b
-    put_all(table, EARLY + LANES + i, f_a)
-    put_all(table, EARLY + 5 * LANES + i, d_a)
-    put_all(table, LATE + LANES + i, f_b)
-    put_all(table, LATE + 5 * LANES + i, d_b)
-    return SEARCH
+    ready(table, i, m, contact, 0.0, table[STEP + i])
 
 
 @kernel
@@ -364,11 +232,11 @@ def _write(history, row, t, y, contact, kind):
 @kernel
 def _happen(table, i, m, y, contact, which, t, x, history, row):
     """Event ``which`` at ``t`` [s], ``x`` [s] after the sample: status, new contacts and next row of the history."""
-    under = _ground_of(table, i, x)
+    under = ground_of(table, i, x)
     if history.shape[0] > 0:
         row = _write(history, row, t, y, contact, BEFORE_EVENT)
     y, after, supports, kind = handle(
-        m, y, contact, _supports_of(table, i), which, table[REST + i], under.horizontal, under.vertical
+        m, y, contact, supports_of(table, i), which, table[REST + i], under.horizontal, under.vertical
     )
     if history.shape[0] > 0:
         row = _write(history, row, t, y, after, kind)
@@ -377,7 +245,7 @@ def _happen(table, i, m, y, contact, which, t, x, history, row):
     # a pivot may land and be lifted at once
     table[SEPARATIONS + i] += landed - on_ground(after) + on_ground(contact)
     put_all(table, LOADING + i, branches(m, _loading_of(table, i), contact, after, y))
-    _put_contact(table, i, m, after, supports)
+    put_contact(table, i, m, after, supports)
     put_state(table, NOW + i, y)
     put_state(table, RATES + i, rates(m, y, after, under.horizontal, under.vertical))
     if after.left == 0.0 and after.right == 0.0 and after.held == 0.0:
@@ -394,11 +262,11 @@ def _happen(table, i, m, y, contact, which, t, x, history, row):
 def _look(table, i, exponent, finite, locate, history, row):
     """The piece in which something may have happened: status (RUNNING while the step is not done), time, next row."""
     m = model_of(table, i, exponent, finite)
-    contact = _contact_of(table, i)
+    contact = contact_of(table, i)
     y = state_of(table, BEFORE + i)
     x, length, h = table[START + i], table[LENGTH + i], table[STEP + i]
     if contact.held != 0.0:  # which the pass does not know
-        ground, under = _ground_of(table, i, x), _ground_of(table, i, x + length)
+        ground, under = ground_of(table, i, x), ground_of(table, i, x + length)
         end = step(m, y, state_of(table, BEFORE_RATES + i), contact, ground, length)
         k_end = rates(m, end, contact, under.horizontal, under.vertical)
         put_state(table, NOW + i, end)
@@ -409,7 +277,7 @@ def _look(table, i, exponent, finite, locate, history, row):
     t = table[SAMPLE_TIME + i] + x + length
     verdict = table[VERDICT + i]
     if verdict == SEARCH:
-        verdict = _judge(table, i, m, y, end, k_end, contact, locate)
+        verdict = judge(table, i, m, y, end, k_end, contact, locate)
         if verdict == SEARCH:
             put_state(table, NOW + i, y)
             put_state(table, RATES + i, state_of(table, BEFORE_RATES + i))
@@ -427,68 +295,21 @@ def _look(table, i, exponent, finite, locate, history, row):
             return status, t, row
     if not whole and done < h:
         table[DONE + i] = done
-        _ready(table, i, m, contact, substep * h + done, h - done)
+        ready(table, i, m, contact, substep * h + done, h - done)
         return RUNNING, t, row
     substep += 1.0
     table[SUBSTEP + i] = substep
     if whole and contact.held == 0.0:
         # all signals are positive, and the pass has left their slopes
         table[WATCHED + i] = 0.0
-        _next_piece(table, i, substep * h, h)
+        next_piece(table, i, substep * h, h)
     else:
-        _ready(table, i, m, contact, substep * h, h)
+        ready(table, i, m, contact, substep * h, h)
     t = table[SAMPLE_TIME + i] + substep * h
     status = fallen(table[NOW + LANES + i])
     if status != SURVIVED and history.shape[0] > 0:
         row = _write(history, row, t, state_of(table, NOW + i), contact, BETWEEN_SAMPLES)
     return status, t, row
-
-
-@kernel
-def _turns(table, i, w, f0, d0, f1, d1, h):
-    """When, in [0, h], the velocity turns that coefficient ``w`` watches, by its values and accelerations; h if never."""
-    sign = table[w]
-    if sign == 0.0 or sign * f1 > table[REST + i]:
-        return h
-    return falls(sign * f0, sign * d0, sign * f1, sign * d1, h) if sign * f0 > table[REST + i] else -1.0
-
-
-@kernel
-def _seek_turn(table, i, m):
-    """Shorten the piece to the moment when the velocity of a spring turns; False where the cubic does not know.
-
-    Both branches of the spring have the same rate then: an error δt of the time makes one of order δt² in z, and the
-    guess of the cubic, wrong by some 1e-4 of a step that resolves the springs, is as good as the time itself.
-    """
-    y, k1 = state_of(table, BEFORE + i), state_of(table, BEFORE_RATES + i)
-    end, k_end = state_of(table, NOW + i), state_of(table, RATES + i)
-    at, at_end = geometry(m, y.theta), geometry(m, end.theta)
-    h = table[LENGTH + i]
-    left = _turns(
-        table, i, WATCH + 4 * LANES + i,
-        y.v_rate + at.arm_left * y.omega,
-        k1.v_rate + at.arm_left * k1.omega + at.bend_left * y.omega * y.omega,
-        end.v_rate + at_end.arm_left * end.omega,
-        k_end.v_rate + at_end.arm_left * k_end.omega + at_end.bend_left * end.omega * end.omega,
-        h,
-    )  # fmt: skip
-    right = _turns(
-        table, i, WATCH + 10 * LANES + i,
-        y.v_rate + at.arm_right * y.omega,
-        k1.v_rate + at.arm_right * k1.omega + at.bend_right * y.omega * y.omega,
-        end.v_rate + at_end.arm_right * end.omega,
-        k_end.v_rate + at_end.arm_right * k_end.omega + at_end.bend_right * end.omega * end.omega,
-        h,
-    )  # fmt: skip
-    first = min(left, right)
-    if not 0.0 < first < h:
-        return False
-    table[LENGTH + i] = first
-    table[VERDICT + i] = 2.0 if left <= right else 3.0
-    table[WATCHED + i] = 1.0
-    put_state(table, NOW + i, y)
-    put_state(table, RATES + i, k1)
-    return True
 
 
 @kernel
@@ -511,7 +332,7 @@ def _unstressed(m, position, z, on_spring, waiting):
 def _finish(table, i, exponent, finite, status, t, row, results):
     """What the run in lane ``i`` comes to: its line of ``results``, as SpringRun has it."""
     m = model_of(table, i, exponent, finite)
-    y, contact, supports = state_of(table, NOW + i), _contact_of(table, i), _supports_of(table, i)
+    y, contact, supports = state_of(table, NOW + i), contact_of(table, i), supports_of(table, i)
     at = geometry(m, y.theta)
     base_left = _unstressed(m, y.v + at.lift_left, y.z_left, contact.left, supports.left)
     base_right = _unstressed(m, y.v + at.lift_right, y.z_right, contact.right, supports.right)
@@ -543,7 +364,7 @@ def _rock(exponent, finite, runs, ground, locate, every_step, history, stop, tab
             _begin(table, lanes, waiting, runs, ground, exponent, finite)
             waiting += 1
             if recording:
-                row = _write(history, row, 0.0, state_of(table, NOW + lanes), _contact_of(table, lanes), SAMPLE)
+                row = _write(history, row, 0.0, state_of(table, NOW + lanes), contact_of(table, lanes), SAMPLE)
             status = _done(table, lanes)
             if status == RUNNING:
                 lanes += 1
@@ -575,7 +396,7 @@ def _attend(table, i, exponent, finite, ground, locate, every_step, history, row
     status, t = SURVIVED, table[SAMPLE_TIME + i] + table[START + i]
     if news >= EVENTFUL:
         turned = news == TURNED and locate and table[VERDICT + i] == SEARCH
-        if turned and _seek_turn(table, i, model_of(table, i, exponent, finite)):
+        if turned and seek_turn(table, i, model_of(table, i, exponent, finite)):
             return RUNNING, t, row
         status, t, row = _look(table, i, exponent, finite, locate, history, row)
         if status != SURVIVED:
@@ -585,7 +406,7 @@ def _attend(table, i, exponent, finite, ground, locate, every_step, history, row
         t = _next_sample(table, i, ground)
     if history.shape[0] > 0 and (sampled or every_step):
         kind = SAMPLE if sampled else BETWEEN_SAMPLES
-        row = _write(history, row, t, state_of(table, NOW + i), _contact_of(table, i), kind)
+        row = _write(history, row, t, state_of(table, NOW + i), contact_of(table, i), kind)
     return (_done(table, i) if sampled else RUNNING), t, row
 
 
