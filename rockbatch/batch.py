@@ -116,9 +116,10 @@ def run(
     found = ground_motions(study)
     runs = Plan(study, found)
     rows: dict[int, dict[str, object]] = {}
-    for group in Threads(jobs or cores()).outcomes(runs, study.numerics, study.output):
-        for index, outcome in group:
-            rows[index] = row_of(runs[index], outcome)
-            if progress:
-                progress(len(rows), len(runs))
+    with closing(Threads(jobs or cores()).outcomes(runs, study.numerics, study.output)) as groups:
+        for group in groups:
+            for index, outcome in group:
+                rows[index] = row_of(runs[index], outcome)
+                if progress:
+                    progress(len(rows), len(runs))
     return as_table([*(rows[i] for i in sorted(rows)), *unusable_rows(found)], study)

@@ -1,6 +1,7 @@
 """The command line: subcommands, and how mistakes are told."""
 
 import argparse
+import os
 import sys
 from collections.abc import Sequence
 
@@ -36,6 +37,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except InputError as error:
         for problem in error.problems:
             print(f"rockbatch: {problem}", file=sys.stderr)
+        return 2
+    except BrokenPipeError:  # whoever reads has seen enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 1
+    except OSError as error:
+        place = f"{error.filename}: " if error.filename else ""
+        print(
+            f"rockbatch: {place}{error.strerror or error}; choose another place, or make this one usable",
+            file=sys.stderr,
+        )
         return 2
     except KeyboardInterrupt:
         print("rockbatch: interrupted", file=sys.stderr)

@@ -119,11 +119,10 @@ class Dask:
                 yield finished(group, found)
                 hand_out()
         except KeyboardInterrupt:
-            for future, group in pending.items():
-                if future.status == "finished":
-                    yield finished(group, future.result())
+            yield from _kept(pending)
             raise
         except KilledWorker as error:
+            yield from _kept(pending)
             raise InputError(
                 f"runs {group.start + 1} to {group.stop} of those that were left: several workers died at them in turn, the "
                 f"last {error.last_worker.address}; look at its log and memory, and give the same command again"
@@ -132,6 +131,13 @@ class Dask:
             raise InputError(f"{self}: lost ({error}); give the same command again to go on") from error
         finally:
             self._client.cancel(list(pending))
+
+
+def _kept(pending: "dict[Future, range]") -> Iterator[Finished]:
+    """Of the groups that were handed out, those that are finished."""
+    for future, group in pending.items():
+        if future.status == "finished":
+            yield finished(group, future.result())
 
 
 @dataclass(frozen=True)

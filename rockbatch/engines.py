@@ -84,7 +84,7 @@ class Threads:
                 for future in done:
                     found = future.result()
                     yield finished(pending.pop(future), found)
-        except KeyboardInterrupt:
+        except (KeyboardInterrupt, Exception):  # what is finished by then is not lost
             stop.set()
             pool.shutdown(wait=True, cancel_futures=True)
             for future, group in pending.items():

@@ -9,12 +9,18 @@ import tempfile
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from rockbatch.errors import InputError
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 LOCK = "rockbatch.lock"
 UNFINISHED = ".unfinished"
+NAMES = ("record", "case", "polarity", "status", "reason", "map", "limit")
+"""Columns of tables that hold words from elsewhere."""
 _FORMULA = re.compile(r"'*[=+\-@\t\r\n].", re.DOTALL)
 _UNPRINTABLE = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028\u2029\u202a-\u202e\u2066-\u2069\ud800-\udfff]")
 
@@ -120,6 +126,16 @@ def csv_text(columns: Sequence[str], rows: Iterable[Mapping[str, object]]) -> st
     writer.writerow(columns)
     writer.writerows([csv_cell(row.get(name)) for name in columns] for row in rows)
     return buffer.getvalue()
+
+
+def read_table(path: Path) -> "pd.DataFrame":
+    """A table that was written so; names in it that look like numbers stay names."""
+    import pandas as pd
+
+    table = pd.read_csv(path, keep_default_na=False, na_values=[""], dtype=dict.fromkeys(NAMES, "str"))
+    for name in table.columns.intersection(list(NAMES)):
+        table[name] = table[name].fillna("").map(csv_plain)
+    return table
 
 
 def csv_cell(value: object) -> object:

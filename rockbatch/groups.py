@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from rockbatch.core.kernel import core_digest
+from rockbatch.errors import InputError
 from rockbatch.histories import energies, written
 from rockbatch.motions import Motion
 from rockbatch.outcome import Outcome
@@ -29,8 +30,13 @@ STEPS_OF_A_GROUP = 2e7
 
 NOTHING_MORE = Output(both_laws=False)
 
-CALLERS = ("groups", "histories", "journal", "plan", "results", "simulation", "structure")
-"""Modules between the kernels and a table: what is in it changes with them."""
+CALLERS = (
+    "batch", "files", "groups", "histories", "journal", "outcome", "plan", "results", "simulation", "structure",
+    "analysis/fragility", "analysis/ida", "analysis/limit_states", "analysis/overturning_map", "analysis/rocking_spectrum",
+    "analysis/sampled", "analysis/sensitivity", "analysis/sobol", "checks/choices", "checks/demands", "checks/suite",
+    "motions/pulses",
+)  # fmt: skip
+"""Modules between the kernels and a table, and those that ask for the next runs: what is in it changes with them."""
 
 
 def groups(runs: Sequence[Run], numerics: Numerics, jobs: int, most: int = MOST_GROUP) -> Iterator[range]:
@@ -97,7 +103,10 @@ def _with_ledger(scene: Scene, outcome: Outcome, quiet_s: float, stop: Stop) -> 
         return None
     if not outcome.was_run or steps_of(scene.motion, outcome.substeps, quiet_s) > MOST_STEPS_OF_A_LEDGER:
         return outcome
-    rows = written(scene.pier, scene.base, scene.motion, outcome, quiet_s, every_step=True)
+    try:
+        rows = written(scene.pier, scene.base, scene.motion, outcome, quiet_s, every_step=True)
+    except InputError:  # too many impacts to be written down
+        return outcome
     terms = energies(scene.pier, scene.base, scene.motion, rows)
     at_end = dict(zip(TERMS, map(float, terms[-1]), strict=True))
     return replace(outcome, energies=at_end | {"remainder": float(abs(terms[:, -1]).max())})

@@ -104,10 +104,11 @@ def written(pier: Pier, base: Base, motion: Motion, outcome: Outcome, quiet_s: f
     capacity = int(outcome.substeps * samples if every_step else samples) + 64 * (
         outcome.impacts + outcome.separations + 64
     )
-    if capacity > MOST_ROWS:
-        instead = "leave out the energy ledger or use fewer substeps" if every_step else "cut the record"
-        raise InputError(f"{motion.name}: a history of {capacity} rows, more than {MOST_ROWS}; {instead}")
+    capacity = min(capacity, MOST_ROWS)
     run, rows = written_run(scene, outcome.substeps, quiet_s, capacity, every_step=every_step)
+    if run.rows > MOST_ROWS:
+        instead = "leave out the energy ledger or use fewer substeps" if every_step else "cut the record"
+        raise InputError(f"{motion.name}: a history of {run.rows} rows, more than {MOST_ROWS}; {instead}")
     if run.rows > capacity:
         run, rows = written_run(scene, outcome.substeps, quiet_s, run.rows, every_step=every_step)
     return rows[: run.rows]

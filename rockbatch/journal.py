@@ -25,7 +25,7 @@ class Journal:
     What a crash has left of a last line is dropped by whoever goes on. Memory holds only where each row stands.
 
     Use it as a context; meanwhile no other process can write into its folder. At the end of the context the file goes
-    if the table was written or no run is finished; it stays after an exception.
+    if the table was written or no run is finished; else it stays.
 
     Parameters
     ----------

@@ -350,11 +350,13 @@ def test_a_damaged_checks_csv_is_told_and_a_missing_one_is_empty(tmp_path):
 def test_new_results_leave_no_verdicts_of_the_old_ones(tmp_path):
     study = rules_file(tmp_path / "pier.toml", STUDY)
     for _ in range(2):
-        assert main(["run", str(study), "--out", str(tmp_path / "out"), "--jobs", "1"]) == 0
+        assert main(["run", str(study), "--out", str(tmp_path / "out"), "--jobs", "1", "--fresh"]) == 0
         assert not (tmp_path / "out/checks.csv").exists()
         rules = rules_file(tmp_path / "rules.toml", MARGIN)
         assert main(["check", str(tmp_path / "out"), "--rules", str(rules)]) == 0
         assert (tmp_path / "out/checks.csv").exists()
+    assert main(["run", str(study), "--out", str(tmp_path / "out")]) == 0  # nothing is run again: they still hold
+    assert (tmp_path / "out/checks.csv").exists()
 
 
 # configs/checks

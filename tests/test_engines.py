@@ -100,19 +100,20 @@ def test_threads_yield_every_run_once(study, runs, jobs):
     assert sorted(found) == list(range(RUNS))
 
 
-def test_after_ctrl_c_come_the_groups_that_are_finished(study, runs, monkeypatch):
+@pytest.mark.parametrize("error", [KeyboardInterrupt, ValueError])
+def test_after_ctrl_c_or_an_error_come_the_groups_that_are_finished(study, runs, monkeypatch, error):
     monkeypatch.setattr(rockbatch.engines, "groups", lambda runs, *_: iter([range(i, i + 1) for i in range(6)]))
     handed = []
 
     def third_interrupts(*asked):
         handed.append(asked)
         if len(handed) == 3:
-            raise KeyboardInterrupt
+            raise error
         return outcomes_of(*asked)
 
     monkeypatch.setattr(rockbatch.engines, "outcomes_of", third_interrupts)
     found = []
-    with pytest.raises(KeyboardInterrupt):  # noqa: PT012
+    with pytest.raises(error):  # noqa: PT012
         for group in Threads(1).outcomes(runs, study.numerics):
             found += [index for index, _ in group]
     assert found[:2] == [0, 1]

@@ -1,6 +1,7 @@
 """Error control: what is called settled, what is not, and what is refused before it is run."""
 
 import math
+import threading
 
 import numpy as np
 import pytest
@@ -117,6 +118,18 @@ def test_runs_that_are_stopped_have_no_outcome(base):
     stop = simulation.Stop()
     stop.set()
     assert run_all_to_tolerance([Scene(FIG5, base, SINE)] * 3, 1e-4, 2.0, stop) == [None] * 3
+
+
+@pytest.mark.parametrize("base", [RigidBase(restitution=1.0), ElasticBase(20.0)], ids=["rigid", "elastic"])
+def test_a_run_under_way_is_stopped_too(base):
+    """The pulse lifts the block off rigid ground, and without losses it rocks on; on springs it does not lift, and
+    bounces on. Half a million seconds of it would take several."""
+    stop = simulation.Stop()
+    timer = threading.Timer(0.2, stop.set)
+    timer.start()
+    weak = pulse("sine", 0.5, 0.5 if isinstance(base, RigidBase) else 0.02, dt=0.01, end=3.0)
+    assert simulation.run_all_fixed([Scene(FIG5, base, weak)], [1], 4e5, stop) == [None]
+    timer.join()
 
 
 @pytest.mark.slow

@@ -472,7 +472,7 @@ def test_the_report_has_a_panel_for_each_limit_and_every_curve_in_its_table(tmp_
     page, out = page_of(tmp_path, IDA)
     told = json.loads((out / "fragility.json").read_text(encoding="utf-8"))
     assert page.mismatched == []
-    assert page.headings == ["Fragility"]
+    assert page.headings == ["Fragility", "The study file"]
     assert len(page.tables["fragility"]) == 1 + len(told["curves"]) == 6
     for cells, one in zip(page.tables["fragility"][1:], told["curves"], strict=True):
         assert one["limit_state"] in cells[0]

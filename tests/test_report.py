@@ -68,7 +68,7 @@ def test_outcomes_other_than_ok_are_words_and_never_rotations(tmp_path):
     assert cells["CPM000"][0] == "overturned"
     assert cells["CPM000"][4] == "failed"
     assert re.fullmatch(r"0\.\d{4}f", cells["ERZ-NS"][1])
-    assert "The pier overturns in 2 of 30 runs, first RRS228, case 2" in page.text
+    assert "The pier overturns in 2 of 30 runs, among them RRS228, case 2" in page.text
     assert "In one run both pivots leave the ground, and the analysis stops there: SYL360, case 3" in page.text
     assert [cell.replace("\u00a0", " ") for cell in page.tables["unusable"][1]] == [
         "CPM000",

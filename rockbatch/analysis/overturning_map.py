@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 FILE = "overturning_map.csv"
 RUNS = "overturning_runs.csv"
 
-SAFE, WITH_IMPACT, OUTRIGHT, FLIGHT, UNDECIDED = OUTCOMES = (
+SAFE, WITH_IMPACT, OUTRIGHT, FLIGHT, UNDECIDED = (
     "safe",
     "overturned with impact",
     "overturned without impact",

@@ -12,7 +12,7 @@ from rockbatch.checks.choices import chooses, unmet
 from rockbatch.checks.demands import DEMANDS, Case
 from rockbatch.checks.rules import Rule
 from rockbatch.checks.statistics import STATISTICS, Values
-from rockbatch.checks.suite import OTHER_LAW, by_record, complete, counted
+from rockbatch.checks.suite import OTHER_LAW, by_record, complete, counted, without_other_law
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, Verdict
 from rockbatch.errors import InputError
 from rockbatch.toml.kinds import shown
@@ -114,13 +114,13 @@ def _verdict(rule: Rule, suite: "pd.DataFrame", case: Case, scale: float) -> Ver
     value, low, high = (_statistic(rule, each) for each in (bounds.value, bounds.low, bounds.high))
     if np.isinf(bounds.high).sum() > np.isinf(bounds.low).sum() and rule.statistic == "asce7-16":
         high = math.inf  # a response that is not known is not one of the unacceptable
-    if math.isinf(high) and not math.isinf(low):
-        value = low  # "at least so much" is all that is known
     verdict, why = _decide(rule, low, high, n)
     remark = STATISTICS[rule.statistic or "max"].remark
+    missing = without_other_law(rule, suite, case)
     notes = [
         why,
         remark(bounds.high) if remark and n else "",
+        f"by the other spring law {missing} of the runs did not go through" if missing else "",
         "" if bounds.estimated or demand.event else "no error estimate",
     ]
     note = "; ".join(filter(None, notes))

@@ -66,6 +66,7 @@ def of_runs(rule: Rule, runs: "pd.DataFrame", case: Case) -> tuple[Bounds, np.nd
             high = np.where((status == "failed") | (status == "flight"), 1.0, high)
         return Bounds(value, low, high, False), kept
 
+    own_low = low
     if rule.other_law and demand.other_law:
         other = demand.other_law(runs, case)
         other = np.where(np.isnan(other) & (case["base"] == "yielding"), np.inf, other)
@@ -82,8 +83,17 @@ def of_runs(rule: Rule, runs: "pd.DataFrame", case: Case) -> tuple[Bounds, np.nd
     missing = np.isnan(value)  # as the residual of a run that was cut short
     unknown |= missing
     # A peak or a count is at least what it was when the run was cut short; what has not settled is nothing
-    low = np.where(missing | (unknown & (status == "failed")), 0.0, low)
-    return Bounds(np.where(unknown, low, value), low, np.where(unknown, np.inf, high), estimated), kept
+    nothing = missing | (unknown & (status == "failed"))
+    low, own_low = np.where(nothing, 0.0, low), np.where(nothing, 0.0, own_low)
+    return Bounds(np.where(unknown, own_low, value), low, np.where(unknown, np.inf, high), estimated), kept
+
+
+def without_other_law(rule: Rule, runs: "pd.DataFrame", case: Case) -> int:
+    """How many runs that went through have no value by the other spring law, though the rule asks for it."""
+    other_law = DEMANDS[rule.demand].other_law
+    if not (rule.other_law and other_law) or case["base"] != "yielding":
+        return 0
+    return int((np.isnan(other_law(runs, case)) & (runs["status"] == "ok").to_numpy()).sum())
 
 
 def counted(rule: Rule, runs: "pd.DataFrame") -> str:

@@ -34,7 +34,6 @@ def _runs(text: str) -> int:
 
 
 def main(arguments: argparse.Namespace) -> int:
-
     study = study_of(arguments)
     directory = folder(arguments)
 

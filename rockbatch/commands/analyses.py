@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from rockbatch import __version__
 from rockbatch.commands.messages import count, say
-from rockbatch.files import write_whole
+from rockbatch.files import csv_text, write_whole
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -29,7 +29,13 @@ class Results:
         self.directory, self.study, self.fresh = directory, study, fresh
         self.path = directory / f"{name}.json"
         sha256 = hashlib.sha256(study.text.encode()).hexdigest()
-        of_study = {"path": str(study.path), "title": study.title, "sha256": sha256}
+        of_study = {
+            "path": str(study.path),
+            "title": study.title,
+            "notes": study.notes,
+            "text": study.text,
+            "sha256": sha256,
+        }
         self.info: dict[str, Any] = {"rockbatch": __version__, "study": of_study, "files": [], "digests": {}}
         self._earlier = {} if fresh else _digests(self.path)
 
@@ -60,7 +66,7 @@ class Results:
         write_whole(self.path, json.dumps(self.info, indent=1, ensure_ascii=False) + "\n")
 
     def keep_table(self, file: str, table: "pd.DataFrame") -> None:
-        """Write ``table`` as CSV, numbers to ten digits, and note it."""
+        """Write ``table`` as CSV, and note it."""
         write_table(self.directory / file, table)
         self.keep(file)
 
@@ -76,8 +82,10 @@ class Results:
 
 
 def write_table(path: Path, table: "pd.DataFrame") -> None:
-    """Write a table as CSV, numbers to ten digits, whole or not at all."""
-    write_whole(path, table.to_csv(index=False, float_format="%.10g", lineterminator="\n"))
+    """Write a table as CSV, as the journal writes its rows, whole or not at all."""
+    write_whole(
+        path, csv_text(list(table.columns), ({str(k): v for k, v in row.items()} for row in table.to_dict("records")))
+    )
 
 
 def finish(directory: Path, name: str, study: "Study", info: Mapping[str, Any]) -> None:

@@ -67,13 +67,12 @@ def end(directory: Path, study: "Study", motions: "MotionSet", runs: "Plan", inf
     from rockbatch.results import INFO, PEAKS, write_info
     from rockbatch.saved import read_saved
 
-    _remove_what_was_made_of_peaks(directory)
     write_info(directory, info)
     saved = read_saved(directory)
     code, histories = _keep_histories(saved, study, runs)
     by_pga = [motion.name for motion in sorted(motions.motions, key=lambda motion: motion.pga)]
     print(summary(saved.peaks, study.varied, by_pga))
-    if warning := other_law(saved.peaks):
+    if warning := other_law(saved.peaks, study.varied):
         say(warning)
     if study.checks:
         from rockbatch.commands.check import tell
@@ -103,11 +102,17 @@ def _remove_what_was_made_of_peaks(directory: Path) -> None:
 
 def _keep_histories(saved: "Saved", study: "Study", runs: "Plan") -> tuple[int, Path | None]:
     """Write the histories that the study asks for: exit code, and the file; what cannot be written is told."""
+    from rockbatch.commands.progress import Progress
     from rockbatch.errors import InputError
-    from rockbatch.keep import keep_histories
+    from rockbatch.keep import keep_histories, kept
+    from rockbatch.results import HISTORIES
 
     try:
-        return 0, keep_histories(saved, study, runs)
+        with Progress(len(kept(study, saved.peaks.iloc[: len(runs)]))) as progress:
+            path = keep_histories(saved, study, runs, lambda: progress(1))
+        if path is None:
+            (saved.directory / HISTORIES).unlink(missing_ok=True)
+        return 0, path
     except InputError as error:
         say(str(error))
         return 1, None

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from rockbatch.commands.analyses import finish, write_table
-from rockbatch.commands.messages import count, say
+from rockbatch.commands.messages import count, make_ready, say, tell_motions
 from rockbatch.commands.options import add_engine, add_study, engine, folder, study_of
 
 if TYPE_CHECKING:
@@ -37,8 +37,6 @@ def main(arguments: argparse.Namespace) -> int:
     from rockbatch.analysis.waves import Waves
     from rockbatch.batch import digests
     from rockbatch.commands.progress import Progress
-    from rockbatch.commands.run import tell_motions
-    from rockbatch.groups import compile_kernels
     from rockbatch.journal import Journal
     from rockbatch.results import columns
     from rockbatch.study.suite import ground_motions
@@ -65,7 +63,7 @@ def main(arguments: argparse.Namespace) -> int:
         say(f"{levels}: {count(runs, 'run')} on {carrier}{then}")
         if len(journal):
             say(f"{count(len(journal), 'run')} are finished already (--fresh starts over)")
-        compile_kernels(study)
+        make_ready(study)
         try:
             waves = Waves(study, journal, carrier, Progress)
             curves = assess(study, spec, motions, waves)

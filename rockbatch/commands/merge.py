@@ -4,6 +4,7 @@ import argparse
 from collections.abc import Sequence
 from pathlib import Path
 
+from rockbatch.commands.messages import tell_motions
 from rockbatch.commands.options import add_study, folder, study_of
 
 HELP = "join the shares of `rockbatch run --shard`: the same results as if one machine had run them all"
@@ -15,12 +16,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def main(arguments: argparse.Namespace) -> int:
-
     study = study_of(arguments)
 
     from rockbatch.batch import study_digests
     from rockbatch.commands.ending import end, what_was_run, write_peaks
-    from rockbatch.commands.run import tell_motions
     from rockbatch.errors import InputError
     from rockbatch.journal import Journal
     from rockbatch.plan import Plan

@@ -1,9 +1,10 @@
 """``rockbatch motions``: what is in a folder of records, and what could not be read and why."""
 
 import argparse
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from rockbatch.commands.messages import say
 
 if TYPE_CHECKING:
     from rockbatch.motions import LeftOut, Motion, MotionSet, Unusable
@@ -71,7 +72,7 @@ def main(arguments: argparse.Namespace) -> int:
 
         if len(arguments.path) > 1:
             raise InputError("--write-manifest: give one folder, which it is written into")
-        _say(str(write_draft(arguments.path[0], options)))
+        say(str(write_draft(arguments.path[0], options)))
     found = read_motions(arguments.path, options=options)
     rows = [_row(motion) for motion in found.motions]
     if arguments.csv:
@@ -80,7 +81,7 @@ def main(arguments: argparse.Namespace) -> int:
     _list("What was done", [(motion.name, note) for motion in found.motions for note in motion.notes])
     _list("Not used", [(file.source, file.reason) for file in found.unusable])
     _list("Left out", [(file.source, file.reason) for file in found.left_out])
-    _say(f"{len(found.motions)} records, {len(found.unusable)} files not used, {len(found.left_out)} left out")
+    say(f"{len(found.motions)} records, {len(found.unusable)} files not used, {len(found.left_out)} left out")
     if arguments.strict and found.unusable:
         return 2
     return 1 if found.unusable or not found.motions else 0
@@ -144,7 +145,3 @@ def _list(title: str, entries: list[tuple[str, str]]) -> None:
         print(f"\n{title}")
         for name, words in entries:
             print(f"  {name}: {words}")
-
-
-def _say(text: str) -> None:
-    print(text, file=sys.stderr)

@@ -1,8 +1,9 @@
 """``rockbatch report``: the report of finished results, made again, or of two studies side by side."""
 
 import argparse
-import sys
 from pathlib import Path
+
+from rockbatch.commands.messages import say
 
 HELP = "make the report of finished results again, or compare two studies"
 
@@ -22,5 +23,5 @@ def main(arguments: argparse.Namespace) -> int:
         path = write_report(arguments.directory, out=arguments.out)
     else:
         path = write_comparison(arguments.directory, arguments.other, out=arguments.out)
-    print(path, file=sys.stderr)
+    say(str(path))
     return 0

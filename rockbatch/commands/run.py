@@ -6,7 +6,7 @@ import re
 import time
 from typing import TYPE_CHECKING
 
-from rockbatch.commands.messages import count, say
+from rockbatch.commands.messages import count, make_ready, say, tell_motions
 from rockbatch.commands.options import add_engine, add_study, engine, folder, study_of
 
 if TYPE_CHECKING:
@@ -36,15 +36,13 @@ def _shard(text: str) -> tuple[int, int]:
 
 
 def main(arguments: argparse.Namespace) -> int:
-
     started = time.monotonic()
     study = study_of(arguments)
 
     from rockbatch.batch import carry_out, study_digests
     from rockbatch.commands.ending import cost_of_finished, end, what_was_run, write_peaks
     from rockbatch.commands.progress import Progress
-    from rockbatch.core.kernel import is_compiled
-    from rockbatch.groups import compile_kernels
+    from rockbatch.errors import InputError
     from rockbatch.journal import Journal
     from rockbatch.plan import Plan
     from rockbatch.results import PART, columns
@@ -56,6 +54,10 @@ def main(arguments: argparse.Namespace) -> int:
     wanted, directory = range(len(runs)), folder(arguments)
     if arguments.shard:
         share, shares = arguments.shard
+        if shares > len(runs):
+            raise InputError(
+                f"--shard {share}/{shares}: the study has {count(len(runs), 'run')}; make as many shares or fewer"
+            )
         wanted = range(len(runs) * (share - 1) // shares, len(runs) * share // shares)
         directory = arguments.out or directory / f"shard-{share}-of-{shares}"
     digest = study_digests(study, motions)
@@ -71,9 +73,7 @@ def main(arguments: argparse.Namespace) -> int:
             kept = sum(number in journal for number in wanted)
             if kept:
                 say(f"{kept} of them are finished already, {len(wanted) - kept} are left (--fresh starts over)")
-            if not is_compiled():
-                say("compiling the kernels (once per installation, about 20 s)")
-            compile_kernels(study)
+            make_ready(study)
             try:
                 with Progress(len(wanted) - kept) as progress:
                     carry_out(runs, study.numerics, journal, carrier, study.output, among=wanted, progress=progress)
@@ -91,14 +91,6 @@ def main(arguments: argparse.Namespace) -> int:
         write_peaks(journal, motions)
         cost["wall_s"] = round(time.monotonic() - started, 3)
         return end(directory, study, motions, runs, info | cost)
-
-
-def tell_motions(motions: "MotionSet") -> None:
-    """Tell which files are not used, and how many nobody misses."""
-    for file in motions.unusable:
-        say(f"not used: {file.source}: {file.reason}")
-    if motions.left_out:
-        say(f"{count(len(motions.left_out), 'file')} left out, or no records: the report says why")
 
 
 def told(study: "Study", motions: "MotionSet") -> str:

@@ -7,7 +7,7 @@ from dataclasses import asdict, replace
 from typing import TYPE_CHECKING
 
 from rockbatch.commands.analyses import Results
-from rockbatch.commands.messages import count, say
+from rockbatch.commands.messages import count, make_ready, say, tell_motions
 from rockbatch.commands.options import add_engine, add_study, engine, folder, study_of
 
 if TYPE_CHECKING:
@@ -33,22 +33,20 @@ def main(arguments: argparse.Namespace) -> int:
     from rockbatch.analysis.sampled import COLUMNS, RUNS, Points, Suite, row_of
     from rockbatch.batch import carry_out, digests
     from rockbatch.commands.progress import Progress
-    from rockbatch.groups import compile_kernels
     from rockbatch.study.suite import ground_motions
 
     wanted = study
     if any(each.name == "vertical" for each in spec.inputs):  # read it, whatever the study does with it
         wanted = replace(study, motions=replace(study.motions, vertical=True))
     motions = ground_motions(wanted)
-    for file in motions.unusable:
-        say(f"not used: {file.source}: {file.reason}")
+    tell_motions(motions)
     points = Points(study, spec)
     suite = Suite(study, points, motions.motions)
     runs = suite.runs()
     digest = digests(
         motions.motions,
         cases=study.cases,
-        inputs=(spec.inputs, spec.samples, spec.seed),
+        inputs=[(point.case, sorted(point.values.items())) for point in points.all],
         scales=(study.motions.vertical, study.motions.polarity, study.motions.scale),
         numerics=study.numerics,
     )
@@ -64,7 +62,7 @@ def main(arguments: argparse.Namespace) -> int:
         if results.has(RUNS, digest):
             results.keep(RUNS, digest)
         else:
-            compile_kernels(replace(study, cases=suite.some_cases()))
+            make_ready(replace(study, cases=suite.some_cases()))
             with results.journal(RUNS, COLUMNS, digest) as journal:
                 with Progress(len(runs) - len(journal)) as progress:
                     carry_out(runs, study.numerics, journal, carrier, row=row_of, progress=progress)
@@ -98,8 +96,8 @@ def shown(swings: "pd.DataFrame", shares: "pd.DataFrame", varied: tuple[str, ...
             "base": both["base"].map(_value),
             "high": both["high"].map(_value),
             **{f"at {end}": both[f"answer_{end}"].map("{:.4f}".format) for end in ("low", "base", "high")},
-            "first-order": both["first"].map("{:.2f}".format) + both["first_error"].map(" ± {:.2f}".format),
-            "total": both["total"].map("{:.2f}".format) + both["total_error"].map(" ± {:.2f}".format),
+            "first-order": both["first"].map("{:z.2f}".format) + both["first_error"].map(" ± {:.2f}".format),
+            "total": both["total"].map("{:z.2f}".format) + both["total_error"].map(" ± {:.2f}".format),
         }
         head = f"{names[0]} {named(varied, names[1:])}".rstrip()
         blocks.append(f"{head}: theta_max/alpha one at a time, and Sobol indices\n{_aligned(cells)}")

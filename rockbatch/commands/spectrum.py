@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from rockbatch.commands.analyses import Results
-from rockbatch.commands.messages import count, say
+from rockbatch.commands.messages import count, make_ready, say, tell_motions
 from rockbatch.commands.options import add_engine, add_study, engine, folder, study_of
 
 if TYPE_CHECKING:
@@ -45,17 +45,15 @@ def main(arguments: argparse.Namespace) -> int:
 
 def _spectrum(results: Results, spectrum: "SpectrumSpec", carrier: "Engine") -> int:
     """Write the rocking spectra, and print them; returns the number of files and runs that failed."""
-    import pandas as pd
-
     from rockbatch.analysis import rocking_spectrum as analysis
     from rockbatch.batch import carry_out, digests
     from rockbatch.commands.progress import Progress
+    from rockbatch.files import read_table
     from rockbatch.study.suite import ground_motions
 
     study, path = results.study, results.directory / analysis.FILE
     motions = ground_motions(study)
-    for file in motions.unusable:
-        say(f"not used: {file.source}: {file.reason}")
+    tell_motions(motions)
     runs = analysis.plan(study, spectrum, motions)
     digest = digests(
         motions.motions,
@@ -68,12 +66,13 @@ def _spectrum(results: Results, spectrum: "SpectrumSpec", carrier: "Engine") -> 
     if results.has(analysis.FILE, digest):
         results.keep(analysis.FILE, digest)
     else:
+        make_ready(replace(study, cases=spectrum.cases))
         with results.journal(analysis.FILE, analysis.columns(spectrum), digest) as journal:
             with Progress(len(runs) - len(journal)) as progress:
                 carry_out(runs, study.numerics, journal, carrier, row=analysis.row_of, progress=progress)
             journal.write_in_order(path)
             results.keep(analysis.FILE, digest)
-    table = pd.read_csv(path, keep_default_na=False, na_values=[""])
+    table = read_table(path)
     suite = analysis.of_suite(table, spectrum.varied)
     results.keep_table(analysis.SUITE, suite)
     print(shown(suite, spectrum))
@@ -102,7 +101,9 @@ def shown(suite: "pd.DataFrame", spectrum: "SpectrumSpec") -> str:
             for value, median in zip(own[axis], own["median"], strict=True)
         }
     cells = pd.DataFrame(columns).rename_axis(axis, axis="columns").fillna("")
-    return f"Median of theta_max/alpha; ∞: overturned or ended by flight\n{cells.to_string()}"
+    of = suite[axis].nunique()
+    some = f", {len(lines)} of {of} values of {axis}" if len(lines) < of else ""
+    return f"Median of theta_max/alpha{some}; ∞: overturned or ended by flight\n{cells.to_string()}"
 
 
 def spread(values: "np.ndarray") -> "np.ndarray":
@@ -122,6 +123,7 @@ def _maps(results: Results, maps: "tuple[MapSpec, ...]", carrier: "Engine") -> N
     from rockbatch.analysis.waves import Waves
     from rockbatch.batch import digests
     from rockbatch.commands.progress import Progress
+    from rockbatch.files import read_table
     from rockbatch.groups import NOTHING_MORE
     from rockbatch.results import columns
 
@@ -129,7 +131,13 @@ def _maps(results: Results, maps: "tuple[MapSpec, ...]", carrier: "Engine") -> N
     results.info["varied_map"] = list(study.varied)
     results.info["maps"] = [{"name": spec.name, "shape": spec.shape, "tolerance": spec.tolerance} for spec in maps]
     digest = digests([], maps=maps, cases=study.cases, numerics=study.numerics)
+    if results.has(analysis.RUNS, digest) and (results.directory / analysis.FILE).exists():
+        results.keep(analysis.FILE)
+        results.keep(analysis.RUNS, digest)
+        print(shown_maps(read_table(results.directory / analysis.FILE), study.varied))
+        return
     rows: list[Any] = []
+    make_ready(study)
     with results.journal(analysis.RUNS, columns(study), digest) as journal:
         waves = Waves(study, journal, carrier, Progress)
         for spec in maps:
@@ -139,7 +147,7 @@ def _maps(results: Results, maps: "tuple[MapSpec, ...]", carrier: "Engine") -> N
         table = pd.DataFrame(rows, columns=analysis.columns(study.varied))
         results.keep_table(analysis.FILE, table)
         journal.write_in_order(results.directory / analysis.RUNS)
-        results.keep(analysis.RUNS)
+        results.keep(analysis.RUNS, digest)
     print(shown_maps(table, study.varied))
 
 

@@ -40,7 +40,7 @@ def _worst(runs: "pd.DataFrame", varied: tuple[str, ...]) -> str:
     return f"{len(runs)} runs: {ended}\nThe largest theta_max/alpha\n{largest.to_string(index=False)}"
 
 
-def other_law(table: "pd.DataFrame") -> str:
+def other_law(table: "pd.DataFrame", varied: Sequence[str]) -> str:
     """A warning where the settlement hangs on the spring law, by a tenth and a millimetre or more; empty elsewhere."""
     import numpy as np
 
@@ -52,8 +52,10 @@ def other_law(table: "pd.DataFrame") -> str:
     if not differ.any():
         return ""
     worst = table.iloc[int(np.nanargmax(gap.to_numpy()))]
+    told = ["scale", *varied] if table["scale"].nunique() > 1 else varied
+    which = f"{worst['record']}, {worst['case']} {named(told, [worst[name] for name in told])}".rstrip()
     return (
-        f"settlement hangs on the spring law in {int(differ.sum())} runs, most in {worst['record']}, {worst['case']}: "
+        f"settlement hangs on the spring law in {int(differ.sum())} runs, most in {which}: "
         f"{1000 * worst['settlement_m']:z.1f} mm, by the other law {1000 * worst['settlement_other_law_m']:z.1f} mm"
     )
 

@@ -65,8 +65,3 @@ def entry(function: Callable[..., Any]) -> Callable[..., Any]:
         return numba.njit(cache=True, **_OPTIONS)(function)
     finally:
         settings.CACHE_DIR = folder
-
-
-def is_compiled() -> bool:
-    """Whether the machine code of these very sources is on disk already."""
-    return any(Path(CACHE_FOLDER).rglob("*.nbi"))

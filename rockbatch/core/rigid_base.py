@@ -25,7 +25,7 @@ from rockbatch.core.types import (
     RigidRun,
 )
 
-EVENTS_IN_A_STEP = 20_000
+EVENTS_IN_A_SAMPLE = 20_000
 HISTORY_COLUMNS = 4  # t, theta, omega, kind of row
 NEGLIGIBLE = 1e-13  # of α: height of the bounces that are summed up instead of followed
 
@@ -197,11 +197,14 @@ def _rock_all(lines, ground, locate, every_step, history, stop, results):
         m = Block(line[0], line[1], line[2], line[3])
         first = int(line[9])
         motion = ground[first : first + int(line[10])]
-        _rock(m, line[4], line[5], motion, line[6], int(line[7]), int(line[8]), locate, every_step, history, results[i])
+        _rock(
+            m, line[4], line[5], motion, line[6], int(line[7]), int(line[8]), locate, every_step, history, stop, results[i]
+        )  # fmt: skip
 
 
 @kernel
-def _rock(m, theta, omega, motion, dt, substeps, quiet_samples, locate, every_step, history, result):
+def _rock(m, theta, omega, motion, dt, substeps, quiet_samples, locate, every_step, history, stop, result):
+    """One run; ``result`` stays as it is after a stop."""
     h = dt / substeps
     recording = history.shape[0] > 0
     npts = len(motion)
@@ -221,6 +224,9 @@ def _rock(m, theta, omega, motion, dt, substeps, quiet_samples, locate, every_st
 
     sample = 0
     while sample < samples or (sample < longest and not resting and undecided(theta, omega, m.alpha, m.p)):
+        if stop[0] != 0:
+            return
+        events = 0
         a0, a_slope, c0, c_slope = 0.0, 0.0, 0.0, 0.0
         if sample < npts:
             a0, a_slope, c0, c_slope = motion[sample, 0], motion[sample, 1], motion[sample, 2], motion[sample, 3]
@@ -239,7 +245,6 @@ def _rock(m, theta, omega, motion, dt, substeps, quiet_samples, locate, every_st
         for substep in range(substeps):
             start = substep * h
             done = 0.0
-            events = 0
             while done < h:
                 x = start + done
                 left = h - done
@@ -300,7 +305,7 @@ def _rock(m, theta, omega, motion, dt, substeps, quiet_samples, locate, every_st
                 if recording:
                     rows = _write(history, rows, t, theta, omega, kind)
                 events += 1
-                if events > EVENTS_IN_A_STEP:
+                if events > EVENTS_IN_A_SAMPLE:
                     status = CHATTER
                     break
             if status == SURVIVED:

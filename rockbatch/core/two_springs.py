@@ -356,7 +356,7 @@ def _finish(table, i, exponent, finite, status, t, row, results):
 
 @entry
 def _rock(exponent, finite, runs, ground, locate, every_step, history, stop, table, results):
-    """All ``runs``, as :func:`rock_on_springs` has them; lines of ``results`` stay as they are after a stop."""
+    """All ``runs``, as :func:`rock_side_by_side` has them; lines of ``results`` stay as they are after a stop."""
     recording = history.shape[0] > 0
     waiting, lanes, row = NONE, NONE, NONE
     while True:

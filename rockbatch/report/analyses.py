@@ -6,7 +6,8 @@ from pathlib import Path
 
 from rockbatch.files import write_whole
 from rockbatch.report import fragility, sensitivity, spectrum
-from rockbatch.report.document import Section, document
+from rockbatch.report.document import Section, document, paragraphs
+from rockbatch.report.markup import tag
 from rockbatch.study import Study
 
 
@@ -30,7 +31,12 @@ def write(directory: Path, study: Study) -> Path:
     if _holds_results(directory, sha256):
         return write_report(directory)
     target = directory / "analyses.html"
-    write_whole(target, document("Rocking response of stepping piers", study.title, sections(directory, sha256)))
+    pages = [
+        Section("Notes", "notes", paragraphs(*(part.strip() for part in study.notes.split("\n\n")))),
+        *sections(directory, sha256),
+        Section("The study file", "study", tag("pre", tag("code", study.text))),
+    ]
+    write_whole(target, document("Rocking response of stepping piers", study.title, pages))
     return target
 
 

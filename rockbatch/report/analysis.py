@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from rockbatch.files import read_table
 from rockbatch.report.labels import quantity
 
 if TYPE_CHECKING:
@@ -21,12 +22,10 @@ class Found:
 
     def table(self, name: str, columns: Collection[str]) -> "pd.DataFrame | None":
         """One of its tables; None where NAME.json does not name it, or where it is damaged or lacks a column."""
-        import pandas as pd
-
         if name not in self.info.get("files", []):
             return None
         try:
-            table = pd.read_csv(self.directory / name, keep_default_na=False, na_values=[""])
+            table = read_table(self.directory / name)
         except (OSError, ValueError):
             return None
         return table if len(table) and set(columns) <= set(table.columns) else None

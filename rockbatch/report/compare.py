@@ -70,7 +70,7 @@ def comparison(first: tuple[Finished, list[Verdict]], second: tuple[Finished, li
         Section("What is compared", "studied", _studied(a, b, matched)),
         Section("Does it pass", "checks", _checks(a, b)),
         Section("Peak rotations", "figure", _figures(named, matched)),
-        Section("Every pair of runs", "peaks", _pairs(named, matched)),
+        Section("Every pair of runs", "peaks", _pairs(matched)),
         Section("The suite in each case", "suite", _suites(a.study, b.study, named, matched)),
         Section("Only in one", "only", _only(a.study, b.study, matched)),
         Section("How the study files differ", "difference", _difference(a.study, b.study)),
@@ -152,7 +152,7 @@ def _figures(named: Finished, matched: Matched) -> Markup:
     return panels.figures(both, caption, side="side")
 
 
-def _pairs(named: Finished, matched: Matched) -> Markup:
+def _pairs(matched: Matched) -> Markup:
     a, b = matched.runs
     if a.empty:
         return Markup("")

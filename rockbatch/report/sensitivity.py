@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rockbatch.checks.statistics import STATISTICS
 from rockbatch.report.analysis import named, read
 from rockbatch.report.axes import Axes, Scale, spanning
 from rockbatch.report.document import figure
@@ -21,7 +22,6 @@ WIDTH, LEFT, TOP, ROW = 616, 64, 16, 22
 BAR = 8
 TORNADO = ("case", "parameter", "low", "base", "high", "answer_low", "answer_base", "answer_high")
 SOBOL = ("case", "parameter", "first", "first_error", "total", "total_error")
-STATISTICS = {"median": "median", "max": "maximum", "mean": "mean", "p84": "84 % quantile"}
 
 
 def section(directory: Path, sha256: str | None) -> Markup:
@@ -49,7 +49,7 @@ def _lead(info: dict[str, Any]) -> Markup:
     runs = ", ".join(f"{count} {status}" for status, count in sorted(info["statuses"].items()))
     return tag(
         "p",
-        f"The answer is the {STATISTICS[info['statistic']]} of the suite of ", _peak(),
+        f"The answer is the {STATISTICS[info['statistic']].words} of the suite of ", _peak(),
         f". A run that overturned, or was ended by flight, counts as {info['overturned']:g}, and so does any larger "
         f"rotation; a failed one with its best value. Of all runs: {runs}. Of the answer's variance, the first-order index "
         "is the share that goes with the input alone, the total index what would be left if only it were unknown; the "

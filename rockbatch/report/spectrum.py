@@ -127,7 +127,14 @@ def _maps(found: Found, regions: "pd.DataFrame") -> list[Markup]:
 def _regions(own: "pd.DataFrame") -> Markup:
     columns = {float(str(frequency)): column for frequency, column in own.groupby("omega_p_over_p")}
     frequencies = np.array(list(columns))
-    axes = Axes(36, 16, WIDTH - 48, 300, Scale(*frequencies[[0, -1]].tolist()), Scale(0.0, float(own["high"].max())))
+    axes = Axes(
+        36,
+        16,
+        WIDTH - 48,
+        300,
+        Scale(*frequencies[[0, -1]].tolist()),
+        Scale(float(own["low"].min()), float(own["high"].max())),
+    )
     drawn = [_between(axes, *pair) for pair in pairwise(columns.items())]
     drawn.append(axes.frame(axes.x.ticks(10), axes.y.ticks(8)))
     drawn += [

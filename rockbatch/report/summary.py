@@ -84,13 +84,14 @@ def worst(finished: Finished) -> Markup:
     stood = runs[(runs["status"] == "ok") & runs["theta_max_over_alpha"].notna()]
     if len(over):
         sentences.append(tag("strong", f"The pier overturns in {len(over):,} of {counted(len(runs), 'run')}"))
-        sentences.append(f"{': ' if len(over) == 1 else ', first '}{finished.where(over.iloc[0])}. ")
+        sentences.append(f"{': ' if len(over) == 1 else ', among them '}{finished.where(over.iloc[0])}. ")
     if len(stood):
         sentences += _largest(finished, worst_first(stood, 1).iloc[0], bool(len(over) or len(flown)))
     if len(flown):
         sentences.append(
             f" In {counted(len(flown), 'run')} both pivots leave the ground, and the analysis stops there"
-            f"{': ' if len(flown) == 1 else ', first '}{finished.where(flown.iloc[0])}."
+            f"{': ' if len(flown) == 1 else ', soonest in '}"
+            f"{finished.where(flown.sort_values('flight_s', kind='stable').iloc[0])}."
         )
     return join(*sentences)
 
