@@ -55,6 +55,7 @@ class Journal:
         self._head = 0  # bytes of the first line
         self._end = 0
         self._written = False
+        self._remedy = "undo that to go on, choose another folder with --out, or start over with --fresh"
 
     def __enter__(self) -> Self:
         with ExitStack() as opened, told_when_full(self.path):
@@ -113,6 +114,7 @@ class Journal:
         Raises ``InputError`` if it is of another digest, or if the same run has another row there.
         """
         other = Journal(path, self.columns, self.digest)
+        other._remedy = "undo that, or have its share run again"
         with path.open("rb", buffering=0) as other._file:
             other._recover()
             for number in other:
@@ -190,7 +192,7 @@ class Journal:
         others = [name for name, digest in self.digest.items() if there.get(name) != digest] or ["columns"]
         return (
             f"{self.path}: holds {self._count} finished runs, but since then something has changed ({', '.join(others)}); "
-            "undo that to go on, choose another folder with --out, or start over with --fresh"
+            f"{self._remedy}"
         )
 
 

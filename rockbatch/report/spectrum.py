@@ -124,6 +124,9 @@ def _maps(found: Found, regions: "pd.DataFrame") -> list[Markup]:
     return drawn
 
 
+Intervals = dict[tuple[str, int], tuple[float, float]]
+
+
 def _regions(own: "pd.DataFrame") -> Markup:
     columns = {float(str(frequency)): column for frequency, column in own.groupby("omega_p_over_p")}
     frequencies = np.array(list(columns))
@@ -150,24 +153,41 @@ def _regions(own: "pd.DataFrame") -> Markup:
 
 
 def _between(axes: Axes, left: "tuple[float, pd.DataFrame]", right: "tuple[float, pd.DataFrame]") -> Markup:
-    """The regions from one frequency to the next: as they change if the outcomes stay the same, else half each."""
+    """The regions from one frequency to the next; one that is not there at the other closes on its way."""
     (start, before), (end, after) = left, right
-    if before["outcome"].tolist() == after["outcome"].tolist():
-        return _filled(axes, (start, before), (end, after))
-    middle = 0.5 * (start + end)
-    return join(_filled(axes, (start, before), (middle, before)), _filled(axes, (middle, after), (end, after)))
-
-
-def _filled(axes: Axes, left: "tuple[float, pd.DataFrame]", right: "tuple[float, pd.DataFrame]") -> Markup:
-    x1, x2 = (float(axes.across(frequency)) for frequency, _ in (left, right))
-    sides = [axes.down(column[["low", "high"]].to_numpy(float)) for _, column in (left, right)]
+    here, there = _intervals(before), _intervals(after)
+    x1, x2 = float(axes.across(start)), float(axes.across(end))
     drawn = []
-    for outcome, (foot1, top1), (foot2, top2) in zip(left[1]["outcome"], *sides, strict=True):
-        colour = REGIONS[outcome][0]
+    for region in dict.fromkeys([*here, *there]):
+        colour = REGIONS[region[0]][0]
         if colour:
+            ends = (*_interval(axes, region, here, there), *_interval(axes, region, there, here))
+            foot1, top1, foot2, top2 = axes.down(np.array(ends))
             d = f"M{x1:.1f} {foot1:.1f}V{top1:.1f}L{x2:.1f} {top2:.1f}V{foot2:.1f}z"
             drawn.append(tag("path", d=d, class_=f"filled {colour}"))
     return join(*drawn)
+
+
+def _intervals(column: "pd.DataFrame") -> Intervals:
+    """Amplitudes of the regions at a frequency, from below, by outcome and how often it was there already."""
+    outcomes = column["outcome"].tolist()
+    names = [(outcome, outcomes[:i].count(outcome)) for i, outcome in enumerate(outcomes)]
+    return dict(zip(names, column[["low", "high"]].itertuples(index=False, name=None), strict=True))
+
+
+def _interval(axes: Axes, region: tuple[str, int], own: Intervals, other: Intervals) -> tuple[float, float]:
+    """Where a region is, or closes: at an end of the range, or on top of what is below it at the other frequency."""
+    if region in own:
+        return own[region]
+    names = list(other)
+    low, high = other[region]
+    place = names.index(region)
+    if place == len(names) - 1:
+        height = axes.y.high
+    else:
+        height = own.get(names[place - 1], (axes.y.low, axes.y.low))[1] if place else axes.y.low
+    height = min(max(height, low), high)  # as it was: what is below may have become something else
+    return height, height
 
 
 def boundaries(own: "pd.DataFrame") -> dict[Hashable, dict[float, float]]:
