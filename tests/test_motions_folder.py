@@ -41,7 +41,7 @@ def test_without_rsn_the_header_pairs_whatever_the_files_are_called(tmp_path):
     write_at2(tmp_path, "third.at2", wiggle(50, 3), title=title("UP", "Elsewhere"))
     found = read_motions(tmp_path)
     assert vertical_of(found) == {"first": "second.at2"}
-    assert [(u.name, "without a horizontal" in u.reason) for u in found.unusable] == [("third", True)]
+    assert [(u.name, "without a usable horizontal" in u.reason) for u in found.unusable] == [("third", True)]
 
 
 def test_without_a_header_the_stem_pairs(tmp_path):

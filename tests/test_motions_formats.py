@@ -149,7 +149,7 @@ def test_a_vertical_of_another_day_is_no_partner(tmp_path):
     write_mseed(tmp_path / "z.mseed", trace("HNZ", start=START + 86400))
     found = read_motions(tmp_path, confirmed=["*"], options=ReadOptions(unit="cm/s2"))
     assert found.motions[0].vertical is None
-    assert "without a horizontal" in found.unusable[0].reason
+    assert "without a usable horizontal" in found.unusable[0].reason
 
 
 @pytest.mark.parametrize("byteorder", ["<", ">"])

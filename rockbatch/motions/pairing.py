@@ -66,7 +66,7 @@ def to_motions(
             used.update(id(v) for v in together)
         motions.append(_motion(component, partner, notes))
     if vertical:
-        reason = "a vertical component without a horizontal one of its station in its folder"
+        reason = "a vertical component without a usable horizontal one of its station in its folder"
         left = [v for group in verticals for v in group if id(v) not in used]
         unusable += [Unusable(v.name, v.source, f"{reason} ({v.station or v.site})") for v in left]
     believed: list[Motion] = []
