@@ -1,7 +1,9 @@
 """Which runs a study consists of, in the order of its table, each made when it is asked for."""
 
-from collections.abc import Iterator, Sequence
+from abc import abstractmethod
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import overload
 
 from rockbatch.motions import Motion, MotionSet
@@ -31,21 +33,12 @@ def scaled(motion: Motion, scale: float, polarity: str) -> Motion:
     return replace(motion, horizontal=motion.horizontal * sign, vertical=vertical)
 
 
-class Plan(Sequence[Run]):
-    """The runs of a study: record, polarity, scale, case, the last running fastest.
+class Runs(Sequence[Run]):
+    """Runs that are made when they are asked for, so that memory does not grow with their number."""
 
-    Nothing is held but the study and its motions, however many runs there are; runs beside each other share the same
-    scaled motion.
-    """
-
-    def __init__(self, study: Study, motions: MotionSet) -> None:
-        self.motions = tuple(motions.motions)
-        self.polarity, self.scale = study.motions.polarity, study.motions.scale
-        self.cases = study.cases
-        self._last: tuple[object, Motion] | None = None
-
-    def __len__(self) -> int:
-        return len(self.motions) * len(self.polarity) * len(self.scale) * len(self.cases)
+    @abstractmethod
+    def run(self, number: int) -> Run:
+        """Run ``number``, from 0."""
 
     @overload
     def __getitem__(self, index: int) -> Run: ...
@@ -55,24 +48,57 @@ class Plan(Sequence[Run]):
 
     def __getitem__(self, index: int | slice) -> Run | list[Run]:
         if isinstance(index, slice):
-            return [self[i] for i in range(*index.indices(len(self)))]
+            return [self.run(i) for i in range(*index.indices(len(self)))]
         if not -len(self) <= index < len(self):
             raise IndexError(index)
-        rest, case = divmod(index % len(self), len(self.cases))
-        rest, scale = divmod(rest, len(self.scale))
-        motion, polarity = divmod(rest, len(self.polarity))
-        variant = (motion, polarity, scale)
-        last = self._last
-        if last is None or last[0] != variant:
-            moved = scaled(self.motions[motion], self.scale[scale], self.polarity[polarity])
-            last = self._last = (variant, moved)
-        return Run(last[1], self.polarity[polarity], self.scale[scale], self.cases[case], self.motions[motion])
+        return self.run(index % len(self))
 
     def __iter__(self) -> Iterator[Run]:
-        return (self[i] for i in range(len(self)))
+        return map(self.run, range(len(self)))
 
 
-class Chosen(Sequence[Run]):
+class Plan(Runs):
+    """The runs of a study: record, polarity, scale, case, the last running fastest.
+
+    Nothing is held but the study and its motions; runs beside each other share the same scaled motion.
+    """
+
+    def __init__(self, study: Study, motions: MotionSet) -> None:
+        self.motions = tuple(motions.motions)
+        self.polarity, self.scale = study.motions.polarity, study.motions.scale
+        self.cases = study.cases
+        self._moved = lru_cache(maxsize=1)(self._move)
+
+    def __len__(self) -> int:
+        return len(self.motions) * len(self.polarity) * len(self.scale) * len(self.cases)
+
+    def run(self, number: int) -> Run:
+        """See :class:`Runs`."""
+        rest, case = divmod(number, len(self.cases))
+        rest, scale = divmod(rest, len(self.scale))
+        motion, polarity = divmod(rest, len(self.polarity))
+        moved = self._moved(motion, scale, polarity)
+        return Run(moved, self.polarity[polarity], self.scale[scale], self.cases[case], self.motions[motion])
+
+    def _move(self, motion: int, scale: int, polarity: int) -> Motion:
+        return scaled(self.motions[motion], self.scale[scale], self.polarity[polarity])
+
+
+class Made(Runs):
+    """``length`` runs, the i-th of which is ``make(i)``."""
+
+    def __init__(self, length: int, make: Callable[[int], Run]) -> None:
+        self._length, self._make = length, make
+
+    def __len__(self) -> int:
+        return self._length
+
+    def run(self, number: int) -> Run:
+        """See :class:`Runs`."""
+        return self._make(number)
+
+
+class Chosen(Runs):
     """Some of ``runs``, by their indices."""
 
     def __init__(self, runs: Sequence[Run], indices: Sequence[int]) -> None:
@@ -81,13 +107,6 @@ class Chosen(Sequence[Run]):
     def __len__(self) -> int:
         return len(self.indices)
 
-    @overload
-    def __getitem__(self, index: int) -> Run: ...
-
-    @overload
-    def __getitem__(self, index: slice) -> list[Run]: ...
-
-    def __getitem__(self, index: int | slice) -> Run | list[Run]:
-        if isinstance(index, slice):
-            return [self.runs[i] for i in self.indices[index]]
-        return self.runs[self.indices[index]]
+    def run(self, number: int) -> Run:
+        """See :class:`Runs`."""
+        return self.runs[self.indices[number]]

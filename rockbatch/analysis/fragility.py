@@ -2,7 +2,8 @@
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple, overload
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -15,7 +16,7 @@ from rockbatch.errors import InputError
 from rockbatch.motions import Motion
 from rockbatch.motions.measures import pgv
 from rockbatch.motions.spectrum import spectral_acceleration
-from rockbatch.plan import Run, scaled
+from rockbatch.plan import Run, Runs, scaled
 from rockbatch.results import describe_case
 from rockbatch.study import Case, Output, Study
 from rockbatch.study.fragility import FragilitySpec
@@ -33,33 +34,26 @@ class Point(NamedTuple):
     case: int
 
 
-class ScaledRuns(Sequence[Run]):
-    """The runs of some points, each made when it is asked for; ``unscaled`` are the intensities of the motions."""
+class ScaledRuns(Runs):
+    """The runs of some points; ``unscaled`` are the intensities of the motions."""
 
     def __init__(
         self, points: Sequence[Point], motions: Sequence[Motion], unscaled: Sequence[float], cases: Sequence[Case]
     ) -> None:
         self.points, self.motions, self.unscaled, self.cases = points, motions, unscaled, cases
-        self._last: tuple[tuple[int, str, float], Motion] | None = None
+        self._moved = lru_cache(maxsize=1)(self._move)  # neighbours share their motion
 
     def __len__(self) -> int:
         return len(self.points)
 
-    @overload
-    def __getitem__(self, index: int) -> Run: ...
+    def run(self, number: int) -> Run:
+        """See :class:`rockbatch.plan.Runs`."""
+        motion, polarity, intensity, case = self.points[number]
+        scale = intensity / self.unscaled[motion]
+        return Run(self._moved(motion, polarity, scale), polarity, scale, self.cases[case], self.motions[motion])
 
-    @overload
-    def __getitem__(self, index: slice) -> list[Run]: ...
-
-    def __getitem__(self, index: int | slice) -> Run | list[Run]:
-        if isinstance(index, slice):
-            return [self[i] for i in range(*index.indices(len(self)))]
-        point = self.points[index]
-        scale = point.intensity / self.unscaled[point.motion]
-        last = self._last
-        if last is None or last[0] != point[:3]:  # neighbours share their motion
-            last = self._last = point[:3], scaled(self.motions[point.motion], scale, point.polarity)
-        return Run(last[1], point.polarity, scale, self.cases[point.case], self.motions[point.motion])
+    def _move(self, motion: int, polarity: str, scale: float) -> Motion:
+        return scaled(self.motions[motion], scale, polarity)
 
 
 Simulate = Callable[[ScaledRuns], "pd.DataFrame"]

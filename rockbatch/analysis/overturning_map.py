@@ -11,10 +11,9 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import groupby, pairwise
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from rockbatch.analysis.made import Made
 from rockbatch.motions import Motion
 from rockbatch.motions.pulses import pulse, pulse_length
-from rockbatch.plan import Run, scaled
+from rockbatch.plan import Made, Run, scaled
 from rockbatch.study import Case
 from rockbatch.study.spectrum import MapSpec
 

@@ -5,11 +5,10 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
 
-from rockbatch.analysis.made import Made
 from rockbatch.analysis.sobol import design
 from rockbatch.motions import Motion
 from rockbatch.outcome import Outcome
-from rockbatch.plan import Run, scaled
+from rockbatch.plan import Made, Run, scaled
 from rockbatch.simulation import housner_restitution
 from rockbatch.study import Case, Study
 from rockbatch.study.sensitivity import Input, SensitivitySpec, Value, applying, own_values, varied
