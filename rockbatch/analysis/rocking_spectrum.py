@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any
 from rockbatch.motions import MotionSet
 from rockbatch.outcome import Outcome
 from rockbatch.plan import Plan, Run
-from rockbatch.report.statistics import suite
 from rockbatch.results import row
+from rockbatch.statistics import suite
 from rockbatch.study import Study
 from rockbatch.study.spectrum import SpectrumSpec
 

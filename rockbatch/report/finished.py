@@ -16,9 +16,6 @@ from rockbatch.study import PIER_KEYS
 if TYPE_CHECKING:
     import pandas as pd
 
-NO_PEAK = ("overturned", "flight")
-"""Outcomes without a largest rotation: the run ended before it."""
-
 
 @dataclass(frozen=True, eq=False)
 class Finished:

@@ -6,12 +6,13 @@ from typing import TYPE_CHECKING, Any
 
 from rockbatch.report.axes import Axes, Scale
 from rockbatch.report.document import figure
-from rockbatch.report.finished import NO_PEAK, Finished, as_dicts
+from rockbatch.report.finished import Finished, as_dicts
 from rockbatch.report.labels import Series
 from rockbatch.report.markup import Markup, join, number, tag
 from rockbatch.report.peaks import at_a_glance
 from rockbatch.report.svg import EVENTS, key, line, lowered, marker, rectangle, style_of, svg, text
 from rockbatch.report.table import THETA_FORMAT
+from rockbatch.statistics import NO_PEAK
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -4,10 +4,11 @@ import math
 from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING, Any
 
-from rockbatch.report.finished import NO_PEAK, Finished, as_dicts, worst_first
+from rockbatch.report.finished import Finished, as_dicts, worst_first
 from rockbatch.report.labels import symbol
 from rockbatch.report.markup import Markup, join, number, tag
 from rockbatch.report.table import MOST_ROWS, THETA, THETA_FORMAT, Head, alarm, sub, table, told_apart
+from rockbatch.statistics import NO_PEAK
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -2,17 +2,15 @@
 
 import math
 from collections.abc import Callable, Hashable, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rockbatch.checks.statistics import quantile
-from rockbatch.report.finished import NO_PEAK, Finished
+from rockbatch.report.finished import Finished
 from rockbatch.report.markup import Markup, join, tag
-from rockbatch.report.svg import Array
 from rockbatch.report.table import MOST_ROWS, THETA, THETA_FORMAT, Head, alarm, sub, table, told_apart
+from rockbatch.statistics import Suite, suite
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -30,44 +28,6 @@ WORDS = (
     "maximum; the mean is then that of the runs that stood, with their number. A failed run is unknown and counts in "
     "its own column only. Percentiles are linear between the runs in order."
 )
-
-
-@dataclass(frozen=True)
-class Suite:
-    """Statistics of one quantity over the runs of a case.
-
-    ``count`` runs have an outcome, ``standing`` of them a value; ``mean`` is over those, NaN without any. ``low``,
-    ``median`` and ``high`` are the 16, 50 and 84 % quantiles of all ``count``, ``largest`` the greatest: infinite
-    where they fall on runs that overturned or were ended by flight.
-    """
-
-    count: int
-    standing: int
-    mean: float
-    low: float
-    median: float
-    high: float
-    largest: float
-    overturned: int
-    flight: int
-    failed: int
-
-
-def suite(values: Array, status: Sequence[str]) -> Suite:
-    """Statistics of the magnitudes of ``values``, shape (n,), with the ``status`` of each run; NaN does not apply."""
-    kinds = np.asarray(status, dtype=object)
-    over, flown, failed = (kinds == kind for kind in (*NO_PEAK, "failed"))
-    gone = over | flown
-    magnitudes = np.where(gone, math.inf, np.abs(values))[~failed]
-    magnitudes = magnitudes[~np.isnan(magnitudes)]
-    stood = magnitudes[np.isfinite(magnitudes)]
-    if len(magnitudes):
-        low, median, high, largest = (quantile(magnitudes, q) for q in (0.16, 0.5, 0.84, 1.0))
-    else:
-        low = median = high = largest = math.nan
-    mean = float(stood.mean()) if len(stood) else math.nan
-    counts = (int(each.sum()) for each in (over, flown, failed))
-    return Suite(len(magnitudes), len(stood), mean, low, median, high, largest, *counts)
 
 
 def section(finished: Finished) -> Markup:
