@@ -72,7 +72,6 @@ def _found(one: Bracket) -> str:
 def described(curves: Sequence[Curve], spec: FragilitySpec, study: Study, records: int) -> dict[str, Any]:
     """What fragility.json says: what was asked, and every curve; an open bound of an interval is null."""
     return {
-        "files": [POINTS, *([CAPACITIES] if spec.method == "ida" else []), RUNS],
         "method": spec.method,
         "measure": spec.label,
         "unit": spec.unit,

@@ -66,8 +66,9 @@ class Results:
         write_whole(self.path, json.dumps(self.info, indent=1, ensure_ascii=False) + "\n")
 
     def keep_table(self, file: str, table: "pd.DataFrame") -> None:
-        """Write ``table`` as CSV, and note it."""
-        write_table(self.directory / file, table)
+        """Write ``table`` as CSV, as the journal writes its rows, whole or not at all, and note it."""
+        rows = ({str(name): value for name, value in row.items()} for row in table.to_dict("records"))
+        write_whole(self.directory / file, csv_text(list(table.columns), rows))
         self.keep(file)
 
     def end(self, **cost: object) -> None:
@@ -79,19 +80,6 @@ class Results:
         report = write(self.directory, self.study)
         for written in (*(self.directory / file for file in self.info["files"]), self.path, report):
             say(str(written))
-
-
-def write_table(path: Path, table: "pd.DataFrame") -> None:
-    """Write a table as CSV, as the journal writes its rows, whole or not at all."""
-    write_whole(
-        path, csv_text(list(table.columns), ({str(k): v for k, v in row.items()} for row in table.to_dict("records")))
-    )
-
-
-def finish(directory: Path, name: str, study: "Study", info: Mapping[str, Any]) -> None:
-    """Write NAME.json, which says what was found and in which ``files``, and the report, all at once."""
-    results = Results(directory, name, study, fresh=True)
-    results.end(**info)
 
 
 def _digests(path: Path) -> dict[str, Any]:

@@ -6,7 +6,7 @@ import time
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from rockbatch.commands.analyses import finish, write_table
+from rockbatch.commands.analyses import Results
 from rockbatch.commands.messages import count, make_ready, say, tell_motions
 from rockbatch.commands.options import add_engine, add_study, engine, folder, study_of
 
@@ -37,7 +37,6 @@ def main(arguments: argparse.Namespace) -> int:
     from rockbatch.analysis.waves import Waves
     from rockbatch.batch import digests
     from rockbatch.commands.progress import Progress
-    from rockbatch.journal import Journal
     from rockbatch.results import columns
     from rockbatch.study.suite import ground_motions
 
@@ -55,34 +54,26 @@ def main(arguments: argparse.Namespace) -> int:
         numerics=(study.numerics, study.output),
         fragility=replace(spec, confidence=0.0),  # which no run depends on
     )
-    journal = Journal(directory / f"{RUNS}.part", columns(study), digest, arguments.fresh)
-    with journal, engine(arguments) as carrier:
+    results = Results(directory, "fragility", study, arguments.fresh)
+    with results.journal(RUNS, columns(study), digest) as journal, engine(arguments) as carrier:
         runs = len(motions) * len(study.motions.polarity) * len(spec.levels) * len(study.cases)
         then = f"; then first exceedances are bisected to {spec.tolerance:g}" if spec.method == "ida" else ""
         levels = f"{count(len(motions), 'record')} at {len(spec.levels)} levels of {spec.label}"
         say(f"{levels}: {count(runs, 'run')} on {carrier}{then}")
-        if len(journal):
-            say(f"{count(len(journal), 'run')} are finished already (--fresh starts over)")
         make_ready(study)
-        try:
-            waves = Waves(study, journal, carrier, Progress)
-            curves = assess(study, spec, motions, waves)
-        except KeyboardInterrupt:
-            say(
-                f"interrupted: {count(len(journal), 'run')} are finished and kept in {journal.path}; the same command "
-                "goes on from there"
-            )
-            return 130
-        write_table(directory / POINTS, points(curves, spec, study.varied))
+        waves = Waves(study, journal, carrier, Progress)
+        curves = assess(study, spec, motions, waves)
+        results.info |= described(curves, spec, study, len(motions))
+        results.keep_table(POINTS, points(curves, spec, study.varied))
         if spec.method == "ida":
             names = [motion.name for motion in motions]
-            write_table(directory / CAPACITIES, capacities(curves, spec, study.varied, names, unscaled))
+            results.keep_table(CAPACITIES, capacities(curves, spec, study.varied, names, unscaled))
         else:
             (directory / CAPACITIES).unlink(missing_ok=True)  # of an earlier analysis
         journal.write_in_order(directory / RUNS)
+        results.keep(RUNS, digest)
         print(table(curves, spec))
-        cost = {"runs": waves.finished, "wall_s": round(time.monotonic() - started, 3)}
-        finish(directory, "fragility", study, described(curves, spec, study, len(motions)) | cost)
+        results.end(runs=waves.finished, wall_s=round(time.monotonic() - started, 3))
     failed = any(stripe.failed for curve in curves for stripe in curve.stripes)
     if failed:
         say(f"some runs failed and are undecided; the column reason of {directory / RUNS} says why")
