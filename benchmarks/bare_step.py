@@ -17,8 +17,11 @@ from interleaved import interleaved, machine, ratio
 from tower import QUIET_S, TOWER, foundations, record
 
 from rockbatch.core.equations import rates, step
+from rockbatch.core.lanes import LANES, one_pass
 from rockbatch.core.two_springs import (
+    CELLS,
     HISTORY_COLUMNS,
+    begin,
     rock_on_springs,
     rock_side_by_side,
     run_line,
@@ -31,6 +34,7 @@ from rockbatch.simulation import ground_of, springs
 from rockbatch.structure import ElasticBase, YieldingBase
 
 BARE_STEPS = 200_000
+PASSES = 10_000
 
 
 @numba.njit(error_model="numpy")
@@ -43,6 +47,15 @@ def bare(m, y, contact, ground, h, steps):
         y = step(m, y, k, contact, under, h)
         k = rates(m, y, contact, row[0] + h * row[1], row[2] + h * row[3])
     return y.theta
+
+
+@numba.njit(error_model="numpy", _nrt=False)
+def passes(table, lines, ground, lanes, count):
+    """All lanes from the start, ``count`` passes of tiny steps: no sample is reached, and nothing happens."""
+    for i in range(lanes):
+        begin(table, i, i, lines, ground, None, None)
+    for _ in range(count):
+        one_pass(table, lanes, None, None)
 
 
 def of_law(law: str, base: YieldingBase) -> ElasticBase:
@@ -94,6 +107,21 @@ def measure(law: str, motion: Motion, substeps: int, runs: int, repeats: int) ->
     return f"| {law} | {up} | {substeps} | {over} | {events / (samples - 1) / substeps:.4f} | {nanoseconds:.0f} ns |"
 
 
+def pass_alone(motion: Motion, repeats: int) -> str:
+    """What the lanes' pass takes without any event or sample, a lane, over the bare step."""
+    ground, dt = ground_of(motion), float(motion.dt)
+    models = [springs(TOWER, of_law("bouc-wen", base)) for base in foundations(LANES)]
+    lines = np.array([run_line(m, dt, 100 * PASSES, 0, 0, len(ground)) for m in models])
+    alone = (models[0], static_state(models[0]), Contact(1.0, 1.0, 1.0, 1.0, 0.0), ground, dt, BARE_STEPS)
+    tasks = {
+        "pass": lambda: passes(np.zeros(CELLS), lines, ground, LANES, PASSES),
+        "bare": lambda: bare(*alone),
+    }
+    times = interleaved(tasks, repeats)
+    best, median = ratio(times["pass"], times["bare"], BARE_STEPS / (PASSES * LANES)).split(" | ")
+    return f"The lanes' pass alone, bouc-wen, a lane / bare step: best {best}, median {median}"
+
+
 def main(repeats: int = 7, runs: int = 64, seconds: float | None = None) -> list[str]:
     """Lines of the table; of the first ``seconds`` of the record only, if given."""
     motion = record(seconds)
@@ -108,6 +136,8 @@ def main(repeats: int = 7, runs: int = 64, seconds: float | None = None) -> list
             for moved in (motion, with_vertical(motion))
             for substeps in (1, 2, 4)
         ),
+        "",
+        pass_alone(motion, repeats),
     ]
 
 

@@ -135,7 +135,7 @@ def _put_ground(table, i, ground, sample):
 
 
 @kernel
-def _begin(table, i, number, runs, ground, exponent, finite):
+def begin(table, i, number, runs, ground, exponent, finite):
     """Run ``number`` into lane ``i``, in its static state."""
     for j in range(11):
         table[MODEL + j * LANES + i] = runs[number, j]
@@ -361,7 +361,7 @@ def _rock(exponent, finite, runs, ground, locate, every_step, history, stop, tab
     waiting, lanes, row = NONE, NONE, NONE
     while True:
         while lanes < LANES and waiting < len(runs):
-            _begin(table, lanes, waiting, runs, ground, exponent, finite)
+            begin(table, lanes, waiting, runs, ground, exponent, finite)
             waiting += 1
             if recording:
                 row = _write(history, row, 0.0, state_of(table, NOW + lanes), contact_of(table, lanes), SAMPLE)
