@@ -174,7 +174,8 @@ def ledger_on_rigid_base(m, rows, ground, dt, out):
             t, t_end = rows[i - 1, 0], rows[i, 0]
             h = t_end - t
             t_middle = 0.5 * (t + t_end)
-            side = 1.0 if theta + end_theta > 0.0 else -1.0
+            leaning = theta + end_theta if theta != 0.0 or end_theta != 0.0 else omega  # a bounce between two impacts
+            side = 1.0 if leaning > 0.0 else -1.0
             ah, av = _ground_at(ground, dt, t_middle, t)
             ah_end, av_end = _ground_at(ground, dt, t_middle, t_end)
             k = acceleration(m, theta, side, ah, av)
