@@ -8,6 +8,7 @@ from rockbatch.core.impact import land, land_flat
 from rockbatch.core.kernel import kernel
 from rockbatch.core.types import (
     BOUC_WEN,
+    ELASTIC,
     EPP,
     HELD_LEFT,
     HELD_RIGHT,
@@ -85,9 +86,34 @@ def handle(m, y, contact, supports, which, rest, horizontal, vertical):
                 both = settle(m, landed, both, RIGHT, horizontal, vertical)
             return landed, both, supports, IMPACT_BOTH
     landed = land(m, y, side)
+    contact, supports = _other_after_impulse(m, landed, contact, supports, -side, at, rest)
     if abs(m.epsilon * velocity) > rest:
         after = touching(contact, side, yields_when_loaded)
     else:
         after = settle(m, landed, contact, side, horizontal, vertical)
         supports = Supports(position, supports.right) if left else Supports(supports.left, position)
     return landed, after, supports, IMPACT_LEFT if left else IMPACT_RIGHT
+
+
+@kernel
+def _other_after_impulse(m, y, contact, supports, side, at, rest):
+    """Contacts and supports once an impulse at one pivot has made the velocity of the other, on ``side``, jump too.
+
+    Its spring may have to change its branch, and a pivot that was held moves.
+    """
+    left = side == LEFT
+    velocity = y.v_rate + (at.arm_left if left else at.arm_right) * y.omega
+    if contact.held == side and abs(velocity) > rest:
+        if velocity < 0.0:
+            return touching(contact, side, 1.0 if m.law == BOUC_WEN else 0.0), supports
+        position = y.v + (at.lift_left if left else at.lift_right)
+        freed = Supports(position, supports.right) if left else Supports(supports.left, position)
+        return without(contact, side), freed
+    if m.law == ELASTIC or (contact.left if left else contact.right) == 0.0:
+        return contact, supports
+    yields = contact.left_yields if left else contact.right_yields
+    if velocity > rest:
+        yields = 0.0
+    elif velocity < -rest and (m.law == BOUC_WEN or (y.z_left if left else y.z_right) <= -1.0):
+        yields = 1.0
+    return touching(contact, side, yields), supports
