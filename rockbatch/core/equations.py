@@ -13,7 +13,7 @@ def geometry(m, theta):
     b, h = m.half_width, m.height
     if m.finite is not None:
         s, c = math.sin(theta), math.cos(theta)
-        drop = h * (1.0 - c)
+        drop = h * s * s / (1.0 + c)  # h (1 − cos θ), without the loss of digits
         arm_left, arm_right = b * c + h * s, -b * c + h * s
         return Geometry(
             b * s + drop, -b * s + drop,

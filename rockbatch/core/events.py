@@ -6,6 +6,7 @@ yield). Free: the gap to the waiting support (landing). Held: the two conditions
 
 from rockbatch.core.equations import geometry, holding, pivot_acceleration, touching, without
 from rockbatch.core.kernel import inlined, kernel
+from rockbatch.core.roots import falls
 from rockbatch.core.types import BOUC_WEN, ELASTIC, LEFT, RIGHT, Signals
 
 NO_ACCELERATION = 1e-12
@@ -87,9 +88,9 @@ def signals(m, y, k, contact, rest_left, rest_right, rest, horizontal, vertical)
 
 
 @inlined
-def quiet(f0, d0, f1, d1):
-    """Whether a signal surely stayed positive over a step, from its ends alone."""
-    return f0 > 0.0 and f1 > 0.0 and not (d0 < 0.0 and d1 > 0.0)
+def quiet(f0, d0, f1, d1, h):
+    """Whether a signal surely stayed positive over a step of ``h`` [s], as far as a cubic through its ends tells."""
+    return f0 > 0.0 and f1 > 0.0 and falls(f0, d0, f1, d1, h) < 0.0
 
 
 @kernel
@@ -104,6 +105,6 @@ def settle(m, y, contact, side, horizontal, vertical):
     if pivot_acceleration(m, y, on, side, horizontal, vertical) < 0.0:
         return on
     off = without(contact, side)
-    if pivot_acceleration(m, y, off, side, horizontal, vertical) > 0.0:
+    if pivot_acceleration(m, y, off, side, horizontal, vertical) > NO_ACCELERATION * m.gravity:
         return off
     return holding(contact, side, yields)

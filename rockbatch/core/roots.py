@@ -6,6 +6,7 @@ from rockbatch.core.kernel import inlined, kernel
 
 TRIALS = 60  # a handful is enough
 CLOSE = 1e-12  # of a step: how well the time of an event is known
+SHOWN = 1e-6  # of what a signal does in a step: a lower hump before a dip is no more than the cubic's own error
 BISECT_AFTER = 8  # trials, from which every other one halves the interval
 
 
@@ -61,36 +62,57 @@ def _root(f0, d0, f1, d1, h, start, end):
     return h * s
 
 
+@inlined
+def excess(d0, d1, h):
+    """The most by which a Hermite cubic with slopes d0 and d1 goes beyond its ends: |s (1 − s)²| ≤ 4/27."""
+    return 4.0 / 27.0 * h * (abs(d0) + abs(d1))
+
+
+@kernel
+def _extremes(f0, d0, f1, d1, h):
+    """Where in (0, h) the Hermite cubic has its maximum and its minimum; −1 for what it has not."""
+    mean = (f1 - f0) / h
+    curve = 3.0 * (d0 + d1 - 2.0 * mean)  # slope(s) = d0 + 2 c s + curve s²
+    c = 3.0 * mean - 2.0 * d0 - d1
+    discriminant = c * c - curve * d0
+    if not discriminant > 0.0:
+        return -1.0, -1.0
+    q = -(c + math.copysign(math.sqrt(discriminant), c))
+    first = d0 / q if q != 0.0 else -1.0
+    second = q / curve if curve != 0.0 else -1.0
+    highest, lowest = (first, second) if q > 0.0 else (second, first)
+    return h * highest if 0.0 < highest < 1.0 else -1.0, h * lowest if 0.0 < lowest < 1.0 else -1.0
+
+
 @kernel
 def falls(f0, d0, f1, d1, h):
     """When, in [0, h], a signal falls through zero, by the cubic through values and slopes at both ends; −1 if never.
 
     A signal that starts on its own surface, or a rounding below it, counts once it has left it. Where the cubic does
-    not show that it has, half of the time is the guess.
+    not show that it has, half of the time is the guess. A signal that falls and rises again within the step has fallen.
     """
-    if f0 <= 0.0:
-        if d0 < 0.0 or (d0 == 0.0 and f1 < 0.0):
-            return 0.0
-        if d0 == 0.0 or f1 > 0.0:
-            return -1.0
-        if d1 < 0.0:
-            x = turning_point(f0, d0, f1, d1, h)
-            if hermite(f0, d0, f1, d1, h, x) > 0.0:
-                return _root(f0, d0, f1, d1, h, x, h)
-        return 0.5 * h
-    if f1 <= 0.0:
+    if f0 > 0.0 and f1 <= 0.0:
         return _root(f0, d0, f1, d1, h, 0.0, h)
-    if d0 < 0.0 and d1 > 0.0:
-        x = turning_point(f0, d0, f1, d1, h)
-        if hermite(f0, d0, f1, d1, h, x) <= 0.0:
-            return _root(f0, d0, f1, d1, h, 0.0, x)
-    return -1.0
-
-
-@inlined
-def excess(d0, d1, h):
-    """The most by which a Hermite cubic with slopes d0 and d1 goes beyond its ends: |s (1 − s)²| ≤ 4/27."""
-    return 4.0 / 27.0 * h * (abs(d0) + abs(d1))
+    if f0 > 0.0:
+        if excess(d0, d1, h) < min(f0, f1):
+            return -1.0
+        _, lowest = _extremes(f0, d0, f1, d1, h)
+        if lowest > 0.0 and hermite(f0, d0, f1, d1, h, lowest) <= 0.0:
+            return _root(f0, d0, f1, d1, h, 0.0, lowest)
+        return -1.0
+    if d0 < 0.0 or (d0 == 0.0 and f1 < 0.0):
+        return 0.0
+    if d0 == 0.0:
+        return -1.0
+    highest, lowest = _extremes(f0, d0, f1, d1, h)
+    hump = hermite(f0, d0, f1, d1, h, highest) if highest > 0.0 else 0.0
+    if hump > 0.0:
+        shown = hump > SHOWN * (abs(f1) + h * abs(d1))
+        if shown and lowest > highest and hermite(f0, d0, f1, d1, h, lowest) <= 0.0:
+            return _root(f0, d0, f1, d1, h, highest, lowest)
+        if f1 <= 0.0:
+            return _root(f0, d0, f1, d1, h, highest, h)
+    return 0.5 * h if f1 <= 0.0 else -1.0
 
 
 @kernel

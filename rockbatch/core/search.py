@@ -124,10 +124,10 @@ def judge(table, i, m, y, end, k_end, contact, locate):
     if trial == 0.0:
         f0, d0 = _signals_at(table, i, m, y, state_of(table, BEFORE_RATES + i), contact, x)
         if (
-            quiet(f0.left, d0.left, f1.left, d1.left)
-            and quiet(f0.right, d0.right, f1.right, d1.right)
-            and quiet(f0.left_law, d0.left_law, f1.left_law, d1.left_law)
-            and quiet(f0.right_law, d0.right_law, f1.right_law, d1.right_law)
+            quiet(f0.left, d0.left, f1.left, d1.left, length)
+            and quiet(f0.right, d0.right, f1.right, d1.right, length)
+            and quiet(f0.left_law, d0.left_law, f1.left_law, d1.left_law, length)
+            and quiet(f0.right_law, d0.right_law, f1.right_law, d1.right_law, length)
         ):
             return ACCEPT
         if not locate:
