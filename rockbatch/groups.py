@@ -31,7 +31,8 @@ STEPS_OF_A_GROUP = 2e7
 NOTHING_MORE = Output(both_laws=False)
 
 CALLERS = (
-    "batch", "files", "groups", "histories", "journal", "outcome", "plan", "results", "simulation", "structure",
+    "batch", "files", "groups", "histories", "journal", "outcome", "plan", "results", "structure",
+    "simulation/flight", "simulation/models", "simulation/runs", "simulation/settling",
     "analysis/fragility", "analysis/ida", "analysis/limit_states", "analysis/overturning_map", "analysis/rocking_spectrum",
     "analysis/sampled", "analysis/sensitivity", "analysis/sobol", "checks/choices", "checks/demands", "checks/suite",
     "motions/pulses",

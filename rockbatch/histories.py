@@ -53,6 +53,7 @@ def simulate(
     quiet_s: float = 2.0,
     case: str | None = None,
     ledger: bool = False,
+    wait: bool = True,
 ) -> Response:
     """Histories of one run.
 
@@ -70,6 +71,8 @@ def simulate(
         Name of the foundation; its kind by default.
     ledger : bool
         Keep the energy ledger too (THEORY.md, 9).
+    wait : bool
+        Go on after ``quiet_s`` until nothing that comes later can exceed the peak; ``False``, with ``substeps``: end there.
 
     Raises
     ------
@@ -85,16 +88,20 @@ def simulate(
         wrong.append(f"substeps = {substeps}: must be a whole number")
     if substeps is not None and not wrong and substeps < (least := least_substeps(pier, foundation, motion.dt)):
         wrong.append(f"substeps = {substeps}: must be a whole number of at least {least} for this pier and motion")
+    if substeps is None and not wait:
+        wrong.append("wait = False: the error of a run that is cut off cannot be told; give substeps")
     if wrong:
         raise InputError(*wrong)
     if substeps is None:
         outcome = run_to_tolerance(pier, foundation, motion, tolerance, quiet_s)
     else:
-        outcome = run_fixed(pier, foundation, motion, substeps, quiet_s)
-    return histories(pier, foundation, motion, outcome, quiet_s, case or foundation.name, {}, ledger)
+        outcome = run_fixed(pier, foundation, motion, substeps, quiet_s, wait=wait)
+    return histories(pier, foundation, motion, outcome, quiet_s, case or foundation.name, {}, ledger, wait=wait)
 
 
-def written(pier: Pier, base: Base, motion: Motion, outcome: Outcome, quiet_s: float, every_step: bool) -> Samples:
+def written(
+    pier: Pier, base: Base, motion: Motion, outcome: Outcome, quiet_s: float, every_step: bool, wait: bool = True
+) -> Samples:
     """A run whose outcome is known, written down: the rows of the core, shape (n, 13) or (n, 4).
 
     Raises ``InputError`` where they would be more than :data:`MOST_ROWS`.
@@ -105,12 +112,12 @@ def written(pier: Pier, base: Base, motion: Motion, outcome: Outcome, quiet_s: f
         outcome.impacts + outcome.separations + 64
     )
     capacity = min(capacity, MOST_ROWS)
-    run, rows = written_run(scene, outcome.substeps, quiet_s, capacity, every_step=every_step)
+    run, rows = written_run(scene, outcome.substeps, quiet_s, capacity, every_step=every_step, wait=wait)
     if run.rows > MOST_ROWS:
         instead = "leave out the energy ledger or use fewer substeps" if every_step else "cut the record"
         raise InputError(f"{motion.name}: a history of {run.rows} rows, more than {MOST_ROWS}; {instead}")
     if run.rows > capacity:
-        run, rows = written_run(scene, outcome.substeps, quiet_s, run.rows, every_step=every_step)
+        run, rows = written_run(scene, outcome.substeps, quiet_s, run.rows, every_step=every_step, wait=wait)
     return rows[: run.rows]
 
 
@@ -136,6 +143,7 @@ def histories(
     ledger: bool = False,
     polarity: str = "+",
     scale: float = 1.0,
+    wait: bool = True,
 ) -> Response:
     """Histories of a run whose outcome is known: the same run again, with the same steps, written down.
 
@@ -143,7 +151,7 @@ def histories(
     """
     import pandas as pd
 
-    rows = written(pier, base, motion, outcome, quiet_s, every_step=ledger)
+    rows = written(pier, base, motion, outcome, quiet_s, every_step=ledger, wait=wait)
     shown = rows[:, -1] != types.STEP
     shown[-1] = True  # an overturned pier may fall between samples
     table = None

@@ -14,7 +14,9 @@ class Outcome:
     status : str
         "ok", "overturned", "flight" (the run was stopped by it) or "failed".
     reason : str
-        Why it failed; empty otherwise.
+        Why it failed, or what made it fly; empty otherwise.
+    note : str
+        What else there is to know of a run that is right: counts that have not settled, say; empty otherwise.
     theta_max, t_max : float
         Greatest rotation |θ| [rad] until the end of the run, and its time [s].
     theta_max_error, theta_res_error : float or None
@@ -23,6 +25,10 @@ class Outcome:
         Residual rotation, static on the deformed base, and tilt of the base itself [rad].
     settlement : float or None
         Mean plastic settlement of the supports since the start [m].
+    t_read : float or None
+        When residual rotation, tilt and settlement of a yielding base were read [s] (THEORY.md, 7).
+    settlement_drift, theta_res_drift : float or None
+        How fast they went on changing then [m/s, rad/s].
     impacts, separations : int
         Counts; on the rigid base a separation is a lift-off from rest.
     t_flight : float or None
@@ -55,12 +61,16 @@ class Outcome:
     theta_res_error: float | None = None
     base_tilt: float | None = None
     settlement: float | None = None
+    t_read: float | None = None
+    settlement_drift: float | None = None
+    theta_res_drift: float | None = None
     ductility_left: float | None = None
     ductility_right: float | None = None
     dissipated_left: float | None = None
     dissipated_right: float | None = None
     settlement_other_law: float | None = None
     energies: Mapping[str, float] | None = None
+    note: str = ""
 
     @property
     def was_run(self) -> bool:

@@ -43,7 +43,11 @@ MORE_COLUMNS = (
     "ductility_right",
     "dissipated_left_J_kg",
     "dissipated_right_J_kg",
+    "residual_s",
+    "theta_res_drift_per_s",
+    "settlement_drift_m_s",
     "reason",
+    "note",
 )
 
 TERMS = ("kinetic", "potential", "elastic", "input", "plastic", "impact", "p_delta", "constraint", "remainder")
@@ -52,7 +56,7 @@ TERMS = ("kinetic", "potential", "elastic", "input", "plastic", "impact", "p_del
 MOST_SPECTRA = 200
 """Motions whose spectra go into run.json; each takes about 10 ms."""
 
-TEXTS = ("record", "case", "polarity", "status", "reason")
+TEXTS = ("record", "case", "polarity", "status", "reason", "note")
 COUNTS = ("impacts", "separations", "substeps")
 
 HISTORIES = "histories.h5"
@@ -85,7 +89,11 @@ def row(record: str, polarity: str, scale: float, case: Case, outcome: Outcome) 
         "ductility_right": outcome.ductility_right,
         "dissipated_left_J_kg": outcome.dissipated_left,
         "dissipated_right_J_kg": outcome.dissipated_right,
+        "residual_s": outcome.t_read,
+        "theta_res_drift_per_s": _over(outcome.theta_res_drift, alpha),
+        "settlement_drift_m_s": outcome.settlement_drift,
         "reason": outcome.reason,
+        "note": outcome.note,
         "settlement_other_law_m": outcome.settlement_other_law,
         **{f"energy_{term}_J_kg": value for term, value in (outcome.energies or {}).items()},
     }

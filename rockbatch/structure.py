@@ -163,12 +163,28 @@ class YieldingBase(ElasticBase):
     name = "yielding"
 
 
-def highest_frequency(pier: Pier, base: ElasticBase) -> float:
-    """Greatest circular frequency [rad/s] in full contact: vertical, ω_v, or rocking (THEORY.md, 13)."""
-    omega_v = base.beta * pier.p
+def least_beta(pier: Pier, base: ElasticBase) -> float:
+    """β below which the pier topples on its springs under its own weight, or at the least push (THEORY.md, 9).
+
+    A Bouc–Wen spring under the weight, z = −1/η, is softer where it is loaded than where it is unloaded, by the factor
+    r = 1 − η⁻ⁿ; both together have 2r/(1 + r) of the elastic springs' stiffness in rotation.
+    """
+    if not (isinstance(base, YieldingBase) and base.spring == "bouc-wen" and base.eta > 1 and base.n >= 1):
+        return pier.least_beta
+    softer = -math.expm1(-base.n * math.log(base.eta))
+    return pier.least_beta * math.sqrt((1.0 + softer) / (2.0 * softer))
+
+
+def rocking_frequency(pier: Pier, base: ElasticBase) -> float:
+    """Circular frequency ω_r [rad/s] of rocking in full contact, on elastic springs (THEORY.md, 13)."""
     mu, alpha = pier.mu, pier.alpha
-    stiffness = mu * (math.sin(alpha) * omega_v) ** 2 - (1 + mu) * pier.p**2 * math.cos(alpha)
-    return max(omega_v, math.sqrt(max(stiffness, 0.0) / (1 + mu * math.cos(alpha) ** 2)))
+    stiffness = mu * (math.sin(alpha) * base.beta * pier.p) ** 2 - (1 + mu) * pier.p**2 * math.cos(alpha)
+    return math.sqrt(max(stiffness, 0.0) / (1 + mu * math.cos(alpha) ** 2))
+
+
+def highest_frequency(pier: Pier, base: ElasticBase) -> float:
+    """Greatest circular frequency [rad/s] in full contact: vertical, ω_v, or rocking."""
+    return max(base.beta * pier.p, rocking_frequency(pier, base))
 
 
 Base = RigidBase | ElasticBase | YieldingBase
@@ -182,10 +198,17 @@ def problems(pier: Pier, base: Base) -> list[str]:
             return [f"restitution = {e:g}: must be within 0..1 (leave it out for Housner's value)"]
         return []
     wrong = []
+    least = least_beta(pier, base)
     if not (math.isfinite(base.beta) and base.beta > pier.least_beta):
         wrong.append(
             f"beta = {base.beta:g}: the pier topples on its springs under its own weight; beta must be above "
             f"sqrt((1+mu) cos(alpha)/mu)/sin(alpha) = {pier.least_beta:.4g}"
+            + (f", for these Bouc–Wen springs above {least:.4g}" if least > pier.least_beta else "")
+        )
+    elif not base.beta > least and isinstance(base, YieldingBase):
+        wrong.append(
+            f"beta = {base.beta:g}: the least push topples the pier, because Bouc–Wen springs near their yield force "
+            f"(eta = {base.eta:g}, n = {base.n:g}) give way on the loaded side; beta must be above {least:.4g}"
         )
     if not 0 <= base.epsilon <= 1:
         wrong.append(f"epsilon = {base.epsilon:g}: the landing pivot's restitution must be within 0..1")

@@ -183,7 +183,7 @@ def test_the_yardstick_tells_flight():
         for share in (0.5, 3.0)
     ]
     motion = Motion("thrown", 0.02, *sides)
-    ours = run_fixed(pier, base, motion, 64, quiet_s=0.0)
+    ours = run_fixed(pier, base, motion, 64, quiet_s=0.0, wait=False)
     assert ours.status == "flight"
     status, theta_max = solve(pier, base, motion, "LSODA", 1e-9, quiet_s=0.0)
     assert status == "flight"

@@ -65,8 +65,8 @@ SPRINGS = [
 def test_springs_agree_with_the_reference_in_peak_end_state_and_counts(pier, base, motion):
     """Plastic work 1e-7 relative: it is accumulated over all loadings."""
     expected = reference(pier, base, motion)
-    outcome = run_fixed(pier, base, motion, substeps=32, quiet_s=0.0)
-    history = rb.simulate(pier, base, motion, substeps=32, quiet_s=0.0).history.iloc[-1]
+    outcome = run_fixed(pier, base, motion, substeps=32, quiet_s=0.0, wait=False)
+    history = rb.simulate(pier, base, motion, substeps=32, quiet_s=0.0, wait=False).history.iloc[-1]
     assert outcome.status == expected.status
     assert (outcome.impacts, outcome.separations) == (expected.impacts, expected.separations)
     assert outcome.theta_max == pytest.approx(expected.theta_max, abs=1e-8 * pier.alpha)
@@ -98,8 +98,8 @@ def test_a_real_record_agrees_with_the_reference(base):
     motion = read_motions([], fema=[("SYL", 360.0)]).motions[0]
     motion = Motion(motion.name, motion.dt, motion.horizontal[:1000])  # 20 s: all of the strong shaking
     expected = reference(TOWER, base, motion)
-    outcome = run_fixed(TOWER, base, motion, substeps=32, quiet_s=0.0)
-    history = rb.simulate(TOWER, base, motion, substeps=32, quiet_s=0.0).history.iloc[-1]
+    outcome = run_fixed(TOWER, base, motion, substeps=32, quiet_s=0.0, wait=False)
+    history = rb.simulate(TOWER, base, motion, substeps=32, quiet_s=0.0, wait=False).history.iloc[-1]
     assert expected.status == outcome.status == "ok"
     assert expected.theta_max > 0.05 * TOWER.alpha
     assert outcome.theta_max == pytest.approx(expected.theta_max, rel=0, abs=1e-8 * TOWER.alpha)
@@ -115,7 +115,7 @@ def test_energy_ledger_closes(pier, base, motion):
     error of the state at the end.
     """
     parts = reference(pier, base, motion).ledger
-    end = rb.simulate(pier, base, motion, substeps=32, quiet_s=0.0).energy[-1]
+    end = rb.simulate(pier, base, motion, substeps=32, quiet_s=0.0, wait=False).energy[-1]
     balance = parts["input"] - parts["plastic"] - parts["impact"] + parts["p_delta"] + parts["constraint"]
     size = sum(abs(part) for name, part in parts.items() if name != "stored")
     assert end == pytest.approx(balance, abs=1e-7 * size)
@@ -133,8 +133,8 @@ def test_energy_ledger_closes(pier, base, motion):
 )
 def test_rigid_base_agrees_with_the_reference(pier, base, motion):
     expected = reference(pier, base, motion)
-    outcome = run_fixed(pier, base, motion, substeps=16, quiet_s=0.0)
-    end = rb.simulate(pier, base, motion, substeps=16, quiet_s=0.0).history.iloc[-1]
+    outcome = run_fixed(pier, base, motion, substeps=16, quiet_s=0.0, wait=False)
+    end = rb.simulate(pier, base, motion, substeps=16, quiet_s=0.0, wait=False).history.iloc[-1]
     assert outcome.theta_max == pytest.approx(expected.theta_max, abs=1e-8 * pier.alpha)
     assert outcome.separations == expected.separations
     assert outcome.impacts == expected.impacts
@@ -148,8 +148,8 @@ def test_rigid_block_comes_to_rest_and_lifts_off_again():
     motion = Motion("twice", 0.01, np.concatenate([first, -1.2 * first]))
     base = RigidBase(restitution=0.3)
     expected = Rigid(FIG5, base, motion, 0.0).run()
-    outcome = run_fixed(FIG5, base, motion, substeps=16, quiet_s=0.0)
-    events = rb.simulate(FIG5, base, motion, substeps=16, quiet_s=0.0).events
+    outcome = run_fixed(FIG5, base, motion, substeps=16, quiet_s=0.0, wait=False)
+    events = rb.simulate(FIG5, base, motion, substeps=16, quiet_s=0.0, wait=False).events
     assert (outcome.separations, expected.separations) == (2, 2)
     assert outcome.theta_max == pytest.approx(expected.theta_max, abs=1e-8 * FIG5.alpha)
     lift_offs = events.loc[events.kind == "lift-off", "t"].to_numpy()

@@ -94,8 +94,12 @@ def test_ground_just_short_of_g_tan_alpha_lifts_nothing_and_just_beyond_does():
     for vertical in (0.0, 2.0, -2.0):
         limit = (FIG5.gravity + vertical) * math.tan(FIG5.alpha)
         for sign in (1.0, -1.0):
-            below = run_fixed(FIG5, RigidBase(), steady(sign * limit * (1 - 1e-9), vertical, 0.01, 50), 1, 0.0)
-            above = run_fixed(FIG5, RigidBase(), steady(sign * limit * (1 + 1e-6), vertical, 0.01, 50), 1, 0.0)
+            below = run_fixed(
+                FIG5, RigidBase(), steady(sign * limit * (1 - 1e-9), vertical, 0.01, 50), 1, 0.0, wait=False
+            )
+            above = run_fixed(
+                FIG5, RigidBase(), steady(sign * limit * (1 + 1e-6), vertical, 0.01, 50), 1, 0.0, wait=False
+            )
             assert (below.separations, below.theta_max) == (0, 0.0)
             assert above.separations == 1
             assert above.theta_max > 0.0
@@ -117,7 +121,7 @@ def test_full_contact_rocking_frequency_is_the_closed_form():
     omega_r = full_contact_frequency(FIG5, 50.0)
     assert omega_r == pytest.approx(8.67484279, abs=1e-8)
     a = 0.01
-    run = rb.simulate(FIG5, ElasticBase(50.0), steady(a, 0.0, 0.01, 201), substeps=16, quiet_s=0.0)
+    run = rb.simulate(FIG5, ElasticBase(50.0), steady(a, 0.0, 0.01, 201), substeps=16, quiet_s=0.0, wait=False)
     amplitude = FIG5.height * a / ((FIG5.inertia + FIG5.height**2) * omega_r**2)
     exact = -amplitude * (1.0 - np.cos(omega_r * run.t))
     assert run.events.empty
@@ -129,7 +133,7 @@ def test_full_contact_vertical_motion_oscillates_at_omega_v(kinematics):
     """Constant v̈_g = a: v = v0 − (a/ω_v²)(1 − cos ω_v t), θ = 0. RK4 at ω_v h = 0.03: 1e-5 of the amplitude."""
     a, omega_v = 0.5, 50.0
     base = ElasticBase(50.0, kinematics=kinematics)
-    run = rb.simulate(FIG5, base, steady(0.0, a, 0.01, 101), substeps=16, quiet_s=0.0)
+    run = rb.simulate(FIG5, base, steady(0.0, a, 0.01, 101), substeps=16, quiet_s=0.0, wait=False)
     exact = -(FIG5.gravity + a) / omega_v**2 + a / omega_v**2 * np.cos(omega_v * run.t)
     np.testing.assert_allclose(run.v, exact, rtol=0, atol=1e-5 * a / omega_v**2)
     assert np.all(run.theta == 0.0)
@@ -155,7 +159,7 @@ def test_first_separation_in_finite_kinematics_is_where_the_spring_is_unstressed
 def first_separation(kinematics):
     """Row of the history at the first separation under a steady push to the left, and the pivot that lifts."""
     motion = steady(-0.6 * FIG5.gravity * math.tan(FIG5.alpha), 0.0, 0.01, 101)
-    run = rb.simulate(FIG5, ElasticBase(50.0, 0.1, kinematics), motion, substeps=16, quiet_s=0.0)
+    run = rb.simulate(FIG5, ElasticBase(50.0, 0.1, kinematics), motion, substeps=16, quiet_s=0.0, wait=False)
     event = run.events[run.events.kind == "separation"].iloc[0]
     return run.history[run.history.t == event.t].iloc[0], event["pivot"]
 
@@ -242,8 +246,8 @@ def test_dissipated_energy_is_the_area_of_the_hysteresis_loops(spring, n):
     """∮ F dv by the trapezoidal rule, less what the spring stores elastically; 1e-4: the rule's error at these rows."""
     motion = pulse("sine", 0.5, dt=0.0005, end=2.0)
     base = YieldingBase(50.0, 0.1, eta=2.2, spring=spring, n=n)
-    run = rb.simulate(FIG5, base, motion, substeps=1, quiet_s=0.0)
-    outcome = run_fixed(FIG5, base, motion, 1, 0.0)
+    run = rb.simulate(FIG5, base, motion, substeps=1, quiet_s=0.0, wait=False)
+    outcome = run_fixed(FIG5, base, motion, 1, 0.0, wait=False)
     m = springs(FIG5, base)
     for side in ("left", "right"):
         z, position = run.history[f"z_{side}"].to_numpy(), run.history[f"v_{side}"].to_numpy()
@@ -272,12 +276,12 @@ def test_energy_is_conserved_by_elastic_springs_without_impacts_or_shaking():
 def test_stiff_strong_springs_without_restitution_converge_to_the_rigid_base():
     """One-sine 0.5 g × 1 s at dt = 0.01 s: 0.40168 α at β = 3200 against 0.401675 α; the gap falls with β."""
     motion = pulse("sine", 1.0, 0.5, dt=0.01, end=3.0)
-    rigid = run_fixed(FIG5, RigidBase(), motion, 8, 0.0).theta_max / FIG5.alpha
+    rigid = run_fixed(FIG5, RigidBase(), motion, 8, 0.0, wait=False).theta_max / FIG5.alpha
     gaps = []
     for beta in (200.0, 800.0, 3200.0):
         base = YieldingBase(beta, 0.0, "finite", "guided", eta=1000.0)
         substeps = math.ceil(beta * motion.dt / 0.1)
-        gaps.append(abs(run_fixed(FIG5, base, motion, substeps, 0.0).theta_max / FIG5.alpha - rigid))
+        gaps.append(abs(run_fixed(FIG5, base, motion, substeps, 0.0, wait=False).theta_max / FIG5.alpha - rigid))
     assert rigid == pytest.approx(0.401675, abs=1e-6)
     assert gaps[2] < 1e-5
     assert gaps[0] > 3.0 * gaps[1] > 9.0 * gaps[2]
@@ -298,9 +302,9 @@ def test_stiff_strong_springs_end_as_the_rigid_base_does(amplitude_g, status):
 
 def test_a_large_exponent_approaches_the_elastic_plastic_spring():
     """The Bouc–Wen law's corner has width 1/n: at n = 400 the peak is within 1 % and nearer than at n = 50."""
-    epp = run_fixed(FIG5, YieldingBase(50.0, 0.1, eta=3.0, spring="epp"), SINE, 8, 0.0).theta_max
+    epp = run_fixed(FIG5, YieldingBase(50.0, 0.1, eta=3.0, spring="epp"), SINE, 8, 0.0, wait=False).theta_max
     gaps = [
-        abs(run_fixed(FIG5, YieldingBase(50.0, 0.1, eta=3.0, n=n), SINE, 8, 0.0).theta_max / epp - 1)
+        abs(run_fixed(FIG5, YieldingBase(50.0, 0.1, eta=3.0, n=n), SINE, 8, 0.0, wait=False).theta_max / epp - 1)
         for n in (5.0, 50.0, 400.0)
     ]
     assert gaps == sorted(gaps, reverse=True)
@@ -310,7 +314,7 @@ def test_a_large_exponent_approaches_the_elastic_plastic_spring():
 def test_springs_that_never_yield_are_elastic():
     """η = 10⁴, n = 5: plasticity of order (1/η)⁵, so the elastic result to rounding, events and all."""
     assert springs(FIG5, YieldingBase(50.0, eta=3.0)).law == BOUC_WEN
-    strong = run_fixed(FIG5, YieldingBase(50.0, 0.4, eta=1e4), SINE, 8, 0.0)
-    elastic = run_fixed(FIG5, ElasticBase(50.0, 0.4), SINE, 8, 0.0)
+    strong = run_fixed(FIG5, YieldingBase(50.0, 0.4, eta=1e4), SINE, 8, 0.0, wait=False)
+    elastic = run_fixed(FIG5, ElasticBase(50.0, 0.4), SINE, 8, 0.0, wait=False)
     assert strong.theta_max == pytest.approx(elastic.theta_max, abs=1e-8 * FIG5.alpha)
     assert (strong.impacts, strong.separations) == (elastic.impacts, elastic.separations)

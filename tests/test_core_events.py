@@ -61,7 +61,10 @@ def test_order_is_four_across_events(base, motion):
 def test_order_is_four_across_the_impacts_of_a_rigid_block():
     """Lift-off, impacts and the peak of Fig. 5's rigid block, for 1 to 4 steps per 0.02 s: beyond, rounding rules."""
     expected = reference(FIG5, RigidBase(), COARSE_SINE)
-    gaps = [abs(run_fixed(FIG5, RigidBase(), COARSE_SINE, k, 0.0).theta_max - expected.theta_max) for k in (1, 4)]
+    gaps = [
+        abs(run_fixed(FIG5, RigidBase(), COARSE_SINE, k, 0.0, wait=False).theta_max - expected.theta_max)
+        for k in (1, 4)
+    ]
     assert math.log2(gaps[0] / gaps[1]) / 2 == pytest.approx(4.0, abs=0.2)
 
 
@@ -70,9 +73,9 @@ def test_order_is_four_in_full_contact(kinematics):
     """A pulse too weak to lift a pivot: no events, the smooth equations alone, against 64 times finer steps."""
     weak = Motion("weak", 0.02, 0.02 * COARSE_SINE.horizontal)
     base = ElasticBase(50.0, 0.4, kinematics)
-    ends = [simulate(FIG5, base, weak, substeps=k, quiet_s=0.0).history.iloc[-1] for k in (4, 16, 256)]
+    ends = [simulate(FIG5, base, weak, substeps=k, quiet_s=0.0, wait=False).history.iloc[-1] for k in (4, 16, 256)]
     gaps = [abs(end["theta"] - ends[-1]["theta"]) for end in ends[:2]]
-    assert run_fixed(FIG5, base, weak, 4, 0.0).separations == 0
+    assert run_fixed(FIG5, base, weak, 4, 0.0, wait=False).separations == 0
     assert math.log2(gaps[0] / gaps[1]) / 2 == pytest.approx(4.0, abs=0.2)
 
 
@@ -95,7 +98,7 @@ def test_several_events_in_one_step_are_taken_in_their_order():
     motion = Motion("coarse", dt, pulse("sine", 1.0, 0.6, dt=dt, end=4.0).horizontal, vertical)
     base = YieldingBase(20.0, 0.3, "finite", "guided", eta=3.0)
     expected = reference(FIG5, base, motion)
-    run, rows = written_run(Scene(FIG5, base, motion), 2, 0.0, 2000)
+    run, rows = written_run(Scene(FIG5, base, motion), 2, 0.0, 2000, wait=False)
     rows = rows[: run.rows]
     found = rows[np.isin(rows[:, -1], CONTACT_EVENTS)]
     steps = np.floor(found[:, 0] / (dt / 2))
@@ -112,7 +115,7 @@ PUSH = -0.7 * FIG5.gravity * math.tan(FIG5.alpha)
 def first_lift(base, dt: float, samples: int) -> float:
     """Time of the first separation under a steady push."""
     motion = steady(PUSH, 0.0, dt, samples)
-    run = rb.simulate(FIG5, base, motion, substeps=1, quiet_s=0.0)
+    run = rb.simulate(FIG5, base, motion, substeps=1, quiet_s=0.0, wait=False)
     return float(run.events.loc[run.events.kind == "separation", "t"].iloc[0])
 
 
@@ -138,9 +141,9 @@ def test_an_event_at_a_sample_is_like_any_other(base, nudge):
     samples = 160
     dt *= 1.0 + nudge
     motion = steady(PUSH, 0.0, dt, samples)
-    run = rb.simulate(FIG5, base, motion, substeps=1, quiet_s=0.0)
+    run = rb.simulate(FIG5, base, motion, substeps=1, quiet_s=0.0, wait=False)
     neighbour = steady(motion.horizontal[0], 0.0, dt * 1.01, samples)
-    other = rb.simulate(FIG5, base, neighbour, substeps=1, quiet_s=0.0)
+    other = rb.simulate(FIG5, base, neighbour, substeps=1, quiet_s=0.0, wait=False)
     assert list(run.events.loc[run.events.kind != "spring", "pivot"])[:1] == ["left"]
     lifts = run.events[run.events.kind == "separation"]
     assert abs(lifts.t.iloc[0] - 40 * dt) < 1e-8 * dt + abs(nudge) * 50 * dt
@@ -160,7 +163,7 @@ def bounce() -> Motion:
 def test_both_pivots_landing_at_one_instant_keep_the_pier_upright(kinematics, epsilon):
     """Symmetry: θ stays 0, but for squares of rounding; landings come in pairs; v is the reference's."""
     base = YieldingBase(20.0, epsilon, kinematics, "guided", eta=3.0)
-    run, rows = written_run(Scene(FIG5, base, bounce()), 8, 0.0, 5000)
+    run, rows = written_run(Scene(FIG5, base, bounce()), 8, 0.0, 5000, wait=False)
     expected = reference(FIG5, base, bounce())
     assert run.status == SURVIVED
     assert run.impacts >= 2
@@ -172,8 +175,8 @@ def test_both_pivots_landing_at_one_instant_keep_the_pier_upright(kinematics, ep
 
 
 def test_flight_ends_the_run_unless_it_is_guided():
-    stopped = run_fixed(FIG5, YieldingBase(20.0, 0.3, eta=3.0), bounce(), 8, 0.0)
-    guided = run_fixed(FIG5, YieldingBase(20.0, 0.3, eta=3.0, flight="guided"), bounce(), 8, 0.0)
+    stopped = run_fixed(FIG5, YieldingBase(20.0, 0.3, eta=3.0), bounce(), 8, 0.0, wait=False)
+    guided = run_fixed(FIG5, YieldingBase(20.0, 0.3, eta=3.0, flight="guided"), bounce(), 8, 0.0, wait=False)
     assert (stopped.status, guided.status) == ("flight", "ok")
     assert stopped.t_flight == guided.t_flight == stopped.t_end
     assert guided.t_end == pytest.approx(2.0)
@@ -189,7 +192,7 @@ def test_a_brief_separation_inside_one_large_step_is_seen():
     for amplitude in np.linspace(0.5003, 0.52, 12):
         motion = steady(0.0, -amplitude * FIG5.gravity, 0.04, 26)  # v overshoots by twice the static change
         coarse, rows = written_run(Scene(FIG5, base, motion), 1, 0.0, 500)
-        fine = run_fixed(FIG5, base, motion, 32, 0.0)
+        fine = run_fixed(FIG5, base, motion, 32, 0.0, wait=False)
         if fine.separations == 0:
             continue
         events = rows[: coarse.rows]
@@ -229,10 +232,10 @@ def test_a_pivot_that_contact_lifts_and_freedom_presses_is_held(alpha, beta, fre
     expected = reference(pier, base, motion)
     held = [t for t, kind, _ in expected.events if kind == "held"]
     assert held[0] == pytest.approx(when, abs=0.01)
-    outcome = run_fixed(pier, base, motion, 40, 0.0)
+    outcome = run_fixed(pier, base, motion, 40, 0.0, wait=False)
     assert outcome.status == "ok"
     assert outcome.theta_max == pytest.approx(expected.theta_max, abs=1e-8 * alpha)
-    end = rb.simulate(pier, base, motion, substeps=40, quiet_s=0.0).history.iloc[-1]
+    end = rb.simulate(pier, base, motion, substeps=40, quiet_s=0.0, wait=False).history.iloc[-1]
     assert end["theta"] == pytest.approx(expected.theta, abs=1e-7 * alpha)
 
 
@@ -254,9 +257,9 @@ def test_a_run_from_rest_does_not_chatter_on_the_rounding_of_its_equilibrium():
         pier = Pier(0.2, round(rng.uniform(0.5, 4.0), 1))
         eta, beta = round(1.05 + 9.0 * rng.uniform(), 2), float(round(rng.uniform(20.0, 100.0)))
         base = YieldingBase(beta, 0.1, kinematics, eta=eta)
-        if run_fixed(pier, base, motion, least_substeps(pier, base, motion.dt), 0.0).status != "ok":
+        if run_fixed(pier, base, motion, least_substeps(pier, base, motion.dt), 0.0, wait=False).status != "ok":
             failed.append((pier.p, beta, eta, kinematics))
-    known = run_fixed(Pier(0.2, 1.6), YieldingBase(34.0, 0.1, eta=7.32), motion, 1, 0.0)
+    known = run_fixed(Pier(0.2, 1.6), YieldingBase(34.0, 0.1, eta=7.32), motion, 1, 0.0, wait=False)
     assert (known.status, failed) == ("ok", [])
 
 
@@ -269,7 +272,7 @@ def test_random_hard_cases_end_with_a_sane_result(block):
     for seed in range(100 * block, 100 * block + 100):
         pier, base, motion = hard_case(seed)
         substeps = max(1, math.ceil(base.beta * pier.p * motion.dt / 0.2))
-        outcome = run_fixed(pier, base, motion, substeps, 0.5)
+        outcome = run_fixed(pier, base, motion, substeps, 0.5, wait=False)
         assert outcome.status in ("ok", "overturned", "flight"), (seed, outcome.reason)
         assert math.isfinite(outcome.theta_max), seed
         assert 0.0 <= outcome.t_max <= outcome.t_end + 1e-12, seed

@@ -79,7 +79,7 @@ def test_a_lane_that_finishes_early_makes_room_for_the_next_run():
         replace(scene, motion=replace(scene.motion, horizontal=0.0 * scene.motion.horizontal)) for scene in scenes
     ]
     still = [replace(scene, motion=replace(scene.motion, vertical=None)) for scene in shaken]
-    found = run_all_fixed(still, [16] * len(still), 0.5, Stop())
+    found = run_all_fixed(still, [16] * len(still), 0.5, Stop(), wait=False)
     for scene, outcome in zip(still, found, strict=True):
         dt = scene.motion.dt
         assert outcome.status == "ok"

@@ -30,10 +30,10 @@ YIELDING = [
 def test_peak_on_yielding_springs_is_the_published_number(pier, motion, beta, eta, epsilon, kinematics, peak, impacts):
     """1e-8 at 40 substeps: the numbers have eight decimals; 1e-5 at 2, the order of magnitude quoted for that step."""
     base = YieldingBase(beta, epsilon, kinematics, eta=eta)
-    fine = run_fixed(pier, base, motion, substeps=40, quiet_s=0.0)
+    fine = run_fixed(pier, base, motion, substeps=40, quiet_s=0.0, wait=False)
     assert fine.theta_max / pier.alpha == pytest.approx(peak, abs=1e-8)
     assert (fine.status, fine.impacts) == ("ok", impacts)
-    coarse = run_fixed(pier, base, motion, substeps=2, quiet_s=0.0)
+    coarse = run_fixed(pier, base, motion, substeps=2, quiet_s=0.0, wait=False)
     assert coarse.theta_max / pier.alpha == pytest.approx(peak, abs=1e-5)
     assert coarse.impacts == impacts
 
@@ -45,7 +45,7 @@ def test_peak_on_yielding_springs_is_the_published_number(pier, motion, beta, et
 def test_peak_on_rigid_base_is_the_published_number(pier, motion, peak):
     """Tolerances as on springs."""
     for substeps, tolerance in ((40, 1e-8), (2, 1e-5)):
-        outcome = run_fixed(pier, RigidBase(), motion, substeps, quiet_s=0.0)
+        outcome = run_fixed(pier, RigidBase(), motion, substeps, quiet_s=0.0, wait=False)
         assert outcome.theta_max / pier.alpha == pytest.approx(peak, abs=tolerance)
 
 

@@ -39,7 +39,7 @@ def force_cycles(cycles: int, slowness: int) -> Motion:
 
 def settlement(base: YieldingBase, cycles: int, slowness: int) -> float:
     """Settlement over δ_s."""
-    outcome = run_fixed(FIG5, base, force_cycles(cycles, slowness), SUBSTEPS, 0.0)
+    outcome = run_fixed(FIG5, base, force_cycles(cycles, slowness), SUBSTEPS, 0.0, wait=False)
     assert (outcome.status, outcome.theta_max, outcome.separations) == ("ok", 0.0, 0)
     return outcome.settlement * OMEGA_V**2 / FIG5.gravity
 

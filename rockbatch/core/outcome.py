@@ -1,4 +1,4 @@
-"""When a run may end: the pier lies on its side, or can no longer get there."""
+"""When a run may end: the pier lies on its side, or has been waited for long enough."""
 
 import math
 
@@ -6,6 +6,12 @@ from rockbatch.core.kernel import kernel
 from rockbatch.core.types import NOT_FINITE, OVERTURNED, SURVIVED
 
 ON_ITS_SIDE = 0.5 * math.pi
+
+WINDOWS = 32
+"""Parts of a run, equal in time, in each of which its greatest |θ| at a sample is kept: its trajectory in short."""
+
+GROWTH = 1e-4
+"""Of α: by how much |θ| may grow in the second half of the waiting without the pier counting as leaning further."""
 
 
 @kernel
@@ -17,19 +23,8 @@ def fallen(theta):
 
 
 @kernel
-def undecided(theta, omega, alpha, p):
-    """Whether a pier that is left alone might still overturn.
-
-    In free rocking it does if its kinetic energy exceeds what is left to climb, ½ θ̇² > p² (1 − cos(α − |θ|)) for a
-    rigid base; springs lower the summit a little, hence the second condition.
-    """
-    tilt = abs(theta)
-    if 0.5 * omega * omega >= p * p * (1.0 - math.cos(alpha - tilt)):
-        return True
-    return tilt >= alpha or (tilt >= 0.5 * alpha and theta * omega > 0.0)
-
-
-@kernel
-def patience(p, dt):
-    """Number of samples after which a pier left alone has left any unstable equilibrium that rounding can hold."""
-    return int(40.0 / (p * dt)) + 1
+def widen(extremes, sample, samples, theta):
+    """Take |θ| at ``sample`` into the greatest one of its window; the last window lasts to the end of the run."""
+    window = min(int(sample * WINDOWS / max(samples, 1.0)), WINDOWS - 1)
+    if not abs(theta) <= extremes[window]:  # also where there is none yet
+        extremes[window] = abs(theta)

@@ -4,10 +4,11 @@ import math
 
 import numpy as np
 
+from rockbatch.core.free_vibration import reach_on_rigid_base
 from rockbatch.core.ground import ground_rows
 from rockbatch.core.kernel import entry, kernel
-from rockbatch.core.outcome import fallen, patience, undecided
-from rockbatch.core.roots import BISECT_AFTER, CLOSE, TRIALS, falls, largest_within
+from rockbatch.core.outcome import WINDOWS, fallen, widen
+from rockbatch.core.roots import BISECT_AFTER, CLOSE, TRIALS, excess, falls, largest_within
 from rockbatch.core.types import (
     BEFORE_EVENT,
     CHATTER,
@@ -16,6 +17,7 @@ from rockbatch.core.types import (
     IMPACT_RIGHT,
     LIFT_OFF,
     REST,
+    RESTLESS,
     SAMPLE,
     STEP,
     SURVIVED,
@@ -26,6 +28,7 @@ from rockbatch.core.types import (
 )
 
 EVENTS_IN_A_SAMPLE = 20_000
+RESULTS = len(RigidRun._fields)
 HISTORY_COLUMNS = 4  # t, theta, omega, kind of row
 NEGLIGIBLE = 1e-13  # of α: height of the bounces that are summed up instead of followed
 
@@ -132,7 +135,7 @@ def _write(history, row, t, theta, omega, kind):
     return row + 1
 
 
-def run_line(m, theta, omega, dt, substeps, quiet_samples, first_row, npts):
+def run_line(m, theta, omega, dt, substeps, quiet_samples, first_row, npts, patience=0):
     """A run as :func:`rock_one_by_one` takes it: numbers only.
 
     Parameters
@@ -140,10 +143,10 @@ def run_line(m, theta, omega, dt, substeps, quiet_samples, first_row, npts):
     m : Block
     theta, omega : float
         Rotation [rad] and angular velocity [rad/s] at the start; 0, 0 is rest.
-    dt, substeps, quiet_samples, first_row, npts
+    dt, substeps, quiet_samples, first_row, npts, patience
         As for the pier on two springs.
     """
-    return (*m, theta, omega, dt, substeps, quiet_samples, first_row, npts)
+    return (*m, theta, omega, dt, substeps, quiet_samples, first_row, npts, patience)
 
 
 def rock_one_by_one(lines, ground, stop, locate=True, every_step=False, history=_NO_HISTORY):
@@ -151,7 +154,7 @@ def rock_one_by_one(lines, ground, stop, locate=True, every_step=False, history=
 
     Parameters
     ----------
-    lines : ndarray, shape (runs, 11)
+    lines : ndarray, shape (runs, 12)
         Of :func:`run_line`.
     ground, stop, locate, every_step
         As for the pier on two springs.
@@ -160,10 +163,10 @@ def rock_one_by_one(lines, ground, stop, locate=True, every_step=False, history=
 
     Returns
     -------
-    ndarray, shape (runs, 9)
-        As RigidRun has it; NaN for those that were stopped.
+    ndarray, shape (runs, RESULTS + WINDOWS)
+        As RigidRun has it, and the greatest |θ| in each window of the run; NaN for those that were stopped.
     """
-    results = np.full((len(lines), len(RigidRun._fields)), np.nan)
+    results = np.full((len(lines), RESULTS + WINDOWS), np.nan)
     _rock_all(lines, ground, locate, every_step, history, stop, results)
     return results
 
@@ -183,7 +186,7 @@ def rock_on_rigid_base(
 
 def rigid_run(line):
     """RigidRun of a line of results."""
-    run = RigidRun(*line.tolist())
+    run = RigidRun(*line[:RESULTS].tolist())
     counts = ("status", "impacts", "lift_offs", "rows")
     return run._replace(**{name: int(getattr(run, name)) for name in counts})
 
@@ -198,18 +201,21 @@ def _rock_all(lines, ground, locate, every_step, history, stop, results):
         first = int(line[9])
         motion = ground[first : first + int(line[10])]
         _rock(
-            m, line[4], line[5], motion, line[6], int(line[7]), int(line[8]), locate, every_step, history, stop, results[i]
+            m, line[4], line[5], motion, line[6], int(line[7]), int(line[8]), int(line[11]), locate, every_step, history, stop,
+            results[i], results[i][RESULTS:],
         )  # fmt: skip
 
 
 @kernel
-def _rock(m, theta, omega, motion, dt, substeps, quiet_samples, locate, every_step, history, stop, result):
-    """One run; ``result`` stays as it is after a stop."""
+def _rock(
+    m, theta, omega, motion, dt, substeps, quiet_samples, patience, locate, every_step, history, stop, result, extremes
+):  # fmt: skip
+    """One run; ``result`` stays as it is after a stop, but for the ``extremes`` of its windows."""
     h = dt / substeps
     recording = history.shape[0] > 0
     npts = len(motion)
     samples = npts - 1 + quiet_samples
-    longest = samples + patience(m.p, dt)
+    longest = samples + patience
     resting = theta == 0.0 and omega == 0.0
     side = 1.0 if theta > 0.0 or (theta == 0.0 and omega > 0.0) else -1.0
     peak, t_peak = abs(theta), 0.0
@@ -223,7 +229,12 @@ def _rock(m, theta, omega, motion, dt, substeps, quiet_samples, locate, every_st
         rows = _write(history, rows, t, theta, omega, SAMPLE)
 
     sample = 0
-    while sample < samples or (sample < longest and not resting and undecided(theta, omega, m.alpha, m.p)):
+    turned = False  # since the ground came to rest
+    while True:
+        at_rest = sample >= npts or (sample == npts - 1 and motion[sample, 0] == 0.0 and motion[sample, 2] == 0.0)
+        over = resting or (at_rest and _decided(m, theta, omega, peak, turned))
+        if sample >= samples and (over or sample >= longest):
+            break
         if stop[0] != 0:
             return
         events = 0
@@ -238,6 +249,7 @@ def _rock(m, theta, omega, motion, dt, substeps, quiet_samples, locate, every_st
             break
         if resting and lift_off(m, Ground(a0, a_slope, c0, c_slope), dt)[0] < 0.0:
             sample += 1
+            widen(extremes, sample, samples, theta)
             t = sample * dt
             if recording:
                 rows = _write(history, rows, t, theta, omega, SAMPLE)
@@ -264,7 +276,8 @@ def _rock(m, theta, omega, motion, dt, substeps, quiet_samples, locate, every_st
                 k1 = acceleration(m, theta, side, ground.horizontal, ground.vertical)
                 end_theta, end_omega = rocking_step(m, theta, omega, k1, side, ground, left)
                 landed = False
-                if side * end_theta <= 0.0 or (side * omega < 0.0 and side * end_omega > 0.0):
+                # also where it may have been back in between, and gone again
+                if min(side * theta, side * end_theta) <= excess(omega, end_omega, left):
                     if locate:
                         at = _landing(m, theta, omega, k1, side, ground, left, end_theta, end_omega)
                     else:
@@ -277,6 +290,7 @@ def _rock(m, theta, omega, motion, dt, substeps, quiet_samples, locate, every_st
                 found, peak = largest_within(theta, omega, end_theta, end_omega, left, peak)
                 if found >= 0.0:
                     t_peak = sample * dt + x + found
+                turned = turned or (at_rest and omega * end_omega < 0.0)
                 theta, omega = end_theta, end_omega
                 done = done + left if landed else h
                 if not landed:
@@ -319,11 +333,12 @@ def _rock(m, theta, omega, motion, dt, substeps, quiet_samples, locate, every_st
             break
         sample += 1
         t = sample * dt
+        widen(extremes, sample, samples, theta)
         if recording:
             rows = _write(history, rows, t, theta, omega, SAMPLE)
 
-    if status == SURVIVED and sample >= longest and not resting and undecided(theta, omega, m.alpha, m.p):
-        status = UNDECIDED
+    if status == SURVIVED and not over:
+        status = RESTLESS if reach_on_rigid_base(theta, omega, m.alpha, m.p) < math.inf else UNDECIDED
     result[0] = status
     result[1] = t
     result[2] = peak
@@ -333,3 +348,13 @@ def _rock(m, theta, omega, motion, dt, substeps, quiet_samples, locate, every_st
     result[6] = t_flight
     result[7] = t_rest
     result[8] = rows
+
+
+@kernel
+def _decided(m, theta, omega, peak, turned):
+    """Whether nothing that comes later can exceed ``peak``, with the ground at rest: each bounce loses energy.
+
+    Once the rotation has ``turned``, its extreme has been seen, and those to come are lower.
+    """
+    reach = reach_on_rigid_base(theta, omega, m.alpha, m.p)
+    return reach <= peak or (turned and reach < math.inf)

@@ -11,6 +11,7 @@ import numpy as np
 
 from rockbatch.core.equations import geometry, on_ground, rates, step
 from rockbatch.core.events import at_rest
+from rockbatch.core.free_vibration import DECIDED, LEANS, OPEN, outlook_on_springs, rocking_period, summit
 from rockbatch.core.ground import ground_rows
 from rockbatch.core.kernel import entry, inlined, kernel
 from rockbatch.core.lanes import (
@@ -43,7 +44,7 @@ from rockbatch.core.lanes import (
     state_of,
 )
 from rockbatch.core.loading import Loading, branches
-from rockbatch.core.outcome import fallen, patience, undecided
+from rockbatch.core.outcome import GROWTH, WINDOWS, fallen, widen
 from rockbatch.core.roots import largest_within, lowest_within
 from rockbatch.core.search import (
     ACCEPT,
@@ -66,10 +67,13 @@ from rockbatch.core.types import (
     BOUC_WEN,
     CHATTER,
     FLIGHT,
+    GROWING,
     IMPACT_BOTH,
     IMPACT_LEFT,
     IMPACT_RIGHT,
+    LATE_FLIGHT,
     OVERTURNED,
+    RESTLESS,
     SAMPLE,
     SURVIVED,
     UNDECIDED,
@@ -80,6 +84,7 @@ from rockbatch.core.types import (
 from rockbatch.core.types import STEP as BETWEEN_SAMPLES
 
 EVENTS_IN_A_SAMPLE = 20_000  # more than any decaying sequence of impacts needs
+RESULTS = len(SpringRun._fields)
 HISTORY_COLUMNS = 13  # t, the six of State, the five of Contact, kind of row
 
 NONE = np.int64(0)  # a literal 0 would have every function that it is handed to compiled twice
@@ -97,10 +102,21 @@ DT = rows(1)
 SAMPLE_NUMBER = rows(1)  # of the last sample
 SAMPLES = rows(1)  # of record and quiet time
 LONGEST = rows(1)  # samples that a pier is waited for
+EARLIEST = rows(1)  # sample from which on residuals may be read
+READ_WAIT = rows(1)  # samples between two readings; 0 where there is nothing to read twice
+PATIENCE = rows(1)  # samples
+DECIDED_AT = rows(1)  # sample from which on nothing can exceed the peak, −1 before it
+READ = rows(3)  # sample of the first reading, −1 before it; unstressed positions of both supports then [m]
+LAST_READ = rows(3)  # likewise, of the last one
+DRIFT = rows(2)  # of both supports from the first reading to the second [m/s]
+LAST_DRIFT = rows(2)  # likewise, between the last two
+MOVED = rows(1)  # time at which a pivot last left the ground or landed [s]
+IMPACT_TIME = rows(1)  # of the last impact [s]
+MIDWAY = rows(1)  # greatest |θ| when half of the waiting is over [rad]
 FIRST_ROW = rows(1)  # of the motion among the ground's rows
 NPTS = rows(1)
 ALPHA = rows(1)
-P = rows(1)
+STRONGEST = rows(1)  # horizontal acceleration of the ground [m/s²]
 RUN = rows(1)  # which run is in the lane
 CELLS = rows.cells
 
@@ -147,8 +163,6 @@ def begin(table, i, number, runs, ground, exponent, finite):
         runs[number, 15],
     )
     m = model_of(table, i, exponent, finite)
-    size2 = m.half_width * m.half_width + m.height * m.height
-    p = math.sqrt(m.gravity * math.sqrt(size2) / (m.inertia + size2))
     y = static_state(m)
     plastic = y.v - m.yield_deflection * y.z_left
     table[RUN + i] = number
@@ -158,9 +172,23 @@ def begin(table, i, number, runs, ground, exponent, finite):
     table[FIRST_ROW + i] = first_row
     table[NPTS + i] = npts
     table[SAMPLES + i] = npts - 1 + quiet_samples
-    table[LONGEST + i] = table[SAMPLES + i] + patience(p, dt)
+    wait = runs[number, 18]
+    table[READ_WAIT + i] = wait
+    table[EARLIEST + i] = npts - 1 + runs[number, 17]
+    table[PATIENCE + i] = runs[number, 16]
+    table[LONGEST + i] = max(table[SAMPLES + i], table[EARLIEST + i] + wait) + table[PATIENCE + i]
+    table[DECIDED_AT + i] = -1.0
+    put_all(table, READ + i, (-1.0, math.nan, math.nan))
+    put_all(table, DRIFT + i, (math.nan, math.nan))
+    put_all(table, LAST_DRIFT + i, (0.0, 0.0))
+    table[MOVED + i] = 0.0
+    table[IMPACT_TIME + i] = math.nan
+    table[MIDWAY + i] = math.inf
     table[ALPHA + i] = math.atan2(m.half_width, m.height)
-    table[P + i] = p
+    strongest = 0.0
+    for row in range(int(first_row), int(first_row + npts)):
+        strongest = max(strongest, abs(ground[row, 0]))
+    table[STRONGEST + i] = strongest
     table[REST + i] = at_rest(m)
     table[SAMPLE_NUMBER + i] = 0.0
     table[SAMPLE_TIME + i] = 0.0
@@ -242,6 +270,10 @@ def _happen(table, i, m, y, contact, which, t, x, history, row):
         row = _write(history, row, t, y, after, kind)
     landed = 2 if kind == IMPACT_BOTH else (1 if kind in (IMPACT_LEFT, IMPACT_RIGHT) else 0)
     table[IMPACTS + i] += landed
+    if landed > 0:
+        table[IMPACT_TIME + i] = t
+    if after.left != contact.left or after.right != contact.right or landed > 0:
+        table[MOVED + i] = t
     # a pivot may land and be lifted at once
     table[SEPARATIONS + i] += landed - on_ground(after) + on_ground(contact)
     put_all(table, LOADING + i, branches(m, _loading_of(table, i), contact, after, y))
@@ -252,8 +284,13 @@ def _happen(table, i, m, y, contact, which, t, x, history, row):
         if math.isnan(table[FLIGHT_TIME + i]):
             table[FLIGHT_TIME + i] = t
         if m.guided == 0.0:
-            beyond = abs(y.theta) >= table[ALPHA + i] and y.theta * y.omega > 0.0
-            return (OVERTURNED if beyond else FLIGHT), after, row
+            beyond = abs(y.theta) - table[ALPHA + i]
+            strongest = 0.0 if _ground_rests(table, i) else table[STRONGEST + i]
+            # else the ground may yet turn it back
+            falling = beyond >= 0.0 and y.theta * y.omega > 0.0 and m.gravity * math.tan(beyond) >= strongest
+            if table[DECIDED_AT + i] >= 0.0:  # the peak is known: what flies then is undamped vibration
+                return LATE_FLIGHT, after, row
+            return (OVERTURNED if falling else FLIGHT), after, row
     table[EVENTS + i] += 1.0
     return (CHATTER if table[EVENTS + i] > EVENTS_IN_A_SAMPLE else SURVIVED), after, row
 
@@ -313,29 +350,110 @@ def _look(table, i, exponent, finite, locate, history, row):
 
 
 @kernel
-def _done(table, i):
-    """SURVIVED or UNDECIDED where the run in lane ``i`` is over at this sample, RUNNING where it goes on."""
-    sample = table[SAMPLE_NUMBER + i]
-    if sample < table[SAMPLES + i]:
-        return RUNNING
-    if not undecided(table[NOW + LANES + i], table[NOW + 3 * LANES + i], table[ALPHA + i], table[P + i]):
-        return SURVIVED
-    return RUNNING if sample < table[LONGEST + i] else UNDECIDED
+def _unstressed(m, position, z, on_spring, waiting):
+    return position - m.yield_deflection * z if on_spring != 0.0 else waiting
 
 
 @kernel
-def _unstressed(m, position, z, on_spring, waiting):
-    return position - m.yield_deflection * z if on_spring != 0.0 else waiting
+def _base(table, i, m):
+    """Unstressed positions [m] of both supports."""
+    y, contact, supports = state_of(table, NOW + i), contact_of(table, i), supports_of(table, i)
+    at = geometry(m, y.theta)
+    left = _unstressed(m, y.v + at.lift_left, y.z_left, contact.left, supports.left)
+    right = _unstressed(m, y.v + at.lift_right, y.z_right, contact.right, supports.right)
+    return left, right
+
+
+@kernel
+def _outlook(table, i, m):
+    """OPEN, DECIDED or LEANS (see ``free_vibration``); OPEN while the ground moves."""
+    if not _ground_rests(table, i):
+        return OPEN
+    contact = contact_of(table, i)
+    left, right = _base(table, i, m)
+    alone = table[SAMPLE_TIME + i] - max(table[MOVED + i], table[NPTS + i] * table[DT + i])
+    calm = contact.left != 0.0 and contact.right != 0.0 and alone >= rocking_period(m)
+    ahead = 0.5 * table[PATIENCE + i] * table[DT + i] / m.half_width
+    first = ahead * (table[DRIFT + i] - table[DRIFT + LANES + i])
+    last = ahead * (table[LAST_DRIFT + i] - table[LAST_DRIFT + LANES + i])
+    to_right, to_left = max(0.0, first, last), max(0.0, -first, -last)
+    return outlook_on_springs(
+        m, state_of(table, NOW + i), contact, left, right, table[PEAK + i], calm, to_right, to_left
+    )
+
+
+@kernel
+def _ground_rests(table, i):
+    """Whether the ground is at rest from the last sample on, for good."""
+    over = table[SAMPLE_NUMBER + i] >= table[NPTS + i] - 1.0
+    return over and table[GROUND + i] == 0.0 and table[GROUND + 2 * LANES + i] == 0.0
+
+
+@kernel
+def _read_base(table, i, m):
+    """Read the residuals: the positions of the supports, and how they have drifted since the last reading."""
+    sample, wait = table[SAMPLE_NUMBER + i], table[READ_WAIT + i]
+    left, right = _base(table, i, m)
+    if table[READ + i] < 0.0:
+        put_all(table, READ + i, (sample, left, right))
+    else:
+        seconds = wait * table[DT + i]
+        last_left, last_right = table[LAST_READ + LANES + i], table[LAST_READ + 2 * LANES + i]
+        drift = ((left - last_left) / seconds, (right - last_right) / seconds)
+        put_all(table, LAST_DRIFT + i, drift)
+        if table[LAST_READ + i] == table[READ + i]:
+            put_all(table, DRIFT + i, drift)
+    put_all(table, LAST_READ + i, (sample, left, right))
+
+
+@kernel
+def _done(table, i, exponent, finite):
+    """How the run in lane ``i`` ended if it is over at this sample, RUNNING where it goes on; residuals are read."""
+    sample, samples, longest = table[SAMPLE_NUMBER + i], table[SAMPLES + i], table[LONGEST + i]
+    if sample < table[EARLIEST + i]:
+        return RUNNING
+    wait, decided = table[READ_WAIT + i], table[DECIDED_AT + i] >= 0.0
+    m = model_of(table, i, exponent, finite)
+    if decided:
+        if wait > 0.0 and sample == table[LAST_READ + i] + wait:
+            _read_base(table, i, m)
+        if sample < max(samples, table[READ + i] + wait):
+            return RUNNING
+        if wait == 0.0:  # nothing can change any more
+            return SURVIVED
+    outlook = _outlook(table, i, m)
+    if outlook == DECIDED and not decided:
+        table[DECIDED_AT + i] = sample
+        _read_base(table, i, m)
+    if outlook == DECIDED and sample >= max(samples, table[READ + i] + wait):
+        return SURVIVED
+    if sample == (samples + longest) // 2:
+        table[MIDWAY + i] = table[PEAK + i]
+    return RUNNING if sample < longest else _given_up(table, i, m, outlook)
+
+
+@kernel
+def _given_up(table, i, m, outlook):
+    """How a run ends that nothing has decided for so long."""
+    if outlook == LEANS or abs(table[NOW + LANES + i]) >= summit(m):
+        return UNDECIDED
+    yields = table[READ_WAIT + i] > 0.0
+    return GROWING if yields and table[PEAK + i] > table[MIDWAY + i] + GROWTH * table[ALPHA + i] else RESTLESS
 
 
 @kernel
 def _finish(table, i, exponent, finite, status, t, row, results):
     """What the run in lane ``i`` comes to: its line of ``results``, as SpringRun has it."""
     m = model_of(table, i, exponent, finite)
-    y, contact, supports = state_of(table, NOW + i), contact_of(table, i), supports_of(table, i)
-    at = geometry(m, y.theta)
-    base_left = _unstressed(m, y.v + at.lift_left, y.z_left, contact.left, supports.left)
-    base_right = _unstressed(m, y.v + at.lift_right, y.z_right, contact.right, supports.right)
+    y, contact = state_of(table, NOW + i), contact_of(table, i)
+    t_read, base_left, base_right = (
+        table[READ + i] * table[DT + i],
+        table[READ + LANES + i],
+        table[READ + 2 * LANES + i],
+    )
+    if table[READ + i] < 0.0:
+        t_read = t
+        base_left, base_right = _base(table, i, m)
     loading = branches(m, _loading_of(table, i), contact, Contact(0.0, 0.0, 0.0, 0.0, 0.0), y)
     line = results[int(table[RUN + i])]
     line[0] = status
@@ -351,7 +469,11 @@ def _finish(table, i, exponent, finite, status, t, row, results):
     line[10] = table[LOWEST + LANES + i]
     line[11] = m.yield_force * loading.work_left
     line[12] = m.yield_force * loading.work_right
-    line[13] = row
+    line[13] = t_read
+    line[14] = table[DRIFT + i]
+    line[15] = table[DRIFT + LANES + i]
+    line[16] = table[IMPACT_TIME + i]
+    line[17] = row
 
 
 @entry
@@ -365,7 +487,7 @@ def _rock(exponent, finite, runs, ground, locate, every_step, history, stop, tab
             waiting += 1
             if recording:
                 row = _write(history, row, 0.0, state_of(table, NOW + lanes), contact_of(table, lanes), SAMPLE)
-            status = _done(table, lanes)
+            status = _done(table, lanes, exponent, finite)
             if status == RUNNING:
                 lanes += 1
             else:
@@ -378,7 +500,9 @@ def _rock(exponent, finite, runs, ground, locate, every_step, history, stop, tab
             while lane < lanes:
                 status, t = RUNNING, 0.0
                 if table[NEWS + lane] != CALM or recording:
-                    status, t, row = _attend(table, lane, exponent, finite, ground, locate, every_step, history, row)
+                    status, t, row = _attend(
+                        table, lane, exponent, finite, ground, locate, every_step, history, row, results
+                    )
                 if status == RUNNING:
                     lane += 1
                 else:
@@ -390,7 +514,7 @@ def _rock(exponent, finite, runs, ground, locate, every_step, history, stop, tab
 
 
 @inlined
-def _attend(table, i, exponent, finite, ground, locate, every_step, history, row):
+def _attend(table, i, exponent, finite, ground, locate, every_step, history, row, results):
     """What the pass has left to do in lane ``i``: status, time, next row."""
     news = table[NEWS + i]
     status, t = SURVIVED, table[SAMPLE_TIME + i] + table[START + i]
@@ -404,10 +528,12 @@ def _attend(table, i, exponent, finite, ground, locate, every_step, history, row
     sampled = table[SUBSTEP + i] == table[SUBSTEPS + i]
     if sampled:
         t = _next_sample(table, i, ground)
+        extremes = results[int(table[RUN + i])][RESULTS:]
+        widen(extremes, table[SAMPLE_NUMBER + i], table[SAMPLES + i], table[NOW + LANES + i])
     if history.shape[0] > 0 and (sampled or every_step):
         kind = SAMPLE if sampled else BETWEEN_SAMPLES
         row = _write(history, row, t, state_of(table, NOW + i), contact_of(table, i), kind)
-    return (_done(table, i) if sampled else RUNNING), t, row
+    return (_done(table, i, exponent, finite) if sampled else RUNNING), t, row
 
 
 @kernel
@@ -431,7 +557,7 @@ def _move(table, i, j):
         table[at + j] = table[at + i]
 
 
-def run_line(m, dt, substeps, quiet_samples, first_row, npts):
+def run_line(m, dt, substeps, quiet_samples, first_row, npts, patience=0, read_after=0, read_wait=0):
     """A run as :func:`rock_side_by_side` takes it: numbers only.
 
     Parameters
@@ -440,12 +566,17 @@ def run_line(m, dt, substeps, quiet_samples, first_row, npts):
     dt : float
         Sampling interval [s]; each is ``substeps`` steps.
     quiet_samples : int
-        Samples after the record. The run goes on while the pier, left alone, might still overturn.
+        Samples after the record.
     first_row, npts : int
         Where among the rows of the ground the motion begins, and how many it has.
+    patience : int
+        Samples that the run goes on at most, while by its energy the pier could still turn further than it has.
+    read_after, read_wait : int
+        Samples from the end of the record to the earliest moment at which residuals are read, and from there to the
+        second reading, which tells how they drift; 0: they are read once, when the peak is decided.
     """
     exponent = 5.0 if m.exponent is None else m.exponent
-    return (*m[:-2], exponent, dt, substeps, quiet_samples, first_row, npts)
+    return (*m[:-2], exponent, dt, substeps, quiet_samples, first_row, npts, patience, read_after, read_wait)
 
 
 def rock_side_by_side(exponent, finite, lines, ground, stop, locate=True, every_step=False, history=_NO_HISTORY):
@@ -455,7 +586,7 @@ def rock_side_by_side(exponent, finite, lines, ground, stop, locate=True, every_
     ----------
     exponent, finite
         Of all their Springs: what their types tell, a number or None, True or None.
-    lines : ndarray, shape (runs, 16)
+    lines : ndarray, shape (runs, 19)
         Of :func:`run_line`.
     ground : ndarray, shape (rows, 4)
         Of :func:`rockbatch.core.ground.ground_rows`, of all their motions.
@@ -470,11 +601,12 @@ def rock_side_by_side(exponent, finite, lines, ground, stop, locate=True, every_
 
     Returns
     -------
-    ndarray, shape (runs, 14)
-        As SpringRun has it; NaN for those that were stopped.
+    ndarray, shape (runs, RESULTS + WINDOWS)
+        As SpringRun has it, and the greatest |θ| in each window of the run; NaN for those that were stopped, and for
+        windows that the run did not reach.
     """
     # A compiled function hands out nothing: making a tuple runs Python code, where Ctrl-C may strike.
-    results = np.full((len(lines), len(SpringRun._fields)), np.nan)
+    results = np.full((len(lines), RESULTS + WINDOWS), np.nan)
     _rock(exponent, finite, lines, ground, locate, every_step, history, stop, np.zeros(CELLS), results)
     return results
 
@@ -493,6 +625,6 @@ def rock_on_springs(m, horizontal, vertical, dt, substeps, quiet_samples, histor
 
 def spring_run(line):
     """SpringRun of a line of results."""
-    run = SpringRun(*line.tolist())
+    run = SpringRun(*line[:RESULTS].tolist())
     counts = ("status", "impacts", "separations", "rows")
     return run._replace(**{name: int(getattr(run, name)) for name in counts})

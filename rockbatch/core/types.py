@@ -16,7 +16,10 @@ OVERTURNED = 1
 FLIGHT = 2
 CHATTER = 3
 NOT_FINITE = 4
-UNDECIDED = 5
+UNDECIDED = 5  # left alone, the pier has stayed where it may yet overturn
+GROWING = 6  # left alone, it leans further and further
+RESTLESS = 7  # survived, but by its energy later extremes could exceed the peak
+LATE_FLIGHT = 8  # survived, and flew when nothing that comes later could exceed the peak
 
 # Kinds of rows in a history: a sample, the end of a step between samples, or the two sides of an event
 SAMPLE = 0.0
@@ -135,12 +138,16 @@ class SpringRun(NamedTuple):
     impacts: int
     separations: int
     t_flight: float  # first time of flight; NaN without one
-    base_left: float  # unstressed position of each support at the end
+    base_left: float  # unstressed position of each support when residuals are read
     base_right: float
     deepest_left: float  # lowest position of each support
     deepest_right: float
     dissipated_left: float  # plastic work
     dissipated_right: float
+    t_read: float  # when residuals are read
+    drift_left: float  # by how much each support has moved over the periods that follow, per second; NaN if unknown
+    drift_right: float
+    t_impact: float  # the last one; NaN without one
     rows: int  # rows of history that were written or would have been
 
 

@@ -1,0 +1,171 @@
+"""What a pier that is left alone can still do: how far its energy carries it, and whether over the summit.
+
+The ground is at rest. Between impacts energy is kept, at impacts and by yielding it is lost, so the energy of this
+moment bounds every later rotation (THEORY.md, 6). Energies are per unit mass [J/kg].
+"""
+
+import math
+
+from rockbatch.core.equations import geometry
+from rockbatch.core.kernel import kernel
+from rockbatch.core.springs import power
+from rockbatch.core.types import BOUC_WEN, ELASTIC
+
+PARTS = 24
+"""Parts of the way to the supports' capacity over which their work is summed."""
+
+SEEN = 1e-6
+"""Relative error of an extreme that has been seen, by which it may lie below the amplitude of its vibration."""
+
+OPEN = 0
+"""By its energy, the pier may still turn further than it has, or overturn."""
+DECIDED = 1
+"""Nothing that comes later can exceed what has been."""
+LEANS = 2
+"""The base leans so far that the pier cannot stand on it."""
+
+
+@kernel
+def reach_on_rigid_base(theta, omega, alpha, p):
+    """Greatest |θ| [rad] of free rocking from here on; infinite where the pier may overturn."""
+    tilt = abs(theta)
+    level = math.cos(alpha - tilt) + 0.5 * (omega / p) * (omega / p)
+    if tilt >= alpha or level >= 1.0:
+        return math.inf
+    return alpha - math.acos(level)
+
+
+@kernel
+def _capacity(m):
+    """Greatest moment of the supports about the centre of the base, over g b: one carries all, or as much as it can."""
+    return 1.0 if m.law == ELASTIC else min(1.0, 2.0 * m.yield_force / m.gravity - 1.0)
+
+
+@kernel
+def summit(m):
+    """Rotation [rad] at which the weight's moment equals the greatest of the supports."""
+    tangent = _capacity(m) * m.half_width / m.height
+    return math.atan(tangent) if m.finite is not None else tangent
+
+
+@kernel
+def rocking_stiffness(m):
+    """Restoring moment per rotation in full contact, on elastic springs [m²/s²]."""
+    return 2.0 * m.yield_force * m.stiffness * m.half_width * m.half_width - m.gravity * m.height
+
+
+@kernel
+def rocking_period(m):
+    """Of rocking in full contact [s]: 2π/ω_r (THEORY.md, 13)."""
+    return 2.0 * math.pi * math.sqrt((m.inertia + m.height * m.height) / rocking_stiffness(m))
+
+
+@kernel
+def _weight_moment(m, theta):
+    """Moment of the weight about the centre of the base, over g [m]."""
+    return m.height * (math.sin(theta) if m.finite is not None else theta)
+
+
+@kernel
+def _climb(m, lean, target):
+    """Energy that it takes at least to turn from rest at ``lean`` to ``target`` [rad], or to the summit before it.
+
+    The pier turns towards the support on the right, which is loaded by x, the supports' moment over g b; the other one
+    is unloaded, elastic. A Bouc–Wen spring takes 1/(1 − zⁿ) of the elastic deflection. From the capacity on, the moment
+    stays and the pier turns about its far support. For the other direction reverse both angles. A pier that leans
+    beyond ``target`` is there already: −inf.
+    """
+    if lean >= target:
+        return -math.inf
+    b, g = m.half_width, m.gravity
+    static_force = 0.5 * g / m.yield_force
+    deflection = static_force * m.yield_deflection
+    capacity = _capacity(m)
+    x = _weight_moment(m, lean) / b
+    dx = (capacity - x) / PARTS
+    theta, work = lean, 0.0
+    for i in range(PARTS):
+        middle = x + (i + 0.5) * dx
+        give = 1.0
+        if m.law == BOUC_WEN:
+            give = 1.0 / (1.0 - power(min(max(static_force * (1.0 + middle), 0.0), 1.0 - 1e-12), m.exponent))
+        turn = 0.5 * deflection * dx * (1.0 + give) / b
+        part = min(turn, target - theta)
+        middle = x + (i + 0.5 * part / turn) * dx
+        moment = g * (b * middle - _weight_moment(m, theta + 0.5 * part))
+        if moment <= 0.0:
+            return work
+        work += moment * part
+        theta += part
+        if part < turn:
+            return work
+    end = min(target, summit(m))
+    if end <= theta:
+        return work
+    if m.finite is not None:
+        return work + g * (
+            capacity * b * (math.sin(end) - math.sin(theta)) + m.height * (math.cos(end) - math.cos(theta))
+        )
+    return work + g * (capacity * b * (end - theta) - 0.5 * m.height * (end * end - theta * theta))
+
+
+@kernel
+def outlook_on_springs(m, y, contact, base_left, base_right, peak, calm, drift_right, drift_left):
+    """OPEN, DECIDED or LEANS, of state ``y`` whose supports are unstressed at ``base_left`` and ``base_right`` [m].
+
+    Parameters
+    ----------
+    peak : float
+        Greatest |θ| so far [rad].
+    calm : bool
+        Both pivots have stayed on the ground, and the ground at rest, for a period of rocking: what rocks then keeps
+        apart from what vibrates vertically, but for the P–Δ moment of the latter.
+    drift_right, drift_left : float
+        By how much the base will tilt further at most, to either side [rad], as far as can be foreseen: yielding
+        springs ratchet on vibration.
+    """
+    b, h, g = m.half_width, m.height, m.gravity
+    stiffness = rocking_stiffness(m)
+    softness = 0.5 * g / (m.yield_force * m.stiffness)  # static deflection
+    tilt = 0.5 * (base_left - base_right) / b
+    swollen = (stiffness + g * h) / stiffness
+    lean, drift_right, drift_left = tilt * swollen, drift_right * swollen, drift_left * swollen
+    limit = min(peak, summit(m))
+    if abs(lean) >= summit(m):
+        return LEANS
+    if abs(y.theta) >= summit(m):
+        return OPEN
+    middle = 0.5 * (base_left + base_right)
+    if calm:
+        mean = middle - softness  # of v
+        if m.finite is not None:
+            mean -= _drop(m, y.theta)
+        swing = math.sqrt((y.v - mean) * (y.v - mean) + y.v_rate * y.v_rate * softness / g) / softness  # vertical, of g
+        softened = stiffness - g * h * swing
+        if softened <= 0.0:
+            return OPEN
+        rocking = (m.inertia + h * h) * y.omega * y.omega + stiffness * (y.theta - lean) * (y.theta - lean)
+        reach = math.sqrt(rocking / softened)
+        sway = lean * (stiffness / softened)  # the lean swells with the weight
+        furthest = max(max(sway, lean) + drift_right, max(-sway, -lean) + drift_left) + reach
+        return DECIDED if furthest <= limit * (1.0 + SEEN) else OPEN
+    at = geometry(m, y.theta)
+    uneven = h * lean / b
+    lever, gained, at_lean = h, -0.5 * g * h * y.theta * y.theta, -0.5 * g * h * lean * lean
+    if m.finite is not None:
+        lever = at.lever + (contact.right - contact.left) * at.swing
+        gained, at_lean = 0.0, -g * _drop(m, lean)
+    kinetic = 0.5 * y.v_rate * y.v_rate + 0.5 * (m.inertia + lever * lever) * y.omega * y.omega
+    spring = m.yield_force * m.yield_deflection
+    stored = g * y.v + gained + 0.5 * spring * (y.z_left * y.z_left + y.z_right * y.z_right)
+    at_lean += g * (middle - softness) + 0.5 * g * softness * (1.0 + uneven * uneven)
+    energy = kinetic + stored - at_lean
+    least = min(_climb(m, lean, limit - drift_right), _climb(m, -lean, limit - drift_left))
+    return DECIDED if energy <= least + 1e-12 * g * softness else OPEN
+
+
+@kernel
+def _drop(m, theta):
+    """h (1 − cos θ) [m]."""
+    half = math.sin(0.5 * theta)
+    return 2.0 * m.height * half * half

@@ -1,0 +1,36 @@
+"""The only door to the core: piers on bases under motions, with fixed steps or to a tolerance."""
+
+from rockbatch.simulation.models import (
+    block,
+    first_substeps,
+    ground_of,
+    housner_restitution,
+    least_substeps,
+    springs,
+)
+from rockbatch.simulation.runs import (
+    Scene,
+    Stop,
+    run_all_fixed,
+    run_fixed,
+    steps_of,
+    written_run,
+)
+from rockbatch.simulation.settling import run_all_to_tolerance, run_to_tolerance
+
+__all__ = [
+    "Scene",
+    "Stop",
+    "block",
+    "first_substeps",
+    "ground_of",
+    "housner_restitution",
+    "least_substeps",
+    "run_all_fixed",
+    "run_all_to_tolerance",
+    "run_fixed",
+    "run_to_tolerance",
+    "springs",
+    "steps_of",
+    "written_run",
+]

@@ -1,0 +1,101 @@
+"""From piers, bases and motions to the plain numbers that the core takes, and the steps that they ask for."""
+
+import math
+from functools import lru_cache
+
+from rockbatch.core.ground import ground_rows
+from rockbatch.core.types import BOUC_WEN, ELASTIC, EPP, Block, Springs
+from rockbatch.motions.motion import Motion, Samples
+from rockbatch.structure import Base, ElasticBase, Pier, RigidBase, YieldingBase, highest_frequency, rocking_frequency
+
+FREQUENCY_STEP = 0.2
+"""Largest ω h of a first run; the second, with half the step, is then below 0.1, where outcomes were never wrong."""
+
+STABLE_STEP = 2.0
+"""Largest ω h that is run at all: Runge–Kutta 4 blows up an oscillator beyond 2√2."""
+
+PATIENCE = 40.0
+"""Of 1/p: how long after the record a pier is waited for that, by its energy, could still turn further or overturn. By
+then it has left any unstable equilibrium that rounding can hold."""
+
+READ_AFTER = 5.0
+"""Periods 2π/ω_v of the vertical vibration from the end of the record to the moment at which residuals are read."""
+
+
+@lru_cache(maxsize=4096)
+def springs(pier: Pier, base: ElasticBase) -> Springs:
+    """What the core takes for ``pier`` on springs: plain floats, per unit mass."""
+    eta, law, exponent = 1.0, ELASTIC, None  # an elastic spring is measured by its static force and deflection
+    if isinstance(base, YieldingBase):
+        eta, law = base.eta, BOUC_WEN if base.spring == "bouc-wen" else EPP
+        exponent = float(base.n) if law == BOUC_WEN and base.n != 5 else None
+    omega_v = base.beta * pier.p
+    return Springs(
+        half_width=float(pier.half_width),
+        height=float(pier.height),
+        inertia=float(pier.inertia),
+        gravity=float(pier.gravity),
+        yield_deflection=float(eta * pier.gravity / omega_v**2),
+        stiffness=float(omega_v**2 / (eta * pier.gravity)),
+        yield_force=float(0.5 * eta * pier.gravity),
+        epsilon=float(base.epsilon),
+        law=law,
+        guided=float(base.flight == "guided"),
+        exponent=exponent,
+        finite=True if base.kinematics == "finite" else None,
+    )
+
+
+def housner_restitution(pier: Pier) -> float:
+    """e = 1 − 2μ/(1+μ) sin²α: the angular momentum about the new pivot is conserved (Housner 1963).
+
+    A pier so stocky that this is negative would have to turn back through the corner that it has just landed on: it
+    stops, e = 0.
+    """
+    return max(0.0, 1.0 - 2.0 * pier.mu / (1.0 + pier.mu) * math.sin(pier.alpha) ** 2)
+
+
+def block(pier: Pier, base: RigidBase) -> Block:
+    """What the core takes for ``pier`` on a rigid base: plain floats."""
+    restitution = housner_restitution(pier) if base.restitution is None else base.restitution
+    return Block(float(pier.alpha), float(pier.p), float(pier.gravity), float(restitution))
+
+
+def ground_of(motion: Motion) -> Samples:
+    """A motion as the core takes it, shape (npts, 4); see :func:`rockbatch.core.ground.ground_rows`."""
+    vertical = () if motion.vertical is None else motion.vertical
+    return ground_rows(motion.horizontal, vertical, float(motion.dt))
+
+
+def first_substeps(pier: Pier, base: Base, dt: float) -> int:
+    """Steps per sample [of ``dt`` s] that the model's highest frequency asks for."""
+    return _substeps_for(FREQUENCY_STEP, pier, base, dt)
+
+
+def least_substeps(pier: Pier, base: Base, dt: float) -> int:
+    """Steps per sample [of ``dt`` s] below which the integration would blow up."""
+    return _substeps_for(STABLE_STEP, pier, base, dt)
+
+
+def _substeps_for(largest: float, pier: Pier, base: Base, dt: float) -> int:
+    if isinstance(base, RigidBase):
+        return 1
+    return max(1, math.ceil(highest_frequency(pier, base) * dt / largest - 1e-9))
+
+
+def patience(pier: Pier, dt: float) -> int:
+    """Samples [of ``dt`` s] that a pier is waited for at most; see :data:`PATIENCE`."""
+    return int(PATIENCE / (pier.p * dt)) + 1
+
+
+def readings(pier: Pier, base: ElasticBase, dt: float) -> tuple[int, int]:
+    """When residuals are read, in samples [of ``dt`` s]: after the record, and for a second time after the first.
+
+    The second reading tells how they drift, over whole periods of full-contact rocking, the first of them not shorter
+    than :data:`READ_AFTER` tells. 0, 0 on elastic springs, which have none.
+    """
+    if not isinstance(base, YieldingBase):
+        return 0, 0
+    after = READ_AFTER * 2.0 * math.pi / (base.beta * pier.p)
+    rocking = 2.0 * math.pi / rocking_frequency(pier, base)
+    return math.ceil(after / dt), math.ceil(math.ceil(after / rocking) * rocking / dt)

@@ -1,0 +1,280 @@
+"""Runs with given steps: piers on bases under motions, side by side, and what each comes to."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from rockbatch.core import rigid_base, two_springs
+from rockbatch.core.outcome import ON_ITS_SIDE
+from rockbatch.core.types import (
+    CHATTER,
+    FLIGHT,
+    GROWING,
+    LATE_FLIGHT,
+    NOT_FINITE,
+    OVERTURNED,
+    RESTLESS,
+    SURVIVED,
+    UNDECIDED,
+    RigidRun,
+    SpringRun,
+)
+from rockbatch.motions.motion import Motion, Samples
+from rockbatch.outcome import Outcome
+from rockbatch.simulation.flight import cause_of_flight
+from rockbatch.simulation.models import block, first_substeps, ground_of, least_substeps, patience, readings, springs
+from rockbatch.structure import Base, Pier, RigidBase, YieldingBase
+
+MOST_STEPS = 1e8
+"""Steps that a run may take to settle, about a quarter of a minute of work."""
+
+_STATUS = {
+    SURVIVED: ("ok", ""),
+    RESTLESS: ("ok", ""),
+    LATE_FLIGHT: ("ok", ""),
+    OVERTURNED: ("overturned", ""),
+    FLIGHT: ("flight", ""),
+    CHATTER: ("failed", "more than 20,000 contact events within one sample; use more substeps or another epsilon"),
+    NOT_FINITE: ("failed", "the integration blew up; use more substeps, or look for a spike in the record"),
+    UNDECIDED: ("failed", "left alone after the record, the pier stays where it may yet overturn"),
+    GROWING: (
+        "failed",
+        "left alone after the record, the pier leans further and further: yielding springs ratchet on vibration that "
+        'nothing damps; spring = "epp" does so least',
+    ),
+}
+
+_RESTLESS = "left alone after the record for {seconds:.0f} s, the pier has still the energy for a greater rotation"
+_LATE_FLIGHT = "flew at {t:.2f} s, when nothing could exceed the peak any more; the run ends there"
+
+
+@dataclass(frozen=True)
+class Scene:
+    """What is simulated: a pier on a base under a motion."""
+
+    pier: Pier
+    base: Base
+    motion: Motion
+
+
+@dataclass(frozen=True)
+class Trial:
+    """What a run with given steps came to.
+
+    ``extremes``, shape (:data:`rockbatch.core.outcome.WINDOWS`,), holds the greatest |θ| [rad] at a sample in equal
+    parts of the run, NaN for those that it did not reach: its trajectory in short.
+    """
+
+    outcome: Outcome
+    extremes: Samples
+
+
+class Stop:
+    """Ends, in their kernels, the runs of other threads that were given it."""
+
+    def __init__(self) -> None:
+        self.flag = np.zeros(1, np.uint8)
+
+    def set(self) -> None:
+        self.flag[0] = 1
+
+    def __bool__(self) -> bool:
+        return bool(self.flag[0])
+
+
+def _quiet_samples(quiet_s: float, dt: float) -> int:
+    return math.ceil(quiet_s / dt - 1e-9)
+
+
+def _line(scene: Scene, substeps: int, quiet_s: float, first_row: int, wait: bool) -> tuple[float, ...]:
+    """A run as the core takes it: numbers only. Its motion begins at ``first_row`` of the ground."""
+    pier, base, motion = scene.pier, scene.base, scene.motion
+    dt = float(motion.dt)
+    timing = (dt, substeps, _quiet_samples(quiet_s, dt), first_row, motion.npts, patience(pier, dt) if wait else 0)
+    if isinstance(base, RigidBase):
+        return rigid_base.run_line(block(pier, base), 0.0, 0.0, *timing)
+    return two_springs.run_line(springs(pier, base), *timing, *(readings(pier, base, dt) if wait else (0, 0)))
+
+
+def written_run(
+    scene: Scene,
+    substeps: int,
+    quiet_s: float,
+    rows: int,
+    locate: bool = True,
+    every_step: bool = False,
+    wait: bool = True,
+) -> tuple[SpringRun | RigidRun, Samples]:
+    """One run, and its history of at most ``rows`` rows; with ``every_step`` also between samples."""
+    lines, ground, stop = np.array([_line(scene, substeps, quiet_s, 0, wait)]), ground_of(scene.motion), Stop().flag
+    if isinstance(scene.base, RigidBase):
+        history = np.empty((rows, rigid_base.HISTORY_COLUMNS))
+        result = rigid_base.rock_one_by_one(lines, ground, stop, locate, every_step, history)[0]
+        return rigid_base.rigid_run(result), history
+    m = springs(scene.pier, scene.base)
+    history = np.empty((rows, two_springs.HISTORY_COLUMNS))
+    result = two_springs.rock_side_by_side(m.exponent, m.finite, lines, ground, stop, locate, every_step, history)[0]
+    return two_springs.spring_run(result), history
+
+
+def run_fixed(
+    pier: Pier, base: Base, motion: Motion, substeps: int, quiet_s: float = 2.0, locate: bool = True, wait: bool = True
+) -> Outcome:
+    """Run with ``substeps`` steps per sample, without an error estimate; see :func:`run_all_fixed`."""
+    outcome = run_all_fixed([Scene(pier, base, motion)], [substeps], quiet_s, Stop(), locate, wait)[0]
+    assert outcome is not None
+    return outcome
+
+
+def run_all_fixed(
+    scenes: Sequence[Scene],
+    substeps: Sequence[int],
+    quiet_s: float,
+    stop: Stop,
+    locate: bool = True,
+    wait: bool = True,
+) -> list[Outcome | None]:
+    """Runs with given steps per sample, side by side, in the order of ``scenes``; ``None`` for those that were stopped.
+
+    What a run comes to does not depend on those beside it. With ``locate=False`` events take place at the end of their
+    step: first order, for comparison only. With ``wait=False`` a run ends ``quiet_s`` after its record, whatever the
+    pier then does. A step beyond the method's stability is not run; the outcome says how many it takes.
+    """
+    return [
+        None if trial is None else trial.outcome for trial in try_all(scenes, substeps, quiet_s, stop, locate, wait)
+    ]
+
+
+def try_all(
+    scenes: Sequence[Scene],
+    substeps: Sequence[int],
+    quiet_s: float,
+    stop: Stop,
+    locate: bool = True,
+    wait: bool = True,
+) -> list[Trial | None]:
+    """As :func:`run_all_fixed`, with the trajectories in short."""
+    trials: list[Trial | None] = [
+        _refused(scene, steps, quiet_s) for scene, steps in zip(scenes, substeps, strict=True)
+    ]
+    alike: dict[tuple[float | None, bool | None] | None, list[int]] = {}
+    for i, scene in enumerate(scenes):
+        if trials[i] is None:
+            alike.setdefault(_kernel_of(scene), []).append(i)
+    for kernel, which in alike.items():
+        first_rows: dict[int, int] = {}
+        grounds: list[Samples] = []
+        lines = []
+        for i in which:
+            motion = scenes[i].motion
+            if id(motion) not in first_rows:
+                first_rows[id(motion)] = sum(map(len, grounds))
+                grounds.append(ground_of(motion))
+            lines.append(_line(scenes[i], substeps[i], quiet_s, first_rows[id(motion)], wait))
+        ground = grounds[0] if len(grounds) == 1 else np.concatenate(grounds)
+        if kernel is None:
+            results = rigid_base.rock_one_by_one(np.array(lines), ground, stop.flag, locate)
+            split = rigid_base.RESULTS
+        else:
+            results = two_springs.rock_side_by_side(*kernel, np.array(lines), ground, stop.flag, locate)
+            split = two_springs.RESULTS
+        for i, line in zip(which, results, strict=True):
+            if not math.isnan(line[0]):
+                outcome = _outcome(scenes[i], substeps[i], line[:split].tolist(), wait)
+                trials[i] = Trial(outcome, line[split:])
+    return trials
+
+
+def _kernel_of(scene: Scene) -> tuple[float | None, bool | None] | None:
+    """What runs that share compiled code have in common: types of the springs' exponent and kinematics, if any."""
+    if isinstance(scene.base, RigidBase):
+        return None
+    m = springs(scene.pier, scene.base)
+    return None if m.exponent is None else 1.0, m.finite
+
+
+def _refused(scene: Scene, substeps: int, quiet_s: float) -> Trial | None:
+    """What a run comes to that is not to be run, else ``None``."""
+    pier, base, motion = scene.pier, scene.base, scene.motion
+    least = least_substeps(pier, base, motion.dt)
+    if substeps < least:
+        return _not_run(
+            f"{substeps} substeps of a sample of {motion.dt:g} s are too few for the springs' frequency: "
+            f"the integration would blow up; at least {least}, better {first_substeps(pier, base, motion.dt)}",
+            substeps,
+        )
+    steps = steps_of(motion, substeps, quiet_s)
+    if steps > MOST_STEPS:
+        return _not_run(
+            f"would take {steps:.0e} steps, more than {MOST_STEPS:.0e}; shorten the record or quiet_s", substeps
+        )
+    return None
+
+
+def _outcome(scene: Scene, substeps: int, result: Sequence[float], waited: bool) -> Outcome:
+    """Outcome of a line of results."""
+    pier = scene.pier
+    code, t_end, theta_max, t_max, impacts, separations, t_flight = result[:7]
+    status, reason = _STATUS[int(code)]
+    more: dict[str, Any] = {}
+    if not isinstance(scene.base, RigidBase):
+        run = SpringRun(*result)  # type: ignore[arg-type]  # all floats
+        more = _of_springs(scene, run, survived=status == "ok")
+        if code == FLIGHT:
+            reason = cause_of_flight(scene.motion, scene.base.beta * pier.p, pier.gravity, t_flight, run.t_impact)
+    elif code == FLIGHT:
+        reason = cause_of_flight(scene.motion, None, pier.gravity, t_flight, math.nan)
+    note = ""
+    if code == RESTLESS and waited:
+        note = _RESTLESS.format(seconds=t_end - scene.motion.duration)
+    elif code == LATE_FLIGHT:
+        note = _LATE_FLIGHT.format(t=t_end)
+    return Outcome(
+        status=status,
+        reason=reason,
+        theta_max=min(theta_max, ON_ITS_SIDE),
+        t_max=t_max,
+        impacts=int(impacts),
+        separations=int(separations),
+        t_flight=None if math.isnan(t_flight) else t_flight,
+        t_end=t_end,
+        substeps=substeps,
+        note=note,
+        **more,
+    )
+
+
+def _of_springs(scene: Scene, run: SpringRun, survived: bool) -> dict[str, Any]:
+    """What only piers on springs have: residuals where the pier ``survived``, and what became of yielding springs."""
+    pier, base = scene.pier, scene.base
+    assert not isinstance(base, RigidBase)
+    more: dict[str, Any] = {}
+    if survived:
+        # From the base's tilt to the rotation, static on the deformed base (THEORY.md, 14)
+        lean = 1.0 / (1.0 - pier.gravity * pier.height / (base.beta * pier.p * pier.half_width) ** 2)
+        tilt = 0.5 * (run.base_left - run.base_right) / pier.half_width
+        more |= {"settlement": -0.5 * (run.base_left + run.base_right), "base_tilt": tilt, "theta_res": lean * tilt}
+        if isinstance(base, YieldingBase):
+            more["t_read"] = run.t_read
+            if not math.isnan(run.drift_left):
+                more["settlement_drift"] = -0.5 * (run.drift_left + run.drift_right)
+                more["theta_res_drift"] = 0.5 * lean * (run.drift_left - run.drift_right) / pier.half_width
+    if isinstance(base, YieldingBase):
+        yield_deflection = base.eta * pier.gravity / (base.beta * pier.p) ** 2
+        more["ductility_left"] = -run.deepest_left / yield_deflection
+        more["ductility_right"] = -run.deepest_right / yield_deflection
+        more["dissipated_left"] = run.dissipated_left
+        more["dissipated_right"] = run.dissipated_right
+    return more
+
+
+def _not_run(reason: str, substeps: int) -> Trial:
+    return Trial(Outcome("failed", reason, math.nan, math.nan, 0, 0, None, 0.0, substeps), np.empty(0))
+
+
+def steps_of(motion: Motion, substeps: int, quiet_s: float) -> float:
+    """Number of steps of a run to the end of its quiet time."""
+    return substeps * (motion.npts + quiet_s / motion.dt)

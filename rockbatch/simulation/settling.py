@@ -1,0 +1,182 @@
+"""Error control: each run with ever smaller steps, until what it says no longer depends on them (THEORY.md, 6)."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from enum import IntEnum
+
+import numpy as np
+
+from rockbatch.motions.motion import Motion
+from rockbatch.outcome import Outcome
+from rockbatch.simulation.models import first_substeps
+from rockbatch.simulation.runs import MOST_STEPS, Scene, Stop, Trial, steps_of, try_all
+from rockbatch.structure import Base, Pier
+
+HALVINGS = 8
+"""How often the step is halved before a run counts as not settled."""
+
+ROUNDING = 1e-12
+"""Least error of θ/α that is ever claimed."""
+
+SAME_TIME = 0.01
+"""Of 1/p: how well the time of overturning or of flight is to be known."""
+
+SAME_FALL = 0.02
+"""Of α: how well the rotations before a pier overturned are to be known."""
+
+FAR_BELOW = 3.0
+"""Changes of an extreme, by which it has to stay below the peak for not having settled to be harmless."""
+
+
+class Agreement(IntEnum):
+    """How far two runs of the same scene agree."""
+
+    NONE = 0
+    RESULTS = 1  # in outcome, peak and residual rotation; other extremes, near the peak, have not settled
+    APART = 2  # likewise, and the extremes that have not settled are far below the peak
+    THROUGHOUT = 3  # in the extremes of all windows too
+
+
+PAIRS = {Agreement.THROUGHOUT: 1, Agreement.APART: 2, Agreement.RESULTS: 4}
+"""Halvings in a row that have to agree at least so far: the less two runs have in common, the more it takes."""
+
+
+def run_to_tolerance(pier: Pier, base: Base, motion: Motion, tolerance: float, quiet_s: float = 2.0) -> Outcome:
+    """Run with ever smaller steps; see :func:`run_all_to_tolerance`."""
+    outcome = run_all_to_tolerance([Scene(pier, base, motion)], tolerance, quiet_s, Stop())[0]
+    assert outcome is not None
+    return outcome
+
+
+def run_all_to_tolerance(scenes: Sequence[Scene], tolerance: float, quiet_s: float, stop: Stop) -> list[Outcome | None]:
+    """Run each with ever smaller steps until the results agree to ``tolerance`` on θ_max/α and on θ_res/α.
+
+    The finer result is kept, and the difference is its estimated error: the coarser one's, hence on the safe side.
+    The trajectories, times of overturning and of flight have to agree too, since an early peak tells nothing of what
+    comes after it: where they do not, it takes more halvings (:data:`PAIRS`). The first step respects the springs'
+    frequency, because two coarse runs that agree prove nothing otherwise. A run that has not settled after
+    :data:`HALVINGS`, or would take more than :data:`rockbatch.simulation.runs.MOST_STEPS` steps, keeps its best values
+    and fails with the reason; counts that have not settled are a note. ``None`` for those that were stopped.
+    """
+    settled: list[Outcome | None] = [None] * len(scenes)
+    first = [first_substeps(scene.pier, scene.base, scene.motion.dt) for scene in scenes]
+    levels = {i: [trial] for i, trial in enumerate(try_all(scenes, first, quiet_s, stop)) if trial is not None}
+    agreements: dict[int, list[Agreement]] = {i: [] for i in levels}
+    while levels:
+        for i in [i for i in levels if _steps_of_next(scenes[i], levels[i], quiet_s) > MOST_STEPS]:
+            more = f"; the next try would take {_steps_of_next(scenes[i], levels[i], quiet_s):.0e} steps"
+            settled[i] = _not_settled(scenes[i].pier, levels.pop(i), tolerance, more)
+        going = list(levels)
+        substeps = [2 * levels[i][-1].outcome.substeps for i in going]
+        for i, fine in zip(going, try_all([scenes[i] for i in going], substeps, quiet_s, stop), strict=True):
+            if fine is None:
+                del levels[i]
+                continue
+            pier, coarse = scenes[i].pier, levels[i][-1]
+            fine = replace(fine, outcome=_with_errors(fine.outcome, coarse.outcome, pier.alpha))
+            levels[i].append(fine)
+            agreements[i].append(agreement(fine, coarse, tolerance * pier.alpha, pier))
+            if enough(agreements[i]):
+                settled[i] = _noted(fine, coarse, agreements[i][-1], tolerance * pier.alpha)
+                del levels[i]
+            elif len(agreements[i]) == HALVINGS:
+                settled[i] = _not_settled(pier, levels.pop(i), tolerance, "")
+    return settled
+
+
+def _steps_of_next(scene: Scene, levels: Sequence[Trial], quiet_s: float) -> float:
+    return steps_of(scene.motion, 2 * levels[-1].outcome.substeps, quiet_s)
+
+
+def _with_errors(fine: Outcome, coarse: Outcome, alpha: float) -> Outcome:
+    """``fine`` with what it changed against ``coarse``; rounding is the least that it can be wrong by."""
+    if fine.status != coarse.status or fine.status in ("overturned", "failed"):  # θ_max is where the run ended
+        return fine
+    least = ROUNDING * alpha
+    residual = None
+    if fine.theta_res is not None and coarse.theta_res is not None:
+        residual = max(abs(fine.theta_res - coarse.theta_res), least)
+    return replace(fine, theta_max_error=max(abs(fine.theta_max - coarse.theta_max), least), theta_res_error=residual)
+
+
+def agreement(fine: Trial, coarse: Trial, tolerance: float, pier: Pier) -> Agreement:
+    """How far two runs agree; ``tolerance`` on rotations [rad]."""
+    now, before = fine.outcome, coarse.outcome
+    if now.status != before.status or now.status == "failed":
+        return Agreement.NONE
+    greatest = np.fmax(fine.extremes, coarse.extremes)
+    change = np.abs(fine.extremes - coarse.extremes)
+    change[np.isnan(greatest)] = 0.0  # a window that neither has reached
+    if now.status == "overturned":
+        standing = greatest < pier.alpha
+        fell_together = abs(now.t_end - before.t_end) <= SAME_TIME / pier.p
+        together = fell_together and not (change[standing] > max(tolerance, SAME_FALL * pier.alpha)).any()
+        return Agreement.THROUGHOUT if together else Agreement.NONE
+    if now.status == "flight" and abs(_flight(now) - _flight(before)) > SAME_TIME / pier.p:
+        return Agreement.NONE
+    if max(now.theta_max_error or 0.0, now.theta_res_error or 0.0) > tolerance:
+        return Agreement.NONE
+    differs = ~(change <= tolerance)
+    if not differs.any():
+        return Agreement.THROUGHOUT
+    below = now.theta_max - greatest[differs]
+    return Agreement.APART if (FAR_BELOW * change[differs] <= below).all() else Agreement.RESULTS
+
+
+def _flight(outcome: Outcome) -> float:
+    return math.nan if outcome.t_flight is None else outcome.t_flight
+
+
+def enough(agreements: Sequence[Agreement]) -> bool:
+    """Whether the last of ``agreements``, from one halving to the next, suffice."""
+    for least, pairs in PAIRS.items():
+        last = agreements[-pairs:]
+        if len(last) == pairs and min(last) >= least:
+            return True
+    return False
+
+
+def _noted(fine: Trial, coarse: Trial, how_far: Agreement, tolerance: float) -> Outcome:
+    """The outcome with a note on what has not settled beside it; ``tolerance`` in rad."""
+    now, before = fine.outcome, coarse.outcome
+    notes = [now.note] if now.note else []
+    if how_far < Agreement.THROUGHOUT:
+        differs = ~(np.abs(fine.extremes - coarse.extremes) <= tolerance)
+        greatest = np.nanmax(np.fmax(fine.extremes, coarse.extremes)[differs])
+        notes.append(f"lesser rotations, up to {greatest:.2g} rad, have not settled")
+    for name in ("impacts", "separations"):
+        one, other = sorted((getattr(before, name), getattr(now, name)))
+        if one != other:
+            notes.append(f"{name} not settled: {one} or {other}")
+    if now.status == "ok" and now.t_flight != before.t_flight:
+        times = [_flight(before), _flight(now)]
+        if not abs(times[1] - times[0]) <= 1e-3:
+            told = [f"at {t:.3f} s" if t == t else "none" for t in times]
+            notes.append(f"first flight not settled: {told[0]} or {told[1]}")
+    return replace(now, note="; ".join(notes))
+
+
+def _not_settled(pier: Pier, levels: Sequence[Trial], tolerance: float, more: str) -> Outcome:
+    """The finest run that there is, with its values, as one that failed."""
+    finest = levels[-1].outcome
+    if finest.status == "failed":
+        return finest
+    what = "the outcome"
+    if len(levels) > 1:
+        before = levels[-2].outcome
+        errors = (("theta_max", finest.theta_max_error), ("theta_res", finest.theta_res_error))
+        changes = [
+            f"{name} by {error:.1e} rad"
+            for name, error in errors
+            if error is not None and error > tolerance * pier.alpha
+        ]
+        if finest.status == before.status == "overturned":
+            changes = [f"the time of overturning, from {before.t_end:.2f} to {finest.t_end:.2f} s"]
+        elif finest.status == before.status == "flight" and not changes:
+            changes = [f"the time of flight, from {_flight(before):.3f} to {_flight(finest):.3f} s"]
+        elif finest.status == before.status and not changes:
+            changes = ["rotations almost as large as the peak"]
+        what = " and ".join(changes) or f"the outcome, from {before.status} to {finest.status}"
+    reason = f"not settled: halving the step still changed {what}; at {finest.substeps} substeps: {finest.status}{more}"
+    return replace(finest, status="failed", reason=reason, note="")
