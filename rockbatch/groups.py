@@ -32,7 +32,7 @@ NOTHING_MORE = Output(both_laws=False)
 
 CALLERS = (
     "batch", "files", "groups", "histories", "journal", "outcome", "plan", "results", "simulation", "structure",
-    "analysis/fragility", "analysis/ida", "analysis/limit_states", "analysis/overturning_map", "analysis/rocking_spectrum",
+    "analysis/fragility", "analysis/ida", "analysis/limit_states", "analysis/map_search", "analysis/overturning_map", "analysis/rocking_spectrum",
     "analysis/sampled", "analysis/sensitivity", "analysis/sobol", "checks/choices", "checks/demands", "checks/suite",
     "motions/pulses",
 )  # fmt: skip
