@@ -15,7 +15,7 @@ from rockbatch.analysis.fragility import ScaledRuns, assess, intensities
 from rockbatch.analysis.fragility_tables import described, points
 from rockbatch.analysis.ida import Bracket, Capacity, bisect, capacity
 from rockbatch.analysis.limit_states import EXCEEDED, LEFT_OUT, UNDECIDED, WITHSTOOD, states
-from rockbatch.analysis.lognormal import Capacities, Lognormal, fit
+from rockbatch.analysis.lognormal import Capacities, fit
 from rockbatch.analysis.waves import Waves
 from rockbatch.batch import digests
 from rockbatch.checks import Rule
@@ -265,7 +265,9 @@ def test_the_first_exceedance_counts_and_what_withstands_above_it_is_counted():
 
 def test_an_undecided_level_is_neither_exceeded_nor_withstood():
     assert capacity_of([0, LEFT_OUT, 1, 2, 2]) == Capacity((0.2, 0.8), (0.2, 0.6), (0.6, 0.8), undecided=1, returns=0)
-    assert capacity_of([1, 0, 0, 0, 1]) == Capacity((0.8, math.inf), (0.0, 0.2), (1.0, math.inf), undecided=2, returns=0)
+    assert capacity_of([1, 0, 0, 0, 1]) == Capacity(
+        (0.8, math.inf), (0.0, 0.2), (1.0, math.inf), undecided=2, returns=0
+    )
     assert capacity_of([0, 1, 0, 2, 0]) == Capacity((0.6, 0.8), (0.2, 0.4), (0.6, 0.8), undecided=1, returns=1)
     assert capacity_of([0, 2, 1, 1, 2]) == decided(0.2, 0.4)
 

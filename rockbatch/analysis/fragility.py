@@ -223,9 +223,7 @@ _Key = tuple[int, Rule, int]
 class _Runs:
     """All runs of an analysis, each once, with their rows."""
 
-    def __init__(
-        self, study: Study, motions: Sequence[Motion], unscaled: Sequence[float], simulate: Simulate
-    ) -> None:
+    def __init__(self, study: Study, motions: Sequence[Motion], unscaled: Sequence[float], simulate: Simulate) -> None:
         self.study, self.motions, self.unscaled, self.simulate = study, motions, unscaled, simulate
         self.cases = [describe_case(case) for case in study.cases]
         self.status: dict[Point, str] = {}
@@ -275,9 +273,7 @@ def _undecided(runs: _Runs, case: int, looks: Sequence[Looks]) -> Undecided:
     return Undecided(sum(state != LEFT_OUT for _, state in counted), flight, failed, status.total())
 
 
-def _stripes(
-    found: npt.NDArray[np.int8], levels: Sequence[float], runs: _Runs, case: int
-) -> tuple[Stripe, ...]:
+def _stripes(found: npt.NDArray[np.int8], levels: Sequence[float], runs: _Runs, case: int) -> tuple[Stripe, ...]:
     stripes = []
     for x, at in zip(levels, found.T, strict=True):
         ended = Counter(runs.status[Point(m, x, case)] for m in range(len(at)))
@@ -291,15 +287,15 @@ Fits = tuple[Lognormal | str, Readings | None]
 
 def _through_stripes(found: npt.NDArray[np.int8], spec: FragilitySpec) -> Fits:
     levels = np.array(spec.levels)
-    within, undecided, beyond = (found == state for state in (WITHSTOOD, UNDECIDED, EXCEEDED))
+    within, undecided, beyond = ((found == state).astype(float) for state in (WITHSTOOD, UNDECIDED, EXCEEDED))
 
-    def through(within: npt.NDArray[np.bool_], beyond: npt.NDArray[np.bool_]) -> Lognormal | str:
+    def through(within: Values, beyond: Values) -> Lognormal | str:
         return fit(Capacities.of_same_records(levels, within, beyond), spec.confidence)
 
     fitted = through(within, beyond)
     if not undecided.any():
         return fitted, None
-    return fitted, Readings(through(within, beyond | undecided), through(within | undecided, beyond))
+    return fitted, Readings(through(within, beyond + undecided), through(within + undecided, beyond))
 
 
 def _through_brackets(capacities: Sequence[Capacity], spec: FragilitySpec) -> Fits:
@@ -311,4 +307,6 @@ def _through_brackets(capacities: Sequence[Capacity], spec: FragilitySpec) -> Fi
     fitted = through([one.decided for one in capacities])
     if not any(one.undecided for one in capacities):
         return fitted, None
-    return fitted, Readings(*(through([getattr(one, name) for one in capacities]) for name in ("if_exceeded", "if_withstood")))
+    return fitted, Readings(
+        *(through([getattr(one, name) for one in capacities]) for name in ("if_exceeded", "if_withstood"))
+    )

@@ -24,7 +24,7 @@ SAMPLES = 80
 def points(curves: Sequence[Curve], spec: FragilitySpec, varied: Sequence[str]) -> "pd.DataFrame":
     """fragility.csv: a row for each curve and level, with the counts of :class:`Stripe` as columns.
 
-    ``p`` is the curve there, and ``p_low``, ``p_high`` are between what it may be, whatever the undecided runs of all levels come to.
+    ``p`` is the curve there; it is between ``p_low`` and ``p_high``, whatever the undecided runs of all levels come to.
     """
     import pandas as pd
 
@@ -51,8 +51,8 @@ def capacities(
 ) -> "pd.DataFrame":
     """fragility_capacities.csv: a row for each curve and record.
 
-    A capacity is above ``above`` and at most ``at_most`` by the runs that are decided, in the unit of the levels; the same as scales
-    of the record. Below it ``undecided`` runs are not: it is at most ``if_exceeded`` if they exceed the limit, and above
+    A capacity is above ``above`` and at most ``at_most`` by the runs that are decided, in the unit of the levels; the same as
+    scales of the record. Below it ``undecided`` runs are not: it is at most ``if_exceeded`` if they exceed the limit, and above
     ``if_withstood`` if they withstand it.
     ``names`` and ``unscaled`` are those of the motions, and their intensities as they are.
     """

@@ -42,9 +42,9 @@ class Bracket(NamedTuple):
 class Capacity:
     """What the looks at a record say about the intensity at which it first exceeds a limit.
 
-    ``decided`` leaves the undecided looks out, and stays open where one is in between; the others hold if all of them exceeded the
-    limit, and if all withstood it. The three are the same where none is undecided below the first exceedance. ``undecided`` is
-    the number of those below it, ``returns`` of the levels above it that were withstood.
+    ``decided`` leaves the undecided looks out, and stays open where one is in between; the others hold if all of them
+    exceeded the limit, and if all withstood it. The three are the same where none is undecided below the first
+    exceedance. ``undecided`` is the number of those below it, ``returns`` of the levels above it that were withstood.
     """
 
     decided: Bracket

@@ -12,10 +12,11 @@ from typing import NamedTuple
 Point = tuple[int, float, float]
 """Number of a map, frequency, amplitude."""
 
+
 class End(NamedTuple):
     """How a run ends: the region to which it belongs, and which of the ways there.
 
-    Between two ways to the same region there is a change, too, and it may hide a narrow region: so they are told apart in the search.
+    Between two ways to the same region there is a change, too, which may hide a narrow region: the search tells them apart.
     """
 
     outcome: str
@@ -53,7 +54,9 @@ def regions(points: Sequence[tuple[float, End]], tolerance: float = 0.0) -> list
 
 
 def _regions(points: Sequence[tuple[float, End]], of: Sequence[tuple[float, End]]) -> list[Region]:
-    runs = [(outcome, [amplitude for amplitude, _ in same]) for outcome, same in groupby(points, key=lambda p: p[1].outcome)]
+    runs = [
+        (outcome, [amplitude for amplitude, _ in same]) for outcome, same in groupby(points, key=lambda p: p[1].outcome)
+    ]
     inner = [(0.5 * (low[-1] + high[0]), 0.5 * (high[0] - low[-1])) for (_, low), (_, high) in pairwise(runs)]
     nan = float("nan")
     ends = [(of[0][0], nan), *inner, (of[-1][0], nan)]
@@ -115,7 +118,7 @@ class Search:
 
     def _suggested(self, number: int, frequencies: Sequence[float]) -> list[Point]:
         """The middles of all regions of a neighbour that has other regions: what is narrow there may be here too."""
-        wanted = {}
+        wanted: dict[Point, None] = {}
         for left, right in pairwise(frequencies):
             both = self._regions[number, left], self._regions[number, right]
             if _outcomes(both[0]) != _outcomes(both[1]):

@@ -65,7 +65,7 @@ class Maps:
 
         return Made(len(points), make)
 
-    def find(self, carry_out: "Callable[[Sequence[Run]], pd.DataFrame]") -> list[dict[float, Points]]:
+    def find(self, carry_out: "Callable[[Made], pd.DataFrame]") -> list[dict[float, Points]]:
         """The columns of each case; ``carry_out`` gives the rows of peaks.csv of the runs of a wave, in their order."""
 
         def ends(points: Sequence[Point]) -> list[End]:

@@ -92,7 +92,15 @@ def table(curves: Sequence["Curve"], spec: "FragilitySpec") -> str:
     rows, notes = [], []
     for curve in curves:
         case = f"{curve.case.name} {named(curve.case.columns, curve.case.columns.values())}".strip()
-        row: dict[str, Any] = {"limit": curve.limit.name, "case": case, "median": "", "theta": "", "open": "", "beta": "", "b": ""}
+        row: dict[str, Any] = {
+            "limit": curve.limit.name,
+            "case": case,
+            "median": "",
+            "theta": "",
+            "open": "",
+            "beta": "",
+            "b": "",
+        }
         if isinstance(curve.fitted, Lognormal):
             fitted = curve.fitted
             row |= {
@@ -115,7 +123,8 @@ def table(curves: Sequence["Curve"], spec: "FragilitySpec") -> str:
     limits = [f"{limit.name}: {words(limit)}" for limit in spec.limits if words(limit)]
     title = f"Fragility for {spec.label}, {'incremental dynamic analysis' if spec.method == 'ida' else 'stripes'}"
     if little := sum(curve.says_little for curve in curves):
-        title += f"; {little} of {count(len(curves), 'curve')} says little: too many runs are undecided"
+        some = f"{little} of {count(len(curves), 'curve')} {'says' if little == 1 else 'say'} little"
+        title += f"; {some}: too many runs are undecided"
     return "\n".join([title, found.to_string(index=False), *limits, *notes])
 
 

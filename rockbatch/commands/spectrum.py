@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from rockbatch.commands.analyses import Results
-from rockbatch.commands.messages import count, make_ready, say, tell_motions
+from rockbatch.commands.messages import count, make_ready, once, say, tell_motions
 from rockbatch.commands.options import add_engine, add_study, engine, folder, study_of
 
 if TYPE_CHECKING:
@@ -61,7 +61,7 @@ def _spectrum(results: Results, spectrum: "SpectrumSpec", carrier: "Engine") -> 
         scales=(study.motions.polarity, study.motions.scale),
         numerics=study.numerics,
     )
-    say(f"spectra: {count(len(motions.motions), 'motion')}, {count(len(runs), 'run')} on {carrier}")
+    say(f"spectra: {count(len(motions.motions), 'motion')}, {count(len(runs), 'run')}{once(study)} on {carrier}")
     results.info |= {"axis": spectrum.axis, "varied": list(spectrum.varied), "motions": len(motions.motions)}
     if results.has(analysis.FILE, digest):
         results.keep(analysis.FILE, digest)
@@ -151,7 +151,9 @@ def _maps(results: Results, maps: "tuple[MapSpec, ...]", carrier: "Engine") -> N
         waves = Waves(study, journal, carrier, Progress)
         for spec in maps:
             own, before = analysis.Maps(spec, study.cases), waves.finished
-            say(f"map {spec.name}: {_grid(spec, len(study.cases))} on {carrier}; then what changes is looked at more closely")
+            say(
+                f"map {spec.name}: {_grid(spec, len(study.cases))} on {carrier}; then what changes is looked at more closely"
+            )
             found = own.find(waves)
             rows += own.rows(found)
             say(f"map {spec.name}: {sum(map(len, found))} frequencies, {waves.finished - before} runs")

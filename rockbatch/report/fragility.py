@@ -46,7 +46,11 @@ def _lead(info: Mapping[str, Any]) -> Markup:
             ", all of them scaled to every level; the bands allow for that these are the same records at every level."
         )
     little = [f"{one['limit_state']}, {_label(one)}" for one in info["curves"] if one["says_little"]]
-    warning = tag("strong", f"Too many runs are undecided for these curves to say much: {'; '.join(little)}. ") if little else ""
+    warning = (
+        tag("strong", f"Too many runs are undecided for these curves to say much: {'; '.join(little)}. ")
+        if little
+        else ""
+    )
     return tag("p", warning, told)
 
 
@@ -54,8 +58,14 @@ def _caption(info: Mapping[str, Any]) -> str:
     share = f"{100 * info['confidence']:g} %"
     points = "Markers: share of the decided records that exceed the limit at a level; bars: with the undecided ones either way. "
     if any("open" in one for one in info["curves"]):
-        points += "Undecided runs count for nothing in a curve; between dotted edges: what it may be, whatever they come to. "
-    steps = "Dotted: share of the records by their bisected capacities. " if info["method"] == "ida" else ""
+        points += (
+            "Undecided runs count for nothing in a curve; between dotted edges: what it may be, whatever they come to. "
+        )
+    steps = (
+        "Steps: share of the records by their bisected capacities, where none is undecided. "
+        if info["method"] == "ida"
+        else ""
+    )
     return (
         f"{points}{steps}Curves: lognormal, by maximum likelihood (Baker 2015); shaded: {share} profile-likelihood "
         "band, pointwise. Where no curve is drawn, the table says why."
@@ -114,7 +124,7 @@ def _drawn(axes: Axes, one: Curve, shape: str, colour: int) -> Iterator[Markup]:
     if "curve" in one:
         x, p = (np.array(one["curve"][name]) for name in ("x", "p"))
         yield curve(axes.across(x), axes.down(p), f"level {class_}")
-    if one["capacities"]:
+    if one["capacities"] and "open" not in one:  # a share of the records needs all of them
         yield curve(*_steps(axes, [high for _, high in one["capacities"]]), f"level {class_} d2")
     for point in one["points"]:
         if not point["records"]:

@@ -1,7 +1,7 @@
 """Overturning maps as pictures: the regions of a pulse's frequencies and amplitudes, drawn as they were computed.
 
-Straight lines join the boundaries of neighbouring columns with the same outcomes in the same order. Where these differ each column
-reaches to the middle between the two: a boundary that both have goes through, and at the others the picture has a step.
+Straight lines join the boundaries of neighbouring columns with the same outcomes in the same order. Where these differ each
+column reaches to the middle between the two: a boundary that both have goes through, and at the others the picture has a step.
 """
 
 import math

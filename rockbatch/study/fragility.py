@@ -154,4 +154,5 @@ def _of_one_record(rule: Rule) -> Rule:
     one = replace(rule, scale=(), polarity=None, statistic=statistic)
     if not DEMANDS[rule.demand].of_runs:
         return one
-    return replace(one, **{name: "unknown" for name in ("flight", "failed") if one.counts(name) != "left out"})
+    flight, failed = ("left out" if one.counts(status) == "left out" else "unknown" for status in ("flight", "failed"))
+    return replace(one, flight=flight, failed=failed)
