@@ -76,6 +76,8 @@ class Plan(Runs):
         self.polarity, self.scale = study.motions.polarity, study.motions.scale
         self.cases = study.cases
         self.simulated = study.motions.simulated
+        self._of_one = len(self.scale) * len(self.cases)  # runs of a motion in one polarity
+        self._simulated_first = sorted(range(len(self.polarity)), key=lambda i: self.polarity[i] != self.simulated)
         self._moved = lru_cache(maxsize=2)(self._move)
 
     def __len__(self) -> int:
@@ -93,11 +95,11 @@ class Plan(Runs):
 
     def images(self, number: int) -> Sequence[int]:
         """See :class:`Runs`."""
-        of_one = len(self.scale) * len(self.cases)
-        group, rest = divmod(number, of_one)
+        if len(self.polarity) == 1:
+            return (number,)
+        group, rest = divmod(number, self._of_one)
         first = group - group % len(self.polarity)
-        signs = sorted(self.polarity, key=lambda sign: sign != self.simulated)
-        return [(first + self.polarity.index(sign)) * of_one + rest for sign in signs]
+        return [(first + place) * self._of_one + rest for place in self._simulated_first]
 
     def _move(self, motion: int, scale: int, polarity: int) -> Motion:
         return scaled(self.motions[motion], self.scale[scale], self.polarity[polarity])
