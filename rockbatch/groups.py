@@ -33,9 +33,9 @@ NOTHING_MORE = Output(both_laws=False)
 CALLERS = (
     "batch", "files", "groups", "histories", "journal", "outcome", "plan", "results", "structure",
     "simulation/flight", "simulation/models", "simulation/runs", "simulation/settling",
-    "analysis/fragility", "analysis/ida", "analysis/limit_states", "analysis/overturning_map", "analysis/rocking_spectrum",
-    "analysis/sampled", "analysis/sensitivity", "analysis/sobol", "checks/choices", "checks/demands", "checks/suite",
-    "motions/pulses",
+    "analysis/fragility", "analysis/ida", "analysis/limit_states", "analysis/map_search", "analysis/overturning_map",
+    "analysis/rocking_spectrum", "analysis/sampled", "analysis/sensitivity", "analysis/sobol", "checks/choices",
+    "checks/demands", "checks/suite", "motions/pulses",
 )  # fmt: skip
 """Modules between the kernels and a table, and those that ask for the next runs: what is in it changes with them."""
 

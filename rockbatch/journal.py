@@ -86,8 +86,8 @@ class Journal:
         """Number of finished runs."""
         return self._count
 
-    def __contains__(self, number: int) -> bool:
-        return 0 <= number < len(self._starts) and self._starts[number] != ABSENT
+    def __contains__(self, number: object) -> bool:
+        return isinstance(number, int) and 0 <= number < len(self._starts) and self._starts[number] != ABSENT
 
     def __iter__(self) -> Iterator[int]:
         """Numbers of the finished runs, from the lowest."""

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 
 @dataclass(frozen=True)
@@ -76,3 +76,20 @@ class Outcome:
     def was_run(self) -> bool:
         """Whether there is anything but a reason: a run that would blow up or take too long is not begun."""
         return not math.isnan(self.theta_max)
+
+    def mirrored(self) -> "Outcome":
+        """What the same run comes to with the horizontal motion reversed, where pier and foundation are symmetric."""
+        return replace(
+            self,
+            theta_res=_reversed(self.theta_res),
+            base_tilt=_reversed(self.base_tilt),
+            theta_res_drift=_reversed(self.theta_res_drift),
+            ductility_left=self.ductility_right,
+            ductility_right=self.ductility_left,
+            dissipated_left=self.dissipated_right,
+            dissipated_right=self.dissipated_left,
+        )
+
+
+def _reversed(angle: float | None) -> float | None:
+    return None if angle is None else 0.0 - angle  # never a negative zero

@@ -14,7 +14,8 @@ from rockbatch.study import Case, Study
 class Run:
     """One simulation: a motion, already scaled and turned, in a case.
 
-    ``recorded`` is the motion before that, if it is at hand: a cluster is then sent each record once.
+    ``recorded`` is the motion before that, if it is at hand: a cluster is then sent each record once. ``mirror_of`` is the
+    polarity of the run whose mirror image this one is, if that is in the same table.
     """
 
     motion: Motion
@@ -22,6 +23,7 @@ class Run:
     scale: float
     case: Case
     recorded: Motion | None = None
+    mirror_of: str = ""
 
 
 def scaled(motion: Motion, scale: float, polarity: str) -> Motion:
@@ -39,6 +41,10 @@ class Runs(Sequence[Run]):
     @abstractmethod
     def run(self, number: int) -> Run:
         """Run ``number``, from 0."""
+
+    def images(self, number: int) -> Sequence[int]:
+        """The numbers of a run and of its mirror image, if there is one: the first is simulated for both."""
+        return (number,)
 
     @overload
     def __getitem__(self, index: int) -> Run: ...
@@ -60,6 +66,8 @@ class Runs(Sequence[Run]):
 class Plan(Runs):
     """The runs of a study: record, polarity, scale, case, the last running fastest.
 
+    Pier and foundation are symmetric: of both polarities one is the mirror image of the other.
+
     Nothing is held but the study and its motions; runs beside each other share the same scaled motion.
     """
 
@@ -67,7 +75,10 @@ class Plan(Runs):
         self.motions = tuple(motions.motions)
         self.polarity, self.scale = study.motions.polarity, study.motions.scale
         self.cases = study.cases
-        self._moved = lru_cache(maxsize=1)(self._move)
+        self.simulated = study.motions.simulated
+        self._of_one = len(self.scale) * len(self.cases)  # runs of a motion in one polarity
+        self._simulated_first = sorted(range(len(self.polarity)), key=lambda i: self.polarity[i] != self.simulated)
+        self._moved = lru_cache(maxsize=2)(self._move)
 
     def __len__(self) -> int:
         return len(self.motions) * len(self.polarity) * len(self.scale) * len(self.cases)
@@ -78,7 +89,17 @@ class Plan(Runs):
         rest, scale = divmod(rest, len(self.scale))
         motion, polarity = divmod(rest, len(self.polarity))
         moved = self._moved(motion, scale, polarity)
-        return Run(moved, self.polarity[polarity], self.scale[scale], self.cases[case], self.motions[motion])
+        sign = self.polarity[polarity]
+        mirror_of = "" if sign == self.simulated else self.simulated
+        return Run(moved, sign, self.scale[scale], self.cases[case], self.motions[motion], mirror_of)
+
+    def images(self, number: int) -> Sequence[int]:
+        """See :class:`Runs`."""
+        if len(self.polarity) == 1:
+            return (number,)
+        group, rest = divmod(number, self._of_one)
+        first = group - group % len(self.polarity)
+        return [(first + place) * self._of_one + rest for place in self._simulated_first]
 
     def _move(self, motion: int, scale: int, polarity: int) -> Motion:
         return scaled(self.motions[motion], self.scale[scale], self.polarity[polarity])

@@ -6,6 +6,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from rockbatch.checks.suite import MIRROR_OF
 from rockbatch.files import write_whole
 from rockbatch.motions import MotionSet, measures
 from rockbatch.motions.motion import Motion
@@ -56,7 +57,7 @@ TERMS = ("kinetic", "potential", "elastic", "input", "plastic", "impact", "p_del
 MOST_SPECTRA = 200
 """Motions whose spectra go into run.json; each takes about 10 ms."""
 
-TEXTS = ("record", "case", "polarity", "status", "reason", "note")
+TEXTS = ("record", "case", "polarity", "status", "reason", "note", MIRROR_OF)
 COUNTS = ("impacts", "separations", "substeps")
 
 HISTORIES = "histories.h5"
@@ -113,7 +114,7 @@ def unusable_rows(motions: MotionSet) -> list[dict[str, Any]]:
 
 def columns(study: Study) -> list[str]:
     """Columns of the table of ``study``: those that stay, its varied keys, more, and what it asks for."""
-    asked = []
+    asked = [MIRROR_OF] if len(study.motions.polarity) > 1 else []
     if study.output.both_laws:
         asked.append("settlement_other_law_m")
     if study.output.ledger:
@@ -127,7 +128,8 @@ def as_table(rows: Iterable[Mapping[str, Any]], study: Study) -> "pd.DataFrame":
 
     varied = study.varied
     table = pd.DataFrame(list(rows), columns=columns(study))
-    table[list(TEXTS)] = table[list(TEXTS)].fillna("")
+    texts = [name for name in table if name in TEXTS]
+    table[texts] = table[texts].fillna("")
     for name in table.columns.difference([*TEXTS, *varied, *COUNTS]):
         table[name] = table[name].astype("float64")
     for name in COUNTS:

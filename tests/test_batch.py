@@ -64,7 +64,7 @@ def study(tmp_path):
 
 def test_rows_come_in_the_order_of_the_study(study):
     table = rb.run(study)
-    assert list(table.columns) == [*COLUMNS, "beta", *MORE_COLUMNS, "settlement_other_law_m"]
+    assert list(table.columns) == [*COLUMNS, "beta", *MORE_COLUMNS, "mirror_of", "settlement_other_law_m"]
     assert len(table) == 2 * 2 * 2 * 3
     first = table.loc[:5, ["record", "polarity", "scale", "case", "beta"]].astype(object).where(table.notna(), None)
     assert first.to_numpy().tolist() == [

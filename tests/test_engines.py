@@ -151,7 +151,7 @@ def test_a_cluster_with_a_worker_killed_in_the_middle_comes_to_the_same_bytes(tm
             patch.setattr(rockbatch.cluster, "MOST_RUNS_OF_A_TASK", 4)
             found = table(tmp_path, study, runs, Dask(cluster.scheduler_address), kill_one)
         assert len(killed) == 1
-        assert sum(done) == RUNS
+        assert sum(done) == RUNS // 2  # the others are mirror images
     assert found == table(tmp_path, study, runs, Threads(2))
 
 

@@ -12,13 +12,15 @@ from report_page import Page
 
 import rockbatch as rb
 from rockbatch.analysis.fragility import ScaledRuns, assess, intensities
-from rockbatch.analysis.ida import Bracket, bisect, bracket
+from rockbatch.analysis.fragility_tables import described, points
+from rockbatch.analysis.ida import Bracket, Capacity, bisect, capacity
 from rockbatch.analysis.limit_states import EXCEEDED, LEFT_OUT, UNDECIDED, WITHSTOOD, states
-from rockbatch.analysis.lognormal import Lognormal
+from rockbatch.analysis.lognormal import Capacities, fit
 from rockbatch.analysis.waves import Waves
 from rockbatch.batch import digests
 from rockbatch.checks import Rule
 from rockbatch.cli import main
+from rockbatch.commands.fragility import table
 from rockbatch.engines import Threads
 from rockbatch.errors import InputError
 from rockbatch.journal import Journal
@@ -193,7 +195,8 @@ def test_every_run_has_the_intensity_of_its_level(tmp_path, fragility, measure):
 
     with pytest.raises(StopIteration):
         assess(study, spec, motions, simulate)
-    assert len(set(seen)) == len(seen) == 5 * 2 * len(spec.levels) * 2
+    assert len(set(seen)) == len(seen) == 5 * len(spec.levels) * 2
+    assert {polarity for _, polarity, _, _ in seen} == {"+"}  # the other would be their mirror image
 
 
 def test_a_motion_without_intensity_is_told(tmp_path):
@@ -225,7 +228,6 @@ def of_statuses(statuses, theta=0.4, error=0.01):
         ({"at_most": 0.5, "flight": "infinite", "failed": "left out"}, [WITHSTOOD, EXCEEDED, EXCEEDED, LEFT_OUT]),
         ({"at_most": 0.5, "statistic": "asce7-16"}, [WITHSTOOD, EXCEEDED, EXCEEDED, EXCEEDED]),
         ({"at_most": 3, "statistic": "count", "above": 0.3}, [EXCEEDED, EXCEEDED, EXCEEDED, UNDECIDED]),
-        ({"at_most": 0.5, "polarity": "-"}, [LEFT_OUT] * 4),
     ],
 )
 def test_a_run_that_did_not_go_through_counts_as_its_check_says(rule, expected):
@@ -243,38 +245,73 @@ def test_whether_a_run_that_was_cut_short_would_have_overturned_is_undecided():
 # Bisection
 
 
+LEVELS = [0.2, 0.4, 0.6, 0.8, 1.0]
+
+
+def capacity_of(states):
+    return capacity(dict(zip(LEVELS, states, strict=True)), LEVELS)
+
+
+def decided(low, high, returns=0):
+    return Capacity(*3 * (Bracket(low, high),), undecided=0, returns=returns)
+
+
 def test_the_first_exceedance_counts_and_what_withstands_above_it_is_counted():
-    levels = [0.2, 0.4, 0.6, 0.8, 1.0]
-    assert bracket(levels, [0, 0, 2, 0, 2]) == Bracket(0.4, 0.6, returns=1)
-    assert bracket(levels, [0, LEFT_OUT, 1, 2, 2]) == Bracket(0.2, 0.6, undecided=True)
-    assert bracket(levels, [2, 2, 2, 2, 2]) == Bracket(0.0, 0.2)
-    assert bracket(levels, [0, 0, 0, 0, LEFT_OUT]) == Bracket(0.8, math.inf)
-    assert bracket(levels, [LEFT_OUT] * 5) is None
+    assert capacity_of([0, 0, 2, 0, 2]) == decided(0.4, 0.6, returns=1)
+    assert capacity_of([2, 2, 2, 2, 2]) == decided(0.0, 0.2)
+    assert capacity_of([0, 0, 0, 0, LEFT_OUT]) == decided(0.8, math.inf)
+    assert capacity_of([LEFT_OUT] * 5) is None
+
+
+def test_an_undecided_level_is_neither_exceeded_nor_withstood():
+    assert capacity_of([0, LEFT_OUT, 1, 2, 2]) == Capacity((0.2, 0.8), (0.2, 0.6), (0.6, 0.8), undecided=1, returns=0)
+    assert capacity_of([1, 0, 0, 0, 1]) == Capacity(
+        (0.8, math.inf), (0.0, 0.2), (1.0, math.inf), undecided=2, returns=0
+    )
+    assert capacity_of([0, 1, 0, 2, 0]) == Capacity((0.6, 0.8), (0.2, 0.4), (0.6, 0.8), undecided=1, returns=1)
+    assert capacity_of([0, 2, 1, 1, 2]) == decided(0.2, 0.4)
+
+
+def bisected(looks, tolerance, look):
+    """Capacities by key; ``look`` gives the state at a key and an intensity. And the waves, as lists of keys."""
+    waves = []
+
+    def wave(wanted):
+        waves.append([key for key, _ in wanted])
+        return [look(*each) for each in wanted]
+
+    levels = sorted({x for each in looks.values() for x in each})
+    found = bisect(looks, levels, tolerance, wave)
+    return {key: capacity(each, levels) for key, each in found.items()}, waves
 
 
 def test_bisection_goes_in_waves_and_closes_every_bracket_to_the_tolerance():
-    truth = {"a": 0.41, "b": 0.5999, "c": 0.7}
-    waves = []
-
-    def look(wanted):
-        waves.append(sorted(wanted))
-        return {key: EXCEEDED if x >= truth[key] else WITHSTOOD for key, x in wanted.items()}
-
-    start = {"a": Bracket(0.4, 0.8), "b": Bracket(0.4, 0.8), "c": Bracket(0.0, 0.8), "d": Bracket(1.0, math.inf)}
-    found = bisect(start, 0.01, look)
+    truth = {"a": 0.41, "b": 0.5999}
+    start = {"a": {0.4: 0, 0.8: 2}, "b": {0.4: 0, 0.8: 2}, "c": {0.8: 2}, "d": {0.4: 0, 0.8: 0}}
+    found, waves = bisected(start, 0.01, lambda key, x: EXCEEDED if x >= truth[key] else WITHSTOOD)
     for key in "ab":
-        assert found[key].low < truth[key] <= found[key].high <= 1.01 * found[key].low
-    assert (found["c"], found["d"]) == (start["c"], start["d"])
+        assert found[key].decided.low < truth[key] <= found[key].decided.high <= 1.01 * found[key].decided.low
+    assert (found["c"], found["d"]) == (decided(0.0, 0.8), decided(0.8, math.inf))
     assert waves == [["a", "b"]] * 7  # ln 2 / ln 1.01 = 69.7 < 2⁷
 
 
-def test_bisection_ends_below_what_is_undecided_and_says_so():
-    def look(wanted):
-        return {key: WITHSTOOD if x < 0.5 else UNDECIDED if x < 0.6 else EXCEEDED for key, x in wanted.items()}
+def test_bisection_goes_on_beyond_what_is_undecided_to_both_of_its_ends():
+    """Withstood up to 0.5, exceeded from 0.6 on, and nothing is known in between: that is what the capacity says."""
+    found, _ = bisected(
+        {"a": {0.4: WITHSTOOD, 0.8: EXCEEDED}}, 1e-3,
+        lambda _, x: WITHSTOOD if x < 0.5 else UNDECIDED if x < 0.6 else EXCEEDED,
+    )  # fmt: skip
+    one = found["a"]
+    assert one.if_exceeded.low < 0.5 <= one.if_exceeded.high <= 1.001 * one.if_exceeded.low
+    assert one.if_withstood.low < 0.6 <= one.if_withstood.high <= 1.001 * one.if_withstood.low
+    assert one.decided == (one.if_exceeded.low, one.if_withstood.high)
 
-    found = bisect({"a": Bracket(0.4, 0.8)}, 1e-3, look)["a"]
-    assert found.undecided
-    assert found.low < 0.5 <= found.high <= 1.001 * found.low
+
+def test_one_undecided_level_on_the_way_does_not_move_the_capacity_that_the_bisection_finds():
+    found, _ = bisected({"a": {0.2: WITHSTOOD, 0.4: UNDECIDED, 0.8: EXCEEDED}}, 1e-3, lambda _, x: 2 if x >= 0.7 else 0)
+    one = found["a"]
+    assert one.if_withstood.low < 0.7 <= one.if_withstood.high == one.decided.high
+    assert one.if_exceeded.high == 0.4 <= 1.001 * one.if_exceeded.low  # it may have been an island, however narrow
 
 
 @pytest.mark.parametrize(("shape", "first", "last"), [("half-sine", 3.289147, math.inf), ("sine", 3.018600, 6.318071)])
@@ -318,8 +355,8 @@ def test_the_amplitude_of_overturning_is_that_of_the_closed_form(tmp_path, shape
     with journal:
         (curve,) = assess(study, spec, motions, Waves(study, journal, Threads(1)))
     ((_, found),) = curve.capacities
-    assert found.low / unit == pytest.approx(first, rel=2e-4)
-    assert found.high / unit == pytest.approx(first, rel=2e-4)
+    assert found.decided.low / unit == pytest.approx(first, rel=2e-4)
+    assert found.decided.high / unit == pytest.approx(first, rel=2e-4)
     assert found.returns == (1 if last < 6.8 else 0)
 
 
@@ -344,7 +381,7 @@ def test_a_search_that_is_interrupted_goes_on_to_the_same_runs_and_curves(tmp_pa
 
     straight = searched(tmp_path / "straight", [Threads(1)])
     resumed = searched(tmp_path / "resumed", [Interrupted(0), Interrupted(2), Threads(2)])
-    assert straight[0] == resumed[0] > 5 * 2 * 4 * 2
+    assert straight[0] == resumed[0] > 5 * 4 * 2
     assert straight[2] == resumed[2]
     for one, other in zip(straight[1], resumed[1], strict=True):
         assert (one.stripes, one.capacities) == (other.stripes, other.capacities)
@@ -377,7 +414,7 @@ def test_the_command_writes_points_curves_capacities_and_all_runs(tmp_path, caps
     assert not (out / "fragility_runs.csv.part").exists()
 
 
-def test_stripes_count_a_record_once_with_the_worse_of_its_polarities(tmp_path):
+def test_stripes_count_a_record_once_in_whatever_polarities(tmp_path):
     study = load_study(written(tmp_path, STRIPES))
     spec = read_fragility(study)
     motions, journal = journal_of(study, spec, tmp_path)
@@ -398,22 +435,122 @@ def test_stripes_count_a_record_once_with_the_worse_of_its_polarities(tmp_path):
     assert over.capacities == ()
 
 
-def test_undecided_runs_count_as_exceeded_and_the_other_way_is_told(tmp_path):
-    study = load_study(written(tmp_path, STRIPES))
-    spec = replace(
-        read_fragility(study), limits=(Rule("half way", "theta_max_over_alpha", at_most=0.5, overturned="unknown"),)
-    )
+# Undecided runs
+
+
+def made_up(tmp_path, fragility, status_of, limits=None, motions=30, **more):
+    """Curves of the rigid case through runs with a status by number of the motion and intensity."""
+    study = load_study(written(tmp_path, fragility))
+    study = replace(study, cases=study.cases[:1])
+    spec = read_fragility(study)
+    spec = replace(spec, limits=limits or spec.limits[:1], **more)
+    one = ground_motions(study).motions[0]
+    scaled = [replace(one, name=f"motion {m}") for m in range(motions)]
 
     def simulate(runs):
-        """Overturns above a scale that differs from record to record; that it does so counts as unknown."""
-        rows = of_statuses(["overturned" if p.intensity > 0.25 + 0.12 * p.motion else "ok" for p in runs.points])
-        return rows
+        return of_statuses([status_of(point.motion, point.intensity) for point in runs.points])
 
-    curve = assess(study, spec, ground_motions(study).motions, simulate)[0]
-    assert [stripe.undecided for stripe in curve.stripes] == [0, 2, 3, 5]
+    return assess(study, spec, scaled, simulate), spec, study
+
+
+def lognormal_capacities(motions=30, median=0.5, dispersion=0.4):
+    from scipy.special import ndtri
+
+    return median * np.exp(dispersion * ndtri((np.arange(motions) + 0.5) / motions))
+
+
+CAPACITIES = lognormal_capacities()
+
+
+def stands_or_falls(motion, x):
+    return "overturned" if x >= CAPACITIES[motion] else "ok"
+
+
+@pytest.mark.parametrize("fragility", [STRIPES, IDA], ids=["stripes", "ida"])
+def test_runs_that_flew_or_failed_far_below_their_capacity_do_not_move_the_headline(tmp_path, fragility):
+    """Every second record fails up to 0.3 g, where most would stand: the median is as without them."""
+
+    def status(motion, x):
+        return "failed" if x < 0.3 and motion % 2 else stands_or_falls(motion, x)
+
+    (without,), _, _ = made_up(tmp_path, fragility, stands_or_falls)
+    (curve,), _, _ = made_up(tmp_path, fragility, status)
+    assert without.readings is None
+    assert without.undecided.words == ""
+    assert curve.fitted.median == pytest.approx(without.fitted.median, rel=0.03)
+    low, high = curve.readings.medians
+    assert low < 0.8 * without.fitted.median
+    assert high == pytest.approx(without.fitted.median, rel=0.03)
+    assert high / low > np.divide(*curve.fitted.median_interval[::-1])
+    assert curve.says_little
+
+
+def test_the_readings_are_those_of_all_undecided_runs_counted_either_way(tmp_path):
+    """Held against fits of the counts themselves; 12 of 120 runs, 4 of them flights."""
+
+    def status(motion, x):
+        if motion < 8 and x == 0.4:
+            return "failed"
+        return "flight" if motion >= 26 and x == 0.6 else stands_or_falls(motion, x)
+
+    (curve,), spec, _ = made_up(tmp_path, STRIPES, status)
+    assert curve.undecided.words == "12 of 120 runs undecided: 4 flew, 8 failed"
+    levels = np.array(spec.levels)
+    kinds = np.array([[status(m, x) for x in spec.levels] for m in range(30)])
+    open_, within, beyond = np.isin(kinds, ["flight", "failed"]), kinds == "ok", kinds == "overturned"
+    for found, expected in (
+        (curve.fitted, (within, beyond)),
+        (curve.readings.exceeded, (within, beyond | open_)),
+        (curve.readings.withstood, (within | open_, beyond)),
+    ):
+        assert found.median == fit(Capacities.of_same_records(levels, *expected)).median
+    assert curve.readings.exceeded.median < curve.fitted.median < curve.readings.withstood.median
+    assert [stripe.undecided for stripe in curve.stripes] == [0, 8, 4, 0]
+
+
+def test_undecided_runs_alone_make_no_curve_but_an_open_interval(tmp_path):
+    rule = Rule("half way", "theta_max_over_alpha", at_most=0.5, overturned="unknown")
+    (curve,), _, _ = made_up(tmp_path, STRIPES, stands_or_falls, limits=(rule,))
     assert [stripe.exceeded for stripe in curve.stripes] == [0, 0, 0, 0]
-    assert isinstance(curve.fitted, Lognormal)
-    assert curve.otherwise == "no record exceeds the limit up to 0.8: the median is beyond"
+    assert curve.fitted == curve.readings.withstood == "no record exceeds the limit up to 0.8: the median is beyond"
+    assert curve.readings.medians == (curve.readings.exceeded.median, math.inf)
+    assert curve.undecided.other == curve.undecided.number > 0
+
+
+def test_a_check_for_which_flight_and_failure_are_infinite_leaves_them_undecided_here(tmp_path):
+    path = written(tmp_path, STRIPES)
+    text = path.read_text(encoding="utf-8").replace(
+        'at_most = 0.5\n', 'at_most = 0.5\nflight = "infinite"\nfailed = "value"\npolarity = "-"\n'
+    )  # fmt: skip
+    text = text.replace("at_most = 0.005\n", 'at_most = 0.005\nfailed = "left out"\n')
+    path.write_text(text, encoding="utf-8")
+    _, half, settled = read_fragility(load_study(path)).limits
+    assert (half.flight, half.failed, half.polarity) == ("unknown", "unknown", None)
+    assert (settled.flight, settled.failed) == ("unknown", "left out")
+    runs = of_statuses(["flight", "failed"], theta=0.6)
+    assert list(states(half, runs, {"base": "rigid"})) == [EXCEEDED, UNDECIDED]  # beyond the limit before it flew
+
+
+def test_undecided_runs_are_told_first_in_the_table_the_files_and_the_report(tmp_path):
+    """Every second record fails at two of four levels."""
+    (curve,), spec, study = made_up(
+        tmp_path, STRIPES, lambda m, x: "failed" if m % 2 and x < 0.5 else stands_or_falls(m, x)
+    )
+    printed = table([curve], spec)
+    first, *rest = printed.splitlines()
+    assert first == "Fragility for PGA, stripes; 1 of 1 curve says little: too many runs are undecided"
+    assert any("says little: 30 of 120 runs undecided: 30 failed; they count for nothing here" in line for line in rest)
+    rows = points([curve], spec, ())
+    assert list(rows["undecided"]) == [15, 15, 0, 0]
+    assert (rows["p_low"] <= rows["p"]).all()
+    assert (rows["p"] <= rows["p_high"]).all()
+    told = described([curve], spec, study, 30)
+    told |= {"study": {"sha256": "here"}}
+    (tmp_path / "fragility.json").write_text(json.dumps(told), encoding="utf-8")
+    page = section(tmp_path, "here")
+    assert page.startswith("<p><strong>Too many runs are undecided for these curves to say much: overturning, rigid")
+    assert 'class="open s1"' in page
+    assert "30 of 120 runs undecided: 30 failed" in page
 
 
 @pytest.mark.parametrize(

@@ -48,10 +48,11 @@ base = "rigid"
 name = "pads"
 base = "yielding"
 beta = [30, 40, 50, 60, 70, 80]
-eta = [2.0, 2.5, 3.0, 3.5]
+eta = [2.0, 2.25, 2.5, 2.75, 3.0, 3.25, 3.5, 3.75]
 epsilon = 0.1
 """
-RUNS = 2 * 6 * 25
+SIMULATED = 6 * 49
+RUNS = 2 * SIMULATED  # with the mirror images
 
 unix = pytest.mark.skipif(not hasattr(os, "fork"), reason="processes are forked, with their kernels loaded")
 
@@ -159,10 +160,10 @@ def test_after_ctrl_c_the_same_command_goes_on(study, tmp_path, undisturbed, cap
     assert [file.name for file in out.iterdir()] == ["peaks.csv.part"]  # a table is there when it is whole
     capsys.readouterr()
     assert main(["run", str(study), "--out", str(out)]) == 0
-    assert f"{kept} of them are finished already, {RUNS - kept} are left" in capsys.readouterr().err
+    assert f"{kept // 2} of them are finished already, {SIMULATED - kept // 2} are left" in capsys.readouterr().err
     assert (out / "peaks.csv").read_bytes() == undisturbed
-    assert json.loads((out / "run.json").read_text())["kept"] == kept
-    assert f"{kept} runs had been finished before" in (out / "report.html").read_text(encoding="utf-8")
+    assert json.loads((out / "run.json").read_text())["kept"] == kept // 2
+    assert f"{kept // 2} runs had been finished before" in (out / "report.html").read_text(encoding="utf-8")
 
 
 def test_an_interrupt_says_what_is_kept_and_how_to_go_on(study, tmp_path, monkeypatch, capsys):
@@ -178,7 +179,10 @@ def test_an_interrupt_says_what_is_kept_and_how_to_go_on(study, tmp_path, monkey
     out = tmp_path / "out"
     assert main(["run", str(study), "--out", str(out), "--jobs", "1"]) == 130
     told = capsys.readouterr().err
-    assert f"interrupted: {finished_in(out)} of {RUNS} runs are finished and kept in {out / 'peaks.csv.part'}" in told
+    assert (
+        f"interrupted: {finished_in(out) // 2} of {SIMULATED} runs are finished and kept in {out / 'peaks.csv.part'}"
+        in told
+    )
     assert "the same command goes on from there" in told
     assert finished_in(out) >= 20
 
@@ -212,7 +216,7 @@ def test_a_full_disk_is_told_and_when_there_is_room_the_same_command_goes_on(stu
     assert f"runs that are finished are kept: {remedy}" in first
     assert f"{disk}/out/peaks.csv: cannot be written: No space left on device" in second
     assert remedy in second
-    assert f"{RUNS} of them are finished already, 0 are left" in third
+    assert f"{SIMULATED} of them are finished already, 0 are left" in third
     assert (kept / "peaks.csv").read_bytes() == undisturbed
 
 
@@ -293,7 +297,7 @@ def test_results_of_other_peaks_never_stand_beside_new_ones(study, tmp_path, mon
     assert sorted(file.name for file in out.iterdir() if file.suffix != ".lock") == ["peaks.csv", "peaks.csv.part"]
     assert ending.cost_of_finished(out, {}) is None
     assert main(command) == 0
-    assert json.loads((out / "run.json").read_text())["kept"] == RUNS
+    assert json.loads((out / "run.json").read_text())["kept"] == SIMULATED
 
 
 def test_two_cannot_write_into_one_folder(study, tmp_path, capsys):
@@ -316,12 +320,12 @@ def test_shares_are_merged_to_the_results_of_one_run(study, tmp_path, undisturbe
     merge = ["merge", str(study), "--out", str(out)]
     assert main([*merge, str(folders[2]), str(folders[0])]) == 2
     told = capsys.readouterr().err
-    assert f"100 of {RUNS} runs are in none of these folders: 101 to 200; " in told
+    assert f"{RUNS // 3} of {RUNS} rows are in none of these folders: {RUNS // 3 + 1} to {2 * RUNS // 3}; " in told
     assert f"rockbatch run {study} --out {out}" in told
     assert main([*merge, *map(str, folders)]) == 0
     assert (out / "peaks.csv").read_bytes() == undisturbed
     assert sorted(file.name for file in out.iterdir()) == ["peaks.csv", "report.html", "run.json"]
-    assert "300 runs had been finished before" in (out / "report.html").read_text(encoding="utf-8")
+    assert f"{SIMULATED} runs had been finished before" in (out / "report.html").read_text(encoding="utf-8")
 
 
 def test_what_merge_is_missing_can_be_carried_out_where_the_shares_were_joined(study, tmp_path, undisturbed):

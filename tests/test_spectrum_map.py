@@ -9,23 +9,14 @@ import pytest
 from scipy.optimize import brentq
 from test_known_overturning import HALF_SINE, ONE_SINE, SLENDER, E, energy_after_impact, outward
 
-from rockbatch.analysis.overturning_map import (
-    OUTRIGHT,
-    SAFE,
-    SAMPLES,
-    UNDECIDED,
-    WITH_IMPACT,
-    Columns,
-    ending,
-    refine,
-    regions,
-)
+from rockbatch.analysis.map_search import End, Search, regions
+from rockbatch.analysis.overturning_map import OUTRIGHT, SAFE, SAMPLES, UNDECIDED, WITH_IMPACT, Maps, ending
 from rockbatch.batch import row_of
 from rockbatch.cli import main
 from rockbatch.engines import Threads
 from rockbatch.groups import NOTHING_MORE
 from rockbatch.results import as_table
-from rockbatch.structure import Pier, RigidBase
+from rockbatch.structure import ElasticBase, Pier, RigidBase
 from rockbatch.study import Case, Numerics, Study
 from rockbatch.study.spec import MotionSpec
 from rockbatch.study.spectrum import MapSpec
@@ -43,8 +34,8 @@ def found(spec, pier, base):
         outcomes = dict(pair for group in Threads(2).outcomes(runs, numerics) for pair in group)
         return as_table([row_of(runs[i], outcomes[i]) for i in range(len(runs))], study)
 
-    columns = Columns(spec, (case,))
-    return dict(zip(spec.grid[0], map(regions, columns.find(carry_out)), strict=True))
+    (columns,) = Maps(spec, (case,)).find(carry_out)
+    return {frequency: regions(points, spec.tolerance) for frequency, points in columns.items()}
 
 
 def heights(column):
@@ -59,7 +50,7 @@ def sampled(amplitude):
     return pytest.approx(amplitude * (1 + (2 * math.pi / SAMPLES) ** 2 / 12), abs=0.501 * TOLERANCE)
 
 
-ONE = MapSpec("one-sine", "sine", (5.0, 6.0), (1.0, 11.0), 2, 21, TOLERANCE)
+ONE = MapSpec("one-sine", "sine", (5.0, 6.0), (1.0, 11.0), 2, 21, TOLERANCE, width=1.0)
 
 
 def test_a_one_sine_has_both_modes_of_zhang_and_makris_at_the_closed_forms():
@@ -104,30 +95,98 @@ def test_the_map_of_a_rigid_base_does_not_depend_on_the_size_of_the_pier():
 # The search itself
 
 
-def test_every_change_is_bisected_to_the_tolerance_and_no_more_runs_are_made():
-    """Two boundaries in one column, none in another; within 2⁻⁹ of steps of 1 it takes nine waves after the grid."""
+def searched(ends, amplitudes, tolerance, *, frequencies=(0.0,), width=1.0):
+    """The columns that a search finds; outcomes are as ``ends`` has them of a frequency and an amplitude."""
     waves = []
 
-    def ends(points):
+    def at(points):
         waves.append(len(points))
-        return ["up" if column == 0 and math.pi < a < 5.123 else "down" for column, a in points]
+        return [End(ends(frequency, amplitude)) for _, frequency, amplitude in points]
 
-    below, within = refine(ends, 2, [float(a) for a in range(11)], 2.0**-9)[::-1]
-    assert [each.outcome for each in regions(below)] == ["down"]
-    assert [each.outcome for each in regions(within)] == ["down", "up", "down"]
-    assert [each.high for each in regions(within)[:2]] == pytest.approx([math.pi, 5.123], abs=2.0**-10)
-    assert waves == [22] + 9 * [2]
+    (columns,) = Search(at, amplitudes, tolerance, width).find(1, frequencies)
+    return columns, waves
+
+
+def outcomes(points):
+    return [each.outcome for each in regions(points)]
+
+
+def test_every_change_is_bisected_to_the_tolerance_and_no_more_runs_are_made():
+    """Within 2⁻⁹ of steps of 1 it takes nine waves after the grid."""
+    grid = [float(a) for a in range(11)]
+    columns, waves = searched(lambda _, a: "up" if math.pi < a < 5.123 else "down", grid, 2.0**-9)
+    assert outcomes(columns[0.0]) == ["down", "up", "down"]
+    assert [each.high for each in regions(columns[0.0])[:2]] == pytest.approx([math.pi, 5.123], abs=2.0**-10)
+    assert waves == [11] + 9 * [2]
+    columns, waves = searched(lambda _, a: "down", grid, 2.0**-9)
+    assert (outcomes(columns[0.0]), waves) == (["down"], [11])
 
 
 def test_a_third_outcome_on_the_way_gets_boundaries_of_its_own():
     """A band that the grid does not see appears when a bisection falls into it."""
-    points = refine(lambda at: ["a" if a < 0.4 else "b" if a < 0.6 else "c" for _, a in at], 1, [0.0, 1.0], 1e-6)[0]
-    assert [each.outcome for each in regions(points)] == ["a", "b", "c"]
-    assert [each.high for each in regions(points)] == pytest.approx([0.4, 0.6, 1.0], abs=1e-6)
+    columns, _ = searched(lambda _, a: "a" if a < 0.4 else "b" if a < 0.6 else "c", [0.0, 1.0], 1e-6)
+    assert outcomes(columns[0.0]) == ["a", "b", "c"]
+    assert [each.high for each in regions(columns[0.0])] == pytest.approx([0.4, 0.6, 1.0], abs=1e-6)
+
+
+def test_a_window_between_two_ways_of_overturning_is_found_though_both_have_one_outcome():
+    def ends(points):
+        return [End("stands") if 0.50 < a < 0.51 else End("falls", 1 if a < 0.505 else 2) for _, _, a in points]
+
+    (columns,) = Search(ends, [0.0, 1.0], 1e-4, 1.0).find(1, [0.0])
+    assert outcomes(columns[0.0]) == ["falls", "stands", "falls"]
+
+
+def test_what_is_narrower_than_the_tolerance_belongs_to_the_boundary_whose_error_says_so():
+    points = [(a, End(outcome)) for a, outcome in [(0.0, "a"), (0.4, "a"), (0.401, "b"), (0.402, "c"), (1.0, "c")]]
+    assert outcomes(points) == ["a", "b", "c"]
+    below, above = regions(points, 0.002)
+    assert (below.outcome, above.outcome) == ("a", "c")
+    assert below.high == above.low == pytest.approx(0.401)
+    assert below.high_error == above.low_error == pytest.approx(0.001)
+    (only,) = regions([(0.0, End("a")), (0.4, End("a")), (0.401, End("b")), (0.402, End("a")), (1.0, End("a"))], 0.002)
+    assert (only.low, only.high) == (0.0, 1.0)
+
+
+def test_frequencies_are_bisected_to_the_width_where_the_outcomes_change_and_nowhere_else():
+    """A slit that ends at a frequency of π: straight boundaries elsewhere need no column."""
+    columns, _ = searched(
+        lambda f, a: "falls" if a > 1.0 + 0.1 * f and not (f < math.pi and 1.9 < a < 2.2) else "stands",
+        [0.25 * i for i in range(13)], 1e-6, frequencies=[float(f) for f in range(9)], width=0.01,
+    )  # fmt: skip
+    changes = [(f, g) for (f, one), (g, other) in pairwise(columns.items()) if outcomes(one) != outcomes(other)]
+    ((before, after),) = changes
+    assert before < math.pi <= after <= before + 0.01
+    assert [f for f in columns if not 2.0 <= f <= 4.0] == [0.0, 1.0, 5.0, 6.0, 7.0, 8.0]
+
+
+def test_an_island_is_followed_to_its_end_where_it_is_narrower_than_the_grid():
+    """A tongue 0.3 wide at a frequency of 0 and none at 3; the grid of 0.25 sees it down to 0.25 only."""
+    columns, _ = searched(
+        lambda f, a: "stands" if abs(a - 2.1 - 0.05 * f) < 0.15 - 0.05 * f else "falls",
+        [0.25 * i for i in range(17)], 1e-4, frequencies=[0.0, 1.0, 2.0, 3.0, 4.0], width=0.01,
+    )  # fmt: skip
+    seen = [f for f, points in columns.items() if "stands" in outcomes(points)]
+    assert max(seen) == pytest.approx(3.0, abs=0.015)
+    assert seen == [f for f in columns if f <= max(seen)]
+
+
+def test_lines_between_columns_follow_a_curved_boundary_within_the_tolerance():
+    def height(f):
+        return 1.0 + 0.3 * f**2
+
+    columns, _ = searched(
+        lambda f, a: "falls" if a > height(f) else "stands", [0.5 * i for i in range(15)], 1e-3,
+        frequencies=[float(f) for f in range(5)], width=1e-3,
+    )  # fmt: skip
+    boundary = {f: regions(points)[0].high for f, points in columns.items()}
+    for (f, low), (g, high) in pairwise(boundary.items()):
+        assert 0.5 * (low + high) == pytest.approx(height(0.5 * (f + g)), abs=1e-3)
+    assert len(columns) < 100
 
 
 def test_the_ends_of_a_map_are_no_boundaries():
-    (only,) = regions([(1.0, SAFE), (2.0, SAFE)])
+    (only,) = regions([(1.0, End(SAFE)), (2.0, End(SAFE))])
     assert (only.low, only.high) == (1.0, 2.0)
     assert math.isnan(only.low_error)
     assert math.isnan(only.high_error)
@@ -138,7 +197,13 @@ def test_the_ends_of_a_map_are_no_boundaries():
     [("ok", 3, SAFE), ("overturned", 0, OUTRIGHT), ("overturned", 2, WITH_IMPACT), ("failed", 0, UNDECIDED)],
 )
 def test_runs_belong_to_the_region_of_their_outcome(status, impacts, outcome):
-    assert ending(status, impacts) == outcome
+    assert ending(status, impacts, RigidBase()).outcome == outcome
+    assert ending(status, impacts, ElasticBase(beta=40.0)).outcome == outcome
+
+
+def test_impacts_tell_the_ways_to_overturn_on_a_rigid_base_only():
+    assert ending("overturned", 2, RigidBase()) != ending("overturned", 3, RigidBase())
+    assert ending("overturned", 2, ElasticBase(beta=40.0)) == ending("overturned", 3, ElasticBase(beta=40.0))
 
 
 # The command

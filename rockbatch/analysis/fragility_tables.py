@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rockbatch.analysis.fragility import Curve
-from rockbatch.analysis.ida import Bracket
+from rockbatch.analysis.ida import Capacity
 from rockbatch.analysis.limit_states import words
-from rockbatch.analysis.lognormal import Lognormal
+from rockbatch.analysis.lognormal import Lognormal, Values
 from rockbatch.study import Study
 from rockbatch.study.fragility import FragilitySpec
 
@@ -22,15 +22,28 @@ SAMPLES = 80
 
 
 def points(curves: Sequence[Curve], spec: FragilitySpec, varied: Sequence[str]) -> "pd.DataFrame":
-    """fragility.csv: a row for each curve and level, with the counts of :class:`Stripe` as columns."""
+    """fragility.csv: a row for each curve and level, with the counts of :class:`Stripe` as columns.
+
+    ``p`` is the curve there; it is between ``p_low`` and ``p_high``, whatever the undecided runs of all levels come to.
+    """
     import pandas as pd
 
-    rows = [
-        _which(curve, varied) | {"measure": spec.label, "unit": spec.unit, **stripe._asdict()}
-        for curve in curves
-        for stripe in curve.stripes
-    ]
+    rows: list[dict[str, Any]] = []
+    for curve in curves:
+        own = {"measure": spec.label, "unit": spec.unit}
+        p = _probabilities(curve, np.array(spec.levels))
+        rows += [
+            _which(curve, varied) | own | stripe._asdict() | {name: float(of[i]) for name, of in p.items()}
+            for i, stripe in enumerate(curve.stripes)
+        ]
     return pd.DataFrame(rows).rename(columns={"records": "n"})
+
+
+def _probabilities(curve: Curve, x: Values) -> dict[str, Values]:
+    """P(x) of a curve, and what it lies between; NaN where there is none."""
+    p = curve.fitted.probability(x) if isinstance(curve.fitted, Lognormal) else np.full(len(x), np.nan)
+    low, high = curve.readings.probability(x) if curve.readings else (p, p)
+    return {"p": p, "p_low": np.fmin(low, p), "p_high": np.fmax(high, p)}
 
 
 def capacities(
@@ -38,7 +51,9 @@ def capacities(
 ) -> "pd.DataFrame":
     """fragility_capacities.csv: a row for each curve and record.
 
-    A capacity is above ``above`` and at most ``at_most``, in the unit of the levels; the same as scales of the record.
+    A capacity is above ``above`` and at most ``at_most`` by the runs that are decided, in the unit of the levels; the same as
+    scales of the record. Below it ``undecided`` runs are not: it is at most ``if_exceeded`` if they exceed the limit, and above
+    ``if_withstood`` if they withstand it.
     ``names`` and ``unscaled`` are those of the motions, and their intensities as they are.
     """
     import pandas as pd
@@ -46,14 +61,22 @@ def capacities(
     rows: list[dict[str, Any]] = []
     for curve in curves:
         for motion, one in curve.capacities:
-            bounds = {"above": one.low, "at_most": math.nan if math.isinf(one.high) else one.high}
+            bounds = {"above": one.decided.low, "at_most": _or_nothing(one.decided.high)}
+            otherwise = {
+                "if_exceeded": _or_nothing(one.if_exceeded.high) if one.undecided else math.nan,
+                "if_withstood": one.if_withstood.low if one.undecided else math.nan,
+            }
             rows.append(
                 {"record": names[motion], **_which(curve, varied), "measure": spec.label, "unit": spec.unit}
                 | {"found": _found(one), **bounds}
                 | {f"scale_{name}": bound / unscaled[motion] for name, bound in bounds.items()}
-                | {"returns": one.returns}
+                | {"undecided": one.undecided, **otherwise, "returns": one.returns}
             )
     return pd.DataFrame(rows)
+
+
+def _or_nothing(bound: float) -> float:
+    return bound if math.isfinite(bound) else math.nan
 
 
 def _which(curve: Curve, varied: Sequence[str]) -> dict[str, Any]:
@@ -61,12 +84,12 @@ def _which(curve: Curve, varied: Sequence[str]) -> dict[str, Any]:
     return {"case": curve.case.name, **columns, "limit_state": curve.limit.name}
 
 
-def _found(one: Bracket) -> str:
-    if math.isinf(one.high):
+def _found(one: Capacity) -> str:
+    if one.undecided:
+        return "undecided"
+    if math.isinf(one.decided.high):
         return "beyond the highest level"
-    if one.low == 0:
-        return "below the lowest level"
-    return "undecided" if one.undecided else "exceeded"
+    return "below the lowest level" if one.decided.low == 0 else "exceeded"
 
 
 def described(curves: Sequence[Curve], spec: FragilitySpec, study: Study, records: int) -> dict[str, Any]:
@@ -85,7 +108,7 @@ def described(curves: Sequence[Curve], spec: FragilitySpec, study: Study, record
 
 
 def _described(curve: Curve, spec: FragilitySpec) -> dict[str, Any]:
-    fitted, otherwise = curve.fitted, curve.otherwise
+    fitted, readings = curve.fitted, curve.readings
     told: dict[str, Any] = {
         "case": curve.case.name,
         "columns": curve.case.columns,
@@ -96,21 +119,30 @@ def _described(curve: Curve, spec: FragilitySpec) -> dict[str, Any]:
         "median": None,
         "dispersion": None,
         "note": note(curve, spec),
-        "median_undecided_withstand": otherwise.median if isinstance(otherwise, Lognormal) else None,
+        "undecided": curve.undecided._asdict(),
+        "says_little": curve.says_little,
+        "median_undecided": _finite(readings.medians) if readings else None,
         "points": [stripe._asdict() for stripe in curve.stripes],
-        "capacities": [_finite((one.low, one.high)) for _, one in curve.capacities],
+        "capacities": [_finite(one.decided) for _, one in curve.capacities],
     }
+    x = np.linspace(0.0, 1.1 * spec.levels[-1], SAMPLES + 1)[1:]
+    if readings:
+        p = _probabilities(curve, x)
+        told["open"] = _rounded({"x": x, "low": p["p_low"], "high": p["p_high"]})
     if isinstance(fitted, Lognormal):
-        x = np.linspace(0.0, 1.1 * spec.levels[-1], SAMPLES + 1)[1:]
-        drawn = zip(("x", "p", "low", "high"), (x, fitted.probability(x), *fitted.band(x)), strict=True)
+        drawn = dict(zip(("x", "p", "low", "high"), (x, fitted.probability(x), *fitted.band(x)), strict=True))
         told |= {
             "median": fitted.median,
             "median_interval": _finite(fitted.median_interval),
             "dispersion": fitted.dispersion,
             "dispersion_interval": _finite(fitted.dispersion_interval),
-            "curve": {name: [round(float(value), 6) for value in values] for name, values in drawn},
+            "curve": _rounded(drawn),
         }
     return told
+
+
+def _rounded(drawn: dict[str, Values]) -> dict[str, list[float]]:
+    return {name: [round(float(value), 6) for value in values] for name, values in drawn.items()}
 
 
 def _finite(bounds: tuple[float, float]) -> list[float | None]:
@@ -121,7 +153,7 @@ def _finite(bounds: tuple[float, float]) -> list[float | None]:
 def note(curve: Curve, spec: FragilitySpec) -> str:
     """What to know about a curve, or why there is none."""
     fitted = curve.fitted
-    notes = [fitted] if isinstance(fitted, str) else []
+    notes = [_about_undecided(curve), fitted if isinstance(fitted, str) else ""]
     if isinstance(fitted, Lognormal):
         if fitted.median > spec.levels[-1]:
             notes.append("the median is extrapolated beyond the highest level")
@@ -129,11 +161,20 @@ def note(curve: Curve, spec: FragilitySpec) -> str:
             notes.append("the median is extrapolated below the lowest level")
         if any(math.isinf(bound) for bound in (*fitted.median_interval, *fitted.dispersion_interval)):
             notes.append("the records leave the intervals open: more of them, or other levels, would close them")
-    if curve.otherwise is not None:
-        counted = "undecided runs count as beyond the limit"
-        if isinstance(curve.otherwise, Lognormal):
-            counted += f"; as within it they would give a median of {curve.otherwise.median:.4g}"
-        notes.append(counted)
     if returning := sum(one.returns > 0 for _, one in curve.capacities):
         notes.append(f"{returning} of {len(curve.capacities)} records withstand a level above their first exceedance")
-    return "; ".join(notes)
+    return "; ".join(filter(None, notes))
+
+
+def _about_undecided(curve: Curve) -> str:
+    """How many runs are undecided, and what the curve would be with them."""
+    told = curve.undecided.words
+    if not told:
+        return ""
+    if curve.readings is None:
+        return f"{told}, above the first exceedance of their records, where they change nothing"
+    beyond, within = (
+        f"a median of {one.median:.4g}" if isinstance(one, Lognormal) else f"no curve ({one})" for one in curve.readings
+    )
+    told += f"; they count for nothing here: as beyond the limit they would give {beyond}, as within it {within}"
+    return f"says little: {told}" if curve.says_little else told

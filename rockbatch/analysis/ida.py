@@ -4,30 +4,29 @@ The levels of the study are the hunt: the capacity lies between the first level,
 and the one before, and is bisected there, geometrically. A rocking pier may overturn at one level and stand at a higher one
 (Zhang & Makris 2001): a window of overturning that is narrower than the levels can be missed, and what is found is the first
 exceedance on the stated levels. ``returns`` counts the levels above it that were withstood.
+
+An undecided run ends no hunt, and says nothing: the capacity is the first exceedance of those that are decided. As it may be
+the first exceedance itself, or none, both are followed up too, each to its own bracket.
 """
 
 import math
 from collections.abc import Callable, Hashable, Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import TypeVar
+from dataclasses import dataclass
+from typing import NamedTuple, TypeVar
 
-from rockbatch.analysis.limit_states import LEFT_OUT, UNDECIDED, WITHSTOOD
+from rockbatch.analysis.limit_states import EXCEEDED, LEFT_OUT, UNDECIDED, WITHSTOOD
 
 K = TypeVar("K", bound=Hashable)
 
+Looks = Mapping[float, int]
+"""What a record came to, by the intensities at which it was looked at."""
 
-@dataclass(frozen=True)
-class Bracket:
-    """A capacity is above ``low``, where the limit is withstood, and at most ``high``, where it is exceeded or undecided.
 
-    ``low`` is 0 where the limit is exceeded at the lowest level, ``high`` infinite where it is withstood at the highest.
-    ``undecided``: whether it is at ``high``. ``returns``: number of levels above ``high`` that were withstood.
-    """
+class Bracket(NamedTuple):
+    """A capacity is above ``low`` and at most ``high``: 0 where no lower look withstood, infinite where none exceeded."""
 
     low: float
     high: float
-    undecided: bool = False
-    returns: int = 0
 
     @property
     def middle(self) -> float:
@@ -38,36 +37,59 @@ class Bracket:
         """Whether a bisection can narrow it, and should, to a relative width of ``tolerance``."""
         return self.low > 0 and math.isfinite(self.high) and self.high > self.low * (1.0 + tolerance)
 
-    def narrowed(self, state: int) -> "Bracket":
-        """After a look at the middle; one that tells nothing counts as exceeded, on the safe side."""
-        if state == WITHSTOOD:
-            return replace(self, low=self.middle)
-        return replace(self, high=self.middle, undecided=state in (UNDECIDED, LEFT_OUT))
+
+@dataclass(frozen=True)
+class Capacity:
+    """What the looks at a record say about the intensity at which it first exceeds a limit.
+
+    ``decided`` leaves the undecided looks out, and stays open where one is in between; the others hold if all of them
+    exceeded the limit, and if all withstood it. The three are the same where none is undecided below the first
+    exceedance. ``undecided`` is the number of those below it, ``returns`` of the levels above it that were withstood.
+    """
+
+    decided: Bracket
+    if_exceeded: Bracket
+    if_withstood: Bracket
+    undecided: int
+    returns: int
 
 
-def bracket(levels: Sequence[float], states: Sequence[int]) -> Bracket | None:
-    """First exceedance from below on rising levels; None where all of them are left out."""
-    known = [(level, state) for level, state in zip(levels, states, strict=True) if state != LEFT_OUT]
-    if not known:
+def capacity(looks: Looks, levels: Sequence[float]) -> Capacity | None:
+    """First exceedance from below; None where every look is left out."""
+    seen = sorted((x, state) for x, state in looks.items() if state != LEFT_OUT)
+    if not seen:
         return None
-    low = 0.0
-    for i, (level, state) in enumerate(known):
-        if state != WITHSTOOD:
-            returns = sum(later == WITHSTOOD for _, later in known[i + 1 :])
-            return Bracket(low, level, state == UNDECIDED, returns)
-        low = level
-    return Bracket(low, math.inf)
+    high = min((x for x, state in seen if state == EXCEEDED), default=math.inf)
+    below = [(x, state) for x, state in seen if x < high]
+    doubtful = [x for x, state in below if state == UNDECIDED]
+    first = min(doubtful, default=high)
+    withstood = [x for x, state in below if state == WITHSTOOD]
+    decided = Bracket(max(withstood, default=0.0), high)
+    if_exceeded = Bracket(max((x for x in withstood if x < first), default=0.0), first)
+    if_withstood = Bracket(max((x for x, _ in below), default=0.0), high)
+    returns = sum(state == WITHSTOOD and x > high and x in levels for x, state in seen)
+    return Capacity(decided, if_exceeded, if_withstood, len(doubtful), returns)
 
 
 def bisect(
-    brackets: Mapping[K, Bracket], tolerance: float, look: Callable[[dict[K, float]], Mapping[K, int]]
-) -> dict[K, Bracket]:
-    """All brackets narrowed to a relative width of ``tolerance``, in waves: one look for all that are wider.
+    on_levels: Mapping[K, Looks],
+    levels: Sequence[float],
+    tolerance: float,
+    look: Callable[[list[tuple[K, float]]], Sequence[int]],
+) -> dict[K, dict[float, int]]:
+    """More looks at each record, until its brackets are narrowed to a relative width of ``tolerance``.
 
-    ``look`` gives the states at the intensities that it is asked about.
+    They come in waves, one look for every bracket that is wider. ``look`` gives the states at what it is asked about; there
+    nothing is left out, a run that would be is undecided.
     """
-    found = dict(brackets)
-    while wider := {key: one.middle for key, one in found.items() if one.is_wider(tolerance)}:
-        states = look(wider)
-        found |= {key: found[key].narrowed(states[key]) for key in wider}
+    found = {key: dict(looks) for key, looks in on_levels.items()}
+    while wanted := [(key, x) for key, looks in found.items() for x in _middles(capacity(looks, levels), tolerance)]:
+        for (key, x), state in zip(wanted, look(wanted), strict=True):
+            found[key][x] = UNDECIDED if state == LEFT_OUT else state
     return found
+
+
+def _middles(one: Capacity | None, tolerance: float) -> list[float]:
+    if one is None:
+        return []
+    return list(dict.fromkeys(each.middle for each in (one.if_exceeded, one.if_withstood) if each.is_wider(tolerance)))

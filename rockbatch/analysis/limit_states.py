@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 LEFT_OUT, WITHSTOOD, UNDECIDED, EXCEEDED = -1, 0, 1, 2
-"""What a run says about a limit, from the best to the worst: of the polarities of a record the worse one counts.
+"""What a run says about a limit.
 
 A run is undecided where the bounds of its demand straddle the limit, by its error estimate or because it flew, failed or
 overturned and the check counts that as unknown; it is left out where the check says so.
@@ -45,6 +45,4 @@ def states(rule: Rule, runs: "pd.DataFrame", case: Case) -> npt.NDArray[np.int8]
     bounds, kept = of_runs(rule, runs, case)
     limit = threshold(rule)
     found = np.where(bounds.low > limit, EXCEEDED, np.where(bounds.high > limit, UNDECIDED, WITHSTOOD))
-    if rule.polarity:
-        kept = kept & (runs["polarity"] == rule.polarity).to_numpy()
     return np.where(kept, found, LEFT_OUT).astype(np.int8)

@@ -42,8 +42,9 @@ FOUND = (
 
 
 def plan(study: Study, spectrum: SpectrumSpec, motions: MotionSet) -> Plan:
-    """The runs of a spectrum: those of the study, on the piers of the spectrum."""
-    return Plan(replace(study, cases=spectrum.cases), motions)
+    """The runs of a spectrum: those of the study that are simulated, on the piers of the spectrum."""
+    once = replace(study.motions, polarity=(study.motions.simulated,))
+    return Plan(replace(study, cases=spectrum.cases, motions=once), motions)
 
 
 def columns(spectrum: SpectrumSpec) -> list[str]:
@@ -71,7 +72,7 @@ def of_suite(table: "pd.DataFrame", varied: tuple[str, ...]) -> "pd.DataFrame":
     Returns
     -------
     DataFrame
-        A row for each case, scale and pier: 16, 50 and 84 % quantiles of θ_max/α over motions and polarities
+        A row for each case, scale and pier: 16, 50 and 84 % quantiles of θ_max/α over the motions
         (``p16``, ``median``, ``p84``), and the greatest (``largest``). A run that overturned, or was ended by flight,
         counts as infinite; a failed one is unknown and only counted.
     """

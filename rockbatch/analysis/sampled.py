@@ -61,18 +61,13 @@ class Points:
 
 
 class Suite:
-    """The motions that count at every point: all of the study, in its polarities unless they are an input, and scales."""
+    """The motions that count at every point: all of the study, in its scales, and in one polarity unless it is an input."""
 
     def __init__(self, study: Study, points: Points, motions: Sequence[Motion]) -> None:
         self.cases, self.points = study.cases, points
         turned = any(each.name == "polarity" for inputs in points.inputs for each in inputs)
-        polarities = ("+",) if turned else study.motions.polarity
-        self.members = [
-            (number, polarity, scale)
-            for number in range(len(motions))
-            for polarity in polarities
-            for scale in study.motions.scale
-        ]
+        polarity = "+" if turned else study.motions.simulated
+        self.members = [(number, polarity, scale) for number in range(len(motions)) for scale in study.motions.scale]
         self._motions = {True: motions, False: [replace(motion, vertical=None) for motion in motions]}
         self._moved = lru_cache(maxsize=8)(self._move)
 

@@ -1,13 +1,13 @@
 """Runs in waves, each of which depends on what the one before came to; all of them in one journal."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager, nullcontext
 from typing import TYPE_CHECKING, Any
 
 from rockbatch.batch import carry_out
 from rockbatch.engines import Engine
 from rockbatch.journal import Journal
-from rockbatch.plan import Run
+from rockbatch.plan import Runs
 from rockbatch.results import COUNTS, TEXTS, as_table
 from rockbatch.study import Study
 
@@ -36,7 +36,7 @@ class Waves:
         self.study, self.journal, self.engine, self.progress = study, journal, engine, progress
         self.finished = 0
 
-    def __call__(self, runs: Sequence[Run]) -> "pd.DataFrame":
+    def __call__(self, runs: Runs) -> "pd.DataFrame":
         first, self.finished = self.finished, self.finished + len(runs)
         left = sum(number not in self.journal for number in range(first, self.finished))
         with self.progress(left) if self.progress and left else nullcontext() as progress:

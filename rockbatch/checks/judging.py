@@ -12,7 +12,7 @@ from rockbatch.checks.choices import chooses, unmet
 from rockbatch.checks.demands import DEMANDS, Case
 from rockbatch.checks.rules import Rule
 from rockbatch.checks.statistics import STATISTICS, Values
-from rockbatch.checks.suite import OTHER_LAW, by_record, complete, counted, without_other_law
+from rockbatch.checks.suite import OTHER_LAW, by_record, complete, counted, simulated, without_other_law
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, Verdict
 from rockbatch.errors import InputError
 from rockbatch.toml.kinds import shown
@@ -30,7 +30,8 @@ def judge(
     ----------
     rules : sequence of Rule
     peaks : DataFrame
-        Rows of peaks.csv; those without a case, of files that could not be used, are in no suite.
+        Rows of peaks.csv; those without a case, of files that could not be used, are in no suite, and mirror images count
+        once.
     cases : sequence of mappings
         ``cases`` of run.json, or some of them.
     records : sequence of str, optional
@@ -51,6 +52,8 @@ def judge(
     wrong = [f"check {shown(rule.name)}: {problem}" for rule in rules for problem in unmet(rule, **there)]
     if wrong:
         raise InputError(*wrong)
+    runs = simulated(runs)
+    polarities = list(runs["polarity"].unique())
     by_name = dict(iter(runs.groupby("case", sort=False)))
     verdicts = []
     for case in cases:
@@ -60,7 +63,8 @@ def judge(
             suite = complete(mine[mine["scale"] == scale], planned, polarities)
             for rule in rules:
                 if chooses(rule, str(case["case"]), scale):
-                    its = suite[suite["polarity"] == rule.polarity] if rule.polarity else suite
+                    # Of a mirror image the demands are the same
+                    its = suite[suite["polarity"] == rule.polarity] if rule.polarity in polarities else suite
                     verdicts.append(_verdict(rule, its, case, scale))
     return verdicts
 

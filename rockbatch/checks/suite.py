@@ -13,6 +13,9 @@ if TYPE_CHECKING:
     import pandas as pd
 
 OTHER_LAW = "settlement_other_law_m"
+MIRROR_OF = "mirror_of"
+"""Column of the polarity of the run whose mirror image a row is; only where a study has both polarities."""
+
 NOT_RUN = "not run"
 
 
@@ -26,6 +29,11 @@ class Bounds(NamedTuple):
     low: Values
     high: Values
     estimated: bool
+
+
+def simulated(runs: "pd.DataFrame") -> "pd.DataFrame":
+    """Rows of peaks.csv without mirror images, which say nothing more: each run counts once."""
+    return runs[runs[MIRROR_OF] == ""] if MIRROR_OF in runs else runs
 
 
 def complete(runs: "pd.DataFrame", records: Sequence[str], polarities: Sequence[str]) -> "pd.DataFrame":

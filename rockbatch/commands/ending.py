@@ -4,7 +4,6 @@ import datetime
 import json
 import platform
 import sys
-from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -21,8 +20,9 @@ if TYPE_CHECKING:
 PACKAGES = ("numba", "numpy", "pandas", "obspy", "h5py")
 
 
-def what_was_run(study: "Study", motions: "MotionSet", runs: Sequence[Any], digest: dict[str, str]) -> dict[str, Any]:
+def what_was_run(study: "Study", motions: "MotionSet", runs: "Plan", digest: dict[str, str]) -> dict[str, Any]:
     """What run.json says, but for what the runs cost."""
+    from rockbatch.batch import to_simulate
     from rockbatch.engines import cores
     from rockbatch.results import describe
 
@@ -33,7 +33,7 @@ def what_was_run(study: "Study", motions: "MotionSet", runs: Sequence[Any], dige
         **describe(study, motions),
         "versions": _versions(),
         "machine": f"{platform.system()} {platform.machine()}, {cores()} processors",
-        "runs": len(runs),
+        "runs": len(to_simulate(runs, range(len(runs)))),
         "digest": digest,
     }
 
@@ -63,6 +63,7 @@ def write_peaks(journal: "Journal", motions: "MotionSet") -> None:
 
 def end(directory: Path, study: "Study", motions: "MotionSet", runs: "Plan", info: dict[str, Any]) -> int:
     """Write run.json, histories, checks and report beside peaks.csv, and tell them; returns the exit code."""
+    from rockbatch.checks.suite import simulated
     from rockbatch.commands.summary import other_law, summary
     from rockbatch.results import INFO, PEAKS, write_info
     from rockbatch.saved import read_saved
@@ -70,9 +71,10 @@ def end(directory: Path, study: "Study", motions: "MotionSet", runs: "Plan", inf
     write_info(directory, info)
     saved = read_saved(directory)
     code, histories = _keep_histories(saved, study, runs)
+    peaks = simulated(saved.peaks)
     by_pga = [motion.name for motion in sorted(motions.motions, key=lambda motion: motion.pga)]
-    print(summary(saved.peaks, study.varied, by_pga))
-    if warning := other_law(saved.peaks, study.varied):
+    print(summary(peaks, study.varied, by_pga))
+    if warning := other_law(peaks, study.varied):
         say(warning)
     if study.checks:
         from rockbatch.commands.check import tell
@@ -86,7 +88,7 @@ def end(directory: Path, study: "Study", motions: "MotionSet", runs: "Plan", inf
     for path in (directory / PEAKS, directory / INFO, histories, report):
         if path:
             say(str(path))
-    if failed := int((saved.peaks["status"] == "failed").sum()):
+    if failed := int((peaks["status"] == "failed").sum()):
         say(f"{count(failed, 'row')} with status failed; the column reason says why")
         code = 1
     return code

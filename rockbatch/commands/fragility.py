@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from rockbatch.commands.analyses import Results
-from rockbatch.commands.messages import count, make_ready, say, tell_motions
+from rockbatch.commands.messages import count, make_ready, once, say, tell_motions
 from rockbatch.commands.options import add_engine, add_study, engine, folder, study_of
 
 if TYPE_CHECKING:
@@ -50,16 +50,16 @@ def main(arguments: argparse.Namespace) -> int:
     digest = digests(
         motions,
         cases=study.cases,
-        polarities=study.motions.polarity,
+        polarity=study.motions.simulated,
         numerics=(study.numerics, study.output),
         fragility=replace(spec, confidence=0.0),  # which no run depends on
     )
     results = Results(directory, "fragility", study, arguments.fresh)
     with results.journal(RUNS, columns(study), digest) as journal, engine(arguments) as carrier:
-        runs = len(motions) * len(study.motions.polarity) * len(spec.levels) * len(study.cases)
+        runs = len(motions) * len(spec.levels) * len(study.cases)
         then = f"; then first exceedances are bisected to {spec.tolerance:g}" if spec.method == "ida" else ""
         levels = f"{count(len(motions), 'record')} at {len(spec.levels)} levels of {spec.label}"
-        say(f"{levels}: {count(runs, 'run')} on {carrier}{then}")
+        say(f"{levels}: {count(runs, 'run')}{once(study)} on {carrier}{then}")
         make_ready(study)
         waves = Waves(study, journal, carrier, Progress)
         curves = assess(study, spec, motions, waves)
@@ -92,7 +92,15 @@ def table(curves: Sequence["Curve"], spec: "FragilitySpec") -> str:
     rows, notes = [], []
     for curve in curves:
         case = f"{curve.case.name} {named(curve.case.columns, curve.case.columns.values())}".strip()
-        row: dict[str, Any] = {"limit": curve.limit.name, "case": case, "median": "", "theta": "", "beta": "", "b": ""}
+        row: dict[str, Any] = {
+            "limit": curve.limit.name,
+            "case": case,
+            "median": "",
+            "theta": "",
+            "open": "",
+            "beta": "",
+            "b": "",
+        }
         if isinstance(curve.fitted, Lognormal):
             fitted = curve.fitted
             row |= {
@@ -101,15 +109,22 @@ def table(curves: Sequence["Curve"], spec: "FragilitySpec") -> str:
                 "beta": f"{fitted.dispersion:.2f}",
                 "b": _interval(fitted.dispersion_interval),
             }
+        if curve.readings:
+            row["open"] = _interval(curve.readings.medians)
         if told := note(curve, spec):
             notes.append(f"{curve.limit.name}, {case}: {told}")
         rows.append(row)
     level = f"{100 * spec.confidence:g} %"
-    heads = ["limit", "case", f"median [{spec.unit}]", level, "dispersion", level]
+    heads = ["limit", "case", f"median [{spec.unit}]", level, "undecided", "dispersion", level]
     found = pd.DataFrame(rows)
     found.columns = pd.Index(heads)
+    if not any(curve.readings for curve in curves):
+        found = found.drop(columns="undecided")
     limits = [f"{limit.name}: {words(limit)}" for limit in spec.limits if words(limit)]
     title = f"Fragility for {spec.label}, {'incremental dynamic analysis' if spec.method == 'ida' else 'stripes'}"
+    if little := sum(curve.says_little for curve in curves):
+        some = f"{little} of {count(len(curves), 'curve')} {'says' if little == 1 else 'say'} little"
+        title += f"; {some}: too many runs are undecided"
     return "\n".join([title, found.to_string(index=False), *limits, *notes])
 
 

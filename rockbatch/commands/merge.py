@@ -43,14 +43,14 @@ def main(arguments: argparse.Namespace) -> int:
         left = [number for number in range(len(runs)) if number not in journal]
         if left and not problems:
             problems.append(
-                f"{len(left)} of {len(runs)} runs are in none of these folders: {_ranges(left)}; finish their shares "
+                f"{len(left)} of {len(runs)} rows are in none of these folders: {_ranges(left)}; finish their shares "
                 f"and merge again, or carry them out here: rockbatch run {arguments.study} --out {directory}"
             )
         if problems:
             raise InputError(*problems)
         write_peaks(journal, motions)
         info = what_was_run(study, motions, runs, digest)
-        return end(directory, study, motions, runs, info | {"jobs": 0, "wall_s": 0.0, "kept": len(runs)})
+        return end(directory, study, motions, runs, info | {"jobs": 0, "wall_s": 0.0, "kept": info["runs"]})
 
 
 def _ranges(numbers: Sequence[int], most: int = 5) -> str:

@@ -35,6 +35,11 @@ def _twice(motions: "MotionSet") -> list[tuple[str, str]]:
     return pairs
 
 
+def once(study: "Study") -> str:
+    """Why there are no more runs, where a study asks for both polarities."""
+    return " (polarity: mirror images, counted once)" if len(study.motions.polarity) > 1 else ""
+
+
 def make_ready(study: "Study") -> None:
     """Have the kernels loaded before the clock starts; where they must be compiled first, it takes a while and is told."""
     from rockbatch.groups import compile_kernels

@@ -6,7 +6,7 @@ import re
 import time
 from typing import TYPE_CHECKING
 
-from rockbatch.commands.messages import count, make_ready, say, tell_motions
+from rockbatch.commands.messages import count, make_ready, once, say, tell_motions
 from rockbatch.commands.options import add_engine, add_study, engine, folder, study_of
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ def main(arguments: argparse.Namespace) -> int:
     started = time.monotonic()
     study = study_of(arguments)
 
-    from rockbatch.batch import carry_out, study_digests
+    from rockbatch.batch import carry_out, study_digests, to_simulate
     from rockbatch.commands.ending import cost_of_finished, end, what_was_run, write_peaks
     from rockbatch.commands.progress import Progress
     from rockbatch.errors import InputError
@@ -68,19 +68,21 @@ def main(arguments: argparse.Namespace) -> int:
             say(f"{told(study, motions)} are finished in {directory}; nothing is left to run (--fresh runs them again)")
             return end(directory, study, motions, runs, info | cost)
         with engine(arguments) as carrier:
-            of_share = f"; share {share} of {shares} is {count(len(wanted), 'run')}" if arguments.shard else ""
+            every = len(to_simulate(runs, wanted))
+            of_share = f"; share {share} of {shares} is {count(every, 'run')}" if arguments.shard else ""
             say(f"{told(study, motions)} on {carrier}{of_share}")
-            kept = sum(number in journal for number in wanted)
+            left = len(to_simulate(runs, wanted, journal))
+            kept = every - left
             if kept:
-                say(f"{kept} of them are finished already, {len(wanted) - kept} are left (--fresh starts over)")
+                say(f"{kept} of them are finished already, {left} are left (--fresh starts over)")
             make_ready(study)
             try:
-                with Progress(len(wanted) - kept) as progress:
+                with Progress(left) as progress:
                     carry_out(runs, study.numerics, journal, carrier, study.output, among=wanted, progress=progress)
             except KeyboardInterrupt:
-                done = sum(number in journal for number in wanted)
+                done = every - len(to_simulate(runs, wanted, journal))
                 say(
-                    f"interrupted: {done} of {count(len(wanted), 'run')} are finished and kept in {journal.path}; "
+                    f"interrupted: {done} of {count(every, 'run')} are finished and kept in {journal.path}; "
                     "the same command goes on from there"
                 )
                 return 130
@@ -97,9 +99,8 @@ def told(study: "Study", motions: "MotionSet") -> str:
     """How many runs there are, and why: "2 records × 5 cases = 10 runs"."""
     factors = {
         "record": len(motions.motions),
-        "direction": len(study.motions.polarity),
         "scale": len(study.motions.scale),
         "case": len(study.cases),
     }
     counted = [count(n, noun) for noun, n in factors.items() if n > 1 or noun in ("record", "case")]
-    return f"{' × '.join(counted)} = {count(math.prod(factors.values()), 'run')}"
+    return f"{' × '.join(counted)} = {count(math.prod(factors.values()), 'run')}{once(study)}"

@@ -7,7 +7,7 @@ from dataclasses import asdict, replace
 from typing import TYPE_CHECKING
 
 from rockbatch.commands.analyses import Results
-from rockbatch.commands.messages import count, make_ready, say, tell_motions
+from rockbatch.commands.messages import count, make_ready, once, say, tell_motions
 from rockbatch.commands.options import add_engine, add_study, engine, folder, study_of
 
 if TYPE_CHECKING:
@@ -58,7 +58,9 @@ def main(arguments: argparse.Namespace) -> int:
     }
     path = results.directory / RUNS
     with engine(arguments) as carrier:
-        say(f"{count(len(points), 'point')} × {count(len(suite.members), 'motion')} = {len(runs)} runs on {carrier}")
+        say(
+            f"{count(len(points), 'point')} × {count(len(suite.members), 'motion')} = {len(runs)} runs{once(study)} on {carrier}"
+        )
         if results.has(RUNS, digest):
             results.keep(RUNS, digest)
         else:

@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from rockbatch.commands.analyses import Results
-from rockbatch.commands.messages import count, make_ready, say, tell_motions
+from rockbatch.commands.messages import count, make_ready, once, say, tell_motions
 from rockbatch.commands.options import add_engine, add_study, engine, folder, study_of
 
 if TYPE_CHECKING:
@@ -61,7 +61,7 @@ def _spectrum(results: Results, spectrum: "SpectrumSpec", carrier: "Engine") -> 
         scales=(study.motions.polarity, study.motions.scale),
         numerics=study.numerics,
     )
-    say(f"spectra: {count(len(motions.motions), 'motion')}, {count(len(runs), 'run')} on {carrier}")
+    say(f"spectra: {count(len(motions.motions), 'motion')}, {count(len(runs), 'run')}{once(study)} on {carrier}")
     results.info |= {"axis": spectrum.axis, "varied": list(spectrum.varied), "motions": len(motions.motions)}
     if results.has(analysis.FILE, digest):
         results.keep(analysis.FILE, digest)
@@ -115,6 +115,14 @@ def spread(values: "np.ndarray") -> "np.ndarray":
     return values[np.linspace(0, len(values) - 1, MOST_LINES).round().astype(int)]
 
 
+def _evenly(values: "np.ndarray") -> "np.ndarray":
+    """At most :data:`MOST_LINES` of ``values``, those that are nearest to evenly spaced ones."""
+    import numpy as np
+
+    wanted = np.linspace(values[0], values[-1], MOST_LINES)
+    return values[np.unique(np.abs(values[:, None] - wanted).argmin(axis=0))]
+
+
 def _maps(results: Results, maps: "tuple[MapSpec, ...]", carrier: "Engine") -> None:
     """Write the overturning maps, and print them."""
     import pandas as pd
@@ -129,7 +137,8 @@ def _maps(results: Results, maps: "tuple[MapSpec, ...]", carrier: "Engine") -> N
 
     study = replace(results.study, output=NOTHING_MORE)
     results.info["varied_map"] = list(study.varied)
-    results.info["maps"] = [{"name": spec.name, "shape": spec.shape, "tolerance": spec.tolerance} for spec in maps]
+    told = ("name", "shape", "tolerance", "width")
+    results.info["maps"] = [{name: getattr(spec, name) for name in told} for spec in maps]
     digest = digests([], maps=maps, cases=study.cases, numerics=study.numerics)
     if results.has(analysis.RUNS, digest) and (results.directory / analysis.FILE).exists():
         results.keep(analysis.FILE)
@@ -141,14 +150,23 @@ def _maps(results: Results, maps: "tuple[MapSpec, ...]", carrier: "Engine") -> N
     with results.journal(analysis.RUNS, columns(study), digest) as journal:
         waves = Waves(study, journal, carrier, Progress)
         for spec in maps:
-            grid = analysis.Columns(spec, study.cases)
-            say(f"map {spec.name}: {len(grid)} columns of {spec.amplitudes} amplitudes on {carrier}, then bisection")
-            rows += grid.rows(grid.find(waves))
+            own, before = analysis.Maps(spec, study.cases), waves.finished
+            say(
+                f"map {spec.name}: {_grid(spec, len(study.cases))} on {carrier}; then what changes is looked at more closely"
+            )
+            found = own.find(waves)
+            rows += own.rows(found)
+            say(f"map {spec.name}: {sum(map(len, found))} frequencies, {waves.finished - before} runs")
         table = pd.DataFrame(rows, columns=analysis.columns(study.varied))
         results.keep_table(analysis.FILE, table)
         journal.write_in_order(results.directory / analysis.RUNS)
         results.keep(analysis.RUNS, digest)
     print(shown_maps(table, study.varied))
+
+
+def _grid(spec: "MapSpec", cases: int) -> str:
+    grid = f"{spec.frequencies} frequencies × {spec.amplitudes} amplitudes"
+    return f"{grid} × {count(cases, 'case')}" if cases > 1 else grid
 
 
 def shown_maps(table: "pd.DataFrame", varied: tuple[str, ...]) -> str:
@@ -158,7 +176,7 @@ def shown_maps(table: "pd.DataFrame", varied: tuple[str, ...]) -> str:
     blocks = []
     for names, own in table.groupby(["map", "case", *varied], sort=False, dropna=False):
         lines = [f"{names[0]}, {names[1]} {named(varied, names[2:])}".rstrip() + ": outcome by a_p/(g tan alpha)"]
-        for frequency in spread(own["omega_p_over_p"].unique()):
+        for frequency in _evenly(own["omega_p_over_p"].unique()):
             column = own[own["omega_p_over_p"] == frequency]
             told = "; ".join(f"{each.low:.4g} to {each.high:.4g} {each.outcome}" for each in column.itertuples())
             lines.append(f"  omega_p/p = {frequency:<6.4g} {told}")

@@ -7,6 +7,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from rockbatch.checks.suite import simulated
 from rockbatch.errors import InputError
 from rockbatch.report.labels import Key, Series, named, quantity
 from rockbatch.report.markup import number
@@ -26,8 +27,9 @@ class Finished:
     saved : Saved
         The two files.
     runs : DataFrame
-        The rows of ``peaks.csv`` that were simulated, and more of each: ``series`` and ``pier``, places in the lists
-        below; ``alpha`` [rad]; ``pga_g``, that of the scaled motion; ``with_vertical``, "" unless the study has both.
+        The rows of ``peaks.csv`` that were simulated, without mirror images, and more of each: ``series`` and ``pier``,
+        places in the lists below; ``alpha`` [rad]; ``pga_g``, that of the scaled motion; ``with_vertical``, "" unless the
+        study has both.
     series : list of Series
         The foundations.
     piers : list of str
@@ -57,6 +59,11 @@ class Finished:
     def both_directions(self) -> bool:
         """Whether motions were run as recorded and reversed."""
         return bool(self.runs["polarity"].nunique() > 1)
+
+    @cached_property
+    def mirrored(self) -> bool:
+        """Whether the table has mirror images beside what was simulated."""
+        return len(simulated(self.saved.peaks)) < len(self.saved.peaks)
 
     def place(self, case: str, columns: Mapping[str, Any]) -> tuple[int, int]:
         """Places in ``series`` and ``piers`` of a case with the given varied values."""
@@ -108,7 +115,7 @@ def finished(saved: Saved) -> Finished:
     series = named(grouped, [key for key in varied if _of_foundation(key)])
     places = {key: place for place, key in enumerate(series)}
 
-    runs = saved.peaks[saved.peaks["case"] != ""].copy()
+    runs = simulated(saved.peaks[saved.peaks["case"] != ""]).copy()
     kinds = runs.groupby(["case", *varied], sort=False, dropna=False).ngroup() if len(runs) else runs["scale"]
     piers: dict[Key, int] = {}
     facts: dict[int, tuple[int, int, float]] = {}

@@ -33,9 +33,8 @@ def section(directory: Path, sha256: str | None) -> Markup:
 
 
 def _lead(info: Mapping[str, Any]) -> Markup:
-    directions = len(info["polarities"])
     told = f"The probability that a limit is exceeded by a motion with a given {info['measure']}, from {info['records']} records"
-    told += ", each with the worse of its directions" if directions > 1 else ""
+    told += " (polarity: mirror images, counted once)" if len(info["polarities"]) > 1 else ""
     if info["method"] == "ida":
         told += (
             f". Incremental dynamic analysis: of each record the least intensity that exceeds the limit, from its first "
@@ -46,13 +45,27 @@ def _lead(info: Mapping[str, Any]) -> Markup:
         told += (
             ", all of them scaled to every level; the bands allow for that these are the same records at every level."
         )
-    return tag("p", told)
+    little = [f"{one['limit_state']}, {_label(one)}" for one in info["curves"] if one["says_little"]]
+    warning = (
+        tag("strong", f"Too many runs are undecided for these curves to say much: {'; '.join(little)}. ")
+        if little
+        else ""
+    )
+    return tag("p", warning, told)
 
 
 def _caption(info: Mapping[str, Any]) -> str:
     share = f"{100 * info['confidence']:g} %"
-    points = "Markers: share of the records that exceed the limit at a level; bars: undecided runs. "
-    steps = "Dotted: share of the records by their bisected capacities. " if info["method"] == "ida" else ""
+    points = "Markers: share of the decided records that exceed the limit at a level; bars: with the undecided ones either way. "
+    if any("open" in one for one in info["curves"]):
+        points += (
+            "Undecided runs count for nothing in a curve; between dotted edges: what it may be, whatever they come to. "
+        )
+    steps = (
+        "Steps: share of the records by their bisected capacities, where none is undecided. "
+        if info["method"] == "ida"
+        else ""
+    )
     return (
         f"{points}{steps}Curves: lognormal, by maximum likelihood (Baker 2015); shaded: {share} profile-likelihood "
         "band, pointwise. Where no curve is drawn, the table says why."
@@ -99,10 +112,11 @@ def _panel(info: Mapping[str, Any], curves: Sequence[Curve], styles: Mapping[str
 
 
 def _band(axes: Axes, one: Curve, colour: int) -> Iterator[Markup]:
-    if "curve" in one:
-        x, low, high = (np.array(one["curve"][name]) for name in ("x", "low", "high"))
-        around = np.concatenate((low, high[::-1]))
-        yield curve(axes.across(np.concatenate((x, x[::-1]))), axes.down(around), f"area s{colour}")
+    for name, class_ in (("open", "open"), ("curve", "area")):
+        if name in one:
+            x, low, high = (np.array(one[name][side]) for side in ("x", "low", "high"))
+            around = np.concatenate((low, high[::-1]))
+            yield curve(axes.across(np.concatenate((x, x[::-1]))), axes.down(around), f"{class_} s{colour}")
 
 
 def _drawn(axes: Axes, one: Curve, shape: str, colour: int) -> Iterator[Markup]:
@@ -110,20 +124,19 @@ def _drawn(axes: Axes, one: Curve, shape: str, colour: int) -> Iterator[Markup]:
     if "curve" in one:
         x, p = (np.array(one["curve"][name]) for name in ("x", "p"))
         yield curve(axes.across(x), axes.down(p), f"level {class_}")
-    if one["capacities"]:
+    if one["capacities"] and "open" not in one:  # a share of the records needs all of them
         yield curve(*_steps(axes, [high for _, high in one["capacities"]]), f"level {class_} d2")
     for point in one["points"]:
         if not point["records"]:
             continue
         at = float(axes.across(point["level"]))
-        least, most = (float(axes.down(k / point["records"])) for k in _range(point))
-        if most != least:
-            yield line(at, least, at, most, class_)
-        yield marker(shape, at, least, colour=class_, title=_said(one, point))
-
-
-def _range(point: Mapping[str, Any]) -> tuple[int, int]:
-    return point["exceeded"], point["exceeded"] + point["undecided"]
+        exceeded, undecided, records = point["exceeded"], point["undecided"], point["records"]
+        if undecided:
+            least, most = (float(axes.down(k / records)) for k in (exceeded, exceeded + undecided))
+            yield line(at, least, at, most, class_, _said(one, point))
+        if records > undecided:
+            share = float(axes.down(exceeded / (records - undecided)))
+            yield marker(shape, at, share, colour=class_, title=_said(one, point))
 
 
 def _said(one: Curve, point: Mapping[str, Any]) -> str:
@@ -150,6 +163,7 @@ def _table(info: Mapping[str, Any]) -> Markup:
         Head("case"),
         Head(f"median [{info['unit']}]", ".3g", f"θ: the {info['measure']} that half of the motions need"),
         Head(share, note="profile-likelihood interval of the median"),
+        Head("undecided", note="the median with all undecided runs beyond the limit, and with all within it"),
         Head("dispersion", ".2f", "β: standard deviation of the logarithm"),
         Head(share, note="profile-likelihood interval of the dispersion"),
         Head("records", ".0f", "that count"),
@@ -162,6 +176,7 @@ def _table(info: Mapping[str, Any]) -> Markup:
             _label(one),
             one["median"],
             _interval(one.get("median_interval")),
+            _interval(one["median_undecided"]),
             one["dispersion"],
             _interval(one.get("dispersion_interval")),
             max(point["records"] for point in one["points"]),

@@ -4,6 +4,7 @@ import math
 from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING, Any
 
+from rockbatch.checks.suite import MIRROR_OF
 from rockbatch.report.finished import Finished, as_dicts, worst_first
 from rockbatch.report.labels import symbol
 from rockbatch.report.markup import Markup, join, number, tag
@@ -90,7 +91,7 @@ def every_run(finished: Finished) -> Markup:
         names["scale"] = Head("scale", note="factor on all components")
     if runs["with_vertical"].nunique() > 1:
         names["with_vertical"] = Head("vertical component")
-    known = {"record", "case", "polarity", "scale", "vertical", *varied, *_COLUMNS}
+    known = {"record", "case", "polarity", "scale", "vertical", MIRROR_OF, *varied, *_COLUMNS}
     columns = {name: column for name, column in _COLUMNS.items() if name in runs}
     columns |= {name: (1, _energy(name)) for name in finished.saved.peaks.columns if name not in known}
     shown = worst_first(runs, MOST_ROWS)

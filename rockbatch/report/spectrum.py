@@ -1,13 +1,11 @@
 """Pictures of ``rockbatch spectrum``: rocking spectra as curves, overturning maps as regions."""
 
-import math
-from collections.abc import Hashable
-from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rockbatch.report import overturning_map
 from rockbatch.report.analysis import Found, named, read
 from rockbatch.report.axes import Axes, Scale
 from rockbatch.report.document import figure
@@ -22,14 +20,6 @@ if TYPE_CHECKING:
 WIDTH, HEIGHT = 616, 268
 ACROSS = {"two_pi_over_p_s": "2π/p [s]"}
 QUANTILES = {"median": "", "p16": " d2", "p84": " d1"}
-REGIONS = {
-    "safe": ("", "stands"),
-    "overturned with impact": ("s2", "overturns after an impact or more (mode 1)"),
-    "overturned without impact": ("s1", "overturns without impact (mode 2)"),
-    "flight": ("s3", "leaves the ground with both pivots: the run ends"),
-    "undecided": ("s4", "not decided: the run did not settle"),
-}
-"""Colour and words of each region of a map."""
 
 
 def section(directory: Path, sha256: str | None) -> Markup:
@@ -118,85 +108,9 @@ def _maps(found: Found, regions: "pd.DataFrame") -> list[Markup]:
         words = f"{values['map']} ({spec['shape']}), {named(values, apart[1:])}"
         n = own["omega_p_over_p"].nunique()
         caption = (
-            f"{words}. Boundaries are located within {spec['tolerance']:g} along the ordinate, at {n} frequencies."
+            f"{words}. Computed at {n} frequencies: boundaries are located within {spec['tolerance']:g} along the ordinate, "
+            f"and where regions begin, end or change their order within {spec['width']:g} along the abscissa, "
+            "where the picture has a step. Islands may be missed that are narrower than a step of the grid both ways."
         )
-        drawn.append(figure(_regions(own), caption))
+        drawn.append(figure(overturning_map.draw(own), caption))
     return drawn
-
-
-Intervals = dict[tuple[str, int], tuple[float, float]]
-
-
-def _regions(own: "pd.DataFrame") -> Markup:
-    columns = {float(str(frequency)): column for frequency, column in own.groupby("omega_p_over_p")}
-    frequencies = np.array(list(columns))
-    axes = Axes(
-        36,
-        16,
-        WIDTH - 48,
-        300,
-        Scale(*frequencies[[0, -1]].tolist()),
-        Scale(float(own["low"].min()), float(own["high"].max())),
-    )
-    drawn = [_between(axes, *pair) for pair in pairwise(columns.items())]
-    drawn.append(axes.frame(axes.x.ticks(10), axes.y.ticks(8)))
-    drawn += [
-        curve(axes.across(frequencies), axes.down(np.array([heights.get(f, math.nan) for f in frequencies])), "level")
-        for heights in boundaries(own).values()
-    ]
-    drawn.append(text(axes.left + axes.width / 2, 346, lowered("ω", "p", "/p"), class_="m q"))
-    drawn.append(text(axes.left - 2, 10, lowered("a", "p", "/(g tan α)"), class_="q"))
-    present = [name for name in REGIONS if name in set(own["outcome"]) and REGIONS[name][0]]
-    entries = [(rectangle(1, 1, 20, 12, f"filled {REGIONS[name][0]}"), REGIONS[name][1]) for name in present]
-    entries.append((line(0, 7, 22, 7, "level"), "boundary; outside all colours it stands"))
-    return join(svg(WIDTH, 350, *drawn, description="Overturning map", class_="plot marks"), key(entries))
-
-
-def _between(axes: Axes, left: "tuple[float, pd.DataFrame]", right: "tuple[float, pd.DataFrame]") -> Markup:
-    """The regions from one frequency to the next; one that is not there at the other closes on its way."""
-    (start, before), (end, after) = left, right
-    here, there = _intervals(before), _intervals(after)
-    x1, x2 = float(axes.across(start)), float(axes.across(end))
-    drawn = []
-    for region in dict.fromkeys([*here, *there]):
-        colour = REGIONS[region[0]][0]
-        if colour:
-            ends = (*_interval(axes, region, here, there), *_interval(axes, region, there, here))
-            foot1, top1, foot2, top2 = axes.down(np.array(ends))
-            d = f"M{x1:.1f} {foot1:.1f}V{top1:.1f}L{x2:.1f} {top2:.1f}V{foot2:.1f}z"
-            drawn.append(tag("path", d=d, class_=f"filled {colour}"))
-    return join(*drawn)
-
-
-def _intervals(column: "pd.DataFrame") -> Intervals:
-    """Amplitudes of the regions at a frequency, from below, by outcome and how often it was there already."""
-    outcomes = column["outcome"].tolist()
-    names = [(outcome, outcomes[:i].count(outcome)) for i, outcome in enumerate(outcomes)]
-    return dict(zip(names, column[["low", "high"]].itertuples(index=False, name=None), strict=True))
-
-
-def _interval(axes: Axes, region: tuple[str, int], own: Intervals, other: Intervals) -> tuple[float, float]:
-    """Where a region is, or closes: at an end of the range, or on top of what is below it at the other frequency."""
-    if region in own:
-        return own[region]
-    names = list(other)
-    low, high = other[region]
-    place = names.index(region)
-    if place == len(names) - 1:
-        height = axes.y.high
-    else:
-        height = own.get(names[place - 1], (axes.y.low, axes.y.low))[1] if place else axes.y.low
-    height = min(max(height, low), high)  # as it was: what is below may have become something else
-    return height, height
-
-
-def boundaries(own: "pd.DataFrame") -> dict[Hashable, dict[float, float]]:
-    """Amplitudes of each boundary by frequency; boundaries are told by the outcomes on both sides, and their order."""
-    found: dict[Hashable, dict[float, float]] = {}
-    for frequency, column in own.groupby("omega_p_over_p"):
-        outcomes, highs = column["outcome"].tolist(), column["high"].tolist()
-        seen: dict[Hashable, int] = {}
-        for below, above, height in zip(outcomes, outcomes[1:], highs, strict=False):
-            count = seen[below, above] = seen.get((below, above), 0) + 1
-            found.setdefault((below, above, count), {})[float(str(frequency))] = height
-    return found

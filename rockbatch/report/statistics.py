@@ -23,7 +23,7 @@ QUANTITIES: dict[str, tuple[float, Markup, str]] = {
 """Factor, heading and format of what has statistics; by magnitude."""
 
 WORDS = (
-    "Every run of the suite counts: each ground motion, direction and scale of the group. A run that overturned, or was "
+    "Every run of the suite counts: each ground motion and scale of the group, mirror images once. A run that overturned, or was "
     "ended by flight, has no largest value and counts as larger than any (∞) in the median, the percentiles and the "
     "maximum; the mean is then that of the runs that stood, with their number. A failed run is unknown and counts in "
     "its own column only. Percentiles are linear between the runs in order."

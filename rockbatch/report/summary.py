@@ -30,6 +30,7 @@ def studied(finished: Finished, level: str = "h3") -> Markup:
         + (", as recorded and reversed" if finished.both_directions else "")
         + (f", scaled by {', '.join(number(float(scale)) for scale in scales)}" if scales not in ([], [1.0]) else "")
         + f": {counted(len(runs), 'run')}."
+        + (" Polarity: mirror images, counted once." if finished.mirrored else "")
     )
     described = tag("ul", *(tag("li", _pier(pier)) for pier in piers.values()))
     return join(

@@ -59,7 +59,8 @@ class FragilitySpec:
     tolerance : float
         Relative width to which the bisection brackets the least scale that exceeds a limit.
     limits : tuple of Rule
-        Overturning, then the checks; each is held against every record by itself.
+        Overturning, then the checks; each is held against every record by itself, and runs that flew or failed are
+        undecided unless the check leaves them out.
     confidence : float
         Level of the confidence bands.
     """
@@ -140,4 +141,18 @@ def _limits(table: Table, rules: tuple[Rule, ...], chosen: list[Any] | None) -> 
                 table.complain_about(setting, f"checks = {shown(setting.value)}: no [[check]] is called so; {instead}")
         patterns = [setting.value for setting in chosen]
         able = [rule for rule in able if any(fnmatch.fnmatchcase(rule.name, one) for one in patterns)]
-    return tuple(replace(rule, scale=()) for rule in able)
+    return tuple(map(_of_one_record, able))
+
+
+def _of_one_record(rule: Rule) -> Rule:
+    """A check as a limit of every record, in whatever suite and direction.
+
+    A run that flew or failed may be left out, but else it is undecided: a check is on the safe side where such a run counts as
+    infinite, a fragility is not.
+    """
+    statistic = "max" if rule.statistic == "asce7-16" else rule.statistic
+    one = replace(rule, scale=(), polarity=None, statistic=statistic)
+    if not DEMANDS[rule.demand].of_runs:
+        return one
+    flight, failed = ("left out" if one.counts(status) == "left out" else "unknown" for status in ("flight", "failed"))
+    return replace(one, flight=flight, failed=failed)

@@ -82,6 +82,11 @@ class MotionSpec:
     fema_p695: tuple[FemaSpec, ...] = ()
     pulses: tuple[PulseSpec, ...] = ()
 
+    @property
+    def simulated(self) -> str:
+        """The one polarity that is simulated: pier and foundation are symmetric, so the other gives the mirror image."""
+        return "+" if "+" in self.polarity else "-"
+
 
 @dataclass(frozen=True)
 class Numerics:

@@ -23,7 +23,7 @@ LEAST_POINTS = 2
 """Of a range: its ends."""
 
 LEAST_TOLERANCE = 1e-9
-"""Of a boundary; halves of intervals that are shorter would soon be no numbers between their ends."""
+"""Of a boundary, along either axis; halves of intervals that are shorter would soon be no numbers between their ends."""
 
 
 def _oscillations(value: Any) -> float:
@@ -56,6 +56,7 @@ MAP = {
     "amplitude": Key(positive, "[1.0, 12.0]", required=True, many=True),
     "amplitudes": Key(count, "45"),
     "tolerance": Key(_tolerance, "1e-3"),
+    "width": Key(_tolerance, "0.02"),
 }
 
 
@@ -83,7 +84,8 @@ class MapSpec:
     """An overturning map: amplitudes a_p/(g tan α) over frequencies ω_p/p of one pulse, for every case of the study.
 
     ``frequency`` and ``amplitude`` are the ranges, with so many values of each in the grid; ``tolerance`` is the width
-    within which boundaries are found, of a_p/(g tan α). ``gamma`` and ``nu`` as in :func:`rockbatch.motions.pulse`.
+    within which boundaries are found, of a_p/(g tan α), and ``width`` the one within which it is found, of ω_p/p, where the
+    regions change in number or order. ``gamma`` and ``nu`` as in :func:`rockbatch.motions.pulse`.
     """
 
     name: str
@@ -93,6 +95,7 @@ class MapSpec:
     frequencies: int = 29
     amplitudes: int = 45
     tolerance: float = 1e-3
+    width: float = 0.02
     gamma: float | None = None
     nu: float | None = None
 
