@@ -8,10 +8,13 @@ from pathlib import Path
 from rockbatch.errors import InputError
 from rockbatch.units import GRAVITY, acceleration_factor
 
+ROLES = ("horizontal",)
+"""What all components of unknown direction may be said to be."""
+
 
 @dataclass(frozen=True)
 class ReadOptions:
-    """What a study states about files that do not state it themselves; what a file says goes first.
+    """What a study states about files that do not state it themselves; a file that says otherwise is refused.
 
     Attributes
     ----------
@@ -22,14 +25,20 @@ class ReadOptions:
     columns : tuple of str or None
         What the columns of text files are: "time", a component such as "000", "NS" or "up", or "-" (leave
         out).
+    role : str or None
+        What components are whose direction nothing tells: "horizontal".
     sensitivity : float or None
         Counts per ``unit`` (per m/s² where no unit is stated) of MiniSEED and SAC files.
+    instead : frozenset of str
+        Which of these a manifest states for this very file, in place of what it says itself.
     """
 
     unit: str | None = None
     dt: float | None = None
     columns: tuple[str, ...] | None = None
     sensitivity: float | None = None
+    role: str | None = None
+    instead: frozenset[str] = frozenset()
 
     def __post_init__(self) -> None:
         wrong = []
@@ -42,6 +51,8 @@ class ReadOptions:
             wrong.append(f"dt = {self.dt:g}: must be a number above 0 [s]")
         if self.sensitivity is not None and not (math.isfinite(self.sensitivity) and self.sensitivity != 0):
             wrong.append(f"sensitivity = {self.sensitivity:g}: must be a number other than 0 [counts per unit]")
+        if self.role not in (None, *ROLES):
+            wrong.append(f'role = "{self.role}": must be "horizontal"; verticals are named one by one, in motions.toml')
         if self.columns is not None:
             object.__setattr__(self, "columns", tuple(self.columns))
             if all(name in ("-", "time", "t") for name in self.columns):
