@@ -150,6 +150,30 @@ def test_a_stated_unit_that_contradicts_the_file_is_refused_with_both(tmp_path, 
         assert 'the file says cm/s2, but unit = "' in reason(folders["cosmos"], unit=stated)
 
 
+@pytest.mark.parametrize(
+    "line",
+    [
+        *(
+            "ACCELERATION TIME HISTORY IN UNITS OF CM/S/S",
+            "Acceleration in cm/s2",
+            "Acceleration unit: gal",
+            "Acc. (cm/s2)",
+        ),
+        *("AmplitudeUnit: gal", "Corrected acceleration values in units of cm/sec2.", "Units: cm/s**2"),
+    ],
+)
+def test_a_unit_in_the_text_of_a_header_counts_and_is_not_overridden(tmp_path, line):
+    write(tmp_path, f"# {line}\n# dt = 0.01", 100 * A)
+    np.testing.assert_allclose(one(tmp_path).horizontal, A, atol=1e-6)
+    assert 'but unit = "g" is stated' in reason(tmp_path, unit="g")
+
+
+def test_the_unit_of_a_peak_and_words_behind_in_are_no_unit_of_the_data(tmp_path):
+    write(tmp_path, "# Peak acceleration (cm/s2): 98.1\n# acceleration in station 3\n# dt = 0.01", A)
+    assert "has no unit" in reason(tmp_path)
+    np.testing.assert_allclose(one(tmp_path, unit="m/s2").horizontal, A, atol=1e-6)
+
+
 def test_a_manifest_stays_the_word_for_one_file_and_says_so_whatever_the_study_states(tmp_path):
     write(tmp_path, "# dt = 0.01\n# unit: g", A)
     (tmp_path / "motions.toml").write_text('[[record]]\nfile = "x_N.txt"\nunit = "m/s2"\ndt = 0.02\n')

@@ -6,14 +6,21 @@ from dataclasses import dataclass
 
 from rockbatch.motions.formats.stated_step import SECONDS, states_a_step
 from rockbatch.motions.orientation import orientation_in, orientation_of
+from rockbatch.units import acceleration_factor
 
 _UNIT = r"[(\[]\s*(?P<unit>[^()\[\]]+?)\s*[)\]]"
 _NUMBERED = re.compile(rf"^column\s+(?P<at>\d{{1,3}})\s*[:=]\s*(?P<label>.*?)\s*{_UNIT}", re.IGNORECASE)
 _LABELLED = re.compile(rf"(?P<label>[^\s,;()\[\]][^,;\t()\[\]]*?)\s*{_UNIT}")
 _WORD = re.compile(rf"(?P<label>[^\s,;()\[\]]+)(?:\s*{_UNIT})?")  # a label of one word, perhaps with its unit
-_FIELD = re.compile(rf"\s*(?P<label>[^()\[\]]*?)\s*(?:{_UNIT})?\s*")  # one between commas or tabs
+_FIELD = re.compile(rf"(?P<label>[^()\[\]]*[^()\[\]\s])\s*(?:{_UNIT})?")  # one between commas or tabs
 _VALUE = re.compile(r"[:=]|\d\.\d|(?<!\w)\.\d")
 _STATED = re.compile(r"^units?\s*[:=]\s*(?P<unit>\S+)", re.IGNORECASE)
+_SAID = re.compile(  # acceleration in g; UNITS OF CM/S/S; Acceleration unit: gal; Acc. (cm/s2)
+    r"(?:\bunits? of|\b(?:acc|accel|acceleration|amplitude|data)s?\.?(?:[ _]*(?:data|values|units?|time series|time history))?"
+    r"\s*(?:\bin\b(?: units? of)?|[:=(\[]))\s*(?P<unit>[^\s,;()\[\]]+)",
+    re.IGNORECASE,
+)
+_PEAK = re.compile(r"\b(?:pga|peak|max(?:imum)?)\b", re.IGNORECASE)
 _COUNT = re.compile(
     r"\b(?:npts|(?:number|no\.?) of (?:points|samples))\s*[:=]?\s*(?P<npts>[0-9]{1,12})\b", re.IGNORECASE
 )
@@ -23,6 +30,7 @@ _PERIODS = {"PERIOD", "PERIODS", "TN"}
 _FREQUENCIES = {"FREQ", "FREQS", "FREQUENCY", "FREQUENCIES", "HZ", "OMEGA"}
 _PER_SECOND = {"hz", "1/s", "rad/s", "rad/sec"}
 _ORDINATE = re.compile(r"P?S[AVD]E?|PSEUDO|SPECTR(?:AL|UM|A)|ROTD\d+|GMROT[DI]\d+|FAS|FOURIER", re.IGNORECASE)
+_SPECTRA = re.compile(r"\b(?:(?i:spectr(?:al|um|a)|fourier)|PSA|Sae?|FAS)\b")
 _OTHERS = {
     **dict.fromkeys(("VEL", "VELO", "VELOC", "VELOCITY"), "velocity"),
     **dict.fromkeys(("DISP", "DISPL", "DISPLACEMENT"), "displacement"),
@@ -123,20 +131,30 @@ def columns_without_units(header: Sequence[str], width: int) -> list[Column] | N
 def _labels_of(line: str) -> list[list[Column]]:
     """The columns that a line may name: one for each word, or one between commas, semicolons or tabs."""
     words = [Column(_tidy(match["label"]), match["unit"]) for match in _WORD.finditer(line)]
-    fields = [match for field in re.split(r"[,;\t]", line) if (match := _FIELD.fullmatch(field)) and match["label"]]
+    fields = [match for field in re.split(r"[,;\t]", line) if (match := _FIELD.fullmatch(field.strip()))]
     found = [] if _WORD.sub("", line).strip(" \t,;") else [words]
     return [*found, [Column(_tidy(match["label"]), match["unit"]) for match in fields]]
 
 
 def speaks_of_spectra(header: Sequence[str]) -> str:
     """The line of a header from which columns without labels may be a spectrum; empty where there is none."""
-    words = re.compile(r"\b(?:spectr(?:al|um|a)|psa|sae?|periods?|fourier|fas)\b", re.IGNORECASE)
-    return next((line for line in header if words.search(line)), "")
+    return next((line for line in header if _SPECTRA.search(line)), "")
 
 
 def stated_unit(header: Sequence[str]) -> str | None:
-    """The unit of a line ``unit: cm/s2``."""
-    return next((match["unit"].rstrip(".,;") for line in header if (match := _STATED.match(line))), None)
+    """The unit of a line ``unit: cm/s2``, or else such as ``acceleration in units of cm/s/s``."""
+    stated = next((match["unit"].rstrip(".,;") for line in header if (match := _STATED.match(line))), None)
+    said = (match["unit"].rstrip(".") for line in header if not _PEAK.search(line) for match in _SAID.finditer(line))
+    return stated or next((unit for unit in said if is_acceleration(unit)), None)
+
+
+def is_acceleration(unit: str) -> bool:
+    """Whether a unit is one of acceleration."""
+    try:
+        acceleration_factor(unit)
+    except ValueError:
+        return False
+    return True
 
 
 def stated_count(header: Sequence[str]) -> int | None:

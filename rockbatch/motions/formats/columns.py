@@ -15,6 +15,7 @@ from rockbatch.motions.formats.column_header import (
     Column,
     columns_with_units,
     columns_without_units,
+    is_acceleration,
     seconds_in,
     speaks_of_spectra,
     spectrum_in,
@@ -29,7 +30,6 @@ from rockbatch.motions.formats.table import read_table
 from rockbatch.motions.formats.time_steps import grows_evenly, on_even_steps
 from rockbatch.motions.motion import Samples, Unusable
 from rockbatch.motions.orientation import orientation_in, same_azimuth, split_stem
-from rockbatch.units import acceleration_factor
 
 SUFFIXES = frozenset({".txt", ".csv", ".dat", ".bbp", ".acc"})
 
@@ -45,7 +45,9 @@ def is_bbp(head: bytes) -> bool:
     """Whether the first bytes are comments that declare time and three accelerations, each with its unit."""
     lines = [line.lstrip("# \t") for line in head.decode("latin-1").splitlines() if line.startswith("#")]
     columns = columns_with_units(lines, 4) or []
-    return len(columns) == 4 and columns[0].is_time and all(map(_is_acceleration, columns[1:]))
+    return (
+        len(columns) == 4 and columns[0].is_time and all(is_acceleration(column.unit or "") for column in columns[1:])
+    )
 
 
 def read_columns(file: RecordFile) -> list[Component | Unusable]:
@@ -217,15 +219,6 @@ def _check_step(said: StatedStep, dt: float, usual: float) -> None:
 def _called(i: int, column: Column) -> str:
     """A column for messages."""
     return f'column {i + 1} ("{column.label}")' if column.label else f"column {i + 1}"
-
-
-def _is_acceleration(column: Column) -> bool:
-    """Whether a column's unit is one of acceleration."""
-    try:
-        acceleration_factor(column.unit or "")
-    except ValueError:
-        return False
-    return True
 
 
 is_bbp_file, read_bbp_stream = plugin("BBP", is_bbp, lambda text: _parse(text, ReadOptions()))
