@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-from fixed_column_files import cosmos_text
-from motion_files import wiggle, write_at2
+from motion_files import RECORDS, needs_records, wiggle, write_at2
 
 from rockbatch.cli import main
 from rockbatch.errors import InputError
@@ -133,21 +132,28 @@ def test_a_lost_sample_does_not_make_the_headers_step_wrong(tmp_path):
 
 @pytest.mark.parametrize("stated", ["gal", "cm/s2", "m/s2", "g/10"])
 def test_a_stated_unit_that_contradicts_the_file_is_refused_with_both(tmp_path, stated):
-    folders = {name: tmp_path / name for name in ("at2", "label", "line", "cosmos")}
+    folders = {name: tmp_path / name for name in ("at2", "label", "line")}
     for folder in folders.values():
         folder.mkdir()
     write_at2(folders["at2"], "x000.AT2", A)
     write(folders["label"], "# time(s) N(g)", 0.01 * np.arange(120), A)
     write(folders["line"], "# unit: g\n# dt = 0.01", A)
-    for folder in (folders["at2"], folders["label"], folders["line"]):
-        said = reason(folder, unit=stated)
+    for folder in folders.values():
+        said = reason(folder, unit=stated, dt=0.02)
         assert said.lower().startswith(f'the file says g, but unit = "{stated}" is stated')
-        assert one(folder, unit="G").dt == 0.01
-    (folders["cosmos"] / "x.V2c").write_text(cosmos_text(), encoding="latin-1")
-    if stated in ("gal", "cm/s2"):
-        assert len(read_motions(folders["cosmos"], options=ReadOptions(unit=stated)).motions) == 1
-    else:
-        assert 'the file says cm/s2, but unit = "' in reason(folders["cosmos"], unit=stated)
+        assert "the file says 0.01 s, but dt = 0.02 is stated" in said
+        assert one(folder, unit="G", dt=0.01).dt == 0.01
+
+
+@needs_records
+def test_what_some_files_of_a_folder_need_costs_none_of_the_formats_that_always_have_theirs():
+    """SAC files need a unit; those beside them from GeoNet, CGS, USGS, DYNA have theirs, in mm/s² and cm/s²."""
+    before = {motion.name: motion for motion in read_motions(RECORDS / "formats").motions}
+    after = {m.name: m for m in read_motions(RECORDS / "formats", options=ReadOptions(unit="g")).motions}
+    assert len(before) > 25
+    assert {"20190706031952.CJ.T001230.HNE"} <= after.keys() - before.keys()
+    for name, motion in before.items():
+        assert after[name].pga == motion.pga
 
 
 @pytest.mark.parametrize(
@@ -229,7 +235,7 @@ def test_stated_columns_fill_what_the_header_leaves_open_and_leave_columns_out(t
 
 def test_columns_of_other_files_do_not_concern_one_whose_header_tells_its_own(tmp_path):
     write(tmp_path, "# time(s) N(g)", 0.01 * np.arange(120), A, name="own.txt")
-    write(tmp_path, "", 0.01 * np.arange(120), A, B, C, name="other.txt")
+    write(tmp_path, "", 0.01 * np.arange(120), B, C, A[::-1], name="other.txt")
     found = read_motions(tmp_path, options=ReadOptions(unit="g", columns=("time", "000", "090", "up")))
     assert [m.name for m in found.motions] == ["other.000", "other.090", "own"]
     assert "the 4 that are stated are those of other files" in found.motions[2].notes[0]

@@ -19,7 +19,6 @@ from rockbatch.motions.manifest import Manifest, described, is_manifest, options
 from rockbatch.motions.motion import LeftOut, MotionSet, Unusable
 from rockbatch.motions.orientation import counted, split_stem, unknown
 from rockbatch.motions.pairing import to_motions
-from rockbatch.motions.statements import contradictions, directed
 from rockbatch.units import GRAVITY
 
 _LARGEST = 256 * 2**20  # bytes; a day of three channels at 200 Hz has a fifth of it
@@ -144,15 +143,12 @@ def _readings(
         return [LeftOut(stem, file.source, f"no record: {file.companion}")]
     if file.refusal:
         return [Unusable(stem, file.source, file.refusal)]
-    stated = options_of(entries, options)
-    read = _read(file, stated, gravity)
+    read = _read(file, options_of(entries, options), gravity)
     readings: list[Reading] = [reading for reading in read if isinstance(reading, Unusable)]
     components = [_placed(reading, file.path, numbered) for reading in read if isinstance(reading, Component)]
-    if wrong := contradictions(components, stated, gravity):
-        return [*readings, Unusable(stem, file.source, "; ".join(wrong))]
     for component, used in described(components, entries, gravity):
         if used:
-            readings.append(_without_offset(directed(component, options.role), offset))
+            readings.append(_without_offset(_directed(component, options.role), offset))
         else:
             where = entries[0].table.file.path.name
             readings.append(LeftOut(component.name, component.source, f"use = false in {where}"))
@@ -184,6 +180,14 @@ def _placed(component: Component, path: Path, numbered: bool) -> Component:
             component = replace(component, orientation=unknown())
     site = f"RSN{rsn[1]}" if rsn else site or path.parent.name  # UP.txt and 090.txt are of the station of their folder
     return replace(component, site=site, folder=path.parent.absolute().as_posix())
+
+
+def _directed(component: Component, role: str | None) -> Component:
+    """With the ``role`` that is stated for all components of unknown direction: "horizontal"."""
+    if component.orientation.known or role is None:
+        return component
+    note = f"direction not known: {role}, as stated"
+    return replace(component, orientation=replace(component.orientation, known=True), notes=(*component.notes, note))
 
 
 def _without_offset(component: Component, offset: Offset) -> Component | Unusable:

@@ -59,6 +59,9 @@ def read_columns(file: RecordFile) -> list[Component | Unusable]:
     of spectra. Uneven times are interpolated, and it is said.
     """
     recordings = _parse(file.text, file.options)
+    for recording in recordings:
+        if is_acceleration(recording.unit):
+            file.options.hold_against(recording.unit, recording.dt, file.gravity)
     if len(recordings) > 1:
         return to_components(file, [replace(recording, station=file.stem) for recording in recordings])
     (only,) = recordings

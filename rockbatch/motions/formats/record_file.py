@@ -6,15 +6,22 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from rockbatch.errors import InputError
+from rockbatch.motions.formats.stated_step import SAME_STEP
 from rockbatch.units import GRAVITY, acceleration_factor
 
 ROLES = ("horizontal",)
 """What all components of unknown direction may be said to be."""
 
 
+_SAME_UNIT = 1e-9  # relative
+
+
 @dataclass(frozen=True)
 class ReadOptions:
-    """What a study states about files that do not state it themselves; a file that says otherwise is refused.
+    """What a study states about files that do not state it themselves.
+
+    Text columns and AT2 files, whose headers people write, are refused where they say otherwise; files of formats that
+    always have their unit and step are not concerned.
 
     Attributes
     ----------
@@ -61,6 +68,26 @@ class ReadOptions:
                 )
         if wrong:
             raise InputError(*wrong)
+
+    def hold_against(self, unit: str, dt: float, gravity: float) -> None:
+        """``InputError`` where a file with a header of free text says another ``unit`` or ``dt`` [s] than is stated.
+
+        What a manifest states is for this very file, and replaces what it says afterwards; ``gravity`` [m/s²].
+        """
+        wrong = []
+        if self.unit is not None and "unit" not in self.instead:
+            said, stated = acceleration_factor(unit, gravity), acceleration_factor(self.unit, gravity)
+            if abs(said - stated) > _SAME_UNIT * said:
+                wrong.append(("unit", unit, f'"{self.unit}"'))
+        if self.dt is not None and "dt" not in self.instead and abs(self.dt - dt) > SAME_STEP * dt:
+            wrong.append(("dt", f"{dt:g} s", f"{self.dt:g}"))
+        if wrong:
+            reasons = [
+                f"the file says {said}, but {key} = {stated} is stated for files that do not say: leave it out, and write "
+                f"{key} in motions.toml for those that need it"
+                for key, said, stated in wrong
+            ]
+            raise InputError("; ".join(reasons))
 
 
 @dataclass(frozen=True)
