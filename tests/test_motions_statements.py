@@ -233,6 +233,16 @@ def test_stated_columns_fill_what_the_header_leaves_open_and_leave_columns_out(t
     assert [m.azimuth for m in found.motions] == [45.0, 135.0]
 
 
+@pytest.mark.parametrize("line", ["Origin time", "Station N", "Component UP", "Site Z"])
+def test_two_words_of_text_above_two_columns_name_neither(tmp_path, line):
+    write(tmp_path, f"# {line}\n# unit: g", 0.01 * np.arange(120), A)
+    motion = one(tmp_path, columns=("time", "000"))
+    assert (motion.name, motion.dt) == ("x_N", 0.01)
+    np.testing.assert_allclose(motion.horizontal / 9.81, A, atol=1e-6)
+    (tmp_path / "x_N.txt").write_text((tmp_path / "x_N.txt").read_text().replace("\n", "\n# N E t\n", 1))
+    assert one(tmp_path).dt == 0.01  # three words are no two columns either
+
+
 def test_columns_of_other_files_do_not_concern_one_whose_header_tells_its_own(tmp_path):
     write(tmp_path, "# time(s) N(g)", 0.01 * np.arange(120), A, name="own.txt")
     write(tmp_path, "", 0.01 * np.arange(120), B, C, A[::-1], name="other.txt")

@@ -111,17 +111,18 @@ def columns_with_units(header: Sequence[str], width: int) -> list[Column] | None
 def columns_without_units(header: Sequence[str], width: int) -> list[Column] | None:
     """Columns of which the header tells the labels, and units of some at most: ``t, NS, UD``.
 
-    One of them is time, or the first is what a spectrum is drawn over, or all are directions: other lines of as many
-    words are text, as are those with a value in them.
+    The first is time, or what a spectrum is drawn over, or all are directions or time: other lines of as many words are
+    text, as are those with a value in them.
     """
     for line in reversed(header):
         if _VALUE.search(line) or states_a_step(line):
             continue
         for columns in _labels_of(line.replace('"', "").strip(" ,;")):
             if len(columns) == width and (
-                columns[0].is_abscissa
-                or any(column.is_time or column.may_be_time for column in columns)
-                or all(orientation_in(column.label).known for column in columns)
+                columns[0].is_time
+                or columns[0].may_be_time
+                or columns[0].is_abscissa
+                or all(column.is_time or orientation_in(column.label).known for column in columns)
                 or (width == 1 and columns[0].is_ordinate)
             ):
                 return columns
