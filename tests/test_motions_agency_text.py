@@ -227,13 +227,11 @@ def test_film_digitised_at_uneven_times_is_interpolated_and_it_is_said():
     ("text", "name", "message"),
     [
         (geonet_text().replace("mm/s/s at  48", "furlongs at  48").replace("1.00 mm", "1.00 fur"), "x.V1A", "fur/s/s"),
-        (geonet_text().replace("Component S62W", "Component ????"), "x.V1A", 'component "????": direction'),
         (dyna_text(UNITS="cm/s"), "x.ASC", 'unknown acceleration unit "cm/s"'),
-        (dyna_text(stream="Q"), "x.ASC", 'component "Q": direction not understood'),
         (cwa_text(unit="count"), "x.txt", 'unknown acceleration unit "count"'),
     ],
 )
-def test_a_direction_or_unit_that_is_not_understood_costs_its_channel_with_the_reason(text, name, message):
+def test_a_unit_that_is_not_understood_costs_its_channel_with_the_reason(text, name, message):
     unusable = [reading for reading in read(text, name) if isinstance(reading, Unusable)]
     assert unusable
     assert all(message in reading.reason for reading in unusable)

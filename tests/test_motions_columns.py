@@ -120,9 +120,8 @@ def test_double_precision_exponents_of_fortran_are_numbers(tmp_path):
 
 
 def test_a_step_and_a_count_in_the_header_are_taken(tmp_path):
-    (tmp_path / "x.txt").write_text("# NPTS = 3\n# dt = 10 ms\n# unit: gal\n1.0\n2.5\n3.0\n")
-    motion = one(tmp_path, dt=0.5)  # what the file says goes first
-    assert motion.dt == 0.01
+    (tmp_path / "x_N.txt").write_text("# NPTS = 3\n# dt = 10 ms\n# unit: gal\n1.0\n2.5\n3.0\n")
+    assert one(tmp_path).dt == 0.01
 
 
 def test_a_table_cut_within_its_last_number_is_refused(tmp_path):
@@ -162,7 +161,7 @@ def test_two_columns_of_which_one_grows_evenly_are_time_and_acceleration_and_it_
 
 
 def test_a_unit_line_in_the_header_counts(tmp_path):
-    write(tmp_path, "# unit: mm/s2\n# t a", T, NS)
+    write(tmp_path, "# unit: mm/s2\n# t a", T, NS, name="REC_N.txt")
     np.testing.assert_allclose(one(tmp_path).horizontal, NS / 1000, rtol=1e-6, atol=1e-12)
 
 

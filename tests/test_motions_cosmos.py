@@ -22,7 +22,6 @@ from hypothesis import given, settings
 from rockbatch.errors import InputError
 from rockbatch.motions import read_motions
 from rockbatch.motions.formats.cosmos import is_cosmos_file, read_cosmos_stream
-from rockbatch.motions.motion import Unusable
 
 START = datetime(2018, 11, 30, 17, 29, tzinfo=UTC).timestamp() + 6.332
 
@@ -122,12 +121,6 @@ def test_direction_is_by_the_text_else_by_the_sensors_code_else_by_the_seed_chan
     (component,) = read(cosmos_text(A, **header, **scnl), "x.V2c")
     way = component.orientation
     assert (way.vertical, way.down, way.azimuth) == expected
-
-
-def test_a_direction_that_nothing_tells_costs_its_channel_with_the_reason():
-    (unusable,) = read(cosmos_text(direction="Other", scnl=""), "x.V2c")
-    assert isinstance(unusable, Unusable)
-    assert 'component "Other": direction not understood' in unusable.reason
 
 
 def test_a_clock_that_was_not_set_gives_no_start():

@@ -145,9 +145,9 @@ def test_verticals_can_be_left_out(tmp_path):
 
 
 def test_every_file_is_a_motion_or_has_a_reason_and_read_me_files_are_neither(tmp_path):
-    write_at2(tmp_path, "good.AT2", wiggle(50), title="nothing")
+    write_at2(tmp_path, "good.AT2", wiggle(50), title="nothing, 000")
     write_at2(tmp_path, "short.AT2", wiggle(50), count="NPTS= 60, DT= .01 SEC")
-    write_at2(tmp_path, "one.AT2", [0.1], title="nothing")
+    write_at2(tmp_path, "one.AT2", [0.1], title="nothing, 000")
     for name in ("empty.AT2", "archive.zip", "README.md", ".hidden.AT2", "StationXML.xml"):
         (tmp_path / name).touch()
     for name in ("notes.docx", "meta.json", "good.VT2", "_SearchResults.csv"):
@@ -173,7 +173,7 @@ def test_every_file_is_a_motion_or_has_a_reason_and_read_me_files_are_neither(tm
 def test_links_that_lead_out_are_not_followed_and_it_is_said(tmp_path):
     outside = write_at2(tmp_path / "outside", "x.AT2", wiggle(50))
     inside = tmp_path / "inside"
-    write_at2(inside, "a.AT2", wiggle(50), title="nothing")
+    write_at2(inside, "a.AT2", wiggle(50), title="nothing, 000")
     (inside / "b.AT2").symlink_to(outside)
     (inside / "c").symlink_to(outside.parent)
     (inside / "d.AT2").symlink_to(inside / "d.AT2")
@@ -187,7 +187,7 @@ def test_links_that_lead_out_are_not_followed_and_it_is_said(tmp_path):
 
 
 def test_a_reader_that_fails_costs_one_file_and_its_exception_is_named(tmp_path, monkeypatch):
-    write_at2(tmp_path, "good.AT2", wiggle(50), title="nothing")
+    write_at2(tmp_path, "good.AT2", wiggle(50), title="nothing, 000")
     (tmp_path / "bad.txt").write_text("1 2\n")
     from rockbatch.motions import folder
 
@@ -206,22 +206,22 @@ def test_a_reader_that_fails_costs_one_file_and_its_exception_is_named(tmp_path,
 
 def test_the_order_is_that_of_the_paths_and_sources_are_short(tmp_path):
     for name in ("b/z.AT2", "b/a.AT2", "a/k.AT2", "c.AT2"):
-        write_at2((tmp_path / name).parent, name.rsplit("/", 1)[-1], wiggle(50), title="nothing")
+        write_at2((tmp_path / name).parent, name.rsplit("/", 1)[-1], wiggle(50), title="nothing, 000")
     found = read_motions(tmp_path)
     assert [motion.source for motion in found.motions] == ["a/k.AT2", "b/a.AT2", "b/z.AT2", "c.AT2"]
 
 
 def test_several_paths_are_read_in_the_given_order_and_no_file_twice(tmp_path):
-    first = write_at2(tmp_path / "a", "x.AT2", wiggle(50), title="nothing")
-    write_at2(tmp_path / "b", "y.AT2", wiggle(50), title="nothing")
+    first = write_at2(tmp_path / "a", "x.AT2", wiggle(50), title="nothing, 000")
+    write_at2(tmp_path / "b", "y.AT2", wiggle(50), title="nothing, 000")
     found = read_motions([tmp_path / "b", first, tmp_path / "a"])
     assert [motion.source for motion in found.motions] == ["b/y.AT2", "x.AT2"]
 
 
 def test_motions_of_one_name_get_their_folder_in_front(tmp_path):
     for folder in ("a", "b"):
-        write_at2(tmp_path / folder, "x.AT2", wiggle(50), title="nothing")
-    write_at2(tmp_path / "b", "y.AT2", wiggle(50), title="nothing")
+        write_at2(tmp_path / folder, "x.AT2", wiggle(50), title="nothing, 000")
+    write_at2(tmp_path / "b", "y.AT2", wiggle(50), title="nothing, 000")
     assert [motion.name for motion in read_motions(tmp_path).motions] == ["a/x", "b/x", "y"]
 
 
@@ -241,7 +241,7 @@ def test_an_empty_folder_is_an_empty_set(tmp_path):
 @pytest.mark.parametrize("scale", [100.0, 0.0005])
 @pytest.mark.parametrize("confirmed", ["x", "[x]*", "?"])
 def test_an_unlikely_peak_is_used_only_when_it_is_confirmed(tmp_path, scale, confirmed):
-    write_at2(tmp_path, "x.AT2", wiggle(50, scale=scale), title="nothing")
+    write_at2(tmp_path, "x.AT2", wiggle(50, scale=scale), title="nothing, 000")
     (refused,) = read_motions(tmp_path).unusable
     assert "check the unit" in refused.reason
     assert 'confirm_pga = ["x"]' in refused.reason
@@ -276,14 +276,9 @@ def test_the_name_pairs_where_one_header_says_nothing(tmp_path):
 
 
 def test_names_that_a_terminal_would_obey_are_shown_instead(tmp_path):
-    write_at2(tmp_path, "\x1b[31mred\n.AT2", wiggle(50), title="nothing")
+    write_at2(tmp_path, "\x1b[31mred\n.AT2", wiggle(50), title="nothing, 000")
     (motion,) = read_motions(tmp_path).motions
     assert (motion.name, motion.source) == ("\\x1b[31mred\\x0a", "\\x1b[31mred\\x0a.AT2")
-
-
-def test_a_component_without_direction_is_horizontal_and_it_is_said(tmp_path):
-    write_at2(tmp_path, "mine.AT2", wiggle(50), title="nothing")
-    assert "direction not stated: taken as horizontal" in read_motions(tmp_path).motions[0].notes
 
 
 @pytest.mark.parametrize(

@@ -60,8 +60,8 @@ dt = 0.02
 
 
 def test_a_component_can_be_made_vertical_and_a_station_given(tmp_path):
-    write_at2(tmp_path, "one.AT2", wiggle(50, 1), title="nothing")
-    write_at2(tmp_path, "two.AT2", wiggle(50, 2), title="nothing")
+    write_at2(tmp_path, "one.AT2", wiggle(50, 1), title="nothing, 000")
+    write_at2(tmp_path, "two.AT2", wiggle(50, 2), title="nothing, 000")
     (tmp_path / "motions.toml").write_text("""
 [[record]]
 file = "one.AT2"

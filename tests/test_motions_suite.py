@@ -56,8 +56,8 @@ def test_an_offset_can_be_kept_or_taken_off_by_the_mean_of_all_or_before_the_eve
 
 
 def test_a_window_that_a_record_does_not_have_costs_that_record_only(tmp_path):
-    write_at2(tmp_path, "long.AT2", wiggle(300), title="nothing")
-    write_at2(tmp_path, "short.AT2", wiggle(50), title="nothing")
+    write_at2(tmp_path, "long.AT2", wiggle(300), title="nothing, 000")
+    write_at2(tmp_path, "short.AT2", wiggle(50), title="nothing, 000")
     found = read_motions(tmp_path, offset=Offset("pre-event", (0.0, 1.0)))
     assert [m.name for m in found.motions] == ["long"]
     assert [u.reason for u in found.unusable] == ["offset_window_s = [0, 1] is not within its 0.49 s"]
@@ -151,8 +151,8 @@ def test_pulses_keep_their_own_amplitude(tmp_path):
 
 
 def test_one_bad_record_costs_itself_and_a_strict_study_everything(tmp_path):
-    write_at2(tmp_path / "records", "good.AT2", wiggle(50), title="nothing")
-    write_at2(tmp_path / "records", "high.AT2", wiggle(50, scale=60), title="nothing")
+    write_at2(tmp_path / "records", "good.AT2", wiggle(50), title="nothing, 000")
+    write_at2(tmp_path / "records", "high.AT2", wiggle(50, scale=60), title="nothing, 000")
     found = ground_motions(study_of(tmp_path))
     assert ([m.name for m in found.motions], [u.name for u in found.unusable]) == (["good"], ["high"])
     with pytest.raises(InputError) as caught:
@@ -193,7 +193,7 @@ def test_the_table_is_a_csv_too_with_a_row_for_every_file(tmp_path, capsys):
 
 
 def test_strict_makes_a_bad_file_fatal_and_companions_harm_nobody(tmp_path):
-    write_at2(tmp_path, "good.AT2", wiggle(50), title="nothing")
+    write_at2(tmp_path, "good.AT2", wiggle(50), title="nothing, 000")
     (tmp_path / "meta.json").write_text("{}")
     assert main(["motions", str(tmp_path), "--strict"]) == 0
     (tmp_path / "bad.AT2").write_text("nothing")
@@ -202,7 +202,7 @@ def test_strict_makes_a_bad_file_fatal_and_companions_harm_nobody(tmp_path):
 
 
 def test_a_manifest_is_drafted_once(tmp_path, capsys):
-    write_at2(tmp_path, "good.AT2", wiggle(50), title="nothing")
+    write_at2(tmp_path, "good.AT2", wiggle(50), title="nothing, 000")
     assert main(["motions", str(tmp_path), "--write-manifest"]) == 0
     assert (tmp_path / "motions.toml").is_file()
     assert main(["motions", str(tmp_path), "--write-manifest"]) == 2

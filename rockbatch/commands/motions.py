@@ -58,6 +58,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--unit", help='acceleration unit of files that do not state theirs, such as "cm/s2"')
     parser.add_argument("--dt", type=float, help="sampling interval [s] of text columns without a time column")
     parser.add_argument("--columns", help='names of text columns, such as "time,000,090,up"')
+    parser.add_argument("--role", choices=("horizontal",), help="what components are whose direction nothing tells")
     parser.add_argument("--sensitivity", type=float, help="counts per acceleration unit")
 
 
@@ -66,7 +67,7 @@ def main(arguments: argparse.Namespace) -> int:
     from rockbatch.motions import ReadOptions, read_motions
 
     columns = tuple(arguments.columns.split(",")) if arguments.columns else None
-    options = ReadOptions(unit=arguments.unit, dt=arguments.dt, columns=columns, sensitivity=arguments.sensitivity)
+    options = ReadOptions(arguments.unit, arguments.dt, columns, arguments.sensitivity, arguments.role)
     if arguments.write_manifest:
         from rockbatch.motions.manifest_draft import write_draft
 

@@ -17,7 +17,7 @@ from rockbatch.motions.finding import MANIFESTS, Found, files_of
 from rockbatch.motions.formats import ReadOptions, RecordFile, read_record
 from rockbatch.motions.manifest import Manifest, described, is_manifest, options_of
 from rockbatch.motions.motion import LeftOut, MotionSet, Unusable
-from rockbatch.motions.orientation import split_stem
+from rockbatch.motions.orientation import counted, split_stem, unknown
 from rockbatch.motions.pairing import to_motions
 from rockbatch.units import GRAVITY
 
@@ -59,7 +59,7 @@ def read_motions(
     azimuths : sequence of float
         Directions [degrees] that each station's pair of horizontal components is turned to; none: as recorded.
     confirmed : sequence of str
-        Names of motions, or patterns with * and ?, whose PGA is right though it is outside 0.001–5 g.
+        Names of motions, or patterns with * and ?, that are right though they are hard to believe (``plausible``).
 
     Raises
     ------
@@ -102,11 +102,14 @@ def read_files(
     manifests = [file.path for file in found if not file.refusal and file.path.name in MANIFESTS]
     manifests = [path for path in [*manifests, *beside] if path.is_file() and is_manifest(path)]
     manifest = Manifest.read({Path(os.path.realpath(path)): path for path in manifests}.values())
+    numbered = _numbered(found)
     readings: list[Reading] = []
     for file in found:
         if file.path in manifests:
             continue
-        readings += _readings(file, manifest, options or ReadOptions(), gravity, offset or Offset())
+        readings += _readings(
+            file, manifest, options or ReadOptions(), gravity, offset or Offset(), file.path in numbered
+        )
     manifest.finish()
     return [_legible(reading) for reading in readings], {file.source: file.path for file in found}
 
@@ -119,8 +122,17 @@ def _missing(path: Path) -> str:
     return f"{path}: no such file or folder (looked for {path.absolute()}){hint}"
 
 
+def _numbered(found: Sequence[Found]) -> set[Path]:
+    """Files whose names end in a number that is no azimuth, as those beside them tell."""
+    folders: dict[Path, list[Path]] = {}
+    for file in found:
+        folders.setdefault(file.path.parent, []).append(file.path)
+    numbers = {folder: counted(path.stem for path in paths) for folder, paths in folders.items()}
+    return {file.path for file in found if file.path.stem in numbers[file.path.parent]}
+
+
 def _readings(
-    file: Found, manifest: Manifest, options: ReadOptions, gravity: float, offset: Offset
+    file: Found, manifest: Manifest, options: ReadOptions, gravity: float, offset: Offset, numbered: bool
 ) -> Sequence[Reading]:
     """What one file is: components, and what its manifest leaves out, or the one reason why there are none."""
     stem = file.path.stem
@@ -133,10 +145,10 @@ def _readings(
         return [Unusable(stem, file.source, file.refusal)]
     read = _read(file, options_of(entries, options), gravity)
     readings: list[Reading] = [reading for reading in read if isinstance(reading, Unusable)]
-    components = [_placed(reading, file.path) for reading in read if isinstance(reading, Component)]
+    components = [_placed(reading, file.path, numbered) for reading in read if isinstance(reading, Component)]
     for component, used in described(components, entries, gravity):
         if used:
-            readings.append(_without_offset(component, offset))
+            readings.append(_without_offset(_directed(component, options.role), offset))
         else:
             where = entries[0].table.file.path.name
             readings.append(LeftOut(component.name, component.source, f"use = false in {where}"))
@@ -158,11 +170,24 @@ def _read(file: Found, options: ReadOptions, gravity: float) -> Sequence[Compone
     return [Unusable(file.path.stem, file.source, reason)]
 
 
-def _placed(component: Component, path: Path) -> Component:
-    """With its folder, and what its file's name says of its station."""
+def _placed(component: Component, path: Path, numbered: bool) -> Component:
+    """With its folder, and what its file's name says of its station; without an azimuth that is a file's number."""
     rsn = _RSN.match(path.stem)
-    site = f"RSN{rsn[1]}" if rsn else split_stem(path.stem)[0]
+    site, by_name = split_stem(path.stem)
+    if numbered:
+        site = path.stem
+        if component.orientation == by_name:
+            component = replace(component, orientation=unknown())
+    site = f"RSN{rsn[1]}" if rsn else site or path.parent.name  # UP.txt and 090.txt are of the station of their folder
     return replace(component, site=site, folder=path.parent.absolute().as_posix())
+
+
+def _directed(component: Component, role: str | None) -> Component:
+    """With the ``role`` that is stated for all components of unknown direction: "horizontal"."""
+    if component.orientation.known or role is None:
+        return component
+    note = f"direction not known: {role}, as stated"
+    return replace(component, orientation=replace(component.orientation, known=True), notes=(*component.notes, note))
 
 
 def _without_offset(component: Component, offset: Offset) -> Component | Unusable:

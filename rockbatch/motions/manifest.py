@@ -125,7 +125,7 @@ def options_of(entries: Sequence[Entry], options: ReadOptions) -> ReadOptions:
     for entry in entries:
         if entry.component is None:
             stated = {key: entry.values[key] for key in ("unit", "dt") if key in entry.values}
-            options = replace(options, **stated)
+            options = replace(options, **stated, instead=frozenset(stated))
     return options
 
 
@@ -194,6 +194,8 @@ def _unit_factor(component: Component, entry: Entry, gravity: float) -> float:
 
 def _orientation(found: Orientation, entry: Entry) -> Orientation:
     values = entry.values
+    if not values.keys() & {"role", "azimuth"}:
+        return found
     role = values.get("role", "vertical" if found.vertical else "horizontal")
     if role == "vertical":
         if "azimuth" in values:

@@ -70,13 +70,18 @@ def _table(component: Component, name: str, several: bool, station: str) -> str:
     lines: list[tuple[str, Any]] = [("file", name)]
     if several:
         lines.append(("component", orientation.label or component.name))
-    lines.append(("role", "vertical" if orientation.vertical else "horizontal"))
+    if orientation.known:
+        lines.append(("role", "vertical" if orientation.vertical else "horizontal"))
     if orientation.azimuth is not None:
         lines.append(("azimuth", orientation.azimuth))
     if component.unit:
         lines.append(("unit", component.unit))
     lines.append(("station", station))
     text = "[[record]]\n" + "".join(f"{key} = {_written(value)}\n" for key, value in lines)
+    if not orientation.known:
+        text += (
+            '# role = "horizontal"   # or "vertical": nothing tells its direction; it is not used until this is said\n'
+        )
     if not orientation.vertical and orientation.azimuth is None:
         text += "# azimuth =\n"
     if not orientation.vertical and not LOWEST <= component.pga / GRAVITY <= HIGHEST:

@@ -1,7 +1,12 @@
-"""Which way a component points, from the many labels that agencies give it."""
+"""Which way a component points, from the many labels that agencies give it.
+
+What no label tells stays unknown: a vertical component would otherwise be run as a horizontal one.
+"""
 
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass
+from itertools import combinations
 
 
 @dataclass(frozen=True)
@@ -18,53 +23,63 @@ class Orientation:
         Of a horizontal component [degrees clockwise from north, 0 ≤ azimuth < 360]; ``None`` where unknown.
     down : bool
         Whether a vertical component is positive down.
+    known : bool
+        Whether it is known at all that it is horizontal or vertical.
     """
 
     label: str
     vertical: bool = False
     azimuth: float | None = None
     down: bool = False
+    known: bool = True
 
 
-UNKNOWN = Orientation("")
-"""Of a file that does not say: taken as horizontal."""
+def unknown(label: str = "") -> Orientation:
+    """Of a component whose ``label`` does not tell: neither horizontal nor vertical until somebody says so."""
+    return Orientation(label, known=False)
 
-_UP = {"UP", "UD", "U", "V", "Z", "VER", "VERT", "VERTICAL", "UPDOWN", "UPWARD", "AZ"}
-_DOWN = {"DWN", "DN", "DOWN", "DOWNWARD"}
+
+UNKNOWN = unknown()
+"""Of a file that does not say."""
+
+_UP = {
+    *("UP", "UD", "U", "UPDOWN", "UPDN", "UPWARD", "UPWARDS"),
+    *("V", "VER", "VERT", "VRT", "VERTIC", "VERTICAL", "VERTICALE"),
+    *("Z", "AZ", "ZUP", "UPZ", "VUP", "VERUP", "VERTUP", "VERTICALUP"),
+}
+_DOWN = {
+    *("DWN", "DN", "DOWN", "DOWNWARD", "DOWNWARDS"),
+    *(f"{axis}{down}" for axis in ("Z", "V", "VER", "VERT", "VERTICAL") for down in ("DWN", "DN", "DOWN")),
+    "DOWNZ",
+}
 _AZIMUTHS = {
-    **dict.fromkeys(("N", "NS", "NORTH", "NORTHSOUTH", "NORTHWARD"), 0.0),
-    **dict.fromkeys(("E", "EW", "EAST", "EASTWEST", "EASTWARD"), 90.0),
-    **dict.fromkeys(("S", "SOUTH"), 180.0),
-    **dict.fromkeys(("W", "WEST"), 270.0),
+    **dict.fromkeys(("N", "NS", "SN", "NORTH", "NORTHSOUTH", "NORTHWARD", "NORTE"), 0.0),
+    **dict.fromkeys(("E", "EW", "WE", "EAST", "EASTWEST", "EASTWARD", "ESTE"), 90.0),
+    **dict.fromkeys(("S", "SOUTH", "SOUTHWARD", "SUR"), 180.0),
+    **dict.fromkeys(("W", "WEST", "WESTWARD", "OESTE"), 270.0),
 }
 _HORIZONTAL = {
-    "L",
-    "T",
-    "LN",
-    "TR",
-    "LONG",
-    "TRAN",
-    "TRANS",
-    "H",
-    "H1",
-    "H2",
-    "X",
-    "Y",
-    "AX",
-    "AY",
-    "FN",
-    "FP",
-    "R",
+    *("L", "T", "LN", "TR", "LONG", "LONGI", "LONGIT", "LONGITUDINAL", "TRAN", "TRANS", "TRANSV"),
+    *("TRANSVERSE", "TRANSVERSAL", "RAD", "RADIAL", "TANG", "TANGENTIAL"),
+    *("H", "H1", "H2", "HOR", "HOR1", "HOR2", "HORIZ", "HORIZ1", "HORIZ2", "HORIZONTAL", "HORIZONTAL1", "HORIZONTAL2"),
+    *("X", "Y", "AX", "AY", "FN", "FP", "R"),
 }
 
-# SEED channel codes: band, instrument (N, L, G: accelerometers; H: seismometers), orientation.
-_CHANNEL = re.compile(r"[A-Z][NLGH]([ZUNE12RT])")
+# SEED channel codes with or without location: band, instrument (N, L, G: accelerometers; H: seismometers), direction.
+_CHANNEL = re.compile(r"(?!CH\d)[BCDEFGHLMSV][NLGH]([ZUVNE12RTXY])(?:\d\d)?")
+_CHANNEL_IN_NAME = re.compile(r"[BEHLS][NLGH][ZNE12](?:\d\d)?")  # three letters of a name may be anything else
+_SENSOR = re.compile(r"(UD|NS|EW)[12]")  # KiK-net: 1 in the borehole, 2 at the surface
 _QUADRANT = re.compile(r"([NS])(\d{1,2})([EW])")
-_NOISE = re.compile(r"ACCELERATION|ACCEL|ACC|COMPONENT|COMP|DEG(?:REES)?|[^A-Z0-9]")
+_NOISE = re.compile(
+    r"^A(?=[-_ ])|ACCELERATION|ACCEL|ACC|COMPONENT|COMP|CHAN(?:NEL)?(?=[^A-Z0-9]*[A-Z])|AXIS|DIRECTION|DIR|DEG(?:REES)?|[^A-Z0-9]"
+)
 
 
 def orientation_of(label: str) -> Orientation | None:
-    """Orientation that ``label`` stands for: "UP", "DWN", "S62W", "21", "N-S", "HNZ"; ``None`` if none."""
+    """Orientation that ``label`` stands for: "UP", "DWN", "S62W", "21", "N-S", "HNZ"; ``None`` if none.
+
+    A number of one or two digits behind a word is none: "COMP 3" is the third component, not 3°.
+    """
     label = label.strip()
     key = _NOISE.sub("", label.upper())
     if key in _UP:
@@ -75,32 +90,125 @@ def orientation_of(label: str) -> Orientation | None:
         return Orientation(label, azimuth=_AZIMUTHS[key])
     if key in _HORIZONTAL:
         return Orientation(label)
+    if sensor := _SENSOR.fullmatch(key):
+        return Orientation(label, vertical=sensor[1] == "UD", azimuth=_AZIMUTHS.get(sensor[1]))
     if re.fullmatch(r"\d{1,3}", key) and int(key) <= 360:
-        return Orientation(label, azimuth=float(int(key) % 360))
+        counted = len(key) < 3 and re.search(r"[A-Z]", re.sub("DEG(?:REES)?", "", label.upper()))
+        return None if counted else Orientation(label, azimuth=float(int(key) % 360))
     if quadrant := _QUADRANT.fullmatch(key):
         pole, angle, side = quadrant[1], float(quadrant[2]), quadrant[3]
         azimuth = (0.0 if pole == "N" else 180.0) + (angle if (pole == "N") == (side == "E") else -angle)
         return Orientation(label, azimuth=azimuth % 360.0)
     if channel := _CHANNEL.fullmatch(key):
-        if channel[1] in "ZU":
+        if channel[1] in "ZUV":
             return Orientation(label, vertical=True)
         return Orientation(label, azimuth=_AZIMUTHS.get(channel[1]))
     return None
 
 
-def split_stem(stem: str) -> tuple[str, Orientation | None]:
-    """The station's part of a file's stem and the orientation at its end.
+def orientation_in(label: str) -> Orientation:
+    """Orientation of a column, perhaps with its station in front: "Z", "CCC_HNZ"; unknown if it does not tell.
 
-    "RSN1063_NORTHR_RRS228" gives "RSN1063_NORTHR_RRS" and 228°, "ABBAR--V" gives "ABBAR" and vertical.
-    Numbers count as azimuths only with three digits.
+    A bare number is an azimuth with three digits, or where it is one that nobody counts to.
     """
-    apart = re.fullmatch(r"(.*[^-_. ])[-_. ]+([A-Za-z]+|\d{3}|[A-Za-z]+\d+[A-Za-z]*)", stem)
-    if apart and (found := orientation_of(apart[2])):
-        return apart[1], found
-    glued = re.fullmatch(r"(.*[A-Za-z0-9])(\d{3}|DWN|UP|UD|EW|NS|VER)", stem)
-    if glued and (found := orientation_of(glued[2])):
-        return glued[1], found
+    bare = label.strip()
+    if re.fullmatch(r"\d{1,2}", bare) and bare not in ("0", "00", "90"):
+        return unknown(bare)
+    found = orientation_of(bare) or split_stem(bare)[1]
+    return Orientation(bare, found.vertical, found.azimuth, found.down) if found else unknown(bare)
+
+
+_PART = r"(?P<site>.*[^-_. ])[-_. ]+"
+_ENDS = tuple(
+    re.compile(rf"{site}(?P<label>{label})")
+    for site, label in (
+        (_PART, r"(?i:N-S|S-N|E-W|W-E|U-D|Up-D(?:ow)?n|North-South|East-West|[A-Z]+-axis|[A-Z]+-(?:up|d(?:ow|w)?n))"),
+        (_PART, r"[A-Z][NLGH][ZNE12][-_. ]+\d\d"),
+        (_PART, r"[A-Za-z]+|\d{3}|[A-Za-z]+\d+[A-Za-z]*"),
+        (r"(?P<site>.*[A-Za-z0-9])", r"\d{3}|DWN|UP|(?:UD|EW|NS)[12]?|VER|VERT|VRT"),
+        (r"(?P<site>.*\d)", r"(?i:DWN|UP|UD|EW|NS|VERT?|VRT)"),
+        (r"(?P<site>.*\d\d)", r"(?i:[VZUNEW])"),  # chy080v
+    )
+)
+_STATION = re.compile(  # of TSMIP, K-NET and KiK-net, whose codes end in a number as PEER's names do in an azimuth
+    r"(?:^|[^A-Z])(?:TCU|CHY|HWA|ILA|KAU|TAP|TTN|ABS|HDK|HYM|IBR|IKR|ISK|IWT|KKW|KMM|KNG|KOC|KSR|KYT|KGS|KGW|MIE|MYG|MYZ|"
+    r"NAR|NGN|NGS|NIG|NMR|OIT|OKN|OKY|OSK|OSM|RMI|SAG|SBS|SIG|SIT|SMN|SRC|SZO|TCG|TKC|TKS|TKY|TTR|TYM|WKY|YMG|YMN|YMT|"
+    r"AIC|AKT|AOM|CHB|EHM|FKI|FKO|FKS|GIF|GNM|HKD|HRS|HYG|IBU)H?\d{3}$"
+)
+_CHANNELS = re.compile(r"(?:^|[-_. ])(?:ch|chan|channel|sensor|run|rec|record|no|nr)[-_. ]*\d+$", re.IGNORECASE)
+_PROCESSING = re.compile(
+    _PART + r"(?:(?:un)?(?:cor|corr|corrected|filt|filtered|proc|processed)|raw|acc|accel|acceleration|th|cut|copy|"
+    r"g|gal|cm|cms2|ms2|v[0-3][ac]?|\(\d+\))",
+    re.IGNORECASE,
+)
+
+
+def split_stem(stem: str) -> tuple[str, Orientation | None]:
+    """The station's part of a file's stem and the orientation at its end, before words such as "corrected".
+
+    "RSN1063_NORTHR_RRS228" gives "RSN1063_NORTHR_RRS" and 228°, "ABBAR--V" gives "ABBAR" and vertical. Numbers count
+    as azimuths only with three digits, and not where they are dates, times, stations or files counted from 001. Names
+    that say horizontal and, by a channel's code, vertical say nothing.
+    """
+    whole = orientation_of(stem) if stem.isalnum() and not _is_number("", stem, stem) else None
+    if whole and (whole.vertical or whole.azimuth is not None):
+        return "", whole
+    rest, behind = stem, ""
+    while True:
+        for end in _ENDS:
+            match = end.fullmatch(rest)
+            if match is None or _is_number(match["site"], match["label"], rest):
+                continue
+            if found := orientation_of(match["label"]):
+                return (stem, None) if _contradicted(found, stem) else (match["site"] + behind, found)
+        processing = _PROCESSING.fullmatch(rest)
+        if processing is None:
+            break
+        rest, behind = processing["site"], rest[len(processing["site"]) :] + behind
+    for found in reversed(_channels(stem)):
+        if not _contradicted(found, stem):
+            return re.sub(rf"(^|[-_. ]+){re.escape(found.label)}(?=[-_. ])", "", stem, count=1), found
     return stem, None
+
+
+def _channels(stem: str) -> list[Orientation]:
+    """Orientations of the channel codes anywhere in a name: "CCM.BHZ.00.D"."""
+    parts = [part for part in re.split(r"[-_. ]+", stem) if _CHANNEL_IN_NAME.fullmatch(part.upper())]
+    return [found for part in parts if (found := orientation_of(part))]
+
+
+def _contradicted(found: Orientation, stem: str) -> bool:
+    """Whether a name has a vertical channel's code beside a horizontal direction."""
+    return not found.vertical and any(channel.vertical for channel in _channels(stem))
+
+
+def _is_number(before: str, label: str, stem: str) -> bool:
+    """Whether the digits at the end of a name are no azimuth: a date or time, a station's number, or that of a file."""
+    if not label.isdigit():
+        return False
+    if _STATION.search(stem) or _CHANNELS.search(stem):
+        return True
+    if not before or not stem[len(before)].isdigit():  # apart: 001, or 2019.187, the day of a year
+        return re.fullmatch("00[1-9]", label) is not None or re.search(r"(?:19|20)\d\d$", before) is not None
+    run = stem[len(stem.rstrip("0123456789")) :]
+    if len(run) == 4:
+        return 1900 <= int(run) < 2040
+    day = re.fullmatch(r"(?:(?:19|20)\d\d|\d\d)(0[1-9]|1[0-2])(0[1-9]|[12]\d|3[01])", run)
+    return day is not None or len(run) > 8
+
+
+def counted(stems: Iterable[str]) -> set[str]:
+    """Stems that end in a number of a series: GM_010, GM_011 … are no azimuths, which are square to each other."""
+    numbered: dict[str, list[str]] = {}
+    for stem in stems:
+        if re.fullmatch(r".*\d{3}", stem):
+            numbered.setdefault(stem[:-3], []).append(stem)
+    found: set[str] = set()
+    for group in numbered.values():
+        azimuths = {int(stem[-3:]) for stem in group}
+        if any(0 < abs((a - b + 90) % 180 - 90) < 45 for a, b in combinations(azimuths, 2)):
+            found.update(group)
+    return found
 
 
 def same_azimuth(a: float | None, b: float | None, within: float = 1.0) -> bool:

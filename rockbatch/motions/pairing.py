@@ -15,6 +15,7 @@ from rockbatch.motions.orientation import same_azimuth
 from rockbatch.motions.plausible import ANY, doubt, fits
 from rockbatch.motions.stations import by_station
 from rockbatch.motions.turning import turn_pairs
+from rockbatch.toml.kinds import shown
 from rockbatch.units import GRAVITY
 
 _MOST_OF_IT = 0.95  # of the horizontal peak: what a vertical that ends early may cost
@@ -33,10 +34,12 @@ def to_motions(
 
     Components belong together that share folder and station by their headers, else by their names; those of a
     package (no folder) join the files of the same RSN, whose own component of that azimuth goes first. With
-    ``azimuths`` [degrees] a station's horizontals are turned to each of them. Verticals that find no partner, or
-    that are not the only one, what cannot be turned, and motions of an unlikely PGA whose name no pattern in
-    ``confirmed`` fits, come back as unusable with the reason.
+    ``azimuths`` [degrees] a station's horizontals are turned to each of them. Components of unknown direction, verticals
+    that find no partner, or that are not the only one, what cannot be turned, and motions that are hard to believe and
+    whose name no pattern in ``confirmed`` fits, come back as unusable with the reason.
     """
+    asked = [Unusable(c.name, c.source, _question(c)) for c in components if not c.orientation.known]
+    components = [c for c in components if c.orientation.known]
     kept, replaced = _without_doubles([c for c in components if not c.orientation.vertical], packaged)
     stations = by_station([*components, *(c for c in kept if not c.folder)])
     number = {id(c): i for i, station in enumerate(stations) for c in station}
@@ -50,8 +53,6 @@ def to_motions(
     motions: list[Motion] = []
     for station, component in horizontals:
         notes = list(component.notes)
-        if not component.orientation.label and component.orientation.azimuth is None:
-            notes.append("direction not stated: taken as horizontal")
         notes += replaced.get(id(component), [])
         partner = None
         if vertical:
@@ -78,7 +79,19 @@ def to_motions(
             believed.append(motion)
         else:
             unusable.append(Unusable(motion.name, motion.files, why))
-    return MotionSet(believed, sorted(unusable, key=lambda u: u.source))
+    return MotionSet(believed, sorted([*asked, *unusable], key=lambda u: u.source))
+
+
+def _question(component: Component) -> str:
+    """What has to be said of a component whose direction is not known, and where."""
+    label = component.orientation.label
+    one_of_several = bool(label) and component.source.endswith(f"({label})")
+    which = f"component = {shown(label)}" if one_of_several else "it"
+    return (
+        f"direction not known{f' from {shown(label)}' if label else ''}: in motions.toml, which `rockbatch motions FOLDER "
+        f'--write-manifest` drafts, write role = "horizontal" or "vertical", or azimuth = …, for {which}; where none of '
+        'those that do not say is vertical, role = "horizontal" under [motions] in the study, or --role horizontal'
+    )
 
 
 def _without_doubles(

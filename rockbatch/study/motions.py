@@ -6,7 +6,7 @@ from typing import Any
 
 from rockbatch.errors import InputError
 from rockbatch.motions import kinds
-from rockbatch.motions.formats import ReadOptions
+from rockbatch.motions.formats import ROLES, ReadOptions
 from rockbatch.motions.pulses import SHAPES, pulse
 from rockbatch.study.spec import FemaSpec, MotionSpec, PulseSpec
 from rockbatch.study.suite_keys import SUITE, read_suite
@@ -23,6 +23,7 @@ MOTIONS = {
     "dt": Key(positive, "0.01"),
     "columns": Key(text, '["time", "000", "090", "up"]', many=True, distinct=False),
     "sensitivity": Key(nonzero, "428000.0"),
+    "role": Key(choice(*ROLES), '"horizontal"'),
     **SUITE,
 }
 SOURCES = ("path", "fema_p695", "pulse")

@@ -46,9 +46,9 @@ class MotionSpec:
         "+", "-" (horizontal reversed).
     scale : tuple of float
         Factors on all components, above 0.
-    unit, dt, columns, sensitivity
+    unit, dt, columns, sensitivity, role
         For files that do not state them: acceleration unit, sampling interval [s], names of the columns of a
-        text file, counts per acceleration unit.
+        text file, counts per acceleration unit, and "horizontal" for components of unknown direction.
     offset : Offset
         What is taken off the accelerations.
     azimuths : tuple of float
@@ -73,6 +73,7 @@ class MotionSpec:
     dt: float | None = None
     columns: tuple[str, ...] | None = None
     sensitivity: float | None = None
+    role: str | None = None
     offset: Offset = field(default_factory=Offset)
     azimuths: tuple[float, ...] = ()
     select: Selection = field(default_factory=Selection)

@@ -22,7 +22,7 @@ def ground_motions(study: Study) -> MotionSet:
         spec.paths,
         vertical=spec.vertical,
         gravity=gravity,
-        options=ReadOptions(unit=spec.unit, dt=spec.dt, columns=spec.columns, sensitivity=spec.sensitivity),
+        options=ReadOptions(spec.unit, spec.dt, spec.columns, spec.sensitivity, spec.role),
         fema=[(record.station, record.azimuth) for record in spec.fema_p695],
         offset=spec.offset,
         azimuths=spec.azimuths,

@@ -13,10 +13,10 @@ import numpy as np
 from rockbatch.errors import InputError
 from rockbatch.motions.component import Component
 from rockbatch.motions.formats import at2, columns, cosmos, csmip, cwa, dyna, geonet, knet, miniseed, renadic, sac, smc
-from rockbatch.motions.formats.record_file import ReadOptions, RecordFile
+from rockbatch.motions.formats.record_file import ROLES, ReadOptions, RecordFile
 from rockbatch.motions.motion import Unusable
 
-__all__ = ["FORMATS", "Format", "ReadOptions", "RecordFile", "has_reader", "read_record"]
+__all__ = ["FORMATS", "ROLES", "Format", "ReadOptions", "RecordFile", "has_reader", "read_record"]
 
 _HEAD = 4096
 

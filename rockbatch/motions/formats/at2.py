@@ -111,6 +111,7 @@ def read_component(file: RecordFile) -> list[Component]:
         factor = acceleration_factor(unit, file.gravity)
     except ValueError as error:
         raise InputError(f"header: {error}") from None
+    file.options.hold_against(unit, record.dt, file.gravity)
     orientation = orientation_of(record.component) or split_stem(file.stem)[1] or UNKNOWN
     parts = (record.event, record.date, record.station)
     return [

@@ -4,25 +4,37 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from rockbatch.errors import InputError
-from rockbatch.motions.formats.fixed_width import HUGE
-from rockbatch.motions.orientation import orientation_of
-
-SECONDS = {"s": 1.0, "sec": 1.0, "secs": 1.0, "second": 1.0, "seconds": 1.0, "ms": 1e-3, "msec": 1e-3}
-"""Units of time [s]."""
+from rockbatch.motions.formats.stated_step import SECONDS, states_a_step
+from rockbatch.motions.orientation import orientation_in, orientation_of
+from rockbatch.units import acceleration_factor
 
 _UNIT = r"[(\[]\s*(?P<unit>[^()\[\]]+?)\s*[)\]]"
 _NUMBERED = re.compile(rf"^column\s+(?P<at>\d{{1,3}})\s*[:=]\s*(?P<label>.*?)\s*{_UNIT}", re.IGNORECASE)
 _LABELLED = re.compile(rf"(?P<label>[^\s,;()\[\]][^,;\t()\[\]]*?)\s*{_UNIT}")
+_WORD = re.compile(rf"(?P<label>[^\s,;()\[\]]+)(?:\s*{_UNIT})?")  # a label of one word, perhaps with its unit
+_FIELD = re.compile(rf"(?P<label>[^()\[\]]*[^()\[\]\s])\s*(?:{_UNIT})?")  # one between commas or tabs
+_VALUE = re.compile(r"[:=]|\d\.\d|(?<!\w)\.\d")
 _STATED = re.compile(r"^units?\s*[:=]\s*(?P<unit>\S+)", re.IGNORECASE)
-_STEP = re.compile(
-    r"^(?:dt|delta ?t|time ?step|sampling interval)\s*[:=]\s*(?P<dt>[-+.0-9e]{1,20})\s*(?P<unit>[a-z]*)\.?$",
+_SAID = re.compile(  # acceleration in g; UNITS OF CM/S/S; Acceleration unit: gal; Acc. (cm/s2)
+    r"(?:\bunits? of|\b(?:acc|accel|acceleration|amplitude|data)s?\.?(?:[ _]*(?:data|values|units?|time series|time history))?"
+    r"\s*(?:\bin\b(?: units? of)?|[:=(\[]))\s*(?P<unit>[^\s,;()\[\]]+)",
     re.IGNORECASE,
 )
+_PEAK = re.compile(r"\b(?:pga|peak|max(?:imum)?)\b", re.IGNORECASE)
 _COUNT = re.compile(
     r"\b(?:npts|(?:number|no\.?) of (?:points|samples))\s*[:=]?\s*(?P<npts>[0-9]{1,12})\b", re.IGNORECASE
 )
 _SHORT = {"NORTHSOUTH": "NS", "EASTWEST": "EW", "UPDOWN": "UD"}
+_TIMES = {"time", "times", *(f"{t}{unit}" for t in ("t", "time", "") for unit in ("sec", "secs", "second", "seconds"))}
+_PERIODS = {"PERIOD", "PERIODS", "TN"}
+_FREQUENCIES = {"FREQ", "FREQS", "FREQUENCY", "FREQUENCIES", "HZ", "OMEGA"}
+_PER_SECOND = {"hz", "1/s", "rad/s", "rad/sec"}
+_ORDINATE = re.compile(r"P?S[AVD]E?|PSEUDO|SPECTR(?:AL|UM|A)|ROTD\d+|GMROT[DI]\d+|FAS|FOURIER", re.IGNORECASE)
+_SPECTRA = re.compile(r"\b(?:(?i:spectr(?:al|um|a)|fourier)|PSA|Sae?|FAS)\b")
+_OTHERS = {
+    **dict.fromkeys(("VEL", "VELO", "VELOC", "VELOCITY"), "velocity"),
+    **dict.fromkeys(("DISP", "DISPL", "DISPLACEMENT"), "displacement"),
+}
 
 
 @dataclass(frozen=True)
@@ -35,7 +47,50 @@ class Column:
     @property
     def is_time(self) -> bool:
         """Whether it holds times."""
-        return re.sub(r"[^a-z]", "", self.label.lower()) in ("t", "time", "times")
+        key = re.sub(r"[^a-z]", "", self.label.lower())
+        return key in _TIMES or (key in ("t", "ts") and seconds_in(self.unit or "") is not None)
+
+    @property
+    def may_be_time(self) -> bool:
+        """Whether it is headed by a T without a unit: time, or the transverse component."""
+        return self.unit is None and self.label.lower() in ("t", "ts")
+
+    @property
+    def is_abscissa(self) -> bool:
+        """Whether it holds the periods or frequencies of a spectrum."""
+        return bool((_PERIODS | _FREQUENCIES) & self._words) or (self.unit or "").lower() in _PER_SECOND
+
+    @property
+    def is_ordinate(self) -> bool:
+        """Whether it holds the values of a spectrum: Sa, PSA, Fourier amplitude."""
+        return any(_ORDINATE.fullmatch(word) for word in self._words)
+
+    @property
+    def other(self) -> str:
+        """What it holds of a record besides acceleration: "velocity", "displacement"; empty where it is not said."""
+        return next((_OTHERS[word] for word in sorted(self._words) if word in _OTHERS), "")
+
+    @property
+    def _words(self) -> set[str]:
+        return {word.upper() for word in re.findall(r"[A-Za-z]+\d*", self.label)}
+
+
+def spectrum_in(columns: Sequence[Column]) -> str:
+    """What kind of spectrum columns are, beginning with the labels that say so; empty where they are time histories."""
+    telling = [column for column in columns if column.is_abscissa or column.is_ordinate]
+    if not telling:
+        return ""
+    words = set().union(*(column._words for column in telling))
+    frequency = bool(words & {"FAS", "FOURIER"}) or any(
+        column.is_abscissa and not _PERIODS & column._words for column in telling
+    )
+    labels = " and ".join(f'"{column.label}"' for column in telling)
+    return f"{labels}: a {'spectrum over frequency' if frequency else 'response spectrum'}"
+
+
+def seconds_in(unit: str) -> float | None:
+    """How many seconds a unit of time has; ``None`` where it is none."""
+    return SECONDS.get(unit.strip().lower().rstrip("."))
 
 
 def columns_with_units(header: Sequence[str], width: int) -> list[Column] | None:
@@ -54,32 +109,53 @@ def columns_with_units(header: Sequence[str], width: int) -> list[Column] | None
 
 
 def columns_without_units(header: Sequence[str], width: int) -> list[Column] | None:
-    """Columns of which the header tells the labels, time or a direction among them: ``t, NS, UD``."""
+    """Columns of which the header tells the labels, and units of some at most: ``t, NS, UD``.
+
+    The first is time, or what a spectrum is drawn over, or all are directions or time: other lines of as many words are
+    text, as are those with a value in them.
+    """
     for line in reversed(header):
-        names = [Column(_tidy(name)) for name in re.split(r"[\s,;]+", line.replace('"', "").strip(" ,;"))]
-        if len(names) == width and any(column.is_time or orientation_of(column.label) for column in names):
-            return names
+        if _VALUE.search(line) or states_a_step(line):
+            continue
+        for columns in _labels_of(line.replace('"', "").strip(" ,;")):
+            if len(columns) == width and (
+                columns[0].is_time
+                or columns[0].may_be_time
+                or columns[0].is_abscissa
+                or all(column.is_time or orientation_in(column.label).known for column in columns)
+                or (width == 1 and columns[0].is_ordinate)
+            ):
+                return columns
     return None
 
 
+def _labels_of(line: str) -> list[list[Column]]:
+    """The columns that a line may name: one for each word, or one between commas, semicolons or tabs."""
+    words = [Column(_tidy(match["label"]), match["unit"]) for match in _WORD.finditer(line)]
+    fields = [match for field in re.split(r"[,;\t]", line) if (match := _FIELD.fullmatch(field.strip()))]
+    found = [] if _WORD.sub("", line).strip(" \t,;") else [words]
+    return [*found, [Column(_tidy(match["label"]), match["unit"]) for match in fields]]
+
+
+def speaks_of_spectra(header: Sequence[str]) -> str:
+    """The line of a header from which columns without labels may be a spectrum; empty where there is none."""
+    return next((line for line in header if _SPECTRA.search(line)), "")
+
+
 def stated_unit(header: Sequence[str]) -> str | None:
-    """The unit of a line ``unit: cm/s2``."""
-    return next((match["unit"].rstrip(".,;") for line in header if (match := _STATED.match(line))), None)
+    """The unit of a line ``unit: cm/s2``, or else such as ``acceleration in units of cm/s/s``."""
+    stated = next((match["unit"].rstrip(".,;") for line in header if (match := _STATED.match(line))), None)
+    said = (match["unit"].rstrip(".") for line in header if not _PEAK.search(line) for match in _SAID.finditer(line))
+    return stated or next((unit for unit in said if is_acceleration(unit)), None)
 
 
-def stated_step(header: Sequence[str]) -> float | None:
-    """The sampling interval [s] of a line ``dt = 0.01 s``."""
-    match = next((match for line in header if (match := _STEP.match(line.strip()))), None)
-    if match is None:
-        return None
-    seconds = SECONDS.get(match["unit"].lower() or "s")
+def is_acceleration(unit: str) -> bool:
+    """Whether a unit is one of acceleration."""
     try:
-        dt = float(match["dt"]) * (seconds or 0.0)
+        acceleration_factor(unit)
     except ValueError:
-        dt = 0.0
-    if not 0 < dt < HUGE:
-        raise InputError(f'header: found "{match[0]}"; expected e.g. dt = 0.01 s')
-    return dt
+        return False
+    return True
 
 
 def stated_count(header: Sequence[str]) -> int | None:

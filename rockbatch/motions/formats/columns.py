@@ -7,27 +7,33 @@ their header and are therefore an ObsPy waveform format, "BBP".
 import codecs
 from dataclasses import replace
 
+import numpy as np
+
 from rockbatch.errors import InputError
 from rockbatch.motions.component import Component
 from rockbatch.motions.formats.column_header import (
-    SECONDS,
     Column,
     columns_with_units,
     columns_without_units,
+    is_acceleration,
+    seconds_in,
+    speaks_of_spectra,
+    spectrum_in,
     stated_count,
-    stated_step,
     stated_unit,
 )
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.record_file import ReadOptions, RecordFile
 from rockbatch.motions.formats.recording import Recording, to_components
+from rockbatch.motions.formats.stated_step import SAME_STEP, StatedStep, stated_step
 from rockbatch.motions.formats.table import read_table
 from rockbatch.motions.formats.time_steps import grows_evenly, on_even_steps
 from rockbatch.motions.motion import Samples, Unusable
-from rockbatch.motions.orientation import UNKNOWN, orientation_of, split_stem
-from rockbatch.units import acceleration_factor
+from rockbatch.motions.orientation import orientation_in, same_azimuth, split_stem
 
 SUFFIXES = frozenset({".txt", ".csv", ".dat", ".bbp", ".acc"})
+
+_GROWING = 0.9  # of the steps of a column of time; those of an acceleration grow half the time
 
 
 def is_columns(head: bytes) -> bool:
@@ -39,35 +45,43 @@ def is_bbp(head: bytes) -> bool:
     """Whether the first bytes are comments that declare time and three accelerations, each with its unit."""
     lines = [line.lstrip("# \t") for line in head.decode("latin-1").splitlines() if line.startswith("#")]
     columns = columns_with_units(lines, 4) or []
-    return len(columns) == 4 and columns[0].is_time and all(map(_is_acceleration, columns[1:]))
+    return (
+        len(columns) == 4 and columns[0].is_time and all(is_acceleration(column.unit or "") for column in columns[1:])
+    )
 
 
 def read_columns(file: RecordFile) -> list[Component | Unusable]:
     """One component per column of acceleration, in m/s².
 
     What the columns are comes from the header (``# time(sec) N-S(cm/s/s) …``, or ``# Column 2: North-south
-    acceleration (cm/s/s)``), else from the study's ``columns``, ``unit`` and ``dt``. Nothing is assumed but
-    one thing: in a file of two columns, one that grows evenly in time's manner is time. Uneven times are
-    interpolated, and it is said.
+    acceleration (cm/s/s)``); the study's ``columns``, ``unit`` and ``dt`` say what it does not. Nothing is assumed
+    but one thing: in a file of two columns, one that grows evenly in time's manner is time, unless the header speaks
+    of spectra. Uneven times are interpolated, and it is said.
     """
     recordings = _parse(file.text, file.options)
+    for recording in recordings:
+        if is_acceleration(recording.unit):
+            file.options.hold_against(recording.unit, recording.dt, file.gravity)
     if len(recordings) > 1:
         return to_components(file, [replace(recording, station=file.stem) for recording in recordings])
     (only,) = recordings
-    if only.orientation is UNKNOWN:
-        only = replace(only, orientation=split_stem(file.stem)[1] or UNKNOWN)
+    if not orientation_in(only.label).known:
+        only = replace(only, orientation=split_stem(file.stem)[1])
     return to_components(file, [only])
 
 
 def _parse(text: str, options: ReadOptions) -> list[Recording]:
     """The columns of acceleration; ``InputError`` where they are not known, or have no unit."""
     header, table = read_table(text)
+    if len(table) < 2:
+        raise InputError("found one row of numbers; expected at least two samples")
     columns, notes = _columns(header, options, table)
     count = stated_count(header)
     if count is not None and count != len(table):
         raise InputError(f"the header says {count} samples, but there are {len(table)} rows; fetch the file again")
     unit = stated_unit(header) or options.unit
-    wanted = [i for i, column in enumerate(columns) if not column.is_time and column.label != "-"]
+    others = [i for i, column in enumerate(columns) if column.other]
+    wanted = [i for i, column in enumerate(columns) if not (column.is_time or column.other or column.label == "-")]
     lacking = [f"{_called(i, columns[i])} has no unit" for i in wanted if not (columns[i].unit or unit)]
     if lacking:
         raise InputError(
@@ -75,36 +89,95 @@ def _parse(text: str, options: ReadOptions) -> list[Recording]:
             'or state it in the study, e.g. unit = "cm/s2"'
         )
     if not wanted:
-        raise InputError("found a column of time and no other")
-    dt, values, moved = _sampled(columns, table, stated_step(header) or options.dt)
+        found = " and ".join(columns[i].other for i in others)
+        raise InputError(f"found {found or 'a column of time and no other'}; expected accelerations")
+    left = tuple(f"{_called(i, columns[i])} left out: a {columns[i].other}" for i in others)
+    dt, values, moved = _sampled(columns, table, header, options)
     return [
         Recording(
             label=columns[i].label,
-            orientation=orientation_of(columns[i].label) or UNKNOWN,
+            orientation=orientation_in(columns[i].label),
             dt=dt,
             values=values[:, i],
             unit=columns[i].unit or unit or "",
             codes=("", "", "", columns[i].label),
-            notes=(*notes, *moved),
+            notes=(*notes, *left, *moved),
         )
         for i in wanted
     ]
 
 
 def _columns(header: list[str], options: ReadOptions, table: Samples) -> tuple[list[Column], tuple[str, ...]]:
-    """What the columns are, and what had to be said about them."""
+    """What the columns are, and what had to be said about them; ``InputError`` for those of a spectrum."""
     width = table.shape[1]
-    if columns := columns_with_units(header, width):
-        return columns, ()
-    if options.columns is not None:
-        if len(options.columns) != width:
-            raise InputError(f"found {width} columns; the study states columns = {list(options.columns)}")
-        return [Column(label) for label in options.columns], ()
-    if columns := columns_without_units(header, width):
-        return columns, ()
+    columns = columns_with_units(header, width) or columns_without_units(header, width)
+    stated = options.columns
+    notes: tuple[str, ...] = ()
+    if stated is not None and len(stated) != width:
+        if columns is None:
+            raise InputError(f"found {width} columns; the study states columns = {list(stated)}")
+        notes = (f"its header tells its {width} columns; the {len(stated)} that are stated are those of other files",)
+    elif stated is not None:
+        said = columns or [Column("")] * width
+        columns = [_completed(i, column, label) for i, (column, label) in enumerate(zip(said, stated, strict=True))]
+    if columns is None:
+        return _guessed(header, table)
+    columns = _with_time(columns, table)
+    if what := spectrum_in(columns):
+        raise InputError(f"{what} is no time history; take the record of accelerations instead")
+    return columns, notes
+
+
+def _completed(i: int, said: Column, stated: str) -> Column:
+    """A column of the header with what the study states about it where the header says nothing.
+
+    ``InputError`` where the two contradict each other.
+    """
+    if stated == "-":
+        return Column(stated)
+    by_header, by_study = orientation_in(said.label), orientation_in(stated)
+    study = Column(stated)
+    if said.is_time or said.is_abscissa or said.is_ordinate:
+        agree, found = said.is_time == (study.is_time or study.may_be_time), said
+    elif study.is_time or (study.may_be_time and said.may_be_time):
+        agree, found = said.may_be_time or not said.label, Column("time", said.unit)
+    else:
+        agree = not (by_header.known and by_study.known) or (
+            by_header.vertical == by_study.vertical
+            and by_header.down == by_study.down
+            and (None in (by_header.azimuth, by_study.azimuth) or same_azimuth(by_header.azimuth, by_study.azimuth))
+        )
+        settled = by_header.vertical or by_header.azimuth is not None or not by_study.known
+        found = said if by_header.known and settled else Column(stated, said.unit)
+    if not agree:
+        raise InputError(
+            f'column {i + 1}: the header says "{said.label}", but columns states "{stated}"; what a file says goes '
+            "first: leave columns out, or correct the header"
+        )
+    return found
+
+
+def _with_time(columns: list[Column], table: Samples) -> list[Column]:
+    """Columns with a T that has no unit told for what it is: time grows, the transverse component does not."""
+    if any(column.is_time for column in columns):
+        return columns
+    return [
+        Column("time") if column.may_be_time and (np.diff(table[:, i]) > 0).mean() > _GROWING else column
+        for i, column in enumerate(columns)
+    ]
+
+
+def _guessed(header: list[str], table: Samples) -> tuple[list[Column], tuple[str, ...]]:
+    """The only column, or time and acceleration."""
+    width = table.shape[1]
     if width == 1:
         return [Column("")], ()
     if width == 2 and len(table) > 2 and grows_evenly(table[:, 0]):
+        if line := speaks_of_spectra(header):
+            raise InputError(
+                f'found two columns without labels below "{line[:60]}": a spectrum is no time history; if this is one, '
+                'state in the study columns = ["time", "000"]'
+            )
         return [Column("time"), Column("")], ("first column, evenly growing, taken as time [s]",)
     raise InputError(
         f"found {width} columns and no header that says what they are; write one, "
@@ -113,37 +186,42 @@ def _columns(header: list[str], options: ReadOptions, table: Samples) -> tuple[l
     )
 
 
-def _sampled(columns: list[Column], table: Samples, stated: float | None) -> tuple[float, Samples, tuple[str, ...]]:
+def _sampled(
+    columns: list[Column], table: Samples, header: list[str], options: ReadOptions
+) -> tuple[float, Samples, tuple[str, ...]]:
     """Sampling interval [s], from the time column or as stated, the table on even times, and notes."""
     times = [i for i, column in enumerate(columns) if column.is_time]
     if len(times) > 1:
         raise InputError(f"found {len(times)} columns of time; expected one")
-    if len(table) < 2:
-        raise InputError("found one row of numbers; expected at least two samples")
+    said = stated_step(header)
     if not times:
-        if stated is None:
+        dt = said.dt if said else options.dt
+        if dt is None:
             raise InputError("no column of time and no sampling interval; state it in the study, e.g. dt = 0.01")
-        return stated, table, ()
+        return dt, table, ()
     column = columns[times[0]]
-    seconds = SECONDS.get((column.unit or "s").strip().lower().rstrip("."))
+    seconds = seconds_in(column.unit or "s")
     if seconds is None:
         raise InputError(f'unit of time "{column.unit}"; expected s or ms')
-    dt, values, notes = on_even_steps(table[:, times[0]] * seconds, table)
+    t = table[:, times[0]] * seconds
+    dt, values, notes = on_even_steps(t, table)
+    if said and "dt" not in options.instead:
+        _check_step(said, dt, float(np.median(np.diff(t))))
     return dt, values, notes
+
+
+def _check_step(said: StatedStep, dt: float, usual: float) -> None:
+    """``InputError`` where the header's interval is neither that of the samples nor that of most of them [s]."""
+    if all(abs(said.dt - found) > SAME_STEP * found for found in (dt, usual)):
+        raise InputError(
+            f'the header says "{said.words}", {said.dt:g} s, but time grows by {usual:g} s; correct the one that is '
+            "wrong, or write dt = … for this file in motions.toml"
+        )
 
 
 def _called(i: int, column: Column) -> str:
     """A column for messages."""
     return f'column {i + 1} ("{column.label}")' if column.label else f"column {i + 1}"
-
-
-def _is_acceleration(column: Column) -> bool:
-    """Whether a column's unit is one of acceleration."""
-    try:
-        acceleration_factor(column.unit or "")
-    except ValueError:
-        return False
-    return True
 
 
 is_bbp_file, read_bbp_stream = plugin("BBP", is_bbp, lambda text: _parse(text, ReadOptions()))

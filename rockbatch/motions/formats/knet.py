@@ -4,7 +4,7 @@ from rockbatch.errors import InputError
 from rockbatch.motions.component import Component
 from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.formats.with_obspy import read_stream
-from rockbatch.motions.orientation import UNKNOWN, orientation_of
+from rockbatch.motions.orientation import orientation_of, unknown
 
 SUFFIXES = frozenset({".ew", ".ns", ".ud", ".ew1", ".ns1", ".ud1", ".ew2", ".ns2", ".ud2"})
 
@@ -34,7 +34,7 @@ def read_knet(file: RecordFile) -> list[Component]:
             name=file.stem,
             dt=float(stats.delta),
             acceleration=trace.data * stats.calib,
-            orientation=orientation_of(stats.channel[:2]) or UNKNOWN,
+            orientation=orientation_of(stats.channel[:2]) or unknown(stats.channel),
             station=f"{stats.station}.{level}" if level else stats.station,
             source=file.source,
             start=stats.starttime.timestamp,

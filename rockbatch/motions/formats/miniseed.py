@@ -11,7 +11,7 @@ from rockbatch.motions.formats import stationxml
 from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.formats.with_obspy import read_stream
 from rockbatch.motions.motion import Unusable
-from rockbatch.motions.orientation import UNKNOWN, Orientation, orientation_of
+from rockbatch.motions.orientation import Orientation, orientation_of, unknown
 from rockbatch.units import acceleration_factor
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ def _component(name: str, file: RecordFile, trace: "Trace", known: list[stationx
     start = stats.starttime.timestamp
     entries = [channel for channel in known if channel.id == trace.id]
     entry = next((channel for channel in entries if channel.start <= start < channel.end), None)
-    orientation = orientation_of(stats.channel) or UNKNOWN
+    orientation = orientation_of(stats.channel) or unknown(stats.channel)
     if entry is not None and entry.sensitivity:
         unit, sensitivity = entry.unit, entry.sensitivity
         origin = f"sensitivity {sensitivity:g} counts per {unit} from StationXML"

@@ -6,12 +6,22 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from rockbatch.errors import InputError
+from rockbatch.motions.formats.stated_step import SAME_STEP
 from rockbatch.units import GRAVITY, acceleration_factor
+
+ROLES = ("horizontal",)
+"""What all components of unknown direction may be said to be."""
+
+
+_SAME_UNIT = 1e-9  # relative
 
 
 @dataclass(frozen=True)
 class ReadOptions:
-    """What a study states about files that do not state it themselves; what a file says goes first.
+    """What a study states about files that do not state it themselves.
+
+    Text columns and AT2 files, whose headers people write, are refused where they say otherwise; files of formats that
+    always have their unit and step are not concerned.
 
     Attributes
     ----------
@@ -22,14 +32,20 @@ class ReadOptions:
     columns : tuple of str or None
         What the columns of text files are: "time", a component such as "000", "NS" or "up", or "-" (leave
         out).
+    role : str or None
+        What components are whose direction nothing tells: "horizontal".
     sensitivity : float or None
         Counts per ``unit`` (per m/s² where no unit is stated) of MiniSEED and SAC files.
+    instead : frozenset of str
+        Which of these a manifest states for this very file, in place of what it says itself.
     """
 
     unit: str | None = None
     dt: float | None = None
     columns: tuple[str, ...] | None = None
     sensitivity: float | None = None
+    role: str | None = None
+    instead: frozenset[str] = frozenset()
 
     def __post_init__(self) -> None:
         wrong = []
@@ -42,6 +58,8 @@ class ReadOptions:
             wrong.append(f"dt = {self.dt:g}: must be a number above 0 [s]")
         if self.sensitivity is not None and not (math.isfinite(self.sensitivity) and self.sensitivity != 0):
             wrong.append(f"sensitivity = {self.sensitivity:g}: must be a number other than 0 [counts per unit]")
+        if self.role not in (None, *ROLES):
+            wrong.append(f'role = "{self.role}": must be "horizontal"; verticals are named one by one, in motions.toml')
         if self.columns is not None:
             object.__setattr__(self, "columns", tuple(self.columns))
             if all(name in ("-", "time", "t") for name in self.columns):
@@ -50,6 +68,26 @@ class ReadOptions:
                 )
         if wrong:
             raise InputError(*wrong)
+
+    def hold_against(self, unit: str, dt: float, gravity: float) -> None:
+        """``InputError`` where a file with a header of free text says another ``unit`` or ``dt`` [s] than is stated.
+
+        What a manifest states is for this very file, and replaces what it says afterwards; ``gravity`` [m/s²].
+        """
+        wrong = []
+        if self.unit is not None and "unit" not in self.instead:
+            said, stated = acceleration_factor(unit, gravity), acceleration_factor(self.unit, gravity)
+            if abs(said - stated) > _SAME_UNIT * said:
+                wrong.append(("unit", unit, f'"{self.unit}"'))
+        if self.dt is not None and "dt" not in self.instead and abs(self.dt - dt) > SAME_STEP * dt:
+            wrong.append(("dt", f"{dt:g} s", f"{self.dt:g}"))
+        if wrong:
+            reasons = [
+                f"the file says {said}, but {key} = {stated} is stated for files that do not say: leave it out, and write "
+                f"{key} in motions.toml for those that need it"
+                for key, said, stated in wrong
+            ]
+            raise InputError("; ".join(reasons))
 
 
 @dataclass(frozen=True)

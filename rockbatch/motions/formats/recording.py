@@ -9,7 +9,7 @@ from rockbatch.errors import InputError
 from rockbatch.motions.component import Component
 from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.motion import Samples, Unusable
-from rockbatch.motions.orientation import Orientation, orientation_of
+from rockbatch.motions.orientation import Orientation, orientation_of, unknown
 from rockbatch.units import acceleration_factor
 
 _SAME_PEAK = 0.01  # relative: header peaks are rounded, and taken before the last decimals of the data were cut
@@ -64,7 +64,7 @@ class Recording:
 def to_components(file: RecordFile, recordings: Sequence[Recording]) -> list[Component | Unusable]:
     """The channels of ``file`` in m/s², named by its stem and, where there are several, their labels.
 
-    A channel whose direction or unit is not understood is an ``Unusable`` beside the others.
+    A channel whose unit is not understood is an ``Unusable`` beside the others.
     """
     readings: list[Component | Unusable] = []
     for recording in recordings:
@@ -79,12 +79,8 @@ def to_components(file: RecordFile, recordings: Sequence[Recording]) -> list[Com
 
 
 def _component(file: RecordFile, recording: Recording, name: str, source: str) -> Component:
-    """One channel as a component; ``InputError`` for a direction or a unit that is not understood."""
-    orientation = recording.orientation or orientation_of(recording.label)
-    if orientation is None:
-        raise InputError(
-            f'component "{recording.label}": direction not understood; expected e.g. N10E, 228, NS, L, UP or HNZ'
-        )
+    """One channel as a component; ``InputError`` for a unit that is not understood."""
+    orientation = recording.orientation or orientation_of(recording.label) or unknown(recording.label)
     try:
         factor = acceleration_factor(recording.unit, file.gravity)
     except ValueError as error:

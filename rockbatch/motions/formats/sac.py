@@ -4,11 +4,12 @@ from rockbatch.errors import InputError
 from rockbatch.motions.component import Component
 from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.formats.with_obspy import read_stream
-from rockbatch.motions.orientation import UNKNOWN, Orientation, orientation_of, split_stem
+from rockbatch.motions.orientation import Orientation, orientation_of, split_stem, unknown
 from rockbatch.units import acceleration_factor
 
 SUFFIXES = frozenset({".sac"})
 
+_LEVEL = 10.0  # degrees that a horizontal component may be off the horizontal
 _VERSION_AT = 76 * 4  # header word NVHDR, 6 or 7
 
 
@@ -32,14 +33,14 @@ def read_sac(file: RecordFile) -> list[Component]:
     (trace,) = read_stream(file.data, "SAC")
     stats = trace.stats
     factor = acceleration_factor(options.unit or "m/s2", file.gravity) / (options.sensitivity or 1.0)
-    orientation = orientation_of(stats.channel) or _by_angles(stats.sac) or split_stem(file.stem)[1] or UNKNOWN
+    orientation = orientation_of(stats.channel) or _by_angles(stats.sac) or split_stem(file.stem)[1]
     codes = (stats.network, stats.station, stats.location, stats.channel[:-1])
     return [
         Component(
             name=file.stem,
             dt=float(stats.delta),
             acceleration=trace.data.astype(float) * factor,
-            orientation=orientation,
+            orientation=orientation or unknown(stats.channel),
             station=".".join(codes) if stats.station else "",
             source=file.source,
             start=stats.starttime.timestamp,
@@ -51,10 +52,10 @@ def read_sac(file: RecordFile) -> list[Component]:
 
 
 def _by_angles(sac: dict[str, float]) -> Orientation | None:
-    """Orientation by CMPAZ (from north) and CMPINC (from upward vertical) [degrees], where both are set."""
+    """Orientation by CMPAZ (from north) and CMPINC (from upward vertical) [degrees], where both are set and it is one."""
     if "cmpinc" not in sac or "cmpaz" not in sac:
         return None
     azimuth, inclination = float(sac["cmpaz"]), float(sac["cmpinc"])
     if inclination in (0.0, 180.0):
         return Orientation("", vertical=True, down=inclination == 180.0)
-    return Orientation("", azimuth=azimuth % 360.0)
+    return Orientation("", azimuth=azimuth % 360.0) if abs(inclination - 90.0) <= _LEVEL else None
