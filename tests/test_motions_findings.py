@@ -9,12 +9,14 @@ from motion_files import RECORDS, needs_records, wiggle, write_at2
 
 from rockbatch.cli import main
 from rockbatch.errors import InputError
-from rockbatch.motions import fema_p695, read_motions
+from rockbatch.motions import fema_p695, measures, read_motions
 from rockbatch.motions.component import Component
+from rockbatch.motions.doubles import without_doubles
 from rockbatch.motions.folder import read_files
 from rockbatch.motions.formats import ReadOptions
 from rockbatch.motions.pairing import to_motions
 from rockbatch.motions.plausible import ALTERNATION, UNEQUAL, alternating
+from rockbatch.motions.stations import by_station
 from rockbatch.results import describe
 from rockbatch.study import load_study
 from rockbatch.study.suite import ground_motions
@@ -237,6 +239,28 @@ def test_no_real_record_comes_near_the_limit_of_alternation():
     shares = [alternating(c.acceleration) / c.pga for c in real_components()]
     assert len(shares) > 190
     assert max(shares) < 0.3 * ALTERNATION
+
+
+@needs_records
+def test_real_horizontals_of_a_station_are_far_from_five_times_each_other():
+    pytest.importorskip("hdf5plugin")
+    ratios = []
+    for station in by_station(without_doubles(real_components())[0]):
+        peaks = [c.pga for c in station if not c.orientation.vertical]
+        if len(peaks) == 2:
+            ratios.append(max(peaks) / min(peaks))
+    assert len(ratios) > 60
+    assert max(ratios) == pytest.approx(2.75, abs=0.01)  # TCU084
+
+
+@needs_records
+def test_what_lasts_is_told_from_what_runs_away_in_real_records():
+    """Lucerne moved for good, by 2.4 m; straight lines take a third off that, and three fifths off what runs away."""
+    pytest.importorskip("hdf5plugin")
+    away = {True: 0, False: 0, None: 0}
+    for c in {c.acceleration.tobytes(): c for c in real_components()}.values():
+        away[c.processed] += c.initial is None and measures.runs_away(measures.displacement(c.acceleration, c.dt))
+    assert away == {True: 2, False: 15, None: 1}  # True: 0111b and 0111c
 
 
 @needs_records

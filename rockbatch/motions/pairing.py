@@ -2,7 +2,7 @@
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import PurePosixPath
 from typing import Literal
@@ -49,7 +49,6 @@ def to_motions(
     stations = by_station([*components, *(c for c in kept if not c.folder)])
     number = {id(c): i for i, station in enumerate(stations) for c in station}
     verticals = [[c for c in station if c.orientation.vertical] for station in stations]
-    peaks = [[(c, c.pga) for c in station if not c.orientation.vertical] for station in stations]
     unusable: list[Unusable] = []
     horizontals = [(number[id(c)], c) for c in kept]
     if azimuths:
@@ -79,21 +78,33 @@ def to_motions(
         reason = "a vertical component without a usable horizontal one of its station in its folder"
         left = [v for group in verticals for v in group if id(v) not in used]
         unusable += [Unusable(v.name, v.source, f"{reason} ({v.station or v.site})") for v in left]
-    believed: list[Motion] = []
+    peaks = [[(c, c.pga) for c in station if not c.orientation.vertical] for station in stations]
+    named = _told_apart(motions, [c.folder for _, c in horizontals])
+    judged = [
+        Judged(motion, component, peaks[station], gravity)
+        for motion, (station, component) in zip(named, horizontals, strict=True)
+    ]
     patterns = {"confirm": confirmed, "confirm_pga": confirmed_pga}
-    for motion, (station, component) in zip(
-        _told_apart(motions, [c.folder for _, c in horizontals]), horizontals, strict=True
-    ):
-        keys = {*component.confirmed, *(key for key, names in patterns.items() if fits(motion.name, names))}
-        odd = findings(Judged(motion, component, peaks[station], gravity))
-        if motion.lacks_vertical and vertical == "required":
+    found = _believed(judged, patterns, required=vertical == "required")
+    return replace(found, unusable=sorted([*unusable, *found.unusable], key=lambda u: u.source))
+
+
+def _believed(judged: Iterable[Judged], patterns: Mapping[str, Sequence[str]], required: bool) -> MotionSet:
+    """Motions with what is odd about them in their notes; those that have to be confirmed, or to have a vertical that
+    is ``required``, as unusable. ``patterns``: of the names that each key confirms."""
+    motions: list[Motion] = []
+    unusable: list[Unusable] = []
+    for each in judged:
+        motion, odd = each.motion, findings(each)
+        keys = {*each.component.confirmed, *(key for key, names in patterns.items() if fits(motion.name, names))}
+        if motion.lacks_vertical and required:
             unusable.append(Unusable(motion.name, motion.files, _NO_VERTICAL))
         elif why := doubt(motion.name, odd, keys):
             unusable.append(Unusable(motion.name, motion.files, why))
         else:
             said = [f"confirmed: {finding.text}" if finding.gross else finding.text for finding in odd]
-            believed.append(replace(motion, findings=odd, notes=(*motion.notes, *said)))
-    return MotionSet(believed, sorted(unusable, key=lambda u: u.source))
+            motions.append(replace(motion, findings=odd, notes=(*motion.notes, *said)))
+    return MotionSet(motions, unusable)
 
 
 def _without_doubles(
