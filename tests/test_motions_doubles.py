@@ -134,6 +134,12 @@ def test_an_smc_file_beside_its_uncorrected_one(tmp_path):
     assert "less corrected" in left_out(found)["a.smc"]
 
 
+def test_smc_files_that_do_not_know_their_time_are_not_taken_for_one_recording(tmp_path):
+    nobody_knows = (-32768,) * 6
+    write(tmp_path, a_smc=smc_text(A, clock=nobody_knows), b_smc=smc_text(B, clock=nobody_knows))
+    assert len(read_motions(tmp_path).motions) == 2
+
+
 def test_the_drafted_manifest_has_the_line_that_takes_the_other_one(tmp_path):
     write(tmp_path, STA_V1A=geonet_text(1), STA_V2A=geonet_text(2))
     text = draft(tmp_path)
@@ -142,6 +148,11 @@ def test_the_drafted_manifest_has_the_line_that_takes_the_other_one(tmp_path):
         f"# use = true   # the same recording, less corrected, as STA.V2A ({way}), which is used"
         for way in ("N28W", "S62W", "Up")
     ]
+    before = read_motions(tmp_path)
+    (tmp_path / "motions.toml").write_text(text)
+    after = read_motions(tmp_path)
+    assert [(m.name, m.files) for m in after.motions] == [(m.name, m.files) for m in before.motions]
+    assert left_out(after) == left_out(before)
 
 
 @needs_records

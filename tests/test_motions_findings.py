@@ -14,6 +14,7 @@ from rockbatch.motions.component import Component
 from rockbatch.motions.doubles import without_doubles
 from rockbatch.motions.folder import read_files
 from rockbatch.motions.formats import ReadOptions
+from rockbatch.motions.manifest_draft import draft
 from rockbatch.motions.pairing import to_motions
 from rockbatch.motions.plausible import ALTERNATION, UNEQUAL, alternating
 from rockbatch.motions.stations import by_station
@@ -126,6 +127,15 @@ def test_a_displacement_beyond_all_ground_is_gross_in_corrected_records_only():
         assert len(found.unusable) == gross
         if not gross:
             assert "PGD" in whats(found.motions[0])
+
+
+@pytest.mark.parametrize("kind", ["alternates", "PGD", "structure"])
+def test_the_drafted_manifest_has_the_line_that_confirms_it(tmp_path, kind):
+    grossly_odd(tmp_path, kind)
+    text = draft(tmp_path)
+    (line,) = [line for line in text.splitlines() if line.startswith("# confirm = true   # ")]
+    (tmp_path / "motions.toml").write_text(text.replace(line, line.removeprefix("# ")))
+    assert len(read_motions(tmp_path).motions) == 1
 
 
 # How they are found

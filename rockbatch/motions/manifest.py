@@ -13,7 +13,7 @@ from typing import Any
 
 from rockbatch.errors import InputError
 from rockbatch.motions import kinds
-from rockbatch.motions.component import NOWHERE, Component
+from rockbatch.motions.component import Component
 from rockbatch.motions.formats import ReadOptions
 from rockbatch.motions.orientation import Orientation
 from rockbatch.toml.kinds import boolean, choice, closest, not_negative, number, positive, shown, text
@@ -178,7 +178,7 @@ def _described(component: Component, entry: Entry, gravity: float) -> Component:
         initial = initial and initial.times(-1.0)
         notes.append(f"sign reversed as {where} says")
     if "station" in values:
-        component = replace(component, station=values["station"], site="", seat=NOWHERE)
+        component = replace(component, station=values["station"], site="")
     return replace(
         component,
         acceleration=component.acceleration * factor if factor != 1.0 else component.acceleration,

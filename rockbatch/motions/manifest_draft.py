@@ -11,8 +11,8 @@ from rockbatch.motions.component import Component
 from rockbatch.motions.doubles import without_doubles
 from rockbatch.motions.folder import Reading, read_files
 from rockbatch.motions.formats import ReadOptions
-from rockbatch.motions.motion import Unusable
-from rockbatch.motions.plausible import HIGHEST, LOWEST
+from rockbatch.motions.motion import Finding, Motion, Unusable
+from rockbatch.motions.plausible import Judged, findings
 from rockbatch.motions.stations import by_station
 from rockbatch.units import GRAVITY
 
@@ -83,11 +83,19 @@ def _table(component: Component, name: str, several: bool, station: str, double:
     text = "[[record]]\n" + "".join(f"{key} = {_written(value)}\n" for key, value in lines)
     if not orientation.vertical and orientation.azimuth is None:
         text += "# azimuth =\n"
-    if not orientation.vertical and not LOWEST <= component.pga / GRAVITY <= HIGHEST:
-        text += f"# confirm_pga = true   # PGA {component.pga / GRAVITY:.3g} g: check the unit\n"
+    if not orientation.vertical:
+        text += "".join(f"# {odd.key} = true   # {legible(odd.text)}\n" for odd in _gross(component))
     if double:
         text += f"# use = true   # {legible(double.partition(';')[0])}\n"
     return text + "# magnitude =\n# distance_km =\n"
+
+
+def _gross(component: Component) -> list[Finding]:
+    """What is grossly odd about a horizontal component, which has to be confirmed."""
+    alone = Motion(
+        component.name, component.dt, component.acceleration, initial=component.initial, processed=component.processed
+    )
+    return [odd for odd in findings(Judged(alone, component, (), GRAVITY)) if odd.gross]
 
 
 def _remark(name: str, reason: str) -> str:

@@ -81,7 +81,7 @@ def _parse(text: str) -> list[Recording]:
             uncorrected=title["kind"] == "1",
             processed=title["kind"] == "2",
             seat=Seat(f"{station['name']} {integers[29]}".upper(), place=station["name"].upper()),
-            event=f"{year}-{day:03d} {hour}:{minute}",
+            event="" if unknown in (year, day, hour, minute) else f"{year}-{day:03d} {hour}:{minute}",
             stated_peak=max(peaks, default=None),
             notes=("its header flags a problem: read its comments",) if integers[17] == 1 else (),
             header={"station": station["name"], "event": line_at(lines, 3)[25:].strip()},
