@@ -6,6 +6,7 @@ from fixed_column_files import A, B, C, cosmos_text, csmip_channel, csmip_text, 
 from motion_files import RECORDS, needs_records, wiggle, write_at2
 
 from rockbatch.motions import read_motions
+from rockbatch.motions.component import Seat
 from rockbatch.motions.manifest_draft import draft
 
 
@@ -132,6 +133,23 @@ def test_an_smc_file_beside_its_uncorrected_one(tmp_path):
     found = read_motions(tmp_path)
     assert [motion.source for motion in found.motions] == ["b.smc"]
     assert "less corrected" in left_out(found)["a.smc"]
+
+
+@pytest.mark.parametrize(
+    ("one", "two", "same"),
+    [
+        (Seat("1336", place="FREEFIELD"), Seat("01336", "CE", "", "Free field", "15"), True),
+        (Seat("CCC", "CI", ""), Seat("CCC", "CI", "00"), False),
+        (Seat("CCC", "CI"), Seat("CCC", "NP"), False),
+        (Seat("CCC", "CI", "00"), Seat("CCC"), True),
+        (Seat("24386", place="ROOF"), Seat("24386", place="GROUND"), False),
+        (Seat("24386", channel="1"), Seat("24386", channel="2"), False),
+        (Seat(""), Seat(""), False),
+        (Seat("A"), Seat("B"), False),
+    ],
+)
+def test_a_sensor_is_told_by_what_both_headers_say_of_it(one, two, same):
+    assert one.is_that_of(two) == two.is_that_of(one) == same
 
 
 def test_smc_files_that_do_not_know_their_time_are_not_taken_for_one_recording(tmp_path):

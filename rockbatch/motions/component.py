@@ -28,9 +28,14 @@ class Seat:
     place: str | None = None
     channel: str | None = None
 
+    @property
+    def number(self) -> str:
+        """The station, without the zeros that some agencies put in front."""
+        return self.station.lstrip("0")
+
     def is_that_of(self, other: "Seat") -> bool:
         """Whether both may be the same sensor, of a station that both name."""
-        if not self.station or self.station.lstrip("0") != other.station.lstrip("0"):
+        if not self.number or self.number != other.number:
             return False
         pairs = (
             (self.network, other.network),

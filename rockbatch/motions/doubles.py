@@ -30,13 +30,13 @@ def without_doubles(components: Sequence[Component]) -> tuple[list[Component], l
     """
     order = _preference(components)
     kept: list[int] = []
-    of_sensor: dict[str, list[int]] = {}
+    of_station: dict[str, list[int]] = {}
     of_samples: dict[bytes, list[int]] = {}
     stands_for: dict[int, int] = {}
     for i in sorted(range(len(components)), key=lambda i: order[i]):
         component = components[i]
         samples = _samples(component)
-        station = of_sensor.setdefault(component.seat.station, []) if component.seat.station else []
+        station = of_station.setdefault(component.seat.number, []) if component.seat.number else []
         alike = of_samples.setdefault(samples, [])
         other = next((j for j in station if _same_recording(component, components[j])), None)
         if other is None:
