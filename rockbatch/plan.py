@@ -2,7 +2,7 @@
 
 from abc import abstractmethod
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import overload
 
@@ -30,9 +30,7 @@ def scaled(motion: Motion, scale: float, polarity: str) -> Motion:
     """A motion times ``scale``; with polarity "-" its horizontal component is reversed."""
     if scale == 1.0 and polarity == "+":
         return motion
-    vertical = None if motion.vertical is None else motion.vertical * scale
-    sign = -scale if polarity == "-" else scale
-    return replace(motion, horizontal=motion.horizontal * sign, vertical=vertical)
+    return motion.times(scale, reverse=polarity == "-")
 
 
 class Runs(Sequence[Run]):

@@ -156,6 +156,7 @@ def describe(study: Study, motions: MotionSet) -> dict[str, Any]:
         },
         "varied": list(study.varied),
         "cases": [describe_case(case) for case in study.cases],
+        "without_vertical": motions.without_vertical,
         "records": [_describe_motion(motion, study.cases[0].pier.gravity) for motion in motions.motions],
         "spectra": _spectra(motions.motions, study.cases[0].pier.gravity),
         "unusable": [asdict(file) for file in motions.unusable],
@@ -235,8 +236,8 @@ def _describe_motion(motion: Motion, gravity: float) -> dict[str, Any]:
         "duration_s": motion.duration,
         "pga_g": motion.pga / gravity,
         "pga_v_g": None if vertical is None else vertical / gravity,
-        "pgv_m_s": measures.pgv(motion.horizontal, motion.dt),
-        "pgd_m": measures.pgd(motion.horizontal, motion.dt),
+        "pgv_m_s": measures.pgv(motion.horizontal, motion.dt, motion.initial),
+        "pgd_m": measures.believable_pgd(motion),
         "arias_m_s": measures.arias_intensity(motion.horizontal, motion.dt, gravity),
         "d5_95_s": measures.significant_duration(motion.horizontal, motion.dt),
         "azimuth_deg": motion.azimuth,
@@ -245,6 +246,8 @@ def _describe_motion(motion: Motion, gravity: float) -> dict[str, Any]:
         "factor": motion.factor,
         "source": motion.source,
         "vertical_source": motion.vertical_source,
+        "processed": motion.processed,
+        "findings": [asdict(finding) for finding in motion.findings],
         "notes": list(motion.notes),
     }
 

@@ -10,6 +10,13 @@ _ACCELERATION_IN_M_S2 = {
     "mm/s2": 0.001,
 }
 
+_LENGTH_IN_M = {"mm": 0.001, "cm": 0.01, "m": 1.0}
+
+
+def length_factor(unit: str) -> float | None:
+    """Factor that turns "cm", or a "cm/sec", into m, or m/s; ``None`` for another unit."""
+    return _LENGTH_IN_M.get(unit.strip().lower().partition("/")[0])
+
 
 def acceleration_factor(unit: str, gravity: float = GRAVITY) -> float:
     """Factor that turns an acceleration in ``unit`` into m/s².

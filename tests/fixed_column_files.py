@@ -49,7 +49,7 @@ def cosmos_header(
     unit_code: int = 4,
     azimuth_code: int = -999,
     scnl: str = "8040.HNE.NP.D0",
-    location: str = "Building; roof",
+    location: str = "Building; ground level",
     clock: tuple[int, ...] = (2018, 11, 30, 17, 29),
     peak: float | None = None,
 ) -> list[str]:

@@ -50,6 +50,12 @@ def write_at2(folder: Path, name: str, values, **header) -> Path:
 
 
 def wiggle(npts: int = 200, seed: int = 1, scale: float = 0.1) -> np.ndarray:
-    """Noise in a bell, in g: no two records alike, the peak inside."""
+    """Noise in a bell, in g, its peak 0.9 ``scale`` and inside: no two records alike, and nothing odd about any.
+
+    The ground comes to rest where it was: the sum and the first moment of the accelerations are none.
+    """
     t = np.linspace(-3, 3, npts)
-    return scale * np.exp(-(t**2)) * np.random.default_rng(seed).uniform(0.5, 1.0, npts) * (-1.0) ** np.arange(npts)
+    bell = np.exp(-(t**2))
+    a = bell * np.convolve(np.random.default_rng(seed).standard_normal(npts + 4), [1, 2, 3, 2, 1], "valid")
+    a -= bell * (a.sum() / bell.sum() + t * (t @ a) / (t @ (t * bell)))
+    return 0.9 * scale * a / np.abs(a).max()

@@ -20,7 +20,7 @@ COLUMNS = (
     "record", "case", "polarity", "scale", "status", "theta_max_over_alpha", "theta_max_error", "t_max_s",
     "theta_res_over_alpha", "settlement_m", "impacts", "separations", "flight_s", "substeps", "reason", "t_end_s",
     "theta_res_error", "base_tilt_rad", "ductility_left", "ductility_right", "dissipated_left_J_kg",
-    "dissipated_right_J_kg",
+    "dissipated_right_J_kg", "residual_s", "theta_res_drift_per_s", "settlement_drift_m_s", "note",
 )  # fmt: skip
 FIG7 = [
     ("ERZ-NS", 0.515), ("RSN779_LOMAP_LGP000", 0.563), ("RSN1120_KOBE_TAK000", 0.611),
@@ -99,6 +99,7 @@ def write_results(
                 "separations": int(draw.integers(4, 60)), "base_tilt_rad": draw.normal(0, 5e-4),
                 "ductility_left": draw.uniform(0.8, 4), "ductility_right": draw.uniform(0.8, 4),
                 "dissipated_left_J_kg": draw.uniform(0, 1), "dissipated_right_J_kg": draw.uniform(0, 1),
+                "residual_s": 32.0, "theta_res_drift_per_s": 1e-4, "settlement_drift_m_s": 2e-4,
             }  # fmt: skip
         rows.append(row | case["columns"] | changes.get((record, case["case"]), {}))
     rows += [

@@ -269,7 +269,7 @@ def test_a_small_text_file_reads_the_same_in_latin_1_and_utf_8_with_a_mark(tmp_p
     text = "# time(s) NS(cm/s²)\n0 1\n0.1 2\n0.2 3\n"
     for name, data in (("a.txt", text.encode("latin-1")), ("b.txt", text.encode("utf-8-sig"))):
         (tmp_path / name).write_bytes(data)
-    first, second = read_motions(tmp_path).motions
+    (first,), (second,) = (read_motions(tmp_path / name).motions for name in ("a.txt", "b.txt"))
     np.testing.assert_array_equal(first.horizontal, second.horizontal)
     np.testing.assert_allclose(first.horizontal, [0.01, 0.02, 0.03])
 

@@ -43,7 +43,7 @@ def test_one_channel_comes_out_in_m_s2_with_step_direction_and_time(version, lay
     assert (component.name, component.dt, component.start) == ("NP8040.HNE", 0.005, START)
     assert component.orientation.azimuth == 90
     assert component.raw
-    assert component.notes == ("location: Building; roof",)
+    assert component.notes == ("location: Building; ground level",)
 
 
 def test_several_channels_of_one_file_are_one_station_and_named_by_their_directions(tmp_path):

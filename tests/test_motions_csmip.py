@@ -94,12 +94,17 @@ def test_a_folder_of_both_volumes_pairs_each_with_its_own_vertical(tmp_path):
         (tmp_path / name).write_bytes(csmip_text(volume).encode("latin-1"))
     found = read_motions(tmp_path)
     assert not found.unusable
-    assert [motion.vertical_source for motion in found.motions] == ["STA.RAW (Up)"] * 2 + ["STA.V2 (Up)"] * 2
+    assert [motion.vertical_source for motion in found.motions] == ["STA.V2 (Up)"] * 2
+    (tmp_path / "motions.toml").write_text(
+        '[[record]]\nfile = "STA.RAW"\nuse = true\n[[record]]\nfile = "STA.V2"\nuse = true'
+    )
+    both = read_motions(tmp_path).motions
+    assert [motion.vertical_source for motion in both] == ["STA.RAW (Up)"] * 2 + ["STA.V2 (Up)"] * 2
 
 
 def test_one_file_per_channel_is_paired_within_its_location(tmp_path):
     for number, (label, place) in enumerate(
-        [("Up", "Freefield"), ("360 Deg", "Freefield"), ("Up", "Deck"), ("90 Deg", "Deck")], start=1
+        [("Up", "Freefield"), ("360 Deg", "Freefield"), ("Up", "Basement"), ("90 Deg", "Basement")], start=1
     ):
         text = one_channel(label, number=number, place=place)
         (tmp_path / f"CHAN{number:02d}.V2").write_bytes(text.encode("latin-1"))

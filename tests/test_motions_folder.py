@@ -128,8 +128,8 @@ def test_steps_without_a_common_measure_cost_no_horizontal_peak():
 
 def test_two_verticals_of_one_station_are_ambiguous_and_neither_is_used(tmp_path):
     write_at2(tmp_path, "RSN7_X_Y000.AT2", wiggle(50), title=title("0"))
-    write_at2(tmp_path, "RSN7_X_Y-UP.AT2", wiggle(50), title=title("UP"))
-    write_at2(tmp_path, "RSN7_X_Y-UP-copy.AT2", wiggle(50), title=title("UP"))
+    write_at2(tmp_path, "RSN7_X_Y-UP.AT2", wiggle(50, 2), title="nothing")
+    write_at2(tmp_path, "RSN7_X_Y-V.AT2", wiggle(50, 3), title="nothing")
     found = read_motions(tmp_path)
     assert found.motions[0].vertical is None
     assert len(found.unusable) == 2
@@ -205,23 +205,22 @@ def test_a_reader_that_fails_costs_one_file_and_its_exception_is_named(tmp_path,
 
 
 def test_the_order_is_that_of_the_paths_and_sources_are_short(tmp_path):
-    for name in ("b/z.AT2", "b/a.AT2", "a/k.AT2", "c.AT2"):
-        write_at2((tmp_path / name).parent, name.rsplit("/", 1)[-1], wiggle(50), title="nothing, 000")
+    for seed, name in enumerate(("b/z.AT2", "b/a.AT2", "a/k.AT2", "c.AT2")):
+        write_at2((tmp_path / name).parent, name.rsplit("/", 1)[-1], wiggle(50, seed), title="nothing, 000")
     found = read_motions(tmp_path)
     assert [motion.source for motion in found.motions] == ["a/k.AT2", "b/a.AT2", "b/z.AT2", "c.AT2"]
 
 
 def test_several_paths_are_read_in_the_given_order_and_no_file_twice(tmp_path):
     first = write_at2(tmp_path / "a", "x.AT2", wiggle(50), title="nothing, 000")
-    write_at2(tmp_path / "b", "y.AT2", wiggle(50), title="nothing, 000")
+    write_at2(tmp_path / "b", "y.AT2", wiggle(50, 2), title="nothing, 000")
     found = read_motions([tmp_path / "b", first, tmp_path / "a"])
     assert [motion.source for motion in found.motions] == ["b/y.AT2", "x.AT2"]
 
 
 def test_motions_of_one_name_get_their_folder_in_front(tmp_path):
-    for folder in ("a", "b"):
-        write_at2(tmp_path / folder, "x.AT2", wiggle(50), title="nothing, 000")
-    write_at2(tmp_path / "b", "y.AT2", wiggle(50), title="nothing, 000")
+    for seed, name in enumerate(("a/x.AT2", "b/x.AT2", "b/y.AT2")):
+        write_at2(tmp_path / name[0], name[2:], wiggle(50, seed), title="nothing, 000")
     assert [motion.name for motion in read_motions(tmp_path).motions] == ["a/x", "b/x", "y"]
 
 

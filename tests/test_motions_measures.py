@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from rockbatch.motions import Motion, measures
+from rockbatch.motions.motion import Initial
 from rockbatch.motions.spectrum import PERIODS, spectral_acceleration, suite_spectra
 
 with warnings.catch_warnings():
@@ -54,6 +55,57 @@ def test_peaks_are_absolute_values():
     assert measures.pga(a) == 3.0
     assert measures.pgv(a, 1.0) == 3.0
     assert measures.pgd(a, 1.0) == pytest.approx(3.0 / 6.0 + 3.0 - 3.0 / 6.0)
+
+
+def test_velocity_and_displacement_begin_where_the_file_says():
+    """A sine that is cut out of a longer one: ẋ = −(A/ω) cos ωt and x = −(A/ω²) sin ωt go on, without a drift."""
+    dt, omega, amplitude, t0 = 0.002, 2 * math.pi, 3.0, 0.3
+    t = t0 + np.arange(2001) * dt
+    a = amplitude * np.sin(omega * t)
+    initial = Initial(-amplitude / omega * math.cos(omega * t0), -amplitude / omega**2 * math.sin(omega * t0))
+    assert measures.pgv(a, dt, initial) == pytest.approx(amplitude / omega, rel=1e-4)
+    assert measures.pgd(a, dt, initial) == pytest.approx(amplitude / omega**2, rel=1e-4)
+    assert measures.pgd(a, dt) > 4 * amplitude / omega**2  # from rest it drifts away
+
+
+def test_the_state_at_a_time_is_that_of_the_series_and_of_the_finer_one_between_samples():
+    a, dt, initial = np.random.default_rng(3).normal(size=50), 0.02, Initial(0.4, -0.1)
+    fine = np.interp(np.arange(49 * 8 + 1) / 8, np.arange(50), a)
+    for k in (0, 7, 8, 101, 391, 392):
+        state = measures.state_at(a, dt, initial, k * dt / 8)
+        assert state.velocity == pytest.approx(measures.velocity(fine, dt / 8, initial)[k], abs=1e-12)
+        assert state.displacement == pytest.approx(measures.displacement(fine, dt / 8, initial)[k], abs=1e-12)
+
+
+def test_the_initial_state_is_found_from_a_file_s_velocities_and_displacements():
+    a, dt, initial = np.random.default_rng(4).normal(size=400), 0.01, Initial(-0.02, 0.3)
+    v, d = (series(a, dt, initial) for series in (measures.velocity, measures.displacement))
+    found = measures.initial_of(a, dt, v, d)
+    assert found is not None
+    assert (found.velocity, found.displacement) == pytest.approx((-0.02, 0.3), abs=1e-12)
+    assert measures.initial_of(a, dt, v, None) == Initial(found.velocity, 0.0)
+    noise = np.random.default_rng(5).normal(size=400) * np.abs(v).max()
+    assert measures.initial_of(a, dt, noise, d) is None  # of another record
+    assert measures.initial_of(a, dt, v[:-1], d) is None
+    assert measures.initial_of(a, dt, None, d) is None
+
+
+@pytest.mark.parametrize("at", [0.1, 0.3, 0.5, 0.9])
+def test_a_straight_line_runs_away_and_a_lasting_displacement_does_not(at):
+    t = np.linspace(0, 1, 2001)
+    step = 2.0 * (t > at)
+    assert not measures.runs_away(step)
+    assert measures.runs_away(step + 30.0 * t)
+    assert not measures.runs_away(np.zeros(10))
+
+
+def test_a_motion_times_a_factor_has_all_of_it_times_that_factor():
+    m = Motion("m", 0.01, np.array([1.0, 2.0]), np.array([3.0, 4.0]), initial=Initial(0.5, 0.25))
+    for made, along in ((m.times(2.0), 2.0), (m.times(2.0, reverse=True), -2.0)):
+        assert made.horizontal.tolist() == [along, 2 * along]
+        assert made.vertical is not None
+        assert made.vertical.tolist() == [6.0, 8.0]
+        assert made.initial == Initial(0.5 * along, 0.25 * along)
 
 
 def test_a_baseline_is_left_alone():

@@ -162,6 +162,59 @@ def test_one_bad_record_costs_itself_and_a_strict_study_everything(tmp_path):
     assert len(ground_motions(study_of(tmp_path, 'strict = true\nconfirm_pga = "hi*"\n')).motions) == 2
 
 
+# Verticals
+
+
+def with_one_vertical(folder) -> None:
+    """Two stations, one of them without a vertical."""
+    for station, seed in (("has", 1), ("lacks", 2)):
+        write_at2(folder, f"{station}000.AT2", wiggle(100, seed), title=f"X, 1/17/1994, {station}, 0")
+    write_at2(folder, "hasUP.AT2", wiggle(100, 3), title="X, 1/17/1994, has, UP")
+
+
+def test_records_that_lack_the_vertical_that_was_asked_for_are_named(tmp_path):
+    with_one_vertical(tmp_path / "records")
+    assert ground_motions(study_of(tmp_path)).without_vertical == ["lacks000"]
+    assert ground_motions(study_of(tmp_path, "vertical = false\n")).without_vertical == []
+    pulse = (
+        '[[motions.pulse]]\nname = "p"\nshape = "sine"\namplitude_g = 1\nperiod_s = 1\ndt_s = 0.01\nduration_s = 2\n'
+    )
+    assert ground_motions(study_of(tmp_path, pulse)).without_vertical == ["lacks000"]  # a pulse has none to miss
+
+
+def test_a_required_vertical_costs_a_record_that_has_none_and_a_strict_study_everything(tmp_path):
+    with_one_vertical(tmp_path / "records")
+    found = ground_motions(study_of(tmp_path, 'vertical = "required"\n'))
+    assert [motion.name for motion in found.motions] == ["has000"]
+    (refused,) = found.unusable
+    assert refused.reason.startswith("has no vertical component, and the study requires it")
+    with pytest.raises(InputError) as caught:
+        ground_motions(study_of(tmp_path, 'vertical = "required"\nstrict = true\n'))
+    assert caught.value.problems[0].startswith("lacks000.AT2: has no vertical component")
+
+
+def test_a_vertical_that_does_not_last_over_the_peak_is_none(tmp_path):
+    write_at2(tmp_path, "s000.AT2", wiggle(100, 1), title="X, 1/17/1994, STA, 0")
+    write_at2(tmp_path, "sUP.AT2", wiggle(100, 2)[:20], title="X, 1/17/1994, STA, UP")
+    assert read_motions(tmp_path).without_vertical == ["s000"]
+    assert len(read_motions(tmp_path, vertical="required").unusable) == 1
+
+
+def test_run_and_its_report_name_the_records_without_a_vertical(tmp_path, capsys):
+    with_one_vertical(tmp_path / "records")
+    study_of(tmp_path, '[output]\nhistories = "none"\n')
+    assert main(["run", str(tmp_path / "study.toml"), "--out", str(tmp_path / "out")]) == 0
+    assert "no vertical: lacks000\n" in capsys.readouterr().err
+    report = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert "<p>no vertical: lacks000</p>" in report
+    study_of(tmp_path, 'vertical = "required"\n[output]\nhistories = "none"\n')
+    assert main(["run", str(tmp_path / "study.toml"), "--out", str(tmp_path / "out")]) == 1
+    rows = list(csv.DictReader((tmp_path / "out" / "peaks.csv").read_text().splitlines()))
+    assert {row["record"]: row["status"] for row in rows} == {"has000": "ok", "lacks000": "failed"}
+    assert main(["run", str(tmp_path / "study.toml"), "--out", str(tmp_path / "o"), "--strict"]) == 2
+    assert not (tmp_path / "o").exists()
+
+
 # The command
 
 

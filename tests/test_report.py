@@ -492,6 +492,20 @@ def test_the_suite_s_spectra_are_drawn_with_names_while_they_are_few_and_as_a_sp
     assert ("median" in drawn) == (count > 1)
 
 
+def test_what_is_odd_about_a_record_and_whether_it_is_processed_stand_in_the_table(tmp_path):
+    write_results(tmp_path, records=[("rings", 0.2), ("plain", 0.3)])
+    info = json.loads((tmp_path / "run.json").read_text(encoding="utf-8"))
+    odd = [{"what": what, "text": what, "gross": True, "key": "confirm"} for what in ("alternates", "no PGD")]
+    info["records"][0] |= {"processed": False, "findings": odd, "pgd_m": None}
+    info["records"][1] |= {"processed": True, "findings": []}
+    (tmp_path / "run.json").write_text(json.dumps(info), encoding="utf-8")
+    text = write_report(tmp_path).read_text(encoding="utf-8")
+    table = text[text.index("to check") :].split("</table>")[0]
+    assert ">alternates, no PGD<" in table
+    assert table.index(">no<") < table.index(">yes<")
+    assert "displacement 0.30 m" in text
+
+
 def test_what_was_left_out_is_told_apart_from_what_could_not_be_used(tmp_path):
     left_out = [{"name": "meta", "source": "a/<meta>.json", "reason": "no record: text about the records"}]
     write_results(tmp_path, left_out=left_out)

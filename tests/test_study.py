@@ -265,7 +265,7 @@ theta_max_over_alpha = 0.1
         6: "[pier]: p = -0.38: expected a number above 0",
         7: "[pier]: mu = nan: expected a finite number",
         10: '[motions]: polarity = "x": expected one of "+", "-"',
-        12: '[motions]: vertical = "yes": expected true or false',
+        12: '[motions]: vertical = "yes": expected true, false or "required"',
         13: '[motions]: unit = "furlong": expected one of g, ',
         16: '[[motions.pulse]] "a": shape = "sinus": expected one of "sine", "cosine", ',
         17: '[[motions.pulse]] "a": amplitude_g = 0: expected a number other than 0',
@@ -448,6 +448,9 @@ def test_tolerance_and_substeps_exclude_each_other(tmp_path):
         ("target = { sa_g = 1 }", "5: [motions.target]: period_s is missing beside sa_g"),
         ("target = { pga_g = 1, period_s = 1 }", "5: [motions.target]: period_s: is for sa_g only"),
         ("[motions.target]\npga_g = -1", "6: [motions.target]: pga_g = -1: expected a number above 0"),
+        ('vertical = "always"', '5: [motions]: vertical = "always": expected true, false or "required"'),
+        ("vertical = 1", '5: [motions]: vertical = 1: expected true, false or "required"'),
+        ("confirm = [1]", "5: [motions]: confirm = 1: expected text in quotes"),
         ('strict = "yes"', '5: [motions]: strict = "yes": expected true or false'),
     ],
 )
@@ -460,7 +463,9 @@ def test_what_makes_a_suite_is_read(tmp_path):
 axis_deg = 30
 offset = "pre-event"
 offset_window_s = [0, 2.5]
+confirm = "C*"
 confirm_pga = ["A*", "B"]
+vertical = "required"
 strict = true
 select = { pga_g = [0.1, inf], magnitude = [6, 8] }
 target = { sa_g = 0.5, period_s = 1.2, damping = 0.02 }
@@ -468,7 +473,8 @@ target = { sa_g = 0.5, period_s = 1.2, damping = 0.02 }
     motions = study_of(tmp_path, PIER, keys, PULSE, RIGID).motions
     assert motions.azimuths == (30.0,)
     assert motions.offset == Offset("pre-event", (0.0, 2.5))
-    assert (motions.confirm_pga, motions.strict) == (("A*", "B"), True)
+    assert (motions.confirm, motions.confirm_pga, motions.strict) == (("C*",), ("A*", "B"), True)
+    assert motions.vertical == "required"
     assert motions.select == Selection(pga_g=(0.1, math.inf), magnitude=(6.0, 8.0))
     assert motions.target == Target(sa_g=0.5, period_s=1.2, damping=0.02)
 

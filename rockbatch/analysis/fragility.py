@@ -176,7 +176,7 @@ def intensities(motions: Iterable[Motion], spec: FragilitySpec, gravity: float) 
         if spec.measure == "PGA":
             value = motion.pga / gravity
         elif spec.measure == "PGV":
-            value = pgv(motion.horizontal, motion.dt)
+            value = pgv(motion.horizontal, motion.dt, motion.initial)
         else:
             value = spectral_acceleration(motion.horizontal, motion.dt, [spec.period_s], spec.damping)[0] / gravity
         if not value > 0:

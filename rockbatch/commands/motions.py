@@ -28,6 +28,8 @@ COLUMNS = (
     "azimuth_deg",
     "magnitude",
     "distance_km",
+    "processed",
+    "check",
     "processing",
 )
 """Of the CSV: a row for each record, then for each file that is not used, with the reason."""
@@ -44,10 +46,11 @@ _SHOWN = {  # heads of the table in the terminal, and how their numbers are writ
     "arias_m_s": ("Arias [m/s]", ".3f"),
     "d5_95_s": ("D5-95 [s]", ".2f"),
     "azimuth_deg": ("azimuth", "g"),
+    "check": ("check", ""),
     "file_h": ("horizontal", ""),
     "file_v": ("vertical", ""),
 }
-_TEXTS = ("record", "file_h", "file_v")
+_TEXTS = ("record", "check", "file_h", "file_v")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -80,6 +83,7 @@ def main(arguments: argparse.Namespace) -> int:
         _write(arguments.csv, rows, found)
     print(_table(rows))
     _list("What was done", [(motion.name, note) for motion in found.motions for note in motion.notes])
+    _list("No vertical", [(name, "none beside it that fits") for name in found.without_vertical])
     _list("Not used", [(file.source, file.reason) for file in found.unusable])
     _list("Left out", [(file.source, file.reason) for file in found.left_out])
     say(f"{len(found.motions)} records, {len(found.unusable)} files not used, {len(found.left_out)} left out")
@@ -102,13 +106,15 @@ def _row(motion: "Motion") -> dict[str, Any]:
         "duration_s": motion.duration,
         "pga_h_g": motion.pga / GRAVITY,
         "pga_v_g": None if vertical is None else vertical / GRAVITY,
-        "pgv_h_m_s": measures.pgv(a, dt),
-        "pgd_h_m": measures.pgd(a, dt),
+        "pgv_h_m_s": measures.pgv(a, dt, motion.initial),
+        "pgd_h_m": measures.believable_pgd(motion),
         "arias_m_s": measures.arias_intensity(a, dt),
         "d5_95_s": measures.significant_duration(a, dt),
         "azimuth_deg": motion.azimuth,
         "magnitude": motion.magnitude,
         "distance_km": motion.distance_km,
+        "processed": None if motion.processed is None else ("yes" if motion.processed else "no"),
+        "check": ", ".join(finding.what for finding in motion.findings) or None,
         "processing": "; ".join(motion.notes),
     }
 

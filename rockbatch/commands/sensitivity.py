@@ -37,7 +37,7 @@ def main(arguments: argparse.Namespace) -> int:
 
     wanted = study
     if any(each.name == "vertical" for each in spec.inputs):  # read it, whatever the study does with it
-        wanted = replace(study, motions=replace(study.motions, vertical=True))
+        wanted = replace(study, motions=replace(study.motions, vertical=study.motions.vertical or True))
     motions = ground_motions(wanted)
     tell_motions(motions)
     points = Points(study, spec)

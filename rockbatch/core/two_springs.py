@@ -288,8 +288,9 @@ def _happen(table, i, m, y, contact, which, t, x, history, row):
             strongest = 0.0 if _ground_rests(table, i) else table[STRONGEST + i]
             # else the ground may yet turn it back
             falling = beyond >= 0.0 and y.theta * y.omega > 0.0 and m.gravity * math.tan(beyond) >= strongest
-            if table[DECIDED_AT + i] >= 0.0:  # the peak is known: what flies then is undamped vibration
-                return LATE_FLIGHT, after, row
+            decided_at = table[DECIDED_AT + i]
+            if decided_at >= 0.0 and table[PEAK_TIME + i] <= decided_at * table[DT + i]:
+                return LATE_FLIGHT, after, row  # the peak stands: what flies is undamped vibration
             return (OVERTURNED if falling else FLIGHT), after, row
     table[EVENTS + i] += 1.0
     return (CHATTER if table[EVENTS + i] > EVENTS_IN_A_SAMPLE else SURVIVED), after, row

@@ -1,6 +1,7 @@
 """Two components of one station on common samples, over the time that they share."""
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -11,6 +12,29 @@ _SAME_STEP = 1e-6  # relative: steps that differ by less are the same, printed o
 _SAME_SAMPLE = 0.01  # of dt: components whose starts are off by less share their samples
 
 
+@dataclass(frozen=True)
+class Common:
+    """Two components on common samples.
+
+    Attributes
+    ----------
+    dt : float
+        Sampling interval [s].
+    first, second : ndarray, shape (npts,)
+        Accelerations [m/s²].
+    begins : tuple of two float
+        The time in each component at which the common samples begin [s after its first one].
+    notes : list of str
+        What was done.
+    """
+
+    dt: float
+    first: Samples
+    second: Samples
+    begins: tuple[float, float]
+    notes: list[str]
+
+
 def overlap(a: Component, b: Component) -> bool:
     """Whether two components have a time in common, as far as is known."""
     if a.start is None or b.start is None:
@@ -18,10 +42,8 @@ def overlap(a: Component, b: Component) -> bool:
     return a.start < b.start + b.duration and b.start < a.start + a.duration
 
 
-def on_common_samples(
-    first: Component, second: Component, names: tuple[str, str]
-) -> tuple[float, Samples, Samples, list[str]]:
-    """Both components on common samples, over their common time: dt, first, second, notes with their ``names``.
+def on_common_samples(first: Component, second: Component, names: tuple[str, str]) -> Common:
+    """Both components on common samples, over their common time, with notes with their ``names``.
 
     Components without absolute times start together. Where samples do not coincide, the first component keeps
     its own, with as many between them as make it no coarser than the second one, and both are interpolated
@@ -35,12 +57,14 @@ def on_common_samples(
     if same_step and abs(offset / first.dt - shift) <= _SAME_SAMPLE:
         start, end = max(0, shift), min(len(a), len(b) + shift)
         dt, a, b = first.dt, a[start:end], b[start - shift : end - shift]
+        begin, offset = start * dt, shift * dt
     else:
         parts = 1 if same_step else math.ceil(first.dt / second.dt * (1 - _SAME_STEP))
         dt = first.dt / parts
         times = np.arange((len(a) - 1) * parts + 1) * dt
         slack = _SAME_SAMPLE * dt
         times = times[(times >= offset - slack) & (times <= offset + second.duration + slack)]
+        begin = float(times[0]) if len(times) else 0.0
         a = np.interp(times / first.dt, np.arange(len(a)), a)
         b = np.interp((times - offset) / second.dt, np.arange(len(b)), b)
         moved = [names[0]] * (parts > 1) + [names[1]] * (abs(dt - second.dt) > _SAME_STEP * dt or offset != 0)
@@ -52,4 +76,4 @@ def on_common_samples(
     if span < max(first.duration, second.duration) - 0.5 * dt:
         whole = f"{first.duration:g} s {names[0]} and {second.duration:g} s {names[1]}"
         notes.append(f"common span: {span:g} s of {whole}")
-    return dt, a, b, notes
+    return Common(dt, a, b, (begin, max(0.0, begin - offset)), notes)

@@ -1,11 +1,58 @@
 """One component of a record, before horizontals and verticals are paired."""
 
+import re
 from dataclasses import dataclass
 
 import numpy as np
 
-from rockbatch.motions.motion import Samples
+from rockbatch.motions.motion import Initial, Samples
 from rockbatch.motions.orientation import UNKNOWN, Orientation
+
+
+@dataclass(frozen=True)
+class Seat:
+    """Where a sensor stands, as far as the header says it.
+
+    Attributes
+    ----------
+    station : str
+        Code, number or name of the station; empty where it is unknown.
+    network, location, place, channel : str or None
+        Of the network; of the sensor in the station, as in SEED; in words ("Roof"); of the recorder. ``None`` where the
+        format does not say.
+    """
+
+    station: str = ""
+    network: str | None = None
+    location: str | None = None
+    place: str | None = None
+    channel: str | None = None
+
+    @property
+    def number(self) -> str:
+        """The station, without the zeros that some agencies put in front."""
+        return self.station.lstrip("0")
+
+    def is_that_of(self, other: "Seat") -> bool:
+        """Whether both may be the same sensor, of a station that both name."""
+        if not self.number or self.number != other.number:
+            return False
+        pairs = (
+            (self.network, other.network),
+            (self.location, other.location),
+            (self.place, other.place),
+            (self.channel, other.channel),
+        )
+        return all(one is None or two is None or _bare(one) == _bare(two) for one, two in pairs)
+
+
+def _bare(text: str) -> str:
+    """A text without blanks and signs: "Free-field" is "FREEFIELD"."""
+    return re.sub(r"[\W_]+", "", text).upper()
+
+
+NOWHERE = Seat()
+"""Of a file that says nothing of its sensor."""
 
 
 @dataclass(frozen=True)
@@ -38,8 +85,18 @@ class Component:
         Whether the instrument's zero is still in it, so that an offset is to be expected (see ``baseline``).
     magnitude, distance_km : float or None
         Of the event, and the site's distance from it [km], where a manifest has them.
-    confirmed : bool
-        Whether a manifest confirms its PGA, however unlikely.
+    confirmed : tuple of str
+        What a manifest confirms: "confirm", "confirm_pga" (see ``motion.Finding``).
+    wanted : bool
+        Whether a manifest says that it is used, whatever else there is of the same recording.
+    seat : Seat
+        The sensor that it comes from.
+    event : str
+        What the header says of the event, to tell recordings of one sensor apart where ``start`` is not known.
+    processed : bool or None
+        Whether the agency has corrected it (filter, baseline, instrument); ``None`` where the file does not say.
+    initial : Initial or None
+        The ground's state at the first sample, where the file tells it.
     notes : tuple of str
         What was done to the data.
     """
@@ -57,7 +114,12 @@ class Component:
     raw: bool = False
     magnitude: float | None = None
     distance_km: float | None = None
-    confirmed: bool = False
+    confirmed: tuple[str, ...] = ()
+    wanted: bool = False
+    seat: Seat = NOWHERE
+    event: str = ""
+    processed: bool | None = None
+    initial: Initial | None = None
     notes: tuple[str, ...] = ()
 
     @property

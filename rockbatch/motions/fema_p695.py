@@ -89,6 +89,7 @@ def rotated(station: str, azimuth: float, gravity: float = GRAVITY) -> Component
         orientation=Orientation(f"{azimuth:g}", azimuth=azimuth % 360.0),
         site=f"RSN{found.rsn}",
         source=f"{_package()}, {found.name}",
+        processed=True,
         notes=(f"turned to {azimuth:g}° from {normal.name} and {parallel.name}",),
     )
 
@@ -188,4 +189,5 @@ def _recorded(station: Station, which: int, gravity: float) -> Component:
         orientation=orientation_of(bare) or Orientation(bare),
         site=f"RSN{station.rsn}",
         source=f"{_package()}, {station.event}/{station.code}{label}",
+        processed=True,
     )

@@ -9,6 +9,7 @@ from rockbatch.files import legible
 from rockbatch.motions.formats import has_reader
 
 MANIFESTS = ("motions.toml", "motions.csv")
+UNKNOWN_SUFFIX = "not a format that rockbatch reads"
 
 _COMPANIONS = {
     "text about the records": (".json", ".md", ".rst", ".pdf", ".doc", ".docx", ".htm", ".html", ".log", ".toml"),
@@ -74,7 +75,7 @@ def _regular(path: Path, source: str) -> Found:
         return Found(path, source)
     if suffix in _BY_SUFFIX:
         return Found(path, source, companion=_BY_SUFFIX[suffix])
-    return Found(path, source, "not a format that rockbatch reads")
+    return Found(path, source, UNKNOWN_SUFFIX)
 
 
 def _below(folder: Path) -> Iterator[Path]:

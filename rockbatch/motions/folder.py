@@ -6,14 +6,15 @@ import re
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from rockbatch.errors import InputError
 from rockbatch.files import legible
 from rockbatch.motions import fema_p695
 from rockbatch.motions.baseline import Offset, corrected
 from rockbatch.motions.component import Component
-from rockbatch.motions.finding import MANIFESTS, Found, files_of
+from rockbatch.motions.doubles import without_doubles
+from rockbatch.motions.finding import MANIFESTS, UNKNOWN_SUFFIX, Found, files_of
 from rockbatch.motions.formats import ReadOptions, RecordFile, read_record
 from rockbatch.motions.manifest import Manifest, described, is_manifest, options_of
 from rockbatch.motions.motion import LeftOut, MotionSet, Unusable
@@ -22,6 +23,7 @@ from rockbatch.motions.pairing import to_motions
 from rockbatch.units import GRAVITY
 
 _LARGEST = 256 * 2**20  # bytes; a day of three channels at 200 Hz has a fifth of it
+_SEVERAL = re.compile(r" \([^()]*\)$")  # what a source has behind, where its file has several components
 _RSN = re.compile(r"RSN[_ ]?0*(\d+)(?!\d)", re.IGNORECASE)
 
 Paths = str | os.PathLike[str] | Sequence[str | os.PathLike[str]]
@@ -31,13 +33,14 @@ Reading = Component | Unusable | LeftOut
 def read_motions(
     paths: Paths,
     *,
-    vertical: bool = True,
+    vertical: bool | Literal["required"] = True,
     gravity: float = GRAVITY,
     options: ReadOptions | None = None,
     fema: Sequence[tuple[str, float]] = (),
     offset: Offset | None = None,
     azimuths: Sequence[float] = (),
     confirmed: Sequence[str] = (),
+    confirmed_pga: Sequence[str] = (),
 ) -> MotionSet:
     """Motions of files and folders, in order of their paths, and what could not be used.
 
@@ -47,7 +50,8 @@ def read_motions(
         Files and folders; folders with all below them, without hidden files, read-me files and links that
         lead out. Manifests in them are obeyed.
     vertical : bool
-        Whether motions get their station's vertical component, where there is one.
+        Whether motions get their station's vertical component, where there is one; "required": what has none is
+        unusable.
     gravity : float
         What "g" means in files [m/s²].
     options : ReadOptions
@@ -59,7 +63,9 @@ def read_motions(
     azimuths : sequence of float
         Directions [degrees] that each station's pair of horizontal components is turned to; none: as recorded.
     confirmed : sequence of str
-        Names of motions, or patterns with * and ?, that are right though they are hard to believe (``plausible``).
+        Names of motions, or patterns with * and ?, that are right whatever is odd about them (``plausible``).
+    confirmed_pga : sequence of str
+        Likewise, of those whose PGA is right though it is outside 0.001–5 g; nothing else is confirmed by it.
 
     Raises
     ------
@@ -79,11 +85,19 @@ def read_motions(
         raise InputError(*problems)
 
     readings, _ = read_files(given, options=options, gravity=gravity, offset=offset)
-    components = [reading for reading in readings if isinstance(reading, Component)]
-    found = to_motions(components, packaged, vertical=vertical, gravity=gravity, azimuths=azimuths, confirmed=confirmed)
+    components, doubles = without_doubles([reading for reading in readings if isinstance(reading, Component)])
+    found = to_motions(
+        components,
+        packaged,
+        vertical=vertical,
+        gravity=gravity,
+        azimuths=azimuths,
+        confirmed=confirmed,
+        confirmed_pga=confirmed_pga,
+    )
     unusable = [reading for reading in readings if isinstance(reading, Unusable)]
     left_out = [reading for reading in readings if isinstance(reading, LeftOut)]
-    return MotionSet(found.motions, sorted([*unusable, *found.unusable], key=lambda u: u.source), left_out)
+    return MotionSet(found.motions, sorted([*unusable, *found.unusable], key=lambda u: u.source), [*left_out, *doubles])
 
 
 def read_files(
@@ -111,7 +125,23 @@ def read_files(
             file, manifest, options or ReadOptions(), gravity, offset or Offset(), file.path in numbered
         )
     manifest.finish()
+    readings = _without_renamed(readings, found)
     return [_legible(reading) for reading in readings], {file.source: file.path for file in found}
+
+
+def _without_renamed(readings: Sequence[Reading], found: Sequence[Found]) -> list[Reading]:
+    """With files of no known suffix left out that are copies, byte for byte, of one that is a record."""
+    refused = {file.source: file.path for file in found if file.refusal == UNKNOWN_SUFFIX}
+    sizes = {path.stat().st_size for path in refused.values()}
+    records = {_SEVERAL.sub("", reading.source) for reading in readings if isinstance(reading, Component)}
+    alike = [file for file in found if file.source in records and sizes and file.path.stat().st_size in sizes]
+    by_content = {file.path.read_bytes(): file.source for file in alike}
+    kept: list[Reading] = []
+    for reading in readings:
+        path = refused.get(reading.source)
+        original = by_content.get(path.read_bytes()) if path and by_content else None
+        kept.append(LeftOut(reading.name, reading.source, f"a copy of {original}") if original else reading)
+    return kept
 
 
 def _missing(path: Path) -> str:

@@ -1,4 +1,4 @@
-"""What a study or a manifest may say about a record: its unit, and the azimuth of a component."""
+"""What a study or a manifest may say about records: units, azimuths of components, and whether verticals are used."""
 
 from typing import Any
 
@@ -15,6 +15,13 @@ def unit(value: Any) -> str:
     except ValueError as error:
         raise KindError(str(error).rpartition("; write ")[2]) from None
     return str(value)
+
+
+def vertical(value: Any) -> bool | str:
+    """Whether vertical components are used: true, false, or "required"."""
+    if not isinstance(value, bool) and value != "required":
+        raise KindError('true, false or "required"')
+    return value
 
 
 def azimuth(value: Any) -> float:

@@ -33,8 +33,10 @@ RECORD = {
     "station": Key(text, '"Rinaldi"'),
     "distance_km": Key(not_negative, "6.5"),
     "magnitude": Key(number, "6.7"),
+    "confirm": Key(boolean, "true"),
     "confirm_pga": Key(boolean, "true"),
 }
+_CONFIRM = ("confirm", "confirm_pga")
 _TEXTS = ("file", "component", "role", "unit", "polarity", "station")
 _LARGEST = 4 * 2**20  # bytes, some ten thousand records
 _SAME = 1e-9  # relative: factors of units, and steps, that differ by less are the same
@@ -157,18 +159,23 @@ def _described(component: Component, entry: Entry, gravity: float) -> Component:
     values, where = entry.values, entry.table.file.path.name
     notes = list(component.notes)
     factor = 1.0
+    initial = component.initial
     if "unit" in values:
         factor *= _unit_factor(component, entry, gravity)
         if factor != 1.0:
+            initial = None  # in what unit it was, nobody says
             notes.append(f"unit {values['unit']} as {where} says, instead of {component.unit}")
     if "dt" in values and abs(values["dt"] - component.dt) > _SAME * component.dt:
+        initial = None
         notes.append(f"dt = {values['dt']:g} s as {where} says, instead of {component.dt:g} s")
         component = replace(component, dt=values["dt"])
     if values.get("scale", 1.0) != 1.0:
         factor *= values["scale"]
+        initial = initial and initial.times(values["scale"])
         notes.append(f"scaled by {values['scale']:g} as {where} says")
     if values.get("polarity") == "-":
         factor = -factor
+        initial = initial and initial.times(-1.0)
         notes.append(f"sign reversed as {where} says")
     if "station" in values:
         component = replace(component, station=values["station"], site="")
@@ -178,7 +185,9 @@ def _described(component: Component, entry: Entry, gravity: float) -> Component:
         orientation=_orientation(component.orientation, entry),
         magnitude=values.get("magnitude", component.magnitude),
         distance_km=values.get("distance_km", component.distance_km),
-        confirmed=values.get("confirm_pga", component.confirmed),
+        confirmed=tuple(key for key in _CONFIRM if values.get(key, key in component.confirmed)),
+        wanted=values.get("use", component.wanted),
+        initial=initial,
         notes=tuple(notes),
     )
 

@@ -8,10 +8,11 @@ from typing import Any
 from rockbatch.errors import InputError
 from rockbatch.files import legible, write_whole
 from rockbatch.motions.component import Component
+from rockbatch.motions.doubles import without_doubles
 from rockbatch.motions.folder import Reading, read_files
 from rockbatch.motions.formats import ReadOptions
-from rockbatch.motions.motion import Unusable
-from rockbatch.motions.plausible import HIGHEST, LOWEST
+from rockbatch.motions.motion import Finding, Motion, Unusable
+from rockbatch.motions.plausible import Judged, findings
 from rockbatch.motions.stations import by_station
 from rockbatch.units import GRAVITY
 
@@ -22,7 +23,8 @@ _HEAD = """\
 # unit, dt     of the file's numbers, in place of its own; dt in s
 # azimuth      degrees clockwise from north;  role = "vertical" or "horizontal";  polarity = "-" reverses the sign
 # scale        factor on the record;  station: components that share it belong together
-# magnitude, distance_km;  confirm_pga = true: a PGA outside 0.001-5 g is right;  use = false: leave it out
+# magnitude, distance_km;  use = false: leave it out;  use = true: use it whatever else there is of the same recording
+# confirm = true: it is right, however odd;  confirm_pga = true: its PGA outside 0.001-5 g is
 """
 
 
@@ -45,6 +47,7 @@ def draft(folder: Path, options: ReadOptions | None = None) -> str:
     """The text of a manifest: a table for each component, a remark for each file that none was found in."""
     readings, paths = read_files([folder], options=options)
     components = [reading for reading in readings if isinstance(reading, Component)]
+    doubles = {(double.name, double.source): double.reason for double in without_doubles(components)[1]}
     stations = {id(c): station[0].station or station[0].site for station in by_station(components) for c in station}
     blocks = [_HEAD]
     for reading in readings:
@@ -54,7 +57,8 @@ def draft(folder: Path, options: ReadOptions | None = None) -> str:
             blocks.append(f"# {legible(name)}: give it a name without control characters first\n")
         elif isinstance(reading, Component):
             several = sum(_file_of(other, paths) == _file_of(reading, paths) for other in components) > 1
-            blocks.append(_table(reading, name, several, stations[id(reading)]))
+            double = doubles.get((reading.name, reading.source), "")
+            blocks.append(_table(reading, name, several, stations[id(reading)], double))
         elif isinstance(reading, Unusable):
             blocks.append(_remark(name, legible(reading.reason)))
     return "\n".join(blocks)
@@ -65,7 +69,7 @@ def _file_of(reading: Reading, paths: Iterable[str]) -> str:
     return reading.source if reading.source in paths else reading.source.rpartition(" (")[0]
 
 
-def _table(component: Component, name: str, several: bool, station: str) -> str:
+def _table(component: Component, name: str, several: bool, station: str, double: str) -> str:
     orientation = component.orientation
     lines: list[tuple[str, Any]] = [("file", name)]
     if several:
@@ -84,9 +88,19 @@ def _table(component: Component, name: str, several: bool, station: str) -> str:
         )
     if not orientation.vertical and orientation.azimuth is None:
         text += "# azimuth =\n"
-    if not orientation.vertical and not LOWEST <= component.pga / GRAVITY <= HIGHEST:
-        text += f"# confirm_pga = true   # PGA {component.pga / GRAVITY:.3g} g: check the unit\n"
+    if not orientation.vertical:
+        text += "".join(f"# {odd.key} = true   # {legible(odd.text)}\n" for odd in _gross(component))
+    if double:
+        text += f"# use = true   # {legible(double.partition(';')[0])}\n"
     return text + "# magnitude =\n# distance_km =\n"
+
+
+def _gross(component: Component) -> list[Finding]:
+    """What is grossly odd about a horizontal component, which has to be confirmed."""
+    alone = Motion(
+        component.name, component.dt, component.acceleration, initial=component.initial, processed=component.processed
+    )
+    return [odd for odd in findings(Judged(alone, component, (), GRAVITY)) if odd.gross]
 
 
 def _remark(name: str, reason: str) -> str:

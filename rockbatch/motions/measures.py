@@ -1,28 +1,64 @@
 """Intensity measures: peak acceleration, velocity and displacement, Arias intensity and significant duration.
 
-For velocity and displacement the acceleration is linear between its samples, from rest, and is integrated as it
-stands: no baseline is fitted.
+For velocity and displacement the acceleration is linear between its samples and is integrated as it stands, from the
+velocity and displacement that the record's file tells for its first sample, else from rest: no baseline is fitted.
 """
 
 import math
 
 import numpy as np
 
-from rockbatch.motions.motion import Samples
+from rockbatch.motions.motion import Initial, Motion, Samples
 from rockbatch.units import GRAVITY
 
+_REST = Initial()
+_STRAIGHT = 2.5  # times: a lasting displacement, however sudden, leaves half of itself beside any straight line
+_BELONG = 0.2  # of its peak: what a file's velocity may scatter about the integral of its accelerations
 
-def velocity(acceleration: Samples, dt: float) -> Samples:
+
+def velocity(acceleration: Samples, dt: float, initial: Initial | None = None) -> Samples:
     """Ground velocity [m/s] at the samples, shape (npts,), of an acceleration [m/s²]; ``dt`` in s."""
     increments = 0.5 * dt * (acceleration[:-1] + acceleration[1:])
-    return np.concatenate(([0.0], np.cumsum(increments)))
+    return (initial or _REST).velocity + np.concatenate(([0.0], np.cumsum(increments)))
 
 
-def displacement(acceleration: Samples, dt: float) -> Samples:
+def displacement(acceleration: Samples, dt: float, initial: Initial | None = None) -> Samples:
     """Ground displacement [m] at the samples, shape (npts,), of an acceleration [m/s²]; ``dt`` in s."""
-    v = velocity(acceleration, dt)
+    v = velocity(acceleration, dt, initial)
     increments = dt * v[:-1] + dt**2 / 6.0 * (2.0 * acceleration[:-1] + acceleration[1:])
-    return np.concatenate(([0.0], np.cumsum(increments)))
+    return (initial or _REST).displacement + np.concatenate(([0.0], np.cumsum(increments)))
+
+
+def initial_of(
+    acceleration: Samples, dt: float, velocities: Samples | None, displacements: Samples | None
+) -> Initial | None:
+    """The state at the first sample, of a record whose file has velocities [m/s], and perhaps displacements [m], too.
+
+    It is the mean, over the record, of what they differ by from the integral from rest: a file's first values are
+    rounded, and accelerations that were thinned out after their integration drift from there. ``None`` where the
+    velocities are not those of the acceleration.
+    """
+    if velocities is None or len(velocities) != len(acceleration):
+        return None
+    off = velocities - velocity(acceleration, dt)
+    initial = Initial(float(off.mean()))
+    if off.std() > _BELONG * np.abs(velocities).max():
+        return None
+    if displacements is None or len(displacements) != len(acceleration):
+        return initial
+    return Initial(initial.velocity, float((displacements - displacement(acceleration, dt, initial)).mean()))
+
+
+def state_at(acceleration: Samples, dt: float, initial: Initial, time: float) -> Initial:
+    """Velocity and displacement at ``time`` [s] after the first sample, before the last."""
+    k = min(int(time / dt), len(acceleration) - 2)
+    rest = time - k * dt
+    v, d = (float(series(acceleration, dt, initial)[k]) for series in (velocity, displacement))
+    a, slope = float(acceleration[k]), float(acceleration[k + 1] - acceleration[k]) / dt
+    return Initial(
+        v + rest * (a + rest * slope / 2.0),
+        d + rest * (v + rest * (a / 2.0 + rest * slope / 6.0)),
+    )
 
 
 def pga(acceleration: Samples) -> float:
@@ -30,14 +66,31 @@ def pga(acceleration: Samples) -> float:
     return float(np.abs(acceleration).max())
 
 
-def pgv(acceleration: Samples, dt: float) -> float:
+def pgv(acceleration: Samples, dt: float, initial: Initial | None = None) -> float:
     """Peak ground velocity [m/s], at the samples."""
-    return float(np.abs(velocity(acceleration, dt)).max())
+    return float(np.abs(velocity(acceleration, dt, initial)).max())
 
 
-def pgd(acceleration: Samples, dt: float) -> float:
+def pgd(acceleration: Samples, dt: float, initial: Initial | None = None) -> float:
     """Peak ground displacement [m], at the samples."""
-    return float(np.abs(displacement(acceleration, dt)).max())
+    return float(np.abs(displacement(acceleration, dt, initial)).max())
+
+
+def runs_away(displacements: Samples) -> bool:
+    """Whether a displacement is little but a straight line from its first sample on, and so is not the ground's.
+
+    That is, a constant velocity takes its peak down to less than 1/2.5. A lasting displacement does not count as one.
+    """
+    moved = displacements - displacements[0]
+    steps = np.arange(len(moved), dtype=float)
+    straight = float(moved @ steps) / max(float(steps @ steps), 1.0) * steps
+    return float(np.abs(moved).max()) > _STRAIGHT * float(np.abs(moved - straight).max())
+
+
+def believable_pgd(motion: Motion) -> float | None:
+    """PGD [m] of a motion; ``None`` where its displacement runs away, and nobody knows how it begins."""
+    moved = displacement(motion.horizontal, motion.dt, motion.initial)
+    return None if motion.initial is None and runs_away(moved) else float(np.abs(moved).max())
 
 
 def arias_intensity(acceleration: Samples, dt: float, gravity: float = GRAVITY) -> float:

@@ -1,7 +1,7 @@
 """What a ground motion is: one horizontal component, perhaps with its station's vertical one."""
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -9,6 +9,40 @@ import numpy.typing as npt
 from rockbatch.errors import InputError
 
 Samples = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Initial:
+    """The ground's velocity [m/s] and displacement [m] at a record's first sample."""
+
+    velocity: float = 0.0
+    displacement: float = 0.0
+
+    def times(self, factor: float) -> "Initial":
+        """That of a motion ``factor`` times as large."""
+        return Initial(self.velocity * factor, self.displacement * factor)
+
+
+@dataclass(frozen=True)
+class Finding:
+    """What is odd about a motion.
+
+    Attributes
+    ----------
+    what : str
+        In a word or two, for tables.
+    text : str
+        In a sentence, with what to do.
+    gross : bool
+        Whether the motion is not used until somebody confirms it.
+    key : str
+        The key that confirms it, under [motions] and in manifests; ``confirm`` does so for all findings.
+    """
+
+    what: str
+    text: str
+    gross: bool = False
+    key: str = "confirm"
 
 
 @dataclass(frozen=True)
@@ -37,6 +71,14 @@ class Motion:
         Of the event, and the site's distance from it [km]; ``None`` where unknown.
     factor : float
         What brought the record to the study's target; it is in the components already.
+    initial : Initial or None
+        Of the horizontal component, where its file tells it; ``None``: nobody knows, from rest then.
+    processed : bool or None
+        Whether its agency has corrected the horizontal component; ``None`` where the file does not say.
+    findings : tuple of Finding
+        What is odd about it, told when it was read.
+    lacks_vertical : bool
+        Whether a vertical component was asked for, and there is none.
 
     Raises ``InputError`` for samples that are no numbers and components of different lengths.
     """
@@ -52,6 +94,10 @@ class Motion:
     magnitude: float | None = None
     distance_km: float | None = None
     factor: float = 1.0
+    initial: Initial | None = None
+    processed: bool | None = None
+    findings: tuple[Finding, ...] = ()
+    lacks_vertical: bool = False
 
     def __post_init__(self) -> None:
         wrong = []
@@ -103,6 +149,16 @@ class Motion:
         """Peak vertical ground acceleration [m/s²], ``None`` where there is no vertical component."""
         return None if self.vertical is None else float(np.abs(self.vertical).max())
 
+    def times(self, factor: float, reverse: bool = False) -> "Motion":
+        """The motion with both components ``factor`` times as large, the horizontal one reversed if ``reverse``."""
+        along = -factor if reverse else factor
+        return replace(
+            self,
+            horizontal=self.horizontal * along,
+            vertical=None if self.vertical is None else self.vertical * factor,
+            initial=None if self.initial is None else self.initial.times(along),
+        )
+
 
 @dataclass(frozen=True)
 class Unusable:
@@ -129,3 +185,8 @@ class MotionSet:
     motions: list[Motion] = field(default_factory=list)
     unusable: list[Unusable] = field(default_factory=list)
     left_out: list[LeftOut] = field(default_factory=list)
+
+    @property
+    def without_vertical(self) -> list[str]:
+        """Names of the motions whose vertical component was asked for, and is not there."""
+        return [motion.name for motion in self.motions if motion.lacks_vertical]

@@ -2,22 +2,28 @@
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import PurePosixPath
+from typing import Literal
 
 import numpy as np
 
 from rockbatch.motions.common_span import on_common_samples, overlap
 from rockbatch.motions.component import Component
+from rockbatch.motions.measures import state_at
 from rockbatch.motions.motion import Motion, MotionSet, Unusable
 from rockbatch.motions.orientation import same_azimuth
-from rockbatch.motions.plausible import ANY, doubt, fits
+from rockbatch.motions.plausible import ANY, Judged, doubt, findings, fits
 from rockbatch.motions.stations import by_station
 from rockbatch.motions.turning import turn_pairs
 from rockbatch.toml.kinds import shown
 from rockbatch.units import GRAVITY
 
+_NO_VERTICAL = (
+    "has no vertical component, and the study requires it; put it beside the record, or write vertical = true under "
+    "[motions]"
+)
 _MOST_OF_IT = 0.95  # of the horizontal peak: what a vertical that ends early may cost
 
 
@@ -25,18 +31,20 @@ def to_motions(
     components: Sequence[Component],
     packaged: Sequence[Component] = (),
     *,
-    vertical: bool = True,
+    vertical: bool | Literal["required"] = True,
     gravity: float = GRAVITY,
     azimuths: Sequence[float] = (),
     confirmed: Sequence[str] = ANY,
+    confirmed_pga: Sequence[str] = (),
 ) -> MotionSet:
     """Motions of ``components`` in their order, then of those of a package.
 
     Components belong together that share folder and station by their headers, else by their names; those of a
     package (no folder) join the files of the same RSN, whose own component of that azimuth goes first. With
     ``azimuths`` [degrees] a station's horizontals are turned to each of them. Components of unknown direction, verticals
-    that find no partner, or that are not the only one, what cannot be turned, and motions that are hard to believe and
-    whose name no pattern in ``confirmed`` fits, come back as unusable with the reason.
+    that find no partner, or that are not the only one, what cannot be turned, motions without a vertical where it is
+    required, and those that are grossly odd and whose name no pattern in ``confirmed`` fits (nor in ``confirmed_pga``,
+    for their PGA), come back as unusable with the reason.
     """
     asked = [Unusable(c.name, c.source, _question(c)) for c in components if not c.orientation.known]
     components = [c for c in components if c.orientation.known]
@@ -65,21 +73,39 @@ def to_motions(
             elif together:
                 partner = together[0]
             used.update(id(v) for v in together)
-        motions.append(_motion(component, partner, notes))
+        motion = _motion(component, partner, notes)
+        motions.append(replace(motion, lacks_vertical=bool(vertical) and motion.vertical is None))
     if vertical:
         reason = "a vertical component without a usable horizontal one of its station in its folder"
         left = [v for group in verticals for v in group if id(v) not in used]
         unusable += [Unusable(v.name, v.source, f"{reason} ({v.station or v.site})") for v in left]
-    believed: list[Motion] = []
-    for motion, (_, component) in zip(
-        _told_apart(motions, [c.folder for _, c in horizontals]), horizontals, strict=True
-    ):
-        why = doubt(motion, gravity)
-        if not why or component.confirmed or fits(motion.name, confirmed):
-            believed.append(motion)
-        else:
+    peaks = [[(c, c.pga) for c in station if not c.orientation.vertical] for station in stations]
+    named = _told_apart(motions, [c.folder for _, c in horizontals])
+    judged = [
+        Judged(motion, component, peaks[station], gravity)
+        for motion, (station, component) in zip(named, horizontals, strict=True)
+    ]
+    patterns = {"confirm": confirmed, "confirm_pga": confirmed_pga}
+    found = _believed(judged, patterns, required=vertical == "required")
+    return replace(found, unusable=sorted([*asked, *unusable, *found.unusable], key=lambda u: u.source))
+
+
+def _believed(judged: Iterable[Judged], patterns: Mapping[str, Sequence[str]], required: bool) -> MotionSet:
+    """Motions with what is odd about them in their notes; those that have to be confirmed, or to have a vertical that
+    is ``required``, as unusable. ``patterns``: of the names that each key confirms."""
+    motions: list[Motion] = []
+    unusable: list[Unusable] = []
+    for each in judged:
+        motion, odd = each.motion, findings(each)
+        keys = {*each.component.confirmed, *(key for key, names in patterns.items() if fits(motion.name, names))}
+        if motion.lacks_vertical and required:
+            unusable.append(Unusable(motion.name, motion.files, _NO_VERTICAL))
+        elif why := doubt(motion.name, odd, keys):
             unusable.append(Unusable(motion.name, motion.files, why))
-    return MotionSet(believed, sorted([*asked, *unusable], key=lambda u: u.source))
+        else:
+            said = [f"confirmed: {finding.text}" if finding.gross else finding.text for finding in odd]
+            motions.append(replace(motion, findings=odd, notes=(*motion.notes, *said)))
+    return MotionSet(motions, unusable)
 
 
 def _question(component: Component) -> str:
@@ -137,16 +163,16 @@ def _candidates(horizontal: Component, station: int, verticals: Sequence[Sequenc
 def _motion(h: Component, v: Component | None, notes: Iterable[str]) -> Motion:
     """The motion of a horizontal component and its vertical one."""
     said = list(notes)
-    dt, horizontal, vertical = h.dt, h.acceleration, None
+    dt, horizontal, vertical, initial = h.dt, h.acceleration, None, h.initial
     if v is not None:
-        dt, horizontal, vertical, how = on_common_samples(
-            h, replace(v, acceleration=v.upward), ("horizontal", "vertical")
-        )
-        if len(horizontal) < 2 or np.abs(horizontal).max() < _MOST_OF_IT * h.pga:
+        common = on_common_samples(h, replace(v, acceleration=v.upward), ("horizontal", "vertical"))
+        if len(common.first) < 2 or np.abs(common.first).max() < _MOST_OF_IT * h.pga:
             said.append(f"no vertical: {v.source} does not last over the horizontal peak")
-            dt, horizontal, vertical, v = h.dt, h.acceleration, None, None
+            v = None
         else:
-            said += how
+            dt, horizontal, vertical = common.dt, common.first, common.second
+            initial = h.initial and state_at(h.acceleration, h.dt, h.initial, common.begins[0])
+            said += common.notes
     if v is not None:
         said += [f"vertical: {note}" for note in v.notes]
         if v.orientation.down:
@@ -162,6 +188,8 @@ def _motion(h: Component, v: Component | None, notes: Iterable[str]) -> Motion:
         azimuth=h.orientation.azimuth,
         magnitude=h.magnitude,
         distance_km=h.distance_km,
+        initial=initial,
+        processed=h.processed,
     )
 
 

@@ -1,38 +1,184 @@
-"""Whether a record can be believed: its peak, or a wrong unit is likelier, and that it swings about zero."""
+"""What is odd about a record: a peak that a wrong unit explains, faults of instruments, and where the sensor stood.
 
-from collections.abc import Sequence
+Each judge looks for one thing and returns a :class:`Finding`, or nothing; a further one joins by its name in ``JUDGES``.
+The limits are held against real records in motions/README.md.
+"""
+
+import re
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import dataclass
 from fnmatch import fnmatchcase
 
-from rockbatch.motions.motion import Motion
+import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
+
+from rockbatch.motions import measures
+from rockbatch.motions.component import Component
+from rockbatch.motions.motion import Finding, Motion, Samples
 from rockbatch.motions.zero_line import mean_far_from_zero, never_changes_sign
 
 LOWEST, HIGHEST = 0.001, 5.0
 """PGA [g] beyond which a wrong unit is likelier than the record; the largest recorded ones reach 2 to 4 g."""
 
+FARTHEST = 15.0
+"""PGD [m] beyond which no ground has moved; beside the ruptures of the largest earthquakes it was some 10 m."""
+
+UNEQUAL = 5.0
+"""Ratio of the PGAs of two horizontal components of a station beyond which one gain is likelier wrong than right."""
+
+ALTERNATION = 0.25
+"""Share of the PGA that swings to and fro, sample by sample, eight samples long, beyond which it is an instrument's."""
+
 ANY = ("*",)
 """Confirms every record."""
 
+_SWINGS = 7
+_GROUND = re.compile(
+    r"free.?field|\bground|basement|\bsurface\b|down.?hole|bore.?hole|\bsoil\b|foundation|footing|\bgrade\b|\bbase\b|\btoe\b"
+)
+_STRUCTURE = re.compile(
+    r"\broof|penthouse|mezzanine|\battic\b|\bdeck\b|\bgirder|\babut|\bcrest\b|\bpier\b|\bbent\b|\bcolumn\b|\btower\b"
+    r"|\b(?:[2-9]|[1-9]\d|second|third|fourth|fifth|sixth|seventh|eighth|ninth|tenth|top|upper)(?:st|nd|rd|th)?[ -]*"
+    r"(?:fl\b|flr\b|floor|stor(?:e?y)\b)|\bfl(?:oo)?r[ -]?(?:[2-9]|[1-9]\d)\b"
+)
 
-def doubt(motion: Motion, gravity: float) -> str:
-    """Why a record has to be confirmed, and how; empty where it is a likely one."""
-    why = _unlikely_peak(motion, gravity) or never_changes_sign(motion) or mean_far_from_zero(motion)
-    if not why:
-        return ""
-    return (
-        f'{why}; if it is right, write confirm_pga = ["{motion.name}"] under [motions] in the study, or '
-        "confirm_pga = true in motions.toml"
-    )
+
+@dataclass(frozen=True)
+class Judged:
+    """A motion, and what it is judged by.
+
+    Attributes
+    ----------
+    motion : Motion
+    component : Component
+        Its horizontal component.
+    peaks : sequence of (Component, float)
+        The horizontal components of its station, as recorded, and their PGAs [m/s²].
+    gravity : float
+        [m/s²]
+    """
+
+    motion: Motion
+    component: Component
+    peaks: Sequence[tuple[Component, float]]
+    gravity: float
 
 
-def _unlikely_peak(motion: Motion, gravity: float) -> str:
-    """What is said of a PGA that a wrong unit explains; empty where it is a likely one."""
-    horizontal, vertical = motion.pga / gravity, (motion.pga_vertical or 0.0) / gravity
+def unlikely_peak(judged: Judged) -> Finding | None:
+    """A PGA that no earthquake has, so that the unit is probably wrong."""
+    horizontal = judged.motion.pga / judged.gravity
+    vertical = (judged.motion.pga_vertical or 0.0) / judged.gravity
     if LOWEST <= horizontal <= HIGHEST >= vertical:
-        return ""
+        return None
     peak = f"PGA {horizontal:.3g} g"
     if vertical > HIGHEST:
         peak += f", vertical {vertical:.3g} g,"
-    return f"{peak} outside {LOWEST:g}–{HIGHEST:g} g: check the unit"
+    return Finding("PGA", f"{peak} outside {LOWEST:g}–{HIGHEST:g} g: check the unit", gross=True, key="confirm_pga")
+
+
+def no_zero_line(judged: Judged) -> Finding | None:
+    """A series that does not swing about zero: a spectrum, an envelope, an offset."""
+    text = never_changes_sign(judged.motion) or mean_far_from_zero(judged.motion)
+    return Finding("zero line", text, gross=True) if text else None
+
+
+def alternation(judged: Judged) -> Finding | None:
+    """Samples that swing to and fro: the recorder, or its file, and not the ground."""
+    for what, samples in (("", judged.motion.horizontal), ("vertical: ", judged.motion.vertical)):
+        if samples is None:
+            continue
+        swing, peak = alternating(samples), float(np.abs(samples).max())
+        if swing > ALTERNATION * peak:
+            text = (
+                f"{what}it alternates from sample to sample by {swing / judged.gravity:.3g} g, {swing / peak:.0%} of its "
+                "PGA: check the file"
+            )
+            return Finding("alternates", text, gross=True)
+    return None
+
+
+def alternating(samples: Samples) -> float:
+    """Largest amplitude of eight samples in a row of which every one lies on the other side of its neighbours.
+
+    Half of the least of their seven swings, in the unit of ``samples``; 0 for fewer samples.
+    """
+    if len(samples) <= _SWINGS:
+        return 0.0
+    swings = np.diff(samples)
+    swings[1::2] *= -1.0  # of one sign where samples alternate
+    windows = sliding_window_view(swings, _SWINGS)
+    return max(0.0, float(windows.min(axis=1).max()), -float(windows.max(axis=1).min())) / 2.0
+
+
+def displacement(judged: Judged) -> Finding | None:
+    """A displacement that no ground has, gross for a record that is said to be corrected, or that runs away."""
+    motion = judged.motion
+    found = measures.pgd(motion.horizontal, motion.dt, motion.initial)
+    if found > FARTHEST:
+        text = f"its displacement reaches {found:.3g} m, more than {FARTHEST:g} m: check its baseline"
+        return Finding("PGD", text, gross=motion.processed is True)
+    if measures.believable_pgd(motion) is not None:
+        return None
+    text = (
+        f"no PGD: from rest its displacement runs away, to {found:.3g} m; it is unprocessed, or its file does not tell "
+        "the velocity that it begins with"
+    )
+    return Finding("no PGD", text)
+
+
+def unequal_horizontals(judged: Judged) -> Finding | None:
+    """A horizontal component many times the other one of its station."""
+    if len(judged.peaks) != 2:
+        return None
+    (low, least), (high, most) = sorted(judged.peaks, key=lambda each: each[1])
+    if not most > UNEQUAL * least:
+        return None
+    text = f"PGA of {high.name} is {most / max(least, 1e-300):.3g} times that of {low.name}: check their gains"
+    return Finding("unequal", text)
+
+
+def in_a_structure(judged: Judged) -> Finding | None:
+    """A sensor on an upper floor, a deck or a crest: the motion of a structure, and not of the ground."""
+    place = judged.component.seat.place or ""
+    if not _STRUCTURE.search(place.lower()) or _GROUND.search(place.lower()):
+        return None
+    return Finding("structure", f'"{place}" is in a structure, and not on the ground', gross=True)
+
+
+def unprocessed(judged: Judged) -> Finding | None:
+    """As it was recorded."""
+    if judged.motion.processed is not False:
+        return None
+    return Finding("unprocessed", "unprocessed: as recorded, with what the instrument adds at long periods")
+
+
+JUDGES: tuple[Callable[[Judged], Finding | None], ...] = (
+    unlikely_peak,
+    no_zero_line,
+    alternation,
+    displacement,
+    unequal_horizontals,
+    in_a_structure,
+    unprocessed,
+)
+
+
+def findings(judged: Judged) -> tuple[Finding, ...]:
+    """All that is odd about a motion."""
+    found = (judge(judged) for judge in JUDGES)
+    return tuple(finding for finding in found if finding is not None)
+
+
+def doubt(name: str, odd: Sequence[Finding], confirmed: Collection[str]) -> str:
+    """Why the motion ``name`` has to be confirmed, and how; empty where it need not be, or ``confirmed`` has the key."""
+    open_ones = [f for f in odd if f.gross and not {"confirm", f.key}.intersection(confirmed)]
+    if not open_ones:
+        return ""
+    key = open_ones[0].key if len(open_ones) == 1 else "confirm"
+    return (
+        f'{"; ".join(finding.text for finding in open_ones)}; if it is right, write {key} = ["{name}"] under [motions] '
+        f"in the study, or {key} = true in motions.toml"
+    )
 
 
 def fits(name: str, patterns: Sequence[str]) -> bool:

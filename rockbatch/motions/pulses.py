@@ -25,7 +25,7 @@ from collections.abc import Callable
 import numpy as np
 
 from rockbatch.errors import InputError
-from rockbatch.motions.motion import Motion, Samples
+from rockbatch.motions.motion import Initial, Motion, Samples
 
 SHAPES = ("sine", "cosine", "half-sine", "ricker", "mavroeidis-papageorgiou")
 
@@ -78,7 +78,7 @@ def pulse(
     note = f"{shape} pulse, peak {amplitude:g} m/s², T = {period:g} s"
     if gamma is not None and nu is not None:
         note += f", gamma = {gamma:g}, nu = {nu:g} rad"
-    return Motion(name, dt, acceleration, source="pulse", notes=(note,))
+    return Motion(name, dt, acceleration, source="pulse", notes=(note,), initial=Initial())
 
 
 def pulse_length(shape: str, period: float, gamma: float | None = None) -> float:

@@ -41,7 +41,7 @@ class Target:
         if self.pga_g is not None:
             wanted, found = self.pga_g * gravity, motion.pga
         elif self.pgv_m_s is not None:
-            wanted, found = self.pgv_m_s, measures.pgv(motion.horizontal, motion.dt)
+            wanted, found = self.pgv_m_s, measures.pgv(motion.horizontal, motion.dt, motion.initial)
         else:
             assert self.sa_g is not None
             assert self.period_s is not None
@@ -64,10 +64,4 @@ def at_target(found: MotionSet, target: Target, gravity: float) -> MotionSet:
 
 
 def _scaled(motion: Motion, factor: float, note: str) -> Motion:
-    return replace(
-        motion,
-        horizontal=motion.horizontal * factor,
-        vertical=None if motion.vertical is None else motion.vertical * factor,
-        factor=motion.factor * factor,
-        notes=(*motion.notes, note),
-    )
+    return replace(motion.times(factor), factor=motion.factor * factor, notes=(*motion.notes, note))

@@ -42,7 +42,7 @@ def _outside(motion: Motion, selection: Selection, gravity: float) -> list[str]:
     """Measures that lie outside their range, in words."""
     values = {
         "pga_g": motion.pga / gravity,
-        "pgv_m_s": measures.pgv(motion.horizontal, motion.dt) if selection.pgv_m_s else None,
+        "pgv_m_s": measures.pgv(motion.horizontal, motion.dt, motion.initial) if selection.pgv_m_s else None,
         "duration_s": motion.duration,
         "magnitude": motion.magnitude,
     }

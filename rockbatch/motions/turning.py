@@ -8,9 +8,10 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
-from rockbatch.motions.common_span import on_common_samples, overlap
+from rockbatch.motions.common_span import Common, on_common_samples, overlap
 from rockbatch.motions.component import Component
-from rockbatch.motions.motion import Samples, Unusable
+from rockbatch.motions.measures import state_at
+from rockbatch.motions.motion import Initial, Samples, Unusable
 from rockbatch.motions.orientation import Orientation, same_azimuth, split_stem
 
 _SQUARE = 1.0  # degree: what two components may lack of a right angle, as agencies round their azimuths
@@ -70,8 +71,23 @@ def _azimuth(component: Component) -> float:
     return component.orientation.azimuth
 
 
+def _initial(first: Component, second: Component, common: Common, azimuth: float) -> Initial | None:
+    """State along ``azimuth`` at the first common sample; ``None`` where one of the two is not known."""
+    states = [
+        part.initial
+        and state_at(part.acceleration, part.dt, part.initial, begin).times(
+            math.cos(math.radians(azimuth - _azimuth(part)))
+        )
+        for part, begin in zip((first, second), common.begins, strict=True)
+    ]
+    known = [state for state in states if state is not None]
+    if len(known) < 2:
+        return None
+    return Initial(sum(state.velocity for state in known), sum(state.displacement for state in known))
+
+
 def _turned(first: Component, second: Component, azimuth: float) -> Component:
-    dt, a, b, notes = on_common_samples(first, second, (first.name, second.name))
+    common = on_common_samples(first, second, (first.name, second.name))
     base = split_stem(first.name)[0]
     if base != split_stem(second.name)[0]:
         base = first.name
@@ -80,11 +96,13 @@ def _turned(first: Component, second: Component, azimuth: float) -> Component:
     return replace(
         first,
         name=f"{base}_az{azimuth:03g}",
-        dt=dt,
-        acceleration=resolved(a, _azimuth(first), b, _azimuth(second), azimuth),
+        dt=common.dt,
+        acceleration=resolved(common.first, _azimuth(first), common.second, _azimuth(second), azimuth),
         orientation=Orientation(f"{azimuth:g}", azimuth=azimuth % 360.0),
         source=f"{first.source} + {second.source}",
         start=max(starts) if len(starts) == 2 else None,
-        confirmed=first.confirmed and second.confirmed,
-        notes=(*own, *notes, f"turned to {azimuth:g}° from {first.name} and {second.name}"),
+        confirmed=tuple(key for key in first.confirmed if key in second.confirmed),
+        processed=first.processed if first.processed == second.processed else None,
+        initial=_initial(first, second, common, azimuth),
+        notes=(*own, *common.notes, f"turned to {azimuth:g}° from {first.name} and {second.name}"),
     )

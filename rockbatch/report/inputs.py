@@ -56,6 +56,8 @@ def records(finished: Finished) -> Markup:
         Head("dt [s]"),
         Head("points"),
         Head("duration [s]", ".2f"),
+        Head("processed", note="whether its agency has corrected it; empty: the file does not say"),
+        Head("to check", note="what is odd about it; the notes below say more"),
         Head("azimuth [°]", note="degrees clockwise from north"),
         Head("M", note="magnitude"),
         Head("distance [km]"),
@@ -63,13 +65,24 @@ def records(finished: Finished) -> Markup:
     ]
     names = (
         "record", "pga_g", "pgv_m_s", "pgd_m", "pga_v_g", "arias_m_s", "d5_95_s", "dt_s", "npts", "duration_s",
-        "azimuth_deg", "magnitude", "distance_km", "factor",
+        "processed", "check", "azimuth_deg", "magnitude", "distance_km", "factor",
     )  # fmt: skip
     scaled = any(record.get("factor", 1.0) != 1.0 for record in finished.info["records"])
     ordered = sorted(finished.info["records"], key=lambda record: (record["pga_g"], record["record"]))
-    rows = [[record.get(name) if name != "factor" or scaled else None for name in names] for record in ordered]
+    rows = [[_told(record, name) if name != "factor" or scaled else None for name in names] for record in ordered]
     measured = table(heads, rows, sortable=True, name="Ground motions")
-    return join(measured, tag("h3", "Where they come from, and what was done to them"), _sources(ordered))
+    lacking = finished.info.get("without_vertical")
+    without = tag("p", f"no vertical: {', '.join(lacking)}") if lacking else ""
+    return join(measured, without, tag("h3", "Where they come from, and what was done to them"), _sources(ordered))
+
+
+def _told(record: dict[str, Any], name: str) -> Any:
+    """A value of run.json, as the table of ground motions has it."""
+    if name == "processed":
+        return {True: "yes", False: "no"}.get(record.get(name, ""))
+    if name == "check":
+        return ", ".join(finding["what"] for finding in record.get("findings", [])) or None
+    return record.get(name)
 
 
 def _sources(records: Sequence[dict[str, Any]]) -> Markup:

@@ -28,6 +28,9 @@ _COLUMNS = {
     "base_tilt_rad": (1000, Head("base tilt [mrad]", ".3f", "base_tilt_rad × 1000: tilt of the base after the record")),
     "settlement_m": (1000, Head("settlement [mm]", ".2f", "settlement_m × 1000")),
     "settlement_other_law_m": (1000, Head("by the other law [mm]", ".2f", "settlement_other_law_m × 1000")),
+    "settlement_drift_m_s": (1000, Head("drift [mm/s]", ".3f", "settlement_drift_m_s × 1000: how fast it went on then")),
+    "theta_res_drift_per_s": (1, Head("drift [1/s]", ".1e", "theta_res_drift_per_s: how fast the residual went on then")),
+    "residual_s": (1, Head("read at [s]", ".2f", "residual_s: when residual rotation, tilt and settlement were read")),
     "impacts": (1, Head("impacts", ".0f")),
     "separations": (1, Head("separations", ".0f")),
     "flight_s": (1, Head("flight [s]", ".3f", "flight_s: first time with both pivots off the ground")),
@@ -38,6 +41,7 @@ _COLUMNS = {
     "t_end_s": (1, Head("end [s]", ".2f", "t_end_s: time at which the analysis ended")),
     "substeps": (1, Head("substeps", ".0f", "integration steps per sampling interval")),
     "reason": (1, Head("reason")),
+    "note": (1, Head("note")),
 }
 """Factor and head of each column of peaks.csv after the names of the run, in the order of the page."""
 

@@ -65,8 +65,10 @@ def _motions(finished: Finished) -> str:
         return ""
 
     def span(key: str, form: str, unit: str) -> str:
-        low, high = (pick(record[key] for record in records) for pick in (min, max))
-        first, last = format(low, form), format(high, form)
+        values = [record[key] for record in records if record[key] is not None]
+        if not values:
+            return "unknown"
+        first, last = format(min(values), form), format(max(values), form)
         return f"{first} {unit}" if first == last else f"{first} to {last} {unit}"
 
     return (

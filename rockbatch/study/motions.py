@@ -10,13 +10,13 @@ from rockbatch.motions.formats import ROLES, ReadOptions
 from rockbatch.motions.pulses import SHAPES, pulse
 from rockbatch.study.spec import FemaSpec, MotionSpec, PulseSpec
 from rockbatch.study.suite_keys import SUITE, read_suite
-from rockbatch.toml.kinds import boolean, choice, nonzero, number, positive, shown, text
+from rockbatch.toml.kinds import choice, nonzero, number, positive, shown, text
 from rockbatch.toml.reader import Key, Setting, Table, TomlFile, nearby
 from rockbatch.units import GRAVITY
 
 MOTIONS = {
     "path": Key(text, '"../motions"', many=True),
-    "vertical": Key(boolean, "true"),
+    "vertical": Key(kinds.vertical, "true"),
     "polarity": Key(choice("+", "-"), '["+", "-"]', many=True),
     "scale": Key(positive, "[1.0]", many=True),
     "unit": Key(kinds.unit, '"cm/s2"'),

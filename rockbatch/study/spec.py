@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Literal
 
 from rockbatch.checks.rules import Rule
 from rockbatch.motions.baseline import Offset
@@ -40,8 +41,8 @@ class MotionSpec:
     ----------
     paths : tuple of Path
         Files and folders; they exist.
-    vertical : bool
-        Whether a record's vertical component is used.
+    vertical : bool or "required"
+        Whether a record's vertical component is used, or even has to be there.
     polarity : tuple of str
         "+", "-" (horizontal reversed).
     scale : tuple of float
@@ -57,8 +58,8 @@ class MotionSpec:
         Which records are used.
     target : Target or None
         What records are scaled to; ``scale`` comes on top. Pulses have their own amplitude.
-    confirm_pga : tuple of str
-        Names, or patterns with * and ?, of records whose PGA is right though it is an unlikely one.
+    confirm, confirm_pga : tuple of str
+        Names, or patterns with * and ?, of records that are right whatever is odd about them, or about their PGA.
     strict : bool
         Whether a record that cannot be used ends the study before anything is run.
     fema_p695 : tuple of FemaSpec
@@ -66,7 +67,7 @@ class MotionSpec:
     """
 
     paths: tuple[Path, ...] = ()
-    vertical: bool = True
+    vertical: bool | Literal["required"] = True
     polarity: tuple[str, ...] = ("+",)
     scale: tuple[float, ...] = (1.0,)
     unit: str | None = None
@@ -78,6 +79,7 @@ class MotionSpec:
     azimuths: tuple[float, ...] = ()
     select: Selection = field(default_factory=Selection)
     target: Target | None = None
+    confirm: tuple[str, ...] = ()
     confirm_pga: tuple[str, ...] = ()
     strict: bool = False
     fema_p695: tuple[FemaSpec, ...] = ()

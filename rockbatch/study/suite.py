@@ -26,7 +26,8 @@ def ground_motions(study: Study) -> MotionSet:
         fema=[(record.station, record.azimuth) for record in spec.fema_p695],
         offset=spec.offset,
         azimuths=spec.azimuths,
-        confirmed=spec.confirm_pga,
+        confirmed=spec.confirm,
+        confirmed_pga=spec.confirm_pga,
     )
     found = selected(found, spec.select, gravity)
     if spec.target is not None:

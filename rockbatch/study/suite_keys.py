@@ -44,6 +44,7 @@ SUITE = {
     "every_deg": Key(_angle, "15"),
     "select": Key(_table, "{ pga_g = [0.1, inf] }"),
     "target": Key(_table, "{ pga_g = 0.4 }"),
+    "confirm": Key(text, '["CHAN07", "RSN825_*"]', many=True),
     "confirm_pga": Key(text, '["RSN825_CAPEMEND_CPM000"]', many=True),
     "strict": Key(boolean, "true"),
 }
@@ -69,8 +70,9 @@ def read_suite(motions: Table, read: dict[str, Any]) -> dict[str, Any]:
         "azimuths": _azimuths(motions, read),
         "select": Selection(),
     }
-    if "confirm_pga" in read:
-        found["confirm_pga"] = tuple(setting.value for setting in read["confirm_pga"])
+    for name in ("confirm", "confirm_pga"):
+        if name in read:
+            found[name] = tuple(setting.value for setting in read[name])
     if "strict" in read:
         found["strict"] = read["strict"]
     if "select" in read and (table := motions.file.table(*motions.at, "select")):

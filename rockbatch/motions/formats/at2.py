@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rockbatch.errors import InputError
-from rockbatch.motions.component import Component
+from rockbatch.motions.component import Component, Seat
 from rockbatch.motions.formats.fixed_width import is_cut_short
 from rockbatch.motions.formats.obspy_plugin import FileLike, first_bytes, name_and_bytes
 from rockbatch.motions.formats.record_file import RecordFile
@@ -43,7 +43,7 @@ _WIDEST = 40  # characters of a number; longer ones are no numbers, and would co
 
 @dataclass(frozen=True)
 class _At2:
-    """What an AT2 file says; ``values`` in its own ``unit``, shape (npts,)."""
+    """What an AT2 file says; ``values`` in its own ``unit``, shape (npts,). PEER's own records are corrected ones."""
 
     event: str
     date: str
@@ -52,6 +52,7 @@ class _At2:
     unit: str | None
     dt: float
     values: Samples
+    by_peer: bool
 
 
 def is_at2(filename: Any) -> bool:
@@ -123,6 +124,9 @@ def read_component(file: RecordFile) -> list[Component]:
             station=", ".join(part.upper() for part in parts) if record.station and record.date else "",
             source=file.source,
             unit=unit,
+            seat=Seat(record.station.upper()),
+            event=f"{record.event} {record.date}".strip().upper() if record.date else "",
+            processed=record.by_peer or None,
         )
     ]
 
@@ -146,7 +150,7 @@ def _parse(text: str) -> _At2:
     unit = _UNIT.search(header)
     event, date, station, component = _title(lines[1]) if at > 1 else ("", "", "", "")
     values = _values(lines, at + 1, npts)
-    return _At2(event, date, station, component, unit[1] if unit else None, dt, values)
+    return _At2(event, date, station, component, unit[1] if unit else None, dt, values, "PEER" in header.upper())
 
 
 def _count_and_step(line: str) -> re.Match[str] | None:

@@ -2,22 +2,22 @@
 
 Each channel has lines of text, then integers, real numbers and comments, each under a line that says how many
 there are and in which Fortran format, then its values under a line with their count, unit and format, and a
-line "End-of-data". Velocities and displacements in the same file are read over. The sampling interval is real
-number 62 [ms]; number 34 is that of the recorder. Source: COSMOS (2001), "COSMOS strong motion data format",
-version 1.20.
+line "End-of-data". Velocities and displacements in the same file tell how the ground moved at the first sample, else
+real numbers 68 [cm/s] and 69 [cm] do. The sampling interval is real number 62 [ms]; number 34 is that of the recorder.
+Source: COSMOS (2001), "COSMOS strong motion data format", version 1.20; for 68 and 69 the USGS's program PRISM.
 """
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from rockbatch.errors import InputError
-from rockbatch.motions.component import Component
+from rockbatch.motions.component import Component, Seat
 from rockbatch.motions.formats.fixed_width import fixed_numbers, lines_of
 from rockbatch.motions.formats.header_lines import found, line_at, moment, number
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.formats.recording import Recording, to_components
-from rockbatch.motions.motion import Samples, Unusable
+from rockbatch.motions.motion import Initial, Samples, Unusable
 from rockbatch.motions.orientation import orientation_of
 from rockbatch.units import acceleration_factor
 
@@ -42,7 +42,7 @@ _VALUES = re.compile(
 _FORMAT = re.compile(r" *(?:\dP,?)?(?P<per_line>\d{0,2})[IFED](?P<width>\d{1,2})(?:\.\d{1,2})? *", re.I | re.A)
 _UNKNOWN = re.compile(r"unspecified: *-?\d+, *(?P<real>-?[\d.]{1,12})", re.I | re.A)
 _CODE = re.compile(r"Code: *(?P<network>[^- ]*)-(?P<station>\S*)", re.I)
-_CHANNEL = re.compile(r"^Sta Chan?:? *[\d?]* *: *(?P<label>.*?) *(?:deg\b[^(]*)?(?:\(|$)", re.I)
+_CHANNEL = re.compile(r"^Sta Chan?:? *(?P<number>[\d?]*) *: *(?P<label>.*?) *(?:deg\b[^(]*)?(?:\(|$)", re.I)
 _LOCATION = re.compile(r"Location: *(?P<place>\S.*?) *$", re.I)
 _SCNL = re.compile(r"<SCNL>(?P<station>\w*)\.(?P<channel>\w*)\.(?P<network>\w*)\.(?P<location>[\w-]*)", re.A)
 
@@ -77,7 +77,7 @@ def read_cosmos(file: RecordFile) -> list[Component | Unusable]:
 def _parse(text: str) -> list[Recording]:
     """The channels, one after the other; ``InputError`` with the line where the file is not whole."""
     lines = lines_of(text)
-    recordings: list[Recording] = []
+    recordings: list[tuple[Recording, _Header]] = []
     others: list[str] = []
     header: _Header | None = None
     at = 0
@@ -91,15 +91,30 @@ def _parse(text: str) -> list[Recording]:
         series = found(_VALUES, lines, at, "… acceleration pts, approx … secs, units=cm/sec2(04),Format=(8F10.5)")
         values, end = _values(lines, at, series)
         if series["what"].lower().startswith("accel"):
-            recordings.append(_recording(header, series, values, at))
+            recordings.append((_recording(header, series, values, at), header))
         else:
             others.append(series["what"])
+            if recordings and _channel_line(recordings[-1][1]) == _channel_line(header):
+                recordings[-1] = (_beside(recordings[-1][0], series, values), header)
         at = end
     if not recordings:
         raise InputError(
             f"holds {' and '.join(others) or 'nothing'}; expected accelerations: take the file that has them"
         )
-    return recordings
+    return [recording for recording, _ in recordings]
+
+
+def _channel_line(header: _Header) -> tuple[str, str]:
+    """What headers of one channel share: the lines of its station and of its sensor."""
+    return line_at(header.text, 4), line_at(header.text, 8)
+
+
+def _beside(recording: Recording, series: re.Match[str], values: Samples) -> Recording:
+    """With the velocities or displacements that follow its accelerations."""
+    what, given = series["what"].lower(), (values, series["unit"])
+    if what.startswith("vel"):
+        return replace(recording, velocities=given)
+    return replace(recording, displacements=given) if what.startswith("dis") else recording
 
 
 def _header(lines: list[str], at: int) -> _Header:
@@ -175,6 +190,7 @@ def _recording(header: _Header, series: re.Match[str], values: Samples, at: int)
     location = seed["location"].strip("-") if seed else ""
     stage = "uncorrected" if header.what.lower().startswith(("raw", "uncorr")) else "corrected"
     where = place["place"] if place else ""
+    channel = _CHANNEL.search(line_at(header.text, 8))
     return Recording(
         label=_label(header, seed["channel"] if seed else ""),
         dt=dt,
@@ -184,10 +200,28 @@ def _recording(header: _Header, series: re.Match[str], values: Samples, at: int)
         codes=(network, station, location, seed["channel"] if seed else ""),
         start=_start(header),
         uncorrected=stage == "uncorrected",
+        processed=stage == "corrected",
+        seat=Seat(
+            station,
+            network,
+            location if seed else None,
+            where.upper() if where else None,
+            (channel["number"].strip("?") or None) if channel else None,
+        ),
+        event=line_at(header.text, 1),
+        initial=_initial(header) if stage == "corrected" else None,
         stated_peak=None if peak == header.unknown else peak,
         notes=(f"location: {where}",) if where else (),
         header={"station": line_at(header.text, 4).strip(), "event": line_at(header.text, 1).strip()},
     )
+
+
+def _initial(header: _Header) -> Initial | None:
+    """The ground's state at the first sample, by real numbers 68 and 69; ``None`` where the first is unknown."""
+    velocity, displacement = header.reals[67:69]
+    if velocity == header.unknown:
+        return None
+    return Initial(velocity / 100, 0.0 if displacement == header.unknown else displacement / 100)
 
 
 def _unit(header: _Header, series: re.Match[str], at: int) -> str:

@@ -11,12 +11,12 @@ import re
 from dataclasses import dataclass
 
 from rockbatch.errors import InputError
-from rockbatch.motions.component import Component
+from rockbatch.motions.component import Component, Seat
 from rockbatch.motions.formats.fixed_width import fixed_numbers, one_after_another
 from rockbatch.motions.formats.header_lines import found, line_at, moment, number
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.record_file import RecordFile
-from rockbatch.motions.formats.recording import Recording, to_components
+from rockbatch.motions.formats.recording import Recording, Series, to_components
 from rockbatch.motions.formats.renadic import is_renadic
 from rockbatch.motions.motion import Samples, Unusable
 from rockbatch.units import acceleration_factor
@@ -36,6 +36,7 @@ _SPACING = re.compile(
 _UNIT = re.compile(r"(?:\(units:|in units of|, *in) *(?P<unit>[a-z0-9/*^]+)", re.IGNORECASE)
 _FORMAT = re.compile(r"\((?P<per_line>[0-9]{1,2})f(?P<width>[0-9]{1,2})\.[0-9]{1,2}\)", re.IGNORECASE)
 _CHANNEL = re.compile(r"chan +(?P<number>[0-9]{1,3}): *(?P<label>.*?) *(?:deg\b.*)?(?:\(|location:|$)", re.IGNORECASE)
+_OF_STATION = re.compile(r"sta +chn: *(?P<number>[0-9]{1,3})", re.IGNORECASE)
 _LOCATION = re.compile(r"location: *(?P<place>\S.*?) *$", re.IGNORECASE)
 _STATION = re.compile(r"station +(?:no|id)\. +(?P<code>\S+)", re.IGNORECASE)
 _CODES = re.compile(r"[0-9]+\.(?P<network>[A-Z0-9]{1,2})\.(?P<station>[A-Z0-9]{1,5})\.(?P<location>[A-Z0-9-]{2})\.")
@@ -106,8 +107,11 @@ def _channel(lines: list[str], at: int) -> tuple[Recording, int]:
     accelerations = _block(lines, at + _DATA[volume], ("accel",))
     _check_again(lines, at, volume, accelerations)
     end = accelerations.end
+    others: dict[str, Series] = {}
     while volume == 2 and _SPACING.match(line_at(lines, end)):
-        end = _block(lines, end, ("veloc", "displ")).end
+        block = _block(lines, end, ("veloc", "displ"))
+        others[block.what] = (block.values, block.unit)
+        end = block.end
     if not line_at(lines, end).startswith("/&"):
         ends = f'"{lines[end].strip()[:40]}"' if end < len(lines) else "the end of the file"
         raise InputError(f'line {end + 1}: found {ends}; expected "/&" after the declared values; fetch it again')
@@ -126,11 +130,30 @@ def _channel(lines: list[str], at: int) -> tuple[Recording, int]:
             ),
             start=_start(line_at(lines, header + 3)),
             uncorrected=volume == 1,
+            processed=volume == 2,
+            seat=_seat(lines, header, station, codes, place),
+            event=f"{line_at(lines, header + 1)} {line_at(lines, header + 2).partition('(')[0]}",
+            velocities=others.get("veloc"),  # the header's initial velocity has the wrong sign in files of the USGS
+            displacements=others.get("displ"),
             stated_peak=_stated_peak(lines, at, volume, accelerations.unit),
             notes=(f"channel {channel['number']}: {place['place']}",) if place else (),
             header={"station": line_at(lines, header + 5).strip(), "record": record},
         ),
         end + 1,
+    )
+
+
+def _seat(
+    lines: list[str], header: int, station: str, codes: re.Match[str] | None, place: re.Match[str] | None
+) -> Seat:
+    """The sensor, by the record's codes, the place, and the channel of the station, which other recorders may share."""
+    channel = _OF_STATION.search(line_at(lines, header + 6)) or _CHANNEL.search(line_at(lines, header + 6))
+    return Seat(
+        station=codes["station"] if codes else station,
+        network=codes["network"] if codes else None,
+        location=codes["location"].strip("-") if codes else None,
+        place=place["place"].upper() if place else None,
+        channel=channel["number"] if channel else None,
     )
 
 

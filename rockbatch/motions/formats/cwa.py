@@ -3,7 +3,7 @@
 import re
 
 from rockbatch.errors import InputError
-from rockbatch.motions.component import Component
+from rockbatch.motions.component import Component, Seat
 from rockbatch.motions.formats.header_lines import moment
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.record_file import RecordFile
@@ -54,6 +54,9 @@ def _parse(text: str) -> list[Recording]:
             codes=("TW", station, "", label),
             start=_start(began, "StartTime(GMT+08)" in header),
             uncorrected="corr" not in offset.lower(),
+            processed=False,
+            seat=Seat(station, "TW"),
+            event=began,
             notes=notes,
             header={"start": began, "instrument": header.get("InstrumentKind", "")},
         )

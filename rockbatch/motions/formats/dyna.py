@@ -9,7 +9,7 @@ import re
 import numpy as np
 
 from rockbatch.errors import InputError
-from rockbatch.motions.component import Component
+from rockbatch.motions.component import Component, Seat
 from rockbatch.motions.formats.fixed_width import is_cut_short, lines_of, number_in
 from rockbatch.motions.formats.header_lines import moment
 from rockbatch.motions.formats.obspy_plugin import plugin
@@ -55,10 +55,19 @@ def _parse(text: str) -> list[Recording]:
             codes=(codes[0], codes[1], codes[2], stream),
             start=_start(header.get("DATE_TIME_FIRST_SAMPLE_YYYYMMDD_HHMMSS", "")),
             uncorrected="NOT REMOVED" in header.get("BASELINE_CORRECTION", "").upper(),
+            processed=_processed(header),
+            seat=Seat(codes[1], codes[0], codes[2]),
+            event=event,
             stated_peak=_peak(header) if unit.lower() == "cm/s^2" else None,
             header={key.lower(): value for key, value in header.items() if value},
         )
     ]
+
+
+def _processed(header: dict[str, str]) -> bool | None:
+    """Whether it was filtered; ``None`` where the header does not tell."""
+    said = header.get("PROCESSING") or header.get("LOW_CUT_FREQUENCY_HZ", "")
+    return said.upper() != "NONE" if said else None
 
 
 def _header(lines: list[str]) -> dict[str, str]:

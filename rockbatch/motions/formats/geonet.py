@@ -7,12 +7,12 @@ its velocities and displacements, ten to a line of 8 characters each. The layout
 import re
 
 from rockbatch.errors import InputError
-from rockbatch.motions.component import Component
+from rockbatch.motions.component import Component, Seat
 from rockbatch.motions.formats.fixed_width import fixed_numbers, one_after_another
-from rockbatch.motions.formats.header_lines import found, moment, number
+from rockbatch.motions.formats.header_lines import found, line_at, moment, number
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.record_file import RecordFile
-from rockbatch.motions.formats.recording import Recording, to_components
+from rockbatch.motions.formats.recording import Recording, Series, to_components
 from rockbatch.motions.motion import Samples, Unusable
 
 SUFFIXES = frozenset({".v1a", ".v2a"})
@@ -26,6 +26,7 @@ _COUNT = re.compile(
 )
 _RAW = re.compile(r"raw readings in units of\s+(?P<factor>[0-9.]{1,15})\s+(?P<unit>\S+)", re.IGNORECASE)
 _PEAK = re.compile(r"acceleration:\s+peak\s+(?P<peak>[-0-9.]{1,15})\s+(?P<unit>\S+)", re.IGNORECASE)
+_UNIT = re.compile(r"(?:velocity|displacement):\s+peak\s+[-0-9.]{1,15}\s+(?P<unit>\S+)", re.IGNORECASE)
 _SITE = re.compile(r"site\s+(?P<code>\S+)", re.IGNORECASE)
 _COMPONENT = re.compile(r"component\s+(?P<label>\S+)", re.IGNORECASE)
 
@@ -90,10 +91,21 @@ def _component(lines: list[str], at: int) -> tuple[Recording, int]:
         codes=("NZ", site, title["id"].rpartition("_")[2][:2], label.upper()),
         start=_start(integers, float(padding)),
         uncorrected=bool(title["un"]),
+        processed=not title["un"],
+        seat=Seat(site, "NZ", title["id"].rpartition("_")[2][:2]),
+        event=title["id"],
+        velocities=_series(blocks[1], line_at(lines, at + 14)),
+        displacements=_series(blocks[2], line_at(lines, at + 15)),
         stated_peak=stated if stated > _SHARP and peak["unit"] == unit else None,
         header={"accelerogram": title["id"], "site": lines[at + 2].strip()},
     )
     return recording, end
+
+
+def _series(values: Samples, line: str) -> Series | None:
+    """Velocities or displacements, with the unit of the header's ``line`` that has their peak."""
+    said = _UNIT.match(line.strip())
+    return (values, said["unit"]) if said and len(values) else None
 
 
 def _start(integers: Samples, padding: float) -> float | None:

@@ -1,7 +1,7 @@
 """K-NET and KiK-net (NIED): one component per file, counts with their scale in the header."""
 
 from rockbatch.errors import InputError
-from rockbatch.motions.component import Component
+from rockbatch.motions.component import Component, Seat
 from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.formats.with_obspy import read_stream
 from rockbatch.motions.orientation import orientation_of, unknown
@@ -39,6 +39,8 @@ def read_knet(file: RecordFile) -> list[Component]:
             source=file.source,
             start=stats.starttime.timestamp,
             raw=True,
+            processed=False,
+            seat=Seat(stats.station, location=level),
             notes=(_LEVELS[level],) if level in _LEVELS else (),
         )
     ]

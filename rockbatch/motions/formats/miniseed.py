@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rockbatch.errors import InputError
-from rockbatch.motions.component import Component
+from rockbatch.motions.component import Component, Seat
 from rockbatch.motions.formats import stationxml
 from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.formats.with_obspy import read_stream
@@ -88,6 +88,8 @@ def _component(name: str, file: RecordFile, trace: "Trace", known: list[stationx
         start=start,
         unit="" if entry is not None and entry.sensitivity else unit,
         raw=True,
+        processed=False,
+        seat=Seat(stats.station, stats.network, stats.location),
         notes=(origin,),
     )
 

@@ -6,13 +6,18 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from rockbatch.errors import InputError
-from rockbatch.motions.component import Component
+from rockbatch.motions.component import NOWHERE, Component, Seat
 from rockbatch.motions.formats.record_file import RecordFile
-from rockbatch.motions.motion import Samples, Unusable
+from rockbatch.motions.measures import initial_of
+from rockbatch.motions.motion import Initial, Samples, Unusable
 from rockbatch.motions.orientation import Orientation, orientation_of, unknown
-from rockbatch.units import acceleration_factor
+from rockbatch.units import acceleration_factor, length_factor
 
 _SAME_PEAK = 0.01  # relative: header peaks are rounded, and taken before the last decimals of the data were cut
+
+
+Series = tuple[Samples, str]
+"""Values, shape (npts,), and their unit."""
 
 
 @dataclass(frozen=True)
@@ -39,6 +44,16 @@ class Recording:
         Time of the first sample [s since 1970, UTC].
     uncorrected : bool
         Whether the instrument's offset may still be in the data.
+    processed : bool or None
+        Whether the agency has corrected them; ``None`` where the file does not say.
+    seat : Seat
+        The sensor, by what the header says.
+    event : str
+        What the header says of the event.
+    initial : Initial or None
+        The ground's state at the first sample, where the header tells it.
+    velocities, displacements : Series or None
+        That the file has beside the accelerations.
     stated_peak : float or None
         Peak that the header states, in ``unit``; its sign is not to be trusted.
     notes : tuple of str
@@ -56,6 +71,12 @@ class Recording:
     codes: tuple[str, str, str, str] = ("", "", "", "")
     start: float | None = None
     uncorrected: bool = False
+    processed: bool | None = None
+    seat: Seat = NOWHERE
+    event: str = ""
+    initial: Initial | None = None
+    velocities: Series | None = None
+    displacements: Series | None = None
     stated_peak: float | None = None
     notes: tuple[str, ...] = ()
     header: dict[str, str] = field(default_factory=dict)
@@ -88,18 +109,31 @@ def _component(file: RecordFile, recording: Recording, name: str, source: str) -
     notes = [*recording.notes]
     if recording.stated_peak is not None:
         notes += _on_stated_peak(recording.values, abs(recording.stated_peak), recording.unit)
+    acceleration = recording.values * factor
+    series = [_in_metres(each) for each in (recording.velocities, recording.displacements)]
     return Component(
         name=name,
         dt=recording.dt,
-        acceleration=recording.values * factor,
+        acceleration=acceleration,
         orientation=orientation,
         station=recording.station,
         source=source,
         start=recording.start,
         unit=recording.unit,
         raw=recording.uncorrected,
+        seat=recording.seat,
+        event=" ".join(recording.event.upper().split()),
+        processed=recording.processed,
+        initial=initial_of(acceleration, recording.dt, *series) or recording.initial,
         notes=tuple(notes),
     )
+
+
+def _in_metres(series: Series | None) -> Samples | None:
+    """Velocities in m/s, displacements in m; ``None`` for what there is not, or in a unit that is none."""
+    if series is None or (factor := length_factor(series[1])) is None:
+        return None
+    return series[0] * factor
 
 
 def _on_stated_peak(values: Samples, stated: float, unit: str) -> list[str]:

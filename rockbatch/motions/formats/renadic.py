@@ -8,7 +8,7 @@ same words in line 12, digitised from film at uneven times, are read as well.
 import re
 
 from rockbatch.errors import InputError
-from rockbatch.motions.component import Component
+from rockbatch.motions.component import Component, Seat
 from rockbatch.motions.formats.fixed_width import fixed_numbers, one_after_another
 from rockbatch.motions.formats.header_lines import found, moment
 from rockbatch.motions.formats.obspy_plugin import plugin
@@ -86,6 +86,9 @@ def _channel(lines: list[str], at: int) -> tuple[tuple[Recording, float], int]:
         codes=("", "".join(c for c in lines[at + 5].upper() if c.isascii() and c.isalnum())[:5], "", label.upper()),
         start=None if trigger is None else trigger + first,
         uncorrected=True,
+        processed=False,
+        seat=Seat(lines[at + 5].strip().upper()),
+        event=lines[at + 1],
         stated_peak=_peak(units["peak"], unit),
         notes=notes,
         header={"station": lines[at + 5].strip(), "event": lines[at + 1].strip()},

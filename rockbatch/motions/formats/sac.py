@@ -1,7 +1,7 @@
 """SAC (binary): one component, in a unit that its header does not tell reliably."""
 
 from rockbatch.errors import InputError
-from rockbatch.motions.component import Component
+from rockbatch.motions.component import Component, Seat
 from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.formats.with_obspy import read_stream
 from rockbatch.motions.orientation import Orientation, orientation_of, split_stem, unknown
@@ -44,6 +44,7 @@ def read_sac(file: RecordFile) -> list[Component]:
             station=".".join(codes) if stats.station else "",
             source=file.source,
             start=stats.starttime.timestamp,
+            seat=Seat(stats.station if stats.starttime.year > 1970 else "", stats.network, stats.location),
             unit=options.unit or "m/s2",
             raw=True,
             notes=(f"unit {options.unit or 'm/s2'} as stated",),

@@ -9,7 +9,7 @@ import re
 from datetime import UTC, datetime, timedelta
 
 from rockbatch.errors import InputError
-from rockbatch.motions.component import Component
+from rockbatch.motions.component import Component, Seat
 from rockbatch.motions.formats.fixed_width import fixed_numbers, lines_of, number_in
 from rockbatch.motions.formats.header_lines import found, line_at
 from rockbatch.motions.formats.obspy_plugin import plugin
@@ -79,6 +79,9 @@ def _parse(text: str) -> list[Recording]:
             codes=("", "".join(c for c in line_at(lines, 2) if c.isascii() and c.isalnum())[:5], "", ""),
             start=None if unknown in (second, ms) else _start(year, day, hour, minute, second, ms),
             uncorrected=title["kind"] == "1",
+            processed=title["kind"] == "2",
+            seat=Seat(f"{station['name']} {integers[29]}".upper(), place=station["name"].upper()),
+            event="" if unknown in (year, day, hour, minute) else f"{year}-{day:03d} {hour}:{minute}",
             stated_peak=max(peaks, default=None),
             notes=("its header flags a problem: read its comments",) if integers[17] == 1 else (),
             header={"station": station["name"], "event": line_at(lines, 3)[25:].strip()},

@@ -1,0 +1,191 @@
+"""One recording in several files: which one is used, and what is said about the others."""
+
+import pytest
+from agency_files import geonet_text
+from fixed_column_files import A, B, C, cosmos_text, csmip_channel, csmip_text, smc_text
+from motion_files import RECORDS, needs_records, wiggle, write_at2
+
+from rockbatch.motions import read_motions
+from rockbatch.motions.component import Seat
+from rockbatch.motions.manifest_draft import draft
+
+
+def title(component: str, station: str = "STA", event: str = "Somewhere, 1/17/1994") -> str:
+    return f"{event}, {station}, {component}"
+
+
+def left_out(found) -> dict[str, str]:
+    return {double.source: double.reason for double in found.left_out}
+
+
+def write(folder, **files: str) -> None:
+    for name, text in files.items():
+        (folder / name.replace("_", ".")).write_bytes(text.encode("latin-1"))
+
+
+def test_the_corrected_one_of_two_volumes_is_used_and_the_other_named(tmp_path):
+    write(tmp_path, STA_V1A=geonet_text(1), STA_V2A=geonet_text(2))
+    found = read_motions(tmp_path)
+    assert {motion.source for motion in found.motions} == {"STA.V2A (N28W)", "STA.V2A (S62W)"}
+    assert not found.unusable
+    assert left_out(found) == {
+        f"STA.V1A ({way})": f"the same recording, less corrected, as STA.V2A ({way}), which is used; "
+        "write use = true in motions.toml to use this one"
+        for way in ("N28W", "S62W", "Up")
+    }
+
+
+@pytest.mark.parametrize("modern", [True, False])
+def test_old_headers_without_a_time_are_told_by_their_event(tmp_path, modern):
+    write(tmp_path, a_RAW=csmip_text(1, modern=modern), b_V2=csmip_text(2, modern=modern))
+    assert {m.source.partition(" ")[0] for m in read_motions(tmp_path).motions} == {"b.V2"}
+    another = (
+        csmip_text(1, modern=modern).replace("19:37", "29:37").replace("Jul  5", "Jul  6").replace("JUL  5", "JUL  6")
+    )
+    write(tmp_path, a_RAW=another)
+    found = read_motions(tmp_path)
+    assert {m.source.partition(" ")[0] for m in found.motions} == {"a.RAW", "b.V2"}
+    assert not found.left_out
+
+
+def test_use_in_a_manifest_decides_otherwise(tmp_path):
+    write(tmp_path, STA_V1A=geonet_text(1), STA_V2A=geonet_text(2))
+    manifest = tmp_path / "motions.toml"
+    manifest.write_text('[[record]]\nfile = "STA.V1A"\nuse = true\n')
+    found = read_motions(tmp_path)
+    assert {motion.source.partition(" ")[0] for motion in found.motions} == {"STA.V1A"}
+    assert all(motion.vertical_source == "STA.V1A (Up)" for motion in found.motions)
+    assert "the same recording as STA.V1A (N28W), which is used" in left_out(found)["STA.V2A (N28W)"]
+    manifest.write_text('[[record]]\nfile = "STA.V1A"\nuse = true\n[[record]]\nfile = "STA.V2A"\nuse = true\n')
+    assert len(read_motions(tmp_path).motions) == 4
+
+
+@pytest.mark.parametrize("other", ["x (2).AT2", "a/x.AT2", "copy of x.AT2", "x2.AT2"])
+def test_a_copy_under_another_name_is_left_out_and_says_of_what(tmp_path, other):
+    for name in ("x.AT2", other):
+        write_at2((tmp_path / name).parent, name.rsplit("/", 1)[-1], wiggle(60), title="nothing")
+    found = read_motions(tmp_path)
+    assert [motion.source for motion in found.motions] == ["x.AT2"]
+    assert left_out(found)[other].startswith("a copy of x.AT2, which is used")
+
+
+def test_a_copy_with_a_suffix_that_nobody_knows_is_no_unusable_file(tmp_path):
+    path = write_at2(tmp_path, "x.AT2", wiggle(60), title="nothing")
+    (tmp_path / "x.90").write_bytes(path.read_bytes())
+    (tmp_path / "y.90").write_bytes(path.read_bytes()[:-1] + b" ")
+    found = read_motions(tmp_path)
+    assert left_out(found) == {"x.90": "a copy of x.AT2"}
+    assert [file.source for file in found.unusable] == ["y.90"]
+
+
+def test_the_same_recording_in_another_unit_is_told_by_its_header(tmp_path):
+    write_at2(tmp_path, "RSN7_X_STA000.AT2", wiggle(60), title=title("0"))
+    write_at2(tmp_path, "sta.AT2", wiggle(60) * 981, title=title("0"), unit="ACCELERATION IN UNITS OF CM/S2")
+    found = read_motions(tmp_path)
+    assert [motion.source for motion in found.motions] == ["sta.AT2"]
+    assert left_out(found)["RSN7_X_STA000.AT2"].startswith("the same recording as sta.AT2")
+
+
+def test_of_two_parts_the_one_with_the_shaking_is_used(tmp_path):
+    strong, weak = wiggle(60, 1), wiggle(60, 2) / 20
+    write_at2(tmp_path, "a_part1.AT2", weak, title=title("0"))
+    write_at2(tmp_path, "a_part2.AT2", strong, title=title("0"))
+    found = read_motions(tmp_path)
+    assert [motion.source for motion in found.motions] == ["a_part2.AT2"]
+    assert left_out(found)["a_part1.AT2"].startswith("the same recording as a_part2.AT2")
+
+
+def test_a_set_with_its_vertical_goes_before_one_without(tmp_path):
+    write_at2(tmp_path / "a", "s000.AT2", wiggle(60, 1), title=title("0"))
+    write_at2(tmp_path / "b", "s000.AT2", wiggle(60, 1) * 1.01, title=title("0"))
+    write_at2(tmp_path / "b", "sUP.AT2", wiggle(60, 2), title=title("UP"))
+    (motion,) = read_motions(tmp_path).motions
+    assert (motion.source, motion.vertical_source) == ("b/s000.AT2", "b/sUP.AT2")
+
+
+def test_other_sensors_events_and_directions_of_a_station_are_other_records(tmp_path):
+    write(
+        tmp_path,
+        a_V1c=cosmos_text(A),
+        b_V1c=cosmos_text(B, scnl="8040.HNE.NP.D1"),
+        c_V1c=cosmos_text(C, location="Building; basement"),
+        d_V1c=cosmos_text(A * 0.9, "360 Deg"),
+        e_V1c=cosmos_text(A * 0.8, clock=(2018, 11, 30, 18, 29)),
+    )
+    found = read_motions(tmp_path)
+    assert (len(found.motions), found.left_out) == (5, [])
+
+
+def test_channels_of_one_file_are_never_doubles_of_each_other(tmp_path):
+    lines = [*csmip_channel("90 Deg", A, volume=2), *csmip_channel("90 Deg", B, volume=2)]
+    write(tmp_path, a_V2="\n".join([*lines, ""]))
+    assert len(read_motions(tmp_path).motions) == 2
+
+
+def test_records_whose_numbers_by_peer_differ_are_other_records(tmp_path):
+    write_at2(tmp_path, "RSN7_X_S000.AT2", wiggle(60, 1), title=title("0"))
+    write_at2(tmp_path, "RSN8_X_S000.AT2", wiggle(60, 2), title=title("0"))
+    assert len(read_motions(tmp_path).motions) == 2
+
+
+def test_an_smc_file_beside_its_uncorrected_one(tmp_path):
+    write(tmp_path, a_smc=smc_text(title="1 UNCORRECTED ACCELEROGRAM"), b_smc=smc_text(B))
+    found = read_motions(tmp_path)
+    assert [motion.source for motion in found.motions] == ["b.smc"]
+    assert "less corrected" in left_out(found)["a.smc"]
+
+
+@pytest.mark.parametrize(
+    ("one", "two", "same"),
+    [
+        (Seat("1336", place="FREEFIELD"), Seat("01336", "CE", "", "Free field", "15"), True),
+        (Seat("CCC", "CI", ""), Seat("CCC", "CI", "00"), False),
+        (Seat("CCC", "CI"), Seat("CCC", "NP"), False),
+        (Seat("CCC", "CI", "00"), Seat("CCC"), True),
+        (Seat("24386", place="ROOF"), Seat("24386", place="GROUND"), False),
+        (Seat("24386", channel="1"), Seat("24386", channel="2"), False),
+        (Seat(""), Seat(""), False),
+        (Seat("A"), Seat("B"), False),
+    ],
+)
+def test_a_sensor_is_told_by_what_both_headers_say_of_it(one, two, same):
+    assert one.is_that_of(two) == two.is_that_of(one) == same
+
+
+def test_smc_files_that_do_not_know_their_time_are_not_taken_for_one_recording(tmp_path):
+    nobody_knows = (-32768,) * 6
+    write(tmp_path, a_smc=smc_text(A, clock=nobody_knows), b_smc=smc_text(B, clock=nobody_knows))
+    assert len(read_motions(tmp_path).motions) == 2
+
+
+def test_the_drafted_manifest_has_the_line_that_takes_the_other_one(tmp_path):
+    write(tmp_path, STA_V1A=geonet_text(1), STA_V2A=geonet_text(2))
+    text = draft(tmp_path)
+    lines = [line for line in text.splitlines() if line.startswith("# use = true   ")]
+    assert lines == [
+        f"# use = true   # the same recording, less corrected, as STA.V2A ({way}), which is used"
+        for way in ("N28W", "S62W", "Up")
+    ]
+    before = read_motions(tmp_path)
+    (tmp_path / "motions.toml").write_text(text)
+    after = read_motions(tmp_path)
+    assert [(m.name, m.files) for m in after.motions] == [(m.name, m.files) for m in before.motions]
+    assert left_out(after) == left_out(before)
+
+
+@needs_records
+def test_of_real_recordings_in_several_files_one_is_used():
+    found = read_motions([RECORDS / "formats" / "ridgecrest_ccc", RECORDS / "formats" / "kaikoura_hses"])
+    assert {motion.source.partition(" ")[0] for motion in found.motions} == {
+        "ridgecrest_ccc/CICCC.RAW",  # in g; MiniSEED has counts
+        "kaikoura_hses/20161113_110300_HSES_20.V2A",
+    }
+    doubles = [double for double in found.left_out if "which is used" in double.reason]
+    assert len(doubles) == 6
+
+
+@needs_records
+def test_all_real_records_at_once_hold_each_recording_once():
+    found = read_motions(RECORDS)
+    samples = [(motion.dt, motion.horizontal.tobytes()) for motion in found.motions]
+    assert len(set(samples)) == len(samples)
