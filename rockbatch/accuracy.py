@@ -93,8 +93,8 @@ def measure(study: Study, references: Sequence[Reference], scipy: bool = True) -
     """Time and error of fixed steps, with and without the location of events, of the study's own setting, and of SciPy.
 
     Everything runs in one thread, and its processor time counts, whatever else the machine does: medians of
-    :data:`REPEATS` passes over all runs. SciPy: one pass over at most :data:`SCIPY_RUNS` runs, on springs, that end
-    within the record and ``quiet_s``.
+    :data:`REPEATS` passes over all runs. SciPy: one pass over at most :data:`SCIPY_RUNS` runs, on springs, until ours
+    end.
 
     Returns
     -------
@@ -119,7 +119,7 @@ def measure(study: Study, references: Sequence[Reference], scipy: bool = True) -
     setting = {"method": "study", "substeps": numerics.substeps, "tolerance": numerics.tolerance}
     rows.append(setting | _measured(references, lambda runs: _ends(outcomes_of(runs, numerics)), REPEATS))
     if scipy:
-        rows += _yardstick(references, numerics.quiet_s)
+        rows += _yardstick(references)
     table = pd.DataFrame(rows, columns=list(COLUMNS))
     table["substeps"] = table["substeps"].astype("Int64")
     table["tolerance"] = table["tolerance"].astype("float64")
@@ -132,23 +132,22 @@ def _ends(outcomes: Sequence[Outcome | None]) -> list[tuple[str, float]]:
     return [(outcome.status, outcome.theta_max) for outcome in outcomes if outcome is not None]  # none was stopped
 
 
-def _yardstick(references: Sequence[Reference], quiet_s: float) -> list[dict[str, Any]]:
+def _yardstick(references: Sequence[Reference]) -> list[dict[str, Any]]:
     from rockbatch.yardstick import solve
 
-    def comparable(one: Reference) -> bool:
-        motion = one.run.motion
-        over = motion.duration + quiet_s + 1.5 * motion.dt
-        return not isinstance(one.run.case.base, RigidBase) and one.outcome.status == "ok" and one.outcome.t_end <= over
-
-    chosen = [one for one in references if comparable(one)]
+    chosen = [
+        one for one in references if not isinstance(one.run.case.base, RigidBase) and one.outcome.status == "ok"
+    ]
     if len(chosen) > SCIPY_RUNS:  # from the middle of the study's halves
         chosen = [chosen[(2 * i + 1) * len(chosen) // (2 * SCIPY_RUNS)] for i in range(SCIPY_RUNS)]
     if not chosen:
         return []
 
+    after = {id(one.run): one.outcome.t_end - one.run.motion.duration for one in chosen}
+
     def solver(method: str, tolerance: float) -> Simulate:
         return lambda runs: [
-            solve(run.case.pier, run.case.base, run.motion, method, tolerance, quiet_s)  # type: ignore[arg-type]
+            solve(run.case.pier, run.case.base, run.motion, method, tolerance, after[id(run)])  # type: ignore[arg-type]
             for run in runs
         ]
 

@@ -87,7 +87,9 @@ def test_slenderness_from_mast_to_slab_ends_with_a_status_and_a_peak_that_falls(
     assert set(table.status) == {"ok", "overturned", "flight"}
     assert np.isfinite(table.theta_max_over_alpha).all()
     strong = table[table.record == "6 g"]
-    assert set(strong[strong.alpha == 0.02].status) == {"overturned"}
+    mast = strong[strong.alpha == 0.02]  # falls, or is thrown into the air beyond alpha while the ground still moves
+    assert set(mast.status) == {"overturned", "flight"}
+    assert (mast.theta_max_over_alpha > 1.0).all()
     assert set(strong[strong.alpha > 0.02].status) == {"ok", "flight"}
     for _, group in strong[strong.case != "yielding"].groupby(["case", "kinematics"], dropna=False):
         assert group.sort_values("alpha").theta_max_over_alpha.is_monotonic_decreasing

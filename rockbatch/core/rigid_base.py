@@ -337,7 +337,7 @@ def _rock(
         if recording:
             rows = _write(history, rows, t, theta, omega, SAMPLE)
 
-    if status == SURVIVED and not over:
+    if status == SURVIVED and not over and patience > 0:
         status = RESTLESS if reach_on_rigid_base(theta, omega, m.alpha, m.p) < math.inf else UNDECIDED
     result[0] = status
     result[1] = t

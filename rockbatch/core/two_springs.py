@@ -435,7 +435,9 @@ def _done(table, i, exponent, finite):
 
 @kernel
 def _given_up(table, i, m, outlook):
-    """How a run ends that nothing has decided for so long."""
+    """How a run ends that nothing has decided for so long; one that is not waited for is cut off as it is."""
+    if table[PATIENCE + i] == 0.0:
+        return SURVIVED
     if outlook == LEANS or abs(table[NOW + LANES + i]) >= summit(m):
         return UNDECIDED
     yields = table[READ_WAIT + i] > 0.0

@@ -183,7 +183,7 @@ def try_all(
             split = two_springs.RESULTS
         for i, line in zip(which, results, strict=True):
             if not math.isnan(line[0]):
-                outcome = _outcome(scenes[i], substeps[i], line[:split].tolist(), wait)
+                outcome = _outcome(scenes[i], substeps[i], line[:split].tolist())
                 trials[i] = Trial(outcome, line[split:])
     return trials
 
@@ -214,7 +214,7 @@ def _refused(scene: Scene, substeps: int, quiet_s: float) -> Trial | None:
     return None
 
 
-def _outcome(scene: Scene, substeps: int, result: Sequence[float], waited: bool) -> Outcome:
+def _outcome(scene: Scene, substeps: int, result: Sequence[float]) -> Outcome:
     """Outcome of a line of results."""
     pier = scene.pier
     code, t_end, theta_max, t_max, impacts, separations, t_flight = result[:7]
@@ -228,7 +228,7 @@ def _outcome(scene: Scene, substeps: int, result: Sequence[float], waited: bool)
     elif code == FLIGHT:
         reason = cause_of_flight(scene.motion, None, pier.gravity, t_flight, math.nan)
     note = ""
-    if code == RESTLESS and waited:
+    if code == RESTLESS:
         note = _RESTLESS.format(seconds=t_end - scene.motion.duration)
     elif code == LATE_FLIGHT:
         note = _LATE_FLIGHT.format(t=t_end)
