@@ -573,12 +573,14 @@ def solve(par, start, dt, horizontal, vertical, horizon, tolerance, longest, mos
             since = piece - npts
             span = max(dt, 0.25 / par[P])
             t = npts * dt + since * span
+            left = horizon - since * span
             ground[:] = 0.0
             if since > 0 and no_more(y, mode, supports, found, par):
                 found[DECIDED] = 1
                 break
-            if since * span >= horizon:
+            if left <= 0:
                 break
+            span = min(span, left)
         else:
             span, t = dt, piece * dt
             after = 1.0 if piece + 1 < npts else 0.0
