@@ -6,7 +6,8 @@
 Runs every case as `rockbatch run` would at a tolerance of 10⁻⁴ and compares with what `independent` says of it: a pair
 of order 8 with events located, restarted at every sample and event, followed up to 400 s after the motion. A reference
 that does not agree with itself to 10⁻⁶ α, by a tolerance a hundred times looser on a motion 10⁻¹² stronger, is none (chaos);
-one whose greatest rotation comes so late that more may follow is undecided. These are counted, and left out of the verdicts:
+one whose greatest rotation still grows in the second half of that time is undecided. Both are counted, and left out of the
+verdicts:
 
   wrong outcome    ok although it overturns; overturned although it stands, or at another time; a flight where there is
                    none, at another time, or missed. Where flight ends the run and the pier would fall after it, both count.
@@ -29,11 +30,11 @@ import tempfile
 import threading
 from collections.abc import Iterable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 from independent.pool import STRATA, Case, cases, just_overturning, scaled
-from independent.reference import HORIZON, Reference, reference, twice
+from independent.reference import Reference, reference, twice
 
 from rockbatch.outcome import Outcome
 from rockbatch.simulation import run_to_tolerance
@@ -41,10 +42,12 @@ from rockbatch.structure import problems
 
 TOLERANCE = 1e-4
 AGREES = 1e-6  # of α, between the two references
+GROWS = 1e-5  # of α: an undecided peak has grown by more in the second half of the time
 SAME_FLIGHT = 0.01  # over p [s]: two flights within it are one
 SAME_FALL = 0.5  # over p [s]
 WRONG = ("ok, overturns", "overturned, stands", "overturned at another time", "flight, none", "flight at another time",
          "flight missed", "refused, stable")  # fmt: skip
+FLIGHT = ("t_flight", "theta_flight", "peak_flight", "t_peak_flight")
 LEFT_OUT = ("no reference", "undecided")
 
 
@@ -117,8 +120,8 @@ def stands_on_itself(case: Case, fine: Reference, loose: Reference) -> str:
         return "" if near(fine.t_end, loose.t_end, 0.01 / p) else "no reference"
     if not near(fine.theta_max, loose.theta_max, AGREES * alpha):
         return "no reference"
-    late = fine.t_max > case.motion.duration + 0.5 * HORIZON
-    return "undecided" if late and not fine.decided else ""
+    grows = not fine.decided and fine.theta_max - fine.halfway > GROWS * alpha
+    return "undecided" if grows else ""
 
 
 def truth_of(case: Case, fine: Reference, end: float) -> tuple[str, float, float]:
@@ -156,12 +159,17 @@ def verdict(case: Case, found: Outcome, fine: Reference) -> tuple[str, float]:
     return ("error" if error > tolerance else ""), error
 
 
+def until(case: Case, end: float) -> Reference:
+    """The reference followed to ``end`` [s], whatever is decided before."""
+    horizon = end - case.motion.duration - case.motion.dt
+    return reference(case.pier, case.base, case.motion, horizon=horizon, patient=True)
+
+
 def error_until_end(case: Case, found: Outcome, peak: float, t_peak: float) -> float:
     """|θ_max − truth until the end of the run| [rad]: what the row's own error can know of."""
     if t_peak <= found.t_end:
         return abs(found.theta_max - peak)
-    horizon = found.t_end - case.motion.duration - case.motion.dt
-    return abs(found.theta_max - reference(case.pier, case.base, case.motion, horizon=horizon).theta_max)
+    return abs(found.theta_max - until(case, found.t_end).theta_max)
 
 
 def judge(case: Case, cache: Cache) -> Row:
@@ -174,6 +182,9 @@ def judge(case: Case, cache: Cache) -> Row:
         return Row(case.id, case.stratum, "refused, stable" if stands else "refused", "refused", fine.status,
                    *[math.nan] * 10, False, math.nan, 0, refused[0])  # fmt: skip
     found = run_to_tolerance(case.pier, case.base, case.motion, TOLERANCE, case.quiet_s)
+    if found.t_flight is not None and found.t_flight > fine.t_end:  # after the moment at which the peak was decided
+        flights = until(case, found.t_end)
+        fine = replace(fine, **{name: getattr(flights, name) for name in FLIGHT})
     said, error = verdict(case, found, fine)
     truth, peak, t_peak = truth_of(case, fine, found.t_end)
     error_until = math.nan if math.isnan(error) else error_until_end(case, found, peak, t_peak)

@@ -26,8 +26,8 @@ FREE, CONTACT, HELD = range(3)
 SIDE = 4
 # What is found out on the way
 (STATUS, THETA_MAX, T_MAX, T_END, IMPACTS, SEPARATIONS, T_FLIGHT, THETA_FLIGHT, PEAK_FLIGHT, T_PEAK_FLIGHT, UP_LEFT,
- UP_RIGHT, BALANCE, FORCED, STEPS, DECIDED) = range(16)  # fmt: skip
-FOUND = 16
+ UP_RIGHT, BALANCE, FORCED, STEPS, DECIDED, HALFWAY) = range(17)  # fmt: skip
+FOUND = 17
 STANDS, OVERTURNED, FLEW, EXHAUSTED = range(4)
 
 kernel = njit(cache=True, nogil=True, error_model="numpy")
@@ -528,13 +528,23 @@ def no_more(y, mode, supports, found, par):
     top = min(barrier(peak, up_left, up_right, par), barrier(-peak, up_left, up_right, par)) - least
     if par[LAW] == ELASTIC:
         return peak < par[ALPHA] and energy < 0.98 * top
-    if par[LAW] == BOUC_WEN:  # loading is softer than unloading: below this the pier creeps to its side
-        soft = 1 - par[ETA] ** -par[N]
-        if par[OMEGA] ** 2 * b * b * 2 * soft / (1 + soft) < 1.02 * par[G] * par[HEIGHT]:
-            return False
-    swing = math.sqrt(2 * max(energy, 0.0) / stiff)
-    firm = abs(lean) + 3 * swing < 0.4 * min(1.0, par[ETA] - 1) * math.tan(par[ALPHA])
-    return firm and energy < 0.5 * top and abs(lean) + 3 * swing < 0.8 * peak
+    swing, heave = math.sqrt(2 * max(energy, 0.0) / stiff), math.sqrt(2 * max(energy, 0.0)) / par[OMEGA]
+    if (swing + abs(lean - tilt)) * b + heave > par[G] / par[OMEGA] ** 2:
+        return False  # it still lifts
+    reach = abs(lean) + 3 * swing
+    if (
+        par[LAW] == BOUC_WEN
+    ):  # loading is softer than unloading: what leans creeps on, without end where that is unstable
+        reach *= 1.5
+        for _ in range(2):
+            load = min(1.0, (1 + 2 * reach / math.tan(par[ALPHA])) / par[ETA])
+            loading = 1 - load ** par[N]
+            soft = par[OMEGA] ** 2 * b * b * 2 * loading / (1 + loading) - par[G] * par[HEIGHT]
+            if soft <= 0.0:
+                return False
+            reach = max(reach, 1.5 * (abs(lean) + 3 * swing) * stiff / soft)
+    firm = reach < 0.4 * min(1.0, par[ETA] - 1) * math.tan(par[ALPHA])
+    return firm and energy < 0.5 * top and reach < 0.8 * peak
 
 
 @kernel
@@ -547,11 +557,11 @@ def unstressed(y, mode, supports, par):
 
 
 @kernel
-def solve(par, start, dt, horizontal, vertical, horizon, tolerance, longest, most_steps, trace):
+def solve(par, start, dt, horizontal, vertical, horizon, tolerance, longest, most_steps, patient, trace):
     """Runs a block from rest to the end that physics decides, ``horizon`` [s] after the motion at the latest.
 
-    Steps are ``longest`` [s] at most, so that nothing happens twice in one unseen. ``trace`` is filled with t, θ, θ̇, v̇,
-    contacts, z_L, z_R of every step as far as it reaches. Returns FOUND values.
+    A ``patient`` run goes on to the horizon. Steps are ``longest`` [s] at most, so that nothing happens twice in one unseen.
+    ``trace`` is filled with t, θ, θ̇, v̇, contacts, z_L, z_R of every step as far as it reaches. Returns FOUND values.
     """
     found = np.zeros(FOUND)
     found[T_FLIGHT] = found[THETA_FLIGHT] = found[PEAK_FLIGHT] = found[T_PEAK_FLIGHT] = math.nan
@@ -575,7 +585,9 @@ def solve(par, start, dt, horizontal, vertical, horizon, tolerance, longest, mos
             t = npts * dt + since * span
             left = horizon - since * span
             ground[:] = 0.0
-            if since > 0 and no_more(y, mode, supports, found, par):
+            if left > 0.5 * horizon:
+                found[HALFWAY] = found[THETA_MAX]
+            if since > 0 and not patient and no_more(y, mode, supports, found, par):
                 found[DECIDED] = 1
                 break
             if left <= 0:

@@ -53,6 +53,11 @@ def rigid(rng: Rng) -> tuple[Pier, Base]:
     return a_pier(rng), RigidBase(e)  # type: ignore[arg-type]
 
 
+def slender(rng: Rng) -> tuple[Pier, Base]:
+    """A tower that loses little at an impact, and so has many of them."""
+    return Pier(log_uniform(rng, 0.03, 0.15), log_uniform(rng, 0.3, 1.5), float(rng.uniform(1.5, 3.0))), RigidBase()
+
+
 def softest(pier: Pier, eta: float, n: float) -> float:
     """Least β: loading Bouc–Wen springs are 1 − η⁻ⁿ times as stiff as unloading ones, a leaning pier has one of each."""
     loading = 1 - eta**-n
@@ -71,6 +76,12 @@ def springs(rng: Rng, law: str, eta: tuple[float, float] = (1.3, 8.0), soft: boo
     if law == "elastic":
         return pier, ElasticBase(beta, epsilon, kinematics, flight)  # type: ignore[arg-type]
     return pier, YieldingBase(beta, epsilon, kinematics, flight, eta=choice, spring=law, n=n)  # type: ignore[arg-type]
+
+
+def dead(rng: Rng) -> tuple[Pier, Base]:
+    """Springs on which a pivot lands without velocity."""
+    pier, base = springs(rng, str(one_of(rng, "bouc-wen", "epp", "elastic")), (1.5, 8.0))
+    return pier, replace(base, epsilon=0.0)  # type: ignore[call-arg]
 
 
 def resistance(pier: Pier, base: Base) -> float:
@@ -110,8 +121,9 @@ def noise(rng: Rng, npts: int, dt: float) -> np.ndarray:
 
 
 def broadband(rng: Rng, pier: Pier, strength: float) -> Motion:
+    """Made noise of 4 to 40 s, with a vertical component in two of five."""
     dt = float(one_of(rng, 0.005, 0.01, 0.02))  # type: ignore[arg-type]
-    npts = int(rng.uniform(4, 25) / dt)
+    npts = int(log_uniform(rng, 4, 40) / dt)
     vertical = rng.uniform(0.1, 0.9) * pier.gravity * noise(rng, npts, dt) if rng.random() < 0.4 else None
     return Motion("noise", dt, strength * noise(rng, npts, dt), vertical)
 
@@ -188,12 +200,15 @@ STRATA: dict[str, tuple[int, Callable[[Rng, str], Case]]] = {
     "rigid by a hair": (100, by_a_hair(rigid)),
     "rigid noise": (90, with_record(rigid, broadband, 1.1, 8.0)),
     "rigid records": (60, with_record(rigid, recorded, 1.1, 8.0)),
+    "rigid slender noise": (90, with_record(slender, broadband, 1.02, 5.0)),
+    "rigid slender records": (60, with_record(slender, recorded, 1.02, 5.0)),
     "Bouc-Wen": (140, with_pulse(lambda rng: springs(rng, "bouc-wen"), 0.3, 6.0, (1.0, 12.0))),
     "epp": (90, with_pulse(lambda rng: springs(rng, "epp"), 0.3, 6.0, (1.0, 12.0))),
     "elastic": (90, with_pulse(lambda rng: springs(rng, "elastic"), 0.3, 6.0, (1.0, 12.0))),
     "weak": (130, with_pulse(lambda rng: springs(rng, any_law(rng), (1.02, 2.0)), 0.2, 6.0, (0.8, 12.0))),
     "soft": (90, with_pulse(lambda rng: springs(rng, any_law(rng), soft=True), 0.1, 3.0, (0.8, 12.0))),
-    "springs by a hair": (130, by_a_hair(lambda rng: springs(rng, any_law(rng), (1.05, 4.0)))),
+    "no restitution": (70, with_pulse(dead, 1.0, 12.0, (2.0, 20.0))),
+    "springs by a hair": (150, by_a_hair(lambda rng: springs(rng, any_law(rng), (1.05, 4.0)))),
     "springs noise": (90, with_record(lambda rng: springs(rng, any_law(rng), (1.1, 6.0)), broadband, 0.3, 6.0)),
     "springs records": (60, with_record(lambda rng: springs(rng, any_law(rng), (1.1, 6.0)), recorded, 0.3, 6.0)),
 }
@@ -219,13 +234,14 @@ def just_overturning(case: Case) -> float:
     """Factor on the motion at which the pier overturns (the first met from below, in steps of a quarter; then halved)."""
 
     def overturns(factor: float) -> bool:
-        return reference(case.pier, case.base, case.motion, 1e-9, factor=factor, horizon=60.0).status == "overturned"
+        motion = scaled(case, factor).motion
+        return reference(case.pier, case.base, motion, 1e-9, horizon=60.0).status == "overturned"
 
     high = 0.5
     while not overturns(high):
         high *= 1.25
-        if high > 100:
-            return 100.0
+        if high > 30:
+            return high
     low = high / 1.25
     for _ in range(8):
         middle = 0.5 * (low + high)
@@ -234,7 +250,5 @@ def just_overturning(case: Case) -> float:
 
 
 def scaled(case: Case, factor: float) -> Case:
-    """The case with its motion times ``factor``."""
-    motion = case.motion
-    vertical = None if motion.vertical is None else motion.vertical * factor
-    return replace(case, motion=replace(motion, horizontal=motion.horizontal * factor, vertical=vertical), hair=None)
+    """The case with its horizontal motion times ``factor``."""
+    return replace(case, motion=replace(case.motion, horizontal=case.motion.horizontal * factor), hair=None)

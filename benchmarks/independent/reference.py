@@ -24,7 +24,8 @@ class Reference:
     ``most_steps``). On springs the run goes on in flight as if guided: ``t_flight`` is its first time (nan: none),
     ``theta_flight`` the rotation then, positive on its way out, and ``peak_flight`` the peak until then, at
     ``t_peak_flight``.
-    ``decided``: the energy left cannot exceed ``theta_max`` any more.
+    ``decided``: the energy left cannot exceed ``theta_max`` any more; otherwise ``halfway`` is the peak half-way to the
+    horizon.
     """
 
     status: str
@@ -43,6 +44,7 @@ class Reference:
     forced: int
     steps: int
     decided: bool
+    halfway: float
 
 
 def start_depth(delta_y: float, eta: float, n: float) -> float:
@@ -89,9 +91,11 @@ def reference(
     factor: float = 1.0,
     horizon: float = HORIZON,
     most_steps: float = 2e7,
+    patient: bool = False,
     trace: np.ndarray | None = None,
 ) -> Reference:
-    """Truth about ``pier`` on ``base`` under ``motion`` times ``factor``, followed for up to ``horizon`` [s] after it.
+    """Truth about ``pier`` on ``base`` under ``motion`` times ``factor``, followed for up to ``horizon`` [s] after it
+    (``patient``: in any case).
 
     Steps are a share of the shortest period; a share too of ``motion.dt`` for tolerances below 10⁻¹².
     """
@@ -107,25 +111,27 @@ def reference(
         tolerance,
         min(STEP / max(par[core.OMEGA], 4 * par[core.P]), 0.7 * motion.dt if tolerance < 1e-12 else math.inf),
         most_steps,
+        patient,
         np.zeros((0, 7)) if trace is None else trace,
     )
     return Reference(
         status=STATUS[int(found[core.STATUS])],
-        theta_max=found[core.THETA_MAX],
-        t_max=found[core.T_MAX],
-        t_end=found[core.T_END],
+        theta_max=float(found[core.THETA_MAX]),
+        t_max=float(found[core.T_MAX]),
+        t_end=float(found[core.T_END]),
         impacts=int(found[core.IMPACTS]),
         separations=int(found[core.SEPARATIONS]),
-        t_flight=found[core.T_FLIGHT],
-        theta_flight=found[core.THETA_FLIGHT],
-        peak_flight=found[core.PEAK_FLIGHT],
-        t_peak_flight=found[core.T_PEAK_FLIGHT],
-        up_left=found[core.UP_LEFT],
-        up_right=found[core.UP_RIGHT],
-        balance=found[core.BALANCE],
+        t_flight=float(found[core.T_FLIGHT]),
+        theta_flight=float(found[core.THETA_FLIGHT]),
+        peak_flight=float(found[core.PEAK_FLIGHT]),
+        t_peak_flight=float(found[core.T_PEAK_FLIGHT]),
+        up_left=float(found[core.UP_LEFT]),
+        up_right=float(found[core.UP_RIGHT]),
+        balance=float(found[core.BALANCE]),
         forced=int(found[core.FORCED]),
         steps=int(found[core.STEPS]),
         decided=bool(found[core.DECIDED]),
+        halfway=float(found[core.HALFWAY]),
     )
 
 
