@@ -14,6 +14,7 @@ verdicts:
   error            |θ_max − truth| beyond the tolerance
   beyond estimate  |θ_max − truth until the end of the run| beyond the error that the row reports
   failed, settled  a failed row whose best value is the truth
+  later, noted     the truth comes after the end of the run, whose note says that it still had the energy for it
 
 "later" marks what goes wrong after the end of the run: it stopped too early.
 
@@ -49,6 +50,7 @@ WRONG = ("ok, overturns", "overturned, stands", "overturned at another time", "f
          "flight missed", "refused, stable")  # fmt: skip
 FLIGHT = ("t_flight", "theta_flight", "peak_flight", "t_peak_flight")
 LEFT_OUT = ("no reference", "undecided")
+RIGHT = ("", "failed, rightly", "refused", "later, noted")
 
 
 @dataclass(frozen=True)
@@ -74,6 +76,7 @@ class Row:
     error_until: float
     substeps: int
     reason: str
+    note: str
 
 
 class Cache:
@@ -180,7 +183,7 @@ def judge(case: Case, cache: Cache) -> Row:
     if refused:
         stands = fine.status == "stands"
         return Row(case.id, case.stratum, "refused, stable" if stands else "refused", "refused", fine.status,
-                   *[math.nan] * 10, False, math.nan, 0, refused[0])  # fmt: skip
+                   *[math.nan] * 10, False, math.nan, 0, refused[0], "")  # fmt: skip
     found = run_to_tolerance(case.pier, case.base, case.motion, TOLERANCE, case.quiet_s)
     if found.t_flight is not None and found.t_flight > fine.t_end:  # after the moment at which the peak was decided
         flights = until(case, found.t_end)
@@ -190,12 +193,15 @@ def judge(case: Case, cache: Cache) -> Row:
     error_until = math.nan if math.isnan(error) else error_until_end(case, found, peak, t_peak)
     if said == "" and error_until > (found.theta_max_error or 0.0) + 1e-12 * alpha:
         said = "beyond estimate"
+    if said == "error" and t_peak > found.t_end and getattr(found, "note", ""):
+        said = "later, noted"
     said = stands_on_itself(case, fine, loose) or said
     return Row(
         case.id, case.stratum, said, found.status, truth, found.theta_max / alpha, peak / alpha, error / alpha,
         math.nan if found.theta_max_error is None else found.theta_max_error / alpha, found.t_max, t_peak, found.t_end,
         fine.t_end, math.nan if found.t_flight is None else found.t_flight, fine.t_flight,
         said in ("error", "ok, overturns") and t_peak > found.t_end, error_until / alpha, found.substeps, found.reason,
+        getattr(found, "note", ""),
     )  # fmt: skip
 
 
@@ -208,7 +214,7 @@ def judged(pool: Iterable[Case], cache: Cache, jobs: int) -> list[Row]:
 
 
 COLUMNS = ("cases", "ok", "overturned", "flight", "failed", "no reference", "undecided", "wrong", "error", "of these later",
-           "beyond estimate", "worst ratio", "failed, settled", "failed, rightly")  # fmt: skip
+           "beyond estimate", "worst ratio", "failed, settled", "failed, rightly", "later, noted")  # fmt: skip
 
 
 def counts(rows: list[Row]) -> dict[str, float]:
@@ -247,7 +253,7 @@ def complaints(rows: list[Row]) -> list[str]:
         f"{row.t_max:.4f} s, end {row.t_end:.4f} s, flight {row.t_flight:.4f} s; truth {row.truth} {row.true_theta_max:.6g} at "
         f"{row.true_t_max:.4f} s, end {row.true_t_end:.4f} s, flight {row.true_t_flight:.4f} s; k = {row.substeps} {row.reason}"
         for row in rows
-        if row.verdict and row.verdict not in (*LEFT_OUT, "failed, rightly", "refused")
+        if row.verdict not in (*LEFT_OUT, *RIGHT)
     ]
 
 
