@@ -26,8 +26,8 @@ FREE, CONTACT, HELD = range(3)
 SIDE = 4
 # What is found out on the way
 (STATUS, THETA_MAX, T_MAX, T_END, IMPACTS, SEPARATIONS, T_FLIGHT, THETA_FLIGHT, PEAK_FLIGHT, T_PEAK_FLIGHT, UP_LEFT,
- UP_RIGHT, BALANCE, FORCED, STEPS, DECIDED, HALFWAY) = range(17)  # fmt: skip
-FOUND = 17
+ UP_RIGHT, BALANCE, FORCED, STEPS, DECIDED, HALFWAY, JUMPS, WRITTEN) = range(19)  # fmt: skip
+FOUND = 19
 STANDS, OVERTURNED, FLEW, EXHAUSTED = range(4)
 
 kernel = njit(cache=True, nogil=True, error_model="numpy")
@@ -499,8 +499,8 @@ def barrier(theta, u_left, u_right, par):
     """Least potential energy at rotation ``theta`` on supports u_L, u_R, with springs that stay elastic and no tension."""
     g, b, h, delta = par[G], par[HALF_WIDTH], par[HEIGHT], par[G] / par[OMEGA] ** 2
     sink = 2.0 * h * math.sin(0.5 * theta) ** 2
+    # the v at which each support is just met
     left, right = u_left - b * math.sin(theta) - sink, u_right + b * math.sin(theta) - sink
-    # weights of v at which each support is just met: v <= left loads L, v <= right loads R
     upper, lower = max(left, right), min(left, right)
     v = upper - 2 * delta
     if v >= lower:
@@ -532,9 +532,8 @@ def no_more(y, mode, supports, found, par):
     if (swing + abs(lean - tilt)) * b + heave > par[G] / par[OMEGA] ** 2:
         return False  # it still lifts
     reach = abs(lean) + 3 * swing
-    if (
-        par[LAW] == BOUC_WEN
-    ):  # loading is softer than unloading: what leans creeps on, without end where that is unstable
+    if par[LAW] == BOUC_WEN:
+        # loading is softer than unloading: what leans creeps on, without end where that is unstable
         reach *= 1.5
         for _ in range(2):
             load = min(1.0, (1 + 2 * reach / math.tan(par[ALPHA])) / par[ETA])
@@ -557,6 +556,105 @@ def unstressed(y, mode, supports, par):
 
 
 @kernel
+def lay_ground(piece, dt, horizontal, vertical, ground):
+    """The ground's line from sample ``piece`` to the next; after the last one it falls to zero, and stays there."""
+    ground[:] = 0.0
+    npts = len(horizontal)
+    if piece < npts:
+        further = 1.0 if piece + 1 < npts else 0.0
+        last = min(piece + 1, npts - 1)
+        ground[0], ground[2] = horizontal[piece], vertical[piece]
+        ground[1] = (horizontal[last] * further - horizontal[piece]) / dt
+        ground[3] = (vertical[last] * further - vertical[piece]) / dt
+
+
+@kernel
+def outward(y, h, found):
+    """Sign of θ̇ while |θ| grows and may exceed the peak within ``h``, else 0."""
+    reach = abs(y[1]) + 2 * abs(y[3]) * h
+    if y[3] == 0 or y[1] * y[3] < 0 or reach <= found[THETA_MAX] * (1 - 1e-9):
+        return 0.0
+    return 1.0 if y[3] > 0 else -1.0
+
+
+@kernel
+def happen(which, y, t, tau, span, ground, mode, supports, par, found):
+    """Event ``which`` at t + τ: the state after it, and what it means for the outcome."""
+    before = stored(y, mode, par)
+    u, w = ground[0] + ground[1] * tau, ground[2] + ground[3] * tau
+    dropped = change(which, y, mode, u, w, span - tau, supports, found, par)
+    found[JUMPS] += stored(y, mode, par) - before
+    flying = par[RIGID] == 0.0 and mode[0] == FREE and mode[1] == FREE
+    if (flying or dropped) and math.isnan(found[T_FLIGHT]):
+        found[T_FLIGHT], found[THETA_FLIGHT] = t + tau, math.copysign(abs(y[1]), y[1] * y[3])
+        found[PEAK_FLIGHT], found[T_PEAK_FLIGHT] = found[THETA_MAX], found[T_MAX]
+    if dropped:
+        found[STATUS] = FLEW
+    elif which == 4:
+        found[STATUS] = OVERTURNED
+
+
+@kernel
+def run_piece(t, span, length, ground, mode, supports, par, tolerance, longest, most_steps, work, stages, found, trace):
+    """From ``t`` over ``span`` [s] of straight ground, or to the end of the run; returns the length of the next step."""
+    y, f, new, new_f, trial, trial_f = work[0], work[1], work[2], work[3], work[4], work[5]
+    g0, d0, g1, d1, g, dg = work[6], work[7], work[8], work[9], work[10], work[11]
+    tau, stuck = 0.0, 0
+    rhs(y, f, tau, ground, mode, par)
+    while tau < span and found[STATUS] == STANDS:
+        h = min(length, longest, span - tau)
+        if span - tau - h < 1e-3 * h:
+            h = span - tau
+        matters = outward(y, h, found)
+        error = step(y, f, h, tau, ground, mode, par, stages, new, new_f, tolerance)
+        found[STEPS] += 1
+        if found[STEPS] > most_steps:
+            found[STATUS] = EXHAUSTED
+        if not error <= 1.0:
+            length = h * max(0.2, 0.9 * error ** (-1 / 8)) if error > 0 else 0.1 * h
+            continue
+        length = max(length, h * (min(5.0, 0.9 * error ** (-1 / 8)) if error > 0 else 5.0))
+        signals(y, f, tau, ground, mode, supports, matters, par, g0, d0)
+        signals(new, new_f, tau + h, ground, mode, supports, matters, par, g1, d1)
+        which, when = earliest(h, y, f, tau, ground, mode, supports, matters, par, stages, trial, trial_f, g0, d0, g1,
+                               d1, g, dg)  # fmt: skip
+        if which == -2:
+            length = when
+            continue
+        if when <= 1e-15 * span and which >= 0:
+            stuck += 1
+            if stuck > 40:  # an event that returns at once: a short step that looks at nothing
+                found[FORCED] += 1
+                which, when, stuck = -1, min(1e-9 / max(par[OMEGA], par[P]), span - tau), 0
+        elif when > 1e-12 * span:
+            stuck = 0
+        if when > 0:
+            if which >= 0 or when < h:
+                step(y, f, when, tau, ground, mode, par, stages, new, new_f, tolerance)
+            y[:] = new
+            f[:] = new_f
+            tau = span if when == h and h == span - tau else tau + when
+        if abs(y[1]) > found[THETA_MAX]:
+            found[THETA_MAX], found[T_MAX] = abs(y[1]), t + tau
+        if which >= 0:
+            happen(which, y, t, tau, span, ground, mode, supports, par, found)
+            rhs(y, f, tau, ground, mode, par)
+        note(t + tau, y, mode, found, trace)
+    found[T_END] = t + tau
+    return length
+
+
+@kernel
+def note(t, y, mode, found, trace):
+    """A row of the trace, as far as it reaches."""
+    row = int(found[WRITTEN])
+    if row < len(trace):
+        trace[row, 0], trace[row, 1], trace[row, 2], trace[row, 3] = t, y[1], y[3], y[2]
+        trace[row, 4], trace[row, 5], trace[row, 6] = mode[0] + 3 * mode[1], y[4], y[5]
+        found[WRITTEN] += 1
+
+
+@kernel
 def solve(par, start, dt, horizontal, vertical, horizon, tolerance, longest, most_steps, patient, trace):
     """Runs a block from rest to the end that physics decides, ``horizon`` [s] after the motion at the latest.
 
@@ -565,108 +663,30 @@ def solve(par, start, dt, horizontal, vertical, horizon, tolerance, longest, mos
     """
     found = np.zeros(FOUND)
     found[T_FLIGHT] = found[THETA_FLIGHT] = found[PEAK_FLIGHT] = found[T_PEAK_FLIGHT] = math.nan
-    y, f, new, new_f = np.zeros(SIZE), np.zeros(SIZE), np.zeros(SIZE), np.zeros(SIZE)
-    trial, trial_f = np.zeros(SIZE), np.zeros(SIZE)
-    stages = np.zeros((13, SIZE))
-    g0, d0, g1, d1 = np.zeros(SIGNALS), np.zeros(SIGNALS), np.zeros(SIGNALS), np.zeros(SIGNALS)
-    g, dg = np.zeros(SIGNALS), np.zeros(SIGNALS)
+    work, stages = np.zeros((12, SIZE)), np.zeros((13, SIZE))
     ground, supports = np.zeros(4), np.zeros(2)
     mode = np.array([CONTACT, CONTACT, 0, 0, 0])
+    y = work[0]
     y[:6] = start
-    highest = max(par[OMEGA], par[P])
-    begin, jumps = stored(y, mode, par), 0.0
-    npts = len(horizontal)
-    piece, written, length = 0, 0, longest
-    while True:
-        free = piece >= npts  # sample npts is the zero that the ground falls to
-        if free:
-            since = piece - npts
+    begin = stored(y, mode, par)
+    npts, piece, length = len(horizontal), 0, longest
+    while found[STATUS] == STANDS:
+        span, t, left = dt, piece * dt, horizon
+        if piece >= npts:  # sample npts is the zero that the ground falls to
             span = max(dt, 0.25 / par[P])
-            t = npts * dt + since * span
-            left = horizon - since * span
-            ground[:] = 0.0
+            t, left = npts * dt + (piece - npts) * span, horizon - (piece - npts) * span
             if left > 0.5 * horizon:
                 found[HALFWAY] = found[THETA_MAX]
-            if since > 0 and not patient and no_more(y, mode, supports, found, par):
+            if piece > npts and not patient and no_more(y, mode, supports, found, par):
                 found[DECIDED] = 1
                 break
             if left <= 0:
                 break
-            span = min(span, left)
-        else:
-            span, t = dt, piece * dt
-            after = 1.0 if piece + 1 < npts else 0.0
-            last = min(piece + 1, npts - 1)
-            ground[0], ground[2] = horizontal[piece], vertical[piece]
-            ground[1] = (horizontal[last] * after - horizontal[piece]) / dt
-            ground[3] = (vertical[last] * after - vertical[piece]) / dt
+        lay_ground(piece, dt, horizontal, vertical, ground)
+        span = span if piece < npts else min(span, left)
+        length = run_piece(t, span, length, ground, mode, supports, par, tolerance, longest, most_steps, work, stages,
+                           found, trace)  # fmt: skip
         piece += 1
-        tau, stuck = 0.0, 0
-        rhs(y, f, tau, ground, mode, par)
-        while tau < span:
-            h = min(length, longest, span - tau)
-            if span - tau - h < 1e-3 * h:
-                h = span - tau
-            matters = 0.0
-            if y[1] * y[3] > 0 or (y[1] * y[3] == 0 and y[3] != 0):
-                growing = 1.0 if y[3] > 0 else -1.0
-                if abs(y[1]) + 2 * abs(y[3]) * h > found[THETA_MAX] * (1 - 1e-9):
-                    matters = growing
-            error = step(y, f, h, tau, ground, mode, par, stages, new, new_f, tolerance)
-            found[STEPS] += 1
-            if found[STEPS] > most_steps:
-                found[STATUS] = EXHAUSTED
-                break
-            if not error <= 1.0:
-                length = h * max(0.2, 0.9 * error ** (-1 / 8)) if error > 0 else 0.1 * h
-                continue
-            length = max(length, h * (min(5.0, 0.9 * error ** (-1 / 8)) if error > 0 else 5.0))
-            signals(y, f, tau, ground, mode, supports, matters, par, g0, d0)
-            signals(new, new_f, tau + h, ground, mode, supports, matters, par, g1, d1)
-            which, when = earliest(h, y, f, tau, ground, mode, supports, matters, par, stages, trial, trial_f, g0, d0, g1,
-                                   d1, g, dg)  # fmt: skip
-            if which == -2:
-                length = when
-                continue
-            if when <= 1e-15 * span and which >= 0:
-                stuck += 1
-                if stuck > 40:  # an event that returns at once: a short step that looks at nothing
-                    found[FORCED] += 1
-                    which, when, stuck = -1, min(1e-9 / highest, span - tau), 0
-            elif when > 1e-12 * span:
-                stuck = 0
-            if when > 0 and (which >= 0 or when < h):
-                step(y, f, when, tau, ground, mode, par, stages, new, new_f, tolerance)
-            if when > 0:
-                y[:] = new
-                f[:] = new_f
-                tau = span if when == h and h == span - tau else tau + when
-            if abs(y[1]) > found[THETA_MAX]:
-                found[THETA_MAX], found[T_MAX] = abs(y[1]), t + tau
-            if which >= 0:
-                before = stored(y, mode, par)
-                u, w = ground[0] + ground[1] * tau, ground[2] + ground[3] * tau
-                dropped = change(which, y, mode, u, w, span - tau, supports, found, par)
-                jumps += stored(y, mode, par) - before
-                rhs(y, f, tau, ground, mode, par)
-                flying = par[RIGID] == 0.0 and mode[0] == FREE and mode[1] == FREE
-                if (flying or dropped) and math.isnan(found[T_FLIGHT]):
-                    found[T_FLIGHT], found[THETA_FLIGHT] = t + tau, math.copysign(abs(y[1]), y[1] * y[3])
-                    found[PEAK_FLIGHT], found[T_PEAK_FLIGHT] = found[THETA_MAX], found[T_MAX]
-                if dropped:
-                    found[STATUS] = FLEW
-                    break
-                if which == 4:
-                    found[STATUS] = OVERTURNED
-                    break
-            if written < len(trace):
-                trace[written, 0], trace[written, 1], trace[written, 2] = t + tau, y[1], y[3]
-                trace[written, 3], trace[written, 4] = y[2], mode[0] + 3 * mode[1]
-                trace[written, 5], trace[written, 6] = y[4], y[5]
-                written += 1
-        found[T_END] = t + tau
-        if found[STATUS] != STANDS:
-            break
     found[UP_LEFT], found[UP_RIGHT] = unstressed(y, mode, supports, par)
-    found[BALANCE] = stored(y, mode, par) - begin - y[6] - jumps
+    found[BALANCE] = stored(y, mode, par) - begin - y[6] - found[JUMPS]
     return found
