@@ -135,9 +135,7 @@ def _ends(outcomes: Sequence[Outcome | None]) -> list[tuple[str, float]]:
 def _yardstick(references: Sequence[Reference]) -> list[dict[str, Any]]:
     from rockbatch.yardstick import solve
 
-    chosen = [
-        one for one in references if not isinstance(one.run.case.base, RigidBase) and one.outcome.status == "ok"
-    ]
+    chosen = [one for one in references if not isinstance(one.run.case.base, RigidBase) and one.outcome.status == "ok"]
     if len(chosen) > SCIPY_RUNS:  # from the middle of the study's halves
         chosen = [chosen[(2 * i + 1) * len(chosen) // (2 * SCIPY_RUNS)] for i in range(SCIPY_RUNS)]
     if not chosen:

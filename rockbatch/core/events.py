@@ -12,6 +12,9 @@ from rockbatch.core.types import BOUC_WEN, ELASTIC, LEFT, RIGHT, Signals
 NO_ACCELERATION = 1e-12
 """Of g: what the balance of a pier at rest leaves as rounding; it must not decide which way a pivot goes."""
 
+NO_GAP = 1e-12
+"""Of δ_y: a gap that rounding can open or close."""
+
 
 @kernel
 def at_rest(m):
@@ -25,6 +28,14 @@ def _velocity(velocity, acceleration, rest):
     if abs(velocity) > rest:
         return velocity
     return rest if acceleration > 0.0 else (-rest if acceleration < 0.0 else 0.0)
+
+
+@inlined
+def _gap(gap, velocity, acceleration, rest, rounding):
+    """A gap that is nothing but rounding, of a pivot that has no velocity either, opens if it is being lifted."""
+    if abs(velocity) <= rest and acceleration > 0.0 and abs(gap) <= rounding:
+        return rounding
+    return gap
 
 
 @inlined
@@ -60,6 +71,7 @@ def signals(m, y, k, contact, rest_left, rest_right, rest, horizontal, vertical)
     left_velocity = y.v_rate + at.arm_left * y.omega
     right_velocity = y.v_rate + at.arm_right * y.omega
     turning = y.omega * y.omega
+    rounding = NO_GAP * m.yield_deflection
     left_acceleration = k.v_rate + at.arm_left * k.omega + at.bend_left * turning
     right_acceleration = k.v_rate + at.arm_right * k.omega + at.bend_right * turning
 
@@ -69,14 +81,14 @@ def signals(m, y, k, contact, rest_left, rest_right, rest, horizontal, vertical)
             m, y.z_left, k.z_left, contact.left_yields, left_velocity, left_acceleration, rest
         )
     else:
-        left = y.v + at.lift_left - rest_left
+        left = _gap(y.v + at.lift_left - rest_left, left_velocity, left_acceleration, rest, rounding)
         left_slope = _velocity(left_velocity, left_acceleration, rest)
     if contact.right != 0.0:
         right, right_slope, right_law, right_law_slope = _on_spring(
             m, y.z_right, k.z_right, contact.right_yields, right_velocity, right_acceleration, rest
         )
     else:
-        right = y.v + at.lift_right - rest_right
+        right = _gap(y.v + at.lift_right - rest_right, right_velocity, right_acceleration, rest, rounding)
         right_slope = _velocity(right_velocity, right_acceleration, rest)
     if contact.held < 0.0:
         left, left_law = _held(m, y, contact, LEFT, horizontal, vertical)
