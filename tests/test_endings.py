@@ -239,6 +239,21 @@ def test_flight_says_that_the_ground_fell_away():
         assert "the ground fell away under the pier" in outcome.reason
 
 
+def test_a_rigid_base_is_followed_to_the_moment_at_which_the_ground_falls_away():
+    """v̈_g falls from 0 to −2 g between 0.4 and 0.5 s: flight at 0.45 s, in the middle of a sampling interval of one motion
+    and on a sample of the other, with the rotation of then."""
+    peaks = []
+    for dt in (0.1, 0.0125):
+        t = np.arange(round(1.0 / dt) + 1) * dt
+        vertical = -2.0 * 9.81 * np.clip((t - 0.4) / 0.1, 0.0, 1.0)
+        motion = Motion("drop", dt, np.full(len(t), -0.5 * 9.81), vertical)
+        outcome = run_fixed(FIG5, RigidBase(), motion, 8)
+        assert (outcome.status, outcome.t_flight) == ("flight", pytest.approx(0.45, abs=1e-12))
+        assert outcome.t_end == outcome.t_max == outcome.t_flight
+        peaks.append(outcome.theta_max)
+    assert peaks[0] == pytest.approx(peaks[1], rel=1e-6)
+
+
 def test_flight_says_that_undamped_springs_made_it_of_a_small_vertical_motion():
     """Resonance: 0.2 g at ω_v grows by π/2 times 0.2 g per half cycle until it lifts."""
     omega_v = 20.0

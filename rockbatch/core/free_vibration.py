@@ -17,8 +17,9 @@ PARTS = 24
 SEEN = 1e-6
 """Relative error of an extreme that has been seen, by which it may lie below the amplitude of its vibration."""
 
-PDELTA = 0.02
-"""Share of the energy that the P–Δ moments of first-order kinematics, which have no potential, may bring back."""
+RETURNED = 0.02
+"""Share of the energy that may come back: first-order P–Δ moments have no potential, and in finite kinematics H jumps
+with a contact."""
 
 OPEN = 0
 """By its energy, the pier may still turn further than it has, or overturn."""
@@ -162,9 +163,7 @@ def outlook_on_springs(m, y, contact, base_left, base_right, peak, calm, drift_r
     spring = m.yield_force * m.yield_deflection
     stored = g * y.v + gained + 0.5 * spring * (y.z_left * y.z_left + y.z_right * y.z_right)
     at_lean += g * (middle - softness) + 0.5 * g * softness * (1.0 + uneven * uneven)
-    energy = kinetic + stored - at_lean
-    if m.finite is None:
-        energy *= 1.0 + PDELTA
+    energy = (1.0 + RETURNED) * (kinetic + stored - at_lean)
     least = min(_climb(m, lean, limit - drift_right), _climb(m, -lean, limit - drift_left))
     return DECIDED if energy <= least + 1e-12 * g * softness else OPEN
 

@@ -241,13 +241,11 @@ def _rock(
         a0, a_slope, c0, c_slope = 0.0, 0.0, 0.0, 0.0
         if sample < npts:
             a0, a_slope, c0, c_slope = motion[sample, 0], motion[sample, 1], motion[sample, 2], motion[sample, 3]
-        if min(c0, c0 + c_slope * dt) <= -m.gravity:  # the ground drops away from under the block
-            x = 0.0 if c0 <= -m.gravity else (-m.gravity - c0) / c_slope
-            t_flight = sample * dt + x
-            t = t_flight
-            status = FLIGHT
-            break
-        if resting and lift_off(m, Ground(a0, a_slope, c0, c_slope), dt)[0] < 0.0:
+        until = dt
+        drops = min(c0, c0 + c_slope * dt) <= -m.gravity  # the ground, from under the block
+        if drops:
+            until = 0.0 if c0 <= -m.gravity else (-m.gravity - c0) / c_slope
+        if resting and not drops and lift_off(m, Ground(a0, a_slope, c0, c_slope), dt)[0] < 0.0:
             sample += 1
             widen(extremes, sample, samples, theta)
             t = sample * dt
@@ -256,10 +254,11 @@ def _rock(
             continue
         for substep in range(substeps):
             start = substep * h
+            whole = min(h, until - start)
             done = 0.0
-            while done < h:
+            while done < whole:
                 x = start + done
-                left = h - done
+                left = whole - done
                 ground = Ground(a0 + x * a_slope, a_slope, c0 + x * c_slope, c_slope)
                 if resting:
                     at, side_up = lift_off(m, ground, left)
@@ -292,7 +291,7 @@ def _rock(
                     t_peak = sample * dt + x + found
                 turned = turned or (at_rest and omega * end_omega < 0.0)
                 theta, omega = end_theta, end_omega
-                done = done + left if landed else h
+                done = done + left if landed else whole
                 if not landed:
                     continue
 
@@ -323,8 +322,11 @@ def _rock(
                     status = CHATTER
                     break
             if status == SURVIVED:
-                t = sample * dt + start + h
+                t = sample * dt + start + whole
                 status = fallen(theta)
+                if status == SURVIVED and drops and start + h >= until:
+                    t_flight = t
+                    status = FLIGHT
                 if recording and (status != SURVIVED or (every_step and substep < substeps - 1)):
                     rows = _write(history, rows, t, theta, omega, STEP)
             if status != SURVIVED:

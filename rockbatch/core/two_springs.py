@@ -440,8 +440,8 @@ def _given_up(table, i, m, outlook):
         return SURVIVED
     if outlook == LEANS or abs(table[NOW + LANES + i]) >= summit(m):
         return UNDECIDED
-    yields = table[READ_WAIT + i] > 0.0
-    return GROWING if yields and table[PEAK + i] > table[MIDWAY + i] + GROWTH * table[ALPHA + i] else RESTLESS
+    ratchets = m.law == BOUC_WEN
+    return GROWING if ratchets and table[PEAK + i] > table[MIDWAY + i] + GROWTH * table[ALPHA + i] else RESTLESS
 
 
 @kernel
