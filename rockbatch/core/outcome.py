@@ -23,8 +23,19 @@ def fallen(theta):
 
 
 @kernel
-def widen(extremes, sample, samples, theta):
-    """Take |θ| at ``sample`` into the greatest one of its window; the last window lasts to the end of the run."""
+def window_of(sample, samples):
+    """Window of a run of ``samples`` in which ``sample`` lies, and the sample with which the next one begins.
+
+    The last window lasts to the end of the run, however long it is waited for.
+    """
     window = min(int(sample * WINDOWS / max(samples, 1.0)), WINDOWS - 1)
+    begin_next = float(math.ceil((window + 1) * samples / WINDOWS)) if window < WINDOWS - 1 else math.inf
+    return float(window), begin_next
+
+
+@kernel
+def widen(extremes, sample, samples, theta):
+    """Take |θ| at ``sample`` into the greatest one of its window."""
+    window = int(window_of(sample, samples)[0])
     if not abs(theta) <= extremes[window]:  # also where there is none yet
         extremes[window] = abs(theta)

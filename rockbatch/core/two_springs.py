@@ -44,7 +44,7 @@ from rockbatch.core.lanes import (
     state_of,
 )
 from rockbatch.core.loading import Loading, branches
-from rockbatch.core.outcome import GROWTH, WINDOWS, fallen, widen
+from rockbatch.core.outcome import GROWTH, WINDOWS, fallen, window_of
 from rockbatch.core.roots import largest_within, lowest_within
 from rockbatch.core.search import (
     ACCEPT,
@@ -118,6 +118,9 @@ NPTS = rows(1)
 ALPHA = rows(1)
 STRONGEST = rows(1)  # horizontal acceleration of the ground [m/s²]
 RUN = rows(1)  # which run is in the lane
+WINDOW = rows(1)  # of the run, in which the lane is (``outcome``)
+NEXT_WINDOW = rows(1)  # sample with which the next one begins
+EXTREME = rows(1)  # greatest |θ| at a sample of this one so far [rad]
 CELLS = rows.cells
 
 _NO_HISTORY = np.empty((0, HISTORY_COLUMNS))
@@ -166,6 +169,7 @@ def begin(table, i, number, runs, ground, exponent, finite):
     y = static_state(m)
     plastic = y.v - m.yield_deflection * y.z_left
     table[RUN + i] = number
+    put_all(table, WINDOW + i, (0.0, 0.0, 0.0))  # the first begins with the first sample
     table[DT + i] = dt
     table[STEP + i] = dt / substeps
     table[SUBSTEPS + i] = substeps
@@ -414,14 +418,14 @@ def _done(table, i, exponent, finite):
     if sample < table[EARLIEST + i]:
         return RUNNING
     wait, decided = table[READ_WAIT + i], table[DECIDED_AT + i] >= 0.0
+    if decided and wait == 0.0:  # nothing can change any more
+        return RUNNING if sample < samples else SURVIVED
     m = model_of(table, i, exponent, finite)
     if decided:
-        if wait > 0.0 and sample == table[LAST_READ + i] + wait:
+        if sample == table[LAST_READ + i] + wait:
             _read_base(table, i, m)
         if sample < max(samples, table[READ + i] + wait):
             return RUNNING
-        if wait == 0.0:  # nothing can change any more
-            return SURVIVED
     outlook = _outlook(table, i, m)
     if outlook == DECIDED and not decided:
         table[DECIDED_AT + i] = sample
@@ -459,6 +463,7 @@ def _finish(table, i, exponent, finite, status, t, row, results):
         base_left, base_right = _base(table, i, m)
     loading = branches(m, _loading_of(table, i), contact, Contact(0.0, 0.0, 0.0, 0.0, 0.0), y)
     line = results[int(table[RUN + i])]
+    line[RESULTS + int(table[WINDOW + i])] = table[EXTREME + i]
     line[0] = status
     line[1] = t
     line[2] = table[PEAK + i]
@@ -531,8 +536,9 @@ def _attend(table, i, exponent, finite, ground, locate, every_step, history, row
     sampled = table[SUBSTEP + i] == table[SUBSTEPS + i]
     if sampled:
         t = _next_sample(table, i, ground)
-        extremes = results[int(table[RUN + i])][RESULTS:]
-        widen(extremes, table[SAMPLE_NUMBER + i], table[SAMPLES + i], table[NOW + LANES + i])
+        if table[SAMPLE_NUMBER + i] >= table[NEXT_WINDOW + i]:
+            _close_window(table, i, results)
+        table[EXTREME + i] = max(table[EXTREME + i], abs(table[NOW + LANES + i]))
     if history.shape[0] > 0 and (sampled or every_step):
         kind = SAMPLE if sampled else BETWEEN_SAMPLES
         row = _write(history, row, t, state_of(table, NOW + i), contact_of(table, i), kind)
@@ -551,6 +557,14 @@ def _next_sample(table, i, ground):
     table[EVENTS + i] = 0.0
     _put_ground(table, i, ground, sample)
     return t
+
+
+@kernel
+def _close_window(table, i, results):
+    """Keep the greatest |θ| of the window that lane ``i`` has left, and begin the one that it is in."""
+    results[int(table[RUN + i]), RESULTS + int(table[WINDOW + i])] = table[EXTREME + i]
+    window, begin_next = window_of(table[SAMPLE_NUMBER + i], table[SAMPLES + i])
+    put_all(table, WINDOW + i, (window, begin_next, 0.0))
 
 
 @kernel
