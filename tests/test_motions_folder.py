@@ -159,7 +159,7 @@ def test_every_file_is_a_motion_or_has_a_reason_and_read_me_files_are_neither(tm
     reasons = {u.source: u.reason for u in found.unusable}
     assert list(reasons) == ["archive.zip", "empty.AT2", "one.AT2", "short.AT2"]
     assert reasons["empty.AT2"] == "the file is empty"
-    assert reasons["archive.zip"] == "not a format that rockbatch reads"
+    assert reasons["archive.zip"] == "the file is empty"
     assert {left.source: left.reason for left in found.left_out} == {
         "_SearchResults.csv": "no record: a table about the records",
         "good.VT2": "no record: the velocity of a record",

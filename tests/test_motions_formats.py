@@ -193,6 +193,31 @@ def test_kiknet_borehole_and_surface_are_two_stations(tmp_path):
     assert "surface" in found.motions[1].notes[0]
 
 
+@pytest.mark.parametrize("name", ["TST.EW.txt", "AOM003", "20180124.asc", "TST.ew.90"])
+def test_knet_is_told_by_its_content_in_a_file_of_any_name(tmp_path, name):
+    text, counts = knet_text("E-W")
+    (tmp_path / name).write_text(text)
+    (motion,) = read_motions(tmp_path).motions
+    np.testing.assert_allclose(motion.horizontal, (counts - counts.mean()) * 7845 / 8223790 / 100, atol=1e-12)
+    assert motion.azimuth == 90.0
+
+
+@pytest.mark.parametrize("name", ["x.seed", "x.msd", "CI.LRL..HNN.D.2019.187", "x", "x.dat"])
+def test_miniseed_is_told_by_its_content_in_a_file_of_any_name(tmp_path, name):
+    write_mseed(tmp_path / name, trace("HNN"))
+    (motion,) = read_motions(tmp_path, confirmed=["*"], options=ReadOptions(unit="cm/s2")).motions
+    np.testing.assert_allclose(motion.horizontal, (COUNTS - COUNTS.mean()) / 100, atol=1e-12)
+    assert "counts without a sensitivity" in only_reason(read_motions(tmp_path))
+
+
+@pytest.mark.parametrize(
+    "content", [b"000001D nothing else in it but digits and codes\n", b"123456M AAAAA00HNZCI \xff\xff\xff\xff"]
+)
+def test_what_only_begins_like_miniseed_is_not_taken_for_it(tmp_path, content):
+    (tmp_path / "x").write_bytes(content * 20)
+    assert only_reason(read_motions(tmp_path)).startswith("not a format that rockbatch reads")
+
+
 def test_a_knet_file_shorter_than_its_header_says_is_refused_with_both_counts(tmp_path):
     (tmp_path / "TST.EW").write_text(knet_text(seconds=4)[0])
     reason = only_reason(read_motions(tmp_path))

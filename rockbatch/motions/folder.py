@@ -10,18 +10,17 @@ from typing import Any
 
 from rockbatch.errors import InputError
 from rockbatch.files import legible
-from rockbatch.motions import fema_p695
+from rockbatch.motions import archives, fema_p695
 from rockbatch.motions.baseline import Offset, corrected
 from rockbatch.motions.component import Component
 from rockbatch.motions.finding import MANIFESTS, Found, files_of
-from rockbatch.motions.formats import ReadOptions, RecordFile, read_record
+from rockbatch.motions.formats import HEAD, ReadOptions, RecordFile, format_of, read_record
 from rockbatch.motions.manifest import Manifest, described, is_manifest, options_of
 from rockbatch.motions.motion import LeftOut, MotionSet, Unusable
 from rockbatch.motions.orientation import split_stem
 from rockbatch.motions.pairing import to_motions
 from rockbatch.units import GRAVITY
 
-_LARGEST = 256 * 2**20  # bytes; a day of three channels at 200 Hz has a fifth of it
 _RSN = re.compile(r"RSN[_ ]?0*(\d+)(?!\d)", re.IGNORECASE)
 
 Paths = str | os.PathLike[str] | Sequence[str | os.PathLike[str]]
@@ -44,8 +43,8 @@ def read_motions(
     Parameters
     ----------
     paths : path or sequence of paths
-        Files and folders; folders with all below them, without hidden files, read-me files and links that
-        lead out. Manifests in them are obeyed.
+        Files and folders; folders with all below them, and what their archives hold, without hidden files,
+        read-me files and links that lead out. Manifests in them are obeyed.
     vertical : bool
         Whether motions get their station's vertical component, where there is one.
     gravity : float
@@ -123,7 +122,7 @@ def _readings(
     file: Found, manifest: Manifest, options: ReadOptions, gravity: float, offset: Offset
 ) -> Sequence[Reading]:
     """What one file is: components, and what its manifest leaves out, or the one reason why there are none."""
-    stem = file.path.stem
+    stem = archives.bare(file.path).stem
     entries = manifest.of(file.path)
     if any(not entry.use and entry.component is None for entry in entries):
         return [LeftOut(stem, file.source, f"use = false in {entries[0].table.file.path.name}")]
@@ -133,7 +132,7 @@ def _readings(
         return [Unusable(stem, file.source, file.refusal)]
     read = _read(file, options_of(entries, options), gravity)
     readings: list[Reading] = [reading for reading in read if isinstance(reading, Unusable)]
-    components = [_placed(reading, file.path) for reading in read if isinstance(reading, Component)]
+    components = [_placed(reading, archives.bare(file.path)) for reading in read if isinstance(reading, Component)]
     for component, used in described(components, entries, gravity):
         if used:
             readings.append(_without_offset(component, offset))
@@ -145,17 +144,19 @@ def _readings(
 
 def _read(file: Found, options: ReadOptions, gravity: float) -> Sequence[Component | Unusable]:
     """Components of one file, or the one reason why there are none; never an exception."""
+    path = archives.bare(file.path)
     try:
-        if file.path.stat().st_size > _LARGEST:
-            raise InputError(f"larger than {_LARGEST // 2**20} MiB")
-        return read_record(RecordFile(file.path, file.source, file.path.read_bytes(), options, gravity))
+        data = archives.content(file.path, HEAD)
+        if format_of(path.suffix, data) is not None:  # else its first bytes are enough to say what it is not
+            data = archives.content(file.path)
+        return read_record(RecordFile(path, file.source, data, options, gravity))
     except InputError as error:
         reason = "; ".join(error.problems)
     except OSError as error:
         reason = f"cannot be read: {error.strerror or error}"
     except Exception as error:  # one bad file shall not cost the others; the type tells that a reader is at fault
         reason = f"its reader failed: {type(error).__name__}: {error}"
-    return [Unusable(file.path.stem, file.source, reason)]
+    return [Unusable(path.stem, file.source, reason)]
 
 
 def _placed(component: Component, path: Path) -> Component:

@@ -13,6 +13,7 @@ from typing import Any
 
 from rockbatch.errors import InputError
 from rockbatch.motions import kinds
+from rockbatch.motions.archives import archive_of, is_member
 from rockbatch.motions.component import Component
 from rockbatch.motions.formats import ReadOptions
 from rockbatch.motions.orientation import Orientation
@@ -93,7 +94,7 @@ class Manifest:
                 table.complain(
                     f"file = {shown(values['file'])}: lies outside this folder; put a manifest there", "file"
                 )
-            elif not path.is_file():
+            elif not path.is_file() and not is_member(path):
                 names = [entry.name for entry in path.parent.iterdir()] if path.parent.is_dir() else []
                 meant = closest(path.name, sorted(names))
                 hint = f"; did you mean {(path.parent / meant).relative_to(folder).as_posix()}?" if meant else ""
@@ -104,8 +105,10 @@ class Manifest:
                 self.entries.setdefault(path, []).append(Entry(path, table, values))
 
     def of(self, path: Path) -> list[Entry]:
-        """Entries of a file, those of the whole file first."""
-        found = self.entries.get(Path(os.path.realpath(path)), [])
+        """Entries of a file, those of the whole file first; those of its archive where it has none of its own."""
+        real = Path(os.path.realpath(path))
+        archive = archive_of(real)
+        found = self.entries.get(real) or (self.entries.get(archive, []) if archive else [])
         return sorted(found, key=lambda entry: entry.component is not None)
 
     def finish(self) -> None:

@@ -19,10 +19,15 @@ if TYPE_CHECKING:
 
 SUFFIXES = frozenset({".mseed", ".ms", ".miniseed"})
 
+_YEARS = 1900, 2100
+
 
 def is_miniseed(head: bytes) -> bool:
-    """Whether the first bytes are those of a MiniSEED 2 record: sequence number and quality."""
-    return re.match(rb"[0-9 ]{6}[DRQM][ \x00]", head) is not None
+    """Whether the first bytes are those of a MiniSEED 2 record: sequence number, quality, codes and a day."""
+    if re.match(rb"[0-9 ]{6}[DRQM][ \x00][A-Z0-9 ]{12}", head) is None:
+        return False
+    days = ((int.from_bytes(head[20:22], order), int.from_bytes(head[22:24], order)) for order in ("big", "little"))
+    return any(_YEARS[0] <= year <= _YEARS[1] and 1 <= day <= 366 for year, day in days)
 
 
 def read_miniseed(file: RecordFile) -> list[Component | Unusable]:

@@ -7,6 +7,9 @@ from datetime import UTC, datetime
 from functools import lru_cache
 from pathlib import Path
 
+from rockbatch.errors import InputError
+from rockbatch.motions import archives
+
 
 @dataclass(frozen=True)
 class Channel:
@@ -27,11 +30,11 @@ class Channel:
 
 
 def channels_beside(folder: Path) -> list[Channel]:
-    """Channels of all StationXML files in ``folder``; other .xml files have none."""
+    """Channels of all StationXML files in ``folder``, of the disk or of an archive; other .xml files have none."""
     found: list[Channel] = []
-    for path in sorted(folder.iterdir()):
-        if path.suffix.lower() == ".xml" and path.is_file():
-            found += _channels(path, path.stat().st_mtime_ns)
+    for path in archives.files_in(folder):
+        if path.suffix.lower() == ".xml":
+            found += _channels(path, (archives.archive_of(path) or path).stat().st_mtime_ns)
     return found
 
 
@@ -39,8 +42,8 @@ def channels_beside(folder: Path) -> list[Channel]:
 def _channels(path: Path, mtime_ns: int) -> list[Channel]:
     """Channels of one file; ``mtime_ns`` keeps an edited file from being taken for the old one."""
     try:
-        root = ElementTree.parse(path).getroot()
-    except (ElementTree.ParseError, OSError, ValueError):
+        root = ElementTree.fromstring(archives.content(path))
+    except (ElementTree.ParseError, InputError, OSError, ValueError):
         return []
     channels = []
     for network in root.findall("{*}Network"):
