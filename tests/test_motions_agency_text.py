@@ -28,6 +28,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from rockbatch.errors import InputError
+from rockbatch.motions import read_motions
 from rockbatch.motions.formats import columns, cwa, dyna, geonet, renadic
 from rockbatch.motions.motion import Unusable
 
@@ -52,6 +53,7 @@ GEONET, DYNA, RENADIC, CWA, COLUMNS = (
     (cwa.is_cwa_file, cwa.read_cwa_stream),
     (columns.is_bbp_file, columns.read_bbp_stream),
 )
+UNSET = "1/1/1980 0:00:00.000"
 RECORDED = moment(2016, 11, 13, 11, 2) + 19.715
 CASES = [
     Case("GEONET", ".V1A", geonet_text(1), ("N28W", "S62W", "Up"), (A / 1e3, B / 1e3, C / 1e3), GEONET, RECORDED),
@@ -280,6 +282,57 @@ def test_channels_that_begin_at_different_times_need_a_clock():
         read(text, "x.v1")
     first, second = read(text.replace("1/1/1980", "2/27/2010"), "x.v1")
     assert second.start - first.start == pytest.approx(0.5)
+
+
+def test_each_part_of_a_recording_in_two_files_is_paired_within_itself(tmp_path):
+    """RENADIC's "parte1" and "parte2": one station, no clock, and a vertical in each."""
+    for part, factor in ((1, 1.0), (2, 0.5)):
+        channels = (
+            renadic_channel(label, factor * x / 100, trigger=UNSET) for label, x in (("L", A), ("V", C), ("T", B))
+        )
+        text = "\n".join(line for channel in channels for line in channel)
+        (tmp_path / f"angol1002271parte{part}.v1").write_bytes(text.encode("latin-1"))
+    found = read_motions(tmp_path)
+    assert not found.unusable
+    assert [(motion.source, motion.vertical_source) for motion in found.motions] == [
+        (f"angol1002271parte{part}.v1 ({label})", f"angol1002271parte{part}.v1 (V)")
+        for part in (1, 2)
+        for label in ("L", "T")
+    ]
+
+
+def with_a_clock(folder: Path, label: str = "INTC") -> None:
+    late = 3.0 + 0.005 * np.arange(NPTS)
+    channels = [renadic_channel(name, x / 100, trigger=UNSET) for name, x in (("L", A), ("V", C), ("T", B))]
+    channels.append(renadic_channel(label, A / 100, late, number=4, trigger=UNSET))
+    text = "\n".join(line for channel in channels for line in channel)
+    (folder / "x.v1").write_bytes(text.encode("latin-1"))
+
+
+@pytest.mark.parametrize("label", ["INTC", "IntC", "TIME CODE", "IRIG-E", "Ext Clock"])
+def test_the_recorders_clock_is_no_ground_motion_and_nobody_misses_it(tmp_path, label):
+    with_a_clock(tmp_path, label)
+    found = read_motions(tmp_path)
+    assert [motion.name for motion in found.motions] == ["x.L", "x.T"]
+    assert not found.unusable
+    assert [(left.source, left.reason) for left in found.left_out] == [
+        (f"x.v1 ({label})", f"no record: {label}, the recorder's clock")
+    ]
+
+
+def test_one_component_that_is_not_understood_can_be_left_out_and_the_others_stay(tmp_path):
+    with_a_clock(tmp_path, "TILT")
+    text = (tmp_path / "x.v1").read_text(encoding="latin-1").replace("  3.", "  0.")
+    (tmp_path / "x.v1").write_text(text, encoding="latin-1")
+    (refused,) = read_motions(tmp_path).unusable
+    assert refused.label == "TILT"
+    (tmp_path / "motions.toml").write_text('[[record]]\nfile = "x.v1"\ncomponent = "TILT"\nuse = false\n')
+    found = read_motions(tmp_path)
+    assert [motion.name for motion in found.motions] == ["x.L", "x.T"]
+    assert [(left.name, left.reason) for left in found.left_out] == [("x.TILT", "use = false in motions.toml")]
+    (tmp_path / "motions.toml").write_text('[[record]]\nfile = "x.v1"\ncomponent = "X"\nuse = false\n')
+    with pytest.raises(InputError, match='the file has "L", "V", "T", "TILT"'):
+        read_motions(tmp_path)
 
 
 @every_format

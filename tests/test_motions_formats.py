@@ -14,6 +14,7 @@ from obspy import Stream, Trace, UTCDateTime
 from rockbatch.errors import InputError
 from rockbatch.motions import ReadOptions, read_motions
 from rockbatch.motions.formats import FORMATS, with_obspy
+from rockbatch.motions.manifest_draft import write_draft
 
 START = UTCDateTime(2019, 7, 6, 3, 19, 23)
 COUNTS = (wiggle(500) * 1e6).astype(np.int32)
@@ -62,6 +63,25 @@ def test_miniseed_counts_become_m_s2_by_the_station_xml_beside_it(tmp_path):
     assert (motion.name, motion.dt, motion.source, motion.vertical_source) == ("n", 0.01, "n.mseed", "z.mseed")
     assert any("from StationXML" in note for note in motion.notes)
     assert any("mean over the record" in note for note in motion.notes)
+
+
+@pytest.mark.parametrize(
+    ("unit", "per_m_s2"),
+    [
+        *(
+            ("M/S**2", 1.0),
+            ("m/s/s", 1.0),
+            ("m/s^2", 1.0),
+            ("M/S**2 - Acceleration in Meters Per Second Per Second", 1.0),
+        ),
+        *(("cm/s**2", 1e2), ("gal", 1e2), ("nm/s**2", 1e9), ("NM/S**2", 1e9), ("um/s**2", 1e6)),
+    ],
+)
+def test_the_input_unit_of_a_station_xml_is_understood_in_its_spellings(tmp_path, unit, per_m_s2):
+    write_mseed(tmp_path / "n.mseed", trace("HNN"))
+    station_xml(tmp_path, channel_xml("HNN", unit=unit, value=2e5 / per_m_s2))
+    (motion,) = read_motions(tmp_path).motions
+    np.testing.assert_allclose(motion.horizontal, (COUNTS - COUNTS.mean()) / 2e5, rtol=1e-9, atol=1e-12)
 
 
 def test_a_vertical_channel_with_positive_dip_points_down(tmp_path):
@@ -124,6 +144,64 @@ def test_a_gap_costs_that_channel_and_no_other(tmp_path):
     found = read_motions(tmp_path, confirmed=["*"], options=ReadOptions(unit="cm/s2"))
     assert [motion.name for motion in found.motions] == ["CI.LRL..HNE"]
     assert [(u.name, "gaps" in u.reason) for u in found.unusable] == [("CI.LRL..HNN", True)]
+
+
+@pytest.mark.parametrize("together", [True, False])
+def test_two_events_in_a_file_are_two_records_each_with_its_vertical_and_turned_on_its_own(tmp_path, together):
+    gap = 600.0  # s, between records of 5 s
+    channels = {code: COUNTS * factor for code, factor in (("HNN", 1), ("HNE", 2), ("HNZ", 3))}
+    traces = {
+        code: [trace(code, data), trace(code, data[:400], START + gap + jitter)]
+        for (code, data), jitter in zip(channels.items(), (0.0, 0.2, 0.1), strict=True)
+    }
+    if together:
+        write_mseed(tmp_path / "all.mseed", *(one for pieces in traces.values() for one in pieces))
+    else:
+        for code, pieces in traces.items():
+            write_mseed(tmp_path / f"{code}.mseed", *pieces)
+    options = ReadOptions(unit="cm/s2", sensitivity=100.0)
+    found = read_motions(tmp_path, confirmed=["*"], options=options)
+    assert not found.unusable
+    first, second = ("20190706T031923", "20190706T032923")
+    names = [motion.name for motion in found.motions]
+    assert sorted(name.rpartition(".")[2] for name in names) == [first, first, second, second]
+    assert sorted(motion.npts for motion in found.motions) == [
+        390,
+        390,
+        500,
+        500,
+    ]  # s: what horizontal and vertical share
+    for motion in found.motions:
+        assert motion.name.rpartition(".")[2] in motion.vertical_source
+    turned = read_motions(tmp_path, confirmed=["*"], options=options, azimuths=(0.0, 90.0))
+    assert len(turned.motions) == 4
+    assert not turned.unusable
+    draft = write_draft(tmp_path, options)
+    again = read_motions(tmp_path, confirmed=["*"], options=options)
+    assert draft.read_text().count(f'{second}"') == 3
+    assert [motion.name for motion in again.motions] == names
+
+
+@pytest.mark.parametrize(("gap", "records"), [(14.0, 1), (61.0, 1), (100.0, 2)])
+def test_only_a_gap_far_longer_than_the_record_lies_between_two_events(tmp_path, gap, records):
+    """Records of 30 s and 10 s: three times the longer one are 90 s."""
+    data = np.resize(COUNTS, 3001)
+    write_mseed(tmp_path / "n.mseed", trace("HNN", data), trace("HNN", data[:1001], START + 30.0 + gap))
+    found = read_motions(tmp_path, confirmed=["*"], options=ReadOptions(unit="cm/s2"))
+    assert (len(found.motions), len(found.unusable)) == ((2, 0) if records == 2 else (0, 1))
+    if records == 2:
+        assert [motion.npts for motion in found.motions] == [3001, 1001]
+
+
+def test_two_events_of_one_knet_station_are_turned_each_on_its_own(tmp_path):
+    for event, minute in (("A", "38"), ("B", "58")):
+        for direction, suffix in (("E-W", "EW"), ("N-S", "NS"), ("U-D", "UD")):
+            text = knet_text(direction)[0].replace("19:51:38", f"19:{minute}:38")
+            (tmp_path / f"TST{event}.{suffix}").write_text(text)
+    found = read_motions(tmp_path, azimuths=(30.0,))
+    assert [motion.name for motion in found.motions] == ["TSTA_az030", "TSTB_az030"]
+    assert [motion.vertical_source for motion in found.motions] == ["TSTA.UD", "TSTB.UD"]
+    assert not found.unusable
 
 
 def test_a_truncated_miniseed_file_is_refused(tmp_path):

@@ -15,9 +15,9 @@ from rockbatch.motions.baseline import Offset, corrected
 from rockbatch.motions.component import Component
 from rockbatch.motions.finding import MANIFESTS, Found, files_of
 from rockbatch.motions.formats import HEAD, ReadOptions, RecordFile, format_of, read_record
-from rockbatch.motions.manifest import Manifest, described, is_manifest, options_of
+from rockbatch.motions.manifest import Entry, Manifest, described, is_manifest, options_of
 from rockbatch.motions.motion import LeftOut, MotionSet, Unusable
-from rockbatch.motions.orientation import split_stem
+from rockbatch.motions.orientation import is_clock, split_stem
 from rockbatch.motions.pairing import to_motions
 from rockbatch.units import GRAVITY
 
@@ -131,15 +131,26 @@ def _readings(
     if file.refusal:
         return [Unusable(stem, file.source, file.refusal)]
     read = _read(file, options_of(entries, options), gravity)
-    readings: list[Reading] = [reading for reading in read if isinstance(reading, Unusable)]
+    others = [reading for reading in read if isinstance(reading, Unusable)]
+    readings: list[Reading] = [_left_out(reading, entries) or reading for reading in others]
     components = [_placed(reading, archives.bare(file.path)) for reading in read if isinstance(reading, Component)]
-    for component, used in described(components, entries, gravity):
+    for component, used in described(components, entries, gravity, others):
         if used:
             readings.append(_without_offset(component, offset))
         else:
             where = entries[0].table.file.path.name
             readings.append(LeftOut(component.name, component.source, f"use = false in {where}"))
     return readings
+
+
+def _left_out(unusable: Unusable, entries: Sequence[Entry]) -> LeftOut | None:
+    """A component that cannot be used, but is not missed: its manifest leaves it out, or it is no ground motion."""
+    if is_clock(unusable.label):
+        return LeftOut(unusable.name, unusable.source, f"no record: {unusable.label}, the recorder's clock")
+    told = next((entry for entry in entries if not entry.use and entry.is_for(unusable)), None)
+    if told is None:
+        return None
+    return LeftOut(unusable.name, unusable.source, f"use = false in {told.table.file.path.name}")
 
 
 def _read(file: Found, options: ReadOptions, gravity: float) -> Sequence[Component | Unusable]:

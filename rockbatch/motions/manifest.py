@@ -16,6 +16,7 @@ from rockbatch.motions import kinds
 from rockbatch.motions.archives import archive_of, is_member
 from rockbatch.motions.component import Component
 from rockbatch.motions.formats import ReadOptions
+from rockbatch.motions.motion import Unusable
 from rockbatch.motions.orientation import Orientation
 from rockbatch.toml.kinds import boolean, choice, closest, not_negative, number, positive, shown, text
 from rockbatch.toml.reader import Key, Table, TomlFile
@@ -58,6 +59,10 @@ class Entry:
     def use(self) -> bool:
         """Whether the file or component shall be used."""
         return bool(self.values.get("use", True))
+
+    def is_for(self, unusable: Unusable) -> bool:
+        """Whether it is for this one component, which cannot be used."""
+        return self.component is not None and self.component in (unusable.label, unusable.name)
 
 
 @dataclass
@@ -133,14 +138,18 @@ def options_of(entries: Sequence[Entry], options: ReadOptions) -> ReadOptions:
 
 
 def described(
-    components: Sequence[Component], entries: Sequence[Entry], gravity: float
+    components: Sequence[Component], entries: Sequence[Entry], gravity: float, others: Sequence[Unusable] = ()
 ) -> list[tuple[Component, bool]]:
-    """Components of a file as its entries want them, and whether each is to be used; mistakes are noted."""
+    """Components of a file as its entries want them, and whether each is to be used; mistakes are noted.
+
+    ``others`` are the components of the file that cannot be used, which entries may be for too.
+    """
     chosen: list[tuple[Component, bool]] = [(component, True) for component in components]
     for entry in entries:
         meant = [i for i, c in enumerate(components) if entry.component in (None, c.name, c.orientation.label)]
-        if not meant and components:
-            known = ", ".join(shown(c.orientation.label or c.name) for c in components)
+        if not meant and components and not any(map(entry.is_for, others)):
+            labels = [*(c.orientation.label or c.name for c in components), *(other.label for other in others)]
+            known = ", ".join(map(shown, filter(None, labels)))
             said = f"component = {shown(entry.component)}: the file has {known}"
             entry.table.complain(f"{said}; write one of these", "component")
         if len(meant) > 1:

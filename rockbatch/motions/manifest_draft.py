@@ -1,7 +1,7 @@
 """A manifest drafted from what was found in a folder, to be completed by hand."""
 
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -53,8 +53,8 @@ def draft(folder: Path, options: ReadOptions | None = None) -> str:
         if legible(name) != name:
             blocks.append(f"# {legible(name)}: give it a name without control characters first\n")
         elif isinstance(reading, Component):
-            several = sum(_file_of(other, paths) == _file_of(reading, paths) for other in components) > 1
-            blocks.append(_table(reading, name, several, stations[id(reading)]))
+            beside = [other for other in components if _file_of(other, paths) == _file_of(reading, paths)]
+            blocks.append(_table(reading, name, _called(reading, beside), stations[id(reading)]))
         elif isinstance(reading, Unusable):
             blocks.append(_remark(name, legible(reading.reason)))
     return "\n".join(blocks)
@@ -65,11 +65,18 @@ def _file_of(reading: Reading, paths: Iterable[str]) -> str:
     return reading.source if reading.source in paths else reading.source.rpartition(" (")[0]
 
 
-def _table(component: Component, name: str, several: bool, station: str) -> str:
+def _called(component: Component, beside: Sequence[Component]) -> str:
+    """What tells a component from those ``beside`` it in its file; empty where it is alone."""
+    label = component.orientation.label
+    alike = [other for other in beside if other.orientation.label == label]
+    return "" if len(beside) == 1 else label if label and len(alike) == 1 else component.name
+
+
+def _table(component: Component, name: str, called: str, station: str) -> str:
     orientation = component.orientation
     lines: list[tuple[str, Any]] = [("file", name)]
-    if several:
-        lines.append(("component", orientation.label or component.name))
+    if called:
+        lines.append(("component", called))
     lines.append(("role", "vertical" if orientation.vertical else "horizontal"))
     if orientation.azimuth is not None:
         lines.append(("azimuth", orientation.azimuth))

@@ -106,11 +106,15 @@ class Motion:
 
 @dataclass(frozen=True)
 class Unusable:
-    """A file that could not be used, and why; it stays in the tables as a row with its reason."""
+    """A file that could not be used, and why; it stays in the tables as a row with its reason.
+
+    ``label`` is that of the one component that is meant, as the file has it; empty where it is the whole file.
+    """
 
     name: str
     source: str
     reason: str
+    label: str = ""
 
 
 @dataclass(frozen=True)

@@ -74,7 +74,7 @@ def to_components(file: RecordFile, recordings: Sequence[Recording]) -> list[Com
         try:
             readings.append(_component(file, recording, name, source))
         except InputError as error:
-            readings.append(Unusable(name, source, str(error)))
+            readings.append(Unusable(name, source, str(error), recording.label))
     return readings
 
 

@@ -57,12 +57,17 @@ def _channels(path: Path, mtime_ns: int) -> list[Channel]:
                         start=_time(channel.get("startDate"), -math.inf),
                         end=_time(channel.get("endDate"), math.inf),
                         sensitivity=_number(channel.findtext("{*}Response/{*}InstrumentSensitivity/{*}Value")),
-                        unit=channel.findtext("{*}Response/{*}InstrumentSensitivity/{*}InputUnits/{*}Name", "").strip(),
+                        unit=_unit(channel.findtext("{*}Response/{*}InstrumentSensitivity/{*}InputUnits/{*}Name")),
                         azimuth=_number(channel.findtext("{*}Azimuth")),
                         dip=_number(channel.findtext("{*}Dip")),
                     )
                 )
     return channels
+
+
+def _unit(text: str | None) -> str:
+    """The unit of "M/S**2 - Acceleration in meters per second per second", as old dataless files have it."""
+    return (text or "").partition(" - ")[0].strip()
 
 
 def _number(text: str | None) -> float | None:
