@@ -1,4 +1,4 @@
-"""GeoNet, DYNA, RENADIC and CWA files, written here by their layouts: values, directions, times, and honest refusals."""
+"""Agencies' text files, written here by their layouts: values, directions, times, and honest refusals."""
 
 import io
 import tomllib
@@ -26,10 +26,18 @@ from agency_files import (
 from fixed_column_files import read
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from national_files import (
+    afad_text,
+    bhrc_text,
+    csmnc_text,
+    unam_text,
+    usc_channel,
+    usc_text,
+)
 
 from rockbatch.errors import InputError
 from rockbatch.motions import read_motions
-from rockbatch.motions.formats import columns, cwa, dyna, geonet, renadic
+from rockbatch.motions.formats import afad, bhrc, columns, csmnc, cwa, dyna, geonet, renadic, unam, usc
 from rockbatch.motions.motion import Unusable
 
 
@@ -46,6 +54,13 @@ class Case:
     start: float | None
 
 
+AFAD, BHRC, CSMNC, UNAM, USC = (
+    (afad.is_afad_file, afad.read_afad_stream),
+    (bhrc.is_bhrc_file, bhrc.read_bhrc_stream),
+    (csmnc.is_csmnc_file, csmnc.read_csmnc_stream),
+    (unam.is_unam_file, unam.read_unam_stream),
+    (usc.is_usc_file, usc.read_usc_stream),
+)
 GEONET, DYNA, RENADIC, CWA, COLUMNS = (
     (geonet.is_geonet_file, geonet.read_geonet_stream),
     (dyna.is_dyna_file, dyna.read_dyna_stream),
@@ -67,8 +82,21 @@ CASES = [
         moment(2010, 2, 27, 6, 34) + 11.5,
     ),
     Case("CWA", ".txt", cwa_text(), ("U", "N", "E"), (C / 100, A / 100, B / 100), CWA, moment(1999, 9, 20, 17, 47, 2)),
+    Case(
+        *("AFAD", ".txt", afad_text(), ("NS", "EW", "UD"), (A / 100, B / 100, C / 100), AFAD),
+        moment(2017, 7, 20, 22, 30) + 58.5,
+    ),
+    Case("BHRC", ".V1", bhrc_text(), ("L", "V", "T"), tuple(x / 1000 * 9.81 for x in (A, C, B)), BHRC, None),
+    Case("CSMNC", ".dat", csmnc_text(), ("EW",), (A / 100,), CSMNC, None),
+    Case(
+        *("UNAM", ".191", unam_text(), ("N00E", "N90E", "V"), (A / 100, B / 100, C / 100), UNAM),
+        moment(2017, 9, 19, 18, 14) + 44.5,
+    ),
+    Case("USC", ".s0a", usc_text(), ("N90E", "UP", "N00E"), tuple(x / 1000 * 9.81 for x in (A, C, B)), USC, None),
     Case("BBP", ".bbp", BBP, ("NS", "EW", "UD"), (A / 100, B / 100, C / 100), COLUMNS, None),
 ]
+# m/s²: RENADIC and USC print 1e-3 g/10, so half of 1e-4 g, BHRC and CSMNC seven digits; the others all that there is
+ROUGHLY = {"RENADIC": 5.1e-5 * 9.81, "USC": 5.1e-5 * 9.81, "BHRC": 1e-6, "CSMNC": 1e-5}
 every_format = pytest.mark.parametrize("case", CASES, ids=lambda case: f"{case.name}{case.suffix}")
 
 
@@ -80,11 +108,8 @@ def test_every_component_comes_out_in_m_s2_with_step_direction_and_time(case, ne
     for component, label, values in zip(found, case.labels, case.values, strict=True):
         assert component.name == (f"STA.{label}" if len(found) > 1 else "STA")
         assert component.dt == pytest.approx(0.005, rel=1e-12)
-        # RENADIC prints 1e-3 g/10, so half of 1e-4 g; the others print more than these values need
-        np.testing.assert_allclose(
-            component.acceleration, values, atol=5.1e-5 * 9.81 if case.name == "RENADIC" else 1e-9
-        )
-        assert component.orientation.vertical == (label in ("Up", "U", "V", "UD"))
+        np.testing.assert_allclose(component.acceleration, values, atol=ROUGHLY.get(case.name, 1e-9))
+        assert component.orientation.vertical == (label in ("Up", "UP", "U", "V", "UD"))
         assert not component.orientation.down
         assert component.start == case.start
         assert component.notes == ()
@@ -171,6 +196,11 @@ def test_raw_records_say_that_the_instruments_zero_is_in_them_and_corrected_ones
         "DYNA.ASC": False,
         "RENADIC.v1": True,
         "CWA.txt": False,
+        "AFAD.txt": True,
+        "BHRC.V1": True,
+        "CSMNC.dat": True,
+        "UNAM.191": True,
+        "USC.s0a": True,
         "BBP.bbp": False,
     }
     assert read(dyna_text(BASELINE_CORRECTION="BASELINE NOT REMOVED"), "x.ASC")[0].raw
@@ -202,6 +232,42 @@ def test_afads_way_of_writing_times_and_components_is_read():
     (up,) = read(text, "20230206011704_4614_ap_Acc_U.asc")
     assert up.orientation.vertical
     assert up.start == moment(2023, 2, 6, 1, 17) + 20.5
+
+
+def test_components_point_where_bhrc_and_csmnc_say():
+    longitudinal, vertical, transverse = read(bhrc_text(), "5522-1.V1")
+    assert (longitudinal.orientation.azimuth, transverse.orientation.azimuth) == (324.0, 54.0)
+    assert vertical.orientation.vertical
+    east, up = (read(csmnc_text(label=label), f"{label}.dat")[0] for label in ("EW", "UD"))
+    assert (east.orientation.azimuth, up.orientation.vertical) == (90.0, True)
+    assert east.station == up.station
+    assert not read(csmnc_text(kind="CORRECTED ACCELERATION"), "x.dat")[0].raw
+
+
+@pytest.mark.parametrize(
+    ("origin", "first", "day"),
+    [("23:58:02.7", "00:00:01", 20), ("00:00:10", "23:59:40", 18), ("12:00:00", "12:00:05", 19)],
+)
+def test_a_record_of_unam_begins_on_the_day_that_is_nearest_to_its_earthquake(origin, first, day):
+    text = unam_text(**{"HORA EPICENTRO (GMT)": origin, "HORA DE LA PRIMERA MUESTRA (GMT)": first})
+    hour, minute, second = map(int, first.split(":"))
+    assert read(text, "x.012")[0].start == moment(2017, 9, day, hour, minute, second)
+
+
+def test_usc_times_from_film_are_interpolated_and_a_mark_between_channels_is_read_over():
+    times = np.cumsum([0, *np.random.default_rng(1).integers(4, 7, NPTS - 1)]) / 1000
+    channels = [usc_channel("N90E", A / 100, times, ("/& END",)), usc_channel("DOWN", C / 100, times)]
+    east, down = read("\n".join(line for channel in channels for line in channel), "x.s0a")
+    assert "uneven times" in east.notes[0]
+    at = np.rint(times / east.dt).astype(int)
+    np.testing.assert_allclose(east.acceleration[at], A / 1000 * 9.81, atol=ROUGHLY["USC"])
+    assert down.orientation.down
+
+
+@pytest.mark.parametrize("case", CASES[-6:-1], ids=lambda case: case.name)
+@pytest.mark.parametrize("name", ["x.txt", "x.dat", "STATION", "x.V1", "x.191"])
+def test_national_files_are_told_by_their_content_in_a_file_of_any_name(case, name):
+    assert [component.orientation.label for component in read(case.text, name)] == list(case.labels)
 
 
 def test_taiwanese_local_time_is_eight_hours_ahead():
@@ -264,6 +330,35 @@ def test_a_direction_or_unit_that_is_not_understood_costs_its_channel_with_the_r
         (renadic_text().replace("POINTS =     43", "POINTS = 999999999", 1), "x.v1", "take 200000000 lines"),
         (renadic_text().replace("/&", "//", 1), "x.v1", 'line 37: found "// .*expected "/&" after 43 pairs'),
         (renadic_text().replace("  0.055", "  0.050", 1), "x.v1", "channel L from line 1 on: time does not grow"),
+        (csmnc_text(count=44), "x.dat", "line 22: found 3 numbers; expected 4"),
+        (csmnc_text(count=999999999), "x.dat", "says 999999999 values, 125000000 lines from line 17 on, .*there are 6"),
+        (csmnc_text(kind="UNCORRECTED VELOCITY"), "x.dat", 'found "VELOCITY"; expected accelerations'),
+        (csmnc_text().replace("E+2 ", "E+x ", 1), "x.dat", r"line \d+: found .*expected a number"),
+        (afad_text(**{"NUMBER OF DATA": "44"}), "x.txt", "132 values, 44 lines from line 19 on, but there are 43"),
+        (afad_text(**{"RAW PGA VALUES (gal)": None}), "x.txt", "which tells the unit"),
+        (afad_text(scale=1 / 981), "x.txt", "unit of the columns is another one; write them as text columns"),
+        (afad_text(**{"SAMPLING INTERVAL (sec)": None}), "x.txt", "the header lacks SAMPLING INTERVAL"),
+        (afad_text(**{"NUMBER OF DATA": "many"}), "x.txt", 'NUMBER OF DATA: "many"; expected a number'),
+        (unam_text(**{"NUM. TOTAL DE MUESTRAS, C1-C6": "/43/43/42"}), "x.191", "42, 43; expected the same for all"),
+        (unam_text(**{"NUM. TOTAL DE MUESTRAS, C1-C6": "/44/44/44"}), "x.191", "132 values from line .*it is cut"),
+        (unam_text(**{"NUM. TOTAL DE MUESTRAS, C1-C6": "/42/42/42"}), "x.191", "after the 42 declared samples"),
+        (unam_text(**{"FACTOR DE DECIMACION": "2"}), "x.191", "samples were left out"),
+        (unam_text(**{"UNIDADES DE LOS DATOS": None}), "x.191", "the header lacks UNIDADES DE LOS DATOS"),
+        (
+            unam_text(**{"ORIENTACION C1-C6 (rumbo;orientacion)": "/V/N90E/N00E"}),
+            "x.191",
+            "expected the directions V N90E",
+        ),
+        (bhrc_text(volume=2), "x.V1", "Volume 2, whose layout is not known; take the .V1 file"),
+        (bhrc_text(rate=100.0), "x.V1", "43 points in 0.215 s, line 22 100 samples per second"),
+        (bhrc_text().replace("/&", "//", 1), "x.V1", 'line 33: found "//"; expected "/& after 43 values'),
+        (bhrc_text().replace("POINTS =     43", "POINTS =     42", 1), "x.V1", "line 32: found .*expected 2 values"),
+        (
+            usc_text().replace("=   0.210 SEC", "=   0.310 SEC", 1),
+            "x.s0a",
+            "line 11 says 0.31 s, but the last time is 0.21 s",
+        ),
+        (usc_text().replace("\n   0.000", "\n0.000  ", 1), "x.s0a", "line 28: .*expected a blank and ten columns"),
         (cwa_text(**{"SampleRate(Hz)": "100"}), "x.txt", "the header says 100 Hz, but time grows by 0.005 s"),
         (cwa_text(**{"RecordLength(sec)": "90"}), "x.txt", "the header says 90 s, but there are 0.215 s"),
         (cwa_text(DataSequence="Time U(+); N(+)"), "x.txt", "found 4 columns; the header says time and U, N"),

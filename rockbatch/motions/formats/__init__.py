@@ -12,7 +12,25 @@ import numpy as np
 
 from rockbatch.errors import InputError
 from rockbatch.motions.component import Component
-from rockbatch.motions.formats import at2, columns, cosmos, csmip, cwa, dyna, geonet, knet, miniseed, renadic, sac, smc
+from rockbatch.motions.formats import (
+    afad,
+    at2,
+    bhrc,
+    columns,
+    cosmos,
+    csmip,
+    csmnc,
+    cwa,
+    dyna,
+    geonet,
+    knet,
+    miniseed,
+    renadic,
+    sac,
+    smc,
+    unam,
+    usc,
+)
 from rockbatch.motions.formats.record_file import ReadOptions, RecordFile
 from rockbatch.motions.motion import Unusable
 
@@ -32,7 +50,7 @@ _INSTEAD = "write it as MiniSEED, or as text columns below a line such as # time
 
 @dataclass(frozen=True)
 class Format:
-    """A format: its name, suffixes in lower case, the check of the first bytes, and the reader.
+    """A format: its name, suffixes in lower case (none if it has none of its own), the check of the first bytes, the reader.
 
     ``anywhere``: whether the check holds for files of any name, or only for those with its suffixes.
     """
@@ -55,6 +73,11 @@ FORMATS = (
     Format("CSMIP", csmip.SUFFIXES, csmip.is_csmip, csmip.read_csmip),
     Format("USGS SMC", smc.SUFFIXES, smc.is_smc, smc.read_smc),
     Format("RENADIC", renadic.SUFFIXES, renadic.is_renadic, renadic.read_renadic),
+    Format("USC Volume I", usc.SUFFIXES, usc.is_usc, usc.read_usc),
+    Format("BHRC Volume 1", bhrc.SUFFIXES, bhrc.is_bhrc, bhrc.read_bhrc),
+    Format("CSMNC", csmnc.SUFFIXES, csmnc.is_csmnc, csmnc.read_csmnc),
+    Format("AFAD text", afad.SUFFIXES, afad.is_afad, afad.read_afad),
+    Format("UNAM", unam.SUFFIXES, unam.is_unam, unam.read_unam),
     Format("CWA free field", cwa.SUFFIXES, cwa.is_cwa, cwa.read_cwa),
     Format("text columns", columns.SUFFIXES, columns.is_columns, columns.read_columns, anywhere=False),
 )
