@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from rockbatch.errors import InputError
+from rockbatch.errors import InputError, UnstatedError
 from rockbatch.files import legible
 from rockbatch.motions import archives, fema_p695
 from rockbatch.motions.baseline import Offset, corrected
@@ -156,6 +156,7 @@ def _left_out(unusable: Unusable, entries: Sequence[Entry]) -> LeftOut | None:
 def _read(file: Found, options: ReadOptions, gravity: float) -> Sequence[Component | Unusable]:
     """Components of one file, or the one reason why there are none; never an exception."""
     path = archives.bare(file.path)
+    lacks: tuple[str, ...] = ()
     try:
         data = archives.content(file.path, HEAD)
         if format_of(path.suffix, data) is not None:  # else its first bytes are enough to say what it is not
@@ -163,11 +164,12 @@ def _read(file: Found, options: ReadOptions, gravity: float) -> Sequence[Compone
         return read_record(RecordFile(path, file.source, data, options, gravity))
     except InputError as error:
         reason = "; ".join(error.problems)
+        lacks = error.keys if isinstance(error, UnstatedError) else ()
     except OSError as error:
         reason = f"cannot be read: {error.strerror or error}"
     except Exception as error:  # one bad file shall not cost the others; the type tells that a reader is at fault
         reason = f"its reader failed: {type(error).__name__}: {error}"
-    return [Unusable(path.stem, file.source, reason)]
+    return [Unusable(path.stem, file.source, reason, lacks=lacks)]
 
 
 def _placed(component: Component, path: Path) -> Component:

@@ -25,6 +25,8 @@ _HEAD = """\
 # magnitude, distance_km;  confirm_pga = true: a PGA outside 0.001-5 g is right;  use = false: leave it out
 """
 
+_ASKED = {"unit": 'of its numbers: "g", "g/10", "m/s2", "cm/s2", "gal" or "mm/s2"', "dt": "its sampling interval [s]"}
+
 
 def write_draft(folder: Path, options: ReadOptions | None = None) -> Path:
     """Write ``motions.toml`` into ``folder``; ``InputError`` where there is a manifest, which is never written over."""
@@ -55,6 +57,8 @@ def draft(folder: Path, options: ReadOptions | None = None) -> str:
         elif isinstance(reading, Component):
             beside = [other for other in components if _file_of(other, paths) == _file_of(reading, paths)]
             blocks.append(_table(reading, name, _called(reading, beside), stations[id(reading)]))
+        elif isinstance(reading, Unusable) and reading.lacks:
+            blocks.append(_question(name, reading))
         elif isinstance(reading, Unusable):
             blocks.append(_remark(name, legible(reading.reason)))
     return "\n".join(blocks)
@@ -89,6 +93,12 @@ def _table(component: Component, name: str, called: str, station: str) -> str:
     if not orientation.vertical and not LOWEST <= component.pga / GRAVITY <= HIGHEST:
         text += f"# confirm_pga = true   # PGA {component.pga / GRAVITY:.3g} g: check the unit\n"
     return text + "# magnitude =\n# distance_km =\n"
+
+
+def _question(name: str, unusable: Unusable) -> str:
+    """A table that states nothing yet, with a line to fill in for each key that its file lacks."""
+    lines = [f"# {key} =   # {_ASKED[key]}\n" for key in unusable.lacks]
+    return f"# Not used: {legible(unusable.reason)}\n[[record]]\nfile = {_written(name)}\n{''.join(lines)}"
 
 
 def _remark(name: str, reason: str) -> str:

@@ -7,7 +7,7 @@ their header and are therefore an ObsPy waveform format, "BBP".
 import codecs
 from dataclasses import replace
 
-from rockbatch.errors import InputError
+from rockbatch.errors import InputError, UnstatedError
 from rockbatch.motions.component import Component
 from rockbatch.motions.formats.column_header import (
     SECONDS,
@@ -70,9 +70,10 @@ def _parse(text: str, options: ReadOptions) -> list[Recording]:
     wanted = [i for i, column in enumerate(columns) if not column.is_time and column.label != "-"]
     lacking = [f"{_called(i, columns[i])} has no unit" for i in wanted if not (columns[i].unit or unit)]
     if lacking:
-        raise InputError(
+        raise UnstatedError(
             f"{'; '.join(lacking)}; write it in the header, e.g. # time(s) NS(cm/s2), "
-            'or state it in the study, e.g. unit = "cm/s2"'
+            'or state it in the study, e.g. unit = "cm/s2"',
+            "unit",
         )
     if not wanted:
         raise InputError("found a column of time and no other")
@@ -122,7 +123,9 @@ def _sampled(columns: list[Column], table: Samples, stated: float | None) -> tup
         raise InputError("found one row of numbers; expected at least two samples")
     if not times:
         if stated is None:
-            raise InputError("no column of time and no sampling interval; state it in the study, e.g. dt = 0.01")
+            raise UnstatedError(
+                "no column of time and no sampling interval; state it in the study, e.g. dt = 0.01", "dt"
+            )
         return stated, table, ()
     column = columns[times[0]]
     seconds = SECONDS.get((column.unit or "s").strip().lower().rstrip("."))

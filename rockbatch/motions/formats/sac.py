@@ -1,6 +1,6 @@
 """SAC (binary): one component, in a unit that its header does not tell reliably."""
 
-from rockbatch.errors import InputError
+from rockbatch.errors import UnstatedError
 from rockbatch.motions.component import Component
 from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.formats.with_obspy import read_stream
@@ -25,9 +25,10 @@ def read_sac(file: RecordFile) -> list[Component]:
     """
     options = file.options
     if options.unit is None and options.sensitivity is None:
-        raise InputError(
+        raise UnstatedError(
             'SAC files do not tell their unit reliably; state it in the study, e.g. unit = "g" '
-            "(or sensitivity = … for counts per m/s²)"
+            "(or sensitivity = … for counts per m/s²)",
+            "unit",
         )
     (trace,) = read_stream(file.data, "SAC")
     stats = trace.stats
