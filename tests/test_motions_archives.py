@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from agency_files import knet_text
 from motion_files import at2_text, wiggle, write_at2
 from test_motions_formats import channel_xml, station_xml, trace, write_mseed
 
@@ -74,6 +75,12 @@ def test_a_gz_is_the_file_that_it_holds(tmp_path):
         for azimuth in ("228", "318")
     ]
     np.testing.assert_allclose(found.motions[0].horizontal / 9.81, wiggle(50, 1), rtol=1e-6)
+
+
+def test_components_that_differ_by_suffix_only_keep_it_in_their_names_when_packed(tmp_path):
+    for direction, suffix in (("E-W", "EW"), ("N-S", "NS")):
+        (tmp_path / f"TST.{suffix}.gz").write_bytes(gzip.compress(knet_text(direction)[0].encode()))
+    assert [motion.name for motion in read_motions(tmp_path).motions] == ["TST.EW", "TST.NS"]
 
 
 def test_miniseed_in_an_archive_takes_the_station_xml_beside_it_there(tmp_path):

@@ -24,8 +24,10 @@ _APART, _LEAST_APART = 3.0, 60.0  # times the longest piece of a channel, and se
 
 
 def is_miniseed(head: bytes) -> bool:
-    """Whether the first bytes are those of a MiniSEED 2 record: sequence number, quality, codes and a day."""
-    if re.match(rb"[0-9 ]{6}[DRQM][ \x00][A-Z0-9 ]{12}", head) is None:
+    """Whether the first bytes are those of a MiniSEED 2 record, or of a SEED volume, which has control headers before."""
+    if re.match(rb"[0-9]{6}V 0(?:05|08|10)[0-9]{4}", head):
+        return True
+    if re.match(rb"[0-9 ]{6}[DRQM][ \x00][ -~]{12}", head) is None:  # sequence number, quality, codes
         return False
     days = ((int.from_bytes(head[20:22], order), int.from_bytes(head[22:24], order)) for order in ("big", "little"))
     return any(_YEARS[0] <= year <= _YEARS[1] and 1 <= day <= 366 for year, day in days)
