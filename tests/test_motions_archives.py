@@ -211,6 +211,13 @@ def test_other_archives_lead_on(tmp_path, name):
     assert reasons_of(read_motions(tmp_path))[name].endswith("unpack it")
 
 
+def test_a_vertical_named_z_is_no_archive(tmp_path):
+    write_at2(tmp_path, "ABBAR.N", wiggle(50, 1))
+    write_at2(tmp_path, "ABBAR.Z", wiggle(50, 2), title="Made-up, 1/17/1994, Test Station, UP")
+    (motion,) = read_motions(tmp_path).motions
+    assert motion.vertical_source == "ABBAR.Z"
+
+
 def test_a_damaged_archive_ends_in_records_or_reasons(tmp_path):
     whole = {"x.zip": peer_zip(tmp_path / "x.zip").read_bytes(), "x.AT2.gz": gzip.compress(at2("x.AT2", 1).encode())}
     (tmp_path / "x.zip").unlink()
