@@ -183,6 +183,17 @@ def test_what_grows_beyond_any_record_is_not_unpacked(tmp_path):
     assert "more than 100 times its" in second
 
 
+def test_what_unpacks_to_more_than_a_file_may_have_is_never_read_in_part(tmp_path, monkeypatch):
+    text = at2("000.AT2", 1).encode()
+    monkeypatch.setattr(archives, "LARGEST", len(text) - 1)
+    (tmp_path / "x.AT2.gz").write_bytes(gzip.compress(text))
+    write_zip(tmp_path / "x.zip", {"x.AT2": text})
+    found = read_motions(tmp_path)
+    assert not found.motions
+    assert all("unpacks to more than" in reason for reason in reasons_of(found).values())
+    assert len(found.unusable) == 2
+
+
 def test_a_zip_that_lies_about_its_sizes_ends_in_a_reason(tmp_path):
     body = zlib.compress(b"0.0 " * 2**22, 9)[2:-4]  # 16 MiB, said to be 1000 bytes
     name = b"x.AT2"

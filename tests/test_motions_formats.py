@@ -138,6 +138,16 @@ def test_unit_and_sensitivity_can_be_stated(tmp_path):
     np.testing.assert_allclose(motion.horizontal, (COUNTS - COUNTS.mean()) / 1000, atol=1e-12)
 
 
+def test_the_clock_of_a_miniseed_recorder_is_no_ground_motion_whatever_is_stated(tmp_path):
+    write_mseed(tmp_path / "all.mseed", trace("HNE"), trace("LCQ"), trace("LCE"))
+    found = read_motions(tmp_path, confirmed=["*"], options=ReadOptions(unit="cm/s2"))
+    assert [motion.name for motion in found.motions] == ["CI.LRL..HNE"]
+    assert not found.unusable
+    assert [left.reason for left in found.left_out] == [
+        f"no record: {code}, the recorder's clock" for code in ("LCQ", "LCE")
+    ]
+
+
 def test_a_gap_costs_that_channel_and_no_other(tmp_path):
     later = trace("HNN", start=START + 60)
     write_mseed(tmp_path / "all.mseed", trace("HNE"), trace("HNN"), later)

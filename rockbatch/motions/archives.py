@@ -106,8 +106,8 @@ def files_in(folder: Path) -> list[Path]:
     return [member.path for member in members(archive) if member.path.parent == folder and not member.refusal]
 
 
-def content(path: Path, first: int = LARGEST) -> bytes:
-    """The ``first`` bytes of a file, unpacked where it is a .gz or lies in an archive.
+def content(path: Path, first: int | None = None) -> bytes:
+    """What a file holds, or its ``first`` bytes, unpacked where it is a .gz or lies in an archive.
 
     Raises ``InputError`` for what is damaged, or larger than allowed, ``OSError`` for what cannot be read.
     """
@@ -118,14 +118,16 @@ def content(path: Path, first: int = LARGEST) -> bytes:
     if size > LARGEST:
         raise InputError(f"larger than {LARGEST // 2**20} MiB")
     with path.open("rb") as file:
-        return _from_gzip(file.read(), first) if path.suffix.lower() == ".gz" else file.read(first)
+        if path.suffix.lower() == ".gz":
+            return _from_gzip(file.read(LARGEST), first)
+        return file.read(LARGEST if first is None else first)
 
 
-def _from_gzip(data: bytes, first: int) -> bytes:
+def _from_gzip(data: bytes, first: int | None) -> bytes:
     most = min(LARGEST, max(_NEVER_TOO_LARGE, _GROWTH * len(data)))
     try:
         with gzip.GzipFile(fileobj=io.BytesIO(data)) as file:
-            unpacked = file.read(min(first, most + 1))
+            unpacked = file.read(most + 1 if first is None else first)
     except (*_DAMAGED, OSError):  # gzip's own errors are OSErrors
         raise InputError("not a gzip file, or a damaged one; fetch it again") from None
     if len(unpacked) > most:
@@ -135,7 +137,7 @@ def _from_gzip(data: bytes, first: int) -> bytes:
     return unpacked
 
 
-def _from_zip(archive: Path, path: Path, first: int) -> bytes:
+def _from_zip(archive: Path, path: Path, first: int | None) -> bytes:
     with _opened(archive) as opened:
         allowed = (info for info in opened.infolist() if archive / _within(info) == path and not _refusal(info))
         info = next(allowed, None)
@@ -143,7 +145,7 @@ def _from_zip(archive: Path, path: Path, first: int) -> bytes:
             raise InputError("no longer in the archive")
         try:
             with opened.open(info) as file:
-                data = file.read(min(first, info.file_size))
+                data = file.read(info.file_size if first is None else first)
         except _DAMAGED:
             raise InputError("damaged within its archive; fetch the archive again") from None
     if data.startswith(_MAGIC):

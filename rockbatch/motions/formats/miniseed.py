@@ -11,7 +11,7 @@ from rockbatch.motions.formats import stationxml
 from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.formats.with_obspy import read_stream
 from rockbatch.motions.motion import Unusable
-from rockbatch.motions.orientation import UNKNOWN, Orientation, orientation_of
+from rockbatch.motions.orientation import UNKNOWN, Orientation, is_clock, orientation_of
 from rockbatch.units import acceleration_factor
 
 if TYPE_CHECKING:
@@ -86,6 +86,8 @@ def _component(name: str, source: str, file: RecordFile, trace: "Trace", known: 
     stats = trace.stats
     if not np.issubdtype(trace.data.dtype, np.number):
         raise InputError(f"{trace.id} holds text, not samples")
+    if is_clock(stats.channel):
+        raise InputError(f"{trace.id} is the recorder's clock, no ground motion")
     start = stats.starttime.timestamp
     entries = [channel for channel in known if channel.id == trace.id]
     entry = next((channel for channel in entries if channel.start <= start < channel.end), None)
