@@ -37,7 +37,20 @@ from national_files import (
 
 from rockbatch.errors import InputError
 from rockbatch.motions import read_motions
-from rockbatch.motions.formats import afad, bhrc, columns, csmnc, cwa, dyna, geonet, renadic, unam, usc
+from rockbatch.motions.formats import (
+    RecordFile,
+    afad,
+    bhrc,
+    columns,
+    csmnc,
+    cwa,
+    dyna,
+    geonet,
+    read_record,
+    renadic,
+    unam,
+    usc,
+)
 from rockbatch.motions.motion import Unusable
 
 
@@ -242,6 +255,21 @@ def test_components_point_where_bhrc_and_csmnc_say():
     assert (east.orientation.azimuth, up.orientation.vertical) == (90.0, True)
     assert east.station == up.station
     assert not read(csmnc_text(kind="CORRECTED ACCELERATION"), "x.dat")[0].raw
+
+
+def test_csmncs_headers_of_other_years_are_read_too():
+    """As its own description has them: a misspelt word, a place before the station's code, fewer lines, no zeros."""
+    text = (
+        csmnc_text(np.round(A / 1000, 3), "V")
+        .replace("ACCELERATION  ", "ACCCELERATION  ")
+        .replace("0.005  SEC", ".005 SEC")
+    )
+    text = text.replace("STATION: 51BXD", "STATION: ZHONGGUANCUN（91ZGC）").replace("SITE CONDITION: ROCK\n", "")
+    text = text.replace("\nCSMNC\n", "\n").replace("TIME:  20  SEC", "TIME: 20 SEC SITE CONDITION: soil")
+    (component,) = list(read_record(RecordFile(Path("x.dat"), "x.dat", text.encode("gb18030"))))
+    np.testing.assert_allclose(component.acceleration, np.round(A / 1000, 3) / 100, atol=1e-8)
+    assert component.orientation.vertical
+    assert component.dt == 0.005
 
 
 @pytest.mark.parametrize(

@@ -1,7 +1,8 @@
 """CSMNC files (China Strong Motion Networks Center): one component, uncorrected or corrected.
 
 Some sixteen lines of text ("COMP. EW", "NO. OF POINTS: … EQUALLY SPACED INTERVALS OF: … SEC"), then the accelerations,
-eight to a line between blanks. The layout is that of the Center's own files, such as those of Lushan 2013.
+eight to a line between blanks. The layout is that of the Center's own files, such as those of Lushan 2013, and of its
+description of them; lines in between differ from year to year.
 """
 
 import re
@@ -43,7 +44,7 @@ def _parse(text: str) -> list[Recording]:
     """The recording of a file; ``InputError`` with the line where it is not whole."""
     lines = lines_of(text)
     _, kind = line_with(_KIND, lines, _MOST, "UNCORRECTED ACCELERATION UNIT: CM/SEC/SEC")
-    if not kind["what"].upper().startswith("ACCEL"):
+    if not kind["what"].upper().startswith("ACC"):  # the Center's own description has "ACCCELERATION"
         raise InputError(f'found "{kind["what"]}"; expected accelerations: take the file that has them')
     label = line_with(_COMPONENT, lines, _MOST, "COMP. EW")[1]["label"]
     station = line_with(_STATION, lines, _MOST, "STATION: …")[1]["code"]
@@ -60,7 +61,7 @@ def _parse(text: str) -> list[Recording]:
             values=spaced_numbers(lines, first, npts, _PER_LINE),
             unit=kind["unit"],
             station=f"{station}, {lines[1].strip()[:60]}, {'un' if kind['un'] else ''}corrected",
-            codes=("CN", station[:5], "", label.upper()),
+            codes=("CN", "".join(c for c in station if c.isascii() and c.isalnum())[:5], "", label.upper()),
             uncorrected=bool(kind["un"]),
             stated_peak=None if peak is None else number_in(peak["peak"], at + 1),
             header={"station": station, "event": lines[2].strip()[:60]},
