@@ -407,11 +407,12 @@ def test_channels_that_begin_at_different_times_need_a_clock():
     assert second.start - first.start == pytest.approx(0.5)
 
 
-def test_each_part_of_a_recording_in_two_files_is_paired_within_itself(tmp_path):
-    """RENADIC's "parte1" and "parte2": one station, no clock, and a vertical in each."""
+@pytest.mark.parametrize("trigger", [UNSET, "2/27/2010 3:55:43.000"])
+def test_each_part_of_a_recording_in_two_files_is_paired_within_itself(tmp_path, trigger):
+    """RENADIC's "parte1" and "parte2": one station, one time of triggering or none, and a vertical in each."""
     for part, factor in ((1, 1.0), (2, 0.5)):
         channels = (
-            renadic_channel(label, factor * x / 100, trigger=UNSET) for label, x in (("L", A), ("V", C), ("T", B))
+            renadic_channel(label, factor * x / 100, trigger=trigger) for label, x in (("L", A), ("V", C), ("T", B))
         )
         text = "\n".join(line for channel in channels for line in channel)
         (tmp_path / f"angol1002271parte{part}.v1").write_bytes(text.encode("latin-1"))
