@@ -129,7 +129,7 @@ def test_starts_that_jitter_by_less_than_a_tenth_of_a_step_count_as_simultaneous
     np.testing.assert_array_equal(motion.horizontal, h[shift:])
     np.testing.assert_array_equal(motion.vertical, v[: len(v) - shift])
     (note,) = [note for note in motion.notes if "simultaneous" in note]
-    assert note.startswith(f"vertical {abs(late - shift * 0.005) * 1e3:.3g} ms {'late' if late > 0 else 'early'}")
+    assert note.startswith(f"vertical {abs(late - shift * 0.005) * 1e3:.2g} ms {'late' if late > 0 else 'early'}")
     assert not any("interpolated" in note for note in motion.notes)
     t = 0.005 * np.arange(6)
     exact = np.interp(t + shift * 0.005 - late, t, v)[: len(v) - shift]

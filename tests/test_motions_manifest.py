@@ -234,20 +234,21 @@ def test_the_draft_has_a_line_to_fill_in_for_each_unit_and_interval_that_a_file_
     numbers = [f"{value:.6f}" for value in wiggle(50)]
     (tmp_path / "timed.txt").write_text("".join(f"{i / 100} {value}\n" for i, value in enumerate(numbers)))
     (tmp_path / "plain.acc").write_text("# unit: g\n" + "\n".join(numbers) + "\n")
+    (tmp_path / "nothing.acc").write_text("\n".join(numbers) + "\n")
     write_at2(tmp_path, "bare.AT2", wiggle(50), unit="ACCELERATION TIME SERIES")
     trace("HNE", wiggle(300).astype(np.float32)).write(str(tmp_path / "e.sac"), format="SAC")
-    assert len(read_motions(tmp_path).unusable) == 4
+    assert len(read_motions(tmp_path).unusable) == 5
     draft = write_draft(tmp_path)
-    assert len(read_motions(tmp_path).unusable) == 4
+    assert len(read_motions(tmp_path).unusable) == 5
     text = draft.read_text(encoding="utf-8")
     asked = '# unit =   # of its numbers: "g", "g/10", "m/s2", "cm/s2", "gal" or "mm/s2"\n'
-    assert (text.count(asked), text.count("# dt =   # its sampling interval [s]\n")) == (3, 1)
+    assert (text.count(asked), text.count("# dt =   # its sampling interval [s]\n")) == (4, 2)
     draft.write_text(text.replace("# unit =   #", 'unit = "g"   #').replace("# dt =   #", "dt = 0.01   #"))
     found = read_motions(tmp_path)
     assert not found.unusable
     peaks = {motion.name: motion.pga / 9.81 for motion in found.motions}
-    assert set(peaks) == {"bare", "e", "plain", "timed"}
-    for name in ("bare", "plain", "timed"):
+    assert set(peaks) == {"bare", "e", "nothing", "plain", "timed"}
+    for name in ("bare", "nothing", "plain", "timed"):
         assert peaks[name] == pytest.approx(np.abs(wiggle(50)).max(), abs=1e-6)
 
 

@@ -72,4 +72,4 @@ def _offset(first: Component, second: Component, name: str) -> tuple[float, list
     if abs(jitter) <= _CLOCK:
         return even, []
     when = "late" if jitter > 0 else "early"
-    return even, [f"{name} {abs(jitter) * 1e3:.3g} ms {when}, {abs(jitter) / step:.2g} of dt: taken as simultaneous"]
+    return even, [f"{name} {abs(jitter) * 1e3:.2g} ms {when}, {abs(jitter) / step:.2g} of dt: taken as simultaneous"]

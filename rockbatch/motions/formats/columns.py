@@ -69,15 +69,17 @@ def _parse(text: str, options: ReadOptions) -> list[Recording]:
     unit = stated_unit(header) or options.unit
     wanted = [i for i, column in enumerate(columns) if not column.is_time and column.label != "-"]
     lacking = [f"{_called(i, columns[i])} has no unit" for i in wanted if not (columns[i].unit or unit)]
+    step = stated_step(header) or options.dt
     if lacking:
+        untimed = step is None and not any(column.is_time for column in columns)
         raise UnstatedError(
             f"{'; '.join(lacking)}; write it in the header, e.g. # time(s) NS(cm/s2), "
             'or state it in the study, e.g. unit = "cm/s2"',
-            "unit",
+            *(("unit", "dt") if untimed else ("unit",)),
         )
     if not wanted:
         raise InputError("found a column of time and no other")
-    dt, values, moved = _sampled(columns, table, stated_step(header) or options.dt)
+    dt, values, moved = _sampled(columns, table, step)
     return [
         Recording(
             label=columns[i].label,
