@@ -28,8 +28,14 @@ _COLUMNS = {
     "base_tilt_rad": (1000, Head("base tilt [mrad]", ".3f", "base_tilt_rad × 1000: tilt of the base after the record")),
     "settlement_m": (1000, Head("settlement [mm]", ".2f", "settlement_m × 1000")),
     "settlement_other_law_m": (1000, Head("by the other law [mm]", ".2f", "settlement_other_law_m × 1000")),
-    "settlement_drift_m_s": (1000, Head("drift [mm/s]", ".3f", "settlement_drift_m_s × 1000: how fast it went on then")),
-    "theta_res_drift_per_s": (1, Head("drift [1/s]", ".1e", "theta_res_drift_per_s: how fast the residual went on then")),
+    "settlement_drift_m_s": (
+        1000,
+        Head("drift [mm/s]", ".3f", "settlement_drift_m_s × 1000: how fast it went on then"),
+    ),
+    "theta_res_drift_per_s": (
+        1,
+        Head("drift [1/s]", ".1e", "theta_res_drift_per_s: how fast the residual went on then"),
+    ),
     "residual_s": (1, Head("read at [s]", ".2f", "residual_s: when residual rotation, tilt and settlement were read")),
     "impacts": (1, Head("impacts", ".0f")),
     "separations": (1, Head("separations", ".0f")),
