@@ -8,7 +8,6 @@ components, processed alike, and its samples are like nothing in the other one.
 
 import hashlib
 import math
-import re
 from collections.abc import Sequence, Set
 from pathlib import Path
 
@@ -16,7 +15,7 @@ import numpy as np
 
 from rockbatch.motions.archives import bare
 from rockbatch.motions.common_span import overlap
-from rockbatch.motions.component import NOWHERE, Component
+from rockbatch.motions.component import NOWHERE, Component, file_of
 from rockbatch.motions.formats import is_usual
 from rockbatch.motions.motion import LeftOut, Samples
 from rockbatch.motions.orientation import UNKNOWN, same_azimuth
@@ -88,8 +87,8 @@ def _preference(components: Sequence[Component]) -> list[tuple[object, ...]]:
 
 
 def _file(component: Component) -> str:
-    """Its file: what a source has before the label of one of several components."""
-    return component.folder + "/" + re.sub(r" \([^()]*\)$", "", component.source)
+    """Its file, by folder and source."""
+    return f"{component.folder}/{file_of(component.source)}"
 
 
 def _samples(component: Component) -> bytes:

@@ -12,7 +12,7 @@ from rockbatch.errors import InputError, UnstatedError
 from rockbatch.files import legible
 from rockbatch.motions import archives, fema_p695
 from rockbatch.motions.baseline import Offset, corrected
-from rockbatch.motions.component import Component
+from rockbatch.motions.component import Component, file_of
 from rockbatch.motions.doubles import without_doubles
 from rockbatch.motions.finding import MANIFESTS, Found, files_of
 from rockbatch.motions.formats import HEAD, ReadOptions, RecordFile, format_of, read_record
@@ -22,7 +22,6 @@ from rockbatch.motions.orientation import counted, is_clock, split_stem, unknown
 from rockbatch.motions.pairing import to_motions
 from rockbatch.units import GRAVITY
 
-_SEVERAL = re.compile(r" \([^()]*\)$")  # what a source has behind, where its file has several components
 _RSN = re.compile(r"RSN[_ ]?0*(\d+)(?!\d)", re.IGNORECASE)
 
 Paths = str | os.PathLike[str] | Sequence[str | os.PathLike[str]]
@@ -131,7 +130,7 @@ def read_files(
 def _without_renamed(readings: Sequence[Reading], found: Sequence[Found]) -> list[Reading]:
     """With files left out that no reader takes by their names, but are copies, byte for byte, of one that is a record."""
     refused = {reading.source for reading in readings if isinstance(reading, Unusable)}
-    records = {_SEVERAL.sub("", reading.source) for reading in readings if isinstance(reading, Component)}
+    records = {file_of(reading.source) for reading in readings if isinstance(reading, Component)}
     unknown_ones = [file for file in found if file.source in refused and not file.refusal and _is_unknown(file)]
     heads = {_content(file, HEAD) for file in unknown_ones}
     alike = [file for file in found if heads and file.source in records and _content(file, HEAD) in heads]

@@ -5,10 +5,9 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 
 from rockbatch.motions.common_span import overlap
-from rockbatch.motions.component import Component
+from rockbatch.motions.component import Component, file_of
 
 _NUMBERED = re.compile(r"RSN\d+")
-_OF_FILE = re.compile(r" \([^()]*\)$")
 
 
 def by_station(components: Iterable[Component]) -> list[list[Component]]:
@@ -61,7 +60,7 @@ def _by_file(record: list[Component]) -> Iterator[list[Component]]:
     """One set for each file that holds a whole one, where several do, and one of the rest; else all together."""
     files: dict[str, list[Component]] = {}
     for component in record:
-        files.setdefault(_OF_FILE.sub("", component.source), []).append(component)
+        files.setdefault(file_of(component.source), []).append(component)
     whole = [components for components in files.values() if _is_whole(components)]
     if len(whole) < 2:
         yield record
