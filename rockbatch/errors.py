@@ -11,3 +11,11 @@ class InputError(ValueError):
     def __init__(self, *problems: str) -> None:
         super().__init__("\n".join(problems))
         self.problems = problems
+
+
+class UnstatedError(InputError):
+    """A record that lacks what its user can state; ``keys`` are those of a manifest that state it."""
+
+    def __init__(self, problem: str, *keys: str) -> None:
+        super().__init__(problem)
+        self.keys = keys

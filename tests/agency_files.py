@@ -138,8 +138,8 @@ BBP = "\n".join(
 )
 
 
-def knet_text(direction: str = "E-W", seconds: int = 2, offset: int = 4000) -> tuple[str, np.ndarray]:
-    counts = np.round(wiggle(200) * 1e5).astype(int) + offset
+def knet_text(direction: str = "E-W", seconds: int = 2, offset: int = 4000, seed: int = 1) -> tuple[str, np.ndarray]:
+    counts = np.round(wiggle(200, seed) * 1e5).astype(int) + offset
     rows = "\n".join("".join(f"{value:9d}" for value in counts[i : i + 8]) for i in range(0, 200, 8))
     header = (
         "Origin Time       2018/01/24 19:51:00\nLat.              41.0\nLong.             142.5\n"

@@ -141,7 +141,7 @@ def test_motions_shows_what_is_there_and_what_is_not_used(tmp_path, capsys):
     assert "GOOD090" in shown
     assert "0.500" in shown
     assert "notes.doc: no record: " in shown
-    assert "records.zip: not a format that rockbatch reads" in shown
+    assert "records.zip: not a zip archive, or a cut one" in shown
 
 
 def test_help_loads_neither_compiler_nor_tables_nor_obspy():

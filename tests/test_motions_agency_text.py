@@ -1,4 +1,4 @@
-"""GeoNet, DYNA, RENADIC and CWA files, written here by their layouts: values, directions, times, and honest refusals."""
+"""Agencies' text files, written here by their layouts: values, directions, times, and honest refusals."""
 
 import io
 import tomllib
@@ -26,9 +26,31 @@ from agency_files import (
 from fixed_column_files import read
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from national_files import (
+    afad_text,
+    bhrc_text,
+    csmnc_text,
+    unam_text,
+    usc_channel,
+    usc_text,
+)
 
 from rockbatch.errors import InputError
-from rockbatch.motions.formats import columns, cwa, dyna, geonet, renadic
+from rockbatch.motions import read_motions
+from rockbatch.motions.formats import (
+    RecordFile,
+    afad,
+    bhrc,
+    columns,
+    csmnc,
+    cwa,
+    dyna,
+    geonet,
+    read_record,
+    renadic,
+    unam,
+    usc,
+)
 from rockbatch.motions.motion import Unusable
 
 
@@ -45,6 +67,13 @@ class Case:
     start: float | None
 
 
+AFAD, BHRC, CSMNC, UNAM, USC = (
+    (afad.is_afad_file, afad.read_afad_stream),
+    (bhrc.is_bhrc_file, bhrc.read_bhrc_stream),
+    (csmnc.is_csmnc_file, csmnc.read_csmnc_stream),
+    (unam.is_unam_file, unam.read_unam_stream),
+    (usc.is_usc_file, usc.read_usc_stream),
+)
 GEONET, DYNA, RENADIC, CWA, COLUMNS = (
     (geonet.is_geonet_file, geonet.read_geonet_stream),
     (dyna.is_dyna_file, dyna.read_dyna_stream),
@@ -52,6 +81,7 @@ GEONET, DYNA, RENADIC, CWA, COLUMNS = (
     (cwa.is_cwa_file, cwa.read_cwa_stream),
     (columns.is_bbp_file, columns.read_bbp_stream),
 )
+UNSET = "1/1/1980 0:00:00.000"
 RECORDED = moment(2016, 11, 13, 11, 2) + 19.715
 CASES = [
     Case("GEONET", ".V1A", geonet_text(1), ("N28W", "S62W", "Up"), (A / 1e3, B / 1e3, C / 1e3), GEONET, RECORDED),
@@ -65,8 +95,21 @@ CASES = [
         moment(2010, 2, 27, 6, 34) + 11.5,
     ),
     Case("CWA", ".txt", cwa_text(), ("U", "N", "E"), (C / 100, A / 100, B / 100), CWA, moment(1999, 9, 20, 17, 47, 2)),
+    Case(
+        *("AFAD", ".txt", afad_text(), ("NS", "EW", "UD"), (A / 100, B / 100, C / 100), AFAD),
+        moment(2017, 7, 20, 22, 30) + 58.5,
+    ),
+    Case("BHRC", ".V1", bhrc_text(), ("L", "V", "T"), tuple(x / 1000 * 9.81 for x in (A, C, B)), BHRC, None),
+    Case("CSMNC", ".dat", csmnc_text(), ("EW",), (A / 100,), CSMNC, None),
+    Case(
+        *("UNAM", ".191", unam_text(), ("N00E", "N90E", "V"), (A / 100, B / 100, C / 100), UNAM),
+        moment(2017, 9, 19, 18, 14) + 44.5,
+    ),
+    Case("USC", ".s0a", usc_text(), ("N90E", "UP", "N00E"), tuple(x / 1000 * 9.81 for x in (A, C, B)), USC, None),
     Case("BBP", ".bbp", BBP, ("NS", "EW", "UD"), (A / 100, B / 100, C / 100), COLUMNS, None),
 ]
+# m/s²: RENADIC and USC print 1e-3 g/10, so half of 1e-4 g, BHRC and CSMNC seven digits; the others all that there is
+ROUGHLY = {"RENADIC": 5.1e-5 * 9.81, "USC": 5.1e-5 * 9.81, "BHRC": 1e-6, "CSMNC": 1e-5}
 every_format = pytest.mark.parametrize("case", CASES, ids=lambda case: f"{case.name}{case.suffix}")
 
 
@@ -78,11 +121,8 @@ def test_every_component_comes_out_in_m_s2_with_step_direction_and_time(case, ne
     for component, label, values in zip(found, case.labels, case.values, strict=True):
         assert component.name == (f"STA.{label}" if len(found) > 1 else "STA")
         assert component.dt == pytest.approx(0.005, rel=1e-12)
-        # RENADIC prints 1e-3 g/10, so half of 1e-4 g; the others print more than these values need
-        np.testing.assert_allclose(
-            component.acceleration, values, atol=5.1e-5 * 9.81 if case.name == "RENADIC" else 1e-9
-        )
-        assert component.orientation.vertical == (label in ("Up", "U", "V", "UD"))
+        np.testing.assert_allclose(component.acceleration, values, atol=ROUGHLY.get(case.name, 1e-9))
+        assert component.orientation.vertical == (label in ("Up", "UP", "U", "V", "UD"))
         assert not component.orientation.down
         assert component.start == case.start
         assert component.notes == ()
@@ -169,6 +209,11 @@ def test_raw_records_say_that_the_instruments_zero_is_in_them_and_corrected_ones
         "DYNA.ASC": False,
         "RENADIC.v1": True,
         "CWA.txt": False,
+        "AFAD.txt": True,
+        "BHRC.V1": True,
+        "CSMNC.dat": True,
+        "UNAM.191": True,
+        "USC.s0a": True,
         "BBP.bbp": False,
     }
     assert read(dyna_text(BASELINE_CORRECTION="BASELINE NOT REMOVED"), "x.ASC")[0].raw
@@ -200,6 +245,57 @@ def test_afads_way_of_writing_times_and_components_is_read():
     (up,) = read(text, "20230206011704_4614_ap_Acc_U.asc")
     assert up.orientation.vertical
     assert up.start == moment(2023, 2, 6, 1, 17) + 20.5
+
+
+def test_components_point_where_bhrc_and_csmnc_say():
+    longitudinal, vertical, transverse = read(bhrc_text(), "5522-1.V1")
+    assert (longitudinal.orientation.azimuth, transverse.orientation.azimuth) == (324.0, 54.0)
+    assert vertical.orientation.vertical
+    east, up = (read(csmnc_text(label=label), f"{label}.dat")[0] for label in ("EW", "UD"))
+    assert (east.orientation.azimuth, up.orientation.vertical) == (90.0, True)
+    assert east.station == up.station
+    assert not read(csmnc_text(kind="CORRECTED ACCELERATION"), "x.dat")[0].raw
+
+
+def test_csmncs_headers_of_other_years_are_read_too():
+    """As its own description has them: a misspelt word, a place before the station's code, fewer lines, no zeros."""
+    text = (
+        csmnc_text(np.round(A / 1000, 3), "V")
+        .replace("ACCELERATION  ", "ACCCELERATION  ")
+        .replace("0.005  SEC", ".005 SEC")
+    )
+    text = text.replace("STATION: 51BXD", "STATION: ZHONGGUANCUN（91ZGC）").replace("SITE CONDITION: ROCK\n", "")
+    text = text.replace("\nCSMNC\n", "\n").replace("TIME:  20  SEC", "TIME: 20 SEC SITE CONDITION: soil")
+    (component,) = list(read_record(RecordFile(Path("x.dat"), "x.dat", text.encode("gb18030"))))
+    np.testing.assert_allclose(component.acceleration, np.round(A / 1000, 3) / 100, atol=1e-8)
+    assert component.orientation.vertical
+    assert component.dt == 0.005
+
+
+@pytest.mark.parametrize(
+    ("origin", "first", "day"),
+    [("23:58:02.7", "00:00:01", 20), ("00:00:10", "23:59:40", 18), ("12:00:00", "12:00:05", 19)],
+)
+def test_a_record_of_unam_begins_on_the_day_that_is_nearest_to_its_earthquake(origin, first, day):
+    text = unam_text(**{"HORA EPICENTRO (GMT)": origin, "HORA DE LA PRIMERA MUESTRA (GMT)": first})
+    hour, minute, second = map(int, first.split(":"))
+    assert read(text, "x.012")[0].start == moment(2017, 9, day, hour, minute, second)
+
+
+def test_usc_times_from_film_are_interpolated_and_a_mark_between_channels_is_read_over():
+    times = np.cumsum([0, *np.random.default_rng(1).integers(4, 7, NPTS - 1)]) / 1000
+    channels = [usc_channel("N90E", A / 100, times, ("/& END",)), usc_channel("DOWN", C / 100, times)]
+    east, down = read("\n".join(line for channel in channels for line in channel), "x.s0a")
+    assert "uneven times" in east.notes[0]
+    at = np.rint(times / east.dt).astype(int)
+    np.testing.assert_allclose(east.acceleration[at], A / 1000 * 9.81, atol=ROUGHLY["USC"])
+    assert down.orientation.down
+
+
+@pytest.mark.parametrize("case", CASES[-6:-1], ids=lambda case: case.name)
+@pytest.mark.parametrize("name", ["x.txt", "x.dat", "STATION", "x.V1", "x.191"])
+def test_national_files_are_told_by_their_content_in_a_file_of_any_name(case, name):
+    assert [component.orientation.label for component in read(case.text, name)] == list(case.labels)
 
 
 def test_taiwanese_local_time_is_eight_hours_ahead():
@@ -260,6 +356,35 @@ def test_a_unit_that_is_not_understood_costs_its_channel_with_the_reason(text, n
         (renadic_text().replace("POINTS =     43", "POINTS = 999999999", 1), "x.v1", "take 200000000 lines"),
         (renadic_text().replace("/&", "//", 1), "x.v1", 'line 37: found "// .*expected "/&" after 43 pairs'),
         (renadic_text().replace("  0.055", "  0.050", 1), "x.v1", "channel L from line 1 on: time does not grow"),
+        (csmnc_text(count=44), "x.dat", "line 22: found 3 numbers; expected 4"),
+        (csmnc_text(count=999999999), "x.dat", "says 999999999 values, 125000000 lines from line 17 on, .*there are 6"),
+        (csmnc_text(kind="UNCORRECTED VELOCITY"), "x.dat", 'found "VELOCITY"; expected accelerations'),
+        (csmnc_text().replace("E+2 ", "E+x ", 1), "x.dat", r"line \d+: found .*expected a number"),
+        (afad_text(**{"NUMBER OF DATA": "44"}), "x.txt", "132 values, 44 lines from line 19 on, but there are 43"),
+        (afad_text(**{"RAW PGA VALUES (gal)": None}), "x.txt", "which tells the unit"),
+        (afad_text(scale=1 / 981), "x.txt", "unit of the columns is another one; write them as text columns"),
+        (afad_text(**{"SAMPLING INTERVAL (sec)": None}), "x.txt", "the header lacks SAMPLING INTERVAL"),
+        (afad_text(**{"NUMBER OF DATA": "many"}), "x.txt", 'NUMBER OF DATA: "many"; expected a number'),
+        (unam_text(**{"NUM. TOTAL DE MUESTRAS, C1-C6": "/43/43/42"}), "x.191", "42, 43; expected the same for all"),
+        (unam_text(**{"NUM. TOTAL DE MUESTRAS, C1-C6": "/44/44/44"}), "x.191", "132 values from line .*it is cut"),
+        (unam_text(**{"NUM. TOTAL DE MUESTRAS, C1-C6": "/42/42/42"}), "x.191", "after the 42 declared samples"),
+        (unam_text(**{"FACTOR DE DECIMACION": "2"}), "x.191", "samples were left out"),
+        (unam_text(**{"UNIDADES DE LOS DATOS": None}), "x.191", "the header lacks UNIDADES DE LOS DATOS"),
+        (
+            unam_text(**{"ORIENTACION C1-C6 (rumbo;orientacion)": "/V/N90E/N00E"}),
+            "x.191",
+            "expected the directions V N90E",
+        ),
+        (bhrc_text(volume=2), "x.V1", "Volume 2, whose layout is not known; take the .V1 file"),
+        (bhrc_text(rate=100.0), "x.V1", "43 points in 0.215 s, line 22 100 samples per second"),
+        (bhrc_text().replace("/&", "//", 1), "x.V1", 'line 33: found "//"; expected "/& after 43 values'),
+        (bhrc_text().replace("POINTS =     43", "POINTS =     42", 1), "x.V1", "line 32: found .*expected 2 values"),
+        (
+            usc_text().replace("=   0.210 SEC", "=   0.310 SEC", 1),
+            "x.s0a",
+            "line 11 says 0.31 s, but the last time is 0.21 s",
+        ),
+        (usc_text().replace("\n   0.000", "\n0.000  ", 1), "x.s0a", "line 28: .*expected a blank and ten columns"),
         (cwa_text(**{"SampleRate(Hz)": "100"}), "x.txt", "the header says 100 Hz, but time grows by 0.005 s"),
         (cwa_text(**{"RecordLength(sec)": "90"}), "x.txt", "the header says 90 s, but there are 0.215 s"),
         (cwa_text(DataSequence="Time U(+); N(+)"), "x.txt", "found 4 columns; the header says time and U, N"),
@@ -278,6 +403,57 @@ def test_channels_that_begin_at_different_times_need_a_clock():
         read(text, "x.v1")
     first, second = read(text.replace("1/1/1980", "2/27/2010"), "x.v1")
     assert second.start - first.start == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize("trigger", [UNSET, "2/27/2010 3:55:43.000"])
+def test_each_part_of_a_recording_in_two_files_is_paired_within_itself(tmp_path, trigger):
+    """RENADIC's "parte1" and "parte2": one station, one time of triggering or none, and a vertical in each."""
+    coda = [np.random.default_rng(seed).standard_normal(NPTS) for seed in range(3)]
+    for part, series in ((1, (A / 100, C / 100, B / 100)), (2, coda)):
+        channels = (renadic_channel(label, x, trigger=trigger) for label, x in zip("LVT", series, strict=True))
+        text = "\n".join(line for channel in channels for line in channel)
+        (tmp_path / f"angol1002271parte{part}.v1").write_bytes(text.encode("latin-1"))
+    found = read_motions(tmp_path)
+    assert not found.unusable
+    assert [(motion.source, motion.vertical_source) for motion in found.motions] == [
+        (f"angol1002271parte{part}.v1 ({label})", f"angol1002271parte{part}.v1 (V)")
+        for part in (1, 2)
+        for label in ("L", "T")
+    ]
+
+
+def with_a_clock(folder: Path, label: str = "INTC") -> None:
+    late = 3.0 + 0.005 * np.arange(NPTS)
+    channels = [renadic_channel(name, x / 100, trigger=UNSET) for name, x in (("L", A), ("V", C), ("T", B))]
+    channels.append(renadic_channel(label, A / 100, late, number=4, trigger=UNSET))
+    text = "\n".join(line for channel in channels for line in channel)
+    (folder / "x.v1").write_bytes(text.encode("latin-1"))
+
+
+@pytest.mark.parametrize("label", ["INTC", "IntC", "TIME CODE", "IRIG-E", "Ext Clock"])
+def test_the_recorders_clock_is_no_ground_motion_and_nobody_misses_it(tmp_path, label):
+    with_a_clock(tmp_path, label)
+    found = read_motions(tmp_path)
+    assert [motion.name for motion in found.motions] == ["x.L", "x.T"]
+    assert not found.unusable
+    assert [(left.source, left.reason) for left in found.left_out] == [
+        (f"x.v1 ({label})", f"no record: {label}, the recorder's clock")
+    ]
+
+
+def test_one_component_that_is_not_understood_can_be_left_out_and_the_others_stay(tmp_path):
+    with_a_clock(tmp_path, "TILT")
+    text = (tmp_path / "x.v1").read_text(encoding="latin-1").replace("  3.", "  0.")
+    (tmp_path / "x.v1").write_text(text, encoding="latin-1")
+    (refused,) = read_motions(tmp_path).unusable
+    assert refused.label == "TILT"
+    (tmp_path / "motions.toml").write_text('[[record]]\nfile = "x.v1"\ncomponent = "TILT"\nuse = false\n')
+    found = read_motions(tmp_path)
+    assert [motion.name for motion in found.motions] == ["x.L", "x.T"]
+    assert [(left.name, left.reason) for left in found.left_out] == [("x.TILT", "use = false in motions.toml")]
+    (tmp_path / "motions.toml").write_text('[[record]]\nfile = "x.v1"\ncomponent = "X"\nuse = false\n')
+    with pytest.raises(InputError, match='the file has "L", "V", "T", "TILT"'):
+        read_motions(tmp_path)
 
 
 @every_format

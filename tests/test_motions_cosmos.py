@@ -46,6 +46,21 @@ def test_one_channel_comes_out_in_m_s2_with_step_direction_and_time(version, lay
     assert component.notes == ("location: Building; ground level",)
 
 
+@pytest.mark.parametrize(
+    "end", ["/&  --- End of data", "/&  ----------  End-of-data for Chan  1  ---", "End-of-data for Chan  1"]
+)
+def test_a_v1c_file_of_cgs_is_read_with_its_unit_line_and_its_end_mark(end):
+    values = np.round(A / 981, 6)
+    lines = cosmos_header("Uncorrected acceleration", values, "360 deg", unit_code=2, interval_ms=5.0)
+    rows = ["".join(f"{value:9.6f}" for value in values[i : i + 8]).ljust(80) for i in range(0, NPTS, 8)]
+    declared = f"   {NPTS} acceleration pts, approx   0 secs, units=g.     (02)Format=(8f9.6)   "
+    channel = "\n".join([*lines, declared, *rows, end])
+    first, second = read(f"{channel}\n{channel.replace('360 deg', '90 deg').replace('HNE', 'HNN')}\n", "CE23837.V1C")
+    for component in (first, second):
+        np.testing.assert_allclose(component.acceleration, values * 9.81, atol=1e-12)
+        assert (component.dt, component.unit, component.raw) == (0.005, "g", True)
+
+
 def test_several_channels_of_one_file_are_one_station_and_named_by_their_directions(tmp_path):
     (tmp_path / "STA.v2").write_bytes(three_channels("Corrected").encode("latin-1"))
     found = read_motions(tmp_path)

@@ -1,12 +1,22 @@
 """One recording in several files: which one is used, and what is said about the others."""
 
+import gzip
+import zipfile
+from dataclasses import replace
+from itertools import combinations
+
+import numpy as np
 import pytest
-from agency_files import geonet_text
+from agency_files import geonet_text, renadic_channel
 from fixed_column_files import A, B, C, cosmos_text, csmip_channel, csmip_text, smc_text
-from motion_files import RECORDS, needs_records, wiggle, write_at2
+from motion_files import RECORDS, at2_text, needs_records, wiggle, write_at2
+from national_files import afad_text, bhrc_text, csmnc_text, unam_text, usc_text
 
 from rockbatch.motions import read_motions
-from rockbatch.motions.component import Seat
+from rockbatch.motions.component import Component, Seat
+from rockbatch.motions.doubles import correlation, without_doubles
+from rockbatch.motions.folder import read_files
+from rockbatch.motions.formats import RecordFile, read_record
 from rockbatch.motions.manifest_draft import draft
 
 
@@ -63,19 +73,58 @@ def test_use_in_a_manifest_decides_otherwise(tmp_path):
 @pytest.mark.parametrize("other", ["x (2).AT2", "a/x.AT2", "copy of x.AT2", "x2.AT2"])
 def test_a_copy_under_another_name_is_left_out_and_says_of_what(tmp_path, other):
     for name in ("x.AT2", other):
-        write_at2((tmp_path / name).parent, name.rsplit("/", 1)[-1], wiggle(60), title="nothing")
+        write_at2((tmp_path / name).parent, name.rsplit("/", 1)[-1], wiggle(60), title="nothing, 000")
     found = read_motions(tmp_path)
     assert [motion.source for motion in found.motions] == ["x.AT2"]
     assert left_out(found)[other].startswith("a copy of x.AT2, which is used")
 
 
 def test_a_copy_with_a_suffix_that_nobody_knows_is_no_unusable_file(tmp_path):
-    path = write_at2(tmp_path, "x.AT2", wiggle(60), title="nothing")
-    (tmp_path / "x.90").write_bytes(path.read_bytes())
-    (tmp_path / "y.90").write_bytes(path.read_bytes()[:-1] + b" ")
+    at2 = write_at2(tmp_path, "z.AT2", wiggle(60), title="nothing, 000")
+    (tmp_path / "z.90").write_bytes(at2.read_bytes())  # known by its header; columns are not
+    text = "# time(s) NS(g)\n" + "".join(f"{i / 100} {value:.6f}\n" for i, value in enumerate(wiggle(60, 2)))
+    (tmp_path / "x.txt").write_text(text)
+    (tmp_path / "x.90").write_text(text)
+    (tmp_path / "y.90").write_text(text[:-1] + " ")
+    with zipfile.ZipFile(tmp_path / "more.zip", "w") as archive:
+        archive.writestr("x.91", text)
+    (tmp_path / "x.92.gz").write_bytes(gzip.compress(text.encode()))
     found = read_motions(tmp_path)
-    assert left_out(found) == {"x.90": "a copy of x.AT2"}
+    copies = dict.fromkeys(("x.90", "more.zip/x.91", "x.92.gz"), "a copy of x.txt")
+    why = "a copy of z.AT2, which is used; write use = true in motions.toml to use this one"
+    assert left_out(found) == {**copies, "z.90": why}
     assert [file.source for file in found.unusable] == ["y.90"]
+
+
+def test_records_in_archives_and_beside_them_are_used_once(tmp_path):
+    """Downloads are kept as they came and unpacked: the file beside its archive has the shorter name."""
+    text = at2_text(wiggle(60), title="nothing, 000")
+    (tmp_path / "x.AT2").write_text(text)
+    (tmp_path / "x.AT2.gz").write_bytes(gzip.compress(text.encode()))
+    with zipfile.ZipFile(tmp_path / "peer.zip", "w") as archive:
+        archive.writestr("x.AT2", text)
+    found = read_motions(tmp_path)
+    assert [motion.source for motion in found.motions] == ["x.AT2"]
+    assert set(left_out(found)) == {"x.AT2.gz", "peer.zip/x.AT2"}
+
+
+def test_files_of_one_recording_that_are_whole_sets_are_used_once_if_their_samples_are_alike(tmp_path):
+    """Read off again, with other noise, from the same recorder at another gain: one recording. A coda: another part."""
+    noise = np.random.default_rng(1).standard_normal((3, len(A)))
+    sets = {
+        "a": (A, C, B),
+        "b": tuple(1.3 * x + 0.05 * np.abs(x).max() * n for x, n in zip((A, C, B), noise, strict=True)),
+    }
+    for name, series in {**sets, "c": tuple(noise)}.items():
+        channels = (
+            renadic_channel(label, x / 100, trigger="2/27/2010 3:55:43.000")
+            for label, x in zip("LVT", series, strict=True)
+        )
+        (tmp_path / f"{name}.v1").write_text("\n".join(line for channel in channels for line in channel))
+    found = read_motions(tmp_path, confirmed=["*"])
+    assert len(found.motions) == 4
+    assert {motion.source.partition(" ")[0] for motion in found.motions} - {"a.v1", "b.v1"} == {"c.v1"}
+    assert all(motion.vertical is not None for motion in found.motions)
 
 
 def test_the_same_recording_in_another_unit_is_told_by_its_header(tmp_path):
@@ -152,6 +201,40 @@ def test_a_sensor_is_told_by_what_both_headers_say_of_it(one, two, same):
     assert one.is_that_of(two) == two.is_that_of(one) == same
 
 
+def test_of_a_csmnc_record_the_corrected_file_is_used_and_another_point_is_another_record(tmp_path):
+    raw, corrected = csmnc_text(A), csmnc_text(A * 0.99, kind="CORRECTED ACCELERATION")
+    roof = csmnc_text(B).replace("POINT: GROUND", "POINT: ROOF")
+    write(tmp_path, raw_dat=raw, corrected_dat=corrected, roof_dat=roof)
+    found = read_motions(tmp_path)
+    assert [(motion.source, motion.processed) for motion in found.motions] == [("corrected.dat", True)]
+    assert "less corrected" in left_out(found)["raw.dat"]
+    assert "is in a structure" in found.unusable[0].reason
+
+
+@pytest.mark.parametrize(
+    ("text", "other"),
+    [
+        (afad_text(), {"20/07/2017": "21/07/2017"}),
+        (bhrc_text(), {"5522/01": "5522/02"}),
+        (unam_text(), {"2017/09/19": "2017/09/20"}),
+        (usc_text(), {"JAN 17, 1994": "FEB 17, 1994"}),
+    ],
+    ids=["AFAD", "BHRC", "UNAM", "USC"],
+)
+def test_national_files_tell_their_sensor_and_event_and_that_they_are_as_recorded(tmp_path, text, other):
+    """Read again at another gain it is the same recording; of another day it is another one."""
+    components = read_record(RecordFile(tmp_path / "x", "x", text.encode("latin-1")))
+    assert all(component.processed is False for component in components)
+    again = [replace(component, acceleration=1.3 * component.acceleration, source="y") for component in components]
+    kept, _ = without_doubles([replace(component, source="x") for component in components] + again)
+    assert len(kept) == len(components)
+    for found, changed in other.items():
+        text = text.replace(found, changed)
+    later = read_record(RecordFile(tmp_path / "y", "y", text.encode("latin-1")))
+    later = [replace(component, acceleration=1.3 * component.acceleration) for component in later]
+    assert len(without_doubles([*components, *later])[0]) == 2 * len(components)
+
+
 def test_smc_files_that_do_not_know_their_time_are_not_taken_for_one_recording(tmp_path):
     nobody_knows = (-32768,) * 6
     write(tmp_path, a_smc=smc_text(A, clock=nobody_knows), b_smc=smc_text(B, clock=nobody_knows))
@@ -189,3 +272,32 @@ def test_all_real_records_at_once_hold_each_recording_once():
     found = read_motions(RECORDS)
     samples = [(motion.dt, motion.horizontal.tobytes()) for motion in found.motions]
     assert len(set(samples)) == len(samples)
+
+
+@needs_records
+def test_real_files_of_one_recording_correlate_and_those_of_other_records_do_not():
+    """The limit lies between both; halves of a record stand for the parts of a long one."""
+    readings, _ = read_files([RECORDS])
+    components = [reading for reading in readings if isinstance(reading, Component)]
+    short = [component for component in components if len(component.acceleration) < 9000]
+
+    def way(component: Component) -> tuple[object, ...]:
+        orientation = component.orientation
+        return orientation.vertical, orientation.azimuth, orientation.azimuth is None and orientation.label
+
+    of_one = [
+        correlation(one.acceleration, two.acceleration)
+        for one, two in combinations(components, 2)
+        if one.seat.is_that_of(two.seat) and way(one) == way(two) and one.dt == two.dt and one.source != two.source
+    ]
+    of_others = [
+        correlation(one.acceleration, two.acceleration)
+        for one, two in combinations(short, 2)
+        if not one.seat.is_that_of(two.seat) and one.folder != two.folder and one.dt == two.dt
+    ]
+    halves = [(c.acceleration[: len(c.acceleration) // 2], c.acceleration[len(c.acceleration) // 2 :]) for c in short]
+    assert len(of_one) > 15
+    assert min(of_one) > 0.98
+    assert len(of_others) > 400
+    assert max(of_others) < 0.64
+    assert max(correlation(*half) for half in halves) < 0.47

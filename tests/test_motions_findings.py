@@ -15,6 +15,7 @@ from rockbatch.motions.doubles import without_doubles
 from rockbatch.motions.folder import read_files
 from rockbatch.motions.formats import ReadOptions
 from rockbatch.motions.manifest_draft import draft
+from rockbatch.motions.orientation import Orientation
 from rockbatch.motions.pairing import to_motions
 from rockbatch.motions.plausible import ALTERNATION, UNEQUAL, alternating
 from rockbatch.motions.stations import by_station
@@ -56,9 +57,9 @@ def only_reason(found) -> str:
 def grossly_odd(folder, kind: str) -> str:
     """A folder with one record that is grossly odd; its name."""
     if kind == "alternates":
-        write_at2(folder, "x.AT2", ringing(), title="nothing")
+        write_at2(folder, "x.AT2", ringing(), title="nothing, 000")
     elif kind == "PGD":
-        write_at2(folder, "x.AT2", drifting(), title="nothing")
+        write_at2(folder, "x.AT2", drifting(), title="nothing, 000")
     else:
         folder.mkdir(parents=True, exist_ok=True)
         (folder / "x.V2").write_text(cosmos_text(stage="Corrected", location="Building; roof"), encoding="latin-1")
@@ -89,8 +90,8 @@ def test_a_grossly_odd_record_is_used_only_when_it_is_confirmed(tmp_path, kind, 
 
 
 def test_confirm_in_a_study_confirms_the_pga_too_and_confirm_pga_nothing_else(tmp_path):
-    write_at2(tmp_path / "records", "high.AT2", wiggle(50, scale=60), title="nothing")
-    write_at2(tmp_path / "records", "rings.AT2", ringing(), title="nothing")
+    write_at2(tmp_path / "records", "high.AT2", wiggle(50, scale=60), title="nothing, 000")
+    write_at2(tmp_path / "records", "rings.AT2", ringing(), title="nothing, 000")
     for keys, used in (
         ("", []),
         ('confirm_pga = "*"\n', ["high"]),
@@ -107,7 +108,7 @@ def test_confirm_in_a_study_confirms_the_pga_too_and_confirm_pga_nothing_else(tm
 
 
 def test_two_gross_findings_are_told_together_and_one_key_confirms_both(tmp_path):
-    write_at2(tmp_path, "x.AT2", 20 * ringing(), title="nothing")
+    write_at2(tmp_path, "x.AT2", 20 * ringing(), title="nothing, 000")
     reason = only_reason(read_motions(tmp_path))
     assert "outside 0.001–5 g: check the unit; it alternates" in reason
     assert 'write confirm = ["x"]' in reason
@@ -122,7 +123,7 @@ def test_a_vertical_that_alternates_is_found_with_its_horizontal(tmp_path):
 
 def test_a_displacement_beyond_all_ground_is_gross_in_corrected_records_only():
     for processed, gross in ((True, True), (None, False), (False, False)):
-        component = Component("c", 0.01, drifting() * 9.81, processed=processed)
+        component = Component("c", 0.01, drifting() * 9.81, Orientation("000", azimuth=0.0), processed=processed)
         found = to_motions([component], confirmed=())
         assert len(found.unusable) == gross
         if not gross:
@@ -203,7 +204,7 @@ def test_one_horizontal_many_times_the_other_is_told_of_both(tmp_path):
 def test_unprocessed_is_a_property_that_is_told(tmp_path, capsys):
     for name, text in (("a.V1", cosmos_text(A)), ("b.V2", cosmos_text(B, "360 Deg", stage="Corrected"))):
         (tmp_path / name).write_text(text, encoding="latin-1")
-    write_at2(tmp_path, "c.AT2", wiggle(300, 2), title="nothing")
+    write_at2(tmp_path, "c.AT2", wiggle(300, 2), title="nothing, 000")
     (tmp_path / "d.txt").write_text("# time(s) NS(gal)\n" + "".join(f"{i / 100} {a}\n" for i, a in enumerate(C)))
     motions = read_motions(tmp_path).motions
     assert [motion.processed for motion in motions] == [False, True, True, None]
@@ -222,8 +223,8 @@ def test_unprocessed_is_a_property_that_is_told(tmp_path, capsys):
 def test_where_the_displacement_runs_away_there_is_no_pgd_and_it_is_said(tmp_path):
     """Half of a spike is 1 cm/s for all of the record, as a velocity would be that the file does not tell."""
     spike = np.concatenate([[0.2], wiggle(4000, 5, 0.01)])
-    write_at2(tmp_path / "records", "runs.AT2", spike, title="nothing")
-    write_at2(tmp_path / "records", "stays.AT2", wiggle(4000, 6, 0.2), title="nothing")
+    write_at2(tmp_path / "records", "runs.AT2", spike, title="nothing, 000")
+    write_at2(tmp_path / "records", "stays.AT2", wiggle(4000, 6, 0.2), title="nothing, 000")
     (tmp_path / "study.toml").write_text(STUDY)
     study = load_study(tmp_path / "study.toml")
     told = {record["record"]: record for record in describe(study, ground_motions(study))["records"]}

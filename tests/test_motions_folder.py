@@ -118,6 +118,40 @@ def test_starts_between_samples_are_met_by_interpolating_the_vertical():
     np.testing.assert_allclose(motion.vertical, ramp[1:] - 0.5, atol=1e-4)  # times since 1970 to 1e-7 s
 
 
+@pytest.mark.parametrize("late", [1e-4, -1e-4, 4.9e-4, 0.01 + 1e-4])
+def test_starts_that_jitter_by_less_than_a_tenth_of_a_step_count_as_simultaneous_and_cost_no_peak(late):
+    """0.1 ms between two clocks; the motion is linear between samples, so the error is below a tenth of a step's."""
+    h, v = np.array([0.0, 0.3, 1.0, 0.2, -0.5, 0.1]), np.array([0.1, -0.9, 0.7, 0.4, 0.0, 0.2])
+    (motion,) = to_motions(
+        [component(h, 0.005, start=1e9), component(v, 0.005, vertical=True, start=1e9 + late)], confirmed=["*"]
+    ).motions
+    shift = round(late / 0.005)
+    np.testing.assert_array_equal(motion.horizontal, h[shift:])
+    np.testing.assert_array_equal(motion.vertical, v[: len(v) - shift])
+    (note,) = [note for note in motion.notes if "simultaneous" in note]
+    assert note.startswith(f"vertical {abs(late - shift * 0.005) * 1e3:.2g} ms {'late' if late > 0 else 'early'}")
+    assert not any("interpolated" in note for note in motion.notes)
+    t = 0.005 * np.arange(6)
+    exact = np.interp(t + shift * 0.005 - late, t, v)[: len(v) - shift]
+    inside = slice(1, -1)
+    assert np.abs(motion.vertical - exact)[inside].max() < 0.1 * np.abs(np.diff(v)).max()
+
+
+def test_starts_that_are_off_by_more_than_a_tenth_of_a_step_are_interpolated():
+    ramp = np.arange(10.0)
+    (motion,) = to_motions([component(ramp, start=100.0), component(ramp, vertical=True, start=100.0015)]).motions
+    np.testing.assert_allclose(motion.vertical, ramp[1:] - 0.15, atol=1e-4)
+    assert any("interpolated" in note for note in motion.notes)
+
+
+def test_jitter_does_not_move_the_samples_of_a_finer_component_either():
+    fine, coarse = wiggle(101, 1), wiggle(51, 2)
+    pair = [component(fine, 0.005, start=1e9), component(coarse, 0.01, vertical=True, start=1e9 + 2e-4)]
+    (motion,) = to_motions(pair).motions
+    np.testing.assert_allclose(motion.horizontal, fine, rtol=1e-12)
+    np.testing.assert_allclose(motion.vertical[::2], coarse, rtol=1e-12)
+
+
 def test_steps_without_a_common_measure_cost_no_horizontal_peak():
     spike = [0, 0, 1, 0, 0]
     (motion,) = to_motions([component(spike, 0.02), component(np.arange(6), 0.015, True)]).motions
@@ -159,7 +193,7 @@ def test_every_file_is_a_motion_or_has_a_reason_and_read_me_files_are_neither(tm
     reasons = {u.source: u.reason for u in found.unusable}
     assert list(reasons) == ["archive.zip", "empty.AT2", "one.AT2", "short.AT2"]
     assert reasons["empty.AT2"] == "the file is empty"
-    assert reasons["archive.zip"] == "not a format that rockbatch reads"
+    assert reasons["archive.zip"] == "the file is empty"
     assert {left.source: left.reason for left in found.left_out} == {
         "_SearchResults.csv": "no record: a table about the records",
         "good.VT2": "no record: the velocity of a record",

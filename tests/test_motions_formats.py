@@ -14,6 +14,7 @@ from obspy import Stream, Trace, UTCDateTime
 from rockbatch.errors import InputError
 from rockbatch.motions import ReadOptions, read_motions
 from rockbatch.motions.formats import FORMATS, with_obspy
+from rockbatch.motions.manifest_draft import write_draft
 
 START = UTCDateTime(2019, 7, 6, 3, 19, 23)
 COUNTS = (wiggle(500) * 1e6).astype(np.int32)
@@ -62,6 +63,25 @@ def test_miniseed_counts_become_m_s2_by_the_station_xml_beside_it(tmp_path):
     assert (motion.name, motion.dt, motion.source, motion.vertical_source) == ("n", 0.01, "n.mseed", "z.mseed")
     assert any("from StationXML" in note for note in motion.notes)
     assert any("mean over the record" in note for note in motion.notes)
+
+
+@pytest.mark.parametrize(
+    ("unit", "per_m_s2"),
+    [
+        *(
+            ("M/S**2", 1.0),
+            ("m/s/s", 1.0),
+            ("m/s^2", 1.0),
+            ("M/S**2 - Acceleration in Meters Per Second Per Second", 1.0),
+        ),
+        *(("cm/s**2", 1e2), ("gal", 1e2), ("nm/s**2", 1e9), ("NM/S**2", 1e9), ("um/s**2", 1e6)),
+    ],
+)
+def test_the_input_unit_of_a_station_xml_is_understood_in_its_spellings(tmp_path, unit, per_m_s2):
+    write_mseed(tmp_path / "n.mseed", trace("HNN"))
+    station_xml(tmp_path, channel_xml("HNN", unit=unit, value=2e5 / per_m_s2))
+    (motion,) = read_motions(tmp_path).motions
+    np.testing.assert_allclose(motion.horizontal, (COUNTS - COUNTS.mean()) / 2e5, rtol=1e-9, atol=1e-12)
 
 
 def test_a_vertical_channel_with_positive_dip_points_down(tmp_path):
@@ -118,12 +138,80 @@ def test_unit_and_sensitivity_can_be_stated(tmp_path):
     np.testing.assert_allclose(motion.horizontal, (COUNTS - COUNTS.mean()) / 1000, atol=1e-12)
 
 
+def test_the_clock_of_a_miniseed_recorder_is_no_ground_motion_whatever_is_stated(tmp_path):
+    write_mseed(tmp_path / "all.mseed", trace("HNE"), trace("LCQ"), trace("LCE"))
+    found = read_motions(tmp_path, confirmed=["*"], options=ReadOptions(unit="cm/s2"))
+    assert [motion.name for motion in found.motions] == ["CI.LRL..HNE"]
+    assert not found.unusable
+    assert [left.reason for left in found.left_out] == [
+        f"no record: {code}, the recorder's clock" for code in ("LCQ", "LCE")
+    ]
+
+
 def test_a_gap_costs_that_channel_and_no_other(tmp_path):
     later = trace("HNN", start=START + 60)
     write_mseed(tmp_path / "all.mseed", trace("HNE"), trace("HNN"), later)
     found = read_motions(tmp_path, confirmed=["*"], options=ReadOptions(unit="cm/s2"))
     assert [motion.name for motion in found.motions] == ["CI.LRL..HNE"]
     assert [(u.name, "gaps" in u.reason) for u in found.unusable] == [("CI.LRL..HNN", True)]
+
+
+@pytest.mark.parametrize("together", [True, False])
+def test_two_events_in_a_file_are_two_records_each_with_its_vertical_and_turned_on_its_own(tmp_path, together):
+    gap = 600.0  # s, between records of 5 s
+    channels = {code: COUNTS * factor for code, factor in (("HNN", 1), ("HNE", 2), ("HNZ", 3))}
+    traces = {
+        code: [trace(code, data), trace(code, data[:400], START + gap + jitter)]
+        for (code, data), jitter in zip(channels.items(), (0.0, 0.2, 0.1), strict=True)
+    }
+    if together:
+        write_mseed(tmp_path / "all.mseed", *(one for pieces in traces.values() for one in pieces))
+    else:
+        for code, pieces in traces.items():
+            write_mseed(tmp_path / f"{code}.mseed", *pieces)
+    options = ReadOptions(unit="cm/s2", sensitivity=100.0)
+    found = read_motions(tmp_path, confirmed=["*"], options=options)
+    assert not found.unusable
+    first, second = ("20190706T031923", "20190706T032923")
+    names = [motion.name for motion in found.motions]
+    assert sorted(name.rpartition(".")[2] for name in names) == [first, first, second, second]
+    assert sorted(motion.npts for motion in found.motions) == [
+        390,
+        390,
+        500,
+        500,
+    ]  # s: what horizontal and vertical share
+    for motion in found.motions:
+        assert motion.name.rpartition(".")[2] in motion.vertical_source
+    turned = read_motions(tmp_path, confirmed=["*"], options=options, azimuths=(0.0, 90.0))
+    assert len(turned.motions) == 4
+    assert not turned.unusable
+    draft = write_draft(tmp_path, options)
+    again = read_motions(tmp_path, confirmed=["*"], options=options)
+    assert draft.read_text().count(f'{second}"') == 3
+    assert [motion.name for motion in again.motions] == names
+
+
+@pytest.mark.parametrize(("gap", "records"), [(14.0, 1), (61.0, 1), (100.0, 2)])
+def test_only_a_gap_far_longer_than_the_record_lies_between_two_events(tmp_path, gap, records):
+    """Records of 30 s and 10 s: three times the longer one are 90 s."""
+    data = np.resize(COUNTS, 3001)
+    write_mseed(tmp_path / "n.mseed", trace("HNN", data), trace("HNN", data[:1001], START + 30.0 + gap))
+    found = read_motions(tmp_path, confirmed=["*"], options=ReadOptions(unit="cm/s2"))
+    assert (len(found.motions), len(found.unusable)) == ((2, 0) if records == 2 else (0, 1))
+    if records == 2:
+        assert [motion.npts for motion in found.motions] == [3001, 1001]
+
+
+def test_two_events_of_one_knet_station_are_turned_each_on_its_own(tmp_path):
+    for event, minute, seed in (("A", "38", 1), ("B", "58", 2)):
+        for direction, suffix in (("E-W", "EW"), ("N-S", "NS"), ("U-D", "UD")):
+            text = knet_text(direction, seed=seed)[0].replace("19:51:38", f"19:{minute}:38")
+            (tmp_path / f"TST{event}.{suffix}").write_text(text)
+    found = read_motions(tmp_path, azimuths=(30.0,))
+    assert [motion.name for motion in found.motions] == ["TSTA_az030", "TSTB_az030"]
+    assert [motion.vertical_source for motion in found.motions] == ["TSTA.UD", "TSTB.UD"]
+    assert not found.unusable
 
 
 def test_a_truncated_miniseed_file_is_refused(tmp_path):
@@ -161,6 +249,14 @@ def test_sac_files_are_read_in_the_stated_unit(tmp_path, byteorder):
     np.testing.assert_allclose(motion.horizontal, (data - data.mean()) * 10.0, atol=1e-6)  # single precision
 
 
+@pytest.mark.parametrize("unit", [None, "g"])
+def test_the_clock_in_a_sac_file_needs_no_unit_and_no_direction(tmp_path, unit):
+    trace("LCQ", wiggle(300).astype(np.float32)).write(str(tmp_path / "e.sac"), format="SAC")
+    found = read_motions(tmp_path, options=ReadOptions(unit=unit))
+    assert not found.unusable
+    assert [left.reason for left in found.left_out] == ["no record: LCQ, the recorder's clock"]
+
+
 def test_sac_without_a_stated_unit_is_refused_with_the_remedy(tmp_path):
     trace("HNE", wiggle(300).astype(np.float32)).write(str(tmp_path / "e.sac"), format="SAC")
     assert 'unit = "g"' in only_reason(read_motions(tmp_path))
@@ -191,6 +287,31 @@ def test_kiknet_borehole_and_surface_are_two_stations(tmp_path):
     assert [(m.name, m.vertical_source) for m in found.motions] == [("TST.EW1", "TST.UD1"), ("TST.EW2", "TST.UD2")]
     assert "borehole" in found.motions[0].notes[0]
     assert "surface" in found.motions[1].notes[0]
+
+
+@pytest.mark.parametrize("name", ["TST.EW.txt", "AOM003", "20180124.asc", "TST.ew.90"])
+def test_knet_is_told_by_its_content_in_a_file_of_any_name(tmp_path, name):
+    text, counts = knet_text("E-W")
+    (tmp_path / name).write_text(text)
+    (motion,) = read_motions(tmp_path).motions
+    np.testing.assert_allclose(motion.horizontal, (counts - counts.mean()) * 7845 / 8223790 / 100, atol=1e-12)
+    assert motion.azimuth == 90.0
+
+
+@pytest.mark.parametrize("name", ["x.seed", "x.msd", "CI.LRL..HNN.D.2019.187", "x", "x.dat"])
+def test_miniseed_is_told_by_its_content_in_a_file_of_any_name(tmp_path, name):
+    write_mseed(tmp_path / name, trace("HNN"))
+    (motion,) = read_motions(tmp_path, confirmed=["*"], options=ReadOptions(unit="cm/s2")).motions
+    np.testing.assert_allclose(motion.horizontal, (COUNTS - COUNTS.mean()) / 100, atol=1e-12)
+    assert "counts without a sensitivity" in only_reason(read_motions(tmp_path))
+
+
+@pytest.mark.parametrize(
+    "content", [b"000001D nothing else in it but digits and codes\n", b"123456M AAAAA00HNZCI \xff\xff\xff\xff"]
+)
+def test_what_only_begins_like_miniseed_is_not_taken_for_it(tmp_path, content):
+    (tmp_path / "x").write_bytes(content * 20)
+    assert only_reason(read_motions(tmp_path)).startswith("not a format that rockbatch reads")
 
 
 def test_a_knet_file_shorter_than_its_header_says_is_refused_with_both_counts(tmp_path):

@@ -10,6 +10,7 @@ import pytest
 from agency_files import BBP, cwa_text, dyna_text, geonet_text, knet_text, renadic_text
 from fixed_column_files import cosmos_text, csmip_text, smc_text
 from motion_files import at2_text, wiggle
+from national_files import afad_text, bhrc_text, csmnc_text, unam_text, usc_text
 
 from rockbatch.errors import InputError
 from rockbatch.motions.formats import FORMATS, ReadOptions, RecordFile, read_record
@@ -41,6 +42,11 @@ def samples() -> dict[str, list[tuple[str, bytes]]]:
         "CSMIP": [("x.V1", csmip_text(1)), ("x.V2", csmip_text(2))],
         "USGS SMC": [("x.smc", smc_text())],
         "RENADIC": [("x.V1", renadic_text())],
+        "USC Volume I": [("x.s0a", usc_text())],
+        "BHRC Volume 1": [("x.V1", bhrc_text())],
+        "CSMNC": [("x.dat", csmnc_text())],
+        "AFAD text": [("x.txt", afad_text())],
+        "UNAM": [("CANA1709.191", unam_text())],
         "CWA free field": [("x.dat", cwa_text())],
         "text columns": [("x.csv", f"time [s],acc [g]\n{table}\n"), ("x.bbp", BBP)],
     }

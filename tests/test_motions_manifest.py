@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from motion_files import wiggle, write_at2
-from test_motions_formats import knet_text
+from test_motions_formats import knet_text, trace
 
 from rockbatch.errors import InputError
 from rockbatch.motions import read_motions
@@ -227,6 +227,29 @@ def test_the_draft_changes_nothing_until_it_is_edited(tmp_path):
     text = draft.read_text(encoding="utf-8")
     assert "# Not used: not a PEER AT2 file" in text
     assert text.count("[[record]]\nfile") == 5
+
+
+def test_the_draft_has_a_line_to_fill_in_for_each_unit_and_interval_that_a_file_lacks(tmp_path):
+    """What is asked for is enough: with the lines filled in, every file is a record."""
+    timed, plain, nothing = ([f"{value:.6f}" for value in wiggle(50, seed)] for seed in (1, 2, 3))
+    (tmp_path / "timed_000.txt").write_text("".join(f"{i / 100} {value}\n" for i, value in enumerate(timed)))
+    (tmp_path / "plain_000.acc").write_text("# unit: g\n" + "\n".join(plain) + "\n")
+    (tmp_path / "nothing_000.acc").write_text("\n".join(nothing) + "\n")
+    write_at2(tmp_path, "bare.AT2", wiggle(50, 4), unit="ACCELERATION TIME SERIES")
+    trace("HNE", wiggle(300).astype(np.float32)).write(str(tmp_path / "e.sac"), format="SAC")
+    assert len(read_motions(tmp_path).unusable) == 5
+    draft = write_draft(tmp_path)
+    assert len(read_motions(tmp_path).unusable) == 5
+    text = draft.read_text(encoding="utf-8")
+    asked = '# unit =   # of its numbers: "g", "g/10", "m/s2", "cm/s2", "gal" or "mm/s2"\n'
+    assert (text.count(asked), text.count("# dt =   # its sampling interval [s]\n")) == (4, 2)
+    draft.write_text(text.replace("# unit =   #", 'unit = "g"   #').replace("# dt =   #", "dt = 0.01   #"))
+    found = read_motions(tmp_path)
+    assert not found.unusable
+    peaks = {motion.name: motion.pga / 9.81 for motion in found.motions}
+    assert set(peaks) == {"bare", "e", "nothing_000", "plain_000", "timed_000"}
+    for seed, name in enumerate(("timed_000", "plain_000", "nothing_000", "bare"), start=1):
+        assert peaks[name] == pytest.approx(np.abs(wiggle(50, seed)).max(), abs=1e-6)
 
 
 def test_a_draft_is_never_written_over_a_manifest(tmp_path):

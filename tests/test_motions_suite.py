@@ -89,6 +89,18 @@ def test_records_are_selected_by_every_measure_and_the_others_are_told_why():
     assert [m.name for m in chosen.motions] == ["fit"]  # both ends are included
 
 
+def test_the_length_of_a_record_and_its_significant_duration_are_selected_apart():
+    """One second of shaking in ten of record, and ten in ten: both are as long, but only one shakes for long."""
+    short, long = np.zeros(1001), np.ones(1001)
+    short[450:551] = 1.0  # and half a step more on either side, by trapezoids of its square: 0.9 · 1.01 s
+    found = MotionSet([Motion("short", 0.01, short), Motion("long", 0.01, long)])
+    by_length = selected(found, Selection(duration_s=(9.0, 11.0)), 9.81)
+    assert [m.name for m in by_length.motions] == ["short", "long"]
+    by_shaking = selected(found, Selection(d5_95_s=(8.0, 11.0)), 9.81)
+    assert [m.name for m in by_shaking.motions] == ["long"]
+    assert [left.reason for left in by_shaking.left_out] == ["not selected: d5_95_s = 0.909 is not within 8..11"]
+
+
 def test_a_record_of_unknown_magnitude_cannot_be_selected_by_it():
     found = MotionSet([motion("known", magnitude=7.0), motion("small", magnitude=5.0), motion("unknown")])
     chosen = selected(found, Selection(magnitude=(6.0, 8.0)), 9.81)
@@ -243,6 +255,8 @@ def test_the_table_is_a_csv_too_with_a_row_for_every_file(tmp_path, capsys):
     shown = capsys.readouterr()
     assert "1 records, 1 files not used, 1 left out" in shown.err
     assert "Arias [m/s]" in shown.out
+    assert "length [s]" in shown.out
+    assert "D5-95 [s]" in shown.out
 
 
 def test_strict_makes_a_bad_file_fatal_and_companions_harm_nobody(tmp_path):

@@ -367,7 +367,10 @@ def test_a_case_has_what_its_base_takes_and_what_can_be(tmp_path, written, line,
 
 
 def test_the_least_stiffness_and_yield_force_that_are_named_suffice(tmp_path):
-    """The limits of β and η (model: β² > (1+μ) cos α/(μ sin²α), η > 1), in the units of the file."""
+    """The limits of β and η (model: β² > (1+μ) cos α/(μ sin²α), η > 1), in the units of the file.
+
+    Bouc–Wen springs near their yield force need more stiffness; how much is named once their strength is known.
+    """
 
     def keys(stiffness: float, strength: float) -> str:
         return case(f"stiffness_kN_m = {stiffness!r}", "mass_t = 3000", f"yield_kN = {strength!r}")
@@ -376,8 +379,15 @@ def test_the_least_stiffness_and_yield_force_that_are_named_suffice(tmp_path):
     stiffness, strength = (float(problem.split("above ")[-1]) for problem in said)
     assert said[0].startswith("13: [[case]] no. 1: stiffness_kN_m = 1000 with mass_t = 3000 means beta = ")
     assert said[1].startswith("15: [[case]] no. 1: yield_kN = 1000 with mass_t = 3000 means eta = ")
-    study_of(tmp_path, PIER, PULSE, keys(stiffness * 1.001, strength * 1.001))  # they are told to four digits
     assert len(problems_of(tmp_path, PIER, PULSE, keys(stiffness * 0.999, strength * 0.999))) == 2
+    strength *= 1.001  # they are told to four digits
+    (near,) = problems_of(tmp_path, PIER, PULSE, keys(stiffness * 1.001, strength))
+    enough = float(near.split("above ")[-1])
+    assert enough > 50 * stiffness
+    study_of(tmp_path, PIER, PULSE, keys(enough * 1.001, strength))
+    (still,) = problems_of(tmp_path, PIER, PULSE, keys(enough * 0.999, strength))
+    assert "the least push topples the pier" in still
+    study_of(tmp_path, PIER, PULSE, keys(stiffness * 1.02, 2 * strength))
 
 
 @pytest.mark.parametrize(

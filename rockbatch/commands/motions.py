@@ -38,7 +38,7 @@ _SHOWN = {  # heads of the table in the terminal, and how their numbers are writ
     "record": ("record", ""),
     "dt_s": ("dt [s]", "g"),
     "npts": ("npts", "d"),
-    "duration_s": ("[s]", ".2f"),
+    "duration_s": ("length [s]", ".2f"),
     "pga_h_g": ("PGA [g]", ".3f"),
     "pga_v_g": ("up [g]", ".3f"),
     "pgv_h_m_s": ("PGV [m/s]", ".3f"),

@@ -9,7 +9,9 @@ from rockbatch.motions.component import Component
 from rockbatch.motions.motion import Samples
 
 _SAME_STEP = 1e-6  # relative: steps that differ by less are the same, printed otherwise
-_SAME_SAMPLE = 0.01  # of dt: components whose starts are off by less share their samples
+_SAME_SAMPLE = 0.01  # of dt: what printing may cost the time of a sample
+_SIMULTANEOUS = 0.1  # of dt: starts that jitter by less count as simultaneous
+_CLOCK = 1e-6  # s: times since 1970 are no better than this
 
 
 @dataclass(frozen=True)
@@ -48,10 +50,13 @@ def on_common_samples(first: Component, second: Component, names: tuple[str, str
     Components without absolute times start together. Where samples do not coincide, the first component keeps
     its own, with as many between them as make it no coarser than the second one, and both are interpolated
     linearly: exact for the first one, and for the second one where its samples are met.
+
+    Starts that jitter by up to a tenth of the finer step count as simultaneous: as motions are linear between their
+    samples, the second one is then off by less than a tenth of the largest difference of two neighbouring samples,
+    and neither loses of its peak as it would by interpolation.
     """
     a, b = first.acceleration, second.acceleration
-    offset = 0.0 if first.start is None or second.start is None else second.start - first.start
-    notes = []
+    offset, notes = _offset(first, second, names[1])
     same_step = abs(first.dt - second.dt) <= _SAME_STEP * first.dt
     shift = round(offset / first.dt)
     if same_step and abs(offset / first.dt - shift) <= _SAME_SAMPLE:
@@ -77,3 +82,18 @@ def on_common_samples(first: Component, second: Component, names: tuple[str, str
         whole = f"{first.duration:g} s {names[0]} and {second.duration:g} s {names[1]}"
         notes.append(f"common span: {span:g} s of {whole}")
     return Common(dt, a, b, (begin, max(0.0, begin - offset)), notes)
+
+
+def _offset(first: Component, second: Component, name: str) -> tuple[float, list[str]]:
+    """What the second component starts later [s], without jitter, and the note on that."""
+    if first.start is None or second.start is None:
+        return 0.0, []
+    offset, step = second.start - first.start, min(first.dt, second.dt)
+    even = round(offset / step) * step
+    jitter = offset - even
+    if abs(jitter) > _SIMULTANEOUS * step:
+        return offset, []
+    if abs(jitter) <= _CLOCK:
+        return even, []
+    when = "late" if jitter > 0 else "early"
+    return even, [f"{name} {abs(jitter) * 1e3:.2g} ms {when}, {abs(jitter) / step:.2g} of dt: taken as simultaneous"]

@@ -51,6 +51,11 @@ def _bare(text: str) -> str:
     return re.sub(r"[\W_]+", "", text).upper()
 
 
+def file_of(source: str) -> str:
+    """The file of a component's source, which has a label behind where the file holds several: "x.V1 (NS)"."""
+    return re.sub(r" \([^()]*\)$", "", source)
+
+
 NOWHERE = Seat()
 """Of a file that says nothing of its sensor."""
 

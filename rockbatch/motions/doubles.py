@@ -2,22 +2,27 @@
 
 Two components are the same recording if they are of one sensor, point the same way, and have a time in common, or, where
 one of them does not say when it began, are of one event; so are those with the same samples, if nothing that they say
-is against it.
+is against it. The parts of a long recording, which claim one time of triggering, are not: each file is a whole set of
+components, processed alike, and its samples are like nothing in the other one.
 """
 
 import hashlib
 import math
-import re
-from collections.abc import Sequence
+from collections.abc import Sequence, Set
+from pathlib import Path
 
 import numpy as np
 
+from rockbatch.motions.archives import bare
 from rockbatch.motions.common_span import overlap
-from rockbatch.motions.component import NOWHERE, Component
-from rockbatch.motions.motion import LeftOut
+from rockbatch.motions.component import NOWHERE, Component, file_of
+from rockbatch.motions.formats import is_usual
+from rockbatch.motions.motion import LeftOut, Samples
 from rockbatch.motions.orientation import UNKNOWN, same_azimuth
 
 _CORRECTED = {True: 0, None: 1, False: 2}
+_ALIKE = 0.7  # correlation: real files of one recording have 0.98 and more, other records 0.63 at most, halves 0.46
+_SAME_STEP = 1e-3  # relative
 
 
 def without_doubles(components: Sequence[Component]) -> tuple[list[Component], list[LeftOut]]:
@@ -26,9 +31,11 @@ def without_doubles(components: Sequence[Component]) -> tuple[list[Component], l
     Of several files of one recording that one is used that a manifest says to be (``use = true``; all of them, if
     there are more), else, in this order: a corrected one before one that does not say, and that before an uncorrected
     one; one of a file that has its vertical with it; one in a unit of acceleration before counts; one of the file with
-    the more intense shaking; the one whose name is shorter, which a copy's is not; the first.
+    the more intense shaking; one with the suffix of a format; the one whose name is shorter, which a copy's is not; the
+    first.
     """
     order = _preference(components)
+    whole = _whole_files(components)
     kept: list[int] = []
     of_station: dict[str, list[int]] = {}
     of_samples: dict[bytes, list[int]] = {}
@@ -38,7 +45,7 @@ def without_doubles(components: Sequence[Component]) -> tuple[list[Component], l
         samples = _samples(component)
         station = of_station.setdefault(component.seat.number, []) if component.seat.number else []
         alike = of_samples.setdefault(samples, [])
-        other = next((j for j in station if _same_recording(component, components[j])), None)
+        other = next((j for j in station if _same_recording(component, components[j], whole)), None)
         if other is None:
             other = next((j for j in alike if _may_be_copies(component, components[j])), None)
         if other is not None and not component.wanted:
@@ -71,6 +78,7 @@ def _preference(components: Sequence[Component]) -> list[tuple[object, ...]]:
             (component.folder, component.seat.station or component.site, component.processed) not in whole,
             not component.unit,
             -round(math.log2(intensity[_file(component)] or 1e-300)),
+            not is_usual(bare(Path(_file(component))).suffix),
             len(component.source),
             i,
         )
@@ -79,8 +87,8 @@ def _preference(components: Sequence[Component]) -> list[tuple[object, ...]]:
 
 
 def _file(component: Component) -> str:
-    """Its file: what a source has before the label of one of several components."""
-    return component.folder + "/" + re.sub(r" \([^()]*\)$", "", component.source)
+    """Its file, by folder and source."""
+    return f"{component.folder}/{file_of(component.source)}"
 
 
 def _samples(component: Component) -> bytes:
@@ -90,15 +98,40 @@ def _samples(component: Component) -> bytes:
     return digest.digest()
 
 
-def _same_recording(a: Component, b: Component) -> bool:
-    """Whether the headers of both say so; those in one file are of different sensors."""
+def _whole_files(components: Sequence[Component]) -> set[str]:
+    """Files that hold both a vertical and a horizontal component."""
+    verticals = {_file(component) for component in components if component.orientation.vertical}
+    return verticals & {_file(component) for component in components if not component.orientation.vertical}
+
+
+def _same_recording(a: Component, b: Component, whole: Set[str]) -> bool:
+    """Whether the headers of both say so; those in one file are of different sensors.
+
+    Two ``whole`` files of one step that are processed alike may be parts of one recording, which their samples tell.
+    """
     if not a.seat.is_that_of(b.seat) or not _pointing_alike(a, b) or _file(a) == _file(b):
         return False
     if len({_rsn(a), _rsn(b)} - {""}) > 1:
         return False
-    if a.start is None or b.start is None:
-        return bool(a.event) and a.event == b.event
-    return overlap(a, b)
+    unknown_time = a.start is None or b.start is None
+    if not (bool(a.event) and a.event == b.event if unknown_time else overlap(a, b)):
+        return False
+    may_be_parts = (
+        a.processed == b.processed and abs(a.dt - b.dt) <= _SAME_STEP * a.dt and whole >= {_file(a), _file(b)}
+    )
+    return not may_be_parts or correlation(a.acceleration, b.acceleration) >= _ALIKE
+
+
+def correlation(one: Samples, two: Samples) -> float:
+    """Largest correlation of two series of one step, either way up, over all shifts of one against the other; 0 to 1.
+
+    1 where one of them never moves.
+    """
+    one, two = ((x - x.mean()) / (np.abs(x).max() or 1.0) for x in (one, two))
+    n = len(one) + len(two)
+    shifted = np.fft.irfft(np.fft.rfft(one, n) * np.conj(np.fft.rfft(two, n)), n)
+    norm = float(np.linalg.norm(one) * np.linalg.norm(two))
+    return float(np.abs(shifted).max()) / norm if norm > 0 else 1.0
 
 
 def _rsn(component: Component) -> str:

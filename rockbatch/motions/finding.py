@@ -5,11 +5,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from rockbatch.errors import InputError
 from rockbatch.files import legible
-from rockbatch.motions.formats import has_reader
+from rockbatch.motions import archives
 
 MANIFESTS = ("motions.toml", "motions.csv")
-UNKNOWN_SUFFIX = "not a format that rockbatch reads"
 
 _COMPANIONS = {
     "text about the records": (".json", ".md", ".rst", ".pdf", ".doc", ".docx", ".htm", ".html", ".log", ".toml"),
@@ -25,11 +25,12 @@ _SEARCH_RESULTS = "_searchresults.csv"  # that PEER's database puts beside the r
 
 @dataclass(frozen=True)
 class Found:
-    """A file of a folder.
+    """A file of a folder, or of an archive in it.
 
     Attributes
     ----------
     path : Path
+        In an archive, it goes on within that (see ``archives``).
     source : str
         Its short path for people.
     refusal : str
@@ -64,18 +65,38 @@ def files_of(given: Sequence[Path]) -> Iterator[Found]:
             elif not real.is_file():
                 yield Found(path, source, "not a regular file")
             elif path.suffix.lower() != ".xml":  # StationXML goes with the records beside it
-                yield _regular(path, source)
+                yield from _of_archive(path, source) if archives.is_zip(path) else [_regular(path, source)]
+
+
+def _of_archive(path: Path, source: str) -> Iterator[Found]:
+    """The files of an archive, or why there are none."""
+    try:
+        members = list(archives.members(path))
+    except InputError as error:
+        yield Found(path, source, "; ".join(error.problems))
+        return
+    except OSError as error:
+        yield Found(path, source, f"cannot be read: {error.strerror or error}")
+        return
+    if not members:
+        yield Found(path, source, "an archive without files")
+    for member in members:
+        name = f"{source}/{legible(member.name)}"
+        if member.refusal:
+            yield Found(member.path, name, member.refusal)
+        elif member.path.name in MANIFESTS:
+            yield Found(member.path, name, companion="a manifest within an archive is not obeyed; put it beside that")
+        elif member.path.suffix.lower() != ".xml":
+            yield _regular(member.path, name)
 
 
 def _regular(path: Path, source: str) -> Found:
-    suffix = path.suffix.lower()
     if path.name.lower() == _SEARCH_RESULTS:
         return Found(path, source, companion="a table about the records")
-    if has_reader(suffix) or path.name in MANIFESTS:
-        return Found(path, source)
-    if suffix in _BY_SUFFIX:
+    suffix = archives.bare(path).suffix.lower()
+    if path.name not in MANIFESTS and suffix in _BY_SUFFIX:
         return Found(path, source, companion=_BY_SUFFIX[suffix])
-    return Found(path, source, UNKNOWN_SUFFIX)
+    return Found(path, source, archives.not_read(path))
 
 
 def _below(folder: Path) -> Iterator[Path]:

@@ -8,22 +8,20 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, Literal
 
-from rockbatch.errors import InputError
+from rockbatch.errors import InputError, UnstatedError
 from rockbatch.files import legible
-from rockbatch.motions import fema_p695
+from rockbatch.motions import archives, fema_p695
 from rockbatch.motions.baseline import Offset, corrected
-from rockbatch.motions.component import Component
+from rockbatch.motions.component import Component, file_of
 from rockbatch.motions.doubles import without_doubles
-from rockbatch.motions.finding import MANIFESTS, UNKNOWN_SUFFIX, Found, files_of
-from rockbatch.motions.formats import ReadOptions, RecordFile, read_record
-from rockbatch.motions.manifest import Manifest, described, is_manifest, options_of
+from rockbatch.motions.finding import MANIFESTS, Found, files_of
+from rockbatch.motions.formats import HEAD, ReadOptions, RecordFile, format_of, read_record
+from rockbatch.motions.manifest import Entry, Manifest, described, is_manifest, options_of
 from rockbatch.motions.motion import LeftOut, MotionSet, Unusable
-from rockbatch.motions.orientation import counted, split_stem, unknown
+from rockbatch.motions.orientation import counted, is_clock, split_stem, unknown
 from rockbatch.motions.pairing import to_motions
 from rockbatch.units import GRAVITY
 
-_LARGEST = 256 * 2**20  # bytes; a day of three channels at 200 Hz has a fifth of it
-_SEVERAL = re.compile(r" \([^()]*\)$")  # what a source has behind, where its file has several components
 _RSN = re.compile(r"RSN[_ ]?0*(\d+)(?!\d)", re.IGNORECASE)
 
 Paths = str | os.PathLike[str] | Sequence[str | os.PathLike[str]]
@@ -47,8 +45,8 @@ def read_motions(
     Parameters
     ----------
     paths : path or sequence of paths
-        Files and folders; folders with all below them, without hidden files, read-me files and links that
-        lead out. Manifests in them are obeyed.
+        Files and folders; folders with all below them, and what their archives hold, without hidden files,
+        read-me files and links that lead out. Manifests in them are obeyed.
     vertical : bool
         Whether motions get their station's vertical component, where there is one; "required": what has none is
         unusable.
@@ -130,18 +128,33 @@ def read_files(
 
 
 def _without_renamed(readings: Sequence[Reading], found: Sequence[Found]) -> list[Reading]:
-    """With files of no known suffix left out that are copies, byte for byte, of one that is a record."""
-    refused = {file.source: file.path for file in found if file.refusal == UNKNOWN_SUFFIX}
-    sizes = {path.stat().st_size for path in refused.values()}
-    records = {_SEVERAL.sub("", reading.source) for reading in readings if isinstance(reading, Component)}
-    alike = [file for file in found if file.source in records and sizes and file.path.stat().st_size in sizes]
-    by_content = {file.path.read_bytes(): file.source for file in alike}
-    kept: list[Reading] = []
-    for reading in readings:
-        path = refused.get(reading.source)
-        original = by_content.get(path.read_bytes()) if path and by_content else None
-        kept.append(LeftOut(reading.name, reading.source, f"a copy of {original}") if original else reading)
-    return kept
+    """With files left out that no reader takes by their names, but are copies, byte for byte, of one that is a record."""
+    refused = {reading.source for reading in readings if isinstance(reading, Unusable)}
+    records = {file_of(reading.source) for reading in readings if isinstance(reading, Component)}
+    unknown_ones = [file for file in found if file.source in refused and not file.refusal and _is_unknown(file)]
+    heads = {_content(file, HEAD) for file in unknown_ones}
+    alike = [file for file in found if heads and file.source in records and _content(file, HEAD) in heads]
+    by_content = {content: file.source for file in alike if (content := _content(file))}
+    copies = {file.source: by_content.get(_content(file)) for file in unknown_ones} if by_content else {}
+    return [
+        LeftOut(reading.name, reading.source, f"a copy of {copies[reading.source]}")
+        if copies.get(reading.source)
+        else reading
+        for reading in readings
+    ]
+
+
+def _is_unknown(file: Found) -> bool:
+    """Whether a file is of no format that its suffix and first bytes tell."""
+    return format_of(archives.bare(file.path).suffix, _content(file, HEAD)) is None
+
+
+def _content(file: Found, first: int | None = None) -> bytes:
+    """What a file holds, or its ``first`` bytes; nothing where it cannot be read, which its reason says."""
+    try:
+        return archives.content(file.path, first)
+    except (InputError, OSError):
+        return b""
 
 
 def _missing(path: Path) -> str:
@@ -156,16 +169,16 @@ def _numbered(found: Sequence[Found]) -> set[Path]:
     """Files whose names end in a number that is no azimuth, as those beside them tell."""
     folders: dict[Path, list[Path]] = {}
     for file in found:
-        folders.setdefault(file.path.parent, []).append(file.path)
+        folders.setdefault(file.path.parent, []).append(archives.bare(file.path))
     numbers = {folder: counted(path.stem for path in paths) for folder, paths in folders.items()}
-    return {file.path for file in found if file.path.stem in numbers[file.path.parent]}
+    return {file.path for file in found if archives.bare(file.path).stem in numbers[file.path.parent]}
 
 
 def _readings(
     file: Found, manifest: Manifest, options: ReadOptions, gravity: float, offset: Offset, numbered: bool
 ) -> Sequence[Reading]:
     """What one file is: components, and what its manifest leaves out, or the one reason why there are none."""
-    stem = file.path.stem
+    stem = archives.bare(file.path).stem
     entries = manifest.of(file.path)
     if any(not entry.use and entry.component is None for entry in entries):
         return [LeftOut(stem, file.source, f"use = false in {entries[0].table.file.path.name}")]
@@ -174,9 +187,11 @@ def _readings(
     if file.refusal:
         return [Unusable(stem, file.source, file.refusal)]
     read = _read(file, options_of(entries, options), gravity)
-    readings: list[Reading] = [reading for reading in read if isinstance(reading, Unusable)]
-    components = [_placed(reading, file.path, numbered) for reading in read if isinstance(reading, Component)]
-    for component, used in described(components, entries, gravity):
+    others = [reading for reading in read if isinstance(reading, Unusable)]
+    readings: list[Reading] = [_left_out(reading, entries) or reading for reading in others]
+    path = archives.bare(file.path)
+    components = [_placed(reading, path, numbered) for reading in read if isinstance(reading, Component)]
+    for component, used in described(components, entries, gravity, others):
         if used:
             readings.append(_without_offset(_directed(component, options.role), offset))
         else:
@@ -185,19 +200,33 @@ def _readings(
     return readings
 
 
+def _left_out(unusable: Unusable, entries: Sequence[Entry]) -> LeftOut | None:
+    """A component that cannot be used, but is not missed: its manifest leaves it out, or it is no ground motion."""
+    if is_clock(unusable.label):
+        return LeftOut(unusable.name, unusable.source, f"no record: {unusable.label}, the recorder's clock")
+    told = next((entry for entry in entries if not entry.use and entry.is_for(unusable)), None)
+    if told is None:
+        return None
+    return LeftOut(unusable.name, unusable.source, f"use = false in {told.table.file.path.name}")
+
+
 def _read(file: Found, options: ReadOptions, gravity: float) -> Sequence[Component | Unusable]:
     """Components of one file, or the one reason why there are none; never an exception."""
+    path = archives.bare(file.path)
+    lacks: tuple[str, ...] = ()
     try:
-        if file.path.stat().st_size > _LARGEST:
-            raise InputError(f"larger than {_LARGEST // 2**20} MiB")
-        return read_record(RecordFile(file.path, file.source, file.path.read_bytes(), options, gravity))
+        data = archives.content(file.path, HEAD)
+        if format_of(path.suffix, data) is not None:  # else its first bytes are enough to say what it is not
+            data = archives.content(file.path)
+        return read_record(RecordFile(path, file.source, data, options, gravity))
     except InputError as error:
         reason = "; ".join(error.problems)
+        lacks = error.keys if isinstance(error, UnstatedError) else ()
     except OSError as error:
         reason = f"cannot be read: {error.strerror or error}"
     except Exception as error:  # one bad file shall not cost the others; the type tells that a reader is at fault
         reason = f"its reader failed: {type(error).__name__}: {error}"
-    return [Unusable(file.path.stem, file.source, reason)]
+    return [Unusable(path.stem, file.source, reason, lacks=lacks)]
 
 
 def _placed(component: Component, path: Path, numbered: bool) -> Component:

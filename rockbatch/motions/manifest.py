@@ -13,8 +13,10 @@ from typing import Any
 
 from rockbatch.errors import InputError
 from rockbatch.motions import kinds
+from rockbatch.motions.archives import archive_of, is_member
 from rockbatch.motions.component import Component
 from rockbatch.motions.formats import ReadOptions
+from rockbatch.motions.motion import Unusable
 from rockbatch.motions.orientation import Orientation
 from rockbatch.toml.kinds import boolean, choice, closest, not_negative, number, positive, shown, text
 from rockbatch.toml.reader import Key, Table, TomlFile
@@ -60,6 +62,10 @@ class Entry:
         """Whether the file or component shall be used."""
         return bool(self.values.get("use", True))
 
+    def is_for(self, unusable: Unusable) -> bool:
+        """Whether it is for this one component, which cannot be used."""
+        return self.component is not None and self.component in (unusable.label, unusable.name)
+
 
 @dataclass
 class Manifest:
@@ -95,7 +101,7 @@ class Manifest:
                 table.complain(
                     f"file = {shown(values['file'])}: lies outside this folder; put a manifest there", "file"
                 )
-            elif not path.is_file():
+            elif not path.is_file() and not is_member(path):
                 names = [entry.name for entry in path.parent.iterdir()] if path.parent.is_dir() else []
                 meant = closest(path.name, sorted(names))
                 hint = f"; did you mean {(path.parent / meant).relative_to(folder).as_posix()}?" if meant else ""
@@ -106,8 +112,10 @@ class Manifest:
                 self.entries.setdefault(path, []).append(Entry(path, table, values))
 
     def of(self, path: Path) -> list[Entry]:
-        """Entries of a file, those of the whole file first."""
-        found = self.entries.get(Path(os.path.realpath(path)), [])
+        """Entries of a file, those of the whole file first; those of its archive where it has none of its own."""
+        real = Path(os.path.realpath(path))
+        archive = archive_of(real)
+        found = self.entries.get(real) or (self.entries.get(archive, []) if archive else [])
         return sorted(found, key=lambda entry: entry.component is not None)
 
     def finish(self) -> None:
@@ -132,14 +140,18 @@ def options_of(entries: Sequence[Entry], options: ReadOptions) -> ReadOptions:
 
 
 def described(
-    components: Sequence[Component], entries: Sequence[Entry], gravity: float
+    components: Sequence[Component], entries: Sequence[Entry], gravity: float, others: Sequence[Unusable] = ()
 ) -> list[tuple[Component, bool]]:
-    """Components of a file as its entries want them, and whether each is to be used; mistakes are noted."""
+    """Components of a file as its entries want them, and whether each is to be used; mistakes are noted.
+
+    ``others`` are the components of the file that cannot be used, which entries may be for too.
+    """
     chosen: list[tuple[Component, bool]] = [(component, True) for component in components]
     for entry in entries:
         meant = [i for i, c in enumerate(components) if entry.component in (None, c.name, c.orientation.label)]
-        if not meant and components:
-            known = ", ".join(shown(c.orientation.label or c.name) for c in components)
+        if not meant and components and not any(map(entry.is_for, others)):
+            labels = [*(c.orientation.label or c.name for c in components), *(other.label for other in others)]
+            known = ", ".join(map(shown, filter(None, labels)))
             said = f"component = {shown(entry.component)}: the file has {known}"
             entry.table.complain(f"{said}; write one of these", "component")
         if len(meant) > 1:

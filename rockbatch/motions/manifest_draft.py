@@ -1,7 +1,7 @@
 """A manifest drafted from what was found in a folder, to be completed by hand."""
 
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +26,8 @@ _HEAD = """\
 # magnitude, distance_km;  use = false: leave it out;  use = true: use it whatever else there is of the same recording
 # confirm = true: it is right, however odd;  confirm_pga = true: its PGA outside 0.001-5 g is
 """
+
+_ASKED = {"unit": 'of its numbers: "g", "g/10", "m/s2", "cm/s2", "gal" or "mm/s2"', "dt": "its sampling interval [s]"}
 
 
 def write_draft(folder: Path, options: ReadOptions | None = None) -> Path:
@@ -56,9 +58,11 @@ def draft(folder: Path, options: ReadOptions | None = None) -> str:
         if legible(name) != name:
             blocks.append(f"# {legible(name)}: give it a name without control characters first\n")
         elif isinstance(reading, Component):
-            several = sum(_file_of(other, paths) == _file_of(reading, paths) for other in components) > 1
+            beside = [other for other in components if _file_of(other, paths) == _file_of(reading, paths)]
             double = doubles.get((reading.name, reading.source), "")
-            blocks.append(_table(reading, name, several, stations[id(reading)], double))
+            blocks.append(_table(reading, name, _called(reading, beside), stations[id(reading)], double))
+        elif isinstance(reading, Unusable) and reading.lacks:
+            blocks.append(_question(name, reading))
         elif isinstance(reading, Unusable):
             blocks.append(_remark(name, legible(reading.reason)))
     return "\n".join(blocks)
@@ -69,11 +73,18 @@ def _file_of(reading: Reading, paths: Iterable[str]) -> str:
     return reading.source if reading.source in paths else reading.source.rpartition(" (")[0]
 
 
-def _table(component: Component, name: str, several: bool, station: str, double: str) -> str:
+def _called(component: Component, beside: Sequence[Component]) -> str:
+    """What tells a component from those ``beside`` it in its file; empty where it is alone."""
+    label = component.orientation.label
+    alike = [other for other in beside if other.orientation.label == label]
+    return "" if len(beside) == 1 else label if label and len(alike) == 1 else component.name
+
+
+def _table(component: Component, name: str, called: str, station: str, double: str) -> str:
     orientation = component.orientation
     lines: list[tuple[str, Any]] = [("file", name)]
-    if several:
-        lines.append(("component", orientation.label or component.name))
+    if called:
+        lines.append(("component", called))
     if orientation.known:
         lines.append(("role", "vertical" if orientation.vertical else "horizontal"))
     if orientation.azimuth is not None:
@@ -101,6 +112,12 @@ def _gross(component: Component) -> list[Finding]:
         component.name, component.dt, component.acceleration, initial=component.initial, processed=component.processed
     )
     return [odd for odd in findings(Judged(alone, component, (), GRAVITY)) if odd.gross]
+
+
+def _question(name: str, unusable: Unusable) -> str:
+    """A table that states nothing yet, with a line to fill in for each key that its file lacks."""
+    lines = [f"# {key} =   # {_ASKED[key]}\n" for key in unusable.lacks]
+    return f"# Not used: {legible(unusable.reason)}\n[[record]]\nfile = {_written(name)}\n{''.join(lines)}"
 
 
 def _remark(name: str, reason: str) -> str:

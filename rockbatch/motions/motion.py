@@ -162,11 +162,17 @@ class Motion:
 
 @dataclass(frozen=True)
 class Unusable:
-    """A file that could not be used, and why; it stays in the tables as a row with its reason."""
+    """A file that could not be used, and why; it stays in the tables as a row with its reason.
+
+    ``label`` is that of the one component that is meant, as the file has it; empty where it is the whole file.
+    ``lacks`` has the keys of a manifest that would state what the file does not say.
+    """
 
     name: str
     source: str
     reason: str
+    label: str = ""
+    lacks: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

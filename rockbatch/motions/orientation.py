@@ -216,3 +216,11 @@ def same_azimuth(a: float | None, b: float | None, within: float = 1.0) -> bool:
     if a is None or b is None:
         return False
     return abs((a - b + 180.0) % 360.0 - 180.0) <= within
+
+
+_CLOCKS = re.compile(r"(?:INT|EXT)(?:T?C|CLOCK|CLK)|TCG?|CLOCK|CLK|TIME(?:CODE|MARKS?)|IRIG[A-Z]?|WWVB?|DCF|[ALV]C[EQ]")
+
+
+def is_clock(label: str) -> bool:
+    """Whether a channel's label is that of the recorder's clock, such as "INTC", or SEED's "LCQ": no ground motion."""
+    return _CLOCKS.fullmatch(re.sub(r"[^A-Z]", "", label.upper())) is not None

@@ -46,7 +46,9 @@ def to_motions(
     required, and those that are grossly odd and whose name no pattern in ``confirmed`` fits (nor in ``confirmed_pga``,
     for their PGA), come back as unusable with the reason.
     """
-    asked = [Unusable(c.name, c.source, _question(c)) for c in components if not c.orientation.known]
+    asked = [
+        Unusable(c.name, c.source, _question(c), c.orientation.label) for c in components if not c.orientation.known
+    ]
     components = [c for c in components if c.orientation.known]
     kept, replaced = _without_doubles([c for c in components if not c.orientation.vertical], packaged)
     stations = by_station([*components, *(c for c in kept if not c.folder)])
@@ -197,7 +199,7 @@ def _told_apart(motions: list[Motion], folders: list[str]) -> list[Motion]:
     """Motions of the same name get the suffix of their files, then their folder, then a number."""
 
     def with_suffix(i: int, name: str) -> str:
-        file = PurePosixPath(re.sub(r" \(.*\)$", "", motions[i].source))
+        file = PurePosixPath(re.sub(r"(?i)(\.gz)?( \(.*\))?$", "", motions[i].source))
         return file.name + name[len(file.stem) :] if name.startswith(file.stem) else name
 
     def with_folder(i: int, name: str) -> str:

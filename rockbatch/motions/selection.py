@@ -1,4 +1,4 @@
-"""Which records of a suite are used: by PGA, PGV, duration and magnitude."""
+"""Which records of a suite are used: by PGA, PGV, length, significant duration and magnitude."""
 
 from dataclasses import dataclass, fields, replace
 
@@ -12,13 +12,15 @@ Range = tuple[float, float]
 class Selection:
     """Least and largest value of each measure, both of them included; ``None`` where it does not matter.
 
-    PGA [g] and PGV [m/s] are those of the horizontal component before it is brought to a target; the duration [s] is
-    from the first to the last sample, the magnitude the one that a manifest has.
+    PGA [g] and PGV [m/s] are those of the horizontal component before it is brought to a target; ``duration_s`` is the
+    record's length from the first to the last sample, ``d5_95_s`` its significant duration, in which Arias intensity
+    grows from 5 to 95 %; the magnitude is the one that a manifest has.
     """
 
     pga_g: Range | None = None
     pgv_m_s: Range | None = None
     duration_s: Range | None = None
+    d5_95_s: Range | None = None
     magnitude: Range | None = None
 
 
@@ -44,6 +46,7 @@ def _outside(motion: Motion, selection: Selection, gravity: float) -> list[str]:
         "pga_g": motion.pga / gravity,
         "pgv_m_s": measures.pgv(motion.horizontal, motion.dt, motion.initial) if selection.pgv_m_s else None,
         "duration_s": motion.duration,
+        "d5_95_s": measures.significant_duration(motion.horizontal, motion.dt) if selection.d5_95_s else None,
         "magnitude": motion.magnitude,
     }
     outside = []

@@ -55,7 +55,7 @@ def records(finished: Finished) -> Markup:
         Head("D5–95 [s]", ".1f", "d5_95_s: significant duration, from 5 to 95 % of the Arias intensity"),
         Head("dt [s]"),
         Head("points"),
-        Head("duration [s]", ".2f"),
+        Head("length [s]", ".2f", "duration_s: from the first to the last sample"),
         Head("processed", note="whether its agency has corrected it; empty: the file does not say"),
         Head("to check", note="what is odd about it; the notes below say more"),
         Head("azimuth [°]", note="degrees clockwise from north"),

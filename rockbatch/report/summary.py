@@ -73,7 +73,7 @@ def _motions(finished: Finished) -> str:
 
     return (
         f"Peak ground acceleration {span('pga_g', '.3f', 'g')}, velocity {span('pgv_m_s', '.2f', 'm/s')}, displacement "
-        f"{span('pgd_m', '.2f', 'm')}, as recorded; duration {span('duration_s', '.3g', 's')}."
+        f"{span('pgd_m', '.2f', 'm')}, as recorded; length {span('duration_s', '.3g', 's')}."
     )
 
 

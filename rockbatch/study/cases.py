@@ -7,7 +7,7 @@ from itertools import product
 from typing import Any, NamedTuple
 
 from rockbatch.errors import InputError
-from rockbatch.structure import Base, ElasticBase, Pier, RigidBase, YieldingBase, problems
+from rockbatch.structure import Base, ElasticBase, Pier, RigidBase, YieldingBase, least_beta, problems
 from rockbatch.toml.kinds import choice, number, positive, shown, text
 from rockbatch.toml.reader import Key, Setting, Table, TomlFile
 
@@ -118,7 +118,7 @@ def _expand(
     base = _base(base_name, given, pier)
     for problem in problems(pier, base):
         if pier is not _ANY_PIER or not problem.startswith("beta"):
-            _complain_where_due(table, chosen, problem, pier)
+            _complain_where_due(table, chosen, problem, pier, base)
     applying = {key: value for key, value in asdict(base).items() if value is not None} | given
     if applying.get("spring") == "epp":
         del applying["n"]
@@ -231,13 +231,15 @@ def _check_one_of(table: Table, ratio: str, absolute: str) -> None:
         )
 
 
-def _complain_where_due(table: Table, chosen: Mapping[str, Setting], problem: str, pier: Pier | None = None) -> None:
-    """Place a problem of the structure, "key = …", at that key or at the one it was derived from."""
+def _complain_where_due(
+    table: Table, chosen: Mapping[str, Setting], problem: str, pier: Pier | None = None, base: Base | None = None
+) -> None:
+    """Place a problem of the structure, "key = …", at that key or at the one it was derived from, with its limit."""
     name = problem.split(" = ")[0]
     source = {"beta": "stiffness_kN_m", "eta": "yield_kN"}.get(name, "")
-    if pier is not None and source in chosen and "mass_t" in chosen:
+    if pier is not None and isinstance(base, ElasticBase) and source in chosen and "mass_t" in chosen:
         mass = chosen["mass_t"].value
-        least_omega_v = pier.least_beta * pier.p
+        least_omega_v = least_beta(pier, base) * pier.p
         least = least_omega_v * least_omega_v * mass / 2 if name == "beta" else mass * pier.gravity / 2
         name = source
         derived = f"{source} = {chosen[source].value:g} with mass_t = {mass:g}"

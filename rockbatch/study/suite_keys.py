@@ -52,6 +52,7 @@ _SELECT = {
     "pga_g": Key(_bound, "[0.1, 0.6]", many=True, distinct=False),
     "pgv_m_s": Key(_bound, "[0.3, inf]", many=True, distinct=False),
     "duration_s": Key(_bound, "[20, 120]", many=True, distinct=False),
+    "d5_95_s": Key(_bound, "[5, 40]", many=True, distinct=False),
     "magnitude": Key(_bound, "[6.5, 8.0]", many=True, distinct=False),
 }
 _TARGET = {

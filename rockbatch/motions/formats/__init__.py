@@ -1,8 +1,8 @@
-"""Formats of records: which reader reads a file, by its suffix and its own header.
+"""Formats of records: which reader reads a file, by its own header, whatever its name.
 
 A format is a module with ``SUFFIXES``, a check of the first bytes and a reader that gives components; it
-joins by a line in ``FORMATS``. No format is guessed from content alone, and ObsPy is never left to guess (see
-``with_obspy``).
+joins by a line in ``FORMATS``. Formats whose header does not tell them from all others (SAC, columns of numbers)
+are read in files of their suffixes only, and ObsPy is never left to guess (see ``with_obspy``).
 """
 
 from collections.abc import Callable, Sequence
@@ -12,29 +12,60 @@ import numpy as np
 
 from rockbatch.errors import InputError
 from rockbatch.motions.component import Component
-from rockbatch.motions.formats import at2, columns, cosmos, csmip, cwa, dyna, geonet, knet, miniseed, renadic, sac, smc
+from rockbatch.motions.formats import (
+    afad,
+    at2,
+    bhrc,
+    columns,
+    cosmos,
+    csmip,
+    csmnc,
+    cwa,
+    dyna,
+    geonet,
+    knet,
+    miniseed,
+    renadic,
+    sac,
+    smc,
+    unam,
+    usc,
+)
 from rockbatch.motions.formats.record_file import ROLES, ReadOptions, RecordFile
 from rockbatch.motions.motion import Unusable
 
-__all__ = ["FORMATS", "ROLES", "Format", "ReadOptions", "RecordFile", "has_reader", "read_record"]
+__all__ = ["FORMATS", "HEAD", "ROLES", "Format", "ReadOptions", "RecordFile", "format_of", "is_usual", "read_record"]
 
-_HEAD = 4096
+HEAD = 4096
+"""Bytes that a format is known by."""
+
+_FOREIGN = {  # first bytes of files that hold records, but are not read
+    b"MS\x03": "MiniSEED 3: fetch it as MiniSEED 2",
+    b"\x89HDF\r\n\x1a\n": "an HDF5 file",
+    b"MATLAB 5.0 MAT-file": "a MATLAB file",
+    b"GSE2 ": "GSE2",
+}
+_INSTEAD = "write it as MiniSEED, or as text columns below a line such as # time(s) NS(cm/s2) UD(cm/s2)"
 
 
 @dataclass(frozen=True)
 class Format:
-    """A format: its name, suffixes in lower case, the check of the first bytes, and the reader."""
+    """A format: its name, suffixes in lower case (none if it has none of its own), the check of the first bytes, the reader.
+
+    ``anywhere``: whether the check holds for files of any name, or only for those with its suffixes.
+    """
 
     name: str
     suffixes: frozenset[str]
     matches: Callable[[bytes], bool]
     read: Callable[[RecordFile], Sequence[Component | Unusable]]
+    anywhere: bool = True
 
 
 FORMATS = (
     Format("PEER AT2", at2.SUFFIXES | columns.SUFFIXES, at2.looks_like_at2, at2.read_component),
     Format("MiniSEED", miniseed.SUFFIXES, miniseed.is_miniseed, miniseed.read_miniseed),
-    Format("SAC", sac.SUFFIXES, sac.is_sac, sac.read_sac),
+    Format("SAC", sac.SUFFIXES, sac.is_sac, sac.read_sac, anywhere=False),
     Format("K-NET/KiK-net", knet.SUFFIXES, knet.is_knet, knet.read_knet),
     Format("GeoNet V1A/V2A", geonet.SUFFIXES, geonet.is_geonet, geonet.read_geonet),
     Format("DYNA (ESM, ITACA, AFAD)", dyna.SUFFIXES, dyna.is_dyna, dyna.read_dyna),
@@ -42,29 +73,41 @@ FORMATS = (
     Format("CSMIP", csmip.SUFFIXES, csmip.is_csmip, csmip.read_csmip),
     Format("USGS SMC", smc.SUFFIXES, smc.is_smc, smc.read_smc),
     Format("RENADIC", renadic.SUFFIXES, renadic.is_renadic, renadic.read_renadic),
+    Format("USC Volume I", usc.SUFFIXES, usc.is_usc, usc.read_usc),
+    Format("BHRC Volume 1", bhrc.SUFFIXES, bhrc.is_bhrc, bhrc.read_bhrc),
+    Format("CSMNC", csmnc.SUFFIXES, csmnc.is_csmnc, csmnc.read_csmnc),
+    Format("AFAD text", afad.SUFFIXES, afad.is_afad, afad.read_afad),
+    Format("UNAM", unam.SUFFIXES, unam.is_unam, unam.read_unam),
     Format("CWA free field", cwa.SUFFIXES, cwa.is_cwa, cwa.read_cwa),
-    Format("text columns", columns.SUFFIXES, columns.is_columns, columns.read_columns),
+    Format("text columns", columns.SUFFIXES, columns.is_columns, columns.read_columns, anywhere=False),
 )
 """In the order in which they are tried: an AT2 file saved as .txt is AT2, other text is columns."""
 
 
-def has_reader(suffix: str) -> bool:
-    """Whether files with this suffix (with its dot, any case) are records of a known format."""
+def is_usual(suffix: str) -> bool:
+    """Whether records of some format usually have this suffix (with its dot, any case)."""
     return any(suffix.lower() in known.suffixes for known in FORMATS)
+
+
+def format_of(suffix: str, head: bytes) -> Format | None:
+    """The format of a file with this suffix (with its dot, any case) and these first bytes; ``None`` if none."""
+    return next(
+        (
+            known
+            for known in FORMATS
+            if (known.anywhere or suffix.lower() in known.suffixes) and known.matches(head[:HEAD])
+        ),
+        None,
+    )
 
 
 def read_record(file: RecordFile) -> Sequence[Component | Unusable]:
     """Components of a file, or ``InputError`` with the reason why there are none."""
-    by_suffix = [known for known in FORMATS if file.path.suffix.lower() in known.suffixes]
-    for known in by_suffix:
-        if known.matches(file.data[:_HEAD]):
-            with np.errstate(over="ignore", invalid="ignore"):  # what becomes of absurd numbers is looked at below
-                return [_usable(reading) for reading in known.read(file)]
-    if not by_suffix:
-        raise InputError("not a format that rockbatch reads")
-    if not file.data:
-        raise InputError("the file is empty")
-    raise InputError(_not_recognised(file, " or ".join(known.name for known in by_suffix)))
+    known = format_of(file.path.suffix, file.data)
+    if known is None:
+        raise InputError(_not_recognised(file))
+    with np.errstate(over="ignore", invalid="ignore"):  # what becomes of absurd numbers is looked at below
+        return [_usable(reading) for reading in known.read(file)]
 
 
 def _usable(reading: Component | Unusable) -> Component | Unusable:
@@ -78,10 +121,16 @@ def _usable(reading: Component | Unusable) -> Component | Unusable:
     return reading
 
 
-def _not_recognised(file: RecordFile, names: str) -> str:
-    """What to say about a file whose header is that of no format with its suffix."""
+def _not_recognised(file: RecordFile) -> str:
+    """What to say about a file whose header is that of no format, and what to do with it."""
+    names = " or ".join(known.name for known in FORMATS if file.path.suffix.lower() in known.suffixes)
+    foreign = next((what for magic, what in _FOREIGN.items() if file.data.startswith(magic)), "")
+    if foreign or not names:
+        return f"not a format that rockbatch reads{f', but {foreign}' if foreign else ''}; {_INSTEAD}"
+    if not file.data:
+        return "the file is empty"
     if file.data.startswith(b"PK\x03\x04"):
         return f"not a {names} file but a zip archive, such as an Excel workbook: export it as CSV (UTF-8)"
-    if b"\x00" in file.data[:_HEAD]:
+    if b"\x00" in file.data[:HEAD]:
         return f"not a {names} file, as its suffix {file.path.suffix} says: binary data, or text to be saved as UTF-8"
     return f"not a {names} file, as its suffix {file.path.suffix} says: its header is another one"

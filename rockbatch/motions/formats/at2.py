@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rockbatch.errors import InputError
+from rockbatch.errors import InputError, UnstatedError
 from rockbatch.motions.component import Component, Seat
 from rockbatch.motions.formats.fixed_width import is_cut_short
 from rockbatch.motions.formats.obspy_plugin import FileLike, first_bytes, name_and_bytes
@@ -107,7 +107,7 @@ def read_component(file: RecordFile) -> list[Component]:
     record = _parse(file.data.decode("latin-1"))
     unit = record.unit or file.options.unit
     if unit is None:
-        raise InputError('no unit in the header ("… IN UNITS OF G"); state it in the study, e.g. unit = "g"')
+        raise UnstatedError('no unit in the header ("… IN UNITS OF G"); state it in the study, e.g. unit = "g"', "unit")
     try:
         factor = acceleration_factor(unit, file.gravity)
     except ValueError as error:

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from rockbatch.errors import InputError
+from rockbatch.errors import InputError, UnstatedError
 from rockbatch.motions.component import Component
 from rockbatch.motions.formats.column_header import (
     Column,
@@ -84,9 +84,11 @@ def _parse(text: str, options: ReadOptions) -> list[Recording]:
     wanted = [i for i, column in enumerate(columns) if not (column.is_time or column.other or column.label == "-")]
     lacking = [f"{_called(i, columns[i])} has no unit" for i in wanted if not (columns[i].unit or unit)]
     if lacking:
-        raise InputError(
+        untimed = not (stated_step(header) or options.dt or any(column.is_time for column in columns))
+        raise UnstatedError(
             f"{'; '.join(lacking)}; write it in the header, e.g. # time(s) NS(cm/s2), "
-            'or state it in the study, e.g. unit = "cm/s2"'
+            'or state it in the study, e.g. unit = "cm/s2"',
+            *(("unit", "dt") if untimed else ("unit",)),
         )
     if not wanted:
         found = " and ".join(columns[i].other for i in others)
@@ -197,7 +199,9 @@ def _sampled(
     if not times:
         dt = said.dt if said else options.dt
         if dt is None:
-            raise InputError("no column of time and no sampling interval; state it in the study, e.g. dt = 0.01")
+            raise UnstatedError(
+                "no column of time and no sampling interval; state it in the study, e.g. dt = 0.01", "dt"
+            )
         return dt, table, ()
     column = columns[times[0]]
     seconds = seconds_in(column.unit or "s")

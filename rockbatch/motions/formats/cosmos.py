@@ -2,9 +2,10 @@
 
 Each channel has lines of text, then integers, real numbers and comments, each under a line that says how many
 there are and in which Fortran format, then its values under a line with their count, unit and format, and a
-line "End-of-data". Velocities and displacements in the same file tell how the ground moved at the first sample, else
-real numbers 68 [cm/s] and 69 [cm] do. The sampling interval is real number 62 [ms]; number 34 is that of the recorder.
-Source: COSMOS (2001), "COSMOS strong motion data format", version 1.20; for 68 and 69 the USGS's program PRISM.
+line "End-of-data" (in some of CGS's files "/&  --- End of data"). Velocities and displacements in the same file tell how
+the ground moved at the first sample, else real numbers 68 [cm/s] and 69 [cm] do. The sampling interval is real number
+62 [ms]; number 34 is that of the recorder. Source: COSMOS (2001), "COSMOS strong motion data format", version 1.20; for
+68 and 69 the USGS's program PRISM.
 """
 
 import re
@@ -36,9 +37,10 @@ _NUMBERS = re.compile(
 _COMMENTS = re.compile(r"^ *(?P<count>\d{1,5}) +Comment line", re.I | re.A)
 _VALUES = re.compile(
     r"^ *(?P<npts>\d{1,9}) +(?P<what>[a-z][a-z. ]*?) +(?:pts|points|counts), *approx\.? +(?P<seconds>\d{1,9}) *secs?, *"
-    r"units *= *(?P<unit>[^ ,(]*) *\( *(?P<code>\d{1,3}) *\), *Format *= *\((?P<format>[^)]*)\)",
+    r"units *= *(?P<unit>[^ ,(]*?)\.? *\( *(?P<code>\d{1,3}) *\),? *Format *= *\((?P<format>[^)]*)\)",
     re.I | re.A,
 )
+_END = re.compile(r"^ *(?:/&[ -]*)?End[- ]of[- ]data", re.I)
 _FORMAT = re.compile(r" *(?:\dP,?)?(?P<per_line>\d{0,2})[IFED](?P<width>\d{1,2})(?:\.\d{1,2})? *", re.I | re.A)
 _UNKNOWN = re.compile(r"unspecified: *-?\d+, *(?P<real>-?[\d.]{1,12})", re.I | re.A)
 _CODE = re.compile(r"Code: *(?P<network>[^- ]*)-(?P<station>\S*)", re.I)
@@ -163,7 +165,7 @@ def _values(lines: list[str], at: int, series: re.Match[str]) -> tuple[Samples, 
     width, per_line = _layout(series["format"], at)
     values = fixed_numbers(lines, at + 1, npts, width, per_line)
     end = at + 1 - -npts // per_line
-    found(re.compile(r"^ *End-of-data", re.I), lines, end, f"End-of-data … after {npts} values; fetch it again")
+    found(_END, lines, end, f"End-of-data … after {npts} values; fetch it again")
     return values, end + 1
 
 

@@ -1,4 +1,7 @@
-"""Numbers in the fixed columns of Fortran programs, which need no blank between them: ``-11024.7-9733.1``."""
+"""Numbers in the fixed columns of Fortran programs, which need no blank between them: ``-11024.7-9733.1``.
+
+And in lines of numbers between blanks whose count is known.
+"""
 
 from collections.abc import Callable, Sequence
 from typing import TypeVar
@@ -66,6 +69,32 @@ def fixed_numbers(lines: Sequence[str], first: int, count: int, width: int, per_
                 f"expected {expected} values of {width} characters each"
             )
         values[i * per_line : i * per_line + expected] = [number_in(field, first + i) for field in fields]
+    return values
+
+
+def spaced_numbers(lines: Sequence[str], first: int, count: int, per_line: int) -> Samples:
+    """``count`` numbers between blanks from ``lines[first]`` to the end of the file, shape (count,).
+
+    Every line has ``per_line`` of them but the last, which has the rest. Raises ``InputError`` with the line for
+    anything else; nothing is allocated before the lines are there.
+    """
+    needed = -(-count // per_line)
+    end = next((i for i in range(len(lines), first, -1) if lines[i - 1].strip()), first)
+    if end - first != needed:
+        raise InputError(
+            f"the header says {count} values, {needed} lines from line {first + 1} on, but there are {end - first}; "
+            "fetch the file again"
+        )
+    tokens: list[str] = []
+    for i in range(first, end):
+        fields = lines[i].split()
+        expected = min(per_line, count - len(tokens))
+        if len(fields) != expected:
+            raise InputError(f"line {i + 1}: found {len(fields)} numbers; expected {expected}")
+        tokens += fields
+    values = np.array([number_in(token, first + i // per_line) for i, token in enumerate(tokens)])
+    if is_cut_short(tokens):
+        raise InputError(f'line {end}: found "{tokens[-1][:40]}", shorter than all others: the file is cut')
     return values
 
 

@@ -19,6 +19,24 @@ def found(pattern: re.Pattern[str], lines: Sequence[str], at: int, expected: str
     return match
 
 
+def line_with(pattern: re.Pattern[str], lines: Sequence[str], most: int, expected: str) -> tuple[int, re.Match[str]]:
+    """Index and match of the first of ``most`` lines that ``pattern`` is in; ``InputError`` where it is in none."""
+    for at in range(min(most, len(lines))):
+        if match := pattern.search(line_at(lines, at)):
+            return at, match
+    raise InputError(f'no line "{expected}" in the first {most} lines')
+
+
+def keys_of(lines: Sequence[str]) -> dict[str, str]:
+    """What header lines ``KEY : value`` say, the first of each key; other lines are passed over."""
+    header: dict[str, str] = {}
+    for at in range(len(lines)):
+        key, colon, value = line_at(lines, at).partition(":")
+        if colon and key.strip():
+            header.setdefault(key.strip(), value.strip())
+    return header
+
+
 def line_at(lines: Sequence[str], at: int) -> str:
     """``lines[at]`` as far as a header goes; empty after the last line."""
     return lines[at][:_LONGEST] if at < len(lines) else ""

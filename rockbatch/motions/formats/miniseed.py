@@ -11,7 +11,7 @@ from rockbatch.motions.formats import stationxml
 from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.formats.with_obspy import read_stream
 from rockbatch.motions.motion import Unusable
-from rockbatch.motions.orientation import Orientation, orientation_of, unknown
+from rockbatch.motions.orientation import Orientation, is_clock, orientation_of, unknown
 from rockbatch.units import acceleration_factor
 
 if TYPE_CHECKING:
@@ -19,14 +19,26 @@ if TYPE_CHECKING:
 
 SUFFIXES = frozenset({".mseed", ".ms", ".miniseed"})
 
+_YEARS = 1900, 2100
+_APART, _LEAST_APART = 3.0, 60.0  # times the longest piece of a channel, and seconds: more lies between two events
+
 
 def is_miniseed(head: bytes) -> bool:
-    """Whether the first bytes are those of a MiniSEED 2 record: sequence number and quality."""
-    return re.match(rb"[0-9 ]{6}[DRQM][ \x00]", head) is not None
+    """Whether the first bytes are those of a MiniSEED 2 record, or of a SEED volume, which has control headers before."""
+    if re.match(rb"[0-9]{6}V 0(?:05|08|10)[0-9]{4}", head):
+        return True
+    if re.match(rb"[0-9 ]{6}[DRQM][ \x00][ -~]{12}", head) is None:  # sequence number, quality, codes
+        return False
+    days = ((int.from_bytes(head[20:22], order), int.from_bytes(head[22:24], order)) for order in ("big", "little"))
+    return any(_YEARS[0] <= year <= _YEARS[1] and 1 <= day <= 366 for year, day in days)
 
 
 def read_miniseed(file: RecordFile) -> list[Component | Unusable]:
-    """One component per channel; a channel that cannot be used is an ``Unusable`` beside the others."""
+    """One component per channel and event; a channel that cannot be used is an ``Unusable`` beside the others.
+
+    A gap of more than a minute, and of three times the longest piece of a channel, lies between two events; a
+    shorter one is a fault, as are overlaps.
+    """
     stream = read_stream(file.data, "MSEED")
     lengths = {trace.stats.mseed.record_length for trace in stream}
     if len(lengths) == 1 and len(file.data) % (length := lengths.pop()):  # ObsPy drops the rest unsaid
@@ -39,21 +51,43 @@ def read_miniseed(file: RecordFile) -> list[Component | Unusable]:
     known = stationxml.channels_beside(file.path.parent)
     readings: list[Component | Unusable] = []
     for channel_id, traces in segments.items():
-        name = channel_id if len(segments) > 1 else file.stem
-        try:
-            if len(traces) > 1:
-                raise InputError(f"{channel_id} has gaps or overlaps: {len(traces)} pieces; join them first")
-            readings.append(_component(name, file, traces[0], known))
-        except InputError as error:
-            readings.append(Unusable(name, file.source, str(error)))
+        events = _events(traces)
+        for pieces in events:
+            name = channel_id if len(segments) > 1 else file.stem
+            source = file.source if len(segments) == 1 else f"{file.source} ({channel_id})"
+            if len(events) > 1:
+                when = pieces[0].stats.starttime.strftime("%Y%m%dT%H%M%S")
+                name, source = f"{name}.{when}", f"{file.source} ({channel_id} {when})"
+            try:
+                if len(pieces) > 1:
+                    raise InputError(f"{channel_id} has gaps or overlaps: {len(pieces)} pieces; join them first")
+                readings.append(_component(name, source, file, pieces[0], known))
+            except InputError as error:
+                readings.append(Unusable(name, source, str(error), channel_id.rpartition(".")[2]))
     return readings
 
 
-def _component(name: str, file: RecordFile, trace: "Trace", known: list[stationxml.Channel]) -> Component:
+def _events(traces: list["Trace"]) -> list[list["Trace"]]:
+    """The pieces of a channel by record: a gap far longer than the longest piece lies between two events."""
+    ordered = sorted(traces, key=lambda trace: trace.stats.starttime.timestamp)
+    longest = max(trace.stats.endtime - trace.stats.starttime for trace in ordered)
+    events = [[ordered[0]]]
+    end = ordered[0].stats.endtime
+    for trace in ordered[1:]:
+        if trace.stats.starttime - end > max(_APART * longest, _LEAST_APART):
+            events.append([])
+        events[-1].append(trace)
+        end = max(end, trace.stats.endtime)
+    return events
+
+
+def _component(name: str, source: str, file: RecordFile, trace: "Trace", known: list[stationxml.Channel]) -> Component:
     """One channel as a component, by its StationXML entry or by what the study states."""
     stats = trace.stats
     if not np.issubdtype(trace.data.dtype, np.number):
         raise InputError(f"{trace.id} holds text, not samples")
+    if is_clock(stats.channel):
+        raise InputError(f"{trace.id} is the recorder's clock, no ground motion")
     start = stats.starttime.timestamp
     entries = [channel for channel in known if channel.id == trace.id]
     entry = next((channel for channel in entries if channel.start <= start < channel.end), None)
@@ -84,7 +118,7 @@ def _component(name: str, file: RecordFile, trace: "Trace", known: list[stationx
         acceleration=trace.data * (factor / sensitivity),
         orientation=orientation,
         station=f"{stats.network}.{stats.station}.{stats.location}.{stats.channel[:-1]}",
-        source=file.source if name == file.stem else f"{file.source} ({trace.id})",
+        source=source,
         start=start,
         unit="" if entry is not None and entry.sensitivity else unit,
         raw=True,

@@ -10,7 +10,7 @@ from rockbatch.motions.component import NOWHERE, Component, Seat
 from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.measures import initial_of
 from rockbatch.motions.motion import Initial, Samples, Unusable
-from rockbatch.motions.orientation import Orientation, orientation_of, unknown
+from rockbatch.motions.orientation import Orientation, is_clock, orientation_of, unknown
 from rockbatch.units import acceleration_factor, length_factor
 
 _SAME_PEAK = 0.01  # relative: header peaks are rounded, and taken before the last decimals of the data were cut
@@ -95,12 +95,14 @@ def to_components(file: RecordFile, recordings: Sequence[Recording]) -> list[Com
         try:
             readings.append(_component(file, recording, name, source))
         except InputError as error:
-            readings.append(Unusable(name, source, str(error)))
+            readings.append(Unusable(name, source, str(error), recording.label))
     return readings
 
 
 def _component(file: RecordFile, recording: Recording, name: str, source: str) -> Component:
-    """One channel as a component; ``InputError`` for a unit that is not understood."""
+    """One channel as a component; ``InputError`` for a clock's, and for a unit that is not understood."""
+    if is_clock(recording.label):
+        raise InputError(f'component "{recording.label}": the recorder\'s clock, no ground motion')
     orientation = recording.orientation or orientation_of(recording.label) or unknown(recording.label)
     try:
         factor = acceleration_factor(recording.unit, file.gravity)

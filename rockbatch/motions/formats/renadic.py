@@ -16,6 +16,7 @@ from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.formats.recording import Recording, to_components
 from rockbatch.motions.formats.time_steps import on_even_steps
 from rockbatch.motions.motion import Unusable
+from rockbatch.motions.orientation import is_clock
 from rockbatch.units import GRAVITY, acceleration_factor
 
 SUFFIXES = frozenset({".v1", ".raw"})
@@ -47,7 +48,8 @@ def read_renadic(file: RecordFile) -> list[Component | Unusable]:
 def _parse(text: str) -> list[Recording]:
     """The channels, one after the other; ``InputError`` with the line where the file is not whole."""
     channels = one_after_another(text, _channel)
-    recordings, begins = [recording for recording, _ in channels], [first for _, first in channels]
+    recordings = [recording for recording, _ in channels]
+    begins = [first for recording, first in channels if not is_clock(recording.label)] or [0.0]
     if recordings[0].start is None and max(begins) - min(begins) > 0.5 * recordings[0].dt:
         raise InputError(
             f"its channels begin at different times ({', '.join(f'{t:g}' for t in begins)} s) and no trigger time is "

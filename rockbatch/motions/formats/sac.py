@@ -1,14 +1,16 @@
 """SAC (binary): one component, in a unit that its header does not tell reliably."""
 
-from rockbatch.errors import InputError
+from rockbatch.errors import UnstatedError
 from rockbatch.motions.component import Component, Seat
 from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.formats.with_obspy import read_stream
-from rockbatch.motions.orientation import Orientation, orientation_of, split_stem, unknown
+from rockbatch.motions.motion import Unusable
+from rockbatch.motions.orientation import Orientation, is_clock, orientation_of, split_stem, unknown
 from rockbatch.units import acceleration_factor
 
 SUFFIXES = frozenset({".sac"})
 
+_FIRST_YEAR = 365 * 86400.0  # s since 1970: no recorder began in it, but headers without a time say so
 _LEVEL = 10.0  # degrees that a horizontal component may be off the horizontal
 _VERSION_AT = 76 * 4  # header word NVHDR, 6 or 7
 
@@ -19,19 +21,23 @@ def is_sac(head: bytes) -> bool:
     return len(word) == 4 and any(int.from_bytes(word, order) in (6, 7) for order in ("little", "big"))
 
 
-def read_sac(file: RecordFile) -> list[Component]:
+def read_sac(file: RecordFile) -> list[Component | Unusable]:
     """The component of a SAC file, in the unit that the study states: data / sensitivity × unit.
 
     SAC's own entry for the kind of data (IDEP) is not used: files in g that claim nm/s² are common.
     """
     options = file.options
-    if options.unit is None and options.sensitivity is None:
-        raise InputError(
-            'SAC files do not tell their unit reliably; state it in the study, e.g. unit = "g" '
-            "(or sensitivity = … for counts per m/s²)"
-        )
     (trace,) = read_stream(file.data, "SAC")
     stats = trace.stats
+    if is_clock(stats.channel):
+        return [Unusable(file.stem, file.source, "the recorder's clock, no ground motion", stats.channel)]
+    if options.unit is None and options.sensitivity is None:
+        raise UnstatedError(
+            'SAC files do not tell their unit reliably; state it in the study, e.g. unit = "g" '
+            "(or sensitivity = … for counts per m/s²)",
+            "unit",
+        )
+    start = stats.starttime.timestamp
     factor = acceleration_factor(options.unit or "m/s2", file.gravity) / (options.sensitivity or 1.0)
     orientation = orientation_of(stats.channel) or _by_angles(stats.sac) or split_stem(file.stem)[1]
     codes = (stats.network, stats.station, stats.location, stats.channel[:-1])
@@ -43,8 +49,8 @@ def read_sac(file: RecordFile) -> list[Component]:
             orientation=orientation or unknown(stats.channel),
             station=".".join(codes) if stats.station else "",
             source=file.source,
-            start=stats.starttime.timestamp,
-            seat=Seat(stats.station if stats.starttime.year > 1970 else "", stats.network, stats.location),
+            start=start,
+            seat=Seat(stats.station if start >= _FIRST_YEAR else "", stats.network, stats.location),
             unit=options.unit or "m/s2",
             raw=True,
             notes=(f"unit {options.unit or 'm/s2'} as stated",),

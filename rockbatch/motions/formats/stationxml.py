@@ -7,6 +7,9 @@ from datetime import UTC, datetime
 from functools import lru_cache
 from pathlib import Path
 
+from rockbatch.errors import InputError
+from rockbatch.motions import archives
+
 
 @dataclass(frozen=True)
 class Channel:
@@ -27,11 +30,11 @@ class Channel:
 
 
 def channels_beside(folder: Path) -> list[Channel]:
-    """Channels of all StationXML files in ``folder``; other .xml files have none."""
+    """Channels of all StationXML files in ``folder``, of the disk or of an archive; other .xml files have none."""
     found: list[Channel] = []
-    for path in sorted(folder.iterdir()):
-        if path.suffix.lower() == ".xml" and path.is_file():
-            found += _channels(path, path.stat().st_mtime_ns)
+    for path in archives.files_in(folder):
+        if path.suffix.lower() == ".xml":
+            found += _channels(path, (archives.archive_of(path) or path).stat().st_mtime_ns)
     return found
 
 
@@ -39,8 +42,8 @@ def channels_beside(folder: Path) -> list[Channel]:
 def _channels(path: Path, mtime_ns: int) -> list[Channel]:
     """Channels of one file; ``mtime_ns`` keeps an edited file from being taken for the old one."""
     try:
-        root = ElementTree.parse(path).getroot()
-    except (ElementTree.ParseError, OSError, ValueError):
+        root = ElementTree.fromstring(archives.content(path))
+    except (ElementTree.ParseError, InputError, OSError, ValueError):
         return []
     channels = []
     for network in root.findall("{*}Network"):
@@ -54,12 +57,17 @@ def _channels(path: Path, mtime_ns: int) -> list[Channel]:
                         start=_time(channel.get("startDate"), -math.inf),
                         end=_time(channel.get("endDate"), math.inf),
                         sensitivity=_number(channel.findtext("{*}Response/{*}InstrumentSensitivity/{*}Value")),
-                        unit=channel.findtext("{*}Response/{*}InstrumentSensitivity/{*}InputUnits/{*}Name", "").strip(),
+                        unit=_unit(channel.findtext("{*}Response/{*}InstrumentSensitivity/{*}InputUnits/{*}Name")),
                         azimuth=_number(channel.findtext("{*}Azimuth")),
                         dip=_number(channel.findtext("{*}Dip")),
                     )
                 )
     return channels
+
+
+def _unit(text: str | None) -> str:
+    """The unit of "M/S**2 - Acceleration in meters per second per second", as old dataless files have it."""
+    return (text or "").partition(" - ")[0].strip()
 
 
 def _number(text: str | None) -> float | None:

@@ -1,0 +1,114 @@
+"""Text files of Türkiye's network (AFAD, once TR-NSMN): lines of ``KEY : value``, then the columns N-S, E-W and U-D.
+
+What AFAD's database gives today (.asc) is ``dyna``; these are the .txt of the years before. Their unit stands only
+beside their peaks, "RAW PGA VALUES (gal)", which the columns must bear out. The layout is that of the network's own files.
+"""
+
+import re
+
+import numpy as np
+
+from rockbatch.errors import InputError
+from rockbatch.motions.component import Component, Seat
+from rockbatch.motions.formats.fixed_width import lines_of, number_in, spaced_numbers
+from rockbatch.motions.formats.header_lines import keys_of, moment
+from rockbatch.motions.formats.obspy_plugin import plugin
+from rockbatch.motions.formats.record_file import RecordFile
+from rockbatch.motions.formats.recording import Recording, to_components
+from rockbatch.motions.motion import Samples, Unusable
+
+SUFFIXES: frozenset[str] = frozenset()
+
+_MOST = 40  # lines of header
+_TITLE = b"STRONG GROUND MOTION RECORDS OF TURKIYE"
+_PEAKS = re.compile(r"PGA VALUES *\((?P<unit>[^)]{1,20})\)", re.IGNORECASE)
+_PEAK = re.compile(r"\((?P<label>[NEU]-[SWD])\) *(?P<peak>[-+]?[0-9.]{1,15})")
+_MOMENT = re.compile(r"(\d{2})/(\d{2})/(\d{4}) (\d{2}):(\d{2}):(\d{2}(?:\.\d{1,6})?)", re.ASCII)
+_BEARS_OUT = 2.0  # times: what offsets may put between a stated peak and that of the column
+
+
+def is_afad(head: bytes) -> bool:
+    """Whether the first bytes are the header of such a file."""
+    return head.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(_TITLE)
+
+
+def read_afad(file: RecordFile) -> list[Component | Unusable]:
+    """The three components of a file in m/s², without their offsets."""
+    return to_components(file, _parse(file.text))
+
+
+def _parse(text: str) -> list[Recording]:
+    """The components; ``InputError`` with the line where the file is not whole, or its unit not borne out."""
+    lines = lines_of(text)
+    heads = next((i for i in range(min(_MOST, len(lines))) if _labels(lines[i])), None)
+    if heads is None:
+        raise InputError(f'no line of column names in the first {_MOST} lines; expected "N-S  E-W  U-D"')
+    header, labels = keys_of(lines[:heads]), _labels(lines[heads])
+    npts, dt = _number(header, "NUMBER OF DATA"), _number(header, "SAMPLING INTERVAL (sec)")
+    if npts != int(npts) or npts < 2 or not 0 < dt < 10:
+        raise InputError(f"the header says {npts:g} values every {dt:g} s; expected a whole number and an interval")
+    values = spaced_numbers(lines, heads + 1, int(npts) * len(labels), len(labels)).reshape(-1, len(labels))
+    unit = _unit(header, labels, values)
+    station, began = header.get("STATION ID", ""), header.get("RECORD TIME", "")
+    return [
+        Recording(
+            label=label.replace("-", ""),
+            dt=dt,
+            values=values[:, i],
+            unit=unit,
+            station=f"{station}, {began}" if station else "",
+            codes=("TK", station, "", label.replace("-", "")),
+            start=_start(began),
+            uncorrected=True,
+            processed=False,
+            seat=Seat(station, "TK"),
+            event=header.get("EARTHQUAKE DATE", ""),
+            header={"station": header.get("PLACE", ""), "event": header.get("EARTHQUAKE DATE", "")},
+        )
+        for i, label in enumerate(labels)
+    ]
+
+
+def _labels(line: str) -> list[str]:
+    """The names of the columns; none where the line is another one."""
+    names = line.split()
+    return names if sorted(names) == ["E-W", "N-S", "U-D"] else []
+
+
+def _number(header: dict[str, str], key: str) -> float:
+    if key not in header:
+        raise InputError(f"the header lacks {key}")
+    try:
+        return number_in(header[key], 0)
+    except InputError:
+        raise InputError(f'the header says {key}: "{header[key][:40]}"; expected a number') from None
+
+
+def _unit(header: dict[str, str], labels: list[str], values: Samples) -> str:
+    """The unit of the header's peaks; ``InputError`` where the columns do not have these in it, with offsets or without."""
+    key = next((key for key in header if _PEAKS.search(key)), "")
+    said = _PEAKS.search(key)
+    peaks = {match["label"]: match["peak"] for match in _PEAK.finditer(header.get(key, ""))}
+    if said is None or set(peaks) != set(labels):
+        raise InputError('the header lacks "RAW PGA VALUES (gal) : (N-S) … (E-W) … (U-D) …", which tells the unit')
+    stated = np.array([abs(number_in(peaks[label], 0)) for label in labels])
+    found = np.array([np.abs(values - offset).max(axis=0) for offset in (0.0, values.mean(axis=0))])
+    if not ((stated <= _BEARS_OUT * found) & (found <= _BEARS_OUT * stated)).any(axis=0).all():
+        pairs = ", ".join(f"{a:g} and {b:.4g}" for a, b in zip(stated, found[0], strict=True))
+        raise InputError(
+            f"peaks by its header, in {said['unit']}, and in its columns: {pairs}: the unit of the columns is another "
+            "one; write them as text columns with their unit"
+        )
+    return said["unit"]
+
+
+def _start(text: str) -> float | None:
+    """Time of the first sample [s since 1970], day first; ``None`` where it is not known."""
+    match = _MOMENT.match(text)
+    if match is None:
+        return None
+    day, month, year, hour, minute = (int(match[i]) for i in range(1, 6))
+    return moment(year, month, day, hour, minute, float(match[6]))
+
+
+is_afad_file, read_afad_stream = plugin("AFAD", is_afad, _parse)
