@@ -20,7 +20,7 @@ from rockbatch.simulation import (
     run_to_tolerance,
     settling,
 )
-from rockbatch.simulation.runs import Trial
+from rockbatch.simulation.runs import LEFT_ALONE, Trial
 from rockbatch.structure import ElasticBase, Pier, RigidBase, YieldingBase
 
 SINE = pulse("sine", 0.5, dt=0.01, end=3.0)
@@ -114,6 +114,13 @@ def test_the_time_of_flight_has_to_agree(monkeypatch):
     asked = scripted(monkeypatch, *(flown | {"t_flight": t, "t_end": t} for t in (2.0, 2.1, 2.1001)))
     outcome = run_to_tolerance(FIG5, ElasticBase(50.0), SINE, 1e-4)
     assert (outcome.status, outcome.t_flight, len(asked)) == ("flight", 2.1001, 3)
+
+
+def test_what_left_alone_is_not_decided_is_no_matter_of_the_step(monkeypatch):
+    leans = ok(0.1) | {"status": "failed", "reason": LEFT_ALONE[1]}
+    asked = scripted(monkeypatch, leans)
+    assert run_to_tolerance(FIG5, RigidBase(), SINE, 1e-4).reason == LEFT_ALONE[1]
+    assert len(asked) == 2
 
 
 def test_outcomes_that_differ_are_never_settled(monkeypatch):

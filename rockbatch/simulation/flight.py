@@ -35,6 +35,6 @@ def cause_of_flight(motion: Motion, omega_v: float | None, gravity: float, t_fli
     if until == 0.0:
         return f"{at}vertical vibration of undamped springs ({hertz:.3g} Hz), excited by rocking; {_ADVICE}"
     return (
-        f"{at}vertical vibration of undamped springs ({hertz:.3g} Hz), which made 1 g of the ground's {until:.2f} g, "
-        f"{1.0 / until:.1f} times as much; {_ADVICE}"
+        f"{at}vertical vibration of undamped springs ({hertz:.3g} Hz) reached 1 g, {1.0 / until:.1f} times the ground's "
+        f"{until:.2f} g until then; {_ADVICE}"
     )

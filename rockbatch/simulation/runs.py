@@ -47,6 +47,9 @@ _STATUS = {
     ),
 }
 
+LEFT_ALONE = tuple(_STATUS[code][1] for code in (UNDECIDED, GROWING))
+"""Reasons of runs that failed because nothing decided them for so long, which smaller steps do not change."""
+
 _RESTLESS = "left alone after the record for {seconds:.0f} s, the pier has still the energy for a greater rotation"
 _LATE_FLIGHT = "flew at {t:.2f} s, when nothing could exceed the peak any more; the run ends there"
 

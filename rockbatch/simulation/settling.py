@@ -10,7 +10,7 @@ import numpy as np
 from rockbatch.motions.motion import Motion
 from rockbatch.outcome import Outcome
 from rockbatch.simulation.models import first_substeps
-from rockbatch.simulation.runs import MOST_STEPS, Scene, Stop, Trial, steps_of, try_all
+from rockbatch.simulation.runs import LEFT_ALONE, MOST_STEPS, Scene, Stop, Trial, steps_of, try_all
 from rockbatch.structure import Base, Pier
 
 HALVINGS = 8
@@ -103,8 +103,11 @@ def _with_errors(fine: Outcome, coarse: Outcome, alpha: float) -> Outcome:
 def agreement(fine: Trial, coarse: Trial, tolerance: float, pier: Pier) -> Agreement:
     """How far two runs agree; ``tolerance`` on rotations [rad]."""
     now, before = fine.outcome, coarse.outcome
-    if now.status != before.status or now.status == "failed":
+    if now.status != before.status:
         return Agreement.NONE
+    if now.status == "failed":
+        alike = now.reason == before.reason and abs(now.theta_max - before.theta_max) <= tolerance
+        return Agreement.THROUGHOUT if alike and now.reason in LEFT_ALONE else Agreement.NONE
     greatest = np.fmax(fine.extremes, coarse.extremes)
     change = np.abs(fine.extremes - coarse.extremes)
     change[np.isnan(greatest)] = 0.0  # a window that neither has reached
