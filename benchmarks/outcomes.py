@@ -212,8 +212,11 @@ def judge(case: Case, cache: Cache, within: float | None = None) -> Row:
     if within < HORIZON and max(fine.t_end if fine.status == "overturned" else 0.0, fine.t_max) > limit:
         fine = loose = until(case, limit)
     if found.t_flight is not None and found.t_flight > fine.t_end:  # after the moment at which the peak was decided
-        flights = until(case, found.t_end)
-        fine = replace(fine, **{name: getattr(flights, name) for name in FLIGHT})
+        if found.status == "ok":  # no matter of the outcome, and undamped vibration forgets nothing
+            fine = replace(fine, t_flight=found.t_flight)
+        else:
+            flights = until(case, found.t_end)
+            fine = replace(fine, **{name: getattr(flights, name) for name in FLIGHT})
     said, error = verdict(case, found, fine)
     truth, peak, t_peak = truth_of(case, fine, found.t_end)
     error_until = math.nan if math.isnan(error) else error_until_end(case, found, peak, t_peak)

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import reference_solver
+from core_samples import broadband
 
 from rockbatch.motions import Motion, pulse
 from rockbatch.structure import ElasticBase, Pier, RigidBase, YieldingBase
@@ -128,6 +130,14 @@ class TestTheReference:
         springs = reference(PIER, ElasticBase(3200.0, 0.0, "finite", "guided"), push, horizon=5.0)
         assert rigid.theta_max / PIER.alpha == pytest.approx(0.401675, abs=1e-6)
         assert springs.theta_max == pytest.approx(rigid.theta_max, rel=1e-4)
+
+    @pytest.mark.parametrize("e", [0.0, 0.5, 0.9])
+    def test_agrees_with_the_other_reference_on_many_impacts_on_a_rigid_base(self, reference, e):
+        """Also where a block that an impact has stopped is lifted again at once."""
+        motion = Motion("noise", 0.01, broadband(np.random.default_rng(4), 0.01, 1500, 3.0 * G * PIER.alpha))
+        found, other = reference(PIER, RigidBase(e), motion), reference_solver.reference(PIER, RigidBase(e), motion)
+        assert found.impacts >= 10
+        assert other.theta_max == pytest.approx(found.theta_max, rel=1e-8)
 
     def test_is_the_mirror_image_of_itself(self, reference):
         base = YieldingBase(40.0, 0.1, "finite", "guided", eta=1.5, n=3.5)

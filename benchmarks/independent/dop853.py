@@ -459,6 +459,9 @@ def change_rigid(k, y, mode, u, w, left_s, found, par):
     if mode[SIDE] * y[3] < 0 or speed == 0.0:
         y[3] = 0.0
         mode[SIDE] = 0
+        if pull > weight:  # the ground lifts it again at once
+            mode[SIDE] = -1 if u > 0 else 1
+            found[SEPARATIONS] += 1
     elif restoring > 0 and par[E] < 1:
         low = speed**2 < 2 * restoring * 1e-15 * par[ALPHA]
         if low and 2 * speed / (restoring * (1 - par[E])) < 0.01 * left_s:
