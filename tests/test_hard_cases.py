@@ -36,10 +36,7 @@ OVERTURNED = {
     ("full amplitude at once", "barely carried"),
     ("jumps from + to - within dt", "barely carried"),
     ("jumps from + to - within dt", "barely upright"),
-    ("a tick, then 10 minutes", "barely carried"),
     ("10 minutes of shaking", "barely carried"),
-    ("10 minutes of shaking", "100,000 impacts"),
-    ("10 minutes of shaking", "all or nothing 1"),
     ("rigid, less 1e-6", "all or nothing 0"),
     ("rigid, less 1e-6", "all or nothing 1"),
     ("rigid, less 1e-6", "barely carried"),
@@ -58,6 +55,8 @@ OVERTURNED = {
     ("springs, plus 1e-6", "barely upright"),
     ("springs, plus 1e-6", "overturns by a hair"),
 }
+CHAOTIC = {("10 minutes of shaking", "100,000 impacts"), ("10 minutes of shaking", "all or nothing 1")}
+"""They fall with every step, at another time with each."""
 
 
 @pytest.mark.parametrize("minutes", [0, pytest.param(10, marks=pytest.mark.slow)])
@@ -70,7 +69,9 @@ def test_every_run_of_the_study_ends_with_the_status_that_is_right(minutes):
     for _, row in table.iterrows():
         split = f" {row['epsilon']:g}" if row["case"] == "all or nothing" else ""
         run = (row["record"], row["case"] + split)
-        assert row["status"] == ("overturned" if run in OVERTURNED else "ok"), run
+        expected = "failed" if run in CHAOTIC else ("overturned" if run in OVERTURNED else "ok")
+        assert row["status"] == expected, run
+        assert ("still changed the time of overturning" in row["reason"]) == (run in CHAOTIC), run
         assert 0 <= row["theta_max_over_alpha"] < math.pi / FIG5.alpha, run
     if minutes:
         tick = table[(table.record == "a tick, then 10 minutes") & (table.case == "100,000 impacts")]

@@ -20,7 +20,7 @@ ROUNDING = 1e-12
 """Least error of θ/α that is ever claimed."""
 
 SAME_TIME = 0.01
-"""Of 1/p: how well the time of overturning or of flight is to be known."""
+"""Of 1/p: how well the time of overturning, of flight and of the peak is to be known."""
 
 SAME_FALL = 0.02
 """Of α: how well the rotations before a pier overturned are to be known."""
@@ -33,7 +33,7 @@ class Agreement(IntEnum):
     """How far two runs of the same scene agree."""
 
     NONE = 0
-    RESULTS = 1  # in outcome, peak and residual rotation; other extremes, near the peak, have not settled
+    RESULTS = 1  # in outcome, peak and residual rotation; its time, or other extremes near the peak, have not settled
     APART = 2  # likewise, and the extremes that have not settled are far below the peak
     THROUGHOUT = 3  # in the extremes of all windows too
 
@@ -120,6 +120,8 @@ def agreement(fine: Trial, coarse: Trial, tolerance: float, pier: Pier) -> Agree
         return Agreement.NONE
     if max(now.theta_max_error or 0.0, now.theta_res_error or 0.0) > tolerance:
         return Agreement.NONE
+    if abs(now.t_max - before.t_max) > SAME_TIME / pier.p:  # another peak of about the same height
+        return Agreement.RESULTS
     differs = ~(change <= tolerance)
     if not differs.any():
         return Agreement.THROUGHOUT
@@ -144,8 +146,8 @@ def _noted(fine: Trial, coarse: Trial, how_far: Agreement, tolerance: float) -> 
     """The outcome with a note on what has not settled beside it; ``tolerance`` in rad."""
     now, before = fine.outcome, coarse.outcome
     notes = [now.note] if now.note else []
-    if how_far < Agreement.THROUGHOUT:
-        differs = ~(np.abs(fine.extremes - coarse.extremes) <= tolerance)
+    differs = np.abs(fine.extremes - coarse.extremes) > tolerance
+    if how_far < Agreement.THROUGHOUT and differs.any():
         greatest = np.nanmax(np.fmax(fine.extremes, coarse.extremes)[differs])
         notes.append(f"lesser rotations, up to {greatest:.2g} rad, have not settled")
     for name in ("impacts", "separations"):
