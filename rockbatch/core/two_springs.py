@@ -9,9 +9,24 @@ import math
 
 import numpy as np
 
+from rockbatch.core.ending import (
+    ALPHA,
+    DRIFT,
+    DT,
+    MOVED,
+    NPTS,
+    READ,
+    RUNNING,
+    SAMPLE_NUMBER,
+    SAMPLES,
+    base_of,
+    done,
+    expect,
+    ground_rests,
+    peak_stands,
+)
 from rockbatch.core.equations import geometry, on_ground, rates, step
 from rockbatch.core.events import at_rest
-from rockbatch.core.free_vibration import DECIDED, LEANS, OPEN, outlook_on_springs, rocking_period, summit
 from rockbatch.core.ground import ground_rows
 from rockbatch.core.kernel import entry, inlined, kernel
 from rockbatch.core.lanes import (
@@ -44,7 +59,7 @@ from rockbatch.core.lanes import (
     state_of,
 )
 from rockbatch.core.loading import Loading, branches
-from rockbatch.core.outcome import GROWTH, WINDOWS, fallen, window_of
+from rockbatch.core.outcome import WINDOWS, fallen, window_of
 from rockbatch.core.roots import largest_within, lowest_within
 from rockbatch.core.search import (
     ACCEPT,
@@ -67,16 +82,13 @@ from rockbatch.core.types import (
     BOUC_WEN,
     CHATTER,
     FLIGHT,
-    GROWING,
     IMPACT_BOTH,
     IMPACT_LEFT,
     IMPACT_RIGHT,
     LATE_FLIGHT,
     OVERTURNED,
-    RESTLESS,
     SAMPLE,
     SURVIVED,
-    UNDECIDED,
     Contact,
     SpringRun,
     State,
@@ -88,7 +100,6 @@ RESULTS = len(SpringRun._fields)
 HISTORY_COLUMNS = 13  # t, the six of State, the five of Contact, kind of row
 
 NONE = np.int64(0)  # a literal 0 would have every function that it is handed to compiled twice
-RUNNING = -1
 
 # What only this module needs of a lane
 DONE = rows(1)  # of the step so far [s]
@@ -98,24 +109,8 @@ PLASTIC = rows(1)  # unstressed position of both supports at the start [m]
 IMPACTS = rows(1)
 SEPARATIONS = rows(1)
 FLIGHT_TIME = rows(1)
-DT = rows(1)
-SAMPLE_NUMBER = rows(1)  # of the last sample
-SAMPLES = rows(1)  # of record and quiet time
-LONGEST = rows(1)  # samples that a pier is waited for
-EARLIEST = rows(1)  # sample from which on residuals may be read
-READ_WAIT = rows(1)  # samples between two readings; 0 where there is nothing to read twice
-PATIENCE = rows(1)  # samples
-DECIDED_AT = rows(1)  # sample from which on nothing can exceed the peak, −1 before it
-READ = rows(3)  # sample of the first reading, −1 before it; unstressed positions of both supports then [m]
-LAST_READ = rows(3)  # likewise, of the last one
-DRIFT = rows(2)  # of both supports from the first reading to the second [m/s]
-LAST_DRIFT = rows(2)  # likewise, between the last two
-MOVED = rows(1)  # time at which a pivot last left the ground or landed [s]
 IMPACT_TIME = rows(1)  # of the last impact [s]
-MIDWAY = rows(1)  # greatest |θ| when half of the waiting is over [rad]
 FIRST_ROW = rows(1)  # of the motion among the ground's rows
-NPTS = rows(1)
-ALPHA = rows(1)
 STRONGEST = rows(1)  # horizontal acceleration of the ground [m/s²]
 RUN = rows(1)  # which run is in the lane
 WINDOW = rows(1)  # of the run, in which the lane is (``outcome``)
@@ -175,19 +170,8 @@ def begin(table, i, number, runs, ground, exponent, finite):
     table[SUBSTEPS + i] = substeps
     table[FIRST_ROW + i] = first_row
     table[NPTS + i] = npts
-    table[SAMPLES + i] = npts - 1 + quiet_samples
-    wait = runs[number, 18]
-    table[READ_WAIT + i] = wait
-    table[EARLIEST + i] = npts - 1 + runs[number, 17]
-    table[PATIENCE + i] = runs[number, 16]
-    table[LONGEST + i] = max(table[SAMPLES + i], table[EARLIEST + i] + wait) + table[PATIENCE + i]
-    table[DECIDED_AT + i] = -1.0
-    put_all(table, READ + i, (-1.0, math.nan, math.nan))
-    put_all(table, DRIFT + i, (math.nan, math.nan))
-    put_all(table, LAST_DRIFT + i, (0.0, 0.0))
-    table[MOVED + i] = 0.0
+    expect(table, i, quiet_samples, runs[number, 16], runs[number, 17], runs[number, 18])
     table[IMPACT_TIME + i] = math.nan
-    table[MIDWAY + i] = math.inf
     table[ALPHA + i] = math.atan2(m.half_width, m.height)
     strongest = 0.0
     for row in range(int(first_row), int(first_row + npts)):
@@ -289,11 +273,10 @@ def _happen(table, i, m, y, contact, which, t, x, history, row):
             table[FLIGHT_TIME + i] = t
         if m.guided == 0.0:
             beyond = abs(y.theta) - table[ALPHA + i]
-            strongest = 0.0 if _ground_rests(table, i) else table[STRONGEST + i]
+            strongest = 0.0 if ground_rests(table, i) else table[STRONGEST + i]
             # else the ground may yet turn it back
             falling = beyond >= 0.0 and y.theta * y.omega > 0.0 and m.gravity * math.tan(beyond) >= strongest
-            decided_at = table[DECIDED_AT + i]
-            if decided_at >= 0.0 and table[PEAK_TIME + i] <= decided_at * table[DT + i]:
+            if peak_stands(table, i):
                 return LATE_FLIGHT, after, row  # the peak stands: what flies is undamped vibration
             return (OVERTURNED if falling else FLIGHT), after, row
     table[EVENTS + i] += 1.0
@@ -355,100 +338,6 @@ def _look(table, i, exponent, finite, locate, history, row):
 
 
 @kernel
-def _unstressed(m, position, z, on_spring, waiting):
-    return position - m.yield_deflection * z if on_spring != 0.0 else waiting
-
-
-@kernel
-def _base(table, i, m):
-    """Unstressed positions [m] of both supports."""
-    y, contact, supports = state_of(table, NOW + i), contact_of(table, i), supports_of(table, i)
-    at = geometry(m, y.theta)
-    left = _unstressed(m, y.v + at.lift_left, y.z_left, contact.left, supports.left)
-    right = _unstressed(m, y.v + at.lift_right, y.z_right, contact.right, supports.right)
-    return left, right
-
-
-@kernel
-def _outlook(table, i, m):
-    """OPEN, DECIDED or LEANS (see ``free_vibration``); OPEN while the ground moves."""
-    if not _ground_rests(table, i):
-        return OPEN
-    contact = contact_of(table, i)
-    left, right = _base(table, i, m)
-    alone = table[SAMPLE_TIME + i] - max(table[MOVED + i], table[NPTS + i] * table[DT + i])
-    calm = contact.left != 0.0 and contact.right != 0.0 and alone >= rocking_period(m)
-    ahead = 0.5 * table[PATIENCE + i] * table[DT + i] / m.half_width
-    first = ahead * (table[DRIFT + i] - table[DRIFT + LANES + i])
-    last = ahead * (table[LAST_DRIFT + i] - table[LAST_DRIFT + LANES + i])
-    to_right, to_left = max(0.0, first, last), max(0.0, -first, -last)
-    return outlook_on_springs(
-        m, state_of(table, NOW + i), contact, left, right, table[PEAK + i], calm, to_right, to_left
-    )
-
-
-@kernel
-def _ground_rests(table, i):
-    """Whether the ground is at rest from the last sample on, for good."""
-    over = table[SAMPLE_NUMBER + i] >= table[NPTS + i] - 1.0
-    return over and table[GROUND + i] == 0.0 and table[GROUND + 2 * LANES + i] == 0.0
-
-
-@kernel
-def _read_base(table, i, m):
-    """Read the residuals: the positions of the supports, and how they have drifted since the last reading."""
-    sample, wait = table[SAMPLE_NUMBER + i], table[READ_WAIT + i]
-    left, right = _base(table, i, m)
-    if table[READ + i] < 0.0:
-        put_all(table, READ + i, (sample, left, right))
-    else:
-        seconds = wait * table[DT + i]
-        last_left, last_right = table[LAST_READ + LANES + i], table[LAST_READ + 2 * LANES + i]
-        drift = ((left - last_left) / seconds, (right - last_right) / seconds)
-        put_all(table, LAST_DRIFT + i, drift)
-        if table[LAST_READ + i] == table[READ + i]:
-            put_all(table, DRIFT + i, drift)
-    put_all(table, LAST_READ + i, (sample, left, right))
-
-
-@kernel
-def _done(table, i, exponent, finite):
-    """How the run in lane ``i`` ended if it is over at this sample, RUNNING where it goes on; residuals are read."""
-    sample, samples, longest = table[SAMPLE_NUMBER + i], table[SAMPLES + i], table[LONGEST + i]
-    if sample < table[EARLIEST + i]:
-        return RUNNING
-    wait, decided = table[READ_WAIT + i], table[DECIDED_AT + i] >= 0.0
-    if decided and wait == 0.0:  # nothing can change any more
-        return RUNNING if sample < samples else SURVIVED
-    m = model_of(table, i, exponent, finite)
-    if decided:
-        if sample == table[LAST_READ + i] + wait:
-            _read_base(table, i, m)
-        if sample < max(samples, table[READ + i] + wait):
-            return RUNNING
-    outlook = _outlook(table, i, m)
-    if outlook == DECIDED and not decided:
-        table[DECIDED_AT + i] = sample
-        _read_base(table, i, m)
-    if outlook == DECIDED and sample >= max(samples, table[READ + i] + wait):
-        return SURVIVED
-    if sample == (samples + longest) // 2:
-        table[MIDWAY + i] = table[PEAK + i]
-    return RUNNING if sample < longest else _given_up(table, i, m, outlook)
-
-
-@kernel
-def _given_up(table, i, m, outlook):
-    """How a run ends that nothing has decided for so long; one that is not waited for is cut off as it is."""
-    if table[PATIENCE + i] == 0.0:
-        return SURVIVED
-    if outlook == LEANS or abs(table[NOW + LANES + i]) >= summit(m):
-        return UNDECIDED
-    ratchets = m.law == BOUC_WEN
-    return GROWING if ratchets and table[PEAK + i] > table[MIDWAY + i] + GROWTH * table[ALPHA + i] else RESTLESS
-
-
-@kernel
 def _finish(table, i, exponent, finite, status, t, row, results):
     """What the run in lane ``i`` comes to: its line of ``results``, as SpringRun has it."""
     m = model_of(table, i, exponent, finite)
@@ -460,7 +349,7 @@ def _finish(table, i, exponent, finite, status, t, row, results):
     )
     if table[READ + i] < 0.0:
         t_read = t
-        base_left, base_right = _base(table, i, m)
+        base_left, base_right = base_of(table, i, m)
     loading = branches(m, _loading_of(table, i), contact, Contact(0.0, 0.0, 0.0, 0.0, 0.0), y)
     line = results[int(table[RUN + i])]
     line[RESULTS + int(table[WINDOW + i])] = table[EXTREME + i]
@@ -495,7 +384,7 @@ def _rock(exponent, finite, runs, ground, locate, every_step, history, stop, tab
             waiting += 1
             if recording:
                 row = _write(history, row, 0.0, state_of(table, NOW + lanes), contact_of(table, lanes), SAMPLE)
-            status = _done(table, lanes, exponent, finite)
+            status = done(table, lanes, exponent, finite)
             if status == RUNNING:
                 lanes += 1
             else:
@@ -542,7 +431,7 @@ def _attend(table, i, exponent, finite, ground, locate, every_step, history, row
     if history.shape[0] > 0 and (sampled or every_step):
         kind = SAMPLE if sampled else BETWEEN_SAMPLES
         row = _write(history, row, t, state_of(table, NOW + i), contact_of(table, i), kind)
-    return (_done(table, i, exponent, finite) if sampled else RUNNING), t, row
+    return (done(table, i, exponent, finite) if sampled else RUNNING), t, row
 
 
 @kernel
