@@ -155,11 +155,16 @@ def residuals_agree(case: Case, fine: Reference, loose: Reference) -> bool:
     return abs(tilts[1] - tilts[0]) <= TOLERANCE * case.pier.alpha
 
 
+def flown(case: Case, found: Outcome, fine: Reference) -> bool:
+    """Whether the truth has flown by the end of the run; a flight as good as at its end only if the run flew too."""
+    same = SAME_FLIGHT / case.pier.p
+    return fine.t_flight <= found.t_end + (-same if found.status == "ok" and found.t_flight is None else same)
+
+
 def truth_of(case: Case, fine: Reference, found: Outcome) -> tuple[str, float, float]:
     """Status, θ_max and its time that a run until the end of ``found`` ought to have come to."""
     goes_on = found.status == "ok" and found.t_flight is not None  # and claims that the flight changes nothing
-    ended_by_flight = case.flight_stops and fine.t_flight <= found.t_end + SAME_FLIGHT / case.pier.p
-    if fine.status == "flew" or (ended_by_flight and not goes_on):
+    if fine.status == "flew" or (case.flight_stops and flown(case, found, fine) and not goes_on):
         return "flight", fine.peak_flight, fine.t_peak_flight
     return ("overturned" if fine.status == "overturned" else "ok"), fine.theta_max, fine.t_max
 
@@ -186,9 +191,7 @@ def verdict(case: Case, found: Outcome, fine: Reference) -> tuple[str, float]:
         return "ok, overturns", math.nan
     elif truth == "flight":
         return "flight missed", math.nan
-    elif not near(
-        t_flight, fine.t_flight if fine.t_flight <= found.t_end + SAME_FLIGHT / p else math.nan, SAME_FLIGHT / p
-    ):
+    elif not near(t_flight, fine.t_flight if flown(case, found, fine) else math.nan, SAME_FLIGHT / p):
         return "flight at another time", math.nan
     return ("error" if error > tolerance else ""), error
 

@@ -30,7 +30,7 @@ LAST_READ = rows(3)  # likewise, of the last one
 DRIFT = rows(2)  # of both supports from the first reading to the second [m/s], NaN before it
 LAST_DRIFT = rows(2)  # likewise, between the last two, 0 before them
 MOVED = rows(1)  # time at which a pivot last left the ground or landed [s]
-MIDWAY = rows(1)  # greatest |θ| when half of the waiting is over [rad]
+MIDWAY = rows(2)  # greatest |θ|, and |tilt| of the base, when half of the waiting is over [rad]
 
 
 @kernel
@@ -47,7 +47,7 @@ def expect(table, i, quiet_samples, patience, read_after, read_wait):
     put_all(table, DRIFT + i, (math.nan, math.nan))
     put_all(table, LAST_DRIFT + i, (0.0, 0.0))
     table[MOVED + i] = 0.0
-    table[MIDWAY + i] = math.inf
+    put_all(table, MIDWAY + i, (math.inf, math.inf))
 
 
 @kernel
@@ -70,6 +70,13 @@ def base_of(table, i, m):
     left = _unstressed(m, y.v + at.lift_left, y.z_left, contact.left, supports.left)
     right = _unstressed(m, y.v + at.lift_right, y.z_right, contact.right, supports.right)
     return left, right
+
+
+@kernel
+def _tilt(table, i, m):
+    """|Tilt| of the base [rad]."""
+    left, right = base_of(table, i, m)
+    return 0.5 * abs(left - right) / m.half_width
 
 
 @kernel
@@ -140,7 +147,7 @@ def done(table, i, exponent, finite):
     if outlook == DECIDED and sample >= max(samples, table[READ + i] + wait):
         return SURVIVED
     if sample == (samples + longest) // 2:
-        table[MIDWAY + i] = table[PEAK + i]
+        put_all(table, MIDWAY + i, (table[PEAK + i], _tilt(table, i, m)))
     return RUNNING if sample < longest else _given_up(table, i, m, outlook)
 
 
@@ -151,5 +158,7 @@ def _given_up(table, i, m, outlook):
         return SURVIVED
     if outlook == LEANS or abs(table[NOW + LANES + i]) >= summit(m):
         return UNDECIDED
-    ratchets = m.law == BOUC_WEN
-    return GROWING if ratchets and table[PEAK + i] > table[MIDWAY + i] + GROWTH * table[ALPHA + i] else RESTLESS
+    least = GROWTH * table[ALPHA + i]
+    turned = table[PEAK + i] > table[MIDWAY + i] + least
+    tilted = _tilt(table, i, m) > table[MIDWAY + LANES + i] + least
+    return GROWING if m.law == BOUC_WEN and turned and tilted else RESTLESS
