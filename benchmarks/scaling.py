@@ -17,11 +17,11 @@ import numpy as np
 from interleaved import interleaved, machine, ratio
 from tower import TOWER, foundations, record
 
-from rockbatch.engines import Threads, cores
-from rockbatch.groups import outcomes_of
+from rockbatch.batch.groups import outcomes_of
+from rockbatch.batch.plan import Run
+from rockbatch.batch.threads import Threads, cores
 from rockbatch.motions import Motion
-from rockbatch.plan import Run
-from rockbatch.structure import Pier
+from rockbatch.pier import Pier
 from rockbatch.study import Case, Numerics
 
 SMALL = Pier(alpha=0.13, p=2.5)  # some 2 m high: overturns within 4 s of the same record

@@ -18,12 +18,12 @@ from interleaved import Times, interleaved, machine, ratio
 from peers import Rocking, Solve, cvode, heyoka, scipy
 from tower import QUIET_S, TOWER, foundations, record
 
-from rockbatch.accuracy import reference
+from rockbatch.analysis.accuracy import reference
+from rockbatch.batch.plan import Run
 from rockbatch.motions import Motion
-from rockbatch.outcome import Outcome
-from rockbatch.plan import Run
+from rockbatch.pier import YieldingBase
+from rockbatch.results.outcome import Outcome
 from rockbatch.simulation import Scene, Stop, run_all_fixed, run_all_to_tolerance
-from rockbatch.structure import YieldingBase
 from rockbatch.study import Case
 
 BASE = YieldingBase(80.0, 0.05, eta=2.5)

@@ -16,8 +16,8 @@ from rockbatch.core.rigid_base import HISTORY_COLUMNS, rock_on_rigid_base
 from rockbatch.core.springs import static_deflection
 from rockbatch.core.types import BEFORE_EVENT, BOUC_WEN, LEFT, Block, Contact, State
 from rockbatch.motions.motion import Motion
+from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase
 from rockbatch.simulation import Scene, housner_restitution, run_fixed, springs, written_run
-from rockbatch.structure import ElasticBase, Pier, RigidBase, YieldingBase
 
 SINE = pulse("sine", 0.5, dt=0.01, end=3.0)
 

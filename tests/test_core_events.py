@@ -13,8 +13,8 @@ from rockbatch.core.roots import hermite, largest_within, turning_point
 from rockbatch.core.two_springs import HISTORY_COLUMNS, rock_on_springs
 from rockbatch.core.types import IMPACT_LEFT, IMPACT_RIGHT, SEPARATION_LEFT, SEPARATION_RIGHT, SURVIVED
 from rockbatch.motions.motion import Motion
+from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase
 from rockbatch.simulation import Scene, least_substeps, run_fixed, springs, written_run
-from rockbatch.structure import ElasticBase, Pier, RigidBase, YieldingBase
 
 CONTACT_EVENTS = (1, 2, 3, 4)
 COARSE_SINE = pulse("sine", 0.5, dt=0.02, end=3.0)

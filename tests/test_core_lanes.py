@@ -12,8 +12,8 @@ from rockbatch.core.events import at_rest, signals
 from rockbatch.core.lanes import LANES, watch
 from rockbatch.core.transitions import Supports
 from rockbatch.core.types import BOUC_WEN, ELASTIC, EPP, Contact, State
+from rockbatch.pier import Pier, YieldingBase
 from rockbatch.simulation import Scene, Stop, run_all_fixed, springs
-from rockbatch.structure import Pier, YieldingBase
 
 
 def crowd():

@@ -8,8 +8,8 @@ from core_samples import FIG5
 
 from rockbatch.errors import InputError
 from rockbatch.motions.motion import Motion
+from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase, problems
 from rockbatch.simulation import run_fixed
-from rockbatch.structure import ElasticBase, Pier, RigidBase, YieldingBase, problems
 
 
 @pytest.mark.parametrize(("p", "size"), [(1.0, 7.36), (0.35, 60.1)])

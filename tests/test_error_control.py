@@ -10,7 +10,8 @@ from core_samples import FIG5, TOWER, broadband, hard_case, pulse
 from rockbatch import simulation
 from rockbatch.core.outcome import WINDOWS
 from rockbatch.motions.motion import Motion
-from rockbatch.outcome import Outcome
+from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase
+from rockbatch.results.outcome import Outcome
 from rockbatch.simulation import (
     Scene,
     first_substeps,
@@ -21,7 +22,6 @@ from rockbatch.simulation import (
     settling,
 )
 from rockbatch.simulation.runs import LEFT_ALONE, Trial
-from rockbatch.structure import ElasticBase, Pier, RigidBase, YieldingBase
 
 SINE = pulse("sine", 0.5, dt=0.01, end=3.0)
 

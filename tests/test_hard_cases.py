@@ -19,8 +19,8 @@ from rockbatch.core.rigid_base import HISTORY_COLUMNS, rock_on_rigid_base
 from rockbatch.core.types import Block
 from rockbatch.errors import InputError
 from rockbatch.motions.motion import Motion
+from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase, problems
 from rockbatch.simulation import Scene, run_fixed, run_to_tolerance, written_run
-from rockbatch.structure import ElasticBase, Pier, RigidBase, YieldingBase, problems
 from rockbatch.study import load_study
 from rockbatch.units import GRAVITY
 

@@ -25,8 +25,8 @@ from rockbatch.core.types import (
     SPRING_RIGHT,
 )
 from rockbatch.motions.motion import Motion
+from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase
 from rockbatch.simulation import Scene, written_run
-from rockbatch.structure import ElasticBase, Pier, RigidBase, YieldingBase
 
 DT = 0.02
 HELD = -2  # column of a history on springs

@@ -10,14 +10,14 @@ import pytest
 
 import rockbatch as rb
 from rockbatch.analysis.overturning_map import SAMPLES, Maps, columns, ending
-from rockbatch.batch import row_of
-from rockbatch.engines import Threads
-from rockbatch.groups import NOTHING_MORE
+from rockbatch.batch.carrying_out import row_of
+from rockbatch.batch.groups import NOTHING_MORE
+from rockbatch.batch.plan import Made, Run
+from rockbatch.batch.threads import Threads
 from rockbatch.motions.pulses import pulse_length
-from rockbatch.plan import Made, Run
-from rockbatch.report.overturning_map import outcome_at, strips
-from rockbatch.results import as_table
-from rockbatch.structure import Pier, RigidBase
+from rockbatch.pier import Pier, RigidBase
+from rockbatch.report.drawing.overturning_map import outcome_at, strips
+from rockbatch.results.columns import as_table
 from rockbatch.study import Case, Numerics, Study
 from rockbatch.study.spec import MotionSpec
 from rockbatch.study.spectrum import MapSpec

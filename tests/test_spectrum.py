@@ -7,12 +7,12 @@ import pandas as pd
 import pytest
 
 from rockbatch.analysis.rocking_spectrum import of_suite, row_of
+from rockbatch.batch.plan import Run
+from rockbatch.batch.threads import Threads
 from rockbatch.cli import main
-from rockbatch.engines import Threads
 from rockbatch.errors import InputError
-from rockbatch.plan import Run
+from rockbatch.pier import Pier, RigidBase, YieldingBase
 from rockbatch.simulation import run_to_tolerance
-from rockbatch.structure import Pier, RigidBase, YieldingBase
 from rockbatch.study import load_study
 from rockbatch.study.spectrum import read_spectrum
 from rockbatch.study.suite import ground_motions

@@ -10,10 +10,10 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from rockbatch.analysis.map_search import End, Point, Points, Region, Search, regions
+from rockbatch.batch.plan import Made, Run, scaled
 from rockbatch.motions import Motion
 from rockbatch.motions.pulses import pulse, pulse_length
-from rockbatch.plan import Made, Run, scaled
-from rockbatch.structure import Base, RigidBase
+from rockbatch.pier import Base, RigidBase
 from rockbatch.study import Case
 from rockbatch.study.spectrum import MapSpec
 

@@ -10,11 +10,11 @@ from collections.abc import Mapping
 from dataclasses import asdict, replace
 from typing import TYPE_CHECKING, Any
 
+from rockbatch.batch.plan import Plan, Run
 from rockbatch.motions import MotionSet
-from rockbatch.outcome import Outcome
-from rockbatch.plan import Plan, Run
-from rockbatch.results import row
-from rockbatch.statistics import suite
+from rockbatch.results.columns import row
+from rockbatch.results.outcome import Outcome
+from rockbatch.results.suite_statistics import suite
 from rockbatch.study import Study
 from rockbatch.study.spectrum import SpectrumSpec
 

@@ -6,9 +6,9 @@ from functools import lru_cache
 from typing import Any
 
 from rockbatch.analysis.sobol import design
+from rockbatch.batch.plan import Made, Run, scaled
 from rockbatch.motions import Motion
-from rockbatch.outcome import Outcome
-from rockbatch.plan import Made, Run, scaled
+from rockbatch.results.outcome import Outcome
 from rockbatch.simulation import housner_restitution
 from rockbatch.study import Case, Study
 from rockbatch.study.sensitivity import Input, SensitivitySpec, Value, applying, own_values, varied

@@ -7,14 +7,14 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rockbatch import __version__
+from rockbatch._version import __version__
 from rockbatch.commands.messages import count, say
 from rockbatch.files import csv_text, write_whole
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from rockbatch.journal import Journal
+    from rockbatch.batch.journal import Journal
     from rockbatch.study import Study
 
 
@@ -46,7 +46,7 @@ class Results:
     @contextmanager
     def journal(self, file: str, columns: Sequence[str], digest: Mapping[str, str]) -> "Iterator[Journal]":
         """The journal of the runs in ``file``; tells what is in it already, and what stays in it after Ctrl-C."""
-        from rockbatch.journal import Journal
+        from rockbatch.batch.journal import Journal
 
         with Journal(self.directory / f"{file}.part", columns, digest, self.fresh) as journal:
             if len(journal):
@@ -73,11 +73,11 @@ class Results:
 
     def end(self, **cost: object) -> None:
         """Say what the analysis cost, write the report, and tell what there is."""
-        from rockbatch.report.analyses import write
+        from rockbatch.report import write_analyses
 
         self.info |= cost
         write_whole(self.path, json.dumps(self.info, indent=1, ensure_ascii=False) + "\n")
-        report = write(self.directory, self.study)
+        report = write_analyses(self.directory, self.study)
         for written in (*(self.directory / file for file in self.info["files"]), self.path, report):
             say(str(written))
 

@@ -26,8 +26,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def main(arguments: argparse.Namespace) -> int:
-    from rockbatch.design import verdicts
-    from rockbatch.saved import read_saved
+    from rockbatch.results.checking import verdicts
+    from rockbatch.results.reading import read_saved
 
     saved = read_saved(arguments.directory)
     found = verdicts(saved, arguments.rules)

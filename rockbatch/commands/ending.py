@@ -7,14 +7,14 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rockbatch import __version__
+from rockbatch._version import __version__
 from rockbatch.commands.messages import count, say
 
 if TYPE_CHECKING:
-    from rockbatch.journal import Journal
+    from rockbatch.batch.journal import Journal
+    from rockbatch.batch.plan import Plan
     from rockbatch.motions import MotionSet
-    from rockbatch.plan import Plan
-    from rockbatch.saved import Saved
+    from rockbatch.results.reading import Saved
     from rockbatch.study import Study
 
 PACKAGES = ("numba", "numpy", "pandas", "obspy", "h5py")
@@ -22,9 +22,9 @@ PACKAGES = ("numba", "numpy", "pandas", "obspy", "h5py")
 
 def what_was_run(study: "Study", motions: "MotionSet", runs: "Plan", digest: dict[str, str]) -> dict[str, Any]:
     """What run.json says, but for what the runs cost."""
-    from rockbatch.batch import to_simulate
-    from rockbatch.engines import cores
-    from rockbatch.results import describe
+    from rockbatch.batch.carrying_out import to_simulate
+    from rockbatch.batch.threads import cores
+    from rockbatch.results.columns import describe
 
     return {
         "rockbatch": __version__,
@@ -40,7 +40,7 @@ def what_was_run(study: "Study", motions: "MotionSet", runs: "Plan", digest: dic
 
 def cost_of_finished(directory: Path, info: dict[str, Any]) -> dict[str, Any] | None:
     """What the runs in ``directory`` cost, if they are those of ``info``, all of them; else None."""
-    from rockbatch.results import INFO, PEAKS
+    from rockbatch.results.columns import INFO, PEAKS
 
     try:
         earlier = json.loads((directory / INFO).read_text(encoding="utf-8"))
@@ -53,7 +53,7 @@ def cost_of_finished(directory: Path, info: dict[str, Any]) -> dict[str, Any] | 
 
 def write_peaks(journal: "Journal", motions: "MotionSet") -> None:
     """Write peaks.csv; what belongs to earlier ones goes first, so that they cannot be mixed up."""
-    from rockbatch.results import INFO, PEAKS, unusable_rows
+    from rockbatch.results.columns import INFO, PEAKS, unusable_rows
 
     directory = journal.path.parent
     (directory / INFO).unlink(missing_ok=True)
@@ -65,8 +65,8 @@ def end(directory: Path, study: "Study", motions: "MotionSet", runs: "Plan", inf
     """Write run.json, histories, checks and report beside peaks.csv, and tell them; returns the exit code."""
     from rockbatch.checks.suite import simulated
     from rockbatch.commands.summary import other_law, summary
-    from rockbatch.results import INFO, PEAKS, write_info
-    from rockbatch.saved import read_saved
+    from rockbatch.results.columns import INFO, PEAKS, write_info
+    from rockbatch.results.reading import read_saved
 
     write_info(directory, info)
     saved = read_saved(directory)
@@ -78,7 +78,7 @@ def end(directory: Path, study: "Study", motions: "MotionSet", runs: "Plan", inf
         say(warning)
     if study.checks:
         from rockbatch.commands.check import tell
-        from rockbatch.design import verdicts
+        from rockbatch.results.checking import verdicts
 
         code = max(code, tell(directory, verdicts(saved)))
 
@@ -96,7 +96,7 @@ def end(directory: Path, study: "Study", motions: "MotionSet", runs: "Plan", inf
 
 def _remove_what_was_made_of_peaks(directory: Path) -> None:
     from rockbatch.checks.verdicts import CHECKS
-    from rockbatch.results import HISTORIES, REPORT
+    from rockbatch.results.columns import HISTORIES, REPORT
 
     for name in (HISTORIES, CHECKS, REPORT):
         (directory / name).unlink(missing_ok=True)
@@ -104,10 +104,10 @@ def _remove_what_was_made_of_peaks(directory: Path) -> None:
 
 def _keep_histories(saved: "Saved", study: "Study", runs: "Plan") -> tuple[int, Path | None]:
     """Write the histories that the study asks for: exit code, and the file; what cannot be written is told."""
+    from rockbatch.batch.kept_histories import keep_histories, kept
     from rockbatch.commands.progress import Progress
     from rockbatch.errors import InputError
-    from rockbatch.keep import keep_histories, kept
-    from rockbatch.results import HISTORIES
+    from rockbatch.results.columns import HISTORIES
 
     try:
         with Progress(len(kept(study, saved.peaks.iloc[: len(runs)]))) as progress:

@@ -35,9 +35,9 @@ def main(arguments: argparse.Namespace) -> int:
     from rockbatch.analysis.fragility import assess, intensities, output
     from rockbatch.analysis.fragility_tables import CAPACITIES, POINTS, RUNS, capacities, described, points
     from rockbatch.analysis.waves import Waves
-    from rockbatch.batch import digests
+    from rockbatch.batch.digests import digests
     from rockbatch.commands.progress import Progress
-    from rockbatch.results import columns
+    from rockbatch.results.columns import columns
     from rockbatch.study.suite import ground_motions
 
     study = replace(study, output=output(spec))

@@ -18,12 +18,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def main(arguments: argparse.Namespace) -> int:
     study = study_of(arguments)
 
-    from rockbatch.batch import study_digests
+    from rockbatch.batch.digests import study_digests
+    from rockbatch.batch.journal import Journal
+    from rockbatch.batch.plan import Plan
     from rockbatch.commands.ending import end, what_was_run, write_peaks
     from rockbatch.errors import InputError
-    from rockbatch.journal import Journal
-    from rockbatch.plan import Plan
-    from rockbatch.results import PART, columns
+    from rockbatch.results.columns import PART, columns
     from rockbatch.study.suite import ground_motions
 
     motions = ground_motions(study)

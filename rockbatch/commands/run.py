@@ -39,13 +39,14 @@ def main(arguments: argparse.Namespace) -> int:
     started = time.monotonic()
     study = study_of(arguments)
 
-    from rockbatch.batch import carry_out, study_digests, to_simulate
+    from rockbatch.batch.carrying_out import carry_out, to_simulate
+    from rockbatch.batch.digests import study_digests
+    from rockbatch.batch.journal import Journal
+    from rockbatch.batch.plan import Plan
     from rockbatch.commands.ending import cost_of_finished, end, what_was_run, write_peaks
     from rockbatch.commands.progress import Progress
     from rockbatch.errors import InputError
-    from rockbatch.journal import Journal
-    from rockbatch.plan import Plan
-    from rockbatch.results import PART, columns
+    from rockbatch.results.columns import PART, columns
     from rockbatch.study.suite import ground_motions
 
     motions = ground_motions(study)

@@ -31,7 +31,8 @@ def main(arguments: argparse.Namespace) -> int:
 
     from rockbatch.analysis import sensitivity as analysis
     from rockbatch.analysis.sampled import COLUMNS, RUNS, Points, Suite, row_of
-    from rockbatch.batch import carry_out, digests
+    from rockbatch.batch.carrying_out import carry_out
+    from rockbatch.batch.digests import digests
     from rockbatch.commands.progress import Progress
     from rockbatch.study.suite import ground_motions
 

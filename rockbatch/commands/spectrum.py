@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     import numpy as np
     import pandas as pd
 
-    from rockbatch.engines import Engine
+    from rockbatch.batch.threads import Engine
     from rockbatch.study.spectrum import MapSpec, SpectrumSpec
 
 HELP = "rocking spectra over the size of the pier, and maps of the pulses that overturn it"
@@ -46,7 +46,8 @@ def main(arguments: argparse.Namespace) -> int:
 def _spectrum(results: Results, spectrum: "SpectrumSpec", carrier: "Engine") -> int:
     """Write the rocking spectra, and print them; returns the number of files and runs that failed."""
     from rockbatch.analysis import rocking_spectrum as analysis
-    from rockbatch.batch import carry_out, digests
+    from rockbatch.batch.carrying_out import carry_out
+    from rockbatch.batch.digests import digests
     from rockbatch.commands.progress import Progress
     from rockbatch.files import read_table
     from rockbatch.study.suite import ground_motions
@@ -129,11 +130,11 @@ def _maps(results: Results, maps: "tuple[MapSpec, ...]", carrier: "Engine") -> N
 
     from rockbatch.analysis import overturning_map as analysis
     from rockbatch.analysis.waves import Waves
-    from rockbatch.batch import digests
+    from rockbatch.batch.digests import digests
+    from rockbatch.batch.groups import NOTHING_MORE
     from rockbatch.commands.progress import Progress
     from rockbatch.files import read_table
-    from rockbatch.groups import NOTHING_MORE
-    from rockbatch.results import columns
+    from rockbatch.results.columns import columns
 
     study = replace(results.study, output=NOTHING_MORE)
     results.info["varied_map"] = list(study.varied)

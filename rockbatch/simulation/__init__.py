@@ -1,5 +1,6 @@
 """The only door to the core: piers on bases under motions, with fixed steps or to a tolerance."""
 
+from rockbatch.core.kernel import core_digest
 from rockbatch.simulation.models import (
     block,
     first_substeps,
@@ -22,6 +23,7 @@ __all__ = [
     "Scene",
     "Stop",
     "block",
+    "core_digest",
     "first_substeps",
     "ground_of",
     "housner_restitution",

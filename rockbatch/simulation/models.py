@@ -6,7 +6,7 @@ from functools import lru_cache
 from rockbatch.core.ground import ground_rows
 from rockbatch.core.types import BOUC_WEN, ELASTIC, EPP, Block, Springs
 from rockbatch.motions.motion import Motion, Samples
-from rockbatch.structure import Base, ElasticBase, Pier, RigidBase, YieldingBase, highest_frequency, rocking_frequency
+from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, YieldingBase, highest_frequency, rocking_frequency
 
 FREQUENCY_STEP = 0.2
 """Largest ω h of a first run; the second, with half the step, is then below 0.1, where outcomes were never wrong."""

@@ -23,10 +23,10 @@ from rockbatch.core.types import (
     SpringRun,
 )
 from rockbatch.motions.motion import Motion, Samples
-from rockbatch.outcome import Outcome
+from rockbatch.pier import Base, Pier, RigidBase, YieldingBase
+from rockbatch.results.outcome import Outcome
 from rockbatch.simulation.flight import cause_of_flight
 from rockbatch.simulation.models import block, first_substeps, ground_of, least_substeps, patience, readings, springs
-from rockbatch.structure import Base, Pier, RigidBase, YieldingBase
 
 MOST_STEPS = 1e8
 """Steps that a run may take to settle, about a quarter of a minute of work."""

@@ -8,10 +8,10 @@ from enum import IntEnum
 import numpy as np
 
 from rockbatch.motions.motion import Motion
-from rockbatch.outcome import Outcome
+from rockbatch.pier import Base, Pier
+from rockbatch.results.outcome import Outcome
 from rockbatch.simulation.models import first_substeps
 from rockbatch.simulation.runs import LEFT_ALONE, MOST_STEPS, Scene, Stop, Trial, steps_of, try_all
-from rockbatch.structure import Base, Pier
 
 HALVINGS = 8
 """How often the step is halved before a run counts as not settled."""
