@@ -12,9 +12,10 @@ from rockbatch.study import Study
 PACKAGES = ("core", "simulation", "motions", "study", "checks", "toml", "results", "batch", "analysis")
 """Packages that decide what a row says, or which runs come next. The others only show it: commands, report."""
 
-_TOP = Path(__file__).parents[1]
-
 MODULES = ("pier.py", "units.py", "files.py", "errors.py")
+"""Those at the top that do."""
+
+_TOP = Path(__file__).parents[1]
 
 
 def digests(motions: Iterable[Motion], **settings: object) -> dict[str, str]:
