@@ -228,7 +228,7 @@ def test_in_a_finished_folder_nothing_is_left_to_run_and_the_rest_is_made_again(
     assert main(command) == 0
     cost = json.loads((out / "run.json").read_text())["wall_s"]
     with monkeypatch.context() as patch:  # killed on its way: it stays finished
-        patch.setattr("rockbatch.results.columns.write_info", stopped)
+        patch.setattr("rockbatch.batch.finishing.write_info", stopped)
         assert main(command) == 130
     write(study, title="Renamed")
     study.write_text(study.read_text().replace('histories = "none"', 'histories = "worst"'))
@@ -283,7 +283,7 @@ def test_a_changed_study_is_not_mixed_in_and_replaces_finished_results_only_when
 
 def test_results_of_other_peaks_never_stand_beside_new_ones(study, tmp_path, monkeypatch):
     """Killed between the table and what belongs to it, there is the table alone, and its journal."""
-    import rockbatch.commands.ending as ending
+    import rockbatch.batch.finishing as finishing
 
     out = tmp_path / "out"
     command = ["run", str(study), "--out", str(out)]
@@ -292,10 +292,10 @@ def test_results_of_other_peaks_never_stand_beside_new_ones(study, tmp_path, mon
         (out / name).touch()
     write(study, last_scale=1.3)
     with monkeypatch.context() as patch:
-        patch.setattr("rockbatch.results.columns.write_info", stopped)
+        patch.setattr("rockbatch.batch.finishing.write_info", stopped)
         assert main(command) == 130
     assert sorted(file.name for file in out.iterdir() if file.suffix != ".lock") == ["peaks.csv", "peaks.csv.part"]
-    assert ending.cost_of_finished(out, {}) is None
+    assert finishing.cost_of_finished(out, {}) is None
     assert main(command) == 0
     assert json.loads((out / "run.json").read_text())["kept"] == SIMULATED
 

@@ -18,9 +18,10 @@ from rockbatch.batch.kept_histories import keep_histories, kept, worst
 from rockbatch.batch.plan import Plan
 from rockbatch.batch.threads import Threads
 from rockbatch.results import histories_file
-from rockbatch.results.columns import TERMS, columns, describe, write_info
+from rockbatch.results.columns import TERMS, columns
 from rockbatch.results.histories_file import FORMAT, UNITS, Responses, write
 from rockbatch.results.reading import read_saved
+from rockbatch.results.run_json import describe, write_info
 from rockbatch.simulation import run_to_tolerance
 from rockbatch.simulation.histories import histories, simulate
 from rockbatch.study.suite import ground_motions

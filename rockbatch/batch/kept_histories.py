@@ -9,8 +9,7 @@ import numpy as np
 
 from rockbatch.batch.plan import Run
 from rockbatch.errors import InputError
-from rockbatch.results.columns import HISTORIES
-from rockbatch.results.histories_file import write
+from rockbatch.results.histories_file import HISTORIES, write
 from rockbatch.results.reading import Saved
 from rockbatch.results.response import Response
 from rockbatch.simulation import run_fixed

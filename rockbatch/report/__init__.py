@@ -17,7 +17,9 @@ from rockbatch.results.opened import open_results
 from rockbatch.results.response import Response
 from rockbatch.study import Study
 
-__all__ = ["write_analyses", "write_comparison", "write_report"]
+REPORT = "report.html"
+
+__all__ = ["REPORT", "write_analyses", "write_comparison", "write_report"]
 
 
 def write_report(directory: Path, responses: Sequence[Response] | None = None, *, out: Path | None = None) -> Path:
@@ -40,7 +42,7 @@ def write_report(directory: Path, responses: Sequence[Response] | None = None, *
     Raises ``InputError`` where the results are missing, damaged or do not belong together.
     """
     directory = Path(directory)
-    target = out or directory / "report.html"
+    target = out or directory / REPORT
     results = open_results(directory)
     study = finished(results)
     levels = accuracy.read(directory / "accuracy.csv", study.info["study"]["sha256"])

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 from rockbatch.checks import Rule, Verdict, as_table, judge, load_rules, read_rules
 from rockbatch.errors import InputError
-from rockbatch.results.columns import describe_case
 from rockbatch.results.reading import Saved, read_saved
+from rockbatch.results.run_json import describe_case
 from rockbatch.study import Study, load_study
 from rockbatch.toml.reader import TomlFile
 

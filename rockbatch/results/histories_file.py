@@ -34,6 +34,9 @@ if TYPE_CHECKING:
     import h5py
     import pandas as pd
 
+HISTORIES = "histories.h5"
+"""File of the histories that were kept, beside peaks.csv."""
+
 FORMAT = "rockbatch histories"
 
 MARGIN = 10_000_000

@@ -8,8 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rockbatch.errors import InputError
-from rockbatch.results.columns import HISTORIES
-from rockbatch.results.histories_file import Responses
+from rockbatch.results.histories_file import HISTORIES, Responses
 from rockbatch.results.reading import Saved, read_saved
 from rockbatch.results.response import Response
 from rockbatch.toml.kinds import closest, shown

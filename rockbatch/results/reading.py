@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 from rockbatch.errors import InputError
 from rockbatch.files import csv_plain
-from rockbatch.results.columns import COLUMNS, COUNTS, MORE_COLUMNS, TEXTS
+from rockbatch.results.columns import COLUMNS, COUNTS, MORE_COLUMNS, PEAKS, TEXTS
+from rockbatch.results.run_json import INFO
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -48,8 +49,8 @@ def read_saved(directory: Path) -> Saved:
     """
     directory = Path(directory)
     problems: list[str] = []
-    info = _read_info(directory / "run.json", problems)
-    peaks = _read_peaks(directory / "peaks.csv", info.get("varied", []), problems)
+    info = _read_info(directory / INFO, problems)
+    peaks = _read_peaks(directory / PEAKS, info.get("varied", []), problems)
     if problems or peaks is None:
         raise InputError(*problems)
     return Saved(directory, info, peaks)
