@@ -16,7 +16,7 @@ from rockbatch.batch.dask import Dask, Records, simulate
 from rockbatch.batch.digests import program
 from rockbatch.batch.groups import NOTHING_MORE, outcomes_of
 from rockbatch.batch.journal import Journal
-from rockbatch.batch.plan import Plan, Run
+from rockbatch.batch.plan import Plan, PlannedRun
 from rockbatch.batch.threads import Threads
 from rockbatch.cli import main
 from rockbatch.errors import InputError
@@ -224,7 +224,7 @@ def test_each_record_is_sent_once_whatever_its_scales_polarities_and_cases(study
 def test_a_motion_that_is_no_record_is_sent_with_each_group_that_needs_it(study, runs):
     client = Notebook()
     records = Records(client)
-    made = Run(runs[5].motion, "+", 0.5, runs[5].case)
+    made = PlannedRun(runs[5].motion, "+", 0.5, runs[5].case)
     for _ in range(2):
         records.submit([made, made], study.numerics, study.output)
     assert [function is simulate for function, _ in client.tasks] == [False, True, False, True]
@@ -232,7 +232,7 @@ def test_a_motion_that_is_no_record_is_sent_with_each_group_that_needs_it(study,
 
 def test_a_worker_rebuilds_the_very_runs(study, runs):
     """Also those whose motion was made elsewhere: it is then the record."""
-    ours = [*runs[:12], *runs[-12:], Run(runs[5].motion, "-", 0.5, runs[5].case)]
+    ours = [*runs[:12], *runs[-12:], PlannedRun(runs[5].motion, "-", 0.5, runs[5].case)]
     client = Notebook()
     Records(client).submit(ours, study.numerics, study.output)
     (_, (futures, members, *rest)) = client.tasks[-1]

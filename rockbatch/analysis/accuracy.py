@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rockbatch.batch.groups import outcomes_of
-from rockbatch.batch.plan import Run
+from rockbatch.batch.plan import PlannedRun
 from rockbatch.batch.threads import cores
 from rockbatch.pier import RigidBase
 from rockbatch.results.outcome import Outcome
-from rockbatch.simulation import Scene, Stop, first_substeps, run_all_fixed, run_fixed
+from rockbatch.simulation import Stop, first_substeps, run_all_fixed, run_fixed
 from rockbatch.study import Study
 
 if TYPE_CHECKING:
@@ -52,7 +52,7 @@ ACCEPTED = 1e-9
 HALVINGS = 10
 
 
-Simulate = Callable[[Sequence[Run]], list[tuple[str, float]]]
+Simulate = Callable[[Sequence[PlannedRun]], list[tuple[str, float]]]
 """From runs to their status and θ_max [rad]."""
 
 
@@ -60,19 +60,19 @@ Simulate = Callable[[Sequence[Run]], list[tuple[str, float]]]
 class Reference:
     """A run, its outcome with a step so fine that it does not matter, and what the last halving changed [θ_max/α]."""
 
-    run: Run
+    run: PlannedRun
     outcome: Outcome
     change: float
 
 
-def spread(runs: Sequence[Run], most: int) -> list[Run]:
+def spread(runs: Sequence[PlannedRun], most: int) -> list[PlannedRun]:
     """At most ``most`` of ``runs``, evenly over the study, the first and the last among them."""
     if len(runs) <= most:
         return list(runs)
     return [runs[i] for i in np.linspace(0, len(runs) - 1, most).round().astype(int)]
 
 
-def reference(run: Run, quiet_s: float) -> Reference | None:
+def reference(run: PlannedRun, quiet_s: float) -> Reference | None:
     """Halve the step until it does not matter any more; None for a run that does not get there."""
     pier, base = run.case.pier, run.case.base
     substeps = 2 * first_substeps(pier, base, run.motion.dt)
@@ -105,9 +105,9 @@ def measure(study: Study, references: Sequence[Reference], scipy: bool = True) -
     numerics = study.numerics
 
     def fixed(substeps: int, locate: bool) -> Simulate:
-        def simulate(runs: Sequence[Run]) -> list[tuple[str, float]]:
-            scenes = [Scene(run.case.pier, run.case.base, run.motion) for run in runs]
-            return _ends(run_all_fixed(scenes, [substeps] * len(scenes), numerics.quiet_s, Stop(), locate))
+        def simulate(runs: Sequence[PlannedRun]) -> list[tuple[str, float]]:
+            simulated = [planned.run for planned in runs]
+            return _ends(run_all_fixed(simulated, [substeps] * len(simulated), numerics.quiet_s, Stop(), locate))
 
         return simulate
 

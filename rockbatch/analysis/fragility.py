@@ -13,7 +13,7 @@ import numpy.typing as npt
 from rockbatch.analysis.ida import Bracket, Capacity, Looks, bisect, capacity
 from rockbatch.analysis.limit_states import EXCEEDED, LEFT_OUT, UNDECIDED, WITHSTOOD, applies, states
 from rockbatch.analysis.lognormal import Capacities, Lognormal, Values, fit
-from rockbatch.batch.plan import Run, Runs, scaled
+from rockbatch.batch.plan import PlannedRun, Runs, scaled
 from rockbatch.checks.rules import Rule
 from rockbatch.errors import InputError
 from rockbatch.motions import Motion
@@ -53,11 +53,11 @@ class ScaledRuns(Runs):
     def __len__(self) -> int:
         return len(self.points)
 
-    def run(self, number: int) -> Run:
+    def run(self, number: int) -> PlannedRun:
         """See :class:`rockbatch.batch.plan.Runs`."""
         motion, intensity, case = self.points[number]
         scale = intensity / self.unscaled[motion]
-        return Run(self._moved(motion, scale), self.polarity, scale, self.cases[case], self.motions[motion])
+        return PlannedRun(self._moved(motion, scale), self.polarity, scale, self.cases[case], self.motions[motion])
 
     def _move(self, motion: int, scale: float) -> Motion:
         return scaled(self.motions[motion], scale, self.polarity)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from rockbatch.batch.groups import NOTHING_MORE
 from rockbatch.batch.journal import Journal
-from rockbatch.batch.plan import Chosen, Plan, Run, Runs
+from rockbatch.batch.plan import Chosen, Plan, PlannedRun, Runs
 from rockbatch.batch.threads import Engine, Threads, cores
 from rockbatch.checks.suite import MIRROR_OF
 from rockbatch.errors import InputError
@@ -31,7 +31,7 @@ def carry_out(
     *,
     first: int = 0,
     among: range | None = None,
-    row: Callable[[Run, Outcome], Mapping[str, Any]] | None = None,
+    row: Callable[[PlannedRun, Outcome], Mapping[str, Any]] | None = None,
     progress: Callable[[int], object] | None = None,
 ) -> None:
     """Carry out those runs that are not in ``journal``, and write each into it as soon as its group is finished.
@@ -75,7 +75,7 @@ def to_simulate(runs: Runs, wanted: range, journal: Container[int] = (), first: 
 
 
 def _images(
-    runs: Runs, index: int, outcome: Outcome, told: Callable[[Run, Outcome], Mapping[str, Any]]
+    runs: Runs, index: int, outcome: Outcome, told: Callable[[PlannedRun, Outcome], Mapping[str, Any]]
 ) -> Iterator[tuple[int, Mapping[str, Any]]]:
     """Index and row of a run that was simulated, and of its mirror image."""
     for image in runs.images(index):
@@ -83,7 +83,7 @@ def _images(
         yield image, told(run, outcome.mirrored() if run.mirror_of else outcome)
 
 
-def row_of(run: Run, outcome: Outcome) -> dict[str, Any]:
+def row_of(run: PlannedRun, outcome: Outcome) -> dict[str, Any]:
     """Row of peaks.csv of a run that is finished."""
     return row(run.motion.name, run.polarity, run.scale, run.case, outcome) | {MIRROR_OF: run.mirror_of}
 

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Self
 
 from rockbatch.batch.digests import program
 from rockbatch.batch.groups import NOTHING_MORE, groups, outcomes_of
-from rockbatch.batch.plan import Run, scaled
-from rockbatch.batch.threads import Finished, cores, finished
+from rockbatch.batch.plan import PlannedRun, scaled
+from rockbatch.batch.threads import Outcomes, cores, finished
 from rockbatch.errors import InputError
 from rockbatch.motions import Motion
 from rockbatch.results.outcome import Outcome
@@ -91,8 +91,8 @@ class Dask:
         return sum(self._client.nthreads().values()) if self._client else 0
 
     def outcomes(
-        self, runs: Sequence[Run], numerics: Numerics, output: Output = NOTHING_MORE
-    ) -> Generator[Finished, None, None]:
+        self, runs: Sequence[PlannedRun], numerics: Numerics, output: Output = NOTHING_MORE
+    ) -> Generator[Outcomes, None, None]:
         """See :class:`rockbatch.batch.threads.Engine`."""
         from distributed import CancelledError, as_completed
         from distributed.scheduler import KilledWorker
@@ -134,7 +134,7 @@ class Dask:
             self._client.cancel(list(pending))
 
 
-def _kept(pending: "dict[Future, range]") -> Iterator[Finished]:
+def _kept(pending: "dict[Future, range]") -> Iterator[Outcomes]:
     """Of the groups that were handed out, those that are finished."""
     for future, group in pending.items():
         if future.status == "finished":
@@ -162,7 +162,7 @@ class Records:
         self.client = client
         self._sent: dict[int, tuple[Motion, Future]] = {}
 
-    def submit(self, runs: Sequence[Run], numerics: Numerics, output: Output) -> "Future":
+    def submit(self, runs: Sequence[PlannedRun], numerics: Numerics, output: Output) -> "Future":
         """Hand out a group of runs."""
         records: dict[int, Future] = {}
         members = []
@@ -216,5 +216,5 @@ def simulate(
         variant = member.record, member.polarity, member.scale
         if variant not in motions:
             motions[variant] = scaled(records[member.record], member.scale, member.polarity)
-        runs.append(Run(motions[variant], member.polarity, member.scale, member.case))
+        runs.append(PlannedRun(motions[variant], member.polarity, member.scale, member.case))
     return outcomes_of(runs, numerics, output)

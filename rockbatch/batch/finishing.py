@@ -32,12 +32,12 @@ from rockbatch.study import Study
 Progress = Callable[[int], AbstractContextManager[Callable[[int], object] | None]]
 """Asked, with a number of things to do, for a context that is called with the number of those that are done."""
 
-PACKAGES = ("numba", "numpy", "pandas", "obspy", "h5py")
+VERSIONS_OF = ("numba", "numpy", "pandas", "obspy", "h5py")
 """Packages whose versions run.json names."""
 
 
 @dataclass(frozen=True, eq=False)
-class Finished:
+class FinishedBatch:
     """What was left in a folder.
 
     Attributes
@@ -93,7 +93,7 @@ def write_peaks(journal: Journal, motions: MotionSet) -> None:
 
 def finish(
     directory: Path, study: Study, runs: Plan, info: dict[str, Any], progress: Progress | None = None
-) -> Finished:
+) -> FinishedBatch:
     """Write run.json, histories, checks and the report beside peaks.csv.
 
     Parameters
@@ -109,7 +109,7 @@ def finish(
     judged = verdicts(saved) if study.checks else []
     checks = write_verdicts(directory, judged) if study.checks else None
     written = (directory / PEAKS, directory / INFO, histories, checks, write_report(directory))
-    return Finished(saved, judged, tuple(path for path in written if path), without)
+    return FinishedBatch(saved, judged, tuple(path for path in written if path), without)
 
 
 def _keep_histories(
@@ -128,4 +128,4 @@ def _keep_histories(
 
 
 def _versions() -> dict[str, str]:
-    return {"python": platform.python_version(), **{name: version(name) for name in PACKAGES}}
+    return {"python": platform.python_version(), **{name: version(name) for name in VERSIONS_OF}}

@@ -5,13 +5,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from rockbatch.batch.plan import Run
+from rockbatch.batch.plan import PlannedRun
 from rockbatch.errors import InputError
 from rockbatch.motions import Motion
 from rockbatch.pier import YieldingBase
 from rockbatch.results.columns import TERMS
 from rockbatch.results.outcome import Outcome
-from rockbatch.simulation import Scene, Stop, first_substeps, run_all_fixed, run_all_to_tolerance, steps_of
+from rockbatch.simulation import Run, Stop, first_substeps, run_all_fixed, run_all_to_tolerance, steps_of
 from rockbatch.simulation.histories import energies, written
 from rockbatch.study import Numerics, Output, Study
 
@@ -27,7 +27,7 @@ STEPS_OF_A_GROUP = 2e7
 NOTHING_MORE = Output(both_laws=False)
 
 
-def groups(runs: Sequence[Run], numerics: Numerics, jobs: int, most: int = MOST_GROUP) -> Iterator[range]:
+def groups(runs: Sequence[PlannedRun], numerics: Numerics, jobs: int, most: int = MOST_GROUP) -> Iterator[range]:
     """Consecutive runs to be simulated side by side, in order: a share for every thread, a second's work at most.
 
     ``most`` is the greatest number of runs in a group.
@@ -46,35 +46,35 @@ def groups(runs: Sequence[Run], numerics: Numerics, jobs: int, most: int = MOST_
 
 
 def outcomes_of(
-    runs: Sequence[Run], numerics: Numerics, output: Output = NOTHING_MORE, stop: Stop | None = None
+    runs: Sequence[PlannedRun], numerics: Numerics, output: Output = NOTHING_MORE, stop: Stop | None = None
 ) -> list[Outcome | None]:
     """Simulate a group of runs, with what ``output`` asks for; ``None`` for those that ``stop`` has stopped."""
     stop = stop or Stop()
-    scenes = [Scene(run.case.pier, run.case.base, run.motion) for run in runs]
+    simulated = [planned.run for planned in runs]
     quiet_s = numerics.quiet_s
     if numerics.substeps is not None:
-        outcomes = run_all_fixed(scenes, [numerics.substeps] * len(scenes), quiet_s, stop)
+        outcomes = run_all_fixed(simulated, [numerics.substeps] * len(simulated), quiet_s, stop)
     else:
         assert numerics.tolerance is not None  # load_study gives one of the two
-        outcomes = run_all_to_tolerance(scenes, numerics.tolerance, quiet_s, stop)
+        outcomes = run_all_to_tolerance(simulated, numerics.tolerance, quiet_s, stop)
     if output.both_laws:
-        outcomes = _with_other_law(scenes, outcomes, quiet_s, stop)
+        outcomes = _with_other_law(simulated, outcomes, quiet_s, stop)
     if output.ledger:
         outcomes = [
-            outcome and _with_ledger(scene, outcome, quiet_s, stop)
-            for scene, outcome in zip(scenes, outcomes, strict=True)
+            outcome and _with_ledger(run, outcome, quiet_s, stop)
+            for run, outcome in zip(simulated, outcomes, strict=True)
         ]
     return outcomes
 
 
 def _with_other_law(
-    scenes: list[Scene], outcomes: list[Outcome | None], quiet_s: float, stop: Stop
+    runs: list[Run], outcomes: list[Outcome | None], quiet_s: float, stop: Stop
 ) -> list[Outcome | None]:
     """With the settlement of yielding springs by the other spring law, at the steps that were kept."""
     yielding = {
-        i: replace(scene, base=replace(scene.base, spring="epp" if scene.base.spring == "bouc-wen" else "bouc-wen"))
-        for i, (scene, outcome) in enumerate(zip(scenes, outcomes, strict=True))
-        if isinstance(scene.base, YieldingBase) and outcome is not None and outcome.was_run
+        i: replace(run, base=replace(run.base, spring="epp" if run.base.spring == "bouc-wen" else "bouc-wen"))
+        for i, (run, outcome) in enumerate(zip(runs, outcomes, strict=True))
+        if isinstance(run.base, YieldingBase) and outcome is not None and outcome.was_run
     }
     substeps = [outcomes[i].substeps for i in yielding]  # type: ignore[union-attr]
     others = run_all_fixed(list(yielding.values()), substeps, quiet_s, stop)
@@ -85,17 +85,17 @@ def _with_other_law(
     return outcomes
 
 
-def _with_ledger(scene: Scene, outcome: Outcome, quiet_s: float, stop: Stop) -> Outcome | None:
+def _with_ledger(run: Run, outcome: Outcome, quiet_s: float, stop: Stop) -> Outcome | None:
     """With the energy ledger at the end of the run, unless that is very long or was refused."""
     if stop:
         return None
-    if not outcome.was_run or steps_of(scene.motion, outcome.substeps, quiet_s) > MOST_STEPS_OF_A_LEDGER:
+    if not outcome.was_run or steps_of(run.motion, outcome.substeps, quiet_s) > MOST_STEPS_OF_A_LEDGER:
         return outcome
     try:
-        rows = written(scene.pier, scene.base, scene.motion, outcome, quiet_s, every_step=True)
+        rows = written(run.pier, run.base, run.motion, outcome, quiet_s, every_step=True)
     except InputError:  # too many impacts to be written down
         return outcome
-    terms = energies(scene.pier, scene.base, scene.motion, rows)
+    terms = energies(run.pier, run.base, run.motion, rows)
     at_end = dict(zip(TERMS, map(float, terms[-1]), strict=True))
     return replace(outcome, energies=at_end | {"remainder": float(abs(terms[:, -1]).max())})
 
@@ -103,5 +103,5 @@ def _with_ledger(scene: Scene, outcome: Outcome, quiet_s: float, stop: Stop) -> 
 def compile_kernels(study: Study) -> None:
     """Have every kernel that the study needs compiled, or loaded, before the clock starts."""
     still = Motion("still", 1e-3, np.zeros(2))
-    runs = [Run(still, "+", 1.0, case) for case in study.cases]
+    runs = [PlannedRun(still, "+", 1.0, case) for case in study.cases]
     outcomes_of(runs, replace(study.numerics, quiet_s=0.0), study.output)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rockbatch.batch.plan import Run
+from rockbatch.batch.plan import PlannedRun
 from rockbatch.errors import InputError
 from rockbatch.results.histories_file import HISTORIES, write
 from rockbatch.results.reading import Saved
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def keep_histories(
-    saved: Saved, study: Study, runs: Sequence[Run], progress: Callable[[], object] | None = None
+    saved: Saved, study: Study, runs: Sequence[PlannedRun], progress: Callable[[], object] | None = None
 ) -> Path | None:
     """Write ``histories.h5`` beside finished results: the histories that the study asks for.
 
@@ -97,7 +97,7 @@ def worst(table: "pd.DataFrame", cases: int) -> list[int]:
     return found
 
 
-def _response(study: Study, run: Run, row: "pd.Series") -> Response:
+def _response(study: Study, run: PlannedRun, row: "pd.Series") -> Response:
     case, motion, quiet_s = run.case, run.motion, study.numerics.quiet_s
     # With the same steps it comes to the same bits; of the row only ten digits are on disk
     outcome = run_fixed(case.pier, case.base, motion, int(row["substeps"]), quiet_s)

@@ -7,12 +7,13 @@ from functools import lru_cache
 from typing import overload
 
 from rockbatch.motions import Motion, MotionSet
+from rockbatch.simulation import Run
 from rockbatch.study import Case, Study
 
 
 @dataclass(frozen=True)
-class Run:
-    """One simulation: a motion, already scaled and turned, in a case.
+class PlannedRun:
+    """A row of the plan: a motion, already scaled and turned, in a case.
 
     ``recorded`` is the motion before that, if it is at hand: a cluster is then sent each record once. ``mirror_of`` is the
     polarity of the run whose mirror image this one is, if that is in the same table.
@@ -25,6 +26,11 @@ class Run:
     recorded: Motion | None = None
     mirror_of: str = ""
 
+    @property
+    def run(self) -> Run:
+        """What is simulated: the pier of the case on its base, under the motion."""
+        return Run(self.case.pier, self.case.base, self.motion)
+
 
 def scaled(motion: Motion, scale: float, polarity: str) -> Motion:
     """A motion times ``scale``; with polarity "-" its horizontal component is reversed."""
@@ -33,11 +39,11 @@ def scaled(motion: Motion, scale: float, polarity: str) -> Motion:
     return motion.times(scale, reverse=polarity == "-")
 
 
-class Runs(Sequence[Run]):
+class Runs(Sequence[PlannedRun]):
     """Runs that are made when they are asked for, so that memory does not grow with their number."""
 
     @abstractmethod
-    def run(self, number: int) -> Run:
+    def run(self, number: int) -> PlannedRun:
         """Run ``number``, from 0."""
 
     def images(self, number: int) -> Sequence[int]:
@@ -45,19 +51,19 @@ class Runs(Sequence[Run]):
         return (number,)
 
     @overload
-    def __getitem__(self, index: int) -> Run: ...
+    def __getitem__(self, index: int) -> PlannedRun: ...
 
     @overload
-    def __getitem__(self, index: slice) -> list[Run]: ...
+    def __getitem__(self, index: slice) -> list[PlannedRun]: ...
 
-    def __getitem__(self, index: int | slice) -> Run | list[Run]:
+    def __getitem__(self, index: int | slice) -> PlannedRun | list[PlannedRun]:
         if isinstance(index, slice):
             return [self.run(i) for i in range(*index.indices(len(self)))]
         if not -len(self) <= index < len(self):
             raise IndexError(index)
         return self.run(index % len(self))
 
-    def __iter__(self) -> Iterator[Run]:
+    def __iter__(self) -> Iterator[PlannedRun]:
         return map(self.run, range(len(self)))
 
 
@@ -81,7 +87,7 @@ class Plan(Runs):
     def __len__(self) -> int:
         return len(self.motions) * len(self.polarity) * len(self.scale) * len(self.cases)
 
-    def run(self, number: int) -> Run:
+    def run(self, number: int) -> PlannedRun:
         """See :class:`Runs`."""
         rest, case = divmod(number, len(self.cases))
         rest, scale = divmod(rest, len(self.scale))
@@ -89,7 +95,7 @@ class Plan(Runs):
         moved = self._moved(motion, scale, polarity)
         sign = self.polarity[polarity]
         mirror_of = "" if sign == self.simulated else self.simulated
-        return Run(moved, sign, self.scale[scale], self.cases[case], self.motions[motion], mirror_of)
+        return PlannedRun(moved, sign, self.scale[scale], self.cases[case], self.motions[motion], mirror_of)
 
     def images(self, number: int) -> Sequence[int]:
         """See :class:`Runs`."""
@@ -106,13 +112,13 @@ class Plan(Runs):
 class Made(Runs):
     """``length`` runs, the i-th of which is ``make(i)``."""
 
-    def __init__(self, length: int, make: Callable[[int], Run]) -> None:
+    def __init__(self, length: int, make: Callable[[int], PlannedRun]) -> None:
         self._length, self._make = length, make
 
     def __len__(self) -> int:
         return self._length
 
-    def run(self, number: int) -> Run:
+    def run(self, number: int) -> PlannedRun:
         """See :class:`Runs`."""
         return self._make(number)
 
@@ -120,12 +126,12 @@ class Made(Runs):
 class Chosen(Runs):
     """Some of ``runs``, by their indices."""
 
-    def __init__(self, runs: Sequence[Run], indices: Sequence[int]) -> None:
+    def __init__(self, runs: Sequence[PlannedRun], indices: Sequence[int]) -> None:
         self.runs, self.indices = runs, indices
 
     def __len__(self) -> int:
         return len(self.indices)
 
-    def run(self, number: int) -> Run:
+    def run(self, number: int) -> PlannedRun:
         """See :class:`Runs`."""
         return self.runs[self.indices[number]]

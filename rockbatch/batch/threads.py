@@ -8,7 +8,7 @@ from types import TracebackType
 from typing import Protocol, Self
 
 from rockbatch.batch.groups import NOTHING_MORE, groups, outcomes_of
-from rockbatch.batch.plan import Run
+from rockbatch.batch.plan import PlannedRun
 from rockbatch.results.outcome import Outcome
 from rockbatch.simulation import Stop
 from rockbatch.study import Numerics, Output
@@ -16,7 +16,7 @@ from rockbatch.study import Numerics, Output
 AHEAD = 2
 """Groups handed to each thread beforehand, so that none waits."""
 
-Finished = list[tuple[int, Outcome]]
+Outcomes = list[tuple[int, Outcome]]
 """Index and outcome of the runs of a group."""
 
 
@@ -34,8 +34,8 @@ class Engine(Protocol):
     ) -> None: ...
 
     def outcomes(
-        self, runs: Sequence[Run], numerics: Numerics, output: Output = NOTHING_MORE
-    ) -> Generator[Finished, None, None]:
+        self, runs: Sequence[PlannedRun], numerics: Numerics, output: Output = NOTHING_MORE
+    ) -> Generator[Outcomes, None, None]:
         """Index and outcome of every run, group by group, as they finish.
 
         What a run comes to depends neither on the engine nor on the others of its group, only the order does. After
@@ -66,8 +66,8 @@ class Threads:
         """Nothing stays: threads live as long as a batch."""
 
     def outcomes(
-        self, runs: Sequence[Run], numerics: Numerics, output: Output = NOTHING_MORE
-    ) -> Generator[Finished, None, None]:
+        self, runs: Sequence[PlannedRun], numerics: Numerics, output: Output = NOTHING_MORE
+    ) -> Generator[Outcomes, None, None]:
         """See :class:`Engine`."""
         waiting = groups(runs, numerics, self.jobs)
         pending: dict[Future[list[Outcome | None]], range] = {}
@@ -96,6 +96,6 @@ class Threads:
             pool.shutdown(wait=True, cancel_futures=True)
 
 
-def finished(group: range, found: Sequence[Outcome | None]) -> Finished:
+def finished(group: range, found: Sequence[Outcome | None]) -> Outcomes:
     """The runs of a group with their outcomes, but for those that were stopped."""
     return [(i, outcome) for i, outcome in zip(group, found, strict=True) if outcome is not None]

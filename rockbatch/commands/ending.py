@@ -5,12 +5,12 @@ from typing import TYPE_CHECKING
 from rockbatch.commands.messages import count, say
 
 if TYPE_CHECKING:
-    from rockbatch.batch.finishing import Finished
+    from rockbatch.batch.finishing import FinishedBatch
     from rockbatch.motions import MotionSet
     from rockbatch.study import Study
 
 
-def tell(finished: "Finished", study: "Study", motions: "MotionSet") -> int:
+def tell(finished: "FinishedBatch", study: "Study", motions: "MotionSet") -> int:
     """Print the table of peaks and the verdicts, and say what is in the folder; returns the exit code."""
     from rockbatch.checks.suite import simulated
     from rockbatch.checks.verdicts import CHECKS

@@ -10,7 +10,7 @@ from rockbatch.simulation.models import (
     springs,
 )
 from rockbatch.simulation.runs import (
-    Scene,
+    Run,
     Stop,
     run_all_fixed,
     run_fixed,
@@ -20,7 +20,7 @@ from rockbatch.simulation.runs import (
 from rockbatch.simulation.settling import run_all_to_tolerance, run_to_tolerance
 
 __all__ = [
-    "Scene",
+    "Run",
     "Stop",
     "block",
     "core_digest",

@@ -13,7 +13,7 @@ from rockbatch.results.columns import TERMS
 from rockbatch.results.outcome import Outcome
 from rockbatch.results.response import EVENT_TYPES, Response
 from rockbatch.simulation.models import block, ground_of, least_substeps, springs
-from rockbatch.simulation.runs import Scene, run_fixed, steps_of, written_run
+from rockbatch.simulation.runs import Run, run_fixed, steps_of, written_run
 from rockbatch.simulation.settling import run_to_tolerance
 
 _EVENTS = {
@@ -98,19 +98,19 @@ def written(
 
     Raises ``InputError`` where they would be more than :data:`MOST_ROWS`.
     """
-    scene = Scene(pier, base, motion)
+    run = Run(pier, base, motion)
     samples = steps_of(motion, 1, quiet_s)
     capacity = int(outcome.substeps * samples if every_step else samples) + 64 * (
         outcome.impacts + outcome.separations + 64
     )
     capacity = min(capacity, MOST_ROWS)
-    run, rows = written_run(scene, outcome.substeps, quiet_s, capacity, every_step=every_step, wait=wait)
-    if run.rows > MOST_ROWS:
+    found, rows = written_run(run, outcome.substeps, quiet_s, capacity, every_step=every_step, wait=wait)
+    if found.rows > MOST_ROWS:
         instead = "leave out the energy ledger or use fewer substeps" if every_step else "cut the record"
-        raise InputError(f"{motion.name}: a history of {run.rows} rows, more than {MOST_ROWS}; {instead}")
-    if run.rows > capacity:
-        run, rows = written_run(scene, outcome.substeps, quiet_s, run.rows, every_step=every_step, wait=wait)
-    return rows[: run.rows]
+        raise InputError(f"{motion.name}: a history of {found.rows} rows, more than {MOST_ROWS}; {instead}")
+    if found.rows > capacity:
+        found, rows = written_run(run, outcome.substeps, quiet_s, found.rows, every_step=every_step, wait=wait)
+    return rows[: found.rows]
 
 
 def energies(pier: Pier, base: Base, motion: Motion, rows: Samples) -> Samples:

@@ -19,7 +19,7 @@ TOPS, HEIGHTS = (14.0, 126.0, 204.0, 282.0), (94.0, 60.0, 60.0, 60.0)
 FOOT = 372.0
 LABELS = (QUANTITIES[0], QUANTITIES[1], QUANTITIES[2], lowered("ü", "g", "/g"))
 
-Run = dict[str, Any]
+Row = dict[str, Any]
 
 
 def figures(finished: Finished, responses: Sequence[Response]) -> list[tuple[Markup, Markup]]:
@@ -49,7 +49,7 @@ def figures(finished: Finished, responses: Sequence[Response]) -> list[tuple[Mar
     return found
 
 
-def _kept(finished: Finished, responses: Sequence[Response]) -> list[Run]:
+def _kept(finished: Finished, responses: Sequence[Response]) -> list[Row]:
     """Which runs there are, without reading their histories."""
     if isinstance(responses, Responses):
         runs = as_dicts(responses.runs)
@@ -64,7 +64,7 @@ def _kept(finished: Finished, responses: Sequence[Response]) -> list[Run]:
     return kept
 
 
-def _chosen(finished: Finished, kept: Sequence[Run]) -> list[int]:
+def _chosen(finished: Finished, kept: Sequence[Row]) -> list[int]:
     """Numbers of the runs to be shown: all, or of many the worst of each case, and of many cases the worst."""
     if len(kept) <= MOST_COLUMNS:
         return list(range(len(kept)))
@@ -79,7 +79,7 @@ def _chosen(finished: Finished, kept: Sequence[Run]) -> list[int]:
     return numbers[:MOST_COLUMNS]
 
 
-def _behind(kept: Sequence[Run], number: int) -> int | None:
+def _behind(kept: Sequence[Row], number: int) -> int | None:
     """The same motion and pier on the rigid base, where it was kept."""
     run = kept[number]
     names = ("record", "polarity", "scale", "pier")
@@ -95,7 +95,7 @@ def _scale(shown: Sequence[History], row: int) -> Scale:
     return spanning(*(history.curves[row][1] for history in stood), *bands)
 
 
-def _title(finished: Finished, run: Run) -> Markup:
+def _title(finished: Finished, run: Row) -> Markup:
     also = [f"scaled by {run['scale']:g}" if run["scale"] != 1 else "", "reversed" if run["polarity"] == "-" else ""]
     told = ", ".join(filter(None, also))
     record = tag("span", run["record"] + (f", {told}" if told else ""), class_="muted")
