@@ -10,7 +10,7 @@ import numpy as np
 from rockbatch.report.document import figure
 from rockbatch.report.drawing.axes import Axes, Scale
 from rockbatch.report.drawing.svg import curve, key, line, marker, style_of, svg, text
-from rockbatch.report.found import read
+from rockbatch.report.finished_analysis import read
 from rockbatch.report.labels import quantity
 from rockbatch.report.markup import Markup, join, tag
 from rockbatch.report.table import Head, table

@@ -10,7 +10,7 @@ from rockbatch.checks.statistics import STATISTICS
 from rockbatch.report.document import figure
 from rockbatch.report.drawing.axes import Axes, Scale, spanning
 from rockbatch.report.drawing.svg import key, line, lowered, rectangle, svg, text
-from rockbatch.report.found import named, read
+from rockbatch.report.finished_analysis import named, read
 from rockbatch.report.labels import SYMBOLS
 from rockbatch.report.markup import Markup, join, number, tag
 from rockbatch.report.table import Head, table

@@ -9,7 +9,7 @@ from rockbatch.report.document import figure
 from rockbatch.report.drawing import overturning_map
 from rockbatch.report.drawing.axes import Axes, Scale
 from rockbatch.report.drawing.svg import COLOURS, curve, key, line, lowered, marker, rectangle, svg, text
-from rockbatch.report.found import Found, named, read
+from rockbatch.report.finished_analysis import FinishedAnalysis, named, read
 from rockbatch.report.labels import quantity, symbol
 from rockbatch.report.markup import Markup, join, tag
 from rockbatch.report.table import sub
@@ -40,7 +40,7 @@ def section(directory: Path, sha256: str | None) -> Markup:
 # Rocking spectra
 
 
-def _spectra(found: Found, suite: "pd.DataFrame") -> list[Markup]:
+def _spectra(found: FinishedAnalysis, suite: "pd.DataFrame") -> list[Markup]:
     axis = found.info["axis"]
     apart = [name for name in ("case", "scale", *found.info["varied"]) if name not in ("alpha", axis)]
     told = [name for name in apart if name in ("case",) or suite[name].nunique(dropna=False) > 1]
@@ -92,7 +92,7 @@ def _curves(points: "pd.DataFrame", axis: str, many: bool) -> Markup:
 # Overturning maps
 
 
-def _maps(found: Found, regions: "pd.DataFrame") -> list[Markup]:
+def _maps(found: FinishedAnalysis, regions: "pd.DataFrame") -> list[Markup]:
     apart = ["map", "case", *found.info["varied_map"]]
     drawn = [
         tag(

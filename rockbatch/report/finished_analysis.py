@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Found:
+class FinishedAnalysis:
     """An analysis that is finished: what NAME.json says about it, and its folder."""
 
     directory: Path
@@ -31,7 +31,7 @@ class Found:
         return table if len(table) and set(columns) <= set(table.columns) else None
 
 
-def read(directory: Path, name: str, sha256: str | None) -> Found | None:
+def read(directory: Path, name: str, sha256: str | None) -> FinishedAnalysis | None:
     """The analysis ``name`` in a folder.
 
     None where there is none, or where it is of another state of the study than the one with the digest ``sha256``: the
@@ -43,7 +43,7 @@ def read(directory: Path, name: str, sha256: str | None) -> Found | None:
             return None
     except (OSError, ValueError, KeyError, TypeError):
         return None
-    return Found(Path(directory), info)
+    return FinishedAnalysis(Path(directory), info)
 
 
 def named(values: Mapping[str, Any], shown: Sequence[str]) -> str:
