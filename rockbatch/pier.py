@@ -100,6 +100,11 @@ class Pier:
         return self.size**2 / self.mu
 
     @property
+    def inertia_about_pivot(self) -> float:
+        """I0/M + R0² [m²], about a pivot, per unit mass."""
+        return self.inertia + self.size**2
+
+    @property
     def least_beta(self) -> float:
         """β = ω_v/p below which the pier topples on its springs under its own weight (g h < ω_v² b²)."""
         return math.sqrt((1 + self.mu) * math.cos(self.alpha) / self.mu) / math.sin(self.alpha)
@@ -175,6 +180,30 @@ def least_beta(pier: Pier, base: ElasticBase) -> float:
     return pier.least_beta * math.sqrt((1.0 + softer) / (2.0 * softer))
 
 
+def vertical_frequency(pier: Pier, base: ElasticBase) -> float:
+    """Circular frequency ω_v = β p [rad/s] of vertical vibration in full contact."""
+    return base.beta * pier.p
+
+
+def static_deflection(pier: Pier, base: ElasticBase) -> float:
+    """δ_s = g/ω_v² [m], of the springs under the weight at rest, while elastic."""
+    return pier.gravity / vertical_frequency(pier, base) ** 2
+
+
+def yield_deflection(pier: Pier, base: ElasticBase) -> float:
+    """δ_y = η δ_s [m], at which a spring yields; elastic springs are measured by δ_s, η = 1."""
+    eta = base.eta if isinstance(base, YieldingBase) else 1.0
+    return eta * pier.gravity / vertical_frequency(pier, base) ** 2
+
+
+def tilt_over_residual(gravity: float, height: float, half_width: float, omega_v: float) -> float:
+    """Tilt of the base over the residual rotation, 1 − g h/(ω_v² b²): the weight leans the pier (THEORY.md, eq. 14).
+
+    ``gravity`` g [m/s²]; ``height`` h and ``half_width`` b [m], of the centre of mass from the pivots; ``omega_v`` [rad/s].
+    """
+    return 1.0 - gravity * height / (omega_v * half_width) ** 2
+
+
 def rocking_frequency(pier: Pier, base: ElasticBase) -> float:
     """Circular frequency ω_r [rad/s] of rocking in full contact, on elastic springs (THEORY.md, 13)."""
     mu, alpha = pier.mu, pier.alpha
@@ -184,7 +213,7 @@ def rocking_frequency(pier: Pier, base: ElasticBase) -> float:
 
 def highest_frequency(pier: Pier, base: ElasticBase) -> float:
     """Greatest circular frequency [rad/s] in full contact: vertical, ω_v, or rocking."""
-    return max(base.beta * pier.p, rocking_frequency(pier, base))
+    return max(vertical_frequency(pier, base), rocking_frequency(pier, base))
 
 
 Base = RigidBase | ElasticBase | YieldingBase

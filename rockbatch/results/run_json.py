@@ -11,7 +11,16 @@ from rockbatch.files import write_whole
 from rockbatch.motions import MotionSet, measures
 from rockbatch.motions.motion import Motion
 from rockbatch.motions.spectrum import suite_spectra
-from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, YieldingBase
+from rockbatch.pier import (
+    Base,
+    ElasticBase,
+    Pier,
+    RigidBase,
+    YieldingBase,
+    static_deflection,
+    vertical_frequency,
+    yield_deflection,
+)
 from rockbatch.study import Case, Study
 
 INFO = "run.json"
@@ -89,7 +98,7 @@ def _describe_base(pier: Pier, base: Base) -> dict[str, Any]:
             "eta": base.eta,
             "spring": base.spring,
             "n": base.n,
-            "delta_y_m": base.eta * told["delta_s_m"],
+            "delta_y_m": yield_deflection(pier, base),
         }
         if base.spring == "epp":
             del told["n"]
@@ -97,14 +106,13 @@ def _describe_base(pier: Pier, base: Base) -> dict[str, Any]:
 
 
 def _springs(pier: Pier, base: ElasticBase) -> dict[str, Any]:
-    omega_v = base.beta * pier.p
     return {
         "beta": base.beta,
         "epsilon": base.epsilon,
         "kinematics": base.kinematics,
         "flight": base.flight,
-        "omega_v": omega_v,
-        "delta_s_m": pier.gravity / omega_v**2,
+        "omega_v": vertical_frequency(pier, base),
+        "delta_s_m": static_deflection(pier, base),
     }
 
 

@@ -119,7 +119,7 @@ def energies(pier: Pier, base: Base, motion: Motion, rows: Samples) -> Samples:
     ledger = np.zeros((len(rows), len(TERMS)))
     if isinstance(base, RigidBase):
         ledger_on_rigid_base(block(pier, base), rows, ground, dt, ledger)
-        return (pier.inertia + pier.size**2) * ledger
+        return pier.inertia_about_pivot * ledger
     ledger_on_springs(springs(pier, base), rows, ground, dt, ledger)
     return ledger
 
@@ -183,7 +183,7 @@ def _rigid_state(pier: Pier, rows: Samples) -> dict[str, Samples]:
     theta, omega = rows[:, 1], rows[:, 2]
     absent = np.full(len(rows), np.nan)
     climbed = np.cos(pier.alpha - np.abs(theta)) - math.cos(pier.alpha)
-    energy = 0.5 * (pier.inertia + pier.size**2) * omega**2 + pier.gravity * pier.size * climbed
+    energy = 0.5 * pier.inertia_about_pivot * omega**2 + pier.gravity * pier.size * climbed
     none = dict.fromkeys(("v", "z_left", "z_right", "v_left", "v_right", "force_left", "force_right"), absent)
     return {"theta": theta, "omega": omega, **none, "energy": energy}
 

@@ -23,7 +23,15 @@ from rockbatch.core.types import (
     SpringRun,
 )
 from rockbatch.motions.motion import Motion, Samples
-from rockbatch.pier import Base, Pier, RigidBase, YieldingBase
+from rockbatch.pier import (
+    Base,
+    Pier,
+    RigidBase,
+    YieldingBase,
+    tilt_over_residual,
+    vertical_frequency,
+    yield_deflection,
+)
 from rockbatch.results.outcome import Outcome
 from rockbatch.simulation.flight import cause_of_flight
 from rockbatch.simulation.models import block, first_substeps, ground_of, least_substeps, patience, readings, springs
@@ -223,7 +231,9 @@ def _outcome(run: Run, substeps: int, result: Sequence[float]) -> Outcome:
         found = SpringRun(*result)  # type: ignore[arg-type]  # all floats
         more = _of_springs(run, found, survived=status == "ok")
         if code == FLIGHT:
-            reason = cause_of_flight(run.motion, run.base.beta * pier.p, pier.gravity, t_flight, found.t_impact)
+            reason = cause_of_flight(
+                run.motion, vertical_frequency(pier, run.base), pier.gravity, t_flight, found.t_impact
+            )
     elif code == FLIGHT:
         reason = cause_of_flight(run.motion, None, pier.gravity, t_flight, math.nan)
     note = ""
@@ -253,7 +263,8 @@ def _of_springs(run: Run, found: SpringRun, survived: bool) -> dict[str, Any]:
     more: dict[str, Any] = {}
     if survived:
         # From the base's tilt to the rotation, static on the deformed base (THEORY.md, 14)
-        lean = 1.0 / (1.0 - pier.gravity * pier.height / (base.beta * pier.p * pier.half_width) ** 2)
+        omega_v = vertical_frequency(pier, base)
+        lean = 1.0 / tilt_over_residual(pier.gravity, pier.height, pier.half_width, omega_v)
         tilt = 0.5 * (found.base_left - found.base_right) / pier.half_width
         more |= {"settlement": -0.5 * (found.base_left + found.base_right), "base_tilt": tilt, "theta_res": lean * tilt}
         if isinstance(base, YieldingBase):
@@ -262,9 +273,9 @@ def _of_springs(run: Run, found: SpringRun, survived: bool) -> dict[str, Any]:
                 more["settlement_drift"] = -0.5 * (found.drift_left + found.drift_right)
                 more["theta_res_drift"] = 0.5 * lean * (found.drift_left - found.drift_right) / pier.half_width
     if isinstance(base, YieldingBase):
-        yield_deflection = base.eta * pier.gravity / (base.beta * pier.p) ** 2
-        more["ductility_left"] = -found.deepest_left / yield_deflection
-        more["ductility_right"] = -found.deepest_right / yield_deflection
+        deflection = yield_deflection(pier, base)
+        more["ductility_left"] = -found.deepest_left / deflection
+        more["ductility_right"] = -found.deepest_right / deflection
         more["dissipated_left"] = found.dissipated_left
         more["dissipated_right"] = found.dissipated_right
     return more

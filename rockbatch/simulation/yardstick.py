@@ -16,7 +16,7 @@ from rockbatch.core.transitions import Supports, handle
 from rockbatch.core.two_springs import static_state
 from rockbatch.core.types import BOUC_WEN, Contact, State
 from rockbatch.motions.motion import Motion
-from rockbatch.pier import ElasticBase, Pier
+from rockbatch.pier import ElasticBase, Pier, vertical_frequency
 from rockbatch.simulation.models import springs
 
 MOST_EVENTS = 100_000
@@ -48,7 +48,7 @@ def solve(
     dt = float(motion.dt)
     end = (motion.npts - 1 + math.ceil(quiet_s / dt - 1e-9)) * dt
     horizontal, vertical = _ground(motion.horizontal, dt), _ground(motion.vertical, dt)
-    omega_v = base.beta * pier.p
+    omega_v = vertical_frequency(pier, base)
     scale = [m.yield_deflection, pier.alpha, m.yield_deflection * omega_v, pier.alpha * pier.p, 1.0, 1.0]
     tolerances = {"rtol": tolerance, "atol": tolerance * np.array(scale)}
 

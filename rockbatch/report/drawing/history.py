@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from rockbatch.pier import ElasticBase, RigidBase, YieldingBase
+from rockbatch.pier import ElasticBase, RigidBase, YieldingBase, yield_deflection
 from rockbatch.report.drawing.axes import Axes, Scale
 from rockbatch.report.drawing.svg import Array, curve, lowered, text, thin
 from rockbatch.report.markup import Markup, join
@@ -88,9 +88,9 @@ def _band(response: Response) -> float:
 def _loops(response: Response, left: float, width: float) -> Markup:
     """F/F_y against v/δ_y of the left and the right spring, side by side on one scale."""
     base: Any = response.base
-    yield_deflection = base.eta * response.pier.gravity / (base.beta * response.pier.p) ** 2
+    deflection = yield_deflection(response.pier, base)
     springs = [
-        (response.history[f"v_{side}"].to_numpy(dtype=np.float64) / yield_deflection, force)
+        (response.history[f"v_{side}"].to_numpy(dtype=np.float64) / deflection, force)
         for side, force in (("left", response.z_left), ("right", response.z_right))
     ]
     # As in the paper, the axis ends where the spring lets go: a lifted pivot may be far above
