@@ -22,7 +22,7 @@ from rockbatch.results.columns import TERMS, columns
 from rockbatch.results.histories_file import FORMAT, UNITS, Responses, write
 from rockbatch.results.reading import read_saved
 from rockbatch.results.run_json import describe, write_info
-from rockbatch.simulation import run_to_tolerance
+from rockbatch.simulation import Run, run_to_tolerance
 from rockbatch.simulation.histories import histories, simulate
 from rockbatch.study.suite import ground_motions
 
@@ -196,7 +196,7 @@ def test_the_history_of_an_overturned_pier_ends_where_it_fell(tmp_path):
     """On its side, at π/2; not at the sample before."""
     strong = rb.pulse("sine", name="strong", amplitude=3 * 9.81, period=2.0, dt=0.05, duration=10.0)
     outcome = run_to_tolerance(PIER, rb.RigidBase(), strong, 1e-4)
-    response = histories(PIER, rb.RigidBase(), strong, outcome, 2.0, "rigid", {})
+    response = histories(Run(PIER, rb.RigidBase(), strong), outcome, 2.0, "rigid", {})
     assert response.status == "overturned"
     assert response.t[-1] == outcome.t_end
     assert abs(response.theta[-2]) < outcome.theta_max <= abs(response.theta[-1])

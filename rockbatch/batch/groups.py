@@ -92,10 +92,10 @@ def _with_ledger(run: Run, outcome: Outcome, quiet_s: float, stop: Stop) -> Outc
     if not outcome.was_run or steps_of(run.motion, outcome.substeps, quiet_s) > MOST_STEPS_OF_A_LEDGER:
         return outcome
     try:
-        rows = written(run.pier, run.base, run.motion, outcome, quiet_s, every_step=True)
+        rows = written(run, outcome, quiet_s, every_step=True)
     except InputError:  # too many impacts to be written down
         return outcome
-    terms = energies(run.pier, run.base, run.motion, rows)
+    terms = energies(run, rows)
     at_end = dict(zip(TERMS, map(float, terms[-1]), strict=True))
     return replace(outcome, energies=at_end | {"remainder": float(abs(terms[:, -1]).max())})
 

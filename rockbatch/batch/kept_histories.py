@@ -97,14 +97,14 @@ def worst(table: "pd.DataFrame", cases: int) -> list[int]:
     return found
 
 
-def _response(study: Study, run: PlannedRun, row: "pd.Series") -> Response:
-    case, motion, quiet_s = run.case, run.motion, study.numerics.quiet_s
+def _response(study: Study, planned: PlannedRun, row: "pd.Series") -> Response:
+    case, run, quiet_s = planned.case, planned.run, study.numerics.quiet_s
     # With the same steps it comes to the same bits; of the row only ten digits are on disk
-    outcome = run_fixed(case.pier, case.base, motion, int(row["substeps"]), quiet_s)
+    outcome = run_fixed(run.pier, run.base, run.motion, int(row["substeps"]), quiet_s)
     outcome = replace(outcome, status=row["status"], reason=row["reason"])
     told = row.get("energy_input_J_kg", float("nan"))
     return histories(
-        case.pier, case.base, motion, outcome, quiet_s, case.name, case.columns,
+        run, outcome, quiet_s, case.name, case.columns,
         ledger=told == told,  # very long runs have none
-        polarity=run.polarity, scale=run.scale,
+        polarity=planned.polarity, scale=planned.scale,
     )  # fmt: skip

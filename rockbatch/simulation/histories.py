@@ -88,18 +88,16 @@ def simulate(
         outcome = run_to_tolerance(pier, foundation, motion, tolerance, quiet_s)
     else:
         outcome = run_fixed(pier, foundation, motion, substeps, quiet_s, wait=wait)
-    return histories(pier, foundation, motion, outcome, quiet_s, case or foundation.name, {}, ledger, wait=wait)
+    run = Run(pier, foundation, motion)
+    return histories(run, outcome, quiet_s, case or foundation.name, {}, ledger, wait=wait)
 
 
-def written(
-    pier: Pier, base: Base, motion: Motion, outcome: Outcome, quiet_s: float, every_step: bool, wait: bool = True
-) -> Samples:
+def written(run: Run, outcome: Outcome, quiet_s: float, every_step: bool, wait: bool = True) -> Samples:
     """A run whose outcome is known, written down: the rows of the core, shape (n, 13) or (n, 4).
 
     Raises ``InputError`` where they would be more than :data:`MOST_ROWS`.
     """
-    run = Run(pier, base, motion)
-    samples = steps_of(motion, 1, quiet_s)
+    samples = steps_of(run.motion, 1, quiet_s)
     capacity = int(outcome.substeps * samples if every_step else samples) + 64 * (
         outcome.impacts + outcome.separations + 64
     )
@@ -107,15 +105,16 @@ def written(
     found, rows = written_run(run, outcome.substeps, quiet_s, capacity, every_step=every_step, wait=wait)
     if found.rows > MOST_ROWS:
         instead = "leave out the energy ledger or use fewer substeps" if every_step else "cut the record"
-        raise InputError(f"{motion.name}: a history of {found.rows} rows, more than {MOST_ROWS}; {instead}")
+        raise InputError(f"{run.motion.name}: a history of {found.rows} rows, more than {MOST_ROWS}; {instead}")
     if found.rows > capacity:
         found, rows = written_run(run, outcome.substeps, quiet_s, found.rows, every_step=every_step, wait=wait)
     return rows[: found.rows]
 
 
-def energies(pier: Pier, base: Base, motion: Motion, rows: Samples) -> Samples:
+def energies(run: Run, rows: Samples) -> Samples:
     """Energy ledger [J/kg] at every row of a run: :data:`rockbatch.results.columns.TERMS`, shape (n, 9)."""
-    ground, dt = ground_of(motion), float(motion.dt)
+    pier, base = run.pier, run.base
+    ground, dt = ground_of(run.motion), float(run.motion.dt)
     ledger = np.zeros((len(rows), len(TERMS)))
     if isinstance(base, RigidBase):
         ledger_on_rigid_base(block(pier, base), rows, ground, dt, ledger)
@@ -125,9 +124,7 @@ def energies(pier: Pier, base: Base, motion: Motion, rows: Samples) -> Samples:
 
 
 def histories(
-    pier: Pier,
-    base: Base,
-    motion: Motion,
+    run: Run,
     outcome: Outcome,
     quiet_s: float,
     case: str,
@@ -139,16 +136,17 @@ def histories(
 ) -> Response:
     """Histories of a run whose outcome is known: the same run again, with the same steps, written down.
 
-    ``motion`` is scaled and turned already; ``polarity`` and ``scale`` say how.
+    The motion of ``run`` is scaled and turned already; ``polarity`` and ``scale`` say how.
     """
     import pandas as pd
 
-    rows = written(pier, base, motion, outcome, quiet_s, every_step=ledger, wait=wait)
+    pier, base, motion = run.pier, run.base, run.motion
+    rows = written(run, outcome, quiet_s, every_step=ledger, wait=wait)
     shown = rows[:, -1] != types.STEP
     shown[-1] = True  # an overturned pier may fall between samples
     table = None
     if ledger:
-        table = pd.DataFrame(energies(pier, base, motion, rows)[shown], columns=list(TERMS))
+        table = pd.DataFrame(energies(run, rows)[shown], columns=list(TERMS))
         table.insert(0, "t", rows[shown, 0])
     rows = rows[shown]
     state = _rigid_state(pier, rows) if isinstance(base, RigidBase) else _springs_state(pier, base, rows)
