@@ -81,12 +81,16 @@ def _outlook(table, i, m):
     left, right = base_of(table, i, m)
     alone = table[SAMPLE_TIME + i] - max(table[MOVED + i], table[NPTS + i] * table[DT + i])
     calm = contact.left != 0.0 and contact.right != 0.0 and alone >= rocking_period(m)
-    ahead = 0.5 * table[PATIENCE + i] * table[DT + i] / m.half_width
-    last = ahead * (table[LAST_DRIFT + i] - table[LAST_DRIFT + LANES + i])
-    first = last if math.isnan(table[DRIFT + i]) else ahead * (table[DRIFT + i] - table[DRIFT + LANES + i])
+    ahead = 0.5 * table[PATIENCE + i] * table[DT + i]
+    last_left, last_right = ahead * table[LAST_DRIFT + i], ahead * table[LAST_DRIFT + LANES + i]
+    first_left, first_right = last_left, last_right
+    if not math.isnan(table[DRIFT + i]):
+        first_left, first_right = ahead * table[DRIFT + i], ahead * table[DRIFT + LANES + i]
+    last, first = (last_left - last_right) / m.half_width, (first_left - first_right) / m.half_width
     to_right, to_left = max(0.0, first, last), max(0.0, -first, -last)
+    sinking = max(0.0, -(last_left + last_right), -(first_left + first_right))
     return outlook_on_springs(
-        m, state_of(table, NOW + i), contact, left, right, table[PEAK + i], calm, to_right, to_left
+        m, state_of(table, NOW + i), contact, left, right, table[PEAK + i], calm, to_right, to_left, sinking
     )
 
 
