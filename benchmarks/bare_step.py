@@ -30,8 +30,8 @@ from rockbatch.core.two_springs import (
 )
 from rockbatch.core.types import BOUC_WEN, SURVIVED, Contact, Ground
 from rockbatch.motions import Motion
+from rockbatch.pier import ElasticBase, YieldingBase
 from rockbatch.simulation import ground_of, springs
-from rockbatch.structure import ElasticBase, YieldingBase
 
 BARE_STEPS = 200_000
 PASSES = 10_000

@@ -45,10 +45,10 @@ from pathlib import Path
 from independent.pool import STRATA, Case, cases, just_overturning, scaled
 from independent.reference import HORIZON, Reference, reference, twice
 
-from rockbatch.outcome import Outcome
+from rockbatch.pier import Base, RigidBase, YieldingBase, problems
+from rockbatch.results.outcome import Outcome
 from rockbatch.simulation import run_to_tolerance
 from rockbatch.simulation.models import PATIENCE
-from rockbatch.structure import Base, RigidBase, YieldingBase, problems
 
 TOLERANCE = 1e-4
 RATCHETS = "ratchets over"

@@ -7,9 +7,10 @@ from typing import Any
 
 import pandas as pd
 
-from rockbatch.results import COLUMNS, MORE_COLUMNS, describe_case
-from rockbatch.saved import SECTIONS
-from rockbatch.structure import Base, ElasticBase, Pier, RigidBase, YieldingBase
+from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, YieldingBase
+from rockbatch.results.columns import COLUMNS, MORE_COLUMNS
+from rockbatch.results.reading import SECTIONS
+from rockbatch.results.run_json import describe_case
 from rockbatch.study import Case
 
 PIER = Pier(alpha=0.2, p=1.0)

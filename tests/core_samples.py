@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from rockbatch.motions.motion import Motion, Samples
-from rockbatch.structure import Base, ElasticBase, Pier, YieldingBase
+from rockbatch.pier import Base, ElasticBase, Pier, YieldingBase
 from rockbatch.units import GRAVITY
 
 FIG5 = Pier(alpha=0.20, p=1.0)

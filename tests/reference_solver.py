@@ -15,7 +15,7 @@ from scipy.integrate import DOP853
 from scipy.optimize import brentq
 
 from rockbatch.motions.motion import Motion
-from rockbatch.structure import ElasticBase, Pier, RigidBase, YieldingBase
+from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase
 
 RTOL, ATOL = 1e-12, 1e-14
 FRACTIONS = (0.05, 0.2, 0.4, 0.6, 0.8, 1.0)

@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from rockbatch.response import Response
-from rockbatch.results import COLUMNS as STAYING
-from rockbatch.results import MORE_COLUMNS
-from rockbatch.structure import Base, ElasticBase, Pier, RigidBase, YieldingBase
+from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, YieldingBase
+from rockbatch.results.columns import COLUMNS as STAYING
+from rockbatch.results.columns import MORE_COLUMNS
+from rockbatch.results.response import Response
 
 COLUMNS = (
     "record", "case", "polarity", "scale", "status", "theta_max_over_alpha", "theta_max_error", "t_max_s",

@@ -5,13 +5,14 @@ import pandas as pd
 import pytest
 
 import rockbatch as rb
-import rockbatch.groups
-from rockbatch.batch import carry_out, study_digests
-from rockbatch.engines import Threads
-from rockbatch.groups import NOTHING_MORE, groups
-from rockbatch.journal import Journal
-from rockbatch.plan import Plan
-from rockbatch.results import COLUMNS, MORE_COLUMNS, columns
+import rockbatch.batch.groups
+from rockbatch.batch.carrying_out import carry_out
+from rockbatch.batch.digests import study_digests
+from rockbatch.batch.groups import NOTHING_MORE, groups
+from rockbatch.batch.journal import Journal
+from rockbatch.batch.plan import Plan
+from rockbatch.batch.threads import Threads
+from rockbatch.results.columns import COLUMNS, MORE_COLUMNS, columns
 from rockbatch.study import load_study
 from rockbatch.study.suite import ground_motions
 
@@ -148,7 +149,7 @@ def test_groups_take_every_run_once_and_in_order(study, jobs):
 
 def test_a_group_is_closed_when_its_work_is_a_second(study, monkeypatch):
     loaded, runs = plan_of(study)
-    monkeypatch.setattr(rockbatch.groups, "STEPS_OF_A_GROUP", 1.0)
+    monkeypatch.setattr(rockbatch.batch.groups, "STEPS_OF_A_GROUP", 1.0)
     assert [len(group) for group in groups(runs, loaded.numerics, 1)] == [1] * 24
 
 

@@ -13,7 +13,7 @@ from rockbatch.checks import Rule, judge
 from rockbatch.checks.demands import DEMANDS
 from rockbatch.checks.statistics import STATISTICS, quantile
 from rockbatch.errors import InputError
-from rockbatch.structure import YieldingBase
+from rockbatch.pier import YieldingBase
 
 INF = math.inf
 

@@ -15,8 +15,8 @@ import rockbatch as rb
 from rockbatch.checks import load_rules, read_verdicts, write_verdicts
 from rockbatch.checks.reading import CHECK
 from rockbatch.cli import main
-from rockbatch.design import verdicts
 from rockbatch.errors import InputError
+from rockbatch.results.checking import verdicts
 
 CONFIGS = Path(__file__).parent.parent / "configs"
 MARGIN = """

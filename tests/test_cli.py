@@ -101,11 +101,13 @@ def test_a_run_that_is_refused_is_a_row_with_its_reason_and_has_no_history(study
     """One step a sample is beyond the stability of β = 5000: nothing of it is run, not for its picture either."""
     extra = '[numerics]\nsubsteps = 1\n[output]\nhistories = "all"\n'
     study.write_text(STUDY.replace("beta = 50\n", "beta = 5000\n") + extra, encoding="utf-8")
-    import rockbatch.keep
+    import rockbatch.batch.kept_histories
 
-    real, written = rockbatch.keep.histories, []
+    real, written = rockbatch.batch.kept_histories.histories, []
     monkeypatch.setattr(
-        rockbatch.keep, "histories", lambda *given, **more: (written.append(given[5]), real(*given, **more))[1]
+        rockbatch.batch.kept_histories,
+        "histories",
+        lambda *given, **more: (written.append(given[3]), real(*given, **more))[1],
     )
     assert main(["run", str(study), "--out", str(tmp_path / "out")]) == 1
     assert written == ["rigid"]

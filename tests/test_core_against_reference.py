@@ -11,9 +11,9 @@ from reference_solver import Rigid, TwoSprings, reference
 
 import rockbatch as rb
 from rockbatch.motions.motion import Motion
+from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase
 from rockbatch.simulation import run_fixed, run_to_tolerance
 from rockbatch.simulation.runs import LEFT_ALONE
-from rockbatch.structure import ElasticBase, Pier, RigidBase, YieldingBase
 
 SHORT_SINE = pulse("sine", 0.5, dt=0.01, end=3.0)
 SHORT_COSINE = pulse("cosine", 1.0, dt=0.01, end=3.0)

@@ -16,8 +16,8 @@ from rockbatch.core.rigid_base import HISTORY_COLUMNS, rock_on_rigid_base
 from rockbatch.core.springs import static_deflection
 from rockbatch.core.types import BEFORE_EVENT, BOUC_WEN, LEFT, Block, Contact, State
 from rockbatch.motions.motion import Motion
-from rockbatch.simulation import Scene, housner_restitution, run_fixed, springs, written_run
-from rockbatch.structure import ElasticBase, Pier, RigidBase, YieldingBase
+from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase
+from rockbatch.simulation import Run, housner_restitution, run_fixed, springs, written_run
 
 SINE = pulse("sine", 0.5, dt=0.01, end=3.0)
 
@@ -175,7 +175,7 @@ def test_impact_scales_the_landing_velocity_loses_its_energy_and_keeps_the_angul
     base = YieldingBase(50.0, epsilon, kinematics, "guided", eta=3.0)
     vertical = broadband(np.random.default_rng(2), SINE.dt, SINE.npts, 20.0)
     motion = Motion("shaken", SINE.dt, SINE.horizontal, vertical)
-    run, rows = written_run(Scene(FIG5, base, motion), 4, 0.0, 5000)
+    run, rows = written_run(Run(FIG5, base, motion), 4, 0.0, 5000)
     rows = rows[: run.rows]
     m = springs(FIG5, base)
     landings = np.flatnonzero(np.isin(rows[:, -1], (3, 4)))

@@ -13,8 +13,8 @@ from rockbatch.core.roots import hermite, largest_within, turning_point
 from rockbatch.core.two_springs import HISTORY_COLUMNS, rock_on_springs
 from rockbatch.core.types import IMPACT_LEFT, IMPACT_RIGHT, SEPARATION_LEFT, SEPARATION_RIGHT, SURVIVED
 from rockbatch.motions.motion import Motion
-from rockbatch.simulation import Scene, least_substeps, run_fixed, springs, written_run
-from rockbatch.structure import ElasticBase, Pier, RigidBase, YieldingBase
+from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase
+from rockbatch.simulation import Run, least_substeps, run_fixed, springs, written_run
 
 CONTACT_EVENTS = (1, 2, 3, 4)
 COARSE_SINE = pulse("sine", 0.5, dt=0.02, end=3.0)
@@ -98,7 +98,7 @@ def test_several_events_in_one_step_are_taken_in_their_order():
     motion = Motion("coarse", dt, pulse("sine", 1.0, 0.6, dt=dt, end=4.0).horizontal, vertical)
     base = YieldingBase(20.0, 0.3, "finite", "guided", eta=3.0)
     expected = reference(FIG5, base, motion)
-    run, rows = written_run(Scene(FIG5, base, motion), 2, 0.0, 2000, wait=False)
+    run, rows = written_run(Run(FIG5, base, motion), 2, 0.0, 2000, wait=False)
     rows = rows[: run.rows]
     found = rows[np.isin(rows[:, -1], CONTACT_EVENTS)]
     steps = np.floor(found[:, 0] / (dt / 2))
@@ -163,7 +163,7 @@ def bounce() -> Motion:
 def test_both_pivots_landing_at_one_instant_keep_the_pier_upright(kinematics, epsilon):
     """Symmetry: θ stays 0, but for squares of rounding; landings come in pairs; v is the reference's."""
     base = YieldingBase(20.0, epsilon, kinematics, "guided", eta=3.0)
-    run, rows = written_run(Scene(FIG5, base, bounce()), 8, 0.0, 5000, wait=False)
+    run, rows = written_run(Run(FIG5, base, bounce()), 8, 0.0, 5000, wait=False)
     expected = reference(FIG5, base, bounce())
     assert run.status == SURVIVED
     assert run.impacts >= 2
@@ -191,7 +191,7 @@ def test_a_brief_separation_inside_one_large_step_is_seen():
     inside = 0
     for amplitude in np.linspace(0.5003, 0.52, 12):
         motion = steady(0.0, -amplitude * FIG5.gravity, 0.04, 26)  # v overshoots by twice the static change
-        coarse, rows = written_run(Scene(FIG5, base, motion), 1, 0.0, 500)
+        coarse, rows = written_run(Run(FIG5, base, motion), 1, 0.0, 500)
         fine = run_fixed(FIG5, base, motion, 32, 0.0, wait=False)
         if fine.separations == 0:
             continue
@@ -209,7 +209,7 @@ def test_no_event_fires_twice():
         pier, base, motion = hard_case(seed)
         if base.epsilon == 0.0:
             continue
-        run, rows = written_run(Scene(pier, base, motion), 8, 0.5, 400_000)
+        run, rows = written_run(Run(pier, base, motion), 8, 0.5, 400_000)
         rows = rows[: min(run.rows, len(rows))]
         for left in (True, False):
             own = {1: 1, 3: -1, 5: -1} if left else {2: 1, 4: -1, 5: -1}

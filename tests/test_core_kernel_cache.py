@@ -13,7 +13,7 @@ SCRIPT = """
 import numpy as np
 from rockbatch.motions.motion import Motion
 from rockbatch.simulation import run_fixed
-from rockbatch.structure import ElasticBase, Pier
+from rockbatch.pier import ElasticBase, Pier
 motion = Motion("push", 0.01, np.full(50, -3.0))
 print(repr(run_fixed(Pier(0.2, 1.0), ElasticBase(50.0, 0.5), motion, 4, 0.0).theta_max))
 """

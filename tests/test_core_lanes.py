@@ -12,29 +12,29 @@ from rockbatch.core.events import at_rest, signals
 from rockbatch.core.lanes import LANES, watch
 from rockbatch.core.transitions import Supports
 from rockbatch.core.types import BOUC_WEN, ELASTIC, EPP, Contact, State
-from rockbatch.simulation import Scene, Stop, run_all_fixed, springs
-from rockbatch.structure import Pier, YieldingBase
+from rockbatch.pier import Pier, YieldingBase
+from rockbatch.simulation import Run, Stop, run_all_fixed, springs
 
 
 def crowd():
     """Three times as many runs as lanes, of every kind, with records of different length and sampling interval."""
-    scenes = []
+    runs = []
     for seed in range(3 * LANES):
         pier, base, motion = hard_case(seed, npts=60 + 17 * (seed % 11))
-        scenes.append(Scene(pier, base, replace(motion, dt=(0.005, 0.01, 0.004)[seed % 3])))
-    return scenes, [4 + 4 * (seed % 4) for seed in range(3 * LANES)]
+        runs.append(Run(pier, base, replace(motion, dt=(0.005, 0.01, 0.004)[seed % 3])))
+    return runs, [4 + 4 * (seed % 4) for seed in range(3 * LANES)]
 
 
 def test_what_a_run_comes_to_is_the_same_to_the_bit_alone_and_in_any_company():
-    scenes, substeps = crowd()
-    together = run_all_fixed(scenes, substeps, 1.0, Stop())
-    alone = [run_all_fixed([scene], [steps], 1.0, Stop())[0] for scene, steps in zip(scenes, substeps, strict=True)]
-    order = np.random.default_rng(1).permutation(len(scenes))
-    shuffled = run_all_fixed([scenes[i] for i in order], [substeps[i] for i in order], 1.0, Stop())
+    runs, substeps = crowd()
+    together = run_all_fixed(runs, substeps, 1.0, Stop())
+    alone = [run_all_fixed([run], [steps], 1.0, Stop())[0] for run, steps in zip(runs, substeps, strict=True)]
+    order = np.random.default_rng(1).permutation(len(runs))
+    shuffled = run_all_fixed([runs[i] for i in order], [substeps[i] for i in order], 1.0, Stop())
     assert {outcome.status for outcome in alone} >= {"ok", "overturned", "flight"}
     assert sum(outcome.impacts for outcome in alone) > 200
     assert [repr(outcome) for outcome in together] == [repr(outcome) for outcome in alone]
-    assert [repr(shuffled[list(order).index(i)]) for i in range(len(scenes))] == [repr(outcome) for outcome in alone]
+    assert [repr(shuffled[list(order).index(i)]) for i in range(len(runs))] == [repr(outcome) for outcome in alone]
 
 
 CONTACTS = [
@@ -74,13 +74,11 @@ def test_what_the_pass_watches_is_linear_in_z_position_and_velocity_with_the_val
 
 def test_a_lane_that_finishes_early_makes_room_for_the_next_run():
     """Short and long runs mixed: all of them are there, each with its own end."""
-    scenes, _ = crowd()
-    shaken = [
-        replace(scene, motion=replace(scene.motion, horizontal=0.0 * scene.motion.horizontal)) for scene in scenes
-    ]
-    still = [replace(scene, motion=replace(scene.motion, vertical=None)) for scene in shaken]
+    runs, _ = crowd()
+    shaken = [replace(run, motion=replace(run.motion, horizontal=0.0 * run.motion.horizontal)) for run in runs]
+    still = [replace(run, motion=replace(run.motion, vertical=None)) for run in shaken]
     found = run_all_fixed(still, [16] * len(still), 0.5, Stop(), wait=False)
-    for scene, outcome in zip(still, found, strict=True):
-        dt = scene.motion.dt
+    for run, outcome in zip(still, found, strict=True):
+        dt = run.motion.dt
         assert outcome.status == "ok"
-        assert outcome.t_end == pytest.approx((scene.motion.npts - 1 + math.ceil(0.5 / dt - 1e-9)) * dt)
+        assert outcome.t_end == pytest.approx((run.motion.npts - 1 + math.ceil(0.5 / dt - 1e-9)) * dt)

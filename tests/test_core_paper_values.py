@@ -7,8 +7,8 @@ peaks belong to that sampling.
 import pytest
 from core_samples import FIG5, FIG6, TOWER, pulse
 
+from rockbatch.pier import RigidBase, YieldingBase
 from rockbatch.simulation import run_fixed
-from rockbatch.structure import RigidBase, YieldingBase
 
 SINE, COSINE, LONG_SINE = pulse("sine", 0.5), pulse("cosine", 1.0), pulse("sine", 1.5)
 

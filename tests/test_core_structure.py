@@ -8,8 +8,18 @@ from core_samples import FIG5
 
 from rockbatch.errors import InputError
 from rockbatch.motions.motion import Motion
+from rockbatch.pier import (
+    ElasticBase,
+    Pier,
+    RigidBase,
+    YieldingBase,
+    problems,
+    static_deflection,
+    tilt_over_residual,
+    vertical_frequency,
+    yield_deflection,
+)
 from rockbatch.simulation import run_fixed
-from rockbatch.structure import ElasticBase, Pier, RigidBase, YieldingBase, problems
 
 
 @pytest.mark.parametrize(("p", "size"), [(1.0, 7.36), (0.35, 60.1)])
@@ -83,3 +93,21 @@ def test_a_pier_reports_all_its_mistakes_at_once():
         Pier(alpha=11.5, p=-1.0, mu=0.0, gravity=math.nan)
     assert len(caught.value.problems) == 4
     assert "degrees" in str(caught.value)
+
+
+def test_deflections_and_frequency_follow_from_each_other():
+    soft, elastic = YieldingBase(40.0, eta=2.5), ElasticBase(40.0)
+    assert vertical_frequency(FIG5, soft) == 40.0 * FIG5.p
+    assert static_deflection(FIG5, soft) * vertical_frequency(FIG5, soft) ** 2 == pytest.approx(FIG5.gravity, rel=1e-14)
+    assert yield_deflection(FIG5, soft) == pytest.approx(2.5 * static_deflection(FIG5, soft), rel=1e-14)
+    assert yield_deflection(FIG5, elastic) == static_deflection(FIG5, elastic)
+
+
+def test_the_base_tilts_with_the_residual_rotation_less_the_closer_the_pier_is_to_toppling():
+    """Eq. 14; at the least β that carries the pier in rotation, whatever tilt is left topples it."""
+
+    def at(omega_v):
+        return tilt_over_residual(FIG5.gravity, FIG5.height, FIG5.half_width, omega_v)
+
+    assert at(FIG5.least_beta * FIG5.p) == pytest.approx(0.0, abs=1e-12)
+    assert at(2.0 * FIG5.least_beta * FIG5.p) == pytest.approx(0.75, rel=1e-12)

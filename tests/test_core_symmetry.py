@@ -8,8 +8,8 @@ from core_samples import FIG5, broadband, pulse
 
 import rockbatch as rb
 from rockbatch.motions.motion import Motion
+from rockbatch.pier import ElasticBase, RigidBase, YieldingBase
 from rockbatch.simulation import run_fixed
-from rockbatch.structure import ElasticBase, RigidBase, YieldingBase
 
 SINE = pulse("sine", 0.5, dt=0.01, end=3.0)
 BASES = [

@@ -16,9 +16,9 @@ from rockbatch.core.roots import falls
 from rockbatch.core.transitions import Supports, handle
 from rockbatch.core.types import Contact, State
 from rockbatch.motions.motion import Motion
+from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase, least_beta, problems, rocking_frequency
 from rockbatch.simulation import run_fixed, run_to_tolerance, springs
 from rockbatch.simulation.flight import cause_of_flight
-from rockbatch.structure import ElasticBase, Pier, RigidBase, YieldingBase, least_beta, problems, rocking_frequency
 
 RECORDS = Path(os.environ.get("ROCKBATCH_RECORDS", "../shared/motions"))
 

@@ -8,18 +8,19 @@ import sys
 
 import pytest
 
-import rockbatch.cluster
-import rockbatch.engines
-import rockbatch.groups
-from rockbatch.batch import carry_out
+import rockbatch.batch.dask
+import rockbatch.batch.groups
+import rockbatch.batch.threads
+from rockbatch.batch.carrying_out import carry_out
+from rockbatch.batch.dask import Dask, Records, simulate
+from rockbatch.batch.digests import program
+from rockbatch.batch.groups import NOTHING_MORE, outcomes_of
+from rockbatch.batch.journal import Journal
+from rockbatch.batch.plan import Plan, PlannedRun
+from rockbatch.batch.threads import Threads
 from rockbatch.cli import main
-from rockbatch.cluster import Dask, Records, simulate
-from rockbatch.engines import Threads
 from rockbatch.errors import InputError
-from rockbatch.groups import NOTHING_MORE, outcomes_of, program
-from rockbatch.journal import Journal
-from rockbatch.plan import Plan, Run
-from rockbatch.results import columns
+from rockbatch.results.columns import columns
 from rockbatch.study import load_study
 from rockbatch.study.suite import ground_motions
 
@@ -102,7 +103,7 @@ def test_threads_yield_every_run_once(study, runs, jobs):
 
 @pytest.mark.parametrize("error", [KeyboardInterrupt, ValueError])
 def test_after_ctrl_c_or_an_error_come_the_groups_that_are_finished(study, runs, monkeypatch, error):
-    monkeypatch.setattr(rockbatch.engines, "groups", lambda runs, *_: iter([range(i, i + 1) for i in range(6)]))
+    monkeypatch.setattr(rockbatch.batch.threads, "groups", lambda runs, *_: iter([range(i, i + 1) for i in range(6)]))
     handed = []
 
     def third_interrupts(*asked):
@@ -111,7 +112,7 @@ def test_after_ctrl_c_or_an_error_come_the_groups_that_are_finished(study, runs,
             raise error
         return outcomes_of(*asked)
 
-    monkeypatch.setattr(rockbatch.engines, "outcomes_of", third_interrupts)
+    monkeypatch.setattr(rockbatch.batch.threads, "outcomes_of", third_interrupts)
     found = []
     with pytest.raises(error):  # noqa: PT012
         for group in Threads(1).outcomes(runs, study.numerics):
@@ -122,7 +123,7 @@ def test_after_ctrl_c_or_an_error_come_the_groups_that_are_finished(study, runs,
 
 def test_threads_load_nothing_of_a_cluster():
     code = (
-        "import sys, rockbatch.batch, rockbatch.commands.run, rockbatch.cluster\n"
+        "import sys, rockbatch.batch.carrying_out, rockbatch.commands.run, rockbatch.batch.dask\n"
         "print([name for name in ('dask', 'distributed') if name in sys.modules])"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
@@ -134,7 +135,7 @@ def test_threads_load_nothing_of_a_cluster():
 
 def test_a_cluster_with_a_worker_killed_in_the_middle_comes_to_the_same_bytes(tmp_path, study, runs, monkeypatch):
     distributed = pytest.importorskip("distributed")
-    monkeypatch.setattr(rockbatch.groups, "LEAST_GROUP", 4)
+    monkeypatch.setattr(rockbatch.batch.groups, "LEAST_GROUP", 4)
     done, killed = [], []
     with distributed.LocalCluster(
         n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None, silence_logs=50
@@ -148,7 +149,7 @@ def test_a_cluster_with_a_worker_killed_in_the_middle_comes_to_the_same_bytes(tm
                 os.kill(workers[0].pid, signal.SIGKILL)
 
         with monkeypatch.context() as patch:
-            patch.setattr(rockbatch.cluster, "MOST_RUNS_OF_A_TASK", 4)
+            patch.setattr(rockbatch.batch.dask, "MOST_RUNS_OF_A_TASK", 4)
             found = table(tmp_path, study, runs, Dask(cluster.scheduler_address), kill_one)
         assert len(killed) == 1
         assert sum(done) == RUNS // 2  # the others are mirror images
@@ -161,8 +162,8 @@ def test_runs_at_which_workers_die_end_the_batch_and_what_is_finished_is_kept(tm
     distributed = pytest.importorskip("distributed")
     from dask import config
 
-    monkeypatch.setattr(rockbatch.groups, "LEAST_GROUP", 4)
-    monkeypatch.setattr(rockbatch.cluster, "MOST_RUNS_OF_A_TASK", 4)
+    monkeypatch.setattr(rockbatch.batch.groups, "LEAST_GROUP", 4)
+    monkeypatch.setattr(rockbatch.batch.dask, "MOST_RUNS_OF_A_TASK", 4)
     with (
         config.set({"distributed.scheduler.allowed-failures": 0}),
         distributed.LocalCluster(
@@ -186,7 +187,7 @@ def test_the_command_line_carries_out_a_study_on_processes_of_this_machine(file,
 
 def test_a_scheduler_that_does_not_answer_is_told(file, tmp_path, capsys, monkeypatch):
     pytest.importorskip("distributed")
-    monkeypatch.setattr(rockbatch.cluster, "PATIENCE_S", 0.2)
+    monkeypatch.setattr(rockbatch.batch.dask, "PATIENCE_S", 0.2)
     out = tmp_path / "out"
     assert main(["run", str(file), "--out", str(out), "--scheduler", "tcp://127.0.0.1:9"]) == 2
     assert "scheduler tcp://127.0.0.1:9: no workers" in capsys.readouterr().err
@@ -223,7 +224,7 @@ def test_each_record_is_sent_once_whatever_its_scales_polarities_and_cases(study
 def test_a_motion_that_is_no_record_is_sent_with_each_group_that_needs_it(study, runs):
     client = Notebook()
     records = Records(client)
-    made = Run(runs[5].motion, "+", 0.5, runs[5].case)
+    made = PlannedRun(runs[5].motion, "+", 0.5, runs[5].case)
     for _ in range(2):
         records.submit([made, made], study.numerics, study.output)
     assert [function is simulate for function, _ in client.tasks] == [False, True, False, True]
@@ -231,7 +232,7 @@ def test_a_motion_that_is_no_record_is_sent_with_each_group_that_needs_it(study,
 
 def test_a_worker_rebuilds_the_very_runs(study, runs):
     """Also those whose motion was made elsewhere: it is then the record."""
-    ours = [*runs[:12], *runs[-12:], Run(runs[5].motion, "-", 0.5, runs[5].case)]
+    ours = [*runs[:12], *runs[-12:], PlannedRun(runs[5].motion, "-", 0.5, runs[5].case)]
     client = Notebook()
     Records(client).submit(ours, study.numerics, study.output)
     (_, (futures, members, *rest)) = client.tasks[-1]

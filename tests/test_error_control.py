@@ -10,9 +10,10 @@ from core_samples import FIG5, TOWER, broadband, hard_case, pulse
 from rockbatch import simulation
 from rockbatch.core.outcome import WINDOWS
 from rockbatch.motions.motion import Motion
-from rockbatch.outcome import Outcome
+from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase
+from rockbatch.results.outcome import Outcome
 from rockbatch.simulation import (
-    Scene,
+    Run,
     first_substeps,
     least_substeps,
     run_all_to_tolerance,
@@ -21,7 +22,6 @@ from rockbatch.simulation import (
     settling,
 )
 from rockbatch.simulation.runs import LEFT_ALONE, Trial
-from rockbatch.structure import ElasticBase, Pier, RigidBase, YieldingBase
 
 SINE = pulse("sine", 0.5, dt=0.01, end=3.0)
 
@@ -33,7 +33,7 @@ def scripted(monkeypatch, *outcomes):
     """
     asked = []
 
-    def run(scenes, substeps, quiet_s, stop):
+    def run(runs, substeps, quiet_s, stop):
         (steps,) = substeps
         asked.append(steps)
         told = {"reason": "", "t_max": 1.0, "t_flight": None, "t_end": 5.0, "substeps": steps}
@@ -176,7 +176,7 @@ def test_a_run_of_too_many_steps_is_not_begun():
 def test_runs_that_are_stopped_have_no_outcome(base):
     stop = simulation.Stop()
     stop.set()
-    assert run_all_to_tolerance([Scene(FIG5, base, SINE)] * 3, 1e-4, 2.0, stop) == [None] * 3
+    assert run_all_to_tolerance([Run(FIG5, base, SINE)] * 3, 1e-4, 2.0, stop) == [None] * 3
 
 
 @pytest.mark.parametrize("base", [RigidBase(restitution=1.0), ElasticBase(20.0)], ids=["rigid", "elastic"])
@@ -187,7 +187,7 @@ def test_a_run_under_way_is_stopped_too(base):
     timer = threading.Timer(0.2, stop.set)
     timer.start()
     weak = pulse("sine", 0.5, 0.5 if isinstance(base, RigidBase) else 0.02, dt=0.01, end=3.0)
-    assert simulation.run_all_fixed([Scene(FIG5, base, weak)], [1], 4e5, stop) == [None]
+    assert simulation.run_all_fixed([Run(FIG5, base, weak)], [1], 4e5, stop) == [None]
     timer.join()
 
 

@@ -17,17 +17,17 @@ from rockbatch.analysis.ida import Bracket, Capacity, bisect, capacity
 from rockbatch.analysis.limit_states import EXCEEDED, LEFT_OUT, UNDECIDED, WITHSTOOD, states
 from rockbatch.analysis.lognormal import Capacities, fit
 from rockbatch.analysis.waves import Waves
-from rockbatch.batch import digests
+from rockbatch.batch.digests import digests
+from rockbatch.batch.journal import Journal
+from rockbatch.batch.threads import Threads
 from rockbatch.checks import Rule
 from rockbatch.cli import main
 from rockbatch.commands.fragility import table
-from rockbatch.engines import Threads
 from rockbatch.errors import InputError
-from rockbatch.journal import Journal
 from rockbatch.motions.measures import pga, pgd, pgv
 from rockbatch.motions.spectrum import spectral_acceleration
-from rockbatch.report.fragility import section
-from rockbatch.results import columns
+from rockbatch.report.sections.fragility import section
+from rockbatch.results.columns import columns
 from rockbatch.study import load_study
 from rockbatch.study.fragility import read_fragility
 from rockbatch.study.suite import ground_motions

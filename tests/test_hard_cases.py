@@ -19,8 +19,8 @@ from rockbatch.core.rigid_base import HISTORY_COLUMNS, rock_on_rigid_base
 from rockbatch.core.types import Block
 from rockbatch.errors import InputError
 from rockbatch.motions.motion import Motion
-from rockbatch.simulation import Scene, run_fixed, run_to_tolerance, written_run
-from rockbatch.structure import ElasticBase, Pier, RigidBase, YieldingBase, problems
+from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase, problems
+from rockbatch.simulation import Run, run_fixed, run_to_tolerance, written_run
 from rockbatch.study import load_study
 from rockbatch.units import GRAVITY
 
@@ -321,13 +321,13 @@ def test_a_block_that_lands_without_velocity_rests_there():
 
     def speed_in_the_middle(pull: float) -> float:
         half = Motion("half", dt, motion(pull).horizontal[: middle + 1])
-        run, rows = written_run(Scene(FIG5, RigidBase(), half), 8, 0.0, 5000, wait=False)
+        run, rows = written_run(Run(FIG5, RigidBase(), half), 8, 0.0, 5000, wait=False)
         return float(rows[run.rows - 1, 2])
 
     pull = brentq(speed_in_the_middle, 0.1, 1.5, xtol=1e-15, rtol=1e-15)
     lift_off = rb.simulate(FIG5, RigidBase(), motion(pull), substeps=8, quiet_s=0.0, wait=False).events.t.iloc[0]
     for nudge in (-1e-9, -1e-12, 0.0, 1e-12, 1e-9):
-        run, _ = written_run(Scene(FIG5, RigidBase(), motion(pull * (1 + nudge))), 8, 1.0, 0)
+        run, _ = written_run(Run(FIG5, RigidBase(), motion(pull * (1 + nudge))), 8, 1.0, 0)
         assert (run.impacts >= 1, run.lift_offs) == (True, 1)
         assert run.t_rest == pytest.approx(2 * middle * dt - lift_off, abs=1e-4 + 5.0 * abs(nudge) ** (1 / 3))
         assert run.theta_max > 1e-3 * FIG5.alpha

@@ -5,9 +5,9 @@ import tracemalloc
 import numpy as np
 import pytest
 
+from rockbatch.batch.journal import Journal
 from rockbatch.errors import InputError
 from rockbatch.files import UNFINISHED, only_writer
-from rockbatch.journal import Journal
 
 COLUMNS = ("record", "theta", "reason")
 DIGEST = {"cases": "5f1c", "motions": "09ab"}

@@ -13,8 +13,8 @@ import pytest
 from scipy.optimize import brentq
 
 import rockbatch as rb
+from rockbatch.pier import Pier, RigidBase
 from rockbatch.simulation import run_fixed
-from rockbatch.structure import Pier, RigidBase
 
 W = 5.0
 E = 0.9

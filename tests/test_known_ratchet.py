@@ -13,8 +13,8 @@ from core_samples import FIG5
 from scipy.integrate import quad
 
 from rockbatch.motions.motion import Motion
+from rockbatch.pier import YieldingBase
 from rockbatch.simulation import run_fixed
-from rockbatch.structure import YieldingBase
 
 BETA = 50.0
 SWING = 0.3

@@ -25,8 +25,8 @@ from rockbatch.core.types import (
     SPRING_RIGHT,
 )
 from rockbatch.motions.motion import Motion
-from rockbatch.simulation import Scene, written_run
-from rockbatch.structure import ElasticBase, Pier, RigidBase, YieldingBase
+from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase
+from rockbatch.simulation import Run, written_run
 
 DT = 0.02
 HELD = -2  # column of a history on springs
@@ -51,7 +51,7 @@ def results() -> dict[str, Any]:
     """What the core returns, the kinds of events and the last row of the history of every case; whether compiled."""
     found: dict[str, Any] = {"compiled": hasattr(static_state, "py_func")}
     for name, (pier, base, motion) in CASES.items():
-        run, history = written_run(Scene(pier, base, motion), 8, 0.0, 5000)
+        run, history = written_run(Run(pier, base, motion), 8, 0.0, 5000)
         rows = history[: run.rows]
         found[name] = {
             "run": run._asdict(),

@@ -10,14 +10,14 @@ import pytest
 
 import rockbatch as rb
 from rockbatch.analysis.overturning_map import SAMPLES, Maps, columns, ending
-from rockbatch.batch import row_of
-from rockbatch.engines import Threads
-from rockbatch.groups import NOTHING_MORE
+from rockbatch.batch.carrying_out import row_of
+from rockbatch.batch.groups import NOTHING_MORE
+from rockbatch.batch.plan import Made, PlannedRun
+from rockbatch.batch.threads import Threads
 from rockbatch.motions.pulses import pulse_length
-from rockbatch.plan import Made, Run
-from rockbatch.report.overturning_map import outcome_at, strips
-from rockbatch.results import as_table
-from rockbatch.structure import Pier, RigidBase
+from rockbatch.pier import Pier, RigidBase
+from rockbatch.report.drawing.overturning_map import outcome_at, strips
+from rockbatch.results.columns import as_table
 from rockbatch.study import Case, Numerics, Study
 from rockbatch.study.spec import MotionSpec
 from rockbatch.study.spectrum import MapSpec
@@ -65,7 +65,7 @@ def simulated(spec, points):
             spec.shape, name="pulse", amplitude=amplitude * PIER.gravity * math.tan(PIER.alpha), period=period,
             dt=period / SAMPLES, duration=pulse_length(spec.shape, period, spec.gamma), gamma=spec.gamma, nu=spec.nu,
         )  # fmt: skip
-        return Run(motion, "+", 1.0, CASE)
+        return PlannedRun(motion, "+", 1.0, CASE)
 
     found = outcomes(Made(len(points), run))
     return [ending(found[i].status, found[i].impacts, CASE.base).outcome for i in range(len(points))]

@@ -8,17 +8,17 @@ import pandas as pd
 import pytest
 
 import rockbatch as rb
-from rockbatch.batch import carry_out, row_of, to_simulate
+from rockbatch.batch.carrying_out import carry_out, row_of, to_simulate
+from rockbatch.batch.groups import NOTHING_MORE
+from rockbatch.batch.journal import Journal
+from rockbatch.batch.plan import Plan
+from rockbatch.batch.threads import Threads
 from rockbatch.checks.suite import simulated
 from rockbatch.cli import main
-from rockbatch.engines import Threads
-from rockbatch.groups import NOTHING_MORE
-from rockbatch.journal import Journal
-from rockbatch.plan import Plan
-from rockbatch.results import columns
+from rockbatch.pier import ElasticBase, Pier, YieldingBase
+from rockbatch.results.columns import columns
+from rockbatch.results.suite_statistics import suite
 from rockbatch.simulation import run_to_tolerance
-from rockbatch.statistics import suite
-from rockbatch.structure import ElasticBase, Pier, YieldingBase
 from rockbatch.study import load_study
 from rockbatch.study.suite import ground_motions
 

@@ -19,7 +19,7 @@ from rockbatch.motions.orientation import Orientation
 from rockbatch.motions.pairing import to_motions
 from rockbatch.motions.plausible import ALTERNATION, UNEQUAL, alternating
 from rockbatch.motions.stations import by_station
-from rockbatch.results import describe
+from rockbatch.results.run_json import describe
 from rockbatch.study import load_study
 from rockbatch.study.suite import ground_motions
 

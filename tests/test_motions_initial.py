@@ -9,7 +9,7 @@ from agency_files import geonet_component
 from fixed_column_files import NPTS, A, cosmos_header, cosmos_series, csmip_channel, read
 from motion_files import RECORDS, needs_records
 
-from rockbatch.batch import digests
+from rockbatch.batch.digests import digests
 from rockbatch.motions import Motion, measures, read_motions
 from rockbatch.motions.component import Component
 from rockbatch.motions.formats import RecordFile, read_record

@@ -11,7 +11,7 @@ import reference_solver
 from core_samples import broadband
 
 from rockbatch.motions import Motion, pulse
-from rockbatch.structure import ElasticBase, Pier, RigidBase, YieldingBase
+from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase
 
 BENCHMARKS = Path(__file__).parents[1] / "benchmarks"
 PIER = Pier(alpha=0.20, p=1.0)

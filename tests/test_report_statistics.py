@@ -9,7 +9,7 @@ from report_page import Page
 from report_samples import FIG7, write_results
 
 from rockbatch.report import write_report
-from rockbatch.statistics import suite
+from rockbatch.results.suite_statistics import suite
 
 
 def test_mean_median_and_percentiles_are_those_of_the_magnitudes():

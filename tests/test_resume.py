@@ -12,8 +12,8 @@ import time
 
 import pytest
 
-import rockbatch.engines
-import rockbatch.groups
+import rockbatch.batch.groups
+import rockbatch.batch.threads
 from rockbatch.cli import main
 from rockbatch.files import only_writer
 
@@ -60,8 +60,8 @@ unix = pytest.mark.skipif(not hasattr(os, "fork"), reason="processes are forked,
 @pytest.fixture(autouse=True)
 def small_groups(monkeypatch):
     """Groups of 10 runs, that many may be finished or under way."""
-    monkeypatch.setattr(rockbatch.groups, "LEAST_GROUP", 10)
-    monkeypatch.setattr(rockbatch.groups.groups, "__defaults__", (10,))
+    monkeypatch.setattr(rockbatch.batch.groups, "LEAST_GROUP", 10)
+    monkeypatch.setattr(rockbatch.batch.groups.groups, "__defaults__", (10,))
 
 
 @pytest.fixture
@@ -141,8 +141,8 @@ def test_killed_at_random_instants_it_goes_on_and_ends_with_the_same_bytes(study
 
 def slowed_down(monkeypatch, seconds):
     """Every group of runs takes so much longer."""
-    real = rockbatch.engines.outcomes_of
-    monkeypatch.setattr(rockbatch.engines, "outcomes_of", lambda *asked: (time.sleep(seconds), real(*asked))[1])
+    real = rockbatch.batch.threads.outcomes_of
+    monkeypatch.setattr(rockbatch.batch.threads, "outcomes_of", lambda *asked: (time.sleep(seconds), real(*asked))[1])
 
 
 @unix
@@ -167,7 +167,7 @@ def test_after_ctrl_c_the_same_command_goes_on(study, tmp_path, undisturbed, cap
 
 
 def test_an_interrupt_says_what_is_kept_and_how_to_go_on(study, tmp_path, monkeypatch, capsys):
-    real, groups = rockbatch.engines.outcomes_of, []
+    real, groups = rockbatch.batch.threads.outcomes_of, []
 
     def interrupted(runs, *arguments):
         groups.append(runs)
@@ -175,7 +175,7 @@ def test_an_interrupt_says_what_is_kept_and_how_to_go_on(study, tmp_path, monkey
             raise KeyboardInterrupt
         return real(runs, *arguments)
 
-    monkeypatch.setattr(rockbatch.engines, "outcomes_of", interrupted)
+    monkeypatch.setattr(rockbatch.batch.threads, "outcomes_of", interrupted)
     out = tmp_path / "out"
     assert main(["run", str(study), "--out", str(out), "--jobs", "1"]) == 130
     told = capsys.readouterr().err
@@ -228,7 +228,7 @@ def test_in_a_finished_folder_nothing_is_left_to_run_and_the_rest_is_made_again(
     assert main(command) == 0
     cost = json.loads((out / "run.json").read_text())["wall_s"]
     with monkeypatch.context() as patch:  # killed on its way: it stays finished
-        patch.setattr("rockbatch.results.write_info", stopped)
+        patch.setattr("rockbatch.batch.finishing.write_info", stopped)
         assert main(command) == 130
     write(study, title="Renamed")
     study.write_text(study.read_text().replace('histories = "none"', 'histories = "worst"'))
@@ -283,7 +283,7 @@ def test_a_changed_study_is_not_mixed_in_and_replaces_finished_results_only_when
 
 def test_results_of_other_peaks_never_stand_beside_new_ones(study, tmp_path, monkeypatch):
     """Killed between the table and what belongs to it, there is the table alone, and its journal."""
-    import rockbatch.commands.ending as ending
+    import rockbatch.batch.finishing as finishing
 
     out = tmp_path / "out"
     command = ["run", str(study), "--out", str(out)]
@@ -292,10 +292,10 @@ def test_results_of_other_peaks_never_stand_beside_new_ones(study, tmp_path, mon
         (out / name).touch()
     write(study, last_scale=1.3)
     with monkeypatch.context() as patch:
-        patch.setattr("rockbatch.results.write_info", stopped)
+        patch.setattr("rockbatch.batch.finishing.write_info", stopped)
         assert main(command) == 130
     assert sorted(file.name for file in out.iterdir() if file.suffix != ".lock") == ["peaks.csv", "peaks.csv.part"]
-    assert ending.cost_of_finished(out, {}) is None
+    assert finishing.cost_of_finished(out, {}) is None
     assert main(command) == 0
     assert json.loads((out / "run.json").read_text())["kept"] == SIMULATED
 

@@ -10,13 +10,13 @@ import pytest
 from rockbatch.analysis.sampled import Point, Points, Suite, low_base_high
 from rockbatch.analysis.sensitivity import answers, counted_as, tornado, values_of
 from rockbatch.analysis.sobol import design, indices
+from rockbatch.batch.threads import Threads
 from rockbatch.cli import main
-from rockbatch.engines import Threads
 from rockbatch.errors import InputError
 from rockbatch.motions import Motion
-from rockbatch.report.analyses import sections
+from rockbatch.pier import Pier, RigidBase, YieldingBase
+from rockbatch.report.sections.analyses import sections
 from rockbatch.simulation import housner_restitution, run_to_tolerance
-from rockbatch.structure import Pier, RigidBase, YieldingBase
 from rockbatch.study import load_study
 from rockbatch.study.sensitivity import Input, read_sensitivity
 from rockbatch.study.suite import ground_motions

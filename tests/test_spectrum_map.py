@@ -11,12 +11,12 @@ from test_known_overturning import HALF_SINE, ONE_SINE, SLENDER, E, energy_after
 
 from rockbatch.analysis.map_search import End, Search, regions
 from rockbatch.analysis.overturning_map import OUTRIGHT, SAFE, SAMPLES, UNDECIDED, WITH_IMPACT, Maps, ending
-from rockbatch.batch import row_of
+from rockbatch.batch.carrying_out import row_of
+from rockbatch.batch.groups import NOTHING_MORE
+from rockbatch.batch.threads import Threads
 from rockbatch.cli import main
-from rockbatch.engines import Threads
-from rockbatch.groups import NOTHING_MORE
-from rockbatch.results import as_table
-from rockbatch.structure import ElasticBase, Pier, RigidBase
+from rockbatch.pier import ElasticBase, Pier, RigidBase
+from rockbatch.results.columns import as_table
 from rockbatch.study import Case, Numerics, Study
 from rockbatch.study.spec import MotionSpec
 from rockbatch.study.spectrum import MapSpec

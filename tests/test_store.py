@@ -12,17 +12,18 @@ import pint
 import pytest
 
 import rockbatch as rb
-from rockbatch import hdf5
-from rockbatch.batch import carry_out
-from rockbatch.engines import Threads
-from rockbatch.hdf5 import FORMAT, UNITS, Responses, write
-from rockbatch.histories import histories, simulate
-from rockbatch.journal import Journal
-from rockbatch.keep import keep_histories, kept, worst
-from rockbatch.plan import Plan
-from rockbatch.results import TERMS, columns, describe, write_info
-from rockbatch.saved import read_saved
-from rockbatch.simulation import run_to_tolerance
+from rockbatch.batch.carrying_out import carry_out
+from rockbatch.batch.journal import Journal
+from rockbatch.batch.kept_histories import keep_histories, kept, worst
+from rockbatch.batch.plan import Plan
+from rockbatch.batch.threads import Threads
+from rockbatch.results import histories_file
+from rockbatch.results.columns import TERMS, columns
+from rockbatch.results.histories_file import FORMAT, UNITS, Responses, write
+from rockbatch.results.reading import read_saved
+from rockbatch.results.run_json import describe, write_info
+from rockbatch.simulation import Run, run_to_tolerance
+from rockbatch.simulation.histories import histories, simulate
 from rockbatch.study.suite import ground_motions
 
 STUDY = """
@@ -195,7 +196,7 @@ def test_the_history_of_an_overturned_pier_ends_where_it_fell(tmp_path):
     """On its side, at π/2; not at the sample before."""
     strong = rb.pulse("sine", name="strong", amplitude=3 * 9.81, period=2.0, dt=0.05, duration=10.0)
     outcome = run_to_tolerance(PIER, rb.RigidBase(), strong, 1e-4)
-    response = histories(PIER, rb.RigidBase(), strong, outcome, 2.0, "rigid", {})
+    response = histories(Run(PIER, rb.RigidBase(), strong), outcome, 2.0, "rigid", {})
     assert response.status == "overturned"
     assert response.t[-1] == outcome.t_end
     assert abs(response.theta[-2]) < outcome.theta_max <= abs(response.theta[-1])
@@ -298,7 +299,7 @@ def test_a_full_disk_is_told_before_it_is_written_to(tmp_path, monkeypatch):
     """HDF5 itself would print a page of errors and may crash at exit."""
     stored(tmp_path, at_rest())
     earlier = (tmp_path / "histories.h5").read_bytes()
-    monkeypatch.setattr(hdf5, "disk_usage", lambda folder: SimpleNamespace(free=3e6))
+    monkeypatch.setattr(histories_file, "disk_usage", lambda folder: SimpleNamespace(free=3e6))
     with pytest.raises(rb.InputError, match="the disk is full, 3 MB are left; make room"):
         stored(tmp_path, at_rest())
     assert [file.name for file in tmp_path.iterdir()] == ["histories.h5"]
@@ -505,8 +506,8 @@ def test_a_study_that_asks_for_no_histories_never_loads_hdf5(tmp_path):
     carried_out(tmp_path, STUDY.replace('histories = "all"', 'histories = "none"'))
     run = f"""
 import rockbatch as rb
-from rockbatch.journal import Journal
-from rockbatch.keep import keep_histories
+from rockbatch.batch.journal import Journal
+from rockbatch.batch.kept_histories import keep_histories
 study = rb.load_study({str(tmp_path / "study.toml")!r})
 rb.run(study)
 results = rb.open_results({str(tmp_path)!r})

@@ -13,7 +13,7 @@ from rockbatch.errors import InputError
 from rockbatch.motions.baseline import Offset
 from rockbatch.motions.scaling import Target
 from rockbatch.motions.selection import Selection
-from rockbatch.structure import ElasticBase, Pier, RigidBase, YieldingBase
+from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase
 from rockbatch.study import FemaSpec, Numerics, Output, PulseSpec, Reference, Study, load_study
 from rockbatch.study.cases import BASE_KEYS, CASE
 from rockbatch.study.cases import PIER as PIER_KEYS

@@ -6,12 +6,12 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rockbatch.checks import Verdict
-from rockbatch.report import panels, statistics, summary, verdicts
 from rockbatch.report.document import Section, document, paragraphs
 from rockbatch.report.finished import Finished, as_dicts, worst_first
 from rockbatch.report.labels import quantity, symbol
 from rockbatch.report.markup import Markup, join, tag
-from rockbatch.report.peaks import outcome
+from rockbatch.report.sections import peak_rotations, statistics, summary, verdicts
+from rockbatch.report.sections.peaks import outcome
 from rockbatch.report.table import MOST_ROWS, THETA, THETA_FORMAT, Head, sub, table, told_apart
 from rockbatch.study import PIER_KEYS
 
@@ -149,7 +149,7 @@ def _figures(named: Finished, matched: Matched) -> Markup:
         "; lines: rigid base, B dashed" if lines else "",
         "; the worse direction of each motion" if matched.runs[0]["polarity"].nunique() > 1 else "", ".",
     ]  # fmt: skip
-    return panels.figures(both, caption, side="side")
+    return peak_rotations.figures(both, caption, side="side")
 
 
 def _pairs(matched: Matched) -> Markup:

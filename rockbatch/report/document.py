@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from importlib.resources import files
 from typing import NamedTuple
 
+from rockbatch.report.drawing.svg import markers
 from rockbatch.report.markup import Markup, join, tag
-from rockbatch.report.svg import markers
 
 
 class Section(NamedTuple):

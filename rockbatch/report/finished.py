@@ -11,7 +11,7 @@ from rockbatch.checks.suite import simulated
 from rockbatch.errors import InputError
 from rockbatch.report.labels import Key, Series, named, quantity
 from rockbatch.report.markup import number
-from rockbatch.saved import Saved, read_saved
+from rockbatch.results.reading import Saved, read_saved
 from rockbatch.study import PIER_KEYS
 
 if TYPE_CHECKING:

@@ -4,24 +4,24 @@ import shlex
 from collections.abc import Sequence
 
 from rockbatch.checks import Verdict
-from rockbatch.report import (
+from rockbatch.report.document import Section, document, figure, paragraphs
+from rockbatch.report.finished import Finished
+from rockbatch.report.markup import Markup, join, number, tag
+from rockbatch.report.sections import (
     accuracy,
     analyses,
     histories,
     inputs,
-    panels,
+    peak_rotations,
     peaks,
     spectra,
     statistics,
     summary,
     verdicts,
 )
-from rockbatch.report.document import Section, document, figure, paragraphs
-from rockbatch.report.finished import Finished
-from rockbatch.report.markup import Markup, join, number, tag
-from rockbatch.report.summary import counted
+from rockbatch.report.sections.summary import counted
 from rockbatch.report.table import THETA
-from rockbatch.response import Response
+from rockbatch.results.response import Response
 
 
 def page(
@@ -64,7 +64,7 @@ def _figures(finished: Finished) -> Markup:
         "; lines: rigid base" if any(series.rigid for series in finished.series) else "",
         "; open markers and dashed lines: horizontal component reversed" if finished.both_directions else "", ".",
     ]  # fmt: skip
-    drawn = panels.figures(finished, caption)
+    drawn = peak_rotations.figures(finished, caption)
     flew = ((runs["status"] == "ok") & runs["flight_s"].notna()).any()
     legend = tag("sup", "f"), " both pivots left the ground on the way; the pier was guided down."
     return join(drawn, tag("p", *legend, class_="legend") if flew else "")

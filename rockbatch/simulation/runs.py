@@ -23,10 +23,18 @@ from rockbatch.core.types import (
     SpringRun,
 )
 from rockbatch.motions.motion import Motion, Samples
-from rockbatch.outcome import Outcome
+from rockbatch.pier import (
+    Base,
+    Pier,
+    RigidBase,
+    YieldingBase,
+    tilt_over_residual,
+    vertical_frequency,
+    yield_deflection,
+)
+from rockbatch.results.outcome import Outcome
 from rockbatch.simulation.flight import cause_of_flight
 from rockbatch.simulation.models import block, first_substeps, ground_of, least_substeps, patience, readings, springs
-from rockbatch.structure import Base, Pier, RigidBase, YieldingBase
 
 MOST_STEPS = 1e8
 """Steps that a run may take to settle, about a quarter of a minute of work."""
@@ -55,7 +63,7 @@ _LATE_FLIGHT = "flew at {t:.2f} s, when nothing could exceed the peak any more; 
 
 
 @dataclass(frozen=True)
-class Scene:
+class Run:
     """What is simulated: a pier on a base under a motion."""
 
     pier: Pier
@@ -92,9 +100,9 @@ def _quiet_samples(quiet_s: float, dt: float) -> int:
     return math.ceil(quiet_s / dt - 1e-9)
 
 
-def _line(scene: Scene, substeps: int, quiet_s: float, first_row: int, wait: bool) -> tuple[float, ...]:
+def _line(run: Run, substeps: int, quiet_s: float, first_row: int, wait: bool) -> tuple[float, ...]:
     """A run as the core takes it: numbers only. Its motion begins at ``first_row`` of the ground."""
-    pier, base, motion = scene.pier, scene.base, scene.motion
+    pier, base, motion = run.pier, run.base, run.motion
     dt = float(motion.dt)
     timing = (dt, substeps, _quiet_samples(quiet_s, dt), first_row, motion.npts, patience(pier, dt) if wait else 0)
     if isinstance(base, RigidBase):
@@ -103,7 +111,7 @@ def _line(scene: Scene, substeps: int, quiet_s: float, first_row: int, wait: boo
 
 
 def written_run(
-    scene: Scene,
+    run: Run,
     substeps: int,
     quiet_s: float,
     rows: int,
@@ -112,12 +120,12 @@ def written_run(
     wait: bool = True,
 ) -> tuple[SpringRun | RigidRun, Samples]:
     """One run, and its history of at most ``rows`` rows; with ``every_step`` also between samples."""
-    lines, ground, stop = np.array([_line(scene, substeps, quiet_s, 0, wait)]), ground_of(scene.motion), Stop().flag
-    if isinstance(scene.base, RigidBase):
+    lines, ground, stop = np.array([_line(run, substeps, quiet_s, 0, wait)]), ground_of(run.motion), Stop().flag
+    if isinstance(run.base, RigidBase):
         history = np.empty((rows, rigid_base.HISTORY_COLUMNS))
         result = rigid_base.rock_one_by_one(lines, ground, stop, locate, every_step, history)[0]
         return rigid_base.rigid_run(result), history
-    m = springs(scene.pier, scene.base)
+    m = springs(run.pier, run.base)
     history = np.empty((rows, two_springs.HISTORY_COLUMNS))
     result = two_springs.rock_side_by_side(m.exponent, m.finite, lines, ground, stop, locate, every_step, history)[0]
     return two_springs.spring_run(result), history
@@ -127,32 +135,30 @@ def run_fixed(
     pier: Pier, base: Base, motion: Motion, substeps: int, quiet_s: float = 2.0, locate: bool = True, wait: bool = True
 ) -> Outcome:
     """Run with ``substeps`` steps per sample, without an error estimate; see :func:`run_all_fixed`."""
-    outcome = run_all_fixed([Scene(pier, base, motion)], [substeps], quiet_s, Stop(), locate, wait)[0]
+    outcome = run_all_fixed([Run(pier, base, motion)], [substeps], quiet_s, Stop(), locate, wait)[0]
     assert outcome is not None
     return outcome
 
 
 def run_all_fixed(
-    scenes: Sequence[Scene],
+    runs: Sequence[Run],
     substeps: Sequence[int],
     quiet_s: float,
     stop: Stop,
     locate: bool = True,
     wait: bool = True,
 ) -> list[Outcome | None]:
-    """Runs with given steps per sample, side by side, in the order of ``scenes``; ``None`` for those that were stopped.
+    """Runs with given steps per sample, side by side, in the order of ``runs``; ``None`` for those that were stopped.
 
     What a run comes to does not depend on those beside it. With ``locate=False`` events take place at the end of their
     step: first order, for comparison only. With ``wait=False`` a run ends ``quiet_s`` after its record, whatever the
     pier then does. A step beyond the method's stability is not run; the outcome says how many it takes.
     """
-    return [
-        None if trial is None else trial.outcome for trial in try_all(scenes, substeps, quiet_s, stop, locate, wait)
-    ]
+    return [None if trial is None else trial.outcome for trial in try_all(runs, substeps, quiet_s, stop, locate, wait)]
 
 
 def try_all(
-    scenes: Sequence[Scene],
+    runs: Sequence[Run],
     substeps: Sequence[int],
     quiet_s: float,
     stop: Stop,
@@ -160,23 +166,21 @@ def try_all(
     wait: bool = True,
 ) -> list[Trial | None]:
     """As :func:`run_all_fixed`, with the trajectories in short."""
-    trials: list[Trial | None] = [
-        _refused(scene, steps, quiet_s) for scene, steps in zip(scenes, substeps, strict=True)
-    ]
+    trials: list[Trial | None] = [_refused(run, steps, quiet_s) for run, steps in zip(runs, substeps, strict=True)]
     alike: dict[tuple[float | None, bool | None] | None, list[int]] = {}
-    for i, scene in enumerate(scenes):
+    for i, run in enumerate(runs):
         if trials[i] is None:
-            alike.setdefault(_kernel_of(scene), []).append(i)
+            alike.setdefault(_kernel_of(run), []).append(i)
     for kernel, which in alike.items():
         first_rows: dict[int, int] = {}
         grounds: list[Samples] = []
         lines = []
         for i in which:
-            motion = scenes[i].motion
+            motion = runs[i].motion
             if id(motion) not in first_rows:
                 first_rows[id(motion)] = sum(map(len, grounds))
                 grounds.append(ground_of(motion))
-            lines.append(_line(scenes[i], substeps[i], quiet_s, first_rows[id(motion)], wait))
+            lines.append(_line(runs[i], substeps[i], quiet_s, first_rows[id(motion)], wait))
         ground = grounds[0] if len(grounds) == 1 else np.concatenate(grounds)
         if kernel is None:
             results = rigid_base.rock_one_by_one(np.array(lines), ground, stop.flag, locate)
@@ -186,22 +190,22 @@ def try_all(
             split = two_springs.RESULTS
         for i, line in zip(which, results, strict=True):
             if not math.isnan(line[0]):
-                outcome = _outcome(scenes[i], substeps[i], line[:split].tolist())
+                outcome = _outcome(runs[i], substeps[i], line[:split].tolist())
                 trials[i] = Trial(outcome, line[split:])
     return trials
 
 
-def _kernel_of(scene: Scene) -> tuple[float | None, bool | None] | None:
+def _kernel_of(run: Run) -> tuple[float | None, bool | None] | None:
     """What runs that share compiled code have in common: types of the springs' exponent and kinematics, if any."""
-    if isinstance(scene.base, RigidBase):
+    if isinstance(run.base, RigidBase):
         return None
-    m = springs(scene.pier, scene.base)
+    m = springs(run.pier, run.base)
     return None if m.exponent is None else 1.0, m.finite
 
 
-def _refused(scene: Scene, substeps: int, quiet_s: float) -> Trial | None:
+def _refused(run: Run, substeps: int, quiet_s: float) -> Trial | None:
     """What a run comes to that is not to be run, else ``None``."""
-    pier, base, motion = scene.pier, scene.base, scene.motion
+    pier, base, motion = run.pier, run.base, run.motion
     least = least_substeps(pier, base, motion.dt)
     if substeps < least:
         return _not_run(
@@ -217,22 +221,24 @@ def _refused(scene: Scene, substeps: int, quiet_s: float) -> Trial | None:
     return None
 
 
-def _outcome(scene: Scene, substeps: int, result: Sequence[float]) -> Outcome:
+def _outcome(run: Run, substeps: int, result: Sequence[float]) -> Outcome:
     """Outcome of a line of results."""
-    pier = scene.pier
+    pier = run.pier
     code, t_end, theta_max, t_max, impacts, separations, t_flight = result[:7]
     status, reason = _STATUS[int(code)]
     more: dict[str, Any] = {}
-    if not isinstance(scene.base, RigidBase):
-        run = SpringRun(*result)  # type: ignore[arg-type]  # all floats
-        more = _of_springs(scene, run, survived=status == "ok")
+    if not isinstance(run.base, RigidBase):
+        found = SpringRun(*result)  # type: ignore[arg-type]  # all floats
+        more = _of_springs(run, found, survived=status == "ok")
         if code == FLIGHT:
-            reason = cause_of_flight(scene.motion, scene.base.beta * pier.p, pier.gravity, t_flight, run.t_impact)
+            reason = cause_of_flight(
+                run.motion, vertical_frequency(pier, run.base), pier.gravity, t_flight, found.t_impact
+            )
     elif code == FLIGHT:
-        reason = cause_of_flight(scene.motion, None, pier.gravity, t_flight, math.nan)
+        reason = cause_of_flight(run.motion, None, pier.gravity, t_flight, math.nan)
     note = ""
     if code == RESTLESS:
-        note = _RESTLESS.format(seconds=t_end - scene.motion.duration)
+        note = _RESTLESS.format(seconds=t_end - run.motion.duration)
     elif code == LATE_FLIGHT:
         note = _LATE_FLIGHT.format(t=t_end)
     return Outcome(
@@ -250,27 +256,28 @@ def _outcome(scene: Scene, substeps: int, result: Sequence[float]) -> Outcome:
     )
 
 
-def _of_springs(scene: Scene, run: SpringRun, survived: bool) -> dict[str, Any]:
+def _of_springs(run: Run, found: SpringRun, survived: bool) -> dict[str, Any]:
     """What only piers on springs have: residuals where the pier ``survived``, and what became of yielding springs."""
-    pier, base = scene.pier, scene.base
+    pier, base = run.pier, run.base
     assert not isinstance(base, RigidBase)
     more: dict[str, Any] = {}
     if survived:
         # From the base's tilt to the rotation, static on the deformed base (THEORY.md, 14)
-        lean = 1.0 / (1.0 - pier.gravity * pier.height / (base.beta * pier.p * pier.half_width) ** 2)
-        tilt = 0.5 * (run.base_left - run.base_right) / pier.half_width
-        more |= {"settlement": -0.5 * (run.base_left + run.base_right), "base_tilt": tilt, "theta_res": lean * tilt}
+        omega_v = vertical_frequency(pier, base)
+        lean = 1.0 / tilt_over_residual(pier.gravity, pier.height, pier.half_width, omega_v)
+        tilt = 0.5 * (found.base_left - found.base_right) / pier.half_width
+        more |= {"settlement": -0.5 * (found.base_left + found.base_right), "base_tilt": tilt, "theta_res": lean * tilt}
         if isinstance(base, YieldingBase):
-            more["t_read"] = run.t_read
-            if not math.isnan(run.drift_left):
-                more["settlement_drift"] = -0.5 * (run.drift_left + run.drift_right)
-                more["theta_res_drift"] = 0.5 * lean * (run.drift_left - run.drift_right) / pier.half_width
+            more["t_read"] = found.t_read
+            if not math.isnan(found.drift_left):
+                more["settlement_drift"] = -0.5 * (found.drift_left + found.drift_right)
+                more["theta_res_drift"] = 0.5 * lean * (found.drift_left - found.drift_right) / pier.half_width
     if isinstance(base, YieldingBase):
-        yield_deflection = base.eta * pier.gravity / (base.beta * pier.p) ** 2
-        more["ductility_left"] = -run.deepest_left / yield_deflection
-        more["ductility_right"] = -run.deepest_right / yield_deflection
-        more["dissipated_left"] = run.dissipated_left
-        more["dissipated_right"] = run.dissipated_right
+        deflection = yield_deflection(pier, base)
+        more["ductility_left"] = -found.deepest_left / deflection
+        more["ductility_right"] = -found.deepest_right / deflection
+        more["dissipated_left"] = found.dissipated_left
+        more["dissipated_right"] = found.dissipated_right
     return more
 
 
