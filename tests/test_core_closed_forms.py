@@ -292,13 +292,18 @@ def test_stiff_strong_springs_without_restitution_converge_to_the_rigid_base():
     ("amplitude_g", "status"), [(0.9, "ok"), (1.2, "overturned"), (2.0, "ok"), (2.5, "overturned")]
 )
 def test_stiff_strong_springs_end_as_the_rigid_base_does(amplitude_g, status):
-    """One-sine 1 s: survival and both modes of overturning, and the safe amplitudes between them, at β = 1600."""
+    """One-sine 1 s: survival and both modes of overturning, and the safe amplitudes between them, at β = 1600, where
+    peaks are still 0.002 α from those of the limit."""
     motion = pulse("sine", 1.0, amplitude_g, dt=0.01, end=6.0)
     base = YieldingBase(1600.0, 0.0, "finite", "guided", eta=1000.0)
     rigid = run_fixed(FIG5, RigidBase(), motion, 8)
     springs_too = run_fixed(FIG5, base, motion, math.ceil(1600.0 * motion.dt / 0.1))
     assert rigid.status == springs_too.status == status
-    assert springs_too.t_end == pytest.approx(rigid.t_end, abs=0.05)
+    if status == "overturned":
+        assert springs_too.t_end == pytest.approx(rigid.t_end, abs=0.05)
+    else:
+        assert springs_too.t_max == pytest.approx(rigid.t_max, abs=0.01)
+        assert springs_too.theta_max == pytest.approx(rigid.theta_max, abs=0.002 * FIG5.alpha)
 
 
 def test_a_large_exponent_approaches_the_elastic_plastic_spring():
