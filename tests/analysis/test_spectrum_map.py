@@ -7,7 +7,7 @@ from itertools import pairwise
 import pandas as pd
 import pytest
 from scipy.optimize import brentq
-from test_known_overturning import HALF_SINE, ONE_SINE, SLENDER, E, energy_after_impact, outward
+from slender_block import HALF_SINE, ONE_SINE, SLENDER, E, energy_after_impact, outward
 
 from rockbatch.analysis.map_search import End, Search, regions
 from rockbatch.analysis.overturning_map import OUTRIGHT, SAFE, SAMPLES, UNDECIDED, WITH_IMPACT, Maps, ending
@@ -45,7 +45,7 @@ def heights(column):
 def sampled(amplitude):
     """Where a boundary lies for a sine that is linear between samples: (2π/SAMPLES)²/12 higher, as its sine is lower.
 
-    Measured by the bisections of test_known_overturning.py: 0.9998 to 1.0009 of that.
+    Measured by the bisections of test_overturning.py: 0.9998 to 1.0009 of that.
     """
     return pytest.approx(amplitude * (1 + (2 * math.pi / SAMPLES) ** 2 / 12), abs=0.501 * TOLERANCE)
 

@@ -18,7 +18,7 @@ from rockbatch.cli import main
 from rockbatch.errors import InputError
 from rockbatch.results.checking import verdicts
 
-CONFIGS = Path(__file__).parent.parent / "configs"
+CONFIGS = Path(__file__).parents[2] / "configs"
 MARGIN = """
 [[check]]
 name = "margin"

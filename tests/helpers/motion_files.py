@@ -11,7 +11,7 @@ with warnings.catch_warnings():
     warnings.simplefilter("ignore")  # ObsPy's own use of the standard library, when it is first loaded
     import obspy  # noqa: F401
 
-RECORDS = Path(os.environ.get("ROCKBATCH_RECORDS", Path(__file__).parents[2] / "shared" / "motions"))
+RECORDS = Path(os.environ.get("ROCKBATCH_RECORDS", Path(__file__).parents[3] / "shared" / "motions"))
 
 needs_records = pytest.mark.skipif(not RECORDS.is_dir(), reason="no real records beside the project")
 

@@ -156,7 +156,7 @@ def test_obspy_gets_the_same_values_in_the_files_own_unit(case, tmp_path):
 
 def plugins() -> dict[str, dict[str, Callable]]:
     """Every plugin that pyproject registers, by its name: its ``isFormat`` and ``readFormat``."""
-    project = tomllib.loads((Path(__file__).parents[1] / "pyproject.toml").read_text())["project"]
+    project = tomllib.loads((Path(__file__).parents[2] / "pyproject.toml").read_text())["project"]
     groups = project["entry-points"]
     formats = groups.pop("obspy.plugin.waveform")
     assert {f"obspy.plugin.waveform.{name}" for name in formats} == set(groups)

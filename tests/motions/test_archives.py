@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from agency_files import knet_text
 from motion_files import at2_text, wiggle, write_at2
-from test_motions_formats import channel_xml, station_xml, trace, write_mseed
+from waveform_files import channel_xml, station_xml, trace, write_mseed
 
 from rockbatch.motions import archives, read_motions
 from rockbatch.motions.manifest_draft import write_draft

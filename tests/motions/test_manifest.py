@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
+from agency_files import knet_text
 from motion_files import wiggle, write_at2
-from test_motions_formats import knet_text, trace
+from waveform_files import trace
 
 from rockbatch.errors import InputError
 from rockbatch.motions import read_motions

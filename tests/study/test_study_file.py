@@ -21,7 +21,7 @@ from rockbatch.study.load import NUMERICS, REFERENCE, TOP
 from rockbatch.study.motions import FEMA, MOTIONS
 from rockbatch.study.motions import PULSE as PULSE_KEYS
 
-CONFIGS = Path(__file__).parents[1] / "configs"
+CONFIGS = Path(__file__).parents[2] / "configs"
 PIER = "[pier]\nalpha = 0.13\np = 0.38\n"
 PULSE = (
     '[[motions.pulse]]\nname = "sine"\nshape = "sine"\namplitude_g = 0.4\nperiod_s = 1.0\ndt_s = 0.01\nduration_s = 5\n'

@@ -24,7 +24,7 @@ from rockbatch.simulation import Run, run_fixed, run_to_tolerance, written_run
 from rockbatch.study import load_study
 from rockbatch.units import GRAVITY
 
-CONFIGS = Path(__file__).parents[1] / "configs"
+CONFIGS = Path(__file__).parents[2] / "configs"
 INERTIA = FIG5.inertia + FIG5.height**2  # I0/M + h²
 SEPARATION = (1 + FIG5.mu) / (FIG5.mu * 50.0**2 * math.sin(FIG5.alpha))  # paper, eq. 10, for β = 50
 ROCKING = math.sqrt(((50.0 * FIG5.half_width) ** 2 - GRAVITY * FIG5.height) / INERTIA)  # ω_r [rad/s] for β = 50

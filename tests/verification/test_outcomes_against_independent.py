@@ -13,7 +13,7 @@ from core_samples import broadband
 from rockbatch.motions import Motion, pulse
 from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase
 
-BENCHMARKS = Path(__file__).parents[1] / "benchmarks"
+BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
 PIER = Pier(alpha=0.20, p=1.0)
 G = PIER.gravity
 SINE = pulse("sine", name="sine", amplitude=G, period=0.5, dt=0.01, duration=2.0)

@@ -66,9 +66,9 @@ def results() -> dict[str, Any]:
 def interpreted() -> dict[str, Any]:
     """``results`` of a process in which Numba compiles nothing."""
     done = subprocess.run(
-        [sys.executable, "-c", "import json, test_known_without_jit as t; print(json.dumps(t.results()))"],
+        [sys.executable, "-c", "import json, test_without_jit as t; print(json.dumps(t.results()))"],
         cwd=Path(__file__).parent,
-        env={**os.environ, "NUMBA_DISABLE_JIT": "1"},
+        env={**os.environ, "NUMBA_DISABLE_JIT": "1", "PYTHONPATH": os.pathsep.join(sys.path)},
         capture_output=True,
         text=True,
         check=True,
