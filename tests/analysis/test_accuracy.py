@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from studies import PADS, RIGID, SINE, study_text, write_study
 
 import rockbatch.analysis.accuracy
 from rockbatch.analysis.accuracy import COLUMNS, SUBSTEPS, measure, reference, spread
@@ -18,63 +19,29 @@ from rockbatch.simulation.yardstick import solve
 from rockbatch.study import load_study
 from rockbatch.study.suite import ground_motions
 
-STUDY = """
-title = "two pulses, three bases"
-
-[pier]
-alpha = 0.15
-p = 1.0
-
-[motions]
-scale = [0.9, 1.0]
-
-[[motions.pulse]]
-name = "ricker"
-shape = "ricker"
-amplitude_g = 0.6
-period_s = 1.0
-dt_s = 0.02
-duration_s = 4.0
-
-[[motions.pulse]]
-name = "sine"
-shape = "sine"
-amplitude_g = 0.5
-period_s = 0.8
-dt_s = 0.02
-duration_s = 4.0
-
-[numerics]
-tolerance = 1e-5
-
-[output]
-histories = "all"
-
-[[case]]
-name = "rigid"
-base = "rigid"
-
-[[case]]
-name = "pads"
-base = "yielding"
-beta = [20, 40]
-eta = 2.5
-epsilon = 0.1
-"""
+STUDY = study_text(
+    title="two pulses, three bases",
+    pier={"alpha": 0.15, "p": 1.0},
+    motions={"scale": [0.9, 1.0]},
+    pulses=(
+        SINE | {"name": "ricker", "shape": "ricker", "amplitude_g": 0.6, "period_s": 1.0, "dt_s": 0.02},
+        SINE | {"name": "sine", "amplitude_g": 0.5, "period_s": 0.8, "dt_s": 0.02},
+    ),
+    cases=(RIGID, PADS | {"beta": [20, 40], "epsilon": 0.1}),
+    numerics={"tolerance": 1e-5},
+    output={"histories": "all"},
+)
 
 
 @pytest.fixture
 def study_file(tmp_path):
-    path = tmp_path / "study.toml"
-    path.write_text(STUDY, encoding="utf-8")
-    return path
+    return write_study(tmp_path, STUDY)
 
 
 @pytest.fixture(scope="module")
 def measured(tmp_path_factory):
     """The study, the references of its runs, and the table without SciPy."""
-    path = tmp_path_factory.mktemp("accuracy") / "study.toml"
-    path.write_text(STUDY, encoding="utf-8")
+    path = write_study(tmp_path_factory.mktemp("accuracy"), STUDY)
     study = load_study(path)
     references = [reference(run, study.numerics.quiet_s) for run in Plan(study, ground_motions(study))]
     assert None not in references

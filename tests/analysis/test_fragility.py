@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from report_page import Page
+from studies import PADS, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.analysis.fragility import ScaledRuns, assess, intensities
@@ -32,73 +33,33 @@ from rockbatch.study import load_study
 from rockbatch.study.fragility import read_fragility
 from rockbatch.study.suite import ground_motions
 
-STUDY = """
-title = "Fragility of a small pier"
-
-[pier]
-alpha = 0.2
-p = 2.0
-
-[motions]
-polarity = ["+", "-"]
-
-{pulses}
-
-[numerics]
-tolerance = 1e-3
-
-[fragility]
-{fragility}
-
-[[case]]
-name = "rigid"
-base = "rigid"
-
-[[case]]
-name = "pads"
-base = "yielding"
-beta = 60
-eta = 3.0
-epsilon = 0.1
-flight = "guided"
-
-[[check]]
-name = "half way"
-demand = "theta_max_over_alpha"
-at_most = 0.5
-reason = "margin"
-
-[[check]]
-name = "settlement"
-demand = "settlement_m"
-at_most = 0.005
-reason = "bearings"
-
-[[check]]
-name = "bearing"
-demand = "eta"
-at_least = 2.0
-reason = "of the case, about no record"
-"""
-PULSE = """
-[[motions.pulse]]
-name = "{name}"
-shape = "{shape}"
-amplitude_g = 0.4
-period_s = {period}
-dt_s = 0.01
-duration_s = 6.0
-"""
 STRIPES = 'measure = "PGA"\nlevels_g = [0.2, 0.4, 0.6, 0.8]'
 IDA = f'method = "ida"\ntolerance = 0.02\n{STRIPES}'
 
 
+def check(name, demand, reason, **limit):
+    return {"name": name, "demand": demand, **limit, "reason": reason}
+
+
 def written(tmp_path, fragility):
     shapes = [("sine", 0.6), ("sine", 1.0), ("cosine", 0.7), ("ricker", 0.9), ("ricker", 1.4)]
-    pulses = "".join(PULSE.format(name=f"{shape} {t} s", shape=shape, period=t) for shape, t in shapes)
-    path = tmp_path / "study.toml"
-    path.write_text(STUDY.format(pulses=pulses, fragility=fragility), encoding="utf-8")
-    return path
+    text = study_text(
+        title="Fragility of a small pier",
+        pier={"alpha": 0.2, "p": 2.0},
+        motions={"polarity": ["+", "-"]},
+        pulses=[
+            SINE | {"name": f"{shape} {t} s", "shape": shape, "amplitude_g": 0.4, "period_s": t, "duration_s": 6.0}
+            for shape, t in shapes
+        ],
+        cases=(RIGID, PADS | {"beta": 60, "eta": 3.0, "epsilon": 0.1, "flight": "guided"}),
+        numerics={"tolerance": 1e-3},
+        check=[
+            check("half way", "theta_max_over_alpha", "margin", at_most=0.5),
+            check("settlement", "settlement_m", "bearings", at_most=0.005),
+            check("bearing", "eta", "of the case, about no record", at_least=2.0),
+        ],
+    )
+    return write_study(tmp_path, f"{text}\n[fragility]\n{fragility}\n")
 
 
 def read(path):
@@ -316,7 +277,7 @@ def test_one_undecided_level_on_the_way_does_not_move_the_capacity_that_the_bise
 
 @pytest.mark.parametrize(("shape", "first", "last"), [("half-sine", 3.289147, math.inf), ("sine", 3.018600, 6.318071)])
 def test_the_amplitude_of_overturning_is_that_of_the_closed_form(tmp_path, shape, first, last):
-    """Slender block, e = 0.9, ω_p/p = 5 (test_known_overturning): the one-sine's second safe window is 6.318–7.168.
+    """Slender block, e = 0.9, ω_p/p = 5 (test_overturning): the one-sine's second safe window is 6.318–7.168.
 
     The level 6.8 is inside it: the first exceedance is found all the same, and that the block stands there is counted.
     Tolerance 1e-4, and as much for the pulse that is linear between 400 samples a period.
@@ -324,31 +285,17 @@ def test_the_amplitude_of_overturning_is_that_of_the_closed_form(tmp_path, shape
     alpha, period = 1e-4, 2 * math.pi / 5
     unit = math.tan(alpha)
     levels = [2.5 * unit, 4.5 * unit, 6.8 * unit, 7.5 * unit]
-    text = f"""
-        [pier]
-        alpha = {alpha}
-        p = 1.0
-        [numerics]
-        substeps = 1
-        quiet_s = 0.0
-        [fragility]
-        method = "ida"
-        measure = "PGA"
-        levels_g = {levels}
-        tolerance = 1e-4
-        [[motions.pulse]]
-        name = "pulse"
-        shape = "{shape}"
-        amplitude_g = 1.0
-        period_s = {period}
-        dt_s = {period / 400}
-        duration_s = {period}
-        [[case]]
-        base = "rigid"
-        restitution = 0.9
-        """
-    path = tmp_path / "study.toml"
-    path.write_text(text, encoding="utf-8")
+    text = study_text(
+        pier={"alpha": alpha, "p": 1.0},
+        pulses=[
+            {"name": "pulse", "shape": shape, "amplitude_g": 1.0}
+            | {"period_s": period, "dt_s": period / 400, "duration_s": period}
+        ],
+        cases=({"base": "rigid", "restitution": 0.9},),
+        numerics={"substeps": 1, "quiet_s": 0.0},
+        fragility={"method": "ida", "measure": "PGA", "levels_g": levels, "tolerance": 1e-4},
+    )
+    path = write_study(tmp_path, text)
     study = load_study(path)
     spec = read_fragility(study)
     motions, journal = journal_of(study, spec, tmp_path)

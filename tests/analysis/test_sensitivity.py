@@ -6,6 +6,7 @@ import shutil
 import numpy as np
 import pandas as pd
 import pytest
+from studies import PADS, RIGID, SINE, study_text, write_study
 
 from rockbatch.analysis.sampled import Point, Points, Suite, low_base_high
 from rockbatch.analysis.sensitivity import answers, counted_as, tornado, values_of
@@ -21,61 +22,24 @@ from rockbatch.study import load_study
 from rockbatch.study.sensitivity import Input, read_sensitivity
 from rockbatch.study.suite import ground_motions
 
-STUDY = """
-[pier]
-alpha = 0.2
-p = 1.0
-
-[[motions.pulse]]
-name = "short"
-shape = "sine"
-amplitude_g = 0.5
-period_s = 0.6
-dt_s = 0.01
-duration_s = 1.0
-
-[[motions.pulse]]
-name = "long"
-shape = "sine"
-amplitude_g = 0.35
-period_s = 1.0
-dt_s = 0.01
-duration_s = 1.0
-
-[[case]]
-name = "rigid"
-base = "rigid"
-restitution = 0.9
-
-[[case]]
-name = "pads"
-base = "yielding"
-beta = 30
-eta = 3
-epsilon = 0.1
-
-[sensitivity]
-statistic = "max"
-samples = 8
-
-[sensitivity.uniform]
-alpha = [0.18, 0.22]
-mu = [2.0, 4.0]
-eta = [2.5, 3.5]
-
-[sensitivity.log_uniform]
-p = [0.8, 1.2]
-
-[sensitivity.choice]
-vertical = [true, false]
-polarity = ["+", "-"]
-"""
+STUDY = study_text(
+    pulses=(
+        SINE | {"name": "short", "amplitude_g": 0.5, "period_s": 0.6, "duration_s": 1.0},
+        SINE | {"name": "long", "amplitude_g": 0.35, "period_s": 1.0, "duration_s": 1.0},
+    ),
+    cases=(RIGID | {"restitution": 0.9}, PADS | {"beta": 30, "eta": 3, "epsilon": 0.1}),
+    sensitivity={
+        "statistic": "max",
+        "samples": 8,
+        "uniform": {"alpha": [0.18, 0.22], "mu": [2.0, 4.0], "eta": [2.5, 3.5]},
+        "log_uniform": {"p": [0.8, 1.2]},
+        "choice": {"vertical": [True, False], "polarity": ["+", "-"]},
+    },
+)
 
 
 def written(tmp_path, text=STUDY):
-    path = tmp_path / "study.toml"
-    path.write_text(text, encoding="utf-8")
-    return path
+    return write_study(tmp_path, text)
 
 
 @pytest.fixture

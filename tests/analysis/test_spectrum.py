@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pandas as pd
 import pytest
+from studies import PADS, RIGID, SINE, study_text, write_study
 
 from rockbatch.analysis.rocking_spectrum import of_suite, row_of
 from rockbatch.batch.plan import PlannedRun
@@ -17,51 +18,19 @@ from rockbatch.study import load_study
 from rockbatch.study.spectrum import read_spectrum
 from rockbatch.study.suite import ground_motions
 
-STUDY = """
-title = "spectra"
-
-[pier]
-alpha = 0.2
-p = 1.0
-
-[[motions.pulse]]
-name = "short"
-shape = "sine"
-amplitude_g = 0.5
-period_s = 0.6
-dt_s = 0.01
-duration_s = 2.0
-
-[[motions.pulse]]
-name = "long"
-shape = "sine"
-amplitude_g = 0.4
-period_s = 1.2
-dt_s = 0.01
-duration_s = 2.0
-
-[[case]]
-name = "rigid"
-base = "rigid"
-
-[[case]]
-name = "pads"
-base = "yielding"
-beta = 40
-eta = 2.5
-epsilon = 0.05
-
-[spectrum]
-alpha = [0.1, 0.2]
-two_pi_over_p_s = [2.0, 10.0]
-points = 9
-"""
+STUDY = study_text(
+    title="spectra",
+    pulses=(
+        SINE | {"name": "short", "amplitude_g": 0.5, "period_s": 0.6, "duration_s": 2.0},
+        SINE | {"name": "long", "amplitude_g": 0.4, "period_s": 1.2, "duration_s": 2.0},
+    ),
+    cases=(RIGID, PADS | {"beta": 40, "epsilon": 0.05}),
+    spectrum={"alpha": [0.1, 0.2], "two_pi_over_p_s": [2.0, 10.0], "points": 9},
+)
 
 
 def written(tmp_path, text=STUDY):
-    path = tmp_path / "study.toml"
-    path.write_text(text, encoding="utf-8")
-    return path
+    return write_study(tmp_path, text)
 
 
 def read(text, tmp_path):

@@ -8,6 +8,7 @@ import pandas as pd
 import pytest
 from scipy.optimize import brentq
 from slender_block import HALF_SINE, ONE_SINE, SLENDER, E, energy_after_impact, outward
+from studies import RIGID, SINE, study_text, write_study
 
 from rockbatch.analysis.map_search import End, Search, regions
 from rockbatch.analysis.overturning_map import OUTRIGHT, SAFE, SAMPLES, UNDECIDED, WITH_IMPACT, Maps, ending
@@ -208,49 +209,41 @@ def test_impacts_tell_the_ways_to_overturn_on_a_rigid_base_only():
 
 # The command
 
-STUDY = """
-[pier]
-alpha = [0.1, 0.2]
-p = 2.0
-
-[[motions.pulse]]
-name = "not used"
-shape = "sine"
-amplitude_g = 0.5
-period_s = 0.6
-dt_s = 0.01
-duration_s = 2.0
-
-[[case]]
-name = "rigid"
-base = "rigid"
-
-[[spectrum.map]]
-name = "one"
-shape = "sine"
-frequency = [3.0, 5.0]
-frequencies = 3
-amplitude = [1.0, 8.0]
-amplitudes = 15
-tolerance = 0.01
-
-[[spectrum.map]]
-name = "near-fault"
-shape = "mavroeidis-papageorgiou"
-gamma = 1.5
-nu = 0.0
-frequency = [3.0, 5.0]
-frequencies = 2
-amplitude = [1.0, 4.0]
-amplitudes = 4
-"""
+STUDY = study_text(
+    pier={"alpha": [0.1, 0.2], "p": 2.0},
+    pulses=(SINE | {"name": "not used"},),
+    cases=(RIGID,),
+    spectrum={
+        "map": [
+            {
+                "name": "one",
+                "shape": "sine",
+                "frequency": [3.0, 5.0],
+                "frequencies": 3,
+                "amplitude": [1.0, 8.0],
+                "amplitudes": 15,
+                "tolerance": 0.01,
+            },
+            {
+                "name": "near-fault",
+                "shape": "mavroeidis-papageorgiou",
+                "gamma": 1.5,
+                "nu": 0.0,
+                "frequency": [3.0, 5.0],
+                "frequencies": 2,
+                "amplitude": [1.0, 4.0],
+                "amplitudes": 4,
+            },
+        ]
+    },
+)
 
 
 def test_the_command_writes_regions_and_goes_on_after_a_kill_in_the_middle_of_the_bisection(
     tmp_path, monkeypatch, capsys
 ):
     """Ctrl-C in the third wave; undisturbed and interrupted tables have the same bytes."""
-    (tmp_path / "study.toml").write_text(STUDY, encoding="utf-8")
+    write_study(tmp_path, STUDY)
     command = ["spectrum", str(tmp_path / "study.toml"), "--jobs", "1", "--out"]
     assert main([*command, str(tmp_path / "whole")]) == 0
     assert "0.1" in capsys.readouterr().out
@@ -286,7 +279,7 @@ def test_a_pulse_needs_the_parameters_of_its_shape_and_no_others(tmp_path, capsy
         'shape = "sine"\nfreq', 'shape = "sine"\nnu = 1.0\nfreq'
     )
     text = text.replace('"near-fault"', '"one"')
-    (tmp_path / "study.toml").write_text(text, encoding="utf-8")
+    write_study(tmp_path, text)
     assert main(["spectrum", str(tmp_path / "study.toml"), "--out", str(tmp_path / "out")]) == 2
     told = capsys.readouterr().err
     for words in (
@@ -301,7 +294,7 @@ def test_a_pulse_needs_the_parameters_of_its_shape_and_no_others(tmp_path, capsy
 
 def test_spectra_that_are_finished_are_not_run_again_when_a_map_was_interrupted(tmp_path, monkeypatch, capsys):
     text = STUDY + "\n[spectrum]\nalpha = 0.1\np = [1, 2]\npoints = 2\n"
-    (tmp_path / "study.toml").write_text(text, encoding="utf-8")
+    write_study(tmp_path, text)
     command = ["spectrum", str(tmp_path / "study.toml"), "--out", str(tmp_path / "out")]
     outcomes, batches = Threads.outcomes, []
 

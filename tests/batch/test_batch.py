@@ -3,6 +3,7 @@
 import numpy as np
 import pandas as pd
 import pytest
+from studies import COSINE, PADS, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
 import rockbatch.batch.groups
@@ -16,51 +17,17 @@ from rockbatch.results.columns import COLUMNS, MORE_COLUMNS, columns
 from rockbatch.study import load_study
 from rockbatch.study.suite import ground_motions
 
-STUDY = """
-title = "two pulses, three bases"
-
-[pier]
-alpha = 0.2
-p = 1.0
-
-[motions]
-polarity = ["+", "-"]
-scale = [0.5, 1.0]
-
-[[motions.pulse]]
-name = "one-sine"
-shape = "sine"
-amplitude_g = 1.0
-period_s = 0.5
-dt_s = 0.01
-duration_s = 4.0
-
-[[motions.pulse]]
-name = "one-cosine"
-shape = "cosine"
-amplitude_g = 0.5
-period_s = 1.0
-dt_s = 0.02
-duration_s = 4.0
-
-[[case]]
-name = "rigid"
-base = "rigid"
-
-[[case]]
-name = "pads"
-base = "yielding"
-beta = [30, 50]
-eta = 2.5
-epsilon = 0.1
-"""
+STUDY = study_text(
+    title="two pulses, three bases",
+    motions={"polarity": ["+", "-"], "scale": [0.5, 1.0]},
+    pulses=(SINE, COSINE),
+    cases=(RIGID, PADS | {"beta": [30, 50], "epsilon": 0.1}),
+)
 
 
 @pytest.fixture
 def study(tmp_path):
-    path = tmp_path / "study.toml"
-    path.write_text(STUDY, encoding="utf-8")
-    return path
+    return write_study(tmp_path, STUDY)
 
 
 def test_rows_come_in_the_order_of_the_study(study):

@@ -7,6 +7,7 @@ import subprocess
 import sys
 
 import pytest
+from studies import COSINE, PADS, RIGID, SINE, study_text, write_study
 
 import rockbatch.batch.dask
 import rockbatch.batch.groups
@@ -24,56 +25,19 @@ from rockbatch.results.columns import columns
 from rockbatch.study import load_study
 from rockbatch.study.suite import ground_motions
 
-STUDY = """
-title = "Two pulses on many foundations"
-
-[pier]
-alpha = 0.2
-p = 1.0
-
-[motions]
-polarity = ["+", "-"]
-scale = [0.5, 0.75, 1.0]
-
-[[motions.pulse]]
-name = "one-sine"
-shape = "sine"
-amplitude_g = 1.0
-period_s = 0.5
-dt_s = 0.01
-duration_s = 4.0
-
-[[motions.pulse]]
-name = "one-cosine"
-shape = "cosine"
-amplitude_g = 0.5
-period_s = 1.0
-dt_s = 0.02
-duration_s = 4.0
-
-[output]
-both_laws = false
-histories = "none"
-
-[[case]]
-name = "rigid"
-base = "rigid"
-
-[[case]]
-name = "pads"
-base = "yielding"
-beta = [30, 40, 50]
-eta = [2.0, 2.5, 3.0]
-epsilon = 0.1
-"""
+STUDY = study_text(
+    title="Two pulses on many foundations",
+    motions={"polarity": ["+", "-"], "scale": [0.5, 0.75, 1.0]},
+    pulses=(SINE, COSINE),
+    cases=(RIGID, PADS | {"beta": [30, 40, 50], "eta": [2.0, 2.5, 3.0], "epsilon": 0.1}),
+    output={"both_laws": False, "histories": "none"},
+)
 RUNS = 2 * 2 * 3 * 10
 
 
 @pytest.fixture
 def file(tmp_path):
-    path = tmp_path / "study.toml"
-    path.write_text(STUDY, encoding="utf-8")
-    return path
+    return write_study(tmp_path, STUDY)
 
 
 @pytest.fixture

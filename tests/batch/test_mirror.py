@@ -6,6 +6,7 @@ from dataclasses import asdict, replace
 import numpy as np
 import pandas as pd
 import pytest
+from studies import COSINE, PADS, SINE, study_text
 
 import rockbatch as rb
 from rockbatch.batch.carrying_out import carry_out, row_of, to_simulate
@@ -22,51 +23,15 @@ from rockbatch.simulation import run_to_tolerance
 from rockbatch.study import load_study
 from rockbatch.study.suite import ground_motions
 
-STUDY = """
-title = "Mirrors"
-
-[pier]
-alpha = 0.2
-p = 1.0
-
-[motions]
-polarity = {polarity}
-scale = [0.5, 1.0]
-
-[[motions.pulse]]
-name = "one-sine"
-shape = "sine"
-amplitude_g = 1.0
-period_s = 0.5
-dt_s = 0.01
-duration_s = 4.0
-
-[[motions.pulse]]
-name = "one-cosine"
-shape = "cosine"
-amplitude_g = 0.7
-period_s = 1.0
-dt_s = 0.02
-duration_s = 4.0
-
-[output]
-histories = "all"
-ledger = true
-
-[[case]]
-name = "pads"
-base = "yielding"
-beta = [30, 50]
-eta = 2.5
-epsilon = 0.1
-
-[[check]]
-name = "half"
-demand = "theta_max_over_alpha"
-at_most = 0.001
-reason = "margin"
-"""
 BOTH = '["+", "-"]'
+STUDY = study_text(
+    title="Mirrors",
+    motions={"polarity": ["+", "-"], "scale": [0.5, 1.0]},
+    pulses=(SINE, COSINE | {"amplitude_g": 0.7}),
+    cases=(PADS | {"beta": [30, 50], "epsilon": 0.1},),
+    output={"histories": "all", "ledger": True},
+    check=[{"name": "half", "demand": "theta_max_over_alpha", "at_most": 0.001, "reason": "margin"}],
+)
 ROWS = 2 * 2 * 2 * 2
 
 
@@ -75,7 +40,7 @@ def study(tmp_path):
     path = tmp_path / "study.toml"
 
     def of(polarity=BOTH):
-        path.write_text(STUDY.format(polarity=polarity), encoding="utf-8")
+        path.write_text(STUDY.replace(BOTH, polarity), encoding="utf-8")
         return path
 
     return of

@@ -11,46 +11,13 @@ import sys
 import time
 
 import pytest
+from studies import PADS, RIGID, SINE, study_text, write_study
 
 import rockbatch.batch.groups
 import rockbatch.batch.threads
 from rockbatch.cli import main
 from rockbatch.files import only_writer
 
-STUDY = """
-title = "{title}"
-
-[pier]
-alpha = 0.2
-p = 1.0
-
-[motions]
-polarity = ["+", "-"]
-scale = [0.2, 0.4, 0.6, 0.8, 1.0, {last_scale}]
-
-[[motions.pulse]]
-name = "one-sine"
-shape = "sine"
-amplitude_g = 1.0
-period_s = 0.5
-dt_s = 0.01
-duration_s = 2.0
-
-[output]
-both_laws = false
-histories = "none"
-
-[[case]]
-name = "rigid"
-base = "rigid"
-
-[[case]]
-name = "pads"
-base = "yielding"
-beta = [30, 40, 50, 60, 70, 80]
-eta = [2.0, 2.25, 2.5, 2.75, 3.0, 3.25, 3.5, 3.75]
-epsilon = 0.1
-"""
 SIMULATED = 6 * 49
 RUNS = 2 * SIMULATED  # with the mirror images
 
@@ -69,9 +36,20 @@ def study(tmp_path):
     return write(tmp_path / "study.toml")
 
 
-def write(path, title="Long", last_scale=1.2, more=""):
-    path.write_text(STUDY.format(title=title, last_scale=last_scale) + more, encoding="utf-8")
-    return path
+def write(path, title="Long", last_scale=1.2):
+    pads = PADS | {
+        "beta": [30, 40, 50, 60, 70, 80],
+        "eta": [2.0, 2.25, 2.5, 2.75, 3.0, 3.25, 3.5, 3.75],
+        "epsilon": 0.1,
+    }
+    text = study_text(
+        title=title,
+        motions={"polarity": ["+", "-"], "scale": [0.2, 0.4, 0.6, 0.8, 1.0, last_scale]},
+        pulses=(SINE | {"duration_s": 2.0},),
+        cases=(RIGID, pads),
+        output={"both_laws": False, "histories": "none"},
+    )
+    return write_study(path.parent, text, path.name)
 
 
 @pytest.fixture(scope="module")

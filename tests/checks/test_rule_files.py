@@ -10,6 +10,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 from check_samples import RIGID, case, folder, runs
+from studies import PADS, SINE, study_text
 
 import rockbatch as rb
 from rockbatch.checks import load_rules, read_verdicts, write_verdicts
@@ -34,25 +35,7 @@ demand = "flight"
 at_most = 0
 reason = "no keys"
 """
-STUDY = """
-[pier]
-alpha = 0.2
-p = 1.0
-
-[[motions.pulse]]
-name = "one-sine"
-shape = "sine"
-amplitude_g = 0.6
-period_s = 0.5
-dt_s = 0.01
-duration_s = 4.0
-
-[[case]]
-name = "pads"
-base = "yielding"
-beta = [50, 60]
-eta = 2.5
-"""
+STUDY = study_text(pulses=(SINE | {"amplitude_g": 0.6},), cases=(PADS | {"beta": [50, 60]},))
 
 
 def rules_file(path, text):

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from studies import PADS, RIGID, study_text, write_study
 
 import rockbatch as rb
 
@@ -81,32 +82,11 @@ def test_nobody_has_a_ledger_who_did_not_ask():
     assert rb.simulate(PIER, BASES["elastic"], SMOOTH, substeps=4).ledger is None
 
 
-STUDY = """
-[pier]
-alpha = 0.2
-p = 1.0
-[[motions.pulse]]
-name = "one-sine"
-shape = "sine"
-amplitude_g = 1.0
-period_s = 0.5
-dt_s = 0.01
-duration_s = 4.0
-[[case]]
-name = "rigid"
-base = "rigid"
-[[case]]
-name = "pads"
-base = "yielding"
-beta = 50
-eta = 2.2
-epsilon = 0.1
-"""
+STUDY = study_text(cases=(RIGID, PADS | {"eta": 2.2, "epsilon": 0.1}))
 
 
 def test_a_study_that_asks_gets_the_ledger_and_the_other_law_as_columns(tmp_path):
-    path = tmp_path / "study.toml"
-    path.write_text(STUDY + "[output]\nledger = true\nboth_laws = true\n", encoding="utf-8")
+    path = write_study(tmp_path, STUDY + "[output]\nledger = true\nboth_laws = true\n")
     table = rb.run(path).set_index("case")
     pads = table.loc["pads"]
     assert pads["energy_plastic_J_kg"] == pytest.approx(
@@ -122,6 +102,5 @@ def test_a_study_that_asks_gets_the_ledger_and_the_other_law_as_columns(tmp_path
 
 
 def test_a_study_that_does_without_has_no_such_columns(tmp_path):
-    path = tmp_path / "study.toml"
-    path.write_text(STUDY + "[output]\nboth_laws = false\n", encoding="utf-8")
+    path = write_study(tmp_path, STUDY + "[output]\nboth_laws = false\n")
     assert not [name for name in rb.run(path).columns if "energy" in name or "other_law" in name]

@@ -9,6 +9,7 @@ from agency_files import dyna_text, geonet_text
 from fixed_column_files import cosmos_text
 from motion_files import RECORDS, needs_records, wiggle, write_at2
 from obspy import Trace
+from studies import FOLDER_STUDY, write_study
 
 from rockbatch.cli import main
 from rockbatch.errors import InputError
@@ -269,11 +270,10 @@ def test_one_line_in_the_study_or_one_option_speaks_for_a_folder_of_files(tmp_pa
     for i in range(1, 8):
         write_text(records, f"rec{i}.txt")
     write_text(records, "known_UP.txt")
-    study = '[pier]\nalpha = 0.13\np = 0.38\n[[case]]\nbase = "rigid"\n[motions]\npath = "records"\n'
-    (tmp_path / "study.toml").write_text(study)
+    write_study(tmp_path, FOLDER_STUDY)
     with pytest.raises(InputError, match="direction not known"):
         ground_motions(load_study(tmp_path / "study.toml"))
-    (tmp_path / "study.toml").write_text(study + 'role = "horizontal"\n')
+    write_study(tmp_path, FOLDER_STUDY + 'role = "horizontal"\n')
     found = ground_motions(load_study(tmp_path / "study.toml"))
     assert [m.name for m in found.motions] == [f"rec{i}" for i in range(1, 8)]
     assert all("direction not known: horizontal, as stated" in m.notes for m in found.motions)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from fixed_column_files import A, B, C, cosmos_text, csmip_channel, smc_text
 from motion_files import RECORDS, needs_records, wiggle, write_at2
+from studies import FOLDER_STUDY, write_study
 
 from rockbatch.cli import main
 from rockbatch.errors import InputError
@@ -22,8 +23,6 @@ from rockbatch.motions.stations import by_station
 from rockbatch.results.run_json import describe
 from rockbatch.study import load_study
 from rockbatch.study.suite import ground_motions
-
-STUDY = '[pier]\nalpha = 0.13\np = 0.38\n[[case]]\nbase = "rigid"\n[motions]\npath = "records"\n'
 
 
 def title(component: str, station: str = "STA") -> str:
@@ -98,8 +97,7 @@ def test_confirm_in_a_study_confirms_the_pga_too_and_confirm_pga_nothing_else(tm
         ('confirm = "high"\n', ["high"]),
         ('confirm = ["high", "ri*"]\n', ["high", "rings"]),
     ):
-        (tmp_path / "study.toml").write_text(STUDY + keys)
-        study = load_study(tmp_path / "study.toml")
+        study = load_study(write_study(tmp_path, FOLDER_STUDY + keys))
         if not used:
             with pytest.raises(InputError, match="no ground motion that can be used"):
                 ground_motions(study)
@@ -225,8 +223,7 @@ def test_where_the_displacement_runs_away_there_is_no_pgd_and_it_is_said(tmp_pat
     spike = np.concatenate([[0.2], wiggle(4000, 5, 0.01)])
     write_at2(tmp_path / "records", "runs.AT2", spike, title="nothing, 000")
     write_at2(tmp_path / "records", "stays.AT2", wiggle(4000, 6, 0.2), title="nothing, 000")
-    (tmp_path / "study.toml").write_text(STUDY)
-    study = load_study(tmp_path / "study.toml")
+    study = load_study(write_study(tmp_path, FOLDER_STUDY))
     told = {record["record"]: record for record in describe(study, ground_motions(study))["records"]}
     assert told["stays"]["pgd_m"] > 0
     assert told["stays"]["findings"] == []

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from motion_files import wiggle, write_at2
+from studies import FOLDER_STUDY, write_study
 
 from rockbatch.cli import main
 from rockbatch.errors import InputError
@@ -18,8 +19,6 @@ from rockbatch.motions.spectrum import spectral_acceleration
 from rockbatch.study import load_study
 from rockbatch.study.suite import ground_motions
 
-STUDY = '[pier]\nalpha = 0.13\np = 0.38\n[[case]]\nbase = "rigid"\n[motions]\npath = "records"\n'
-
 
 def component(values, raw: bool = False) -> Component:
     return Component("c", 0.1, np.asarray(values, float), raw=raw)
@@ -31,8 +30,7 @@ def motion(name: str = "m", scale: float = 1.0, **more) -> Motion:
 
 
 def study_of(folder, keys: str = ""):
-    (folder / "study.toml").write_text(STUDY + keys)
-    return load_study(folder / "study.toml")
+    return load_study(write_study(folder, FOLDER_STUDY + keys))
 
 
 # Offsets

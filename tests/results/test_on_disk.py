@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 import pint
 import pytest
+from studies import PADS, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.batch.carrying_out import carry_out
@@ -26,61 +27,28 @@ from rockbatch.simulation import Run, run_to_tolerance
 from rockbatch.simulation.histories import histories, simulate
 from rockbatch.study.suite import ground_motions
 
-STUDY = """
-title = "Two pulses, three bases"
-
-[pier]
-alpha = [0.2, 0.25]
-p = 1.0
-
-[motions]
-polarity = ["+", "-"]
-
-[[motions.pulse]]
-name = "weak"
-shape = "sine"
-amplitude_g = 0.5
-period_s = 0.5
-dt_s = 0.01
-duration_s = 1.0
-
-[[motions.pulse]]
-name = "strong"
-shape = "sine"
-amplitude_g = 1.0
-period_s = 0.5
-dt_s = 0.01
-duration_s = 1.0
-
-[output]
-histories = "all"
-ledger = true
-
-[[case]]
-name = "rigid"
-base = "rigid"
-
-[[case]]
-name = "elastic"
-base = "elastic"
-beta = 50
-
-[[case]]
-name = "pads"
-base = "yielding"
-beta = 50
-eta = 2.5
-epsilon = 0.1
-spring = ["bouc-wen", "epp"]
-"""
+STUDY = study_text(
+    title="Two pulses, three bases",
+    pier={"alpha": [0.2, 0.25], "p": 1.0},
+    motions={"polarity": ["+", "-"]},
+    pulses=(
+        SINE | {"name": "weak", "amplitude_g": 0.5, "duration_s": 1.0},
+        SINE | {"name": "strong", "duration_s": 1.0},
+    ),
+    cases=(
+        RIGID,
+        {"name": "elastic", "base": "elastic", "beta": 50},
+        PADS | {"epsilon": 0.1, "spring": ["bouc-wen", "epp"]},
+    ),
+    output={"histories": "all", "ledger": True},
+)
 PIER = rb.Pier(0.2, 1.0)
 CREATED = "2007-06-25T10:00:00+00:00"
 
 
 def carried_out(folder, text=STUDY):
     """A study as ``rockbatch run`` carries it out, up to its histories: what is saved, the study and its runs."""
-    path = folder / "study.toml"
-    path.write_text(text, encoding="utf-8")
+    path = write_study(folder, text)
     study = rb.load_study(path)
     motions = ground_motions(study)
     runs = Plan(study, motions)
