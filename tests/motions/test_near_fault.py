@@ -6,7 +6,7 @@ import pytest
 
 import rockbatch as rb
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 RECORDS = ROOT / "motions" / "near_fault"
 
 
