@@ -34,7 +34,9 @@ def test_sections_of_a_run_stand_in_the_order_of_the_list_under_anchors_of_their
     contents = read(tmp_path)
     made = [made for section in SECTIONS if (made := section(contents)) is not None]
     anchors = [one.anchor for one in made]
-    assert anchors == ["studied", "checks", "figure", "peaks", "suite", "records", "accuracy", "notes", "reproduce"]
+    assert len(set(anchors)) == len(anchors)
+    assert {"studied", "checks", "figure", "peaks", "suite", "records", "accuracy", "reproduce"} <= set(anchors)
+    assert not {"references", "fragility", "spectrum", "sensitivity", "histories", "unusable"} & set(anchors)
     text = page(contents)
     places = [text.index(f'<section id="{anchor}">') for anchor in anchors]
     assert places == sorted(places)
