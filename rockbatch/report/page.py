@@ -8,6 +8,7 @@ from rockbatch.report.document import Section, document
 from rockbatch.report.pair import Pair
 from rockbatch.report.sections import (
     accuracy,
+    answer,
     fragility,
     ground_motions,
     histories,
@@ -25,9 +26,9 @@ from rockbatch.report.sections import (
 )
 
 SECTIONS: tuple[Callable[[Contents], Section | None], ...] = (
-    studied.section,
-    verdicts.section,
+    answer.section,
     peak_rotations.section,
+    verdicts.section,
     published.section,
     peaks.section,
     statistics.section,
@@ -35,13 +36,14 @@ SECTIONS: tuple[Callable[[Contents], Section | None], ...] = (
     spectrum.section,
     sensitivity.section,
     histories.section,
+    studied.section,
     ground_motions.section,
     unusable.section,
     accuracy.section,
     notes.section,
     reproduce.section,
 )
-"""Those of one folder, from ``sections/``, in the order of the page; None: does not apply."""
+"""Those of one folder, from ``sections/``, in the order of the page: the answer first, then results, then inputs."""
 
 SECTIONS_OF_TWO: tuple[Callable[[Pair], Section | None], ...] = (
     studies.section,
@@ -52,7 +54,7 @@ SECTIONS_OF_TWO: tuple[Callable[[Pair], Section | None], ...] = (
     only_in_one.section,
     difference.section,
 )
-"""Those of two folders, from ``compared/``, in the order of the page; None: does not apply."""
+"""Those of two folders, from ``compared/``, in the order of the page."""
 
 
 def page(contents: Contents) -> str:

@@ -2,12 +2,12 @@
 
 import math
 
-from rockbatch.report.answer import worst
 from rockbatch.report.document import Section, paragraphs
 from rockbatch.report.finished import Finished
 from rockbatch.report.labels import counted
 from rockbatch.report.markup import Markup, join, tag
 from rockbatch.report.pair import SIDES, Pair
+from rockbatch.report.sections.answer import worst
 from rockbatch.report.sections.studied import studied
 
 

@@ -4,7 +4,6 @@ import math
 from collections.abc import Sequence
 
 from rockbatch.checks import Verdict
-from rockbatch.report.answer import quality, worst
 from rockbatch.report.contents import Contents
 from rockbatch.report.document import Section
 from rockbatch.report.labels import quantity
@@ -17,12 +16,14 @@ MOST_NAMES = 6
 
 
 def section(contents: Contents) -> Section | None:
-    """The worst result and the answer, how far to trust them, and every check in every case."""
-    finished, verdicts = contents.finished, contents.verdicts
-    if finished is None:
+    """Every check in every case, what the checks ask, and what does not pass; None where nothing was checked."""
+    verdicts = contents.verdicts
+    if not verdicts:
         return None
-    lead = tag("p", worst(finished), class_="lead"), tag("div", answer(verdicts), class_="lead")
-    return Section("Does it pass", "checks", join(*lead, quality(finished), _checks(verdicts)))
+    parts = [legend(), matrix(verdicts), tag("h3", "What the checks ask"), _asked(verdicts)]
+    if any(one.verdict in ("fail", "not decided") for one in verdicts):
+        parts += [tag("h3", "What does not pass"), _shortfalls(verdicts)]
+    return Section("Every check", "checks", join(*parts))
 
 
 def answer(verdicts: Sequence[Verdict]) -> Markup:
@@ -71,16 +72,6 @@ def _by_case(verdicts: Sequence[Verdict]) -> dict[str, list[Verdict]]:
         words += [f"motions scaled by {one.scale:g}"] if scaled else []
         cases.setdefault(one.case + (f" ({', '.join(words)})" if words else ""), []).append(one)
     return cases
-
-
-def _checks(verdicts: Sequence[Verdict]) -> Markup:
-    """Every check in every case, what the checks ask, and what does not pass in numbers."""
-    if not verdicts:
-        return Markup("")
-    parts = [legend(), matrix(verdicts), tag("h3", "What the checks ask"), _asked(verdicts)]
-    if any(one.verdict in ("fail", "not decided") for one in verdicts):
-        parts += [tag("h3", "What does not pass"), _shortfalls(verdicts)]
-    return join(*parts)
 
 
 def legend() -> Markup:

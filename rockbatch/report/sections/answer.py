@@ -1,14 +1,27 @@
-"""The answer in sentences: the worst result, and how far to trust it."""
+"""The answer in sentences: the worst result, whether the pier passes, and how far to trust that."""
 
 import math
 from typing import TYPE_CHECKING, Any
 
+from rockbatch.checks.demands import DEMANDS
+from rockbatch.report.contents import Contents
+from rockbatch.report.document import Section
 from rockbatch.report.finished import Finished, worst_first
 from rockbatch.report.labels import counted
 from rockbatch.report.markup import Markup, join, number, tag
+from rockbatch.report.sections import verdicts
 
 if TYPE_CHECKING:
     import pandas as pd
+
+
+def section(contents: Contents) -> Section | None:
+    """What the first screen says; every check and every run follow further down."""
+    finished = contents.finished
+    if finished is None:
+        return None
+    passes = tag("div", verdicts.answer(contents.verdicts), class_="lead")
+    return Section("The answer", "answer", join(passes, tag("p", worst(finished), class_="lead"), quality(finished)))
 
 
 def worst(finished: Finished) -> Markup:
@@ -30,6 +43,9 @@ def worst(finished: Finished) -> Markup:
             f"{': ' if len(flown) == 1 else ', soonest in '}"
             f"{finished.where(flown.sort_values('flight_s', kind='stable').iloc[0])}."
         )
+    guided = int((runs["flight_s"].notna() & (runs["status"] == "ok")).sum())
+    if guided:
+        sentences.append(f" In {counted(guided, 'run')} both pivots left the ground, and the pier was guided down.")
     return join(*sentences)
 
 
@@ -39,9 +55,15 @@ def _largest(finished: Finished, run: "pd.Series[Any]", among: bool) -> list[obj
     return [
         f"The largest rotation{' of the runs that end standing' if among else ''} is ",
         tag("strong", "θ", tag("sub", "max"), f" = {number(theta)} α"),
-        f" ({number(theta * alpha, '.3g')} rad, {number(math.degrees(theta * alpha), '.3g')}°): "
-        f"{finished.where(run)}{when}.",
+        f" ({number(theta * alpha, '.3g')} rad, {number(math.degrees(theta * alpha), '.3g')}°), "
+        f"and the heel rises by {number(1000 * _uplift(finished, run), '.3g')} mm: {finished.where(run)}{when}.",
     ]
+
+
+def _uplift(finished: Finished, run: "pd.Series[Any]") -> float:
+    """Greatest rise of the heel above the toe [m], as the checks have it."""
+    case = finished.cases[run["series"], run["pier"]]
+    return float(DEMANDS["heel_uplift_m"].of(run.to_frame().T, case).value[0])
 
 
 def quality(finished: Finished) -> Markup:
