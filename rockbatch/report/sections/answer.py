@@ -56,7 +56,7 @@ def _largest(finished: Finished, run: "pd.Series[Any]", among: bool) -> list[obj
         f"The largest rotation{' of the runs that end standing' if among else ''} is ",
         tag("strong", "θ", tag("sub", "max"), f" = {number(theta)} α"),
         f" ({number(theta * alpha, '.3g')} rad, {number(math.degrees(theta * alpha), '.3g')}°), "
-        f"and the heel rises by {number(1000 * _uplift(finished, run), '.3g')} mm: {finished.where(run)}{when}.",
+        f"and the heel rises by {number(1000 * _uplift(finished, run), '.3g')}\u00a0mm: {finished.where(run)}{when}.",
     ]
 
 
