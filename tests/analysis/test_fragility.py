@@ -27,6 +27,7 @@ from rockbatch.commands.fragility import table
 from rockbatch.errors import InputError
 from rockbatch.motions.measures import pga, pgd, pgv
 from rockbatch.motions.spectrum import spectral_acceleration
+from rockbatch.report.contents import Contents
 from rockbatch.report.sections.fragility import section
 from rockbatch.results.columns import columns
 from rockbatch.study import load_study
@@ -494,7 +495,7 @@ def test_undecided_runs_are_told_first_in_the_table_the_files_and_the_report(tmp
     told = described([curve], spec, study, 30)
     told |= {"study": {"sha256": "here"}}
     (tmp_path / "fragility.json").write_text(json.dumps(told), encoding="utf-8")
-    page = section(tmp_path, "here")
+    page = section(Contents(tmp_path, told["study"])).content
     assert page.startswith("<p><strong>Too many runs are undecided for these curves to say much: overturning, rigid")
     assert 'class="open s1"' in page
     assert "30 of 120 runs undecided: 30 failed" in page
@@ -581,7 +582,8 @@ def test_bands_of_the_report_hold_their_curves_and_rise_with_the_intensity(tmp_p
 
 def test_the_report_leaves_out_curves_of_another_state_of_the_study(tmp_path):
     _, out = page_of(tmp_path, STRIPES)
-    digest = json.loads((out / "fragility.json").read_text(encoding="utf-8"))["study"]["sha256"]
-    assert section(out, digest) == section(out, None) != ""
-    assert section(out, "another") == section(tmp_path, None) == ""
+    study = json.loads((out / "fragility.json").read_text(encoding="utf-8"))["study"]
+    assert section(Contents(out, study)) is not None
+    assert section(Contents(out, study | {"sha256": "another"})) is None
+    assert section(Contents(tmp_path, study)) is None
     assert not (out / "fragility_capacities.csv").exists()

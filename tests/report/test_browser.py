@@ -79,6 +79,17 @@ def test_nothing_is_asked_for_nothing_goes_wrong_and_nothing_sticks_out(tmp_path
     assert found == {"wrong": [], "requests": [], "wide": True}
 
 
+def test_the_first_screen_holds_the_answer_and_the_figure_of_peaks(tmp_path, page):
+    act = """
+    const figure = document.querySelector("#figure .panels > *").getBoundingClientRect();
+    found.answer = document.querySelector("#answer").getBoundingClientRect().bottom;
+    found.figure = figure.bottom;
+    found.inputs = document.querySelector("#studied").getBoundingClientRect().top;
+    """
+    found = browse(tmp_path, page, act, size=(1400, 900))
+    assert found["answer"] < found["figure"] < 900 < found["inputs"]
+
+
 def test_the_policy_of_the_page_would_stop_a_request(tmp_path, page):
     # So that the test above can fail
     found = browse(tmp_path, page, 'document.body.append(Object.assign(new Image(), { src: "file:///x.png" }));')

@@ -3,7 +3,7 @@
 import math
 
 from report_page import Page
-from report_samples import write_results
+from report_samples import FOUNDATIONS, write_results
 
 from rockbatch.checks import Verdict, write_verdicts
 from rockbatch.report import write_report
@@ -65,3 +65,14 @@ def test_a_study_without_checks_does_not_claim_to_pass(tmp_path):
     text = Page(write_report(tmp_path, []).read_text(encoding="utf-8")).text
     assert "No limits were set: nothing here passes or fails." in text
     assert "✓" not in text
+
+
+def test_the_verdict_comes_before_the_figure_and_the_table_of_checks_after_it(tmp_path):
+    write_results(tmp_path)
+    write_verdicts(tmp_path, [verdict(case, "fail", ratio=1.25) for case, _ in FOUNDATIONS])
+    text = write_report(tmp_path, []).read_text(encoding="utf-8")
+    places = [text.index(f'<section id="{anchor}">') for anchor in ("answer", "figure", "checks", "studied")]
+    assert places == sorted(places)
+    assert places[0] < text.index("all 5 cases fail") < places[1]
+    assert "answer" not in Page(text).tables
+    assert len(Page(text).tables["checks"]) > len(FOUNDATIONS)

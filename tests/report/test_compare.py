@@ -13,8 +13,8 @@ from report_samples import FIG7, FOUNDATIONS, case_entry, three_piers, write_res
 from rockbatch.cli import main
 from rockbatch.pier import Pier, YieldingBase
 from rockbatch.report import write_comparison
-from rockbatch.report.compare import match
 from rockbatch.report.finished import read
+from rockbatch.report.pair import match
 
 PIER = Pier(alpha=0.13, p=0.38)
 

@@ -6,26 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from rockbatch.report.document import figure
 from rockbatch.report.drawing.axes import Axes, Scale
 from rockbatch.report.drawing.svg import COLOURS, curve, key, line, svg, text
-from rockbatch.report.finished import Finished
 from rockbatch.report.markup import Markup, join
 
 LABELLED = COLOURS
 """Suites of as many records show which is which; larger ones show their spread."""
-
-
-def section(finished: Finished) -> Markup:
-    """The picture and its caption; nothing where run.json has no spectra, as of very large suites."""
-    records, spectra = finished.info["records"], finished.info.get("spectra")
-    if not spectra or len(spectra["sa_g"]) != len(records):
-        return join()
-    caption = (
-        f"Pseudo-spectral accelerations of the horizontal components, {100 * spectra['damping']:g} % damped, before "
-        "the study's scale."
-    )
-    return figure(draw(spectra, [record["record"] for record in records]), caption)
 
 
 def draw(spectra: dict[str, Any], names: Sequence[str]) -> Markup:
