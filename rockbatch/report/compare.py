@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from rockbatch.checks import Verdict
 from rockbatch.report.document import Section, document, paragraphs
 from rockbatch.report.finished import Finished, as_dicts, worst_first
-from rockbatch.report.labels import quantity, symbol
+from rockbatch.report.labels import head, quantity, symbol
 from rockbatch.report.markup import Markup, join, tag
 from rockbatch.report.sections import peak_rotations, statistics, summary, verdicts
-from rockbatch.report.sections.peaks import outcome
-from rockbatch.report.table import MOST_ROWS, THETA, THETA_FORMAT, Head, sub, table, told_apart
+from rockbatch.report.sections.peaks import on_scale, outcome
+from rockbatch.report.table import MOST_ROWS, THETA, THETA_FORMAT, Head, table, told_apart
+from rockbatch.results.columns import COLUMNS
 from rockbatch.study import PIER_KEYS
 
 if TYPE_CHECKING:
@@ -167,19 +168,16 @@ def _pairs(matched: Matched) -> Markup:
         Head("B", THETA_FORMAT, over=THETA),
         Head("B / A", ".3f", over=THETA),
     ]
-    quantities = {
-        "theta_res_over_alpha": (1, sub("θ", "res", "/α"), ".5f"),
-        "settlement_m": (1000, "settlement [mm]", ".2f"),
-    }
-    heads += [Head(name, form, over=over) for _, over, form in quantities.values() for name in SIDES]
+    more = [column for column in COLUMNS.values() if column.suite and column.name != "theta_max_over_alpha"]
+    heads += [Head(side, over=head(column).says, form=head(column).form) for column in more for side in SIDES]
     pairs = as_dicts(a.iloc[order]), as_dicts(b.iloc[order])
     rows = []
     for place in range(len(order)):
         pair = pairs[0][place], pairs[1][place]
         shown = [outcome(run) for run in pair]
         ratio = _ratio(*(run["theta_max_over_alpha"] if run["status"] == "ok" else math.nan for run in pair))
-        more = [factor * run[key] for key, (factor, _, _) in quantities.items() for run in pair]
-        rows.append([*(pair[0][name] for name in names), *shown, ratio, *(None if x != x else x for x in more)])
+        others = (on_scale(column.name, run[column.name]) for column in more for run in pair)
+        rows.append([*(pair[0][name] for name in names), *shown, ratio, *others])
     return join(told_apart(len(order), len(a), "worst"), table(heads, rows, sortable=True, name="Pairs of runs"))
 
 
