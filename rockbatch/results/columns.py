@@ -7,6 +7,7 @@ The file, its types and units, the report's tables and tooltips, the comparison 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from itertools import groupby
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from rockbatch.checks.suite import MIRROR_OF, OTHER_LAW
@@ -90,11 +91,6 @@ class Column:
     stood: bool = False
     suite: OfSuite | None = None
     asked: Callable[[Study], bool] | None = None
-
-    def value(self, outcome: Outcome, alpha: float) -> Any:
-        """What stands in it for ``outcome`` on a pier of slenderness ``alpha`` [rad]; None where it does not apply."""
-        found = getattr(outcome, self.of) if isinstance(self.of, str) else self.of and self.of(outcome)
-        return found / alpha if self.over_alpha and found is not None else found
 
     @property
     def where(self) -> str:
@@ -232,14 +228,22 @@ COLUMNS = {column.name: column for column in (*STAYING, *MORE, *ASKED)}
 TEXTS = tuple(column.name for column in COLUMNS.values() if column.kind == "text")
 COUNTS = tuple(column.name for column in COLUMNS.values() if column.kind == "count")
 
-_OF_OUTCOME = tuple(column for column in COLUMNS.values() if column.of is not None)
+_FIELDS = {column.name: column.of for column in COLUMNS.values() if isinstance(column.of, str)}
+_FUNCTIONS = {column.name: column.of for column in COLUMNS.values() if callable(column.of)}
+_OVER_ALPHA = tuple(column.name for column in COLUMNS.values() if column.over_alpha)
+_read_fields = attrgetter(*_FIELDS.values())
 
 
 def row(record: str, polarity: str, scale: float, case: Case, outcome: Outcome) -> dict[str, Any]:
     """Row of peaks.csv: the names of a run, and its outcome over α."""
-    names = {"record": record, "case": case.name, "polarity": polarity, "scale": scale}
     alpha = case.pier.alpha
-    return names | case.columns | {column.name: column.value(outcome, alpha) for column in _OF_OUTCOME}
+    found: dict[str, Any] = {"record": record, "case": case.name, "polarity": polarity, "scale": scale, **case.columns}
+    found |= zip(_FIELDS, _read_fields(outcome), strict=True)
+    found |= {name: of(outcome) for name, of in _FUNCTIONS.items()}
+    for name in _OVER_ALPHA:
+        if found[name] is not None:
+            found[name] /= alpha
+    return found
 
 
 def unusable_rows(motions: MotionSet) -> list[dict[str, Any]]:
