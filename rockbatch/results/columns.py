@@ -74,6 +74,8 @@ class Column:
         Bases to which it applies; it is empty on others.
     stood : bool
         Whether it is empty where the pier overturned, or flight ended the run.
+    sometimes : bool
+        Whether only some of the runs to which it applies have one: a flight, a reason.
     suite : OfSuite or None
         How its statistics are called, of what has any; two studies are compared by it, too.
     asked : function or None
@@ -89,14 +91,16 @@ class Column:
     over_alpha: bool = False
     bases: tuple[str, ...] = ALL
     stood: bool = False
+    sometimes: bool = False
     suite: OfSuite | None = None
     asked: Callable[[Study], bool] | None = None
 
     @property
     def where(self) -> str:
         """To which runs it applies, in words; empty for all."""
-        kinds = {ALL: "", SPRINGS: "springs", YIELDING: "yielding springs"}
-        return ", ".join(filter(None, (kinds[self.bases], "where the pier stood" if self.stood else "")))
+        base = {ALL: "", SPRINGS: "springs", YIELDING: "yielding springs"}[self.bases]
+        run = "where the pier stood" if self.stood else "where there is one" if self.sometimes else ""
+        return ", ".join(filter(None, (base, run)))
 
 
 def _energy(term: str) -> Column:
@@ -147,8 +151,8 @@ STAYING = (
     Column("impacts", "number of impacts", "impacts", kind="count", page=OnPage("impacts", ".0f")),
     Column("separations", "number of separations", "separations", kind="count", page=OnPage("separations", ".0f")),
     Column(
-        "flight_s", "first time with both pivots off the ground, also where the run went on; empty without flight",
-        "t_flight", "s", OnPage("flight [s]", ".3f"),
+        "flight_s", "first time with both pivots off the ground, also where the run went on", "t_flight",
+        "s", OnPage("flight [s]", ".3f"), sometimes=True,
     ),
     Column("substeps", "integration steps per sample", "substeps", kind="count", page=OnPage("substeps", ".0f")),
 )  # fmt: skip
@@ -199,10 +203,13 @@ MORE = (
         "settlement_drift_m_s", "how fast the settlement went on changing when it was read", "settlement_drift", "m/s",
         OnPage("drift [mm/s]", ".3f", 1000, "settlement_m"), bases=YIELDING, stood=True,
     ),
-    Column("reason", "why a run failed, or what made the pier fly", "reason", kind="text", page=OnPage("reason")),
+    Column(
+        "reason", "why a run failed, or what made the pier fly", "reason", kind="text", page=OnPage("reason"),
+        sometimes=True,
+    ),
     Column(
         "note", "what else there is to know of a run that is right: counts that have not settled, say", "note",
-        kind="text", page=OnPage("note"),
+        kind="text", page=OnPage("note"), sometimes=True,
     ),
 )  # fmt: skip
 """Columns that follow those of the varied keys. A table of an earlier version may lack the last of them."""
@@ -210,7 +217,7 @@ MORE = (
 ASKED = (
     Column(
         MIRROR_OF, 'with both polarities, "+" in the rows of "-": the run whose mirror image this is', kind="text",
-        asked=lambda study: len(study.motions.polarity) > 1,
+        sometimes=True, asked=lambda study: len(study.motions.polarity) > 1,
     ),
     Column(
         OTHER_LAW,
