@@ -3,11 +3,13 @@
 import argparse
 import os
 import sys
-from collections.abc import Sequence
+import warnings
+from collections.abc import Callable, Sequence
+from typing import Any
 
 from rockbatch._version import __version__
 from rockbatch.commands import accuracy, check, fragility, merge, motions, report, run, sensitivity, spectrum
-from rockbatch.errors import InputError
+from rockbatch.errors import InputError, MissingColumns
 
 COMMANDS = {
     "run": run,
@@ -33,7 +35,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         command.add_arguments(subparsers.add_parser(name, help=command.HELP, description=command.HELP))
     parsed = parser.parse_args(arguments)
     try:
-        return COMMANDS[parsed.command].main(parsed)
+        with warnings.catch_warnings():
+            warnings.simplefilter("always", MissingColumns)
+            warnings.showwarning = _plainly(warnings.showwarning)
+            return COMMANDS[parsed.command].main(parsed)
     except InputError as error:
         for problem in error.problems:
             print(f"rockbatch: {problem}", file=sys.stderr)
@@ -51,6 +56,20 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         print("rockbatch: interrupted", file=sys.stderr)
         return 130
+
+
+def _plainly(otherwise: Callable[..., None]) -> Callable[..., None]:
+    """How warnings are shown: what there is to say of a folder of results once and in plain words, others ``otherwise``."""
+    said = set()
+
+    def show(message: Warning | str, category: type[Warning], *place: Any) -> None:
+        if not issubclass(category, MissingColumns):
+            otherwise(message, category, *place)
+        elif str(message) not in said:
+            said.add(str(message))
+            print(f"rockbatch: {message}", file=sys.stderr)
+
+    return show
 
 
 if __name__ == "__main__":

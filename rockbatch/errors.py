@@ -1,4 +1,4 @@
-"""Mistakes of the user, told all at once and without a traceback."""
+"""Mistakes of the user, told all at once and without a traceback, and what they should know of results they open."""
 
 
 class InputError(ValueError):
@@ -19,3 +19,7 @@ class UnstatedError(InputError):
     def __init__(self, problem: str, *keys: str) -> None:
         super().__init__(problem)
         self.keys = keys
+
+
+class MissingColumns(UserWarning):
+    """Results of an earlier version, without columns that it did not have yet."""

@@ -1,9 +1,13 @@
 """What foundations, piers and quantities are called on the page."""
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from rockbatch.report.markup import Markup, escape, tag
+from rockbatch.report.table import Head
+from rockbatch.results.columns import Column
 from rockbatch.study import PIER_KEYS
 
 SYMBOLS = {
@@ -56,6 +60,18 @@ def symbol(key: str) -> str:
     """Head of a column that holds values of a study key: "p [rad/s]"."""
     letter, unit = SYMBOLS.get(key, ("", ""))
     return (letter or key) + (f" [{unit}]" if unit else "")
+
+
+def heading(words: str) -> Markup:
+    """Words with their indices: "θ_max/α" has one."""
+    return Markup(re.sub(r"_([a-z]+)", lambda found: tag("sub", found[1]), escape(words)))
+
+
+def head(column: Column) -> Head:
+    """Head of a column of peaks.csv, with its name in the file and what it means."""
+    assert column.page is not None
+    factor = f" × {column.page.factor}" if column.page.factor != 1 else ""
+    return Head(heading(column.page.head), column.page.form, f"{column.name}{factor}: {column.meaning}")
 
 
 def named(cases: Mapping[Key, Sequence[dict[str, Any]]], varied: Sequence[str]) -> dict[Key, Series]:

@@ -1,9 +1,16 @@
-"""The columns of peaks.csv, and its rows."""
+"""The columns of peaks.csv: each is one row of a table here, from which all that tells of it is made.
 
-from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any
+The file, its types and units, the report's tables and tooltips, the comparison of two studies and the README's list follow from
+:data:`COLUMNS`. A new column is a row at the end of :data:`MORE`, and a number in :class:`Outcome` for it.
+"""
 
-from rockbatch.checks.suite import MIRROR_OF
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from itertools import groupby
+from operator import attrgetter
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+
+from rockbatch.checks.suite import MIRROR_OF, OTHER_LAW
 from rockbatch.motions import MotionSet
 from rockbatch.results.outcome import Outcome
 from rockbatch.study import Case, Study
@@ -15,84 +22,235 @@ PEAKS = "peaks.csv"
 PART = f"{PEAKS}.part"
 """Finished runs of a table that is under way."""
 
-COLUMNS = (
-    "record",
-    "case",
-    "polarity",
-    "scale",
-    "status",
-    "theta_max_over_alpha",
-    "theta_max_error",
-    "t_max_s",
-    "theta_res_over_alpha",
-    "settlement_m",
-    "impacts",
-    "separations",
-    "flight_s",
-    "substeps",
-)
-"""Columns that stay; then come those of the keys that the study varies, then :data:`MORE_COLUMNS`."""
-
-MORE_COLUMNS = (
-    "theta_res_error",
-    "t_end_s",
-    "base_tilt_rad",
-    "ductility_left",
-    "ductility_right",
-    "dissipated_left_J_kg",
-    "dissipated_right_J_kg",
-    "residual_s",
-    "theta_res_drift_per_s",
-    "settlement_drift_m_s",
-    "reason",
-    "note",
-)
-
 TERMS = ("kinetic", "potential", "elastic", "input", "plastic", "impact", "p_delta", "constraint", "remainder")
 """Terms of the energy ledger, in the order in which the core returns them."""
 
-TEXTS = ("record", "case", "polarity", "status", "reason", "note", MIRROR_OF)
-COUNTS = ("impacts", "separations", "substeps")
+ALL = ("rigid", "elastic", "yielding")
+SPRINGS = ("elastic", "yielding")
+YIELDING = ("yielding",)
+
+
+class OnPage(NamedTuple):
+    """How a column stands in the report: under what, with its unit there; format; factor from the file's unit to the page's.
+
+    Of a word after a low line, the page makes an index: "θ_max/α". ``behind`` names the column after which it is put, where
+    that is not the one before it in the file.
+    """
+
+    head: str
+    form: str = ".10g"
+    factor: int = 1
+    behind: str = ""
+
+
+class OfSuite(NamedTuple):
+    """How the statistics of a column over a suite are called, and the format of its numbers there."""
+
+    heading: str
+    form: str
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of peaks.csv.
+
+    Attributes
+    ----------
+    name : str
+        With the unit of what has one; fixed, since users' scripts read it.
+    meaning : str
+        What it is, in a sentence; the same for those that are told together.
+    of : str, function or None
+        Field of :class:`Outcome`, or function of one; None for what names the run.
+    unit : str
+        Of a number, as pint reads it; "1" is none.
+    page : OnPage or None
+        How the report shows it; None: it does not.
+    kind : str
+        "number", "count" (a whole one) or "text".
+    over_alpha : bool
+        Whether the outcome's angle is divided by the pier's α.
+    bases : tuple of str
+        Bases to which it applies; it is empty on others.
+    stood : bool
+        Whether it is empty where the pier overturned, or flight ended the run.
+    sometimes : bool
+        Whether only some of the runs to which it applies have one: a flight, a reason.
+    suite : OfSuite or None
+        How its statistics are called, of what has any; two studies are compared by it, too.
+    asked : function or None
+        Whether a study asks for it; None: it is always there.
+    """
+
+    name: str
+    meaning: str
+    of: str | Callable[[Outcome], Any] | None = None
+    unit: str = "1"
+    page: OnPage | None = None
+    kind: Literal["number", "count", "text"] = "number"
+    over_alpha: bool = False
+    bases: tuple[str, ...] = ALL
+    stood: bool = False
+    sometimes: bool = False
+    suite: OfSuite | None = None
+    asked: Callable[[Study], bool] | None = None
+
+    @property
+    def where(self) -> str:
+        """To which runs it applies, in words; empty for all."""
+        base = {ALL: "", SPRINGS: "springs", YIELDING: "yielding springs"}[self.bases]
+        run = "where the pier stood" if self.stood else "where there is one" if self.sometimes else ""
+        return ", ".join(filter(None, (base, run)))
+
+
+def _energy(term: str) -> Column:
+    def of(outcome: Outcome) -> float | None:
+        return None if outcome.energies is None else outcome.energies[term]
+
+    return Column(
+        f"energy_{term}_J_kg",
+        "energy ledger at the end, per unit mass, and the greatest remainder on the way; with [output] ledger = true",
+        of,
+        "J/kg",
+        OnPage(f"{term.replace('_', '-')} [J/kg]", ".0e" if term == "remainder" else ".4f"),
+        asked=lambda study: study.output.ledger,
+    )
+
+
+STAYING = (
+    Column("record", "ground motion: its file's name, or its channel's", kind="text", page=OnPage("record")),
+    Column("case", "foundation, as the study calls it", kind="text", page=OnPage("case")),
+    Column(
+        "polarity", "+ as recorded, - horizontal component reversed", kind="text", page=OnPage("polarity")
+    ),
+    Column("scale", "factor on all components", page=OnPage("scale")),
+    Column(
+        "status",
+        "ok, overturned, flight (both pivots left the ground and the run ended there: see reason) or failed (see reason)",
+        "status", kind="text", page=OnPage("status"),
+    ),
+    Column(
+        "theta_max_over_alpha", "greatest rotation over α; the run goes on until nothing later can exceed it",
+        "theta_max", page=OnPage("θ_max/α", ".5f"), over_alpha=True, suite=OfSuite("Largest rotation θ_max/α", ".4f"),
+    ),
+    Column(
+        "theta_max_error",
+        "estimated error of the greatest rotation over α: what halving the step still changed; empty with a fixed step",
+        "theta_max_error", page=OnPage("±", ".0e"), over_alpha=True, stood=True,
+    ),
+    Column("t_max_s", "time of the greatest rotation", "t_max", "s", OnPage("at t [s]", ".2f")),
+    Column(
+        "theta_res_over_alpha", "residual rotation over α, at rest on the deformed base", "theta_res",
+        page=OnPage("θ_res/α", ".5f"), over_alpha=True, bases=SPRINGS, stood=True,
+        suite=OfSuite("Residual rotation |θ_res|/α", ".5f"),
+    ),
+    Column(
+        "settlement_m", "mean settlement of the supports since the start", "settlement", "m",
+        OnPage("settlement [mm]", ".2f", 1000), bases=SPRINGS, stood=True, suite=OfSuite("Settlement [mm]", ".2f"),
+    ),
+    Column("impacts", "number of impacts", "impacts", kind="count", page=OnPage("impacts", ".0f")),
+    Column("separations", "number of separations", "separations", kind="count", page=OnPage("separations", ".0f")),
+    Column(
+        "flight_s", "first time with both pivots off the ground, also where the run went on", "t_flight",
+        "s", OnPage("flight [s]", ".3f"), sometimes=True,
+    ),
+    Column("substeps", "integration steps per sample", "substeps", kind="count", page=OnPage("substeps", ".0f")),
+)  # fmt: skip
+"""Columns that every table has, in its order; then come those of the keys that the study varies."""
+
+_DUCTILITY = "greatest deflection of each support over its yield deflection"
+_DISSIPATED = "plastic work of each support, per unit mass"
+
+MORE = (
+    Column(
+        "theta_res_error", "estimated error of the residual rotation over α; empty with a fixed step",
+        "theta_res_error", page=OnPage("±", ".0e", behind="theta_res_over_alpha"), over_alpha=True, bases=SPRINGS,
+        stood=True,
+    ),
+    Column("t_end_s", "when the analysis ended", "t_end", "s", OnPage("end [s]", ".2f", behind="flight_s")),
+    Column(
+        "base_tilt_rad", "residual tilt of the base", "base_tilt", "rad",
+        OnPage("base tilt [mrad]", ".3f", 1000, "theta_res_error"), bases=SPRINGS, stood=True,
+    ),
+    Column(
+        "ductility_left", _DUCTILITY, "ductility_left", page=OnPage("demand L", ".2f", behind="flight_s"),
+        bases=YIELDING,
+    ),
+    Column(
+        "ductility_right", _DUCTILITY, "ductility_right", page=OnPage("demand R", ".2f", behind="ductility_left"),
+        bases=YIELDING,
+    ),
+    Column(
+        "dissipated_left_J_kg", _DISSIPATED, "dissipated_left", "J/kg",
+        OnPage("dissipated L [J/kg]", ".4f", behind="ductility_right"), bases=YIELDING,
+    ),
+    Column(
+        "dissipated_right_J_kg", _DISSIPATED, "dissipated_right", "J/kg",
+        OnPage("dissipated R [J/kg]", ".4f", behind="dissipated_left_J_kg"), bases=YIELDING,
+    ),
+    Column(
+        "residual_s",
+        "when residual rotation, tilt and settlement were read, at least five vertical periods after the record",
+        "t_read", "s", OnPage("read at [s]", ".2f", behind="settlement_m"), bases=YIELDING, stood=True,
+    ),
+    Column(
+        "theta_res_drift_per_s",
+        "how fast the residual rotation over α went on changing when it was read: undamped vibration goes on",
+        "theta_res_drift", "1/s", OnPage("drift [1/s]", ".1e", behind="settlement_m"), over_alpha=True, bases=YIELDING,
+        stood=True,
+    ),
+    Column(
+        "settlement_drift_m_s", "how fast the settlement went on changing when it was read", "settlement_drift", "m/s",
+        OnPage("drift [mm/s]", ".3f", 1000, "settlement_m"), bases=YIELDING, stood=True,
+    ),
+    Column(
+        "reason", "why a run failed, or what made the pier fly", "reason", kind="text", page=OnPage("reason"),
+        sometimes=True,
+    ),
+    Column(
+        "note", "what else there is to know of a run that is right: counts that have not settled, say", "note",
+        kind="text", page=OnPage("note"), sometimes=True,
+    ),
+)  # fmt: skip
+"""Columns that follow those of the varied keys. A table of an earlier version may lack the last of them."""
+
+ASKED = (
+    Column(
+        MIRROR_OF, 'with both polarities, "+" in the rows of "-": the run whose mirror image this is', kind="text",
+        sometimes=True, asked=lambda study: len(study.motions.polarity) > 1,
+    ),
+    Column(
+        OTHER_LAW,
+        "settlement by the other spring law, Bouc–Wen or elastic–perfectly plastic; unless [output] both_laws = false",
+        "settlement_other_law", "m", OnPage("by the other law [mm]", ".2f", 1000, "settlement_m"), bases=YIELDING,
+        stood=True, asked=lambda study: study.output.both_laws,
+    ),
+    *map(_energy, TERMS),
+)  # fmt: skip
+"""Columns at the end of a table whose study asks for them."""
+
+COLUMNS = {column.name: column for column in (*STAYING, *MORE, *ASKED)}
+"""All of them, by name, in the order of the file."""
+
+TEXTS = tuple(column.name for column in COLUMNS.values() if column.kind == "text")
+COUNTS = tuple(column.name for column in COLUMNS.values() if column.kind == "count")
+
+_FIELDS = {column.name: column.of for column in COLUMNS.values() if isinstance(column.of, str)}
+_FUNCTIONS = {column.name: column.of for column in COLUMNS.values() if callable(column.of)}
+_OVER_ALPHA = tuple(column.name for column in COLUMNS.values() if column.over_alpha)
+_read_fields = attrgetter(*_FIELDS.values())
 
 
 def row(record: str, polarity: str, scale: float, case: Case, outcome: Outcome) -> dict[str, Any]:
     """Row of peaks.csv: the names of a run, and its outcome over α."""
     alpha = case.pier.alpha
-    return {
-        "record": record,
-        "case": case.name,
-        "polarity": polarity,
-        "scale": scale,
-        "status": outcome.status,
-        "theta_max_over_alpha": outcome.theta_max / alpha,
-        "theta_max_error": _over(outcome.theta_max_error, alpha),
-        "t_max_s": outcome.t_max,
-        "theta_res_over_alpha": _over(outcome.theta_res, alpha),
-        "settlement_m": outcome.settlement,
-        "impacts": outcome.impacts,
-        "separations": outcome.separations,
-        "flight_s": outcome.t_flight,
-        "substeps": outcome.substeps,
-        **case.columns,
-        "theta_res_error": _over(outcome.theta_res_error, alpha),
-        "t_end_s": outcome.t_end,
-        "base_tilt_rad": outcome.base_tilt,
-        "ductility_left": outcome.ductility_left,
-        "ductility_right": outcome.ductility_right,
-        "dissipated_left_J_kg": outcome.dissipated_left,
-        "dissipated_right_J_kg": outcome.dissipated_right,
-        "residual_s": outcome.t_read,
-        "theta_res_drift_per_s": _over(outcome.theta_res_drift, alpha),
-        "settlement_drift_m_s": outcome.settlement_drift,
-        "reason": outcome.reason,
-        "note": outcome.note,
-        "settlement_other_law_m": outcome.settlement_other_law,
-        **{f"energy_{term}_J_kg": value for term, value in (outcome.energies or {}).items()},
-    }
-
-
-def _over(value: float | None, alpha: float) -> float | None:
-    return None if value is None else value / alpha
+    found: dict[str, Any] = {"record": record, "case": case.name, "polarity": polarity, "scale": scale, **case.columns}
+    found |= zip(_FIELDS, _read_fields(outcome), strict=True)
+    found |= {name: of(outcome) for name, of in _FUNCTIONS.items()}
+    for name in _OVER_ALPHA:
+        if found[name] is not None:
+            found[name] /= alpha
+    return found
 
 
 def unusable_rows(motions: MotionSet) -> list[dict[str, Any]]:
@@ -105,12 +263,19 @@ def unusable_rows(motions: MotionSet) -> list[dict[str, Any]]:
 
 def columns(study: Study) -> list[str]:
     """Columns of the table of ``study``: those that stay, its varied keys, more, and what it asks for."""
-    asked = [MIRROR_OF] if len(study.motions.polarity) > 1 else []
-    if study.output.both_laws:
-        asked.append("settlement_other_law_m")
-    if study.output.ledger:
-        asked += [f"energy_{term}_J_kg" for term in TERMS]
-    return [*COLUMNS, *study.varied, *MORE_COLUMNS, *asked]
+    asked = [column for column in ASKED if column.asked and column.asked(study)]
+    return [*names(STAYING), *study.varied, *names(MORE), *names(asked)]
+
+
+def names(table: Iterable[Column]) -> list[str]:
+    """Names of columns."""
+    return [column.name for column in table]
+
+
+def units(study: Study) -> dict[str, str]:
+    """Units of the numbers in the table of ``study``, but for its varied keys; "1" is none."""
+    known = (COLUMNS[name] for name in columns(study) if name in COLUMNS)
+    return {column.name: column.unit for column in known if column.kind != "text"}
 
 
 def as_table(rows: Iterable[Mapping[str, Any]], study: Study) -> "pd.DataFrame":
@@ -123,6 +288,26 @@ def as_table(rows: Iterable[Mapping[str, Any]], study: Study) -> "pd.DataFrame":
     table[texts] = table[texts].fillna("")
     for name in table.columns.difference([*TEXTS, *varied, *COUNTS]):
         table[name] = table[name].astype("float64")
-    for name in COUNTS:
+    for name in table.columns.intersection(list(COUNTS)):
         table[name] = table[name].astype("Int64")
     return table
+
+
+def on_page() -> list[Column]:
+    """Columns that the report shows, in its order: beside each other what is read together."""
+    order: list[str] = []
+    for column in COLUMNS.values():
+        if column.page:
+            place = order.index(column.page.behind) + 1 if column.page.behind else len(order)
+            order.insert(place, column.name)
+    return [COLUMNS[name] for name in order]
+
+
+def as_markdown() -> str:
+    """The table of columns as the README has it; columns with one meaning share a line."""
+    lines = ["| column | unit | meaning | where |", "| --- | --- | --- | --- |"]
+    for meaning, same in groupby(COLUMNS.values(), key=lambda column: column.meaning):
+        told = list(same)
+        unit = "" if told[0].kind == "text" or told[0].unit == "1" else told[0].unit
+        lines.append(f"| {', '.join(names(told))} | {unit} | {meaning} | {told[0].where} |")
+    return "\n".join(lines) + "\n"

@@ -88,9 +88,14 @@ def open_results(directory: str | os.PathLike[str]) -> Results:
     ------
     InputError
         With all that is wrong, if peaks.csv or run.json is missing or damaged.
+
+    Warns
+    -----
+    MissingColumns
+        Where an earlier version wrote them, without columns that it did not have yet.
     """
     saved = read_saved(Path(directory))
-    return Results(saved.directory, saved.info, saved.peaks)
+    return Results(saved.directory, saved.info, saved.peaks, saved.missing)
 
 
 def _told(fitting: "pd.DataFrame", wanted: dict[str, float | str]) -> str:

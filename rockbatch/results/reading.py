@@ -2,14 +2,16 @@
 
 import csv
 import json
+import math
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rockbatch.errors import InputError
+from rockbatch.errors import InputError, MissingColumns
 from rockbatch.files import csv_plain
-from rockbatch.results.columns import COLUMNS, COUNTS, MORE_COLUMNS, PEAKS, TEXTS
+from rockbatch.results.columns import COUNTS, MORE, PEAKS, STAYING, TEXTS, names
 from rockbatch.results.run_json import INFO
 
 if TYPE_CHECKING:
@@ -35,17 +37,32 @@ class Saved:
     peaks : DataFrame
         ``peaks.csv`` with the types that ``rockbatch.run`` returns: texts that are "" where they do not apply, numbers
         that are NaN, counts that can be missing; varied keys are numbers or texts.
+    missing : tuple of str
+        Columns that an earlier version did not write yet: empty in ``peaks``.
     """
 
     directory: Path
     info: dict[str, Any]
     peaks: "pd.DataFrame"
+    missing: tuple[str, ...] = ()
+
+    @property
+    def told_missing(self) -> str:
+        """Which columns ``peaks.csv`` lacks, in a sentence without its subject; empty where it has all."""
+        if not self.missing:
+            return ""
+        several = len(self.missing) > 1
+        return (
+            f"has no column{'s' if several else ''} {', '.join(self.missing)}, as an earlier version wrote it; "
+            f"{'they count' if several else 'it counts'} as empty here; start `rockbatch run` again to have "
+            f"{'them' if several else 'it'}"
+        )
 
 
 def read_saved(directory: Path) -> Saved:
     """Read what ``rockbatch run`` wrote into ``directory``.
 
-    Raises ``InputError``, with all that is wrong at once, where a file is missing or damaged.
+    Raises ``InputError``, with all that is wrong at once, where a file is missing or damaged. Warns of ``MissingColumns``.
     """
     directory = Path(directory)
     problems: list[str] = []
@@ -53,7 +70,13 @@ def read_saved(directory: Path) -> Saved:
     peaks = _read_peaks(directory / PEAKS, info.get("varied", []), problems)
     if problems or peaks is None:
         raise InputError(*problems)
-    return Saved(directory, info, peaks)
+    missing = tuple(name for name in names(MORE) if name not in peaks)
+    for name in missing:
+        peaks[name] = "" if name in TEXTS else math.nan
+    saved = Saved(directory, info, peaks, missing)
+    if missing:
+        warnings.warn(f"{directory / PEAKS}: {saved.told_missing}", MissingColumns, stacklevel=2)
+    return saved
 
 
 def _read_info(path: Path, problems: list[str]) -> dict[str, Any]:
@@ -87,7 +110,7 @@ def _read_peaks(path: Path, varied: Sequence[str], problems: list[str]) -> "pd.D
     except (UnicodeDecodeError, csv.Error) as error:
         problems.append(f"{path}:1: not a table ({error}); start `rockbatch run` again")
         return None
-    missing = [name for name in (*COLUMNS, *MORE_COLUMNS, *varied) if name not in head]
+    missing = [name for name in (*names(STAYING), *varied) if name not in head]
     if missing:
         problems.append(f"{path}:1: has no column {', '.join(missing)}; start `rockbatch run` again")
         return None
@@ -99,7 +122,7 @@ def _read_peaks(path: Path, varied: Sequence[str], problems: list[str]) -> "pd.D
             path, keep_default_na=False, na_values={name: [""] for name in numbers}, encoding="utf-8", index_col=False,
             dtype={**dict.fromkeys(texts, "str"), **dict.fromkeys(numbers, "float64")},
         )  # fmt: skip
-        for name in COUNTS:
+        for name in table.columns.intersection(list(COUNTS)):
             table[name] = table[name].astype("Int64")
     except (ValueError, TypeError) as error:
         found = _bad_cells(path, head, numbers)

@@ -21,6 +21,7 @@ from rockbatch.pier import (
     vertical_frequency,
     yield_deflection,
 )
+from rockbatch.results.columns import units
 from rockbatch.study import Case, Study
 
 INFO = "run.json"
@@ -45,6 +46,7 @@ def describe(study: Study, motions: MotionSet) -> dict[str, Any]:
             "quiet_s": study.numerics.quiet_s,
         },
         "varied": list(study.varied),
+        "units": units(study),
         "cases": [describe_case(case) for case in study.cases],
         "without_vertical": motions.without_vertical,
         "records": [_describe_motion(motion, study.cases[0].pier.gravity) for motion in motions.motions],

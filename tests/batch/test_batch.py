@@ -13,7 +13,7 @@ from rockbatch.batch.groups import NOTHING_MORE, groups
 from rockbatch.batch.journal import Journal
 from rockbatch.batch.plan import Plan
 from rockbatch.batch.threads import Threads
-from rockbatch.results.columns import COLUMNS, MORE_COLUMNS, columns
+from rockbatch.results.columns import MORE, STAYING, columns, names
 from rockbatch.study import load_study
 from rockbatch.study.suite import ground_motions
 
@@ -32,7 +32,7 @@ def study(tmp_path):
 
 def test_rows_come_in_the_order_of_the_study(study):
     table = rb.run(study)
-    assert list(table.columns) == [*COLUMNS, "beta", *MORE_COLUMNS, "mirror_of", "settlement_other_law_m"]
+    assert list(table.columns) == [*names(STAYING), "beta", *names(MORE), "mirror_of", "settlement_other_law_m"]
     assert len(table) == 2 * 2 * 2 * 3
     first = table.loc[:5, ["record", "polarity", "scale", "case", "beta"]].astype(object).where(table.notna(), None)
     assert first.to_numpy().tolist() == [

@@ -8,7 +8,7 @@ from typing import Any
 import pandas as pd
 
 from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, YieldingBase
-from rockbatch.results.columns import COLUMNS, MORE_COLUMNS
+from rockbatch.results.columns import MORE, STAYING, names
 from rockbatch.results.reading import SECTIONS
 from rockbatch.results.run_json import describe_case
 from rockbatch.study import Case
@@ -31,7 +31,7 @@ def runs(theta: Any = (0.1, 0.2, 0.6, 0.3), name: str = "pads", **cells: Any) ->
     table = pd.DataFrame({"theta_max_over_alpha": [float(value) for value in theta]})
     table["record"] = [f"r{i}" for i in range(len(table))]
     table["case"], table["polarity"], table["scale"], table["status"], table["reason"] = name, "+", 1.0, "ok", ""
-    for column in (*COLUMNS, *MORE_COLUMNS):
+    for column in names((*STAYING, *MORE)):
         if column not in table:
             table[column] = math.nan
     for column, value in cells.items():
@@ -41,15 +41,15 @@ def runs(theta: Any = (0.1, 0.2, 0.6, 0.3), name: str = "pads", **cells: Any) ->
 
 def folder(path: Path, peaks: pd.DataFrame, cases: list[dict[str, Any]], checks: str = "", **info: Any) -> Path:
     """A folder as ``rockbatch run`` leaves it, of a study with the text ``checks``."""
-    table = peaks.reindex(columns=list(dict.fromkeys([*COLUMNS, *MORE_COLUMNS, *peaks.columns])))
+    table = peaks.reindex(columns=list(dict.fromkeys([*names(STAYING), *names(MORE), *peaks.columns])))
     path.mkdir(exist_ok=True)
     table.to_csv(path / "peaks.csv", index=False, float_format="%.10g")
-    names = peaks.loc[peaks["case"] != "", "record"].unique()
+    records = peaks.loc[peaks["case"] != "", "record"].unique()
     told = dict.fromkeys(SECTIONS, "") | {
         "study": {"path": "pier.toml", "text": checks},
         "varied": list(dict.fromkeys(key for one in cases for key in one["columns"])),
         "cases": cases,
-        "records": [{"record": name} for name in names],
+        "records": [{"record": name} for name in records],
         "unusable": [],
     }
     (path / "run.json").write_text(json.dumps(told | info), encoding="utf-8")

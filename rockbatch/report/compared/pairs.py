@@ -4,11 +4,12 @@ import math
 
 from rockbatch.report.document import Section
 from rockbatch.report.finished import as_dicts, worst_first
-from rockbatch.report.labels import symbol
+from rockbatch.report.labels import head, symbol
 from rockbatch.report.markup import join
 from rockbatch.report.pair import SIDES, Pair
-from rockbatch.report.sections.peaks import outcome
-from rockbatch.report.table import MOST_ROWS, THETA, THETA_FORMAT, Head, sub, table, told_apart
+from rockbatch.report.sections.peaks import on_scale, outcome
+from rockbatch.report.table import MOST_ROWS, THETA, THETA_FORMAT, Head, table, told_apart
+from rockbatch.results.columns import COLUMNS
 
 
 def section(pair: Pair) -> Section | None:
@@ -27,19 +28,16 @@ def section(pair: Pair) -> Section | None:
         Head("B", THETA_FORMAT, over=THETA),
         Head("B / A", ".3f", over=THETA),
     ]
-    quantities = {
-        "theta_res_over_alpha": (1, sub("θ", "res", "/α"), ".5f"),
-        "settlement_m": (1000, "settlement [mm]", ".2f"),
-    }
-    heads += [Head(name, form, over=over) for _, over, form in quantities.values() for name in SIDES]
+    more = [column for column in COLUMNS.values() if column.suite and column.name != "theta_max_over_alpha"]
+    heads += [Head(side, over=head(column).says, form=head(column).form) for column in more for side in SIDES]
     pairs = as_dicts(a.iloc[order]), as_dicts(b.iloc[order])
     rows = []
     for place in range(len(order)):
         both = pairs[0][place], pairs[1][place]
         shown = [outcome(run) for run in both]
         ratio = _ratio(*(run["theta_max_over_alpha"] if run["status"] == "ok" else math.nan for run in both))
-        more = [factor * run[key] for key, (factor, _, _) in quantities.items() for run in both]
-        rows.append([*(both[0][name] for name in names), *shown, ratio, *(None if x != x else x for x in more)])
+        others = (on_scale(column.name, run[column.name]) for column in more for run in both)
+        rows.append([*(both[0][name] for name in names), *shown, ratio, *others])
     shown_of = told_apart(len(order), len(a), "worst")
     content = join(shown_of, table(heads, rows, sortable=True, name="Pairs of runs"))
     return Section("Every pair of runs", "peaks", content)

@@ -3,13 +3,13 @@
 import math
 from typing import TYPE_CHECKING, Any
 
-from rockbatch.checks.suite import MIRROR_OF
 from rockbatch.report.contents import Contents
 from rockbatch.report.document import Section
 from rockbatch.report.finished import Finished, as_dicts, worst_first
-from rockbatch.report.labels import symbol
+from rockbatch.report.labels import head, symbol
 from rockbatch.report.markup import Markup, join, number, tag
-from rockbatch.report.table import MOST_ROWS, THETA, THETA_FORMAT, Head, alarm, sub, table, told_apart
+from rockbatch.report.table import MOST_ROWS, THETA_FORMAT, Head, alarm, table, told_apart
+from rockbatch.results.columns import COLUMNS, PEAKS, on_page
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -17,39 +17,6 @@ if TYPE_CHECKING:
     import pandas as pd
 
 MOST_COLUMNS = 24
-
-_COLUMNS = {
-    "status": (1, Head("status")),
-    "theta_max_over_alpha": (1, Head(THETA, ".5f", "theta_max_over_alpha: peak rotation over slenderness")),
-    "theta_max_error": (1, Head("±", ".0e", "theta_max_error: estimated error of the peak rotation over slenderness")),
-    "t_max_s": (1, Head("at t [s]", ".2f", "t_max_s: time of the peak")),
-    "theta_res_over_alpha": (1, Head(sub("θ", "res", "/α"), ".5f", "theta_res_over_alpha: residual over slenderness")),
-    "theta_res_error": (1, Head("±", ".0e", "theta_res_error: estimated error of the residual over slenderness")),
-    "base_tilt_rad": (1000, Head("base tilt [mrad]", ".3f", "base_tilt_rad × 1000: tilt of the base after the record")),
-    "settlement_m": (1000, Head("settlement [mm]", ".2f", "settlement_m × 1000")),
-    "settlement_other_law_m": (1000, Head("by the other law [mm]", ".2f", "settlement_other_law_m × 1000")),
-    "settlement_drift_m_s": (
-        1000,
-        Head("drift [mm/s]", ".3f", "settlement_drift_m_s × 1000: how fast it went on then"),
-    ),
-    "theta_res_drift_per_s": (
-        1,
-        Head("drift [1/s]", ".1e", "theta_res_drift_per_s: how fast the residual went on then"),
-    ),
-    "residual_s": (1, Head("read at [s]", ".2f", "residual_s: when residual rotation, tilt and settlement were read")),
-    "impacts": (1, Head("impacts", ".0f")),
-    "separations": (1, Head("separations", ".0f")),
-    "flight_s": (1, Head("flight [s]", ".3f", "flight_s: first time with both pivots off the ground")),
-    "ductility_left": (1, Head("demand L", ".2f", "ductility_left: largest deflection over yield deflection")),
-    "ductility_right": (1, Head("demand R", ".2f", "ductility_right: largest deflection over yield deflection")),
-    "dissipated_left_J_kg": (1, Head("dissipated L [J/kg]", ".4f", "dissipated_left_J_kg: plastic work")),
-    "dissipated_right_J_kg": (1, Head("dissipated R [J/kg]", ".4f", "dissipated_right_J_kg: plastic work")),
-    "t_end_s": (1, Head("end [s]", ".2f", "t_end_s: time at which the analysis ended")),
-    "substeps": (1, Head("substeps", ".0f", "integration steps per sampling interval")),
-    "reason": (1, Head("reason")),
-    "note": (1, Head("note")),
-}
-"""Factor and head of each column of peaks.csv after the names of the run, in the order of the page."""
 
 
 def section(contents: Contents) -> Section | None:
@@ -105,40 +72,38 @@ def outcome(run: "dict[str, Any] | None", worst: float = math.nan) -> object:
 def _every_run(finished: Finished) -> Markup:
     """The rows of ``peaks.csv``, the worst first."""
     runs, varied = finished.runs, finished.info["varied"]
-    names = {"record": Head("record"), "case": Head("case"), **{key: Head(symbol(key), note=key) for key in varied}}
     # These say something only where they change
-    if finished.both_directions:
-        names["polarity"] = Head("polarity", note="+ as recorded, - horizontal component reversed")
-    if runs["scale"].nunique() > 1:
-        names["scale"] = Head("scale", note="factor on all components")
+    also = {"polarity": finished.both_directions, "scale": runs["scale"].nunique() > 1}
+    names = {"record": head(COLUMNS["record"]), "case": head(COLUMNS["case"])}
+    names |= {key: Head(symbol(key), note=key) for key in varied}
+    names |= {name: head(COLUMNS[name]) for name, changes in also.items() if changes}
     if runs["with_vertical"].nunique() > 1:
         names["with_vertical"] = Head("vertical component")
-    known = {"record", "case", "polarity", "scale", "vertical", MIRROR_OF, *varied, *_COLUMNS}
-    columns = {name: column for name, column in _COLUMNS.items() if name in runs}
-    columns |= {name: (1, _energy(name)) for name in finished.saved.peaks.columns if name not in known}
+    columns = {column.name: head(column) for column in on_page() if column.of and column.name in runs}
+    columns |= {
+        name: Head(name)
+        for name in map(str, finished.saved.peaks)
+        if name not in COLUMNS and name not in ("vertical", *varied)
+    }
     shown = worst_first(runs, MOST_ROWS)
-    rows = [
-        [*(run[name] for name in names), *(_cell(name, factor, run[name]) for name, (factor, _) in columns.items())]
-        for run in as_dicts(shown)
-    ]
-    heads = [*names.values(), *(head for _, head in columns.values())]
-    return join(told_apart(len(shown), len(runs), "worst"), table(heads, rows, sortable=True, name="Every run"))
+    rows = [[*(run[name] for name in names), *(_cell(name, run[name]) for name in columns)] for run in as_dicts(shown)]
+    told = tag("p", alarm(f"{PEAKS} {finished.saved.told_missing}"), ".") if finished.saved.missing else ""
+    heads = [*names.values(), *columns.values()]
+    drawn = table(heads, rows, sortable=True, name="Every run")
+    return join(told, told_apart(len(shown), len(runs), "worst"), drawn)
 
 
-def _cell(name: str, factor: int, value: Any) -> object:
+def _cell(name: str, value: Any) -> object:
     if name == "status":
         return alarm(value) if value != "ok" else value
-    if isinstance(value, str):
-        return value
+    return value if isinstance(value, str) else on_scale(name, value)
+
+
+def on_scale(name: str, value: float | None) -> float | None:
+    """A number of column ``name`` in the unit in which the page has it; None where there is none."""
+    column = COLUMNS.get(name)
+    factor = column.page.factor if column and column.page else 1
     return None if value is None or value != value else factor * float(value)
-
-
-def _energy(name: str) -> Head:
-    """Head of a term of the energy ledger, or of a column that is not known here."""
-    if not name.startswith("energy_"):
-        return Head(name)
-    term = name.removeprefix("energy_").removesuffix("_J_kg").replace("_", "-")
-    return Head(f"{term} [J/kg]", ".0e" if term == "remainder" else ".4f", name)
 
 
 def _ratcheting(finished: Finished) -> Markup:

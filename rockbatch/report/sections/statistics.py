@@ -10,19 +10,14 @@ import numpy as np
 from rockbatch.report.contents import Contents
 from rockbatch.report.document import Section
 from rockbatch.report.finished import Finished
+from rockbatch.report.labels import heading
 from rockbatch.report.markup import Markup, join, tag
-from rockbatch.report.table import MOST_ROWS, THETA, THETA_FORMAT, Head, alarm, sub, table, told_apart
+from rockbatch.report.table import MOST_ROWS, Head, alarm, table, told_apart
+from rockbatch.results.columns import COLUMNS
 from rockbatch.results.suite_statistics import Suite, suite
 
 if TYPE_CHECKING:
     import pandas as pd
-
-QUANTITIES: dict[str, tuple[float, Markup, str]] = {
-    "theta_max_over_alpha": (1, join("Largest rotation ", THETA), THETA_FORMAT),
-    "theta_res_over_alpha": (1, join("Residual rotation |", sub("θ", "res", "|/α")), ".5f"),
-    "settlement_m": (1000, Markup("Settlement [mm]"), ".2f"),
-}
-"""Factor, heading and format of what has statistics; by magnitude."""
 
 WORDS = (
     "Every run of the suite counts: each ground motion and scale of the group, mirror images once. A run that overturned, or was "
@@ -85,19 +80,22 @@ def tables(
         Texts of the first cells of each row, which stand under ``heads``.
     """
     drawn = [tag("p", WORDS)]
-    for quantity, (factor, heading, form) in QUANTITIES.items():
+    for column in COLUMNS.values():
+        if column.suite is None or column.page is None:
+            continue
+        says, form = heading(column.suite.heading), column.suite.form
         found = {
             side: {
-                key: suite(factor * runs[quantity].to_numpy(dtype=np.float64), runs["status"].to_list())
+                key: suite(column.page.factor * runs[column.name].to_numpy(dtype=np.float64), runs["status"].to_list())
                 for key, runs in groups.items()
-                if runs[quantity].notna().any()
+                if runs[column.name].notna().any()
             }
             for side, groups in sides.items()
         }
         keys = [key for key in names if any(key in suites for suites in found.values())]
         if keys:
             rows = [[*names[key], *_cells([suites.get(key) for suites in found.values()], form)] for key in keys]
-            drawn += [tag("h3", heading), table([*heads, *_heads(list(sides), form)], rows, name=f"Suite: {heading}")]
+            drawn += [tag("h3", says), table([*heads, *_heads(list(sides), form)], rows, name=f"Suite: {says}")]
     return join(*drawn)
 
 

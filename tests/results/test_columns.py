@@ -1,0 +1,243 @@
+"""The columns of peaks.csv stand in one table, and everything that tells of them says what it says."""
+
+import json
+import re
+from dataclasses import fields
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pint
+import pytest
+from check_samples import PADS, case
+from report_page import Page
+from report_samples import write_results
+
+import rockbatch as rb
+from rockbatch.checks.demands import DEMANDS
+from rockbatch.cli import main
+from rockbatch.errors import InputError, MissingColumns
+from rockbatch.report import write_comparison, write_report
+from rockbatch.results.columns import ASKED, COLUMNS, MORE, STAYING, as_markdown, columns, names, on_page, units
+from rockbatch.results.outcome import Outcome
+from rockbatch.results.reading import read_saved
+from rockbatch.results.run_json import describe
+from rockbatch.study.suite import ground_motions
+
+README = Path(rb.__file__).parents[1] / "README.md"
+STUDY = """
+[pier]
+alpha = 0.2
+p = 1.0
+
+[motions]
+polarity = ["+", "-"]
+scale = [1, 4]
+
+[[motions.pulse]]
+name = "one-sine"
+shape = "sine"
+amplitude_g = 0.6
+period_s = 1.0
+dt_s = 0.01
+duration_s = 2.0
+
+[output]
+ledger = true
+
+[[case]]
+name = "rigid"
+base = "rigid"
+
+[[case]]
+name = "elastic"
+base = "elastic"
+beta = 50
+
+[[case]]
+name = "yielding"
+base = "yielding"
+beta = 50
+eta = 2.5
+epsilon = 0.1
+"""
+RULES = """
+[[check]]
+name = "tilt"
+demand = "base_tilt_rad"
+at_most = 1
+basis = "judgement"
+reason = "r"
+"""
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory):
+    path = tmp_path_factory.mktemp("columns") / "study.toml"
+    path.write_text(STUDY, encoding="utf-8")
+    return rb.load_study(path)
+
+
+@pytest.fixture(scope="module")
+def table(study):
+    return rb.run(study)
+
+
+def without(directory, *dropped):
+    """A folder as an earlier version left it, that did not write ``dropped`` yet."""
+    write_results(directory)
+    peaks = pd.read_csv(directory / "peaks.csv", dtype=str, keep_default_na=False)
+    peaks.drop(columns=list(dropped)).to_csv(directory / "peaks.csv", index=False)
+    return directory
+
+
+def test_the_readme_lists_the_columns_as_the_table_has_them():
+    """To put it right: write what ``rockbatch.results.columns.as_markdown`` gives into the README."""
+    assert as_markdown() in README.read_text(encoding="utf-8")
+
+
+def test_a_name_ends_with_its_unit():
+    """``theta_res_drift_per_s`` is 1/s, ``energy_input_J_kg`` is J/kg; pint reads them all."""
+    endings = {"s": "s", "m": "m", "rad": "rad", "J/kg": "J_kg", "m/s": "m_s", "1/s": "per_s"}
+    for column in COLUMNS.values():
+        pint.Unit(column.unit)
+        ended = [unit for unit, ending in endings.items() if column.name.endswith(f"_{ending}")]
+        expected = max(ended, key=len, default="1")  # settlement_drift_m_s also ends like a time
+        assert column.unit == expected, column.name
+        assert column.kind == "number" or column.unit == "1"
+
+
+def test_every_number_of_an_outcome_has_its_column():
+    taken = {column.of for column in COLUMNS.values() if isinstance(column.of, str)}
+    assert {field.name for field in fields(Outcome)} - taken == {"energies"}  # each term has a column of its own
+
+
+def test_a_column_is_empty_where_the_table_says_that_it_does_not_apply(study, table):
+    assert set(table["status"]) == {"ok", "overturned"}
+    for name in columns(study):
+        if name not in COLUMNS:
+            continue
+        column = COLUMNS[name]
+        filled = table[name].notna() & (table[name].astype(object) != "")
+        applies = table["case"].isin(column.bases) & ((table["status"] == "ok") | ~np.full(len(table), column.stood))
+        assert not filled[~applies].any(), name
+        assert column.sometimes or filled[applies].all(), name
+
+
+def test_the_table_of_a_study_has_the_staying_columns_first_and_those_that_it_asks_for_last(study, table):
+    assert list(table) == [*names(STAYING), *study.varied, *names(MORE), *names(ASKED)]
+
+
+def test_run_json_says_the_unit_of_every_number(study, table):
+    told = describe(study, ground_motions(study))["units"]
+    assert told == units(study)
+    texts = [column.name for column in COLUMNS.values() if column.kind == "text"]
+    assert list(told) == [name for name in table if name not in (*texts, *study.varied)]
+    assert (told["settlement_m"], told["theta_res_drift_per_s"], told["impacts"]) == ("m", "1/s", "1")
+
+
+def test_demands_read_columns_of_the_table_only():
+    pads = case("pads", PADS)
+    runs = pd.DataFrame({name: ["" if column.kind == "text" else 0.5] for name, column in COLUMNS.items()})
+    for demand in DEMANDS.values():
+        assert len(demand.of(runs, pads).value) == 1
+        assert demand.other_law is None or len(demand.other_law(runs, pads)) == 1
+
+
+def test_the_page_shows_every_column_with_its_name_and_meaning(tmp_path):
+    """All but which image a row is: the page has no mirror images. Those that belong together stand side by side."""
+    shown = names(on_page())
+    assert set(shown) == {*COLUMNS} - {"mirror_of"}
+    for together in (["theta_res_over_alpha", "theta_res_error", "base_tilt_rad", "settlement_m"], ["reason", "note"]):
+        start = shown.index(together[0])
+        assert shown[start : start + len(together)] == together
+    write_results(tmp_path)
+    text = write_report(tmp_path).read_text(encoding="utf-8")
+    assert 'title="base_tilt_rad × 1000: residual tilt of the base">base tilt [mrad]</th>' in text
+    assert 'over α, at rest on the deformed base">θ<sub>res</sub>/α</th>' in text
+    page = Page(text)
+    tilt = page.tables["peaks"][0].index("base tilt [mrad]")
+    peaks = read_saved(tmp_path).peaks
+    first = page.tables["peaks"][1]
+    run = peaks[(peaks["record"] == first[0]) & (peaks["case"] == first[1])].iloc[0]
+    assert float(first[tilt]) == pytest.approx(1000 * run["base_tilt_rad"], abs=6e-4)
+
+
+def test_what_has_statistics_is_compared(tmp_path):
+    a, b = write_results_in(tmp_path / "a"), write_results_in(tmp_path / "b")
+    page = Page(write_comparison(a, b).read_text(encoding="utf-8"))
+    over = [text for text in page.tables["peaks"][0] if text]
+    assert over == ["θmax/α", "θres/α", "settlement [mm]"]
+    assert sum(column.suite is not None for column in COLUMNS.values()) == len(over)
+
+
+def write_results_in(directory):
+    directory.mkdir()
+    return write_results(directory)
+
+
+def test_results_without_newer_columns_are_read_and_say_which_are_missing(tmp_path):
+    without(tmp_path, "note", "residual_s")
+    with pytest.warns(MissingColumns, match=r"has no columns residual_s, note, as an earlier version wrote it"):
+        results = rb.open_results(tmp_path)
+    assert results.missing == ("residual_s", "note")
+    assert results.peaks["residual_s"].isna().all()
+    assert (results.peaks["note"] == "").all()
+    assert results.peaks["settlement_m"].notna().any()
+    full = write_results_in(tmp_path / "full")
+    assert rb.open_results(full).missing == ()
+
+
+@pytest.mark.filterwarnings("ignore::rockbatch.errors.MissingColumns")
+@pytest.mark.parametrize("dropped", names(MORE))
+def test_a_report_without_a_newer_column_is_made_and_says_so(tmp_path, dropped):
+    text = write_report(without(tmp_path, dropped)).read_text(encoding="utf-8")
+    assert f"has no column {dropped}, as an earlier version wrote it" in text
+    assert f'title="{dropped}' not in text
+    assert "earlier version" not in write_report(write_results_in(tmp_path / "full")).read_text(encoding="utf-8")
+
+
+@pytest.mark.filterwarnings("ignore::rockbatch.errors.MissingColumns")
+def test_a_folder_without_newer_columns_is_compared_with_one_that_has_them(tmp_path):
+    (tmp_path / "old").mkdir()
+    old, new = without(tmp_path / "old", *names(MORE)), write_results_in(tmp_path / "new")
+    assert "30 pairs of runs" in write_comparison(old, new).read_text(encoding="utf-8")
+
+
+def test_commands_say_once_and_plainly_which_columns_are_missing(tmp_path, capsys):
+    without(tmp_path, "note")
+    assert main(["report", str(tmp_path)]) == 0
+    told = f"rockbatch: {tmp_path / 'peaks.csv'}: has no column note, as an earlier version wrote it"
+    assert capsys.readouterr().err.count(told) == 1
+
+    rules = tmp_path / "rules.toml"
+    rules.write_text(RULES, encoding="utf-8")
+    without(tmp_path, "base_tilt_rad")
+    assert main(["check", str(tmp_path), "--rules", str(rules)]) == 1
+    said = capsys.readouterr()
+    assert said.err.count("has no column base_tilt_rad") == 1
+    assert "NOT DECIDED" in said.out
+
+
+@pytest.mark.parametrize("dropped", names(STAYING))
+def test_a_table_without_a_column_that_every_version_wrote_is_refused(tmp_path, dropped):
+    with pytest.raises(InputError, match=rf"peaks\.csv:1: has no column {dropped}; start"):
+        read_saved(without(tmp_path, dropped))
+
+
+@pytest.mark.parametrize("content", ["", "a,b\n1,2\n", "\x00\x01\n", "record;case;polarity\nx;y;+\n"])
+def test_what_is_no_table_of_peaks_is_refused(tmp_path, content):
+    write_results(tmp_path)
+    (tmp_path / "peaks.csv").write_text(content, encoding="utf-8")
+    with pytest.raises(
+        InputError, match=re.escape(f"{tmp_path / 'peaks.csv'}:1: has no column record, case, polarity")
+    ):
+        read_saved(tmp_path)
+
+
+def test_a_table_without_a_varied_key_is_refused(tmp_path):
+    write_results(tmp_path)
+    info = json.loads((tmp_path / "run.json").read_text(encoding="utf-8"))
+    (tmp_path / "run.json").write_text(json.dumps(info | {"varied": ["beta"]}), encoding="utf-8")
+    with pytest.raises(InputError, match="has no column beta"):
+        read_saved(tmp_path)
