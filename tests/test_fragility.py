@@ -11,7 +11,7 @@ import pytest
 from report_page import Page
 
 import rockbatch as rb
-from rockbatch.analysis.fragility import ScaledRuns, assess, intensities
+from rockbatch.analysis.fragility_curves import ScaledRuns, assess, intensities
 from rockbatch.analysis.fragility_tables import described, points
 from rockbatch.analysis.ida import Bracket, Capacity, bisect, capacity
 from rockbatch.analysis.limit_states import EXCEEDED, LEFT_OUT, UNDECIDED, WITHSTOOD, states
