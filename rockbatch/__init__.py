@@ -5,11 +5,16 @@ from typing import TYPE_CHECKING, Any
 from rockbatch._version import __version__ as __version__
 
 if TYPE_CHECKING:
-    from rockbatch.batch.carrying_out import run
+    from rockbatch.analysis.accuracy import accuracy
+    from rockbatch.analysis.fragility import fragility
+    from rockbatch.analysis.sensitivity import sensitivity
+    from rockbatch.analysis.spectrum import spectrum
+    from rockbatch.batch.running import run
     from rockbatch.checks import Rule
     from rockbatch.errors import InputError
     from rockbatch.motions import Motion, pulse, read_motions
     from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase
+    from rockbatch.report import report
     from rockbatch.results.checking import check
     from rockbatch.results.opened import open_results
     from rockbatch.results.response import Response
@@ -25,13 +30,18 @@ _HOMES = {
     "RigidBase": "rockbatch.pier",
     "Rule": "rockbatch.checks",
     "YieldingBase": "rockbatch.pier",
+    "accuracy": "rockbatch.analysis.accuracy",
     "check": "rockbatch.results.checking",
+    "fragility": "rockbatch.analysis.fragility",
     "load_study": "rockbatch.study",
     "open_results": "rockbatch.results.opened",
     "pulse": "rockbatch.motions",
     "read_motions": "rockbatch.motions",
-    "run": "rockbatch.batch.carrying_out",
+    "report": "rockbatch.report",
+    "run": "rockbatch.batch.running",
+    "sensitivity": "rockbatch.analysis.sensitivity",
     "simulate": "rockbatch.simulation.histories",
+    "spectrum": "rockbatch.analysis.spectrum",
 }
 
 __all__ = [
@@ -43,13 +53,18 @@ __all__ = [
     "RigidBase",
     "Rule",
     "YieldingBase",
+    "accuracy",
     "check",
+    "fragility",
     "load_study",
     "open_results",
     "pulse",
     "read_motions",
+    "report",
     "run",
+    "sensitivity",
     "simulate",
+    "spectrum",
 ]
 
 

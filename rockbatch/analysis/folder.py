@@ -1,14 +1,20 @@
-"""What an analysis leaves in a folder: its tables, and NAME.json, which says what they hold."""
+"""What an analysis comes to, and what it leaves in a folder: its tables, and NAME.json, which says what they hold."""
 
 import hashlib
 import json
-from collections.abc import Mapping, Sequence
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from rockbatch._version import __version__
 from rockbatch.batch.journal import Journal
-from rockbatch.files import csv_text, write_whole
+from rockbatch.batch.listening import Listener, count
+from rockbatch.files import csv_text, only_writer, read_table, write_whole
+from rockbatch.motions import Unusable
 from rockbatch.report import write_analyses
 from rockbatch.study import Study
 
@@ -16,15 +22,71 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class Analysis:
+    """What an analysis came to: each of its tables is an attribute with the name of its CSV file, None where there is none.
+
+    Attributes
+    ----------
+    study : Study
+        What was asked.
+    info : dict
+        NAME.json: what was done, and what it cost.
+    unusable : tuple of Unusable
+        Files of the study that are no usable records, and why.
+    files : tuple of Path
+        What was written; empty where nothing was.
+    """
+
+    NAME: ClassVar[str]
+    TABLES: ClassVar[tuple[str, ...]]
+
+    study: Study
+    info: dict[str, Any]
+    unusable: tuple[Unusable, ...] = ()
+    files: tuple[Path, ...] = ()
+
+    @property
+    def tables(self) -> "dict[str, pd.DataFrame]":
+        """Those that there are, by their names."""
+        return {name: table for name in self.TABLES if (table := getattr(self, name)) is not None}
+
+    def __repr__(self) -> str:
+        told = ", ".join(f"{name} ({count(len(table), 'row')})" for name, table in self.tables.items())
+        return f"<{self.NAME} of {self.study.title!r}: {told}>"
+
+    def save(self, folder: str | os.PathLike[str]) -> tuple[Path, ...]:
+        """Write what the command leaves in ``folder``: the tables, NAME.json and the report; returns their paths.
+
+        Raises ``InputError`` if the disk is full, or if another process is writing into the folder.
+        """
+        directory = Path(folder)
+        directory.mkdir(parents=True, exist_ok=True)
+        with only_writer(directory):
+            results = AnalysisFolder(directory, self.NAME, self.study)
+            results.info = self.info | {"files": []}
+            for name in self.TABLES:
+                if name in self.tables:
+                    results.keep_table(f"{name}.csv", self.tables[name])
+                else:
+                    results.drop(f"{name}.csv")
+            return results.end()
+
+
 class AnalysisFolder:
     """What an analysis leaves in a folder: its tables, and NAME.json, which says what they hold.
 
     ``info`` is what NAME.json will say: what was done, in which ``files`` it is, and of which runs, by their digests. It
-    is written as soon as a table is, so that a command that was killed later takes it as it is.
+    is written as soon as a table is, so that a command that was killed later takes it as it is. In a folder that is
+    ``passing`` there is no report.
     """
 
-    def __init__(self, directory: Path, name: str, study: Study, fresh: bool) -> None:
-        self.directory, self.study, self.fresh = directory, study, fresh
+    def __init__(
+        self, directory: Path, name: str, study: Study, *, fresh: bool = False, listener: Listener | None = None,
+        passing: bool = False,
+    ) -> None:  # fmt: skip
+        self.directory, self.study, self.fresh, self.passing = directory, study, fresh, passing
+        self.listener = listener or Listener()
         self.path = directory / f"{name}.json"
         sha256 = hashlib.sha256(study.text.encode()).hexdigest()
         of_study = {
@@ -41,16 +103,25 @@ class AnalysisFolder:
         """Whether ``file`` holds the runs with that digest already."""
         return self._earlier.get(file) == digest and (self.directory / file).exists()
 
-    def journal(self, file: str, columns: Sequence[str], digest: Mapping[str, str]) -> Journal:
-        """The journal of the runs in ``file``, not yet entered."""
-        return Journal(self.directory / f"{file}.part", columns, digest, self.fresh)
+    @contextmanager
+    def journal(self, file: str, columns: Sequence[str], digest: Mapping[str, str]) -> Iterator[Journal]:
+        """The journal of the runs in ``file``; tells what is in it already, and what stays in it after Ctrl-C."""
+        with Journal(self.directory / f"{file}.part", columns, digest, self.fresh) as journal:
+            if len(journal):
+                self.listener.say(f"{count(len(journal), 'run')} are finished already (--fresh starts over)")
+            try:
+                yield journal
+            except KeyboardInterrupt:
+                kept = f"{count(len(journal), 'run')} are finished and kept in {journal.path}"
+                self.listener.say(f"interrupted: {kept}; the same command goes on from there")
+                raise
 
     def keep(self, file: str, digest: Mapping[str, str] | None = None) -> None:
         """Note that ``file`` is finished, and which runs it holds."""
         self.info["files"].append(file)
         if digest is not None:
             self.info["digests"][file] = dict(digest)
-        write_whole(self.path, json.dumps(self.info, indent=1, ensure_ascii=False) + "\n")
+        self._write_info()
 
     def keep_table(self, file: str, table: "pd.DataFrame") -> None:
         """Write ``table`` as CSV, as the journal writes its rows, whole or not at all, and note it."""
@@ -58,12 +129,38 @@ class AnalysisFolder:
         write_whole(self.directory / file, csv_text(list(table.columns), rows))
         self.keep(file)
 
-    def end(self, **cost: object) -> list[Path]:
-        """Note what the analysis cost, and write the report; returns all files that there are."""
+    def drop(self, file: str) -> None:
+        """Remove a table that an earlier analysis had, and this one has not."""
+        (self.directory / file).unlink(missing_ok=True)
+
+    def tables(self, names: Sequence[str]) -> dict[str, Any]:
+        """The tables NAME.csv as the disk has them; None where this analysis has none."""
+        files = self.info["files"]
+        return {name: read_table(self.directory / f"{name}.csv") if f"{name}.csv" in files else None for name in names}
+
+    def end(self, **cost: object) -> tuple[Path, ...]:
+        """Note what the analysis cost, and write the report; returns all files that there are to stay."""
         self.info |= cost
-        write_whole(self.path, json.dumps(self.info, indent=1, ensure_ascii=False) + "\n")
+        self._write_info()
+        if self.passing:
+            return ()
         report = write_analyses(self.directory, self.study)
-        return [*(self.directory / file for file in self.info["files"]), self.path, report]
+        return (*(self.directory / file for file in self.info["files"]), self.path, report)
+
+    def _write_info(self) -> None:
+        write_whole(self.path, json.dumps(self.info, indent=1, ensure_ascii=False) + "\n")
+
+
+@contextmanager
+def analysis_folder(
+    out: str | os.PathLike[str] | None, name: str, study: Study, fresh: bool, listener: Listener
+) -> Iterator[AnalysisFolder]:
+    """The folder of an analysis; without ``out`` one that passes, with all that is in it."""
+    if out is not None:
+        yield AnalysisFolder(Path(out), name, study, fresh=fresh, listener=listener)
+        return
+    with TemporaryDirectory(prefix="rockbatch-") as directory:
+        yield AnalysisFolder(Path(directory), name, study, listener=listener, passing=True)
 
 
 def _digests(path: Path) -> dict[str, Any]:

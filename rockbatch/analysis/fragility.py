@@ -1,312 +1,143 @@
-"""Fragility of every case: stripes, or the capacities of an incremental dynamic analysis, and the curves through them."""
+"""Fragility of a study: from what it asks to its tables."""
 
-import math
-from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
-from functools import lru_cache
-from typing import TYPE_CHECKING, NamedTuple
+import os
+import time
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, ClassVar
 
-import numpy as np
-import numpy.typing as npt
-
-from rockbatch.analysis.ida import Bracket, Capacity, Looks, bisect, capacity
-from rockbatch.analysis.limit_states import EXCEEDED, LEFT_OUT, UNDECIDED, WITHSTOOD, applies, states
-from rockbatch.analysis.lognormal import Capacities, Lognormal, Values, fit
-from rockbatch.batch.plan import PlannedRun, Runs, scaled
-from rockbatch.checks.rules import Rule
-from rockbatch.errors import InputError
-from rockbatch.motions import Motion
-from rockbatch.motions.measures import pgv
-from rockbatch.motions.spectrum import spectral_acceleration
-from rockbatch.results.run_json import describe_case
-from rockbatch.study import Case, Output, Study
-from rockbatch.study.fragility import FragilitySpec
+from rockbatch.analysis.folder import Analysis, analysis_folder
+from rockbatch.analysis.fragility_curves import Curve, assess, intensities, output
+from rockbatch.analysis.fragility_tables import CAPACITIES, POINTS, RUNS, capacities, described, points
+from rockbatch.analysis.waves import Waves
+from rockbatch.batch.digests import digests
+from rockbatch.batch.listening import Progress, count, listener_of, make_ready, once
+from rockbatch.batch.threads import Engine, engine_of
+from rockbatch.results.columns import columns
+from rockbatch.study import Study, given_study
+from rockbatch.study.fragility import FragilitySpec, read_fragility
+from rockbatch.study.suite import ground_motions
 
 if TYPE_CHECKING:
     import pandas as pd
 
 
-class Point(NamedTuple):
-    """A run: numbers of the motion and the case, and the intensity that the motion is scaled to."""
-
-    motion: int
-    intensity: float
-    case: int
-
-
-class ScaledRuns(Runs):
-    """The runs of some points in one polarity; ``unscaled`` are the intensities of the motions."""
-
-    def __init__(
-        self,
-        points: Sequence[Point],
-        motions: Sequence[Motion],
-        unscaled: Sequence[float],
-        cases: Sequence[Case],
-        polarity: str,
-    ) -> None:
-        self.points, self.motions, self.unscaled, self.cases = points, motions, unscaled, cases
-        self.polarity = polarity
-        self._moved = lru_cache(maxsize=1)(self._move)  # neighbours share their motion
-
-    def __len__(self) -> int:
-        return len(self.points)
-
-    def run(self, number: int) -> PlannedRun:
-        """See :class:`rockbatch.batch.plan.Runs`."""
-        motion, intensity, case = self.points[number]
-        scale = intensity / self.unscaled[motion]
-        return PlannedRun(self._moved(motion, scale), self.polarity, scale, self.cases[case], self.motions[motion])
-
-    def _move(self, motion: int, scale: float) -> Motion:
-        return scaled(self.motions[motion], scale, self.polarity)
-
-
-Simulate = Callable[[ScaledRuns], "pd.DataFrame"]
-"""From runs to their rows of peaks.csv, in their order."""
-
-
-class Stripe(NamedTuple):
-    """All records at one level: how many count, exceed the limit, or are undecided; overturn, fly or fail."""
-
-    level: float
-    records: int
-    exceeded: int
-    undecided: int
-    collapsed: int
-    flight: int
-    failed: int
-
-
-class Undecided(NamedTuple):
-    """Of how many ``runs`` of a curve it is not known on which side of the limit they are: they flew, failed, or else.
-
-    ``other`` are within their error of the limit, or overturned where the check counts that as unknown.
-    """
-
-    runs: int
-    flight: int
-    failed: int
-    other: int
-
-    @property
-    def number(self) -> int:
-        """All of them."""
-        return self.flight + self.failed + self.other
-
-    @property
-    def words(self) -> str:
-        """ "12 of 400 runs undecided: 10 flew, 2 failed"; empty where there are none."""
-        kinds = {"flew": self.flight, "failed": self.failed, "too near to the limit, or counted as unknown": self.other}
-        told = ", ".join(f"{number} {kind}" for kind, number in kinds.items() if number)
-        return f"{self.number} of {self.runs} runs undecided: {told}" if told else ""
-
-
-class Readings(NamedTuple):
-    """The curves with all undecided runs counted as beyond the limit, and as within it, or why there is none."""
-
-    exceeded: Lognormal | str
-    withstood: Lognormal | str
-
-    @property
-    def medians(self) -> tuple[float, float]:
-        """From the one to the other; 0 or infinite where that has no curve."""
-        low = self.exceeded.median if isinstance(self.exceeded, Lognormal) else 0.0
-        high = self.withstood.median if isinstance(self.withstood, Lognormal) else math.inf
-        return min(low, high), max(low, high)
-
-    def probability(self, x: Values) -> tuple[Values, Values]:
-        """P(x) from the one to the other, each of the shape of ``x``; 0 or 1 where that has no curve."""
-        low = self.withstood.probability(x) if isinstance(self.withstood, Lognormal) else np.zeros(len(x))
-        high = self.exceeded.probability(x) if isinstance(self.exceeded, Lognormal) else np.ones(len(x))
-        return np.minimum(low, high), np.maximum(low, high)
-
-
-@dataclass(frozen=True)
-class Curve:
-    """Fragility of one case for one limit.
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class Fragility(Analysis):
+    """Fragility of every case for overturning and every limit; see also :class:`rockbatch.analysis.folder.Analysis`.
 
     Attributes
     ----------
-    case, limit
-        Which.
-    stripes : tuple of Stripe
-        Counts at every level.
-    fitted : Lognormal or str
-        The curve, to which undecided runs add nothing, or why there is none.
-    undecided : Undecided
-        How many runs these are.
-    readings : Readings or None
-        The curves between which it lies, whatever they would have come to; None where there are none.
-    capacities : tuple of (int, Capacity)
-        Number of each motion that counts, and its capacity; empty for stripes.
+    fragility : DataFrame
+        A row for each limit, case and level of the intensity measure: how many records count, exceed the limit, or are
+        undecided; P(limit | level) by the curve, and what it lies between.
+    fragility_capacities : DataFrame or None
+        Of incremental dynamic analysis: a row for each limit, case and record, with the least intensity that exceeds
+        the limit, in the unit of the levels and as a scale of the record.
+    fragility_runs : DataFrame
+        All runs, as rows of peaks.csv.
+    curves : tuple of Curve
+        Medians, dispersions and their intervals, or why there are none.
+    spec : FragilitySpec
+        What [fragility] of the study asks for.
     """
 
-    case: Case
-    limit: Rule
-    stripes: tuple[Stripe, ...]
-    fitted: Lognormal | str
-    undecided: Undecided
-    readings: Readings | None = None
-    capacities: tuple[tuple[int, Capacity], ...] = ()
+    NAME: ClassVar[str] = "fragility"
+    TABLES: ClassVar[tuple[str, ...]] = ("fragility", "fragility_capacities", "fragility_runs")
 
-    @property
-    def says_little(self) -> bool:
-        """Whether undecided runs leave the median more open than the number of records does."""
-        if self.readings is None or not isinstance(self.fitted, Lognormal):
-            return False
-        return _ratio(self.readings.medians) > _ratio(self.fitted.median_interval)
+    fragility: "pd.DataFrame"
+    fragility_capacities: "pd.DataFrame | None"
+    fragility_runs: "pd.DataFrame"
+    curves: tuple[Curve, ...]
+    spec: FragilitySpec
 
 
-def _ratio(bounds: tuple[float, float]) -> float:
-    low, high = bounds
-    return high / low if low > 0 else math.inf
+def fragility(
+    study: str | os.PathLike[str] | Study,
+    out: str | os.PathLike[str] | None = None,
+    *,
+    motions: str | os.PathLike[str] | None = None,
+    jobs: int | Engine | None = None,
+    fresh: bool = False,
+    progress: Progress = False,
+) -> Fragility:
+    """How probable overturning, and every limit of a check, is at a given intensity: [fragility] of a study.
 
+    Parameters
+    ----------
+    study, motions, jobs, fresh, progress
+        As for :func:`rockbatch.run`; there is a new count for each wave of runs.
+    out : path, optional
+        Folder for what ``rockbatch fragility`` leaves, which is gone on with if it was interrupted; without it nothing is
+        kept on disk.
 
-def output(spec: FragilitySpec) -> Output:
-    """What the runs have to bring beyond their peaks."""
-    return Output(histories="none", both_laws=any(rule.other_law for rule in spec.limits))
+    Returns
+    -------
+    Fragility
+        With the tables ``fragility``, ``fragility_capacities`` and ``fragility_runs``, as their CSV files have them.
 
+    Raises
+    ------
+    InputError
+        With every mistake in the study; for a folder with finished runs of another state of the study.
 
-def intensities(motions: Iterable[Motion], spec: FragilitySpec, gravity: float) -> list[float]:
-    """Intensity measure of every motion as it is, in the unit of the levels; ``InputError`` for one that has none."""
-    found, wrong = [], []
-    for motion in motions:
-        if spec.measure == "PGA":
-            value = motion.pga / gravity
-        elif spec.measure == "PGV":
-            value = pgv(motion.horizontal, motion.dt, motion.initial)
-        else:
-            value = spectral_acceleration(motion.horizontal, motion.dt, [spec.period_s], spec.damping)[0] / gravity
-        if not value > 0:
-            wrong.append(
-                f"{motion.name}: its horizontal component has {spec.label} = 0, and no scale brings it to a level; "
-                "take it out of [motions]"
-            )
-        found.append(float(value))
-    if wrong:
-        raise InputError(*wrong)
-    return found
-
-
-def assess(study: Study, spec: FragilitySpec, motions: Sequence[Motion], simulate: Simulate) -> list[Curve]:
-    """Fragility curves of every case and every limit that it is asked about.
-
-    Every record is scaled to every level; with method "ida" the first exceedance of every record is then bisected, in
-    waves.
-
-    ``simulate`` is called once for the levels and once for every wave, each depending on the rows before.
+    Examples
+    --------
+    >>> found = rb.fragility("configs/fragility.toml")
+    >>> found.fragility[["case", "limit_state", "level", "p"]]
+    >>> found.save("reports/fragility")
     """
-    runs = _Runs(study, motions, intensities(motions, spec, study.cases[0].pier.gravity), simulate)
-    cases = [describe_case(case) for case in study.cases]
-    asked = [(c, rule) for rule in spec.limits for c, case in enumerate(cases) if applies(rule, case)]
-    runs.carry_out(Point(m, x, c) for m in range(len(motions)) for x in spec.levels for c in range(len(cases)))
-
-    def look(wanted: Sequence[tuple[_Key, float]]) -> list[int]:
-        points = [(rule, Point(m, x, c)) for (c, rule, m), x in wanted]
-        runs.carry_out(point for _, point in points)
-        return runs.states(points)
-
-    keys = [(c, rule, m) for c, rule in asked for m in range(len(motions))]
-    on_levels = iter(runs.states([(rule, Point(m, x, c)) for c, rule, m in keys for x in spec.levels]))
-    looks = {key: {x: next(on_levels) for x in spec.levels} for key in keys}
-    if spec.method == "ida":
-        looks = bisect(looks, spec.levels, spec.tolerance, look)
-    return [_curve(runs, spec, c, rule, [looks[c, rule, m] for m in range(len(motions))]) for c, rule in asked]
-
-
-_Key = tuple[int, Rule, int]
-"""Number of a case, a limit, and number of a motion."""
-
-
-class _Runs:
-    """All runs of an analysis, each once, with their rows."""
-
-    def __init__(self, study: Study, motions: Sequence[Motion], unscaled: Sequence[float], simulate: Simulate) -> None:
-        self.study, self.motions, self.unscaled, self.simulate = study, motions, unscaled, simulate
-        self.cases = [describe_case(case) for case in study.cases]
-        self.status: dict[Point, str] = {}
-        self._last: tuple[dict[Point, int], pd.DataFrame]
-
-    def carry_out(self, wanted: Iterable[Point]) -> None:
-        """One wave of runs."""
-        points = sorted({*wanted})  # what shares a motion stands together
-        polarity = self.study.motions.simulated
-        table = self.simulate(ScaledRuns(points, self.motions, self.unscaled, self.study.cases, polarity))
-        self.status |= dict(zip(points, table["status"], strict=True))
-        self._last = {point: i for i, point in enumerate(points)}, table
-
-    def states(self, asked: Sequence[tuple[Rule, Point]]) -> list[int]:
-        """What runs of the last wave say about limits."""
-        places, table = self._last
-        together: dict[tuple[Rule, int], list[int]] = {}
-        for number, (rule, point) in enumerate(asked):
-            together.setdefault((rule, point.case), []).append(number)
-        found = [LEFT_OUT] * len(asked)
-        for (rule, case), numbers in together.items():
-            rows = table.iloc[[places[asked[number][1]] for number in numbers]]
-            for number, state in zip(numbers, states(rule, rows, self.cases[case]).tolist(), strict=True):
-                found[number] = state
-        return found
-
-
-def _curve(runs: _Runs, spec: FragilitySpec, case: int, rule: Rule, looks: Sequence[Looks]) -> Curve:
-    """The curve through what every motion came to."""
-    on_levels = np.array([[each[x] for x in spec.levels] for each in looks], dtype=np.int8)
-    undecided = _undecided(runs, case, looks)
-    capacities: tuple[tuple[int, Capacity], ...] = ()
-    if spec.method == "ida":
-        found = ((m, capacity(each, spec.levels)) for m, each in enumerate(looks))
-        capacities = tuple((m, one) for m, one in found if one is not None)
-        fits = _through_brackets([one for _, one in capacities], spec)
-    else:
-        fits = _through_stripes(on_levels, spec)
-    stripes = _stripes(on_levels, spec.levels, runs, case)
-    return Curve(runs.study.cases[case], rule, stripes, fits[0], undecided, fits[1], capacities)
-
-
-def _undecided(runs: _Runs, case: int, looks: Sequence[Looks]) -> Undecided:
-    counted = [(Point(m, x, case), state) for m, each in enumerate(looks) for x, state in each.items()]
-    status = Counter(runs.status[point] for point, state in counted if state == UNDECIDED)
-    flight, failed = status.pop("flight", 0), status.pop("failed", 0)
-    return Undecided(sum(state != LEFT_OUT for _, state in counted), flight, failed, status.total())
-
-
-def _stripes(found: npt.NDArray[np.int8], levels: Sequence[float], runs: _Runs, case: int) -> tuple[Stripe, ...]:
-    stripes = []
-    for x, at in zip(levels, found.T, strict=True):
-        ended = Counter(runs.status[Point(m, x, case)] for m in range(len(at)))
-        counts = (int(np.count_nonzero(which)) for which in (at != LEFT_OUT, at == EXCEEDED, at == UNDECIDED))
-        stripes.append(Stripe(x, *counts, *(ended[status] for status in ("overturned", "flight", "failed"))))
-    return tuple(stripes)
-
-
-Fits = tuple[Lognormal | str, Readings | None]
-
-
-def _through_stripes(found: npt.NDArray[np.int8], spec: FragilitySpec) -> Fits:
-    levels = np.array(spec.levels)
-    within, undecided, beyond = ((found == state).astype(float) for state in (WITHSTOOD, UNDECIDED, EXCEEDED))
-
-    def through(within: Values, beyond: Values) -> Lognormal | str:
-        return fit(Capacities.of_same_records(levels, within, beyond), spec.confidence)
-
-    fitted = through(within, beyond)
-    if not undecided.any():
-        return fitted, None
-    return fitted, Readings(through(within, beyond + undecided), through(within + undecided, beyond))
-
-
-def _through_brackets(capacities: Sequence[Capacity], spec: FragilitySpec) -> Fits:
-    def through(brackets: Sequence[Bracket]) -> Lognormal | str:
-        low, high = np.array(brackets, dtype=np.float64).reshape(-1, 2).T
-        told = (low > 0) | np.isfinite(high)
-        return fit(Capacities(low[told], high[told], np.ones(told.sum())), spec.confidence)
-
-    fitted = through([one.decided for one in capacities])
-    if not any(one.undecided for one in capacities):
-        return fitted, None
-    return fitted, Readings(
-        *(through([getattr(one, name) for one in capacities]) for name in ("if_exceeded", "if_withstood"))
+    started = time.monotonic()
+    asked, listener, carrier = given_study(study, motions), listener_of(progress), engine_of(jobs)
+    spec = read_fragility(asked)
+    asked = replace(asked, output=output(spec))
+    found = ground_motions(asked)
+    listener.motions(found)
+    records = found.motions
+    unscaled = intensities(records, spec, asked.cases[0].pier.gravity)
+    if asked.motions.scale != (1.0,):
+        listener.say("scale of [motions] is not used: the levels of [fragility] take its place")
+    digest = digests(
+        records,
+        cases=asked.cases,
+        polarity=asked.motions.simulated,
+        numerics=(asked.numerics, asked.output),
+        fragility=replace(spec, confidence=0.0),  # which no run depends on
     )
+    with (
+        analysis_folder(out, Fragility.NAME, asked, fresh, listener) as results,
+        results.journal(RUNS, columns(asked), digest) as journal,
+        carrier,
+    ):
+        listener.say(f"{_what(spec, asked, len(records))} on {carrier}{_then(spec)}")
+        make_ready(asked, listener)
+        waves = Waves(asked, journal, carrier, listener.progress)
+        curves = assess(asked, spec, records, waves)
+        results.info |= described(curves, spec, asked, len(records))
+        results.keep_table(POINTS, points(curves, spec, asked.varied))
+        if spec.method == "ida":
+            names = [motion.name for motion in records]
+            results.keep_table(CAPACITIES, capacities(curves, spec, asked.varied, names, unscaled))
+        else:
+            results.drop(CAPACITIES)
+        journal.write_in_order(results.directory / RUNS)
+        results.keep(RUNS, digest)
+        files = results.end(runs=waves.finished, wall_s=round(time.monotonic() - started, 3))
+        return Fragility(
+            study=asked,
+            info=results.info,
+            unusable=tuple(found.unusable),
+            files=files,
+            **results.tables(Fragility.TABLES),
+            curves=tuple(curves),
+            spec=spec,
+        )
+
+
+def _what(spec: FragilitySpec, study: Study, records: int) -> str:
+    runs = records * len(spec.levels) * len(study.cases)
+    levels = f"{count(records, 'record')} at {len(spec.levels)} levels of {spec.label}"
+    return f"{levels}: {count(runs, 'run')}{once(study)}"
+
+
+def _then(spec: FragilitySpec) -> str:
+    return f"; then first exceedances are bisected to {spec.tolerance:g}" if spec.method == "ida" else ""

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rockbatch.analysis.fragility import Curve
+from rockbatch.analysis.fragility_curves import Curve
 from rockbatch.analysis.ida import Capacity
 from rockbatch.analysis.limit_states import words
 from rockbatch.analysis.lognormal import Lognormal, Values

@@ -1,27 +1,159 @@
-"""What the peak rotation hangs on: from the runs of a sensitivity study to its tables.
+"""What the peak rotation hangs on: a sensitivity study, from what it asks to its tables.
 
 The answer is a statistic of the suite, at every point: at both ends of each input alone, and at the points of Sobol's
 indices.
 """
 
+import csv
+import os
+import time
 from array import array
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from dataclasses import asdict, dataclass, replace
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from rockbatch.analysis.sampled import Point, Points
+from rockbatch.analysis import sampled
+from rockbatch.analysis.folder import Analysis, AnalysisFolder, analysis_folder
+from rockbatch.analysis.sampled import Point, Points, Suite
 from rockbatch.analysis.sobol import COLUMNS, indices
+from rockbatch.batch.carrying_out import carry_out
+from rockbatch.batch.digests import digests
+from rockbatch.batch.listening import Progress, count, listener_of, make_ready, once
+from rockbatch.batch.threads import Engine, engine_of
 from rockbatch.checks.statistics import STATISTICS, Values
-from rockbatch.study import Study
-from rockbatch.study.sensitivity import Input, SensitivitySpec, Value
+from rockbatch.motions import MotionSet
+from rockbatch.study import Study, given_study
+from rockbatch.study.sensitivity import Input, SensitivitySpec, Value, read_sensitivity
+from rockbatch.study.suite import ground_motions
 
 if TYPE_CHECKING:
     import pandas as pd
 
 ONE_AT_A_TIME, SOBOL = "sensitivity.csv", "sobol.csv"
 TORNADO_COLUMNS = ("parameter", "low", "base", "high", "answer_low", "answer_base", "answer_high", "swing")
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class Sensitivity(Analysis):
+    """What the peak rotation hangs on; see also :class:`rockbatch.analysis.folder.Analysis`.
+
+    Attributes
+    ----------
+    sensitivity_runs : DataFrame
+        All runs: record, polarity, scale, status and θ_max/α.
+    sensitivity : DataFrame
+        One at a time: a row for each case and input, with the answer at both ends of its range, the greatest swing first.
+    sobol : DataFrame
+        A row for each case and input: first-order and total indices, and their intervals.
+    spec : SensitivitySpec
+        What [sensitivity] of the study asks for.
+    """
+
+    NAME: ClassVar[str] = "sensitivity"
+    TABLES: ClassVar[tuple[str, ...]] = ("sensitivity_runs", "sensitivity", "sobol")
+
+    sensitivity_runs: "pd.DataFrame"
+    sensitivity: "pd.DataFrame"
+    sobol: "pd.DataFrame"
+    spec: SensitivitySpec
+
+
+def sensitivity(
+    study: str | os.PathLike[str] | Study,
+    out: str | os.PathLike[str] | None = None,
+    *,
+    motions: str | os.PathLike[str] | None = None,
+    jobs: int | Engine | None = None,
+    fresh: bool = False,
+    progress: Progress = False,
+) -> Sensitivity:
+    """What the peak rotation hangs on, one at a time and by Sobol's indices: [sensitivity] of a study.
+
+    Parameters
+    ----------
+    study, motions, jobs, fresh, progress
+        As for :func:`rockbatch.run`.
+    out : path, optional
+        Folder for what ``rockbatch sensitivity`` leaves, which is gone on with if it was interrupted; without it nothing is
+        kept on disk.
+
+    Returns
+    -------
+    Sensitivity
+        With the tables ``sensitivity_runs``, ``sensitivity`` and ``sobol``, as their CSV files have them.
+
+    Raises
+    ------
+    InputError
+        With every mistake in the study; for a folder with finished runs of another state of the study.
+
+    Examples
+    --------
+    >>> found = rb.sensitivity("configs/sensitivity.toml")
+    >>> found.sobol[["case", "parameter", "first", "total"]]
+    >>> found.save("reports/sensitivity")
+    """
+    started = time.monotonic()
+    asked, listener, carrier = given_study(study, motions), listener_of(progress), engine_of(jobs)
+    spec = read_sensitivity(asked)
+    wanted = asked
+    if any(each.name == "vertical" for each in spec.inputs):  # read it, whatever the study does with it
+        wanted = replace(asked, motions=replace(asked.motions, vertical=asked.motions.vertical or True))
+    found = ground_motions(wanted)
+    listener.motions(found)
+    points = Points(asked, spec)
+    with analysis_folder(out, Sensitivity.NAME, asked, fresh, listener) as results:
+        results.info |= {
+            "varied": list(asked.varied),
+            **{name: value for name, value in asdict(spec).items() if name != "inputs"},
+            "inputs": [asdict(each) for each in spec.inputs],
+        }
+        with carrier:
+            _carry_out(results, points, found, carrier)
+            engine = str(carrier)
+        with (results.directory / sampled.RUNS).open(encoding="utf-8", newline="") as rows:
+            results.info["statuses"], values = values_of(csv.DictReader(rows), len(points), spec.overturned)
+        swings, shares = tables(asked, spec, points, values)
+        results.keep_table(ONE_AT_A_TIME, swings)
+        results.keep_table(SOBOL, shares)
+        files = results.end(engine=engine, wall_s=round(time.monotonic() - started, 3))
+        return Sensitivity(
+            study=asked,
+            info=results.info,
+            unusable=tuple(found.unusable),
+            files=files,
+            **results.tables(Sensitivity.TABLES),
+            spec=spec,
+        )
+
+
+def _carry_out(results: AnalysisFolder, points: Points, motions: MotionSet, carrier: Engine) -> None:
+    """Write the runs at all points, unless they are there."""
+    study, listener, file = results.study, results.listener, sampled.RUNS
+    suite = Suite(study, points, motions.motions)
+    runs = suite.runs()
+    digest = digests(
+        motions.motions,
+        cases=study.cases,
+        inputs=[(point.case, sorted(point.values.items())) for point in points.all],
+        scales=(study.motions.vertical, study.motions.polarity, study.motions.scale),
+        numerics=study.numerics,
+    )
+    results.info["motions"] = len(suite.members)
+    many = f"{count(len(points), 'point')} × {count(len(suite.members), 'motion')} = {len(runs)} runs{once(study)}"
+    listener.say(f"{many} on {carrier}")
+    if results.has(file, digest):
+        results.keep(file, digest)
+        return
+    make_ready(replace(study, cases=suite.some_cases()), listener)
+    with results.journal(file, sampled.COLUMNS, digest) as journal:
+        with listener.progress(len(runs) - len(journal)) as progress:
+            carry_out(runs, study.numerics, journal, carrier, row=sampled.row_of, progress=progress)
+        journal.write_in_order(results.directory / file)
+        results.keep(file, digest)
 
 
 def counted_as(status: str, theta_max_over_alpha: float, overturned: float) -> float:

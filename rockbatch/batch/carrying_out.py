@@ -1,31 +1,32 @@
-"""Every record in every case: a study from its motions to its table."""
+"""Every record in every case: runs to rows, those that are not there yet."""
 
-import os
 from array import array
 from collections.abc import Callable, Container, Iterator, Mapping
 from contextlib import closing
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from rockbatch.batch.groups import NOTHING_MORE
 from rockbatch.batch.journal import Journal
-from rockbatch.batch.plan import Chosen, Plan, PlannedRun, Runs
-from rockbatch.batch.threads import Engine, Threads, cores
+from rockbatch.batch.plan import Chosen, PlannedRun, Runs
+from rockbatch.batch.threads import Engine
 from rockbatch.checks.suite import MIRROR_OF
-from rockbatch.errors import InputError
-from rockbatch.results.columns import as_table, row, unusable_rows
+from rockbatch.results.columns import row
 from rockbatch.results.outcome import Outcome
-from rockbatch.study import Numerics, Output, Study, load_study
-from rockbatch.study.suite import ground_motions
+from rockbatch.study import Numerics, Output
 
-if TYPE_CHECKING:
-    import pandas as pd
+
+class InMemory(dict[int, Mapping[str, Any]]):
+    """Rows of finished runs by their numbers, in place of a journal where nothing is kept on disk."""
+
+    def add_all(self, rows: Mapping[int, Mapping[str, Any]]) -> None:
+        """As :meth:`Journal.add_all`."""
+        self.update(rows)
 
 
 def carry_out(
     runs: Runs,
     numerics: Numerics,
-    journal: Journal,
+    journal: Journal | InMemory,
     engine: Engine,
     output: Output = NOTHING_MORE,
     *,
@@ -86,47 +87,3 @@ def _images(
 def row_of(run: PlannedRun, outcome: Outcome) -> dict[str, Any]:
     """Row of peaks.csv of a run that is finished."""
     return row(run.motion.name, run.polarity, run.scale, run.case, outcome) | {MIRROR_OF: run.mirror_of}
-
-
-def run(
-    study: str | os.PathLike[str] | Study,
-    *,
-    motions: str | os.PathLike[str] | None = None,
-    jobs: int | None = None,
-    progress: Callable[[int, int], None] | None = None,
-) -> "pd.DataFrame":
-    """Run a study: the rows of peaks.csv.
-
-    Parameters
-    ----------
-    study : path or Study
-        A study file, or one that is loaded.
-    motions : path, optional
-        A file or folder that replaces all motions of a study file.
-    jobs : int, optional
-        Number of threads; all processors by default. The table does not depend on it.
-    progress : function of two ints, optional
-        Called with the number of finished simulations and of all.
-
-    Raises
-    ------
-    InputError
-        With every mistake in the study.
-    """
-    if jobs is not None and jobs < 1:
-        raise InputError(f"jobs = {jobs}: must be at least 1, or left out for all processors")
-    if not isinstance(study, Study):
-        study = load_study(Path(study), motions=motions)
-    found = ground_motions(study)
-    runs = Plan(study, found)
-    simulated = Chosen(runs, to_simulate(runs, range(len(runs))))
-    rows: dict[int, Mapping[str, Any]] = {}
-    finished = 0
-    with closing(Threads(jobs or cores()).outcomes(simulated, study.numerics, study.output)) as groups:
-        for group in groups:
-            for i, outcome in group:
-                rows |= _images(runs, simulated.indices[i], outcome, row_of)
-                finished += 1
-                if progress:
-                    progress(finished, len(simulated))
-    return as_table([*(rows[i] for i in sorted(rows)), *unusable_rows(found)], study)

@@ -3,9 +3,7 @@
 import datetime
 import json
 import platform
-import sys
-from collections.abc import Callable
-from contextlib import AbstractContextManager, nullcontext
+from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
@@ -15,6 +13,7 @@ from rockbatch._version import __version__
 from rockbatch.batch.carrying_out import to_simulate
 from rockbatch.batch.journal import Journal
 from rockbatch.batch.kept_histories import keep_histories, kept
+from rockbatch.batch.listening import Listener
 from rockbatch.batch.plan import Plan
 from rockbatch.batch.threads import cores
 from rockbatch.checks import Verdict, write_verdicts
@@ -29,9 +28,6 @@ from rockbatch.results.reading import Saved, read_saved
 from rockbatch.results.run_json import INFO, describe, write_info
 from rockbatch.study import Study
 
-Progress = Callable[[int], AbstractContextManager[Callable[[int], object] | None]]
-"""Asked, with a number of things to do, for a context that is called with the number of those that are done."""
-
 VERSIONS_OF = ("numba", "numpy", "pandas", "obspy", "h5py")
 """Packages whose versions run.json names."""
 
@@ -44,6 +40,8 @@ class FinishedBatch:
     ----------
     saved : Saved
         ``peaks.csv`` and ``run.json``.
+    motions : MotionSet
+        What the study was run under, and what of it could not be used.
     verdicts : list of Verdict
         Those of the study's checks; empty where it has none.
     files : tuple of Path
@@ -53,17 +51,20 @@ class FinishedBatch:
     """
 
     saved: Saved
+    motions: MotionSet
     verdicts: list[Verdict]
     files: tuple[Path, ...]
     without: InputError | None
 
 
-def what_was_run(study: Study, motions: MotionSet, runs: Plan, digest: dict[str, str]) -> dict[str, Any]:
-    """What run.json says, but for what the runs cost."""
+def what_was_run(
+    study: Study, motions: MotionSet, runs: Plan, digest: dict[str, str], command: Sequence[str]
+) -> dict[str, Any]:
+    """What run.json says, but for what the runs cost; ``command`` are the words after ``rockbatch`` that do it again."""
     return {
         "rockbatch": __version__,
         "created": datetime.datetime.now().astimezone().isoformat(timespec="seconds"),
-        "command": ["rockbatch", *sys.argv[1:]],
+        "command": ["rockbatch", *command],
         **describe(study, motions),
         "versions": _versions(),
         "machine": f"{platform.system()} {platform.machine()}, {cores()} processors",
@@ -92,33 +93,28 @@ def write_peaks(journal: Journal, motions: MotionSet) -> None:
 
 
 def finish(
-    directory: Path, study: Study, runs: Plan, info: dict[str, Any], progress: Progress | None = None
+    directory: Path, study: Study, motions: MotionSet, runs: Plan, info: dict[str, Any], listener: Listener
 ) -> FinishedBatch:
     """Write run.json, histories, checks and the report beside peaks.csv.
 
-    Parameters
-    ----------
-    info : dict
-        What run.json is to say: :func:`what_was_run`, ``jobs``, ``wall_s`` and ``kept``.
-    progress : function, optional
-        See :data:`Progress`; of the histories that are kept.
+    ``info`` is what run.json is to say: :func:`what_was_run`, ``jobs``, ``wall_s`` and ``kept``.
     """
     write_info(directory, info)
     saved = read_saved(directory)
-    histories, without = _keep_histories(saved, study, runs, progress)
+    histories, without = _keep_histories(saved, study, runs, listener)
     judged = verdicts(saved) if study.checks else []
     checks = write_verdicts(directory, judged) if study.checks else None
     written = (directory / PEAKS, directory / INFO, histories, checks, write_report(directory))
-    return FinishedBatch(saved, judged, tuple(path for path in written if path), without)
+    return FinishedBatch(saved, motions, judged, tuple(path for path in written if path), without)
 
 
 def _keep_histories(
-    saved: Saved, study: Study, runs: Plan, progress: Progress | None
+    saved: Saved, study: Study, runs: Plan, listener: Listener
 ) -> tuple[Path | None, InputError | None]:
     """Write the histories that the study asks for: their file, and why some are not in it."""
     number = len(kept(study, saved.peaks.iloc[: len(runs)]))
     try:
-        with progress(number) if progress else nullcontext() as told:
+        with listener.progress(number) as told:
             path = keep_histories(saved, study, runs, None if told is None else lambda: told(1))
     except InputError as error:
         return None, error

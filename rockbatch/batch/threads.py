@@ -9,6 +9,7 @@ from typing import Protocol, Self
 
 from rockbatch.batch.groups import NOTHING_MORE, groups, outcomes_of
 from rockbatch.batch.plan import PlannedRun
+from rockbatch.errors import InputError
 from rockbatch.results.outcome import Outcome
 from rockbatch.simulation import Stop
 from rockbatch.study import Numerics, Output
@@ -46,6 +47,17 @@ class Engine(Protocol):
 def cores() -> int:
     """Processors that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def engine_of(jobs: int | Engine | None) -> Engine:
+    """What carries out the runs: so many threads, all processors by default, or an engine as it is."""
+    if jobs is None:
+        return Threads(cores())
+    if not isinstance(jobs, int):
+        return jobs
+    if jobs < 1:
+        raise InputError(f"jobs = {jobs}: must be at least 1, or left out for all processors")
+    return Threads(jobs)
 
 
 @dataclass(frozen=True)

@@ -1,11 +1,10 @@
 """``rockbatch accuracy``: error against time per run for a study on this machine, beside SciPy's solvers."""
 
 import argparse
-import json
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from rockbatch.commands.messages import say
+from rockbatch.commands.analyses import tell_files
+from rockbatch.commands.messages import Terminal
 from rockbatch.commands.options import add_study, folder, study_of
 
 if TYPE_CHECKING:
@@ -35,40 +34,12 @@ def _runs(text: str) -> int:
 
 def main(arguments: argparse.Namespace) -> int:
     study = study_of(arguments)
-    directory = folder(arguments)
 
-    from rockbatch.analysis.accuracy import measure, reference, spread
-    from rockbatch.batch.plan import Plan
-    from rockbatch.commands.progress import Progress
-    from rockbatch.errors import InputError
-    from rockbatch.files import write_whole
-    from rockbatch.study.suite import ground_motions
+    from rockbatch.analysis.accuracy import accuracy
 
-    motions = ground_motions(study)
-    runs = Plan(study, motions)
-    chosen = spread(runs, arguments.runs)
-    say(f"{len(chosen)} of {len(runs)} runs: first their references, then a minute or so of measurements")
-    found = []
-    with Progress(len(chosen)) as progress:
-        for run in chosen:
-            found.append(reference(run, study.numerics.quiet_s))
-            progress()
-    references = [one for one in found if one is not None]
-    if not references:
-        raise InputError(
-            f"{arguments.study}: no run settles with ever smaller steps, so there is nothing to measure errors against"
-        )
-    if len(references) < len(found):
-        say(f"left out: {len(found) - len(references)} that do not settle with ever smaller steps")
-    table = measure(study, references)
-    directory.mkdir(parents=True, exist_ok=True)
-    write_whole(directory / "accuracy.csv", table.to_csv(index=False, float_format="%.6g", lineterminator="\n"))
-    print(shown(table))
-    say(str(directory / "accuracy.csv"))
-    if _same_study(directory, table["study"].iloc[0], motions):
-        from rockbatch.report import write_report
-
-        say(str(write_report(directory)))
+    found = accuracy(study, folder(arguments), runs=arguments.runs, progress=Terminal())
+    print(shown(found.accuracy))
+    tell_files(found)
     return 0
 
 
@@ -99,14 +70,3 @@ def shown(table: "pd.DataFrame") -> str:
     )
     settled = table["reference_change"].max()
     return f"Error of theta_max/alpha (references to {settled:.0e})\n{cells.to_string(index=False)}"
-
-
-def _same_study(directory: Path, digest: str, motions: Any) -> bool:
-    """Whether the folder holds results of this very study with these motions, whose report can show the table."""
-    try:
-        info = json.loads((directory / "run.json").read_text(encoding="utf-8"))
-        records = [record["record"] for record in info["records"]]
-        same = info["study"]["sha256"] == digest and records == [motion.name for motion in motions.motions]
-    except (OSError, ValueError, KeyError, TypeError):
-        return False
-    return same and (directory / "peaks.csv").exists()

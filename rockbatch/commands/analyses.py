@@ -1,33 +1,26 @@
-"""What commands that answer a question about a study have in common: what they tell of their journals and files."""
+"""What commands that answer a question about a study have in common."""
 
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
-from typing import TYPE_CHECKING
+import argparse
+from typing import TYPE_CHECKING, Any
 
-from rockbatch.commands.messages import count, say
+from rockbatch.commands.messages import Terminal, say
+from rockbatch.commands.options import engine, folder
 
 if TYPE_CHECKING:
-    from rockbatch.analysis.folder import AnalysisFolder
-    from rockbatch.batch.journal import Journal
+    from rockbatch.analysis.folder import Analysis
 
 
-@contextmanager
-def journal_of(
-    folder: "AnalysisFolder", file: str, columns: Sequence[str], digest: Mapping[str, str]
-) -> "Iterator[Journal]":
-    """The journal of the runs in ``file``; tells what is in it already, and what stays in it after Ctrl-C."""
-    with folder.journal(file, columns, digest) as journal:
-        if len(journal):
-            say(f"{count(len(journal), 'run')} are finished already (--fresh starts over)")
-        try:
-            yield journal
-        except KeyboardInterrupt:
-            kept = f"{count(len(journal), 'run')} are finished and kept in {journal.path}"
-            say(f"interrupted: {kept}; the same command goes on from there")
-            raise
+def asked(arguments: argparse.Namespace) -> dict[str, Any]:
+    """What the command line says of every analysis: its folder, what carries it out, and who hears of it."""
+    return {
+        "out": folder(arguments),
+        "jobs": engine(arguments),
+        "fresh": arguments.fresh,
+        "progress": Terminal(),
+    }
 
 
-def end(folder: "AnalysisFolder", **cost: object) -> None:
-    """Say what the analysis cost, write the report, and tell what there is."""
-    for path in folder.end(**cost):
+def tell_files(found: "Analysis") -> None:
+    """Say what was written."""
+    for path in found.files:
         say(str(path))

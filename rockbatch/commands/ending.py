@@ -2,15 +2,15 @@
 
 from typing import TYPE_CHECKING
 
-from rockbatch.commands.messages import count, say
+from rockbatch.batch.listening import count
+from rockbatch.commands.messages import say
 
 if TYPE_CHECKING:
     from rockbatch.batch.finishing import FinishedBatch
-    from rockbatch.motions import MotionSet
     from rockbatch.study import Study
 
 
-def tell(finished: "FinishedBatch", study: "Study", motions: "MotionSet") -> int:
+def tell(finished: "FinishedBatch", study: "Study") -> int:
     """Print the table of peaks and the verdicts, and say what is in the folder; returns the exit code."""
     from rockbatch.checks.suite import simulated
     from rockbatch.checks.verdicts import CHECKS
@@ -22,7 +22,7 @@ def tell(finished: "FinishedBatch", study: "Study", motions: "MotionSet") -> int
         say(str(finished.without))
         code = 1
     peaks = simulated(finished.saved.peaks)
-    by_pga = [motion.name for motion in sorted(motions.motions, key=lambda motion: motion.pga)]
+    by_pga = [motion.name for motion in sorted(finished.motions.motions, key=lambda motion: motion.pga)]
     print(summary(peaks, study.varied, by_pga))
     if warning := other_law(peaks, study.varied):
         say(warning)

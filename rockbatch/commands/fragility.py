@@ -2,16 +2,16 @@
 
 import argparse
 import math
-import time
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from rockbatch.commands.analyses import end, journal_of
-from rockbatch.commands.messages import count, make_ready, once, say, tell_motions
-from rockbatch.commands.options import add_engine, add_study, engine, folder, study_of
+from rockbatch.batch.listening import count
+from rockbatch.commands.analyses import asked, tell_files
+from rockbatch.commands.messages import say
+from rockbatch.commands.options import add_engine, add_study, study_of
 
 if TYPE_CHECKING:
-    from rockbatch.analysis.fragility import Curve
+    from rockbatch.analysis.fragility_curves import Curve
     from rockbatch.study.fragility import FragilitySpec
 
 HELP = "fragility curves for overturning and the limits of the checks, from stripes or incremental dynamic analysis"
@@ -23,61 +23,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def main(arguments: argparse.Namespace) -> int:
-    from dataclasses import replace
-
-    from rockbatch.study.fragility import read_fragility
-
-    started = time.monotonic()
     study = study_of(arguments)
-    spec = read_fragility(study)
-    directory = folder(arguments)
 
-    from rockbatch.analysis.folder import AnalysisFolder
-    from rockbatch.analysis.fragility import assess, intensities, output
-    from rockbatch.analysis.fragility_tables import CAPACITIES, POINTS, RUNS, capacities, described, points
-    from rockbatch.analysis.waves import Waves
-    from rockbatch.batch.digests import digests
-    from rockbatch.commands.progress import Progress
-    from rockbatch.results.columns import columns
-    from rockbatch.study.suite import ground_motions
+    from rockbatch.analysis.fragility import fragility
+    from rockbatch.analysis.fragility_tables import RUNS
 
-    study = replace(study, output=output(spec))
-    found = ground_motions(study)
-    tell_motions(found)
-    motions = found.motions
-    unscaled = intensities(motions, spec, study.cases[0].pier.gravity)
-    if study.motions.scale != (1.0,):
-        say("scale of [motions] is not used: the levels of [fragility] take its place")
-    digest = digests(
-        motions,
-        cases=study.cases,
-        polarity=study.motions.simulated,
-        numerics=(study.numerics, study.output),
-        fragility=replace(spec, confidence=0.0),  # which no run depends on
-    )
-    results = AnalysisFolder(directory, "fragility", study, arguments.fresh)
-    with journal_of(results, RUNS, columns(study), digest) as journal, engine(arguments) as carrier:
-        runs = len(motions) * len(spec.levels) * len(study.cases)
-        then = f"; then first exceedances are bisected to {spec.tolerance:g}" if spec.method == "ida" else ""
-        levels = f"{count(len(motions), 'record')} at {len(spec.levels)} levels of {spec.label}"
-        say(f"{levels}: {count(runs, 'run')}{once(study)} on {carrier}{then}")
-        make_ready(study)
-        waves = Waves(study, journal, carrier, Progress)
-        curves = assess(study, spec, motions, waves)
-        results.info |= described(curves, spec, study, len(motions))
-        results.keep_table(POINTS, points(curves, spec, study.varied))
-        if spec.method == "ida":
-            names = [motion.name for motion in motions]
-            results.keep_table(CAPACITIES, capacities(curves, spec, study.varied, names, unscaled))
-        else:
-            (directory / CAPACITIES).unlink(missing_ok=True)  # of an earlier analysis
-        journal.write_in_order(directory / RUNS)
-        results.keep(RUNS, digest)
-        print(table(curves, spec))
-        end(results, runs=waves.finished, wall_s=round(time.monotonic() - started, 3))
-    failed = any(stripe.failed for curve in curves for stripe in curve.stripes)
+    options = asked(arguments)
+    found = fragility(study, **options)
+    print(table(found.curves, found.spec))
+    tell_files(found)
+    failed = any(stripe.failed for curve in found.curves for stripe in curve.stripes)
     if failed:
-        say(f"some runs failed and are undecided; the column reason of {directory / RUNS} says why")
+        say(f"some runs failed and are undecided; the column reason of {options['out'] / RUNS} says why")
     return 1 if found.unusable or failed else 0
 
 

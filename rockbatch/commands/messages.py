@@ -1,12 +1,31 @@
 """What commands tell, on stderr."""
 
 import sys
-from threading import Timer
+from contextlib import AbstractContextManager
 from typing import TYPE_CHECKING
+
+from rockbatch.batch.listening import Listener, Told, count
 
 if TYPE_CHECKING:
     from rockbatch.motions import MotionSet
-    from rockbatch.study import Study
+
+
+class Terminal(Listener):
+    """Tells on stderr what it hears of a batch."""
+
+    def motions(self, found: "MotionSet") -> None:
+        """See :class:`Listener`."""
+        tell_motions(found)
+
+    def say(self, text: str) -> None:
+        """See :class:`Listener`."""
+        say(text)
+
+    def progress(self, total: int) -> AbstractContextManager[Told | None]:
+        """See :class:`Listener`."""
+        from rockbatch.commands.progress import Progress
+
+        return Progress(total)
 
 
 def say(text: str) -> None:
@@ -35,26 +54,3 @@ def _twice(motions: "MotionSet") -> list[tuple[str, str]]:
         if name != motion.name:
             pairs.append((name, motion.name))
     return pairs
-
-
-def once(study: "Study") -> str:
-    """Why there are no more runs, where a study asks for both polarities."""
-    return " (polarity: mirror images, counted once)" if len(study.motions.polarity) > 1 else ""
-
-
-def make_ready(study: "Study") -> None:
-    """Have the kernels loaded before the clock starts; where they must be compiled first, it takes a while and is told."""
-    from rockbatch.batch.groups import compile_kernels
-
-    words = "compiling the kernels (once for each kind of foundation, 20 to 30 s)"
-    told = Timer(1.5, say, [words])  # to load them takes less
-    told.start()
-    try:
-        compile_kernels(study)
-    finally:
-        told.cancel()
-
-
-def count(n: int, noun: str) -> str:
-    """A number of things: "1 run", "2 runs"."""
-    return f"{n} {noun}" if n == 1 else f"{n} {noun}s"

@@ -17,11 +17,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def main(arguments: argparse.Namespace) -> int:
-    from rockbatch.report import write_comparison, write_report
+    from rockbatch.report import report
 
-    if arguments.other is None:
-        path = write_report(arguments.directory, out=arguments.out)
-    else:
-        path = write_comparison(arguments.directory, arguments.other, out=arguments.out)
-    say(str(path))
+    say(str(report(arguments.directory, arguments.other, out=arguments.out).path))
     return 0

@@ -2,21 +2,30 @@
 
 import hashlib
 import json
+import os
+import sys
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
+from types import ModuleType
+from typing import TYPE_CHECKING
 
-from rockbatch.checks import read_verdicts
+from rockbatch.checks import as_table, read_verdicts
 from rockbatch.files import write_whole
 from rockbatch.report.contents import Contents, read
 from rockbatch.report.finished import read as read_finished
 from rockbatch.report.page import comparison, page
 from rockbatch.report.pair import pair
+from rockbatch.results.reading import read_saved
 from rockbatch.results.response import Response
 from rockbatch.study import Study
 
+if TYPE_CHECKING:
+    import pandas as pd
+
 REPORT = "report.html"
 
-__all__ = ["REPORT", "write_analyses", "write_comparison", "write_report"]
+__all__ = ["REPORT", "Report", "report", "write_analyses", "write_comparison", "write_report"]
 
 
 def write_report(directory: Path, responses: Sequence[Response] | None = None, *, out: Path | None = None) -> Path:
@@ -78,3 +87,92 @@ def _holds_results(directory: Path, sha256: str) -> bool:
         return bool(info["study"]["sha256"] == sha256) and (directory / "peaks.csv").exists()
     except (OSError, ValueError, KeyError, TypeError):
         return False
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Report:
+    """A page that was made, and the tables it tells of.
+
+    Attributes
+    ----------
+    path : Path
+        The page.
+    folders : tuple of Path
+        Of the results, one or two.
+    peaks, checks : DataFrame
+        The rows of ``peaks.csv`` and ``checks.csv``; of two studies with a first column ``study``, "A" or "B".
+    """
+
+    path: Path
+    folders: tuple[Path, ...]
+    peaks: "pd.DataFrame"
+    checks: "pd.DataFrame"
+
+    def __repr__(self) -> str:
+        return f"<report of {' and '.join(map(str, self.folders))}: {self.path}>"
+
+    def save(self, folder: str | os.PathLike[str]) -> Path:
+        """Write the page into ``folder``, under its name; returns its path."""
+        directory = Path(folder)
+        directory.mkdir(parents=True, exist_ok=True)
+        return _write(self.folders, directory / self.path.name)
+
+
+def report(
+    directory: str | os.PathLike[str],
+    other: str | os.PathLike[str] | None = None,
+    *,
+    out: str | os.PathLike[str] | None = None,
+) -> Report:
+    """Make the report of finished results again, or of two studies side by side.
+
+    Parameters
+    ----------
+    directory : path
+        A folder that ``rockbatch run``, or :func:`rockbatch.run` with ``out``, has written.
+    other : path, optional
+        A second one, to compare the first with.
+    out : path, optional
+        File to write; by default ``report.html`` in the folder, or ``compare-OTHER.html``.
+
+    Returns
+    -------
+    Report
+        With the tables ``peaks`` and ``checks``.
+
+    Raises
+    ------
+    InputError
+        Where results are missing, damaged or do not belong together.
+
+    Examples
+    --------
+    >>> rb.report("reports/pier4", "reports/pier5").path
+    """
+    folders = (Path(directory),) if other is None else (Path(directory), Path(other))
+    path = _write(folders, None if out is None else Path(out))
+    tables = [(read_saved(folder).peaks, as_table(read_verdicts(folder))) for folder in folders]
+    peaks, checks = (_beside(own) for own in zip(*tables, strict=True))
+    return Report(path, folders, peaks, checks)
+
+
+def _write(folders: Sequence[Path], out: Path | None) -> Path:
+    return write_report(folders[0], out=out) if len(folders) == 1 else write_comparison(*folders, out=out)
+
+
+def _beside(tables: "Sequence[pd.DataFrame]") -> "pd.DataFrame":
+    """One table as it is, two under each other, told apart in a first column."""
+    if len(tables) == 1:
+        return tables[0]
+    import pandas as pd
+
+    return pd.concat(dict(zip("AB", tables, strict=True)), names=["study"]).reset_index("study").reset_index(drop=True)
+
+
+class _Door(ModuleType):
+    """This package has the name of the function that users call: ``rockbatch.report(...)`` is :func:`report`."""
+
+    __call__ = staticmethod(report)
+
+
+sys.modules[__name__].__class__ = _Door

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from rockbatch.checks.choices import unmet
 from rockbatch.checks.reading import CHECK, read_rules
+from rockbatch.errors import InputError
 from rockbatch.study.cases import BASE_KEYS, CASE, PIER, Expanded, read_cases, read_piers
 from rockbatch.study.motions import FEMA, MOTIONS, PULSE, SOURCES, read_motions_table
 from rockbatch.study.spec import Case, Numerics, Output, Reference, Study
@@ -111,6 +112,17 @@ def load_study(path: str | os.PathLike[str], *, motions: str | os.PathLike[str] 
         output=output,
         checks=checks,
     )
+
+
+def given_study(study: str | os.PathLike[str] | Study, motions: str | os.PathLike[str] | None = None) -> Study:
+    """A study as functions are given it: a file, which is loaded, perhaps with other ``motions``, or one that is loaded."""
+    if not isinstance(study, Study):
+        return load_study(study, motions=motions)
+    if motions is not None:
+        raise InputError(
+            f"motions = {os.fspath(motions)}: the study is loaded already; write load_study(path, motions=...)"
+        )
+    return study
 
 
 def _numerics(file: TomlFile) -> Numerics:

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from studies import PADS, RIGID, SINE, study_text, write_study
 
-import rockbatch.analysis.accuracy
-from rockbatch.analysis.accuracy import COLUMNS, SUBSTEPS, measure, reference, spread
+import rockbatch.analysis.error_and_time
+from rockbatch.analysis.error_and_time import COLUMNS, SUBSTEPS, measure, reference, spread
 from rockbatch.batch.plan import Plan
 from rockbatch.cli import main
 from rockbatch.motions import Motion, pulse
@@ -160,8 +160,8 @@ def test_the_yardstick_tells_flight():
 @pytest.fixture
 def brief(monkeypatch):
     """One loose tolerance of SciPy's and one pass: the rows are what matters."""
-    monkeypatch.setattr(rockbatch.analysis.accuracy, "SCIPY_TOLERANCES", (1e-3,))
-    monkeypatch.setattr(rockbatch.analysis.accuracy, "REPEATS", 1)
+    monkeypatch.setattr(rockbatch.analysis.error_and_time, "SCIPY_TOLERANCES", (1e-3,))
+    monkeypatch.setattr(rockbatch.analysis.error_and_time, "REPEATS", 1)
 
 
 def test_the_command_writes_its_table_and_the_report_shows_it(study_file, tmp_path, capsys, brief):
@@ -208,7 +208,7 @@ def test_a_damaged_table_does_not_keep_the_report_from_being_written(study_file,
 
 
 def test_runs_that_never_settle_are_told(study_file, tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr(rockbatch.analysis.accuracy, "ACCEPTED", -1.0)
+    monkeypatch.setattr(rockbatch.analysis.error_and_time, "ACCEPTED", -1.0)
     assert main(["accuracy", str(study_file), "--out", str(tmp_path / "out"), "--runs", "1"]) == 2
     assert "settles" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()

@@ -12,7 +12,7 @@ from report_page import Page
 from studies import PADS, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
-from rockbatch.analysis.fragility import ScaledRuns, assess, intensities
+from rockbatch.analysis.fragility_curves import ScaledRuns, assess, intensities
 from rockbatch.analysis.fragility_tables import described, points
 from rockbatch.analysis.ida import Bracket, Capacity, bisect, capacity
 from rockbatch.analysis.limit_states import EXCEEDED, LEFT_OUT, UNDECIDED, WITHSTOOD, states

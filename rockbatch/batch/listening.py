@@ -1,0 +1,100 @@
+"""What whoever waits for a batch hears of it: its motions, what is under way, and how far that is."""
+
+from collections.abc import Callable
+from contextlib import AbstractContextManager, contextmanager, nullcontext
+from threading import Timer
+from typing import TYPE_CHECKING
+
+from rockbatch.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rockbatch.motions import MotionSet
+    from rockbatch.study import Study
+
+Told = Callable[[int], object]
+"""Called with the number of things that are done since the last call."""
+
+
+class Listener:
+    """Hears of a batch while it goes on; this one keeps it to itself."""
+
+    def motions(self, found: "MotionSet") -> None:
+        """Which motions were read, and which files could not be used."""
+
+    def say(self, text: str) -> None:
+        """A sentence about what begins, or is there already."""
+
+    def progress(self, total: int) -> AbstractContextManager[Told | None]:
+        """A context for ``total`` things that begin, called with the number of those that are done."""
+        return nullcontext()
+
+
+class Bars(Listener):
+    """A bar for whatever is under way, in a terminal or a notebook."""
+
+    @contextmanager
+    def progress(self, total: int) -> "Iterator[Told]":
+        """See :class:`Listener`."""
+        from tqdm.auto import tqdm
+
+        with tqdm(total=total, unit="run", leave=False) as bar:
+            yield bar.update
+
+
+class Calls(Listener):
+    """Calls a function with the number of things that are done, and of all."""
+
+    def __init__(self, function: Callable[[int, int], object]) -> None:
+        self.function = function
+
+    @contextmanager
+    def progress(self, total: int) -> "Iterator[Told]":
+        """See :class:`Listener`."""
+        done = 0
+
+        def told(more: int) -> None:
+            nonlocal done
+            done += more
+            self.function(done, total)
+
+        yield told
+
+
+Progress = bool | Callable[[int, int], object] | Listener
+"""What functions take as ``progress``."""
+
+
+def listener_of(progress: Progress) -> Listener:
+    """Who hears of a batch: nobody, a bar (True), a function of what is done and of all, or a listener as it is."""
+    if isinstance(progress, Listener):
+        return progress
+    if callable(progress):
+        return Calls(progress)
+    if not isinstance(progress, bool):
+        raise InputError(f"progress = {progress!r}: expected True, False or a function of two numbers, done and of all")
+    return Bars() if progress else Listener()
+
+
+def make_ready(study: "Study", listener: Listener) -> None:
+    """Have the kernels loaded before the clock starts; where they must be compiled first, it takes a while and is told."""
+    from rockbatch.batch.groups import compile_kernels
+
+    words = "compiling the kernels (once for each kind of foundation, 20 to 30 s)"
+    told = Timer(1.5, listener.say, [words])  # to load them takes less
+    told.start()
+    try:
+        compile_kernels(study)
+    finally:
+        told.cancel()
+
+
+def once(study: "Study") -> str:
+    """Why there are no more runs, where a study asks for both polarities."""
+    return " (polarity: mirror images, counted once)" if len(study.motions.polarity) > 1 else ""
+
+
+def count(n: int, noun: str) -> str:
+    """A number of things: "1 run", "2 runs"."""
+    return f"{n} {noun}" if n == 1 else f"{n} {noun}s"

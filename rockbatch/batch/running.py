@@ -1,0 +1,189 @@
+"""From a study to its table of peaks, in memory or in a folder of results, which is gone on with where it was left."""
+
+import math
+import os
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rockbatch.batch.carrying_out import InMemory, carry_out, to_simulate
+from rockbatch.batch.digests import study_digests
+from rockbatch.batch.finishing import FinishedBatch, cost_of_finished, finish, what_was_run, write_peaks
+from rockbatch.batch.journal import Journal
+from rockbatch.batch.listening import Listener, Progress, count, listener_of, make_ready, once
+from rockbatch.batch.plan import Plan
+from rockbatch.batch.threads import Engine, engine_of
+from rockbatch.errors import InputError
+from rockbatch.motions import MotionSet
+from rockbatch.results.columns import PART, as_table, columns, unusable_rows
+from rockbatch.study import Study, given_study
+from rockbatch.study.suite import ground_motions
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+def run(
+    study: str | os.PathLike[str] | Study,
+    out: str | os.PathLike[str] | None = None,
+    *,
+    motions: str | os.PathLike[str] | None = None,
+    jobs: int | Engine | None = None,
+    fresh: bool = False,
+    progress: Progress = False,
+) -> "pd.DataFrame":
+    """Run every record of a study in every case.
+
+    Parameters
+    ----------
+    study : path or Study
+        A study file, or one that is loaded.
+    out : path, optional
+        Folder for what ``rockbatch run`` leaves: ``peaks.csv``, ``run.json``, the histories and checks that the study asks
+        for, and ``report.html``. What an earlier process has finished there counts; one that was interrupted is gone on
+        with. Without it nothing is kept on disk, and there are no histories.
+    motions : path, optional
+        A file or folder that replaces all motions of a study file.
+    jobs : int or Engine, optional
+        Number of threads, all processors by default; or a cluster, :class:`rockbatch.batch.dask.Dask`. The table does not
+        depend on it.
+    fresh : bool
+        Whether to start over, instead of going on with what is finished in ``out``.
+    progress : bool or function of two ints
+        True for a bar; or what is called with the number of things that are done, and of all: first of the runs, then of
+        the histories that are kept.
+
+    Returns
+    -------
+    DataFrame, shape (rows of peaks.csv, columns)
+        Row by row, by name, as in ``peaks.csv``: lengths in m, times in s, rotations over α; with ``out`` to the ten digits
+        that are on disk.
+
+    Raises
+    ------
+    InputError
+        With every mistake in the study; for a folder with finished runs of another state of the study, and for one
+        into which another process is writing; where histories that the study asks for are too long to be kept.
+
+    Examples
+    --------
+    >>> table = rb.run("configs/fig7.toml")
+    >>> table.groupby("case")["theta_max_over_alpha"].median()
+    >>> rb.run("configs/fig7.toml", out="reports/fig7", progress=True)
+    >>> rb.open_results("reports/fig7").history(case="rigid", p=0.38)
+    """
+    asked, listener, engine = given_study(study, motions), listener_of(progress), engine_of(jobs)
+    if out is None:
+        return _in_memory(asked, engine, listener)
+    told = ["run", str(asked.path), "--out", os.fspath(out)]
+    told += [] if motions is None else ["--motions", os.fspath(motions)]
+    finished = run_into(Path(out), asked, engine, listener, command=told, fresh=fresh)
+    assert finished is not None  # no share is asked for
+    if finished.without:
+        raise finished.without
+    return finished.saved.peaks
+
+
+def _in_memory(study: Study, engine: Engine, listener: Listener) -> "pd.DataFrame":
+    found = ground_motions(study)
+    listener.motions(found)
+    runs, rows = Plan(study, found), InMemory()
+    with engine, listener.progress(len(to_simulate(runs, range(len(runs))))) as progress:
+        carry_out(runs, study.numerics, rows, engine, study.output, progress=progress)
+    return as_table([*(rows[i] for i in sorted(rows)), *unusable_rows(found)], study)
+
+
+def run_into(
+    directory: Path,
+    study: Study,
+    engine: Engine,
+    listener: Listener,
+    *,
+    command: Sequence[str],
+    fresh: bool = False,
+    share: tuple[int, int] | None = None,
+) -> FinishedBatch | None:
+    """Carry out what is not finished in ``directory`` yet, and write the results.
+
+    Parameters
+    ----------
+    command : sequence of str
+        The words after ``rockbatch`` that do it again, for run.json.
+    share : tuple of two ints, optional
+        (i, n): carry out the i-th of n shares only, and leave it in its journal.
+
+    Returns
+    -------
+    What is in the folder; None after a share.
+
+    Raises
+    ------
+    InputError
+        As :func:`run`.
+    """
+    started = time.monotonic()
+    motions = ground_motions(study)
+    listener.motions(motions)
+    runs = Plan(study, motions)
+    wanted = _share(len(runs), *share) if share else range(len(runs))
+    digest = study_digests(study, motions)
+    info = what_was_run(study, motions, runs, digest, command)
+    with Journal(directory / PART, columns(study), digest, fresh) as journal:
+        cost = None if fresh or len(journal) else cost_of_finished(directory, info)
+        if cost is not None:
+            what = f"{told(study, motions)} are finished in {directory}"
+            listener.say(f"{what}; nothing is left to run (--fresh runs them again)")
+            return finish(directory, study, motions, runs, info | cost, listener)
+        of_share = f"; share {share[0]} of {share[1]} is {{}}" if share else ""
+        with engine:
+            every = count(len(to_simulate(runs, wanted)), "run")
+            listener.say(f"{told(study, motions)} on {engine}{of_share.format(every)}")
+            cost = _carry_out_left(study, runs, wanted, journal, engine, listener)
+        if share:
+            listener.say(
+                f"{journal.path}: share {share[0]} of {share[1]} is finished; `rockbatch merge` joins the shares"
+            )
+            return None
+        write_peaks(journal, motions)
+        cost["wall_s"] = round(time.monotonic() - started, 3)
+        return finish(directory, study, motions, runs, info | cost, listener)
+
+
+def _share(runs: int, share: int, shares: int) -> range:
+    if shares > runs:
+        raise InputError(f"--shard {share}/{shares}: the study has {count(runs, 'run')}; make as many shares or fewer")
+    return range(runs * (share - 1) // shares, runs * share // shares)
+
+
+def _carry_out_left(
+    study: Study, runs: Plan, wanted: range, journal: Journal, engine: Engine, listener: Listener
+) -> dict[str, Any]:
+    """Carry out those of the runs that are not in the journal; what run.json says of it."""
+    every, left = (len(to_simulate(runs, wanted, there)) for there in ((), journal))
+    kept = every - left
+    if kept:
+        listener.say(f"{kept} of them are finished already, {left} are left (--fresh starts over)")
+    make_ready(study, listener)
+    try:
+        with listener.progress(left) as progress:
+            carry_out(runs, study.numerics, journal, engine, study.output, among=wanted, progress=progress)
+    except KeyboardInterrupt:
+        done = every - len(to_simulate(runs, wanted, journal))
+        listener.say(
+            f"interrupted: {done} of {count(every, 'run')} are finished and kept in {journal.path}; "
+            "the same command goes on from there"
+        )
+        raise
+    return {"jobs": engine.jobs, "kept": kept}
+
+
+def told(study: Study, motions: MotionSet) -> str:
+    """How many runs there are, and why: "2 records × 5 cases = 10 runs"."""
+    factors = {
+        "record": len(motions.motions),
+        "scale": len(study.motions.scale),
+        "case": len(study.cases),
+    }
+    counted = [count(n, noun) for noun, n in factors.items() if n > 1 or noun in ("record", "case")]
+    return f"{' × '.join(counted)} = {count(math.prod(factors.values()), 'run')}{once(study)}"

@@ -1,0 +1,304 @@
+"""What commands do, from Python: the same folders and tables, and nothing on disk unless it is asked for."""
+
+import json
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import rockbatch as rb
+import rockbatch.analysis.error_and_time
+import rockbatch.batch.threads
+from rockbatch.cli import main
+from rockbatch.files import read_table
+
+STUDY = """
+title = "Doors"
+
+[pier]
+alpha = 0.2
+p = 1.0
+
+[motions]
+polarity = ["+", "-"]
+
+[[motions.pulse]]
+name = "one-sine"
+shape = "sine"
+amplitude_g = 1.0
+period_s = 0.5
+dt_s = 0.01
+duration_s = 2.0
+
+[[motions.pulse]]
+name = "cosine"
+shape = "cosine"
+amplitude_g = 0.8
+period_s = 0.6
+dt_s = 0.01
+duration_s = 2.0
+
+[[case]]
+name = "rigid"
+base = "rigid"
+
+[[case]]
+name = "pads"
+base = "yielding"
+beta = [30, 50]
+eta = 2.5
+
+[[check]]
+name = "rotation"
+demand = "theta_max_over_alpha"
+at_most = 0.5
+reason = "what the bearings can follow"
+
+[fragility]
+measure = "PGA"
+levels_g = [0.4, 0.8, 1.6, 3.2]
+method = "ida"
+tolerance = 0.2
+
+[spectrum]
+alpha = [0.15]
+two_pi_over_p_s = [3.0, 8.0]
+points = 3
+
+[[spectrum.map]]
+name = "sine"
+shape = "sine"
+frequency = [2.0, 6.0]
+frequencies = 3
+amplitude = [1.0, 8.0]
+amplitudes = 4
+tolerance = 0.1
+width = 1.0
+
+[sensitivity]
+samples = 4
+
+[sensitivity.uniform]
+alpha = [0.18, 0.22]
+eta = [2.2, 3.0]
+"""
+ANALYSES = {
+    "fragility": ("fragility", "fragility_capacities", "fragility_runs"),
+    "spectrum": ("spectrum", "spectrum_suite", "overturning_map", "overturning_runs"),
+    "sensitivity": ("sensitivity_runs", "sensitivity", "sobol"),
+}
+OF_TIME = {"created", "wall_s", "command", "jobs"}
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory):
+    path = tmp_path_factory.mktemp("doors") / "study.toml"
+    path.write_text(STUDY, encoding="utf-8")
+    return path
+
+
+@pytest.fixture(scope="module")
+def commanded(study):
+    """What the commands leave, a folder each."""
+    for name in ("run", *ANALYSES):
+        assert main([name, str(study), "--out", str(study.parent / name)]) in (0, 1)
+    return study.parent
+
+
+@pytest.fixture
+def nowhere(monkeypatch, tmp_path):
+    """The working folder, and the place of temporary files: both are empty."""
+    for name in ("here", "temporary"):
+        (tmp_path / name).mkdir()
+    monkeypatch.chdir(tmp_path / "here")
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "temporary"))
+    return tmp_path
+
+
+def files(folder):
+    return sorted(str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file())
+
+
+def untimed(path):
+    """A JSON file but for what times it tells of, at the top and about the study."""
+    return {name: value for name, value in json.loads(path.read_text(encoding="utf-8")).items() if name not in OF_TIME}
+
+
+def assert_same_folder(one, other, csvs):
+    assert files(one) == files(other)
+    for name in csvs:
+        assert (one / name).read_bytes() == (other / name).read_bytes(), name
+    for path in one.glob("*.json"):
+        assert untimed(path) == untimed(other / path.name)
+
+
+def test_a_run_without_a_folder_leaves_no_file_and_gives_the_rows_of_the_table(study, commanded, nowhere):
+    before = files(commanded)
+    table = rb.run(study)
+    assert files(commanded) == before
+    assert files(nowhere) == []
+    on_disk = rb.open_results(commanded / "run").peaks
+    pd.testing.assert_frame_equal(table, on_disk, rtol=1e-9, check_dtype=False)
+
+
+def test_a_run_into_a_folder_leaves_what_the_command_does(study, commanded, tmp_path):
+    out = tmp_path / "out"
+    table = rb.run(rb.load_study(study), out, jobs=1)
+    assert_same_folder(out, commanded / "run", ["peaks.csv", "checks.csv"])
+    pd.testing.assert_frame_equal(table, rb.open_results(commanded / "run").peaks, check_exact=True)
+    ours, theirs = (
+        rb.open_results(folder).history("one-sine", "rigid", polarity="+") for folder in (out, commanded / "run")
+    )
+    pd.testing.assert_frame_equal(ours, theirs, check_exact=True)
+    told = json.loads((out / "run.json").read_text(encoding="utf-8"))["command"]
+    assert told == ["rockbatch", "run", str(study), "--out", str(out)]
+    assert "Doors" in (out / "report.html").read_text(encoding="utf-8")
+
+
+def test_an_interrupted_run_goes_on_from_python(study, commanded, tmp_path, monkeypatch):
+    real, groups, out = rockbatch.batch.threads.outcomes_of, [], tmp_path / "out"
+    monkeypatch.setattr(rockbatch.batch.groups, "LEAST_GROUP", 2)
+    monkeypatch.setattr(rockbatch.batch.groups.groups, "__defaults__", (2,))
+
+    def interrupted(runs, *more):
+        groups.append(len(runs))
+        if len(groups) == 2:
+            raise KeyboardInterrupt
+        return real(runs, *more)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(rockbatch.batch.threads, "outcomes_of", interrupted)
+        with pytest.raises(KeyboardInterrupt):
+            rb.run(study, out, jobs=1)
+    assert files(out) == ["peaks.csv.part"]
+    counts = []
+    rb.run(study, out, jobs=1, progress=lambda done, of: counts.append((done, of)))
+    kept = json.loads((out / "run.json").read_text(encoding="utf-8"))["kept"]
+    assert kept > 0
+    assert (6 - kept, 6 - kept) in counts
+    assert (out / "peaks.csv").read_bytes() == (commanded / "run/peaks.csv").read_bytes()
+    counts.clear()
+    rb.run(study, out, progress=lambda done, of: counts.append(of))
+    assert 6 not in counts  # finished: histories alone are made again
+    assert rb.run(study, out, fresh=True, jobs=2) is not None
+
+
+@pytest.mark.parametrize("name", ANALYSES)
+def test_an_analysis_has_the_tables_of_the_command_and_saves_them(study, commanded, nowhere, name):
+    before = files(commanded)
+    found = getattr(rb, name)(study)
+    assert files(commanded) == before
+    assert files(nowhere) == []
+    assert tuple(found.tables) == ANALYSES[name]
+    assert found.files == ()
+    for table in ANALYSES[name]:
+        pd.testing.assert_frame_equal(
+            getattr(found, table), read_table(commanded / name / f"{table}.csv"), check_exact=True
+        )
+        assert f"{table} ({len(found.tables[table])} rows)" in repr(found)
+    saved = found.save(nowhere / "saved")
+    assert_same_folder(nowhere / "saved", commanded / name, [f"{table}.csv" for table in ANALYSES[name]])
+    assert sorted(path.name for path in saved) == files(nowhere / "saved")
+    page = (nowhere / "saved/analyses.html").read_bytes()
+    assert page == (commanded / name / "analyses.html").read_bytes()
+
+
+@pytest.mark.parametrize("name", ["spectrum", "sensitivity"])
+def test_what_was_saved_counts_as_finished(study, tmp_path, name, monkeypatch):
+    """An analysis whose runs are in a folder, saved from Python, takes none of them again."""
+    getattr(rb, name)(study).save(tmp_path)
+    monkeypatch.setattr(rockbatch.batch.threads, "outcomes_of", None)
+    assert getattr(rb, name)(study, tmp_path).files
+
+
+def test_a_saved_analysis_leaves_no_table_of_an_earlier_one(study, tmp_path):
+    stripes = tmp_path / "stripes.toml"
+    stripes.write_text(STUDY.replace('method = "ida"\ntolerance = 0.2\n', ""), encoding="utf-8")
+    found = rb.fragility(stripes)
+    assert found.fragility_capacities is None
+    (tmp_path / "fragility_capacities.csv").touch()
+    found.save(tmp_path)
+    assert not (tmp_path / "fragility_capacities.csv").exists()
+
+
+def test_the_accuracy_is_saved_as_the_command_writes_it(study, nowhere, monkeypatch):
+    monkeypatch.setattr(rockbatch.analysis.error_and_time, "SCIPY_TOLERANCES", ())
+    monkeypatch.setattr(rockbatch.analysis.error_and_time, "REPEATS", 1)
+    found = rb.accuracy(study, runs=2)
+    assert files(nowhere) == []
+    assert set(found.accuracy["runs"]) == {2}
+    assert [path.name for path in found.save(nowhere / "saved")] == ["accuracy.csv"]
+    written = pd.read_csv(nowhere / "saved/accuracy.csv")
+    numbers = found.accuracy.select_dtypes("number").astype("float64")
+    np.testing.assert_allclose(written[numbers.columns].astype("float64"), numbers, rtol=1e-5)
+    with pytest.raises(rb.InputError, match="runs = 0"):
+        rb.accuracy(study, runs=0)
+
+
+def test_the_command_measures_as_many_runs_as_the_function():
+    from rockbatch.analysis import accuracy
+    from rockbatch.commands.accuracy import RUNS
+
+    assert accuracy.RUNS == RUNS
+
+
+def test_a_report_is_made_of_one_folder_or_of_two(commanded, tmp_path):
+    page = commanded / "run/report.html"
+    earlier = page.read_bytes()
+    page.unlink()
+    made = rb.report(commanded / "run")
+    assert made.path == page
+    assert page.read_bytes() == earlier
+    pd.testing.assert_frame_equal(made.peaks, rb.open_results(commanded / "run").peaks)
+    assert set(made.checks["check"]) == {"rotation"}
+    assert made.save(tmp_path / "copy").read_bytes() == earlier
+    both = rb.report(commanded / "run", commanded / "run", out=tmp_path / "both.html")
+    assert "two studies" in both.path.read_text(encoding="utf-8")
+    assert both.peaks["study"].value_counts().to_dict() == {"A": len(made.peaks), "B": len(made.peaks)}
+    with pytest.raises(rb.InputError, match="not there"):
+        rb.report(tmp_path)
+
+
+def test_the_report_is_called_by_its_name_before_and_after_its_package_is_loaded(commanded):
+    code = (
+        f"import rockbatch as rb\nprint(callable(rb.report))\nprint(rb.report({str(commanded / 'run')!r}).path.name)\n"
+    )
+    code += "import rockbatch.report\nprint(callable(rb.report))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == ["True", "report.html", "True"]
+
+
+@pytest.mark.parametrize("name", ["run", *ANALYSES, "accuracy"])
+def test_mistakes_are_told_before_anything_is_written(study, nowhere, name):
+    door, out = getattr(rb, name), nowhere / "out"
+    broken = nowhere / "broken.toml"
+    broken.write_text(STUDY.replace("eta = 2.5", "eta = 0.9\nbeat = 40"), encoding="utf-8")
+    with pytest.raises(rb.InputError, match=r"broken\.toml:35"):
+        door(broken, out)
+    with pytest.raises(rb.InputError, match="loaded already"):
+        door(rb.load_study(study), out, motions=nowhere)
+    with pytest.raises(rb.InputError, match="progress = 3"):
+        door(study, out, progress=3)
+    if name != "accuracy":
+        with pytest.raises(rb.InputError, match="jobs = 0"):
+            door(study, out, jobs=0)
+    assert not out.exists()
+
+
+def test_a_bar_is_drawn_where_it_is_asked_for(study, capfd):
+    rb.run(study, progress=True)
+    assert "/6 [" in capfd.readouterr().err
+
+
+def test_doors_are_cheap_until_they_are_opened():
+    code = "import sys, rockbatch as rb\ndir(rb); rb.report; rb.load_study\n"
+    code += "print([m for m in ('numba', 'obspy', 'h5py', 'matplotlib', 'scipy') if m in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+def test_every_public_name_is_there():
+    assert [name for name in rb.__all__ if not hasattr(rb, name)] == []
