@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from rockbatch.checks import Rule
     from rockbatch.errors import InputError
     from rockbatch.motions import Motion, pulse, read_motions
-    from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase
+    from rockbatch.pier import ElasticBase, Part, Pier, RigidBase, YieldingBase
     from rockbatch.results.checking import check
     from rockbatch.results.opened import open_results
     from rockbatch.results.response import Response
@@ -20,6 +20,7 @@ _HOMES = {
     "ElasticBase": "rockbatch.pier",
     "InputError": "rockbatch.errors",
     "Motion": "rockbatch.motions",
+    "Part": "rockbatch.pier",
     "Pier": "rockbatch.pier",
     "Response": "rockbatch.results.response",
     "RigidBase": "rockbatch.pier",
@@ -38,6 +39,7 @@ __all__ = [
     "ElasticBase",
     "InputError",
     "Motion",
+    "Part",
     "Pier",
     "Response",
     "RigidBase",

@@ -17,7 +17,7 @@ from rockbatch.pier import (
 )
 from rockbatch.study.lists import Chosen, combinations, listed
 from rockbatch.study.piers import Values, has_mass
-from rockbatch.study.plausible import CONFIRM, complain_unless_usual_support, confirmed
+from rockbatch.study.plausible import CONFIRM, MASSES, complain_unless_usual, complain_unless_usual_support, confirmed
 from rockbatch.toml.kinds import choice, number, positive, shown, text
 from rockbatch.toml.reader import Key, Setting, Table, TomlFile
 
@@ -159,6 +159,7 @@ def _case(table: Table) -> tuple[dict[str, Any], dict[str, list[Setting]], Colle
         unfit["mass_t"] = "[pier] says already what the pier weighs; leave it out"
     read = table.read(CASE | keys | CONFIRM, unfit=unfit)
     believed = confirmed(table, read, keys)
+    complain_unless_usual(table, "mass_t", read.get("mass_t", ()), MASSES["mass_t"], believed)
     if base in ("elastic", "yielding"):
         _check_one_of(table, "beta", "stiffness_kN_m")
     if base == "yielding":
