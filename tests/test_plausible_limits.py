@@ -144,3 +144,10 @@ def test_rules_from_elsewhere_are_held_against_the_piers_of_the_results(tmp_path
     )
     rules.write_text(at_the_key(rules.read_text(), "at_most = 100", "at_most"), encoding="utf-8")
     assert rb.check(out, rules)["verdict"].eq("pass").all()
+
+
+def test_a_run_to_less_than_rounding_is_refused(tmp_path):
+    """It would never be called settled."""
+    pier, motion = rb.Pier(0.2, 1.0), rb.pulse("sine", name="p", amplitude=2.5, period=1.0, dt=0.01, duration=1.0)
+    with pytest.raises(InputError, match="tolerance = 1e-13: must be 1e-12 or above"):
+        rb.simulate(pier, rb.RigidBase(), motion, tolerance=1e-13)

@@ -116,6 +116,8 @@ def test_lists_of_parts_and_of_columns_are_combined_too(tmp_path):
         ("width_m = 4\n[[pier.part]]\nmass_t = 1\nheight_m = 2\nheigth_m = 2\n", "6: [[pier.part]] no. 1: heigth_m: unknown key"),
         ("alpha = 0.1\np = 1\n[[pier.part]]\nmass_t = 1\nheight_m = 2\n", "4: [pier]: [[pier.part]]: needs width_m"),
         ("width_m = 4\ndeck_mass_t = 3\n[[pier.part]]\nmass_t = 1\nheight_m = 2\n", "3: [pier]: deck_height_m is missing"),
+        ("width_m = 4\npart = []\n", "3: [pier]: part = []: a pier has one part at least"),
+        ("width_m = 4\n[pier.part]\nmass_t = 1\nheight_m = 2\n", "3: pier.part: expected a list of tables; write [[pier.part]]"),
         (FRAME.replace("= 4", "= 1"), "6: [pier]: columns = 1: expected a whole number, 2 or above"),
         (FRAME.replace("deck_mass_t = 420\n", ""), "5: [pier]: columns: a frame has a deck; write deck_mass_t"),
         (FRAME + "top_m = 12\n", "7: [pier]: top_m: the deck of a frame keeps level"),

@@ -62,6 +62,10 @@ def read_piers(file: TomlFile) -> tuple[list[tuple[Pier, Values]], tuple[str, ..
         complain_unless_usual(table, name, read.get(name, ()), usual, believed)
     varied = listed(table, PIER)
     parts = file.tables("pier", "part", title="name")
+    if table.data.get("part") == []:
+        table.complain(
+            "part = []: a pier has one part at least; write [[pier.part]] above each, or leave it out", "part"
+        )
     for n, part in enumerate(parts, 1):
         its, names = _part(part, n)
         read |= its
