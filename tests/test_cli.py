@@ -7,34 +7,11 @@ import sys
 import time
 
 import pytest
+from studies import study_text, write_study
 
 from rockbatch.cli import main
 
-STUDY = """
-title = "A <pulse> & a pier"
-
-[pier]
-alpha = 0.2
-p = 1.0
-
-[[motions.pulse]]
-name = "one-sine"
-shape = "sine"
-amplitude_g = 1.0
-period_s = 0.5
-dt_s = 0.01
-duration_s = 4.0
-
-[[case]]
-name = "rigid"
-base = "rigid"
-
-[[case]]
-name = "pads"
-base = "yielding"
-beta = 50
-eta = 2.5
-"""
+STUDY = study_text(title="A <pulse> & a pier")
 
 AT2 = """PEER NGA STRONG MOTION DATABASE RECORD
 Nowhere-01, 1/2/1999, Field, 090
@@ -45,9 +22,7 @@ NPTS=    {count}, DT=   .0100 SEC
 
 @pytest.fixture
 def study(tmp_path):
-    path = tmp_path / "study.toml"
-    path.write_text(STUDY, encoding="utf-8")
-    return path
+    return write_study(tmp_path, STUDY)
 
 
 def at2(values, count=None):

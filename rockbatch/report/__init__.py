@@ -7,13 +7,10 @@ from pathlib import Path
 
 from rockbatch.checks import read_verdicts
 from rockbatch.files import write_whole
-from rockbatch.report.compare import comparison
-from rockbatch.report.document import Section, document, paragraphs
-from rockbatch.report.finished import finished, read
-from rockbatch.report.markup import tag
-from rockbatch.report.page import page
-from rockbatch.report.sections import accuracy, analyses
-from rockbatch.results.opened import open_results
+from rockbatch.report.contents import Contents, read
+from rockbatch.report.finished import read as read_finished
+from rockbatch.report.page import comparison, page
+from rockbatch.report.pair import pair
 from rockbatch.results.response import Response
 from rockbatch.study import Study
 
@@ -43,11 +40,7 @@ def write_report(directory: Path, responses: Sequence[Response] | None = None, *
     """
     directory = Path(directory)
     target = out or directory / REPORT
-    results = open_results(directory)
-    study = finished(results)
-    levels = accuracy.read(directory / "accuracy.csv", study.info["study"]["sha256"])
-    shown = results.responses if responses is None else responses
-    write_whole(target, page(study, shown, levels, read_verdicts(directory)))
+    write_whole(target, page(read(directory, responses)))
     return target
 
 
@@ -59,7 +52,9 @@ def write_comparison(first: Path, second: Path, *, out: Path | None = None) -> P
     """
     first, second = Path(first), Path(second)
     target = out or first / f"compare-{second.resolve().name}.html"
-    write_whole(target, comparison((read(first), read_verdicts(first)), (read(second), read_verdicts(second))))
+    studies = read_finished(first), read_finished(second)
+    verdicts = read_verdicts(first), read_verdicts(second)
+    write_whole(target, comparison(pair(studies, verdicts)))
     return target
 
 
@@ -72,12 +67,8 @@ def write_analyses(directory: Path, study: Study) -> Path:
     if _holds_results(directory, sha256):
         return write_report(directory)
     target = directory / "analyses.html"
-    pages = [
-        Section("Notes", "notes", paragraphs(*(part.strip() for part in study.notes.split("\n\n")))),
-        *analyses.sections(directory, sha256),
-        Section("The study file", "study", tag("pre", tag("code", study.text))),
-    ]
-    write_whole(target, document("Rocking response of stepping piers", study.title, pages))
+    told = {"title": study.title, "notes": study.notes, "text": study.text, "sha256": sha256}
+    write_whole(target, page(Contents(directory, told)))
     return target
 
 

@@ -31,7 +31,7 @@ class FinishedAnalysis:
         return table if len(table) and set(columns) <= set(table.columns) else None
 
 
-def read(directory: Path, name: str, sha256: str | None) -> FinishedAnalysis | None:
+def read(directory: Path, name: str, sha256: str) -> FinishedAnalysis | None:
     """The analysis ``name`` in a folder.
 
     None where there is none, or where it is of another state of the study than the one with the digest ``sha256``: the
@@ -39,7 +39,7 @@ def read(directory: Path, name: str, sha256: str | None) -> FinishedAnalysis | N
     """
     try:
         info = json.loads((Path(directory) / f"{name}.json").read_text(encoding="utf-8"))
-        if sha256 is not None and info["study"]["sha256"] != sha256:
+        if info["study"]["sha256"] != sha256:
             return None
     except (OSError, ValueError, KeyError, TypeError):
         return None

@@ -1,68 +1,69 @@
-"""The picture of ``rockbatch accuracy``: error of θ_max/α against time per run."""
+"""What the runs cost, how large their errors are, and what ``rockbatch accuracy`` measured of both."""
 
-import csv
-import math
 from collections.abc import Sequence
-from dataclasses import dataclass
-from pathlib import Path
 
-import numpy as np
-
-from rockbatch.report.drawing.axes import Axes, Scale
-from rockbatch.report.drawing.svg import curve, key, line, lowered, marker, svg, text
-from rockbatch.report.markup import Markup, join
+from rockbatch.report.contents import Contents
+from rockbatch.report.document import Section, figure, paragraphs
+from rockbatch.report.drawing.accuracy import draw
+from rockbatch.report.finished import Finished
+from rockbatch.report.finished_accuracy import Level, chosen, read
+from rockbatch.report.labels import counted
+from rockbatch.report.markup import Markup, join, number, tag
 from rockbatch.report.table import Head, table
 
-LEAST = 1e-14  # errors below are drawn there: rounding
-METHODS = {  # marker, colour, words, and on which side the notes stand, so that neighbours keep clear of each other
-    "located": ("disc", 1, "events located inside the step", -1),
-    "not located": ("square", 2, "events at the end of the step", 1),
-    "SciPy DOP853": ("up", 3, "SciPy DOP853", 1),
-    "SciPy LSODA": ("down", 4, "SciPy LSODA", -1),
-}
-NUMBERS = (
-    "substeps", "tolerance", "runs", "error_median", "error_95", "error_max", "seconds_per_run", "status_differs",
-    "reference_change",
-)  # fmt: skip
+
+def section(contents: Contents) -> Section | None:
+    """Time and estimated errors of the runs, and the measurement where there is one of this study."""
+    if contents.finished is None:
+        return None
+    levels = read(contents.directory / "accuracy.csv", contents.study["sha256"])
+    return Section("Speed and error", "accuracy", join(paragraphs(_cost(contents.finished)), _measured(levels)))
 
 
-@dataclass(frozen=True)
-class Level:
-    """One row of ``accuracy.csv``: a method at one setting; errors of θ_max/α, times in seconds per run."""
-
-    method: str
-    machine: str
-    substeps: float | None
-    tolerance: float | None
-    runs: float | None
-    error_median: float | None
-    error_95: float | None
-    error_max: float | None
-    seconds_per_run: float | None
-    status_differs: float | None
-    reference_change: float | None
+def _cost(finished: Finished) -> str:
+    info, errors = finished.info, finished.runs["theta_max_error"].dropna()
+    kept = info.get("kept", 0)  # of an earlier session, or of other machines: what they took is not known
+    cost = f"{counted(kept, 'run')} had been finished before. " if kept else ""
+    if kept < info["runs"]:
+        took = f"{number(float(info['wall_s']), '.3g')} s on {counted(info['jobs'], 'thread')}"
+        cost += f"{counted(info['runs'] - kept, 'run')} took {took}."
+    if len(errors):
+        cost += (
+            f" The error of θmax/α, estimated by halving the step, is {errors.median():.0e} in the median and "
+            f"{errors.max():.0e} at most."
+        )
+    return cost
 
 
-def read(path: Path, study: str) -> list[Level]:
-    """Levels of ``accuracy.csv`` as measured for the study with the SHA-256 ``study``.
-
-    Empty where the file is missing, of another state of the study, or not such a table: the report does without.
-    """
-    try:
-        with path.open(encoding="utf-8", newline="") as file:
-            rows = list(csv.DictReader(file))
-        if any(row["study"] != study for row in rows):
-            return []
-        return [Level(row["method"], row["machine"], *(_number(row[name]) for name in NUMBERS)) for row in rows]
-    except (OSError, KeyError, TypeError, ValueError):
-        return []
-
-
-def _number(text: str) -> float | None:
-    return float(text) if text else None
+def _measured(levels: Sequence[Level]) -> Markup:
+    if not levels:
+        against = join(
+            "Not measured against references: ", tag("code", "rockbatch accuracy"), " does that for this study."
+        )
+        return paragraphs(against)
+    runs = counted(int(levels[0].runs or 0), "run")
+    settled = number(max(level.reference_change or 0.0 for level in levels), ".0e")
+    caption = (
+        f"Measured on {levels[0].machine}, in one thread, over {runs} of this study (SciPy's solvers: at most two of "
+        "them, on springs), against runs with ever smaller steps, the last halving of which changed the peak by "
+        f"{settled} at most. k: steps per sample; SciPy: its rtol. Runs that overturn, or end otherwise than they "
+        "should, have no error; the table counts the latter."
+    )
+    return join(paragraphs(_lead(levels)), figure(draw(levels), caption), _table(levels))
 
 
-def levels_table(levels: Sequence[Level]) -> Markup:
+def _lead(levels: Sequence[Level]) -> str:
+    """What the picture shows, in a sentence about the study's own setting; empty without it."""
+    own = chosen(levels)
+    if own is None:
+        return ""
+    return (
+        f"With the setting of this study a run takes {own.milliseconds} ms "
+        f"and its peak is off by {own.error_max:.1e} at most, over the runs measured."
+    )
+
+
+def _table(levels: Sequence[Level]) -> Markup:
     """Every level in numbers."""
     heads = [
         Head("method"),
@@ -78,103 +79,8 @@ def levels_table(levels: Sequence[Level]) -> Markup:
     rows = [
         [
             level.method, level.substeps, level.tolerance, level.runs, level.error_median, level.error_95,
-            level.error_max, _milliseconds(level), level.status_differs or None,
+            level.error_max, level.milliseconds, level.status_differs or None,
         ]
         for level in levels
     ]  # fmt: skip
     return table(heads, rows)
-
-
-def _milliseconds(level: Level) -> str:
-    if level.seconds_per_run is None:
-        return ""
-    value = 1000 * level.seconds_per_run
-    return f"{value:.0f}" if value >= 100 else f"{value:.3g}"
-
-
-def draw(levels: Sequence[Level]) -> Markup:
-    """Error against time per run, both logarithmic: the largest error solid, the median dotted."""
-    timed = [level for level in levels if level.seconds_per_run]
-    times = [1000 * (level.seconds_per_run or 0) for level in timed]
-    errors = [
-        max(error, LEAST) for level in timed for error in (level.error_median, level.error_max) if error is not None
-    ]
-    axes = Axes(44, 12, 560, 268, _decades(times), _decades(errors))
-    drawn = [axes.frame(axes.x.ticks(8), axes.y.ticks(8))]
-    for method, (shape, colour, _, side) in METHODS.items():
-        at = [level for level in timed if level.method == method]
-        drawn += _lines(axes, at, f"s{colour}")
-        drawn += [_point(axes, level, shape, f"s{colour}", side) for level in at if level.error_max is not None]
-    chosen = _chosen(levels)
-    if chosen is not None:
-        if chosen.tolerance:
-            y = float(axes.down(chosen.tolerance))
-            drawn.append(line(axes.left, y, axes.left + axes.width, y, "flown", f"tolerance {chosen.tolerance:g}"))
-        drawn.append(marker("star", *_at(axes, chosen), colour="ink large", title=_said(chosen)))
-    drawn.append(text(axes.left + axes.width / 2, 308, "time per run [ms]", class_="m q"))
-    drawn.append(text(axes.left + 4, 9, join("error of ", lowered("θ", "max", "/α")), class_="q"))
-    present = {level.method for level in timed}
-    entries = [
-        (marker(shape, 11, 7, colour=f"s{colour}"), words)
-        for name, (shape, colour, words, _) in METHODS.items()
-        if name in present
-    ]
-    if chosen is not None:
-        setting = f"tolerance {chosen.tolerance:g}" if chosen.tolerance else f"{chosen.substeps:.0f} substeps"
-        entries.append((marker("star", 11, 7, colour="ink large"), f"this study: {setting}"))
-    entries += [(line(0, 7, 22, 7, "level"), "largest error"), (line(0, 7, 22, 7, "level d2"), "median error")]
-    said = "Error of θmax/α against time per run"
-    return join(svg(616, 312, *drawn, description=said, class_="plot marks accuracy"), key(entries))
-
-
-def _decades(values: Sequence[float]) -> Scale:
-    """Whole powers of ten around all values."""
-    low, high = min(values, default=1.0), max(values, default=1.0)
-    return Scale(10.0 ** math.floor(math.log10(low)), 10.0 ** (math.floor(math.log10(high)) + 1), log=True)
-
-
-def _at(axes: Axes, level: Level) -> tuple[float, float]:
-    error = max(level.error_max or 0.0, LEAST)
-    return float(axes.across(1000 * (level.seconds_per_run or math.nan))), float(axes.down(error))
-
-
-def _lines(axes: Axes, levels: Sequence[Level], class_: str) -> list[Markup]:
-    """From level to level: the largest error, and the median one."""
-    x = axes.across(np.array([1000 * (level.seconds_per_run or math.nan) for level in levels]))
-    drawn = []
-    for name, dashes in (("error_max", ""), ("error_median", " d2")):
-        errors = [getattr(level, name) for level in levels]
-        y = axes.down(np.array([math.nan if error is None else max(error, LEAST) for error in errors]))
-        if len(levels) > 1:
-            drawn.append(curve(x, y, f"level {class_}{dashes}"))
-    return drawn
-
-
-def _point(axes: Axes, level: Level, shape: str, class_: str, side: int) -> Markup:
-    """A level's marker, and the number of steps per sample, or SciPy's tolerance, beside it."""
-    x, y = _at(axes, level)
-    words = f"k = {level.substeps:.0f}" if level.substeps else f"{level.tolerance:.0e}"
-    place = text(x + 7 * side, y - 4 * side + 3, words, class_=class_ if side > 0 else f"{class_} e")
-    return join(marker(shape, x, y, colour=class_, title=_said(level)), place)
-
-
-def _said(level: Level) -> str:
-    setting = f"k = {level.substeps:.0f}" if level.substeps else f"tolerance {level.tolerance:.0e}"
-    return f"{level.method}, {setting}: {level.error_max:.1e} at most in {_milliseconds(level)} ms"
-
-
-def _chosen(levels: Sequence[Level]) -> Level | None:
-    """The study's own setting, where it was measured."""
-    own = next((level for level in levels if level.method == "study"), None)
-    return own if own is not None and own.error_max is not None and own.seconds_per_run else None
-
-
-def lead(levels: Sequence[Level]) -> str:
-    """What the picture shows, in a sentence about the study's own setting; empty without it."""
-    chosen = _chosen(levels)
-    if chosen is None:
-        return ""
-    return (
-        f"With the setting of this study a run takes {_milliseconds(chosen)} ms "
-        f"and its peak is off by {chosen.error_max:.1e} at most, over the runs measured."
-    )

@@ -2,15 +2,14 @@
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from rockbatch.report.document import figure
+from rockbatch.report.contents import Contents
+from rockbatch.report.document import Section, figure
 from rockbatch.report.drawing.axes import Axes, Scale
 from rockbatch.report.drawing.svg import curve, key, line, marker, style_of, svg, text
-from rockbatch.report.finished_analysis import read
 from rockbatch.report.labels import quantity
 from rockbatch.report.markup import Markup, join, tag
 from rockbatch.report.table import Head, table
@@ -23,13 +22,14 @@ Curve = Mapping[str, Any]
 """One of ``curves`` of fragility.json."""
 
 
-def section(directory: Path, sha256: str | None) -> Markup:
-    """The curves in a folder, if they are of the study with that digest; empty where there are none."""
-    found = read(directory, "fragility", sha256)
+def section(contents: Contents) -> Section | None:
+    """The curves; None where there are none."""
+    found = contents.analysis("fragility")
     if found is None or not found.info["curves"]:
-        return Markup("")
+        return None
     info = found.info
-    return join(_lead(info), figure(_panels(info), _caption(info)), _table(info))
+    drawn = figure(_panels(info), _caption(info))
+    return Section("Fragility", "fragility", join(_lead(info), drawn, _table(info)))
 
 
 def _lead(info: Mapping[str, Any]) -> Markup:

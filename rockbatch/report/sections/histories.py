@@ -5,6 +5,8 @@ from typing import Any
 
 import numpy as np
 
+from rockbatch.report.contents import Contents
+from rockbatch.report.document import Section, figure
 from rockbatch.report.drawing.axes import Axes, Scale, spanning
 from rockbatch.report.drawing.history import LOOPS_HEIGHT, QUANTITIES, History, reduced
 from rockbatch.report.drawing.svg import Array, curve, line, lowered, marker, rectangle, svg, text
@@ -22,7 +24,16 @@ LABELS = (QUANTITIES[0], QUANTITIES[1], QUANTITIES[2], lowered("ü", "g", "/g"))
 Row = dict[str, Any]
 
 
-def figures(finished: Finished, responses: Sequence[Response]) -> list[tuple[Markup, Markup]]:
+def section(contents: Contents) -> Section | None:
+    """The histories that were kept; None where there are none."""
+    if contents.finished is None or not len(contents.responses):
+        return None
+    drawn = join(*(figure(*pair) for pair in _figures(contents.finished, contents.responses)))
+    hint = "Point at a picture, touch it, or go through it with the arrow keys, to read values."
+    return Section("Histories", "histories", join(tag("p", hint, class_="scripted"), drawn))
+
+
+def _figures(finished: Finished, responses: Sequence[Response]) -> list[tuple[Markup, Markup]]:
     """Pictures with their captions, one for each pier: a column for every response, or for the worst of many."""
     kept = _kept(finished, responses)
     numbers = _chosen(finished, kept)

@@ -4,11 +4,13 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from rockbatch.report.document import figure
+from rockbatch.report.contents import Contents
+from rockbatch.report.document import Section, figure
 from rockbatch.report.drawing.panels import draw
 from rockbatch.report.finished import Finished
 from rockbatch.report.markup import Markup, join, tag
 from rockbatch.report.sections.peaks import at_a_glance
+from rockbatch.report.table import THETA
 from rockbatch.results.suite_statistics import NO_PEAK
 
 if TYPE_CHECKING:
@@ -17,6 +19,23 @@ if TYPE_CHECKING:
 MOST_RECORDS = 60
 MOST_FIGURES = 12
 MOST_MARKS = 12_000  # on the page: a megabyte and a half
+
+
+def section(contents: Contents) -> Section | None:
+    """A figure for each pier and scale, with its numbers."""
+    finished = contents.finished
+    if finished is None or finished.runs.empty:
+        return None
+    runs = finished.runs
+    caption = [
+        "Largest rotation over slenderness, ", THETA, ", records in order of peak ground acceleration",
+        "; lines: rigid base" if any(series.rigid for series in finished.series) else "",
+        "; open markers and dashed lines: horizontal component reversed" if finished.both_directions else "", ".",
+    ]  # fmt: skip
+    drawn = figures(finished, caption)
+    flew = ((runs["status"] == "ok") & runs["flight_s"].notna()).any()
+    legend = tag("sup", "f"), " both pivots left the ground on the way; the pier was guided down."
+    return Section("Peak rotations", "figure", join(drawn, tag("p", *legend, class_="legend") if flew else ""))
 
 
 def ceiling(runs: "pd.DataFrame") -> float:

@@ -1,15 +1,15 @@
-"""Peaks in tables: Fig. 7 in numbers, every run with the worst first, and published values beside ours."""
+"""Peaks in tables: Fig. 7 in numbers, and every run with the worst first."""
 
 import math
-from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING, Any
 
 from rockbatch.checks.suite import MIRROR_OF
+from rockbatch.report.contents import Contents
+from rockbatch.report.document import Section
 from rockbatch.report.finished import Finished, as_dicts, worst_first
 from rockbatch.report.labels import symbol
 from rockbatch.report.markup import Markup, join, number, tag
 from rockbatch.report.table import MOST_ROWS, THETA, THETA_FORMAT, Head, alarm, sub, table, told_apart
-from rockbatch.results.suite_statistics import NO_PEAK
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -52,6 +52,18 @@ _COLUMNS = {
 """Factor and head of each column of peaks.csv after the names of the run, in the order of the page."""
 
 
+def section(contents: Contents) -> Section | None:
+    """Every run."""
+    finished = contents.finished
+    if finished is None or finished.runs.empty:
+        return None
+    lead = [
+        "The worst first: overturned, ended by flight, then by rotation. All of it is in ", tag("code", "peaks.csv"), ". ",
+        tag("span", "Click a heading to sort.", class_="scripted"),
+    ]  # fmt: skip
+    return Section("Every run", "peaks", join(tag("p", *lead), _ratcheting(finished), _every_run(finished)))
+
+
 def at_a_glance(finished: Finished, runs: "pd.DataFrame", records: "Sequence[str]") -> Markup:
     """The paper's Fig. 7 in numbers: a row per record, a column per foundation (and direction)."""
     series = [(place, finished.series[place]) for place in runs["series"].unique()]
@@ -90,7 +102,7 @@ def outcome(run: "dict[str, Any] | None", worst: float = math.nan) -> object:
     return shown if isinstance(shown, Markup) else theta
 
 
-def every_run(finished: Finished) -> Markup:
+def _every_run(finished: Finished) -> Markup:
     """The rows of ``peaks.csv``, the worst first."""
     runs, varied = finished.runs, finished.info["varied"]
     names = {"record": Head("record"), "case": Head("case"), **{key: Head(symbol(key), note=key) for key in varied}}
@@ -129,45 +141,22 @@ def _energy(name: str) -> Head:
     return Head(f"{term} [J/kg]", ".0e" if term == "remainder" else ".4f", name)
 
 
-def published(finished: Finished) -> Markup:
-    """Published values beside ours: every run that a reference's record pattern, case and columns fit."""
-    runs = finished.runs
-    more = [key for key in ("polarity", "scale") if runs[key].nunique() > 1]
-    keys = [*finished.info["varied"], *more]
-    heads = [Head("record"), Head("case"), *(Head(symbol(key)) for key in keys)]
-    heads += [Head(join(THETA, ", ours"), THETA_FORMAT), Head(join(THETA, ", published"))]
-    heads += [Head("difference [%]", "+.1f"), Head("source")]
-    rows: list[list[object]] = []
-    for reference in finished.info["references"]:
-        name, case, theirs = reference["record"], reference["case"], reference["theta_max_over_alpha"]
-        fits = [run for run in as_dicts(runs[runs["case"] == case]) if _fits(run, reference)]
-        for run in fits:
-            ours = run["theta_max_over_alpha"] if run["status"] not in (*NO_PEAK, "failed") else None
-            difference = 100 * (ours / theirs - 1) if ours is not None and theirs else None
-            rows.append(
-                [
-                    run["record"],
-                    case,
-                    *(run[key] for key in keys),
-                    outcome(run),
-                    theirs,
-                    difference,
-                    reference["source"],
-                ]
-            )
-        if not fits:
-            values = [reference["columns"].get(key, "") for key in keys]
-            nothing = tag("span", "no such run", class_="muted")
-            rows.append([name, case, *values, nothing, theirs, None, reference["source"]])
-    return table(heads, rows, name="Compared with published values")
-
-
-def _fits(run: dict[str, Any], reference: dict[str, Any]) -> bool:
-    def equal(ours: object, theirs: object) -> bool:
-        if isinstance(ours, float) and isinstance(theirs, float | int):
-            return math.isclose(ours, theirs, rel_tol=1e-9)
-        return ours == theirs
-
-    return fnmatchcase(run["record"], reference["record"]) and all(
-        equal(run.get(key), value) for key, value in reference["columns"].items()
-    )
+def _ratcheting(finished: Finished) -> Markup:
+    """That settlement hangs on the spring law, and by how much where both were run."""
+    if not any(case["parameters"].get("spring") for case in finished.info["cases"]):
+        return Markup("")
+    told = "Bouc–Wen springs ratchet: they settle a little with every cycle, elastic–perfectly plastic ones do not. "
+    name, runs = "settlement_other_law_m", finished.runs
+    if name not in runs:
+        told += (
+            "Settlement and residual rotation depend on that; [output] both_laws = true in the study shows how much."
+        )
+        return tag("p", told)
+    gap = (runs["settlement_m"] - runs[name]).abs()
+    if gap.notna().any():
+        run = runs.iloc[int(gap.argmax())]
+        told += (
+            f"The settlement differs most in {finished.where(run)}: {1000 * run['settlement_m']:z.1f} mm by the study's "
+            f"law, {1000 * run[name]:z.1f} mm by the other one."
+        )
+    return tag("p", told)

@@ -1,16 +1,16 @@
 """Pictures of ``rockbatch sensitivity``: what each input does to the answer alone, and Sobol's indices."""
 
 from collections.abc import Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rockbatch.checks.statistics import STATISTICS
-from rockbatch.report.document import figure
+from rockbatch.report.contents import Contents
+from rockbatch.report.document import Section, figure
 from rockbatch.report.drawing.axes import Axes, Scale, spanning
 from rockbatch.report.drawing.svg import key, line, lowered, rectangle, svg, text
-from rockbatch.report.finished_analysis import named, read
+from rockbatch.report.finished_analysis import named
 from rockbatch.report.labels import SYMBOLS
 from rockbatch.report.markup import Markup, join, number, tag
 from rockbatch.report.table import Head, table
@@ -24,14 +24,14 @@ TORNADO = ("case", "parameter", "low", "base", "high", "answer_low", "answer_bas
 SOBOL = ("case", "parameter", "first", "first_error", "total", "total_error")
 
 
-def section(directory: Path, sha256: str | None) -> Markup:
-    """The study in a folder, if it is of the study file with that digest; empty where there is none."""
-    found = read(directory, "sensitivity", sha256)
+def section(contents: Contents) -> Section | None:
+    """The inputs one at a time, and all at once; None where they were not studied."""
+    found = contents.analysis("sensitivity")
     if found is None:
-        return Markup("")
+        return None
     swings, shares = found.table("sensitivity.csv", TORNADO), found.table("sobol.csv", SOBOL)
     if swings is None or shares is None:
-        return Markup("")
+        return None
     keys = ["case", *found.info["varied"]]
     parts = [_lead(found.info)]
     for names, own in swings.groupby(keys, sort=False, dropna=False):
@@ -42,7 +42,7 @@ def section(directory: Path, sha256: str | None) -> Markup:
         parts.append(figure(_tornado(both), f"{words}: one input at a time, all others as in the study."))
         parts.append(figure(_bars(both), f"{words}: all inputs at once over their ranges."))
         parts.append(_numbers(both))
-    return join(*parts)
+    return Section("What the answer hangs on", "sensitivity", join(*parts))
 
 
 def _lead(info: dict[str, Any]) -> Markup:

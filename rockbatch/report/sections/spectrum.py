@@ -1,15 +1,15 @@
 """Pictures of ``rockbatch spectrum``: rocking spectra as curves, overturning maps as regions."""
 
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rockbatch.report.document import figure
+from rockbatch.report.contents import Contents
+from rockbatch.report.document import Section, figure
 from rockbatch.report.drawing import overturning_map
 from rockbatch.report.drawing.axes import Axes, Scale
 from rockbatch.report.drawing.svg import COLOURS, curve, key, line, lowered, marker, rectangle, svg, text
-from rockbatch.report.finished_analysis import FinishedAnalysis, named, read
+from rockbatch.report.finished_analysis import FinishedAnalysis, named
 from rockbatch.report.labels import quantity, symbol
 from rockbatch.report.markup import Markup, join, tag
 from rockbatch.report.table import sub
@@ -22,11 +22,11 @@ ACROSS = {"two_pi_over_p_s": "2π/p [s]"}
 QUANTILES = {"median": "", "p16": " d2", "p84": " d1"}
 
 
-def section(directory: Path, sha256: str | None) -> Markup:
-    """Spectra and maps in a folder, if they are of the study with that digest; empty where there are none."""
-    found = read(directory, "spectrum", sha256)
+def section(contents: Contents) -> Section | None:
+    """Spectra and maps; None where there are none."""
+    found = contents.analysis("spectrum")
     if found is None:
-        return Markup("")
+        return None
     parts = []
     suite = found.table("spectrum_suite.csv", ("case", "scale", "alpha", "count", *QUANTILES))
     if suite is not None:
@@ -34,7 +34,7 @@ def section(directory: Path, sha256: str | None) -> Markup:
     regions = found.table("overturning_map.csv", ("map", "case", "omega_p_over_p", "outcome", "low", "high"))
     if regions is not None:
         parts += _maps(found, regions)
-    return join(*parts)
+    return Section("Rocking spectra and overturning", "spectrum", join(*parts)) if parts else None
 
 
 # Rocking spectra

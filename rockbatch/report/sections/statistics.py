@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rockbatch.report.contents import Contents
+from rockbatch.report.document import Section
 from rockbatch.report.finished import Finished
 from rockbatch.report.markup import Markup, join, tag
 from rockbatch.report.table import MOST_ROWS, THETA, THETA_FORMAT, Head, alarm, sub, table, told_apart
@@ -30,17 +32,19 @@ WORDS = (
 )
 
 
-def section(finished: Finished) -> Markup:
+def section(contents: Contents) -> Section | None:
     """Tables of every quantity, a row for each case; with and without the vertical component side by side."""
+    finished = contents.finished
+    if finished is None or finished.runs.empty:
+        return None
     runs, keys = finished.runs, ["scale", "pier", "series"]
-    if runs.empty:
-        return Markup("")
     names, heads = rows_of(finished, runs, keys)
     shown = dict(islice(names.items(), MOST_ROWS))
     if len(shown) < len(names):
         runs = runs[runs.set_index(keys).index.isin(list(shown))]
     sides = {str(side): dict(list(same.groupby(keys))) for side, same in runs.groupby("with_vertical")}
-    return join(told_apart(len(shown), len(names)), tables(sides, shown, heads))
+    content = join(told_apart(len(shown), len(names)), tables(sides, shown, heads))
+    return Section("The suite in each case", "suite", content)
 
 
 def rows_of(finished: Finished, runs: "pd.DataFrame", keys: list[str]) -> tuple[dict[Hashable, list[str]], list[Head]]:

@@ -4,6 +4,8 @@ import math
 from collections.abc import Sequence
 
 from rockbatch.checks import Verdict
+from rockbatch.report.contents import Contents
+from rockbatch.report.document import Section
 from rockbatch.report.labels import quantity
 from rockbatch.report.markup import Markup, join, number, tag
 from rockbatch.report.table import Head, alarm, table
@@ -11,6 +13,17 @@ from rockbatch.report.table import Head, alarm, table
 SIGNS = {"pass": "✓", "fail": "✗", "not decided": "?", "does not apply": "–"}
 BASIS = {"code": "code clause", "literature": "literature", "judgement": "engineering judgement"}
 MOST_NAMES = 6
+
+
+def section(contents: Contents) -> Section | None:
+    """Every check in every case, what the checks ask, and what does not pass; None where nothing was checked."""
+    verdicts = contents.verdicts
+    if not verdicts:
+        return None
+    parts = [legend(), matrix(verdicts), tag("h3", "What the checks ask"), _asked(verdicts)]
+    if any(one.verdict in ("fail", "not decided") for one in verdicts):
+        parts += [tag("h3", "What does not pass"), _shortfalls(verdicts)]
+    return Section("Every check", "checks", join(*parts))
 
 
 def answer(verdicts: Sequence[Verdict]) -> Markup:
@@ -59,20 +72,6 @@ def _by_case(verdicts: Sequence[Verdict]) -> dict[str, list[Verdict]]:
         words += [f"motions scaled by {one.scale:g}"] if scaled else []
         cases.setdefault(one.case + (f" ({', '.join(words)})" if words else ""), []).append(one)
     return cases
-
-
-def section(verdicts: Sequence[Verdict]) -> Markup:
-    """Every check in every case, what the checks ask, and what does not pass in numbers."""
-    if not verdicts:
-        return Markup("")
-    legend = (
-        "Demand over limit; above 1 is too much. ✓ passes, ✗ fails, ? not decided: the bounds of the demand straddle "
-    )
-    legend += "the limit, or records are missing; – does not apply."
-    parts = [tag("p", legend, class_="legend"), matrix(verdicts), tag("h3", "What the checks ask"), _asked(verdicts)]
-    if any(one.verdict in ("fail", "not decided") for one in verdicts):
-        parts += [tag("h3", "What does not pass"), _shortfalls(verdicts)]
-    return join(*parts)
 
 
 def legend() -> Markup:
