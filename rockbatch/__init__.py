@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from rockbatch.checks import Rule
     from rockbatch.errors import InputError
     from rockbatch.motions import Motion, pulse, read_motions
-    from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase
+    from rockbatch.pier import ElasticBase, Part, Pier, RigidBase, YieldingBase
     from rockbatch.report import report
     from rockbatch.results.checking import check
     from rockbatch.results.opened import open_results
@@ -25,6 +25,7 @@ _HOMES = {
     "ElasticBase": "rockbatch.pier",
     "InputError": "rockbatch.errors",
     "Motion": "rockbatch.motions",
+    "Part": "rockbatch.pier",
     "Pier": "rockbatch.pier",
     "Response": "rockbatch.results.response",
     "RigidBase": "rockbatch.pier",
@@ -48,6 +49,7 @@ __all__ = [
     "ElasticBase",
     "InputError",
     "Motion",
+    "Part",
     "Pier",
     "Response",
     "RigidBase",

@@ -9,7 +9,6 @@ from rockbatch.analysis.sobol import design
 from rockbatch.batch.plan import Made, PlannedRun, scaled
 from rockbatch.motions import Motion
 from rockbatch.results.outcome import Outcome
-from rockbatch.simulation import housner_restitution
 from rockbatch.study import Case, Study
 from rockbatch.study.sensitivity import Input, SensitivitySpec, Value, applying, own_values, varied
 
@@ -33,7 +32,7 @@ def low_base_high(inputs: Sequence[Input], study: Study, case: Case) -> list[dic
     """
     own = own_values(study, case)
     if own.get("restitution", 0.0) is None:
-        own["restitution"] = housner_restitution(case.pier)
+        own["restitution"] = case.pier.restitution
     base = {each.name: own[each.name] for each in inputs}
     return [base, *(base | {each.name: level} for each in inputs for level in each.levels)]
 

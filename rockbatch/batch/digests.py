@@ -9,10 +9,10 @@ from rockbatch.motions import Motion, MotionSet
 from rockbatch.simulation import core_digest
 from rockbatch.study import Study
 
-PACKAGES = ("core", "simulation", "motions", "study", "checks", "toml", "results", "batch", "analysis")
+PACKAGES = ("pier", "core", "simulation", "motions", "study", "checks", "toml", "results", "batch", "analysis")
 """Packages that decide what a row says, or which runs come next. The others only show it: commands, report."""
 
-MODULES = ("pier.py", "units.py", "files.py", "errors.py")
+MODULES = ("units.py", "files.py", "errors.py")
 """Those at the top that do."""
 
 _TOP = Path(__file__).parents[1]

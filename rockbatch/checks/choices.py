@@ -8,10 +8,14 @@ from rockbatch.checks.rules import Rule
 from rockbatch.toml.kinds import closest, shown
 
 
+def is_about(rule: Rule, case: str) -> bool:
+    """Whether the rule is about the case of this name."""
+    return not rule.case or any(_fits(case, pattern) for pattern in rule.case)
+
+
 def chooses(rule: Rule, case: str, scale: float) -> bool:
     """Whether the rule is about the case of this name at this scale."""
-    named = not rule.case or any(_fits(case, pattern) for pattern in rule.case)
-    return named and (not rule.scale or any(math.isclose(scale, one) for one in rule.scale))
+    return is_about(rule, case) and (not rule.scale or any(math.isclose(scale, one) for one in rule.scale))
 
 
 def unmet(

@@ -1,6 +1,6 @@
 """What a foundation has to bear: each demand from the rows of peaks.csv and what run.json says about the case.
 
-Rotations are small: the heel of a pier that tilts by θ stands 2 b θ above its toe, and its top moves by 2 h θ.
+Rotations are small: the heel of a pier that tilts by θ stands 2 b θ above its toe, and its top moves by its height times θ.
 """
 
 from collections.abc import Callable, Mapping
@@ -10,10 +10,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from rockbatch.checks.statistics import Values
-from rockbatch.pier import tilt_over_residual
+from rockbatch.pier import MOST_ETA, tilt_over_residual
 
 if TYPE_CHECKING:
     import pandas as pd
+
+MOST_DUCTILITY = 100.0
+"""Of a support, greatest over yield deflection: soils bear some 2 to 10."""
 
 Case = Mapping[str, Any]
 """A case as run.json has it: ``case``, ``columns``, ``pier``, ``base``, ``parameters``."""
@@ -24,6 +27,13 @@ class Found(NamedTuple):
 
     value: Values
     error: Values
+
+
+class Most(NamedTuple):
+    """A value of the case, such as that at θ = α, and what one beyond it would be."""
+
+    of: Callable[[Case], float]
+    told: str
 
 
 @dataclass(frozen=True)
@@ -44,6 +54,8 @@ class Demand:
         Whether it is the same for all records.
     other_law : function or None
         Values by the other spring law, shape (n,).
+    most : Most or None
+        Beyond which a limit says nothing.
     """
 
     words: str
@@ -52,11 +64,16 @@ class Demand:
     event: bool = False
     of_the_case: bool = False
     other_law: Callable[["pd.DataFrame", Case], Values] | None = None
+    most: Most | None = None
 
     @property
     def of_runs(self) -> bool:
         """Whether it is a quantity that every run has, and for which a run that was cut short is a question."""
         return not (self.event or self.of_the_case)
+
+
+_SPRINGS = ("elastic", "yielding")
+_OVERTURNS = "is past the edge of overturning"
 
 
 def _numbers(runs: "pd.DataFrame", column: str) -> Values:
@@ -67,15 +84,17 @@ def _without_error(value: Values) -> Found:
     return Found(value, np.full(len(value), np.nan))
 
 
-def _rotation(name: str, lever: Callable[[Case], float]) -> Callable[["pd.DataFrame", Case], Found]:
-    """|θ| times ``lever`` [m/rad or rad/rad], from the columns theta_max_… or theta_res_…, which are over α."""
+def _rotation(
+    words: str, name: str, lever: Callable[[Case], float], bases: tuple[str, ...] = ("rigid", "elastic", "yielding")
+) -> Demand:
+    """|θ|/α times ``lever``, from the columns theta_max_… or theta_res_…, which are over α."""
 
     def found(runs: "pd.DataFrame", case: Case) -> Found:
         factor = lever(case)
         value = np.abs(_numbers(runs, f"{name}_over_alpha"))
         return Found(factor * value, factor * _numbers(runs, f"{name}_error"))
 
-    return found
+    return Demand(words, found, bases, most=Most(lever, _OVERTURNS))
 
 
 def _alpha(case: Case) -> float:
@@ -86,9 +105,10 @@ def _width(case: Case) -> float:
     return 2.0 * float(case["pier"]["half_width_m"])
 
 
-def _height(case: Case) -> float:
-    """Twice that of the centre of mass."""
-    return 2.0 * float(case["pier"]["height_m"])
+def _top(case: Case) -> float:
+    """Where drift is read: twice as high as the centre of mass unless the pier says it."""
+    pier = case["pier"]
+    return float(pier.get("top_m", 2.0 * pier["height_m"]))
 
 
 def _tilt_over_residual(case: Case) -> float:
@@ -97,14 +117,14 @@ def _tilt_over_residual(case: Case) -> float:
     return float(tilt_over_residual(pier["gravity"], pier["height_m"], pier["half_width_m"], omega_v))
 
 
-def _tilt(lever: Callable[[Case], float]) -> Callable[["pd.DataFrame", Case], Found]:
+def _tilt(words: str, lever: Callable[[Case], float]) -> Demand:
     """Tilt of the base times ``lever``; its error is that of the residual rotation, to which it is proportional."""
 
     def found(runs: "pd.DataFrame", case: Case) -> Found:
         error = _alpha(case) * _tilt_over_residual(case) * _numbers(runs, "theta_res_error")
         return Found(lever(case) * np.abs(_numbers(runs, "base_tilt_rad")), lever(case) * error)
 
-    return found
+    return Demand(words, found, _SPRINGS, most=Most(lambda case: lever(case) * _alpha(case), _OVERTURNS))
 
 
 def _toe(settlement: str) -> Callable[["pd.DataFrame", Case], Values]:
@@ -129,39 +149,41 @@ def _event(happened: Callable[["pd.DataFrame"], "pd.Series[bool]"]) -> Callable[
 
 
 def _parameter(name: str) -> Callable[["pd.DataFrame", Case], Found]:
-    return lambda runs, case: _without_error(np.array([float(case["parameters"][name])]))
+    """A parameter of the case; NaN where it has none, as of a force where no mass is known."""
+    return lambda runs, case: _without_error(np.array([float(case["parameters"].get(name, np.nan))]))
 
-
-_SPRINGS = ("elastic", "yielding")
 
 DEMANDS = {
-    "theta_max_over_alpha": Demand("greatest rotation over α", _rotation("theta_max", lambda case: 1.0)),
-    "theta_max_rad": Demand("greatest rotation [rad]", _rotation("theta_max", _alpha)),
-    "top_drift_m": Demand(
-        "greatest drift of the top [m], which is twice as high as the centre of mass",
-        _rotation("theta_max", lambda case: _height(case) * _alpha(case)),
+    "theta_max_over_alpha": _rotation("greatest rotation over α", "theta_max", lambda case: 1.0),
+    "theta_max_rad": _rotation("greatest rotation [rad]", "theta_max", _alpha),
+    "top_drift_m": _rotation("greatest drift of the top [m]", "theta_max", lambda case: _top(case) * _alpha(case)),
+    "heel_uplift_m": _rotation(
+        "greatest rise of the heel above the toe [m]", "theta_max", lambda case: _width(case) * _alpha(case)
     ),
-    "heel_uplift_m": Demand(
-        "greatest rise of the heel above the toe [m]",
-        _rotation("theta_max", lambda case: _width(case) * _alpha(case)),
-    ),
-    "theta_res_over_alpha": Demand("residual rotation over α", _rotation("theta_res", lambda case: 1.0), _SPRINGS),
-    "theta_res_rad": Demand("residual rotation [rad]", _rotation("theta_res", _alpha), _SPRINGS),
-    "base_tilt_rad": Demand("residual tilt of the base [rad]", _tilt(lambda case: 1.0), _SPRINGS),
-    "differential_settlement_m": Demand("settlement of one support against the other [m]", _tilt(_width), _SPRINGS),
+    "theta_res_over_alpha": _rotation("residual rotation over α", "theta_res", lambda case: 1.0, _SPRINGS),
+    "theta_res_rad": _rotation("residual rotation [rad]", "theta_res", _alpha, _SPRINGS),
+    "base_tilt_rad": _tilt("residual tilt of the base [rad]", lambda case: 1.0),
+    "differential_settlement_m": _tilt("settlement of one support against the other [m]", _width),
     "settlement_m": Demand(
         "mean settlement of the supports [m]",
         _column("settlement_m"),
         _SPRINGS,
         other_law=lambda runs, case: _numbers(runs, "settlement_other_law_m"),
+        most=Most(_width, "is more than the pier is wide"),
     ),
     "toe_settlement_m": Demand(
         "settlement of the support that settles more [m]",
         lambda runs, case: _without_error(_toe("settlement_m")(runs, case)),
         _SPRINGS,
         other_law=_toe("settlement_other_law_m"),
+        most=Most(_width, "is more than the pier is wide"),
     ),
-    "ductility": Demand("greatest deflection of a support over its yield deflection", _ductility, ("yielding",)),
+    "ductility": Demand(
+        "greatest deflection of a support over its yield deflection",
+        _ductility,
+        ("yielding",),
+        most=Most(lambda case: MOST_DUCTILITY, "is more than any support bears"),
+    ),
     "impacts": Demand("number of impacts", _column("impacts")),
     "separations": Demand("number of separations", _column("separations")),
     "flight": Demand("both pivots off the ground", _event(lambda runs: runs["flight_s"].notna()), event=True),
@@ -172,12 +194,16 @@ DEMANDS = {
         _parameter("eta"),
         ("yielding",),
         of_the_case=True,
+        most=Most(lambda case: MOST_ETA, "is more than any foundation has"),
     ),
+    "yield_kN": Demand("yield force of a support [kN]", _parameter("yield_kN"), ("yielding",), of_the_case=True),
+    "stiffness_kN_m": Demand("stiffness of a support [kN/m]", _parameter("stiffness_kN_m"), _SPRINGS, of_the_case=True),
     "static_deflection_m": Demand(
         "deflection of the supports under the weight at rest, while elastic [m]",
         _parameter("delta_s_m"),
         _SPRINGS,
         of_the_case=True,
+        most=Most(_width, "is more than the pier is wide"),
     ),
 }
 """Demands by the name that a rule gives them; signs are dropped."""

@@ -110,6 +110,8 @@ def _verdict(rule: Rule, suite: "pd.DataFrame", case: Case, scale: float) -> Ver
         return none
     if demand.of_the_case:
         value = float(demand.of(suite, case).value[0])
+        if math.isnan(value):
+            return replace(none, note="the study does not say what the pier weighs")
         verdict, note = _decide(rule, value, value)
         ratio, margin = _against(rule, value)
         return replace(none, value=value, low=value, high=value, ratio=ratio, margin=margin, verdict=verdict, note=note)

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from rockbatch.checks.demands import DEMANDS
-from rockbatch.checks.rules import BASES, COUNTING, Rule
+from rockbatch.checks.rules import BASES, CONFIRMED, COUNTING, Rule
 from rockbatch.checks.statistics import STATISTICS
 from rockbatch.errors import InputError
 from rockbatch.toml.kinds import boolean, choice, not_negative, number, positive, shown, text
@@ -28,6 +28,7 @@ CHECK = {
     "flight": Key(choice(*COUNTING), '"unknown"'),
     "failed": Key(choice(*COUNTING), '"unknown"'),
     "other_law": Key(boolean, "true"),
+    "confirm": Key(choice(*CONFIRMED), '["at_most"]', many=True),
 }
 """Keys of a [[check]]; :class:`Rule` says what they mean."""
 

@@ -22,6 +22,7 @@ value
 left out
     Not at all; the verdict says how many.
 """
+CONFIRMED = ("at_most", "at_least", "above")
 USUAL = {"overturned": "infinite", "flight": "unknown", "failed": "unknown"}
 
 
@@ -59,6 +60,8 @@ class Rule:
         the usual: overturned is infinite, the others are unknown; under "asce7-16" all are unacceptable, hence infinite.
     other_law : bool
         Whether the settlement by the other spring law bounds it too, as the model's uncertainty.
+    confirm : tuple of str
+        Those of at_most, at_least and above that are right though nothing exceeds them (:mod:`rockbatch.checks.plausible`).
 
     Raises ``InputError`` with all that is wrong; each message starts with the name of its attribute.
     """
@@ -78,6 +81,7 @@ class Rule:
     flight: str | None = None
     failed: str | None = None
     other_law: bool = False
+    confirm: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         wrong = _unknown_words(self) or _misfits(self)
@@ -144,8 +148,9 @@ def _misfits(rule: Rule) -> list[str]:
     if rule.at_most is not None and rule.at_least is not None:
         wrong.append("at_least: given beside at_most; keep one, and write the other as a check of its own")
     elif rule.at_most is None and rule.at_least is None:
-        name = "at_least" if rule.demand == "eta" else "at_most"
-        wrong.append(f"{name} is missing, the limit; write for example {name} = {2.0 if rule.demand == 'eta' else 0.5}")
+        least = {"eta": 2.0, "yield_kN": 4e4, "stiffness_kN_m": 2e6}.get(rule.demand)
+        name, example = ("at_most", 0.5) if least is None else ("at_least", least)
+        wrong.append(f"{name} is missing, the limit; write for example {name} = {example:.10g}")
     elif not demand.of_the_case and rule.at_most is None:
         wrong.append(f"at_least = {rule.at_least:g}: more of {rule.demand} is worse; write at_most = {rule.at_least:g}")
     elif not math.isfinite(rule.limit):

@@ -26,6 +26,10 @@ SYMBOLS = {
     "stiffness_kN_m": ("K", "kN/m"),
     "yield_kN": ("F_y", "kN"),
     "mass_t": ("M", "t"),
+    "deck_mass_t": ("deck mass", "t"),
+    "deck_height_m": ("deck height", "m"),
+    "deck_inertia_t_m2": ("deck inertia", "t m²"),
+    "top_m": ("top", "m"),
 }
 BASE_KEYS = ("beta", "eta", "epsilon", "spring", "n", "kinematics", "flight", "restitution")
 

@@ -6,10 +6,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rockbatch.checks import Rule, Verdict, as_table, judge, load_rules, read_rules
+from rockbatch.checks.plausible import implausible
 from rockbatch.errors import InputError
 from rockbatch.results.reading import Saved, read_saved
 from rockbatch.results.run_json import describe_case
 from rockbatch.study import Study, load_study
+from rockbatch.toml.kinds import shown
 from rockbatch.toml.reader import TomlFile
 
 if TYPE_CHECKING:
@@ -72,6 +74,10 @@ def verdicts(
         table, cases, records = results, [describe_case(case) for case in study.cases], []
     if not rules:
         raise InputError("no checks: the study has no [[check]]; add some, or give a file of rules")
+    if given is not None:  # the study's own are held against its piers when it is read
+        wrong = [f"check {shown(rule.name)}: {problem}" for rule in given for problem in implausible(rule, cases)]
+        if wrong:
+            raise InputError(*wrong)
     return judge(rules, table, cases, records)
 
 

@@ -17,6 +17,8 @@ from rockbatch.pier import (
     Pier,
     RigidBase,
     YieldingBase,
+    described,
+    in_kilonewtons,
     static_deflection,
     vertical_frequency,
     yield_deflection,
@@ -77,15 +79,7 @@ def describe_case(case: Case) -> dict[str, Any]:
     return {
         "case": case.name,
         "columns": case.columns,
-        "pier": {
-            "alpha": pier.alpha,
-            "p": pier.p,
-            "mu": pier.mu,
-            "gravity": pier.gravity,
-            "size_m": pier.size,
-            "half_width_m": pier.half_width,
-            "height_m": pier.height,
-        },
+        "pier": described(pier),
         "base": case.base.name,
         "parameters": _describe_base(pier, case.base),
     }
@@ -93,7 +87,8 @@ def describe_case(case: Case) -> dict[str, Any]:
 
 def _describe_base(pier: Pier, base: Base) -> dict[str, Any]:
     if isinstance(base, RigidBase):
-        return {"restitution": base.restitution}
+        of_frame = None if pier.deck_over_columns is None else pier.restitution  # None stands for Housner's
+        return {"restitution": of_frame if base.restitution is None else base.restitution}
     told = _springs(pier, base)
     if isinstance(base, YieldingBase):
         told |= {
@@ -115,6 +110,7 @@ def _springs(pier: Pier, base: ElasticBase) -> dict[str, Any]:
         "flight": base.flight,
         "omega_v": vertical_frequency(pier, base),
         "delta_s_m": static_deflection(pier, base),
+        **in_kilonewtons(pier, base),
     }
 
 

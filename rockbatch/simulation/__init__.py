@@ -5,7 +5,6 @@ from rockbatch.simulation.models import (
     block,
     first_substeps,
     ground_of,
-    housner_restitution,
     least_substeps,
     springs,
 )
@@ -26,7 +25,6 @@ __all__ = [
     "core_digest",
     "first_substeps",
     "ground_of",
-    "housner_restitution",
     "least_substeps",
     "run_all_fixed",
     "run_all_to_tolerance",

@@ -15,6 +15,7 @@ from rockbatch.results.response import EVENT_TYPES, Response
 from rockbatch.simulation.models import block, ground_of, least_substeps, springs
 from rockbatch.simulation.runs import Run, run_fixed, steps_of, written_run
 from rockbatch.simulation.settling import run_to_tolerance
+from rockbatch.study.spec import LEAST_TOLERANCE
 
 _EVENTS = {
     types.SEPARATION_LEFT: ("separation", "left"),
@@ -72,8 +73,8 @@ def simulate(
         If the pier cannot stand on the foundation, with the limits.
     """
     wrong = problems(pier, foundation)
-    if not tolerance > 0:
-        wrong.append(f"tolerance = {tolerance:g}: must be above 0 (on theta_max/alpha)")
+    if not tolerance >= LEAST_TOLERANCE:
+        wrong.append(f"tolerance = {tolerance:g}: must be {LEAST_TOLERANCE:g} or above (on theta_max/alpha)")
     if not (math.isfinite(quiet_s) and quiet_s >= 0):
         wrong.append(f"quiet_s = {quiet_s:g}: must be 0 or more [s]")
     if substeps is not None and (isinstance(substeps, bool) or not isinstance(substeps, int)):

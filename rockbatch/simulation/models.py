@@ -56,18 +56,9 @@ def springs(pier: Pier, base: ElasticBase) -> Springs:
     )
 
 
-def housner_restitution(pier: Pier) -> float:
-    """e = 1 − 2μ/(1+μ) sin²α: the angular momentum about the new pivot is conserved (Housner 1963).
-
-    A pier so stocky that this is negative would have to turn back through the corner that it has just landed on: it
-    stops, e = 0.
-    """
-    return max(0.0, 1.0 - 2.0 * pier.mu / (1.0 + pier.mu) * math.sin(pier.alpha) ** 2)
-
-
 def block(pier: Pier, base: RigidBase) -> Block:
     """What the core takes for ``pier`` on a rigid base: plain floats."""
-    restitution = housner_restitution(pier) if base.restitution is None else base.restitution
+    restitution = pier.restitution if base.restitution is None else base.restitution
     return Block(float(pier.alpha), float(pier.p), float(pier.gravity), float(restitution))
 
 

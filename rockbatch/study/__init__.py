@@ -1,7 +1,7 @@
 """The study file: what is asked, checked as a whole before anything runs."""
 
-from rockbatch.study.cases import PIER_KEYS
 from rockbatch.study.load import given_study, load_study
+from rockbatch.study.piers import PIER_KEYS
 from rockbatch.study.spec import Case, FemaSpec, MotionSpec, Numerics, Output, PulseSpec, Reference, Study
 
 __all__ = [

@@ -1,19 +1,25 @@
 """From the study file to a checked Study."""
 
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 from rockbatch.checks.choices import unmet
+from rockbatch.checks.plausible import implausible
 from rockbatch.checks.reading import CHECK, read_rules
+from rockbatch.checks.rules import Rule
 from rockbatch.errors import InputError
-from rockbatch.study.cases import BASE_KEYS, CASE, PIER, Expanded, read_cases, read_piers
+from rockbatch.pier import described
+from rockbatch.study.cases import BASE_KEYS, CASE, Expanded, read_cases
 from rockbatch.study.motions import FEMA, MOTIONS, PULSE, SOURCES, read_motions_table
-from rockbatch.study.spec import Case, Numerics, Output, Reference, Study
-from rockbatch.toml.kinds import boolean, choice, count, not_negative, positive, shown, text
-from rockbatch.toml.reader import Key, Table, TomlFile
+from rockbatch.study.piers import PART, PIER, read_piers
+from rockbatch.study.plausible import CONFIRM, TOLERANCE, complain_unless_usual, confirmed
+from rockbatch.study.spec import LEAST_TOLERANCE, Case, MotionSpec, Numerics, Output, Reference, Study
+from rockbatch.toml.kinds import KindError, boolean, choice, count, not_negative, positive, shown, text
+from rockbatch.toml.reader import Key, Setting, Table, TomlFile
 
 TOP = {
     "title": Key(text, '"Pier 4, longitudinal"'),
@@ -21,8 +27,16 @@ TOP = {
 }
 ANALYSES = ("fragility", "spectrum", "sensitivity")  # each read by its own command
 SECTIONS = ("pier", "motions", "numerics", "output", "case", "reference", "check", *ANALYSES)
+
+
+def _tolerance(value: Any) -> float:
+    if positive(value) < LEAST_TOLERANCE:
+        raise KindError(f"{LEAST_TOLERANCE:g} or above, because rounding alone makes as much")
+    return float(value)
+
+
 NUMERICS = {
-    "tolerance": Key(positive, "1e-4"),
+    "tolerance": Key(_tolerance, "1e-4"),
     "substeps": Key(count, "4"),
     "quiet_s": Key(not_negative, "2.0"),
 }
@@ -44,6 +58,7 @@ HOMES = {
     name: home
     for home, names in (
         ("[[check]]", CHECK),  # first: the keys that it shares belong to the others
+        ("[[pier.part]]", PART),
         ("[pier]", PIER),
         ("[motions]", MOTIONS.keys() | SOURCES),
         ("[[motions.fema_p695]]", FEMA),
@@ -54,7 +69,7 @@ HOMES = {
         ("[[reference]]", REFERENCE),
     )
     for name in names
-    if name not in ("name", "case")  # these have several, or are sections
+    if name not in ("name", "case", "confirm")  # these have several, or are sections
 }
 
 
@@ -90,14 +105,7 @@ def load_study(path: str | os.PathLike[str], *, motions: str | os.PathLike[str] 
     varied = varied_pier + varied_case
     references = _references(file, cases, varied)
     output = _output(file)
-    chosen = partial(
-        unmet,
-        cases=list(dict.fromkeys(each.name for each in cases)),
-        scales=motion_spec.scale,
-        polarities=motion_spec.polarity,
-        other_law=output.both_laws,
-    )
-    checks = read_rules(file, chosen if cases else None)
+    checks = read_rules(file, partial(_unfit, cases, motion_spec, output) if cases else None)
     file.finish()
     return Study(
         title=top.get("title", file.path.stem),
@@ -125,11 +133,28 @@ def given_study(study: str | os.PathLike[str] | Study, motions: str | os.PathLik
     return study
 
 
+def _unfit(cases: Sequence[Expanded], motions: MotionSpec, output: Output, rule: Rule) -> Iterator[str]:
+    """What a check chooses and the study does not have, and a limit that is implausible for its piers."""
+    yield from unmet(
+        rule,
+        cases=list(dict.fromkeys(each.name for each in cases)),
+        scales=motions.scale,
+        polarities=motions.polarity,
+        other_law=output.both_laws,
+    )
+    told = [{"case": each.name, "base": each.base.name, "pier": described(each.pier)} for each in cases]
+    yield from implausible(rule, told)
+
+
 def _numerics(file: TomlFile) -> Numerics:
     table = file.table("numerics")
     if table is None:
         return Numerics()
-    read = table.read(NUMERICS)
+    read = table.read(NUMERICS | CONFIRM)
+    believed = confirmed(table, read, NUMERICS)
+    if "tolerance" in read:
+        given = Setting(read["tolerance"], (*table.at, "tolerance"))
+        complain_unless_usual(table, "tolerance", [given], TOLERANCE, believed)
     if "tolerance" in read and "substeps" in read:
         table.complain("tolerance and substeps are given: a fixed step has no tolerance; keep one", "substeps")
     if "substeps" in read:
@@ -145,11 +170,12 @@ def _output(file: TomlFile) -> Output:
 def _references(file: TomlFile, cases: Sequence[Expanded], varied: Iterable[str]) -> tuple[Reference, ...]:
     named = [table.data.get("name", table.data.get("base")) for table in file.tables("case", title="name")]
     known = choice(*dict.fromkeys(name for name in named if isinstance(name, str)))
-    keys = REFERENCE | {"case": replace(REFERENCE["case"], kind=known)} | SELECTING
+    of_parts = {name: Key(not_negative, "0.0") for name in varied if name not in SELECTING}
+    keys = REFERENCE | {"case": replace(REFERENCE["case"], kind=known)} | SELECTING | of_parts
     references = []
     for table in file.tables("reference", title="record"):
         read = table.read(keys)
-        columns = {name: value for name, value in read.items() if name in SELECTING}
+        columns = {name: value for name, value in read.items() if name not in REFERENCE}
         alike = [each.values for each in cases if each.name == read.get("case")]
         for name, value in columns.items():
             there = dict.fromkeys(values[name] for values in alike if name in values)

@@ -7,7 +7,7 @@ from typing import Any
 
 from rockbatch.checks.statistics import STATISTICS
 from rockbatch.errors import InputError
-from rockbatch.pier import problems
+from rockbatch.pier import ElasticBase, beta_of, eta_of, in_kilonewtons, problems
 from rockbatch.study.ranges import range_of
 from rockbatch.study.spec import Case, Study
 from rockbatch.toml.kinds import KindError, boolean, choice, count, number, positive, shown
@@ -16,6 +16,9 @@ from rockbatch.toml.reader import Key, Table, TomlFile
 OF_PIER = ("alpha", "p", "mu")
 OF_MOTION = ("vertical", "polarity")
 """Factors of the whole suite."""
+
+IN_KILONEWTONS = {"stiffness_kN_m": "beta", "yield_kN": "eta"}
+"""Inputs that a pier of known mass turns into ratios, and which."""
 
 Value = float | str | bool
 
@@ -41,7 +44,7 @@ SENSITIVITY = {
     "seed": Key(count, "1"),
 }
 _RANGES = {
-    name: Key(positive if name in OF_PIER else number, example, many=True)
+    name: Key(positive if name in (*OF_PIER, *IN_KILONEWTONS) else number, example, many=True)
     for name, example in (
         ("alpha", "[0.12, 0.16]"),
         ("p", "[0.3, 0.5]"),
@@ -51,6 +54,8 @@ _RANGES = {
         ("epsilon", "[0.0, 0.3]"),
         ("eta", "[2.0, 4.0]"),
         ("n", "[2, 8]"),
+        ("stiffness_kN_m", "[1e6, 4e6]"),
+        ("yield_kN", "[3e4, 6e4]"),
     )
 }
 UNIFORM = _RANGES
@@ -110,22 +115,34 @@ class SensitivitySpec:
 
 def applying(inputs: Iterable[Input], case: Case) -> tuple[Input, ...]:
     """The inputs that a case has."""
-    own = {each.name for each in fields(case.base)} | {*OF_PIER, *OF_MOTION}
+    own = {each.name for each in fields(case.base)} | {*OF_PIER, *OF_MOTION, *_in_kilonewtons(case)}
     return tuple(each for each in inputs if each.name in own)
 
 
 def varied(case: Case, values: Mapping[str, Value]) -> Case:
     """The case with other values of its pier and its base. Raises :class:`InputError` where the pier cannot be."""
-    pier: dict[str, Any] = {name: value for name, value in values.items() if name in OF_PIER}
-    base: dict[str, Any] = {name: value for name, value in values.items() if name not in (*OF_PIER, *OF_MOTION)}
-    return replace(case, pier=replace(case.pier, **pier), base=replace(case.base, **base))
+    given: dict[str, Any] = {name: value for name, value in values.items() if name not in OF_MOTION}
+    pier = replace(case.pier, **{name: given.pop(name) for name in OF_PIER if name in given})
+    for name, ratio in IN_KILONEWTONS.items():
+        if name in given:
+            given[ratio] = (beta_of if ratio == "beta" else eta_of)(pier, given.pop(name))
+    return replace(case, pier=pier, base=replace(case.base, **given))
 
 
 def own_values(study: Study, case: Case) -> dict[str, Any]:
     """What the study itself says about every input."""
     of_motion = {"vertical": study.motions.vertical, "polarity": study.motions.polarity[0]}
     pier = {name: getattr(case.pier, name) for name in OF_PIER}
-    return pier | {each.name: getattr(case.base, each.name) for each in fields(case.base)} | of_motion
+    base = {each.name: getattr(case.base, each.name) for each in fields(case.base)}
+    return pier | base | _in_kilonewtons(case) | of_motion
+
+
+def _in_kilonewtons(case: Case) -> dict[str, float]:
+    """Stiffness [kN/m] and yield force [kN] of a case on springs, where the mass is known."""
+    if not isinstance(case.base, ElasticBase):
+        return {}
+    # To the digits in which studies are written, so that a range may end at the study's own value
+    return {name: float(f"{value:.12g}") for name, value in in_kilonewtons(case.pier, case.base).items()}
 
 
 def read_sensitivity(study: Study) -> SensitivitySpec:
@@ -144,6 +161,10 @@ def read_sensitivity(study: Study) -> SensitivitySpec:
         read = table.read(SENSITIVITY, other=SPREADS)
         for spread, keys in SPREADS.items():
             inputs += _inputs(file, spread, keys)
+        for name, ratio in IN_KILONEWTONS.items():
+            spreads = {each.name: each.spread for each in inputs}
+            if name in spreads and ratio in spreads:
+                table.complain(f"{ratio} and {name} are given, which fix the same; keep one", spreads[name], name)
         for name in {each.name for each in inputs}:
             places = [each.spread for each in inputs if each.name == name]
             if len(places) > 1:
@@ -199,7 +220,9 @@ def _check(table: Table, inputs: Sequence[Input], study: Study) -> None:
         _check_corners(table, mine, case)
     for each in inputs:
         if each.name not in used:
-            table.complain(f"{each.name}: no case of the study has it; leave it out", each.spread, each.name)
+            weighed = "a pier of known mass (mass_t) on " if each.name in IN_KILONEWTONS else ""
+            has = f"it goes with {weighed}springs" if weighed else "no case of the study has it"
+            table.complain(f"{each.name}: {has}; leave it out", each.spread, each.name)
 
 
 def _check_corners(table: Table, inputs: Sequence[Input], case: Case) -> None:
@@ -215,6 +238,10 @@ def _check_corners(table: Table, inputs: Sequence[Input], case: Case) -> None:
             wrong = error.problems
         for problem in wrong:
             name = problem.split(" = ")[0]
+            written = next((key for key, ratio in IN_KILONEWTONS.items() if ratio == name and key in places), name)
+            if written != name:
+                problem = f"{written} = {values[written]:g} means {problem}"
+                name = written
             if name in told:
                 continue
             told.add(name)

@@ -91,6 +91,10 @@ class MotionSpec:
         return "+" if "+" in self.polarity else "-"
 
 
+LEAST_TOLERANCE = 1e-12
+"""On θ_max/α: rounding alone makes as much, and a run would never be called settled."""
+
+
 @dataclass(frozen=True)
 class Numerics:
     """A tolerance on θ_max/α, or a fixed number of substeps per sample; ``quiet_s`` [s] after the record."""

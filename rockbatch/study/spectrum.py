@@ -1,7 +1,7 @@
 """Rocking spectra and overturning maps in a study file: [spectrum] and [[spectrum.map]]."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -11,6 +11,7 @@ from rockbatch.motions.pulses import SHAPES
 from rockbatch.pier import Pier, problems
 from rockbatch.study.cases import read_cases
 from rockbatch.study.motions import check_shape
+from rockbatch.study.piers import has_mass
 from rockbatch.study.ranges import Range, range_of
 from rockbatch.study.spec import Case, Study
 from rockbatch.toml.kinds import KindError, choice, count, number, positive, text
@@ -156,8 +157,8 @@ def _spectrum(table: Table, study: Study) -> SpectrumSpec | None:
             if (alpha, each.name) not in told:
                 told.add((alpha, each.name))
                 table.complain(f'alpha = {alpha:g}, case "{each.name}": {problem}', "alpha")
-    mu = ("mu",) if len({pier.mu for pier, _ in piers}) > 1 else ()
-    varied = ("alpha", *mu, axis, *varied)
+    apart = [name for name in ("mu", "mass_t") if len({values.get(name) for _, values in piers}) > 1]
+    varied = ("alpha", *apart, axis, *(name for name in varied if name not in apart))
     return SpectrumSpec(
         axis,
         tuple(
@@ -170,22 +171,31 @@ def _spectrum(table: Table, study: Study) -> SpectrumSpec | None:
 def _piers(
     table: Table, alphas: Any, axis: str, values: list[float], study: Study
 ) -> list[tuple[Pier, dict[str, Any]]]:
-    """Piers of every slenderness and size, with μ and g of the study's, and their values by key."""
+    """Piers of every slenderness and size, with all else of the study's, and their values by key.
+
+    A mass that only a case says is no pier's: the case brings it itself.
+    """
+    weighed = has_mass(table.file)
+    others = dict.fromkeys(
+        replace(case.pier, alpha=1.0, p=1.0, top_m=None, mass_t=case.pier.mass_t if weighed else None)
+        for case in study.cases
+    )
     piers = []
     for alpha in alphas:
-        for mu, gravity in dict.fromkeys((case.pier.mu, case.pier.gravity) for case in study.cases):
+        for other in others:
             for value in values:
+                own = {"alpha": alpha.value, "mu": other.mu, axis: value}
                 try:
                     if axis == "size_m":
-                        pier = Pier.from_size(alpha.value, value, mu, gravity)
+                        p = Pier.from_size(alpha.value, value, other.mu, other.gravity).p
                     else:
                         p = value if axis == "p" else 2 * math.pi / value
-                        pier = Pier(alpha.value, p, mu, gravity)
+                    pier = replace(other, alpha=alpha.value, p=p)
                 except InputError as error:
                     for problem in error.problems:
                         table.complain_about(alpha, problem)
                     break
-                piers.append((pier, {"alpha": alpha.value, "mu": mu, axis: value}))
+                piers.append((pier, own if other.mass_t is None else own | {"mass_t": other.mass_t}))
     return piers
 
 

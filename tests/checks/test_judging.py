@@ -291,6 +291,8 @@ BY_HAND = {  # value and error for θ_max/α = 0.3, α = 0.2
     "failed": (0, 0.0),
     "eta": (2.5, 0.0),
     "static_deflection_m": (9.81 / 50.0**2, 0.0),
+    "yield_kN": (2.5 * 3000 * 9.81 / 2, 0.0),
+    "stiffness_kN_m": (50.0**2 * 3000 / 2, 0.0),
 }
 
 
@@ -306,9 +308,9 @@ def test_a_demand_that_a_base_does_not_have_does_not_apply(demand):
     table = pd.concat([runs([0.3], name, **ROW) for name in ("rigid", "elastic", "pads")])
     found = judge([Rule("check", demand, 100.0)], table, [RIGID, ELASTIC, case()])
     springs = {"theta_res_over_alpha", "theta_res_rad", "base_tilt_rad", "differential_settlement_m", "settlement_m",
-               "toe_settlement_m", "static_deflection_m"}  # fmt: skip
+               "toe_settlement_m", "static_deflection_m", "stiffness_kN_m"}  # fmt: skip
     expected = {"rigid": demand not in springs, "elastic": True, "pads": True}
-    if demand in ("eta", "ductility"):
+    if demand in ("eta", "ductility", "yield_kN"):
         expected = {"rigid": False, "elastic": False, "pads": True}
     assert {each.case: each.verdict != "does not apply" for each in found} == expected
 

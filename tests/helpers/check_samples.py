@@ -13,7 +13,7 @@ from rockbatch.results.reading import SECTIONS
 from rockbatch.results.run_json import describe_case
 from rockbatch.study import Case
 
-PIER = Pier(alpha=0.2, p=1.0)
+PIER = Pier(alpha=0.2, p=1.0, mass_t=3000.0)
 """R0 = 7.3575 m, b = 1.46171 m, h = 7.21084 m."""
 PADS = YieldingBase(beta=50.0, eta=2.5)
 

@@ -65,7 +65,7 @@ RULES = """
 [[check]]
 name = "tilt"
 demand = "base_tilt_rad"
-at_most = 1
+at_most = 0.1
 basis = "judgement"
 reason = "r"
 """

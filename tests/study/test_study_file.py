@@ -16,10 +16,10 @@ from rockbatch.motions.selection import Selection
 from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase
 from rockbatch.study import FemaSpec, Numerics, Output, PulseSpec, Reference, Study, load_study
 from rockbatch.study.cases import BASE_KEYS, CASE
-from rockbatch.study.cases import PIER as PIER_KEYS
 from rockbatch.study.load import NUMERICS, REFERENCE, TOP
 from rockbatch.study.motions import FEMA, MOTIONS
 from rockbatch.study.motions import PULSE as PULSE_KEYS
+from rockbatch.study.piers import PIER as PIER_KEYS
 
 CONFIGS = Path(__file__).parents[2] / "configs"
 PIER = "[pier]\nalpha = 0.13\np = 0.38\n"

@@ -17,7 +17,7 @@ from rockbatch.core.springs import static_deflection
 from rockbatch.core.types import BEFORE_EVENT, BOUC_WEN, LEFT, Block, Contact, State
 from rockbatch.motions.motion import Motion
 from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase
-from rockbatch.simulation import Run, housner_restitution, run_fixed, springs, written_run
+from rockbatch.simulation import Run, run_fixed, springs, written_run
 
 SINE = pulse("sine", 0.5, dt=0.01, end=3.0)
 
@@ -25,7 +25,7 @@ SINE = pulse("sine", 0.5, dt=0.01, end=3.0)
 def free_rocking(pier: Pier, theta0: float, duration: float, restitution: float | None = None):
     """Histories (t, θ, θ̇, kind) and run of a block let go at ``theta0`` on a rigid base."""
     dt = 0.01
-    e = housner_restitution(pier) if restitution is None else restitution
+    e = pier.restitution if restitution is None else restitution
     block = Block(pier.alpha, pier.p, pier.gravity, e)
     history = np.empty((400_000, HISTORY_COLUMNS))
     samples = np.zeros(round(duration / dt) + 1)
@@ -55,7 +55,7 @@ def test_quarter_period_of_free_rocking_is_housners_integral(pier, quarter):
 
 def test_amplitudes_of_free_rocking_fall_with_the_square_of_restitution():
     """cos(α−θ_n) − cos α falls by e² at every impact (Housner 1963). Amplitudes at 1e-8: Hermite between steps."""
-    e2 = housner_restitution(FIG5) ** 2
+    e2 = FIG5.restitution**2
     rows, _ = free_rocking(FIG5, 0.5 * FIG5.alpha, 10.0)
     impacts = np.flatnonzero(rows[:, 3] > 0)
     peaks = [np.abs(rows[a:b, 1]).max() / FIG5.alpha for a, b in pairwise(impacts[:4])]
@@ -204,7 +204,7 @@ def test_landing_impulse_of_the_rigid_limit_is_housners_restitution():
     before = State(0.0, 0.0, m.half_width * -0.3, -0.3, 0.0, 0.0)  # v̇_R = v̇ − b θ̇ = 0
     after = land(m, before, -1)
     assert before.v_rate - m.half_width * before.omega == 0.0
-    assert after.omega / before.omega == pytest.approx(housner_restitution(FIG5), rel=1e-14)
+    assert after.omega / before.omega == pytest.approx(FIG5.restitution, rel=1e-14)
 
 
 @pytest.mark.parametrize("theta", [0.03, 0.15, -0.03, -0.15])

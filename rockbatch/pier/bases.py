@@ -1,17 +1,20 @@
-"""The pier and what it stands on: a rigid block and three kinds of base (Palmeri & Makris 2007).
+"""What a pier stands on: three kinds of base (Palmeri & Makris 2007).
 
 Values are checked where they meet: :func:`problems` says what is impossible about a pier on a base, and the limit.
 """
 
 import math
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Any, Literal, Self
 
 from rockbatch.errors import InputError
-from rockbatch.units import GRAVITY
+from rockbatch.pier.block import Pier, not_positive
 
 LEAST_ETA = 1.000001
 """Closer to 1, Bouc–Wen springs would have to sink without end to carry the weight."""
+
+MOST_ETA = 100.0
+"""Beyond it a wrong unit is likelier than the support: foundations bear 2 to 20 times what they carry."""
 
 Kinematics = Literal["first-order", "finite"]
 Flight = Literal["stop", "guided"]
@@ -19,102 +22,10 @@ SpringLaw = Literal["bouc-wen", "epp"]
 
 
 @dataclass(frozen=True)
-class Pier:
-    """A rigid block that can pivot about its two lower corners.
-
-    Attributes
-    ----------
-    alpha : float
-        Slenderness α [rad]: the angle at a pivot between the vertical and the line to the centre of mass.
-    p : float
-        Frequency parameter [rad/s], p² = μ/(1+μ) g/R0 (paper, eq. 2).
-    mu : float
-        Shape factor μ = M R0²/I0; 3 for a rectangle.
-    gravity : float
-        g [m/s²].
-    """
-
-    alpha: float
-    p: float
-    mu: float = 3.0
-    gravity: float = GRAVITY
-
-    def __post_init__(self) -> None:
-        wrong = [
-            f"{name} = {value:g}: must be a number above 0{hint}"
-            for name, value, hint in (
-                ("alpha", self.alpha, " [rad]"),
-                ("p", self.p, " [rad/s]"),
-                ("mu", self.mu, " (3 for a rectangle)"),
-                ("gravity", self.gravity, " [m/s²]"),
-            )
-            if not (math.isfinite(value) and value > 0)
-        ]
-        if self.alpha >= math.pi / 2:
-            wrong.append(
-                f"alpha = {self.alpha:g}: must be below π/2 = 1.5708 rad; "
-                f"if it is in degrees, write {math.radians(self.alpha):.4g}"
-            )
-        if wrong:
-            raise InputError(*wrong)
-
-    @classmethod
-    def from_size(cls, alpha: float, size_m: float, mu: float = 3.0, gravity: float = GRAVITY) -> "Pier":
-        """Pier from its size R0 [m], the distance from a pivot to the centre of mass."""
-        if not (math.isfinite(size_m) and size_m > 0):
-            raise InputError(f"size_m = {size_m:g}: must be a number above 0 [m]")
-        if not (math.isfinite(mu) and mu > 0):
-            raise InputError(f"mu = {mu:g}: must be a number above 0 (3 for a rectangle)")
-        return cls(alpha, math.sqrt(mu / (1 + mu) * gravity / size_m), mu, gravity)
-
-    @classmethod
-    def rectangle(cls, width_m: float, height_m: float, gravity: float = GRAVITY) -> "Pier":
-        """Solid rectangular block; its width and height [m] give α, R0 and μ = 3."""
-        wrong = [
-            f"{name} = {value:g}: must be a number above 0 [m]"
-            for name, value in (("width_m", width_m), ("height_m", height_m))
-            if not (math.isfinite(value) and value > 0)
-        ]
-        if wrong:
-            raise InputError(*wrong)
-        return cls.from_size(math.atan2(width_m, height_m), math.hypot(width_m, height_m) / 2, 3.0, gravity)
-
-    @property
-    def size(self) -> float:
-        """R0 [m], from a pivot to the centre of mass."""
-        return self.mu / (1 + self.mu) * self.gravity / self.p**2
-
-    @property
-    def half_width(self) -> float:
-        """b = R0 sin α [m]."""
-        return self.size * math.sin(self.alpha)
-
-    @property
-    def height(self) -> float:
-        """h = R0 cos α [m], of the centre of mass above the pivots."""
-        return self.size * math.cos(self.alpha)
-
-    @property
-    def inertia(self) -> float:
-        """I0/M = R0²/μ [m²], about the centre of mass, per unit mass."""
-        return self.size**2 / self.mu
-
-    @property
-    def inertia_about_pivot(self) -> float:
-        """I0/M + R0² [m²], about a pivot, per unit mass."""
-        return self.inertia + self.size**2
-
-    @property
-    def least_beta(self) -> float:
-        """β = ω_v/p below which the pier topples on its springs under its own weight (g h < ω_v² b²)."""
-        return math.sqrt((1 + self.mu) * math.cos(self.alpha) / self.mu) / math.sin(self.alpha)
-
-
-@dataclass(frozen=True)
 class RigidBase:
     """Ground that neither gives nor yields (Housner 1963).
 
-    ``restitution`` is the factor e on the angular velocity at an impact; ``None`` means Housner's
+    ``restitution`` is the factor e on the angular velocity at an impact; ``None`` means :attr:`Pier.restitution`, Housner's
     e = 1 − 2μ/(1+μ) sin²α, which conserves the angular momentum about the new pivot, or 0 where that is negative.
     """
 
@@ -146,6 +57,14 @@ class ElasticBase:
 
     name = "elastic"
 
+    @classmethod
+    def from_stiffness(cls, pier: Pier, stiffness_kN_m: float, **rest: Any) -> Self:
+        """Base from the stiffness K of one support [kN/m] under ``pier``, whose mass is known; ``rest`` as in the class.
+
+        Raises ``InputError`` where the pier has no mass, or K is not above 0.
+        """
+        return cls(beta_of(pier, stiffness_kN_m), **rest)
+
 
 @dataclass(frozen=True)
 class YieldingBase(ElasticBase):
@@ -166,6 +85,43 @@ class YieldingBase(ElasticBase):
     n: float = 5.0
 
     name = "yielding"
+
+    @classmethod
+    def from_stiffness(cls, pier: Pier, stiffness_kN_m: float, yield_kN: float | None = None, **rest: Any) -> Self:
+        """As :meth:`ElasticBase.from_stiffness`, with the yield force F_y of one support [kN], or with ``eta``."""
+        if yield_kN is not None:
+            rest["eta"] = eta_of(pier, yield_kN)
+        return super().from_stiffness(pier, stiffness_kN_m, **rest)
+
+
+def beta_of(pier: Pier, stiffness_kN_m: float) -> float:
+    """β = sqrt(2K/M)/p of supports with the stiffness K [kN/m]. Raises ``InputError`` for a pier without mass."""
+    mass = _mass(pier, stiffness_kN_m=(stiffness_kN_m, " [kN/m]"))
+    return math.sqrt(2 * stiffness_kN_m / mass) / pier.p
+
+
+def eta_of(pier: Pier, yield_kN: float) -> float:
+    """η = 2 F_y/(M g) of supports with the yield force F_y [kN]. Raises ``InputError`` for a pier without mass."""
+    return 2 * yield_kN / (_mass(pier, yield_kN=(yield_kN, " [kN]")) * pier.gravity)
+
+
+def _mass(pier: Pier, **value: tuple[float | None, str]) -> float:
+    wrong = not_positive(**value)
+    if pier.mass_t is None:
+        wrong.append("mass_t is missing: kN and kN/m are of a pier whose mass is known")
+    if wrong or pier.mass_t is None:
+        raise InputError(*wrong)
+    return pier.mass_t
+
+
+def in_kilonewtons(pier: Pier, base: ElasticBase) -> dict[str, float]:
+    """K = β² p² M/2 [kN/m] and F_y = η M g/2 [kN] by the keys of a study; empty for a pier without mass."""
+    if pier.mass_t is None:
+        return {}
+    found = {"stiffness_kN_m": 0.5 * pier.mass_t * vertical_frequency(pier, base) ** 2}
+    if isinstance(base, YieldingBase):
+        found["yield_kN"] = 0.5 * base.eta * pier.mass_t * pier.gravity
+    return found
 
 
 def least_beta(pier: Pier, base: ElasticBase) -> float:
@@ -226,6 +182,12 @@ def problems(pier: Pier, base: Base) -> list[str]:
         if e is not None and not 0 <= e <= 1:
             return [f"restitution = {e:g}: must be within 0..1 (leave it out for Housner's value)"]
         return []
+    if pier.deck_over_columns is not None:
+        return [
+            f"columns: a rocking frame is solved on rigid ground only, and this base is {base.name}. On springs the columns "
+            "sink by themselves, the deck no longer moves level, and no one block stands for them (Makris & Vassiliou 2013); "
+            'write base = "rigid", or leave columns out for a single pier'
+        ]
     wrong = []
     least = least_beta(pier, base)
     if not (math.isfinite(base.beta) and base.beta > pier.least_beta):

@@ -1,0 +1,298 @@
+"""The pier: a rigid block, with what it carries, and the rocking frame as its equivalent block."""
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from rockbatch.errors import InputError
+from rockbatch.units import GRAVITY
+
+
+class Part(NamedTuple):
+    """A part of a pier, its centre on the axis: mass [t], height above the pivots [m], rotary inertia about it [t m²]."""
+
+    mass_t: float
+    height_m: float
+    inertia_t_m2: float = 0.0
+
+    @classmethod
+    def shaft(cls, width_m: float, height_m: float, mass_t: float) -> "Part":
+        """A uniform shaft that stands on the pivots: a rectangle."""
+        return cls(mass_t, 0.5 * height_m, mass_t * (width_m**2 + height_m**2) / 12.0)
+
+
+@dataclass(frozen=True)
+class Pier:
+    """A rigid block that can pivot about its two lower corners.
+
+    Attributes
+    ----------
+    alpha : float
+        Slenderness α [rad]: the angle at a pivot between the vertical and the line to the centre of mass.
+    p : float
+        Frequency parameter [rad/s], p² = μ/(1+μ) g/R0 (paper, eq. 2).
+    mu : float
+        Shape factor μ = M R0²/I0; 3 for a rectangle.
+    gravity : float
+        g [m/s²].
+    mass_t : float, optional
+        Mass M of all that rocks [t]; only forces in kN and stiffnesses in kN/m ask for it.
+    top_m : float, optional
+        Height above the pivots at which drift is read [m]; twice that of the centre of mass where it is not given.
+    deck_over_columns : float, optional
+        γ = m_d/(N m_c) of a rocking frame, whose equivalent block this is; see :meth:`frame`.
+
+    Raises ``InputError`` with all that is impossible.
+    """
+
+    alpha: float
+    p: float
+    mu: float = 3.0
+    gravity: float = GRAVITY
+    mass_t: float | None = None
+    top_m: float | None = None
+    deck_over_columns: float | None = None
+
+    def __post_init__(self) -> None:
+        wrong = not_positive(
+            alpha=(self.alpha, " [rad]"),
+            p=(self.p, " [rad/s]"),
+            mu=(self.mu, " (3 for a rectangle)"),
+            gravity=(self.gravity, " [m/s²]"),
+            mass_t=(self.mass_t, " [t]"),
+            top_m=(self.top_m, " [m]"),
+            deck_over_columns=(self.deck_over_columns, ""),
+        )
+        if self.alpha >= math.pi / 2:
+            wrong.append(
+                f"alpha = {self.alpha:g}: must be below π/2 = 1.5708 rad; "
+                f"if it is in degrees, write {math.radians(self.alpha):.4g}"
+            )
+        if wrong:
+            raise InputError(*wrong)
+
+    @classmethod
+    def from_size(
+        cls,
+        alpha: float,
+        size_m: float,
+        mu: float = 3.0,
+        gravity: float = GRAVITY,
+        *,
+        mass_t: float | None = None,
+        top_m: float | None = None,
+    ) -> "Pier":
+        """Pier from its size R0 [m], the distance from a pivot to the centre of mass."""
+        wrong = not_positive(size_m=(size_m, " [m]"), mu=(mu, " (3 for a rectangle)"))
+        if wrong:
+            raise InputError(*wrong)
+        return cls(alpha, math.sqrt(mu / (1 + mu) * gravity / size_m), mu, gravity, mass_t, top_m)
+
+    @classmethod
+    def rectangle(
+        cls,
+        width_m: float,
+        height_m: float,
+        gravity: float = GRAVITY,
+        *,
+        mass_t: float | None = None,
+        top_m: float | None = None,
+    ) -> "Pier":
+        """Solid rectangular block; its width and height [m] give α, R0 and μ = 3."""
+        wrong = not_positive(width_m=(width_m, " [m]"), height_m=(height_m, " [m]"))
+        if wrong:
+            raise InputError(*wrong)
+        alpha, size = math.atan2(width_m, height_m), math.hypot(width_m, height_m) / 2
+        return cls.from_size(alpha, size, 3.0, gravity, mass_t=mass_t, top_m=top_m)
+
+    @classmethod
+    def of_parts(
+        cls, width_m: float, parts: Iterable[Part], *, top_m: float | None = None, gravity: float = GRAVITY
+    ) -> "Pier":
+        """Pier of any shape, with what it carries (THEORY.md, 1).
+
+        Parameters
+        ----------
+        width_m : float
+            Between the pivots, 2b [m].
+        parts : iterable of Part
+            Or of (mass_t, height_m, inertia_t_m2): masses m_i at heights h_i, with inertias I_i about their own centres.
+        top_m : float, optional
+            Where drift is read [m]; at the highest part's centre by default.
+
+        Returns
+        -------
+        Pier
+            M = Σ m_i, h = Σ m_i h_i/M, I0 = Σ [I_i + m_i (h_i − h)²], α = atan(b/h) and μ = M R0²/I0.
+
+        Raises
+        ------
+        InputError
+            With every impossible number; part 1 is the first.
+        """
+        parts = [Part(*part) for part in parts]
+        wrong = not_positive(width_m=(width_m, " [m]"))
+        for n, part in enumerate(parts, 1):
+            wrong += not_positive(**{f"part_{n}_mass_t": (part.mass_t, " [t]")})
+            for name, value in (("height_m", part.height_m), ("inertia_t_m2", part.inertia_t_m2)):
+                if not (math.isfinite(value) and value >= 0):
+                    wrong.append(f"part_{n}_{name} = {value:g}: must be 0 or a number above it")
+        if not parts:
+            wrong.append("parts: there are none; a pier has one at least")
+        if wrong:
+            raise InputError(*wrong)
+        mass = math.fsum(part.mass_t for part in parts)
+        height = math.fsum(part.mass_t * part.height_m for part in parts) / mass
+        inertia = math.fsum(part.inertia_t_m2 + part.mass_t * (part.height_m - height) ** 2 for part in parts)
+        if height == 0 or inertia == 0:
+            what = "no height" if height == 0 else "no rotary inertia about their common centre"
+            raise InputError(f"parts: they have {what}; a shaft has m (width² + height²)/12 at half its height")
+        size = math.hypot(0.5 * width_m, height)
+        top = max(part.height_m for part in parts) if top_m is None else top_m
+        alpha = math.atan2(0.5 * width_m, height)
+        return cls.from_size(alpha, size, mass * size**2 / inertia, gravity, mass_t=mass, top_m=top)
+
+    @classmethod
+    def with_deck(
+        cls,
+        width_m: float,
+        height_m: float,
+        mass_t: float,
+        deck_mass_t: float,
+        *,
+        deck_height_m: float | None = None,
+        deck_inertia_t_m2: float = 0.0,
+        top_m: float | None = None,
+        gravity: float = GRAVITY,
+    ) -> "Pier":
+        """Uniform shaft of ``width_m`` × ``height_m`` and ``mass_t``, and a deck on it.
+
+        ``deck_height_m`` is that of the deck's centre, at the top of the shaft by default; ``deck_inertia_t_m2`` its rotary
+        inertia about it, 0 for a deck on bearings that does not turn with the pier. Drift is read at ``top_m``, by default the
+        higher of shaft and deck. See :meth:`of_parts`.
+        """
+        wrong = not_positive(height_m=(height_m, " [m]"), mass_t=(mass_t, " [t]"), deck_mass_t=(deck_mass_t, " [t]"))
+        if wrong:
+            raise InputError(*wrong)
+        deck = Part(deck_mass_t, height_m if deck_height_m is None else deck_height_m, deck_inertia_t_m2)
+        top = max(height_m, deck.height_m) if top_m is None else top_m
+        return cls.of_parts(width_m, [Part.shaft(width_m, height_m, mass_t), deck], top_m=top, gravity=gravity)
+
+    @classmethod
+    def frame(cls, column: "Pier", columns: int, deck_mass_t: float) -> "Pier":
+        """Rocking frame: equal columns, and a deck that rests on their tops and keeps level (Makris & Vassiliou 2013).
+
+        Parameters
+        ----------
+        column : Pier
+            One column, a solid rectangle with its mass.
+        columns : int
+            N, 2 or more.
+        deck_mass_t : float
+            m_d [t], of the deck on all of them; with γ = m_d/(N m_c).
+
+        Returns
+        -------
+        Pier
+            The block that rotates as the columns do: α of a column, p̂ = p √((1+2γ)/(1+3γ)), and μ = 3 (1+2γ)²/(1+4γ), by which
+            ``size``, ``height`` and ``inertia`` are those of the whole per unit of its mass N m_c + m_d. ``half_width`` is a
+            column's, and ``restitution`` the frame's. For rigid ground only.
+
+        Raises
+        ------
+        InputError
+            With every impossible number.
+        """
+        wrong = not_positive(deck_mass_t=(deck_mass_t, " [t]"))
+        if isinstance(columns, bool) or not isinstance(columns, int) or columns < 2:
+            wrong.append(f"columns = {columns}: must be a whole number, 2 or above; a single one is a pier with a deck")
+        if column.mass_t is None:
+            wrong.append("mass_t is missing, of one column [t]")
+        if not math.isclose(column.mu, 3.0) or column.deck_over_columns is not None:
+            wrong.append(f"mu = {column.mu:g}: the columns of a frame are solid rectangles, mu = 3")
+        if wrong or column.mass_t is None:
+            raise InputError(*wrong)
+        ratio = deck_mass_t / (columns * column.mass_t)
+        return cls(
+            column.alpha,
+            column.p * math.sqrt((1 + 2 * ratio) / (1 + 3 * ratio)),
+            3 * (1 + 2 * ratio) ** 2 / (1 + 4 * ratio),
+            column.gravity,
+            mass_t=columns * column.mass_t + deck_mass_t,
+            top_m=2 * column.height,
+            deck_over_columns=ratio,
+        )
+
+    @property
+    def size(self) -> float:
+        """R0 [m], from a pivot to the centre of mass."""
+        return self.mu / (1 + self.mu) * self.gravity / self.p**2
+
+    @property
+    def half_width(self) -> float:
+        """b = R0 sin α [m]; of a frame that of a column, whose R0 is (1+γ)/(1+2γ) of the equivalent block's."""
+        ratio = self.deck_over_columns
+        share = 1.0 if ratio is None else (1 + ratio) / (1 + 2 * ratio)
+        return share * self.size * math.sin(self.alpha)
+
+    @property
+    def height(self) -> float:
+        """h = R0 cos α [m], of the centre of mass above the pivots."""
+        return self.size * math.cos(self.alpha)
+
+    @property
+    def inertia(self) -> float:
+        """I0/M = R0²/μ [m²], about the centre of mass, per unit mass."""
+        return self.size**2 / self.mu
+
+    @property
+    def inertia_about_pivot(self) -> float:
+        """I0/M + R0² [m²], about a pivot, per unit mass."""
+        return self.inertia + self.size**2
+
+    @property
+    def top(self) -> float:
+        """Height above the pivots at which drift is read [m]: ``top_m``, or twice that of the centre of mass."""
+        return 2.0 * self.height if self.top_m is None else self.top_m
+
+    @property
+    def restitution(self) -> float:
+        """Factor e on the angular velocity at an impact on rigid ground, which keeps the angular momentum (THEORY.md, 5).
+
+        Housner's 1 − 2μ/(1+μ) sin²α, or (1 − 3/2 sin²α + 3γ cos 2α)/(1 + 3γ) of a frame (Makris & Vassiliou 2013). A pier so
+        stocky that this is negative would have to turn back through the corner that it has just landed on: it stops, e = 0.
+        """
+        loss = 2.0 * self.mu / (1.0 + self.mu)
+        if self.deck_over_columns is not None:
+            loss = (1.5 + 6.0 * self.deck_over_columns) / (1.0 + 3.0 * self.deck_over_columns)
+        return max(0.0, 1.0 - loss * math.sin(self.alpha) ** 2)
+
+    @property
+    def least_beta(self) -> float:
+        """β = ω_v/p below which the pier topples on its springs under its own weight (g h < ω_v² b²)."""
+        return math.sqrt((1 + self.mu) * math.cos(self.alpha) / self.mu) / math.sin(self.alpha)
+
+
+def not_positive(**values: tuple[float | None, str]) -> list[str]:
+    """What is said of those numbers that are given, and are not above 0; each comes with its unit or a hint."""
+    return [
+        f"{name} = {value:g}: must be a number above 0{hint}"
+        for name, (value, hint) in values.items()
+        if value is not None and not (math.isfinite(value) and value > 0)
+    ]
+
+
+def described(pier: Pier) -> dict[str, float]:
+    """A pier by the names and units of run.json; mass, top and γ only where it has them."""
+    given = {"mass_t": pier.mass_t, "top_m": pier.top_m, "deck_over_columns": pier.deck_over_columns}
+    return {
+        "alpha": pier.alpha,
+        "p": pier.p,
+        "mu": pier.mu,
+        "gravity": pier.gravity,
+        "size_m": pier.size,
+        "half_width_m": pier.half_width,
+        "height_m": pier.height,
+        **{name: value for name, value in given.items() if value is not None},
+    }
