@@ -17,10 +17,10 @@ from interleaved import interleaved, machine, ratio
 from tower import QUIET_S, TOWER, foundations, record
 
 from rockbatch.core.equations import rates, step
-from rockbatch.core.lanes import LANES, one_pass
+from rockbatch.core.lanes import LANES, table
+from rockbatch.core.one_pass import one_pass
+from rockbatch.core.recording import HISTORY_COLUMNS
 from rockbatch.core.two_springs import (
-    CELLS,
-    HISTORY_COLUMNS,
     begin,
     rock_on_springs,
     rock_side_by_side,
@@ -50,12 +50,13 @@ def bare(m, y, contact, ground, h, steps):
 
 
 @numba.njit(error_model="numpy", _nrt=False)
-def passes(table, lines, ground, lanes, count):
+def passes(lanes_table, lines, ground, count):
     """All lanes from the start, ``count`` passes of tiny steps: no sample is reached, and nothing happens."""
-    for i in range(lanes):
-        begin(table, i, i, lines, ground, None, None)
+    lanes = lanes_table[0]
+    for i in range(len(lines)):
+        begin(lanes, i, i, lines, ground, None, None, True)
     for _ in range(count):
-        one_pass(table, lanes, None, None)
+        one_pass(lanes, len(lines), None, None)
 
 
 def of_law(law: str, base: YieldingBase) -> ElasticBase:
@@ -114,7 +115,7 @@ def pass_alone(motion: Motion, repeats: int) -> str:
     lines = np.array([run_line(m, dt, 100 * PASSES, 0, 0, len(ground)) for m in models])
     alone = (models[0], static_state(models[0]), Contact(1.0, 1.0, 1.0, 1.0, 0.0), ground, dt, BARE_STEPS)
     tasks = {
-        "pass": lambda: passes(np.zeros(CELLS), lines, ground, LANES, PASSES),
+        "pass": lambda: passes(table()[0], lines, ground, PASSES),
         "bare": lambda: bare(*alone),
     }
     times = interleaved(tasks, repeats)

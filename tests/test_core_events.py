@@ -9,8 +9,9 @@ from reference_solver import reference
 
 import rockbatch as rb
 from rockbatch import simulate
+from rockbatch.core.recording import HISTORY_COLUMNS
 from rockbatch.core.roots import hermite, largest_within, turning_point
-from rockbatch.core.two_springs import HISTORY_COLUMNS, rock_on_springs
+from rockbatch.core.two_springs import rock_on_springs
 from rockbatch.core.types import IMPACT_LEFT, IMPACT_RIGHT, SEPARATION_LEFT, SEPARATION_RIGHT, SURVIVED
 from rockbatch.motions.motion import Motion
 from rockbatch.simulation import Scene, least_substeps, run_fixed, springs, written_run
