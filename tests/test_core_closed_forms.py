@@ -13,7 +13,7 @@ import rockbatch as rb
 from rockbatch.core.equations import geometry, rates
 from rockbatch.core.impact import land
 from rockbatch.core.rigid_base import HISTORY_COLUMNS, rock_on_rigid_base
-from rockbatch.core.springs import static_deflection
+from rockbatch.core.springs import power, static_deflection
 from rockbatch.core.types import BEFORE_EVENT, BOUC_WEN, LEFT, Block, Contact, State
 from rockbatch.motions.motion import Motion
 from rockbatch.simulation import Scene, housner_restitution, run_fixed, springs, written_run
@@ -339,3 +339,24 @@ def test_finite_kinematics_keep_the_angular_momentum_of_an_impact_only_upright(a
     before = (m.inertia + y * one) * omega - x * v_rate
     kept = (m.inertia + y * both) * after.omega - x * after.v_rate
     assert 1.0 - kept / before == pytest.approx(lost, abs=1e-5)
+
+
+@pytest.mark.parametrize("n", range(1, 11))
+def test_whole_exponents_by_products_are_powers(n):
+    """To three roundings; the largest z is 1, at which nothing may be added."""
+    for x in (0.0, 1e-3, 0.3, 0.7, 0.999999, 1.0):
+        assert power(x, n) == pytest.approx(x**n, rel=8e-16, abs=0.0)
+    assert power(0.7, None) == power(0.7, 5)
+    assert power(1.0, n) == 1.0
+
+
+def test_a_whole_exponent_gives_what_the_same_number_with_pow_gives():
+    """Runs with n = 2 as a whole number and as one that is next to it."""
+    motion = pulse("sine", 0.5, dt=0.02, end=3.0)
+    whole, near = (
+        run_fixed(FIG5, YieldingBase(50.0, 0.1, eta=2.2, n=n), motion, 4, 0.5, wait=False) for n in (2.0, 2.0 + 1e-13)
+    )
+    assert isinstance(springs(FIG5, YieldingBase(50.0, 0.1, eta=2.2, n=2.0)).exponent, int)
+    assert whole.theta_max == pytest.approx(near.theta_max, rel=1e-10)
+    assert whole.dissipated_left == pytest.approx(near.dissipated_left, rel=1e-9)
+    assert (whole.impacts, whole.separations) == (near.impacts, near.separations)

@@ -10,7 +10,7 @@ import pint
 import pytest
 from numba.core.registry import CPUDispatcher
 
-from rockbatch.core import equations, events, impact, rigid_base, springs
+from rockbatch.core import equations, events, impact, rigid_base, springs, trigonometry
 from rockbatch.core.types import BOUC_WEN, ELASTIC, EPP, Block, Contact, Geometry, Ground, Springs, State
 
 U = pint.UnitRegistry()
@@ -50,7 +50,7 @@ def plain_python(monkeypatch):
 
     A lever that is absent is written as 0.0; an exact zero has every dimension, so it gets that of its neighbours.
     """
-    modules: tuple[ModuleType, ...] = (springs, equations, impact, events, rigid_base)
+    modules: tuple[ModuleType, ...] = (springs, equations, impact, events, trigonometry, rigid_base)
     compiled_geometry = equations.geometry
 
     def geometry(m, theta):

@@ -170,7 +170,11 @@ def model_of(lanes, i, exponent, finite):
 
 @inlined
 def _typed(exponent, value):
-    return None if exponent is None else value
+    if isinstance(exponent, int):
+        return int(value)
+    if isinstance(exponent, float):
+        return value
+    return None
 
 
 @inlined

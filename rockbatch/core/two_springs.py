@@ -272,7 +272,7 @@ def run_line(m, dt, substeps, quiet_samples, first_row, npts, patience=0, read_a
         Samples from the end of the record to the earliest moment at which residuals are read, and from there to the
         second reading, which tells how they drift; 0: they are read once, when the peak is decided.
     """
-    exponent = 5.0 if m.exponent is None else m.exponent
+    exponent = 5.0 if m.exponent is None else float(m.exponent)
     return (*m[:-2], exponent, dt, substeps, quiet_samples, first_row, npts, patience, read_after, read_wait)
 
 
@@ -282,7 +282,7 @@ def rock_side_by_side(exponent, finite, lines, ground, stop, locate=True, every_
     Parameters
     ----------
     exponent, finite
-        Of all their Springs: what their types tell, a number or None, True or None.
+        Of all their Springs: what their types tell, a float, an int or None, True or None.
     lines : ndarray, shape (runs, 19)
         Of :func:`run_line`.
     ground : ndarray, shape (rows, 4)

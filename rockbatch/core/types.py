@@ -59,7 +59,7 @@ class Springs(NamedTuple):
     epsilon: float  # restitution of the landing pivot
     law: float  # ELASTIC, BOUC_WEN or EPP
     guided: float  # 1: flight goes on, 0: it ends the run
-    exponent: float | None  # n of Bouc–Wen; None for the paper's 5
+    exponent: float | int | None  # n of Bouc–Wen; None for the paper's 5, int for other whole numbers up to 10
     finite: bool | None  # True: finite kinematics; None: first-order
 
 

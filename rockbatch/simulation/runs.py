@@ -163,7 +163,7 @@ def try_all(
     trials: list[Trial | None] = [
         _refused(scene, steps, quiet_s) for scene, steps in zip(scenes, substeps, strict=True)
     ]
-    alike: dict[tuple[float | None, bool | None] | None, list[int]] = {}
+    alike: dict[tuple[float | int | None, bool | None] | None, list[int]] = {}
     for i, scene in enumerate(scenes):
         if trials[i] is None:
             alike.setdefault(_kernel_of(scene), []).append(i)
@@ -191,12 +191,14 @@ def try_all(
     return trials
 
 
-def _kernel_of(scene: Scene) -> tuple[float | None, bool | None] | None:
+def _kernel_of(scene: Scene) -> tuple[float | int | None, bool | None] | None:
     """What runs that share compiled code have in common: types of the springs' exponent and kinematics, if any."""
     if isinstance(scene.base, RigidBase):
         return None
     m = springs(scene.pier, scene.base)
-    return None if m.exponent is None else 1.0, m.finite
+    if m.exponent is None:
+        return None, m.finite
+    return 1 if isinstance(m.exponent, int) else 0.5, m.finite  # numbers that differ: 1 == 1.0
 
 
 def _refused(scene: Scene, substeps: int, quiet_s: float) -> Trial | None:
