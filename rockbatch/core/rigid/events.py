@@ -5,9 +5,9 @@ import math
 from rockbatch.core.kernel import kernel
 from rockbatch.core.outcome import fallen
 from rockbatch.core.rigid.equations import acceleration, carried_until, later, lift_off, rocking_step, time_to_rest
-from rockbatch.core.rigid.landing import landing
+from rockbatch.core.rigid.landing import landing, stays
 from rockbatch.core.rigid.lane import block_in, ground_in, motion_in, put_motion, tick
-from rockbatch.core.roots import excess, largest_within
+from rockbatch.core.roots import largest_within
 from rockbatch.core.types import (
     BEFORE_EVENT,
     CHATTER,
@@ -87,7 +87,7 @@ def _rock(lanes, i, m, ground, t, left, locate, history, row):
     k1 = acceleration(m, y.theta, y.side, ground.horizontal, ground.vertical)
     end = rocking_step(m, y, k1, ground, left)
     at = -1.0
-    if min(y.side * y.theta, y.side * end.theta) <= excess(y.omega, end.omega, left):
+    if not stays(y, end, left):
         if locate:
             at, end = landing(m, y, k1, ground, left, end)
         elif y.side * end.theta <= 0.0:

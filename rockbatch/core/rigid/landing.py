@@ -1,11 +1,29 @@
 """When within a step a block is back on both corners."""
 
-from rockbatch.core.kernel import kernel
+from rockbatch.core.kernel import inlined, kernel
 from rockbatch.core.rigid.equations import rocking_step
 from rockbatch.core.roots import BISECT_AFTER, CLOSE, TRIALS, falls
 
 CORRECTIONS = 5
 """Of Newton's method, which doubles the digits with each: two are the rule, four enough wherever it works."""
+
+
+@inlined
+def inner_points(y, end, h):
+    """Tilt towards the block's corner [rad] at the inner two of the four Bézier points of the cubic from ``y`` to ``end``.
+
+    A cubic lies between the least and the greatest of its Bézier points: those at its ends, and at a third and two
+    thirds of ``h`` [s] on the tangents of the ends.
+    """
+    third = h * (1.0 / 3.0)
+    return y.side * (y.theta + third * y.omega), y.side * (end.theta - third * end.omega)
+
+
+@inlined
+def stays(y, end, h):
+    """Whether the block surely keeps its corner on the way; it may start at the moment of an impact."""
+    early, late = inner_points(y, end, h)
+    return y.side * y.theta >= 0.0 and min(min(early, late), y.side * end.theta) > 0.0
 
 
 @kernel

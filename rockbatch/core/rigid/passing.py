@@ -7,6 +7,7 @@ each other. A lane's arithmetic does not see its neighbours, so a run comes to t
 from rockbatch.core.kernel import inlined
 from rockbatch.core.outcome import ON_ITS_SIDE
 from rockbatch.core.rigid.equations import acceleration, later, rocking_step
+from rockbatch.core.rigid.landing import inner_points, stays
 from rockbatch.core.rigid.lane import (
     ARRIVED,
     CALM,
@@ -16,15 +17,14 @@ from rockbatch.core.rigid.lane import (
     ground_in,
     motion_in,
 )
-from rockbatch.core.roots import excess
 
 
 @inlined
 def _pass_over(lanes, i):
     """Lane ``i`` a step further if the step is calm; and what news there are of it.
 
-    It is calm if the block surely stays on its corner, as far as a cubic goes beyond its ends; does not fall on its
-    side; has no new peak but at the end of the step; and the ground, linear in time, carries it at both ends.
+    It is calm if the block surely stays on its corner (``stays``); does not fall on its side; has no new peak but at the
+    end of the step; and the ground, linear in time, carries it at both ends.
     """
     clock, ending, peak, window = lanes.clock, lanes.ending, lanes.peak, lanes.window
     m, y = block_in(lanes, i), motion_in(lanes, i)
@@ -33,13 +33,12 @@ def _pass_over(lanes, i):
     k1 = acceleration(m, y.theta, y.side, ground.horizontal, ground.vertical)
     end = rocking_step(m, y, k1, ground, h)
 
-    tilt, tilt_end = y.side * y.theta, y.side * end.theta  # both above 0 in a step that is calm
-    beyond = excess(y.omega, end.omega, h)
+    tilt_end = y.side * end.theta
+    early, late = inner_points(y, end, h)
     turns = y.omega * end.omega < 0.0
-    stays = min(tilt, tilt_end) > beyond and tilt_end < ON_ITS_SIDE
-    unseen = turns and max(tilt, tilt_end) + beyond > peak.theta[i]
+    unseen = turns and max(early, late) > peak.theta[i]
     carried = min(ground.vertical, ground.vertical + h * ground.vertical_slope) > -m.gravity
-    calm = stays and carried and not unseen
+    calm = stays(y, end, h) and tilt_end < ON_ITS_SIDE and carried and not unseen
 
     substep = clock.substep[i] + 1.0
     sampled = calm and substep == clock.substeps[i]
