@@ -41,6 +41,7 @@ REST = 11.0
 # Pivots
 LEFT = -1.0
 RIGHT = 1.0
+NEITHER = 0.0  # of the corners about which a block could rock: it rests on both
 
 
 class Springs(NamedTuple):
@@ -89,7 +90,7 @@ class Rocking(NamedTuple):
 
     theta: float  # rotation, positive to the right [rad]
     omega: float  # [rad/s]
-    side: float  # corner about which it rocks: LEFT or RIGHT; 0 while it rests on both
+    side: float  # corner about which it rocks: LEFT or RIGHT, or NEITHER
 
 
 class Contact(NamedTuple):

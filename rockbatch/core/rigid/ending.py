@@ -8,7 +8,7 @@ from rockbatch.core.free_vibration import reach_on_rigid_base
 from rockbatch.core.kernel import inlined, kernel
 from rockbatch.core.outcome import window_of
 from rockbatch.core.rigid.lane import block_in
-from rockbatch.core.types import RESTLESS, RUNNING, SURVIVED, UNDECIDED
+from rockbatch.core.types import NEITHER, RESTLESS, RUNNING, SURVIVED, UNDECIDED
 
 
 @inlined
@@ -72,7 +72,7 @@ def _done(lanes, i):
     once the rotation has turned, for then its extreme has been seen, and those to come are lower.
     """
     ending, now = lanes.ending, lanes.now
-    if now.side[i] == 0.0:
+    if now.side[i] == NEITHER:
         return SURVIVED
     m = block_in(lanes, i)
     reach = reach_on_rigid_base(now.theta[i], now.omega[i], m.alpha, m.p)

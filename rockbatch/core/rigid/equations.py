@@ -4,12 +4,12 @@ import math
 
 from rockbatch.core.kernel import inlined, kernel
 from rockbatch.core.trigonometry import sine_and_cosine
-from rockbatch.core.types import Ground, Rocking
+from rockbatch.core.types import LEFT, RIGHT, Ground, Rocking
 
 
 @inlined
 def acceleration(m, theta, side, horizontal, vertical):
-    """θ̈ [rad/s²] while rocking about the corner on ``side`` (−1 left, 1 right) (THEORY.md, eq. 10)."""
+    """θ̈ [rad/s²] while rocking about the corner on ``side`` (LEFT or RIGHT) (THEORY.md, eq. 10)."""
     sine, cosine = sine_and_cosine(side * m.alpha - theta)
     return -m.p * m.p / m.gravity * ((m.gravity + vertical) * sine + horizontal * cosine)
 
@@ -56,16 +56,16 @@ def lift_off(m, ground, h):
     sine, cosine = sine_and_cosine(m.alpha)
     tangent = sine / cosine
     first, side = -1.0, 0.0
-    for sign in (-1.0, 1.0):
-        excess = sign * ground.horizontal - (m.gravity + ground.vertical) * tangent
-        slope = sign * ground.horizontal_slope - ground.vertical_slope * tangent
+    for corner in (RIGHT, LEFT):
+        excess = -corner * ground.horizontal - (m.gravity + ground.vertical) * tangent
+        slope = -corner * ground.horizontal_slope - ground.vertical_slope * tangent
         at = -1.0
         if excess > 0.0 or (excess == 0.0 and slope > 0.0):
             at = 0.0
         elif slope > 0.0 and excess + slope * h > 0.0:
             at = min(-excess / slope, h)
         if at >= 0.0 and (first < 0.0 or at < first):
-            first, side = at, -sign
+            first, side = at, corner
     return first, side
 
 
@@ -85,7 +85,7 @@ def time_to_rest(m, omega, horizontal, vertical):
     Infinite where there is no rest.
     """
     speed = abs(omega)
-    here = 1.0 if omega > 0.0 else -1.0
+    here = RIGHT if omega > 0.0 else LEFT
     towards = -here * acceleration(m, 0.0, here, horizontal, vertical)
     back = here * acceleration(m, 0.0, -here, horizontal, vertical)
     if towards <= 0.0 or back <= 0.0 or m.restitution == 1.0:

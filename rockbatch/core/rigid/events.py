@@ -14,8 +14,11 @@ from rockbatch.core.types import (
     FLIGHT,
     IMPACT_LEFT,
     IMPACT_RIGHT,
+    LEFT,
     LIFT_OFF,
+    NEITHER,
     REST,
+    RIGHT,
     STEP,
     SURVIVED,
     Rocking,
@@ -48,7 +51,7 @@ def step_through(lanes, i, locate, history, row):
     done = 0.0
     while done < whole and lanes.tally.events[i] <= EVENTS_IN_A_SAMPLE:
         ground, t, left = later(at_sample, start + done), clock.time[i] + start + done, whole - done
-        if lanes.now.side[i] == 0.0:
+        if lanes.now.side[i] == NEITHER:
             used, row = _rest(lanes, i, m, ground, t, left, history, row)
         else:
             used, row = _rock(lanes, i, m, ground, t, left, locate, history, row)
@@ -114,10 +117,10 @@ def _land(lanes, i, m, ground, t, history, row):
     height, remaining = time_to_rest(m, omega, ground.horizontal, ground.vertical)
     if omega == 0.0 or (height < NEGLIGIBLE * m.alpha and remaining < lanes.clock.dt[i]):
         lanes.tally.t_rest[i] = t + (remaining if omega != 0.0 else 0.0)
-        goes, kind = Rocking(0.0, 0.0, 0.0), REST
+        goes, kind = Rocking(0.0, 0.0, NEITHER), REST
     else:
-        kind = IMPACT_LEFT if came.side > 0.0 else IMPACT_RIGHT
-        goes = Rocking(0.0, omega, 1.0 if omega > 0.0 else -1.0)
+        kind = IMPACT_LEFT if came.side == RIGHT else IMPACT_RIGHT
+        goes = Rocking(0.0, omega, RIGHT if omega > 0.0 else LEFT)
     put_motion(lanes, i, goes)
     lanes.tally.impacts[i] += 1.0
     lanes.tally.events[i] += 1.0

@@ -5,7 +5,7 @@ from rockbatch.core.rigid.equations import rocking_step
 from rockbatch.core.roots import BISECT_AFTER, CLOSE, TRIALS, falls
 
 CORRECTIONS = 5
-"""Of Newton's method, which doubles the digits with each: two are the rule, four enough wherever it works."""
+"""Of Newton's method, which doubles the digits with each: two trials are the rule, three have always been enough."""
 
 
 @inlined

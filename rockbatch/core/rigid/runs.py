@@ -31,7 +31,7 @@ from rockbatch.core.rigid.lane import (
     tick,
 )
 from rockbatch.core.rigid.passing import one_pass
-from rockbatch.core.types import RUNNING, SAMPLE, STEP, SURVIVED, RigidRun
+from rockbatch.core.types import NEITHER, RUNNING, SAMPLE, STEP, SURVIVED, RigidRun
 
 NONE = np.int64(0)  # a literal 0 would have every function that it is handed to compiled twice
 NO_HISTORY = np.recarray(0, ROW)
@@ -52,7 +52,7 @@ def after_step(lanes, i, ground, every_step, history, row, extremes):
 @kernel
 def _rests_on(lanes, i):
     """Whether lane ``i`` is at a sample, and rests until the next one."""
-    if lanes.now.side[i] != 0.0 or lanes.clock.substep[i] != 0.0:
+    if lanes.now.side[i] != NEITHER or lanes.clock.substep[i] != 0.0:
         return False
     m, under, dt = block_in(lanes, i), ground_in(lanes, i), lanes.clock.dt[i]
     return lift_off(m, under, dt)[0] < 0.0 and carried_until(m, under, dt) == math.inf
@@ -70,7 +70,7 @@ def attend(lanes, i, ground, locate, every_step, history, row, extremes):
             if status != SURVIVED:
                 return status, t, row
         status, row = after_step(lanes, i, ground, every_step, history, row, extremes)
-        if status != RUNNING or lanes.now.side[i] != 0.0:
+        if status != RUNNING or lanes.now.side[i] != NEITHER:
             return status, clock.time[i], row
         eventful = True
 
@@ -191,7 +191,7 @@ def _begun(lines):
     window.begin_next = 1.0  # the first is that of the first sample
     window.greatest = math.nan
     tally.t_flight = math.nan
-    tally.t_rest = np.where(now.side == 0.0, 0.0, math.nan)
+    tally.t_rest = np.where(now.side == NEITHER, 0.0, math.nan)
     runs.report.run = np.arange(len(lines))
     runs.report.status = RUNNING
     return runs
