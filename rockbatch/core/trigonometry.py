@@ -52,7 +52,7 @@ def _polynomial(c, z):
 
 @inlined
 def sine_and_cosine(angle):
-    """Sine and cosine of ``angle`` [rad], wrong by one unit in the last place at most where |angle| ≤ 3π/4.
+    """Sine and cosine of ``angle`` [rad], wrong by 1.02 units in the last place at most where |angle| ≤ 3π/4.
 
     Where |angle| exceeds π/4, its distance r = π/2 − |angle| from the right angle, in two parts, takes its place, and
     sine and cosine change theirs. Sine is odd and cosine even to the bit. Beyond 3π/4, where no pier stands any more,
