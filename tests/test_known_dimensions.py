@@ -10,8 +10,9 @@ import pint
 import pytest
 from numba.core.registry import CPUDispatcher
 
-from rockbatch.core import equations, events, impact, rigid_base, springs, trigonometry
-from rockbatch.core.types import BOUC_WEN, ELASTIC, EPP, Block, Contact, Geometry, Ground, Springs, State
+from rockbatch.core import equations, events, impact, springs, trigonometry
+from rockbatch.core.rigid import equations as rigid
+from rockbatch.core.types import BOUC_WEN, ELASTIC, EPP, Block, Contact, Geometry, Ground, Rocking, Springs, State
 
 U = pint.UnitRegistry()
 M, S, RAD, ONE = U.metre, U.second, U.radian, U.dimensionless
@@ -50,7 +51,7 @@ def plain_python(monkeypatch):
 
     A lever that is absent is written as 0.0; an exact zero has every dimension, so it gets that of its neighbours.
     """
-    modules: tuple[ModuleType, ...] = (springs, equations, impact, events, trigonometry, rigid_base)
+    modules: tuple[ModuleType, ...] = (springs, equations, impact, events, trigonometry, rigid)
     compiled_geometry = equations.geometry
 
     def geometry(m, theta):
@@ -162,12 +163,12 @@ def test_signals_compare_like_with_like_and_their_slopes_are_per_second(finite, 
 
 def test_the_rigid_bases_equations_give_rotations_and_times():
     m, shaking = Block(*quantities(Block, BLOCK)), ground()
-    theta, omega, h = 0.05 * RAD, -0.1 * RAD / S, 0.01 * S
-    k1 = rigid_base.acceleration(m, theta, 1.0, shaking.horizontal, shaking.vertical)
+    y, h = Rocking(0.05 * RAD, -0.1 * RAD / S, 1.0), 0.01 * S
+    k1 = rigid.acceleration(m, y.theta, y.side, shaking.horizontal, shaking.vertical)
     assert_units([k1], [RAD / S**2])
-    assert_units(rigid_base.rocking_step(m, theta, omega, k1, 1.0, shaking, h), [RAD, RAD / S])
-    assert_units(rigid_base.time_to_rest(m, omega, 0.1 * ACCELERATION, shaking.vertical), [RAD, S])
-    later, _ = rigid_base.lift_off(m, Ground(1.8 * ACCELERATION, 40.0 * JERK, 0.0 * ACCELERATION, 0.0 * JERK), h)
+    assert_units(rigid.rocking_step(m, y, k1, shaking, h)[:2], [RAD, RAD / S])
+    assert_units(rigid.time_to_rest(m, y.omega, 0.1 * ACCELERATION, shaking.vertical), [RAD, S])
+    later, _ = rigid.lift_off(m, Ground(1.8 * ACCELERATION, 40.0 * JERK, 0.0 * ACCELERATION, 0.0 * JERK), h)
     assert 0.0 * S < later < h
     assert_units([later], [S])
 
@@ -186,10 +187,10 @@ def step_and_land(m, y, shaking):
 
 def rock(m, shaking):
     """A step on the rigid base and the bounces that are left."""
-    theta, omega = 0.05 * RAD, -0.1 * RAD / S
-    k1 = rigid_base.acceleration(m, theta, 1.0, shaking.horizontal, shaking.vertical)
-    rigid_base.rocking_step(m, theta, omega, k1, 1.0, shaking, 0.01 * S)
-    rigid_base.time_to_rest(m, omega, 0.1 * ACCELERATION, shaking.vertical)
+    y = Rocking(0.05 * RAD, -0.1 * RAD / S, 1.0)
+    k1 = rigid.acceleration(m, y.theta, y.side, shaking.horizontal, shaking.vertical)
+    rigid.rocking_step(m, y, k1, shaking, 0.01 * S)
+    rigid.time_to_rest(m, y.omega, 0.1 * ACCELERATION, shaking.vertical)
 
 
 def test_right_units_are_not_refused():

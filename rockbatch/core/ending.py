@@ -10,14 +10,12 @@ from rockbatch.core.free_vibration import DECIDED, LEANS, OPEN, outlook_on_sprin
 from rockbatch.core.kernel import kernel
 from rockbatch.core.lanes import LOST, contact_of, model_of, state, supports_of
 from rockbatch.core.outcome import GROWTH
-from rockbatch.core.types import BOUC_WEN, GROWING, RESTLESS, SURVIVED, UNDECIDED
-
-RUNNING = -1  # of a status: the run goes on
+from rockbatch.core.types import BOUC_WEN, GROWING, RESTLESS, RUNNING, SURVIVED, UNDECIDED
 
 
 @kernel
 def expect(lanes, i, quiet_samples, patience, read_after, read_wait):
-    """Set what lane ``i`` waits for after its record; see ``two_springs.run_line``. Its motion is known."""
+    """Set what lane ``i`` waits for after its record; see ``recording.Line``. Its motion is known."""
     waiting, last = lanes.waiting, lanes.motion.npts[i] - 1.0
     waiting.samples[i] = last + quiet_samples
     waiting.earliest[i] = last + read_after

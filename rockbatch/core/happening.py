@@ -2,7 +2,7 @@
 
 import math
 
-from rockbatch.core.ending import RUNNING, ground_rests, peak_stands
+from rockbatch.core.ending import ground_rests, peak_stands
 from rockbatch.core.equations import on_ground, rates, step
 from rockbatch.core.kernel import kernel
 from rockbatch.core.lanes import (
@@ -34,6 +34,7 @@ from rockbatch.core.types import (
     IMPACT_RIGHT,
     LATE_FLIGHT,
     OVERTURNED,
+    RUNNING,
     SPRING_LEFT,
     SPRING_RIGHT,
     STEP,

@@ -10,10 +10,9 @@ import numpy as np
 
 from rockbatch.core.kernel import inlined, kernel
 from rockbatch.core.loading import Loading
+from rockbatch.core.records import LANES
 from rockbatch.core.transitions import Supports
 from rockbatch.core.types import Contact, Ground, Signals, Springs, State
-
-LANES = 16
 
 # What may be new in a lane after a pass
 CALM = 0  # a step further, and nothing else

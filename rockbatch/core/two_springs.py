@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from rockbatch.core.ending import RUNNING, base_of, done, expect, next_due
+from rockbatch.core.ending import base_of, done, expect, next_due
 from rockbatch.core.equations import rates
 from rockbatch.core.events import at_rest
 from rockbatch.core.ground import ground_rows
@@ -19,7 +19,6 @@ from rockbatch.core.lanes import (
     CALM,
     DUE,
     EVENTFUL,
-    LANES,
     SEARCH,
     TURNED,
     contact_of,
@@ -35,19 +34,16 @@ from rockbatch.core.lanes import (
 )
 from rockbatch.core.loading import Loading, branches
 from rockbatch.core.one_pass import one_pass
-from rockbatch.core.outcome import WINDOWS, window_of
-from rockbatch.core.recording import HISTORY_COLUMNS, write
+from rockbatch.core.outcome import window_of
+from rockbatch.core.recording import LINE, NO_HISTORY, RESULT, Line, write
+from rockbatch.core.records import LANES
 from rockbatch.core.search import ready, seek_turn
 from rockbatch.core.springs import static_deflection
 from rockbatch.core.transitions import Supports
-from rockbatch.core.types import BOUC_WEN, SAMPLE, SURVIVED, Contact, SpringRun, State
+from rockbatch.core.types import BOUC_WEN, RUNNING, SAMPLE, SURVIVED, Contact, SpringRun, State
 from rockbatch.core.types import STEP as BETWEEN_SAMPLES
 
-RESULTS = len(SpringRun._fields)
-
 NONE = np.int64(0)  # a literal 0 would have every function that it is handed to compiled twice
-
-_NO_HISTORY = np.empty((0, HISTORY_COLUMNS))
 
 
 @kernel
@@ -75,20 +71,20 @@ def _put_ground(lanes, i, ground):
 @kernel
 def _put_model(lanes, i, run):
     m = lanes.model
-    m.half_width[i], m.height[i], m.inertia[i], m.gravity[i] = run[0], run[1], run[2], run[3]
-    m.yield_deflection[i], m.stiffness[i], m.yield_force[i], m.epsilon[i] = run[4], run[5], run[6], run[7]
-    m.law[i], m.guided[i], m.exponent[i] = run[8], run[9], run[10]
+    m.half_width[i], m.height[i], m.inertia[i], m.gravity[i] = run.half_width, run.height, run.inertia, run.gravity
+    m.yield_deflection[i], m.stiffness[i], m.yield_force[i] = run.yield_deflection, run.stiffness, run.yield_force
+    m.epsilon[i], m.law[i], m.guided[i], m.exponent[i] = run.epsilon, run.law, run.guided, run.exponent
 
 
 @kernel
-def _put_start(lanes, i, number, m, y, dt, substeps, first_row, npts):
+def _put_start(lanes, i, number, run, m, y):
     """Clock, counts and extremes of run ``number`` at its start, in the static state ``y``."""
     motion, clock, extremes, counts = lanes.motion, lanes.clock, lanes.extremes, lanes.counts
-    motion.number[i], motion.first_row[i], motion.npts[i] = number, first_row, npts
+    motion.number[i], motion.first_row[i], motion.npts[i] = number, run.first_row, run.npts
     motion.alpha[i] = math.atan2(m.half_width, m.height)
     motion.rest[i] = at_rest(m)
     motion.plastic[i] = y.v - m.yield_deflection * y.z_left
-    clock.dt[i], clock.step[i], clock.substeps[i] = dt, dt / substeps, substeps
+    clock.dt[i], clock.step[i], clock.substeps[i] = run.dt, run.dt / run.substeps, run.substeps
     clock.sample[i] = clock.sample_time[i] = clock.substep[i] = clock.done[i] = 0.0
     clock.due[i] = 1.0
     extremes.peak[i] = extremes.peak_time[i] = 0.0
@@ -103,11 +99,10 @@ def begin(lanes, i, number, runs, ground, exponent, finite, locate):
     """Run ``number`` into lane ``i``, in its static state."""
     run = runs[number]
     _put_model(lanes, i, run)
-    dt, substeps, quiet_samples, first_row, npts = run[11], run[12], run[13], run[14], run[15]
     m = model_of(lanes, i, exponent, finite)
     y = static_state(m)
-    _put_start(lanes, i, number, m, y, dt, substeps, first_row, npts)
-    expect(lanes, i, quiet_samples, run[16], run[17], run[18])
+    _put_start(lanes, i, number, run, m, y)
+    expect(lanes, i, run.quiet_samples, run.patience, run.read_after, run.read_wait)
     plastic = lanes.motion.plastic[i]
     put_loading(lanes, i, Loading(plastic, y.z_left, 0.0, plastic, y.z_right, 0.0))
     branch = 1.0 if m.law == BOUC_WEN else 0.0
@@ -122,7 +117,7 @@ def begin(lanes, i, number, runs, ground, exponent, finite, locate):
 
 @kernel
 def _finish(lanes, i, exponent, finite, status, t, row, results):
-    """What the run in lane ``i`` comes to: its line of ``results``, as SpringRun has it."""
+    """What the run in lane ``i`` comes to, into ``results``."""
     m = model_of(lanes, i, exponent, finite)
     y, contact = state(lanes.now, i), contact_of(lanes, i)
     waiting, extremes, counts, plastic = lanes.waiting, lanes.extremes, lanes.counts, lanes.motion.plastic[i]
@@ -131,31 +126,31 @@ def _finish(lanes, i, exponent, finite, status, t, row, results):
         t_read = t
         base_left, base_right = base_of(lanes, i, m)
     loading = branches(m, loading_of(lanes, i), contact, Contact(0.0, 0.0, 0.0, 0.0, 0.0), y)
-    line = results[int(lanes.motion.number[i])]
-    line[RESULTS + int(extremes.window[i])] = extremes.in_window[i]
-    line[0] = status
-    line[1] = t
-    line[2] = extremes.peak[i]
-    line[3] = extremes.peak_time[i]
-    line[4] = counts.impacts[i]
-    line[5] = counts.separations[i]
-    line[6] = counts.flight_time[i]
-    line[7] = base_left - plastic
-    line[8] = base_right - plastic
-    line[9] = extremes.lowest_left[i]
-    line[10] = extremes.lowest_right[i]
-    line[11] = m.yield_force * loading.work_left
-    line[12] = m.yield_force * loading.work_right
-    line[13] = t_read
-    line[14] = waiting.drift_left[i]
-    line[15] = waiting.drift_right[i]
-    line[16] = counts.impact_time[i]
-    line[17] = row
+    run = results[int(lanes.motion.number[i])]
+    run.extremes[int(extremes.window[i])] = extremes.in_window[i]
+    run.status = status
+    run.t_end = t
+    run.theta_max = extremes.peak[i]
+    run.t_max = extremes.peak_time[i]
+    run.impacts = int(counts.impacts[i])
+    run.separations = int(counts.separations[i])
+    run.t_flight = counts.flight_time[i]
+    run.base_left = base_left - plastic
+    run.base_right = base_right - plastic
+    run.deepest_left = extremes.lowest_left[i]
+    run.deepest_right = extremes.lowest_right[i]
+    run.dissipated_left = m.yield_force * loading.work_left
+    run.dissipated_right = m.yield_force * loading.work_right
+    run.t_read = t_read
+    run.drift_left = waiting.drift_left[i]
+    run.drift_right = waiting.drift_right[i]
+    run.t_impact = counts.impact_time[i]
+    run.rows = row
 
 
 @entry
 def _rock(exponent, finite, runs, ground, locate, every_step, history, stop, lanes_table, cells, results):
-    """All ``runs``, as :func:`rock_side_by_side` has them; lines of ``results`` stay as they are after a stop."""
+    """All ``runs``, as :func:`rock_side_by_side` has them; ``results`` of those that are stopped stay as they are."""
     lanes, recording = lanes_table[0], history.shape[0] > 0
     waiting, count, row = NONE, NONE, NONE
     while True:
@@ -248,62 +243,47 @@ def _turn_window(lanes, i, results):
     """At a sample at which something is due: keep the greatest |θ| of a window that is over, begin the next."""
     extremes, sample = lanes.extremes, lanes.clock.sample[i]
     if sample >= extremes.next_window[i]:
-        results[int(lanes.motion.number[i]), RESULTS + int(extremes.window[i])] = extremes.in_window[i]
+        results[int(lanes.motion.number[i])].extremes[int(extremes.window[i])] = extremes.in_window[i]
         window, begin_next = window_of(sample, lanes.waiting.samples[i])
         extremes.window[i], extremes.next_window[i], extremes.in_window[i] = window, begin_next, 0.0
     extremes.in_window[i] = max(extremes.in_window[i], abs(lanes.now.theta[i]))
 
 
-def run_line(m, dt, substeps, quiet_samples, first_row, npts, patience=0, read_after=0, read_wait=0):
-    """A run as :func:`rock_side_by_side` takes it: numbers only.
-
-    Parameters
-    ----------
-    m : Springs
-    dt : float
-        Sampling interval [s]; each is ``substeps`` steps.
-    quiet_samples : int
-        Samples after the record.
-    first_row, npts : int
-        Where among the rows of the ground the motion begins, and how many it has.
-    patience : int
-        Samples that the run goes on at most, while by its energy the pier could still turn further than it has.
-    read_after, read_wait : int
-        Samples from the end of the record to the earliest moment at which residuals are read, and from there to the
-        second reading, which tells how they drift; 0: they are read once, when the peak is decided.
-    """
+def run_line(m, *timing):
+    """Line of a run of the pier ``m`` (Springs); ``timing`` is what Line has from ``dt`` on."""
     exponent = 5.0 if m.exponent is None else float(m.exponent)
-    return (*m[:-2], exponent, dt, substeps, quiet_samples, first_row, npts, patience, read_after, read_wait)
+    return Line(*m[:-2], exponent, *timing)
 
 
-def rock_side_by_side(exponent, finite, lines, ground, stop, locate=True, every_step=False, history=_NO_HISTORY):
+def rock_side_by_side(exponent, finite, lines, ground, stop, locate=True, every_step=False, history=NO_HISTORY):
     """Runs of piers on two springs, as many at a time as there are lanes.
 
     Parameters
     ----------
     exponent, finite
         Of all their Springs: what their types tell, a float, an int or None, True or None.
-    lines : ndarray, shape (runs, 19)
-        Of :func:`run_line`.
+    lines : sequence of Line
     ground : ndarray, shape (rows, 4)
         Of :func:`rockbatch.core.ground.ground_rows`, of all their motions.
     stop : ndarray of one uint8
         Ends it at once when another thread sets it.
     locate : bool
         Locate events inside the step. Without, they take place at its end (first order; for comparison only).
-    history : ndarray, shape (rows, 13)
+    history : recarray of Row
         For a single run: filled with every sample and both sides of every event, as far as it goes.
     every_step : bool
         Also write the steps between samples.
 
     Returns
     -------
-    ndarray, shape (runs, RESULTS + WINDOWS)
-        As SpringRun has it, and the greatest |θ| in each window of the run; NaN for those that were stopped, and for
-        windows that the run did not reach.
+    recarray, shape (runs,)
+        SpringRun's fields and ``extremes``, the greatest |θ| in each window of the run, NaN for those that it did not
+        reach. The status of those that were stopped is RUNNING.
     """
     # A compiled function hands out nothing: making a tuple runs Python code, where Ctrl-C may strike.
-    results = np.full((len(lines), RESULTS + WINDOWS), np.nan)
+    lines = np.array(lines, LINE).view(np.recarray)
+    results = np.recarray(len(lines), RESULT)
+    results.status, results.extremes = RUNNING, np.nan
     lanes, cells = table()
     _rock(exponent, finite, lines, ground, locate, every_step, history, stop, lanes, cells, results)
     return results
@@ -313,16 +293,14 @@ def rock_on_springs(m, horizontal, vertical, dt, substeps, quiet_samples, histor
     """One run, of the pier ``m`` (Springs) under one motion; SpringRun.
 
     ``horizontal`` and ``vertical`` are ground accelerations [m/s²], shape (npts,), the vertical one may be empty; for
-    the others see :func:`rock_side_by_side`.
+    the others see Line and :func:`rock_side_by_side`.
     """
-    lines = np.array([run_line(m, dt, substeps, quiet_samples, 0, len(horizontal))])
+    lines = [run_line(m, dt, substeps, quiet_samples, 0, len(horizontal))]
     ground = ground_rows(horizontal, vertical, dt)
     never = np.zeros(1, np.uint8)
     return spring_run(rock_side_by_side(m.exponent, m.finite, lines, ground, never, locate, every_step, history)[0])
 
 
-def spring_run(line):
-    """SpringRun of a line of results."""
-    run = SpringRun(*line[:RESULTS].tolist())
-    counts = ("status", "impacts", "separations", "rows")
-    return run._replace(**{name: int(getattr(run, name)) for name in counts})
+def spring_run(result):
+    """SpringRun of one of the results."""
+    return SpringRun(*result.tolist()[: len(SpringRun._fields)])
