@@ -12,9 +12,9 @@ from scipy.special import hyp2f1
 import rockbatch as rb
 from rockbatch.core.equations import geometry, rates
 from rockbatch.core.impact import land
+from rockbatch.core.laws import power, static_deflection
 from rockbatch.core.rigid.lane import ROW
 from rockbatch.core.rigid.runs import rock_on_rigid_base
-from rockbatch.core.springs import power, static_deflection
 from rockbatch.core.types import BEFORE_EVENT, BOUC_WEN, LEFT, Block, Contact, State
 from rockbatch.motions.motion import Motion
 from rockbatch.simulation import Scene, housner_restitution, run_fixed, springs, written_run

@@ -29,12 +29,12 @@ def run_copy(folder: Path) -> float:
 
 
 def test_an_edit_in_a_called_kernel_changes_the_next_run(tmp_path):
-    """Numba's own cache looks at the caller's file only. ż is doubled in springs.py, which the entry merely calls."""
+    """Numba's own cache looks at the caller's file only. ż is doubled in laws.py, which the entry merely calls."""
     package = tmp_path / "rockbatch"
     shutil.copytree(Path(rockbatch.__file__).parent, package, ignore=shutil.ignore_patterns("__pycache__"))
     before = run_copy(tmp_path)
     assert run_copy(tmp_path) == before  # from the cache
-    source = package / "core" / "springs.py"
+    source = package / "core" / "laws.py"
     text = source.read_text(encoding="utf-8")
     assert text.count("rate = velocity * stiffness") == 1
     source.write_text(

@@ -9,8 +9,9 @@ from core_samples import FIG5, hard_case
 
 from rockbatch.core.equations import rates, step
 from rockbatch.core.events import at_rest
+from rockbatch.core.laws import kept_sign
 from rockbatch.core.records import LANES
-from rockbatch.core.reversal import Pivot, corrected, kept_sign, pivot_accelerations, pivots, reversal
+from rockbatch.core.reversal import Pivot, corrected, pivot_accelerations, pivots, reversal
 from rockbatch.core.types import BOUC_WEN, EPP, Contact, Ground, State
 from rockbatch.simulation import Scene, Stop, run_all_fixed, springs
 from rockbatch.structure import YieldingBase

@@ -10,7 +10,7 @@ import pint
 import pytest
 from numba.core.registry import CPUDispatcher
 
-from rockbatch.core import equations, events, impact, springs, trigonometry
+from rockbatch.core import equations, events, impact, laws, trigonometry
 from rockbatch.core.rigid import equations as rigid
 from rockbatch.core.types import BOUC_WEN, ELASTIC, EPP, Block, Contact, Geometry, Ground, Rocking, Springs, State
 
@@ -51,7 +51,7 @@ def plain_python(monkeypatch):
 
     A lever that is absent is written as 0.0; an exact zero has every dimension, so it gets that of its neighbours.
     """
-    modules: tuple[ModuleType, ...] = (springs, equations, impact, events, trigonometry, rigid)
+    modules: tuple[ModuleType, ...] = (laws, equations, impact, events, trigonometry, rigid)
     compiled_geometry = equations.geometry
 
     def geometry(m, theta):
@@ -131,10 +131,10 @@ def test_the_spring_law_gives_rates_deflections_and_work(n):
     """Work is divided by the yield force, hence a length; the static deflection by δ_y, hence a number."""
     exponent = n * ONE
     for yields in (0.0, 1.0):
-        rate = springs.z_rate(-0.6 * ONE, -0.1 * SPEED, yields, 100.0 / M, exponent)
-        assert_units([rate, springs.within_yield(-0.6 * ONE, yields)], [1 / S, ONE])
-    assert_units([springs.static_deflection(0.4 * ONE, exponent)], [ONE])
-    work = springs.plastic_work(-0.2 * ONE, -0.6 * ONE, 0.001 * M, 0.01 * M, exponent)
+        rate = laws.z_rate(-0.6 * ONE, -0.1 * SPEED, yields, 100.0 / M, exponent)
+        assert_units([rate, laws.within_yield(-0.6 * ONE, yields)], [1 / S, ONE])
+    assert_units([laws.static_deflection(0.4 * ONE, exponent)], [ONE])
+    work = laws.plastic_work(-0.2 * ONE, -0.6 * ONE, 0.001 * M, 0.01 * M, exponent)
     assert_units([work], [M])
 
 

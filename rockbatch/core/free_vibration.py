@@ -8,8 +8,8 @@ import math
 
 from rockbatch.core.equations import geometry
 from rockbatch.core.kernel import kernel
-from rockbatch.core.springs import power
-from rockbatch.core.types import BOUC_WEN, ELASTIC
+from rockbatch.core.laws import give
+from rockbatch.core.types import ELASTIC
 
 PARTS = 24
 """Parts of the way to the supports' capacity over which their work is summed."""
@@ -90,10 +90,7 @@ def _climb(m, lean, target):
     theta, work = lean, 0.0
     for i in range(PARTS):
         middle = x + (i + 0.5) * dx
-        give = 1.0
-        if m.law == BOUC_WEN:
-            give = 1.0 / (1.0 - power(min(max(static_force * (1.0 + middle), 0.0), 1.0 - 1e-12), m.exponent))
-        turn = 0.5 * deflection * dx * (1.0 + give) / b
+        turn = 0.5 * deflection * dx * (1.0 + give(m.law, static_force * (1.0 + middle), m.exponent)) / b
         part = min(turn, target - theta)
         middle = x + (i + 0.5 * part / turn) * dx
         moment = g * (b * middle - _weight_moment(m, theta + 0.5 * part))
@@ -164,6 +161,8 @@ def outlook_on_springs(m, y, contact, base_left, base_right, peak, calm, drift_r
     stored = g * y.v + gained + 0.5 * spring * (y.z_left * y.z_left + y.z_right * y.z_right)
     at_lean += g * (middle - softness) + 0.5 * g * softness * (1.0 + uneven * uneven)
     energy = (1.0 + RETURNED) * (kinetic + stored - at_lean)
+    if energy > g * _capacity(m) * b * max(limit - abs(lean), 0.0) + 1e-12 * g * softness:
+        return OPEN  # more than the supports' greatest moment would take all the way
     least = min(_climb(m, lean, limit - drift_right), _climb(m, -lean, limit - drift_left))
     return DECIDED if energy <= least + 1e-12 * g * softness else OPEN
 

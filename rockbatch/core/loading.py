@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 from rockbatch.core.equations import geometry
 from rockbatch.core.kernel import kernel
-from rockbatch.core.springs import plastic_work
+from rockbatch.core.laws import plastic_work
 
 
 class Loading(NamedTuple):

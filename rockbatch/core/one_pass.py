@@ -20,10 +20,11 @@ from rockbatch.core.lanes import (
     put_state,
     state,
 )
+from rockbatch.core.laws import kept_sign, may_yield
 from rockbatch.core.outcome import ON_ITS_SIDE
-from rockbatch.core.reversal import corrected, kept_sign, pivot_accelerations, pivots, reversal
+from rockbatch.core.reversal import corrected, pivot_accelerations, pivots, reversal
 from rockbatch.core.roots import excess
-from rockbatch.core.types import EPP, Contact
+from rockbatch.core.types import Contact
 
 
 @inlined
@@ -37,7 +38,7 @@ def _clear(m, on_spring, yields, support, start, end, z, z_end, h):
     contact = min(-z, -z_end) - beyond_z
     until_yield = 1.0 + (min(z, z_end) - beyond_z)
     gap = min(start.position, end.position) - (support + beyond)
-    contact = min(contact, until_yield) if m.law == EPP and yields == 0.0 else contact
+    contact = min(contact, until_yield) if may_yield(m.law, yields) else contact
     return contact if on_spring != 0.0 else gap
 
 

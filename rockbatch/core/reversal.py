@@ -4,8 +4,8 @@ from typing import NamedTuple
 
 from rockbatch.core.equations import geometry
 from rockbatch.core.kernel import inlined
-from rockbatch.core.springs import power
-from rockbatch.core.types import BOUC_WEN, State
+from rockbatch.core.laws import power
+from rockbatch.core.types import State
 
 SHARP = 1e-3
 """z that a corrected reversal may add at most."""
@@ -51,13 +51,6 @@ def pivot_accelerations(m, y, k):
 
 
 @inlined
-def kept_sign(law, on_spring, yields):
-    """Sign that a spring's velocity keeps while it stays on its branch; 0 where the branch does not depend on it."""
-    reloads = 1.0 if law == BOUC_WEN else 0.0
-    return on_spring * (reloads - (reloads + 1.0) * yields)
-
-
-@inlined
 def _size(z):
     return min(max(-z, 0.0), 1.0)
 
@@ -69,7 +62,7 @@ def reversal(m, sign, rest, start, acceleration, end, z_end, h):
     Parameters
     ----------
     sign : float
-        Of :func:`kept_sign`.
+        Of :func:`rockbatch.core.laws.kept_sign`.
     rest : float
         Velocity that counts as none [m/s].
     acceleration : float
@@ -106,7 +99,7 @@ def corrected(m, contact, y, left, right):
     impulse F_y δz t/3, and positions like F_y δz t²/12, which both springs follow.
     """
     at = geometry(m, y.theta)
-    third = m.yield_force / 3.0
+    third = m.yield_force * (1.0 / 3.0)
     push_left, push_right = third * left.added * left.after, third * right.added * right.after
     way_left, way_right = 0.25 * left.after * push_left, 0.25 * right.after * push_right
     lever = m.height

@@ -16,7 +16,7 @@ from rockbatch.core.lanes import (
     signals_in,
     state,
 )
-from rockbatch.core.reversal import kept_sign
+from rockbatch.core.laws import kept_sign
 from rockbatch.core.roots import BISECT_AFTER, CLOSE, NEAR, TRIALS, falls
 from rockbatch.core.transitions import LAW_LEFT, LAW_RIGHT
 

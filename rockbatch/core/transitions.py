@@ -9,10 +9,8 @@ from rockbatch.core.equations import geometry, on_ground, touching, without
 from rockbatch.core.events import settle
 from rockbatch.core.impact import land, land_flat
 from rockbatch.core.kernel import kernel
+from rockbatch.core.laws import after_kink, branch_after_jump, branch_when_pressed
 from rockbatch.core.types import (
-    BOUC_WEN,
-    ELASTIC,
-    EPP,
     HELD_LEFT,
     HELD_RIGHT,
     IMPACT_BOTH,
@@ -99,16 +97,16 @@ def handle(m, y, contact, supports, which, rest, horizontal, vertical):
 @kernel
 def _at_left(m, y, contact, supports, of_law, rest, horizontal, vertical):
     """:func:`handle` for the left pivot, of its contact or of its spring's law."""
-    loaded = 1.0 if m.law == BOUC_WEN else 0.0
+    loaded = branch_when_pressed(m.law)
     if contact.held == LEFT:
         if not of_law:
             return y, touching(contact, LEFT, loaded), supports, HELD_LEFT
         position = y.v + geometry(m, y.theta).lift_left
         return y, without(contact, LEFT), Supports(position, supports.right), SEPARATION_LEFT
     if of_law:  # the spring changes its branch
-        z = -1.0 if m.law == EPP and contact.left_yields == 0.0 else y.z_left
+        yields, z = after_kink(m.law, contact.left_yields, y.z_left)
         changed = State(y.v, y.theta, y.v_rate, y.omega, z, y.z_right)
-        return changed, touching(contact, LEFT, 1.0 - contact.left_yields), supports, SPRING_LEFT
+        return changed, touching(contact, LEFT, yields), supports, SPRING_LEFT
     if contact.left != 0.0:
         return _separation(m, y, contact, supports, rest, horizontal, vertical)
     return _landing(m, y, contact, supports, rest, horizontal, vertical)
@@ -132,7 +130,7 @@ def _landing(m, y, contact, supports, rest, horizontal, vertical):
     """The left pivot meets its support; the right one may land at the same instant."""
     at = geometry(m, y.theta)
     velocity = y.v_rate + at.arm_left * y.omega
-    loaded = 1.0 if m.law == BOUC_WEN else 0.0
+    loaded = branch_when_pressed(m.law)
     other_free = contact.left == 0.0 and contact.right == 0.0 and contact.held == 0.0
     if other_free:
         gap = y.v + (at.lift_right - supports.right)
@@ -160,13 +158,9 @@ def _right_after_impulse(m, y, contact, supports, at, rest):
     velocity = y.v_rate + at.arm_right * y.omega
     if contact.held == RIGHT and abs(velocity) > rest:
         if velocity < 0.0:
-            return touching(contact, RIGHT, 1.0 if m.law == BOUC_WEN else 0.0), supports
+            return touching(contact, RIGHT, branch_when_pressed(m.law)), supports
         return without(contact, RIGHT), Supports(supports.left, y.v + at.lift_right)
-    if m.law == ELASTIC or contact.right == 0.0:
+    if contact.right == 0.0:
         return contact, supports
-    yields = contact.right_yields
-    if velocity > rest:
-        yields = 0.0
-    elif velocity < -rest and (m.law == BOUC_WEN or y.z_right <= -1.0):
-        yields = 1.0
+    yields = branch_after_jump(m.law, contact.right_yields, y.z_right, velocity, rest)
     return touching(contact, RIGHT, yields), supports

@@ -32,15 +32,15 @@ from rockbatch.core.lanes import (
     state,
     table,
 )
+from rockbatch.core.laws import branch_when_pressed, deflection
 from rockbatch.core.loading import Loading, branches
 from rockbatch.core.one_pass import one_pass
 from rockbatch.core.outcome import window_of
 from rockbatch.core.recording import LINE, NO_HISTORY, RESULT, Line, write
 from rockbatch.core.records import LANES
 from rockbatch.core.search import ready, seek_turn
-from rockbatch.core.springs import static_deflection
 from rockbatch.core.transitions import Supports
-from rockbatch.core.types import BOUC_WEN, RUNNING, SAMPLE, SURVIVED, Contact, SpringRun, State
+from rockbatch.core.types import RUNNING, SAMPLE, SURVIVED, Contact, SpringRun, State
 from rockbatch.core.types import STEP as BETWEEN_SAMPLES
 
 NONE = np.int64(0)  # a literal 0 would have every function that it is handed to compiled twice
@@ -50,8 +50,7 @@ NONE = np.int64(0)  # a literal 0 would have every function that it is handed to
 def static_state(m):
     """Equilibrium under the weight alone: z = −1/η on the first loading of both springs."""
     force = 0.5 * m.gravity / m.yield_force
-    deflection = static_deflection(force, m.exponent) if m.law == BOUC_WEN else force
-    return State(-m.yield_deflection * deflection, 0.0, 0.0, 0.0, -force, -force)
+    return State(-m.yield_deflection * deflection(m.law, force, m.exponent), 0.0, 0.0, 0.0, -force, -force)
 
 
 @inlined
@@ -105,7 +104,7 @@ def begin(lanes, i, number, runs, ground, exponent, finite, locate):
     expect(lanes, i, run.quiet_samples, run.patience, run.read_after, run.read_wait)
     plastic = lanes.motion.plastic[i]
     put_loading(lanes, i, Loading(plastic, y.z_left, 0.0, plastic, y.z_right, 0.0))
-    branch = 1.0 if m.law == BOUC_WEN else 0.0
+    branch = branch_when_pressed(m.law)
     contact = Contact(1.0, 1.0, branch, branch, 0.0)
     put_contact(lanes, i, contact, Supports(0.0, 0.0))
     _put_ground(lanes, i, ground)

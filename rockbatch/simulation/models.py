@@ -4,7 +4,7 @@ import math
 from functools import lru_cache
 
 from rockbatch.core.ground import ground_rows
-from rockbatch.core.springs import LARGEST_WHOLE
+from rockbatch.core.laws import LARGEST_WHOLE
 from rockbatch.core.types import BOUC_WEN, ELASTIC, EPP, Block, Springs
 from rockbatch.motions.motion import Motion, Samples
 from rockbatch.structure import Base, ElasticBase, Pier, RigidBase, YieldingBase, highest_frequency, rocking_frequency
