@@ -6,6 +6,7 @@ BIN := .venv/bin
 .PHONY: run test lint slow clean
 
 run: .venv/.run
+	$(BIN)/rockbatch run configs/near_fault.toml
 	$(BIN)/rockbatch run configs/fig7.toml
 
 test: .venv/.test

@@ -34,8 +34,8 @@ from rockbatch.core.two_springs import (
 )
 from rockbatch.core.types import BOUC_WEN, RIGHT, SURVIVED, Contact, Ground, Rocking
 from rockbatch.motions import Motion
+from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase
 from rockbatch.simulation import block, ground_of, springs
-from rockbatch.structure import ElasticBase, Pier, RigidBase, YieldingBase
 
 BARE_STEPS = 200_000
 BARE_ROCKING = 1e-6  # [s]: of a bare step on the rigid base, so that the block stays on its corner

@@ -14,12 +14,12 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 
-from rockbatch.engines import cores
+from rockbatch.batch.threads import cores
 from rockbatch.motions import Motion, fema_p695, read_motions
 from rockbatch.motions.pairing import to_motions
-from rockbatch.outcome import Outcome
+from rockbatch.pier import Base, Pier, RigidBase, YieldingBase
+from rockbatch.results.outcome import Outcome
 from rockbatch.simulation import run_fixed, run_to_tolerance
-from rockbatch.structure import Base, Pier, RigidBase, YieldingBase
 
 PIER = Pier(alpha=0.13, p=0.38)
 BASES: dict[str, Base] = {"rigid": RigidBase()} | {

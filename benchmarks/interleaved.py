@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-from rockbatch.engines import cores
+from rockbatch.batch.threads import cores
 
 Times = Sequence[float]
 """Of one task, one for each repeat [s]."""

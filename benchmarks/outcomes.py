@@ -13,8 +13,11 @@ verdicts:
                    none, at another time, or missed. Where flight ends the run and the pier would fall after it, both count.
   error            |θ_max − truth| beyond the tolerance
   beyond estimate  |θ_max − truth until the end of the run| beyond the error that the row reports
-  failed, settled  a failed row whose best value is the truth
+  failed, settled  a failed row whose best value is the truth, of a pier that nothing topples later either
   later, noted     the truth comes after the end of the run, whose note says that it still had the energy for it
+
+A run on a base where flight ends it that is ok all the same says that it flew when nothing could exceed the peak any more. It
+is held against the whole truth, through the flight and after it: the pier must stand, with this peak.
 
 "later" marks what goes wrong after the end of the run: it stopped too early.
 
@@ -42,10 +45,10 @@ from pathlib import Path
 from independent.pool import STRATA, Case, cases, just_overturning, scaled
 from independent.reference import HORIZON, Reference, reference, twice
 
-from rockbatch.outcome import Outcome
+from rockbatch.pier import Base, RigidBase, YieldingBase, problems
+from rockbatch.results.outcome import Outcome
 from rockbatch.simulation import run_to_tolerance
 from rockbatch.simulation.models import PATIENCE
-from rockbatch.structure import Base, YieldingBase, problems
 
 TOLERANCE = 1e-4
 RATCHETS = "ratchets over"
@@ -143,10 +146,25 @@ def stands_on_itself(case: Case, fine: Reference, loose: Reference) -> str:
     return "undecided" if grows else ""
 
 
-def truth_of(case: Case, fine: Reference, end: float) -> tuple[str, float, float]:
-    """Status, θ_max and its time that a run until ``end`` ought to have come to."""
-    ended_by_flight = case.flight_stops and fine.t_flight <= end + SAME_FLIGHT / case.pier.p
-    if fine.status == "flew" or ended_by_flight:
+def residuals_agree(case: Case, fine: Reference, loose: Reference) -> bool:
+    """Whether both references leave the base with the same tilt, to the tolerance; rigid bases have none."""
+    if isinstance(case.base, RigidBase):
+        return True
+    half_width = case.pier.half_width
+    tilts = [0.5 * (one.up_left - one.up_right) / half_width for one in (fine, loose)]
+    return abs(tilts[1] - tilts[0]) <= TOLERANCE * case.pier.alpha
+
+
+def flown(case: Case, found: Outcome, fine: Reference) -> bool:
+    """Whether the truth has flown by the end of the run; a flight as good as at its end only if the run flew too."""
+    same = SAME_FLIGHT / case.pier.p
+    return fine.t_flight <= found.t_end + (-same if found.status == "ok" and found.t_flight is None else same)
+
+
+def truth_of(case: Case, fine: Reference, found: Outcome) -> tuple[str, float, float]:
+    """Status, θ_max and its time that a run until the end of ``found`` ought to have come to."""
+    goes_on = found.status == "ok" and found.t_flight is not None  # and claims that the flight changes nothing
+    if fine.status == "flew" or (case.flight_stops and flown(case, found, fine) and not goes_on):
         return "flight", fine.peak_flight, fine.t_peak_flight
     return ("overturned" if fine.status == "overturned" else "ok"), fine.theta_max, fine.t_max
 
@@ -154,7 +172,7 @@ def truth_of(case: Case, fine: Reference, end: float) -> tuple[str, float, float
 def verdict(case: Case, found: Outcome, fine: Reference) -> tuple[str, float]:
     """What is wrong about a row, and its error [rad] (nan where θ_max has no say)."""
     p, tolerance = case.pier.p, TOLERANCE * case.pier.alpha
-    truth, peak, _ = truth_of(case, fine, found.t_end)
+    truth, peak, _ = truth_of(case, fine, found)
     error = abs(found.theta_max - peak)
     t_flight = math.nan if found.t_flight is None else found.t_flight
     if found.status == "failed":
@@ -173,7 +191,7 @@ def verdict(case: Case, found: Outcome, fine: Reference) -> tuple[str, float]:
         return "ok, overturns", math.nan
     elif truth == "flight":
         return "flight missed", math.nan
-    elif not near(t_flight, fine.t_flight if fine.t_flight <= found.t_end else math.nan, SAME_FLIGHT / p):
+    elif not near(t_flight, fine.t_flight if flown(case, found, fine) else math.nan, SAME_FLIGHT / p):
         return "flight at another time", math.nan
     return ("error" if error > tolerance else ""), error
 
@@ -186,7 +204,7 @@ def until(case: Case, end: float) -> Reference:
 
 def error_until_end(case: Case, found: Outcome, peak: float, t_peak: float) -> float:
     """|θ_max − truth until the end of the run| [rad]: what the row's own error can know of."""
-    if t_peak <= found.t_end:
+    if found.status == "flight" or t_peak <= found.t_end:
         return abs(found.theta_max - peak)
     return abs(found.theta_max - until(case, found.t_end).theta_max)
 
@@ -209,7 +227,11 @@ def judge(case: Case, cache: Cache, within: float | None = None) -> Row:
                    fine.status, *[math.nan] * 10, False, math.nan, 0, refused[0], "")  # fmt: skip
     found = run_to_tolerance(case.pier, case.base, case.motion, TOLERANCE, case.quiet_s)
     limit = max(found.t_end, case.motion.duration + case.motion.dt + within)
-    if within < HORIZON and max(fine.t_end if fine.status == "overturned" else 0.0, fine.t_max) > limit:
+    if (
+        found.status != "overturned"
+        and within < HORIZON
+        and max(fine.t_end if fine.status == "overturned" else 0.0, fine.t_max) > limit
+    ):
         fine = loose = until(case, limit)
     if found.t_flight is not None and found.t_flight > fine.t_end:  # after the moment at which the peak was decided
         if found.status == "ok":  # no matter of the outcome, and undamped vibration forgets nothing
@@ -218,7 +240,7 @@ def judge(case: Case, cache: Cache, within: float | None = None) -> Row:
             flights = until(case, found.t_end)
             fine = replace(fine, **{name: getattr(flights, name) for name in FLIGHT})
     said, error = verdict(case, found, fine)
-    truth, peak, t_peak = truth_of(case, fine, found.t_end)
+    truth, peak, t_peak = truth_of(case, fine, found)
     error_until = math.nan if math.isnan(error) else error_until_end(case, found, peak, t_peak)
     if said == "" and error_until > (found.theta_max_error or 0.0) + BLUR * alpha:
         said = "beyond estimate"
@@ -226,6 +248,8 @@ def judge(case: Case, cache: Cache, within: float | None = None) -> Row:
         said = "later, noted"
     if said == "" and found.status == "ok" and at_last == "overturned":
         said = RATCHETS
+    if said == "failed, settled" and (at_last == "overturned" or not residuals_agree(case, fine, loose)):
+        said = "failed, rightly"  # as it says: what it leans on will topple it, or the residual rotation is chance
     said = stands_on_itself(case, fine, loose) or said
     return Row(
         case.id, case.stratum, label(case.base), said, found.status, truth, found.theta_max / alpha, peak / alpha, error / alpha,

@@ -3,7 +3,7 @@
 All are used as their manuals have it: events located by the solver, a restart after each, steps no longer than a
 sample. SciPy and CVODE call the core's right-hand side and signals, compiled; heyoka compiles its own from expressions.
 Here for first-order kinematics and n = 5. What follows from an event is the core's affair, as in
-``rockbatch.yardstick``, which is easier to read than ``scipy`` here and takes up to twice its time.
+``rockbatch.simulation.yardstick``, which is easier to read than ``scipy`` here and takes up to twice its time.
 """
 
 import math
@@ -19,8 +19,8 @@ from rockbatch.core.transitions import Supports, handle
 from rockbatch.core.two_springs import static_state
 from rockbatch.core.types import BOUC_WEN, ELASTIC, Contact, Springs, State
 from rockbatch.motions import Motion
+from rockbatch.pier import ElasticBase, Pier
 from rockbatch.simulation import ground_of, springs
-from rockbatch.structure import ElasticBase, Pier
 
 MOST_EVENTS = 100_000
 UPRIGHT, TURNING, FAILED = 4, 5, -1  # what may end a stretch, or be met on it, besides the four signals

@@ -17,7 +17,7 @@ from pathlib import Path
 from design_study import RECORD
 from interleaved import machine
 
-from rockbatch.engines import cores
+from rockbatch.batch.threads import cores
 from rockbatch.motions.fema_p695 import stations
 
 COMMANDS = ("fragility", "spectrum", "sensitivity")

@@ -18,12 +18,12 @@ from interleaved import Times, interleaved, machine, ratio
 from peers import Rocking, Solve, cvode, heyoka, scipy
 from tower import QUIET_S, TOWER, foundations, record
 
-from rockbatch.accuracy import reference
+from rockbatch.analysis.accuracy import reference
+from rockbatch.batch.plan import PlannedRun
 from rockbatch.motions import Motion
-from rockbatch.outcome import Outcome
-from rockbatch.plan import Run
-from rockbatch.simulation import Scene, Stop, run_all_fixed, run_all_to_tolerance
-from rockbatch.structure import YieldingBase
+from rockbatch.pier import YieldingBase
+from rockbatch.results.outcome import Outcome
+from rockbatch.simulation import Run, Stop, run_all_fixed, run_all_to_tolerance
 from rockbatch.study import Case
 
 BASE = YieldingBase(80.0, 0.05, eta=2.5)
@@ -46,7 +46,7 @@ class Contender:
 
 def truth(motion: Motion, base: YieldingBase) -> float:
     """θ_max [rad] of the pier on ``base``, converged."""
-    found = reference(Run(motion, "+", 1.0, Case("", TOWER, base, {})), QUIET_S)
+    found = reference(PlannedRun(motion, "+", 1.0, Case("", TOWER, base, {})), QUIET_S)
     if found is None or found.outcome.status != "ok":
         raise SystemExit("this run does not converge: there is nothing to measure errors against")
     return found.outcome.theta_max
@@ -69,31 +69,29 @@ def loosest(make: Callable[[float], Solve], theta_max: float) -> Contender | Non
 def rockbatch_contenders(motion: Motion, theta_max: float, side_by_side: int) -> dict[str, Contender]:
     """rockbatch: one run, and many side by side, to the tolerance and with one step per sample."""
     bases = foundations(side_by_side)
-    scenes = [Scene(TOWER, base, motion) for base in bases]
+    runs = [Run(TOWER, base, motion) for base in bases]
     chosen = range(0, side_by_side, max(1, side_by_side // REFERENCES))
     truths = [truth(motion, bases[i]) for i in chosen]
 
-    def to_tolerance(scenes: list[Scene]) -> list[Outcome | None]:
-        return run_all_to_tolerance(scenes, ACCURACY, QUIET_S, Stop())
+    def to_tolerance(runs: list[Run]) -> list[Outcome | None]:
+        return run_all_to_tolerance(runs, ACCURACY, QUIET_S, Stop())
 
-    def fixed(scenes: list[Scene]) -> list[Outcome | None]:
-        return run_all_fixed(scenes, [1] * len(scenes), QUIET_S, Stop())
+    def fixed(runs: list[Run]) -> list[Outcome | None]:
+        return run_all_fixed(runs, [1] * len(runs), QUIET_S, Stop())
 
     def largest(outcomes: list[Outcome | None]) -> float:
         found = [outcomes[i].theta_max for i in chosen]  # type: ignore[union-attr]
         return max(abs(a - b) for a, b in zip(found, truths, strict=True)) / TOWER.alpha
 
-    tower = [Scene(TOWER, BASE, motion)]
+    tower = [Run(TOWER, BASE, motion)]
     one_error = abs(to_tolerance(tower)[0].theta_max - theta_max) / TOWER.alpha  # type: ignore[union-attr]
     together = f"rockbatch, {side_by_side} side by side"
     return {
         UNIT: Contender(f"tolerance {ACCURACY:.0e}", partial(to_tolerance, tower), 1, one_error),
         f"{together}, to their tolerance": Contender(
-            f"tolerance {ACCURACY:.0e}", partial(to_tolerance, scenes), side_by_side, largest(to_tolerance(scenes))
+            f"tolerance {ACCURACY:.0e}", partial(to_tolerance, runs), side_by_side, largest(to_tolerance(runs))
         ),
-        f"{together}, fixed step": Contender(
-            "1 per sample", partial(fixed, scenes), side_by_side, largest(fixed(scenes))
-        ),
+        f"{together}, fixed step": Contender("1 per sample", partial(fixed, runs), side_by_side, largest(fixed(runs))),
     }
 
 

@@ -1,7 +1,7 @@
 """What the benchmarks run: the tower of Palmeri & Makris (2007), Fig. 7, under one of the paper's records."""
 
 from rockbatch.motions import Motion, read_motions
-from rockbatch.structure import Pier, YieldingBase
+from rockbatch.pier import Pier, YieldingBase
 
 TOWER = Pier(alpha=0.13, p=0.38)
 QUIET_S = 2.0

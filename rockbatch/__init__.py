@@ -2,36 +2,36 @@
 
 from typing import TYPE_CHECKING, Any
 
-__version__ = "0.1.0"
+from rockbatch._version import __version__ as __version__
 
 if TYPE_CHECKING:
-    from rockbatch.batch import run
+    from rockbatch.batch.carrying_out import run
     from rockbatch.checks import Rule
-    from rockbatch.design import check
     from rockbatch.errors import InputError
-    from rockbatch.histories import simulate
     from rockbatch.motions import Motion, pulse, read_motions
-    from rockbatch.response import Response
-    from rockbatch.store import open_results
-    from rockbatch.structure import ElasticBase, Pier, RigidBase, YieldingBase
+    from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase
+    from rockbatch.results.checking import check
+    from rockbatch.results.opened import open_results
+    from rockbatch.results.response import Response
+    from rockbatch.simulation.histories import simulate
     from rockbatch.study import load_study
 
 _HOMES = {
-    "ElasticBase": "rockbatch.structure",
+    "ElasticBase": "rockbatch.pier",
     "InputError": "rockbatch.errors",
     "Motion": "rockbatch.motions",
-    "Pier": "rockbatch.structure",
-    "Response": "rockbatch.response",
-    "RigidBase": "rockbatch.structure",
+    "Pier": "rockbatch.pier",
+    "Response": "rockbatch.results.response",
+    "RigidBase": "rockbatch.pier",
     "Rule": "rockbatch.checks",
-    "YieldingBase": "rockbatch.structure",
-    "check": "rockbatch.design",
+    "YieldingBase": "rockbatch.pier",
+    "check": "rockbatch.results.checking",
     "load_study": "rockbatch.study",
-    "open_results": "rockbatch.store",
+    "open_results": "rockbatch.results.opened",
     "pulse": "rockbatch.motions",
     "read_motions": "rockbatch.motions",
-    "run": "rockbatch.batch",
-    "simulate": "rockbatch.histories",
+    "run": "rockbatch.batch.carrying_out",
+    "simulate": "rockbatch.simulation.histories",
 }
 
 __all__ = [

@@ -5,7 +5,7 @@ import os
 import sys
 from collections.abc import Sequence
 
-from rockbatch import __version__
+from rockbatch._version import __version__
 from rockbatch.commands import accuracy, check, fragility, merge, motions, report, run, sensitivity, spectrum
 from rockbatch.errors import InputError
 

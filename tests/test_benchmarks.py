@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from rockbatch.motions import pulse
+from rockbatch.pier import Pier, YieldingBase
 from rockbatch.simulation import run_to_tolerance
-from rockbatch.structure import Pier, YieldingBase
 
 BENCHMARKS = Path(__file__).parents[1] / "benchmarks"
 

@@ -7,34 +7,11 @@ import sys
 import time
 
 import pytest
+from studies import study_text, write_study
 
 from rockbatch.cli import main
 
-STUDY = """
-title = "A <pulse> & a pier"
-
-[pier]
-alpha = 0.2
-p = 1.0
-
-[[motions.pulse]]
-name = "one-sine"
-shape = "sine"
-amplitude_g = 1.0
-period_s = 0.5
-dt_s = 0.01
-duration_s = 4.0
-
-[[case]]
-name = "rigid"
-base = "rigid"
-
-[[case]]
-name = "pads"
-base = "yielding"
-beta = 50
-eta = 2.5
-"""
+STUDY = study_text(title="A <pulse> & a pier")
 
 AT2 = """PEER NGA STRONG MOTION DATABASE RECORD
 Nowhere-01, 1/2/1999, Field, 090
@@ -45,9 +22,7 @@ NPTS=    {count}, DT=   .0100 SEC
 
 @pytest.fixture
 def study(tmp_path):
-    path = tmp_path / "study.toml"
-    path.write_text(STUDY, encoding="utf-8")
-    return path
+    return write_study(tmp_path, STUDY)
 
 
 def at2(values, count=None):
@@ -101,11 +76,13 @@ def test_a_run_that_is_refused_is_a_row_with_its_reason_and_has_no_history(study
     """One step a sample is beyond the stability of β = 5000: nothing of it is run, not for its picture either."""
     extra = '[numerics]\nsubsteps = 1\n[output]\nhistories = "all"\n'
     study.write_text(STUDY.replace("beta = 50\n", "beta = 5000\n") + extra, encoding="utf-8")
-    import rockbatch.keep
+    import rockbatch.batch.kept_histories
 
-    real, written = rockbatch.keep.histories, []
+    real, written = rockbatch.batch.kept_histories.histories, []
     monkeypatch.setattr(
-        rockbatch.keep, "histories", lambda *given, **more: (written.append(given[5]), real(*given, **more))[1]
+        rockbatch.batch.kept_histories,
+        "histories",
+        lambda *given, **more: (written.append(given[3]), real(*given, **more))[1],
     )
     assert main(["run", str(study), "--out", str(tmp_path / "out")]) == 1
     assert written == ["rigid"]

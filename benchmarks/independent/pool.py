@@ -11,7 +11,7 @@ import numpy as np
 
 from rockbatch.motions import Motion, fema_p695, pulse, read_motions
 from rockbatch.motions.pairing import to_motions
-from rockbatch.structure import Base, ElasticBase, Pier, RigidBase, YieldingBase
+from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, YieldingBase
 
 from .reference import reference
 

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.integrate import quad
 
 from rockbatch.motions import Motion
-from rockbatch.structure import Base, Pier, RigidBase, YieldingBase
+from rockbatch.pier import Base, Pier, RigidBase, YieldingBase
 
 from . import dop853 as core
 

@@ -13,13 +13,13 @@ import numpy.typing as npt
 from rockbatch.analysis.ida import Bracket, Capacity, Looks, bisect, capacity
 from rockbatch.analysis.limit_states import EXCEEDED, LEFT_OUT, UNDECIDED, WITHSTOOD, applies, states
 from rockbatch.analysis.lognormal import Capacities, Lognormal, Values, fit
+from rockbatch.batch.plan import PlannedRun, Runs, scaled
 from rockbatch.checks.rules import Rule
 from rockbatch.errors import InputError
 from rockbatch.motions import Motion
 from rockbatch.motions.measures import pgv
 from rockbatch.motions.spectrum import spectral_acceleration
-from rockbatch.plan import Run, Runs, scaled
-from rockbatch.results import describe_case
+from rockbatch.results.run_json import describe_case
 from rockbatch.study import Case, Output, Study
 from rockbatch.study.fragility import FragilitySpec
 
@@ -53,11 +53,11 @@ class ScaledRuns(Runs):
     def __len__(self) -> int:
         return len(self.points)
 
-    def run(self, number: int) -> Run:
-        """See :class:`rockbatch.plan.Runs`."""
+    def run(self, number: int) -> PlannedRun:
+        """See :class:`rockbatch.batch.plan.Runs`."""
         motion, intensity, case = self.points[number]
         scale = intensity / self.unscaled[motion]
-        return Run(self._moved(motion, scale), self.polarity, scale, self.cases[case], self.motions[motion])
+        return PlannedRun(self._moved(motion, scale), self.polarity, scale, self.cases[case], self.motions[motion])
 
     def _move(self, motion: int, scale: float) -> Motion:
         return scaled(self.motions[motion], scale, self.polarity)

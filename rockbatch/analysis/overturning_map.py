@@ -10,10 +10,10 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from rockbatch.analysis.map_search import End, Point, Points, Region, Search, regions
+from rockbatch.batch.plan import Made, PlannedRun, scaled
 from rockbatch.motions import Motion
 from rockbatch.motions.pulses import pulse, pulse_length
-from rockbatch.plan import Made, Run, scaled
-from rockbatch.structure import Base, RigidBase
+from rockbatch.pier import Base, RigidBase
 from rockbatch.study import Case
 from rockbatch.study.spectrum import MapSpec
 
@@ -58,10 +58,10 @@ class Maps:
     def runs(self, points: Sequence[Point]) -> Made:
         """The runs at ``points``, (number of the case, ω_p/p, amplitude); their scale is the amplitude a_p/(g tan α)."""
 
-        def make(index: int) -> Run:
+        def make(index: int) -> PlannedRun:
             case, frequency, amplitude = points[index]
             unit = self._unit(case, frequency)
-            return Run(scaled(unit, amplitude, "+"), "+", amplitude, self.cases[case], unit)
+            return PlannedRun(scaled(unit, amplitude, "+"), "+", amplitude, self.cases[case], unit)
 
         return Made(len(points), make)
 

@@ -10,11 +10,11 @@ from collections.abc import Mapping
 from dataclasses import asdict, replace
 from typing import TYPE_CHECKING, Any
 
+from rockbatch.batch.plan import Plan, PlannedRun
 from rockbatch.motions import MotionSet
-from rockbatch.outcome import Outcome
-from rockbatch.plan import Plan, Run
-from rockbatch.results import row
-from rockbatch.statistics import suite
+from rockbatch.results.columns import row
+from rockbatch.results.outcome import Outcome
+from rockbatch.results.suite_statistics import suite
 from rockbatch.study import Study
 from rockbatch.study.spectrum import SpectrumSpec
 
@@ -52,7 +52,7 @@ def columns(spectrum: SpectrumSpec) -> list[str]:
     return [*dict.fromkeys((*GROUP, *spectrum.varied, *SIZE, *FOUND))]
 
 
-def row_of(run: Run, outcome: Outcome) -> dict[str, Any]:
+def row_of(run: PlannedRun, outcome: Outcome) -> dict[str, Any]:
     """Row of spectrum.csv of a run that is finished."""
     pier = run.case.pier
     size = {"p": pier.p, "two_pi_over_p_s": 2 * math.pi / pier.p, "size_m": pier.size}

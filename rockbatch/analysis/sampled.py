@@ -6,9 +6,9 @@ from functools import lru_cache
 from typing import Any
 
 from rockbatch.analysis.sobol import design
+from rockbatch.batch.plan import Made, PlannedRun, scaled
 from rockbatch.motions import Motion
-from rockbatch.outcome import Outcome
-from rockbatch.plan import Made, Run, scaled
+from rockbatch.results.outcome import Outcome
 from rockbatch.simulation import housner_restitution
 from rockbatch.study import Case, Study
 from rockbatch.study.sensitivity import Input, SensitivitySpec, Value, applying, own_values, varied
@@ -75,14 +75,14 @@ class Suite:
         """Every motion at every point, the points running fastest: neighbours share their motion."""
         return Made(len(self.members) * len(self.points), self._run)
 
-    def _run(self, index: int) -> Run:
+    def _run(self, index: int) -> PlannedRun:
         member, place = divmod(index, len(self.points))
         point = self.points.all[place]
         number, polarity, scale = self.members[member]
         polarity = str(point.values.get("polarity", polarity))
         vertical = bool(point.values.get("vertical", True))
         motion = self._moved(number, polarity, scale, vertical)
-        return Run(motion, polarity, scale, self.case(point), self._motions[vertical][number])
+        return PlannedRun(motion, polarity, scale, self.case(point), self._motions[vertical][number])
 
     def case(self, point: Point) -> Case:
         """The case at a point."""
@@ -96,7 +96,7 @@ class Suite:
         return scaled(self._motions[vertical][number], scale, polarity)
 
 
-def row_of(run: Run, outcome: Outcome) -> dict[str, Any]:
+def row_of(run: PlannedRun, outcome: Outcome) -> dict[str, Any]:
     """What is kept of a run."""
     return {
         "record": run.motion.name,

@@ -4,11 +4,11 @@ from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager, nullcontext
 from typing import TYPE_CHECKING, Any
 
-from rockbatch.batch import carry_out
-from rockbatch.engines import Engine
-from rockbatch.journal import Journal
-from rockbatch.plan import Runs
-from rockbatch.results import COUNTS, TEXTS, as_table
+from rockbatch.batch.carrying_out import carry_out
+from rockbatch.batch.journal import Journal
+from rockbatch.batch.plan import Runs
+from rockbatch.batch.threads import Engine
+from rockbatch.results.columns import COUNTS, TEXTS, as_table
 from rockbatch.study import Study
 
 if TYPE_CHECKING:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from rockbatch.checks.statistics import Values
+from rockbatch.pier import tilt_over_residual
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -91,10 +92,9 @@ def _height(case: Case) -> float:
 
 
 def _tilt_over_residual(case: Case) -> float:
-    """Tilt of the base over the residual rotation, 1 − g h/(ω_v² b²): the weight leans the pier on its springs."""
     pier = case["pier"]
-    stiffness = (case["parameters"]["omega_v"] * pier["half_width_m"]) ** 2
-    return 1.0 - float(pier["gravity"] * pier["height_m"] / stiffness)
+    omega_v = case["parameters"]["omega_v"]
+    return float(tilt_over_residual(pier["gravity"], pier["height_m"], pier["half_width_m"], omega_v))
 
 
 def _tilt(lever: Callable[[Case], float]) -> Callable[["pd.DataFrame", Case], Found]:

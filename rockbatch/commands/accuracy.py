@@ -37,11 +37,11 @@ def main(arguments: argparse.Namespace) -> int:
     study = study_of(arguments)
     directory = folder(arguments)
 
-    from rockbatch.accuracy import measure, reference, spread
+    from rockbatch.analysis.accuracy import measure, reference, spread
+    from rockbatch.batch.plan import Plan
     from rockbatch.commands.progress import Progress
     from rockbatch.errors import InputError
     from rockbatch.files import write_whole
-    from rockbatch.plan import Plan
     from rockbatch.study.suite import ground_motions
 
     motions = ground_motions(study)

@@ -1,90 +1,33 @@
-"""What commands share that answer a question about a study: tables, NAME.json, and the report."""
+"""What commands that answer a question about a study have in common: what they tell of their journals and files."""
 
-import hashlib
-import json
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from rockbatch import __version__
 from rockbatch.commands.messages import count, say
-from rockbatch.files import csv_text, write_whole
 
 if TYPE_CHECKING:
-    import pandas as pd
-
-    from rockbatch.journal import Journal
-    from rockbatch.study import Study
+    from rockbatch.analysis.folder import AnalysisFolder
+    from rockbatch.batch.journal import Journal
 
 
-class Results:
-    """What an analysis leaves in a folder: its tables, and NAME.json, which says what they hold.
-
-    ``info`` is what NAME.json will say: what was done, in which ``files`` it is, and of which runs, by their digests. It
-    is written as soon as a table is, so that a command that was killed later takes it as it is.
-    """
-
-    def __init__(self, directory: Path, name: str, study: "Study", fresh: bool) -> None:
-        self.directory, self.study, self.fresh = directory, study, fresh
-        self.path = directory / f"{name}.json"
-        sha256 = hashlib.sha256(study.text.encode()).hexdigest()
-        of_study = {
-            "path": str(study.path),
-            "title": study.title,
-            "notes": study.notes,
-            "text": study.text,
-            "sha256": sha256,
-        }
-        self.info: dict[str, Any] = {"rockbatch": __version__, "study": of_study, "files": [], "digests": {}}
-        self._earlier = {} if fresh else _digests(self.path)
-
-    def has(self, file: str, digest: Mapping[str, str]) -> bool:
-        """Whether ``file`` holds the runs with that digest already."""
-        return self._earlier.get(file) == digest and (self.directory / file).exists()
-
-    @contextmanager
-    def journal(self, file: str, columns: Sequence[str], digest: Mapping[str, str]) -> "Iterator[Journal]":
-        """The journal of the runs in ``file``; tells what is in it already, and what stays in it after Ctrl-C."""
-        from rockbatch.journal import Journal
-
-        with Journal(self.directory / f"{file}.part", columns, digest, self.fresh) as journal:
-            if len(journal):
-                say(f"{count(len(journal), 'run')} are finished already (--fresh starts over)")
-            try:
-                yield journal
-            except KeyboardInterrupt:
-                kept = f"{count(len(journal), 'run')} are finished and kept in {journal.path}"
-                say(f"interrupted: {kept}; the same command goes on from there")
-                raise
-
-    def keep(self, file: str, digest: Mapping[str, str] | None = None) -> None:
-        """Note that ``file`` is finished, and which runs it holds."""
-        self.info["files"].append(file)
-        if digest is not None:
-            self.info["digests"][file] = dict(digest)
-        write_whole(self.path, json.dumps(self.info, indent=1, ensure_ascii=False) + "\n")
-
-    def keep_table(self, file: str, table: "pd.DataFrame") -> None:
-        """Write ``table`` as CSV, as the journal writes its rows, whole or not at all, and note it."""
-        rows = ({str(name): value for name, value in row.items()} for row in table.to_dict("records"))
-        write_whole(self.directory / file, csv_text(list(table.columns), rows))
-        self.keep(file)
-
-    def end(self, **cost: object) -> None:
-        """Say what the analysis cost, write the report, and tell what there is."""
-        from rockbatch.report.analyses import write
-
-        self.info |= cost
-        write_whole(self.path, json.dumps(self.info, indent=1, ensure_ascii=False) + "\n")
-        report = write(self.directory, self.study)
-        for written in (*(self.directory / file for file in self.info["files"]), self.path, report):
-            say(str(written))
+@contextmanager
+def journal_of(
+    folder: "AnalysisFolder", file: str, columns: Sequence[str], digest: Mapping[str, str]
+) -> "Iterator[Journal]":
+    """The journal of the runs in ``file``; tells what is in it already, and what stays in it after Ctrl-C."""
+    with folder.journal(file, columns, digest) as journal:
+        if len(journal):
+            say(f"{count(len(journal), 'run')} are finished already (--fresh starts over)")
+        try:
+            yield journal
+        except KeyboardInterrupt:
+            kept = f"{count(len(journal), 'run')} are finished and kept in {journal.path}"
+            say(f"interrupted: {kept}; the same command goes on from there")
+            raise
 
 
-def _digests(path: Path) -> dict[str, Any]:
-    """Digests of the runs in each file, as an earlier analysis has noted them."""
-    try:
-        return dict(json.loads(path.read_text(encoding="utf-8"))["digests"])
-    except (OSError, ValueError, KeyError, TypeError):
-        return {}
+def end(folder: "AnalysisFolder", **cost: object) -> None:
+    """Say what the analysis cost, write the report, and tell what there is."""
+    for path in folder.end(**cost):
+        say(str(path))

@@ -26,14 +26,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def main(arguments: argparse.Namespace) -> int:
-    from rockbatch.design import verdicts
-    from rockbatch.saved import read_saved
+    from rockbatch.checks import write_verdicts
+    from rockbatch.results.checking import verdicts
+    from rockbatch.results.reading import read_saved
 
     saved = read_saved(arguments.directory)
     found = verdicts(saved, arguments.rules)
     if unusable := len(saved.info["unusable"]):
         say(f"files that are no usable records, and in no suite: {unusable}")
-    code = tell(arguments.directory, found)
+    code = tell(found, write_verdicts(arguments.directory, found))
     if (arguments.directory / "report.html").exists():
         from rockbatch.report import write_report
 
@@ -41,11 +42,8 @@ def main(arguments: argparse.Namespace) -> int:
     return code
 
 
-def tell(directory: Path, verdicts: Sequence["Verdict"]) -> int:
-    """Print the verdicts and write them into ``directory``; returns 1 if a check fails or is not decided, else 0."""
-    from rockbatch.checks import write_verdicts
-
-    path = write_verdicts(directory, verdicts)
+def tell(verdicts: Sequence["Verdict"], path: Path) -> int:
+    """Print the verdicts, which are in ``path``; returns 1 if a check fails or is not decided, else 0."""
     print(table(verdicts))
     ways = ("pass", "fail", "not decided", "does not apply")
     count = {way: sum(verdict.verdict == way for verdict in verdicts) for way in ways}

@@ -6,7 +6,7 @@ import time
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from rockbatch.commands.analyses import Results
+from rockbatch.commands.analyses import end, journal_of
 from rockbatch.commands.messages import count, make_ready, once, say, tell_motions
 from rockbatch.commands.options import add_engine, add_study, engine, folder, study_of
 
@@ -32,12 +32,13 @@ def main(arguments: argparse.Namespace) -> int:
     spec = read_fragility(study)
     directory = folder(arguments)
 
+    from rockbatch.analysis.folder import AnalysisFolder
     from rockbatch.analysis.fragility import assess, intensities, output
     from rockbatch.analysis.fragility_tables import CAPACITIES, POINTS, RUNS, capacities, described, points
     from rockbatch.analysis.waves import Waves
-    from rockbatch.batch import digests
+    from rockbatch.batch.digests import digests
     from rockbatch.commands.progress import Progress
-    from rockbatch.results import columns
+    from rockbatch.results.columns import columns
     from rockbatch.study.suite import ground_motions
 
     study = replace(study, output=output(spec))
@@ -54,8 +55,8 @@ def main(arguments: argparse.Namespace) -> int:
         numerics=(study.numerics, study.output),
         fragility=replace(spec, confidence=0.0),  # which no run depends on
     )
-    results = Results(directory, "fragility", study, arguments.fresh)
-    with results.journal(RUNS, columns(study), digest) as journal, engine(arguments) as carrier:
+    results = AnalysisFolder(directory, "fragility", study, arguments.fresh)
+    with journal_of(results, RUNS, columns(study), digest) as journal, engine(arguments) as carrier:
         runs = len(motions) * len(spec.levels) * len(study.cases)
         then = f"; then first exceedances are bisected to {spec.tolerance:g}" if spec.method == "ida" else ""
         levels = f"{count(len(motions), 'record')} at {len(spec.levels)} levels of {spec.label}"
@@ -73,7 +74,7 @@ def main(arguments: argparse.Namespace) -> int:
         journal.write_in_order(directory / RUNS)
         results.keep(RUNS, digest)
         print(table(curves, spec))
-        results.end(runs=waves.finished, wall_s=round(time.monotonic() - started, 3))
+        end(results, runs=waves.finished, wall_s=round(time.monotonic() - started, 3))
     failed = any(stripe.failed for curve in curves for stripe in curve.stripes)
     if failed:
         say(f"some runs failed and are undecided; the column reason of {directory / RUNS} says why")

@@ -18,12 +18,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def main(arguments: argparse.Namespace) -> int:
     study = study_of(arguments)
 
-    from rockbatch.batch import study_digests
-    from rockbatch.commands.ending import end, what_was_run, write_peaks
+    from rockbatch.batch.digests import study_digests
+    from rockbatch.batch.finishing import finish, what_was_run, write_peaks
+    from rockbatch.batch.journal import Journal
+    from rockbatch.batch.plan import Plan
+    from rockbatch.commands.ending import tell
+    from rockbatch.commands.progress import Progress
     from rockbatch.errors import InputError
-    from rockbatch.journal import Journal
-    from rockbatch.plan import Plan
-    from rockbatch.results import PART, columns
+    from rockbatch.results.columns import PART, columns
     from rockbatch.study.suite import ground_motions
 
     motions = ground_motions(study)
@@ -50,7 +52,8 @@ def main(arguments: argparse.Namespace) -> int:
             raise InputError(*problems)
         write_peaks(journal, motions)
         info = what_was_run(study, motions, runs, digest)
-        return end(directory, study, motions, runs, info | {"jobs": 0, "wall_s": 0.0, "kept": info["runs"]})
+        info |= {"jobs": 0, "wall_s": 0.0, "kept": info["runs"]}
+        return tell(finish(directory, study, runs, info, Progress), study, motions)
 
 
 def _ranges(numbers: Sequence[int], most: int = 5) -> str:

@@ -44,7 +44,7 @@ def once(study: "Study") -> str:
 
 def make_ready(study: "Study") -> None:
     """Have the kernels loaded before the clock starts; where they must be compiled first, it takes a while and is told."""
-    from rockbatch.groups import compile_kernels
+    from rockbatch.batch.groups import compile_kernels
 
     words = "compiling the kernels (once for each kind of foundation, 20 to 30 s)"
     told = Timer(1.5, say, [words])  # to load them takes less

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from rockbatch.engines import Engine
+    from rockbatch.batch.threads import Engine
     from rockbatch.study import Study
 
 
@@ -58,10 +58,10 @@ def folder(arguments: argparse.Namespace) -> Path:
 
 def engine(arguments: argparse.Namespace) -> "Engine":
     """What carries out the runs; a context."""
-    from rockbatch.engines import Threads, cores
+    from rockbatch.batch.threads import Threads, cores
 
     if arguments.engine == "dask" or arguments.scheduler:
-        from rockbatch.cluster import Dask
+        from rockbatch.batch.dask import Dask
 
         return Dask(arguments.scheduler, arguments.jobs)
     return Threads(arguments.jobs or cores())

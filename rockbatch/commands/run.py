@@ -39,13 +39,15 @@ def main(arguments: argparse.Namespace) -> int:
     started = time.monotonic()
     study = study_of(arguments)
 
-    from rockbatch.batch import carry_out, study_digests, to_simulate
-    from rockbatch.commands.ending import cost_of_finished, end, what_was_run, write_peaks
+    from rockbatch.batch.carrying_out import carry_out, to_simulate
+    from rockbatch.batch.digests import study_digests
+    from rockbatch.batch.finishing import cost_of_finished, finish, what_was_run, write_peaks
+    from rockbatch.batch.journal import Journal
+    from rockbatch.batch.plan import Plan
+    from rockbatch.commands.ending import tell
     from rockbatch.commands.progress import Progress
     from rockbatch.errors import InputError
-    from rockbatch.journal import Journal
-    from rockbatch.plan import Plan
-    from rockbatch.results import PART, columns
+    from rockbatch.results.columns import PART, columns
     from rockbatch.study.suite import ground_motions
 
     motions = ground_motions(study)
@@ -66,7 +68,7 @@ def main(arguments: argparse.Namespace) -> int:
         cost = None if arguments.fresh or len(journal) else cost_of_finished(directory, info)
         if cost:
             say(f"{told(study, motions)} are finished in {directory}; nothing is left to run (--fresh runs them again)")
-            return end(directory, study, motions, runs, info | cost)
+            return tell(finish(directory, study, runs, info | cost, Progress), study, motions)
         with engine(arguments) as carrier:
             every = len(to_simulate(runs, wanted))
             of_share = f"; share {share} of {shares} is {count(every, 'run')}" if arguments.shard else ""
@@ -92,7 +94,7 @@ def main(arguments: argparse.Namespace) -> int:
             return 0
         write_peaks(journal, motions)
         cost["wall_s"] = round(time.monotonic() - started, 3)
-        return end(directory, study, motions, runs, info | cost)
+        return tell(finish(directory, study, runs, info | cost, Progress), study, motions)
 
 
 def told(study: "Study", motions: "MotionSet") -> str:

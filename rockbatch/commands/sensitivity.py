@@ -6,7 +6,7 @@ import time
 from dataclasses import asdict, replace
 from typing import TYPE_CHECKING
 
-from rockbatch.commands.analyses import Results
+from rockbatch.commands.analyses import end, journal_of
 from rockbatch.commands.messages import count, make_ready, once, say, tell_motions
 from rockbatch.commands.options import add_engine, add_study, engine, folder, study_of
 
@@ -27,14 +27,16 @@ def main(arguments: argparse.Namespace) -> int:
     started = time.monotonic()
     study = study_of(arguments)
     spec = read_sensitivity(study)
-    results = Results(folder(arguments), "sensitivity", study, arguments.fresh)
 
     from rockbatch.analysis import sensitivity as analysis
+    from rockbatch.analysis.folder import AnalysisFolder
     from rockbatch.analysis.sampled import COLUMNS, RUNS, Points, Suite, row_of
-    from rockbatch.batch import carry_out, digests
+    from rockbatch.batch.carrying_out import carry_out
+    from rockbatch.batch.digests import digests
     from rockbatch.commands.progress import Progress
     from rockbatch.study.suite import ground_motions
 
+    results = AnalysisFolder(folder(arguments), "sensitivity", study, arguments.fresh)
     wanted = study
     if any(each.name == "vertical" for each in spec.inputs):  # read it, whatever the study does with it
         wanted = replace(study, motions=replace(study.motions, vertical=study.motions.vertical or True))
@@ -65,7 +67,7 @@ def main(arguments: argparse.Namespace) -> int:
             results.keep(RUNS, digest)
         else:
             make_ready(replace(study, cases=suite.some_cases()))
-            with results.journal(RUNS, COLUMNS, digest) as journal:
+            with journal_of(results, RUNS, COLUMNS, digest) as journal:
                 with Progress(len(runs) - len(journal)) as progress:
                     carry_out(runs, study.numerics, journal, carrier, row=row_of, progress=progress)
                 journal.write_in_order(path)
@@ -80,7 +82,7 @@ def main(arguments: argparse.Namespace) -> int:
     print(shown(swings, shares, study.varied))
     ended = ", ".join(f"{number} {status}" for status, number in sorted(statuses.items()))
     say(f"{ended}; runs that overturned or were ended by flight count as theta_max/alpha = {spec.overturned:g}")
-    results.end(engine=told, wall_s=round(time.monotonic() - started, 3))
+    end(results, engine=told, wall_s=round(time.monotonic() - started, 3))
     return 1 if motions.unusable else 0  # what failed counts, as the report says
 
 

@@ -5,7 +5,7 @@ import time
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from rockbatch.commands.analyses import Results
+from rockbatch.commands.analyses import end, journal_of
 from rockbatch.commands.messages import count, make_ready, once, say, tell_motions
 from rockbatch.commands.options import add_engine, add_study, engine, folder, study_of
 
@@ -13,7 +13,8 @@ if TYPE_CHECKING:
     import numpy as np
     import pandas as pd
 
-    from rockbatch.engines import Engine
+    from rockbatch.analysis.folder import AnalysisFolder
+    from rockbatch.batch.threads import Engine
     from rockbatch.study.spectrum import MapSpec, SpectrumSpec
 
 HELP = "rocking spectra over the size of the pier, and maps of the pulses that overturn it"
@@ -27,26 +28,28 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def main(arguments: argparse.Namespace) -> int:
+    from rockbatch.analysis.folder import AnalysisFolder
     from rockbatch.study.spectrum import read_spectrum
 
     started = time.monotonic()
     study = study_of(arguments)
     spectrum, maps = read_spectrum(study)
-    results = Results(folder(arguments), "spectrum", study, arguments.fresh)
+    results = AnalysisFolder(folder(arguments), "spectrum", study, arguments.fresh)
     failed = 0
     with engine(arguments) as carrier:
         if spectrum is not None:
             failed = _spectrum(results, spectrum, carrier)
         if maps:
             _maps(results, maps, carrier)
-        results.end(engine=str(carrier), wall_s=round(time.monotonic() - started, 3))
+        end(results, engine=str(carrier), wall_s=round(time.monotonic() - started, 3))
     return 1 if failed else 0
 
 
-def _spectrum(results: Results, spectrum: "SpectrumSpec", carrier: "Engine") -> int:
+def _spectrum(results: "AnalysisFolder", spectrum: "SpectrumSpec", carrier: "Engine") -> int:
     """Write the rocking spectra, and print them; returns the number of files and runs that failed."""
     from rockbatch.analysis import rocking_spectrum as analysis
-    from rockbatch.batch import carry_out, digests
+    from rockbatch.batch.carrying_out import carry_out
+    from rockbatch.batch.digests import digests
     from rockbatch.commands.progress import Progress
     from rockbatch.files import read_table
     from rockbatch.study.suite import ground_motions
@@ -67,7 +70,7 @@ def _spectrum(results: Results, spectrum: "SpectrumSpec", carrier: "Engine") -> 
         results.keep(analysis.FILE, digest)
     else:
         make_ready(replace(study, cases=spectrum.cases))
-        with results.journal(analysis.FILE, analysis.columns(spectrum), digest) as journal:
+        with journal_of(results, analysis.FILE, analysis.columns(spectrum), digest) as journal:
             with Progress(len(runs) - len(journal)) as progress:
                 carry_out(runs, study.numerics, journal, carrier, row=analysis.row_of, progress=progress)
             journal.write_in_order(path)
@@ -123,17 +126,17 @@ def _evenly(values: "np.ndarray") -> "np.ndarray":
     return values[np.unique(np.abs(values[:, None] - wanted).argmin(axis=0))]
 
 
-def _maps(results: Results, maps: "tuple[MapSpec, ...]", carrier: "Engine") -> None:
+def _maps(results: "AnalysisFolder", maps: "tuple[MapSpec, ...]", carrier: "Engine") -> None:
     """Write the overturning maps, and print them."""
     import pandas as pd
 
     from rockbatch.analysis import overturning_map as analysis
     from rockbatch.analysis.waves import Waves
-    from rockbatch.batch import digests
+    from rockbatch.batch.digests import digests
+    from rockbatch.batch.groups import NOTHING_MORE
     from rockbatch.commands.progress import Progress
     from rockbatch.files import read_table
-    from rockbatch.groups import NOTHING_MORE
-    from rockbatch.results import columns
+    from rockbatch.results.columns import columns
 
     study = replace(results.study, output=NOTHING_MORE)
     results.info["varied_map"] = list(study.varied)
@@ -147,7 +150,7 @@ def _maps(results: Results, maps: "tuple[MapSpec, ...]", carrier: "Engine") -> N
         return
     rows: list[Any] = []
     make_ready(study)
-    with results.journal(analysis.RUNS, columns(study), digest) as journal:
+    with journal_of(results, analysis.RUNS, columns(study), digest) as journal:
         waves = Waves(study, journal, carrier, Progress)
         for spec in maps:
             own, before = analysis.Maps(spec, study.cases), waves.finished

@@ -26,7 +26,7 @@ def expect(lanes, i, quiet_samples, patience, read_after, read_wait):
     waiting.read[i], waiting.read_left[i], waiting.read_right[i] = LOST, math.nan, math.nan
     waiting.drift_left[i], waiting.drift_right[i] = math.nan, math.nan
     waiting.last_drift_left[i], waiting.last_drift_right[i] = 0.0, 0.0
-    waiting.midway[i] = math.inf
+    waiting.midway[i] = waiting.midway_tilt[i] = math.inf
 
 
 @kernel
@@ -52,6 +52,13 @@ def base_of(lanes, i, m):
 
 
 @kernel
+def _tilt(lanes, i, m):
+    """|Tilt| of the base [rad]."""
+    left, right = base_of(lanes, i, m)
+    return 0.5 * abs(left - right) / m.half_width
+
+
+@kernel
 def _outlook(lanes, i, m):
     """OPEN, DECIDED or LEANS (see ``free_vibration``); OPEN while the ground moves."""
     if not ground_rests(lanes, i):
@@ -60,13 +67,16 @@ def _outlook(lanes, i, m):
     left, right = base_of(lanes, i, m)
     alone = lanes.clock.sample_time[i] - max(lanes.counts.moved[i], lanes.motion.npts[i] * dt)
     calm = contact.left != 0.0 and contact.right != 0.0 and alone >= rocking_period(m)
-    ahead = 0.5 * waiting.patience[i] * dt / m.half_width
-    last = ahead * (waiting.last_drift_left[i] - waiting.last_drift_right[i])
-    unknown = math.isnan(waiting.drift_left[i])
-    first = last if unknown else ahead * (waiting.drift_left[i] - waiting.drift_right[i])
+    ahead = 0.5 * waiting.patience[i] * dt
+    last_left, last_right = ahead * waiting.last_drift_left[i], ahead * waiting.last_drift_right[i]
+    first_left, first_right = last_left, last_right
+    if not math.isnan(waiting.drift_left[i]):
+        first_left, first_right = ahead * waiting.drift_left[i], ahead * waiting.drift_right[i]
+    last, first = (last_left - last_right) / m.half_width, (first_left - first_right) / m.half_width
     to_right, to_left = max(0.0, first, last), max(0.0, -first, -last)
+    sinking = max(0.0, -(last_left + last_right), -(first_left + first_right))
     peak = lanes.extremes.peak[i]
-    return outlook_on_springs(m, state(lanes.now, i), contact, left, right, peak, calm, to_right, to_left)
+    return outlook_on_springs(m, state(lanes.now, i), contact, left, right, peak, calm, to_right, to_left, sinking)
 
 
 @kernel
@@ -116,7 +126,7 @@ def done(lanes, i, exponent, finite):
     if outlook == DECIDED and sample >= max(samples, waiting.read[i] + wait):
         return SURVIVED
     if sample == (samples + longest) // 2:
-        waiting.midway[i] = lanes.extremes.peak[i]
+        waiting.midway[i], waiting.midway_tilt[i] = lanes.extremes.peak[i], _tilt(lanes, i, m)
     return RUNNING if sample < longest else _given_up(lanes, i, m, outlook)
 
 
@@ -140,6 +150,7 @@ def _given_up(lanes, i, m, outlook):
         return SURVIVED
     if outlook == LEANS or abs(lanes.now.theta[i]) >= summit(m):
         return UNDECIDED
-    ratchets = m.law == BOUC_WEN
-    grows = lanes.extremes.peak[i] > lanes.waiting.midway[i] + GROWTH * lanes.motion.alpha[i]
-    return GROWING if ratchets and grows else RESTLESS
+    least = GROWTH * lanes.motion.alpha[i]
+    turned = lanes.extremes.peak[i] > lanes.waiting.midway[i] + least
+    tilted = _tilt(lanes, i, m) > lanes.waiting.midway_tilt[i] + least
+    return GROWING if m.law == BOUC_WEN and turned and tilted else RESTLESS

@@ -8,18 +8,14 @@ import math
 
 from rockbatch.core.equations import geometry
 from rockbatch.core.kernel import kernel
-from rockbatch.core.laws import give
-from rockbatch.core.types import ELASTIC
+from rockbatch.core.laws import give, number
+from rockbatch.core.types import BOUC_WEN, ELASTIC
 
 PARTS = 24
 """Parts of the way to the supports' capacity over which their work is summed."""
 
 SEEN = 1e-6
 """Relative error of an extreme that has been seen, by which it may lie below the amplitude of its vibration."""
-
-RETURNED = 0.02
-"""Share of the energy that may come back: first-order P–Δ moments have no potential, and in finite kinematics H jumps
-with a contact."""
 
 OPEN = 0
 """By its energy, the pier may still turn further than it has, or overturn."""
@@ -65,9 +61,15 @@ def rocking_period(m):
 
 
 @kernel
-def _weight_moment(m, theta):
-    """Moment of the weight about the centre of the base, over g [m]."""
-    return m.height * (math.sin(theta) if m.finite is not None else theta)
+def _travel(m, theta):
+    """Travel of a support over b: sin θ, or θ in first-order kinematics."""
+    return math.sin(theta) if m.finite is not None else theta
+
+
+@kernel
+def _weight_moment(m, travel):
+    """Moment of the weight about the centre of the base over g, per b cos θ of the supports' arm [m]."""
+    return m.height * (travel / math.sqrt(1.0 - travel * travel) if m.finite is not None else travel)
 
 
 @kernel
@@ -85,21 +87,22 @@ def _climb(m, lean, target):
     static_force = 0.5 * g / m.yield_force
     deflection = static_force * m.yield_deflection
     capacity = _capacity(m)
-    x = _weight_moment(m, lean) / b
+    travel, goal, work = _travel(m, lean), _travel(m, target), 0.0
+    x = _weight_moment(m, travel) / b
     dx = (capacity - x) / PARTS
-    theta, work = lean, 0.0
     for i in range(PARTS):
         middle = x + (i + 0.5) * dx
         turn = 0.5 * deflection * dx * (1.0 + give(m.law, static_force * (1.0 + middle), m.exponent)) / b
-        part = min(turn, target - theta)
+        part = min(turn, goal - travel)
         middle = x + (i + 0.5 * part / turn) * dx
-        moment = g * (b * middle - _weight_moment(m, theta + 0.5 * part))
+        moment = g * (b * middle - _weight_moment(m, travel + 0.5 * part))
         if moment <= 0.0:
             return work
         work += moment * part
-        theta += part
+        travel += part
         if part < turn:
             return work
+    theta = math.asin(travel) if m.finite is not None else travel
     end = min(target, summit(m))
     if end <= theta:
         return work
@@ -111,7 +114,34 @@ def _climb(m, lean, target):
 
 
 @kernel
-def outlook_on_springs(m, y, contact, base_left, base_right, peak, calm, drift_right, drift_left):
+def _returned(m, theta):
+    """Share of the energy that may come back on the way to ``theta`` [rad]: 2 b h θ/(I0/M + h² + b²).
+
+    First-order P–Δ moments have no potential: what the vertical inertia v̈ does with the arm h θ is no energy of the
+    model. It integrates to v̇ h θ θ̇, of which v̇ ≤ b θ̇. In finite kinematics H jumps by as much with a contact.
+    """
+    b, h = m.half_width, m.height
+    return 2.0 * b * h * theta / (m.inertia + h * h + b * b)
+
+
+@kernel
+def _swept(m, lean, drift, sinking, swollen):
+    """How far [rad] a base that leans by ``lean`` to one side tilts on, ``drift`` if it were to go on as it has.
+
+    A Bouc–Wen support under a share 1 + h θ/b of its load sinks (1 + h θ/b)ⁿ times as fast: the lean grows by itself,
+    by the factor exp(n h swollen · sinking/b²) while both sink by ``sinking`` [m] on average.
+    """
+    if m.law != BOUC_WEN:
+        return max(drift, 0.0)
+    grows = number(m.exponent) * m.height * swollen * sinking / (m.half_width * m.half_width)
+    if grows <= 1e-6:
+        return max(drift, 0.0)
+    factor = math.expm1(min(grows, 50.0))
+    return max(drift, 0.0) * factor / grows + max(lean, 0.0) * factor
+
+
+@kernel
+def outlook_on_springs(m, y, contact, base_left, base_right, peak, calm, drift_right, drift_left, sinking):
     """OPEN, DECIDED or LEANS, of state ``y`` whose supports are unstressed at ``base_left`` and ``base_right`` [m].
 
     Parameters
@@ -124,13 +154,17 @@ def outlook_on_springs(m, y, contact, base_left, base_right, peak, calm, drift_r
     drift_right, drift_left : float
         By how much the base will tilt further at most, to either side [rad], as far as can be foreseen: yielding
         springs ratchet on vibration.
+    sinking : float
+        By how much both supports will sink on average in the same time [m].
     """
     b, h, g = m.half_width, m.height, m.gravity
     stiffness = rocking_stiffness(m)
     softness = 0.5 * g / (m.yield_force * m.stiffness)  # static deflection
     tilt = 0.5 * (base_left - base_right) / b
     swollen = (stiffness + g * h) / stiffness
-    lean, drift_right, drift_left = tilt * swollen, drift_right * swollen, drift_left * swollen
+    lean = tilt * swollen
+    drift_right = _swept(m, lean, drift_right * swollen, sinking, swollen)
+    drift_left = _swept(m, -lean, drift_left * swollen, sinking, swollen)
     limit = min(peak, summit(m))
     if abs(lean) >= summit(m):
         return LEANS
@@ -148,6 +182,8 @@ def outlook_on_springs(m, y, contact, base_left, base_right, peak, calm, drift_r
         rocking = (m.inertia + h * h) * y.omega * y.omega + stiffness * (y.theta - lean) * (y.theta - lean)
         reach = math.sqrt(rocking / softened)
         sway = lean * (stiffness / softened)  # the lean swells with the weight
+        if m.finite is not None:  # to second order, sin² θ stores less than θ²
+            reach *= 1.0 + swollen * limit * limit / 6.0
         furthest = max(max(sway, lean) + drift_right, max(-sway, -lean) + drift_left) + reach
         return DECIDED if furthest <= limit * (1.0 + SEEN) else OPEN
     at = geometry(m, y.theta)
@@ -160,9 +196,7 @@ def outlook_on_springs(m, y, contact, base_left, base_right, peak, calm, drift_r
     spring = m.yield_force * m.yield_deflection
     stored = g * y.v + gained + 0.5 * spring * (y.z_left * y.z_left + y.z_right * y.z_right)
     at_lean += g * (middle - softness) + 0.5 * g * softness * (1.0 + uneven * uneven)
-    energy = (1.0 + RETURNED) * (kinetic + stored - at_lean)
-    if energy > g * _capacity(m) * b * max(limit - abs(lean), 0.0) + 1e-12 * g * softness:
-        return OPEN  # more than the supports' greatest moment would take all the way
+    energy = (1.0 + _returned(m, limit)) * (kinetic + stored - at_lean)
     least = min(_climb(m, lean, limit - drift_right), _climb(m, -lean, limit - drift_left))
     return DECIDED if energy <= least + 1e-12 * g * softness else OPEN
 

@@ -110,6 +110,7 @@ class Waiting(NamedTuple):
     last_drift_left: float  # likewise, between the last two, 0 before them
     last_drift_right: float
     midway: float  # greatest |θ| when half of the waiting is over [rad]
+    midway_tilt: float  # |tilt| of the base then [rad]
 
 
 def _lanes(tuple_type, without=()):

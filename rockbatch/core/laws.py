@@ -102,7 +102,8 @@ def branch_after_jump(law, yields, z, velocity, rest):
 
 
 @kernel
-def _number(n):
+def number(n):
+    """The exponent as a number; None stands for 5."""
     return 5.0 if n is None else n
 
 
@@ -110,7 +111,7 @@ def _number(n):
 def static_deflection(force, exponent):
     """Deflection/δ_y of a Bouc–Wen spring first loaded to ``force``/F_y < 1: ∫ ds/(1 − sⁿ) from 0, by its series."""
     ratio = power(force, exponent)
-    n = _number(exponent)
+    n = number(exponent)
     term = force
     total = 0.0
     k = 0

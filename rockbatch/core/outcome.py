@@ -11,7 +11,8 @@ WINDOWS = 32
 """Parts of a run, equal in time, in each of which its greatest |θ| at a sample is kept: its trajectory in short."""
 
 GROWTH = 1e-4
-"""Of α: by how much |θ| may grow in the second half of the waiting without the pier counting as leaning further."""
+"""Of α: by how much |θ| and the base's tilt may grow in the second half of the waiting without the pier counting as
+leaning further."""
 
 
 @kernel

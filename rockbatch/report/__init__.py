@@ -1,18 +1,22 @@
 """The report of finished results: one HTML file that needs nothing else. Never loads the compiler."""
 
+import hashlib
+import json
 from collections.abc import Sequence
 from pathlib import Path
 
 from rockbatch.checks import read_verdicts
 from rockbatch.files import write_whole
-from rockbatch.report import accuracy
-from rockbatch.report.compare import comparison
-from rockbatch.report.finished import finished, read
-from rockbatch.report.page import page
-from rockbatch.response import Response
-from rockbatch.store import open_results
+from rockbatch.report.contents import Contents, read
+from rockbatch.report.finished import read as read_finished
+from rockbatch.report.page import comparison, page
+from rockbatch.report.pair import pair
+from rockbatch.results.response import Response
+from rockbatch.study import Study
 
-__all__ = ["write_comparison", "write_report"]
+REPORT = "report.html"
+
+__all__ = ["REPORT", "write_analyses", "write_comparison", "write_report"]
 
 
 def write_report(directory: Path, responses: Sequence[Response] | None = None, *, out: Path | None = None) -> Path:
@@ -35,12 +39,8 @@ def write_report(directory: Path, responses: Sequence[Response] | None = None, *
     Raises ``InputError`` where the results are missing, damaged or do not belong together.
     """
     directory = Path(directory)
-    target = out or directory / "report.html"
-    results = open_results(directory)
-    study = finished(results)
-    levels = accuracy.read(directory / "accuracy.csv", study.info["study"]["sha256"])
-    shown = results.responses if responses is None else responses
-    write_whole(target, page(study, shown, levels, read_verdicts(directory)))
+    target = out or directory / REPORT
+    write_whole(target, page(read(directory, responses)))
     return target
 
 
@@ -52,5 +52,29 @@ def write_comparison(first: Path, second: Path, *, out: Path | None = None) -> P
     """
     first, second = Path(first), Path(second)
     target = out or first / f"compare-{second.resolve().name}.html"
-    write_whole(target, comparison((read(first), read_verdicts(first)), (read(second), read_verdicts(second))))
+    studies = read_finished(first), read_finished(second)
+    verdicts = read_verdicts(first), read_verdicts(second)
+    write_whole(target, comparison(pair(studies, verdicts)))
     return target
+
+
+def write_analyses(directory: Path, study: Study) -> Path:
+    """Write the report again with the analyses in it, if the folder holds results of the study; returns its path.
+
+    Otherwise they get a page of their own, ``analyses.html``.
+    """
+    sha256 = hashlib.sha256(study.text.encode()).hexdigest()
+    if _holds_results(directory, sha256):
+        return write_report(directory)
+    target = directory / "analyses.html"
+    told = {"title": study.title, "notes": study.notes, "text": study.text, "sha256": sha256}
+    write_whole(target, page(Contents(directory, told)))
+    return target
+
+
+def _holds_results(directory: Path, sha256: str) -> bool:
+    try:
+        info = json.loads((directory / "run.json").read_text(encoding="utf-8"))
+        return bool(info["study"]["sha256"] == sha256) and (directory / "peaks.csv").exists()
+    except (OSError, ValueError, KeyError, TypeError):
+        return False

@@ -2,29 +2,29 @@
 
 import base64
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Iterable
 from importlib.resources import files
 from typing import NamedTuple
 
+from rockbatch.report.drawing.svg import markers
 from rockbatch.report.markup import Markup, join, tag
-from rockbatch.report.svg import markers
 
 
 class Section(NamedTuple):
-    """A part of the page under a heading; left out where it has no content."""
+    """A part of the page: its heading, its anchor (the ``id`` that links go to), and what stands under the heading."""
 
     heading: str
-    name: str
+    anchor: str
     content: Markup
 
 
-def document(kind: str, title: str, sections: Sequence[Section]) -> str:
-    """The whole file as HTML."""
+def document(kind: str, title: str, sections: Iterable[Section | None]) -> str:
+    """The whole file as HTML; sections that are None are left out."""
     style, script = (
         files(__package__).joinpath(name).read_text(encoding="utf-8") for name in ("style.css", "script.js")
     )
-    shown = [section for section in sections if section.content]
-    links = [tag("a", section.heading, href=f"#{section.name}") for section in shown]
+    shown = [section for section in sections if section is not None]
+    links = [tag("a", section.heading, href=f"#{section.anchor}") for section in shown]
     # Only the script below may run, and nothing is fetched, whatever a record is called
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
     policy = f"default-src 'none'; style-src 'unsafe-inline'; script-src 'sha256-{digest}'"
@@ -37,7 +37,7 @@ def document(kind: str, title: str, sections: Sequence[Section]) -> str:
         tag("title", title),
         tag("style", Markup(style)),
     )
-    parts = [tag("section", tag("h2", one.heading), one.content, id=one.name) for one in shown]
+    parts = [tag("section", tag("h2", one.heading), one.content, id=one.anchor) for one in shown]
     body = tag(
         "body",
         markers(),

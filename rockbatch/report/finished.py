@@ -11,7 +11,7 @@ from rockbatch.checks.suite import simulated
 from rockbatch.errors import InputError
 from rockbatch.report.labels import Key, Series, named, quantity
 from rockbatch.report.markup import number
-from rockbatch.saved import Saved, read_saved
+from rockbatch.results.reading import Saved, read_saved
 from rockbatch.study import PIER_KEYS
 
 if TYPE_CHECKING:
@@ -36,6 +36,8 @@ class Finished:
         Words for the varied values of the pier, one for each; [""] where none varies.
     places, pier_places : dict
         Place of each foundation in ``series``, and of the varied values of each pier in ``piers``.
+    cases : dict
+        What run.json says about each foundation and pier that have runs, by their places.
     """
 
     saved: Saved
@@ -44,6 +46,7 @@ class Finished:
     piers: list[str]
     places: dict[Key, int]
     pier_places: dict[Key, int]
+    cases: dict[tuple[int, int], dict[str, Any]]
 
     @property
     def info(self) -> dict[str, Any]:
@@ -107,11 +110,11 @@ def finished(saved: Saved) -> Finished:
     """Every run of ``saved`` with its pier, its foundation and its ground motion."""
     info, varied = saved.info, saved.info["varied"]
     grouped: dict[Key, list[dict[str, Any]]] = {}
-    alphas: dict[tuple[Key, Key], float] = {}
+    entries: dict[tuple[Key, Key], dict[str, Any]] = {}
     for case in info["cases"]:
         key = foundation(case["case"], case["columns"], varied)
         grouped.setdefault(key, []).append(case)
-        alphas[key, _pier(case["columns"], varied)] = float(case["pier"]["alpha"])
+        entries[key, _pier(case["columns"], varied)] = case
     series = named(grouped, [key for key in varied if _of_foundation(key)])
     places = {key: place for place, key in enumerate(series)}
 
@@ -119,13 +122,16 @@ def finished(saved: Saved) -> Finished:
     kinds = runs.groupby(["case", *varied], sort=False, dropna=False).ngroup() if len(runs) else runs["scale"]
     piers: dict[Key, int] = {}
     facts: dict[int, tuple[int, int, float]] = {}
+    cases: dict[tuple[int, int], dict[str, Any]] = {}
     unknown = set()
     for row in as_dicts(runs.assign(kind=kinds).drop_duplicates("kind")):
         pair = foundation(row["case"], row, varied), _pier(row, varied)
-        if pair not in alphas:
+        if pair not in entries:
             unknown.add(str(row["case"]))
             continue
-        facts[row["kind"]] = places[pair[0]], piers.setdefault(pair[1], len(piers)), alphas[pair]
+        place = places[pair[0]], piers.setdefault(pair[1], len(piers))
+        cases[place] = entries[pair]
+        facts[row["kind"]] = *place, float(entries[pair]["pier"]["alpha"])
     if unknown:
         raise InputError(
             f"{saved.directory}: peaks.csv has runs of case {', '.join(sorted(unknown))} that run.json does not list; "
@@ -138,7 +144,7 @@ def finished(saved: Saved) -> Finished:
     runs["with_vertical"] = _with_vertical(runs)
     keys = [key for key in varied if key in PIER_KEYS]
     words = [", ".join(map(quantity, keys, values)) for values in piers] or [""]
-    return Finished(saved, runs, list(series.values()), words, places, piers)
+    return Finished(saved, runs, list(series.values()), words, places, piers, cases)
 
 
 def as_dicts(runs: "pd.DataFrame") -> list[dict[str, Any]]:

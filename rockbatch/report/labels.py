@@ -47,6 +47,11 @@ def quantity(key: str, value: object) -> str:
     return f"{symbol} {value}"
 
 
+def counted(count: int, word: str) -> str:
+    """A number of things: "one run", "30 runs"."""
+    return f"{count:,} {word}s" if count != 1 else f"one {word}"
+
+
 def symbol(key: str) -> str:
     """Head of a column that holds values of a study key: "p [rad/s]"."""
     letter, unit = SYMBOLS.get(key, ("", ""))

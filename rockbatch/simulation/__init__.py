@@ -1,5 +1,6 @@
 """The only door to the core: piers on bases under motions, with fixed steps or to a tolerance."""
 
+from rockbatch.core.kernel import core_digest
 from rockbatch.simulation.models import (
     block,
     first_substeps,
@@ -9,7 +10,7 @@ from rockbatch.simulation.models import (
     springs,
 )
 from rockbatch.simulation.runs import (
-    Scene,
+    Run,
     Stop,
     run_all_fixed,
     run_fixed,
@@ -19,9 +20,10 @@ from rockbatch.simulation.runs import (
 from rockbatch.simulation.settling import run_all_to_tolerance, run_to_tolerance
 
 __all__ = [
-    "Scene",
+    "Run",
     "Stop",
     "block",
+    "core_digest",
     "first_substeps",
     "ground_of",
     "housner_restitution",

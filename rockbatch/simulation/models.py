@@ -7,7 +7,17 @@ from rockbatch.core.ground import ground_rows
 from rockbatch.core.laws import LARGEST_WHOLE
 from rockbatch.core.types import BOUC_WEN, ELASTIC, EPP, Block, Springs
 from rockbatch.motions.motion import Motion, Samples
-from rockbatch.structure import Base, ElasticBase, Pier, RigidBase, YieldingBase, highest_frequency, rocking_frequency
+from rockbatch.pier import (
+    Base,
+    ElasticBase,
+    Pier,
+    RigidBase,
+    YieldingBase,
+    highest_frequency,
+    rocking_frequency,
+    vertical_frequency,
+    yield_deflection,
+)
 
 FREQUENCY_STEP = 0.2
 """Largest ω h of a first run; the second, with half the step, is then below 0.1, where outcomes were never wrong."""
@@ -31,13 +41,13 @@ def springs(pier: Pier, base: ElasticBase) -> Springs:
     if isinstance(base, YieldingBase):
         eta, law = base.eta, BOUC_WEN if base.spring == "bouc-wen" else EPP
         exponent = _exponent(base.n) if law == BOUC_WEN else None
-    omega_v = base.beta * pier.p
+    omega_v = vertical_frequency(pier, base)
     return Springs(
         half_width=float(pier.half_width),
         height=float(pier.height),
         inertia=float(pier.inertia),
         gravity=float(pier.gravity),
-        yield_deflection=float(eta * pier.gravity / omega_v**2),
+        yield_deflection=float(yield_deflection(pier, base)),
         stiffness=float(omega_v**2 / (eta * pier.gravity)),
         yield_force=float(0.5 * eta * pier.gravity),
         epsilon=float(base.epsilon),
@@ -105,6 +115,6 @@ def readings(pier: Pier, base: ElasticBase, dt: float) -> tuple[int, int]:
     """
     if not isinstance(base, YieldingBase):
         return 0, 0
-    after = READ_AFTER * 2.0 * math.pi / (base.beta * pier.p)
+    after = READ_AFTER * 2.0 * math.pi / vertical_frequency(pier, base)
     rocking = 2.0 * math.pi / rocking_frequency(pier, base)
     return math.ceil(after / dt), math.ceil(math.ceil(after / rocking) * rocking / dt)

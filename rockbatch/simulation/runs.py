@@ -27,10 +27,18 @@ from rockbatch.core.types import (
     SpringRun,
 )
 from rockbatch.motions.motion import Motion, Samples
-from rockbatch.outcome import Outcome
+from rockbatch.pier import (
+    Base,
+    Pier,
+    RigidBase,
+    YieldingBase,
+    tilt_over_residual,
+    vertical_frequency,
+    yield_deflection,
+)
+from rockbatch.results.outcome import Outcome
 from rockbatch.simulation.flight import cause_of_flight
 from rockbatch.simulation.models import block, first_substeps, ground_of, least_substeps, patience, readings, springs
-from rockbatch.structure import Base, Pier, RigidBase, YieldingBase
 
 MOST_STEPS = 1e8
 """Steps that a run may take to settle, about a quarter of a minute of work."""
@@ -59,7 +67,7 @@ _LATE_FLIGHT = "flew at {t:.2f} s, when nothing could exceed the peak any more; 
 
 
 @dataclass(frozen=True)
-class Scene:
+class Run:
     """What is simulated: a pier on a base under a motion."""
 
     pier: Pier
@@ -96,9 +104,9 @@ def _quiet_samples(quiet_s: float, dt: float) -> int:
     return math.ceil(quiet_s / dt - 1e-9)
 
 
-def _line(scene: Scene, substeps: int, quiet_s: float, first_row: int, wait: bool) -> tuple[float, ...]:
+def _line(run: Run, substeps: int, quiet_s: float, first_row: int, wait: bool) -> tuple[float, ...]:
     """A run as the core takes it: numbers only. Its motion begins at ``first_row`` of the ground."""
-    pier, base, motion = scene.pier, scene.base, scene.motion
+    pier, base, motion = run.pier, run.base, run.motion
     dt = float(motion.dt)
     timing = (dt, substeps, _quiet_samples(quiet_s, dt), first_row, motion.npts, patience(pier, dt) if wait else 0)
     if isinstance(base, RigidBase):
@@ -107,7 +115,7 @@ def _line(scene: Scene, substeps: int, quiet_s: float, first_row: int, wait: boo
 
 
 def written_run(
-    scene: Scene,
+    run: Run,
     substeps: int,
     quiet_s: float,
     rows: int,
@@ -116,12 +124,12 @@ def written_run(
     wait: bool = True,
 ) -> tuple[SpringRun | RigidRun, Samples]:
     """One run, and its history of at most ``rows`` rows; with ``every_step`` also between samples."""
-    lines, ground, stop = [_line(scene, substeps, quiet_s, 0, wait)], ground_of(scene.motion), Stop().flag
-    if isinstance(scene.base, RigidBase):
+    lines, ground, stop = [_line(run, substeps, quiet_s, 0, wait)], ground_of(run.motion), Stop().flag
+    if isinstance(run.base, RigidBase):
         written = np.recarray(rows, rigid.ROW)
         result = rigid.rock_side_by_side(lines, ground, stop, locate, every_step, written)[0]
         return rigid.rigid_run(result), numbers(written)
-    m = springs(scene.pier, scene.base)
+    m = springs(run.pier, run.base)
     written = np.recarray(rows, ROW)
     result = two_springs.rock_side_by_side(m.exponent, m.finite, lines, ground, stop, locate, every_step, written)[0]
     return two_springs.spring_run(result), numbers(written)
@@ -131,32 +139,30 @@ def run_fixed(
     pier: Pier, base: Base, motion: Motion, substeps: int, quiet_s: float = 2.0, locate: bool = True, wait: bool = True
 ) -> Outcome:
     """Run with ``substeps`` steps per sample, without an error estimate; see :func:`run_all_fixed`."""
-    outcome = run_all_fixed([Scene(pier, base, motion)], [substeps], quiet_s, Stop(), locate, wait)[0]
+    outcome = run_all_fixed([Run(pier, base, motion)], [substeps], quiet_s, Stop(), locate, wait)[0]
     assert outcome is not None
     return outcome
 
 
 def run_all_fixed(
-    scenes: Sequence[Scene],
+    runs: Sequence[Run],
     substeps: Sequence[int],
     quiet_s: float,
     stop: Stop,
     locate: bool = True,
     wait: bool = True,
 ) -> list[Outcome | None]:
-    """Runs with given steps per sample, side by side, in the order of ``scenes``; ``None`` for those that were stopped.
+    """Runs with given steps per sample, side by side, in the order of ``runs``; ``None`` for those that were stopped.
 
     What a run comes to does not depend on those beside it. With ``locate=False`` events take place at the end of their
     step: first order, for comparison only. With ``wait=False`` a run ends ``quiet_s`` after its record, whatever the
     pier then does. A step beyond the method's stability is not run; the outcome says how many it takes.
     """
-    return [
-        None if trial is None else trial.outcome for trial in try_all(scenes, substeps, quiet_s, stop, locate, wait)
-    ]
+    return [None if trial is None else trial.outcome for trial in try_all(runs, substeps, quiet_s, stop, locate, wait)]
 
 
 def try_all(
-    scenes: Sequence[Scene],
+    runs: Sequence[Run],
     substeps: Sequence[int],
     quiet_s: float,
     stop: Stop,
@@ -164,27 +170,25 @@ def try_all(
     wait: bool = True,
 ) -> list[Trial | None]:
     """As :func:`run_all_fixed`, with the trajectories in short."""
-    trials: list[Trial | None] = [
-        _refused(scene, steps, quiet_s) for scene, steps in zip(scenes, substeps, strict=True)
-    ]
+    trials: list[Trial | None] = [_refused(run, steps, quiet_s) for run, steps in zip(runs, substeps, strict=True)]
     alike: dict[tuple[float | int | None, bool | None] | None, list[int]] = {}
-    for i, scene in enumerate(scenes):
+    for i, run in enumerate(runs):
         if trials[i] is None:
-            alike.setdefault(_kernel_of(scene), []).append(i)
+            alike.setdefault(_kernel_of(run), []).append(i)
     for kernel, which in alike.items():
         first_rows: dict[int, int] = {}
         grounds: list[Samples] = []
         lines = []
         for i in which:
-            motion = scenes[i].motion
+            motion = runs[i].motion
             if id(motion) not in first_rows:
                 first_rows[id(motion)] = sum(map(len, grounds))
                 grounds.append(ground_of(motion))
-            lines.append(_line(scenes[i], substeps[i], quiet_s, first_rows[id(motion)], wait))
+            lines.append(_line(runs[i], substeps[i], quiet_s, first_rows[id(motion)], wait))
         ground = grounds[0] if len(grounds) == 1 else np.concatenate(grounds)
-        for i, (run, extremes) in zip(which, _rock(kernel, lines, ground, stop, locate), strict=True):
-            if run is not None:
-                trials[i] = Trial(_outcome(scenes[i], substeps[i], run), extremes)
+        for i, (found, extremes) in zip(which, _rock(kernel, lines, ground, stop, locate), strict=True):
+            if found is not None:
+                trials[i] = Trial(_outcome(runs[i], substeps[i], found), extremes)
     return trials
 
 
@@ -204,19 +208,19 @@ def _rock(
         yield None if result.status == RUNNING else two_springs.spring_run(result), result.extremes
 
 
-def _kernel_of(scene: Scene) -> tuple[float | int | None, bool | None] | None:
+def _kernel_of(run: Run) -> tuple[float | int | None, bool | None] | None:
     """What runs that share compiled code have in common: types of the springs' exponent and kinematics, if any."""
-    if isinstance(scene.base, RigidBase):
+    if isinstance(run.base, RigidBase):
         return None
-    m = springs(scene.pier, scene.base)
+    m = springs(run.pier, run.base)
     if m.exponent is None:
         return None, m.finite
     return 1 if isinstance(m.exponent, int) else 0.5, m.finite  # numbers that differ: 1 == 1.0
 
 
-def _refused(scene: Scene, substeps: int, quiet_s: float) -> Trial | None:
+def _refused(run: Run, substeps: int, quiet_s: float) -> Trial | None:
     """What a run comes to that is not to be run, else ``None``."""
-    pier, base, motion = scene.pier, scene.base, scene.motion
+    pier, base, motion = run.pier, run.base, run.motion
     least = least_substeps(pier, base, motion.dt)
     if substeps < least:
         return _not_run(
@@ -232,58 +236,59 @@ def _refused(scene: Scene, substeps: int, quiet_s: float) -> Trial | None:
     return None
 
 
-def _outcome(scene: Scene, substeps: int, run: SpringRun | RigidRun) -> Outcome:
-    """Outcome of what a run came to."""
-    pier, omega_v, t_impact = scene.pier, None, math.nan
-    status, reason = _STATUS[run.status]
+def _outcome(run: Run, substeps: int, found: SpringRun | RigidRun) -> Outcome:
+    """Outcome of what a run came to, as it was found."""
+    pier, omega_v, t_impact = run.pier, None, math.nan
+    status, reason = _STATUS[found.status]
     more: dict[str, Any] = {}
-    if isinstance(run, SpringRun):
-        assert not isinstance(scene.base, RigidBase)
-        more = _of_springs(scene, run, survived=status == "ok")
-        omega_v, t_impact = scene.base.beta * pier.p, run.t_impact
-    if run.status == FLIGHT:
-        reason = cause_of_flight(scene.motion, omega_v, pier.gravity, run.t_flight, t_impact)
+    if isinstance(found, SpringRun):
+        assert not isinstance(run.base, RigidBase)
+        more = _of_springs(run, found, survived=status == "ok")
+        omega_v, t_impact = vertical_frequency(pier, run.base), found.t_impact
+    if found.status == FLIGHT:
+        reason = cause_of_flight(run.motion, omega_v, pier.gravity, found.t_flight, t_impact)
     note = ""
-    if run.status == RESTLESS:
-        note = _RESTLESS.format(seconds=run.t_end - scene.motion.duration)
-    elif run.status == LATE_FLIGHT:
-        note = _LATE_FLIGHT.format(t=run.t_end)
+    if found.status == RESTLESS:
+        note = _RESTLESS.format(seconds=found.t_end - run.motion.duration)
+    elif found.status == LATE_FLIGHT:
+        note = _LATE_FLIGHT.format(t=found.t_end)
     return Outcome(
         status=status,
         reason=reason,
-        theta_max=min(run.theta_max, ON_ITS_SIDE),
-        t_max=run.t_max,
-        impacts=run.impacts,
-        separations=run.separations if isinstance(run, SpringRun) else run.lift_offs,
-        t_flight=None if math.isnan(run.t_flight) else run.t_flight,
-        t_end=run.t_end,
+        theta_max=min(found.theta_max, ON_ITS_SIDE),
+        t_max=found.t_max,
+        impacts=found.impacts,
+        separations=found.separations if isinstance(found, SpringRun) else found.lift_offs,
+        t_flight=None if math.isnan(found.t_flight) else found.t_flight,
+        t_end=found.t_end,
         substeps=substeps,
         note=note,
         **more,
     )
 
 
-def _of_springs(scene: Scene, run: SpringRun, survived: bool) -> dict[str, Any]:
+def _of_springs(run: Run, found: SpringRun, survived: bool) -> dict[str, Any]:
     """What only piers on springs have: residuals where the pier ``survived``, and what became of yielding springs."""
-    pier, base = scene.pier, scene.base
+    pier, base = run.pier, run.base
     assert not isinstance(base, RigidBase)
     more: dict[str, Any] = {}
     if survived:
         # From the base's tilt to the rotation, static on the deformed base (THEORY.md, 14)
-        lean = 1.0 / (1.0 - pier.gravity * pier.height / (base.beta * pier.p * pier.half_width) ** 2)
-        tilt = 0.5 * (run.base_left - run.base_right) / pier.half_width
-        more |= {"settlement": -0.5 * (run.base_left + run.base_right), "base_tilt": tilt, "theta_res": lean * tilt}
+        omega_v = vertical_frequency(pier, base)
+        lean = 1.0 / tilt_over_residual(pier.gravity, pier.height, pier.half_width, omega_v)
+        tilt = 0.5 * (found.base_left - found.base_right) / pier.half_width
+        more |= {"settlement": -0.5 * (found.base_left + found.base_right), "base_tilt": tilt, "theta_res": lean * tilt}
         if isinstance(base, YieldingBase):
-            more["t_read"] = run.t_read
-            if not math.isnan(run.drift_left):
-                more["settlement_drift"] = -0.5 * (run.drift_left + run.drift_right)
-                more["theta_res_drift"] = 0.5 * lean * (run.drift_left - run.drift_right) / pier.half_width
+            more["t_read"] = found.t_read
+            if not math.isnan(found.drift_left):
+                more["settlement_drift"] = -0.5 * (found.drift_left + found.drift_right)
+                more["theta_res_drift"] = 0.5 * lean * (found.drift_left - found.drift_right) / pier.half_width
     if isinstance(base, YieldingBase):
-        yield_deflection = base.eta * pier.gravity / (base.beta * pier.p) ** 2
-        more["ductility_left"] = -run.deepest_left / yield_deflection
-        more["ductility_right"] = -run.deepest_right / yield_deflection
-        more["dissipated_left"] = run.dissipated_left
-        more["dissipated_right"] = run.dissipated_right
+        deflection = yield_deflection(pier, base)
+        more["ductility_left"] = -found.deepest_left / deflection
+        more["ductility_right"] = -found.deepest_right / deflection
+        more["dissipated_left"] = found.dissipated_left
+        more["dissipated_right"] = found.dissipated_right
     return more
 
 

@@ -8,10 +8,10 @@ from enum import IntEnum
 import numpy as np
 
 from rockbatch.motions.motion import Motion
-from rockbatch.outcome import Outcome
+from rockbatch.pier import Base, Pier
+from rockbatch.results.outcome import Outcome
 from rockbatch.simulation.models import first_substeps
-from rockbatch.simulation.runs import LEFT_ALONE, MOST_STEPS, Scene, Stop, Trial, steps_of, try_all
-from rockbatch.structure import Base, Pier
+from rockbatch.simulation.runs import LEFT_ALONE, MOST_STEPS, Run, Stop, Trial, steps_of, try_all
 
 HALVINGS = 8
 """How often the step is halved before a run counts as not settled."""
@@ -30,7 +30,7 @@ FAR_BELOW = 3.0
 
 
 class Agreement(IntEnum):
-    """How far two runs of the same scene agree."""
+    """How far two trials of a run agree."""
 
     NONE = 0
     RESULTS = 1  # in outcome, peak and residual rotation; its time, or other extremes near the peak, have not settled
@@ -44,12 +44,12 @@ PAIRS = {Agreement.THROUGHOUT: 1, Agreement.APART: 2, Agreement.RESULTS: 4}
 
 def run_to_tolerance(pier: Pier, base: Base, motion: Motion, tolerance: float, quiet_s: float = 2.0) -> Outcome:
     """Run with ever smaller steps; see :func:`run_all_to_tolerance`."""
-    outcome = run_all_to_tolerance([Scene(pier, base, motion)], tolerance, quiet_s, Stop())[0]
+    outcome = run_all_to_tolerance([Run(pier, base, motion)], tolerance, quiet_s, Stop())[0]
     assert outcome is not None
     return outcome
 
 
-def run_all_to_tolerance(scenes: Sequence[Scene], tolerance: float, quiet_s: float, stop: Stop) -> list[Outcome | None]:
+def run_all_to_tolerance(runs: Sequence[Run], tolerance: float, quiet_s: float, stop: Stop) -> list[Outcome | None]:
     """Run each with ever smaller steps until the results agree to ``tolerance`` on θ_max/α and on θ_res/α.
 
     The finer result is kept, and the difference is its estimated error: the coarser one's, hence on the safe side.
@@ -59,21 +59,21 @@ def run_all_to_tolerance(scenes: Sequence[Scene], tolerance: float, quiet_s: flo
     :data:`HALVINGS`, or would take more than :data:`rockbatch.simulation.runs.MOST_STEPS` steps, keeps its best values
     and fails with the reason; counts that have not settled are a note. ``None`` for those that were stopped.
     """
-    settled: list[Outcome | None] = [None] * len(scenes)
-    first = [first_substeps(scene.pier, scene.base, scene.motion.dt) for scene in scenes]
-    levels = {i: [trial] for i, trial in enumerate(try_all(scenes, first, quiet_s, stop)) if trial is not None}
+    settled: list[Outcome | None] = [None] * len(runs)
+    first = [first_substeps(run.pier, run.base, run.motion.dt) for run in runs]
+    levels = {i: [trial] for i, trial in enumerate(try_all(runs, first, quiet_s, stop)) if trial is not None}
     agreements: dict[int, list[Agreement]] = {i: [] for i in levels}
     while levels:
-        for i in [i for i in levels if _steps_of_next(scenes[i], levels[i], quiet_s) > MOST_STEPS]:
-            more = f"; the next try would take {_steps_of_next(scenes[i], levels[i], quiet_s):.0e} steps"
-            settled[i] = _not_settled(scenes[i].pier, levels.pop(i), tolerance, more)
+        for i in [i for i in levels if _steps_of_next(runs[i], levels[i], quiet_s) > MOST_STEPS]:
+            more = f"; the next try would take {_steps_of_next(runs[i], levels[i], quiet_s):.0e} steps"
+            settled[i] = _not_settled(runs[i].pier, levels.pop(i), tolerance, more)
         going = list(levels)
         substeps = [2 * levels[i][-1].outcome.substeps for i in going]
-        for i, fine in zip(going, try_all([scenes[i] for i in going], substeps, quiet_s, stop), strict=True):
+        for i, fine in zip(going, try_all([runs[i] for i in going], substeps, quiet_s, stop), strict=True):
             if fine is None:
                 del levels[i]
                 continue
-            pier, coarse = scenes[i].pier, levels[i][-1]
+            pier, coarse = runs[i].pier, levels[i][-1]
             fine = replace(fine, outcome=_with_errors(fine.outcome, coarse.outcome, pier.alpha))
             levels[i].append(fine)
             agreements[i].append(agreement(fine, coarse, tolerance * pier.alpha, pier))
@@ -85,8 +85,8 @@ def run_all_to_tolerance(scenes: Sequence[Scene], tolerance: float, quiet_s: flo
     return settled
 
 
-def _steps_of_next(scene: Scene, levels: Sequence[Trial], quiet_s: float) -> float:
-    return steps_of(scene.motion, 2 * levels[-1].outcome.substeps, quiet_s)
+def _steps_of_next(run: Run, levels: Sequence[Trial], quiet_s: float) -> float:
+    return steps_of(run.motion, 2 * levels[-1].outcome.substeps, quiet_s)
 
 
 def _with_errors(fine: Outcome, coarse: Outcome, alpha: float) -> Outcome:

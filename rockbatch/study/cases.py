@@ -7,7 +7,7 @@ from itertools import product
 from typing import Any, NamedTuple
 
 from rockbatch.errors import InputError
-from rockbatch.structure import Base, ElasticBase, Pier, RigidBase, YieldingBase, least_beta, problems
+from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, YieldingBase, least_beta, problems
 from rockbatch.toml.kinds import choice, number, positive, shown, text
 from rockbatch.toml.reader import Key, Setting, Table, TomlFile
 

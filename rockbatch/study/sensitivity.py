@@ -7,7 +7,7 @@ from typing import Any
 
 from rockbatch.checks.statistics import STATISTICS
 from rockbatch.errors import InputError
-from rockbatch.structure import problems
+from rockbatch.pier import problems
 from rockbatch.study.ranges import range_of
 from rockbatch.study.spec import Case, Study
 from rockbatch.toml.kinds import KindError, boolean, choice, count, number, positive, shown

@@ -8,7 +8,7 @@ from rockbatch.checks.rules import Rule
 from rockbatch.motions.baseline import Offset
 from rockbatch.motions.scaling import Target
 from rockbatch.motions.selection import Selection
-from rockbatch.structure import Base, Pier
+from rockbatch.pier import Base, Pier
 
 
 @dataclass(frozen=True)

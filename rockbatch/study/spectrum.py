@@ -8,7 +8,7 @@ import numpy as np
 
 from rockbatch.errors import InputError
 from rockbatch.motions.pulses import SHAPES
-from rockbatch.structure import Pier, problems
+from rockbatch.pier import Pier, problems
 from rockbatch.study.cases import read_cases
 from rockbatch.study.motions import check_shape
 from rockbatch.study.ranges import Range, range_of

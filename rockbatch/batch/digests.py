@@ -1,0 +1,56 @@
+"""What rows depend on, as digests: those of an earlier process count where all of them are the same."""
+
+import hashlib
+from collections.abc import Iterable, Iterator
+from functools import cache
+from pathlib import Path
+
+from rockbatch.motions import Motion, MotionSet
+from rockbatch.simulation import core_digest
+from rockbatch.study import Study
+
+PACKAGES = ("core", "simulation", "motions", "study", "checks", "toml", "results", "batch", "analysis")
+"""Packages that decide what a row says, or which runs come next. The others only show it: commands, report."""
+
+MODULES = ("pier.py", "units.py", "files.py", "errors.py")
+"""Those at the top that do."""
+
+_TOP = Path(__file__).parents[1]
+
+
+def digests(motions: Iterable[Motion], **settings: object) -> dict[str, str]:
+    """What rows depend on, as a :class:`Journal` wants it: motions, settings (by their ``repr``), and the program."""
+    found = {name: hashlib.sha256(repr(value).encode()) for name, value in settings.items()}
+    found["motions"] = hashlib.sha256()
+    for motion in motions:
+        found["motions"].update(repr((motion.name, motion.dt, motion.npts, motion.initial)).encode())
+        for samples in (motion.horizontal, motion.vertical):
+            found["motions"].update(b"none" if samples is None else samples.tobytes())
+    return {name: each.hexdigest()[:16] for name, each in found.items()} | {"program": program()}
+
+
+def study_digests(study: Study, motions: MotionSet) -> dict[str, str]:
+    """What the rows of a study depend on; not its title, its checks or its comments."""
+    return digests(
+        motions.motions,
+        cases=study.cases,
+        scales=(study.motions.polarity, study.motions.scale),
+        numerics=(study.numerics, study.output.both_laws, study.output.ledger),
+    )
+
+
+def sources() -> Iterator[Path]:
+    """The modules that take part in what a row says, in a fixed order."""
+    for name in MODULES:
+        yield _TOP / name
+    for package in PACKAGES:
+        yield from sorted((_TOP / package).rglob("*.py"))
+
+
+@cache
+def program() -> str:
+    """Digest of what outcomes depend on beside their runs: the modules that take part, and the compiler."""
+    digest = hashlib.sha256(core_digest().encode())
+    for path in sources():
+        digest.update(path.relative_to(_TOP).as_posix().encode() + b"\0" + path.read_bytes() + b"\0")
+    return digest.hexdigest()[:16]

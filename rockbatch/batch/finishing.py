@@ -1,0 +1,131 @@
+"""What makes a folder of results: from finished runs to the table, what was run, histories, checks and the report."""
+
+import datetime
+import json
+import platform
+import sys
+from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from rockbatch._version import __version__
+from rockbatch.batch.carrying_out import to_simulate
+from rockbatch.batch.journal import Journal
+from rockbatch.batch.kept_histories import keep_histories, kept
+from rockbatch.batch.plan import Plan
+from rockbatch.batch.threads import cores
+from rockbatch.checks import Verdict, write_verdicts
+from rockbatch.checks.verdicts import CHECKS
+from rockbatch.errors import InputError
+from rockbatch.motions import MotionSet
+from rockbatch.report import REPORT, write_report
+from rockbatch.results.checking import verdicts
+from rockbatch.results.columns import PEAKS, unusable_rows
+from rockbatch.results.histories_file import HISTORIES
+from rockbatch.results.reading import Saved, read_saved
+from rockbatch.results.run_json import INFO, describe, write_info
+from rockbatch.study import Study
+
+Progress = Callable[[int], AbstractContextManager[Callable[[int], object] | None]]
+"""Asked, with a number of things to do, for a context that is called with the number of those that are done."""
+
+VERSIONS_OF = ("numba", "numpy", "pandas", "obspy", "h5py")
+"""Packages whose versions run.json names."""
+
+
+@dataclass(frozen=True, eq=False)
+class FinishedBatch:
+    """What was left in a folder.
+
+    Attributes
+    ----------
+    saved : Saved
+        ``peaks.csv`` and ``run.json``.
+    verdicts : list of Verdict
+        Those of the study's checks; empty where it has none.
+    files : tuple of Path
+        Table, run.json, histories, checks and report, those that were written.
+    without : InputError or None
+        Why histories that the study asks for are not there.
+    """
+
+    saved: Saved
+    verdicts: list[Verdict]
+    files: tuple[Path, ...]
+    without: InputError | None
+
+
+def what_was_run(study: Study, motions: MotionSet, runs: Plan, digest: dict[str, str]) -> dict[str, Any]:
+    """What run.json says, but for what the runs cost."""
+    return {
+        "rockbatch": __version__,
+        "created": datetime.datetime.now().astimezone().isoformat(timespec="seconds"),
+        "command": ["rockbatch", *sys.argv[1:]],
+        **describe(study, motions),
+        "versions": _versions(),
+        "machine": f"{platform.system()} {platform.machine()}, {cores()} processors",
+        "runs": len(to_simulate(runs, range(len(runs)))),
+        "digest": digest,
+    }
+
+
+def cost_of_finished(directory: Path, info: dict[str, Any]) -> dict[str, Any] | None:
+    """What the runs in ``directory`` cost, if they are those of ``info``, all of them; else None."""
+    try:
+        earlier = json.loads((directory / INFO).read_text(encoding="utf-8"))
+        same = all(earlier[name] == info[name] for name in ("digest", "runs", "varied", "unusable"))
+        cost = {name: earlier[name] for name in ("jobs", "wall_s", "kept")}
+    except (OSError, ValueError, LookupError, TypeError):
+        return None
+    return cost if same and (directory / PEAKS).exists() else None
+
+
+def write_peaks(journal: Journal, motions: MotionSet) -> None:
+    """Write peaks.csv; what belongs to earlier ones goes first, so that they cannot be mixed up."""
+    directory = journal.path.parent
+    for name in (INFO, HISTORIES, CHECKS, REPORT):
+        (directory / name).unlink(missing_ok=True)
+    journal.write_in_order(directory / PEAKS, unusable_rows(motions))
+
+
+def finish(
+    directory: Path, study: Study, runs: Plan, info: dict[str, Any], progress: Progress | None = None
+) -> FinishedBatch:
+    """Write run.json, histories, checks and the report beside peaks.csv.
+
+    Parameters
+    ----------
+    info : dict
+        What run.json is to say: :func:`what_was_run`, ``jobs``, ``wall_s`` and ``kept``.
+    progress : function, optional
+        See :data:`Progress`; of the histories that are kept.
+    """
+    write_info(directory, info)
+    saved = read_saved(directory)
+    histories, without = _keep_histories(saved, study, runs, progress)
+    judged = verdicts(saved) if study.checks else []
+    checks = write_verdicts(directory, judged) if study.checks else None
+    written = (directory / PEAKS, directory / INFO, histories, checks, write_report(directory))
+    return FinishedBatch(saved, judged, tuple(path for path in written if path), without)
+
+
+def _keep_histories(
+    saved: Saved, study: Study, runs: Plan, progress: Progress | None
+) -> tuple[Path | None, InputError | None]:
+    """Write the histories that the study asks for: their file, and why some are not in it."""
+    number = len(kept(study, saved.peaks.iloc[: len(runs)]))
+    try:
+        with progress(number) if progress else nullcontext() as told:
+            path = keep_histories(saved, study, runs, None if told is None else lambda: told(1))
+    except InputError as error:
+        return None, error
+    if path is None:
+        (saved.directory / HISTORIES).unlink(missing_ok=True)
+    return path, None
+
+
+def _versions() -> dict[str, str]:
+    return {"python": platform.python_version(), **{name: version(name) for name in VERSIONS_OF}}

@@ -1,0 +1,107 @@
+"""Runs side by side: which go into a group, and what a group comes to."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from rockbatch.batch.plan import PlannedRun
+from rockbatch.errors import InputError
+from rockbatch.motions import Motion
+from rockbatch.pier import YieldingBase
+from rockbatch.results.columns import TERMS
+from rockbatch.results.outcome import Outcome
+from rockbatch.simulation import Run, Stop, first_substeps, run_all_fixed, run_all_to_tolerance, steps_of
+from rockbatch.simulation.histories import energies, written
+from rockbatch.study import Numerics, Output, Study
+
+MOST_STEPS_OF_A_LEDGER = 1_000_000
+"""Longer runs have no ledger in the table: each is written down whole, 100 bytes a step."""
+
+LEAST_GROUP, MOST_GROUP = 32, 1024
+"""Runs in a group: enough to fill the lanes; few enough that little is lost when the last ones leave them empty."""
+
+STEPS_OF_A_GROUP = 2e7
+"""About a second of work: how long an interrupt or the progress may have to wait, and what a crash can lose."""
+
+NOTHING_MORE = Output(both_laws=False)
+
+
+def groups(runs: Sequence[PlannedRun], numerics: Numerics, jobs: int, most: int = MOST_GROUP) -> Iterator[range]:
+    """Consecutive runs to be simulated side by side, in order: a share for every thread, a second's work at most.
+
+    ``most`` is the greatest number of runs in a group.
+    """
+    share = len(runs) // (3 * jobs)
+    most = min(max(share, LEAST_GROUP), most)
+    first, work = 0, 0.0
+    for i, run in enumerate(runs):
+        substeps = numerics.substeps or 3 * first_substeps(run.case.pier, run.case.base, run.motion.dt)
+        work += steps_of(run.motion, substeps, numerics.quiet_s)
+        if i + 1 - first == most or work >= STEPS_OF_A_GROUP:
+            yield range(first, i + 1)
+            first, work = i + 1, 0.0
+    if first < len(runs):
+        yield range(first, len(runs))
+
+
+def outcomes_of(
+    runs: Sequence[PlannedRun], numerics: Numerics, output: Output = NOTHING_MORE, stop: Stop | None = None
+) -> list[Outcome | None]:
+    """Simulate a group of runs, with what ``output`` asks for; ``None`` for those that ``stop`` has stopped."""
+    stop = stop or Stop()
+    simulated = [planned.run for planned in runs]
+    quiet_s = numerics.quiet_s
+    if numerics.substeps is not None:
+        outcomes = run_all_fixed(simulated, [numerics.substeps] * len(simulated), quiet_s, stop)
+    else:
+        assert numerics.tolerance is not None  # load_study gives one of the two
+        outcomes = run_all_to_tolerance(simulated, numerics.tolerance, quiet_s, stop)
+    if output.both_laws:
+        outcomes = _with_other_law(simulated, outcomes, quiet_s, stop)
+    if output.ledger:
+        outcomes = [
+            outcome and _with_ledger(run, outcome, quiet_s, stop)
+            for run, outcome in zip(simulated, outcomes, strict=True)
+        ]
+    return outcomes
+
+
+def _with_other_law(
+    runs: list[Run], outcomes: list[Outcome | None], quiet_s: float, stop: Stop
+) -> list[Outcome | None]:
+    """With the settlement of yielding springs by the other spring law, at the steps that were kept."""
+    yielding = {
+        i: replace(run, base=replace(run.base, spring="epp" if run.base.spring == "bouc-wen" else "bouc-wen"))
+        for i, (run, outcome) in enumerate(zip(runs, outcomes, strict=True))
+        if isinstance(run.base, YieldingBase) and outcome is not None and outcome.was_run
+    }
+    substeps = [outcomes[i].substeps for i in yielding]  # type: ignore[union-attr]
+    others = run_all_fixed(list(yielding.values()), substeps, quiet_s, stop)
+    for i, other in zip(yielding, others, strict=True):
+        outcome = outcomes[i]
+        assert outcome is not None
+        outcomes[i] = other and replace(outcome, settlement_other_law=other.settlement)
+    return outcomes
+
+
+def _with_ledger(run: Run, outcome: Outcome, quiet_s: float, stop: Stop) -> Outcome | None:
+    """With the energy ledger at the end of the run, unless that is very long or was refused."""
+    if stop:
+        return None
+    if not outcome.was_run or steps_of(run.motion, outcome.substeps, quiet_s) > MOST_STEPS_OF_A_LEDGER:
+        return outcome
+    try:
+        rows = written(run, outcome, quiet_s, every_step=True)
+    except InputError:  # too many impacts to be written down
+        return outcome
+    terms = energies(run, rows)
+    at_end = dict(zip(TERMS, map(float, terms[-1]), strict=True))
+    return replace(outcome, energies=at_end | {"remainder": float(abs(terms[:, -1]).max())})
+
+
+def compile_kernels(study: Study) -> None:
+    """Have every kernel that the study needs compiled, or loaded, before the clock starts."""
+    still = Motion("still", 1e-3, np.zeros(2))
+    runs = [PlannedRun(still, "+", 1.0, case) for case in study.cases]
+    outcomes_of(runs, replace(study.numerics, quiet_s=0.0), study.output)

@@ -1,0 +1,110 @@
+"""The runs whose histories are kept beside the peaks: run once more, and written down."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rockbatch.batch.plan import PlannedRun
+from rockbatch.errors import InputError
+from rockbatch.results.histories_file import HISTORIES, write
+from rockbatch.results.reading import Saved
+from rockbatch.results.response import Response
+from rockbatch.simulation import run_fixed
+from rockbatch.simulation.histories import histories
+from rockbatch.study import Study
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+def keep_histories(
+    saved: Saved, study: Study, runs: Sequence[PlannedRun], progress: Callable[[], object] | None = None
+) -> Path | None:
+    """Write ``histories.h5`` beside finished results: the histories that the study asks for.
+
+    They come one after another: memory holds two at most.
+
+    Parameters
+    ----------
+    saved : Saved
+        The results of all ``runs`` of ``study``.
+    progress : function, optional
+        Called after each of :func:`kept`.
+
+    Returns
+    -------
+    Path of the file, or None where there is nothing to keep. An earlier file is replaced as a whole, or not at all.
+
+    Raises
+    ------
+    InputError
+        If the disk is full; and at the end, when all others are written, if the history of some run is too long to be
+        held in memory.
+    """
+    table = saved.peaks.iloc[: len(runs)]  # then come the files that could not be used
+    chosen = kept(study, table)
+    if not chosen:
+        return None
+    path = saved.directory / HISTORIES
+    too_long: list[str] = []
+
+    def responses() -> Iterator[Response]:
+        for number in chosen:
+            try:
+                yield _response(study, runs[number], table.iloc[number])
+            except InputError as error:
+                too_long.extend(error.problems)
+            if progress is not None:
+                progress()
+
+    write(path, responses(), saved.info)
+    if too_long:
+        raise InputError(*too_long)
+    return path
+
+
+def kept(study: Study, table: "pd.DataFrame") -> list[int]:
+    """Numbers of the runs whose histories the study asks for; one that was refused has none.
+
+    ``table`` has a row for each run, in their order.
+    """
+    if study.output.histories == "none":
+        return []
+    if study.output.histories == "worst":
+        return worst(table, len(study.cases))
+    return [int(number) for number in table["theta_max_over_alpha"].notna().to_numpy().nonzero()[0]]
+
+
+def worst(table: "pd.DataFrame", cases: int) -> list[int]:
+    """Number of the worst run of each case, in the order of the cases; none for a case that only failed.
+
+    An overturned pier is worse than any rotation, and the earlier the worse. Flight that ended a run counts by the
+    rotation until then. Of equals the first is taken.
+    """
+    found = []
+    for first in range(cases):
+        rows = table.iloc[first::cases]
+        status = rows["status"].to_numpy()
+        falls = rows["t_end_s"].where(status == "overturned").to_numpy(float)
+        rotations = rows["theta_max_over_alpha"].where(status != "failed").to_numpy(float)
+        if not np.isnan(falls).all():
+            found.append(first + cases * int(np.nanargmin(falls)))
+        elif not np.isnan(rotations).all():
+            found.append(first + cases * int(np.nanargmax(rotations)))
+    return found
+
+
+def _response(study: Study, planned: PlannedRun, row: "pd.Series") -> Response:
+    case, run, quiet_s = planned.case, planned.run, study.numerics.quiet_s
+    # With the same steps it comes to the same bits; of the row only ten digits are on disk
+    outcome = run_fixed(run.pier, run.base, run.motion, int(row["substeps"]), quiet_s)
+    outcome = replace(outcome, status=row["status"], reason=row["reason"])
+    told = row.get("energy_input_J_kg", float("nan"))
+    return histories(
+        run, outcome, quiet_s, case.name, case.columns,
+        ledger=told == told,  # very long runs have none
+        polarity=planned.polarity, scale=planned.scale,
+    )  # fmt: skip

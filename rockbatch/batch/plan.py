@@ -1,0 +1,137 @@
+"""Which runs a study consists of, in the order of its table, each made when it is asked for."""
+
+from abc import abstractmethod
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import overload
+
+from rockbatch.motions import Motion, MotionSet
+from rockbatch.simulation import Run
+from rockbatch.study import Case, Study
+
+
+@dataclass(frozen=True)
+class PlannedRun:
+    """A row of the plan: a motion, already scaled and turned, in a case.
+
+    ``recorded`` is the motion before that, if it is at hand: a cluster is then sent each record once. ``mirror_of`` is the
+    polarity of the run whose mirror image this one is, if that is in the same table.
+    """
+
+    motion: Motion
+    polarity: str
+    scale: float
+    case: Case
+    recorded: Motion | None = None
+    mirror_of: str = ""
+
+    @property
+    def run(self) -> Run:
+        """What is simulated: the pier of the case on its base, under the motion."""
+        return Run(self.case.pier, self.case.base, self.motion)
+
+
+def scaled(motion: Motion, scale: float, polarity: str) -> Motion:
+    """A motion times ``scale``; with polarity "-" its horizontal component is reversed."""
+    if scale == 1.0 and polarity == "+":
+        return motion
+    return motion.times(scale, reverse=polarity == "-")
+
+
+class Runs(Sequence[PlannedRun]):
+    """Runs that are made when they are asked for, so that memory does not grow with their number."""
+
+    @abstractmethod
+    def run(self, number: int) -> PlannedRun:
+        """Run ``number``, from 0."""
+
+    def images(self, number: int) -> Sequence[int]:
+        """The numbers of a run and of its mirror image, if there is one: the first is simulated for both."""
+        return (number,)
+
+    @overload
+    def __getitem__(self, index: int) -> PlannedRun: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> list[PlannedRun]: ...
+
+    def __getitem__(self, index: int | slice) -> PlannedRun | list[PlannedRun]:
+        if isinstance(index, slice):
+            return [self.run(i) for i in range(*index.indices(len(self)))]
+        if not -len(self) <= index < len(self):
+            raise IndexError(index)
+        return self.run(index % len(self))
+
+    def __iter__(self) -> Iterator[PlannedRun]:
+        return map(self.run, range(len(self)))
+
+
+class Plan(Runs):
+    """The runs of a study: record, polarity, scale, case, the last running fastest.
+
+    Pier and foundation are symmetric: of both polarities one is the mirror image of the other.
+
+    Nothing is held but the study and its motions; runs beside each other share the same scaled motion.
+    """
+
+    def __init__(self, study: Study, motions: MotionSet) -> None:
+        self.motions = tuple(motions.motions)
+        self.polarity, self.scale = study.motions.polarity, study.motions.scale
+        self.cases = study.cases
+        self.simulated = study.motions.simulated
+        self._of_one = len(self.scale) * len(self.cases)  # runs of a motion in one polarity
+        self._simulated_first = sorted(range(len(self.polarity)), key=lambda i: self.polarity[i] != self.simulated)
+        self._moved = lru_cache(maxsize=2)(self._move)
+
+    def __len__(self) -> int:
+        return len(self.motions) * len(self.polarity) * len(self.scale) * len(self.cases)
+
+    def run(self, number: int) -> PlannedRun:
+        """See :class:`Runs`."""
+        rest, case = divmod(number, len(self.cases))
+        rest, scale = divmod(rest, len(self.scale))
+        motion, polarity = divmod(rest, len(self.polarity))
+        moved = self._moved(motion, scale, polarity)
+        sign = self.polarity[polarity]
+        mirror_of = "" if sign == self.simulated else self.simulated
+        return PlannedRun(moved, sign, self.scale[scale], self.cases[case], self.motions[motion], mirror_of)
+
+    def images(self, number: int) -> Sequence[int]:
+        """See :class:`Runs`."""
+        if len(self.polarity) == 1:
+            return (number,)
+        group, rest = divmod(number, self._of_one)
+        first = group - group % len(self.polarity)
+        return [(first + place) * self._of_one + rest for place in self._simulated_first]
+
+    def _move(self, motion: int, scale: int, polarity: int) -> Motion:
+        return scaled(self.motions[motion], self.scale[scale], self.polarity[polarity])
+
+
+class Made(Runs):
+    """``length`` runs, the i-th of which is ``make(i)``."""
+
+    def __init__(self, length: int, make: Callable[[int], PlannedRun]) -> None:
+        self._length, self._make = length, make
+
+    def __len__(self) -> int:
+        return self._length
+
+    def run(self, number: int) -> PlannedRun:
+        """See :class:`Runs`."""
+        return self._make(number)
+
+
+class Chosen(Runs):
+    """Some of ``runs``, by their indices."""
+
+    def __init__(self, runs: Sequence[PlannedRun], indices: Sequence[int]) -> None:
+        self.runs, self.indices = runs, indices
+
+    def __len__(self) -> int:
+        return len(self.indices)
+
+    def run(self, number: int) -> PlannedRun:
+        """See :class:`Runs`."""
+        return self.runs[self.indices[number]]

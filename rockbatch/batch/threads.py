@@ -1,0 +1,101 @@
+"""What carries out the runs of a batch: threads of this process, or a cluster (rockbatch.batch.dask)."""
+
+import os
+from collections.abc import Generator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from dataclasses import dataclass
+from types import TracebackType
+from typing import Protocol, Self
+
+from rockbatch.batch.groups import NOTHING_MORE, groups, outcomes_of
+from rockbatch.batch.plan import PlannedRun
+from rockbatch.results.outcome import Outcome
+from rockbatch.simulation import Stop
+from rockbatch.study import Numerics, Output
+
+AHEAD = 2
+"""Groups handed to each thread beforehand, so that none waits."""
+
+Outcomes = list[tuple[int, Outcome]]
+"""Index and outcome of the runs of a group."""
+
+
+class Engine(Protocol):
+    """Carries out runs; a context, within which it may be used several times. ``str`` says what it is: "2 threads"."""
+
+    @property
+    def jobs(self) -> int:
+        """Number of its threads."""
+
+    def __enter__(self) -> Self: ...
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None: ...
+
+    def outcomes(
+        self, runs: Sequence[PlannedRun], numerics: Numerics, output: Output = NOTHING_MORE
+    ) -> Generator[Outcomes, None, None]:
+        """Index and outcome of every run, group by group, as they finish.
+
+        What a run comes to depends neither on the engine nor on the others of its group, only the order does. After
+        Ctrl-C comes what is finished by then, and ``KeyboardInterrupt``.
+        """
+
+
+def cores() -> int:
+    """Processors that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+@dataclass(frozen=True)
+class Threads:
+    """Threads of this process; the kernels release the interpreter."""
+
+    jobs: int
+
+    def __str__(self) -> str:
+        return f"{self.jobs} thread{'s' * (self.jobs > 1)}"
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Nothing stays: threads live as long as a batch."""
+
+    def outcomes(
+        self, runs: Sequence[PlannedRun], numerics: Numerics, output: Output = NOTHING_MORE
+    ) -> Generator[Outcomes, None, None]:
+        """See :class:`Engine`."""
+        waiting = groups(runs, numerics, self.jobs)
+        pending: dict[Future[list[Outcome | None]], range] = {}
+        stop = Stop()
+        pool = ThreadPoolExecutor(self.jobs)
+        try:
+            while True:
+                while len(pending) < AHEAD * self.jobs and (group := next(waiting, None)):
+                    members = runs[group.start : group.stop]
+                    pending[pool.submit(outcomes_of, members, numerics, output, stop)] = group
+                if not pending:
+                    return
+                done, _ = wait(pending, return_when=FIRST_COMPLETED)
+                for future in done:
+                    found = future.result()
+                    yield finished(pending.pop(future), found)
+        except (KeyboardInterrupt, Exception):  # what is finished by then is not lost
+            stop.set()
+            pool.shutdown(wait=True, cancel_futures=True)
+            for future, group in pending.items():
+                if not future.cancelled() and future.exception() is None:
+                    yield finished(group, future.result())
+            raise
+        finally:
+            stop.set()
+            pool.shutdown(wait=True, cancel_futures=True)
+
+
+def finished(group: range, found: Sequence[Outcome | None]) -> Outcomes:
+    """The runs of a group with their outcomes, but for those that were stopped."""
+    return [(i, outcome) for i, outcome in zip(group, found, strict=True) if outcome is not None]

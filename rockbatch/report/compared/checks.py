@@ -1,0 +1,16 @@
+"""Whether the piers of both studies pass."""
+
+from rockbatch.report.document import Section
+from rockbatch.report.markup import join, tag
+from rockbatch.report.pair import SIDES, Pair
+from rockbatch.report.sections import verdicts
+
+
+def section(pair: Pair) -> Section:
+    """The answer of each study, and every check in every case."""
+    parts: list[object] = []
+    for name, judged in zip(SIDES, pair.verdicts, strict=True):
+        parts += [tag("h3", name), tag("div", verdicts.answer(judged))]
+        if judged:
+            parts += [verdicts.legend(), verdicts.matrix(judged)]
+    return Section("Does it pass", "checks", join(*parts))

@@ -1,0 +1,52 @@
+"""What a folder holds, as the sections of its report see it."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from rockbatch.checks import Verdict, read_verdicts
+from rockbatch.report import finished_analysis
+from rockbatch.report.finished import Finished, finished
+from rockbatch.report.finished_analysis import FinishedAnalysis
+from rockbatch.results.opened import open_results
+from rockbatch.results.response import Response
+
+
+@dataclass(frozen=True, eq=False)
+class Contents:
+    """All that a report can tell of; what a folder lacks is None or empty, and its sections are left out.
+
+    Attributes
+    ----------
+    directory : Path
+        The folder.
+    study : mapping
+        ``path``, ``title``, ``notes``, ``text`` and ``sha256`` of the study file, as run.json has them.
+    finished : Finished, optional
+        What ``rockbatch run`` left.
+    responses : sequence of Response
+        Runs whose histories are shown.
+    verdicts : sequence of Verdict
+        What ``rockbatch check`` found.
+    """
+
+    directory: Path
+    study: Mapping[str, Any]
+    finished: Finished | None = None
+    responses: Sequence[Response] = ()
+    verdicts: Sequence[Verdict] = ()
+
+    def analysis(self, name: str) -> FinishedAnalysis | None:
+        """The analysis that left NAME.json; None where there is none of this state of the study."""
+        return finished_analysis.read(self.directory, name, self.study["sha256"])
+
+
+def read(directory: Path, responses: Sequence[Response] | None = None) -> Contents:
+    """All that the folder of a run holds; ``responses`` are shown instead of those in ``histories.h5``.
+
+    Raises ``InputError`` where the results are missing, damaged or do not belong together.
+    """
+    results = open_results(directory)
+    shown = results.responses if responses is None else responses
+    return Contents(directory, results.info["study"], finished(results), shown, read_verdicts(directory))

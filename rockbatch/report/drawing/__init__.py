@@ -1,0 +1,1 @@
+"""Pictures as SVG: shapes, axes, and what the report draws with them."""

@@ -1,0 +1,112 @@
+"""One run in little: the curves of the paper's Fig. 5 thinned to what a picture shows, and its loops."""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from rockbatch.pier import ElasticBase, RigidBase, YieldingBase, yield_deflection
+from rockbatch.report.drawing.axes import Axes, Scale
+from rockbatch.report.drawing.svg import Array, curve, lowered, text, thin
+from rockbatch.report.markup import Markup, join
+from rockbatch.results.response import Response
+
+PIXELS = 200  # of one history, across
+QUANTITIES = ("θ/α", "θ̇/(αp)", "E/M [J/kg]", "üg/g")
+SEPARATE = ("separation", "lift-off")
+LOOPS_HEIGHT = 118.0  # px
+
+
+@dataclass(frozen=True, eq=False)
+class History:
+    """What is drawn of a :class:`Response`, without the response itself: many of them are in the memory at once.
+
+    Attributes
+    ----------
+    curves : list
+        Abscissae [s] and ordinates of each of :data:`QUANTITIES`, with every extremum that a pixel can show.
+    impacts, separations, flights : ndarray
+        Times of the events [s]; of impacts and separations not more than can be told apart.
+    peak : tuple of float
+        Time and θ/α of the largest rotation.
+    end : tuple of float
+        Time and θ/α at the end.
+    band : float
+        |θ/α| up to which a weakly rocking pier keeps both supports: paper, eq. 10. Zero on the rigid base.
+    loops : Markup
+        Force against deflection of both springs; empty where they do not yield.
+    """
+
+    rigid: bool
+    status: str
+    curves: list[tuple[Array, Array]]
+    impacts: Array
+    separations: Array
+    flights: Array
+    peak: tuple[float, float]
+    end: tuple[float, float]
+    band: float
+    loops: Markup
+
+
+def reduced(response: Response, left: float, width: float) -> History:
+    """The response in little; ``left`` and ``width`` [px] are where its loops go."""
+    pier, t = response.pier, response.t
+    theta = response.theta / pier.alpha
+    ground = response.history["ag_h"].to_numpy(dtype=np.float64) / pier.gravity
+    ordinates = (theta, response.omega / (pier.alpha * pier.p), response.energy, ground)
+    worst = int(np.nanargmax(np.abs(theta)))
+    grain = max(float(t[-1]), 1e-9) / PIXELS
+
+    def times(*kinds: str) -> Array:
+        at = response.events["t"][response.events["kind"].isin(kinds)].to_numpy(dtype=np.float64)
+        return np.unique(np.rint(at / grain)) * grain
+
+    return History(
+        isinstance(response.base, RigidBase),
+        response.status,
+        [thin(t, y, PIXELS) for y in ordinates],
+        times("impact"),
+        times(*SEPARATE),
+        times("flight"),
+        (float(t[worst]), float(theta[worst])),
+        (float(t[-1]), float(theta[-1])),
+        _band(response),
+        _loops(response, left, width) if isinstance(response.base, YieldingBase) else Markup(""),
+    )
+
+
+def _band(response: Response) -> float:
+    base, pier = response.base, response.pier
+    if not isinstance(base, ElasticBase):
+        return 0.0
+    sine = (1 + pier.mu) / (pier.mu * base.beta**2 * math.sin(pier.alpha))
+    return math.asin(min(sine, 1)) / pier.alpha
+
+
+def _loops(response: Response, left: float, width: float) -> Markup:
+    """F/F_y against v/δ_y of the left and the right spring, side by side on one scale."""
+    base: Any = response.base
+    deflection = yield_deflection(response.pier, base)
+    springs = [
+        (response.history[f"v_{side}"].to_numpy(dtype=np.float64) / deflection, force)
+        for side, force in (("left", response.z_left), ("right", response.z_right))
+    ]
+    # As in the paper, the axis ends where the spring lets go: a lifted pivot may be far above
+    loaded = np.concatenate([v[z < 0] for v, z in springs])
+    low, high = (float(loaded.min()), float(loaded.max())) if len(loaded) else (-1.0, 0.0)
+    margin = 0.08 * (high - low) + 0.01
+    across, down = Scale(low - margin, high + margin), Scale(-1.08, 0.1)
+    gap = 10.0
+    each = (width - gap) / 2
+    drawn = []
+    for place, (v, z) in enumerate(springs):
+        axes = Axes(left + place * (each + gap), 14, each, LOOPS_HEIGHT - 40, across, down)
+        line = curve(axes.across(np.clip(v, across.low, across.high)), axes.down(z), "curve", "F/Fy")
+        frame = axes.frame(across.ticks(2), [-1, -0.5, 0], y_numbers=place == 0)
+        name = text(axes.left + 4, axes.top + axes.height - 5, "LR"[place], class_="q")
+        drawn += [frame, axes.readable("plane", line), name]
+        drawn.append(text(axes.left + each / 2, LOOPS_HEIGHT - 3, lowered("v/δ", "y"), class_="m q"))
+    drawn.append(text(left - 2, 10, lowered("F/F", "y"), class_="q"))
+    return join(*drawn)

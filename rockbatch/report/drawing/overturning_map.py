@@ -1,0 +1,180 @@
+"""Overturning maps as pictures: the regions of a pulse's frequencies and amplitudes, drawn as they were computed.
+
+Straight lines join the boundaries of neighbouring columns with the same outcomes in the same order. Where these differ each
+column reaches to the middle between the two: a boundary that both have goes through, and at the others the picture has a step.
+"""
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rockbatch.report.drawing.axes import Axes, Scale
+from rockbatch.report.drawing.svg import Array, curve, key, line, lowered, rectangle, svg, text
+from rockbatch.report.markup import Markup, join
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+WIDTH, HEIGHT = 616, 350
+REGIONS = {
+    "safe": ("", "stands"),
+    "overturned with impact": ("s2", "overturns after an impact or more (mode 1)"),
+    "overturned without impact": ("s1", "overturns without impact (mode 2)"),
+    "flight": ("s3", "leaves the ground with both pivots: the run ends"),
+    "undecided": ("s4", "not decided: the run did not settle"),
+}
+"""Colour and words of each region of a map."""
+
+
+@dataclass(frozen=True, eq=False)
+class Strip:
+    """Neighbouring columns with the same outcomes, from the lowest amplitude to the highest.
+
+    ``frequencies``, shape (n,), are those of the columns and of both ends; ``edges``, shape (n, outcomes + 1), the amplitudes
+    between which each outcome lies there, straight lines in between.
+    """
+
+    outcomes: tuple[str, ...]
+    frequencies: Array
+    edges: Array
+
+    def outcome(self, frequency: float, amplitude: float) -> str:
+        """The outcome at a point of the strip."""
+        tops = [float(np.interp(frequency, self.frequencies, top)) for top in self.edges.T[1:-1]]
+        return self.outcomes[int(np.searchsorted(tops, amplitude))]
+
+
+def strips(own: "pd.DataFrame") -> list[Strip]:
+    """One map, rows of overturning_map.csv, from the lowest frequency to the highest: no gaps, no overlaps."""
+    columns = [
+        Strip(
+            tuple(column["outcome"]),
+            np.array([float(str(frequency))]),
+            np.append(column["low"].to_numpy(float), float(column["high"].iloc[-1]))[None],
+        )
+        for frequency, column in own.groupby("omega_p_over_p")
+    ]
+    found = columns[:1]
+    for column in columns[1:]:
+        before = found.pop()
+        if column.outcomes != before.outcomes:
+            middle = 0.5 * (before.frequencies[-1:] + column.frequencies)
+            at_end, at_start = _meeting(before, column)
+            found.append(_joined(before, Strip(before.outcomes, middle, at_end[None])))
+            before = Strip(column.outcomes, middle, at_start[None])
+        found.append(_joined(before, column))
+    return found
+
+
+def _joined(left: Strip, right: Strip) -> Strip:
+    return Strip(
+        left.outcomes,
+        np.concatenate((left.frequencies, right.frequencies)),
+        np.concatenate((left.edges, right.edges)),
+    )
+
+
+def _meeting(left: Strip, right: Strip) -> tuple[Array, Array]:
+    """Edges of two strips with other outcomes where they meet, in the middle between the last column and the first.
+
+    A boundary goes through if it is, of those between the same two outcomes, the nearest to one that it is the nearest to.
+    Others stay where they are, but for giving way to those.
+    """
+    ends = left.edges[-1], right.edges[0]
+    through: list[tuple[int, int]] = [(0, 0)]
+    for i in range(1, len(left.outcomes)):
+        j = _nearest(ends[0][i], _kind(left, i), right, ends[1])
+        if j > through[-1][1] and _nearest(ends[1][j], _kind(right, j), left, ends[0]) == i:
+            through.append((i, j))
+    through.append((-1, -1))
+    middles = [0.5 * (ends[0][i] + ends[1][j]) for i, j in through]
+    at_end, at_start = (
+        _giving_way(own, list(places), middles) for own, places in zip(ends, zip(*through, strict=True), strict=True)
+    )
+    return at_end, at_start
+
+
+def _giving_way(edges: Array, places: list[int], heights: list[float]) -> Array:
+    """Edges of which those at ``places`` are moved to ``heights``, and the others stay between them."""
+    low, high = np.full(len(edges), -np.inf), np.full(len(edges), np.inf)
+    low[places] = high[places] = heights
+    return np.clip(edges, np.maximum.accumulate(low), np.minimum.accumulate(high[::-1])[::-1])
+
+
+def _kind(strip: Strip, edge: int) -> tuple[str, ...]:
+    """The outcomes below and above an edge."""
+    return strip.outcomes[edge - 1 : edge + 1]
+
+
+def _nearest(height: float, kind: tuple[str, ...], other: Strip, edges: Array) -> int:
+    """Which edge of another strip, with the same outcomes on both sides, is the nearest; 0 where there is none."""
+    same = [i for i in range(1, len(other.outcomes)) if _kind(other, i) == kind]
+    return min(same, key=lambda i: abs(edges[i] - height), default=0)
+
+
+def outcome_at(drawn: Sequence[Strip], frequency: float, amplitude: float) -> str:
+    """The outcome that a map shows at a point."""
+    own = next((each for each in drawn if frequency <= each.frequencies[-1]), drawn[-1])
+    return own.outcome(frequency, amplitude)
+
+
+def draw(own: "pd.DataFrame") -> Markup:
+    """The picture of one map, and its key."""
+    drawn = strips(own)
+    across = Scale(float(drawn[0].frequencies[0]), float(drawn[-1].frequencies[-1]))
+    axes = Axes(36, 16, WIDTH - 48, HEIGHT - 50, across, Scale(float(own["low"].min()), float(own["high"].max())))
+    present = [name for name in REGIONS if REGIONS[name][0] and any(name in strip.outcomes for strip in drawn)]
+    picture = [
+        # One path for each outcome, or a hair of background would shine through where two strips meet
+        *(_path(axes, _areas(drawn, name), f"filled {REGIONS[name][0]}") for name in present),
+        axes.frame(axes.x.ticks(10), axes.y.ticks(8)),
+        _path(axes, [*_inside(drawn), *_between(drawn)], "level"),
+        text(axes.left + axes.width / 2, HEIGHT - 4, lowered("ω", "p", "/p"), class_="m q"),
+        text(axes.left - 2, 10, lowered("a", "p", "/(g tan α)"), class_="q"),
+    ]
+    entries = [(rectangle(1, 1, 20, 12, f"filled {REGIONS[name][0]}"), REGIONS[name][1]) for name in present]
+    entries.append((line(0, 7, 22, 7, "level"), "boundary; where there is no colour the pier stands"))
+    return join(svg(WIDTH, HEIGHT, *picture, description="Overturning map", class_="plot marks"), key(entries))
+
+
+Line = tuple[Array, Array]
+"""Frequencies and amplitudes."""
+
+
+def _path(axes: Axes, lines: Iterable[Line], class_: str) -> Markup:
+    """All lines as one path."""
+    gap = np.array([math.nan])
+    pieces = [(np.append(axes.across(x), gap), np.append(axes.down(y), gap)) for x, y in lines]
+    if not pieces:
+        return Markup("")
+    x, y = (np.concatenate(each) for each in zip(*pieces, strict=True))
+    return curve(x, y, class_)
+
+
+def _areas(drawn: Sequence[Strip], outcome: str) -> Iterator[Line]:
+    """The outlines of all regions with an outcome."""
+    for strip in drawn:
+        x = np.concatenate((strip.frequencies, strip.frequencies[::-1]))
+        for place, each in enumerate(strip.outcomes):
+            if each == outcome:
+                yield x, np.concatenate((strip.edges[:, place], strip.edges[::-1, place + 1]))
+
+
+def _inside(drawn: Sequence[Strip]) -> Iterator[Line]:
+    """The boundaries along each strip."""
+    return ((strip.frequencies, edge) for strip in drawn for edge in strip.edges.T[1:-1])
+
+
+def _between(drawn: Sequence[Strip]) -> Iterator[Line]:
+    """Where the outcome changes from a strip to the next."""
+    for left, right in pairwise(drawn):
+        x = left.frequencies[-1]
+        heights = np.union1d(left.edges[-1], right.edges[0])
+        for low, high in pairwise(heights):
+            middle = 0.5 * (low + high)
+            if left.outcome(x, middle) != right.outcome(x, middle):
+                yield np.array([x, x]), np.array([low, high])

@@ -1,0 +1,142 @@
+"""The picture of the paper's Fig. 7: a panel per record, a marker per foundation, the rigid base as a line."""
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from rockbatch.report.drawing.axes import Axes, Scale
+from rockbatch.report.drawing.svg import EVENTS, key, line, lowered, marker, rectangle, style_of, svg, text
+from rockbatch.report.finished import Finished, as_dicts
+from rockbatch.report.labels import Series
+from rockbatch.report.markup import Markup, join, number, tag
+from rockbatch.report.table import THETA_FORMAT
+from rockbatch.results.suite_statistics import NO_PEAK
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+HEIGHT = 138.0  # px
+VISIBLE = 0.015  # of the axis: error bars that are shorter hide behind their marker
+RIGID_LINES = 4
+
+
+def draw(
+    finished: Finished, runs: "pd.DataFrame", records: Sequence[str], top: float, side: str = "polarity"
+) -> Markup:
+    """Panels of ``records``; ``top`` is the end of the common axis, θ_max/α."""
+    runs = runs.assign(side=runs[side])
+    present = [finished.series[place] for place in sorted(runs["series"].unique())]
+    ticks = {series.index: series.tick for series in present if not series.rigid}
+    width = min(max(170.0, 52 + 13.0 * (max(ticks, default=0) + 1)), 900.0)
+    sides = sorted(runs["side"].unique())
+    panel = _Panel(finished.series, top, bool(runs["status"].isin(NO_PEAK).any()), ticks, width, sides)
+    drawn = []
+    by_record = dict(list(runs.groupby("record", sort=False)))
+    for name in records:
+        pga = by_record[name]["pga_g"].iloc[0]
+        peak = f"PGA = {pga:.3f} g" if math.isfinite(pga) else ""
+        title = tag("figcaption", tag("span", name), " ", tag("span", peak, class_="muted"))
+        drawn.append(tag("figure", title, panel.draw(name, by_record[name])))
+    grid = tag("div", *drawn, class_="panels", style=f"--w:{width:.0f}px", tabindex="0", role="group",
+               aria_label="Panels; arrow keys go through the values")  # fmt: skip
+    return join(grid, _legend(present, sides, runs))
+
+
+class _Panel:
+    """How every record of a figure is drawn."""
+
+    def __init__(
+        self, series: list[Series], top: float, eventful: bool, ticks: dict[int, str], width: float, sides: list[str]
+    ) -> None:
+        self.series, self.top, self.eventful, self.ticks, self.sides = series, top, eventful, ticks, sides
+        self.size = width, HEIGHT
+        slots = max(ticks, default=0) + 1
+        across, down = Scale(0.2, slots + 0.8), Scale(0, 1.18 * top if eventful else top)
+        self.axes = Axes(32, 13, width - 36, HEIGHT - 31, across, down)
+
+    def draw(self, name: str, runs: "pd.DataFrame") -> Markup:
+        axes = self.axes
+        drawn = []
+        if self.eventful:
+            y = float(axes.down(self.top))
+            drawn.append(rectangle(axes.left, axes.top, axes.width, y - axes.top, "band"))
+        drawn.append(axes.frame(None, [tick for tick in Scale(0, self.top).ticks(4) if tick <= self.top]))
+        foot = axes.top + axes.height + 11
+        every = math.ceil(14 * len(self.ticks) / axes.width)  # or names would overlap
+        names = [(slot, tick) for slot, tick in self.ticks.items() if slot % every == 0]
+        drawn += [text(float(axes.across(slot + 1)), foot, tick, class_="m") for slot, tick in names]
+        drawn.append(text(axes.left - 2, axes.top - 4, lowered("θ", "max", "/α"), class_="q"))
+        order = runs["series"].map(lambda place: not self.series[place].rigid)
+        drawn += [self._run(run) for run in as_dicts(runs.assign(order=order).sort_values("order", kind="stable"))]
+        return svg(*self.size, *drawn, description=f"θmax/α of every foundation under {name}", class_="plot marks")
+
+    def _second(self, run: dict[str, Any]) -> bool:
+        return len(self.sides) > 1 and bool(run["side"] == self.sides[1])
+
+    def _run(self, run: dict[str, Any]) -> Markup:
+        axes, series = self.axes, self.series[run["series"]]
+        beside = 0.0 if len(self.sides) == 1 else (-0.16, 0.16)[self.sides.index(run["side"])]
+        x = float(axes.across(0.42 if series.rigid else series.index + 1 + beside))
+        status, theta, error = run["status"], run["theta_max_over_alpha"], run["theta_max_error"]
+        said = said_of(series, run, len(self.sides) > 1)
+        if status in NO_PEAK:
+            level = float(axes.down(1.09 * self.top))
+            over = (
+                line(axes.left, level, axes.left + axes.width, level, _rigid(series, self._second(run)))
+                if series.rigid
+                else ""
+            )
+            return join(over, marker(status, x, level, colour="alarm", title=said))
+        if status == "failed" or math.isnan(theta):
+            low = axes.top + axes.height - 4
+            return tag(
+                "text",
+                "no result",
+                tag("title", said),
+                class_="none",
+                transform=f"translate({x:.1f} {low:.1f}) rotate(-90)",
+            )
+        y = float(axes.down(theta))
+        bar = Markup("")
+        if error > VISIBLE * self.top:
+            ends = float(axes.down(min(theta + error, axes.y.high))), float(axes.down(max(theta - error, 0)))
+            bar = tag("path", d=f"M{x - 2.5:.1f} {ends[0]:.1f}h5m-2.5 0V{ends[1]:.1f}m-2.5 0h5", class_="bar")
+        if series.rigid:
+            return join(line(axes.left, y, axes.left + axes.width, y, _rigid(series, self._second(run)), said), bar)
+        shape, colour = style_of(series.index)
+        return join(bar, marker(shape, x, y, colour=f"s{colour}" + (" open" if self._second(run) else ""), title=said))
+
+
+def said_of(series: Series, run: dict[str, Any], both: bool) -> str:
+    """What a marker says when pointed at: "2: η = 3.5: 0.0617 ± 3e-07"."""
+    name = series.label + (f" ({run['polarity']})" if both else "")
+    if run["status"] != "ok":
+        return f"{name}: {run['status']}"
+    error = run["theta_max_error"]
+    return f"{name}: {number(run['theta_max_over_alpha'], THETA_FORMAT)}" + (
+        f" ± {error:.0e}" if error == error else ""
+    )
+
+
+def _rigid(series: Series, second: bool) -> str:
+    return f"rigid d{series.index % RIGID_LINES}" + (" reversed" if second else "")
+
+
+def _legend(present: Sequence[Series], sides: Sequence[str], runs: "pd.DataFrame") -> Markup:
+    """How each series is drawn, and its name."""
+    entries: list[tuple[Markup, str]] = []
+    for series in sorted(present, key=lambda series: (not series.rigid, series.index)):
+        named = series.rigid or series.label.split(":")[0] == series.tick
+        label = series.label if named else f"{series.tick} – {series.label}"
+        for side in sides:
+            also, second = (f" ({side})", side == sides[1]) if len(sides) > 1 else ("", False)
+            shape, colour = style_of(series.index)
+            if series.rigid:
+                drawn = line(0, 7, 22, 7, _rigid(series, second))
+            else:
+                drawn = marker(shape, 11, 7, colour=f"s{colour}" + (" open" if second else ""))
+            entries.append((drawn, label + also))
+    for status, words in EVENTS.items():
+        if (runs["status"] == status).any():
+            entries.append((marker(status, 11, 7, colour="alarm"), words))
+    return key(entries)

@@ -1,0 +1,54 @@
+"""The response spectra of the suite: what the records ask of structures of any period, in one picture."""
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from rockbatch.report.drawing.axes import Axes, Scale
+from rockbatch.report.drawing.svg import COLOURS, curve, key, line, svg, text
+from rockbatch.report.markup import Markup, join
+
+LABELLED = COLOURS
+"""Suites of as many records show which is which; larger ones show their spread."""
+
+
+def draw(spectra: dict[str, Any], names: Sequence[str]) -> Markup:
+    """Pseudo-spectral acceleration [g] over the period [s], both logarithmic.
+
+    ``spectra`` is that of run.json: ``damping``, ``period_s`` and, in the order of ``names``, ``sa_g``.
+    """
+    periods, values = np.array(spectra["period_s"], dtype=float), np.array(spectra["sa_g"], dtype=float)
+    shown = values[values > 0]
+    top = float(shown.max(initial=1e-3))
+    low = max(float(shown.min(initial=top)), 1e-4 * top)  # a record that is nearly nothing must not flatten the rest
+    axes = Axes(44, 12, 560, 268, Scale(periods[0], periods[-1], log=True), Scale(low / 1.2, 1.2 * top, log=True))
+    few = len(names) <= LABELLED
+    drawn = [axes.frame(_ticks(axes.x), _ticks(axes.y))]
+    entries = []
+
+    def add(spectrum: Sequence[float], class_: str, name: str, named: bool = True) -> None:
+        y = axes.down(np.maximum(spectrum, axes.y.low))
+        drawn.append(curve(axes.across(periods), y, class_, name))
+        if named:
+            entries.append((line(0, 7, 22, 7, class_), name if len(name) <= 40 else f"{name[:20]}…{name[-19:]}"))
+
+    for i, (name, spectrum) in enumerate(zip(names, values, strict=True)):
+        add(spectrum, f"level s{i + 1}" if few else "level faint", name, named=few)
+    if len(names) > 1:
+        add(np.median(values, axis=0), "level ink", "median")
+    if not few:
+        for percent in (16, 84):
+            add(np.percentile(values, percent, axis=0), "level ink d2", f"{percent} %")
+    drawn.append(text(axes.left + axes.width / 2, 308, "period [s]", class_="m q"))
+    drawn.append(text(axes.left + 4, 9, "SA [g]", class_="q"))
+    said = f"Response spectra of {len(names)} ground motions"
+    return join(svg(616, 312, *drawn, description=said, class_="plot spectra"), key(entries))
+
+
+def _ticks(scale: Scale) -> list[float]:
+    """1, 2 and 5 times the powers of ten, as spectra are read; the powers alone where they would crowd."""
+    decades = range(math.floor(math.log10(scale.low)), math.ceil(math.log10(scale.high)) + 1)
+    found = [m * 10.0**i for i in decades for m in (1, 2, 5) if scale.low <= m * 10.0**i <= scale.high]
+    return found if len(found) <= 9 else scale.ticks(8)

@@ -1,0 +1,86 @@
+"""What the runs cost, how large their errors are, and what ``rockbatch accuracy`` measured of both."""
+
+from collections.abc import Sequence
+
+from rockbatch.report.contents import Contents
+from rockbatch.report.document import Section, figure, paragraphs
+from rockbatch.report.drawing.accuracy import draw
+from rockbatch.report.finished import Finished
+from rockbatch.report.finished_accuracy import Level, chosen, read
+from rockbatch.report.labels import counted
+from rockbatch.report.markup import Markup, join, number, tag
+from rockbatch.report.table import Head, table
+
+
+def section(contents: Contents) -> Section | None:
+    """Time and estimated errors of the runs, and the measurement where there is one of this study."""
+    if contents.finished is None:
+        return None
+    levels = read(contents.directory / "accuracy.csv", contents.study["sha256"])
+    return Section("Speed and error", "accuracy", join(paragraphs(_cost(contents.finished)), _measured(levels)))
+
+
+def _cost(finished: Finished) -> str:
+    info, errors = finished.info, finished.runs["theta_max_error"].dropna()
+    kept = info.get("kept", 0)  # of an earlier session, or of other machines: what they took is not known
+    cost = f"{counted(kept, 'run')} had been finished before. " if kept else ""
+    if kept < info["runs"]:
+        took = f"{number(float(info['wall_s']), '.3g')} s on {counted(info['jobs'], 'thread')}"
+        cost += f"{counted(info['runs'] - kept, 'run')} took {took}."
+    if len(errors):
+        cost += (
+            f" The error of θmax/α, estimated by halving the step, is {errors.median():.0e} in the median and "
+            f"{errors.max():.0e} at most."
+        )
+    return cost
+
+
+def _measured(levels: Sequence[Level]) -> Markup:
+    if not levels:
+        against = join(
+            "Not measured against references: ", tag("code", "rockbatch accuracy"), " does that for this study."
+        )
+        return paragraphs(against)
+    runs = counted(int(levels[0].runs or 0), "run")
+    settled = number(max(level.reference_change or 0.0 for level in levels), ".0e")
+    caption = (
+        f"Measured on {levels[0].machine}, in one thread, over {runs} of this study (SciPy's solvers: at most two of "
+        "them, on springs), against runs with ever smaller steps, the last halving of which changed the peak by "
+        f"{settled} at most. k: steps per sample; SciPy: its rtol. Runs that overturn, or end otherwise than they "
+        "should, have no error; the table counts the latter."
+    )
+    return join(paragraphs(_lead(levels)), figure(draw(levels), caption), _table(levels))
+
+
+def _lead(levels: Sequence[Level]) -> str:
+    """What the picture shows, in a sentence about the study's own setting; empty without it."""
+    own = chosen(levels)
+    if own is None:
+        return ""
+    return (
+        f"With the setting of this study a run takes {own.milliseconds} ms "
+        f"and its peak is off by {own.error_max:.1e} at most, over the runs measured."
+    )
+
+
+def _table(levels: Sequence[Level]) -> Markup:
+    """Every level in numbers."""
+    heads = [
+        Head("method"),
+        Head("k", ".0f", "substeps: steps per sample"),
+        Head("tolerance", ".0e", "on θ_max/α; SciPy's rtol"),
+        Head("runs", ".0f"),
+        Head("median error", ".1e"),
+        Head("95 %", ".1e", "error that 95 % of the runs keep"),
+        Head("largest", ".1e"),
+        Head("time per run [ms]", ".3g"),
+        Head("other outcome", ".0f", "runs that end otherwise than the reference: overturned, flight"),
+    ]
+    rows = [
+        [
+            level.method, level.substeps, level.tolerance, level.runs, level.error_median, level.error_95,
+            level.error_max, level.milliseconds, level.status_differs or None,
+        ]
+        for level in levels
+    ]  # fmt: skip
+    return table(heads, rows)

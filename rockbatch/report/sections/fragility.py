@@ -1,0 +1,195 @@
+"""What ``rockbatch fragility`` found: a panel for each limit with points, curves and bands, and a table of medians."""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from rockbatch.report.contents import Contents
+from rockbatch.report.document import Section, figure
+from rockbatch.report.drawing.axes import Axes, Scale
+from rockbatch.report.drawing.svg import curve, key, line, marker, style_of, svg, text
+from rockbatch.report.labels import quantity
+from rockbatch.report.markup import Markup, join, tag
+from rockbatch.report.table import Head, table
+
+WIDTH, HEIGHT = 300.0, 190.0
+CASES_OF_A_PANEL = 4
+"""More curves with their bands would hide each other."""
+
+Curve = Mapping[str, Any]
+"""One of ``curves`` of fragility.json."""
+
+
+def section(contents: Contents) -> Section | None:
+    """The curves; None where there are none."""
+    found = contents.analysis("fragility")
+    if found is None or not found.info["curves"]:
+        return None
+    info = found.info
+    drawn = figure(_panels(info), _caption(info))
+    return Section("Fragility", "fragility", join(_lead(info), drawn, _table(info)))
+
+
+def _lead(info: Mapping[str, Any]) -> Markup:
+    told = f"The probability that a limit is exceeded by a motion with a given {info['measure']}, from {info['records']} records"
+    told += " (polarity: mirror images, counted once)" if len(info["polarities"]) > 1 else ""
+    if info["method"] == "ida":
+        told += (
+            f". Incremental dynamic analysis: of each record the least intensity that exceeds the limit, from its first "
+            f"exceedance on the levels on, bisected to {100 * info['tolerance']:g} %; records that never exceed it are censored. "
+            "A rocking pier can overturn at one level and stand at a higher one: the first exceedance counts."
+        )
+    else:
+        told += (
+            ", all of them scaled to every level; the bands allow for that these are the same records at every level."
+        )
+    little = [f"{one['limit_state']}, {_label(one)}" for one in info["curves"] if one["says_little"]]
+    warning = (
+        tag("strong", f"Too many runs are undecided for these curves to say much: {'; '.join(little)}. ")
+        if little
+        else ""
+    )
+    return tag("p", warning, told)
+
+
+def _caption(info: Mapping[str, Any]) -> str:
+    share = f"{100 * info['confidence']:g} %"
+    points = "Markers: share of the decided records that exceed the limit at a level; bars: with the undecided ones either way. "
+    if any("open" in one for one in info["curves"]):
+        points += (
+            "Undecided runs count for nothing in a curve; between dotted edges: what it may be, whatever they come to. "
+        )
+    steps = (
+        "Steps: share of the records by their bisected capacities, where none is undecided. "
+        if info["method"] == "ida"
+        else ""
+    )
+    return (
+        f"{points}{steps}Curves: lognormal, by maximum likelihood (Baker 2015); shaded: {share} profile-likelihood "
+        "band, pointwise. Where no curve is drawn, the table says why."
+    )
+
+
+def _label(one: Curve) -> str:
+    words = [quantity(name, value) for name, value in one["columns"].items()]
+    return f"{one['case']}: {', '.join(words)}" if words else one["case"]
+
+
+def _panels(info: Mapping[str, Any]) -> Markup:
+    limits: dict[str, list[Curve]] = {}
+    for one in info["curves"]:
+        limits.setdefault(one["limit_state"], []).append(one)
+    styles = {label: style_of(i) for i, label in enumerate(dict.fromkeys(map(_label, info["curves"])))}
+    drawn = []
+    for name, curves in limits.items():
+        for first in range(0, len(curves), CASES_OF_A_PANEL):
+            some = curves[first : first + CASES_OF_A_PANEL]
+            title = tag("figcaption", tag("span", name), " ", tag("span", some[0]["words"], class_="muted"))
+            drawn.append(tag("figure", title, _panel(info, some, styles)))
+    shown = [(join(_stroke(colour), marker(shape, 11, 7, colour=f"s{colour}")), label)
+             for label, (shape, colour) in styles.items()]  # fmt: skip
+    grid = tag("div", *drawn, class_="panels", style=f"--w:{WIDTH:.0f}px", role="group", aria_label="Fragility curves")
+    return join(grid, key(shown))
+
+
+def _stroke(colour: int) -> Markup:
+    return line(0, 7, 22, 7, f"level s{colour}")
+
+
+def _panel(info: Mapping[str, Any], curves: Sequence[Curve], styles: Mapping[str, tuple[str, int]]) -> Markup:
+    axes = Axes(28, 14, WIDTH - 36, HEIGHT - 46, Scale(0.0, 1.1 * info["levels"][-1]), Scale(0.0, 1.0))
+    drawn = [axes.frame(axes.x.ticks(6), axes.y.ticks(5))]
+    for one in curves:
+        drawn += _band(axes, one, styles[_label(one)][1])
+    for one in curves:
+        drawn += _drawn(axes, one, *styles[_label(one)])
+    drawn.append(text(axes.left + axes.width / 2, HEIGHT - 6, f"{info['measure']} [{info['unit']}]", class_="m q"))
+    drawn.append(text(axes.left - 2, 9, "probability", class_="q"))
+    said = f"Probability of {curves[0]['limit_state']} over {info['measure']}"
+    return svg(WIDTH, HEIGHT, *drawn, description=said, class_="plot marks")
+
+
+def _band(axes: Axes, one: Curve, colour: int) -> Iterator[Markup]:
+    for name, class_ in (("open", "open"), ("curve", "area")):
+        if name in one:
+            x, low, high = (np.array(one[name][side]) for side in ("x", "low", "high"))
+            around = np.concatenate((low, high[::-1]))
+            yield curve(axes.across(np.concatenate((x, x[::-1]))), axes.down(around), f"{class_} s{colour}")
+
+
+def _drawn(axes: Axes, one: Curve, shape: str, colour: int) -> Iterator[Markup]:
+    class_ = f"s{colour}"
+    if "curve" in one:
+        x, p = (np.array(one["curve"][name]) for name in ("x", "p"))
+        yield curve(axes.across(x), axes.down(p), f"level {class_}")
+    if one["capacities"] and "open" not in one:  # a share of the records needs all of them
+        yield curve(*_steps(axes, [high for _, high in one["capacities"]]), f"level {class_} d2")
+    for point in one["points"]:
+        if not point["records"]:
+            continue
+        at = float(axes.across(point["level"]))
+        exceeded, undecided, records = point["exceeded"], point["undecided"], point["records"]
+        if undecided:
+            least, most = (float(axes.down(k / records)) for k in (exceeded, exceeded + undecided))
+            yield line(at, least, at, most, class_, _said(one, point))
+        if records > undecided:
+            share = float(axes.down(exceeded / (records - undecided)))
+            yield marker(shape, at, share, colour=class_, title=_said(one, point))
+
+
+def _said(one: Curve, point: Mapping[str, Any]) -> str:
+    ends = [f"{point[name]} {words}" for name, words in (("collapsed", "overturned"), ("flight", "flew"), ("failed", "failed"))
+            if point[name]]  # fmt: skip
+    told = f"{_label(one)}, {point['level']:g}: {point['exceeded']} of {point['records']} records exceed the limit"
+    undecided = [f"{point['undecided']} undecided"] if point["undecided"] else []
+    return "; ".join([told, *undecided, *ends])
+
+
+def _steps(axes: Axes, capacities: Sequence[float | None]) -> tuple[np.ndarray, np.ndarray]:
+    """Share of the records whose capacity is at most x, as a staircase [px]."""
+    known = np.sort([x for x in capacities if x is not None])
+    known = np.minimum(known, axes.x.high)
+    shares = np.arange(len(known) + 1) / len(capacities)
+    x = np.concatenate(([0.0], np.repeat(known, 2), [axes.x.high]))
+    return axes.across(x), axes.down(np.repeat(shares, 2))
+
+
+def _table(info: Mapping[str, Any]) -> Markup:
+    share = f"{100 * info['confidence']:g} %"
+    heads = [
+        Head("limit"),
+        Head("case"),
+        Head(f"median [{info['unit']}]", ".3g", f"θ: the {info['measure']} that half of the motions need"),
+        Head(share, note="profile-likelihood interval of the median"),
+        Head("undecided", note="the median with all undecided runs beyond the limit, and with all within it"),
+        Head("dispersion", ".2f", "β: standard deviation of the logarithm"),
+        Head(share, note="profile-likelihood interval of the dispersion"),
+        Head("records", ".0f", "that count"),
+        Head("overturned", ".0f", "largest number of records that overturn at one level"),
+        Head("note"),
+    ]
+    rows = [
+        [
+            one["limit_state"],
+            _label(one),
+            one["median"],
+            _interval(one.get("median_interval")),
+            _interval(one["median_undecided"]),
+            one["dispersion"],
+            _interval(one.get("dispersion_interval")),
+            max(point["records"] for point in one["points"]),
+            max(point["collapsed"] for point in one["points"]),
+            one["note"],
+        ]
+        for one in info["curves"]
+    ]
+    return table(heads, rows, prose=True, name="Medians and dispersions")
+
+
+def _interval(bounds: Sequence[float | None] | None) -> str:
+    if bounds is None:
+        return ""
+    low, high = (math.inf if bound is None else bound for bound in bounds)
+    return f"{low:.3g}\u00a0–\u2060\u00a0{'∞' if math.isinf(high) else f'{high:.3g}'}"

@@ -1,0 +1,83 @@
+"""The ground motions: their response spectra, their measures, and where they come from."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from rockbatch.report.contents import Contents
+from rockbatch.report.document import Section, figure
+from rockbatch.report.drawing import response_spectra
+from rockbatch.report.finished import Finished
+from rockbatch.report.markup import Markup, join, tag
+from rockbatch.report.table import Head, table
+
+
+def section(contents: Contents) -> Section | None:
+    """The ground motions that could be used."""
+    finished = contents.finished
+    if finished is None or not finished.info["records"]:
+        return None
+    return Section("Ground motions", "records", join(_spectra(finished), _records(finished)))
+
+
+def _spectra(finished: Finished) -> Markup:
+    """Their response spectra; nothing where run.json has no spectra, as of very large suites."""
+    records, spectra = finished.info["records"], finished.info.get("spectra")
+    if not spectra or len(spectra["sa_g"]) != len(records):
+        return join()
+    caption = (
+        f"Pseudo-spectral accelerations of the horizontal components, {100 * spectra['damping']:g} % damped, before "
+        "the study's scale."
+    )
+    return figure(response_spectra.draw(spectra, [record["record"] for record in records]), caption)
+
+
+def _records(finished: Finished) -> Markup:
+    """The ground motions as they were used, like the paper's Table 1, the weakest first."""
+    heads = [
+        Head("record"),
+        Head("PGA [g]", ".3f"),
+        Head("PGV [m/s]", ".3f"),
+        Head("PGD [m]", ".3f"),
+        Head("vertical PGA [g]", ".3f"),
+        Head("Arias [m/s]", ".3f", "arias_m_s: Arias intensity"),
+        Head("D5–95 [s]", ".1f", "d5_95_s: significant duration, from 5 to 95 % of the Arias intensity"),
+        Head("dt [s]"),
+        Head("points"),
+        Head("length [s]", ".2f", "duration_s: from the first to the last sample"),
+        Head("processed", note="whether its agency has corrected it; empty: the file does not say"),
+        Head("to check", note="what is odd about it; the notes below say more"),
+        Head("azimuth [°]", note="degrees clockwise from north"),
+        Head("M", note="magnitude"),
+        Head("distance [km]"),
+        Head("factor", ".4g", "what brought the record to the study's target"),
+    ]
+    names = (
+        "record", "pga_g", "pgv_m_s", "pgd_m", "pga_v_g", "arias_m_s", "d5_95_s", "dt_s", "npts", "duration_s",
+        "processed", "check", "azimuth_deg", "magnitude", "distance_km", "factor",
+    )  # fmt: skip
+    scaled = any(record.get("factor", 1.0) != 1.0 for record in finished.info["records"])
+    ordered = sorted(finished.info["records"], key=lambda record: (record["pga_g"], record["record"]))
+    rows = [[_told(record, name) if name != "factor" or scaled else None for name in names] for record in ordered]
+    measured = table(heads, rows, sortable=True, name="Ground motions")
+    lacking = finished.info.get("without_vertical")
+    without = tag("p", f"no vertical: {', '.join(lacking)}") if lacking else ""
+    return join(measured, without, tag("h3", "Where they come from, and what was done to them"), _sources(ordered))
+
+
+def _told(record: dict[str, Any], name: str) -> Any:
+    """A value of run.json, as the table of ground motions has it."""
+    if name == "processed":
+        return {True: "yes", False: "no"}.get(record.get(name, ""))
+    if name == "check":
+        return ", ".join(finding["what"] for finding in record.get("findings", [])) or None
+    return record.get(name)
+
+
+def _sources(records: Sequence[dict[str, Any]]) -> Markup:
+    heads = [Head("record"), Head("horizontal from"), Head("vertical from"), Head("what was done")]
+    rows: list[list[object]] = []
+    for record in records:
+        notes = tag("ul", *(tag("li", note) for note in record["notes"])) if record["notes"] else ""
+        sources = (record[name] and tag("span", record[name], class_="path") for name in ("source", "vertical_source"))
+        rows.append([record["record"], *sources, notes])
+    return table(heads, rows, prose=True, name="Sources")

@@ -1,0 +1,182 @@
+"""The picture of the paper's Fig. 5: a column of histories per run, loops at its foot."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from rockbatch.report.contents import Contents
+from rockbatch.report.document import Section, figure
+from rockbatch.report.drawing.axes import Axes, Scale, spanning
+from rockbatch.report.drawing.history import LOOPS_HEIGHT, QUANTITIES, History, reduced
+from rockbatch.report.drawing.svg import Array, curve, line, lowered, marker, rectangle, svg, text
+from rockbatch.report.finished import Finished, as_dicts, worst_first
+from rockbatch.report.markup import Markup, join, tag
+from rockbatch.results.histories_file import Responses
+from rockbatch.results.response import Response
+
+MOST_COLUMNS = 40
+LEFT, WIDTH = 30.0, 214.0  # px
+TOPS, HEIGHTS = (14.0, 126.0, 204.0, 282.0), (94.0, 60.0, 60.0, 60.0)
+FOOT = 372.0
+LABELS = (QUANTITIES[0], QUANTITIES[1], QUANTITIES[2], lowered("ü", "g", "/g"))
+
+Row = dict[str, Any]
+
+
+def section(contents: Contents) -> Section | None:
+    """The histories that were kept; None where there are none."""
+    if contents.finished is None or not len(contents.responses):
+        return None
+    drawn = join(*(figure(*pair) for pair in _figures(contents.finished, contents.responses)))
+    hint = "Point at a picture, touch it, or go through it with the arrow keys, to read values."
+    return Section("Histories", "histories", join(tag("p", hint, class_="scripted"), drawn))
+
+
+def _figures(finished: Finished, responses: Sequence[Response]) -> list[tuple[Markup, Markup]]:
+    """Pictures with their captions, one for each pier: a column for every response, or for the worst of many."""
+    kept = _kept(finished, responses)
+    numbers = _chosen(finished, kept)
+    behind = {number: _behind(kept, number) for number in numbers}
+    # A rigid base that stands behind another column needs none of its own
+    columns = [number for number in numbers if number not in behind.values()]
+    there = {number for number in (*columns, *behind.values()) if number is not None}
+    drawn = {number: reduced(responses[number], LEFT, WIDTH) for number in sorted(there)}
+    found = []
+    for pier in dict.fromkeys(kept[number]["pier"] for number in columns):
+        same = [number for number in columns if kept[number]["pier"] == pier]
+        same.sort(key=lambda number: (not kept[number]["rigid"], kept[number]["index"]))
+        seen = [drawn[number] for one in same for number in (one, behind[one]) if number is not None]
+        scales = [_scale(seen, row) for row in range(len(QUANTITIES))]
+        cells = []
+        for number in same:
+            back = behind[number]
+            title = _title(finished, kept[number])
+            picture = _column(drawn[number], None if back is None else drawn[back], scales, kept[number]["record"])
+            cells.append(tag("figure", tag("figcaption", title), picture))
+        grid = tag("div", *cells, class_="histories")
+        lines = any(behind[number] is not None for number in same)
+        found.append((grid, _caption(finished.piers[pier], [drawn[number] for number in same], lines)))
+    return found
+
+
+def _kept(finished: Finished, responses: Sequence[Response]) -> list[Row]:
+    """Which runs there are, without reading their histories."""
+    if isinstance(responses, Responses):
+        runs = as_dicts(responses.runs)
+    else:
+        names = ("record", "case", "polarity", "scale", "status")
+        runs = [{name: getattr(one, name) for name in names} | one.columns for one in responses]
+    kept = []
+    for run in runs:
+        series, pier = finished.place(run["case"], run)
+        one = finished.series[series]
+        kept.append(run | {"series": series, "pier": pier, "rigid": one.rigid, "index": one.index})
+    return kept
+
+
+def _chosen(finished: Finished, kept: Sequence[Row]) -> list[int]:
+    """Numbers of the runs to be shown: all, or of many the worst of each case, and of many cases the worst."""
+    if len(kept) <= MOST_COLUMNS:
+        return list(range(len(kept)))
+    names = ["record", "polarity", "scale", "series", "pier"]
+    number_of = {tuple(run[name] for name in names): number for number, run in enumerate(kept)}
+    ordered = worst_first(finished.runs, len(finished.runs)).drop_duplicates(names)[names].itertuples(index=False)
+    seen, numbers = set(), []
+    for key in map(tuple, ordered):
+        if key in number_of and key[3:] not in seen:
+            seen.add(key[3:])
+            numbers.append(number_of[key])
+    return numbers[:MOST_COLUMNS]
+
+
+def _behind(kept: Sequence[Row], number: int) -> int | None:
+    """The same motion and pier on the rigid base, where it was kept."""
+    run = kept[number]
+    names = ("record", "polarity", "scale", "pier")
+    if run["rigid"]:
+        return None
+    return next((i for i, other in enumerate(kept) if other["rigid"] and all(other[n] == run[n] for n in names)), None)
+
+
+def _scale(shown: Sequence[History], row: int) -> Scale:
+    """One scale for all columns; a pier that fell does not stretch it."""
+    stood = [history for history in shown if history.status == "ok"] or shown
+    bands = [np.array([-history.band, history.band]) for history in stood] if row == 0 else []
+    return spanning(*(history.curves[row][1] for history in stood), *bands)
+
+
+def _title(finished: Finished, run: Row) -> Markup:
+    also = [f"scaled by {run['scale']:g}" if run["scale"] != 1 else "", "reversed" if run["polarity"] == "-" else ""]
+    told = ", ".join(filter(None, also))
+    record = tag("span", run["record"] + (f", {told}" if told else ""), class_="muted")
+    return join(tag("span", finished.series[run["series"]].label), " ", record)
+
+
+def _column(own: History, behind: History | None, scales: Sequence[Scale], record: str) -> Markup:
+    end = max(own.end[0], behind.end[0] if behind else 0.0) or 1.0
+    drawn: list[Markup] = []
+    for row, (top, height) in enumerate(zip(TOPS, HEIGHTS, strict=True)):
+        scale = scales[row] if own.status == "ok" else spanning(own.curves[row][1])
+        axes = Axes(LEFT, top, WIDTH, height, Scale(0, end), scale)
+        if row == 0 and own.band:
+            y = np.clip(axes.down(np.array([own.band, -own.band])), top, top + height)
+            drawn.append(rectangle(LEFT, y[0], WIDTH, y[1] - y[0], "band"))
+        drawn.append(axes.frame(axes.x.ticks(5), scale.ticks(4 if row == 0 else 3), x_numbers=row == len(TOPS) - 1))
+        curves = [_curve(axes, *own.curves[row], "curve rigid" if own.rigid else "curve", QUANTITIES[row])]
+        if behind is not None and row < 3:
+            curves.insert(0, _curve(axes, *behind.curves[row], "curve behind", f"{QUANTITIES[row]}, rigid base"))
+        drawn.append(axes.readable("time", *curves))
+        if row == 0:
+            drawn.append(_events(axes, own))
+        drawn.append(text(LEFT - 2, top - 4, LABELS[row], class_="q"))
+    drawn.append(text(LEFT + WIDTH / 2, FOOT - 4, "t [s]", class_="m q"))
+    height = FOOT
+    if own.loops:
+        drawn.append(tag("g", own.loops, transform=f"translate(0 {FOOT:g})"))
+        height += LOOPS_HEIGHT
+    said = f"Rotation, velocity, energy and ground acceleration against time under {record}"
+    return svg(LEFT + WIDTH + 6, height, *drawn, description=said, class_="plot readings")
+
+
+def _curve(axes: Axes, t: Array, y: Array, class_: str, name: str) -> Markup:
+    inside = np.where((y >= axes.y.low) & (y <= axes.y.high), y, np.nan)  # a pier that fell leaves the picture
+    return curve(axes.across(t), axes.down(inside), class_, name)
+
+
+def _events(axes: Axes, own: History) -> Markup:
+    """Impacts at the foot, separations at the top, flights across, the peak with its value, and how it ended."""
+    foot, marks = axes.top + axes.height, []
+    for times, start, way in ((own.impacts, foot, -5), (own.separations, axes.top, 5)):
+        strokes = "".join(f"M{x:.1f} {start:.1f}v{way}" for x in axes.across(times))
+        marks.append(tag("path", d=strokes, class_="event") if strokes else Markup(""))
+    marks += [line(float(x), axes.top, float(x), foot, "flown") for x in axes.across(own.flights)]
+    x, y = float(axes.across(own.peak[0])), float(axes.down(np.clip(own.peak[1], axes.y.low, axes.y.high)))
+    if own.status == "ok" and own.peak[1] != 0:
+        to_the_left = x > LEFT + 0.75 * WIDTH
+        value = text(
+            x + (-4 if to_the_left else 4), y + 3, f"{abs(own.peak[1]):.4f}", class_="e peak" if to_the_left else "peak"
+        )
+        marks += [tag("circle", cx=f"{x:.1f}", cy=f"{y:.1f}", r="2.2", class_="peak"), value]
+    if own.status in ("overturned", "flight"):
+        end = float(axes.across(own.end[0])), float(axes.down(own.end[1]))
+        marks.append(marker(own.status, *end, colour="alarm"))
+    return join(*marks)
+
+
+def _caption(pier: str, shown: Sequence[History], lines: bool) -> Markup:
+    said = [
+        tag("strong", f"{pier}. ") if pier else "",
+        "Rotation, angular velocity, energy relative to the start, and ground acceleration, against time. "
+        "In the first panel: the largest rotation with its value; strokes at the foot for impacts, at the top for separations",
+        "; dashed: both pivots off the ground" if any(len(one.flights) for one in shown) else "",
+        "; thin line: rigid base" if lines else "",
+        "; shaded: rotations at which both supports stay loaded in weak rocking"
+        if any(one.band for one in shown)
+        else "",
+        ".",
+        " At the foot, force against deflection of the left (L) and right (R) spring over their values at yield."
+        if any(one.loops for one in shown)
+        else "",
+    ]
+    return join(*said)

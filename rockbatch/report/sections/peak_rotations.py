@@ -1,0 +1,81 @@
+"""The figures of the peaks, as the paper's Fig. 7, with their numbers: one for each pier and scale."""
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from rockbatch.report.contents import Contents
+from rockbatch.report.document import Section, figure
+from rockbatch.report.drawing.panels import draw
+from rockbatch.report.finished import Finished
+from rockbatch.report.markup import Markup, join, tag
+from rockbatch.report.sections.peaks import at_a_glance
+from rockbatch.report.table import THETA
+from rockbatch.results.suite_statistics import NO_PEAK
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+MOST_RECORDS = 60
+MOST_FIGURES = 12
+MOST_MARKS = 12_000  # on the page: a megabyte and a half
+
+
+def section(contents: Contents) -> Section | None:
+    """A figure for each pier and scale, with its numbers."""
+    finished = contents.finished
+    if finished is None or finished.runs.empty:
+        return None
+    runs = finished.runs
+    caption = [
+        "Largest rotation over slenderness, ", THETA, ", records in order of peak ground acceleration",
+        "; lines: rigid base" if any(series.rigid for series in finished.series) else "",
+        "; open markers and dashed lines: horizontal component reversed" if finished.both_directions else "", ".",
+    ]  # fmt: skip
+    drawn = figures(finished, caption)
+    flew = ((runs["status"] == "ok") & runs["flight_s"].notna()).any()
+    legend = tag("sup", "f"), " both pivots left the ground on the way; the pier was guided down."
+    return Section("Peak rotations", "figure", join(drawn, tag("p", *legend, class_="legend") if flew else ""))
+
+
+def ceiling(runs: "pd.DataFrame") -> float:
+    """Top of the axis [θ_max/α] that holds all of ``runs`` that stood."""
+    stood = runs[runs["status"] == "ok"]
+    highest = (stood["theta_max_over_alpha"] + stood["theta_max_error"].fillna(0)).max()
+    return 1.1 * float(highest) if highest > 0 else 1.0
+
+
+def chosen(finished: Finished, runs: "pd.DataFrame", figures: int = 1) -> list[str]:
+    """Records that have a panel, in order of PGA: all of them, or of many those with the worst runs."""
+    names = list(runs["record"].unique())
+    room = max(1, min(MOST_RECORDS, MOST_MARKS * len(names) // max(1, len(runs) * figures)))
+    if len(names) > room:
+        badness = runs["theta_max_over_alpha"].where(~runs["status"].isin(NO_PEAK), math.inf)
+        worst = badness.groupby(runs["record"]).max().sort_values(ascending=False, kind="stable")
+        names = list(worst.index[:room])
+    return finished.by_pga(names)
+
+
+def figures(finished: Finished, caption: Sequence[object], *, side: str = "polarity") -> Markup:
+    """A figure for each pier and scale, or for the first of many; ``caption`` is common to them.
+
+    Runs whose column ``side`` has the second of two values are drawn with open markers.
+    """
+    groups = finished.groups()
+    shown = []
+    for words, runs in groups[:MOST_FIGURES]:
+        # Piers are compared on one axis; larger motions have their own
+        top = ceiling(finished.runs[finished.runs["scale"] == runs["scale"].iloc[0]])
+        records = chosen(finished, runs, min(len(groups), MOST_FIGURES))
+        every = runs["record"].nunique()
+        told = [
+            tag("strong", f"{words}. ") if words else "", *caption,
+            " Symbols in the shaded strip are runs without a largest rotation: the pier overturned, or left the ground."
+            if runs["status"].isin(NO_PEAK).any() else "",
+            f" Shown are the {len(records):,} records with the worst runs of {every:,}." if len(records) < every else "",
+        ]  # fmt: skip
+        shown.append(figure(draw(finished, runs, records, top, side), *told))
+        shown.append(at_a_glance(finished, runs, records) if side == "polarity" else Markup(""))
+    if len(groups) > MOST_FIGURES:
+        shown.append(tag("p", f"The first {MOST_FIGURES} of {len(groups)} combinations of pier and scale are shown."))
+    return join(*shown)

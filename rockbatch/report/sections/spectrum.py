@@ -1,0 +1,116 @@
+"""Pictures of ``rockbatch spectrum``: rocking spectra as curves, overturning maps as regions."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rockbatch.report.contents import Contents
+from rockbatch.report.document import Section, figure
+from rockbatch.report.drawing import overturning_map
+from rockbatch.report.drawing.axes import Axes, Scale
+from rockbatch.report.drawing.svg import COLOURS, curve, key, line, lowered, marker, rectangle, svg, text
+from rockbatch.report.finished_analysis import FinishedAnalysis, named
+from rockbatch.report.labels import quantity, symbol
+from rockbatch.report.markup import Markup, join, tag
+from rockbatch.report.table import sub
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+WIDTH, HEIGHT = 616, 268
+ACROSS = {"two_pi_over_p_s": "2π/p [s]"}
+QUANTILES = {"median": "", "p16": " d2", "p84": " d1"}
+
+
+def section(contents: Contents) -> Section | None:
+    """Spectra and maps; None where there are none."""
+    found = contents.analysis("spectrum")
+    if found is None:
+        return None
+    parts = []
+    suite = found.table("spectrum_suite.csv", ("case", "scale", "alpha", "count", *QUANTILES))
+    if suite is not None:
+        parts += _spectra(found, suite)
+    regions = found.table("overturning_map.csv", ("map", "case", "omega_p_over_p", "outcome", "low", "high"))
+    if regions is not None:
+        parts += _maps(found, regions)
+    return Section("Rocking spectra and overturning", "spectrum", join(*parts)) if parts else None
+
+
+# Rocking spectra
+
+
+def _spectra(found: FinishedAnalysis, suite: "pd.DataFrame") -> list[Markup]:
+    axis = found.info["axis"]
+    apart = [name for name in ("case", "scale", *found.info["varied"]) if name not in ("alpha", axis)]
+    told = [name for name in apart if name in ("case",) or suite[name].nunique(dropna=False) > 1]
+    many = bool((suite["count"] > 1).any())
+    lead = "Largest rotation over slenderness against the size of the pier, a curve for each slenderness. "
+    if many:
+        lead += "Solid: median of the suite; dashed and dotted: 84 % and 16 % quantiles. "
+    lead += "Above the frame: overturned or ended by flight (∞), which counts as larger than any rotation."
+    return [
+        tag("p", lead),
+        *(figure(_curves(runs, axis, many), named(dict(zip(apart, names, strict=True)), told)) for names, runs in
+          suite.groupby(apart, sort=False, dropna=False)),
+    ]  # fmt: skip
+
+
+def _curves(points: "pd.DataFrame", axis: str, many: bool) -> Markup:
+    names = list(QUANTILES) if many else ["median"]
+    finite = points[names].to_numpy(float)
+    top = 1.08 * max(float(finite[np.isfinite(finite)].max(initial=0.0)), 1e-6)
+    x = points[axis].to_numpy(float)
+    axes = Axes(44, 28, WIDTH - 56, HEIGHT - 62, Scale(x.min(), x.max()), Scale(0.0, top))
+    drawn = [
+        rectangle(axes.left, axes.top - 16, axes.width, 16, "band"),
+        axes.frame(axes.x.ticks(10), axes.y.ticks(6)),
+        text(axes.left + axes.width / 2, HEIGHT - 6, ACROSS.get(axis, symbol(axis)), class_="m q"),
+        text(axes.left - 2, 9, lowered("θ", "max", "/α"), class_="q"),
+    ]
+    entries = []
+    for place, (alpha, own) in enumerate(points.groupby("alpha", sort=False)):
+        colour = f"s{place % COLOURS + 1}"
+        across = axes.across(own[axis].to_numpy(float))
+        for name in names:
+            y = own[name].to_numpy(float)
+            drawn.append(
+                curve(across, axes.down(np.where(np.isfinite(y), y, np.nan)), f"level {colour}{QUANTILES[name]}")
+            )
+        fell = np.isinf(own["median"].to_numpy(float))
+        high = axes.top - 8 + 3 * (place % 3 - 1)
+        drawn += [
+            marker("overturned", at, high, colour=colour, title=f"{quantity('alpha', float(str(alpha)))}: ∞")
+            for at in across[fell]
+        ]
+        entries.append((line(0, 7, 22, 7, f"level {colour}"), quantity("alpha", float(str(alpha)))))
+    if np.isinf(points["median"].to_numpy(float)).any():
+        entries.append((marker("overturned", 11, 7, colour="ink"), "overturned or ended by flight" + ", median" * many))
+    return join(svg(WIDTH, HEIGHT, *drawn, description="Rocking spectrum", class_="plot marks"), key(entries))
+
+
+# Overturning maps
+
+
+def _maps(found: FinishedAnalysis, regions: "pd.DataFrame") -> list[Markup]:
+    apart = ["map", "case", *found.info["varied_map"]]
+    drawn = [
+        tag(
+            "p",
+            "Which amplitudes of a pulse overturn the pier, over the pulse's frequency: ", sub("ω", "p"),
+            " = 2π over its period, ", sub("a", "p"), " its peak acceleration.",
+        )
+    ]  # fmt: skip
+    asked = {each["name"]: each for each in found.info["maps"]}
+    for names, own in regions.groupby(apart, sort=False, dropna=False):
+        values = dict(zip(apart, names, strict=True))
+        spec = asked[values["map"]]
+        words = f"{values['map']} ({spec['shape']}), {named(values, apart[1:])}"
+        n = own["omega_p_over_p"].nunique()
+        caption = (
+            f"{words}. Computed at {n} frequencies: boundaries are located within {spec['tolerance']:g} along the ordinate, "
+            f"and where regions begin, end or change their order within {spec['width']:g} along the abscissa, "
+            "where the picture has a step. Islands may be missed that are narrower than a step of the grid both ways."
+        )
+        drawn.append(figure(overturning_map.draw(own), caption))
+    return drawn

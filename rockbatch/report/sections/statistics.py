@@ -1,0 +1,145 @@
+"""What the suite of ground motions comes to in each case: mean, median, percentiles, and how many runs have no peak."""
+
+import math
+from collections.abc import Callable, Hashable, Mapping, Sequence
+from itertools import islice
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rockbatch.report.contents import Contents
+from rockbatch.report.document import Section
+from rockbatch.report.finished import Finished
+from rockbatch.report.markup import Markup, join, tag
+from rockbatch.report.table import MOST_ROWS, THETA, THETA_FORMAT, Head, alarm, sub, table, told_apart
+from rockbatch.results.suite_statistics import Suite, suite
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+QUANTITIES: dict[str, tuple[float, Markup, str]] = {
+    "theta_max_over_alpha": (1, join("Largest rotation ", THETA), THETA_FORMAT),
+    "theta_res_over_alpha": (1, join("Residual rotation |", sub("θ", "res", "|/α")), ".5f"),
+    "settlement_m": (1000, Markup("Settlement [mm]"), ".2f"),
+}
+"""Factor, heading and format of what has statistics; by magnitude."""
+
+WORDS = (
+    "Every run of the suite counts: each ground motion and scale of the group, mirror images once. A run that overturned, or was "
+    "ended by flight, has no largest value and counts as larger than any (∞) in the median, the percentiles and the "
+    "maximum; the mean is then that of the runs that stood, with their number. A failed run is unknown and counts in "
+    "its own column only. Percentiles are linear between the runs in order."
+)
+
+
+def section(contents: Contents) -> Section | None:
+    """Tables of every quantity, a row for each case; with and without the vertical component side by side."""
+    finished = contents.finished
+    if finished is None or finished.runs.empty:
+        return None
+    runs, keys = finished.runs, ["scale", "pier", "series"]
+    names, heads = rows_of(finished, runs, keys)
+    shown = dict(islice(names.items(), MOST_ROWS))
+    if len(shown) < len(names):
+        runs = runs[runs.set_index(keys).index.isin(list(shown))]
+    sides = {str(side): dict(list(same.groupby(keys))) for side, same in runs.groupby("with_vertical")}
+    content = join(told_apart(len(shown), len(names)), tables(sides, shown, heads))
+    return Section("The suite in each case", "suite", content)
+
+
+def rows_of(finished: Finished, runs: "pd.DataFrame", keys: list[str]) -> tuple[dict[Hashable, list[str]], list[Head]]:
+    """Texts of the first cells of each row, and their heads; ``keys`` are columns of ``runs`` that tell rows apart."""
+    many_scales = runs["scale"].nunique() > 1
+    words: dict[str, Callable[[Any], str]] = {
+        "series": lambda place: finished.series[place].label,
+        "pier": lambda place: finished.piers[place],
+        "scale": lambda scale: f"{scale:g}" if many_scales else "",
+        "with_vertical": str,
+    }
+    heads = {
+        "series": Head("case"),
+        "pier": Head("pier"),
+        "scale": Head("scale of motions"),
+        "with_vertical": Head("vertical"),
+    }
+    shown = [name for name in heads if name in keys]
+    names: dict[Hashable, list[str]] = {}
+    for key in runs[keys].drop_duplicates().sort_values(keys).itertuples(index=False, name=None):
+        values = dict(zip(keys, key, strict=True))
+        names[key] = [words[name](values[name]) for name in shown]
+    return names, [heads[name] for name in shown]
+
+
+def tables(
+    sides: "Mapping[str, Mapping[Any, pd.DataFrame]]",
+    names: Mapping[Hashable, Sequence[str]],
+    heads: Sequence[Head],
+) -> Markup:
+    """A table for each quantity that has values.
+
+    Parameters
+    ----------
+    sides : mapping
+        Runs of each row, for every side that is compared, by the words for the side; one side needs no words.
+    names : mapping
+        Texts of the first cells of each row, which stand under ``heads``.
+    """
+    drawn = [tag("p", WORDS)]
+    for quantity, (factor, heading, form) in QUANTITIES.items():
+        found = {
+            side: {
+                key: suite(factor * runs[quantity].to_numpy(dtype=np.float64), runs["status"].to_list())
+                for key, runs in groups.items()
+                if runs[quantity].notna().any()
+            }
+            for side, groups in sides.items()
+        }
+        keys = [key for key in names if any(key in suites for suites in found.values())]
+        if keys:
+            rows = [[*names[key], *_cells([suites.get(key) for suites in found.values()], form)] for key in keys]
+            drawn += [tag("h3", heading), table([*heads, *_heads(list(sides), form)], rows, name=f"Suite: {heading}")]
+    return join(*drawn)
+
+
+_COLUMNS = {
+    "count": ("n", "runs with an outcome"),
+    "mean": ("mean", "of the runs that stood"),
+    "median": ("median", None),
+    "low": ("16 %", "value that 16 % of the runs do not exceed"),
+    "high": ("84 %", "value that 84 % of the runs do not exceed"),
+    "largest": ("maximum", None),
+    "overturned": ("overturned", "runs in which the pier overturned"),
+    "flight": ("flight", "runs that ended when both pivots left the ground"),
+    "failed": ("failed", "runs without an outcome"),
+}
+
+
+def _heads(sides: Sequence[str], form: str) -> list[Head]:
+    several = len(sides) > 1
+    return [
+        Head(
+            side if several else says,
+            form if name in ("mean", "median", "low", "high", "largest") else ".0f",
+            note,
+            says if several else "",
+        )
+        for name, (says, note) in _COLUMNS.items()
+        for side in sides
+    ]
+
+
+def _cells(suites: Sequence[Suite | None], form: str) -> list[object]:
+    return [None if one is None else _cell(one, name, form) for name in _COLUMNS for one in suites]
+
+
+def _cell(one: Suite, name: str, form: str) -> object:
+    value = getattr(one, name)
+    if name in ("overturned", "flight", "failed"):
+        return alarm(str(value)) if value else value
+    if isinstance(value, int):
+        return value
+    if math.isinf(value):
+        return alarm("∞")
+    if name == "mean" and one.standing < one.count:
+        return "—" if math.isnan(value) else join(f"{value:{form}} ", tag("span", f"of {one.standing}", class_="muted"))
+    return value

@@ -1,0 +1,89 @@
+"""Design checks on finished results: the door to :mod:`rockbatch.checks`."""
+
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rockbatch.checks import Rule, Verdict, as_table, judge, load_rules, read_rules
+from rockbatch.errors import InputError
+from rockbatch.results.reading import Saved, read_saved
+from rockbatch.results.run_json import describe_case
+from rockbatch.study import Study, load_study
+from rockbatch.toml.reader import TomlFile
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+PathLike = str | os.PathLike[str]
+
+
+def check(
+    results: "PathLike | Saved | pd.DataFrame",
+    rules: PathLike | Iterable[Rule] | None = None,
+    *,
+    study: PathLike | Study | None = None,
+) -> "pd.DataFrame":
+    """Hold results against rules.
+
+    Parameters
+    ----------
+    results : path, opened results or DataFrame
+        A folder that ``rockbatch run`` has written, what :func:`rockbatch.open_results` made of it, or the table that
+        :func:`rockbatch.run` returned.
+    rules : path or iterable of Rule, optional
+        A TOML file with [[check]] tables, or the rules themselves; by default the study's own.
+    study : path or Study, optional
+        The study that a table comes from; folders know theirs.
+
+    Returns
+    -------
+    DataFrame
+        The rows of checks.csv, one for each case, scale and rule: see :class:`rockbatch.checks.Verdict`.
+
+    Raises
+    ------
+    InputError
+        For mistakes in the rules, with their lines, and for rules that do not fit the results.
+    """
+    return as_table(verdicts(results, rules, study=study))
+
+
+def verdicts(
+    results: "PathLike | Saved | pd.DataFrame",
+    rules: PathLike | Iterable[Rule] | None = None,
+    *,
+    study: PathLike | Study | None = None,
+) -> list[Verdict]:
+    """As :func:`check`, one :class:`Verdict` for each row."""
+    given = _given(rules)
+    if isinstance(results, Saved | str | os.PathLike):
+        saved = results if isinstance(results, Saved) else read_saved(Path(results))
+        rules = _of_study(saved.info["study"]) if given is None else given
+        table, cases = saved.peaks, saved.info["cases"]
+        records = [record["record"] for record in saved.info["records"]]
+    else:
+        if study is None:
+            raise InputError(
+                "check: a table does not say which piers it is about; give study = the study it was run from"
+            )
+        study = study if isinstance(study, Study) else load_study(study)
+        rules = study.checks if given is None else given
+        table, cases, records = results, [describe_case(case) for case in study.cases], []
+    if not rules:
+        raise InputError("no checks: the study has no [[check]]; add some, or give a file of rules")
+    return judge(rules, table, cases, records)
+
+
+def _given(rules: PathLike | Iterable[Rule] | None) -> Sequence[Rule] | None:
+    if rules is None:
+        return None
+    return load_rules(rules) if isinstance(rules, str | os.PathLike) else tuple(rules)
+
+
+def _of_study(study: Mapping[str, Any]) -> tuple[Rule, ...]:
+    """The rules in the text of a study, as run.json keeps it."""
+    file = TomlFile.parse(Path(study["path"]), study["text"])
+    rules = read_rules(file)
+    file.finish()
+    return rules

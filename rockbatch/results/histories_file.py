@@ -1,0 +1,232 @@
+"""``histories.h5``: the histories of a study's runs in HDF5. Opened with h5py only when it is written or read.
+
+::
+
+    /                   attributes: format, rockbatch, created, title, study (its text), sha256
+    /versions           attributes: the packages that wrote it
+    /runs/000000        attributes: record, case, polarity, scale, status
+          varied        attributes: values of the study's varied keys
+          pier, base    attributes: their parameters, as in rockbatch.pier; SI, angles in radians
+          t, theta, …   the columns of Response.history, shape (n,), those of springs where there are any
+          events        t, kind, pivot, before, after: the columns of Response.events
+          ledger        the terms of the energy ledger, where it was asked for
+
+Every dataset of numbers has an attribute ``unit``; "1" is none.
+"""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import asdict
+from functools import cached_property
+from pathlib import Path
+from shutil import disk_usage
+from typing import TYPE_CHECKING, Any, overload
+
+import numpy as np
+
+from rockbatch.errors import InputError
+from rockbatch.files import replacing
+from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase
+from rockbatch.results.columns import TERMS
+from rockbatch.results.response import EVENT_TYPES, Response
+
+if TYPE_CHECKING:
+    import h5py
+    import pandas as pd
+
+HISTORIES = "histories.h5"
+"""File of the histories that were kept, beside peaks.csv."""
+
+FORMAT = "rockbatch histories"
+
+MARGIN = 10_000_000
+"""Bytes of the disk that stay free."""
+
+UNITS = {
+    "t": "s",
+    "theta": "rad",
+    "omega": "rad/s",
+    "v": "m",
+    "z_left": "1",
+    "z_right": "1",
+    "v_left": "m",
+    "v_right": "m",
+    "force_left": "N/kg",
+    "force_right": "N/kg",
+    "energy": "J/kg",
+    "ag_h": "m/s^2",
+    "ag_v": "m/s^2",
+}
+"""Units of the columns of a history, in their order."""
+
+_OF_SPRINGS = ("v", "z_left", "z_right", "v_left", "v_right", "force_left", "force_right")
+_OF_RUN = ("record", "case", "polarity", "scale", "status")
+_BASES = {base.name: base for base in (RigidBase, ElasticBase, YieldingBase)}
+_DAMAGE = (OSError, KeyError, ValueError, TypeError, RuntimeError, AttributeError)
+"""What h5py raises where something is missing or broken."""
+
+
+def write(path: Path, responses: Iterable[Response], info: Mapping[str, Any]) -> None:
+    """Write ``responses`` to ``path`` one by one, whole or not at all; ``info`` is that of ``run.json``.
+
+    Raises ``InputError`` if the disk is full.
+    """
+    import h5py
+
+    with replacing(path) as temporary, h5py.File(temporary, "w") as file:
+        study = info["study"]
+        own = {"format": FORMAT, "rockbatch": info["rockbatch"], "created": info["created"]}
+        _set(file, own | {"title": study["title"], "study": study["text"], "sha256": study["sha256"]})
+        _set(file.create_group("versions"), info["versions"] | {"hdf5": h5py.version.hdf5_version})
+        runs = file.create_group("runs")
+        for number, response in enumerate(responses):
+            _check_room(path, response)
+            _write(runs.create_group(_name(number)), response)
+            file.flush()  # what HDF5 could not write is told here, and forgotten when it closes a dataset
+
+
+def _check_room(path: Path, response: Response) -> None:
+    """HDF5 does not survive a full disk: it may take the process with it at exit."""
+    tables = [table for table in (response.history, response.events, response.ledger) if table is not None]
+    needed = MARGIN + sum(int(table.memory_usage().sum()) for table in tables)
+    free = disk_usage(path.parent).free
+    if free < needed:
+        raise InputError(
+            f"{path}: the disk is full, {free / 1e6:.0f} MB are left; make room, or keep fewer histories with [output] "
+            'histories = "worst" or "none"'
+        )
+
+
+def _name(number: int) -> str:
+    return f"{number:06d}"
+
+
+def _write(group: "h5py.Group", response: Response) -> None:
+    _set(group, {name: getattr(response, name) for name in _OF_RUN})
+    _set(group.create_group("varied"), response.columns)
+    _set(group.create_group("pier"), asdict(response.pier))
+    _set(group.create_group("base"), {"name": response.base.name} | asdict(response.base))
+    rigid = isinstance(response.base, RigidBase)
+    for name, unit in UNITS.items():
+        if not (rigid and name in _OF_SPRINGS):
+            _put(group, name, response.history[name].to_numpy(), unit)
+    events = group.create_group("events")
+    for name in EVENT_TYPES:
+        if EVENT_TYPES[name] == "str":
+            events[name] = np.array(response.events[name], dtype="S16")
+        else:
+            _put(events, name, response.events[name].to_numpy(), UNITS.get(name, "1"))
+    if response.ledger is not None:
+        ledger = group.create_group("ledger")
+        for name in TERMS:
+            _put(ledger, name, response.ledger[name].to_numpy(), "J/kg")
+
+
+def _put(group: "h5py.Group", name: str, values: "np.ndarray[Any, Any]", unit: str) -> None:
+    group.create_dataset(name, data=values).attrs["unit"] = unit
+
+
+def _set(group: "h5py.Group", values: Mapping[str, Any]) -> None:
+    for name, value in values.items():
+        if value is not None:
+            group.attrs[name] = _legible(value) if isinstance(value, str) else value
+
+
+def _legible(text: str) -> str:
+    """HDF5 holds neither NUL nor what of a file's name is not Unicode; both are written as escapes."""
+    return text.encode(errors="backslashreplace").decode().replace("\0", "\\x00")
+
+
+class Responses(Sequence[Response]):
+    """The responses in a ``histories.h5``, each read when it is asked for; none where there is no file.
+
+    Using them raises ``InputError`` where the file is damaged, is something else, or does not belong to the run that
+    ``info``, its ``run.json``, tells of.
+    """
+
+    def __init__(self, path: Path, info: Mapping[str, Any]) -> None:
+        self.path = path
+        self._info = info
+
+    @cached_property
+    def runs(self) -> "pd.DataFrame":
+        """What is there, a row for each: record, case, polarity, scale, status, and the values of varied keys.
+
+        Values are NaN where the key does not apply. No history is read for it.
+        """
+        import pandas as pd
+
+        rows = []
+        if self.path.exists():
+            with self._opened() as runs:
+                groups = [runs[_name(number)] for number in range(len(runs))]
+                rows = [_attributes(group) | _attributes(group["varied"]) for group in groups]
+        return pd.DataFrame(rows, columns=[*_OF_RUN, *self._info["varied"]])
+
+    def __len__(self) -> int:
+        return len(self.runs)
+
+    @overload
+    def __getitem__(self, which: int) -> Response: ...
+    @overload
+    def __getitem__(self, which: slice) -> list[Response]: ...
+    def __getitem__(self, which: int | slice) -> Response | list[Response]:
+        if isinstance(which, slice):
+            return [self[number] for number in range(*which.indices(len(self)))]
+        number = range(len(self))[which]  # IndexError as of any sequence
+        with self._opened() as runs:
+            return _read(runs[_name(number)])
+
+    @contextmanager
+    def _opened(self) -> Iterator["h5py.Group"]:
+        """The group of runs; errors on the way are told in words."""
+        import h5py
+
+        try:
+            with h5py.File(self.path, "r") as file:
+                self._check(file)
+                yield file["runs"]
+        except InputError:
+            raise
+        except _DAMAGE as error:
+            raise InputError(f"{self.path}: damaged ({error}); start `rockbatch run` again") from error
+
+    def _check(self, file: "h5py.File") -> None:
+        if file.attrs.get("format") != FORMAT:
+            raise InputError(f"{self.path}: not the histories of a study; start `rockbatch run` again")
+        if (file.attrs["created"], file.attrs["sha256"]) != (self._info["created"], self._info["study"]["sha256"]):
+            raise InputError(
+                f"{self.path}: written on {file.attrs['created']}, by another run than run.json "
+                f"({self._info['created']}); start `rockbatch run` again"
+            )
+
+
+def _read(group: "h5py.Group") -> Response:
+    import pandas as pd
+
+    base = _attributes(group["base"])
+    kind = _BASES[base.pop("name")]
+    length = len(group["t"])
+    absent = _OF_SPRINGS if kind is RigidBase else ()
+    columns = {name: np.full(length, np.nan) if name in absent else group[name][:] for name in UNITS}
+    events = {
+        name: group["events"][name].asstr()[:] if of == "str" else group["events"][name][:]
+        for name, of in EVENT_TYPES.items()
+    }
+    ledger = None
+    if "ledger" in group:
+        ledger = pd.DataFrame({"t": columns["t"]} | {name: group["ledger"][name][:] for name in TERMS})
+    return Response(
+        **_attributes(group),
+        columns=_attributes(group["varied"]),
+        pier=Pier(**_attributes(group["pier"])),
+        base=kind(**base),
+        history=pd.DataFrame(columns),
+        events=pd.DataFrame(events).astype(EVENT_TYPES),
+        ledger=ledger,
+    )
+
+
+def _attributes(group: "h5py.Group") -> dict[str, Any]:
+    """Attributes as Python's own numbers and texts."""
+    return {name: value.item() if isinstance(value, np.generic) else value for name, value in group.attrs.items()}

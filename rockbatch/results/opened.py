@@ -1,0 +1,108 @@
+"""Finished results, opened again: peaks, what was run, and histories."""
+
+import os
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rockbatch.errors import InputError
+from rockbatch.results.histories_file import HISTORIES, Responses
+from rockbatch.results.reading import Saved, read_saved
+from rockbatch.results.response import Response
+from rockbatch.toml.kinds import closest, shown
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+MOST_CANDIDATES = 8
+
+
+@dataclass(frozen=True, eq=False)
+class Results(Saved):
+    """The results in a folder: ``directory``, ``info`` (run.json), ``peaks``, and the histories that were kept."""
+
+    @cached_property
+    def responses(self) -> Responses:
+        """The runs whose histories were kept, each read when it is asked for; none if the study asked for none."""
+        return Responses(self.directory / HISTORIES, self.info)
+
+    def response(self, record: str | None = None, case: str | None = None, **more: float | str) -> Response:
+        """The response of one run.
+
+        Parameters
+        ----------
+        record, case : str, optional
+            Of which ground motion and case; whatever the kept histories leave no choice about can be left out.
+        **more
+            Its ``polarity``, ``scale`` and values of the study's varied keys, where that takes a choice.
+
+        Raises
+        ------
+        InputError
+            If there is none, or more than one; with those that there are.
+        """
+        wanted = {name: value for name, value in {"record": record, "case": case, **more}.items() if value is not None}
+        index = self.responses.runs
+        if index.empty:
+            raise InputError(
+                f'{self.directory}: no histories; write [output] histories = "worst" or "all" in the study, and '
+                "start `rockbatch run` again"
+            )
+        known = [name for name in index.columns if name != "status"]
+        strange = [name for name in wanted if name not in known]
+        if strange:
+            raise InputError(*(f"{name}: not what tells runs apart; choose by {', '.join(known)}" for name in strange))
+        fitting = index
+        for name, value in wanted.items():
+            remaining = fitting[fitting[name] == value]
+            if remaining.empty:
+                raise InputError(self._none(name, value, fitting))
+            fitting = remaining
+        if len(fitting) > 1:
+            raise InputError(f"{self.directory}: {len(fitting)} histories fit; say which: {_told(fitting, wanted)}")
+        return self.responses[int(fitting.index[0])]
+
+    def history(self, record: str | None = None, case: str | None = None, **more: float | str) -> "pd.DataFrame":
+        """:attr:`Response.history` of one run, chosen as for :meth:`response`."""
+        return self.response(record, case, **more).history
+
+    def events(self, record: str | None = None, case: str | None = None, **more: float | str) -> "pd.DataFrame":
+        """:attr:`Response.events` of one run, chosen as for :meth:`response`."""
+        return self.response(record, case, **more).events
+
+    def _none(self, name: str, value: float | str, among: "pd.DataFrame") -> str:
+        there = among[name].dropna().unique().tolist()
+        meant = closest(value, map(str, there)) if isinstance(value, str) else None
+        hint = f"there are {_listed(map(shown, there))}" if there else "it applies to none of them"
+        if meant:
+            hint = f"did you mean {shown(meant)}?"
+        return f"{self.directory}: no history with {name} = {shown(value)}; {hint}"
+
+
+def open_results(directory: str | os.PathLike[str]) -> Results:
+    """Open the results that ``rockbatch run`` wrote into ``directory``.
+
+    Raises
+    ------
+    InputError
+        With all that is wrong, if peaks.csv or run.json is missing or damaged.
+    """
+    saved = read_saved(Path(directory))
+    return Results(saved.directory, saved.info, saved.peaks)
+
+
+def _told(fitting: "pd.DataFrame", wanted: dict[str, float | str]) -> str:
+    """The runs that fit, by what tells them apart."""
+    apart = [name for name in fitting.columns if name not in ("status", *wanted) and fitting[name].nunique() > 1]
+    runs = fitting[apart].to_dict("records")
+    return _listed(
+        ", ".join(f"{name} = {shown(value)}" for name, value in run.items() if value == value) for run in runs
+    )
+
+
+def _listed(each: Iterable[str]) -> str:
+    words = list(each)
+    more = len(words) - MOST_CANDIDATES
+    return "; ".join(words[:MOST_CANDIDATES]) + (f"; and {more} more" if more > 0 else "")

@@ -1,0 +1,114 @@
+"""What a simulation returns: the histories of one record on one foundation."""
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from rockbatch.pier import Base, Pier
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.figure import Figure
+
+Samples = npt.NDArray[np.float64]
+
+EVENT_TYPES = {"t": "float64", "kind": "str", "pivot": "str", "before": "int64", "after": "int64"}
+"""Columns of the table of events."""
+
+
+@dataclass(frozen=True, eq=False)
+class Response:
+    """Histories of one run. SI units; angles in radians; energy per unit mass.
+
+    Attributes
+    ----------
+    record, case : str
+        Names of the ground motion and of the foundation case.
+    columns : dict
+        Values of the study's varied keys that apply to this run, such as ``{"beta": 40.0}``.
+    pier : Pier
+        The block.
+    base : RigidBase, ElasticBase or YieldingBase
+        What it stands on.
+    status : str
+        "ok", "overturned", "flight" (the run was stopped by it) or "failed".
+    history : DataFrame, one row per instant
+        ``t`` [s]; ``theta`` [rad], positive tilts right; ``omega`` = dθ/dt [rad/s]; ``v`` [m], the centre of
+        mass above the position of unstressed springs; ``z_left``, ``z_right``, spring forces over the yield
+        force, −1..0; ``v_left``, ``v_right`` [m], the pivots, up positive; ``force_left``, ``force_right`` [N/kg],
+        spring forces per unit mass of the pier, negative in compression; ``energy`` [J/kg], relative to the start;
+        ``ag_h``, ``ag_v`` [m/s²], the ground, positive right and up. On the rigid base ``v``, ``z_*``, ``v_*`` and
+        ``force_*`` are NaN.
+    events : DataFrame, one row per event
+        ``t`` [s], ``kind`` ("separation", "impact", …), ``pivot`` ("left", "right"), and the places in ``history`` of
+        the rows ``before`` and ``after`` it, alike where nothing jumps.
+    ledger : DataFrame or None
+        Energies [J/kg] at the rows of ``history``, where they were asked for: stored ``kinetic``, ``potential``,
+        ``elastic``, relative to the start; summed since, ``input``, ``plastic``, ``impact``, ``p_delta`` (first-order
+        kinematics), ``constraint`` (finite kinematics); and the ``remainder`` of their balance, the integrator's error.
+    polarity : str
+        "-" where the motion's horizontal component was reversed, else "+".
+    scale : float
+        Factor on all components of the motion.
+    """
+
+    record: str
+    case: str
+    columns: dict[str, float | str]
+    pier: Pier
+    base: Base
+    status: str
+    history: "pd.DataFrame" = field(repr=False)
+    events: "pd.DataFrame" = field(repr=False)
+    ledger: "pd.DataFrame | None" = field(default=None, repr=False)
+    polarity: str = "+"
+    scale: float = 1.0
+
+    @property
+    def t(self) -> Samples:
+        """Time [s], shape (n,)."""
+        return self._history("t")
+
+    @property
+    def theta(self) -> Samples:
+        """Rotation θ [rad], shape (n,); positive lifts the left pivot and tilts the block to the right."""
+        return self._history("theta")
+
+    @property
+    def omega(self) -> Samples:
+        """Angular velocity dθ/dt [rad/s], shape (n,)."""
+        return self._history("omega")
+
+    @property
+    def v(self) -> Samples:
+        """Centre of mass above the position of unstressed springs [m], shape (n,); NaN on the rigid base."""
+        return self._history("v")
+
+    @property
+    def z_left(self) -> Samples:
+        """Force of the left spring over its yield force, −1..0, shape (n,); NaN on the rigid base."""
+        return self._history("z_left")
+
+    @property
+    def z_right(self) -> Samples:
+        """Force of the right spring over its yield force, −1..0, shape (n,); NaN on the rigid base."""
+        return self._history("z_right")
+
+    @property
+    def energy(self) -> Samples:
+        """Total energy per unit mass [J/kg], relative to the start, shape (n,)."""
+        return self._history("energy")
+
+    def plot(self) -> "Figure":
+        """Rotation, angular velocity, energy and ground motion against time, impacts as strokes, and the loops of both
+        springs: a matplotlib Figure, ``response.plot().savefig("pier.pdf")``."""
+        from rockbatch.results.plots import plot
+
+        sign = f", polarity {self.polarity}" if self.polarity != "+" else ""
+        title = f"{self.record} × {self.scale:g}{sign}, {self.case}: {self.status}"
+        return plot(self.history, self.events, self.pier, self.base, title)
+
+    def _history(self, column: str) -> Samples:
+        return self.history[column].to_numpy(dtype=np.float64)

@@ -1,0 +1,216 @@
+"""Histories of one run: what the core wrote, with names, units and what follows from it."""
+
+import math
+
+import numpy as np
+
+from rockbatch.core import types
+from rockbatch.core.ledger import ledger_on_rigid_base, ledger_on_springs
+from rockbatch.errors import InputError
+from rockbatch.motions.motion import Motion, Samples
+from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, problems
+from rockbatch.results.columns import TERMS
+from rockbatch.results.outcome import Outcome
+from rockbatch.results.response import EVENT_TYPES, Response
+from rockbatch.simulation.models import block, ground_of, least_substeps, springs
+from rockbatch.simulation.runs import Run, run_fixed, steps_of, written_run
+from rockbatch.simulation.settling import run_to_tolerance
+
+_EVENTS = {
+    types.SEPARATION_LEFT: ("separation", "left"),
+    types.SEPARATION_RIGHT: ("separation", "right"),
+    types.IMPACT_LEFT: ("impact", "left"),
+    types.IMPACT_RIGHT: ("impact", "right"),
+    types.IMPACT_BOTH: ("impact", "both"),
+    types.SPRING_LEFT: ("spring", "left"),
+    types.SPRING_RIGHT: ("spring", "right"),
+    types.HELD_LEFT: ("contact", "left"),
+    types.HELD_RIGHT: ("contact", "right"),
+    types.LIFT_OFF: ("lift-off", ""),
+    types.REST: ("rest", ""),
+}
+
+
+MOST_ROWS = 10_000_000
+"""Rows of a history that are held in memory, about a gigabyte."""
+
+
+def simulate(
+    pier: Pier,
+    foundation: Base,
+    motion: Motion,
+    *,
+    tolerance: float = 1e-4,
+    substeps: int | None = None,
+    quiet_s: float = 2.0,
+    case: str | None = None,
+    ledger: bool = False,
+    wait: bool = True,
+) -> Response:
+    """Histories of one run.
+
+    Parameters
+    ----------
+    pier, foundation, motion
+        What rocks, on what, under what; a motion's vertical component is used if it has one.
+    tolerance : float
+        On θ_max/α; the steps per sample are chosen to meet it.
+    substeps : int, optional
+        Steps per sample instead, for a fixed step.
+    quiet_s : float
+        Time after the record [s].
+    case : str, optional
+        Name of the foundation; its kind by default.
+    ledger : bool
+        Keep the energy ledger too (THEORY.md, 9).
+    wait : bool
+        Go on after ``quiet_s`` until nothing that comes later can exceed the peak; ``False``, with ``substeps``: end there.
+
+    Raises
+    ------
+    InputError
+        If the pier cannot stand on the foundation, with the limits.
+    """
+    wrong = problems(pier, foundation)
+    if not tolerance > 0:
+        wrong.append(f"tolerance = {tolerance:g}: must be above 0 (on theta_max/alpha)")
+    if not (math.isfinite(quiet_s) and quiet_s >= 0):
+        wrong.append(f"quiet_s = {quiet_s:g}: must be 0 or more [s]")
+    if substeps is not None and (isinstance(substeps, bool) or not isinstance(substeps, int)):
+        wrong.append(f"substeps = {substeps}: must be a whole number")
+    if substeps is not None and not wrong and substeps < (least := least_substeps(pier, foundation, motion.dt)):
+        wrong.append(f"substeps = {substeps}: must be a whole number of at least {least} for this pier and motion")
+    if substeps is None and not wait:
+        wrong.append("wait = False: the error of a run that is cut off cannot be told; give substeps")
+    if wrong:
+        raise InputError(*wrong)
+    if substeps is None:
+        outcome = run_to_tolerance(pier, foundation, motion, tolerance, quiet_s)
+    else:
+        outcome = run_fixed(pier, foundation, motion, substeps, quiet_s, wait=wait)
+    run = Run(pier, foundation, motion)
+    return histories(run, outcome, quiet_s, case or foundation.name, {}, ledger, wait=wait)
+
+
+def written(run: Run, outcome: Outcome, quiet_s: float, every_step: bool, wait: bool = True) -> Samples:
+    """A run whose outcome is known, written down: the rows of the core, shape (n, 13) or (n, 4).
+
+    Raises ``InputError`` where they would be more than :data:`MOST_ROWS`.
+    """
+    samples = steps_of(run.motion, 1, quiet_s)
+    capacity = int(outcome.substeps * samples if every_step else samples) + 64 * (
+        outcome.impacts + outcome.separations + 64
+    )
+    capacity = min(capacity, MOST_ROWS)
+    found, rows = written_run(run, outcome.substeps, quiet_s, capacity, every_step=every_step, wait=wait)
+    if found.rows > MOST_ROWS:
+        instead = "leave out the energy ledger or use fewer substeps" if every_step else "cut the record"
+        raise InputError(f"{run.motion.name}: a history of {found.rows} rows, more than {MOST_ROWS}; {instead}")
+    if found.rows > capacity:
+        found, rows = written_run(run, outcome.substeps, quiet_s, found.rows, every_step=every_step, wait=wait)
+    return rows[: found.rows]
+
+
+def energies(run: Run, rows: Samples) -> Samples:
+    """Energy ledger [J/kg] at every row of a run: :data:`rockbatch.results.columns.TERMS`, shape (n, 9)."""
+    pier, base = run.pier, run.base
+    ground, dt = ground_of(run.motion), float(run.motion.dt)
+    ledger = np.zeros((len(rows), len(TERMS)))
+    if isinstance(base, RigidBase):
+        ledger_on_rigid_base(block(pier, base), rows, ground, dt, ledger)
+        return pier.inertia_about_pivot * ledger
+    ledger_on_springs(springs(pier, base), rows, ground, dt, ledger)
+    return ledger
+
+
+def histories(
+    run: Run,
+    outcome: Outcome,
+    quiet_s: float,
+    case: str,
+    columns: dict[str, float | str],
+    ledger: bool = False,
+    polarity: str = "+",
+    scale: float = 1.0,
+    wait: bool = True,
+) -> Response:
+    """Histories of a run whose outcome is known: the same run again, with the same steps, written down.
+
+    The motion of ``run`` is scaled and turned already; ``polarity`` and ``scale`` say how.
+    """
+    import pandas as pd
+
+    pier, base, motion = run.pier, run.base, run.motion
+    rows = written(run, outcome, quiet_s, every_step=ledger, wait=wait)
+    shown = rows[:, -1] != types.STEP
+    shown[-1] = True  # an overturned pier may fall between samples
+    table = None
+    if ledger:
+        table = pd.DataFrame(energies(run, rows)[shown], columns=list(TERMS))
+        table.insert(0, "t", rows[shown, 0])
+    rows = rows[shown]
+    state = _rigid_state(pier, rows) if isinstance(base, RigidBase) else _springs_state(pier, base, rows)
+    t = rows[:, 0]
+    vertical = np.zeros(len(t)) if motion.vertical is None else _ground(motion.vertical, motion.dt, t)
+    history = pd.DataFrame({"t": t, **state, "ag_h": _ground(motion.horizontal, motion.dt, t), "ag_v": vertical})
+    events = pd.DataFrame(_events(rows, outcome.t_flight), columns=list(EVENT_TYPES)).astype(EVENT_TYPES)
+    return Response(motion.name, case, columns, pier, base, outcome.status, history, events, table, polarity, scale)
+
+
+def _events(rows: Samples, t_flight: float | None) -> list[tuple[float, str, str, int, int]]:
+    """Time, kind and pivot of every event, and the rows before and after it."""
+    kinds = rows[:, -1]
+    found = []
+    for after in np.flatnonzero(kinds > 0):
+        jumps = kinds[after - 1] == types.BEFORE_EVENT
+        found.append((float(rows[after, 0]), *_EVENTS[int(kinds[after])], int(after - jumps), int(after)))
+    if t_flight is not None:
+        last = int(np.searchsorted(rows[:, 0], t_flight, side="right")) - 1
+        found.append((t_flight, "flight", "", last, last))
+        found.sort(key=lambda event: event[0])
+    return found
+
+
+def _ground(acceleration: Samples, dt: float, t: Samples) -> Samples:
+    """Ground acceleration at times ``t``: linear between samples, zero from the sample after the last."""
+    samples = np.append(acceleration, 0.0)
+    return np.interp(t, np.arange(len(samples)) * dt, samples)
+
+
+def _rigid_state(pier: Pier, rows: Samples) -> dict[str, Samples]:
+    theta, omega = rows[:, 1], rows[:, 2]
+    absent = np.full(len(rows), np.nan)
+    climbed = np.cos(pier.alpha - np.abs(theta)) - math.cos(pier.alpha)
+    energy = 0.5 * pier.inertia_about_pivot * omega**2 + pier.gravity * pier.size * climbed
+    none = dict.fromkeys(("v", "z_left", "z_right", "v_left", "v_right", "force_left", "force_right"), absent)
+    return {"theta": theta, "omega": omega, **none, "energy": energy}
+
+
+def _springs_state(pier: Pier, base: ElasticBase, rows: Samples) -> dict[str, Samples]:
+    """State, pivots, and the energy stored since the start (THEORY.md): kinetic, potential and elastic."""
+    m = springs(pier, base)
+    v, theta, v_rate, omega, z_left, z_right, on_left, on_right = rows[:, 1:9].T
+    b, h = m.half_width, m.height
+    rise, drop, lever = b * theta, np.zeros(len(rows)), np.full(len(rows), h)
+    if m.finite is not None:
+        rise, drop = b * np.sin(theta), h * (1.0 - np.cos(theta))
+        lever = h * np.cos(theta) + (on_right - on_left) * rise
+    elastic = z_left**2 + z_right**2
+    energy = (
+        0.5 * v_rate**2
+        + 0.5 * (m.inertia + lever**2) * omega**2
+        + m.gravity * (v - v[0])
+        + 0.5 * m.yield_force * m.yield_deflection * (elastic - elastic[0])
+    )
+    return {
+        "theta": theta,
+        "omega": omega,
+        "v": v,
+        "z_left": z_left,
+        "z_right": z_right,
+        "v_left": v + rise + drop,
+        "v_right": v - rise + drop,
+        "force_left": m.yield_force * z_left,
+        "force_right": m.yield_force * z_right,
+        "energy": energy,
+    }

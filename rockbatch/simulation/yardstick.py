@@ -1,0 +1,125 @@
+"""The pier on springs with SciPy's ``solve_ivp``, as one would write it without this library: a yardstick for speed.
+
+Right-hand side, events and what follows from them are the core's compiled functions, so that what is timed is the
+solver: steps no longer than a sample, terminal events, a restart after each. Only ``rockbatch accuracy`` and tests
+come here, for SciPy takes a second to load.
+"""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from rockbatch.core.equations import rates
+from rockbatch.core.events import at_rest, signals
+from rockbatch.core.transitions import Supports, handle
+from rockbatch.core.two_springs import static_state
+from rockbatch.core.types import BOUC_WEN, Contact, State
+from rockbatch.motions.motion import Motion
+from rockbatch.pier import ElasticBase, Pier, vertical_frequency
+from rockbatch.simulation.models import springs
+
+MOST_EVENTS = 100_000
+
+
+def solve(
+    pier: Pier, base: ElasticBase, motion: Motion, method: str, tolerance: float, quiet_s: float = 2.0
+) -> tuple[str, float]:
+    """Status and θ_max [rad] of a run on springs.
+
+    Parameters
+    ----------
+    method : str
+        Of :func:`scipy.integrate.solve_ivp`, such as "DOP853" or "LSODA".
+    tolerance : float
+        Relative, and absolute in units of δ_y for v, α for θ, these times ω_v and p for their rates, and 1 for z.
+    quiet_s : float
+        Time after the record [s]; the run ends there even if the pier might still overturn.
+
+    Returns
+    -------
+    status : "ok", "overturned", "flight" or "failed"
+    theta_max : greatest |θ| until the end [rad]
+    """
+    from scipy.integrate import solve_ivp
+
+    m = springs(pier, base)
+    rest = at_rest(m)
+    dt = float(motion.dt)
+    end = (motion.npts - 1 + math.ceil(quiet_s / dt - 1e-9)) * dt
+    horizontal, vertical = _ground(motion.horizontal, dt), _ground(motion.vertical, dt)
+    omega_v = vertical_frequency(pier, base)
+    scale = [m.yield_deflection, pier.alpha, m.yield_deflection * omega_v, pier.alpha * pier.p, 1.0, 1.0]
+    tolerances = {"rtol": tolerance, "atol": tolerance * np.array(scale)}
+
+    t, y = 0.0, static_state(m)
+    branch = 1.0 if m.law == BOUC_WEN else 0.0
+    contact, supports = Contact(1.0, 1.0, branch, branch, 0.0), Supports(math.nan, math.nan)
+
+    def rhs(s: float, y: Any) -> Any:
+        return rates(m, State(*y.tolist()), contact, horizontal(s), vertical(s))
+
+    def values(s: float, state: State) -> Any:  # the rates, here the state itself, matter to slopes only
+        return signals(m, state, state, contact, *supports, rest, horizontal(s), vertical(s))[0]
+
+    def signal(i: int) -> Any:
+        def event(s: float, y: Any) -> float:
+            value = float(values(s, State(*y.tolist()))[i])
+            return value if abs(value) > rest else rest  # rounding does not cross
+
+        return _terminal(event)
+
+    events = [*(signal(i) for i in range(4)), _terminal(_upright), _turning]
+    theta_max = 0.0
+    for _ in range(MOST_EVENTS):
+        # An impact at one pivot may turn the other's velocity: that is an event before the next step
+        which = next((i for i, value in enumerate(values(t, y)) if value < -rest), None)
+        if which is None:
+            solution = solve_ivp(rhs, (t, end), np.array(y), method=method, max_step=dt, events=events, **tolerances)
+            turned = solution.y_events[-1]
+            reached = [theta_max, *np.abs(solution.y[1]), *(np.abs(turned[:, 1]) if len(turned) else ())]
+            theta_max = float(max(reached))
+            if solution.status < 0 or not math.isfinite(theta_max):
+                return "failed", theta_max
+            if solution.status == 0:
+                return "ok", theta_max
+            which = next(i for i, times in enumerate(solution.t_events) if len(times))
+            if which == 4:
+                return "overturned", theta_max
+            t, y = float(solution.t[-1]), State(*solution.y[:, -1].tolist())
+        y, contact, supports, _ = handle(m, y, contact, supports, which, rest, horizontal(t), vertical(t))
+        if contact.left == contact.right == contact.held == 0 and not m.guided:
+            beyond = abs(y.theta) >= pier.alpha and y.theta * y.omega > 0.0
+            return "overturned" if beyond else "flight", theta_max
+        if t >= end:
+            return "ok", theta_max
+    return "failed", theta_max
+
+
+def _ground(samples: Any, dt: float) -> Any:
+    """Ground acceleration [m/s²] as a function of time [s]: linear between samples, zero after the last."""
+    if samples is None:
+        return lambda t: 0.0
+    values = [*samples.tolist(), 0.0]
+
+    def at(t: float) -> float:
+        i = int(t / dt)
+        if i >= len(values) - 1:
+            return 0.0
+        return float(values[i] + (t / dt - i) * (values[i + 1] - values[i]))
+
+    return at
+
+
+def _terminal(event: Any) -> Any:
+    """``event`` ends the integration where it falls through zero."""
+    event.terminal, event.direction = True, -1.0
+    return event
+
+
+def _upright(t: float, y: Any) -> float:
+    return 0.5 * math.pi - abs(y[1])
+
+
+def _turning(t: float, y: Any) -> float:
+    return float(y[3])

@@ -1,0 +1,162 @@
+"""The batch: every record in every case, in the order of the study, whatever the number of threads."""
+
+import numpy as np
+import pandas as pd
+import pytest
+from studies import COSINE, PADS, RIGID, SINE, study_text, write_study
+
+import rockbatch as rb
+import rockbatch.batch.groups
+from rockbatch.batch.carrying_out import carry_out
+from rockbatch.batch.digests import study_digests
+from rockbatch.batch.groups import NOTHING_MORE, groups
+from rockbatch.batch.journal import Journal
+from rockbatch.batch.plan import Plan
+from rockbatch.batch.threads import Threads
+from rockbatch.results.columns import COLUMNS, MORE_COLUMNS, columns
+from rockbatch.study import load_study
+from rockbatch.study.suite import ground_motions
+
+STUDY = study_text(
+    title="two pulses, three bases",
+    motions={"polarity": ["+", "-"], "scale": [0.5, 1.0]},
+    pulses=(SINE, COSINE),
+    cases=(RIGID, PADS | {"beta": [30, 50], "epsilon": 0.1}),
+)
+
+
+@pytest.fixture
+def study(tmp_path):
+    return write_study(tmp_path, STUDY)
+
+
+def test_rows_come_in_the_order_of_the_study(study):
+    table = rb.run(study)
+    assert list(table.columns) == [*COLUMNS, "beta", *MORE_COLUMNS, "mirror_of", "settlement_other_law_m"]
+    assert len(table) == 2 * 2 * 2 * 3
+    first = table.loc[:5, ["record", "polarity", "scale", "case", "beta"]].astype(object).where(table.notna(), None)
+    assert first.to_numpy().tolist() == [
+        ["one-sine", "+", 0.5, "rigid", None],
+        ["one-sine", "+", 0.5, "pads", 30.0],
+        ["one-sine", "+", 0.5, "pads", 50.0],
+        ["one-sine", "+", 1.0, "rigid", None],
+        ["one-sine", "+", 1.0, "pads", 30.0],
+        ["one-sine", "+", 1.0, "pads", 50.0],
+    ]
+
+
+def test_results_do_not_depend_on_the_number_of_jobs_to_the_bit(study):
+    pd.testing.assert_frame_equal(rb.run(study, jobs=1), rb.run(study, jobs=5), check_exact=True)
+
+
+def test_polarity_mirrors_and_changes_no_peak(study):
+    """−ü_g mirrors θ: the peak is the same, the residual rotation changes its sign."""
+    table = rb.run(study)
+    plus, minus = (table[table["polarity"] == sign].reset_index(drop=True) for sign in "+-")
+    assert plus["theta_max_over_alpha"].to_numpy() == pytest.approx(minus["theta_max_over_alpha"].to_numpy(), rel=1e-12)
+    residual = plus["theta_res_over_alpha"].to_numpy()
+    assert residual == pytest.approx(-minus["theta_res_over_alpha"].to_numpy(), rel=1e-9, nan_ok=True)
+    assert np.nanmax(np.abs(residual)) > 1e-3
+
+
+def test_every_tolerated_row_has_an_error_below_the_tolerance(study):
+    table = rb.run(study)
+    assert (table["status"] == "ok").all()
+    assert (table["theta_max_error"] <= 1e-4).all()
+    assert table["substeps"].gt(1).all()
+
+
+def test_a_fixed_step_has_no_error_estimate(study):
+    study.write_text(STUDY + "\n[numerics]\nsubsteps = 3\n", encoding="utf-8")
+    table = rb.run(study)
+    assert table["theta_max_error"].isna().all()
+    assert table["substeps"].eq(3).all()
+
+
+def test_a_scaled_motion_is_the_scaled_pulse(study):
+    table = rb.run(study)
+    row = table[(table["record"] == "one-sine") & (table["scale"] == 0.5) & (table["case"] == "rigid")].iloc[0]
+    pulse = rb.pulse("sine", name="half", amplitude=0.5 * 9.81, period=0.5, dt=0.01, duration=4.0)
+    pier = rb.Pier(0.2, 1.0)
+    response = rb.simulate(pier, rb.RigidBase(), pulse)
+    assert np.abs(response.theta).max() / pier.alpha == pytest.approx(row["theta_max_over_alpha"], rel=1e-4)
+
+
+def test_a_folder_without_any_motion_is_a_mistake_that_says_so(study, tmp_path):
+    (tmp_path / "empty").mkdir()
+    with pytest.raises(rb.InputError, match="no ground motion"):
+        rb.run(study, motions=tmp_path / "empty")
+
+
+def plan_of(study):
+    loaded = load_study(study)
+    return loaded, Plan(loaded, ground_motions(loaded))
+
+
+def test_a_plan_makes_each_run_when_it_is_asked_for(study):
+    """Counted and indexed like a list; runs beside each other share the arrays of their motion."""
+    _, runs = plan_of(study)
+    assert len(runs) == 24
+    table = [(run.motion.name, run.polarity, run.scale, run.case.columns) for run in runs]
+    assert [(run.motion.name, run.polarity, run.scale, run.case.columns) for run in runs[5:9]] == table[5:9]
+    assert runs[-1].motion.name == "one-cosine"
+    assert runs[0].motion is runs[2].motion
+    assert runs[3].motion is not runs[2].motion
+    assert runs[9].motion.horizontal == pytest.approx(-runs[3].motion.horizontal)
+    with pytest.raises(IndexError):
+        runs[24]
+
+
+@pytest.mark.parametrize("jobs", [1, 2, 7])
+def test_groups_take_every_run_once_and_in_order(study, jobs):
+    loaded, runs = plan_of(study)
+    found = list(groups(runs, loaded.numerics, jobs))
+    assert [i for group in found for i in group] == list(range(24))
+
+
+def test_a_group_is_closed_when_its_work_is_a_second(study, monkeypatch):
+    loaded, runs = plan_of(study)
+    monkeypatch.setattr(rockbatch.batch.groups, "STEPS_OF_A_GROUP", 1.0)
+    assert [len(group) for group in groups(runs, loaded.numerics, 1)] == [1] * 24
+
+
+def test_only_runs_that_are_wanted_and_not_in_the_journal_are_carried_out(study, tmp_path):
+    """Numbers in the journal go on where an earlier part of it has ended."""
+    loaded, runs = plan_of(study)
+    simulated = []
+
+    class Watched(Threads):
+        def outcomes(self, runs, numerics, output=NOTHING_MORE):
+            simulated.append(len(runs))
+            return super().outcomes(runs, numerics, output)
+
+    calls = []
+    with Journal(tmp_path / "peaks.csv.part", columns(loaded), {}) as journal:
+        for wanted in (range(5, 9), range(7, 12), range(7, 12)):
+            carry_out(runs, loaded.numerics, journal, Watched(2), first=100, among=wanted, progress=calls.append)
+        assert list(journal) == list(range(105, 112))
+        assert journal[108]["record"] == runs[8].motion.name
+        assert float(journal[108]["beta"]) == runs[8].case.columns["beta"]
+    assert simulated == [4, 3, 0]
+    assert sum(calls) == 7
+
+
+def test_what_rows_depend_on_is_told_apart_and_the_rest_is_not(study):
+    """Runs that are finished stay good when a title, a comment or a check is changed."""
+
+    def changed(*replaced):
+        study.write_text(STUDY.replace(*replaced), encoding="utf-8")
+        loaded = load_study(study)
+        now = study_digests(loaded, ground_motions(loaded))
+        return [name for name in now if now[name] != before[name]]
+
+    loaded = load_study(study)
+    before = study_digests(loaded, ground_motions(loaded))
+    assert changed("two pulses", "2 pulses  # cosine and") == []
+    assert changed("[motions]", '[output]\nhistories = "all"\n[motions]') == []
+    assert changed("eta = 2.5", "eta = 2.6") == ["cases"]
+    assert changed("[0.5, 1.0]", "[0.5, 1.1]") == ["scales"]
+    assert changed("amplitude_g = 0.5", "amplitude_g = 0.51") == ["motions"]
+    assert changed('"one-cosine"', '"cosine"') == ["motions"]
+    assert changed("[motions]", "[numerics]\nquiet_s = 3\n[motions]") == ["numerics"]
+    assert changed("[motions]", "[output]\nledger = true\n[motions]") == ["numerics"]

@@ -1,0 +1,209 @@
+"""Engines: whatever carries out the runs, and whatever becomes of it meanwhile, the table is the same bytes."""
+
+import os
+import pickle
+import signal
+import subprocess
+import sys
+
+import pytest
+from studies import COSINE, PADS, RIGID, SINE, study_text, write_study
+
+import rockbatch.batch.dask
+import rockbatch.batch.groups
+import rockbatch.batch.threads
+from rockbatch.batch.carrying_out import carry_out
+from rockbatch.batch.dask import Dask, Records, simulate
+from rockbatch.batch.digests import program
+from rockbatch.batch.groups import NOTHING_MORE, outcomes_of
+from rockbatch.batch.journal import Journal
+from rockbatch.batch.plan import Plan, PlannedRun
+from rockbatch.batch.threads import Threads
+from rockbatch.cli import main
+from rockbatch.errors import InputError
+from rockbatch.results.columns import columns
+from rockbatch.study import load_study
+from rockbatch.study.suite import ground_motions
+
+STUDY = study_text(
+    title="Two pulses on many foundations",
+    motions={"polarity": ["+", "-"], "scale": [0.5, 0.75, 1.0]},
+    pulses=(SINE, COSINE),
+    cases=(RIGID, PADS | {"beta": [30, 40, 50], "eta": [2.0, 2.5, 3.0], "epsilon": 0.1}),
+    output={"both_laws": False, "histories": "none"},
+)
+RUNS = 2 * 2 * 3 * 10
+
+
+@pytest.fixture
+def file(tmp_path):
+    return write_study(tmp_path, STUDY)
+
+
+@pytest.fixture
+def study(file):
+    return load_study(file)
+
+
+@pytest.fixture
+def runs(study):
+    return Plan(study, ground_motions(study))
+
+
+def table(folder, study, runs, engine, progress=None):
+    """Bytes of peaks.csv as an engine carries out the runs."""
+    with engine, Journal(folder / "peaks.csv.part", columns(study), {}, fresh=True) as journal:
+        carry_out(runs, study.numerics, journal, engine, study.output, progress=progress)
+        journal.write_in_order(folder / "peaks.csv")
+    return (folder / "peaks.csv").read_bytes()
+
+
+@pytest.mark.parametrize("jobs", [1, 2, 7])
+def test_threads_yield_every_run_once(study, runs, jobs):
+    with Threads(jobs) as engine:
+        found = [index for group in engine.outcomes(runs, study.numerics) for index, _ in group]
+    assert sorted(found) == list(range(RUNS))
+
+
+@pytest.mark.parametrize("error", [KeyboardInterrupt, ValueError])
+def test_after_ctrl_c_or_an_error_come_the_groups_that_are_finished(study, runs, monkeypatch, error):
+    monkeypatch.setattr(rockbatch.batch.threads, "groups", lambda runs, *_: iter([range(i, i + 1) for i in range(6)]))
+    handed = []
+
+    def third_interrupts(*asked):
+        handed.append(asked)
+        if len(handed) == 3:
+            raise error
+        return outcomes_of(*asked)
+
+    monkeypatch.setattr(rockbatch.batch.threads, "outcomes_of", third_interrupts)
+    found = []
+    with pytest.raises(error):  # noqa: PT012
+        for group in Threads(1).outcomes(runs, study.numerics):
+            found += [index for index, _ in group]
+    assert found[:2] == [0, 1]
+    assert 2 not in found
+
+
+def test_threads_load_nothing_of_a_cluster():
+    code = (
+        "import sys, rockbatch.batch.carrying_out, rockbatch.commands.run, rockbatch.batch.dask\n"
+        "print([name for name in ('dask', 'distributed') if name in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == ["[]"]
+
+
+# A dask cluster
+
+
+def test_a_cluster_with_a_worker_killed_in_the_middle_comes_to_the_same_bytes(tmp_path, study, runs, monkeypatch):
+    distributed = pytest.importorskip("distributed")
+    monkeypatch.setattr(rockbatch.batch.groups, "LEAST_GROUP", 4)
+    done, killed = [], []
+    with distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None, silence_logs=50
+    ) as cluster:
+        workers = list(cluster.workers.values())
+
+        def kill_one(finished):
+            done.append(finished)
+            if not killed and sum(done) >= RUNS // 4:
+                killed.append(workers[0].pid)
+                os.kill(workers[0].pid, signal.SIGKILL)
+
+        with monkeypatch.context() as patch:
+            patch.setattr(rockbatch.batch.dask, "MOST_RUNS_OF_A_TASK", 4)
+            found = table(tmp_path, study, runs, Dask(cluster.scheduler_address), kill_one)
+        assert len(killed) == 1
+        assert sum(done) == RUNS // 2  # the others are mirror images
+    assert found == table(tmp_path, study, runs, Threads(2))
+
+
+@pytest.mark.slow
+def test_runs_at_which_workers_die_end_the_batch_and_what_is_finished_is_kept(tmp_path, study, runs, monkeypatch):
+    """Here the first death is one too many; as delivered, dask allows three for a task."""
+    distributed = pytest.importorskip("distributed")
+    from dask import config
+
+    monkeypatch.setattr(rockbatch.batch.groups, "LEAST_GROUP", 4)
+    monkeypatch.setattr(rockbatch.batch.dask, "MOST_RUNS_OF_A_TASK", 4)
+    with (
+        config.set({"distributed.scheduler.allowed-failures": 0}),
+        distributed.LocalCluster(
+            n_workers=1, threads_per_worker=1, processes=True, dashboard_address=None, silence_logs=50
+        ) as cluster,
+    ):
+        (worker,) = cluster.workers.values()
+        with pytest.raises(InputError, match=r"runs \d+ to \d+ .* workers died at them in turn, the last tcp://"):
+            table(tmp_path, study, runs, Dask(cluster.scheduler_address), lambda _: os.kill(worker.pid, signal.SIGKILL))
+    with Journal(tmp_path / "peaks.csv.part", columns(study), {}) as journal:
+        assert 0 < len(journal) < RUNS
+
+
+def test_the_command_line_carries_out_a_study_on_processes_of_this_machine(file, tmp_path, capsys):
+    pytest.importorskip("distributed")
+    assert main(["run", str(file), "--out", str(tmp_path / "dask"), "--engine", "dask", "--jobs", "1"]) == 0
+    assert "on a dask cluster of 1 thread (this machine)" in capsys.readouterr().err
+    assert main(["run", str(file), "--out", str(tmp_path / "threads")]) == 0
+    assert (tmp_path / "dask/peaks.csv").read_bytes() == (tmp_path / "threads/peaks.csv").read_bytes()
+
+
+def test_a_scheduler_that_does_not_answer_is_told(file, tmp_path, capsys, monkeypatch):
+    pytest.importorskip("distributed")
+    monkeypatch.setattr(rockbatch.batch.dask, "PATIENCE_S", 0.2)
+    out = tmp_path / "out"
+    assert main(["run", str(file), "--out", str(out), "--scheduler", "tcp://127.0.0.1:9"]) == 2
+    assert "scheduler tcp://127.0.0.1:9: no workers" in capsys.readouterr().err
+
+
+def test_without_dask_the_engine_says_how_to_get_it(monkeypatch):
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with pytest.raises(InputError, match=r'pip install "rockbatch\[dask\]"'):
+        Dask().__enter__()
+
+
+class Notebook:
+    """Stands for a dask client: writes down what it is handed."""
+
+    def __init__(self):
+        self.tasks = []
+
+    def submit(self, function, *given, **_):
+        self.tasks.append((function, given))
+        return f"future {len(self.tasks)}"
+
+
+def test_each_record_is_sent_once_whatever_its_scales_polarities_and_cases(study, runs):
+    client = Notebook()
+    records = Records(client)
+    for first in range(0, RUNS, 7):
+        records.submit(runs[first : first + 7], study.numerics, study.output)
+    sent = [given for function, given in client.tasks if function is not simulate]
+    assert [motion.name for (motion,) in sent] == ["one-sine", "one-cosine"]
+    groups = [given for function, given in client.tasks if function is simulate]
+    assert max(len(pickle.dumps(given)) for given in groups) < 5000  # a record is 3 kB and more, a run 100 bytes
+
+
+def test_a_motion_that_is_no_record_is_sent_with_each_group_that_needs_it(study, runs):
+    client = Notebook()
+    records = Records(client)
+    made = PlannedRun(runs[5].motion, "+", 0.5, runs[5].case)
+    for _ in range(2):
+        records.submit([made, made], study.numerics, study.output)
+    assert [function is simulate for function, _ in client.tasks] == [False, True, False, True]
+
+
+def test_a_worker_rebuilds_the_very_runs(study, runs):
+    """Also those whose motion was made elsewhere: it is then the record."""
+    ours = [*runs[:12], *runs[-12:], PlannedRun(runs[5].motion, "-", 0.5, runs[5].case)]
+    client = Notebook()
+    Records(client).submit(ours, study.numerics, study.output)
+    (_, (futures, members, *rest)) = client.tasks[-1]
+    motions = [client.tasks[int(future.split()[1]) - 1][1][0] for future in futures]
+    assert simulate(motions, members, *rest) == outcomes_of(ours, study.numerics, study.output)
+
+
+def test_a_worker_with_other_kernels_refuses(study):
+    with pytest.raises(InputError, match=rf"{program()}, not 0123\): install the same everywhere"):
+        simulate([], [], study.numerics, NOTHING_MORE, "0123")

@@ -1,0 +1,212 @@
+"""The journal: whatever ends its process and however, the rows that it had are there, each once and whole."""
+
+import tracemalloc
+
+import numpy as np
+import pytest
+
+from rockbatch.batch.journal import Journal
+from rockbatch.errors import InputError
+from rockbatch.files import UNFINISHED, only_writer
+
+COLUMNS = ("record", "theta", "reason")
+DIGEST = {"cases": "5f1c", "motions": "09ab"}
+ROWS = {
+    0: {"record": "a", "theta": 0.1 + 0.2, "reason": ""},
+    1: {"record": 'Düzce, "⟂" 地震', "theta": float("nan"), "reason": None},
+    2: {"record": "two\nlines\r\n", "theta": 1.0, "reason": "7,b,\n"},
+    3: {"record": "not Unicode \udcff", "theta": -1e-300, "reason": "\0"},
+    11: {"record": "", "theta": 3, "reason": "'"},
+}
+TABLE = (
+    b"record,theta,reason\n"
+    b"a,0.3,\n"
+    b'"D\xc3\xbczce, ""\xe2\x9f\x82"" \xe5\x9c\xb0\xe9\x9c\x87",,\n'
+    b'"two\nlines\r\n",1,"7,b,\n"\n'
+    b"not Unicode \\udcff,-1e-300,\0\n"
+    b",3,'\n"
+)
+
+
+@pytest.fixture
+def path(tmp_path):
+    return tmp_path / "results" / "peaks.csv.part"
+
+
+def interrupted(path, rows, **options):
+    """A journal that is left by an exception when it has these rows."""
+    with pytest.raises(KeyboardInterrupt), Journal(path, COLUMNS, DIGEST, **options) as journal:  # noqa: PT012
+        journal.add_all(rows)
+        raise KeyboardInterrupt
+
+
+def ended(path):
+    """Whatever is missing is added, and the table is written: its bytes, and the numbers that had been there."""
+    with Journal(path, COLUMNS, DIGEST) as journal:
+        there = list(journal)
+        journal.add_all({number: row for number, row in ROWS.items() if number not in journal})
+        journal.write_in_order(path.with_name("peaks.csv"))
+    return path.with_name("peaks.csv").read_bytes(), there
+
+
+def test_the_table_is_in_the_order_of_the_numbers_however_the_runs_finish(path):
+    for seed in range(5):
+        numbers = np.random.default_rng(seed).permutation(list(ROWS)).tolist()
+        with Journal(path, COLUMNS, DIGEST) as journal:
+            for number in numbers:
+                journal.add_all({number: ROWS[number]})
+            journal.write_in_order(path.with_name("peaks.csv"), [{"reason": "of no run"}])
+            assert path.exists()  # until all that belongs to the table is there too
+        assert [file.name for file in path.parent.iterdir()] == ["peaks.csv"]
+        assert path.with_name("peaks.csv").read_bytes() == TABLE + b",,of no run\n"
+
+
+def test_wherever_the_file_is_cut_the_rows_before_are_kept_and_the_table_ends_with_the_same_bytes(path):
+    interrupted(path, ROWS)
+    whole = path.read_bytes()
+    ends = [whole.index(row) + len(row) for row in TABLE.splitlines(keepends=True)[1:] if row.endswith(b"\n")]
+    kept = []
+    for length in range(len(whole) + 1):
+        path.write_bytes(whole[:length])
+        table, there = ended(path)
+        assert table == TABLE
+        assert there == list(ROWS)[: len(there)]
+        kept.append(len(there))
+    assert kept == sorted(kept)
+    assert kept[-1] == len(ROWS)
+    assert kept[ends[0] - 1] == 0
+    assert kept[ends[0]] == 1  # a row counts once its last byte is there
+
+
+@pytest.mark.parametrize(
+    "torn", [b"\0" * 100, b"\0\0\n4,x,1,\n", b"4,x,1\n", b"\xff\xff,\n5,x,1,\n", b'4,"x,1,\n', b"\n"]
+)
+def test_what_a_power_cut_leaves_behind_the_last_row_is_dropped_for_good(path, torn):
+    """Also whole lines behind a damaged one: they would come back when the damaged one is written over."""
+    interrupted(path, {0: ROWS[0]})
+    before = path.read_bytes()
+    path.write_bytes(before + torn)
+    with pytest.raises(KeyboardInterrupt), Journal(path, COLUMNS, DIGEST) as journal:
+        raise KeyboardInterrupt
+    assert list(journal) == [0]
+    assert path.read_bytes() == before
+
+
+def test_finished_rows_are_read_back_as_the_texts_of_the_table(path):
+    with Journal(path, COLUMNS, DIGEST) as journal:
+        journal.add_all(ROWS)
+        assert len(journal) == 5
+        assert 11 in journal
+        assert 10 not in journal
+        assert 12 not in journal
+        assert journal[1] == {"record": 'Düzce, "⟂" 地震', "theta": "", "reason": ""}
+        assert journal[2]["record"] == "two\nlines\r\n"
+        assert dict(journal.rows()) == {number: journal[number] for number in ROWS}
+        with pytest.raises(KeyError):
+            journal[10]
+
+
+def test_other_runs_are_not_mixed_in_and_what_has_changed_is_told(path):
+    interrupted(path, ROWS)
+    before = path.read_bytes()
+    changed = Journal(path, COLUMNS, DIGEST | {"motions": "ffff"})
+    with pytest.raises(InputError, match=r"5 finished runs, but .* changed \(motions\); .* start over with --fresh"):
+        changed.__enter__()
+    with pytest.raises(InputError, match=r"changed \(columns\)"):
+        Journal(path, COLUMNS[:2], DIGEST).__enter__()
+    assert path.read_bytes() == before
+    with Journal(path, COLUMNS, {"cases": "0"}, fresh=True) as journal:
+        assert len(journal) == 0
+
+
+def test_a_journal_without_a_finished_run_holds_nobody_up_and_goes(path):
+    interrupted(path, {})
+    assert not path.exists()
+    path.write_bytes(b"cases:0000,record,theta,reason\n")
+    with Journal(path, COLUMNS, DIGEST) as journal:
+        assert len(journal) == 0
+    assert not path.exists()
+
+
+def test_only_one_writes_into_a_folder_at_a_time(path):
+    with Journal(path, COLUMNS, DIGEST):
+        with pytest.raises(InputError, match=f"{path.parent}: another process is writing"):
+            Journal(path.with_name("fragility.csv.part"), COLUMNS, DIGEST).__enter__()
+        with only_writer(path.parent.parent):
+            pass
+    with only_writer(path.parent):
+        pass
+    assert list(path.parent.iterdir()) == []
+
+
+def test_what_a_killed_process_had_not_finished_writing_is_swept_up(path):
+    path.parent.mkdir()
+    (path.parent / f".peaks.csv-abc{UNFINISHED}").touch()
+    with Journal(path, COLUMNS, DIGEST) as journal:
+        assert [file.name for file in path.parent.iterdir()] != []
+        assert not list(path.parent.glob(f".*{UNFINISHED}"))
+        assert len(journal) == 0
+
+
+def test_an_error_while_the_table_is_written_leaves_the_journal_and_the_earlier_table(path):
+    interrupted(path, ROWS)
+    path.with_name("peaks.csv").write_text("earlier")
+
+    def broken():
+        yield {"reason": "of no run"}
+        raise OSError("broken")
+
+    with pytest.raises(OSError, match="broken"), Journal(path, COLUMNS, DIGEST) as journal:
+        journal.write_in_order(path.with_name("peaks.csv"), broken())
+    assert path.with_name("peaks.csv").read_text() == "earlier"
+    assert sorted(file.name for file in path.parent.iterdir()) == ["peaks.csv", "peaks.csv.part"]
+    assert ended(path) == (TABLE, list(ROWS))
+
+
+# Shares of several machines
+
+
+def test_shares_are_joined_to_the_bytes_of_one_run(path, tmp_path):
+    numbers = list(ROWS)
+    parts = [tmp_path / name / "peaks.csv.part" for name in ("1", "2", "3")]
+    for part, share in zip(parts, (numbers[:2], numbers[1:4], numbers[3:]), strict=True):  # some in two of them
+        interrupted(part, {number: ROWS[number] for number in share})
+    with Journal(path, COLUMNS, DIGEST) as journal:
+        for part in parts[::-1]:
+            journal.add_from(part)
+        journal.write_in_order(path.with_name("peaks.csv"))
+    assert path.with_name("peaks.csv").read_bytes() == TABLE
+    assert all(part.exists() for part in parts)
+
+
+def test_a_share_of_another_study_or_with_another_row_for_the_same_run_is_refused(path, tmp_path):
+    other = tmp_path / "other" / "peaks.csv.part"
+    interrupted(other, {0: ROWS[1]})
+    with Journal(path, COLUMNS, DIGEST) as journal:
+        journal.add_all({0: ROWS[0]})
+        with pytest.raises(InputError, match="run 0 has come to something else"):
+            journal.add_from(other)
+    with (
+        Journal(path, COLUMNS, {"cases": "other"}, fresh=True) as journal,
+        pytest.raises(InputError, match=r"changed \(cases\)"),
+    ):
+        journal.add_from(other)
+
+
+# What it costs
+
+
+def test_memory_holds_where_the_rows_are_and_not_the_rows(path):
+    """16 bytes a run, in arrays that grow by an eighth at a time, beside a group; all rows of this one are 12 MB."""
+    many, group = 20_000, 100
+    row = {"record": "x" * 600, "theta": 0.5, "reason": ""}
+    tracemalloc.start()
+    try:
+        with Journal(path, COLUMNS, DIGEST) as journal:
+            for first in range(0, many, group):
+                journal.add_all(dict.fromkeys(range(first, first + group), row))
+            journal.write_in_order(path.with_name("peaks.csv"))
+            _, peak = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert peak < 2 * 16 * many + 4 * 600 * group

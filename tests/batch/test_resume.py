@@ -1,0 +1,334 @@
+"""A batch that ends before its end: what is finished is kept, and the same command comes to the same bytes."""
+
+import json
+import multiprocessing
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+from studies import PADS, RIGID, SINE, study_text, write_study
+
+import rockbatch.batch.groups
+import rockbatch.batch.threads
+from rockbatch.cli import main
+from rockbatch.files import only_writer
+
+SIMULATED = 6 * 49
+RUNS = 2 * SIMULATED  # with the mirror images
+
+unix = pytest.mark.skipif(not hasattr(os, "fork"), reason="processes are forked, with their kernels loaded")
+
+
+@pytest.fixture(autouse=True)
+def small_groups(monkeypatch):
+    """Groups of 10 runs, that many may be finished or under way."""
+    monkeypatch.setattr(rockbatch.batch.groups, "LEAST_GROUP", 10)
+    monkeypatch.setattr(rockbatch.batch.groups.groups, "__defaults__", (10,))
+
+
+@pytest.fixture
+def study(tmp_path):
+    return write(tmp_path / "study.toml")
+
+
+def write(path, title="Long", last_scale=1.2):
+    pads = PADS | {
+        "beta": [30, 40, 50, 60, 70, 80],
+        "eta": [2.0, 2.25, 2.5, 2.75, 3.0, 3.25, 3.5, 3.75],
+        "epsilon": 0.1,
+    }
+    text = study_text(
+        title=title,
+        motions={"polarity": ["+", "-"], "scale": [0.2, 0.4, 0.6, 0.8, 1.0, last_scale]},
+        pulses=(SINE | {"duration_s": 2.0},),
+        cases=(RIGID, pads),
+        output={"both_laws": False, "histories": "none"},
+    )
+    return write_study(path.parent, text, path.name)
+
+
+@pytest.fixture(scope="module")
+def undisturbed(tmp_path_factory):
+    """peaks.csv of the study, carried out in one go."""
+    folder = tmp_path_factory.mktemp("undisturbed")
+    assert main(["run", str(write(folder / "study.toml")), "--out", str(folder)]) == 0
+    return (folder / "peaks.csv").read_bytes()
+
+
+def started(study, out, *more):
+    """The command line in a process of its own, that is under way."""
+    process = multiprocessing.get_context("fork").Process(
+        target=forked, args=(["run", str(study), "--out", str(out), "--jobs", "2", *more],)
+    )
+    process.start()
+    return process
+
+
+def forked(arguments):
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    sys.stdout = sys.stderr = open(os.devnull, "w")  # noqa: SIM115
+    os._exit(main(arguments))
+
+
+def finished_in(out):
+    """Number of runs in the journal."""
+    part = out / "peaks.csv.part"
+    return part.read_bytes().count(b"\n") - 1 if part.exists() else 0
+
+
+def stopped(*_):
+    raise KeyboardInterrupt
+
+
+def wait_for(out, runs):
+    """Until so many runs are in the journal."""
+    until = time.monotonic() + 60
+    while finished_in(out) < runs:
+        assert time.monotonic() < until
+        time.sleep(0.002)
+
+
+@unix
+def test_killed_at_random_instants_it_goes_on_and_ends_with_the_same_bytes(study, tmp_path, undisturbed, monkeypatch):
+    """While it starts, while runs are under way and written down, and while the table and the report are written."""
+    slowed_down(monkeypatch, 0.05)
+    out = tmp_path / "out"
+    chance = random.Random(7)
+    finished, ended = [], []
+    while ended.count(-signal.SIGKILL) < 20:
+        process = started(study, out)
+        process.join(chance.uniform(0.0, 0.5))
+        process.kill()
+        process.join()
+        ended.append(process.exitcode)
+        finished.append(finished_in(out))
+        if process.exitcode == 0:  # all that there was to do is done: once more, from the start
+            assert (out / "peaks.csv").read_bytes() == undisturbed
+            shutil.rmtree(out)
+    assert set(ended) <= {0, -signal.SIGKILL}
+    assert len({runs for runs in finished if 0 < runs < RUNS}) >= 3
+    assert main(["run", str(study), "--out", str(out)]) == 0
+    assert (out / "peaks.csv").read_bytes() == undisturbed
+    assert sorted(file.name for file in out.iterdir()) == ["peaks.csv", "report.html", "run.json"]
+
+
+def slowed_down(monkeypatch, seconds):
+    """Every group of runs takes so much longer."""
+    real = rockbatch.batch.threads.outcomes_of
+    monkeypatch.setattr(rockbatch.batch.threads, "outcomes_of", lambda *asked: (time.sleep(seconds), real(*asked))[1])
+
+
+@unix
+def test_after_ctrl_c_the_same_command_goes_on(study, tmp_path, undisturbed, capsys, monkeypatch):
+    out = tmp_path / "out"
+    with monkeypatch.context() as patch:
+        slowed_down(patch, 0.05)
+        process = started(study, out)
+    wait_for(out, 20)
+    os.kill(process.pid, signal.SIGINT)
+    process.join()
+    assert process.exitcode == 130
+    kept = finished_in(out)
+    assert 20 <= kept < RUNS
+    assert [file.name for file in out.iterdir()] == ["peaks.csv.part"]  # a table is there when it is whole
+    capsys.readouterr()
+    assert main(["run", str(study), "--out", str(out)]) == 0
+    assert f"{kept // 2} of them are finished already, {SIMULATED - kept // 2} are left" in capsys.readouterr().err
+    assert (out / "peaks.csv").read_bytes() == undisturbed
+    assert json.loads((out / "run.json").read_text())["kept"] == kept // 2
+    assert f"{kept // 2} runs had been finished before" in (out / "report.html").read_text(encoding="utf-8")
+
+
+def test_an_interrupt_says_what_is_kept_and_how_to_go_on(study, tmp_path, monkeypatch, capsys):
+    real, groups = rockbatch.batch.threads.outcomes_of, []
+
+    def interrupted(runs, *arguments):
+        groups.append(runs)
+        if len(groups) == 3:
+            raise KeyboardInterrupt
+        return real(runs, *arguments)
+
+    monkeypatch.setattr(rockbatch.batch.threads, "outcomes_of", interrupted)
+    out = tmp_path / "out"
+    assert main(["run", str(study), "--out", str(out), "--jobs", "1"]) == 130
+    told = capsys.readouterr().err
+    assert (
+        f"interrupted: {finished_in(out) // 2} of {SIMULATED} runs are finished and kept in {out / 'peaks.csv.part'}"
+        in told
+    )
+    assert "the same command goes on from there" in told
+    assert finished_in(out) >= 20
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="small file systems are mounted in a namespace of their own")
+def test_a_full_disk_is_told_and_when_there_is_room_the_same_command_goes_on(study, tmp_path, undisturbed):
+    """The disk is full in the middle of the runs, then in the middle of the table, and then there is room."""
+    disk, kept = tmp_path / "disk", tmp_path / "kept"
+    disk.mkdir()
+    kept.mkdir()
+    run = f"{sys.executable} -m rockbatch run {study} --out {disk}/out --jobs 2 >> {kept}/out"
+    script = f"""
+        mount -t tmpfs -o size={len(undisturbed) // 2} none {disk} || exit 99
+        {run} 2> {kept}/first; echo $? > {kept}/codes
+        mount -o remount,size={len(undisturbed) * 3 // 2} {disk}
+        {run} 2> {kept}/second; echo $? >> {kept}/codes
+        mount -o remount,size=50m {disk}
+        {run} 2> {kept}/third; echo $? >> {kept}/codes
+        cp {disk}/out/peaks.csv {kept}
+    """
+    try:
+        done = subprocess.run(["unshare", "-rm", "sh", "-c", script], capture_output=True, text=True)
+    except FileNotFoundError:
+        pytest.skip("there is no unshare")
+    if done.returncode == 99 or "unshare:" in done.stderr:
+        pytest.skip(f"no file system can be mounted here: {done.stderr}")
+    first, second, third = ((kept / name).read_text(encoding="utf-8") for name in ("first", "second", "third"))
+    assert (kept / "codes").read_text().split() == ["2", "2", "0"]
+    remedy = "make room and give the same command again"
+    assert f"{disk}/out/peaks.csv.part: cannot be written: No space left on device; the " in first
+    assert f"runs that are finished are kept: {remedy}" in first
+    assert f"{disk}/out/peaks.csv: cannot be written: No space left on device" in second
+    assert remedy in second
+    assert f"{SIMULATED} of them are finished already, 0 are left" in third
+    assert (kept / "peaks.csv").read_bytes() == undisturbed
+
+
+def test_in_a_finished_folder_nothing_is_left_to_run_and_the_rest_is_made_again(
+    study, tmp_path, undisturbed, capsys, monkeypatch
+):
+    out = tmp_path / "out"
+    command = ["run", str(study), "--out", str(out)]
+    assert main(command) == 0
+    cost = json.loads((out / "run.json").read_text())["wall_s"]
+    with monkeypatch.context() as patch:  # killed on its way: it stays finished
+        patch.setattr("rockbatch.batch.finishing.write_info", stopped)
+        assert main(command) == 130
+    write(study, title="Renamed")
+    study.write_text(study.read_text().replace('histories = "none"', 'histories = "worst"'))
+    capsys.readouterr()
+    assert main(command) == 0
+    assert "nothing is left to run" in capsys.readouterr().err
+    assert (out / "histories.h5").exists()
+    assert "Renamed" in (out / "report.html").read_text(encoding="utf-8")
+    assert json.loads((out / "run.json").read_text())["wall_s"] == cost
+    assert (out / "peaks.csv").read_bytes() == undisturbed
+    assert main([*command, "--fresh"]) == 0
+    assert "nothing is left" not in capsys.readouterr().err
+    assert (out / "peaks.csv").read_bytes() == undisturbed
+
+
+def test_a_table_without_its_run_json_does_not_count_as_finished(study, tmp_path, undisturbed, capsys):
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "peaks.csv").write_text("not ours")
+    for info in ("", "[]"):
+        (out / "run.json").write_text(info)
+        assert main(["run", str(study), "--out", str(out)]) == 0
+        assert (out / "peaks.csv").read_bytes() == undisturbed
+
+
+@unix
+def test_a_changed_study_is_not_mixed_in_and_replaces_finished_results_only_when_whole(
+    study, tmp_path, capsys, monkeypatch
+):
+    out = tmp_path / "out"
+    command = ["run", str(study), "--out", str(out)]
+    assert main(command) == 0
+    earlier = {file.name: file.read_bytes() for file in out.iterdir()}
+    write(study, last_scale=1.3)
+    with monkeypatch.context() as patch:
+        slowed_down(patch, 0.05)
+        process = started(study, out)
+    wait_for(out, 20)
+    process.kill()
+    process.join()
+    there = {file.name: file.read_bytes() for file in out.iterdir() if file.name in earlier}
+    assert there == earlier
+
+    write(study, last_scale=1.4)
+    capsys.readouterr()
+    assert main(command) == 2
+    assert "something has changed (scales); undo that to go on" in capsys.readouterr().err
+    assert main([*command, "--fresh"]) == 0
+    assert "1.4" in {line.split(",")[3] for line in (out / "peaks.csv").read_text(encoding="utf-8").splitlines()}
+    assert sorted(file.name for file in out.iterdir()) == sorted(earlier)
+
+
+def test_results_of_other_peaks_never_stand_beside_new_ones(study, tmp_path, monkeypatch):
+    """Killed between the table and what belongs to it, there is the table alone, and its journal."""
+    import rockbatch.batch.finishing as finishing
+
+    out = tmp_path / "out"
+    command = ["run", str(study), "--out", str(out)]
+    assert main(command) == 0
+    for name in ("checks.csv", "histories.h5"):
+        (out / name).touch()
+    write(study, last_scale=1.3)
+    with monkeypatch.context() as patch:
+        patch.setattr("rockbatch.batch.finishing.write_info", stopped)
+        assert main(command) == 130
+    assert sorted(file.name for file in out.iterdir() if file.suffix != ".lock") == ["peaks.csv", "peaks.csv.part"]
+    assert finishing.cost_of_finished(out, {}) is None
+    assert main(command) == 0
+    assert json.loads((out / "run.json").read_text())["kept"] == SIMULATED
+
+
+def test_two_cannot_write_into_one_folder(study, tmp_path, capsys):
+    out = tmp_path / "out"
+    out.mkdir()
+    with only_writer(out):
+        assert main(["run", str(study), "--out", str(out)]) == 2
+    assert f"{out}: another process is writing its results there" in capsys.readouterr().err
+
+
+# Shares
+
+
+def test_shares_are_merged_to_the_results_of_one_run(study, tmp_path, undisturbed, capsys):
+    folders = [tmp_path / str(share) for share in (1, 2, 3)]
+    for share, folder in zip((1, 2, 3), folders, strict=True):
+        assert main(["run", str(study), "--out", str(folder), "--shard", f"{share}/3"]) == 0
+        assert finished_in(folder) == RUNS // 3
+    out = tmp_path / "out"
+    merge = ["merge", str(study), "--out", str(out)]
+    assert main([*merge, str(folders[2]), str(folders[0])]) == 2
+    told = capsys.readouterr().err
+    assert f"{RUNS // 3} of {RUNS} rows are in none of these folders: {RUNS // 3 + 1} to {2 * RUNS // 3}; " in told
+    assert f"rockbatch run {study} --out {out}" in told
+    assert main([*merge, *map(str, folders)]) == 0
+    assert (out / "peaks.csv").read_bytes() == undisturbed
+    assert sorted(file.name for file in out.iterdir()) == ["peaks.csv", "report.html", "run.json"]
+    assert f"{SIMULATED} runs had been finished before" in (out / "report.html").read_text(encoding="utf-8")
+
+
+def test_what_merge_is_missing_can_be_carried_out_where_the_shares_were_joined(study, tmp_path, undisturbed):
+    assert main(["run", str(study), "--out", str(tmp_path / "1"), "--shard", "1/2"]) == 0
+    assert main(["merge", str(study), "--out", str(tmp_path), str(tmp_path / "1")]) == 2
+    assert main(["run", str(study), "--out", str(tmp_path)]) == 0
+    assert (tmp_path / "peaks.csv").read_bytes() == undisturbed
+
+
+def test_shares_of_another_study_are_told_all_at_once(study, tmp_path, capsys):
+    other = write(tmp_path / "other.toml", last_scale=1.3)
+    assert main(["run", str(other), "--out", str(tmp_path / "1"), "--shard", "1/2"]) == 0
+    capsys.readouterr()
+    folders = [str(tmp_path / "1"), str(tmp_path / "nowhere")]
+    assert main(["merge", str(study), "--out", str(tmp_path / "out"), *folders]) == 2
+    told = capsys.readouterr().err.splitlines()
+    assert len(told) == 2
+    assert "something has changed (scales)" in told[0]
+    assert "nowhere" in told[1]
+    assert "not there" in told[1]
+
+
+@pytest.mark.parametrize("text", ["0/2", "3/2", "2", "1/0", "a/b", "-1/2"])
+def test_a_share_that_cannot_be_is_told(study, text, capsys):
+    with pytest.raises(SystemExit) as ended:
+        main(["run", str(study), "--shard", text])
+    assert ended.value.code == 2
+    assert "must be such as 2/4" in capsys.readouterr().err or text.startswith("-")

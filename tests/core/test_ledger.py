@@ -1,0 +1,106 @@
+"""The energy ledger: it closes to the integrator's error, and its parts are what they are called."""
+
+import numpy as np
+import pytest
+from studies import PADS, RIGID, study_text, write_study
+
+import rockbatch as rb
+
+PIER = rb.Pier(0.2, 1.0)
+T = np.arange(0, 8.001, 0.01)
+SMOOTH = rb.Motion(
+    "smooth",
+    0.01,
+    9.81 * np.sin(2 * np.pi * T) * np.sin(np.pi * np.clip(T / 4, 0, 1)) ** 2,
+    2.0 * np.sin(5 * T) * np.sin(np.pi * np.clip(T / 4, 0, 1)) ** 2,
+)
+BASES = {
+    "rigid": rb.RigidBase(),
+    "elastic": rb.ElasticBase(50, 0.1, flight="guided"),
+    "bouc-wen": rb.YieldingBase(50, 0.1, flight="guided", eta=2.2),
+    "epp, finite": rb.YieldingBase(50, 0.1, flight="guided", eta=2.2, spring="epp", kinematics="finite"),
+    "bouc-wen, finite, epsilon 0": rb.YieldingBase(50, 0.0, flight="guided", eta=2.2, kinematics="finite"),
+}
+
+
+def ledger(base, substeps):
+    return rb.simulate(PIER, base, SMOOTH, substeps=substeps, ledger=True).ledger
+
+
+@pytest.mark.parametrize("name", BASES)
+def test_the_remainder_falls_with_the_fourth_power_of_the_step(name):
+    """Runge–Kutta 4 and Simpson's rule: 2⁴ = 16 a halving, at least 12 as measured over two halvings."""
+    coarse, fine = (ledger(BASES[name], substeps)["remainder"].abs().max() for substeps in (2, 8))
+    assert fine > 0.0
+    assert coarse / fine > 12.0**2
+
+
+@pytest.mark.parametrize("name", BASES)
+def test_the_remainder_falls_below_1e_10_of_the_input_on_smooth_input(name):
+    terms = ledger(BASES[name], 96)
+    assert terms["input"].abs().max() > 0.1
+    assert terms["remainder"].abs().max() < 1e-10 * terms["input"].abs().max()
+
+
+@pytest.mark.parametrize("name", BASES)
+def test_what_is_lost_is_only_ever_lost(name):
+    """Plastic work and impacts never give energy back; 1e-9 J/kg is the quadrature's error at this step."""
+    terms = ledger(BASES[name], 16)
+    for term in ("plastic", "impact"):
+        assert np.diff(terms[term]).min() > -1e-9
+    assert terms["impact"].iloc[-1] > 0.1
+    assert (terms["plastic"].iloc[-1] > 0.1) == isinstance(BASES[name], rb.YieldingBase)
+
+
+def test_p_delta_belongs_to_first_order_and_constraint_to_finite_kinematics():
+    first_order, finite = ledger(BASES["bouc-wen"], 4), ledger(BASES["epp, finite"], 4)
+    assert first_order["constraint"].abs().max() == 0.0
+    assert first_order["p_delta"].abs().max() > 1e-3
+    assert finite["p_delta"].abs().max() == 0.0
+    assert finite["constraint"].abs().max() > 1e-3
+
+
+@pytest.mark.parametrize("name", ["bouc-wen", "epp, finite"])
+def test_plastic_work_is_that_of_the_outcome(name):
+    """The outcome has it from the ends of each loading in closed form, the ledger from the power of the forces."""
+    from rockbatch.simulation import run_fixed
+
+    outcome = run_fixed(PIER, BASES[name], SMOOTH, 64)
+    closed_form = outcome.dissipated_left + outcome.dissipated_right
+    assert ledger(BASES[name], 64)["plastic"].iloc[-1] == pytest.approx(closed_form, rel=1e-8)
+
+
+def test_stored_energy_is_that_of_the_history():
+    """Histories compute it from columns, the ledger step by step from the core's own geometry."""
+    for base in BASES.values():
+        response = rb.simulate(PIER, base, SMOOTH, substeps=4, ledger=True)
+        stored = response.ledger[["kinetic", "potential", "elastic"]].sum(axis=1)
+        assert stored.to_numpy() == pytest.approx(response.energy, abs=1e-12)
+
+
+def test_nobody_has_a_ledger_who_did_not_ask():
+    assert rb.simulate(PIER, BASES["elastic"], SMOOTH, substeps=4).ledger is None
+
+
+STUDY = study_text(cases=(RIGID, PADS | {"eta": 2.2, "epsilon": 0.1}))
+
+
+def test_a_study_that_asks_gets_the_ledger_and_the_other_law_as_columns(tmp_path):
+    path = write_study(tmp_path, STUDY + "[output]\nledger = true\nboth_laws = true\n")
+    table = rb.run(path).set_index("case")
+    pads = table.loc["pads"]
+    assert pads["energy_plastic_J_kg"] == pytest.approx(
+        pads["dissipated_left_J_kg"] + pads["dissipated_right_J_kg"], rel=1e-6
+    )
+    assert 0 < pads["energy_remainder_J_kg"] < 1e-4 * pads["energy_input_J_kg"]
+    assert np.isnan(table.loc["rigid", "settlement_other_law_m"])
+    epp = tmp_path / "epp.toml"
+    epp.write_text(STUDY.replace("epsilon = 0.1", 'epsilon = 0.1\nspring = "epp"'), encoding="utf-8")
+    other = rb.run(epp).set_index("case").loc["pads", "settlement_m"]
+    assert pads["settlement_other_law_m"] == pytest.approx(other, rel=1e-4)
+    assert pads["settlement_m"] > 1.02 * other  # Bouc–Wen springs ratchet
+
+
+def test_a_study_that_does_without_has_no_such_columns(tmp_path):
+    path = write_study(tmp_path, STUDY + "[output]\nboth_laws = false\n")
+    assert not [name for name in rb.run(path).columns if "energy" in name or "other_law" in name]

@@ -1,0 +1,56 @@
+"""Results with chosen numbers, for the design checks."""
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, YieldingBase
+from rockbatch.results.columns import COLUMNS, MORE_COLUMNS
+from rockbatch.results.reading import SECTIONS
+from rockbatch.results.run_json import describe_case
+from rockbatch.study import Case
+
+PIER = Pier(alpha=0.2, p=1.0)
+"""R0 = 7.3575 m, b = 1.46171 m, h = 7.21084 m."""
+PADS = YieldingBase(beta=50.0, eta=2.5)
+
+
+def case(name: str = "pads", base: Base = PADS, **columns: float | str) -> dict[str, Any]:
+    """A case as run.json has it."""
+    return describe_case(Case(name, PIER, base, columns))
+
+
+RIGID, ELASTIC = case("rigid", RigidBase()), case("elastic", ElasticBase(beta=50.0))
+
+
+def runs(theta: Any = (0.1, 0.2, 0.6, 0.3), name: str = "pads", **cells: Any) -> pd.DataFrame:
+    """One run that went well for each value of θ_max/α; ``cells`` has a value, or one for each run, for other columns."""
+    table = pd.DataFrame({"theta_max_over_alpha": [float(value) for value in theta]})
+    table["record"] = [f"r{i}" for i in range(len(table))]
+    table["case"], table["polarity"], table["scale"], table["status"], table["reason"] = name, "+", 1.0, "ok", ""
+    for column in (*COLUMNS, *MORE_COLUMNS):
+        if column not in table:
+            table[column] = math.nan
+    for column, value in cells.items():
+        table[column] = value
+    return table
+
+
+def folder(path: Path, peaks: pd.DataFrame, cases: list[dict[str, Any]], checks: str = "", **info: Any) -> Path:
+    """A folder as ``rockbatch run`` leaves it, of a study with the text ``checks``."""
+    table = peaks.reindex(columns=list(dict.fromkeys([*COLUMNS, *MORE_COLUMNS, *peaks.columns])))
+    path.mkdir(exist_ok=True)
+    table.to_csv(path / "peaks.csv", index=False, float_format="%.10g")
+    names = peaks.loc[peaks["case"] != "", "record"].unique()
+    told = dict.fromkeys(SECTIONS, "") | {
+        "study": {"path": "pier.toml", "text": checks},
+        "varied": list(dict.fromkeys(key for one in cases for key in one["columns"])),
+        "cases": cases,
+        "records": [{"record": name} for name in names],
+        "unusable": [],
+    }
+    (path / "run.json").write_text(json.dumps(told | info), encoding="utf-8")
+    return path

@@ -1,0 +1,71 @@
+"""Piers, pulses and random hard cases that the tests of the numerical core share."""
+
+import math
+
+import numpy as np
+
+from rockbatch.motions.motion import Motion, Samples
+from rockbatch.pier import Base, ElasticBase, Pier, YieldingBase
+from rockbatch.units import GRAVITY
+
+FIG5 = Pier(alpha=0.20, p=1.0)
+FIG6 = Pier(alpha=0.15, p=1.0)
+TOWER = Pier(alpha=0.13, p=0.38)
+
+
+def pulse(shape: str, period: float, amplitude_g: float = 1.0, dt: float = 0.005, end: float = 10.0) -> Motion:
+    """One cycle of a sine or cosine sampled at i dt ≤ ``period`` [s], then zeros until ``end`` [s]."""
+    t = np.arange(round(end / dt) + 1) * dt
+    wave = {"sine": np.sin, "cosine": np.cos}[shape]
+    inside = t <= period + 1e-9
+    return Motion(shape, dt, np.where(inside, amplitude_g * GRAVITY * wave(2 * math.pi * t / period), 0.0))
+
+
+def steady(horizontal: float, vertical: float, dt: float, samples: int) -> Motion:
+    """Constant ground accelerations [m/s²] from the first sample on."""
+    return Motion("steady", dt, np.full(samples, float(horizontal)), np.full(samples, float(vertical)))
+
+
+def broadband(rng: np.random.Generator, dt: float, npts: int, peak: float) -> Samples:
+    """Sum of twelve sines between 0.3 and 20 Hz under a half-sine envelope, scaled to ``peak`` [m/s²]."""
+    t = np.arange(npts) * dt
+    total = np.zeros(npts)
+    for frequency in np.exp(rng.uniform(math.log(0.3), math.log(20.0), 12)):
+        total += np.sin(2 * math.pi * frequency * t + rng.uniform(0.0, 2 * math.pi))
+    return peak * total * np.sin(math.pi * t / t[-1]) / np.abs(total).max()
+
+
+def _log_uniform(rng: np.random.Generator, low: float, high: float) -> float:
+    return math.exp(rng.uniform(math.log(low), math.log(high)))
+
+
+def hard_case(seed: int, npts: int = 400) -> tuple[Pier, Base, Motion]:
+    """Random pier on springs, from everything that the input checks let through, under a strong broadband motion.
+
+    α in 0.02..1.2, μ in 0.5..10, β from 1.05 times its least value to 300 (or twice that value), η in 1.01..10,
+    n in 1..20, ε in 0..1 with its ends, all laws, both kinematics, both treatments of flight; a horizontal peak of
+    0.8 to 4 times g tan α and a vertical one of up to 1.2 g.
+    """
+    rng = np.random.default_rng(seed)
+    pier = Pier(
+        alpha=_log_uniform(rng, 0.02, 1.2),
+        p=_log_uniform(rng, 0.3, 4.0),
+        mu=float(rng.choice([3.0, rng.uniform(0.5, 10.0)])),
+    )
+    least = 1.05 * pier.least_beta
+    common = {
+        "beta": _log_uniform(rng, least, max(300.0, 2.0 * least)),
+        "epsilon": float(rng.choice([0.0, 1.0, rng.uniform()])),
+        "kinematics": str(rng.choice(["first-order", "finite"])),
+        "flight": str(rng.choice(["stop", "guided"])),
+    }
+    law = str(rng.choice(["bouc-wen", "bouc-wen", "epp", "elastic"]))
+    if law == "elastic":
+        base: Base = ElasticBase(**common)
+    else:
+        exponent = float(rng.choice([1.0, 2.0, 2.5, 5.0, 20.0, rng.uniform(1.0, 20.0)]))
+        base = YieldingBase(**common, eta=1.01 + 8.99 * rng.uniform() ** 2, spring=law, n=exponent)
+    dt = 0.01
+    horizontal = broadband(rng, dt, npts, GRAVITY * math.tan(pier.alpha) * rng.uniform(0.8, 4.0))
+    vertical = broadband(rng, dt, npts, GRAVITY * rng.uniform(0.0, 1.2)) if rng.uniform() < 0.7 else None
+    return pier, base, Motion(f"hard-{seed}", dt, horizontal, vertical)

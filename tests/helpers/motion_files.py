@@ -1,0 +1,61 @@
+"""Small synthetic records for tests, and where the real ones are found."""
+
+import os
+import warnings
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+with warnings.catch_warnings():
+    warnings.simplefilter("ignore")  # ObsPy's own use of the standard library, when it is first loaded
+    import obspy  # noqa: F401
+
+RECORDS = Path(os.environ.get("ROCKBATCH_RECORDS", Path(__file__).parents[3] / "shared" / "motions"))
+
+needs_records = pytest.mark.skipif(not RECORDS.is_dir(), reason="no real records beside the project")
+
+
+def e15_7(value: float) -> str:
+    """A number as PEER's Fortran writes it in E15.7: ``  -.2415593E-03``."""
+    mantissa, exponent = f"{abs(value):.6e}".split("e")
+    digits = mantissa.replace(".", "")
+    power = int(exponent) + 1 if value else 0
+    return f"{'-' if value < 0 else ''}.{digits}E{power:+03d}".rjust(15)
+
+
+def at2_text(
+    values,
+    *,
+    dt: str = ".0100",
+    count: str | None = None,
+    title: str = "Made-up, 1/17/1994, Test Station, 228",
+    unit: str = "ACCELERATION TIME SERIES IN UNITS OF G",
+    newline: str = "\n",
+    number=e15_7,
+) -> str:
+    """An AT2 file; ``count`` replaces the header line with the number of points."""
+    fields = [number(float(value)) for value in values]
+    lines = ["".join(fields[i : i + 5]) for i in range(0, len(fields), 5)]
+    count = count or f"NPTS= {len(fields):6d}, DT=   {dt} SEC"
+    return newline.join(["PEER NGA STRONG MOTION DATABASE RECORD", title, unit, count, *lines, ""])
+
+
+def write_at2(folder: Path, name: str, values, **header) -> Path:
+    """An AT2 file in ``folder``."""
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / name
+    path.write_bytes(at2_text(values, **header).encode("latin-1"))
+    return path
+
+
+def wiggle(npts: int = 200, seed: int = 1, scale: float = 0.1) -> np.ndarray:
+    """Noise in a bell, in g, its peak 0.9 ``scale`` and inside: no two records alike, and nothing odd about any.
+
+    The ground comes to rest where it was: the sum and the first moment of the accelerations are none.
+    """
+    t = np.linspace(-3, 3, npts)
+    bell = np.exp(-(t**2))
+    a = bell * np.convolve(np.random.default_rng(seed).standard_normal(npts + 4), [1, 2, 3, 2, 1], "valid")
+    a -= bell * (a.sum() / bell.sum() + t * (t @ a) / (t @ (t * bell)))
+    return 0.9 * scale * a / np.abs(a).max()

@@ -1,0 +1,179 @@
+"""The report in a real browser: nothing leaves the page, no script error, and sorting, searching and reading values work."""
+
+import base64
+import hashlib
+import json
+import re
+import shutil
+import subprocess
+
+import pytest
+from report_samples import FIG7, FOUNDATIONS, response, write_results
+
+from rockbatch.report import write_comparison, write_report
+
+CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="needs Chromium")
+
+# Runs before the page: what goes wrong is written down
+WATCH = """
+const wrong = [];
+addEventListener("error", (event) => wrong.push(event.message), true);
+addEventListener("securitypolicyviolation", (event) => wrong.push(event.violatedDirective));
+"""
+# Runs after it, in a block of its own, with `found` to be filled
+ACT = """{
+const found = {};
+const at = (node, fx, fy, kind = "pointermove", pointerType = "mouse") => {
+  const box = node.getBoundingClientRect();
+  const where = { clientX: box.left + fx * box.width, clientY: box.top + fy * box.height };
+  node.dispatchEvent(new PointerEvent(kind, { ...where, pointerType, bubbles: true }));
+};
+const press = (node, key) => node.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true }));
+const tip = () => document.querySelector("#tip").hidden ? null : document.querySelector("#tip").textContent;
+%s
+setTimeout(() => { // a request that is stopped is told later
+found.wrong = wrong;
+found.requests = performance.getEntriesByType("resource").map((entry) => entry.name);
+found.wide = document.documentElement.scrollWidth <= innerWidth;
+const result = document.createElement("script");
+result.type = "application/json";
+result.id = "found";
+result.textContent = JSON.stringify(found);
+document.body.append(result);
+}, 500);
+}"""
+
+
+def browse(tmp_path, page, act="", *, size=(1200, 900)):
+    """What ``act``, run after the page's own script, fills into ``found``."""
+    text = page.read_text(encoding="utf-8")
+    scripts = WATCH, ACT % act
+    hashes = [base64.b64encode(hashlib.sha256(script.encode()).digest()).decode() for script in scripts]
+    text = text.replace("script-src ", "script-src " + " ".join(f"'sha256-{one}'" for one in hashes) + " ", 1)
+    text = text.replace("<title>", f"<script>{scripts[0]}</script><title>", 1)
+    text = text.replace("</body>", f"<script>{scripts[1]}</script></body>")
+    driven = tmp_path / "driven.html"
+    driven.write_text(text, encoding="utf-8")
+    done = chromium(tmp_path, "--dump-dom", f"--window-size={size[0]},{size[1]}", driven.as_uri())
+    return json.loads(re.search(r'id="found">(.*?)</script>', done, re.DOTALL)[1])
+
+
+def chromium(tmp_path, *arguments):
+    options = "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={tmp_path / 'profile'}"
+    command = [CHROMIUM, *options, "--virtual-time-budget=3000", *arguments]
+    return subprocess.run(command, capture_output=True, text=True, check=True, timeout=120).stdout
+
+
+@pytest.fixture(scope="module")
+def page(tmp_path_factory):
+    """A report with everything that can be pointed at."""
+    directory = tmp_path_factory.mktemp("results")
+    write_results(directory, changes={("RRS228", "2"): {"status": "overturned"}})
+    return write_report(directory, [response("ERZ-NS", name, base) for name, base in FOUNDATIONS[1:3]])
+
+
+@pytest.mark.parametrize("size", [(1200, 900), (500, 900)])
+def test_nothing_is_asked_for_nothing_goes_wrong_and_nothing_sticks_out(tmp_path, page, size):
+    found = browse(tmp_path, page, size=size)
+    assert found == {"wrong": [], "requests": [], "wide": True}
+
+
+def test_the_first_screen_holds_the_answer_and_the_figure_of_peaks(tmp_path, page):
+    act = """
+    const figure = document.querySelector("#figure .panels > *").getBoundingClientRect();
+    found.answer = document.querySelector("#answer").getBoundingClientRect().bottom;
+    found.figure = figure.bottom;
+    found.inputs = document.querySelector("#studied").getBoundingClientRect().top;
+    """
+    found = browse(tmp_path, page, act, size=(1400, 900))
+    assert found["answer"] < found["figure"] < 900 < found["inputs"]
+
+
+def test_the_policy_of_the_page_would_stop_a_request(tmp_path, page):
+    # So that the test above can fail
+    found = browse(tmp_path, page, 'document.body.append(Object.assign(new Image(), { src: "file:///x.png" }));')
+    assert found["wrong"] or found["requests"]
+
+
+def test_a_heading_sorts_by_value_both_ways_and_search_hides_the_rest(tmp_path, page):
+    act = """
+    const heads = [...document.querySelectorAll("#peaks thead button")];
+    const column = heads.findIndex((head) => head.textContent === "θmax/α");
+    const values = () => [...document.querySelectorAll("#peaks tbody tr")].map((row) => row.cells[column].textContent);
+    heads[column].click(); found.up = values();
+    heads[column].click(); found.down = values();
+    const input = document.querySelector("#peaks input");
+    input.value = "syl360 rigid"; input.dispatchEvent(new Event("input"));
+    found.left = [...document.querySelectorAll("#peaks tbody tr")].filter((row) => !row.hidden).length;
+    found.said = document.querySelector("#peaks .filter span").textContent;
+    """
+    found = browse(tmp_path, page, act)
+    values = list(map(float, found["up"]))
+    assert len(values) == 30
+    assert values == sorted(values)
+    assert list(map(float, found["down"])) == values[::-1]
+    assert (found["left"], found["said"]) == (1, "1 of 30 rows")
+
+
+def test_markers_say_their_value_to_the_pointer_and_to_the_arrow_keys(tmp_path, page):
+    act = """
+    const mark = document.querySelector(".panels use.s3");
+    at(mark, 0.5, 0.5); found.pointed = tip();
+    const grid = document.querySelector(".panels");
+    press(grid, "ArrowRight"); found.first = tip();
+    press(grid, "ArrowRight"); found.second = tip();
+    press(document.body, "Escape"); found.none = tip();
+    """
+    found = browse(tmp_path, page, act)
+    assert re.fullmatch(r"3: β = 80, η = 2.5: 0\.\d{4} ± 3e-06", found["pointed"].replace("\u00a0", " "))
+    assert found["first"].startswith(f"{FIG7[0][0]} PGA = 0.515 g\nrigid: 0.")
+    assert "\n1: β" in found["second"]
+    assert found["none"] is None
+
+
+def test_a_touch_reads_values_off_the_curves_and_they_stay_until_the_next_touch(tmp_path, page):
+    act = """
+    const svg = document.querySelector("svg.readings");
+    const box = svg.querySelector("g.axes").dataset.box.split(" ").map(Number);
+    const view = svg.viewBox.baseVal;
+    // Half a second into a history of eight, where the ground still accelerates
+    const fx = (box[0] + box[2] * 0.375 / 8) / view.width, fy = (box[1] + box[3] / 2) / view.height;
+    at(svg, fx, fy, "pointerdown", "touch"); at(svg, fx, fy, "pointerleave", "touch"); found.read = tip();
+    found.cursors = svg.querySelectorAll(".cursor").length;
+    press(svg, "ArrowRight"); found.next = tip();
+    document.body.dispatchEvent(new PointerEvent("pointerdown", { bubbles: true, pointerType: "touch" }));
+    found.none = tip();
+    """
+    found = browse(tmp_path, page, act)
+    lines = dict(line.split(" = ") for line in found["read"].split("\n"))
+    assert list(lines) == ["t", "θ/α", "θ̇/(αp)", "E/M [J/kg]", "üg/g"]
+    assert float(lines["t"].removesuffix(" s")) == pytest.approx(0.375, abs=0.01)
+    assert float(lines["üg/g"]) == pytest.approx(-1.0, abs=0.03)  # sin(4π·0.375): the trough, as wide as a pixel
+    assert found["cursors"] == 4
+    assert float(found["next"].split()[2]) > float(found["read"].split()[2])
+    assert found["none"] is None
+
+
+def test_loops_give_force_and_deflection(tmp_path, page):
+    act = """
+    const group = document.querySelector("g.axes[data-kind=plane]");
+    at(group, 0.5, 0.5); found.read = tip();
+    """
+    found = browse(tmp_path, page, act)
+    assert re.fullmatch(r"v/δy = -?\d+\.\d+\nF/Fy = -?\d\.\d+", found["read"])
+
+
+def test_a_comparison_works_in_the_browser_too(tmp_path):
+    for name in ("a", "b"):
+        (tmp_path / name).mkdir()
+        write_results(tmp_path / name)
+    found = browse(tmp_path, write_comparison(tmp_path / "a", tmp_path / "b"))
+    assert found == {"wrong": [], "requests": [], "wide": True}
+
+
+def test_it_prints(tmp_path, page):
+    chromium(tmp_path, f"--print-to-pdf={tmp_path / 'report.pdf'}", "--no-pdf-header-footer", page.as_uri())
+    printed = (tmp_path / "report.pdf").read_bytes()
+    boxes = re.findall(rb"/MediaBox \[0 0 ([\d.]+) ([\d.]+)\]", printed)
+    assert {float(width) > float(height) for width, height in boxes} == {True, False}  # wide tables lie across

@@ -1,0 +1,78 @@
+"""Whether the pier passes stands in a sentence and in a table, and what does not pass cannot be overlooked."""
+
+import math
+
+from report_page import Page
+from report_samples import FOUNDATIONS, write_results
+
+from rockbatch.checks import Verdict, write_verdicts
+from rockbatch.report import write_report
+
+
+def verdict(case: str, decided: str, *, check: str = "margin", ratio: float = 0.5, **more: object) -> Verdict:
+    values = {
+        "columns": {}, "scale": 1.0, "demand": "theta_max_over_alpha", "statistic": "mean",
+        "words": "mean of theta_max_over_alpha", "records": 6, "runs": 6, "value": 0.25, "low": 0.2, "high": 0.3,
+        "sense": "at most", "limit": 0.5, "margin": 0.25, "basis": "judgement", "reason": "half of α",
+        "counting": "overturned: infinite", "counted": "", "note": "",
+    }  # fmt: skip
+    return Verdict(**{**values, "check": check, "case": case, "verdict": decided, "ratio": ratio, **more})
+
+
+def page(directory, *verdicts: Verdict) -> Page:
+    write_results(directory)
+    write_verdicts(directory, verdicts)
+    return Page(write_report(directory, []).read_text(encoding="utf-8"))
+
+
+def test_cases_that_pass_fail_and_are_not_decided_are_named(tmp_path):
+    found = page(
+        tmp_path,
+        verdict("1", "pass"),
+        verdict("2", "fail", ratio=1.25),
+        verdict("3", "not decided", ratio=0.99),
+        verdict("3", "pass", check="tilt"),
+    )
+    assert "✓ 1 of 3 cases passes every check: 1." in found.text
+    assert "✗ 1 of 3 cases fails: 2." in found.text
+    assert "? 1 of 3 cases cannot be decided: 3." in found.text
+    rows = [[cell.replace("\u00a0", " ") for cell in row] for row in found.tables["checks"]]
+    assert rows[:4] == [
+        ["case", "margin", "tilt"], ["1", "✓ 0.50", ""], ["2", "✗ 1.25", ""], ["3", "? 0.99", "✓ 0.50"],
+    ]  # fmt: skip
+
+
+def test_all_passing_is_said_in_so_many_words_and_nothing_is_listed_as_failing(tmp_path):
+    found = page(tmp_path, verdict("1", "pass"), verdict("2", "does not apply", ratio=math.nan))
+    assert "✓ Every check passes in all 2 cases." in found.text
+    assert "What does not pass" not in found.text
+
+
+def test_a_demand_beside_its_limit_shows_on_which_side_it_lies(tmp_path):
+    found = page(tmp_path, verdict("1", "fail", ratio=1.001), verdict("2", "pass", ratio=1.0))
+    cells = [row[1].replace("\u00a0", " ") for row in found.tables["checks"][1:3]]
+    assert cells == ["✗ 1.0010", "✓ 1.00"]
+
+
+def test_an_infinite_demand_is_shown_as_such(tmp_path):
+    found = page(tmp_path, verdict("1", "fail", ratio=math.inf, value=math.inf, high=math.inf))
+    assert found.tables["checks"][1][1] == "✗\u00a0∞"
+    assert found.tables["checks"][-1][2:4] == ["∞", "0.2 – ∞"]
+
+
+def test_a_study_without_checks_does_not_claim_to_pass(tmp_path):
+    write_results(tmp_path)
+    text = Page(write_report(tmp_path, []).read_text(encoding="utf-8")).text
+    assert "No limits were set: nothing here passes or fails." in text
+    assert "✓" not in text
+
+
+def test_the_verdict_comes_before_the_figure_and_the_table_of_checks_after_it(tmp_path):
+    write_results(tmp_path)
+    write_verdicts(tmp_path, [verdict(case, "fail", ratio=1.25) for case, _ in FOUNDATIONS])
+    text = write_report(tmp_path, []).read_text(encoding="utf-8")
+    places = [text.index(f'<section id="{anchor}">') for anchor in ("answer", "figure", "checks", "studied")]
+    assert places == sorted(places)
+    assert places[0] < text.index("all 5 cases fail") < places[1]
+    assert "answer" not in Page(text).tables
+    assert len(Page(text).tables["checks"]) > len(FOUNDATIONS)

@@ -1,0 +1,120 @@
+"""Two studies side by side: what belongs together is matched by name, and what does not is listed."""
+
+import csv
+import json
+import subprocess
+import sys
+
+import pandas as pd
+import pytest
+from report_page import Page, figures
+from report_samples import FIG7, FOUNDATIONS, case_entry, three_piers, write_results
+
+from rockbatch.cli import main
+from rockbatch.pier import Pier, YieldingBase
+from rockbatch.report import write_comparison
+from rockbatch.report.finished import read
+from rockbatch.report.pair import match
+
+PIER = Pier(alpha=0.13, p=0.38)
+
+
+def two(tmp_path, first=None, second=None):
+    folders = tmp_path / "a", tmp_path / "b"
+    for folder, results in zip(folders, (first or {}, second or {}), strict=True):
+        folder.mkdir()
+        write_results(folder, **results)
+    return folders
+
+
+def test_runs_of_one_record_and_case_stand_side_by_side_with_their_ratio(tmp_path):
+    a, b = two(tmp_path, second={"changes": {("SYL360", "2"): {"theta_max_over_alpha": 0.5}}})
+    page = Page(write_comparison(a, b).read_text(encoding="utf-8"))
+    _, head, *rows = page.tables["peaks"]
+    assert head[:5] == ["record", "case", "A", "B", "B / A"]
+    assert len(rows) == 30
+    with (a / "peaks.csv").open(encoding="utf-8", newline="") as file:
+        ours = next(
+            float(row["theta_max_over_alpha"])
+            for row in csv.DictReader(file)
+            if row["record"] == "SYL360" and row["case"] == "2"
+        )
+    assert rows[0][:2] == ["SYL360", "2"]  # the worst of both comes first
+    assert [float(cell) for cell in rows[0][2:5]] == pytest.approx([ours, 0.5, 0.5 / ours], abs=5e-4)
+    assert {row[4] for row in rows[1:]} == {"1.000"}
+
+
+def test_panels_hold_both_studies(tmp_path):
+    a, b = two(tmp_path)
+    text = write_comparison(a, b).read_text(encoding="utf-8")
+    panels = [svg for svg in figures(text) if "marks" in svg.attrib["class"]]
+    assert len(panels) == len(FIG7)
+    marks = [node.get("class") for node in panels[0].iter() if node.tag.endswith("use")]
+    assert sorted(marks) == sorted(["s1", "s1 open", "s2", "s2 open", "s3", "s3 open", "s4", "s4 open"])
+
+
+def test_what_is_only_in_one_is_listed_and_not_compared(tmp_path):
+    other = [case_entry("5", {}, PIER, FOUNDATIONS[1][1])]
+    base = [case_entry(name, {}, PIER, foundation) for name, foundation in FOUNDATIONS]
+    a, b = two(tmp_path, {"records": FIG7[:5]}, {"cases": base + other})
+    page = Page(write_comparison(a, b).read_text(encoding="utf-8"))
+    rows = page.tables["only"][1:]
+    assert [row[0] for row in rows] == ["B"] * 6
+    assert sum(int(row[2]) for row in rows) == 5 + 6  # the sixth record in five cases, case 5 in six records
+    assert len(page.tables["peaks"]) == 2 + 25
+
+
+def test_values_that_both_vary_are_matched_and_those_that_one_varies_are_not_guessed(tmp_path):
+    grid = [case_entry("soil", {"eta": eta}, PIER, YieldingBase(beta=40.0, eta=eta)) for eta in (2.5, 3.5)]
+    lone = [case_entry("soil", {}, PIER, YieldingBase(beta=40.0, eta=2.5))]
+    a, b = two(tmp_path, {"cases": grid, "varied": ("eta",)}, {"cases": grid[1:], "varied": ("eta",)})
+    matched = match(read(a), read(b))
+    assert set(matched.runs[0]["eta"]) == {3.5}
+    assert set(matched.only[0]["eta"]) == {2.5}
+    write_results(b, cases=lone)
+    matched = match(read(a), read(b))
+    assert matched.runs[0].empty  # two runs of A would fit every run of B
+    assert (len(matched.only[0]), len(matched.only[1])) == (12, 6)
+    assert "Every pair" not in Page(write_comparison(a, b).read_text(encoding="utf-8")).headings
+
+
+def test_piers_of_both_are_matched_by_their_values(tmp_path):
+    a, b = two(tmp_path, {"cases": three_piers(), "varied": ("p",)}, {"cases": three_piers()[10:], "varied": ("p",)})
+    first, second = match(read(a), read(b)).runs
+    assert set(first["p"]) == {0.35}
+    pd.testing.assert_series_equal(first["pier"], second["pier"], check_index=False)
+
+
+def test_statistics_are_over_the_pairs_and_told_apart_by_the_vertical_component(tmp_path):
+    horizontal = [
+        {
+            "record": name, "dt_s": 0.005, "npts": 6000, "duration_s": 29.995, "pga_g": pga, "pga_v_g": None,
+            "pgv_m_s": 0.8, "pgd_m": 0.3, "source": "x", "vertical_source": "", "notes": [],
+        }
+        for name, pga in FIG7
+    ]  # fmt: skip
+    a, b = two(tmp_path)
+    info = json.loads((b / "run.json").read_text(encoding="utf-8"))
+    (b / "run.json").write_text(json.dumps(info | {"records": horizontal}), encoding="utf-8")
+    page = Page(write_comparison(a, b).read_text(encoding="utf-8"))
+    assert page.tables["suite"][1][1:3] == ["A, with vertical", "B, without vertical"]
+    assert "Not the same motion in both, though of one name: ERZ-NS" in page.text
+
+
+def test_the_command_makes_the_report_again_or_compares_without_the_compiler(tmp_path):
+    a, b = two(tmp_path)
+    assert main(["report", str(a)]) == 0
+    assert (a / "report.html").exists()
+    code = (
+        "import sys; from rockbatch.cli import main; "
+        f"main(['report', {str(a)!r}, {str(b)!r}, '--out', {str(tmp_path / 'c.html')!r}]); "
+        "print([m for m in ('numba', 'rockbatch.core', 'matplotlib') if m in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+    assert "What is compared" in (tmp_path / "c.html").read_text(encoding="utf-8")
+
+
+def test_a_folder_without_results_is_refused_in_words(tmp_path, capsys):
+    assert main(["report", str(tmp_path)]) == 2
+    assert "give a folder that `rockbatch run` has written" in capsys.readouterr().err

@@ -1,0 +1,515 @@
+"""The report shows what was computed, escapes what it is told, and needs nothing but itself."""
+
+import json
+import math
+import re
+import subprocess
+import sys
+from dataclasses import replace
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+from report_page import Page, figures, svg_texts
+from report_samples import FIG7, FOUNDATIONS, case_entry, response, three_piers, write_results
+
+from rockbatch.errors import InputError
+from rockbatch.pier import Pier, RigidBase, YieldingBase
+from rockbatch.report import write_report
+from rockbatch.report.drawing.svg import COLOURS, MARKERS, curve, style_of, thin
+from rockbatch.report.finished import read
+from rockbatch.report.markup import escape, tag
+
+NASTY = ["<script>alert(1)</script>", "$x_1$ & a&b", '"><img src=x onerror=alert(1)>', r"\frac{1}{2} </title></svg>"]
+
+
+def report(directory: Path, *responses, **results) -> str:
+    write_results(directory, **results)
+    return write_report(directory, responses).read_text(encoding="utf-8")
+
+
+def histories(**columns):
+    pier = Pier(alpha=0.2, p=1.0)
+    entries = [("rigid", RigidBase())] + [("soil", YieldingBase(beta=50.0, eta=eta)) for eta in (5.0, 3.0, 2.5, 2.2)]
+    cases = [case_entry(n, {} if n == "rigid" else {"eta": base.eta}, pier, base) for n, base in entries]
+    responses = [
+        response("sine", name, base, **({} if name == "rigid" else {"eta": base.eta})) for name, base in entries
+    ]
+    return responses, {"records": [("sine", 1.0)], "cases": cases, "varied": ("eta",)}
+
+
+def test_every_peak_stands_in_the_tables_in_order_of_pga(tmp_path):
+    page = Page(report(tmp_path, records=FIG7[::-1]))
+    head, *body = page.tables["figure"]
+    assert [row[0] for row in body] == [name for name, _ in FIG7]
+    finished = read(tmp_path)
+    runs = finished.runs.itertuples()
+    peaks = {(run.record, finished.series[run.series].label): run.theta_max_over_alpha for run in runs}
+    for row in body:
+        for label, shown in zip(head[2:], row[2:], strict=True):
+            assert float(shown) == pytest.approx(peaks[row[0], label], abs=0.5e-4)  # four decimals are shown
+    assert len(page.tables["peaks"]) == 1 + 30
+
+
+def test_outcomes_other_than_ok_are_words_and_never_rotations(tmp_path):
+    changes = {
+        ("RRS228", "2"): {"status": "overturned", "theta_max_over_alpha": 7.7},
+        ("SYL360", "3"): {"status": "flight", "flight_s": 3.214},
+        ("CPM000", "rigid"): {"status": "overturned"},
+        ("CPM000", "4"): {"status": "failed", "theta_max_over_alpha": "", "reason": "more than 20,000 events"},
+        ("ERZ-NS", "1"): {"flight_s": 1.5},  # guided: went on, and has its peak
+    }
+    text = report(tmp_path, changes=changes)
+    page = Page(text)
+    cells = {row[0]: row[2:] for row in page.tables["figure"]}
+    assert cells["RRS228"][2] == "overturned"
+    assert cells["SYL360"][3] == "flight at 3.214 s"
+    assert cells["CPM000"][0] == "overturned"
+    assert cells["CPM000"][4] == "failed"
+    assert re.fullmatch(r"0\.\d{4}f", cells["ERZ-NS"][1])
+    assert "The pier overturns in 2 of 30 runs, among them RRS228, case 2" in page.text
+    assert "In one run both pivots leave the ground, and the analysis stops there: SYL360, case 3" in page.text
+    assert [cell.replace("\u00a0", " ") for cell in page.tables["unusable"][1]] == [
+        "CPM000",
+        "4: β = 80, η = 3.5",
+        "more than 20,000 events",
+    ]
+    assert {"m-overturned", "m-flight"} < {link.removeprefix("#") for link in page.links}
+    assert "flight: both pivots off the ground" in page.text
+
+
+def test_the_axis_is_not_stretched_by_a_pier_that_overturned(tmp_path):
+    calm = figures(report(tmp_path))[0]
+    violent = {("RRS228", "2"): {"status": "overturned", "theta_max_over_alpha": 1e3}}
+    with_overturned = figures(report(tmp_path, changes=violent))[0]
+    ticks = [{text for text in svg_texts(f) if re.fullmatch(r"0\.\d+", text)} for f in (calm, with_overturned)]
+    assert ticks[0] == ticks[1] != set()
+
+
+def test_each_value_of_a_pier_key_has_its_own_figure_and_table(tmp_path):
+    text = report(tmp_path, cases=three_piers(), varied=("p",))
+    page = Page(text)
+    assert len(figures(text)) == 3 * len(FIG7)
+    for p in ("0.38", "0.36", "0.35"):
+        assert f"p = {p} rad/s. Largest rotation" in page.text
+    assert len(page.tables["figure"]) == 3 * (1 + len(FIG7))
+    # foundations are the same on the three piers: five columns each, not fifteen
+    assert {len(row) for row in page.tables["figure"]} == {2 + 5}
+
+
+def test_values_of_a_list_become_labels_and_foundations_differ_in_shape_and_colour(tmp_path):
+    pier = Pier(alpha=0.13, p=0.38)
+    grid = [(beta, eta) for beta in (40.0, 80.0) for eta in (2.5, 3.5)]
+    cases = [
+        case_entry("soil", {"beta": beta, "eta": eta}, pier, YieldingBase(beta=beta, eta=eta)) for beta, eta in grid
+    ]
+    text = report(tmp_path, cases=cases, varied=("beta", "eta"))
+    head = [cell.replace("\u00a0", " ") for cell in Page(text).tables["figure"][0]]
+    assert head[2:] == [f"soil: β = {beta:g}, η = {eta:g}" for beta, eta in grid]
+    styles = [style_of(index) for index in range(len(MARKERS) * COLOURS)]
+    assert len(set(styles)) == len(styles)
+    first = styles[:7]
+    assert len({marker for marker, _ in first}) == len({colour for _, colour in first}) == 7
+
+
+def test_beta_of_a_given_stiffness_is_not_taken_for_a_constant_of_the_foundation(tmp_path):
+    # springs of ω_v = 20 and 30 rad/s are β = 40 and 60 under one pier, 50 and 75 under the other
+    cases = [
+        case_entry(name, {"p": p}, Pier(alpha=0.13, p=p), YieldingBase(beta=omega_v / p, eta=eta))
+        for p in (0.5, 0.4)
+        for name, omega_v, eta in (("1", 20.0, 2.5), ("2", 30.0, 3.5))
+    ]
+    write_results(tmp_path, cases=cases, varied=("p",))
+    assert {one.label.replace("\u00a0", " ") for one in read(tmp_path).series} == {"1: η = 2.5", "2: η = 3.5"}
+
+
+def test_references_are_compared_with_every_run_they_fit(tmp_path):
+    changes = {("RSN779_LOMAP_LGP000", "rigid"): {"theta_max_over_alpha": 0.12}}
+    reference = {"columns": {}, "theta_max_over_alpha": 0.1, "source": "Palmeri & Makris (2007)"}
+    references = [
+        reference | {"record": "*LGP*", "case": "rigid"},
+        reference | {"record": "*LGP*", "case": "rigid", "columns": {"p": 0.35}},
+        reference | {"record": "*TCU*", "case": "rigid"},
+    ]
+    text = report(tmp_path, cases=three_piers(), varied=("p",), changes=changes, references=references)
+    _, *rows = Page(text).tables["references"]
+    found = ["RSN779_LOMAP_LGP000", "rigid"]
+    agreement = ["0.1200", "0.1", "+20.0", "Palmeri & Makris (2007)"]
+    assert rows == [
+        *([*found, p, *agreement] for p in ("0.38", "0.36", "0.35")),
+        [*found, "0.35", *agreement],
+        ["*TCU*", "rigid", "", "no such run", "0.1", "", "Palmeri & Makris (2007)"],
+    ]
+
+
+def test_names_and_reasons_are_shown_as_they_are_and_never_run(tmp_path):
+    text = report(
+        tmp_path,
+        records=[(name, 0.3 + 0.1 * i) for i, name in enumerate(NASTY)],
+        unusable=[{"name": NASTY[2], "source": NASTY[0], "reason": NASTY[1]}],
+        command=["rockbatch", "run", NASTY[0]],
+    )
+    page = Page(text)
+    assert page.tags.count("script") == 1
+    assert "img" not in page.tags
+    assert not page.mismatched
+    assert not page.open
+    assert [row[0] for row in page.tables["figure"][1:]] == NASTY
+    assert page.tables["unusable"][1] == [NASTY[2], NASTY[0], NASTY[1]]
+    assert "$x_1$ & a&b" in page.text
+    assert "<script>alert(1)</script>" in page.text
+
+
+def test_the_page_asks_for_nothing_outside_itself(tmp_path):
+    responses, results = histories()
+    text = report(tmp_path, *responses, **results)
+    page = Page(text)
+    assert not {"link", "img", "iframe", "object", "base"} & set(page.tags)
+    assert all(link.startswith("#") for link in page.links)
+    assert "@import" not in text
+    assert re.findall(r"url\((?!#)", text) == []
+
+
+def test_colours_of_figures_come_from_the_page_so_that_dark_mode_reaches_them(tmp_path):
+    responses, results = histories()
+    text = report(tmp_path, *responses, **results)
+    style = text[text.index("<style>") : text.index("</style>")]
+    defined = set(re.findall(r"(--\w+):", style)) | {"--w"}
+    assert set(re.findall(r"var\((--\w+)[,)]", style)) <= defined
+    for svg in re.findall(r"<svg.*?</svg>", text, flags=re.DOTALL):
+        assert not re.findall(r"#[0-9a-fA-F]{6}\b|rgb", svg)
+        assert "style=" not in svg
+
+
+def test_histories_have_a_column_per_foundation_with_the_rigid_base_behind(tmp_path):
+    responses, results = histories()
+    text = report(tmp_path, *responses, **results)
+    drawn = [svg for svg in figures(text) if "readings" in svg.attrib["class"]]
+    assert len(drawn) == 4
+    titles = re.findall(r"<figcaption><span>([^<]*)</span> <span", text[text.index('class="histories"') :])
+    assert [title.replace("\u00a0", " ") for title in titles] == [f"soil: η = {e}" for e in ("5", "3", "2.5", "2.2")]
+    assert "thin line: rigid base" in Page(text).text
+    for svg in drawn:
+        texts = svg_texts(svg)
+        assert {"t [s]", "θ/α", "θ̇/(αp)", "E/M [J/kg]", "üg/g", "F/Fy", "L", "R"} <= set(texts)
+        names = [node.get("data-name") for node in svg.iter() if node.get("data-name")]
+        own = ["θ/α", "θ̇/(αp)", "E/M [J/kg]", "üg/g"]
+        assert names == [
+            f"{own[0]}, rigid base", own[0], f"{own[1]}, rigid base", own[1], f"{own[2]}, rigid base", own[2],
+            own[3], "F/Fy", "F/Fy",
+        ]  # fmt: skip
+
+
+def test_the_drawn_curve_gives_the_history_back(tmp_path):
+    responses, results = histories()
+    text = report(tmp_path, *responses, **results)
+    svg = next(svg for svg in figures(text) if "readings" in svg.attrib["class"])
+    axes = next(node for node in svg.iter() if node.get("class") == "axes")
+    left, top, width, height = map(float, axes.get("data-box").split())
+    (t0, t1), (y0, y1) = (map(float, axes.get(f"data-{name}").split()) for name in "xy")
+    path = next(node for node in axes if node.get("data-name") == "θ/α").get("d")
+    start, steps = path.removeprefix("M").split("l")
+    moves = np.array([*map(int, re.findall(r"-?\d+", start)), *map(int, re.findall(r"-?\d+", steps))]).reshape(-1, 2)
+    x, y = moves.cumsum(axis=0).T / 10
+    t, theta = t0 + (x - left) / width * (t1 - t0), y1 - (y - top) / height * (y1 - y0)
+    ours = responses[1].theta / responses[1].pier.alpha
+    step = (y1 - y0) / height / 10  # a tenth of a pixel, half of it by rounding
+    assert (theta.min(), theta.max()) == pytest.approx((ours.min(), ours.max()), abs=0.5 * step * 1.01)
+    # At any time it stays between the least and the largest value within a pixel of that time
+    pixel = math.ceil(8001 / width)
+    near = np.lib.stride_tricks.sliding_window_view(np.pad(ours, pixel, mode="edge"), 2 * pixel + 1)
+    read_back = np.interp(responses[1].t, t, theta)
+    assert np.all(read_back > near.min(axis=1) - step)
+    assert np.all(read_back < near.max(axis=1) + step)
+
+
+def test_the_rigid_base_behind_a_column_is_drawn_to_its_peaks(tmp_path):
+    write_results(tmp_path)
+    rigid = response("ERZ-NS", "rigid", RigidBase())
+    rigid = replace(rigid, history=rigid.history.assign(theta=2 * rigid.theta))
+    text = write_report(tmp_path, [rigid, response("ERZ-NS", "1", FOUNDATIONS[1][1])]).read_text(encoding="utf-8")
+    (svg,) = [svg for svg in figures(text) if "readings" in svg.attrib["class"]]
+    axes = next(node for node in svg.iter() if node.get("class") == "axes")
+    low, high = map(float, axes.get("data-y").split())
+    theta = rigid.theta / rigid.pier.alpha
+    assert low < theta.min()
+    assert theta.max() < high
+    # one piece: nothing of it is cut off
+    assert next(node for node in axes if node.get("data-name") == "θ/α, rigid base").get("d").count("M") == 1
+
+
+def test_the_largest_rotation_and_the_events_are_marked(tmp_path):
+    write_results(tmp_path)
+    one = response("ERZ-NS", "1", FOUNDATIONS[1][1])
+    text = write_report(tmp_path, [one]).read_text(encoding="utf-8")
+    svg = next(svg for svg in figures(text) if "readings" in svg.attrib["class"])
+    assert f"{np.abs(one.theta).max() / one.pier.alpha:.4f}" in svg_texts(svg)
+    strokes = [node.get("d") for node in svg.iter() if node.get("class") == "event"]
+    assert [len(stroke.split("M")) - 1 for stroke in strokes] == [1]  # the one separation of the sample
+
+
+def test_a_lone_rigid_response_is_drawn_without_loops(tmp_path):
+    write_results(tmp_path)
+    text = write_report(tmp_path, [response("ERZ-NS", "rigid", RigidBase())]).read_text(encoding="utf-8")
+    drawn = next(svg for svg in figures(text) if "readings" in svg.attrib["class"])
+    assert "θ/α" in svg_texts(drawn)
+    assert "L" not in svg_texts(drawn)
+
+
+def test_of_many_responses_the_worst_of_each_case_is_drawn(tmp_path):
+    write_results(tmp_path, polarities=("+", "-"))
+    every = [
+        replace(response(record, name, base), polarity=sign)
+        for record, _ in FIG7
+        for name, base in FOUNDATIONS
+        for sign in "+-"
+    ]
+    text = write_report(tmp_path, every).read_text(encoding="utf-8")
+    runs = read(tmp_path).runs
+    worst = {runs.loc[same["theta_max_over_alpha"].idxmax(), "record"] for _, same in runs.groupby("case")}
+    section = text[text.index('class="histories"') :]
+    assert len([svg for svg in figures(text) if "readings" in svg.attrib["class"]]) in (4, 5)  # rigid may stand behind
+    shown = set(re.findall(r'<span class="muted">([^<,]*)', section[: section.index("</section>")]))
+    assert shown <= worst
+
+
+def test_straight_stretches_and_repeated_points_cost_nothing_and_turns_are_kept():
+    x = np.array([0.0, 1, 2, 3, 3, 3.01, 4, 5, np.nan, 7, 8])
+    y = np.array([0.0, 1, 2, 3, 3, 3.01, 2, 1, np.nan, 0, 0])
+    assert re.search(r' d="([^"]*)"', curve(x, y, "c"))[1] == "M0 0l30 30 20-20M70 0l10 0"
+
+
+def test_thinning_keeps_every_extremum_and_both_ends():
+    t = np.linspace(0, 40, 50_001)
+    y = np.sin(3 * t) + 0.01 * np.sin(500 * t)
+    spikes = np.random.default_rng(7).choice(t.size, 20, replace=False)
+    y[spikes] += np.where(np.arange(20) % 2, 5.0, -5.0)
+    x, kept = thin(t, y, 200)
+    assert x.size <= 4 * 200
+    assert (x[0], x[-1]) == (t[0], t[-1])
+    assert np.all(np.diff(x) > 0)
+    assert (kept.min(), kept.max()) == (y.min(), y.max())
+    edges = np.linspace(0, t.size, 200 + 1).astype(int)
+    for start, end in pairwise(edges):
+        inside = (x >= t[start]) & (x <= t[end - 1])
+        assert (kept[inside].min(), kept[inside].max()) == (y[start:end].min(), y[start:end].max())
+
+
+def test_thinning_bears_stretches_without_values():
+    y = np.full(10_000, np.nan)
+    y[5_000:] = np.arange(5_000.0)
+    _, kept = thin(np.arange(10_000.0), y, 50)
+    assert np.nanmax(kept) == 4_999
+
+
+def test_the_same_results_give_the_same_bytes(tmp_path):
+    responses, results = histories()
+    first = report(tmp_path, *responses, **results)
+    assert write_report(tmp_path, responses).read_text(encoding="utf-8") == first
+
+
+def test_fifty_records_on_five_foundations_stay_below_two_megabytes(tmp_path):
+    records = [(f"RSN{i}_EVENT_STATION{i:03d}_WITH_A_LONG_NAME", 0.1 + 0.02 * i) for i in range(50)]
+    text = report(tmp_path, records=records)
+    assert len(text.encode()) < 2e6
+    assert len(figures(text)) == 50
+    assert len(re.findall("PGA = ", text)) == 50
+
+
+def test_both_directions_and_scales_are_told_apart(tmp_path):
+    text = report(tmp_path, polarities=("+", "-"), scales=(1.0, 2.0))
+    page = Page(text)
+    assert len(figures(text)) == 2 * len(FIG7)
+    assert page.tables["figure"][0][2:4] == ["rigid (+)", "rigid (-)"]
+    assert "as recorded and reversed, scaled by 1, 2: 120 runs." in page.text
+    # PGA is that of the scaled motion
+    doubled = page.tables["figure"][1 + len(FIG7) + 1]
+    assert doubled[:2] == ["ERZ-NS", "1.030"]
+
+
+def test_a_study_without_any_usable_record_still_has_a_report(tmp_path):
+    unusable = [{"name": "x", "source": "motions/x.AT2", "reason": "motions/x.AT2: empty file"}]
+    page = Page(report(tmp_path, records=[], unusable=unusable))
+    assert "No ground motion could be used" in page.text
+    assert page.tables["unusable"][1] == ["x", "motions/x.AT2", "motions/x.AT2: empty file"]
+
+
+def test_sections_come_in_the_order_in_which_they_are_asked_for(tmp_path):
+    reference = {"record": "*", "case": "1", "columns": {}, "theta_max_over_alpha": 0.1, "source": "s"}
+    unusable = [{"name": "x", "source": "x", "reason": "empty"}]
+    responses, results = histories()
+    page = Page(report(tmp_path, *responses, references=[reference], unusable=unusable, **results))
+    assert page.headings == [
+        "The answer", "Peak rotations", "Compared with published values", "Every run", "The suite in each case", "Histories",
+        "What was studied", "Ground motions", "Not used", "Speed and error", "Notes", "How to reproduce",
+    ]  # fmt: skip
+    assert "rockbatch run configs/fig7.toml --jobs 2" in page.text
+    assert '[[case]]\nname = "rigid"' in page.text
+
+
+def test_all_that_is_wrong_with_a_folder_is_said_at_once(tmp_path):
+    with pytest.raises(InputError) as caught:
+        write_report(tmp_path)
+    assert [problem.split(":")[0] for problem in caught.value.problems] == [
+        str(tmp_path / "run.json"), str(tmp_path / "peaks.csv"),
+    ]  # fmt: skip
+
+    write_results(tmp_path, changes={("ERZ-NS", "1"): {"t_max_s": "soon"}})
+    document = json.loads((tmp_path / "run.json").read_text(encoding="utf-8"))
+    del document["machine"]
+    (tmp_path / "run.json").write_text(json.dumps(document), encoding="utf-8")
+    with pytest.raises(InputError) as caught:
+        write_report(tmp_path)
+    missing, cell = caught.value.problems
+    assert "has no machine" in missing
+    assert cell == f'{tmp_path / "peaks.csv"}:3: t_max_s = "soon": expected a number or nothing'
+
+
+def test_files_of_different_runs_are_refused(tmp_path):
+    pier = Pier(alpha=0.13, p=0.38)
+    write_results(tmp_path, cases=[case_entry("other", {}, pier, FOUNDATIONS[1][1])])
+    other = (tmp_path / "run.json").read_text(encoding="utf-8")
+    write_results(tmp_path)
+    (tmp_path / "run.json").write_text(other, encoding="utf-8")
+    with pytest.raises(InputError, match="belong to different runs"):
+        write_report(tmp_path)
+
+
+def test_a_report_that_fails_leaves_the_earlier_one_and_no_litter(tmp_path, monkeypatch):
+    earlier = report(tmp_path)
+
+    def no_space(*_):
+        raise OSError("no space left on device")
+
+    monkeypatch.setattr("rockbatch.files.os.replace", no_space)
+    with pytest.raises(OSError, match="no space"):
+        write_report(tmp_path)
+    assert (tmp_path / "report.html").read_text(encoding="utf-8") == earlier
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["peaks.csv", "report.html", "run.json"]
+
+
+def test_a_record_called_na_keeps_its_name(tmp_path):
+    assert Page(report(tmp_path, records=[("NA", 0.3), ("nan", 0.4)])).tables["figure"][1][0] == "NA"
+
+
+def test_the_report_never_loads_the_compiler_nor_what_it_does_not_need(tmp_path):
+    write_results(tmp_path)
+    code = (
+        "import sys; from pathlib import Path; from rockbatch.report import write_report;"
+        f"write_report(Path({str(tmp_path)!r}));"
+        "print([m for m in ('numba', 'rockbatch.core', 'matplotlib', 'scipy', 'obspy', 'h5py') if m in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+def test_markup_escapes_all_but_markup():
+    assert tag("p", "<b>", tag("i", "a & b"), title='"') == '<p title="&quot;">&lt;b&gt;<i>a &amp; b</i></p>'
+    assert tag("td", class_="n", hidden=False, open=True) == '<td class="n" open></td>'
+    assert escape(1.5) == "1.5"
+
+
+def test_of_a_big_study_the_worst_is_shown_and_the_page_says_so(tmp_path):
+    pier = Pier(alpha=0.13, p=0.38)
+    etas = [2.0 + 0.1 * i for i in range(20)]
+    cases = [case_entry("soil", {"eta": eta}, pier, YieldingBase(beta=40.0, eta=eta)) for eta in etas]
+    records = [(f"R{i}", 0.1 + 0.001 * i) for i in range(600)]
+    worst = {("R7", "soil"): {"theta_max_over_alpha": 0.9}}
+    text = report(tmp_path, records=records, cases=cases, varied=("eta",), changes=worst)
+    page = Page(text)
+    assert len(text.encode()) < 5e6
+    assert len(page.tables["peaks"]) == 1 + 1000
+    assert {row[0] for row in page.tables["peaks"][1:21]} == {"R7"}
+    assert "The worst 1,000 of 12,000 rows are shown." in page.text
+    assert len(figures(text)) == 60
+    assert "Shown are the 60 records with the worst runs of 600." in page.text
+    assert ">R7</span>" in text
+
+
+def test_a_damaged_table_is_told_with_every_line_at_once(tmp_path):
+    changes = {("ERZ-NS", "1"): {"impacts": "2.5"}, ("SYL360", "2"): {"settlement_m": "x"}}
+    write_results(tmp_path, changes=changes)
+    path = tmp_path / "peaks.csv"
+    with path.open("a", encoding="utf-8") as file:
+        file.write("cut,short\n")
+    with pytest.raises(InputError) as caught:
+        write_report(tmp_path)
+    columns = len(path.read_text(encoding="utf-8").split("\n", 1)[0].split(","))
+    assert list(caught.value.problems) == [
+        f'{path}:3: impacts = "2.5": expected a whole number or nothing',
+        f'{path}:24: settlement_m = "x": expected a number or nothing',
+        f"{path}:32: 2 cells: expected {columns}, as in the first line",
+    ]
+
+
+def test_error_bars_are_drawn_where_they_are_longer_than_their_marker(tmp_path):
+    text = report(tmp_path, changes={("SYL360", "2"): {"theta_max_error": 0.02}})
+    panels = [svg for svg in figures(text) if "marks" in svg.attrib["class"]]
+    bars = [sum(node.get("class") == "bar" for node in panel.iter()) for panel in panels]
+    assert bars == [int(name == "SYL360") for name, _ in FIG7]
+    assert "± 2e-02" in text
+
+
+def test_a_curve_that_turns_back_on_itself_keeps_its_tip():
+    x, y = np.array([0.0, 5.0, 2.0]), np.zeros(3)
+    assert re.search(r' d="([^"]*)"', curve(x, y, "c"))[1] == "M0 0l50 0-30 0"
+
+
+def test_the_worst_comes_first_overturned_then_ended_by_flight_then_by_rotation_and_failed_last(tmp_path):
+    changes = {
+        ("CPM000", "4"): {"status": "failed", "theta_max_over_alpha": ""},
+        ("SYL360", "3"): {"status": "flight", "theta_max_over_alpha": 0.001, "flight_s": 2.0},
+        ("RRS228", "1"): {"status": "overturned", "theta_max_over_alpha": 0.002},
+        ("ERZ-NS", "2"): {"theta_max_over_alpha": 0.8},
+    }
+    head, *rows = Page(report(tmp_path, changes=changes)).tables["peaks"]
+    order = [tuple(row[:2]) for row in rows]
+    assert order[:3] == [("RRS228", "1"), ("SYL360", "3"), ("ERZ-NS", "2")]
+    assert order[-1] == ("CPM000", "4")
+    rotations = [float(row[head.index("θmax/α")]) for row in rows[2:-1]]
+    assert rotations == sorted(rotations, reverse=True)
+
+
+def test_of_many_records_those_that_overturn_the_pier_have_a_panel_whatever_their_rotation(tmp_path):
+    records = [(f"R{i}", 0.1 + 0.001 * i) for i in range(80)]
+    still = {("R40", name): {"theta_max_over_alpha": 0} for name, _ in FOUNDATIONS}
+    over = still | {("R40", "1"): {"theta_max_over_alpha": 0, "status": "overturned"}}
+    shown = [">R40</span>" in report(tmp_path, records=records, changes=changes) for changes in (over, still)]
+    assert shown == [True, False]
+
+
+@pytest.mark.parametrize("count", [1, 3, 20])
+def test_the_suite_s_spectra_are_drawn_with_names_while_they_are_few_and_as_a_spread_beyond(tmp_path, count):
+    names = [(f"record {i}", 0.1 + 0.01 * i) for i in range(count)]
+    spectra = {"damping": 0.05, "period_s": [0.1, 1.0, 5.0], "sa_g": [[1.0, 0.5 + 0.1 * i, 0.1] for i in range(count)]}
+    write_results(tmp_path, records=names, spectra=spectra)
+    text = write_report(tmp_path).read_text(encoding="utf-8")
+    drawn = text[text.index(f"Response spectra of {count} ground motions") :].split("</ul>")[0]
+    assert drawn.count("<path") > count
+    assert (">record 0<" in drawn) == (count < 20)
+    assert ("84 %" in drawn) == (count == 20)
+    assert ("median" in drawn) == (count > 1)
+
+
+def test_what_is_odd_about_a_record_and_whether_it_is_processed_stand_in_the_table(tmp_path):
+    write_results(tmp_path, records=[("rings", 0.2), ("plain", 0.3)])
+    info = json.loads((tmp_path / "run.json").read_text(encoding="utf-8"))
+    odd = [{"what": what, "text": what, "gross": True, "key": "confirm"} for what in ("alternates", "no PGD")]
+    info["records"][0] |= {"processed": False, "findings": odd, "pgd_m": None}
+    info["records"][1] |= {"processed": True, "findings": []}
+    (tmp_path / "run.json").write_text(json.dumps(info), encoding="utf-8")
+    text = write_report(tmp_path).read_text(encoding="utf-8")
+    table = text[text.index("to check") :].split("</table>")[0]
+    assert ">alternates, no PGD<" in table
+    assert table.index(">no<") < table.index(">yes<")
+    assert "displacement 0.30 m" in text
+
+
+def test_what_was_left_out_is_told_apart_from_what_could_not_be_used(tmp_path):
+    left_out = [{"name": "meta", "source": "a/<meta>.json", "reason": "no record: text about the records"}]
+    write_results(tmp_path, left_out=left_out)
+    text = write_report(tmp_path).read_text(encoding="utf-8")
+    assert "a/&lt;meta&gt;.json" in text
+    assert "Left out" in text
+    assert "could not be used" not in text

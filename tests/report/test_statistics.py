@@ -1,0 +1,80 @@
+"""Statistics of the suite: hand-computed, and no run drops out unnoticed."""
+
+import csv
+import math
+
+import numpy as np
+import pytest
+from report_page import Page
+from report_samples import FIG7, write_results
+
+from rockbatch.report import write_report
+from rockbatch.results.suite_statistics import suite
+
+
+def test_mean_median_and_percentiles_are_those_of_the_magnitudes():
+    found = suite(np.array([0.1, -0.2, 0.3, 0.4, -0.5]), ["ok"] * 5)
+    assert (found.count, found.standing) == (5, 5)
+    # 16 % of four intervals is 0.64 of the first, 84 % is 0.36 of the last
+    expected = 0.3, 0.1 + 0.64 * 0.1, 0.3, 0.4 + 0.36 * 0.1, 0.5
+    assert (found.mean, found.low, found.median, found.high, found.largest) == pytest.approx(expected, rel=1e-14)
+
+
+def test_an_overturned_or_flying_run_counts_as_larger_than_any_and_leaves_the_mean_to_those_that_stood():
+    found = suite(np.array([0.1, 0.2, 0.3, 7.0, 0.05]), ["ok", "ok", "ok", "overturned", "flight"])
+    assert (found.count, found.standing, found.overturned, found.flight, found.failed) == (5, 3, 1, 1, 0)
+    assert found.mean == pytest.approx(0.2, rel=1e-14)
+    assert found.median == 0.3  # third of five, whatever the two came to
+    assert found.low == pytest.approx(0.164, rel=1e-14)
+    assert (found.high, found.largest) == (math.inf, math.inf)
+
+
+def test_a_failed_run_is_counted_as_such_and_as_nothing_else():
+    found = suite(np.array([0.1, math.nan]), ["ok", "failed"])
+    assert (found.count, found.failed, found.mean, found.largest) == (1, 1, 0.1, 0.1)
+    nothing = suite(np.array([math.nan]), ["failed"])
+    assert (nothing.count, nothing.failed) == (0, 1)
+    assert math.isnan(nothing.median)
+
+
+def test_a_quantity_that_does_not_apply_has_no_statistics():
+    assert suite(np.array([math.nan, math.nan]), ["ok", "ok"]).count == 0
+
+
+def test_the_table_says_how_many_stood_and_which_percentiles_fall_on_overturned_runs(tmp_path):
+    changes = {(record, "2"): {"status": "overturned"} for record, _ in FIG7[:2]}
+    write_results(tmp_path, changes=changes)
+    page = Page(write_report(tmp_path, []).read_text(encoding="utf-8"))
+    rows = page.tables["suite"]
+    head = rows[0]
+    row = dict(zip(head, next(row for row in rows if row[0].startswith("2:")), strict=True))
+    assert (row["n"], row["84 %"], row["maximum"], row["overturned"]) == ("6", "∞", "∞", "2")
+    assert row["mean"].endswith(" of 4")
+    assert math.isfinite(float(row["median"]))
+    assert "counts as larger than any (∞)" in page.text
+
+
+def test_settlements_are_told_in_millimetres_and_the_rigid_base_has_none(tmp_path):
+    write_results(tmp_path)
+    page = Page(write_report(tmp_path, []).read_text(encoding="utf-8"))
+    with (tmp_path / "peaks.csv").open(encoding="utf-8", newline="") as file:
+        settled = [float(row["settlement_m"]) for row in csv.DictReader(file) if row["case"] == "3"]
+    rows = [row for row in page.tables["suite"] if row[0].startswith("3:")]
+    assert float(rows[-1][2]) == pytest.approx(1000 * np.mean(settled), abs=0.005)
+    assert sum(row[0] == "rigid" for row in page.tables["suite"]) == 1
+
+
+def test_with_and_without_vertical_stand_side_by_side_where_both_were_run(tmp_path):
+    write_results(tmp_path, vertical=(True, False))
+    page = Page(write_report(tmp_path, []).read_text(encoding="utf-8"))
+    over, head, *rows = page.tables["suite"]
+    assert over[1:3] == ["n", "mean"]
+    assert head[1:5] == ["with vertical", "without vertical"] * 2
+    with (tmp_path / "peaks.csv").open(encoding="utf-8", newline="") as file:
+        runs = [row for row in csv.DictReader(file) if row["case"] == "rigid"]
+    means = [
+        np.mean([float(row["theta_max_over_alpha"]) for row in runs if row["vertical"] == way])
+        for way in ("True", "False")
+    ]
+    assert [float(cell) for cell in rows[0][3:5]] == pytest.approx(means, abs=0.5e-4)
+    assert "with and without the vertical component" in page.text

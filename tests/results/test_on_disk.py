@@ -1,0 +1,489 @@
+"""Results on disk: which histories are kept, that they come back to the bit, and what is said when they do not."""
+
+import subprocess
+import sys
+from dataclasses import asdict, replace
+from types import SimpleNamespace
+
+import h5py
+import numpy as np
+import pandas as pd
+import pint
+import pytest
+from studies import PADS, RIGID, SINE, study_text, write_study
+
+import rockbatch as rb
+from rockbatch.batch.carrying_out import carry_out
+from rockbatch.batch.journal import Journal
+from rockbatch.batch.kept_histories import keep_histories, kept, worst
+from rockbatch.batch.plan import Plan
+from rockbatch.batch.threads import Threads
+from rockbatch.results import histories_file
+from rockbatch.results.columns import TERMS, columns
+from rockbatch.results.histories_file import FORMAT, UNITS, Responses, write
+from rockbatch.results.reading import read_saved
+from rockbatch.results.run_json import describe, write_info
+from rockbatch.simulation import Run, run_to_tolerance
+from rockbatch.simulation.histories import histories, simulate
+from rockbatch.study.suite import ground_motions
+
+STUDY = study_text(
+    title="Two pulses, three bases",
+    pier={"alpha": [0.2, 0.25], "p": 1.0},
+    motions={"polarity": ["+", "-"]},
+    pulses=(
+        SINE | {"name": "weak", "amplitude_g": 0.5, "duration_s": 1.0},
+        SINE | {"name": "strong", "duration_s": 1.0},
+    ),
+    cases=(
+        RIGID,
+        {"name": "elastic", "base": "elastic", "beta": 50},
+        PADS | {"epsilon": 0.1, "spring": ["bouc-wen", "epp"]},
+    ),
+    output={"histories": "all", "ledger": True},
+)
+PIER = rb.Pier(0.2, 1.0)
+CREATED = "2007-06-25T10:00:00+00:00"
+
+
+def carried_out(folder, text=STUDY):
+    """A study as ``rockbatch run`` carries it out, up to its histories: what is saved, the study and its runs."""
+    path = write_study(folder, text)
+    study = rb.load_study(path)
+    motions = ground_motions(study)
+    runs = Plan(study, motions)
+    with Journal(folder / "peaks.csv.part", columns(study), {}) as journal:
+        carry_out(runs, study.numerics, journal, Threads(1), study.output)
+        journal.write_in_order(folder / "peaks.csv")
+    info = {"rockbatch": "0.1.0", "created": CREATED, "versions": {"python": "3.11.2", "numpy": "2.3.1"}}
+    info |= {"command": [], "machine": "", "runs": len(runs), "jobs": 1, "wall_s": 1.0, **describe(study, motions)}
+    write_info(folder, info)
+    return read_saved(folder), study, runs
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("results")
+    keep_histories(*carried_out(folder))
+    return rb.open_results(folder)
+
+
+def same(one, other):
+    """Whether two responses are equal to the bit, types of columns included."""
+    for name in ("history", "events", "ledger"):
+        ours, theirs = getattr(one, name), getattr(other, name)
+        if ours is None or theirs is None:
+            assert ours is theirs
+        else:
+            pd.testing.assert_frame_equal(ours, theirs, check_exact=True)
+    frames = {"history": None, "events": None, "ledger": None}
+    assert asdict(replace(one, **frames)) == asdict(replace(other, **frames))
+    assert type(one.base) is type(other.base)
+    return True
+
+
+INFO = {"rockbatch": "0", "created": CREATED, "versions": {}, "varied": []}
+INFO["study"] = {"title": "", "text": "", "sha256": ""}
+
+
+def stored(folder, *responses):
+    """The responses, written and opened."""
+    write(folder / "histories.h5", responses, INFO)
+    return Responses(folder / "histories.h5", INFO)
+
+
+def at_rest(name="still", case="rigid"):
+    """The response to no motion at all."""
+    return simulate(PIER, rb.RigidBase(), rb.Motion(name, 0.01, np.zeros(3)), quiet_s=0.0, case=case)
+
+
+# Round trip
+
+
+def test_every_response_comes_back_equal_to_the_bit(results):
+    """Another simulation with the substeps of the table gives the very same numbers."""
+    assert len(results.responses) == 2 * 2 * 2 * 4 == len(results.peaks)
+    for row, response in zip(results.peaks.itertuples(), results.responses, strict=True):
+        motion = rb.pulse(
+            "sine", name=row.record, amplitude=(0.5 if row.record == "weak" else 1.0) * 9.81, period=0.5, dt=0.01,
+            duration=1.0,
+        )  # fmt: skip
+        if row.polarity == "-":
+            motion = replace(motion, horizontal=-motion.horizontal)
+        again = simulate(response.pier, response.base, motion, substeps=int(row.substeps), case=row.case, ledger=True)
+        columns = {"alpha": row.alpha} | ({"spring": row.spring} if row.case == "pads" else {})
+        assert same(response, replace(again, columns=columns, polarity=row.polarity))
+
+
+def test_the_greatest_rotation_of_a_history_is_that_of_its_row(results):
+    """The peak lies between samples: 1e-3 is what a parabola through samples 0.01 s apart misses, at most."""
+    for row, response in zip(results.peaks.itertuples(), results.responses, strict=True):
+        found = np.abs(response.theta).max() / response.pier.alpha
+        assert found == pytest.approx(row.theta_max_over_alpha, rel=1e-3)
+
+
+def test_peaks_come_back_with_the_types_and_ten_digits_of_the_run(results):
+    ran = rb.run(results.directory / "study.toml")
+    pd.testing.assert_frame_equal(results.peaks, ran, rtol=1e-9, atol=0)
+
+
+def test_a_response_without_ledger_or_events_comes_back_too(tmp_path):
+    resting = at_rest()
+    assert resting.events.empty
+    assert resting.ledger is None
+    assert same(stored(tmp_path, resting)[0], resting)
+
+
+# What an event leaves in the history
+
+
+def test_an_event_points_to_the_rows_on_both_sides_of_its_jump():
+    pulse = rb.pulse("sine", name="one-sine", amplitude=9.81, period=0.5, dt=0.01, duration=3.0)
+    response = simulate(PIER, rb.RigidBase(restitution=0.8), pulse)
+    impacts = response.events[response.events["kind"] == "impact"]
+    assert len(impacts) > 3
+    before, after = (response.history.iloc[impacts[side]] for side in ("before", "after"))
+    assert (before["t"].to_numpy() == impacts["t"].to_numpy()).all()
+    assert after["omega"].to_numpy() == pytest.approx(0.8 * before["omega"].to_numpy(), rel=1e-15)
+    lift_offs = response.events[response.events["kind"] == "lift-off"]
+    assert (lift_offs["before"] == lift_offs["after"]).all()
+    assert (response.t[lift_offs["after"]] == lift_offs["t"]).all()
+
+
+def test_spring_forces_carry_the_weight_at_rest_and_eta_times_half_of_it_at_yield(results):
+    response = results.response("strong", "pads", polarity="+", alpha=0.2, spring="epp")
+    forces = response.history[["force_left", "force_right"]]
+    gravity = response.pier.gravity
+    assert forces.iloc[0].sum() == pytest.approx(-gravity, rel=1e-14)
+    assert forces.min().min() == pytest.approx(-2.5 * gravity / 2, rel=1e-14)
+    for side, z in (("left", response.z_left), ("right", response.z_right)):
+        assert forces[f"force_{side}"].to_numpy() == pytest.approx(2.5 * gravity / 2 * z, rel=1e-14)
+
+
+def test_the_history_of_an_overturned_pier_ends_where_it_fell(tmp_path):
+    """On its side, at π/2; not at the sample before."""
+    strong = rb.pulse("sine", name="strong", amplitude=3 * 9.81, period=2.0, dt=0.05, duration=10.0)
+    outcome = run_to_tolerance(PIER, rb.RigidBase(), strong, 1e-4)
+    response = histories(Run(PIER, rb.RigidBase(), strong), outcome, 2.0, "rigid", {})
+    assert response.status == "overturned"
+    assert response.t[-1] == outcome.t_end
+    assert abs(response.theta[-2]) < outcome.theta_max <= abs(response.theta[-1])
+    assert same(stored(tmp_path, response)[0], response)
+
+
+def test_flight_is_the_last_event_of_a_run_that_it_ends(tmp_path):
+    """The ground drops away at 2 g: the springs relax, and both pivots leave them."""
+    down = np.full(200, -2 * 9.81)
+    motion = rb.Motion("drop", 0.01, np.zeros(200), vertical=down)
+    for base in (rb.ElasticBase(beta=50), rb.YieldingBase(beta=50, eta=2.5)):
+        response = simulate(PIER, base, motion, quiet_s=0.0)
+        last = response.events.iloc[-1]
+        assert (response.status, last["kind"]) == ("flight", "flight")
+        assert last["after"] == len(response.t) - 1
+        assert last["t"] == response.t[-1]
+        assert same(stored(tmp_path, response)[0], response)
+
+
+# The file, as others read it
+
+
+def test_every_number_has_a_unit_and_a_length_that_fits(results):
+    """Units are those that pint reads; all columns of a run have as many rows as its time."""
+    registry = pint.UnitRegistry()
+    seen = set()
+    with h5py.File(results.directory / "histories.h5") as file:
+
+        def look(name, item):
+            if isinstance(item, h5py.Dataset) and item.dtype.kind != "S":
+                seen.add(str(registry(item.attrs["unit"]).units if item.attrs["unit"] != "1" else "1"))
+                if "/events/" not in name:
+                    assert item.shape == file[f"{'/'.join(name.split('/')[:2])}/t"].shape
+
+        file.visititems(look)
+    assert seen == {
+        "second", "radian", "radian / second", "meter", "newton / kilogram", "joule / kilogram", "meter / second ** 2", "1"
+    }  # fmt: skip
+
+
+def test_the_file_says_what_it_is_and_what_made_it(results):
+    with h5py.File(results.directory / "histories.h5") as file:
+        assert file.attrs["format"] == FORMAT
+        assert file.attrs["title"] == "Two pulses, three bases"
+        assert file.attrs["study"] == STUDY
+        assert file.attrs["sha256"] == results.info["study"]["sha256"]
+        assert file.attrs["rockbatch"] == "0.1.0"
+        assert file["versions"].attrs["numpy"] == "2.3.1"
+        run = file["runs/000000"]
+        assert (run.attrs["record"], run.attrs["case"], run.attrs["polarity"]) == ("weak", "rigid", "+")
+        assert run["pier"].attrs["alpha"] == 0.2
+        assert set(run) == {
+            "base",
+            "events",
+            "ledger",
+            "pier",
+            "varied",
+            "t",
+            "theta",
+            "omega",
+            "energy",
+            "ag_h",
+            "ag_v",
+        }
+        assert set(file["runs/000001"]) >= set(UNITS)
+        assert set(run["ledger"]) == set(TERMS)
+
+
+@pytest.mark.parametrize("name", ["a/b", "..", ".", "/", "Erdbeben in Düzce ⟂ 地震", "x" * 100_000, " ", "000000"])
+def test_a_record_may_have_any_name(tmp_path, name):
+    responses = stored(tmp_path, at_rest(name, case=name), at_rest(name, case="b"))
+    assert [response.record for response in responses] == [name, name]
+    assert responses.runs["case"].tolist() == [name, "b"]
+
+
+def test_what_hdf5_cannot_hold_of_a_name_is_written_as_an_escape(tmp_path):
+    """A file's name that is not Unicode comes with lone surrogates, and TOML allows NUL."""
+    assert stored(tmp_path, at_rest("a\0b\udcffc"))[0].record == r"a\x00b\udcffc"
+
+
+# Whole or not at all
+
+
+@pytest.mark.parametrize("error", [KeyboardInterrupt, OSError])
+def test_an_error_on_the_way_leaves_the_earlier_file_and_nothing_else(tmp_path, error):
+    stored(tmp_path, at_rest())
+    earlier = (tmp_path / "histories.h5").read_bytes()
+
+    def broken():
+        yield at_rest()
+        raise error
+
+    with pytest.raises(error):
+        write(tmp_path / "histories.h5", broken(), INFO)
+    assert [file.name for file in tmp_path.iterdir()] == ["histories.h5"]
+    assert (tmp_path / "histories.h5").read_bytes() == earlier
+
+
+def test_a_full_disk_is_told_before_it_is_written_to(tmp_path, monkeypatch):
+    """HDF5 itself would print a page of errors and may crash at exit."""
+    stored(tmp_path, at_rest())
+    earlier = (tmp_path / "histories.h5").read_bytes()
+    monkeypatch.setattr(histories_file, "disk_usage", lambda folder: SimpleNamespace(free=3e6))
+    with pytest.raises(rb.InputError, match="the disk is full, 3 MB are left; make room"):
+        stored(tmp_path, at_rest())
+    assert [file.name for file in tmp_path.iterdir()] == ["histories.h5"]
+    assert (tmp_path / "histories.h5").read_bytes() == earlier
+
+
+# Which runs are kept
+
+
+def row(status, theta_max=0.5, t_end=10.0):
+    return {"status": status, "theta_max_over_alpha": theta_max, "t_end_s": t_end}
+
+
+def worst_of(*rows_of_cases):
+    """The worst, as (record, case), of rows that are given case by case, put in the order of a study."""
+    cases = len(rows_of_cases)
+    table = pd.DataFrame([rows[i] for i in range(len(rows_of_cases[0])) for rows in rows_of_cases])
+    return [divmod(number, cases) for number in worst(table, cases)]
+
+
+def test_the_worst_of_a_case_is_its_greatest_rotation_also_of_a_run_that_flight_ended():
+    rotations = [row("ok", 0.1), row("flight", 0.3), row("ok", 0.2)]
+    assert worst_of(rotations, rotations[::-1], [rotations[0]] * 3) == [(1, 0), (1, 1), (0, 2)]
+
+
+def test_overturning_is_worse_than_any_rotation_and_the_earlier_the_worse():
+    late, early = row("overturned", 1.6, t_end=8.0), row("overturned", 1.5, t_end=3.0)
+    assert worst_of([row("ok", 2.0), late, early]) == [(2, 0)]
+    assert worst_of([early, late, row("flight", 2.0, t_end=1.0)]) == [(0, 0)]
+
+
+def test_a_failed_run_is_never_the_worst_and_a_case_that_only_failed_has_none():
+    failed, refused = row("failed", 9.0), row("failed", np.nan)
+    assert worst_of([failed, row("ok", 0.1)], [failed, refused]) == [(1, 0)]
+
+
+def test_worst_is_what_a_study_keeps_that_does_not_say(tmp_path):
+    text = STUDY.replace('histories = "all"\n', "").replace("ledger = true\n", "")
+    text = text.replace("[motions]\n", "[motions]\nscale = 0.9\n")
+    saved, study, runs = carried_out(tmp_path, text)
+    keep_histories(saved, study, runs)
+    results = rb.open_results(tmp_path)
+    assert [(response.case, response.columns) for response in results.responses] == [
+        (case.name, case.columns) for case in study.cases
+    ]
+    for response in results.responses:
+        rows = results.peaks[(results.peaks["case"] == response.case) & (results.peaks["alpha"] == response.pier.alpha)]
+        greatest = rows[rows["spring"].fillna("") == response.columns.get("spring", "")]["theta_max_over_alpha"].max()
+        assert np.abs(response.theta).max() / response.pier.alpha == pytest.approx(greatest, rel=1e-3)
+        assert response.scale == 0.9
+        assert response.ledger is None
+
+
+def test_runs_that_were_refused_have_no_history(tmp_path):
+    saved, study, _ = carried_out(tmp_path)
+    saved.peaks.loc[1, ["status", "theta_max_over_alpha"]] = ["failed", np.nan]
+    assert kept(study, saved.peaks) == [0, *range(2, len(saved.peaks))]
+
+
+def test_a_history_too_long_for_memory_is_told_and_the_others_are_there(tmp_path):
+    saved, study, runs = carried_out(tmp_path)
+    saved.peaks.loc[3, "substeps"] = 100_000  # of its ledger, ten million rows and more
+    with pytest.raises(rb.InputError, match=r"weak: a history of \d+ rows, more than 10000000") as error:
+        keep_histories(saved, study, runs)
+    assert len(error.value.problems) == 1
+    assert len(rb.open_results(tmp_path).responses) == len(runs) - 1
+
+
+def test_progress_is_told_after_every_run_that_is_kept(tmp_path):
+    saved, study, runs = carried_out(tmp_path)
+    calls = []
+    keep_histories(saved, study, runs, lambda: calls.append(None))
+    assert len(calls) == len(kept(study, saved.peaks))
+
+
+# Choosing one
+
+
+def test_a_response_is_found_by_whatever_tells_it_from_the_others(results):
+    response = results.response("strong", "pads", polarity="-", alpha=0.25, spring="epp")
+    assert (response.record, response.case, response.polarity) == ("strong", "pads", "-")
+    assert response.base == rb.YieldingBase(beta=50.0, eta=2.5, epsilon=0.1, spring="epp")
+    assert response.pier.alpha == 0.25
+    row = {"record": "strong", "case": "rigid", "polarity": "+", "alpha": 0.2}
+    assert results.history(**row).equals(results.response(**row).history)
+    assert results.events(**row).equals(results.response(**row).events)
+    assert len(results.events(**row)) > 0
+
+
+@pytest.mark.parametrize(
+    ("choice", "told"),
+    [
+        ({"record": "strng"}, r'no history with record = "strng"; did you mean "strong"\?'),
+        ({"record": "Kobe"}, r'no history with record = "Kobe"; there are "weak"; "strong"'),
+        ({"case": "rigid", "spring": "epp"}, 'no history with spring = "epp"; it applies to none'),
+        ({"record": "weak", "case": "rigid", "alpha": 0.3}, r"no history with alpha = 0\.3; there are 0\.2; 0\.25"),
+        (
+            {"polarity": "+", "beta": 50},
+            "beta: not what tells runs apart; choose by record, case, polarity, scale, alpha, spring",
+        ),
+        (
+            {"record": "weak", "case": "rigid", "alpha": 0.2},
+            r'2 histories fit; say which: polarity = "\+"; polarity = "-"$',
+        ),
+        ({"record": "weak", "case": "rigid"}, r'4 histories fit; say which: polarity = "\+", alpha = 0\.2; polarity'),
+        ({}, "32 histories fit; .*; and 24 more$"),
+    ],
+)
+def test_a_choice_that_fits_none_or_several_is_told_with_those_that_there_are(results, choice, told):
+    with pytest.raises(rb.InputError, match=told):
+        results.response(**choice)
+
+
+def test_responses_are_a_sequence_that_is_read_one_by_one(results):
+    responses = results.responses
+    assert same(responses[-1], responses[len(responses) - 1])
+    assert [response.case for response in responses[:2]] == ["rigid", "elastic"]
+    with pytest.raises(IndexError):
+        responses[len(responses)]
+    assert list(responses.runs.columns) == ["record", "case", "polarity", "scale", "status", "alpha", "spring"]
+    assert responses.runs["status"].tolist() == results.peaks["status"].tolist()
+
+
+# What is not there, or not ours
+
+
+def test_without_histories_it_says_how_to_get_them(tmp_path):
+    assert keep_histories(*carried_out(tmp_path, STUDY.replace('histories = "all"', 'histories = "none"'))) is None
+    results = rb.open_results(tmp_path)
+    assert len(results.responses) == 0
+    with pytest.raises(rb.InputError, match="no histories; write \\[output\\] histories"):
+        results.history("weak", "rigid")
+
+
+def test_a_folder_without_results_is_told():
+    with pytest.raises(rb.InputError, match=r"run\.json: not there"):
+        rb.open_results("nowhere")
+
+
+def damaged(folder, change):
+    """What is said about a file after ``change``."""
+    stored(folder, at_rest())
+    change(folder / "histories.h5")
+    with pytest.raises(rb.InputError) as error:
+        Responses(folder / "histories.h5", INFO)[0]
+    (problem,) = error.value.problems
+    assert problem.startswith(f"{folder / 'histories.h5'}: ")
+    return problem
+
+
+def edited(change):
+    def edit(path):
+        with h5py.File(path, "r+") as file:
+            change(file)
+
+    return edit
+
+
+def test_a_truncated_file_is_told(tmp_path):
+    assert "damaged" in damaged(tmp_path, lambda path: path.write_bytes(path.read_bytes()[:-1000]))
+
+
+def test_a_file_that_is_no_hdf5_is_told(tmp_path):
+    assert "damaged" in damaged(tmp_path, lambda path: path.write_text("peaks"))
+
+
+def test_hdf5_of_another_kind_is_told(tmp_path):
+    assert "not the histories" in damaged(tmp_path, edited(lambda file: file.attrs.__delitem__("format")))
+
+
+@pytest.mark.parametrize("name", ["theta", "events/kind", "pier", "base", "varied"])
+def test_a_file_in_which_something_is_missing_is_told(tmp_path, name):
+    assert "damaged" in damaged(tmp_path, edited(lambda file: file["runs/000000"].__delitem__(name)))
+
+
+def test_columns_of_unlike_length_are_told(tmp_path):
+    def shorten(file):
+        run = file["runs/000000"]
+        theta = run["theta"][:-1]
+        del run["theta"]
+        run["theta"] = theta
+
+    assert "damaged" in damaged(tmp_path, edited(shorten))
+
+
+@pytest.mark.parametrize("mark", ["created", "sha256"])
+def test_histories_of_another_run_are_told(tmp_path, mark):
+    assert "by another run than run.json" in damaged(
+        tmp_path, edited(lambda file: file.attrs.__setitem__(mark, "other"))
+    )
+
+
+# What it costs those who do not ask
+
+
+def loaded(code):
+    """Which of the heavy modules a program has loaded at its end."""
+    code += "\nimport sys; print(*(name for name in ('numba', 'h5py') if name in sys.modules))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    return done.stdout.split()
+
+
+def test_a_study_that_asks_for_no_histories_never_loads_hdf5(tmp_path):
+    carried_out(tmp_path, STUDY.replace('histories = "all"', 'histories = "none"'))
+    run = f"""
+import rockbatch as rb
+from rockbatch.batch.journal import Journal
+from rockbatch.batch.kept_histories import keep_histories
+study = rb.load_study({str(tmp_path / "study.toml")!r})
+rb.run(study)
+results = rb.open_results({str(tmp_path)!r})
+assert keep_histories(results, study, []) is None
+assert len(results.responses) == 0
+"""
+    assert loaded(run) == ["numba"]
+
+
+def test_histories_are_read_without_the_compiler(results):
+    assert loaded(f"import rockbatch as rb; rb.open_results({str(results.directory)!r}).responses[0]") == ["h5py"]

@@ -1,0 +1,113 @@
+"""Pier and bases: the relations between their sizes, and what is refused."""
+
+import math
+
+import numpy as np
+import pytest
+from core_samples import FIG5
+
+from rockbatch.errors import InputError
+from rockbatch.motions.motion import Motion
+from rockbatch.pier import (
+    ElasticBase,
+    Pier,
+    RigidBase,
+    YieldingBase,
+    problems,
+    static_deflection,
+    tilt_over_residual,
+    vertical_frequency,
+    yield_deflection,
+)
+from rockbatch.simulation import run_fixed
+
+
+@pytest.mark.parametrize(("p", "size"), [(1.0, 7.36), (0.35, 60.1)])
+def test_size_of_the_papers_blocks(p, size):
+    """R0 = 7.36 m for p = 1 rad/s and 60.1 m for p = 0.35 rad/s (Figs. 5 and 7): half a unit of the last digit."""
+    assert Pier(0.13, p).size == pytest.approx(size, abs=0.05 if size > 10 else 0.005)
+
+
+@pytest.mark.parametrize("mu", [0.8, 3.0, 6.0])
+def test_size_and_frequency_parameter_are_two_names_of_one_thing(mu):
+    """p² = μ/(1+μ) g/R0, there and back; I0 = M R0²/μ. Rounding only."""
+    pier = Pier.from_size(0.3, 12.0, mu)
+    assert pier.p**2 == pytest.approx(mu / (1 + mu) * pier.gravity / 12.0, rel=1e-14)
+    assert pier.size == pytest.approx(12.0, rel=1e-14)
+    assert math.hypot(pier.half_width, pier.height) == pytest.approx(12.0, rel=1e-14)
+    assert math.atan2(pier.half_width, pier.height) == pytest.approx(0.3, rel=1e-14)
+    assert pier.inertia == pytest.approx(144.0 / mu, rel=1e-14)
+
+
+def test_rectangle_has_the_inertia_of_a_rectangle():
+    """I0/M = (w² + h²)/12 about the centre."""
+    pier = Pier.rectangle(width_m=2.0, height_m=9.0)
+    assert pier.inertia == pytest.approx((4.0 + 81.0) / 12.0, rel=1e-14)
+    assert (2 * pier.half_width, 2 * pier.height) == pytest.approx((2.0, 9.0), rel=1e-14)
+
+
+@pytest.mark.parametrize("alpha", [0.05, 0.2, 0.9])
+def test_least_beta_is_where_the_static_pier_loses_its_stiffness(alpha):
+    """g h = ω_v² b²; and the core agrees: just above it a nudge is borne, however softly, just below it topples."""
+    pier = Pier(alpha, 1.0)
+    omega_v = pier.least_beta * pier.p
+    assert omega_v**2 * pier.half_width**2 == pytest.approx(pier.gravity * pier.height, rel=1e-12)
+    nudge = Motion("nudge", 0.05, np.r_[0.0, 1e-4, np.zeros(600)])
+    peaks = []
+    for factor in (1.1, 0.9):
+        base = ElasticBase(factor * pier.least_beta)
+        peaks.append(run_fixed(pier, base, nudge, 8, 0.0).theta_max)
+    assert peaks[0] < 1e-2 * alpha < peaks[1]
+
+
+def test_every_impossible_value_is_named_with_its_limit():
+    base = YieldingBase(3.0, 1.5, "second-order", "free", eta=0.9, spring="clay", n=0.5)
+    found = problems(FIG5, base)
+    assert len(found) == 7
+    names = ["beta", "epsilon", "kinematics", "flight", "eta", "spring", "n"]
+    assert [problem.split(" ")[0] for problem in found] == names
+    assert f"{FIG5.least_beta:.4g}" in found[0]
+
+
+@pytest.mark.parametrize(
+    "base",
+    [RigidBase(), RigidBase(0.0), RigidBase(1.0), ElasticBase(6.0), YieldingBase(50.0, eta=1.01, n=1.0)],
+)
+def test_possible_bases_have_no_problems(base):
+    assert problems(FIG5, base) == []
+
+
+@pytest.mark.parametrize("restitution", [-0.1, 1.1, math.nan])
+def test_restitution_outside_0_to_1_is_refused(restitution):
+    assert len(problems(FIG5, RigidBase(restitution))) == 1
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, -1.0])
+def test_values_that_are_no_numbers_are_refused(value):
+    for base in (ElasticBase(value), YieldingBase(50.0, eta=value), YieldingBase(50.0, eta=3.0, n=value)):
+        assert problems(FIG5, base), base
+
+
+def test_a_pier_reports_all_its_mistakes_at_once():
+    with pytest.raises(InputError) as caught:
+        Pier(alpha=11.5, p=-1.0, mu=0.0, gravity=math.nan)
+    assert len(caught.value.problems) == 4
+    assert "degrees" in str(caught.value)
+
+
+def test_deflections_and_frequency_follow_from_each_other():
+    soft, elastic = YieldingBase(40.0, eta=2.5), ElasticBase(40.0)
+    assert vertical_frequency(FIG5, soft) == 40.0 * FIG5.p
+    assert static_deflection(FIG5, soft) * vertical_frequency(FIG5, soft) ** 2 == pytest.approx(FIG5.gravity, rel=1e-14)
+    assert yield_deflection(FIG5, soft) == pytest.approx(2.5 * static_deflection(FIG5, soft), rel=1e-14)
+    assert yield_deflection(FIG5, elastic) == static_deflection(FIG5, elastic)
+
+
+def test_the_base_tilts_with_the_residual_rotation_less_the_closer_the_pier_is_to_toppling():
+    """Eq. 14; at the least β that carries the pier in rotation, whatever tilt is left topples it."""
+
+    def at(omega_v):
+        return tilt_over_residual(FIG5.gravity, FIG5.height, FIG5.half_width, omega_v)
+
+    assert at(FIG5.least_beta * FIG5.p) == pytest.approx(0.0, abs=1e-12)
+    assert at(2.0 * FIG5.least_beta * FIG5.p) == pytest.approx(0.75, rel=1e-12)

@@ -1,0 +1,106 @@
+"""Every section of a page has the same entry point, stands in the page's list once, and is left out where it does not apply."""
+
+import inspect
+import pkgutil
+import re
+from importlib import import_module
+from pathlib import Path
+
+import pandas as pd
+import pytest
+from report_page import Page
+from report_samples import case_entry, write_results
+
+from rockbatch.pier import Pier, RigidBase
+from rockbatch.report import compared, sections
+from rockbatch.report.contents import Contents, read
+from rockbatch.report.document import Section, document
+from rockbatch.report.markup import Markup
+from rockbatch.report.page import SECTIONS, SECTIONS_OF_TWO, page
+from rockbatch.report.sections import answer
+
+STUDY = {"title": "Piers & pads", "notes": "First.\n\nSecond.", "text": 'title = "Piers & pads"', "sha256": "0"}
+
+
+@pytest.mark.parametrize(
+    ("package", "listed", "told"), [(sections, SECTIONS, "contents"), (compared, SECTIONS_OF_TWO, "pair")]
+)
+def test_every_module_of_sections_has_one_door_and_stands_in_the_list_once(package, listed, told):
+    modules = [import_module(f"{package.__name__}.{each.name}") for each in pkgutil.iter_modules(package.__path__)]
+    assert len(modules) >= 7
+    assert sorted(section.__module__ for section in listed) == sorted(module.__name__ for module in modules)
+    assert all(list(inspect.signature(module.section).parameters) == [told] for module in modules)
+
+
+def test_sections_of_a_run_stand_in_the_order_of_the_list_under_anchors_of_their_own(tmp_path):
+    write_results(tmp_path)
+    contents = read(tmp_path)
+    made = [made for section in SECTIONS if (made := section(contents)) is not None]
+    anchors = [one.anchor for one in made]
+    assert len(set(anchors)) == len(anchors)
+    assert anchors[:2] == ["answer", "figure"]
+    assert {"studied", "peaks", "suite", "records", "accuracy", "reproduce"} <= set(anchors)
+    assert not {"checks", "references", "fragility", "spectrum", "sensitivity", "histories", "unusable"} & set(anchors)
+    text = page(contents)
+    places = [text.index(f'<section id="{anchor}">') for anchor in anchors]
+    assert places == sorted(places)
+    assert all(one.content for one in made)
+    assert re.findall(r'<a href="#(\w+)"', text)[: len(anchors)] == anchors
+
+
+def test_a_folder_without_a_run_has_notes_and_the_study_file_alone(tmp_path):
+    shown = Page(page(Contents(tmp_path, STUDY)))
+    assert shown.headings == ["Notes", "The study file"]
+    assert "First." in shown.text
+    assert 'title = "Piers & pads"' in shown.text
+    assert Page(page(Contents(tmp_path, STUDY | {"notes": "", "title": ""}))).headings == ["The study file"]
+
+
+def test_a_section_that_does_not_apply_has_no_heading_and_no_link():
+    there = Section("Peaks", "peaks", Markup("<p>high</p>"))
+    assert document("kind", "title", [None, there, None]) == document("kind", "title", [there])
+    shown = Page(document("kind", "title", [None, there, None]))
+    assert shown.headings == ["Peaks"]
+    assert shown.links == {"#peaks"}
+
+
+def test_histories_verdicts_and_analyses_come_from_the_same_folder(tmp_path):
+    write_results(tmp_path)
+    contents = read(tmp_path, ())
+    assert contents.directory == Path(tmp_path)
+    assert contents.study["sha256"] == contents.finished.info["study"]["sha256"]
+    assert list(contents.responses) == list(contents.verdicts) == []
+    assert contents.analysis("fragility") is None
+    (tmp_path / "fragility.json").write_text(
+        f'{{"study": {{"sha256": "{contents.study["sha256"]}"}}, "curves": []}}', encoding="utf-8"
+    )
+    assert contents.analysis("fragility").info["curves"] == []
+    assert "fragility" not in [made.anchor for section in SECTIONS if (made := section(contents)) is not None]
+
+
+@pytest.mark.parametrize("run", [(0.38, 0.35), (0.35,)])
+def test_the_answer_says_how_far_the_worst_pier_rotates_and_how_high_its_heel_rises(tmp_path, run):
+    # Also where run.json lists a pier that has no runs yet
+    piers = [case_entry("rigid", {"p": p}, Pier(alpha=0.13, p=p), RigidBase()) for p in (0.38, 0.35)]
+    write_results(tmp_path, cases=piers, varied=("p",))
+    peaks = pd.read_csv(tmp_path / "peaks.csv")
+    peaks["theta_max_over_alpha"] = 0.01
+    worst = (peaks["record"] == "SYL360") & (peaks["p"] == 0.35)
+    peaks.loc[worst, "theta_max_over_alpha"] = 0.1
+    peaks[peaks["p"].isin(run)].to_csv(tmp_path / "peaks.csv", index=False)
+    told = Page(section_of(tmp_path, answer)).text
+    uplift_mm = 1000 * 2 * Pier(alpha=0.13, p=0.35).half_width * 0.1 * 0.13
+    assert f"θmax = 0.1 α (0.013 rad, 0.745°), and the heel rises by {uplift_mm:.3g} mm: SYL360, case rigid" in told
+    assert "p = 0.35 rad/s" in told
+
+
+def test_the_answer_counts_runs_that_flew_apart_from_those_that_ended_so(tmp_path):
+    guided = {("ERZ-NS", "1"): {"flight_s": 3.0}, ("RRS228", "3"): {"flight_s": 4.0}}
+    write_results(tmp_path, changes=guided | {("CPM000", "2"): {"status": "flight", "flight_s": 2.5}})
+    told = Page(section_of(tmp_path, answer)).text
+    assert "In 2 runs both pivots left the ground, and the pier was guided down." in told
+    assert "In one run both pivots leave the ground, and the analysis stops there: CPM000, case 2" in told
+
+
+def section_of(directory, module):
+    return module.section(read(directory, ())).content

@@ -1,0 +1,177 @@
+"""Outcomes of random hard cases are those of an independent reference of order 8 (benchmarks/outcomes.py)."""
+
+import importlib
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import reference_solver
+from core_samples import broadband
+
+from rockbatch.motions import Motion, pulse
+from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase
+
+BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
+PIER = Pier(alpha=0.20, p=1.0)
+G = PIER.gravity
+SINE = pulse("sine", name="sine", amplitude=G, period=0.5, dt=0.01, duration=2.0)
+
+
+@pytest.fixture(scope="module")
+def outcomes():
+    """The benchmark, imported as a script beside it would be."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(str(BENCHMARKS))
+        yield importlib.import_module("outcomes")
+
+
+@pytest.fixture(scope="module")
+def reference(outcomes):
+    return outcomes.reference
+
+
+def judged(outcomes, folder, count=None):
+    """Rows of the pool, each judged."""
+    return outcomes.judged(outcomes.cases(count), outcomes.Cache(folder, 0), jobs=2)
+
+
+def assert_nothing_wrong(outcomes, rows):
+    """What a tolerance of 10⁻⁴ promises, of every row that a reference can judge."""
+    counts = outcomes.counts(rows)
+    told = "\n".join(outcomes.complaints(rows))
+    assert counts["wrong"] == 0, told
+    assert counts["error"] == 0, told
+    assert counts["beyond estimate"] <= 0.02 * len(rows), told
+    assert counts["failed, settled"] == 0, told
+
+
+def test_outcomes_of_a_part_of_the_pool_are_those_of_the_reference(outcomes, tmp_path):
+    rows = judged(outcomes, tmp_path, 80)
+    assert len(rows) >= 80
+    assert sum(row.verdict in outcomes.LEFT_OUT for row in rows) <= 0.15 * len(rows)
+    assert_nothing_wrong(outcomes, rows)
+
+
+@pytest.mark.slow
+def test_outcomes_of_the_whole_pool_are_those_of_the_reference(outcomes, tmp_path):
+    rows = judged(outcomes, tmp_path)
+    assert len(rows) >= 1200
+    assert sum(row.verdict in outcomes.LEFT_OUT for row in rows) <= 0.1 * len(rows)
+    assert_nothing_wrong(outcomes, rows)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("seed", "name"),
+    [
+        (8, "soft-26"),  # first-order P–Δ moments returned 6 % of the energy: 0.8637 α was ok, 0.8709 comes at 174 s
+        (8, "soft-60"),  # leaned by 0.05 α and sank by 3.5 mm/s: ok, and on its side 25 s later
+        (11, "soft-86"),  # the work of supports that lean by sin θ was taken for that of θ: ended at its first peak
+        (7, "Bouc-Wen-71"),  # flies once nothing can exceed its peak: ok, with a note
+        (11, "springs-by-a-hair-56"),  # leaves the ground where it can only fall: overturned
+    ],
+)
+def test_cases_that_other_seeds_found_are_right(outcomes, tmp_path, seed, name):
+    case = next(case for case in outcomes.cases(None, seed) if case.id == name)
+    row = outcomes.judge(case, outcomes.Cache(tmp_path, seed))
+    assert row.verdict in outcomes.RIGHT, row
+
+
+def test_the_pool_is_the_same_for_the_same_seed_and_another_for_another(outcomes):
+    first, again, other = (outcomes.cases(20, seed) for seed in (0, 0, 1))
+    assert [case.pier for case in first] == [case.pier for case in again]
+    assert all(np.array_equal(a.motion.horizontal, b.motion.horizontal) for a, b in zip(first, again, strict=True))
+    assert [case.pier for case in first] != [case.pier for case in other]
+
+
+def test_references_are_kept(outcomes, tmp_path):
+    case = outcomes.cases(1, only="rigid pulses")[0]
+    cache = outcomes.Cache(tmp_path, 0)
+    row = outcomes.judge(case, cache)
+    cache.save()
+    kept = outcomes.Cache(tmp_path, 0)
+    assert list(kept.known) == [case.id]
+    assert repr(outcomes.judge(case, kept)) == repr(row)  # nan is not itself
+
+
+class TestTheReference:
+    """The judge itself, against closed forms and against itself."""
+
+    @pytest.mark.parametrize("law", ["elastic", "epp", "bouc-wen"])
+    @pytest.mark.parametrize("kinematics", ["first-order", "finite"])
+    @pytest.mark.parametrize("epsilon", [0.0, 0.4, 1.0])
+    def test_balances_its_energy(self, reference, law, kinematics, epsilon):
+        base = ElasticBase(50.0, epsilon, kinematics, "guided")
+        if law != "elastic":
+            base = YieldingBase(50.0, epsilon, kinematics, "guided", eta=2.2, spring=law, n=1.7)
+        found = reference(PIER, base, SINE, horizon=10.0)
+        assert found.impacts >= 2
+        assert abs(found.balance) < 1e-12 * G
+        assert found.forced == 0
+
+    def test_rocks_in_full_contact_as_an_oscillator_does(self, reference):
+        push = Motion("push", 0.01, np.full(201, 0.01 * G))
+        inertia = PIER.inertia + PIER.height**2
+        stiffness = (50.0 * PIER.half_width) ** 2 - G * PIER.height
+        peak = 2 * PIER.height * 0.01 * G / stiffness
+        found = reference(PIER, ElasticBase(50.0), push, horizon=0.0)
+        assert found.theta_max == pytest.approx(peak, rel=1e-11)
+        turns = found.t_max * math.sqrt(stiffness / inertia) / math.pi  # any of its equal peaks
+        assert turns == pytest.approx(round(turns), abs=1e-5)
+        assert round(turns) % 2 == 1
+
+    def test_swings_on_a_rigid_base_as_far_as_its_energy_reaches(self, reference):
+        """Lift-off at once under a constant push; after it ½θ̇² + p² cos(α − θ) stays."""
+        a, t = 1.5 * math.tan(PIER.alpha), 0.4
+        push = Motion("push", 0.01, np.full(round(t / 0.01), a * G))  # falls to zero within the last 0.01 s
+        found = reference(PIER, RigidBase(), push)
+        trace = np.zeros((1000, 7))
+        reference(PIER, RigidBase(), push, trace=trace)
+        after = trace[trace[:, 0] > t + 0.01][0]
+        level = 0.5 * after[2] ** 2 + math.cos(PIER.alpha - abs(after[1]))
+        assert found.theta_max == pytest.approx(PIER.alpha - math.acos(level), rel=1e-12)
+
+    def test_falls_and_flies_as_stones_do(self, reference):
+        """v̈_g = −2 g from the start to 1.5 s, falling to zero within 0.01 s; no horizontal motion."""
+        drop = Motion("drop", 0.01, np.zeros(151), np.full(151, -2 * G))
+        found = reference(PIER, ElasticBase(50.0, 0.0, "finite", "guided"), drop, horizon=2.0, patient=True)
+        # the springs push it off: v(t) = −δ_s cos ωt + (1 − cos ωt) δ_s meets 0 where cos ωt = ½
+        assert found.t_flight == pytest.approx(math.pi / 3 / 50.0, rel=1e-10)
+        assert found.theta_max == 0.0
+
+    def test_comes_to_the_rigid_base_as_springs_stiffen(self, reference):
+        push = pulse("sine", name="sine", amplitude=0.5 * G, period=1.0, dt=0.01, duration=1.0)
+        rigid = reference(PIER, RigidBase(), push)
+        springs = reference(PIER, ElasticBase(3200.0, 0.0, "finite", "guided"), push, horizon=5.0)
+        assert rigid.theta_max / PIER.alpha == pytest.approx(0.401675, abs=1e-6)
+        assert springs.theta_max == pytest.approx(rigid.theta_max, rel=1e-4)
+
+    @pytest.mark.parametrize("e", [0.0, 0.5, 0.9])
+    def test_agrees_with_the_other_reference_on_many_impacts_on_a_rigid_base(self, reference, e):
+        """Also where a block that an impact has stopped is lifted again at once."""
+        motion = Motion("noise", 0.01, broadband(np.random.default_rng(4), 0.01, 1500, 3.0 * G * PIER.alpha))
+        found, other = reference(PIER, RigidBase(e), motion), reference_solver.reference(PIER, RigidBase(e), motion)
+        assert found.impacts >= 10
+        assert other.theta_max == pytest.approx(found.theta_max, rel=1e-8)
+
+    def test_is_the_mirror_image_of_itself(self, reference):
+        base = YieldingBase(40.0, 0.1, "finite", "guided", eta=1.5, n=3.5)
+        one, other = (reference(PIER, base, replace(SINE, horizontal=s * SINE.horizontal)) for s in (1, -1))
+        assert one.theta_max == pytest.approx(other.theta_max, rel=1e-12)
+        assert (one.impacts, one.up_left) == (other.impacts, pytest.approx(other.up_right, rel=1e-9))
+
+    def test_stops_only_when_nothing_follows(self, outcomes, reference, tmp_path):
+        cache = outcomes.Cache(tmp_path, 0)
+        for case in outcomes.cases(25):
+            run, fine, _ = cache.get(case)
+            if fine.decided and not isinstance(run.base, RigidBase):
+                patient = reference(run.pier, run.base, run.motion, 1e-12, patient=True, horizon=100.0)
+                assert patient.theta_max <= fine.theta_max + 1e-7 * run.pier.alpha
+
+    def test_topples_a_pier_whose_loading_springs_are_too_soft(self, reference):
+        """Loading Bouc–Wen springs are r = 1 − η⁻ⁿ times as stiff: unstable below β² = (9) (1 + r)/(2r), here 19.08."""
+        push = pulse("half-sine", name="push", amplitude=1e-6 * G, period=0.5, dt=0.01, duration=0.25)
+        assert reference(PIER, YieldingBase(18.5, 0.1, eta=1.05, n=1.0), push).status == "overturned"
+        assert reference(PIER, YieldingBase(19.6, 0.1, eta=1.05, n=1.0), push).status == "stands"

@@ -1,0 +1,93 @@
+"""The core as the plain Python it is written in gives what its compiled form gives."""
+
+import json
+import math
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from core_samples import FIG5, broadband, pulse
+
+from rockbatch.core.two_springs import static_state
+from rockbatch.core.types import (
+    IMPACT_LEFT,
+    IMPACT_RIGHT,
+    LIFT_OFF,
+    REST,
+    SAMPLE,
+    SEPARATION_LEFT,
+    SEPARATION_RIGHT,
+    SPRING_LEFT,
+    SPRING_RIGHT,
+)
+from rockbatch.motions.motion import Motion
+from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase
+from rockbatch.simulation import Run, written_run
+
+DT = 0.02
+HELD = -2  # column of a history on springs
+SINE = pulse("sine", 0.5, dt=DT, end=1.6)
+SHAKEN = Motion("shaken", DT, SINE.horizontal, broadband(np.random.default_rng(3), DT, SINE.npts, 12.0))
+STOCKY = Motion("stocky", DT, 20.55 * np.sin(2 * math.pi * 1.18 * DT * np.arange(60)))
+CASES = {
+    "rigid": (FIG5, RigidBase(restitution=0.4), pulse("sine", 0.4, 0.5, dt=DT, end=3.0)),
+    "bouc-wen": (FIG5, YieldingBase(50.0, 0.1, eta=2.2), SINE),
+    "epp-finite-guided": (FIG5, YieldingBase(40.0, 0.3, "finite", "guided", eta=1.5, spring="epp"), SHAKEN),
+    "elastic-epsilon0-guided": (Pier(0.74, 1.0), ElasticBase(7.2, 0.0, flight="guided"), STOCKY),
+}
+MUST_HAPPEN = {
+    "rigid": {LIFT_OFF, IMPACT_LEFT, IMPACT_RIGHT, REST},
+    "bouc-wen": {SEPARATION_LEFT, SEPARATION_RIGHT, IMPACT_LEFT, IMPACT_RIGHT, SPRING_LEFT, SPRING_RIGHT},
+    "epp-finite-guided": {SEPARATION_LEFT, SEPARATION_RIGHT, IMPACT_LEFT, IMPACT_RIGHT, SPRING_LEFT, SPRING_RIGHT},
+    "elastic-epsilon0-guided": {SEPARATION_LEFT, SEPARATION_RIGHT, IMPACT_RIGHT},
+}
+
+
+def results() -> dict[str, Any]:
+    """What the core returns, the kinds of events and the last row of the history of every case; whether compiled."""
+    found: dict[str, Any] = {"compiled": hasattr(static_state, "py_func")}
+    for name, (pier, base, motion) in CASES.items():
+        run, history = written_run(Run(pier, base, motion), 8, 0.0, 5000)
+        rows = history[: run.rows]
+        found[name] = {
+            "run": run._asdict(),
+            "events": [int(kind) for kind in rows[:, -1] if kind > SAMPLE],
+            "end": list(rows[-1]),
+            "held": not isinstance(base, RigidBase) and bool(rows[:, HELD].any()),
+        }
+    return found
+
+
+@pytest.fixture(scope="module")
+def interpreted() -> dict[str, Any]:
+    """``results`` of a process in which Numba compiles nothing."""
+    done = subprocess.run(
+        [sys.executable, "-c", "import json, test_without_jit as t; print(json.dumps(t.results()))"],
+        cwd=Path(__file__).parent,
+        env={**os.environ, "NUMBA_DISABLE_JIT": "1", "PYTHONPATH": os.pathsep.join(sys.path)},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    return json.loads(done.stdout)
+
+
+@pytest.fixture(scope="module")
+def usual() -> dict[str, Any]:
+    return results()
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_a_run_without_the_compiler_gives_the_same_results(name, interpreted, usual):
+    """Equal to the bit on x86-64; 1e-9 leaves room for compilers that fuse a product and a sum."""
+    assert not interpreted["compiled"]
+    plain, found = interpreted[name], usual[name]
+    assert found["events"] == plain["events"]
+    assert MUST_HAPPEN[name] <= set(plain["events"])
+    assert found["held"] == plain["held"] == (name == "elastic-epsilon0-guided")
+    assert found["end"] == pytest.approx(plain["end"], rel=1e-9, abs=1e-12)
+    assert found["run"] == pytest.approx(plain["run"], rel=1e-9, abs=1e-12, nan_ok=True)
