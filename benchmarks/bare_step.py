@@ -4,23 +4,27 @@
 
 Bare is one step of Runge–Kutta 4 and the rates at its end, of one run in full contact, in a compiled loop that does
 nothing else: no events, no extremes, one run at a time. Whole runs are those of a study: tests for events, their
-location, landings and separations, peaks and plastic work.
+location, landings and separations, peaks and plastic work. On the rigid base bare is a step of a block about one corner.
 """
 
 import argparse
 import math
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numba
 import numpy as np
-from interleaved import interleaved, machine, ratio
+from interleaved import Times, interleaved, machine, ratio
 from tower import QUIET_S, TOWER, foundations, record
 
 from rockbatch.core.equations import rates, step
-from rockbatch.core.lanes import LANES, one_pass
+from rockbatch.core.lanes import table
+from rockbatch.core.one_pass import one_pass
+from rockbatch.core.recording import LINE, ROW
+from rockbatch.core.records import LANES
+from rockbatch.core.rigid import runs as rigid
+from rockbatch.core.rigid.equations import acceleration, rocking_step
 from rockbatch.core.two_springs import (
-    CELLS,
-    HISTORY_COLUMNS,
     begin,
     rock_on_springs,
     rock_side_by_side,
@@ -28,12 +32,13 @@ from rockbatch.core.two_springs import (
     spring_run,
     static_state,
 )
-from rockbatch.core.types import BOUC_WEN, SURVIVED, Contact, Ground
+from rockbatch.core.types import BOUC_WEN, RIGHT, SURVIVED, Contact, Ground, Rocking
 from rockbatch.motions import Motion
-from rockbatch.pier import ElasticBase, YieldingBase
-from rockbatch.simulation import ground_of, springs
+from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase
+from rockbatch.simulation import block, ground_of, springs
 
 BARE_STEPS = 200_000
+BARE_ROCKING = 1e-6  # [s]: of a bare step on the rigid base, so that the block stays on its corner
 PASSES = 10_000
 
 
@@ -49,13 +54,25 @@ def bare(m, y, contact, ground, h, steps):
     return y.theta
 
 
+@numba.njit(error_model="numpy")
+def bare_rocking(m, y, ground, h, steps):
+    """The rotation after ``steps`` steps of ``h`` [s] about one corner of a rigid base and nothing else."""
+    k = acceleration(m, y.theta, y.side, ground[0, 0], ground[0, 2])
+    for i in range(steps):
+        row = ground[i % len(ground)]
+        y = rocking_step(m, y, k, Ground(row[0], row[1], row[2], row[3]), h)
+        k = acceleration(m, y.theta, y.side, row[0] + h * row[1], row[2] + h * row[3])
+    return y.theta
+
+
 @numba.njit(error_model="numpy", _nrt=False)
-def passes(table, lines, ground, lanes, count):
+def passes(lanes_table, lines, ground, count):
     """All lanes from the start, ``count`` passes of tiny steps: no sample is reached, and nothing happens."""
-    for i in range(lanes):
-        begin(table, i, i, lines, ground, None, None)
+    lanes = lanes_table[0]
+    for i in range(len(lines)):
+        begin(lanes, i, i, lines, ground, None, None, True)
     for _ in range(count):
-        one_pass(table, lanes, None, None)
+        one_pass(lanes, len(lines), None, None)
 
 
 def of_law(law: str, base: YieldingBase) -> ElasticBase:
@@ -76,7 +93,7 @@ def measure(law: str, motion: Motion, substeps: int, runs: int, repeats: int) ->
     ground, dt = ground_of(motion), float(motion.dt)
     quiet = math.ceil(QUIET_S / dt - 1e-9)
     models = [springs(TOWER, of_law(law, base)) for base in foundations(runs)]
-    lines = np.array([run_line(m, dt, substeps, quiet, 0, len(ground)) for m in models])
+    lines = [run_line(m, dt, substeps, quiet, 0, len(ground)) for m in models]
     stop = np.zeros(1, np.uint8)
     ends = [spring_run(line) for line in rock_side_by_side(None, None, lines, ground, stop)]
     if any(end.status != SURVIVED for end in ends):
@@ -86,7 +103,7 @@ def measure(law: str, motion: Motion, substeps: int, runs: int, repeats: int) ->
     # An event is two rows of a history, a sample one
     vertical = () if motion.vertical is None else motion.vertical
     counted = rock_on_springs(
-        models[runs // 2], motion.horizontal, vertical, dt, substeps, quiet, np.empty((1, HISTORY_COLUMNS)), True
+        models[runs // 2], motion.horizontal, vertical, dt, substeps, quiet, np.recarray(1, ROW), True
     )
     samples = round(counted.t_end / dt) + 1
     events = (counted.rows - samples) // 2
@@ -101,20 +118,48 @@ def measure(law: str, motion: Motion, substeps: int, runs: int, repeats: int) ->
         },
         repeats,
     )
+    return row(law, motion, substeps, times, steps, events / (samples - 1) / substeps)
+
+
+def row(law: str, motion: Motion, substeps: int, times: Mapping[str, Times], steps: int, events: float) -> str:
+    """Line of the table, by the times of whole runs of so many ``steps`` and of the bare ones; ``events`` in each."""
     over = ratio(times["whole"], times["bare"], BARE_STEPS / steps)
     nanoseconds = 1e9 * min(times["bare"]) / BARE_STEPS
     up = "no" if motion.vertical is None else "yes"
-    return f"| {law} | {up} | {substeps} | {over} | {events / (samples - 1) / substeps:.4f} | {nanoseconds:.0f} ns |"
+    return f"| {law} | {up} | {substeps} | {over} | {events:.4f} | {nanoseconds:.0f} ns |"
+
+
+def measure_rigid(motion: Motion, substeps: int, runs: int, repeats: int) -> str:
+    """Line of the table for the rigid base: piers of p = 0.38 … 0.5 rad/s."""
+    ground, dt = ground_of(motion), float(motion.dt)
+    quiet = math.ceil(QUIET_S / dt - 1e-9)
+    piers = [Pier(TOWER.alpha, TOWER.p + 0.12 * i / runs) for i in range(runs)]
+    models = [block(pier, RigidBase()) for pier in piers]
+    lines = [rigid.run_line(m, 0.0, 0.0, dt, substeps, quiet, 0, len(ground)) for m in models]
+    stop = np.zeros(1, np.uint8)
+    ends = rigid.rock_side_by_side(lines, ground, stop)
+    if (ends.status != SURVIVED).any():
+        raise SystemExit("rigid: a run ended early; its steps are no measure")
+    steps = int(np.rint(ends.t_end / dt * substeps).sum())
+    alone = (models[0], Rocking(0.1 * TOWER.alpha, 0.0, RIGHT), ground, BARE_ROCKING, BARE_STEPS)
+    times = interleaved(
+        {
+            "whole": lambda: rigid.rock_side_by_side(lines, ground, stop),
+            "bare": lambda: bare_rocking(*alone),
+        },
+        repeats,
+    )
+    return row("rigid", motion, substeps, times, steps, (ends.impacts + ends.lift_offs).sum() / steps)
 
 
 def pass_alone(motion: Motion, repeats: int) -> str:
     """What the lanes' pass takes without any event or sample, a lane, over the bare step."""
     ground, dt = ground_of(motion), float(motion.dt)
     models = [springs(TOWER, of_law("bouc-wen", base)) for base in foundations(LANES)]
-    lines = np.array([run_line(m, dt, 100 * PASSES, 0, 0, len(ground)) for m in models])
+    lines = np.array([run_line(m, dt, 100 * PASSES, 0, 0, len(ground)) for m in models], LINE)
     alone = (models[0], static_state(models[0]), Contact(1.0, 1.0, 1.0, 1.0, 0.0), ground, dt, BARE_STEPS)
     tasks = {
-        "pass": lambda: passes(np.zeros(CELLS), lines, ground, LANES, PASSES),
+        "pass": lambda: passes(table()[0], lines, ground, PASSES),
         "bare": lambda: bare(*alone),
     }
     times = interleaved(tasks, repeats)
@@ -133,6 +178,11 @@ def main(repeats: int = 7, runs: int = 64, seconds: float | None = None) -> list
         *(
             measure(law, moved, substeps, runs, repeats)
             for law in ("bouc-wen", "elastic", "epp")
+            for moved in (motion, with_vertical(motion))
+            for substeps in (1, 2, 4)
+        ),
+        *(
+            measure_rigid(moved, substeps, runs, repeats)
             for moved in (motion, with_vertical(motion))
             for substeps in (1, 2, 4)
         ),

@@ -15,10 +15,9 @@ import numpy as np
 
 from rockbatch.core.equations import rates
 from rockbatch.core.events import at_rest, signals
-from rockbatch.core.lanes import watch
 from rockbatch.core.transitions import Supports, handle
 from rockbatch.core.two_springs import static_state
-from rockbatch.core.types import BOUC_WEN, Contact, Springs, State
+from rockbatch.core.types import BOUC_WEN, ELASTIC, Contact, Springs, State
 from rockbatch.motions import Motion
 from rockbatch.pier import ElasticBase, Pier
 from rockbatch.simulation import ground_of, springs
@@ -31,6 +30,28 @@ Solve = Callable[[], tuple[str, float]]
 
 Stretch = Callable[[float, State, Contact, Supports], tuple[float, State, int | None, float]]
 """From an event, or the start, to the next: its time [s], state and number, None at the end; and the greatest |θ|."""
+
+
+def watched(law: float, contact: Contact, supports: Supports, rest: float) -> tuple[float, ...]:
+    """The four signals of ``events.signals``, linear in z and in a pivot's position or velocity, for either pivot.
+
+    Contact: on its spring −z, else the gap to the support: (of z, of position, constant). Law: the velocity up or down,
+    or what is left until yield: (of z, of velocity, constant).
+    """
+
+    def pivot(on_spring: float, yields: float, support: float) -> tuple[float, ...]:
+        if on_spring == 0.0:
+            return 0.0, 1.0, -support, 0.0, 0.0, 1.0
+        if law == ELASTIC:
+            return -1.0, 0.0, 0.0, 0.0, 0.0, 1.0
+        if yields != 0.0:
+            return -1.0, 0.0, 0.0, 0.0, -1.0, -rest
+        if law == BOUC_WEN:
+            return -1.0, 0.0, 0.0, 0.0, 1.0, -rest
+        return -1.0, 0.0, 0.0, 1.0, 0.0, 1.0
+
+    left = pivot(contact.left, contact.left_yields, supports.left)
+    return left + pivot(contact.right, contact.right_yields, supports.right)
 
 
 class Rocking:
@@ -218,7 +239,7 @@ class Taylor:
         )
 
     def _model(self, hy: Any, m: Springs) -> tuple[list[Any], list[Any]]:
-        """Right-hand side (``equations.rates``) and signals (``lanes.watch``) as expressions."""
+        """Right-hand side (``equations.rates``) and signals (:func:`watched`) as expressions."""
         v, theta, v_rate, omega, z_left, z_right = state = hy.make_vars("v", "theta", "v_rate", "omega", "zl", "zr")
         on_left, on_right, yields_left, yields_right = (hy.par[self.CONTACT + i] for i in range(4))
         x = hy.time - hy.par[self.GROUND + 4]
@@ -255,9 +276,9 @@ class Taylor:
         integrator.state[:] = y
         pars = integrator.pars
         pars[self.CONTACT : self.WATCH] = contact[:4]
-        watched = np.nan_to_num(watch(rocking.m.law, contact, supports, rocking.rest))
-        watched[[5, 11]] = np.abs(watched[[5, 11]])  # a velocity that starts from zero is on the right side of it
-        pars[self.WATCH : self.GROUND] = watched
+        found = np.array(watched(rocking.m.law, contact, supports, rocking.rest))
+        found[[5, 11]] = np.abs(found[[5, 11]])  # a velocity that starts from zero is on the right side of it
+        pars[self.WATCH : self.GROUND] = found
         for i in range(int(t / rocking.dt), rocking.samples):
             pars[self.GROUND : self.GROUND + 4], pars[self.GROUND + 4] = rocking.ground[i], i * rocking.dt
             ended = int(integrator.propagate_until((i + 1) * rocking.dt)[0])

@@ -75,9 +75,9 @@ def test_another_solver_finds_the_same_peak(benchmark, package, solver, toleranc
     assert theta_max == pytest.approx(outcome.theta_max, rel=0, abs=(tolerance + error) * pier.alpha)
 
 
-def test_the_bare_step_is_compared_for_every_law_step_and_component(benchmark):
+def test_the_bare_step_is_compared_for_every_law_the_rigid_base_every_step_and_component(benchmark):
     rows = cells(benchmark("bare_step").main(repeats=1, runs=2, seconds=3.0))
-    assert len({tuple(row[:3]) for row in rows}) == len(rows) == 3 * 2 * 3
+    assert len({tuple(row[:3]) for row in rows}) == len(rows) == (3 + 1) * 2 * 3
     assert all(float(row[3]) > 0 for row in rows)
     assert any(float(row[5]) > 0 for row in rows)  # events per step: something happens within 3 s
 

@@ -8,53 +8,32 @@ import math
 from rockbatch.core.equations import geometry
 from rockbatch.core.free_vibration import DECIDED, LEANS, OPEN, outlook_on_springs, rocking_period, summit
 from rockbatch.core.kernel import kernel
-from rockbatch.core.lanes import GROUND, LANES, NOW, PEAK, PEAK_TIME, SAMPLE_TIME, model_of, put_all, rows, state_of
+from rockbatch.core.lanes import LOST, contact_of, model_of, state, supports_of
 from rockbatch.core.outcome import GROWTH
-from rockbatch.core.search import contact_of, supports_of
-from rockbatch.core.types import BOUC_WEN, GROWING, RESTLESS, SURVIVED, UNDECIDED
-
-RUNNING = -1  # of a status: the run goes on
-
-DT = rows(1)
-NPTS = rows(1)
-ALPHA = rows(1)
-SAMPLE_NUMBER = rows(1)  # of the last sample
-SAMPLES = rows(1)  # of record and quiet time
-EARLIEST = rows(1)  # sample from which on residuals may be read
-PATIENCE = rows(1)  # samples that a pier is waited for at most
-LONGEST = rows(1)  # sample at which waiting ends
-READ_WAIT = rows(1)  # samples between two readings; 0 where there is nothing to read twice
-DECIDED_AT = rows(1)  # sample from which on nothing can exceed the peak, −1 before it
-READ = rows(3)  # sample of the first reading, −1 before it; unstressed positions of both supports then [m]
-LAST_READ = rows(3)  # likewise, of the last one
-DRIFT = rows(2)  # of both supports from the first reading to the second [m/s], NaN before it
-LAST_DRIFT = rows(2)  # likewise, between the last two, 0 before them
-MOVED = rows(1)  # time at which a pivot last left the ground or landed [s]
-MIDWAY = rows(2)  # greatest |θ|, and |tilt| of the base, when half of the waiting is over [rad]
+from rockbatch.core.types import BOUC_WEN, GROWING, RESTLESS, RUNNING, SURVIVED, UNDECIDED
 
 
 @kernel
-def expect(table, i, quiet_samples, patience, read_after, read_wait):
-    """Set what lane ``i`` waits for after its record; see ``two_springs.run_line``. NPTS is known."""
-    last = table[NPTS + i] - 1.0
-    table[SAMPLES + i] = last + quiet_samples
-    table[EARLIEST + i] = last + read_after
-    table[PATIENCE + i] = patience
-    table[READ_WAIT + i] = read_wait
-    table[LONGEST + i] = max(table[SAMPLES + i], table[EARLIEST + i] + read_wait) + patience
-    table[DECIDED_AT + i] = -1.0
-    put_all(table, READ + i, (-1.0, math.nan, math.nan))
-    put_all(table, DRIFT + i, (math.nan, math.nan))
-    put_all(table, LAST_DRIFT + i, (0.0, 0.0))
-    table[MOVED + i] = 0.0
-    put_all(table, MIDWAY + i, (math.inf, math.inf))
+def expect(lanes, i, quiet_samples, patience, read_after, read_wait):
+    """Set what lane ``i`` waits for after its record; see ``recording.Line``. Its motion is known."""
+    waiting, last = lanes.waiting, lanes.motion.npts[i] - 1.0
+    waiting.samples[i] = last + quiet_samples
+    waiting.earliest[i] = last + read_after
+    waiting.patience[i] = patience
+    waiting.read_wait[i] = read_wait
+    waiting.longest[i] = max(waiting.samples[i], waiting.earliest[i] + read_wait) + patience
+    waiting.decided_at[i] = LOST
+    waiting.read[i], waiting.read_left[i], waiting.read_right[i] = LOST, math.nan, math.nan
+    waiting.drift_left[i], waiting.drift_right[i] = math.nan, math.nan
+    waiting.last_drift_left[i], waiting.last_drift_right[i] = 0.0, 0.0
+    waiting.midway[i] = waiting.midway_tilt[i] = math.inf
 
 
 @kernel
-def peak_stands(table, i):
+def peak_stands(lanes, i):
     """Whether it has been decided that nothing can exceed the peak, and nothing has."""
-    decided_at = table[DECIDED_AT + i]
-    return decided_at >= 0.0 and table[PEAK_TIME + i] <= decided_at * table[DT + i]
+    decided_at = lanes.waiting.decided_at[i]
+    return decided_at >= 0.0 and lanes.extremes.peak_time[i] <= decided_at * lanes.clock.dt[i]
 
 
 @kernel
@@ -63,9 +42,9 @@ def _unstressed(m, position, z, on_spring, waiting):
 
 
 @kernel
-def base_of(table, i, m):
+def base_of(lanes, i, m):
     """Unstressed positions [m] of both supports."""
-    y, contact, supports = state_of(table, NOW + i), contact_of(table, i), supports_of(table, i)
+    y, contact, supports = state(lanes.now, i), contact_of(lanes, i), supports_of(lanes, i)
     at = geometry(m, y.theta)
     left = _unstressed(m, y.v + at.lift_left, y.z_left, contact.left, supports.left)
     right = _unstressed(m, y.v + at.lift_right, y.z_right, contact.right, supports.right)
@@ -73,92 +52,105 @@ def base_of(table, i, m):
 
 
 @kernel
-def _tilt(table, i, m):
+def _tilt(lanes, i, m):
     """|Tilt| of the base [rad]."""
-    left, right = base_of(table, i, m)
+    left, right = base_of(lanes, i, m)
     return 0.5 * abs(left - right) / m.half_width
 
 
 @kernel
-def _outlook(table, i, m):
+def _outlook(lanes, i, m):
     """OPEN, DECIDED or LEANS (see ``free_vibration``); OPEN while the ground moves."""
-    if not ground_rests(table, i):
+    if not ground_rests(lanes, i):
         return OPEN
-    contact = contact_of(table, i)
-    left, right = base_of(table, i, m)
-    alone = table[SAMPLE_TIME + i] - max(table[MOVED + i], table[NPTS + i] * table[DT + i])
+    waiting, dt, contact = lanes.waiting, lanes.clock.dt[i], contact_of(lanes, i)
+    left, right = base_of(lanes, i, m)
+    alone = lanes.clock.sample_time[i] - max(lanes.counts.moved[i], lanes.motion.npts[i] * dt)
     calm = contact.left != 0.0 and contact.right != 0.0 and alone >= rocking_period(m)
-    ahead = 0.5 * table[PATIENCE + i] * table[DT + i]
-    last_left, last_right = ahead * table[LAST_DRIFT + i], ahead * table[LAST_DRIFT + LANES + i]
+    ahead = 0.5 * waiting.patience[i] * dt
+    last_left, last_right = ahead * waiting.last_drift_left[i], ahead * waiting.last_drift_right[i]
     first_left, first_right = last_left, last_right
-    if not math.isnan(table[DRIFT + i]):
-        first_left, first_right = ahead * table[DRIFT + i], ahead * table[DRIFT + LANES + i]
+    if not math.isnan(waiting.drift_left[i]):
+        first_left, first_right = ahead * waiting.drift_left[i], ahead * waiting.drift_right[i]
     last, first = (last_left - last_right) / m.half_width, (first_left - first_right) / m.half_width
     to_right, to_left = max(0.0, first, last), max(0.0, -first, -last)
     sinking = max(0.0, -(last_left + last_right), -(first_left + first_right))
-    return outlook_on_springs(
-        m, state_of(table, NOW + i), contact, left, right, table[PEAK + i], calm, to_right, to_left, sinking
-    )
+    peak = lanes.extremes.peak[i]
+    return outlook_on_springs(m, state(lanes.now, i), contact, left, right, peak, calm, to_right, to_left, sinking)
 
 
 @kernel
-def ground_rests(table, i):
+def ground_rests(lanes, i):
     """Whether the ground is at rest from the last sample on, for good."""
-    over = table[SAMPLE_NUMBER + i] >= table[NPTS + i] - 1.0
-    return over and table[GROUND + i] == 0.0 and table[GROUND + 2 * LANES + i] == 0.0
+    over = lanes.clock.sample[i] >= lanes.motion.npts[i] - 1.0
+    return over and lanes.ground.horizontal[i] == 0.0 and lanes.ground.vertical[i] == 0.0
 
 
 @kernel
-def _read_base(table, i, m):
+def _read_base(lanes, i, m):
     """Read the residuals: the positions of the supports, and how they have drifted since the last reading."""
-    sample, wait = table[SAMPLE_NUMBER + i], table[READ_WAIT + i]
-    left, right = base_of(table, i, m)
-    if table[READ + i] < 0.0:
-        put_all(table, READ + i, (sample, left, right))
+    waiting, sample = lanes.waiting, lanes.clock.sample[i]
+    left, right = base_of(lanes, i, m)
+    if waiting.read[i] < 0.0:
+        waiting.read[i], waiting.read_left[i], waiting.read_right[i] = sample, left, right
     else:
-        seconds = wait * table[DT + i]
-        last_left, last_right = table[LAST_READ + LANES + i], table[LAST_READ + 2 * LANES + i]
-        drift = ((left - last_left) / seconds, (right - last_right) / seconds)
-        put_all(table, LAST_DRIFT + i, drift)
-        if table[LAST_READ + i] == table[READ + i]:
-            put_all(table, DRIFT + i, drift)
-    put_all(table, LAST_READ + i, (sample, left, right))
+        seconds = waiting.read_wait[i] * lanes.clock.dt[i]
+        drift_left = (left - waiting.last_left[i]) / seconds
+        drift_right = (right - waiting.last_right[i]) / seconds
+        waiting.last_drift_left[i], waiting.last_drift_right[i] = drift_left, drift_right
+        if waiting.last_read[i] == waiting.read[i]:
+            waiting.drift_left[i], waiting.drift_right[i] = drift_left, drift_right
+    waiting.last_read[i], waiting.last_left[i], waiting.last_right[i] = sample, left, right
 
 
 @kernel
-def done(table, i, exponent, finite):
+def done(lanes, i, exponent, finite):
     """How the run in lane ``i`` ended if it is over at this sample, RUNNING where it goes on; residuals are read."""
-    sample, samples, longest = table[SAMPLE_NUMBER + i], table[SAMPLES + i], table[LONGEST + i]
-    if sample < table[EARLIEST + i]:
+    waiting, sample = lanes.waiting, lanes.clock.sample[i]
+    samples, longest = waiting.samples[i], waiting.longest[i]
+    if sample < waiting.earliest[i]:
         return RUNNING
-    wait, decided = table[READ_WAIT + i], table[DECIDED_AT + i] >= 0.0
+    wait, decided = waiting.read_wait[i], waiting.decided_at[i] >= 0.0
     if decided and wait == 0.0:  # nothing can change any more
         return RUNNING if sample < samples else SURVIVED
-    m = model_of(table, i, exponent, finite)
+    m = model_of(lanes, i, exponent, finite)
     if decided:
-        if sample == table[LAST_READ + i] + wait:
-            _read_base(table, i, m)
-        if sample < max(samples, table[READ + i] + wait):
+        if sample == waiting.last_read[i] + wait:
+            _read_base(lanes, i, m)
+        if sample < max(samples, waiting.read[i] + wait):
             return RUNNING
-    outlook = _outlook(table, i, m)
+    outlook = _outlook(lanes, i, m)
     if outlook == DECIDED and not decided:
-        table[DECIDED_AT + i] = sample
-        _read_base(table, i, m)
-    if outlook == DECIDED and sample >= max(samples, table[READ + i] + wait):
+        waiting.decided_at[i] = sample
+        _read_base(lanes, i, m)
+    if outlook == DECIDED and sample >= max(samples, waiting.read[i] + wait):
         return SURVIVED
     if sample == (samples + longest) // 2:
-        put_all(table, MIDWAY + i, (table[PEAK + i], _tilt(table, i, m)))
-    return RUNNING if sample < longest else _given_up(table, i, m, outlook)
+        waiting.midway[i], waiting.midway_tilt[i] = lanes.extremes.peak[i], _tilt(lanes, i, m)
+    return RUNNING if sample < longest else _given_up(lanes, i, m, outlook)
 
 
 @kernel
-def _given_up(table, i, m, outlook):
+def next_due(lanes, i):
+    """Number of the next sample at which the run may be over, or something has to be read."""
+    waiting, sample = lanes.waiting, lanes.clock.sample[i]
+    if sample < waiting.earliest[i]:
+        return waiting.earliest[i]
+    if waiting.decided_at[i] < 0.0:
+        return sample + 1.0
+    if waiting.read_wait[i] == 0.0:
+        return max(waiting.samples[i], sample + 1.0)
+    return sample + 1.0
+
+
+@kernel
+def _given_up(lanes, i, m, outlook):
     """How a run ends that nothing has decided for so long; one that is not waited for is cut off as it is."""
-    if table[PATIENCE + i] == 0.0:
+    if lanes.waiting.patience[i] == 0.0:
         return SURVIVED
-    if outlook == LEANS or abs(table[NOW + LANES + i]) >= summit(m):
+    if outlook == LEANS or abs(lanes.now.theta[i]) >= summit(m):
         return UNDECIDED
-    least = GROWTH * table[ALPHA + i]
-    turned = table[PEAK + i] > table[MIDWAY + i] + least
-    tilted = _tilt(table, i, m) > table[MIDWAY + LANES + i] + least
+    least = GROWTH * lanes.motion.alpha[i]
+    turned = lanes.extremes.peak[i] > lanes.waiting.midway[i] + least
+    tilted = _tilt(lanes, i, m) > lanes.waiting.midway_tilt[i] + least
     return GROWING if m.law == BOUC_WEN and turned and tilted else RESTLESS

@@ -1,9 +1,8 @@
 """Equations of motion of the pier on two springs, once for all contacts and both kinematics (THEORY.md)."""
 
-import math
-
 from rockbatch.core.kernel import inlined, kernel
-from rockbatch.core.springs import within_yield, z_rate
+from rockbatch.core.laws import within_yield, z_rate
+from rockbatch.core.trigonometry import sine_and_cosine
 from rockbatch.core.types import LEFT, Contact, Geometry, State
 
 
@@ -12,7 +11,7 @@ def geometry(m, theta):
     """Pivots and levers at rotation ``theta`` (model: paper, eqs. 3–7; finite: THEORY.md)."""
     b, h = m.half_width, m.height
     if m.finite is not None:
-        s, c = math.sin(theta), math.cos(theta)
+        s, c = sine_and_cosine(theta)
         drop = h * s * s / (1.0 + c)  # h (1 − cos θ), without the loss of digits
         arm_left, arm_right = b * c + h * s, -b * c + h * s
         return Geometry(
@@ -108,7 +107,7 @@ def step(m, y, k1, contact, ground, h):
         ground.horizontal + h * ground.horizontal_slope,
         ground.vertical + h * ground.vertical_slope,
     )
-    sixth = h / 6.0
+    sixth = h * (1.0 / 6.0)
     return State(
         y.v + sixth * (k1.v + 2.0 * (k2.v + k3.v) + k4.v),
         y.theta + sixth * (k1.theta + 2.0 * (k2.theta + k3.theta) + k4.theta),

@@ -6,8 +6,9 @@ yield). Free: the gap to the waiting support (landing). Held: the two conditions
 
 from rockbatch.core.equations import geometry, holding, pivot_acceleration, touching, without
 from rockbatch.core.kernel import inlined, kernel
+from rockbatch.core.laws import branch_when_pressed, kink
 from rockbatch.core.roots import falls
-from rockbatch.core.types import BOUC_WEN, ELASTIC, LEFT, RIGHT, Signals
+from rockbatch.core.types import LEFT, RIGHT, Signals
 
 NO_ACCELERATION = 1e-12
 """Of g: what the balance of a pier at rest leaves as rounding; it must not decide which way a pivot goes."""
@@ -47,13 +48,8 @@ def _on_spring(m, z, z_rate, yields, velocity, acceleration, rest):
         z_rate = _velocity(velocity, acceleration, rest) * m.stiffness
     contact = -z
     contact_slope = -z_rate
-    if m.law == ELASTIC:
-        return contact, contact_slope, 1.0, 0.0
-    if yields != 0.0:  # until the velocity turns upwards
-        return contact, contact_slope, -velocity, -acceleration
-    if m.law == BOUC_WEN:  # until it turns downwards
-        return contact, contact_slope, velocity, acceleration
-    return contact, contact_slope, 1.0 + z, z_rate
+    law, law_slope = kink(m.law, yields, z, z_rate, velocity, acceleration)
+    return contact, contact_slope, law, law_slope
 
 
 @kernel
@@ -112,7 +108,7 @@ def settle(m, y, contact, side, horizontal, vertical):
     Contact equations that press it down keep it there; else free ones that lift it let it go; else neither has a
     solution, and it is held (Filippov's sliding mode).
     """
-    yields = 1.0 if m.law == BOUC_WEN else 0.0
+    yields = branch_when_pressed(m.law)
     on = touching(contact, side, yields)
     if pivot_acceleration(m, y, on, side, horizontal, vertical) < 0.0:
         return on

@@ -8,7 +8,7 @@ import math
 
 from rockbatch.core.equations import geometry
 from rockbatch.core.kernel import kernel
-from rockbatch.core.springs import number, power
+from rockbatch.core.laws import give, number
 from rockbatch.core.types import BOUC_WEN, ELASTIC
 
 PARTS = 24
@@ -92,10 +92,7 @@ def _climb(m, lean, target):
     dx = (capacity - x) / PARTS
     for i in range(PARTS):
         middle = x + (i + 0.5) * dx
-        give = 1.0
-        if m.law == BOUC_WEN:
-            give = 1.0 / (1.0 - power(min(max(static_force * (1.0 + middle), 0.0), 1.0 - 1e-12), m.exponent))
-        turn = 0.5 * deflection * dx * (1.0 + give) / b
+        turn = 0.5 * deflection * dx * (1.0 + give(m.law, static_force * (1.0 + middle), m.exponent)) / b
         part = min(turn, goal - travel)
         middle = x + (i + 0.5 * part / turn) * dx
         moment = g * (b * middle - _weight_moment(m, travel + 0.5 * part))

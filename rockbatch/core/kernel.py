@@ -18,8 +18,8 @@ def core_digest(folder: Path = _CORE) -> str:
     calls, it would go on with the old physics. The cache folder therefore bears this digest.
     """
     digest = hashlib.sha256(numba.__version__.encode())
-    for source in sorted(folder.glob("*.py")):
-        digest.update(source.name.encode() + b"\0" + source.read_bytes() + b"\0")
+    for source in sorted(folder.rglob("*.py")):
+        digest.update(source.relative_to(folder).as_posix().encode() + b"\0" + source.read_bytes() + b"\0")
     return digest.hexdigest()[:20]
 
 
@@ -42,6 +42,7 @@ CACHE_FOLDER = _usable_folder()
 _OPTIONS: dict[str, Any] = {
     "error_model": "numpy",  # a division by zero gives inf, as in every array library, and costs no branch
     "nogil": True,  # runs go side by side in threads
+    "no_cfunc_wrapper": True,  # none is handed to a library in C
     "_nrt": False,  # kernels allocate nothing, and need not count who else holds their arrays
 }
 

@@ -1,242 +1,258 @@
-"""Runs side by side: a table of numbers with one column, a lane, for each run; and one pass over all of them.
+"""A lane: all that a run on springs is while it is under way, by names; and a table of them, side by side.
 
-The pass takes every lane a step further with the scalar functions of the core, and says in which lanes something may
-have happened on the way. The compiler turns its loop into vector instructions, several lanes at once, because all that
-it touches lies in one array at constant distances, nothing in it branches and nothing sums over lanes. Each lane has
-its own pier, motion, step and time, and its arithmetic does not see its neighbours: a run comes to the same bits in any
-company.
+The table is one record. Each of its fields holds one number for each lane, so that what a loop over lanes touches lies
+side by side and at constant distances: the compiler can take several lanes with one instruction.
 """
 
-from rockbatch.core.equations import geometry, rates, step
+from typing import NamedTuple
+
+import numpy as np
+
 from rockbatch.core.kernel import inlined, kernel
-from rockbatch.core.outcome import ON_ITS_SIDE
-from rockbatch.core.roots import excess
-from rockbatch.core.types import BOUC_WEN, ELASTIC, Contact, Ground, Springs, State
+from rockbatch.core.loading import Loading
+from rockbatch.core.records import LANES
+from rockbatch.core.transitions import Supports
+from rockbatch.core.types import Contact, Ground, Signals, Springs, State
 
-LANES = 16
+# What may be new in a lane after a pass
+CALM = 0  # a step further, and nothing else
+ATTEND = 1  # a step further; the work of a branch or an extreme inside the step is to be looked at
+DUE = 2  # likewise, and at a sample at which more is due
+EVENTFUL = 3  # something may have happened: the piece ends in ``now``, but has not been accepted
+TURNED = 4  # likewise, and what happened first is surely that a spring's velocity turned, too sharply to be corrected
+
+# Verdicts on a piece of a step, besides the numbers of events (``transitions``)
+ACCEPT = -1
+SEARCH = -2
+
+LOST = -1.0  # of a time in a piece or a sample: there is none
 
 
-class Rows:
-    """Hands out rows of the table, as offsets into its cells."""
+class Turns(NamedTuple):
+    """Reversals in the last step that the pass has corrected: when [s] in it, LOST without one, and z then."""
 
-    def __init__(self):
-        self.cells = 0
-
-    def __call__(self, count):
-        first = self.cells
-        self.cells += count * LANES
-        return first
+    left: float
+    right: float
+    z_left: float
+    z_right: float
 
 
-rows = Rows()
+class Clock(NamedTuple):
+    """Where a run is: samples, steps of a sample, and pieces of a step if an event has cut it."""
 
-MODEL = rows(11)  # Springs, with a number for the exponent and nothing for the kinematics
-STEP = rows(1)  # h [s]
-SUBSTEPS = rows(1)  # steps per sample
-GROUND = rows(4)  # at the last sample: horizontal and its slope, vertical and its slope
-SAMPLE_TIME = rows(1)  # of the last sample [s]
-CONTACT = rows(4)  # Contact without ``held``
-WATCH = rows(12)  # coefficients of the signals, see :func:`watch`
-WATCHED = rows(1)  # above 0 where the lane shall be looked at whatever the signals say
+    dt: float  # sampling interval [s]
+    step: float  # h [s]
+    substeps: float  # steps per sample
+    sample: float  # number of the last sample
+    sample_time: float  # of the last sample [s]
+    substep: float  # steps since the last sample
+    start: float  # of the present piece, since the last sample [s]
+    length: float  # of the present piece [s]
+    done: float  # of the step, when the present piece is what an event has left of it [s]
+    began: float  # start and length of the piece that was taken last
+    took: float
+    due: float  # number of the sample at which something else than the next step is due
 
-NOW = rows(6)  # State
-RATES = rows(6)
-SLOPES = rows(4)  # of the signals
-SUBSTEP = rows(1)  # steps since the last sample
-START = rows(1)  # of the next piece of a step, since the last sample [s]
-LENGTH = rows(1)  # of that piece [s]
-PEAK = rows(1)  # greatest |θ| so far [rad]
-PEAK_TIME = rows(1)
-LOWEST = rows(2)  # positions of the pivots on their springs [m]
 
-BEFORE = rows(6)  # State before the pass
-BEFORE_RATES = rows(6)
-NEWS = rows(1)  # what the pass has to say
+class Extremes(NamedTuple):
+    """What has been reached so far."""
 
-CALM = 0.0  # the lane is a step further
-SAMPLED = 1.0  # likewise, and at a sample
-EVENTFUL = 2.0  # something may have happened: only NOW, RATES and SLOPES have been brought forward
-TURNED = 3.0  # likewise, but what happened first is surely that the velocity of a spring turned
+    peak: float  # greatest |θ| [rad]
+    peak_time: float  # [s]
+    lowest_left: float  # positions of the pivots on their springs [m]
+    lowest_right: float
+    window: float  # of the run, in which it is (``outcome``)
+    next_window: float  # sample with which the next one begins
+    in_window: float  # greatest |θ| at a sample of this one [rad]
+    new: float  # 1: the last piece may hold a new one between its ends
+
+
+class Counts(NamedTuple):
+    """What has happened so far."""
+
+    impacts: float
+    separations: float
+    in_sample: float  # events since sample ``counted``
+    counted: float
+    flight_time: float  # first time of flight [s]; NaN without one
+    impact_time: float  # of the last impact [s]; NaN without one
+    moved: float  # time at which a pivot last left the ground or landed [s]
+
+
+class Motion(NamedTuple):
+    """Where a run comes from, and what is constant in it besides its model."""
+
+    number: float  # of the run
+    first_row: float  # of the motion among the ground's rows
+    npts: float
+    alpha: float  # slenderness [rad]
+    rest: float  # velocity that counts as none [m/s]
+    plastic: float  # unstressed position of both supports at the start [m]
+
+
+class Waiting(NamedTuple):
+    """When a run is over (``ending``)."""
+
+    samples: float  # of record and quiet time
+    earliest: float  # sample from which on residuals may be read
+    patience: float  # samples that a pier is waited for at most
+    longest: float  # sample at which waiting ends
+    read_wait: float  # samples between two readings; 0 where there is nothing to read twice
+    decided_at: float  # sample from which on nothing can exceed the peak, LOST before it
+    read: float  # sample of the first reading, LOST before it
+    read_left: float  # unstressed positions of both supports then [m]
+    read_right: float
+    last_read: float  # likewise, of the last one
+    last_left: float
+    last_right: float
+    drift_left: float  # of both supports from the first reading to the second [m/s], NaN before it
+    drift_right: float
+    last_drift_left: float  # likewise, between the last two, 0 before them
+    last_drift_right: float
+    midway: float  # greatest |θ| when half of the waiting is over [rad]
+    midway_tilt: float  # |tilt| of the base then [rad]
+
+
+def _lanes(tuple_type, without=()):
+    """A record with a field of LANES numbers for each field of ``tuple_type``."""
+    return np.dtype([(name, "f8", LANES) for name in tuple_type._fields if name not in without])
+
+
+_MOMENT = np.dtype([("at", "f8", LANES), ("values", _lanes(Signals)), ("slopes", _lanes(Signals))])
+
+LANE = np.dtype([
+    ("model", _lanes(Springs, without=("finite",))),
+    ("motion", _lanes(Motion)),
+    ("clock", _lanes(Clock)),
+    ("now", _lanes(State)),
+    ("rates", _lanes(State)),
+    ("before", _lanes(State)),  # at the start of the last piece
+    ("before_rates", _lanes(State)),
+    ("contact", _lanes(Contact)),
+    ("supports", _lanes(Supports)),
+    ("loading", _lanes(Loading)),
+    ("turns", _lanes(Turns)),
+    ("ground", _lanes(Ground)),  # at the last sample
+    ("extremes", _lanes(Extremes)),
+    ("counts", _lanes(Counts)),
+    ("waiting", _lanes(Waiting)),
+    ("watched", "f8", LANES),  # above 0 where the piece shall be looked at whatever the pass makes of it
+    ("news", "i8", LANES),  # what the pass has to say
+    ("verdict", "i8", LANES),  # on the piece that is being taken: SEARCH, ACCEPT, or the number of the event at its end
+    ("trial", "i8", LANES),  # how many pieces were tried in a search
+    ("early", _MOMENT),  # latest moment of the piece before the event, [s] since its start
+    ("late", _MOMENT),  # earliest moment after it
+])  # fmt: skip
+
+
+def table():
+    """An empty table of lanes, and the same memory as cells that a lane's number takes every LANES-th of."""
+    made = np.zeros(1, LANE).view(np.recarray)
+    return made, made.view(np.ndarray).view(np.float64)
+
+
+@kernel
+def move(cells, i, j):
+    """What is in lane ``i`` into lane ``j``."""
+    for at in range(0, len(cells), LANES):
+        cells[at + j] = cells[at + i]
 
 
 @inlined
-def model_of(table, i, exponent, finite):
+def model_of(lanes, i, exponent, finite):
     """Springs of lane ``i``, of the types that ``exponent`` and ``finite`` tell (see :class:`Springs`)."""
-    at = MODEL + i
+    m = lanes.model
     return Springs(
-        table[at],
-        table[at + LANES],
-        table[at + 2 * LANES],
-        table[at + 3 * LANES],
-        table[at + 4 * LANES],
-        table[at + 5 * LANES],
-        table[at + 6 * LANES],
-        table[at + 7 * LANES],
-        table[at + 8 * LANES],
-        table[at + 9 * LANES],
-        _typed(exponent, table[at + 10 * LANES]),
-        finite,
-    )
+        m.half_width[i], m.height[i], m.inertia[i], m.gravity[i], m.yield_deflection[i], m.stiffness[i],
+        m.yield_force[i], m.epsilon[i], m.law[i], m.guided[i], _typed(exponent, m.exponent[i]), finite,
+    )  # fmt: skip
 
 
 @inlined
 def _typed(exponent, value):
-    return None if exponent is None else value
+    if isinstance(exponent, int):
+        return int(value)
+    if isinstance(exponent, float):
+        return value
+    return None
 
 
 @inlined
-def state_of(table, at):
-    """The State in lane and rows that begin with cell ``at``."""
-    return State(
-        table[at],
-        table[at + LANES],
-        table[at + 2 * LANES],
-        table[at + 3 * LANES],
-        table[at + 4 * LANES],
-        table[at + 5 * LANES],
+def state(of, i):
+    """The State in lane ``i`` of a record of states, such as ``lanes.now``."""
+    return State(of.v[i], of.theta[i], of.v_rate[i], of.omega[i], of.z_left[i], of.z_right[i])
+
+
+@inlined
+def put_state(of, i, y):
+    of.v[i] = y.v
+    of.theta[i] = y.theta
+    of.v_rate[i] = y.v_rate
+    of.omega[i] = y.omega
+    of.z_left[i] = y.z_left
+    of.z_right[i] = y.z_right
+
+
+@inlined
+def contact_of(lanes, i):
+    at = lanes.contact
+    return Contact(at.left[i], at.right[i], at.left_yields[i], at.right_yields[i], at.held[i])
+
+
+@kernel
+def put_contact(lanes, i, contact, supports):
+    at = lanes.contact
+    at.left[i] = contact.left
+    at.right[i] = contact.right
+    at.left_yields[i] = contact.left_yields
+    at.right_yields[i] = contact.right_yields
+    at.held[i] = contact.held
+    lanes.supports.left[i] = supports.left
+    lanes.supports.right[i] = supports.right
+
+
+@kernel
+def supports_of(lanes, i):
+    return Supports(lanes.supports.left[i], lanes.supports.right[i])
+
+
+@kernel
+def loading_of(lanes, i):
+    at = lanes.loading
+    return Loading(at.left[i], at.z_left[i], at.work_left[i], at.right[i], at.z_right[i], at.work_right[i])
+
+
+@kernel
+def put_loading(lanes, i, loading):
+    at = lanes.loading
+    at.left[i] = loading.left
+    at.z_left[i] = loading.z_left
+    at.work_left[i] = loading.work_left
+    at.right[i] = loading.right
+    at.z_right[i] = loading.z_right
+    at.work_right[i] = loading.work_right
+
+
+@inlined
+def ground_of(lanes, i, x):
+    """Ground at ``x`` [s] after the sample."""
+    at = lanes.ground
+    a_slope, c_slope = at.horizontal_slope[i], at.vertical_slope[i]
+    return Ground(at.horizontal[i] + x * a_slope, a_slope, at.vertical[i] + x * c_slope, c_slope)
+
+
+@kernel
+def signals_in(moment, i):
+    """Values and slopes of the signals at the moment that a search keeps in lane ``i``."""
+    v, s = moment.values, moment.slopes
+    return Signals(v.left[i], v.right[i], v.left_law[i], v.right_law[i]), Signals(
+        s.left[i], s.right[i], s.left_law[i], s.right_law[i]
     )
 
 
-@inlined
-def put_state(table, at, y):
-    table[at] = y.v
-    table[at + LANES] = y.theta
-    table[at + 2 * LANES] = y.v_rate
-    table[at + 3 * LANES] = y.omega
-    table[at + 4 * LANES] = y.z_left
-    table[at + 5 * LANES] = y.z_right
-
-
 @kernel
-def put_all(table, at, values):
-    """Each of ``values`` into a row of its own, from cell ``at``."""
-    for j in range(len(values)):
-        table[at + j * LANES] = values[j]
-
-
-@kernel
-def _watch_pivot(law, on_spring, yields, waiting, rest):
-    if on_spring == 0.0:
-        return 0.0, 1.0, -waiting, 0.0, 0.0, 1.0
-    if law == ELASTIC:
-        return -1.0, 0.0, 0.0, 0.0, 0.0, 1.0
-    if yields != 0.0:
-        return -1.0, 0.0, 0.0, 0.0, -1.0, -rest
-    if law == BOUC_WEN:
-        return -1.0, 0.0, 0.0, 0.0, 1.0, -rest
-    return -1.0, 0.0, 0.0, 1.0, 0.0, 1.0
-
-
-@kernel
-def watch(law, contact, supports, rest):
-    """Coefficients of the four signals (``events.signals``), linear as long as the contacts stay as they are.
-
-    Contact: on its spring −z, else the gap to the support: (of z, of the pivot's position, constant). Law: the pivot's
-    velocity up or down, or what is left until yield: (of z, of the pivot's velocity, constant). Velocities that are but
-    rounding count as negative here: the scalar code knows what to make of them.
-    """
-    left = _watch_pivot(law, contact.left, contact.left_yields, supports.left, rest)
-    right = _watch_pivot(law, contact.right, contact.right_yields, supports.right, rest)
-    return left + right
-
-
-@inlined
-def _dips(f0, d0, f1, d1, h):
-    """Above 0 where a Hermite cubic may fall through zero and rise again between its ends."""
-    return min(min(-d0, d1), excess(d0, d1, h) - min(f0, f1))
-
-
-@inlined
-def _passed_over(table, i, exponent, finite):
-    """Lane ``i`` over its piece of a step."""
-    m = model_of(table, i, exponent, finite)
-    y, k1 = state_of(table, NOW + i), state_of(table, RATES + i)
-    on_left, on_right = table[CONTACT + i], table[CONTACT + LANES + i]
-    contact = Contact(on_left, on_right, table[CONTACT + 2 * LANES + i], table[CONTACT + 3 * LANES + i], 0.0)
-    a0, a_slope = table[GROUND + i], table[GROUND + LANES + i]
-    c0, c_slope = table[GROUND + 2 * LANES + i], table[GROUND + 3 * LANES + i]
-    x, length = table[START + i], table[LENGTH + i]
-    ground = Ground(a0 + x * a_slope, a_slope, c0 + x * c_slope, c_slope)
-    end = step(m, y, k1, contact, ground, length)
-    k_end = rates(m, end, contact, a0 + (x + length) * a_slope, c0 + (x + length) * c_slope)
-
-    # The signals, as far as they tell that nothing can have happened; they were positive at the start of the piece
-    at, at_end = geometry(m, y.theta), geometry(m, end.theta)
-    turning = end.omega * end.omega
-    left, left_end = y.v + at.lift_left, end.v + at_end.lift_left
-    right, right_end = y.v + at.lift_right, end.v + at_end.lift_right
-    left_rate, left_rate_end = y.v_rate + at.arm_left * y.omega, end.v_rate + at_end.arm_left * end.omega
-    right_rate, right_rate_end = y.v_rate + at.arm_right * y.omega, end.v_rate + at_end.arm_right * end.omega
-    left_accel = k_end.v_rate + at_end.arm_left * k_end.omega + at_end.bend_left * turning
-    right_accel = k_end.v_rate + at_end.arm_right * k_end.omega + at_end.bend_right * turning
-
-    w = WATCH + i
-    contact_left = table[w] * end.z_left + table[w + LANES] * left_end + table[w + 2 * LANES]
-    contact_left_slope = table[w] * k_end.z_left + table[w + LANES] * left_rate_end
-    law_left = table[w + 3 * LANES] * end.z_left + table[w + 4 * LANES] * left_rate_end + table[w + 5 * LANES]
-    law_left_slope = table[w + 3 * LANES] * k_end.z_left + table[w + 4 * LANES] * left_accel
-    turns_left = table[w + 4 * LANES] != 0.0
-    w += 6 * LANES
-    turns_right = table[w + 4 * LANES] != 0.0
-    contact_right = table[w] * end.z_right + table[w + LANES] * right_end + table[w + 2 * LANES]
-    contact_right_slope = table[w] * k_end.z_right + table[w + LANES] * right_rate_end
-    law_right = table[w + 3 * LANES] * end.z_right + table[w + 4 * LANES] * right_rate_end + table[w + 5 * LANES]
-    law_right_slope = table[w + 3 * LANES] * k_end.z_right + table[w + 4 * LANES] * right_accel
-
-    # A contact may have ended or begun by the end or, as far as a cubic goes beyond its ends, on the way; a spring's
-    # velocity may have turned by the end, or on the way and back
-    w = WATCH + i
-    before_left = table[w] * y.z_left + table[w + LANES] * left + table[w + 2 * LANES]
-    beyond_left = excess(table[SLOPES + i], contact_left_slope, length)
-    law = table[w + 3 * LANES] * y.z_left + table[w + 4 * LANES] * left_rate + table[w + 5 * LANES]
-    back_left = _dips(law, table[SLOPES + 2 * LANES + i], law_left, law_left_slope, length)
-    w += 6 * LANES
-    before_right = table[w] * y.z_right + table[w + LANES] * right + table[w + 2 * LANES]
-    beyond_right = excess(table[SLOPES + LANES + i], contact_right_slope, length)
-    law = table[w + 3 * LANES] * y.z_right + table[w + 4 * LANES] * right_rate + table[w + 5 * LANES]
-    back_right = _dips(law, table[SLOPES + 3 * LANES + i], law_right, law_right_slope, length)
-    gap = min(min(before_left, contact_left) - beyond_left, min(before_right, contact_right) - beyond_right)
-    back = max(back_left, back_right)
-    # An extreme inside the piece may be a new one
-    peak = table[PEAK + i]
-    tilt, tilt_end = abs(y.theta), abs(end.theta)
-    new_peak = min(-y.omega * end.omega, max(tilt, tilt_end) + excess(y.omega, end.omega, length) - peak)
-    low_left, low_right = table[LOWEST + i], table[LOWEST + LANES + i]
-    least_left = min(left, left_end) - excess(left_rate, left_rate_end, length)
-    least_right = min(right, right_end) - excess(right_rate, right_rate_end, length)
-    new_left = min(on_left * min(-left_rate, left_rate_end), low_left - least_left)
-    new_right = min(on_right * min(-right_rate, right_rate_end), low_right - least_right)
-    law = min(law_left, law_right)
-    no_contact = (
-        max(table[WATCHED + i], back) <= 0.0 and gap > 0.0 and tilt_end < ON_ITS_SIDE
-    )  # never of what is no number
-    calm = no_contact and law > 0.0 and max(new_peak, max(new_left, new_right)) <= 0.0
-    turned = no_contact and (law_left > 0.0 or turns_left) and (law_right > 0.0 or turns_right) and law <= 0.0
-
-    put_state(table, BEFORE + i, y)
-    put_state(table, BEFORE_RATES + i, k1)
-    put_state(table, NOW + i, end)
-    put_state(table, RATES + i, k_end)
-    table[SLOPES + i] = contact_left_slope
-    table[SLOPES + LANES + i] = contact_right_slope
-    table[SLOPES + 2 * LANES + i] = law_left_slope
-    table[SLOPES + 3 * LANES + i] = law_right_slope
-    higher = calm and tilt_end > peak
-    table[PEAK + i] = tilt_end if higher else peak
-    table[PEAK_TIME + i] = table[SAMPLE_TIME + i] + x + length if higher else table[PEAK_TIME + i]
-    table[LOWEST + i] = left_end if calm and on_left != 0.0 and left_end < low_left else low_left
-    table[LOWEST + LANES + i] = right_end if calm and on_right != 0.0 and right_end < low_right else low_right
-    substep = table[SUBSTEP + i] + (1.0 if calm else 0.0)
-    h = table[STEP + i]
-    table[SUBSTEP + i] = substep
-    table[START + i] = substep * h if calm else x
-    table[LENGTH + i] = h if calm else length
-    stepped = SAMPLED if substep == table[SUBSTEPS + i] else CALM
-    table[NEWS + i] = stepped if calm else (TURNED if turned else EVENTFUL)
-
-
-@inlined
-def one_pass(table, lanes, exponent, finite):
-    """The first ``lanes`` lanes over their pieces of a step."""
-    for i in range(lanes):
-        _passed_over(table, i, exponent, finite)
+def put_signals(moment, i, at, values, slopes):
+    moment.at[i] = at
+    v, s = moment.values, moment.slopes
+    v.left[i], v.right[i], v.left_law[i], v.right_law[i] = values.left, values.right, values.left_law, values.right_law
+    s.left[i], s.right[i], s.left_law[i], s.right_law[i] = slopes.left, slopes.right, slopes.left_law, slopes.right_law

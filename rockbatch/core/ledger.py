@@ -9,7 +9,7 @@ import math
 
 from rockbatch.core.equations import accelerations, geometry, rates
 from rockbatch.core.kernel import entry, kernel
-from rockbatch.core.rigid_base import acceleration
+from rockbatch.core.rigid.equations import acceleration
 from rockbatch.core.types import IMPACT_BOTH, IMPACT_LEFT, IMPACT_RIGHT, LIFT_OFF, Contact, State
 
 

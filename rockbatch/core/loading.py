@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 from rockbatch.core.equations import geometry
 from rockbatch.core.kernel import kernel
-from rockbatch.core.springs import plastic_work
+from rockbatch.core.laws import plastic_work
 
 
 class Loading(NamedTuple):
@@ -24,8 +24,13 @@ def _branch(m, was, now, begun, z_begun, place, z, work):
     if was == now:
         return begun, z_begun, work
     unstressed = place - m.yield_deflection * z
-    if was != 0.0:
-        work += plastic_work(z_begun, z, begun - unstressed, m.yield_deflection, m.exponent)
+    return _closed(m, begun, z_begun, work, unstressed, z) if was != 0.0 else (unstressed, z, work)
+
+
+@kernel
+def _closed(m, begun, z_begun, work, unstressed, z):
+    """The same, at the end of an inelastic branch, in a spring that is unstressed at ``unstressed`` from then on."""
+    work += plastic_work(z_begun, z, begun - unstressed, m.yield_deflection, m.exponent)
     return unstressed, z, work
 
 
@@ -42,3 +47,17 @@ def branches(m, loading, before, after, y):
         loading.right, loading.z_right, y.v + at.lift_right, y.z_right, loading.work_right,
     )  # fmt: skip
     return Loading(left, z_left, work_left, right, z_right, work_right)
+
+
+@kernel
+def close_left(m, loading, unstressed, z):
+    """Loading once the left spring has left its inelastic branch at ``z``, from then on unstressed at ``unstressed``."""
+    left, z_left, work_left = _closed(m, loading.left, loading.z_left, loading.work_left, unstressed, z)
+    return Loading(left, z_left, work_left, loading.right, loading.z_right, loading.work_right)
+
+
+@kernel
+def close_right(m, loading, unstressed, z):
+    """Likewise for the right spring."""
+    right, z_right, work_right = _closed(m, loading.right, loading.z_right, loading.work_right, unstressed, z)
+    return Loading(loading.left, loading.z_left, loading.work_left, right, z_right, work_right)

@@ -6,6 +6,7 @@ from rockbatch.core.kernel import inlined, kernel
 
 TRIALS = 60  # a handful is enough
 CLOSE = 1e-12  # of a step: how well the time of an event is known
+NEAR = 1e-4  # of a step: a trial that came so near to its event shows its time as well, by the cubic through it
 SHOWN = 1e-6  # of what a signal does in a step: a lower hump before a dip is no more than the cubic's own error
 BISECT_AFTER = 8  # trials, from which every other one halves the interval
 
@@ -39,13 +40,17 @@ def turning_point(f0, d0, f1, d1, h):
 
 @kernel
 def _root(f0, d0, f1, d1, h, start, end):
-    """Zero in [start, end] of the cubic, positive at ``start`` and not at ``end``: Newton, halving where it leaps out."""
+    """Zero in [start, end] of the cubic, positive at ``start`` and not at ``end``: Newton, halving where it leaps out.
+
+    It starts from the chord's zero where [start, end] is all of the step. What a further trial would change is about
+    the square of what the last one did, times half the curvature over the slope.
+    """
     difference = f1 - f0
     c1 = h * d0
     c3 = c1 + h * d1 - 2.0 * difference
     c2 = difference - c1 - c3
     low, high = start / h, end / h
-    s = 0.5 * (low + high)
+    s = f0 / (f0 - f1) if low == 0.0 and high == 1.0 else 0.5 * (low + high)
     for _ in range(TRIALS):
         f = f0 + s * (c1 + s * (c2 + s * c3))
         if f > 0.0:
@@ -56,7 +61,8 @@ def _root(f0, d0, f1, d1, h, start, end):
         s_next = s - f / slope
         if not low <= s_next <= high:
             s_next = 0.5 * (low + high)
-        if abs(s_next - s) <= 0.01 * CLOSE:
+        change = abs(s_next - s)
+        if change <= 0.01 * CLOSE or change * change * abs(c2 + 3.0 * c3 * s) <= 0.01 * CLOSE * abs(slope):
             return h * s_next
         s = s_next
     return h * s

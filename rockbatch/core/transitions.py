@@ -1,4 +1,7 @@
-"""What an event makes of the pier: separation, landing, a spring's new branch, a pivot held or let go."""
+"""What an event makes of the pier: separation, landing, a spring's new branch, a pivot held or let go.
+
+Written for the left pivot; at the right one, the mirror image is handled (θ → −θ, left ↔ right, ü_g → −ü_g).
+"""
 
 from typing import NamedTuple
 
@@ -6,10 +9,8 @@ from rockbatch.core.equations import geometry, on_ground, touching, without
 from rockbatch.core.events import settle
 from rockbatch.core.impact import land, land_flat
 from rockbatch.core.kernel import kernel
+from rockbatch.core.laws import after_kink, branch_after_jump, branch_when_pressed
 from rockbatch.core.types import (
-    BOUC_WEN,
-    ELASTIC,
-    EPP,
     HELD_LEFT,
     HELD_RIGHT,
     IMPACT_BOTH,
@@ -25,95 +26,141 @@ from rockbatch.core.types import (
     State,
 )
 
+# Events, by the signal that fell through zero (``Signals``)
+CONTACT_LEFT = 0
+CONTACT_RIGHT = 1
+LAW_LEFT = 2
+LAW_RIGHT = 3
+
 
 class Supports(NamedTuple):
-    """Unstressed positions [m] at which the supports of free pivots wait."""
+    """Unstressed positions [m] at which the supports of free pivots wait; of others they mean nothing."""
 
     left: float
     right: float
 
 
 @kernel
+def _mirrored(y):
+    return State(y.v, -y.theta, y.v_rate, -y.omega, y.z_right, y.z_left)
+
+
+@kernel
+def _mirrored_contact(contact):
+    held = 0.0 - contact.held
+    return Contact(contact.right, contact.left, contact.right_yields, contact.left_yields, held)
+
+
+@kernel
+def _mirrored_kind(kind):
+    if kind == SEPARATION_LEFT:
+        return SEPARATION_RIGHT
+    if kind == IMPACT_LEFT:
+        return IMPACT_RIGHT
+    if kind == SPRING_LEFT:
+        return SPRING_RIGHT
+    return HELD_RIGHT if kind == HELD_LEFT else kind
+
+
+@kernel
 def handle(m, y, contact, supports, which, rest, horizontal, vertical):
-    """What event ``which`` makes of state, contacts and supports: returns them and the kind of event."""
-    side = LEFT if which % 2 == 0 else RIGHT
+    """What an event makes of the pier.
+
+    Parameters
+    ----------
+    m : Springs
+    y : State
+        At the event.
+    contact : Contact
+    supports : Supports
+        Until the event.
+    which : int
+        CONTACT_LEFT, CONTACT_RIGHT, LAW_LEFT or LAW_RIGHT.
+    rest : float
+        Velocity that counts as none [m/s].
+    horizontal, vertical : float
+        Ground accelerations [m/s²].
+
+    Returns
+    -------
+    State, Contact, Supports, kind of the event as a history has it
+    """
+    if which in (CONTACT_LEFT, LAW_LEFT):
+        return _at_left(m, y, contact, supports, which == LAW_LEFT, rest, horizontal, vertical)
+    y, contact, supports, kind = _at_left(
+        m, _mirrored(y), _mirrored_contact(contact), Supports(supports.right, supports.left),
+        which == LAW_RIGHT, rest, -horizontal, vertical,
+    )  # fmt: skip
+    return _mirrored(y), _mirrored_contact(contact), Supports(supports.right, supports.left), _mirrored_kind(kind)
+
+
+@kernel
+def _at_left(m, y, contact, supports, of_law, rest, horizontal, vertical):
+    """:func:`handle` for the left pivot, of its contact or of its spring's law."""
+    loaded = branch_when_pressed(m.law)
+    if contact.held == LEFT:
+        if not of_law:
+            return y, touching(contact, LEFT, loaded), supports, HELD_LEFT
+        position = y.v + geometry(m, y.theta).lift_left
+        return y, without(contact, LEFT), Supports(position, supports.right), SEPARATION_LEFT
+    if of_law:  # the spring changes its branch
+        yields, z = after_kink(m.law, contact.left_yields, y.z_left)
+        changed = State(y.v, y.theta, y.v_rate, y.omega, z, y.z_right)
+        return changed, touching(contact, LEFT, yields), supports, SPRING_LEFT
+    if contact.left != 0.0:
+        return _separation(m, y, contact, supports, rest, horizontal, vertical)
+    return _landing(m, y, contact, supports, rest, horizontal, vertical)
+
+
+@kernel
+def _separation(m, y, contact, supports, rest, horizontal, vertical):
+    """The left pivot's spring is unstressed."""
     at = geometry(m, y.theta)
-    left = side == LEFT
-    velocity = y.v_rate + (at.arm_left if left else at.arm_right) * y.omega
-    position = y.v + (at.lift_left if left else at.lift_right)
-    yields_when_loaded = 1.0 if m.law == BOUC_WEN else 0.0
+    unstressed = State(y.v, y.theta, y.v_rate, y.omega, 0.0, y.z_right)
+    waiting = Supports(y.v + at.lift_left, supports.right)
+    if y.v_rate + at.arm_left * y.omega > rest:
+        return unstressed, without(contact, LEFT), waiting, SEPARATION_LEFT
+    after = settle(m, unstressed, contact, LEFT, horizontal, vertical)
+    kind = HELD_LEFT if on_ground(after) == on_ground(contact) else SEPARATION_LEFT
+    return unstressed, after, waiting, kind
 
-    if contact.held == side:
-        if which < 2:
-            return y, touching(contact, side, yields_when_loaded), supports, HELD_LEFT if left else HELD_RIGHT
-        freed = Supports(position, supports.right) if left else Supports(supports.left, position)
-        return y, without(contact, side), freed, SEPARATION_LEFT if left else SEPARATION_RIGHT
 
-    if which >= 2:  # the spring changes its branch
-        if left:
-            z = -1.0 if m.law == EPP and contact.left_yields == 0.0 else y.z_left
-            changed = State(y.v, y.theta, y.v_rate, y.omega, z, y.z_right)
-            return changed, touching(contact, side, 1.0 - contact.left_yields), supports, SPRING_LEFT
-        z = -1.0 if m.law == EPP and contact.right_yields == 0.0 else y.z_right
-        changed = State(y.v, y.theta, y.v_rate, y.omega, y.z_left, z)
-        return changed, touching(contact, side, 1.0 - contact.right_yields), supports, SPRING_RIGHT
-
-    if (contact.left if left else contact.right) != 0.0:  # separation
-        if left:
-            unstressed = State(y.v, y.theta, y.v_rate, y.omega, 0.0, y.z_right)
-            waiting = Supports(position, supports.right)
-        else:
-            unstressed = State(y.v, y.theta, y.v_rate, y.omega, y.z_left, 0.0)
-            waiting = Supports(supports.left, position)
-        after = without(contact, side)
-        kind = SEPARATION_LEFT if left else SEPARATION_RIGHT
-        if velocity <= rest:
-            after = settle(m, unstressed, contact, side, horizontal, vertical)
-            if on_ground(after) == on_ground(contact):
-                kind = HELD_LEFT if left else HELD_RIGHT
-        return unstressed, after, waiting, kind
-
-    # landing; the other pivot may land at the same instant
+@kernel
+def _landing(m, y, contact, supports, rest, horizontal, vertical):
+    """The left pivot meets its support; the right one may land at the same instant."""
+    at = geometry(m, y.theta)
+    velocity = y.v_rate + at.arm_left * y.omega
+    loaded = branch_when_pressed(m.law)
     other_free = contact.left == 0.0 and contact.right == 0.0 and contact.held == 0.0
     if other_free:
-        gap = y.v + (at.lift_right - supports.right if left else at.lift_left - supports.left)
-        other_velocity = y.v_rate + (at.arm_right if left else at.arm_left) * y.omega
-        if abs(gap) <= 1e-10 * m.yield_deflection and other_velocity < -rest:
+        gap = y.v + (at.lift_right - supports.right)
+        if abs(gap) <= 1e-10 * m.yield_deflection and y.v_rate + at.arm_right * y.omega < -rest:
             landed = land_flat(m, y)
-            both = Contact(1.0, 1.0, yields_when_loaded, yields_when_loaded, 0.0)
+            both = Contact(1.0, 1.0, loaded, loaded, 0.0)
             if abs(m.epsilon * velocity) <= rest:
                 both = settle(m, landed, both, LEFT, horizontal, vertical)
                 both = settle(m, landed, both, RIGHT, horizontal, vertical)
             return landed, both, supports, IMPACT_BOTH
-    landed = land(m, y, side)
-    contact, supports = _other_after_impulse(m, landed, contact, supports, -side, at, rest)
+    landed = land(m, y, LEFT)
+    contact, supports = _right_after_impulse(m, landed, contact, supports, at, rest)
     if abs(m.epsilon * velocity) > rest:
-        after = touching(contact, side, yields_when_loaded)
-    else:
-        after = settle(m, landed, contact, side, horizontal, vertical)
-        supports = Supports(position, supports.right) if left else Supports(supports.left, position)
-    return landed, after, supports, IMPACT_LEFT if left else IMPACT_RIGHT
+        return landed, touching(contact, LEFT, loaded), supports, IMPACT_LEFT
+    after = settle(m, landed, contact, LEFT, horizontal, vertical)
+    return landed, after, Supports(y.v + at.lift_left, supports.right), IMPACT_LEFT
 
 
 @kernel
-def _other_after_impulse(m, y, contact, supports, side, at, rest):
-    """Contacts and supports once an impulse at one pivot has made the velocity of the other, on ``side``, jump too.
+def _right_after_impulse(m, y, contact, supports, at, rest):
+    """Contacts and supports once an impulse at the left pivot has made the velocity of the right one jump too.
 
     Its spring may have to change its branch, and a pivot that was held moves.
     """
-    left = side == LEFT
-    velocity = y.v_rate + (at.arm_left if left else at.arm_right) * y.omega
-    if contact.held == side and abs(velocity) > rest:
+    velocity = y.v_rate + at.arm_right * y.omega
+    if contact.held == RIGHT and abs(velocity) > rest:
         if velocity < 0.0:
-            return touching(contact, side, 1.0 if m.law == BOUC_WEN else 0.0), supports
-        position = y.v + (at.lift_left if left else at.lift_right)
-        freed = Supports(position, supports.right) if left else Supports(supports.left, position)
-        return without(contact, side), freed
-    if m.law == ELASTIC or (contact.left if left else contact.right) == 0.0:
+            return touching(contact, RIGHT, branch_when_pressed(m.law)), supports
+        return without(contact, RIGHT), Supports(supports.left, y.v + at.lift_right)
+    if contact.right == 0.0:
         return contact, supports
-    yields = contact.left_yields if left else contact.right_yields
-    if velocity > rest:
-        yields = 0.0
-    elif velocity < -rest and (m.law == BOUC_WEN or (y.z_left if left else y.z_right) <= -1.0):
-        yields = 1.0
-    return touching(contact, side, yields), supports
+    yields = branch_after_jump(m.law, contact.right_yields, y.z_right, velocity, rest)
+    return touching(contact, RIGHT, yields), supports

@@ -11,6 +11,7 @@ BOUC_WEN = 1.0
 EPP = 2.0
 
 # How a run ended
+RUNNING = -1  # not yet
 SURVIVED = 0
 OVERTURNED = 1
 FLIGHT = 2
@@ -40,6 +41,7 @@ REST = 11.0
 # Pivots
 LEFT = -1.0
 RIGHT = 1.0
+NEITHER = 0.0  # of the corners about which a block could rock: it rests on both
 
 
 class Springs(NamedTuple):
@@ -59,7 +61,7 @@ class Springs(NamedTuple):
     epsilon: float  # restitution of the landing pivot
     law: float  # ELASTIC, BOUC_WEN or EPP
     guided: float  # 1: flight goes on, 0: it ends the run
-    exponent: float | None  # n of Bouc–Wen; None for the paper's 5
+    exponent: float | int | None  # n of Bouc–Wen; None for the paper's 5, int for other whole numbers up to 10
     finite: bool | None  # True: finite kinematics; None: first-order
 
 
@@ -81,6 +83,14 @@ class State(NamedTuple):
     omega: float  # [rad/s]
     z_left: float  # F_L/F_y, −1..0
     z_right: float
+
+
+class Rocking(NamedTuple):
+    """A block on a rigid base."""
+
+    theta: float  # rotation, positive to the right [rad]
+    omega: float  # [rad/s]
+    side: float  # corner about which it rocks: LEFT or RIGHT, or NEITHER
 
 
 class Contact(NamedTuple):

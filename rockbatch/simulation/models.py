@@ -4,6 +4,7 @@ import math
 from functools import lru_cache
 
 from rockbatch.core.ground import ground_rows
+from rockbatch.core.laws import LARGEST_WHOLE
 from rockbatch.core.types import BOUC_WEN, ELASTIC, EPP, Block, Springs
 from rockbatch.motions.motion import Motion, Samples
 from rockbatch.pier import (
@@ -35,10 +36,11 @@ READ_AFTER = 5.0
 @lru_cache(maxsize=4096)
 def springs(pier: Pier, base: ElasticBase) -> Springs:
     """What the core takes for ``pier`` on springs: plain floats, per unit mass."""
-    eta, law, exponent = 1.0, ELASTIC, None  # an elastic spring is measured by its static force and deflection
+    exponent: float | int | None = None
+    eta, law = 1.0, ELASTIC  # an elastic spring is measured by its static force and deflection
     if isinstance(base, YieldingBase):
         eta, law = base.eta, BOUC_WEN if base.spring == "bouc-wen" else EPP
-        exponent = float(base.n) if law == BOUC_WEN and base.n != 5 else None
+        exponent = _exponent(base.n) if law == BOUC_WEN else None
     omega_v = vertical_frequency(pier, base)
     return Springs(
         half_width=float(pier.half_width),
@@ -54,6 +56,13 @@ def springs(pier: Pier, base: ElasticBase) -> Springs:
         exponent=exponent,
         finite=True if base.kinematics == "finite" else None,
     )
+
+
+def _exponent(n: float) -> float | int | None:
+    """n, of the type that the core's compiled code goes by."""
+    if n == 5:
+        return None
+    return int(n) if n in range(1, LARGEST_WHOLE + 1) else float(n)
 
 
 def block(pier: Pier, base: RigidBase) -> Block:

@@ -1,14 +1,17 @@
 """Runs with given steps: piers on bases under motions, side by side, and what each comes to."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from rockbatch.core import rigid_base, two_springs
+from rockbatch.core import two_springs
 from rockbatch.core.outcome import ON_ITS_SIDE
+from rockbatch.core.recording import ROW
+from rockbatch.core.records import numbers
+from rockbatch.core.rigid import runs as rigid
 from rockbatch.core.types import (
     CHATTER,
     FLIGHT,
@@ -17,6 +20,7 @@ from rockbatch.core.types import (
     NOT_FINITE,
     OVERTURNED,
     RESTLESS,
+    RUNNING,
     SURVIVED,
     UNDECIDED,
     RigidRun,
@@ -106,7 +110,7 @@ def _line(run: Run, substeps: int, quiet_s: float, first_row: int, wait: bool) -
     dt = float(motion.dt)
     timing = (dt, substeps, _quiet_samples(quiet_s, dt), first_row, motion.npts, patience(pier, dt) if wait else 0)
     if isinstance(base, RigidBase):
-        return rigid_base.run_line(block(pier, base), 0.0, 0.0, *timing)
+        return rigid.run_line(block(pier, base), 0.0, 0.0, *timing)
     return two_springs.run_line(springs(pier, base), *timing, *(readings(pier, base, dt) if wait else (0, 0)))
 
 
@@ -120,15 +124,15 @@ def written_run(
     wait: bool = True,
 ) -> tuple[SpringRun | RigidRun, Samples]:
     """One run, and its history of at most ``rows`` rows; with ``every_step`` also between samples."""
-    lines, ground, stop = np.array([_line(run, substeps, quiet_s, 0, wait)]), ground_of(run.motion), Stop().flag
+    lines, ground, stop = [_line(run, substeps, quiet_s, 0, wait)], ground_of(run.motion), Stop().flag
     if isinstance(run.base, RigidBase):
-        history = np.empty((rows, rigid_base.HISTORY_COLUMNS))
-        result = rigid_base.rock_one_by_one(lines, ground, stop, locate, every_step, history)[0]
-        return rigid_base.rigid_run(result), history
+        written = np.recarray(rows, rigid.ROW)
+        result = rigid.rock_side_by_side(lines, ground, stop, locate, every_step, written)[0]
+        return rigid.rigid_run(result), numbers(written)
     m = springs(run.pier, run.base)
-    history = np.empty((rows, two_springs.HISTORY_COLUMNS))
-    result = two_springs.rock_side_by_side(m.exponent, m.finite, lines, ground, stop, locate, every_step, history)[0]
-    return two_springs.spring_run(result), history
+    written = np.recarray(rows, ROW)
+    result = two_springs.rock_side_by_side(m.exponent, m.finite, lines, ground, stop, locate, every_step, written)[0]
+    return two_springs.spring_run(result), numbers(written)
 
 
 def run_fixed(
@@ -167,7 +171,7 @@ def try_all(
 ) -> list[Trial | None]:
     """As :func:`run_all_fixed`, with the trajectories in short."""
     trials: list[Trial | None] = [_refused(run, steps, quiet_s) for run, steps in zip(runs, substeps, strict=True)]
-    alike: dict[tuple[float | None, bool | None] | None, list[int]] = {}
+    alike: dict[tuple[float | int | None, bool | None] | None, list[int]] = {}
     for i, run in enumerate(runs):
         if trials[i] is None:
             alike.setdefault(_kernel_of(run), []).append(i)
@@ -182,25 +186,36 @@ def try_all(
                 grounds.append(ground_of(motion))
             lines.append(_line(runs[i], substeps[i], quiet_s, first_rows[id(motion)], wait))
         ground = grounds[0] if len(grounds) == 1 else np.concatenate(grounds)
-        if kernel is None:
-            results = rigid_base.rock_one_by_one(np.array(lines), ground, stop.flag, locate)
-            split = rigid_base.RESULTS
-        else:
-            results = two_springs.rock_side_by_side(*kernel, np.array(lines), ground, stop.flag, locate)
-            split = two_springs.RESULTS
-        for i, line in zip(which, results, strict=True):
-            if not math.isnan(line[0]):
-                outcome = _outcome(runs[i], substeps[i], line[:split].tolist())
-                trials[i] = Trial(outcome, line[split:])
+        for i, (found, extremes) in zip(which, _rock(kernel, lines, ground, stop, locate), strict=True):
+            if found is not None:
+                trials[i] = Trial(_outcome(runs[i], substeps[i], found), extremes)
     return trials
 
 
-def _kernel_of(run: Run) -> tuple[float | None, bool | None] | None:
+def _rock(
+    kernel: tuple[float | int | None, bool | None] | None,
+    lines: Sequence[tuple[float, ...]],
+    ground: Samples,
+    stop: Stop,
+    locate: bool,
+) -> Iterator[tuple[SpringRun | RigidRun | None, Samples]]:
+    """What runs alike come to, ``None`` for those that were stopped, and the greatest |θ| in each of their windows."""
+    if kernel is None:
+        for result in rigid.rock_side_by_side(lines, ground, stop.flag, locate):
+            yield None if result.status == RUNNING else rigid.rigid_run(result), result.extremes
+        return
+    for result in two_springs.rock_side_by_side(*kernel, lines, ground, stop.flag, locate):
+        yield None if result.status == RUNNING else two_springs.spring_run(result), result.extremes
+
+
+def _kernel_of(run: Run) -> tuple[float | int | None, bool | None] | None:
     """What runs that share compiled code have in common: types of the springs' exponent and kinematics, if any."""
     if isinstance(run.base, RigidBase):
         return None
     m = springs(run.pier, run.base)
-    return None if m.exponent is None else 1.0, m.finite
+    if m.exponent is None:
+        return None, m.finite
+    return 1 if isinstance(m.exponent, int) else 0.5, m.finite  # numbers that differ: 1 == 1.0
 
 
 def _refused(run: Run, substeps: int, quiet_s: float) -> Trial | None:
@@ -221,35 +236,31 @@ def _refused(run: Run, substeps: int, quiet_s: float) -> Trial | None:
     return None
 
 
-def _outcome(run: Run, substeps: int, result: Sequence[float]) -> Outcome:
-    """Outcome of a line of results."""
-    pier = run.pier
-    code, t_end, theta_max, t_max, impacts, separations, t_flight = result[:7]
-    status, reason = _STATUS[int(code)]
+def _outcome(run: Run, substeps: int, found: SpringRun | RigidRun) -> Outcome:
+    """Outcome of what a run came to, as it was found."""
+    pier, omega_v, t_impact = run.pier, None, math.nan
+    status, reason = _STATUS[found.status]
     more: dict[str, Any] = {}
-    if not isinstance(run.base, RigidBase):
-        found = SpringRun(*result)  # type: ignore[arg-type]  # all floats
+    if isinstance(found, SpringRun):
+        assert not isinstance(run.base, RigidBase)
         more = _of_springs(run, found, survived=status == "ok")
-        if code == FLIGHT:
-            reason = cause_of_flight(
-                run.motion, vertical_frequency(pier, run.base), pier.gravity, t_flight, found.t_impact
-            )
-    elif code == FLIGHT:
-        reason = cause_of_flight(run.motion, None, pier.gravity, t_flight, math.nan)
+        omega_v, t_impact = vertical_frequency(pier, run.base), found.t_impact
+    if found.status == FLIGHT:
+        reason = cause_of_flight(run.motion, omega_v, pier.gravity, found.t_flight, t_impact)
     note = ""
-    if code == RESTLESS:
-        note = _RESTLESS.format(seconds=t_end - run.motion.duration)
-    elif code == LATE_FLIGHT:
-        note = _LATE_FLIGHT.format(t=t_end)
+    if found.status == RESTLESS:
+        note = _RESTLESS.format(seconds=found.t_end - run.motion.duration)
+    elif found.status == LATE_FLIGHT:
+        note = _LATE_FLIGHT.format(t=found.t_end)
     return Outcome(
         status=status,
         reason=reason,
-        theta_max=min(theta_max, ON_ITS_SIDE),
-        t_max=t_max,
-        impacts=int(impacts),
-        separations=int(separations),
-        t_flight=None if math.isnan(t_flight) else t_flight,
-        t_end=t_end,
+        theta_max=min(found.theta_max, ON_ITS_SIDE),
+        t_max=found.t_max,
+        impacts=found.impacts,
+        separations=found.separations if isinstance(found, SpringRun) else found.lift_offs,
+        t_flight=None if math.isnan(found.t_flight) else found.t_flight,
+        t_end=found.t_end,
         substeps=substeps,
         note=note,
         **more,

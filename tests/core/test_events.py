@@ -9,8 +9,10 @@ from reference_solver import reference
 
 import rockbatch as rb
 from rockbatch import simulate
+from rockbatch.core.recording import ROW
+from rockbatch.core.records import numbers
 from rockbatch.core.roots import hermite, largest_within, turning_point
-from rockbatch.core.two_springs import HISTORY_COLUMNS, rock_on_springs
+from rockbatch.core.two_springs import rock_on_springs
 from rockbatch.core.types import IMPACT_LEFT, IMPACT_RIGHT, SEPARATION_LEFT, SEPARATION_RIGHT, SURVIVED
 from rockbatch.motions.motion import Motion
 from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase
@@ -36,10 +38,10 @@ def errors(base, motion, substeps, locate):
     """Errors of the contact events' times [s], of the rotation at the end and of the greatest one [rad]."""
     expected = reference(FIG5, base, motion)
     times = np.array([t for t, kind, _ in expected.events if kind in ("separation", "impact")])
-    history = np.empty((400_000, HISTORY_COLUMNS))
+    history = np.recarray(400_000, ROW)
     vertical = np.empty(0) if motion.vertical is None else motion.vertical
     run = rock_on_springs(springs(FIG5, base), motion.horizontal, vertical, motion.dt, substeps, 0, history, locate)
-    rows = history[: run.rows]
+    rows = numbers(history[: run.rows])
     found = rows[np.isin(rows[:, -1], CONTACT_EVENTS), 0]
     assert len(found) == len(times)
     return np.abs(found - times).max(), abs(rows[-1, 4] - expected.omega), abs(run.theta_max - expected.theta_max)

@@ -29,12 +29,12 @@ def run_copy(folder: Path) -> float:
 
 
 def test_an_edit_in_a_called_kernel_changes_the_next_run(tmp_path):
-    """Numba's own cache looks at the caller's file only. ż is doubled in springs.py, which the entry merely calls."""
+    """Numba's own cache looks at the caller's file only. ż is doubled in laws.py, which the entry merely calls."""
     package = tmp_path / "rockbatch"
     shutil.copytree(Path(rockbatch.__file__).parent, package, ignore=shutil.ignore_patterns("__pycache__"))
     before = run_copy(tmp_path)
     assert run_copy(tmp_path) == before  # from the cache
-    source = package / "core" / "springs.py"
+    source = package / "core" / "laws.py"
     text = source.read_text(encoding="utf-8")
     assert text.count("rate = velocity * stiffness") == 1
     source.write_text(
@@ -45,12 +45,14 @@ def test_an_edit_in_a_called_kernel_changes_the_next_run(tmp_path):
 
 
 def test_the_digest_depends_on_every_source_of_the_core(tmp_path):
-    for source in Path(rockbatch.__file__).parent.joinpath("core").glob("*.py"):
-        shutil.copy(source, tmp_path)
-    digest = core_digest(tmp_path)
-    for source in sorted(tmp_path.glob("*.py")):
+    core = tmp_path / "core"
+    shutil.copytree(Path(rockbatch.__file__).parent / "core", core, ignore=shutil.ignore_patterns("__pycache__"))
+    digest = core_digest(core)
+    sources = sorted(core.rglob("*.py"))
+    assert {source.parent for source in sources} > {core}
+    for source in sources:
         text = source.read_bytes()
         source.write_bytes(text + b"\n")
-        assert core_digest(tmp_path) != digest, source.name
+        assert core_digest(core) != digest, source.name
         source.write_bytes(text)
-    assert core_digest(tmp_path) == digest
+    assert core_digest(core) == digest

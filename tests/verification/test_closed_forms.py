@@ -12,8 +12,9 @@ from scipy.special import hyp2f1
 import rockbatch as rb
 from rockbatch.core.equations import geometry, rates
 from rockbatch.core.impact import land
-from rockbatch.core.rigid_base import HISTORY_COLUMNS, rock_on_rigid_base
-from rockbatch.core.springs import static_deflection
+from rockbatch.core.laws import power, static_deflection
+from rockbatch.core.rigid.lane import ROW
+from rockbatch.core.rigid.runs import rock_on_rigid_base
 from rockbatch.core.types import BEFORE_EVENT, BOUC_WEN, LEFT, Block, Contact, State
 from rockbatch.motions.motion import Motion
 from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase
@@ -23,13 +24,13 @@ SINE = pulse("sine", 0.5, dt=0.01, end=3.0)
 
 
 def free_rocking(pier: Pier, theta0: float, duration: float, restitution: float | None = None):
-    """Histories (t, θ, θ̇, kind) and run of a block let go at ``theta0`` on a rigid base."""
+    """History and run of a block let go at ``theta0`` on a rigid base."""
     dt = 0.01
     e = pier.restitution if restitution is None else restitution
     block = Block(pier.alpha, pier.p, pier.gravity, e)
-    history = np.empty((400_000, HISTORY_COLUMNS))
+    history = np.recarray(400_000, ROW)
     samples = np.zeros(round(duration / dt) + 1)
-    run = rock_on_rigid_base(block, theta0, 0.0, samples, np.empty(0), dt, 8, 0, history, True)
+    run = rock_on_rigid_base(block, theta0, 0.0, samples, np.empty(0), dt, 8, 0, history)
     return history[: run.rows], run
 
 
@@ -49,7 +50,7 @@ def test_quarter_period_of_free_rocking_is_housners_integral(pier, quarter):
     exact = quad(integrand, 0.0, 1.0, epsabs=1e-13, epsrel=1e-13)[0]
     assert exact == pytest.approx(quarter, rel=1e-11)
     rows, _ = free_rocking(pier, theta0, 2.0 * quarter / pier.p)
-    first_impact = rows[rows[:, 3] == BEFORE_EVENT][0, 0]
+    first_impact = rows.t[rows.kind == BEFORE_EVENT][0]
     assert pier.p * first_impact == pytest.approx(quarter, rel=1e-9)  # RK4 at p h = 1e-3
 
 
@@ -57,15 +58,15 @@ def test_amplitudes_of_free_rocking_fall_with_the_square_of_restitution():
     """cos(α−θ_n) − cos α falls by e² at every impact (Housner 1963). Amplitudes at 1e-8: Hermite between steps."""
     e2 = FIG5.restitution**2
     rows, _ = free_rocking(FIG5, 0.5 * FIG5.alpha, 10.0)
-    impacts = np.flatnonzero(rows[:, 3] > 0)
-    peaks = [np.abs(rows[a:b, 1]).max() / FIG5.alpha for a, b in pairwise(impacts[:4])]
+    impacts = np.flatnonzero(rows.kind > 0)
+    peaks = [np.abs(rows.theta[a:b]).max() / FIG5.alpha for a, b in pairwise(impacts[:4])]
     energy = math.cos(0.5 * FIG5.alpha) - math.cos(FIG5.alpha)
     for sampled, published in zip(peaks, (0.420356307, 0.358022876, 0.307493607), strict=True):
         energy *= e2
         exact = 1.0 - math.acos(math.cos(FIG5.alpha) + energy) / FIG5.alpha
         assert exact == pytest.approx(published, abs=1e-9)
         assert sampled == pytest.approx(exact, abs=2e-5)  # the sample nearest the top, half of 0.01 s away at most
-    speeds = np.abs(rows[impacts[:4], 2])
+    speeds = np.abs(rows.omega[impacts[:4]])
     top = math.cos(0.5 * FIG5.alpha) - math.cos(FIG5.alpha)
     exact_speeds = [FIG5.p * math.sqrt(2.0 * top * e2 ** (n + 1)) for n in range(4)]
     assert speeds == pytest.approx(exact_speeds, rel=1e-9)
@@ -74,7 +75,7 @@ def test_amplitudes_of_free_rocking_fall_with_the_square_of_restitution():
 def test_free_rocking_without_loss_keeps_its_amplitude():
     """e = 1: θ_max stays θ0 and impacts stay T/2 apart."""
     rows, run = free_rocking(FIG5, 0.5 * FIG5.alpha, 20.0, restitution=1.0)
-    times = rows[rows[:, 3] > 0, 0]
+    times = rows.t[rows.kind > 0]
     assert run.impacts == len(times) >= 7
     assert np.diff(times) == pytest.approx(2.0 * 1.31850439758, rel=1e-9)
 
@@ -84,8 +85,7 @@ def test_greatest_rotation_is_found_between_samples():
     e = 0.9
     speed = 0.3 * FIG5.alpha * FIG5.p
     block = Block(FIG5.alpha, FIG5.p, FIG5.gravity, e)
-    none = np.empty((0, HISTORY_COLUMNS))
-    run = rock_on_rigid_base(block, 0.0, speed, np.zeros(101), np.empty(0), 0.01, 8, 0, none, True)
+    run = rock_on_rigid_base(block, 0.0, speed, np.zeros(101), np.empty(0), 0.01, 8, 0)
     exact = FIG5.alpha - math.acos(math.cos(FIG5.alpha) + 0.5 * (speed / FIG5.p) ** 2)
     assert run.theta_max == pytest.approx(exact, abs=1e-9 * FIG5.alpha)
 
@@ -344,3 +344,24 @@ def test_finite_kinematics_keep_the_angular_momentum_of_an_impact_only_upright(a
     before = (m.inertia + y * one) * omega - x * v_rate
     kept = (m.inertia + y * both) * after.omega - x * after.v_rate
     assert 1.0 - kept / before == pytest.approx(lost, abs=1e-5)
+
+
+@pytest.mark.parametrize("n", range(1, 11))
+def test_whole_exponents_by_products_are_powers(n):
+    """To three roundings; the largest z is 1, at which nothing may be added."""
+    for x in (0.0, 1e-3, 0.3, 0.7, 0.999999, 1.0):
+        assert power(x, n) == pytest.approx(x**n, rel=8e-16, abs=0.0)
+    assert power(0.7, None) == power(0.7, 5)
+    assert power(1.0, n) == 1.0
+
+
+def test_a_whole_exponent_gives_what_the_same_number_with_pow_gives():
+    """Runs with n = 2 as a whole number and as one that is next to it."""
+    motion = pulse("sine", 0.5, dt=0.02, end=3.0)
+    whole, near = (
+        run_fixed(FIG5, YieldingBase(50.0, 0.1, eta=2.2, n=n), motion, 4, 0.5, wait=False) for n in (2.0, 2.0 + 1e-13)
+    )
+    assert isinstance(springs(FIG5, YieldingBase(50.0, 0.1, eta=2.2, n=2.0)).exponent, int)
+    assert whole.theta_max == pytest.approx(near.theta_max, rel=1e-10)
+    assert whole.dissipated_left == pytest.approx(near.dissipated_left, rel=1e-9)
+    assert (whole.impacts, whole.separations) == (near.impacts, near.separations)

@@ -9,7 +9,8 @@ import math
 import numpy as np
 import pytest
 
-from rockbatch.core.rigid_base import HISTORY_COLUMNS, rock_on_rigid_base
+from rockbatch.core.rigid.lane import ROW
+from rockbatch.core.rigid.runs import rock_on_rigid_base
 from rockbatch.core.types import BEFORE_EVENT, REST, Block
 from rockbatch.units import GRAVITY
 
@@ -19,11 +20,9 @@ DT = 0.005
 
 def let_go(alpha: float, start: float, e: float, duration: float):
     """Run and history rows of a block with p = 2 rad/s let go at ``start`` α, for ``duration``/p [s]."""
-    history = np.empty((100_000, HISTORY_COLUMNS))
+    history = np.recarray(100_000, ROW)
     still = np.zeros(round(duration / P / DT) + 1)
-    run = rock_on_rigid_base(
-        Block(alpha, P, GRAVITY, e), start * alpha, 0.0, still, np.empty(0), DT, 4, 0, history, True
-    )
+    run = rock_on_rigid_base(Block(alpha, P, GRAVITY, e), start * alpha, 0.0, still, np.empty(0), DT, 4, 0, history)
     return run, history[: run.rows]
 
 
@@ -42,11 +41,12 @@ def test_a_block_comes_to_rest_when_the_sum_of_its_infinitely_many_bounces_says(
     run, rows = let_go(1e-4, 0.5, 0.9, 20.0)
     assert P * run.t_rest == pytest.approx(exact, abs=2e-8)
     assert run.impacts > 100  # bounces are followed, not cut off
-    at_rest = rows[rows[:, 0] > run.t_rest]
-    assert rows[-1, 0] == pytest.approx(20.0 / P)
+    at_rest = rows[rows.t > run.t_rest]
+    assert rows.t[-1] == pytest.approx(20.0 / P)
     assert len(at_rest) > 100
-    assert not at_rest[:, 1:3].any()
-    assert np.count_nonzero(rows[:, -1] == REST) == 1
+    assert not at_rest.theta.any()
+    assert not at_rest.omega.any()
+    assert np.count_nonzero(rows.kind == REST) == 1
 
 
 def test_time_to_rest_approaches_the_slender_limit_as_alpha_squared():
@@ -70,6 +70,6 @@ def test_period_is_housners(start):
     """T = (4/p) acosh(1/(1 − θ0/α)) (Housner 1963) while nothing is lost; 1e-7: α² = 10⁻⁸, and RK4 as before."""
     period = 4.0 * math.acosh(1.0 / (1.0 - start))
     _, rows = let_go(1e-4, start, 1.0, 3.0 * period)
-    impacts = rows[rows[:, -1] == BEFORE_EVENT, 0]
+    impacts = rows.t[rows.kind == BEFORE_EVENT]
     assert len(impacts) == 6
     assert P * impacts == pytest.approx(period * (0.25 + 0.5 * np.arange(6)), rel=1e-7)

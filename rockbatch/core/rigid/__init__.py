@@ -1,0 +1,1 @@
+"""The pier on a rigid base (Housner 1963): rocking about two corners, impacts, rest, and lift-off again (THEORY.md, 5)."""
