@@ -1,6 +1,7 @@
 """Pier and bases: the relations between their sizes, and what is refused."""
 
 import math
+from typing import get_args
 
 import numpy as np
 import pytest
@@ -9,9 +10,11 @@ from core_samples import FIG5
 from rockbatch.errors import InputError
 from rockbatch.motions.motion import Motion
 from rockbatch.pier import (
+    WITH_EXPONENT,
     ElasticBase,
     Pier,
     RigidBase,
+    SpringLaw,
     YieldingBase,
     problems,
     static_deflection,
@@ -19,7 +22,9 @@ from rockbatch.pier import (
     vertical_frequency,
     yield_deflection,
 )
+from rockbatch.pier.bases import OTHER_LAW
 from rockbatch.simulation import run_fixed
+from rockbatch.simulation.models import LAWS, springs
 
 
 @pytest.mark.parametrize(("p", "size"), [(1.0, 7.36), (0.35, 60.1)])
@@ -111,3 +116,14 @@ def test_the_base_tilts_with_the_residual_rotation_less_the_closer_the_pier_is_t
 
     assert at(FIG5.least_beta * FIG5.p) == pytest.approx(0.0, abs=1e-12)
     assert at(2.0 * FIG5.least_beta * FIG5.p) == pytest.approx(0.75, rel=1e-12)
+
+
+def test_every_spring_law_has_a_code_in_the_core_and_another_law_to_compare_with():
+    known = set(get_args(SpringLaw))
+    assert set(LAWS) == set(OTHER_LAW) == known
+    assert len(set(LAWS.values())) == len(known)
+    for spring in known:
+        base = YieldingBase(40.0, eta=3.0, spring=spring)
+        assert base.by_other_law().spring in known - {spring}
+        assert springs(Pier(0.13, 0.38), base).law == LAWS[spring]
+        assert base.has_exponent == (spring in WITH_EXPONENT)

@@ -72,7 +72,7 @@ def _with_other_law(
 ) -> list[Outcome | None]:
     """With the settlement of yielding springs by the other spring law, at the steps that were kept."""
     yielding = {
-        i: replace(run, base=replace(run.base, spring="epp" if run.base.spring == "bouc-wen" else "bouc-wen"))
+        i: replace(run, base=run.base.by_other_law())
         for i, (run, outcome) in enumerate(zip(runs, outcomes, strict=True))
         if isinstance(run.base, YieldingBase) and outcome is not None and outcome.was_run
     }

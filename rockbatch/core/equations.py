@@ -65,8 +65,8 @@ def rates(m, y, contact, horizontal, vertical):
         y.omega,
         v_acceleration,
         theta_acceleration,
-        z_rate(y.z_left, left, contact.left_yields, m.stiffness, m.exponent),
-        z_rate(y.z_right, right, contact.right_yields, m.stiffness, m.exponent),
+        z_rate(m, y.z_left, left, contact.left_yields),
+        z_rate(m, y.z_right, right, contact.right_yields),
     )
 
 

@@ -92,7 +92,7 @@ def _climb(m, lean, target):
     dx = (capacity - x) / PARTS
     for i in range(PARTS):
         middle = x + (i + 0.5) * dx
-        turn = 0.5 * deflection * dx * (1.0 + give(m.law, static_force * (1.0 + middle), m.exponent)) / b
+        turn = 0.5 * deflection * dx * (1.0 + give(m, static_force * (1.0 + middle))) / b
         part = min(turn, goal - travel)
         middle = x + (i + 0.5 * part / turn) * dx
         moment = g * (b * middle - _weight_moment(m, travel + 0.5 * part))

@@ -39,15 +39,21 @@ def power(x, n):
 
 
 @inlined
-def z_rate(z, velocity, yields, stiffness, exponent):
-    """Rate of z [1/s] of a spring in contact, from its velocity [m/s] and 1/δ_y [1/m].
+def softening(m, x):
+    """Share of a spring's stiffness that is lost on the inelastic branch, at the force ``x`` = |z| from 0 to 1: xⁿ."""
+    return power(x, m.exponent)
+
+
+@inlined
+def z_rate(m, z, velocity, yields):
+    """Rate of z [1/s] of a spring in contact, from its velocity [m/s].
 
     A step too long for a hard landing may try z < −1: the law ends at −1 (see :func:`within_yield`), for beyond it
     would throw z back with all the more force and let a pressed spring separate.
     """
-    rate = velocity * stiffness
+    rate = velocity * m.stiffness
     if yields != 0.0:
-        rate *= 1.0 - power(min(max(-z, 0.0), 1.0), exponent)
+        rate *= 1.0 - softening(m, min(max(-z, 0.0), 1.0))
     return rate
 
 
@@ -123,17 +129,17 @@ def static_deflection(force, exponent):
 
 
 @kernel
-def deflection(law, force, exponent):
+def deflection(m, force):
     """Deflection/δ_y of a spring of any law that is first loaded to ``force``/F_y < 1."""
-    return static_deflection(force, exponent) if law == BOUC_WEN else force
+    return static_deflection(force, m.exponent) if m.law == BOUC_WEN else force
 
 
 @kernel
-def give(law, force, exponent):
+def give(m, force):
     """δ_y/F_y times the rate of deflection with force, of a spring that is loaded with ``force``/F_y up to 1."""
-    if law != BOUC_WEN:
+    if m.law != BOUC_WEN:
         return 1.0
-    return 1.0 / (1.0 - power(min(max(force, 0.0), 1.0 - 1e-12), exponent))
+    return 1.0 / (1.0 - softening(m, min(max(force, 0.0), 1.0 - 1e-12)))
 
 
 @kernel
@@ -166,7 +172,7 @@ def _integral(middle, half, n):
 
 
 @kernel
-def plastic_work(z_from, z_to, plastic_deflection, yield_deflection, exponent):
+def plastic_work(m, z_from, z_to, plastic_deflection):
     """Work/F_y [m] dissipated while a spring is compressed on its inelastic branch from ``z_from`` to ``z_to``.
 
     The law does not depend on the rate, so the work follows from the two ends: with x = |z| the plastic deflection
@@ -176,4 +182,4 @@ def plastic_work(z_from, z_to, plastic_deflection, yield_deflection, exponent):
     start, end = max(-z_from, 0.0), max(-z_to, 0.0)
     half = 0.5 * (end - start)
     middle = 0.5 * (end + start)
-    return plastic_deflection - yield_deflection * half * _integral(middle, half, exponent)
+    return plastic_deflection - m.yield_deflection * half * _integral(middle, half, m.exponent)

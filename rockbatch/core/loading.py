@@ -30,7 +30,7 @@ def _branch(m, was, now, begun, z_begun, place, z, work):
 @kernel
 def _closed(m, begun, z_begun, work, unstressed, z):
     """The same, at the end of an inelastic branch, in a spring that is unstressed at ``unstressed`` from then on."""
-    work += plastic_work(z_begun, z, begun - unstressed, m.yield_deflection, m.exponent)
+    work += plastic_work(m, z_begun, z, begun - unstressed)
     return unstressed, z, work
 
 

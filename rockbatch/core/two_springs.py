@@ -50,7 +50,7 @@ NONE = np.int64(0)  # a literal 0 would have every function that it is handed to
 def static_state(m):
     """Equilibrium under the weight alone: z = −1/η on the first loading of both springs."""
     force = 0.5 * m.gravity / m.yield_force
-    return State(-m.yield_deflection * deflection(m.law, force, m.exponent), 0.0, 0.0, 0.0, -force, -force)
+    return State(-m.yield_deflection * deflection(m, force), 0.0, 0.0, 0.0, -force, -force)
 
 
 @inlined

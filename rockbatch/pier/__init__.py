@@ -3,6 +3,7 @@
 from rockbatch.pier.bases import (
     LEAST_ETA,
     MOST_ETA,
+    WITH_EXPONENT,
     Base,
     ElasticBase,
     Flight,
@@ -27,6 +28,7 @@ from rockbatch.pier.block import Part, Pier, described
 __all__ = [
     "LEAST_ETA",
     "MOST_ETA",
+    "WITH_EXPONENT",
     "Base",
     "ElasticBase",
     "Flight",

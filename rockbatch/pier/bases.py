@@ -4,8 +4,8 @@ Values are checked where they meet: :func:`problems` says what is impossible abo
 """
 
 import math
-from dataclasses import dataclass, field
-from typing import Any, Literal, Self
+from dataclasses import dataclass, field, replace
+from typing import Any, Literal, Self, get_args
 
 from rockbatch.errors import InputError
 from rockbatch.pier.block import Pier, not_positive
@@ -19,6 +19,12 @@ MOST_ETA = 100.0
 Kinematics = Literal["first-order", "finite"]
 Flight = Literal["stop", "guided"]
 SpringLaw = Literal["bouc-wen", "epp"]
+
+WITH_EXPONENT: tuple[SpringLaw, ...] = ("bouc-wen",)
+"""Laws that an exponent n belongs to; the others have a sharp corner."""
+
+OTHER_LAW: dict[SpringLaw, SpringLaw] = {"bouc-wen": "epp", "epp": "bouc-wen"}
+"""For each law the one that shows how much a settlement hangs on it (THEORY.md, 7)."""
 
 
 @dataclass(frozen=True)
@@ -86,6 +92,15 @@ class YieldingBase(ElasticBase):
 
     name = "yielding"
 
+    @property
+    def has_exponent(self) -> bool:
+        """Whether ``n`` means anything to these springs."""
+        return self.spring in WITH_EXPONENT
+
+    def by_other_law(self) -> Self:
+        """The same springs by the other law: Bouc–Wen for elastic–perfectly plastic, and the reverse."""
+        return replace(self, spring=OTHER_LAW[self.spring])
+
     @classmethod
     def from_stiffness(cls, pier: Pier, stiffness_kN_m: float, yield_kN: float | None = None, **rest: Any) -> Self:
         """As :meth:`ElasticBase.from_stiffness`, with the yield force F_y of one support [kN], or with ``eta``."""
@@ -130,7 +145,7 @@ def least_beta(pier: Pier, base: ElasticBase) -> float:
     A Bouc–Wen spring under the weight, z = −1/η, is softer where it is loaded than where it is unloaded, by the factor
     r = 1 − η⁻ⁿ; both together have 2r/(1 + r) of the elastic springs' stiffness in rotation.
     """
-    if not (isinstance(base, YieldingBase) and base.spring == "bouc-wen" and base.eta > 1 and base.n >= 1):
+    if not (isinstance(base, YieldingBase) and base.has_exponent and base.eta > 1 and base.n >= 1):
         return pier.least_beta
     softer = -math.expm1(-base.n * math.log(base.eta))
     return pier.least_beta * math.sqrt((1.0 + softer) / (2.0 * softer))
@@ -203,18 +218,20 @@ def problems(pier: Pier, base: Base) -> list[str]:
         )
     if not 0 <= base.epsilon <= 1:
         wrong.append(f"epsilon = {base.epsilon:g}: the landing pivot's restitution must be within 0..1")
-    if base.kinematics not in ("first-order", "finite"):
-        wrong.append(f'kinematics = "{base.kinematics}": must be "first-order" or "finite"')
-    if base.flight not in ("stop", "guided"):
-        wrong.append(f'flight = "{base.flight}": must be "stop" or "guided"')
+    wrong += _unknown("kinematics", base.kinematics, get_args(Kinematics))
+    wrong += _unknown("flight", base.flight, get_args(Flight))
     if isinstance(base, YieldingBase):
         if not (math.isfinite(base.eta) and base.eta >= LEAST_ETA):
             wrong.append(
                 f"eta = {base.eta:.10g}: the springs cannot carry the weight; eta = yield force over static force must "
                 f"be above 1 (at least {LEAST_ETA:.6f})"
             )
-        if base.spring not in ("bouc-wen", "epp"):
-            wrong.append(f'spring = "{base.spring}": must be "bouc-wen" or "epp"')
+        wrong += _unknown("spring", base.spring, get_args(SpringLaw))
         if not (math.isfinite(base.n) and base.n >= 1):
             wrong.append(f"n = {base.n:g}: the Bouc–Wen exponent must be at least 1")
     return wrong
+
+
+def _unknown(key: str, word: str, known: tuple[str, ...]) -> list[str]:
+    """What is wrong about ``word`` unless it is one of the known ones."""
+    return [] if word in known else [f'{key} = "{word}": must be ' + " or ".join(f'"{each}"' for each in known)]

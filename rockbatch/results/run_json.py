@@ -97,7 +97,7 @@ def _describe_base(pier: Pier, base: Base) -> dict[str, Any]:
             "n": base.n,
             "delta_y_m": yield_deflection(pier, base),
         }
-        if base.spring == "epp":
+        if not base.has_exponent:
             del told["n"]
     return told
 

@@ -12,6 +12,7 @@ from rockbatch.pier import (
     ElasticBase,
     Pier,
     RigidBase,
+    SpringLaw,
     YieldingBase,
     highest_frequency,
     rocking_frequency,
@@ -33,14 +34,18 @@ READ_AFTER = 5.0
 """Periods 2π/ω_v of the vertical vibration from the end of the record to the moment at which residuals are read."""
 
 
+LAWS: dict[SpringLaw, float] = {"bouc-wen": BOUC_WEN, "epp": EPP}
+"""The core's codes of the laws of yielding springs."""
+
+
 @lru_cache(maxsize=4096)
 def springs(pier: Pier, base: ElasticBase) -> Springs:
     """What the core takes for ``pier`` on springs: plain floats, per unit mass."""
     exponent: float | int | None = None
     eta, law = 1.0, ELASTIC  # an elastic spring is measured by its static force and deflection
     if isinstance(base, YieldingBase):
-        eta, law = base.eta, BOUC_WEN if base.spring == "bouc-wen" else EPP
-        exponent = _exponent(base.n) if law == BOUC_WEN else None
+        eta, law = base.eta, LAWS[base.spring]
+        exponent = _exponent(base.n) if base.has_exponent else None
     omega_v = vertical_frequency(pier, base)
     return Springs(
         half_width=float(pier.half_width),

@@ -12,9 +12,10 @@ import numpy as np
 
 from rockbatch.core.equations import rates
 from rockbatch.core.events import at_rest, signals
+from rockbatch.core.laws import branch_when_pressed
 from rockbatch.core.transitions import Supports, handle
 from rockbatch.core.two_springs import static_state
-from rockbatch.core.types import BOUC_WEN, Contact, State
+from rockbatch.core.types import Contact, State
 from rockbatch.motions.motion import Motion
 from rockbatch.pier import ElasticBase, Pier, vertical_frequency
 from rockbatch.simulation.models import springs
@@ -53,7 +54,7 @@ def solve(
     tolerances = {"rtol": tolerance, "atol": tolerance * np.array(scale)}
 
     t, y = 0.0, static_state(m)
-    branch = 1.0 if m.law == BOUC_WEN else 0.0
+    branch = branch_when_pressed(m.law)
     contact, supports = Contact(1.0, 1.0, branch, branch, 0.0), Supports(math.nan, math.nan)
 
     def rhs(s: float, y: Any) -> Any:

@@ -2,13 +2,17 @@
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, replace
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, get_args
 
 from rockbatch.pier import (
+    WITH_EXPONENT,
     Base,
     ElasticBase,
+    Flight,
+    Kinematics,
     Pier,
     RigidBase,
+    SpringLaw,
     YieldingBase,
     beta_of,
     eta_of,
@@ -27,13 +31,13 @@ _ELASTIC = {
     "stiffness_kN_m": Key(positive, "2.0e6", many=True),
     "mass_t": Key(positive, "3000.0", many=True),
     "epsilon": Key(number, "0.05", many=True),
-    "kinematics": Key(choice("first-order", "finite"), '"first-order"', many=True),
-    "flight": Key(choice("stop", "guided"), '"stop"', many=True),
+    "kinematics": Key(choice(*get_args(Kinematics)), '"first-order"', many=True),
+    "flight": Key(choice(*get_args(Flight)), '"stop"', many=True),
 }
 _YIELDING = _ELASTIC | {
     "eta": Key(number, "2.5", many=True),
     "yield_kN": Key(positive, "4.0e4", many=True),
-    "spring": Key(choice("bouc-wen", "epp"), '"bouc-wen"', many=True),
+    "spring": Key(choice(*get_args(SpringLaw)), '"bouc-wen"', many=True),
     "n": Key(number, "5", many=True),
 }
 _BASES = {"rigid": _RIGID, "elastic": _ELASTIC, "yielding": _YIELDING}
@@ -103,7 +107,7 @@ def _expand(case: _Read, chosen: Chosen, pier: Pier, pier_values: Values) -> Exp
     if isinstance(base, ElasticBase) and not wrong and pier.mass_t is not None:
         complain_unless_usual_support(case.table, chosen, pier, base, case.believed)
     applying = {key: value for key, value in asdict(base).items() if value is not None} | given
-    if applying.get("spring") == "epp":
+    if isinstance(base, YieldingBase) and not base.has_exponent:
         del applying["n"]
     return Expanded(case.name, pier, base, pier_values | applying)
 
@@ -131,7 +135,7 @@ def _without_repeats(all_of_them: Iterable[Chosen]) -> Iterator[Chosen]:
     """Without n where the spring has none; what is then alike comes once."""
     seen = set()
     for chosen in all_of_them:
-        if "spring" in chosen and chosen["spring"].value == "epp":
+        if "spring" in chosen and chosen["spring"].value not in WITH_EXPONENT:
             chosen.pop("n", None)
         identity = tuple(chosen.items())
         if identity not in seen:
@@ -151,9 +155,11 @@ def _case(table: Table) -> tuple[dict[str, Any], dict[str, list[Setting]], Colle
         + " or ".join(f'base = "{other}"' for other in _BASES if name in _BASES[other])
         for name in BASE_KEYS.keys() - keys.keys()
     }
-    if table.data.get("spring") in ("epp", ["epp"]) and "n" in keys:
+    if (sharp := _without_exponent(table)) and "n" in keys:
         keys = {name: key for name, key in keys.items() if name != "n"}
-        unfit["n"] = 'does not apply to spring = "epp" (sharp corner); leave it out, or write spring = "bouc-wen"'
+        unfit["n"] = f"does not apply to spring = {sharp} (sharp corner); leave it out, or write " + " or ".join(
+            f'spring = "{law}"' for law in WITH_EXPONENT
+        )
     if has_mass(table.file) and "mass_t" in keys:
         keys = {name: key for name, key in keys.items() if name != "mass_t"}
         unfit["mass_t"] = "[pier] says already what the pier weighs; leave it out"
@@ -167,6 +173,14 @@ def _case(table: Table) -> tuple[dict[str, Any], dict[str, list[Setting]], Colle
     if "mass_t" in table.data and "mass_t" in keys and not {"stiffness_kN_m", "yield_kN"} & table.data.keys():
         table.complain("mass_t is for use with stiffness_kN_m or yield_kN; leave it out", "mass_t")
     return read, {name: value for name, value in read.items() if name not in CASE}, believed
+
+
+def _without_exponent(table: Table) -> str:
+    """The laws that are written, as they are shown, if none of them has an exponent."""
+    written = table.data.get("spring")
+    laws = written if isinstance(written, list) else [written]
+    sharp = [law for law in laws if law in get_args(SpringLaw) and law not in WITH_EXPONENT]
+    return " or ".join(map(shown, sharp)) if sharp == laws else ""
 
 
 def _check_one_of(table: Table, ratio: str, absolute: str) -> None:

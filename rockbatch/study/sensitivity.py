@@ -3,11 +3,11 @@
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from itertools import product
-from typing import Any
+from typing import Any, get_args
 
 from rockbatch.checks.statistics import STATISTICS
 from rockbatch.errors import InputError
-from rockbatch.pier import ElasticBase, beta_of, eta_of, in_kilonewtons, problems
+from rockbatch.pier import ElasticBase, Kinematics, SpringLaw, beta_of, eta_of, in_kilonewtons, problems
 from rockbatch.study.ranges import range_of
 from rockbatch.study.spec import Case, Study
 from rockbatch.toml.kinds import KindError, boolean, choice, count, number, positive, shown
@@ -61,8 +61,8 @@ _RANGES = {
 UNIFORM = _RANGES
 LOG_UNIFORM = {name: replace(key, kind=positive) for name, key in _RANGES.items()}
 CHOICE = {
-    "kinematics": Key(choice("first-order", "finite"), '["first-order", "finite"]', many=True),
-    "spring": Key(choice("bouc-wen", "epp"), '["bouc-wen", "epp"]', many=True),
+    "kinematics": Key(choice(*get_args(Kinematics)), '["first-order", "finite"]', many=True),
+    "spring": Key(choice(*get_args(SpringLaw)), '["bouc-wen", "epp"]', many=True),
     "vertical": Key(boolean, "[true, false]", many=True),
     "polarity": Key(choice("+", "-"), '["+", "-"]', many=True),
 }

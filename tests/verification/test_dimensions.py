@@ -130,12 +130,14 @@ def test_a_landing_ends_in_a_state(finite):
 def test_the_spring_law_gives_rates_deflections_and_work(n):
     """Work is divided by the yield force, hence a length; the static deflection by δ_y, hence a number."""
     exponent = n * ONE
+    m = pier(None)._replace(exponent=exponent)
     for yields in (0.0, 1.0):
-        rate = laws.z_rate(-0.6 * ONE, -0.1 * SPEED, yields, 100.0 / M, exponent)
+        rate = laws.z_rate(m, -0.6 * ONE, -0.1 * SPEED, yields)
         assert_units([rate, laws.within_yield(-0.6 * ONE, yields)], [1 / S, ONE])
     assert_units([laws.static_deflection(0.4 * ONE, exponent)], [ONE])
-    work = laws.plastic_work(-0.2 * ONE, -0.6 * ONE, 0.001 * M, 0.01 * M, exponent)
-    assert_units([work], [M])
+    work = laws.plastic_work(m, -0.2 * ONE, -0.6 * ONE, 0.001 * M)
+    given = [laws.deflection(m, 0.4 * ONE), laws.give(m, 0.4 * ONE)]
+    assert_units([work, *given], [M, ONE, ONE])
 
 
 @KINEMATICS
