@@ -6,21 +6,40 @@ nothing. What is left over tests the equations, the events and the impacts at on
 """
 
 import math
+from typing import NamedTuple
 
 from rockbatch.core.equations import accelerations, geometry, rates
 from rockbatch.core.kernel import entry, kernel
+from rockbatch.core.records import record
 from rockbatch.core.rigid.equations import acceleration
 from rockbatch.core.types import IMPACT_BOTH, IMPACT_LEFT, IMPACT_RIGHT, LIFT_OFF, Contact, State
 
 
+class Energies(NamedTuple):
+    """Terms of the ledger [J/kg]: what is stored, relative to the start; what went in and out since; what is left over."""
+
+    kinetic: float
+    potential: float
+    elastic: float
+    input: float
+    plastic: float
+    impact: float
+    p_delta: float
+    constraint: float
+    remainder: float
+
+
+LEDGER = record(Energies)
+
+
 @kernel
 def _state(row):
-    return State(row[1], row[2], row[3], row[4], row[5], row[6])
+    return State(row.v, row.theta, row.v_rate, row.omega, row.z_left, row.z_right)
 
 
 @kernel
 def _contact(row):
-    return Contact(row[7], row[8], row[9], row[10], row[11])
+    return Contact(row.left, row.right, row.left_yields, row.right_yields, row.held)
 
 
 @kernel
@@ -102,15 +121,14 @@ def ledger_on_springs(m, rows, ground, dt, out):
     Parameters
     ----------
     m : Springs
-    rows : ndarray, shape (n, 13)
+    rows : recarray of recording.Row, shape (n,)
         History as the run wrote it, every step.
     ground : ndarray, shape (npts, 4)
         The motion of the run, of :func:`rockbatch.core.ground.ground_rows`.
     dt : float
         Its sampling interval [s].
-    out : ndarray of zeros, shape (n, 9)
-        Filled with kinetic, potential, elastic, input, plastic, impact, p_delta, constraint and remainder [J/kg] at
-        every row; stored energies relative to the start, the others summed since.
+    out : recarray of Energies, zeros, shape (n,)
+        Filled at every row.
     """
     y = _state(rows[0])
     kinetic0, potential0, elastic0 = _stored(m, y, _contact(rows[0]))
@@ -118,7 +136,7 @@ def ledger_on_springs(m, rows, ground, dt, out):
     for i in range(1, len(rows)):
         y_end = _state(rows[i])
         contact = _contact(rows[i])
-        kind = int(rows[i, 12])
+        kind = int(rows[i].kind)
         if kind > 0:  # the other side of an event
             at = geometry(m, y.theta)
             if kind in (IMPACT_LEFT, IMPACT_RIGHT, IMPACT_BOTH):
@@ -128,7 +146,7 @@ def ledger_on_springs(m, rows, ground, dt, out):
                 both = at.lever * at.lever * (y_end.omega * y_end.omega - y.omega * y.omega)
                 constraint += 0.5 * (now * now * y_end.omega * y_end.omega - was * was * y.omega * y.omega - both)
         else:
-            t, t_end = rows[i - 1, 0], rows[i, 0]
+            t, t_end = rows[i - 1].t, rows[i].t
             h = t_end - t
             t_middle = 0.5 * (t + t_end)
             ah, av = _ground_at(ground, dt, t_middle, t)
@@ -147,9 +165,11 @@ def ledger_on_springs(m, rows, ground, dt, out):
             constraint += h / 6.0 * (c0 + 4.0 * c1 + c2)
         kinetic, potential, elastic = _stored(m, y_end, contact)
         line = out[i]
-        line[0], line[1], line[2] = kinetic - kinetic0, potential - potential0, elastic - elastic0
-        line[3], line[4], line[5], line[6], line[7] = shaken, plastic, impact, p_delta, constraint
-        line[8] = line[0] + line[1] + line[2] - shaken + plastic + impact - p_delta - constraint
+        line.kinetic, line.potential, line.elastic = kinetic - kinetic0, potential - potential0, elastic - elastic0
+        line.input, line.plastic, line.impact = shaken, plastic, impact
+        line.p_delta, line.constraint = p_delta, constraint
+        stored = line.kinetic + line.potential + line.elastic
+        line.remainder = stored - shaken + plastic + impact - p_delta - constraint
         y = y_end
 
 
@@ -157,21 +177,21 @@ def ledger_on_springs(m, rows, ground, dt, out):
 def ledger_on_rigid_base(m, rows, ground, dt, out):
     """Ledger of a run on a rigid base, over the moment of inertia about a pivot, I0/M + R0².
 
-    ``m`` is a Block, ``rows`` of shape (n, 4) its history; otherwise as :func:`ledger_on_springs`. At rest, where the
+    ``m`` is a Block, ``rows`` (rigid.lane.Row) its history; otherwise as :func:`ledger_on_springs`. At rest, where the
     block is held by both corners, nothing changes.
     """
-    theta, omega = rows[0, 1], rows[0, 2]
+    theta, omega = rows[0].theta, rows[0].omega
     kinetic0 = 0.5 * omega * omega
     height0 = math.cos(m.alpha - abs(theta))
     shaken, impact = 0.0, 0.0
     for i in range(1, len(rows)):
-        end_theta, end_omega = rows[i, 1], rows[i, 2]
-        kind = int(rows[i, 3])
+        end_theta, end_omega = rows[i].theta, rows[i].omega
+        kind = int(rows[i].kind)
         if kind > 0:
             if kind != LIFT_OFF:
                 impact += 0.5 * (omega * omega - end_omega * end_omega)
         elif theta != 0.0 or omega != 0.0 or end_theta != 0.0 or end_omega != 0.0:
-            t, t_end = rows[i - 1, 0], rows[i, 0]
+            t, t_end = rows[i - 1].t, rows[i].t
             h = t_end - t
             t_middle = 0.5 * (t + t_end)
             leaning = theta + end_theta if theta != 0.0 or end_theta != 0.0 else omega  # a bounce between two impacts
@@ -187,10 +207,10 @@ def ledger_on_rigid_base(m, rows, ground, dt, out):
             s2 = _push(m, end_theta, side, ah_end, av_end) * end_omega
             shaken += h / 6.0 * (s0 + 4.0 * s1 + s2)
         line = out[i]
-        line[0] = 0.5 * end_omega * end_omega - kinetic0
-        line[1] = m.p * m.p * (math.cos(m.alpha - abs(end_theta)) - height0)
-        line[3], line[5] = shaken, impact
-        line[8] = line[0] + line[1] - shaken + impact
+        line.kinetic = 0.5 * end_omega * end_omega - kinetic0
+        line.potential = m.p * m.p * (math.cos(m.alpha - abs(end_theta)) - height0)
+        line.input, line.impact = shaken, impact
+        line.remainder = line.kinetic + line.potential - shaken + impact
         theta, omega = end_theta, end_omega
 
 

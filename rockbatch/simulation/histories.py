@@ -5,7 +5,8 @@ import math
 import numpy as np
 
 from rockbatch.core import types
-from rockbatch.core.ledger import ledger_on_rigid_base, ledger_on_springs
+from rockbatch.core.ledger import LEDGER, ledger_on_rigid_base, ledger_on_springs
+from rockbatch.core.records import numbers
 from rockbatch.errors import InputError
 from rockbatch.motions.motion import Motion, Samples
 from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, problems
@@ -93,8 +94,8 @@ def simulate(
     return histories(run, outcome, quiet_s, case or foundation.name, {}, ledger, wait=wait)
 
 
-def written(run: Run, outcome: Outcome, quiet_s: float, every_step: bool, wait: bool = True) -> Samples:
-    """A run whose outcome is known, written down: the rows of the core, shape (n, 13) or (n, 4).
+def written(run: Run, outcome: Outcome, quiet_s: float, every_step: bool, wait: bool = True) -> np.recarray:
+    """A run whose outcome is known, written down: a record for each moment, as ``recording.Row`` or ``rigid.lane.Row``.
 
     Raises ``InputError`` where they would be more than :data:`MOST_ROWS`.
     """
@@ -109,19 +110,19 @@ def written(run: Run, outcome: Outcome, quiet_s: float, every_step: bool, wait: 
         raise InputError(f"{run.motion.name}: a history of {found.rows} rows, more than {MOST_ROWS}; {instead}")
     if found.rows > capacity:
         found, rows = written_run(run, outcome.substeps, quiet_s, found.rows, every_step=every_step, wait=wait)
-    return rows[: found.rows]
+    return rows[: found.rows].view(np.recarray)
 
 
-def energies(run: Run, rows: Samples) -> Samples:
+def energies(run: Run, rows: np.recarray) -> Samples:
     """Energy ledger [J/kg] at every row of a run: :data:`rockbatch.results.columns.TERMS`, shape (n, 9)."""
     pier, base = run.pier, run.base
     ground, dt = ground_of(run.motion), float(run.motion.dt)
-    ledger = np.zeros((len(rows), len(TERMS)))
+    ledger = np.zeros(len(rows), LEDGER).view(np.recarray)
     if isinstance(base, RigidBase):
         ledger_on_rigid_base(block(pier, base), rows, ground, dt, ledger)
-        return pier.inertia_about_pivot * ledger
+        return pier.inertia_about_pivot * numbers(ledger)
     ledger_on_springs(springs(pier, base), rows, ground, dt, ledger)
-    return ledger
+    return numbers(ledger)
 
 
 def histories(
@@ -143,30 +144,30 @@ def histories(
 
     pier, base, motion = run.pier, run.base, run.motion
     rows = written(run, outcome, quiet_s, every_step=ledger, wait=wait)
-    shown = rows[:, -1] != types.STEP
+    shown = rows.kind != types.STEP
     shown[-1] = True  # an overturned pier may fall between samples
     table = None
     if ledger:
         table = pd.DataFrame(energies(run, rows)[shown], columns=list(TERMS))
-        table.insert(0, "t", rows[shown, 0])
+        table.insert(0, "t", rows.t[shown])
     rows = rows[shown]
     state = _rigid_state(pier, rows) if isinstance(base, RigidBase) else _springs_state(pier, base, rows)
-    t = rows[:, 0]
+    t = rows.t.copy()
     vertical = np.zeros(len(t)) if motion.vertical is None else _ground(motion.vertical, motion.dt, t)
     history = pd.DataFrame({"t": t, **state, "ag_h": _ground(motion.horizontal, motion.dt, t), "ag_v": vertical})
     events = pd.DataFrame(_events(rows, outcome.t_flight), columns=list(EVENT_TYPES)).astype(EVENT_TYPES)
     return Response(motion.name, case, columns, pier, base, outcome.status, history, events, table, polarity, scale)
 
 
-def _events(rows: Samples, t_flight: float | None) -> list[tuple[float, str, str, int, int]]:
+def _events(rows: np.recarray, t_flight: float | None) -> list[tuple[float, str, str, int, int]]:
     """Time, kind and pivot of every event, and the rows before and after it."""
-    kinds = rows[:, -1]
+    kinds = rows.kind
     found = []
     for after in np.flatnonzero(kinds > 0):
         jumps = kinds[after - 1] == types.BEFORE_EVENT
-        found.append((float(rows[after, 0]), *_EVENTS[int(kinds[after])], int(after - jumps), int(after)))
+        found.append((float(rows.t[after]), *_EVENTS[int(kinds[after])], int(after - jumps), int(after)))
     if t_flight is not None:
-        last = int(np.searchsorted(rows[:, 0], t_flight, side="right")) - 1
+        last = int(np.searchsorted(rows.t, t_flight, side="right")) - 1
         found.append((t_flight, "flight", "", last, last))
         found.sort(key=lambda event: event[0])
     return found
@@ -178,8 +179,8 @@ def _ground(acceleration: Samples, dt: float, t: Samples) -> Samples:
     return np.interp(t, np.arange(len(samples)) * dt, samples)
 
 
-def _rigid_state(pier: Pier, rows: Samples) -> dict[str, Samples]:
-    theta, omega = rows[:, 1], rows[:, 2]
+def _rigid_state(pier: Pier, rows: np.recarray) -> dict[str, Samples]:
+    theta, omega = rows.theta, rows.omega
     absent = np.full(len(rows), np.nan)
     climbed = np.cos(pier.alpha - np.abs(theta)) - math.cos(pier.alpha)
     energy = 0.5 * pier.inertia_about_pivot * omega**2 + pier.gravity * pier.size * climbed
@@ -187,25 +188,25 @@ def _rigid_state(pier: Pier, rows: Samples) -> dict[str, Samples]:
     return {"theta": theta, "omega": omega, **none, "energy": energy}
 
 
-def _springs_state(pier: Pier, base: ElasticBase, rows: Samples) -> dict[str, Samples]:
+def _springs_state(pier: Pier, base: ElasticBase, rows: np.recarray) -> dict[str, Samples]:
     """State, pivots, and the energy stored since the start (THEORY.md): kinetic, potential and elastic."""
     m = springs(pier, base)
-    v, theta, v_rate, omega, z_left, z_right, on_left, on_right = rows[:, 1:9].T
+    v, theta, z_left, z_right = rows.v, rows.theta, rows.z_left, rows.z_right
     b, h = m.half_width, m.height
     rise, drop, lever = b * theta, np.zeros(len(rows)), np.full(len(rows), h)
     if m.finite is not None:
         rise, drop = b * np.sin(theta), h * (1.0 - np.cos(theta))
-        lever = h * np.cos(theta) + (on_right - on_left) * rise
+        lever = h * np.cos(theta) + (rows.right - rows.left) * rise
     elastic = z_left**2 + z_right**2
     energy = (
-        0.5 * v_rate**2
-        + 0.5 * (m.inertia + lever**2) * omega**2
+        0.5 * rows.v_rate**2
+        + 0.5 * (m.inertia + lever**2) * rows.omega**2
         + m.gravity * (v - v[0])
         + 0.5 * m.yield_force * m.yield_deflection * (elastic - elastic[0])
     )
     return {
         "theta": theta,
-        "omega": omega,
+        "omega": rows.omega,
         "v": v,
         "z_left": z_left,
         "z_right": z_right,

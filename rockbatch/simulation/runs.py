@@ -10,7 +10,6 @@ import numpy as np
 from rockbatch.core import two_springs
 from rockbatch.core.outcome import ON_ITS_SIDE
 from rockbatch.core.recording import ROW
-from rockbatch.core.records import numbers
 from rockbatch.core.rigid import runs as rigid
 from rockbatch.core.types import (
     CHATTER,
@@ -122,17 +121,17 @@ def written_run(
     locate: bool = True,
     every_step: bool = False,
     wait: bool = True,
-) -> tuple[SpringRun | RigidRun, Samples]:
+) -> tuple[SpringRun | RigidRun, np.recarray]:
     """One run, and its history of at most ``rows`` rows; with ``every_step`` also between samples."""
     lines, ground, stop = [_line(run, substeps, quiet_s, 0, wait)], ground_of(run.motion), Stop().flag
     if isinstance(run.base, RigidBase):
         written = np.recarray(rows, rigid.ROW)
         result = rigid.rock_side_by_side(lines, ground, stop, locate, every_step, written)[0]
-        return rigid.rigid_run(result), numbers(written)
+        return rigid.rigid_run(result), written
     m = springs(run.pier, run.base)
     written = np.recarray(rows, ROW)
     result = two_springs.rock_side_by_side(m.exponent, m.finite, lines, ground, stop, locate, every_step, written)[0]
-    return two_springs.spring_run(result), numbers(written)
+    return two_springs.spring_run(result), written
 
 
 def run_fixed(

@@ -5,6 +5,8 @@ import pytest
 from studies import PADS, RIGID, study_text, write_study
 
 import rockbatch as rb
+from rockbatch.core.ledger import Energies
+from rockbatch.results.columns import TERMS
 
 PIER = rb.Pier(0.2, 1.0)
 T = np.arange(0, 8.001, 0.01)
@@ -104,3 +106,7 @@ def test_a_study_that_asks_gets_the_ledger_and_the_other_law_as_columns(tmp_path
 def test_a_study_that_does_without_has_no_such_columns(tmp_path):
     path = write_study(tmp_path, STUDY + "[output]\nboth_laws = false\n")
     assert not [name for name in rb.run(path).columns if "energy" in name or "other_law" in name]
+
+
+def test_the_columns_of_the_ledger_are_the_terms_of_the_core_in_their_order():
+    assert Energies._fields == TERMS

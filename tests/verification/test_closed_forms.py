@@ -178,13 +178,13 @@ def test_impact_scales_the_landing_velocity_loses_its_energy_and_keeps_the_angul
     run, rows = written_run(Run(FIG5, base, motion), 4, 0.0, 5000)
     rows = rows[: run.rows]
     m = springs(FIG5, base)
-    landings = np.flatnonzero(np.isin(rows[:, -1], (3, 4)))
+    landings = np.flatnonzero(np.isin(rows.kind, (3, 4)))
     assert len(landings) >= 5
     for i in landings:
-        at = geometry(m, rows[i, 2])
-        arm = at.arm_left if rows[i, -1] == 3 else at.arm_right
+        at = geometry(m, rows[i].theta)
+        arm = at.arm_left if rows[i].kind == 3 else at.arm_right
         inertia = m.inertia + at.lever**2
-        (v_before, w_before), (v_after, w_after) = rows[i - 1, 3:5], rows[i, 3:5]
+        (v_before, w_before), (v_after, w_after) = ((row.v_rate, row.omega) for row in rows[i - 1 : i + 1])
         landing = v_before + arm * w_before
         scale = abs(v_before) + abs(arm * w_before)
         assert landing < 0.0

@@ -321,7 +321,7 @@ def test_a_block_that_lands_without_velocity_rests_there():
     def speed_in_the_middle(pull: float) -> float:
         half = Motion("half", dt, motion(pull).horizontal[: middle + 1])
         run, rows = written_run(Run(FIG5, RigidBase(), half), 8, 0.0, 5000, wait=False)
-        return float(rows[run.rows - 1, 2])
+        return float(rows[run.rows - 1].omega)
 
     pull = brentq(speed_in_the_middle, 0.1, 1.5, xtol=1e-15, rtol=1e-15)
     lift_off = rb.simulate(FIG5, RigidBase(), motion(pull), substeps=8, quiet_s=0.0, wait=False).events.t.iloc[0]

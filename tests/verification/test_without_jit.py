@@ -29,7 +29,6 @@ from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase
 from rockbatch.simulation import Run, written_run
 
 DT = 0.02
-HELD = -2  # column of a history on springs
 SINE = pulse("sine", 0.5, dt=DT, end=1.6)
 SHAKEN = Motion("shaken", DT, SINE.horizontal, broadband(np.random.default_rng(3), DT, SINE.npts, 12.0))
 STOCKY = Motion("stocky", DT, 20.55 * np.sin(2 * math.pi * 1.18 * DT * np.arange(60)))
@@ -55,9 +54,9 @@ def results() -> dict[str, Any]:
         rows = history[: run.rows]
         found[name] = {
             "run": run._asdict(),
-            "events": [int(kind) for kind in rows[:, -1] if kind > SAMPLE],
+            "events": [int(kind) for kind in rows.kind if kind > SAMPLE],
             "end": list(rows[-1]),
-            "held": not isinstance(base, RigidBase) and bool(rows[:, HELD].any()),
+            "held": not isinstance(base, RigidBase) and bool(rows.held.any()),
         }
     return found
 
