@@ -81,7 +81,7 @@ def test_after_ctrl_c_or_an_error_come_the_groups_that_are_finished(study, runs,
     with pytest.raises(error):  # noqa: PT012
         for group in Threads(1).outcomes(runs, study.numerics):
             found += [index for index, _ in group]
-    assert found[:2] == [0, 1]
+    assert sorted(found[:2]) == [0, 1]  # groups come as they finish, and two may have by the time they are asked for
     assert 2 not in found
 
 

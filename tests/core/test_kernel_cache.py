@@ -36,9 +36,9 @@ def test_an_edit_in_a_called_kernel_changes_the_next_run(tmp_path):
     assert run_copy(tmp_path) == before  # from the cache
     source = package / "core" / "laws.py"
     text = source.read_text(encoding="utf-8")
-    assert text.count("rate = velocity * stiffness") == 1
+    assert text.count("rate = velocity * m.stiffness") == 1
     source.write_text(
-        text.replace("rate = velocity * stiffness", "rate = 2.0 * velocity * stiffness"),
+        text.replace("rate = velocity * m.stiffness", "rate = 2.0 * velocity * m.stiffness"),
         encoding="utf-8",
     )
     assert abs(run_copy(tmp_path) / before - 1.0) > 0.01
