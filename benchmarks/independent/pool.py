@@ -15,7 +15,7 @@ from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, YieldingBase
 
 from .reference import reference
 
-RECORDS = Path(os.environ.get("ROCKBATCH_RECORDS", Path(__file__).parents[2].parent / "shared" / "motions"))
+RECORDS = Path(os.environ.get("ROCKBATCH_RECORDS", "no-records"))
 Rng = np.random.Generator
 
 

@@ -1,7 +1,6 @@
 """From records at rising intensities to fragility curves: scaling, limits, bisection, resuming, files and messages."""
 
 import csv
-import itertools
 import json
 import math
 from dataclasses import replace
@@ -14,7 +13,6 @@ from studies import PADS, RIGID, SINE, study_text, write_study
 import rockbatch as rb
 from rockbatch.analysis.fragility_curves import ScaledRuns, assess, intensities
 from rockbatch.analysis.fragility_tables import described, points
-from rockbatch.analysis.ida import Bracket, Capacity, bisect, capacity
 from rockbatch.analysis.limit_states import EXCEEDED, LEFT_OUT, UNDECIDED, WITHSTOOD, states
 from rockbatch.analysis.lognormal import Capacities, fit
 from rockbatch.analysis.waves import Waves
@@ -25,7 +23,7 @@ from rockbatch.checks import Rule
 from rockbatch.cli import main
 from rockbatch.commands.fragility import table
 from rockbatch.errors import InputError
-from rockbatch.motions.measures import pga, pgd, pgv
+from rockbatch.motions.measures import pga, pgv
 from rockbatch.motions.spectrum import spectral_acceleration
 from rockbatch.report.contents import Contents
 from rockbatch.report.sections.fragility import section
@@ -90,44 +88,6 @@ def journal_of(study, spec, directory):
 
 
 # Scaling
-
-
-def oscillator(acceleration, dt, period, damping):
-    """u'' + 2ζω u' + ω² u = −a by the trapezoidal rule with 40 steps per sample."""
-    omega = 2 * math.pi / period
-    fine = np.interp(np.arange(0, len(acceleration) - 1, 1 / 40), np.arange(len(acceleration)), acceleration)
-    h = dt / 40
-    step = np.array([[0, 1], [-(omega**2), -2 * damping * omega]])
-    forward = np.linalg.inv(np.eye(2) - h / 2 * step)
-    state, most = np.zeros(2), 0.0
-    for a, b in itertools.pairwise(fine):
-        state = forward @ ((np.eye(2) + h / 2 * step) @ state + np.array([0, -h * (a + b) / 2]))
-        most = max(most, abs(state[0]))
-    return omega**2 * most
-
-
-@pytest.mark.parametrize("period", [0.05, 0.4, 2.0])
-def test_spectral_acceleration_is_that_of_an_oscillator_integrated_otherwise(period):
-    """A peak between samples Δ apart is missed by up to (πΔ/T)²/2, of which there are 20 a period at least; the
-    trapezoidal rule is off by less than 1e-3."""
-    motion = np.concatenate((np.random.default_rng(1).normal(0, 1, 200), np.zeros(300)))
-    found = spectral_acceleration(motion, 0.01, [period])[0]
-    missed = (math.pi * min(0.01 / period, 1 / 20)) ** 2 / 2
-    assert found == pytest.approx(oscillator(motion, 0.01, period, 0.05), rel=missed + 1e-3)
-
-
-def test_a_stiff_oscillator_feels_the_peak_of_the_ground_and_a_soft_one_its_displacement():
-    """An undamped oscillator overshoots a slow change by nothing: T is 1/1000 of the pulse's period, then 1000 times it."""
-    motion = rb.pulse("sine", name="one-sine", amplitude=3.0, period=1.0, dt=0.01, duration=2.0)
-    stiff, soft = spectral_acceleration(motion.horizontal, 0.01, [0.001, 1000.0], damping=0.0)
-    assert stiff == pytest.approx(3.0, rel=1e-3)
-    assert soft == pytest.approx((2 * math.pi / 1000) ** 2 * pgd(motion.horizontal, 0.01), rel=1e-3)
-
-
-def test_a_period_or_damping_out_of_range_is_told():
-    with pytest.raises(InputError, match="period = 0: must be a number above 0") as caught:
-        spectral_acceleration(np.ones(3), 0.01, [0.0], damping=1.0)
-    assert "damping = 1: must be within 0" in str(caught.value)
 
 
 @pytest.mark.parametrize(
@@ -205,75 +165,6 @@ def test_whether_a_run_that_was_cut_short_would_have_overturned_is_undecided():
 
 
 # Bisection
-
-
-LEVELS = [0.2, 0.4, 0.6, 0.8, 1.0]
-
-
-def capacity_of(states):
-    return capacity(dict(zip(LEVELS, states, strict=True)), LEVELS)
-
-
-def decided(low, high, returns=0):
-    return Capacity(*3 * (Bracket(low, high),), undecided=0, returns=returns)
-
-
-def test_the_first_exceedance_counts_and_what_withstands_above_it_is_counted():
-    assert capacity_of([0, 0, 2, 0, 2]) == decided(0.4, 0.6, returns=1)
-    assert capacity_of([2, 2, 2, 2, 2]) == decided(0.0, 0.2)
-    assert capacity_of([0, 0, 0, 0, LEFT_OUT]) == decided(0.8, math.inf)
-    assert capacity_of([LEFT_OUT] * 5) is None
-
-
-def test_an_undecided_level_is_neither_exceeded_nor_withstood():
-    assert capacity_of([0, LEFT_OUT, 1, 2, 2]) == Capacity((0.2, 0.8), (0.2, 0.6), (0.6, 0.8), undecided=1, returns=0)
-    assert capacity_of([1, 0, 0, 0, 1]) == Capacity(
-        (0.8, math.inf), (0.0, 0.2), (1.0, math.inf), undecided=2, returns=0
-    )
-    assert capacity_of([0, 1, 0, 2, 0]) == Capacity((0.6, 0.8), (0.2, 0.4), (0.6, 0.8), undecided=1, returns=1)
-    assert capacity_of([0, 2, 1, 1, 2]) == decided(0.2, 0.4)
-
-
-def bisected(looks, tolerance, look):
-    """Capacities by key; ``look`` gives the state at a key and an intensity. And the waves, as lists of keys."""
-    waves = []
-
-    def wave(wanted):
-        waves.append([key for key, _ in wanted])
-        return [look(*each) for each in wanted]
-
-    levels = sorted({x for each in looks.values() for x in each})
-    found = bisect(looks, levels, tolerance, wave)
-    return {key: capacity(each, levels) for key, each in found.items()}, waves
-
-
-def test_bisection_goes_in_waves_and_closes_every_bracket_to_the_tolerance():
-    truth = {"a": 0.41, "b": 0.5999}
-    start = {"a": {0.4: 0, 0.8: 2}, "b": {0.4: 0, 0.8: 2}, "c": {0.8: 2}, "d": {0.4: 0, 0.8: 0}}
-    found, waves = bisected(start, 0.01, lambda key, x: EXCEEDED if x >= truth[key] else WITHSTOOD)
-    for key in "ab":
-        assert found[key].decided.low < truth[key] <= found[key].decided.high <= 1.01 * found[key].decided.low
-    assert (found["c"], found["d"]) == (decided(0.0, 0.8), decided(0.8, math.inf))
-    assert waves == [["a", "b"]] * 7  # ln 2 / ln 1.01 = 69.7 < 2⁷
-
-
-def test_bisection_goes_on_beyond_what_is_undecided_to_both_of_its_ends():
-    """Withstood up to 0.5, exceeded from 0.6 on, and nothing is known in between: that is what the capacity says."""
-    found, _ = bisected(
-        {"a": {0.4: WITHSTOOD, 0.8: EXCEEDED}}, 1e-3,
-        lambda _, x: WITHSTOOD if x < 0.5 else UNDECIDED if x < 0.6 else EXCEEDED,
-    )  # fmt: skip
-    one = found["a"]
-    assert one.if_exceeded.low < 0.5 <= one.if_exceeded.high <= 1.001 * one.if_exceeded.low
-    assert one.if_withstood.low < 0.6 <= one.if_withstood.high <= 1.001 * one.if_withstood.low
-    assert one.decided == (one.if_exceeded.low, one.if_withstood.high)
-
-
-def test_one_undecided_level_on_the_way_does_not_move_the_capacity_that_the_bisection_finds():
-    found, _ = bisected({"a": {0.2: WITHSTOOD, 0.4: UNDECIDED, 0.8: EXCEEDED}}, 1e-3, lambda _, x: 2 if x >= 0.7 else 0)
-    one = found["a"]
-    assert one.if_withstood.low < 0.7 <= one.if_withstood.high == one.decided.high
-    assert one.if_exceeded.high == 0.4 <= 1.001 * one.if_exceeded.low  # it may have been an island, however narrow
 
 
 @pytest.mark.parametrize(("shape", "first", "last"), [("half-sine", 3.289147, math.inf), ("sine", 3.018600, 6.318071)])

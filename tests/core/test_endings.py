@@ -2,13 +2,12 @@
 moment."""
 
 import math
-import os
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 from core_samples import FIG5, TOWER, hard_case, pulse, steady
+from motion_files import RECORDS, needs_records
 
 import rockbatch as rb
 from rockbatch.core.free_vibration import reach_on_rigid_base
@@ -19,8 +18,6 @@ from rockbatch.motions.motion import Motion
 from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase, least_beta, problems, rocking_frequency
 from rockbatch.simulation import run_fixed, run_to_tolerance, springs
 from rockbatch.simulation.flight import cause_of_flight
-
-RECORDS = Path(os.environ.get("ROCKBATCH_RECORDS", "../shared/motions"))
 
 
 def half_sine(amplitude_g: float, period: float, duration: float) -> Motion:
@@ -102,7 +99,7 @@ def test_residuals_do_not_depend_on_how_long_the_run_goes_on():
     assert short.settlement_drift > 0.0
 
 
-@pytest.mark.skipif(not (RECORDS / "table1").is_dir(), reason="the paper's records may not be passed on")
+@needs_records
 def test_the_settlement_of_the_papers_tower_does_not_hang_on_quiet_s():
     short, long = tower_on_cape_mendocino(2.0), tower_on_cape_mendocino(60.0)
     assert long.settlement == short.settlement
