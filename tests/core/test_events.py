@@ -10,7 +10,6 @@ from reference_solver import reference
 import rockbatch as rb
 from rockbatch import simulate
 from rockbatch.core.recording import ROW
-from rockbatch.core.records import numbers
 from rockbatch.core.roots import hermite, largest_within, turning_point
 from rockbatch.core.two_springs import rock_on_springs
 from rockbatch.core.types import IMPACT_LEFT, IMPACT_RIGHT, SEPARATION_LEFT, SEPARATION_RIGHT, SURVIVED
@@ -41,10 +40,10 @@ def errors(base, motion, substeps, locate):
     history = np.recarray(400_000, ROW)
     vertical = np.empty(0) if motion.vertical is None else motion.vertical
     run = rock_on_springs(springs(FIG5, base), motion.horizontal, vertical, motion.dt, substeps, 0, history, locate)
-    rows = numbers(history[: run.rows])
-    found = rows[np.isin(rows[:, -1], CONTACT_EVENTS), 0]
+    rows = history[: run.rows]
+    found = rows.t[np.isin(rows.kind, CONTACT_EVENTS)]
     assert len(found) == len(times)
-    return np.abs(found - times).max(), abs(rows[-1, 4] - expected.omega), abs(run.theta_max - expected.theta_max)
+    return np.abs(found - times).max(), abs(rows[-1].omega - expected.omega), abs(run.theta_max - expected.theta_max)
 
 
 @pytest.mark.parametrize(("base", "motion"), ORDER_CASES)
@@ -102,13 +101,13 @@ def test_several_events_in_one_step_are_taken_in_their_order():
     expected = reference(FIG5, base, motion)
     run, rows = written_run(Run(FIG5, base, motion), 2, 0.0, 2000, wait=False)
     rows = rows[: run.rows]
-    found = rows[np.isin(rows[:, -1], CONTACT_EVENTS)]
-    steps = np.floor(found[:, 0] / (dt / 2))
+    found = rows[np.isin(rows.kind, CONTACT_EVENTS)]
+    steps = np.floor(found.t / (dt / 2))
     assert np.bincount(steps.astype(int)).max() >= 2  # two contact events among them
     kinds = {"separation": {"left": 1, "right": 2}, "impact": {"left": 3, "right": 4}}
     events = [(t, kinds[kind][pivot]) for t, kind, pivot in expected.events if kind in kinds]
-    assert [int(row[-1]) for row in found] == [kind for _, kind in events]
-    np.testing.assert_allclose(found[:, 0], [t for t, _ in events], rtol=0, atol=0.02 * dt / 2)
+    assert [int(kind) for kind in found.kind] == [kind for _, kind in events]
+    np.testing.assert_allclose(found.t, [t for t, _ in events], rtol=0, atol=0.02 * dt / 2)
 
 
 PUSH = -0.7 * FIG5.gravity * math.tan(FIG5.alpha)
@@ -170,10 +169,10 @@ def test_both_pivots_landing_at_one_instant_keep_the_pier_upright(kinematics, ep
     assert run.status == SURVIVED
     assert run.impacts >= 2
     assert run.impacts % 2 == 0
-    assert np.abs(rows[: run.rows, 2]).max() < 1e-25
+    assert np.abs(rows.theta[: run.rows]).max() < 1e-25
     assert run.impacts == expected.impacts
     assert run.t_flight == pytest.approx(expected.t_flight, abs=1e-6)
-    assert rows[run.rows - 1, 1] == pytest.approx(expected.v, abs=1e-6)
+    assert rows[run.rows - 1].v == pytest.approx(expected.v, abs=1e-6)
 
 
 def test_flight_ends_the_run_unless_it_is_guided():
@@ -198,9 +197,9 @@ def test_a_brief_separation_inside_one_large_step_is_seen():
         if fine.separations == 0:
             continue
         events = rows[: coarse.rows]
-        events = events[events[:, -1] > 0]
+        events = events[events.kind > 0]
         assert coarse.separations > 0, amplitude
-        inside += int(math.floor(events[0, 0] / 0.04) == math.floor(events[2, 0] / 0.04))
+        inside += int(math.floor(events[0].t / 0.04) == math.floor(events[2].t / 0.04))
     assert inside >= 1
 
 
@@ -215,7 +214,7 @@ def test_no_event_fires_twice():
         rows = rows[: min(run.rows, len(rows))]
         for left in (True, False):
             own = {1: 1, 3: -1, 5: -1} if left else {2: 1, 4: -1, 5: -1}
-            turns = [own[int(kind)] for kind in rows[:, -1] if int(kind) in own]
+            turns = [own[int(kind)] for kind in rows.kind if int(kind) in own]
             assert turns == [1, -1] * (len(turns) // 2) + [1] * (len(turns) % 2), seed
             checked += len(turns)
     assert checked > 500

@@ -51,9 +51,9 @@ def test_a_run_that_is_written_down_is_the_run_that_is_not():
         run, rows = written_run(scene, steps, 1.0, 20_000, every_step=True)
         assert run.rows <= len(rows)
         assert (run.impacts, run.t_end, run.t_max) == (outcome.impacts, outcome.t_end, outcome.t_max)
-        assert np.abs(rows[: run.rows, 1]).max() <= run.theta_max * (1.0 + 1e-12)
-        assert np.count_nonzero(rows[: run.rows, -1] == BEFORE_EVENT) == run.impacts
-        assert (np.diff(rows[: run.rows, 0]) >= 0.0).all()
+        assert np.abs(rows.theta[: run.rows]).max() <= run.theta_max * (1.0 + 1e-12)
+        assert np.count_nonzero(rows.kind[: run.rows] == BEFORE_EVENT) == run.impacts
+        assert (np.diff(rows.t[: run.rows]) >= 0.0).all()
 
 
 def test_the_pass_steps_over_no_impact():
@@ -62,7 +62,7 @@ def test_the_pass_steps_over_no_impact():
     crossings = 0
     for scene, steps in zip(scenes, substeps, strict=True):
         run, rows = written_run(scene, steps, 1.0, 20_000, every_step=True)
-        theta, kind = rows[: run.rows, 1], rows[: run.rows, -1]
+        theta, kind = rows.theta[: run.rows], rows.kind[: run.rows]
         goes_over = theta[1:] * theta[:-1] < 0.0
         crossings += np.count_nonzero(np.diff(np.sign(theta[theta != 0.0])))
         assert not goes_over.any()
@@ -79,7 +79,7 @@ def test_extremes_of_windows_are_those_of_the_samples():
         result = rock_side_by_side([line], ground, Stop().flag)[0]
         run, rows = written_run(replace(scene, base=RigidBase(0.9)), steps, 20 * scene.motion.dt, 20_000, wait=False)
         rows = rows[: run.rows]
-        samples = np.abs(rows[rows[:, -1] == SAMPLE, 1])[1:]
+        samples = np.abs(rows.theta[rows.kind == SAMPLE])[1:]
         windows = (np.arange(1, len(samples) + 1) * 32 // (len(ground) + 19)).clip(max=31)
         for window in range(32):
             inside = samples[windows == window]
