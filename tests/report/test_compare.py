@@ -7,7 +7,7 @@ import sys
 
 import pandas as pd
 import pytest
-from report_page import Page, figures
+from report_page import Page, panels
 from report_samples import FIG7, FOUNDATIONS, case_entry, three_piers, write_results
 
 from rockbatch.cli import main
@@ -47,9 +47,9 @@ def test_runs_of_one_record_and_case_stand_side_by_side_with_their_ratio(tmp_pat
 def test_panels_hold_both_studies(tmp_path):
     a, b = two(tmp_path)
     text = write_comparison(a, b).read_text(encoding="utf-8")
-    panels = [svg for svg in figures(text) if "marks" in svg.attrib["class"]]
-    assert len(panels) == len(FIG7)
-    marks = [node.get("class") for node in panels[0].iter() if node.tag.endswith("use")]
+    drawn = panels(text)
+    assert len(drawn) == len(FIG7)
+    marks = [node.get("class") for node in drawn[0].iter() if node.tag.endswith("use")]
     assert sorted(marks) == sorted(["s1", "s1 open", "s2", "s2 open", "s3", "s3 open", "s4", "s4 open"])
 
 
