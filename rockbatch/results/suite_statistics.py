@@ -1,4 +1,4 @@
-"""What a suite of runs comes to: mean and quantiles of what stood, and how many overturned, flew or failed."""
+"""What a suite of runs comes to: mean and quantiles of what stood, how many overturned, flew or failed, and the distribution."""
 
 import math
 from collections.abc import Sequence
@@ -49,3 +49,20 @@ def suite(values: npt.NDArray[np.float64], status: Sequence[str]) -> Suite:
     mean = float(stood.mean()) if len(stood) else math.nan
     counts = (int(each.sum()) for each in (over, flown, failed))
     return Suite(len(magnitudes), len(stood), mean, low, median, high, largest, *counts)
+
+
+def distribution(
+    values: npt.NDArray[np.float64], status: Sequence[str]
+) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+    """Empirical distribution of the magnitudes of ``values``, shape (n,), with the ``status`` of each run.
+
+    Returns
+    -------
+    values, share : ndarray, shape (standing,)
+        Each value of a run that stood, in order, and the share of all runs with an outcome that do not exceed it: runs that
+        overturned, or were ended by flight, exceed all of them. Failed runs do not count.
+    """
+    kinds = np.asarray(status, dtype=object)
+    gone = np.isin(kinds, NO_PEAK)
+    stood = np.sort(np.abs(values[~gone & (kinds != "failed") & ~np.isnan(values)]))
+    return stood, np.arange(1, len(stood) + 1) / max(len(stood) + int(gone.sum()), 1)

@@ -44,6 +44,9 @@ OUTPUT = {
     "histories": Key(choice("worst", "all", "none"), '"all"'),
     "ledger": Key(boolean, "true"),
     "both_laws": Key(boolean, "true"),
+    "intensity": Key(boolean, "true"),
+    "sa_periods_s": Key(positive, "[0.5, 1.0, 2.0]", many=True),
+    "estimate": Key(boolean, "true"),
 }
 REFERENCE = {
     "record": Key(text, '"*LGP*"', required=True),
@@ -164,7 +167,14 @@ def _numerics(file: TomlFile) -> Numerics:
 
 def _output(file: TomlFile) -> Output:
     table = file.table("output")
-    return Output() if table is None else Output(**table.read(OUTPUT))
+    if table is None:
+        return Output()
+    read = table.read(OUTPUT)
+    if "sa_periods_s" in read:
+        if not read.get("intensity"):
+            table.complain("sa_periods_s: is for intensity = true; write that too, or leave it out", "sa_periods_s")
+        read["sa_periods_s"] = tuple(setting.value for setting in read["sa_periods_s"])
+    return Output(**read)
 
 
 def _references(file: TomlFile, cases: Sequence[Expanded], varied: Iterable[str]) -> tuple[Reference, ...]:
