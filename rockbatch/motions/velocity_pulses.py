@@ -60,10 +60,12 @@ class VelocityPulse:
 
     @property
     def kind(self) -> str:
-        """ "yes", "no" or "ambiguous"."""
-        if self.indicator > 0.85:
-            return "yes" if self.early and self.pgv >= LEAST_PGV else "no"
-        return "no" if self.indicator < 0.15 else "ambiguous"
+        """ "yes", "no", or "ambiguous"; "late" or "weak" where a pulse arrives late, or PGV is too small, and is none so."""
+        if self.indicator <= 0.85:
+            return "no" if self.indicator < 0.15 else "ambiguous"
+        if self.pgv < LEAST_PGV:
+            return "weak"
+        return "yes" if self.early else "late"
 
 
 def pulse_of(motion: Motion) -> VelocityPulse:

@@ -107,7 +107,7 @@ def test_runs_that_stayed_rank_lowest_and_have_no_logarithm():
 
 def test_nobody_gets_what_nobody_asked_for_and_tables_of_another_time_go(tmp_path):
     results = written(tmp_path)
-    assert {record["pulse"] for record in results.info["records"]} <= {"yes", "no", "ambiguous"}
+    assert {record["pulse"] for record in results.info["records"]} <= {"yes", "no", "ambiguous", "late", "weak"}
     plain = written(tmp_path, {"histories": "none"})
     assert not any((tmp_path / "out" / name).exists() for name in ("intensity.csv", "estimate.csv"))
     assert "pulse" not in plain.info["records"][0]

@@ -1,0 +1,40 @@
+"""What one record says and what a suite says: the distribution of the largest rotations."""
+
+from rockbatch.report.contents import Contents
+from rockbatch.report.document import Section, figure, paragraphs
+from rockbatch.report.drawing import distribution
+from rockbatch.report.finished import Finished
+from rockbatch.report.markup import Markup, join, tag
+
+MOST_PANELS = 12
+LEAST_RUNS = 3
+"""Of a panel; fewer have no distribution."""
+
+ONE_RECORD = (
+    "The peak under one record predicts no earthquake. Held against shaking tables, planar rocking models miss the "
+    "response to a single motion, and tests do not even repeat themselves; they meet the distribution of the maxima "
+    "over an ensemble of motions (Bachmann, Strand, Vassiliou, Broccardo & Stojadinović 2018, Earthq. Eng. Struct. "
+    "Dyn. 47(2), 535–552; Vassiliou et al. 2021, Earthquake Spectra, doi 10.1177/8755293020988017). Judge by the suite."
+)
+
+
+def section(contents: Contents) -> Section | None:
+    """The sentence that belongs to every peak, and a curve for each case where there are enough records."""
+    finished = contents.finished
+    if finished is None or finished.runs.empty:
+        return None
+    return Section("One record and the suite", "distribution", join(paragraphs(ONE_RECORD), _picture(finished)))
+
+
+def _picture(finished: Finished) -> Markup:
+    groups = [(words, runs) for words, runs in finished.groups() if runs.groupby("series").size().max() >= LEAST_RUNS]
+    if not groups:
+        return tag("p", "There are too few motions for a distribution.", class_="muted")
+    shown = groups[:MOST_PANELS]
+    caption = (
+        "Share of the runs whose largest rotation does not exceed a value; mirror images count once, and steps are "
+        "single runs. Runs that overturned, or were ended by flight, exceed every value: they stand at the right edge. "
+        "Failed runs do not count."
+    )
+    more = f" The first {len(shown)} of {len(groups)} groups are shown." if len(shown) < len(groups) else ""
+    return figure(distribution.draw(shown, finished.series), caption + more)
