@@ -50,7 +50,7 @@ class Results(Saved):
 
     def plot_cdf(self) -> "Figure":
         """The distribution of θ_max/α over the motions, a curve for each case, pier and scale: a matplotlib Figure. Runs that
-        overturned, or were ended by flight, are what a curve lacks of 1 at its right end."""
+        overturned, or were ended by flight, are what a curve lacks of 1 at its right end, where a cross says so."""
         from rockbatch.results.plots import plot_cdf
 
         return plot_cdf(self.peaks, self.info["varied"])

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from rockbatch.checks.suite import simulated
 from rockbatch.pier import Base, Pier, RigidBase
-from rockbatch.results.suite_statistics import distribution
+from rockbatch.results.suite_statistics import NO_PEAK, distribution
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -58,11 +58,15 @@ def plot_cdf(peaks: "pd.DataFrame", varied: Sequence[str]) -> "Figure":
     axes = figure.subplots()
     runs = simulated(peaks[peaks["case"] != ""])
     keys = [name for name in ("case", *varied, "scale") if name == "case" or runs[name].nunique() > 1]
+    right = 1.06 * float(runs["theta_max_over_alpha"].where(runs["status"] == "ok").max() or 1.0)
     for values, same in runs.groupby(keys, sort=False, dropna=False):
         theta, share = distribution(same["theta_max_over_alpha"].to_numpy(dtype=float), same["status"].to_list())
         told = [_named(key, value) for key, value in zip(keys, values, strict=True) if value == value]
-        axes.step([0.0, *theta], [0.0, *share], where="post", linewidth=1.2, label=", ".join(told))
-    axes.set(xlabel="θ$_{max}$/α", ylabel="share of the runs that do not exceed it", xlim=(0, None), ylim=(0, 1))
+        reached = [0.0, *share, share[-1] if len(share) else 0.0]
+        (drawn,) = axes.step([0.0, *theta, right], reached, where="post", linewidth=1.2, label=", ".join(told))
+        if same["status"].isin(NO_PEAK).any():
+            axes.plot(right, reached[-1], "x", color=drawn.get_color(), clip_on=False)
+    axes.set(xlabel="θ$_{max}$/α", ylabel="share of the runs that do not exceed it", xlim=(0, right), ylim=(0, 1.01))
     axes.grid(alpha=0.3)
     axes.legend(fontsize="small")
     return figure

@@ -105,6 +105,19 @@ def test_estimates_are_labelled_as_a_comparison_that_need_not_converge(asked):
     assert all(f"{value:.4f}" in page.text for value in found)
 
 
+def test_of_many_foundations_the_least_and_the_largest_rotation_stand_beside_the_estimates(tmp_path):
+    pads = {"name": "pads", "base": "elastic", "beta": [20 + i for i in range(9)], "epsilon": 0.05}
+    output = {"estimate": True, "histories": "none"}
+    text = study_text(pulses=PULSES[:3], cases=(pads,), output=output, numerics={"substeps": 2})
+    table = rb.run(write_study(tmp_path, text), out=tmp_path / "out")
+    rows = page_of(tmp_path / "out", estimate).tables[""]
+    assert rows[1][-2:] == ["least", "largest"]
+    for row in rows[2:]:
+        theta = table[table["record"] == row[0]]["theta_max_over_alpha"]
+        assert row[-2:] == [f"{theta.min():.4f}", f"{theta.max():.4f}"]
+    assert len(rows) == 2 + 3
+
+
 # The target spectrum
 
 

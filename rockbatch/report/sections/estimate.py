@@ -9,10 +9,14 @@ from rockbatch.files import read_table
 from rockbatch.report.contents import Contents
 from rockbatch.report.document import Section, paragraphs
 from rockbatch.report.finished import Finished, as_dicts
-from rockbatch.report.labels import heading, quantity
+from rockbatch.report.labels import heading
 from rockbatch.report.markup import Markup, join, tag
-from rockbatch.report.table import THETA, THETA_FORMAT, Head, alarm, table
+from rockbatch.report.table import THETA_FORMAT, Head, alarm, table
 from rockbatch.results.estimate import DAMPING, ESTIMATE, START
+from rockbatch.results.suite_statistics import NO_PEAK
+
+MOST_FOUNDATIONS = 8
+"""With a column of their own; of more the least and the largest rotation are shown."""
 
 METHODS = {"priestley": "Priestley et al. (1978)", "fema_356": "FEMA 356"}
 
@@ -67,7 +71,7 @@ def _summary(runs: list[dict[str, Any]]) -> Markup:
         if ratios:
             low, middle, high = np.percentile(ratios, [0, 50, 100])
             sentence += f"; where it gives a rotation, that is {low:.2f} to {high:.2f} times the computed one"
-            sentence += f", {middle:.2f} in the median"
+            sentence += f", {middle:.2f} in the median, over all foundations"
         sentences.append(f"{sentence}.")
     return paragraphs(*sentences)
 
@@ -79,38 +83,49 @@ def _dampings(runs: list[dict[str, Any]], method: str) -> str:
 
 
 def _table(finished: Finished, runs: list[dict[str, Any]]) -> Markup:
-    varied = finished.info["varied"]
-    several = len({run["scale"] for run in runs}) > 1
-    signs = len({run["polarity"] for run in runs}) > 1
+    """A row for each motion and pier: the estimates for rigid ground, and what was computed on each foundation."""
+    rows: dict[tuple[str, int, float, str], dict[int, dict[str, Any]]] = {}
+    for run in runs:
+        series, pier = finished.place(run["case"], run)
+        rows.setdefault((run["record"], pier, run["scale"], run["polarity"]), {})[series] = run
+    signs, scales = {key[3] for key in rows}, {key[2] for key in rows}
+    places = sorted({place for same in rows.values() for place in same})
+    each = len(places) <= MOST_FOUNDATIONS
+    computed = [finished.series[place].label for place in places] if each else ["least", "largest"]
     heads = [
         Head("record"),
-        Head("case"),
-        Head("polarity"),
+        Head("pier"),
         Head("scale"),
+        Head("polarity"),
         Head("PGA/(g tan α)", ".2f", "pga_over_g_tan_alpha: up to 1 a block on rigid ground stays"),
-        Head(join("computed ", THETA), THETA_FORMAT, "theta_max_over_alpha, on the foundation of the case"),
-        *(
-            Head(name, THETA_FORMAT, f"{method}_theta_over_alpha: θ/α", over="estimated for rigid ground")
-            for method, name in METHODS.items()
-        ),
+        *(Head(name, THETA_FORMAT, f"{method}_theta_over_alpha", "estimated θ/α") for method, name in METHODS.items()),
+        *(Head(name, THETA_FORMAT, "theta_max_over_alpha", "computed θ/α") for name in computed),
     ]
-    rows = []
-    for run in runs:
-        words = [quantity(name, run[name]) for name in varied if run[name] == run[name] and run[name] != ""]
-        rows.append([
-            run["record"],
-            f"{run['case']}: {', '.join(words)}" if words else run["case"],
-            run["polarity"] if signs else None,
-            run["scale"] if several else None,
-            run["pga_over_g_tan_alpha"],
-            run["theta_max_over_alpha"] if run["status"] == "ok" else alarm(run["status"]),
-            *(_estimate(run, method) for method in DAMPING),
-        ])  # fmt: skip
-    return join(
-        table(heads, rows, sortable=True, name="Code estimates"), tag("p", tag("code", ESTIMATE), class_="muted")
-    )
+    written = []
+    for (record, place_of_pier, scale, sign), same in rows.items():
+        one = next(iter(same.values()))
+        found = [_computed(same.get(place)) for place in places] if each else _range(list(same.values()))
+        names = [record, finished.piers[place_of_pier] or None, scale if len(scales) > 1 else None]
+        estimates = (_estimate(one, method) for method in DAMPING)
+        told = [*names, sign if len(signs) > 1 else None, one["pga_over_g_tan_alpha"], *estimates, *found]
+        written.append(told)
+    where = tag("p", "Every run: ", tag("code", ESTIMATE), class_="muted")
+    return join(table(heads, written, sortable=True, name="Code estimates"), where)
 
 
 def _estimate(run: Mapping[str, Any], method: str) -> object:
     outcome = run[f"{method}_outcome"]
     return run[f"{method}_theta_over_alpha"] if outcome == "rocks" else outcome
+
+
+def _computed(run: Mapping[str, Any] | None) -> object:
+    if run is None:
+        return None
+    return run["theta_max_over_alpha"] if run["status"] == "ok" else alarm(run["status"])
+
+
+def _range(runs: list[dict[str, Any]]) -> list[object]:
+    """The least and the largest rotation; where the pier overturned or flew, that is the largest."""
+    stood = [run["theta_max_over_alpha"] for run in runs if run["status"] == "ok"]
+    gone = next((run for run in runs if run["status"] in NO_PEAK), None)
+    return [min(stood, default=None), max(stood, default=None) if gone is None else _computed(gone)]
