@@ -58,7 +58,8 @@ def plot_cdf(peaks: "pd.DataFrame", varied: Sequence[str]) -> "Figure":
     axes = figure.subplots()
     runs = simulated(peaks[peaks["case"] != ""])
     keys = [name for name in ("case", *varied, "scale") if name == "case" or runs[name].nunique() > 1]
-    right = 1.06 * float(runs["theta_max_over_alpha"].where(runs["status"] == "ok").max() or 1.0)
+    largest = float(runs["theta_max_over_alpha"].where(runs["status"] == "ok").max())
+    right = 1.06 * largest if largest > 0 else 1.0
     for values, same in runs.groupby(keys, sort=False, dropna=False):
         theta, share = distribution(same["theta_max_over_alpha"].to_numpy(dtype=float), same["status"].to_list())
         told = [_named(key, value) for key, value in zip(keys, values, strict=True) if value == value]

@@ -25,7 +25,7 @@ ASKED = {"intensity": True, "estimate": True, "sa_periods_s": [0.5, 1.25], "hist
 
 
 def written(folder, output=ASKED, **more):
-    text = study_text(pier={"alpha": [0.2, 0.3], "p": 1.0}, pulses=PULSES, output=output, **more)
+    text = study_text(pier={"alpha": [0.2, 0.3], "p": 1.0}, output=output, **{"pulses": PULSES, **more})
     rb.run(write_study(folder, text), out=folder / "out")
     return rb.open_results(folder / "out")
 
@@ -198,3 +198,12 @@ def test_the_distribution_is_drawn_with_a_curve_for_each_case_pier_and_scale(res
     stood = first["status"] == "ok"
     assert axes.lines[0].get_xdata()[1:-1].tolist() == sorted(first["theta_max_over_alpha"][stood])
     assert axes.lines[0].get_ydata()[-1] == pytest.approx(stood.mean())
+
+
+def test_a_suite_that_all_overturned_has_a_picture_too(tmp_path):
+    strong = {**SINE, "amplitude_g": 9.0, "period_s": 3.0}
+    found = written(tmp_path, {"histories": "none"}, pulses=(strong,), cases=({"name": "rigid", "base": "rigid"},))
+    assert set(found.peaks["status"]) == {"overturned"}
+    (axes,) = found.plot_cdf().axes
+    assert axes.get_xlim() == (0.0, 1.0)
+    assert [line.get_marker() for line in axes.lines] == ["None", "x"] * 2
