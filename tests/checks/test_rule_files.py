@@ -178,9 +178,10 @@ def passing(tmp_path):
 def test_all_passing_exits_with_0_and_writes_the_table(passing, capsys):
     assert main(["check", str(passing)]) == 0
     printed = capsys.readouterr()
-    margin, flight = (line.split() for line in printed.out.splitlines()[2:4])
-    assert margin == ["margin", "2", "0.4", "<=", "0.5", "0.80", "0.1", "pass"]
-    assert flight == ["no", "flight", "2", "0", "<=", "0", "0.00", "0", "pass"]
+    margin, governs, flight = (line.split() for line in printed.out.splitlines()[2:5])
+    assert margin == ["margin", "2", "0.4", "<=", "0.5", "0.80", "0.1", "✓", "pass"]
+    assert governs == ["governs:", "r1", "(+):", "0.4"]
+    assert flight == ["no", "flight", "2", "none", "none", "✓", "pass"]
     assert "margin: maximum of theta_max_over_alpha at most 0.5 [code] clause 7" in printed.out
     assert "(overturned: infinite; flight, failed: unknown)" in printed.out.replace("\n      ", " ")
     assert "2 pass" in printed.err
