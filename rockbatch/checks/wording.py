@@ -26,13 +26,18 @@ def count_of(verdicts: Iterable[Verdict]) -> dict[str, int]:
     return {way: found.count(way) for way in WAYS}
 
 
-def demanded(one: Verdict, value: float | None = None) -> str:
-    """The demand, or a ``value`` of it, as a number without its unit; of an event that nothing may do, whether it happens."""
-    value = one.value if value is None else value
+def _is_open(one: Verdict) -> bool:
+    """Whether the demand may be anything above its value."""
+    return math.isinf(one.high) and math.isfinite(one.value)
+
+
+def demanded(one: Verdict) -> str:
+    """The demand as a number without its unit; of an event that no record may do, whether one does."""
+    value = one.value
     if math.isnan(value):
         return ""
     if not one.is_ban:
-        return "∞" if math.isinf(value) else f"{value:.4g}"
+        return "∞" if math.isinf(value) else f"≥\u00a0{value:.4g}" if _is_open(one) else f"{value:.4g}"
     if value > 0:
         return "some"
     return "none" if one.high <= 0 else "not known"
@@ -51,6 +56,8 @@ def ratio(one: Verdict) -> str:
         return ""
     if math.isinf(one.ratio):
         return "∞"
+    if _is_open(one):
+        return f"≥\u00a0{one.ratio:.2f}"
     return f"{one.ratio:.4f}" if 0.995 <= one.ratio < 1.005 and one.ratio != 1 else f"{one.ratio:.2f}"
 
 
@@ -58,7 +65,9 @@ def margin(one: Verdict) -> str:
     """Distance to the limit, without its unit."""
     if math.isnan(one.margin) or one.is_ban:
         return ""
-    return ("-∞" if one.margin < 0 else "∞") if math.isinf(one.margin) else f"{one.margin:.3g}"
+    if math.isinf(one.margin):
+        return "-∞" if one.margin < 0 else "∞"
+    return f"≤\u00a0{one.margin:.3g}" if _is_open(one) else f"{one.margin:.3g}"
 
 
 def records_of(verdicts: Iterable[Verdict]) -> str:
@@ -68,21 +77,23 @@ def records_of(verdicts: Iterable[Verdict]) -> str:
 
 
 def run(one: Verdict) -> str:
-    """The run that governs: "WTMC, WTMC_20.N28W (+)"; empty where there is none."""
-    if not one.record:
-        return ""
+    """The run that governs, by station, component and polarity: "WTMC, 20161113_110259_WTMC_20.N28W (+)"."""
     station = f"{one.station}, " if one.station and one.station != one.record else ""
     return f"{station}{one.record} ({one.polarity})"
 
 
 def governing(one: Verdict) -> str:
-    """The run that governs, and what it demands with its unit; empty where there is none."""
-    where = run(one)
-    if not where or one.is_ban:
-        return where
+    """Which run governs, has the largest of several demands, or leaves open what the demand is, and what it demands."""
+    if not one.record:
+        return ""
+    left_open = one.verdict == NOT_DECIDED and one.low <= one.limit < one.high
+    alone = one.is_ban or one.governing == one.value
+    told = f"{'left open by' if left_open else 'governs:' if alone else 'largest:'} {run(one)}"
+    if one.is_ban:
+        return told
     if math.isinf(one.governing):
-        return f"{where}: beyond any limit"
-    return f"{where}: {one.governing:.4g} {_unit_of_demand(one)}".rstrip()
+        return f"{told}, beyond any limit"
+    return f"{told}, {one.governing:.4g} {_unit_of_demand(one)}".rstrip()
 
 
 def _unit_of_demand(one: Verdict) -> str:

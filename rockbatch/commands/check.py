@@ -1,7 +1,6 @@
 """``rockbatch check``: design checks on finished results, as a table, as checks.csv and in the report."""
 
 import argparse
-import math
 import textwrap
 from collections.abc import Sequence
 from itertools import groupby
@@ -108,8 +107,7 @@ def _lines(verdict: "Verdict", widths: list[int]) -> list[str]:
     lines = [coloured(_line(_cells(verdict), widths), verdict.verdict)]
     if verdict.verdict == "does not apply":
         return lines
-    governing = wording.governing(verdict)
-    told = (f"governs: {governing}" if governing else "", verdict.counted, verdict.note)
+    told = (wording.governing(verdict), verdict.counted, verdict.note)
     if any(told):
         lines.append(_filled("; ".join(filter(None, told)), 6, 6))
     return lines
@@ -124,11 +122,10 @@ def _cells(verdict: "Verdict") -> tuple[str, ...]:
     from rockbatch.checks import wording
     from rockbatch.commands.marks import mark
 
-    at_least = ">= " if math.isinf(verdict.high) and math.isfinite(verdict.value) and not verdict.is_ban else ""
     return (
         verdict.check,
         str(verdict.records) if verdict.records else "",
-        _plain(at_least + wording.demanded(verdict)),
+        _plain(wording.demanded(verdict)),
         _plain(wording.limit(verdict, ("<=", ">="))),
         _plain(wording.ratio(verdict)),
         _plain(wording.margin(verdict)),
@@ -138,7 +135,9 @@ def _cells(verdict: "Verdict") -> tuple[str, ...]:
 
 
 def _plain(text: str) -> str:
-    return text.replace("\u00a0", " ").replace("∞", "inf")
+    for sign, instead in {"\u00a0": " ", "∞": "inf", "≥": ">=", "≤": "<="}.items():
+        text = text.replace(sign, instead)
+    return text
 
 
 def _checks(verdicts: Sequence["Verdict"]) -> str:

@@ -15,11 +15,11 @@ NO_PEAK = ("overturned", "flight")
 
 @dataclass(frozen=True)
 class Suite:
-    """Statistics of one quantity over the runs of a case.
+    """Statistics of one quantity over the records of a case.
 
-    ``count`` runs have an outcome, ``standing`` of them a value; ``mean`` is over those, NaN without any. ``low``,
+    ``count`` records have an outcome, ``standing`` of them a value; ``mean`` is over those, NaN without any. ``low``,
     ``median`` and ``high`` are the 16, 50 and 84 % quantiles of all ``count``, ``largest`` the greatest: infinite
-    where they fall on runs that overturned or were ended by flight.
+    where they fall on records under which the pier overturned or that were ended by flight.
     """
 
     count: int
@@ -34,18 +34,32 @@ class Suite:
     failed: int
 
 
-def suite(values: npt.NDArray[np.float64], status: Sequence[str]) -> Suite:
-    """Statistics of the magnitudes of ``values``, shape (n,), with the ``status`` of each run; NaN does not apply."""
+def suite(values: npt.NDArray[np.float64], status: Sequence[str], counted_as: Sequence[str] | None = None) -> Suite:
+    """Statistics of the magnitudes of ``values``, shape (n,), with the ``status`` of each run; NaN does not apply.
+
+    Runs that are ``counted_as`` one record count once, with the worst of them: overturned before flight before any value.
+    Where one of them failed and none is worse than any value, the record is unknown. By default every run is a record.
+    """
     kinds = np.asarray(status, dtype=object)
-    over, flown, failed = (kinds == kind for kind in (*NO_PEAK, "failed"))
-    gone = over | flown
-    magnitudes = np.where(gone, math.inf, np.abs(values))[~failed]
-    magnitudes = magnitudes[~np.isnan(magnitudes)]
-    stood = magnitudes[np.isfinite(magnitudes)]
-    if len(magnitudes):
-        low, median, high, largest = (quantile(magnitudes, q) for q in (0.16, 0.5, 0.84, 1.0))
+    gone = np.isin(kinds, NO_PEAK)
+    magnitudes = np.where(gone, math.inf, np.where(kinds == "failed", math.nan, np.abs(values)))
+    names = np.arange(len(kinds)) if counted_as is None else np.asarray(counted_as, dtype=str)
+    found, record = np.unique(names, return_inverse=True)
+
+    def any_of(runs: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
+        return np.bincount(record, runs, len(found)) > 0
+
+    worst = np.full(len(found), math.nan)
+    np.fmax.at(worst, record, magnitudes)
+    over = any_of(kinds == "overturned")
+    flown = any_of(kinds == "flight") & ~over
+    failed = any_of(kinds == "failed") & ~over & ~flown
+    known = worst[~failed & ~np.isnan(worst)]
+    stood = known[np.isfinite(known)]
+    if len(known):
+        low, median, high, largest = (quantile(known, q) for q in (0.16, 0.5, 0.84, 1.0))
     else:
         low = median = high = largest = math.nan
     mean = float(stood.mean()) if len(stood) else math.nan
     counts = (int(each.sum()) for each in (over, flown, failed))
-    return Suite(len(magnitudes), len(stood), mean, low, median, high, largest, *counts)
+    return Suite(len(known), len(stood), mean, low, median, high, largest, *counts)

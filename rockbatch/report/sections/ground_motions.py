@@ -35,6 +35,7 @@ def _records(finished: Finished) -> Markup:
     """The ground motions as they were used, like the paper's Table 1, the weakest first."""
     heads = [
         Head("record"),
+        Head("station", note="its components count as one record"),
         Head("PGA [g]", ".3f"),
         Head("PGV [m/s]", ".3f"),
         Head("PGD [m]", ".3f"),
@@ -52,7 +53,7 @@ def _records(finished: Finished) -> Markup:
         Head("factor", ".4g", "what brought the record to the study's target"),
     ]
     names = (
-        "record", "pga_g", "pgv_m_s", "pgd_m", "pga_v_g", "arias_m_s", "d5_95_s", "dt_s", "npts", "duration_s",
+        "record", "station", "pga_g", "pgv_m_s", "pgd_m", "pga_v_g", "arias_m_s", "d5_95_s", "dt_s", "npts", "duration_s",
         "processed", "check", "azimuth_deg", "magnitude", "distance_km", "factor",
     )  # fmt: skip
     scaled = any(record.get("factor", 1.0) != 1.0 for record in finished.info["records"])
