@@ -112,8 +112,11 @@ class SpectrumTarget:
 
 
 def _components(motions: Sequence[Motion]) -> list[list[int]]:
-    """Places of the motions that are components of one record."""
-    return [[i] for i in range(len(motions))]
+    """Places of the motions that are components of one record, a station's in one earthquake."""
+    places: dict[str, list[int]] = {}
+    for i, motion in enumerate(motions):
+        places.setdefault(motion.of_station, []).append(i)
+    return list(places.values())
 
 
 def _short(values: Array) -> list[float]:

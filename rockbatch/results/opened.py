@@ -49,11 +49,15 @@ class Results(Saved):
         return self._beside(ESTIMATE, "estimate")
 
     def plot_cdf(self) -> "Figure":
-        """The distribution of θ_max/α over the motions, a curve for each case, pier and scale: a matplotlib Figure. Runs that
-        overturned, or were ended by flight, are what a curve lacks of 1 at its right end, where a cross says so."""
+        """The distribution of θ_max/α over the records, a curve for each case, pier and scale: a matplotlib Figure.
+
+        A station counts as one record, with the worst of its components, unless the study counts them apart. Records under
+        which the pier overturned, or that were ended by flight, are what a curve lacks of 1 at its right end, where a cross
+        says so.
+        """
         from rockbatch.results.plots import plot_cdf
 
-        return plot_cdf(self.peaks, self.info["varied"])
+        return plot_cdf(self.peaks, self.info["varied"], str(self.info.get("count", "station")))
 
     def _beside(self, name: str, key: str) -> "pd.DataFrame":
         path = self.directory / name

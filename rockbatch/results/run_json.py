@@ -56,6 +56,7 @@ def describe(study: Study, motions: MotionSet) -> dict[str, Any]:
             "quiet_s": study.numerics.quiet_s,
         },
         "varied": list(study.varied),
+        "count": study.count,
         "units": units(study),
         "cases": [describe_case(case) for case in study.cases],
         "without_vertical": motions.without_vertical,
@@ -133,6 +134,7 @@ def _describe_motion(motion: Motion, gravity: float, with_pulse: bool) -> dict[s
     vertical = motion.pga_vertical
     return {
         "record": motion.name,
+        "station": motion.of_station,
         "dt_s": motion.dt,
         "npts": motion.npts,
         "duration_s": motion.duration,

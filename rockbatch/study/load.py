@@ -9,8 +9,8 @@ from typing import Any
 
 from rockbatch.checks.choices import unmet
 from rockbatch.checks.plausible import implausible
-from rockbatch.checks.reading import CHECK, read_rules
-from rockbatch.checks.rules import Rule
+from rockbatch.checks.reading import CHECK, SUITE, read_count, read_rules
+from rockbatch.checks.rules import COUNTS, Rule
 from rockbatch.errors import InputError
 from rockbatch.pier import described
 from rockbatch.study.cases import BASE_KEYS, CASE, Expanded, read_cases
@@ -26,7 +26,7 @@ TOP = {
     "notes": Key(text, '"Soil class C."'),
 }
 ANALYSES = ("fragility", "spectrum", "sensitivity")  # each read by its own command
-SECTIONS = ("pier", "motions", "numerics", "output", "case", "reference", "check", *ANALYSES)
+SECTIONS = ("pier", "motions", "numerics", "output", "case", "reference", "suite", "check", *ANALYSES)
 
 
 def _tolerance(value: Any) -> float:
@@ -61,6 +61,7 @@ HOMES = {
     name: home
     for home, names in (
         ("[[check]]", CHECK),  # first: the keys that it shares belong to the others
+        ("[suite]", SUITE),
         ("[[pier.part]]", PART),
         ("[pier]", PIER),
         ("[motions]", MOTIONS.keys() | SOURCES),
@@ -108,7 +109,8 @@ def load_study(path: str | os.PathLike[str], *, motions: str | os.PathLike[str] 
     varied = varied_pier + varied_case
     references = _references(file, cases, varied)
     output = _output(file)
-    checks = read_rules(file, partial(_unfit, cases, motion_spec, output) if cases else None)
+    counted = read_count(file)
+    checks = read_rules(file, partial(_unfit, cases, motion_spec, output) if cases else None, counted)
     file.finish()
     return Study(
         title=top.get("title", file.path.stem),
@@ -122,6 +124,7 @@ def load_study(path: str | os.PathLike[str], *, motions: str | os.PathLike[str] 
         varied=varied,
         output=output,
         checks=checks,
+        count=counted or COUNTS[0],
     )
 
 

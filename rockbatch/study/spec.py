@@ -158,7 +158,8 @@ class Study:
     """A study file, checked, with every combination of pier, case and listed values as one :class:`Case`.
 
     ``path`` and ``text`` are the file and its text, ``varied`` the names of the keys that were lists, ``checks`` the
-    rules that its results are held against.
+    rules that its results are held against, ``count`` what counts as one record of its suite, one of
+    :data:`rockbatch.checks.rules.COUNTS`.
     """
 
     title: str
@@ -172,3 +173,4 @@ class Study:
     varied: tuple[str, ...]
     output: Output = Output()
     checks: tuple[Rule, ...] = ()
+    count: str = "station"

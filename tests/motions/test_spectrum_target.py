@@ -110,6 +110,14 @@ def test_each_record_exceeds_the_target_as_much_as_it_falls_below_it():
         assert motion.notes == (f"scaled by {motion.factor:.4g} to the spectrum table, 5 % between 0.3 s and 3 s",)
 
 
+def test_components_of_a_station_share_their_factor():
+    pair = [replace(SUITE[0], station="S"), replace(SUITE[1], station="S"), SUITE[2]]
+    target = SpectrumTarget(TABLE, (0.3, 3.0), "each")
+    alone, together = target.factors_of(SUITE, 10.0), target.factors_of(pair, 10.0)
+    # least squares of both: the geometric mean of the pair meets the target
+    assert together == pytest.approx([math.sqrt(alone[0] * alone[1])] * 2 + [alone[2]])
+
+
 @pytest.mark.parametrize("share", [0.9, 1.3])
 def test_a_suite_gets_the_least_factor_by_which_its_mean_is_nowhere_below_the_share(share):
     target = SpectrumTarget(TABLE, (0.3, 3.0), "suite", share)

@@ -55,7 +55,7 @@ def test_every_report_says_that_one_record_predicts_nothing_and_shows_the_suite(
 def test_too_few_motions_have_no_distribution(tmp_path):
     write_results(tmp_path, records=[("A", 0.3), ("B", 0.4)])
     page = page_of(tmp_path, distribution)
-    assert "too few motions" in page.text
+    assert "too few records" in page.text
     assert "predicts no earthquake" in page.text
 
 

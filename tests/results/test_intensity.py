@@ -186,6 +186,10 @@ def test_a_distribution_counts_overturned_runs_as_larger_than_any():
     theta, share = distribution(values, ["ok", "ok", "ok", "overturned", "flight", "failed"])
     assert theta.tolist() == [0.1, 0.2, 0.3]
     assert share.tolist() == pytest.approx([0.2, 0.4, 0.6])
+    by_station = distribution(
+        values, ["ok", "ok", "ok", "overturned", "flight", "failed"], ["A", "A", "B", "C", "B", "C"]
+    )
+    assert [each.tolist() for each in by_station] == [[0.3], [pytest.approx(1 / 3)]]
     theta, share = distribution(np.array([0.4]), ["overturned"])
     assert (len(theta), len(share)) == (0, 0)
 

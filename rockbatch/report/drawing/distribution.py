@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rockbatch.checks.suite import counts_as
 from rockbatch.report.drawing.axes import Axes, Scale
 from rockbatch.report.drawing.svg import COLOURS, curve, key, line, lowered, marker, rectangle, svg, text
 from rockbatch.report.labels import Series
@@ -18,11 +19,11 @@ WIDTH, HEIGHT = 300.0, 190.0
 DASHES = 4
 
 
-def draw(groups: "Sequence[tuple[str, pd.DataFrame]]", series: Sequence[Series]) -> Markup:
-    """A panel for each of the groups, which are runs and the words for them."""
+def draw(groups: "Sequence[tuple[str, pd.DataFrame]]", series: Sequence[Series], count: str) -> Markup:
+    """A panel for each of the groups, which are runs and the words for them; ``count`` is what counts as one record."""
     eventful = any(runs["status"].isin(["overturned", "flight"]).any() for _, runs in groups)
     panels = [
-        tag("figure", tag("figcaption", words or "all runs"), _panel(words, runs, series, eventful))
+        tag("figure", tag("figcaption", words or "all runs"), _panel(words, runs, series, count, eventful))
         for words, runs in groups
     ]
     places = sorted({place for _, runs in groups for place in runs["series"].unique()})
@@ -33,7 +34,7 @@ def draw(groups: "Sequence[tuple[str, pd.DataFrame]]", series: Sequence[Series])
     return join(grid, key(entries))
 
 
-def _panel(words: str, runs: "pd.DataFrame", series: Sequence[Series], eventful: bool) -> Markup:
+def _panel(words: str, runs: "pd.DataFrame", series: Sequence[Series], count: str, eventful: bool) -> Markup:
     peaks = runs["theta_max_over_alpha"].where(runs["status"] == "ok").to_numpy(dtype=np.float64)
     top = 1.04 * float(np.nanmax(peaks, initial=0.0)) or 1.0
     right = 1.08 * top if eventful else top
@@ -45,7 +46,11 @@ def _panel(words: str, runs: "pd.DataFrame", series: Sequence[Series], eventful:
     drawn.append(axes.frame([tick for tick in Scale(0, top).ticks(5) if tick <= top], axes.y.ticks(5)))
     for place, same in runs.groupby("series"):
         one = series[int(str(place))]
-        theta, share = distribution(same["theta_max_over_alpha"].to_numpy(dtype=np.float64), same["status"].to_list())
+        theta, share = distribution(
+            same["theta_max_over_alpha"].to_numpy(dtype=np.float64),
+            same["status"].to_list(),
+            counts_as(same, count)[0].to_list(),
+        )
         reached = float(share[-1]) if len(share) else 0.0
         x = np.repeat(np.concatenate(([0.0], theta, [right])), 2)[1:-1]
         y = np.repeat(np.concatenate(([0.0], share)), 2)
@@ -56,7 +61,7 @@ def _panel(words: str, runs: "pd.DataFrame", series: Sequence[Series], eventful:
             drawn.append(line(at, float(axes.down(reached)), at, float(axes.down(1.0)), _style(one)))
             drawn.append(marker("overturned", at, float(axes.down(0.5 * (1.0 + reached))), colour="alarm", title=said))
     drawn.append(text(axes.left + axes.width / 2, HEIGHT - 6, lowered("θ", "max", "/α"), class_="m q"))
-    drawn.append(text(axes.left - 24, 9, "share of the runs", class_="q"))
+    drawn.append(text(axes.left - 24, 9, "share of the records", class_="q"))
     return svg(WIDTH, HEIGHT, *drawn, description=f"Distribution of θmax/α{', ' + words if words else ''}")
 
 

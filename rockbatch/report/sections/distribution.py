@@ -1,13 +1,20 @@
 """What one record says and what a suite says: the distribution of the largest rotations."""
 
+from typing import TYPE_CHECKING
+
+from rockbatch.checks.suite import counts_as
 from rockbatch.report.contents import Contents
 from rockbatch.report.document import Section, figure, paragraphs
 from rockbatch.report.drawing import distribution
 from rockbatch.report.finished import Finished
 from rockbatch.report.markup import Markup, join, tag
+from rockbatch.report.sections.statistics import RECORDS
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 MOST_PANELS = 12
-LEAST_RUNS = 3
+LEAST_RECORDS = 3
 """Of a panel; fewer have no distribution."""
 
 ONE_RECORD = (
@@ -27,14 +34,19 @@ def section(contents: Contents) -> Section | None:
 
 
 def _picture(finished: Finished) -> Markup:
-    groups = [(words, runs) for words, runs in finished.groups() if runs.groupby("series").size().max() >= LEAST_RUNS]
+    def number(runs: "pd.DataFrame") -> int:
+        """Of the records in the case that has most of them."""
+        counted = counts_as(runs, finished.count)[0]
+        return int(counted.groupby(runs["series"]).nunique().max())
+
+    groups = [(words, runs) for words, runs in finished.groups() if number(runs) >= LEAST_RECORDS]
     if not groups:
-        return tag("p", "There are too few motions for a distribution.", class_="muted")
+        return tag("p", "There are too few records for a distribution.", class_="muted")
     shown = groups[:MOST_PANELS]
     caption = (
-        "Share of the runs whose largest rotation does not exceed a value; mirror images count once, and steps are "
-        "single runs. Runs that overturned, or were ended by flight, exceed every value: they stand at the right edge. "
-        "Failed runs do not count."
+        "Share of the records under which the largest rotation does not exceed a value; steps are single records. "
+        f"{RECORDS[finished.count]} Those under which the pier overturned, or that were ended by flight, exceed every "
+        "value: they stand at the right edge. Records with a failed run do not count."
     )
     more = f" The first {len(shown)} of {len(groups)} groups are shown." if len(shown) < len(groups) else ""
-    return figure(distribution.draw(shown, finished.series), caption + more)
+    return figure(distribution.draw(shown, finished.series, finished.count), caption + more)

@@ -40,6 +40,7 @@ def _records(finished: Finished) -> Markup:
     """The ground motions as they were used, like the paper's Table 1, the weakest first."""
     heads = [
         Head("record"),
+        Head("station", note="its components count as one record"),
         Head("PGA [g]", ".3f"),
         Head("PGV [m/s]", ".3f"),
         Head("PGD [m]", ".3f"),
@@ -60,9 +61,9 @@ def _records(finished: Finished) -> Markup:
         Head("pulse [s]", ".2f", "pulse_period_s: period of the largest pulse"),
     ]
     names = (
-        "record", "pga_g", "pgv_m_s", "pgd_m", "pga_v_g", "arias_m_s", "d5_95_s", "dt_s", "npts", "duration_s",
-        "processed", "check", "azimuth_deg", "magnitude", "distance_km", "factor", "pulse",
-        "pulse_indicator", "pulse_period_s",
+        "record", "station", "pga_g", "pgv_m_s", "pgd_m", "pga_v_g", "arias_m_s", "d5_95_s", "dt_s", "npts", "duration_s",
+        "processed", "check", "azimuth_deg", "magnitude", "distance_km", "factor", "pulse", "pulse_indicator",
+        "pulse_period_s",
     )  # fmt: skip
     scaled = any(record.get("factor", 1.0) != 1.0 for record in finished.info["records"])
     ordered = sorted(finished.info["records"], key=lambda record: (record["pga_g"], record["record"]))

@@ -109,6 +109,9 @@ def _near_source(records: Sequence[Mapping[str, Any]]) -> Markup:
     periods = sorted(record["pulse_period_s"] for record in records if record.get("pulse") == "yes")
     told = f"{pulses} of {counted(len(records), 'horizontal component')} ({100 * pulses / len(records):.0f} %) "
     told += f"{'is' if pulses == 1 else 'are'} pulse-like"
+    stations = {record.get("station") or record["record"] for record in records}
+    with_pulse = {record.get("station") or record["record"] for record in records if record.get("pulse") == "yes"}
+    told += f", at {len(with_pulse)} of {counted(len(stations), 'station')}" if len(stations) < len(records) else ""
     told += f", with pulses of {periods[0]:.2g} to {periods[-1]:.2g} s" if periods else ""
     told += f"; of {open_} more the criterion does not tell" if open_ else ""
     criterion = (
