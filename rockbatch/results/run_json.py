@@ -86,7 +86,11 @@ def _spectra(motions: list[Motion], gravity: float, target: SpectrumTarget | Non
         return suite_spectra(motions, gravity)
     found = suite_spectra(motions, gravity, target.spectrum.damping, periods_over(*target.range_s))
     of_target = target.spectrum.at(np.array(found["period_s"], dtype=np.float64))
-    return found | {"target_sa_g": [None if math.isnan(sa) else float(f"{sa:.4g}") for sa in of_target]}
+    mean = target.mean(np.array(found["sa_g"], dtype=np.float64), motions)
+    return found | {
+        "mean_sa_g": [float(f"{sa:.4g}") for sa in mean],
+        "target_sa_g": [None if math.isnan(sa) else float(f"{sa:.4g}") for sa in of_target],
+    }
 
 
 def describe_case(case: Case) -> dict[str, Any]:

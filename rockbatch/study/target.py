@@ -12,7 +12,7 @@ from rockbatch.motions.design_spectra import (
     read_spectrum,
 )
 from rockbatch.motions.scaling import Target
-from rockbatch.motions.spectrum_target import FACTORS, SpectrumTarget
+from rockbatch.motions.spectrum_target import FACTORS, PAIRS, SpectrumTarget
 from rockbatch.study.ranges import range_of
 from rockbatch.toml.kinds import KindError, choice, closest, number, positive, shown, text
 from rockbatch.toml.reader import Key, Table
@@ -68,6 +68,7 @@ _SPECTRUM = {
     "spectrum": Key(_entry, '"EN 1998-1"', required=True, many=True, distinct=False),
     "period_range_s": Key(positive, "[0.4, 4.0]", required=True, many=True, distinct=False),
     "factors": Key(choice(*FACTORS), '"both"'),
+    "pairs": Key(choice(*PAIRS), '"srss"'),
     "at_least": Key(positive, "0.9"),
     "damping": _MEASURE["damping"],
 }
@@ -115,7 +116,7 @@ def _read_spectrum(table: Table) -> SpectrumTarget | None:
     spectrum = _spectrum(table, code, read) if "spectrum" in read else None
     if len(table.file.problems) > before or spectrum is None or limits is None:
         return None
-    own_keys = {name: read[name] for name in ("factors", "at_least") if name in read}
+    own_keys = {name: read[name] for name in ("factors", "pairs", "at_least") if name in read}
     try:
         return SpectrumTarget(spectrum, limits, **own_keys)
     except InputError as error:

@@ -118,9 +118,28 @@ def test_components_of_a_station_share_their_factor():
     assert together == pytest.approx([math.sqrt(alone[0] * alone[1])] * 2 + [alone[2]])
 
 
+def test_pairs_make_one_spectrum_by_the_root_of_the_sum_of_squares():
+    pair = [replace(SUITE[0], station="S"), replace(SUITE[1], station="S"), SUITE[2]]
+    target = SpectrumTarget(TABLE, (0.3, 3.0), "each", "srss")
+    assert (target.share, replace(target, pairs="apart").share, replace(target, at_least=1.0).share) == (1.3, 0.9, 1.0)
+    scaled = at_target(MotionSet(pair), target, 10.0).motions
+    assert scaled[0].factor == scaled[1].factor != scaled[2].factor
+    found = spectra(scaled, target)
+    of_pair, alone = np.hypot(found[0], found[1]), found[2]
+    for one in (of_pair, alone):
+        assert np.log(one / TABLE.at(target.periods)).mean() == pytest.approx(0.0, abs=1e-12)
+    told = target.described(scaled, 10.0)
+    np.testing.assert_allclose(told["mean_sa_g"], (of_pair + alone) / 2, rtol=1e-4)
+    assert (told["pairs"], told["alone"], told["at_least"]) == ("srss", 1, 1.3)
+    raised = at_target(MotionSet(pair), replace(target, factors="both"), 10.0).motions
+    found = spectra(raised, target)
+    mean = (np.hypot(found[0], found[1]) + found[2]) / 2
+    assert (mean / TABLE.at(target.periods)).min() == pytest.approx(1.3)
+
+
 @pytest.mark.parametrize("share", [0.9, 1.3])
 def test_a_suite_gets_the_least_factor_by_which_its_mean_is_nowhere_below_the_share(share):
-    target = SpectrumTarget(TABLE, (0.3, 3.0), "suite", share)
+    target = SpectrumTarget(TABLE, (0.3, 3.0), "suite", at_least=share)
     scaled = at_target(MotionSet(SUITE), target, 10.0).motions
     assert len({round(motion.factor, 12) for motion in scaled}) == 1
     over = spectra(scaled, target).mean(axis=0) / TABLE.at(target.periods)
@@ -129,13 +148,13 @@ def test_a_suite_gets_the_least_factor_by_which_its_mean_is_nowhere_below_the_sh
 
 def test_both_fits_each_and_raises_all_where_the_mean_is_too_low_but_never_lowers_them():
     each = SpectrumTarget(TABLE, (0.3, 3.0), "each").factors_of(SUITE, 10.0)
-    high = SpectrumTarget(TABLE, (0.3, 3.0), "both", 1.2)
+    high = SpectrumTarget(TABLE, (0.3, 3.0), "both", at_least=1.2)
     ratio = np.array(high.factors_of(SUITE, 10.0)) / each
     assert ratio == pytest.approx([ratio[0]] * 3)
     assert ratio[0] > 1.0
     over = spectra(at_target(MotionSet(SUITE), high, 10.0).motions, high).mean(axis=0) / TABLE.at(high.periods)
     assert over.min() == pytest.approx(1.2)
-    assert SpectrumTarget(TABLE, (0.3, 3.0), "both", 0.01).factors_of(SUITE, 10.0) == pytest.approx(each)
+    assert SpectrumTarget(TABLE, (0.3, 3.0), "both", at_least=0.01).factors_of(SUITE, 10.0) == pytest.approx(each)
 
 
 def test_none_leaves_records_as_they_are_and_says_how_they_compare():
@@ -175,7 +194,7 @@ def study_with(folder, target):
 def test_a_study_names_codes_tables_and_files(tmp_path):
     found = study_with(tmp_path, EUROCODE_KEYS)
     assert found == SpectrumTarget(
-        EurocodeSpectrum(0.3, EUROCODE[1]["B"], 0.05, "EN 1998-1 type 1, ground B"), (0.4, 4.0), "both", 0.9
+        EurocodeSpectrum(0.3, EUROCODE[1]["B"], 0.05, "EN 1998-1 type 1, ground B"), (0.4, 4.0), "both", "apart"
     )
     annex = study_with(tmp_path, EUROCODE_KEYS | {"tc_s": 0.4, "damping": 0.1, "factors": "suite", "at_least": 1.3})
     assert (annex.spectrum.shape, annex.spectrum.damping) == (EUROCODE[1]["B"]._replace(tc_s=0.4), 0.1)
@@ -202,6 +221,7 @@ def test_a_study_names_codes_tables_and_files(tmp_path):
         (EUROCODE_KEYS | {"sds_g": 1.0}, 'sds_g = 1.0: is for spectrum = "ASCE 7"'),
         (EUROCODE_KEYS | {"pga_g": 1.0}, "is for a target of one measure"),
         (EUROCODE_KEYS | {"factors": "every"}, 'factors = "every": expected one of'),
+        (EUROCODE_KEYS | {"pairs": "rotd100"}, 'pairs = "rotd100": expected one of'),
         ({"spectrum": "EN1998", "period_range_s": [0.4, 4]}, 'no such file.*did you mean "EN 1998-1"'),
         ({"spectrum": "asce 7", "period_range_s": [0.4, 4]}, "sds_g is missing"),
         ({"spectrum": [[1.0, 0.1], [0.5, 0.2]], "period_range_s": [0.6, 0.9]}, "periods must grow"),

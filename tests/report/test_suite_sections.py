@@ -132,7 +132,7 @@ def test_the_target_is_drawn_with_every_record_and_the_mean_over_it(asked):
     assert f"{max(over):.2f} at most" in page.text
     assert "below the 0.9 that is asked for" in page.text
     assert "nothing is scaled to the target" in page.text
-    assert "no conformity with a clause is claimed" in page.text
+    assert "no conformity is claimed" in page.text
 
 
 def test_pulses_and_distances_are_counted(asked, tmp_path):
@@ -147,6 +147,17 @@ def test_pulses_and_distances_are_counted(asked, tmp_path):
     (tmp_path / "peaks.csv").write_bytes((asked / "peaks.csv").read_bytes())
     text = page_of(tmp_path, target).text
     assert "Of 3 components with a known distance 2 were recorded within 15 km; of the other 3 it is not known" in text
+
+
+def test_stations_without_a_pair_are_told_where_pairs_are_asked_for(asked, tmp_path):
+    info = json.loads((asked / "run.json").read_text(encoding="utf-8"))
+    info["target"] |= {"pairs": "srss", "alone": 6}
+    (tmp_path / "run.json").write_text(json.dumps(info), encoding="utf-8")
+    (tmp_path / "peaks.csv").write_bytes((asked / "peaks.csv").read_bytes())
+    text = page_of(tmp_path, target).text
+    assert "6 stations without two components" in text
+    assert "the square root of the sum of its components' squares" in text
+    assert "without two components" not in page_of(asked, target).text
 
 
 def test_the_page_of_it_all_is_whole_and_spectra_are_drawn_once(asked):

@@ -18,7 +18,7 @@ def draw(spectra: dict[str, Any], names: Sequence[str], fitted: tuple[float, flo
     """Pseudo-spectral acceleration [g] over the period [s], both logarithmic.
 
     ``spectra`` is that of run.json: ``damping``, ``period_s``, in the order of ``names`` ``sa_g``, and perhaps
-    ``target_sa_g``, to which the suite is ``fitted`` between two periods [s].
+    ``target_sa_g``, to which the suite's ``mean_sa_g`` is ``fitted`` between two periods [s].
     """
     periods, values = np.array(spectra["period_s"], dtype=float), np.array(spectra["sa_g"], dtype=float)
     target = np.array(spectra.get("target_sa_g", ()), dtype=float)
@@ -42,7 +42,7 @@ def draw(spectra: dict[str, Any], names: Sequence[str], fitted: tuple[float, flo
     for i, (name, spectrum) in enumerate(zip(names, values, strict=True)):
         add(spectrum, f"level s{i + 1}" if few else "level faint", name, named=few)
     if len(target):
-        add(values.mean(axis=0), "level ink d1", "mean of the records")
+        add(np.array(spectra["mean_sa_g"], dtype=float), "level ink d1", "mean of the records")
         add(target, "target", "target")
     elif len(names) > 1:
         add(np.median(values, axis=0), "level ink", "median")

@@ -19,6 +19,17 @@ FACTORS = {
     "suite": "All records are scaled by one factor, the least by which their mean is nowhere below {share} of the target",
     "none": "The records are as they were: nothing is scaled to the target",
 }
+PAIRS = {
+    "apart": "The mean is the arithmetic one of all horizontal components, each with a spectrum of its own.",
+    "srss": "The mean is the arithmetic one over stations, each with the square root of the sum of its components' squares, as "
+    "EN 1998-2 has it.",
+}
+CAVEAT = (
+    "Components of a station have one factor. The study's scale comes on top. Where records come in pairs EN 1998-2 asks for "
+    "the mean of roots of sums of squares (the study's key pairs), and ASCE 7 for maximum-direction spectra, which are not "
+    "formed here. What the codes say is taken from later literature, not checked against their clauses, and no conformity is "
+    "claimed."
+)
 NEAR_KM = 15.0
 """A usual limit of near-source sites: ASCE 7-16, 11.4.1, has 15 km from a fault of M 7, and 10 km of M 6."""
 
@@ -60,16 +71,12 @@ def _fit(target: Mapping[str, Any], records: Sequence[Mapping[str, Any]]) -> Mar
     )
     below = float(over[least]) < target["at_least"] * (1 - 1e-3)
     warning = alarm(f": below the {share} that is asked for.") if below else "."
-    caveat = (
-        "The mean is the arithmetic one of all horizontal components, each as a spectrum of its own, before the "
-        "study's scale. Codes ask for others where records come in pairs: EN 1998-2 for that of the square roots of "
-        "the sums of squares, ASCE 7 for maximum-direction spectra. Neither is formed here, and no conformity with a "
-        "clause is claimed."
-    )
+    alone = ""
+    if target["pairs"] == "srss" and target["alone"]:
+        alone = alarm(f" {counted(target['alone'], 'station')} without two components: that is less than a pair has.")
     what = tag("strong", target["spectrum"])
-    return paragraphs(
-        join("Target: ", what, f", between {low:g} s and {high:g} s. {scaled}{told}."), join(words, warning), caveat
-    )
+    first = join("Target: ", what, f", between {low:g} s and {high:g} s. {scaled}{told}.")
+    return paragraphs(first, join(words, warning), join(PAIRS[target["pairs"]], alone), CAVEAT)
 
 
 def _over(target: Mapping[str, Any]) -> "np.ndarray[Any, np.dtype[np.float64]]":
