@@ -5,10 +5,11 @@ import math
 
 import pytest
 from report_page import Page
-from report_samples import write_results
+from report_samples import case_entry, write_results
 from studies import COSINE, SINE, study_text, write_study
 
 import rockbatch as rb
+from rockbatch.pier import Pier, YieldingBase
 from rockbatch.report import write_report
 from rockbatch.report.contents import read
 from rockbatch.report.sections import distribution, estimate, intensity, target
@@ -64,6 +65,16 @@ def test_more_groups_than_panels_are_told(tmp_path):
     found = distribution.section(read(tmp_path, ()))
     assert found.content.count("<figcaption>motions scaled") == 12
     assert "The first 12 of 14 groups are shown." in Page(found.content).text
+
+
+def test_more_foundations_than_can_be_told_apart_are_not_drawn(tmp_path):
+    pier = Pier(alpha=0.13, p=0.38)
+    etas = [2.0 + 0.1 * i for i in range(25)]
+    cases = [case_entry("soil", {"eta": eta}, pier, YieldingBase(beta=40.0, eta=eta)) for eta in etas]
+    write_results(tmp_path, cases=cases, varied=("eta",))
+    content = distribution.section(read(tmp_path, ())).content
+    assert content.count('data-name="') == 21
+    assert "The first 21 of 25 foundations are shown." in content
 
 
 # Intensity measures

@@ -1,7 +1,5 @@
 """What one record says and what a suite says: the distribution of the largest rotations."""
 
-from typing import TYPE_CHECKING
-
 from rockbatch.checks.suite import counts_as
 from rockbatch.report.contents import Contents
 from rockbatch.report.document import Section, figure, paragraphs
@@ -10,12 +8,11 @@ from rockbatch.report.finished import Finished
 from rockbatch.report.markup import Markup, join, tag
 from rockbatch.report.sections.statistics import RECORDS
 
-if TYPE_CHECKING:
-    import pandas as pd
-
 MOST_PANELS = 12
+MOST_CURVES = 21
+"""Of a panel: three times seven colours; more cannot be told apart."""
 LEAST_RECORDS = 3
-"""Of a panel; fewer have no distribution."""
+"""Fewer have no distribution."""
 
 ONE_RECORD = (
     "The peak under one record predicts no earthquake. Held against shaking tables, planar rocking models miss the "
@@ -34,19 +31,18 @@ def section(contents: Contents) -> Section | None:
 
 
 def _picture(finished: Finished) -> Markup:
-    def number(runs: "pd.DataFrame") -> int:
-        """Of the records in the case that has most of them."""
-        counted = counts_as(runs, finished.count)[0]
-        return int(counted.groupby(runs["series"]).nunique().max())
-
-    groups = [(words, runs) for words, runs in finished.groups() if number(runs) >= LEAST_RECORDS]
-    if not groups:
+    if counts_as(finished.runs, finished.count)[0].nunique() < LEAST_RECORDS:
         return tag("p", "There are too few records for a distribution.", class_="muted")
+    groups = finished.groups()
     shown = groups[:MOST_PANELS]
+    places = sorted({int(place) for _, runs in shown for place in runs["series"].unique()})
+    if len(places) > MOST_CURVES:
+        shown = [(words, runs[runs["series"].isin(places[:MOST_CURVES])]) for words, runs in shown]
     caption = (
         "Share of the records under which the largest rotation does not exceed a value; steps are single records. "
         f"{RECORDS[finished.count]} Those under which the pier overturned, or that were ended by flight, exceed every "
         "value: they stand at the right edge. Records with a failed run do not count."
     )
-    more = f" The first {len(shown)} of {len(groups)} groups are shown." if len(shown) < len(groups) else ""
-    return figure(distribution.draw(shown, finished.series, finished.count), caption + more)
+    caption += f" The first {len(shown)} of {len(groups)} groups are shown." if len(shown) < len(groups) else ""
+    caption += f" The first {MOST_CURVES} of {len(places)} foundations are shown." if len(places) > MOST_CURVES else ""
+    return figure(distribution.draw(shown, finished.series, finished.count), caption)
