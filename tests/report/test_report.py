@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from report_page import Page, figures, svg_texts
+from report_page import Page, figures, panels, svg_texts
 from report_samples import FIG7, FOUNDATIONS, case_entry, response, three_piers, write_results
 
 from rockbatch.errors import InputError
@@ -37,11 +37,6 @@ def histories(**columns):
         response("sine", name, base, **({} if name == "rigid" else {"eta": base.eta})) for name, base in entries
     ]
     return responses, {"records": [("sine", 1.0)], "cases": cases, "varied": ("eta",)}
-
-
-def panels(text):
-    """The pictures of the figure of peak rotations, one for each record."""
-    return [svg for svg in figures(text) if "marks" in svg.attrib["class"]]
 
 
 def test_every_peak_stands_in_the_tables_in_order_of_pga(tmp_path):
@@ -451,7 +446,8 @@ def test_a_damaged_table_is_told_with_every_line_at_once(tmp_path):
 
 def test_error_bars_are_drawn_where_they_are_longer_than_their_marker(tmp_path):
     text = report(tmp_path, changes={("SYL360", "2"): {"theta_max_error": 0.02}})
-    bars = [sum(node.get("class") == "bar" for node in panel.iter()) for panel in panels(text)]
+    drawn = panels(text)
+    bars = [sum(node.get("class") == "bar" for node in panel.iter()) for panel in drawn]
     assert bars == [int(name == "SYL360") for name, _ in FIG7]
     assert "± 2e-02" in text
 

@@ -7,7 +7,6 @@ from rockbatch.files import read_table
 from rockbatch.report.contents import Contents
 from rockbatch.report.document import Section, paragraphs
 from rockbatch.report.finished import Finished
-from rockbatch.report.labels import quantity
 from rockbatch.report.markup import Markup, join, tag
 from rockbatch.report.table import Head, table
 from rockbatch.results.intensity import INTENSITY, LEAST_RUNS, MEANING, orders
@@ -58,11 +57,11 @@ def _order(finished: Finished, order: "pd.DataFrame") -> Markup:
     ranks: list[list[object]] = []
     lines: list[list[object]] = []
     for key, same in order.groupby(["case", *varied, "scale"], sort=False, dropna=False):
-        told = zip(varied, key[1:-1], strict=True)
-        words = [quantity(name, value) for name, value in told if value == value and value != ""]
+        series, pier = finished.place(str(key[0]), dict(zip(varied, key[1:-1], strict=True)))
+        words = ", ".join(filter(None, (finished.series[series].label, finished.piers[pier])))
         by = same.set_index("measure")
         rho, sigma, first = by["rank_correlation"], by["dispersion"], by.iloc[0]
-        case = [f"{key[0]}: {', '.join(words)}" if words else key[0], float(first["scale"]) if many_scales else None]
+        case = [words, float(first["scale"]) if many_scales else None]
         best = _symbol(rho.idxmax()) if rho.notna().any() else "—"
         ranks.append([*case, first["runs"], first["without_peak"], best, *(_told(rho[name]) for name in names)])
         best = _symbol(sigma.idxmin()) if sigma.notna().any() else "—"
