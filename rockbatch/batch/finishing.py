@@ -24,7 +24,9 @@ from rockbatch.motions import MotionSet
 from rockbatch.report import REPORT, write_report
 from rockbatch.results.checking import verdicts
 from rockbatch.results.columns import PEAKS, unusable_rows
+from rockbatch.results.estimate import ESTIMATE, write_estimate
 from rockbatch.results.histories_file import HISTORIES
+from rockbatch.results.intensity import INTENSITY, write_intensity
 from rockbatch.results.reading import Saved, read_saved
 from rockbatch.results.run_json import INFO, describe, write_info
 from rockbatch.study import Study
@@ -111,7 +113,7 @@ def to_be_replaced(directory: Path, study: Study) -> str | None:
 def write_peaks(journal: Journal, motions: MotionSet) -> None:
     """Write peaks.csv; what belongs to earlier ones goes first, so that they cannot be mixed up."""
     directory = journal.path.parent
-    for name in (INFO, HISTORIES, CHECKS, REPORT):
+    for name in (INFO, HISTORIES, INTENSITY, ESTIMATE, CHECKS, REPORT):
         (directory / name).unlink(missing_ok=True)
     journal.write_in_order(directory / PEAKS, unusable_rows(motions))
 
@@ -128,8 +130,18 @@ def finish(
     histories, without = _keep_histories(saved, study, runs, listener)
     judged = verdicts(saved) if study.checks else []
     checks = write_verdicts(directory, judged) if study.checks else None
-    written = (directory / PEAKS, directory / INFO, histories, checks, write_report(directory))
+    beside = _beside_peaks(saved, study, motions)
+    written = (directory / PEAKS, directory / INFO, *beside, histories, checks, write_report(directory))
     return FinishedBatch(saved, motions, judged, tuple(path for path in written if path), without)
+
+
+def _beside_peaks(saved: Saved, study: Study, motions: MotionSet) -> list[Path]:
+    """Write the tables that the study asks for beside the peaks, and take away those of another time."""
+    asked = ((INTENSITY, study.output.intensity, write_intensity), (ESTIMATE, study.output.estimate, write_estimate))
+    for name, wanted, _ in asked:
+        if not wanted:
+            (saved.directory / name).unlink(missing_ok=True)
+    return [write(saved.directory, saved.peaks, study, motions.motions) for _, wanted, write in asked if wanted]
 
 
 def _keep_histories(

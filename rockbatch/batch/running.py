@@ -189,4 +189,7 @@ def told(study: Study, motions: MotionSet) -> str:
         "case": len(study.cases),
     }
     counted = [count(n, noun) for noun, n in factors.items() if n > 1 or noun in ("record", "case")]
+    stations = len({motion.of_station for motion in motions.motions})
+    if stations < factors["record"]:
+        counted[0] += f" of {count(stations, 'station')}"
     return f"{' × '.join(counted)} = {count(math.prod(factors.values()), 'run')}{once(study)}"

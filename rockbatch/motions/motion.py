@@ -79,6 +79,8 @@ class Motion:
         What is odd about it, told when it was read.
     lacks_vertical : bool
         Whether a vertical component was asked for, and there is none.
+    station : str
+        What the components of one station in one earthquake share, which count as one record; empty for a record of its own.
 
     Raises ``InputError`` for samples that are no numbers and components of different lengths.
     """
@@ -98,6 +100,7 @@ class Motion:
     processed: bool | None = None
     findings: tuple[Finding, ...] = ()
     lacks_vertical: bool = False
+    station: str = ""
 
     def __post_init__(self) -> None:
         wrong = []
@@ -128,6 +131,11 @@ class Motion:
     def files(self) -> str:
         """Where its components came from."""
         return ", ".join(source for source in (self.source, self.vertical_source) if source)
+
+    @property
+    def of_station(self) -> str:
+        """The record that it counts as: its station's, or its own."""
+        return self.station or self.name
 
     @property
     def npts(self) -> int:

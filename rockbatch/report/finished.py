@@ -8,7 +8,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rockbatch.checks.suite import simulated
+from rockbatch.checks.suite import counts_as, simulated
 from rockbatch.errors import InputError
 from rockbatch.report.labels import Key, Series, digits_that_tell, named, quantity
 from rockbatch.report.markup import number
@@ -58,6 +58,12 @@ class Finished:
     def records(self) -> dict[str, dict[str, Any]]:
         """What ``run.json`` knows about each ground motion."""
         return {record["record"]: record for record in self.info["records"]}
+
+    @property
+    def count(self) -> str:
+        """What counts as one record: "station", or "component"; the latter too where the stations are not known."""
+        count = str(self.info.get("count", "station"))
+        return "component" if counts_as(self.runs, count)[1] else count
 
     @cached_property
     def both_directions(self) -> bool:

@@ -11,7 +11,7 @@ from operator import attrgetter
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from rockbatch.checks.suite import MIRROR_OF, OTHER_LAW
-from rockbatch.motions import MotionSet
+from rockbatch.motions import Motion, MotionSet
 from rockbatch.results.outcome import Outcome
 from rockbatch.study import Case, Study
 
@@ -211,6 +211,11 @@ MORE = (
         "note", "what else there is to know of a run that is right: counts that have not settled, say", "note",
         kind="text", page=OnPage("note"), sometimes=True,
     ),
+    Column(
+        "station",
+        "what the components of one station in one earthquake share, which checks count as one record; a pulse is its own",
+        kind="text", page=OnPage("station"),
+    ),
 )  # fmt: skip
 """Columns that follow those of the varied keys. A table of an earlier version may lack the last of them."""
 
@@ -241,10 +246,11 @@ _OVER_ALPHA = tuple(column.name for column in COLUMNS.values() if column.over_al
 _read_fields = attrgetter(*_FIELDS.values())
 
 
-def row(record: str, polarity: str, scale: float, case: Case, outcome: Outcome) -> dict[str, Any]:
+def row(motion: Motion, polarity: str, scale: float, case: Case, outcome: Outcome) -> dict[str, Any]:
     """Row of peaks.csv: the names of a run, and its outcome over α."""
     alpha = case.pier.alpha
-    found: dict[str, Any] = {"record": record, "case": case.name, "polarity": polarity, "scale": scale, **case.columns}
+    found: dict[str, Any] = {"record": motion.name, "station": motion.of_station, "case": case.name}
+    found |= {"polarity": polarity, "scale": scale, **case.columns}
     found |= zip(_FIELDS, _read_fields(outcome), strict=True)
     found |= {name: of(outcome) for name, of in _FUNCTIONS.items()}
     for name in _OVER_ALPHA:

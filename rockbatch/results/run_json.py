@@ -2,15 +2,20 @@
 
 import hashlib
 import json
+import math
 from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from rockbatch.files import write_whole
 from rockbatch.motions import MotionSet, measures
 from rockbatch.motions.motion import Motion
-from rockbatch.motions.spectrum import suite_spectra
+from rockbatch.motions.spectrum import periods_over, suite_spectra
+from rockbatch.motions.spectrum_target import SpectrumTarget
+from rockbatch.motions.velocity_pulses import pulse_of
 from rockbatch.pier import (
     Base,
     ElasticBase,
@@ -34,6 +39,9 @@ MOST_SPECTRA = 200
 
 def describe(study: Study, motions: MotionSet) -> dict[str, Any]:
     """What run.json says about a study and its motions."""
+    gravity = study.cases[0].pier.gravity
+    target = study.motions.target if isinstance(study.motions.target, SpectrumTarget) else None
+    with_pulses = target is not None or study.output.intensity
     return {
         "study": {
             "path": str(study.path),
@@ -48,11 +56,13 @@ def describe(study: Study, motions: MotionSet) -> dict[str, Any]:
             "quiet_s": study.numerics.quiet_s,
         },
         "varied": list(study.varied),
+        "count": study.count,
         "units": units(study),
         "cases": [describe_case(case) for case in study.cases],
         "without_vertical": motions.without_vertical,
-        "records": [_describe_motion(motion, study.cases[0].pier.gravity) for motion in motions.motions],
-        "spectra": _spectra(motions.motions, study.cases[0].pier.gravity),
+        "records": [_describe_motion(motion, gravity, with_pulses) for motion in motions.motions],
+        "spectra": _spectra(motions.motions, gravity, target),
+        **({} if target is None else {"target": target.described(motions.motions, gravity)}),
         "unusable": [asdict(file) for file in motions.unusable],
         "left_out": [asdict(file) for file in motions.left_out],
         "references": [
@@ -68,9 +78,19 @@ def describe(study: Study, motions: MotionSet) -> dict[str, Any]:
     }
 
 
-def _spectra(motions: list[Motion], gravity: float) -> dict[str, Any] | None:
-    """Response spectra of the suite, where that is soon done."""
-    return suite_spectra(motions, gravity) if len(motions) <= MOST_SPECTRA else None
+def _spectra(motions: list[Motion], gravity: float, target: SpectrumTarget | None) -> dict[str, Any] | None:
+    """Response spectra of the suite, where that is soon done; with the target's damping and periods, if it has one."""
+    if len(motions) > MOST_SPECTRA:
+        return None
+    if target is None:
+        return suite_spectra(motions, gravity)
+    found = suite_spectra(motions, gravity, target.spectrum.damping, periods_over(*target.range_s))
+    of_target = target.spectrum.at(np.array(found["period_s"], dtype=np.float64))
+    mean = target.mean(np.array(found["sa_g"], dtype=np.float64), motions)
+    return found | {
+        "mean_sa_g": [float(f"{sa:.4g}") for sa in mean],
+        "target_sa_g": [None if math.isnan(sa) else float(f"{sa:.4g}") for sa in of_target],
+    }
 
 
 def describe_case(case: Case) -> dict[str, Any]:
@@ -114,10 +134,11 @@ def _springs(pier: Pier, base: ElasticBase) -> dict[str, Any]:
     }
 
 
-def _describe_motion(motion: Motion, gravity: float) -> dict[str, Any]:
+def _describe_motion(motion: Motion, gravity: float, with_pulse: bool) -> dict[str, Any]:
     vertical = motion.pga_vertical
     return {
         "record": motion.name,
+        "station": motion.of_station,
         "dt_s": motion.dt,
         "npts": motion.npts,
         "duration_s": motion.duration,
@@ -130,6 +151,7 @@ def _describe_motion(motion: Motion, gravity: float) -> dict[str, Any]:
         "azimuth_deg": motion.azimuth,
         "magnitude": motion.magnitude,
         "distance_km": motion.distance_km,
+        **(_pulse(motion) if with_pulse else {}),
         "factor": motion.factor,
         "source": motion.source,
         "vertical_source": motion.vertical_source,
@@ -137,6 +159,13 @@ def _describe_motion(motion: Motion, gravity: float) -> dict[str, Any]:
         "findings": [asdict(finding) for finding in motion.findings],
         "notes": list(motion.notes),
     }
+
+
+def _pulse(motion: Motion) -> dict[str, Any]:
+    """Whether a motion is pulse-like, by the criterion of Baker (2007)."""
+    found = pulse_of(motion)
+    period = None if math.isnan(found.period_s) else float(f"{found.period_s:.4g}")
+    return {"pulse": found.kind, "pulse_indicator": float(f"{found.indicator:.4g}"), "pulse_period_s": period}
 
 
 def write_info(directory: Path, info: Mapping[str, Any]) -> None:

@@ -27,13 +27,15 @@ RIGID, ELASTIC = case("rigid", RigidBase()), case("elastic", ElasticBase(beta=50
 
 
 def runs(theta: Any = (0.1, 0.2, 0.6, 0.3), name: str = "pads", **cells: Any) -> pd.DataFrame:
-    """One run that went well for each value of θ_max/α; ``cells`` has a value, or one for each run, for other columns."""
+    """One run that went well for each value of θ_max/α, each of a station of its own; ``cells`` has a value, or one for each
+    run, for other columns."""
     table = pd.DataFrame({"theta_max_over_alpha": [float(value) for value in theta]})
     table["record"] = [f"r{i}" for i in range(len(table))]
     table["case"], table["polarity"], table["scale"], table["status"], table["reason"] = name, "+", 1.0, "ok", ""
     for column in names((*STAYING, *MORE)):
         if column not in table:
             table[column] = math.nan
+    table["station"] = table["record"]
     for column, value in cells.items():
         table[column] = value
     return table
@@ -44,12 +46,12 @@ def folder(path: Path, peaks: pd.DataFrame, cases: list[dict[str, Any]], checks:
     table = peaks.reindex(columns=list(dict.fromkeys([*names(STAYING), *names(MORE), *peaks.columns])))
     path.mkdir(exist_ok=True)
     table.to_csv(path / "peaks.csv", index=False, float_format="%.10g")
-    records = peaks.loc[peaks["case"] != "", "record"].unique()
+    records = peaks.loc[peaks["case"] != "", ["record", "station"]].drop_duplicates("record")
     told = dict.fromkeys(SECTIONS, "") | {
         "study": {"path": "pier.toml", "text": checks},
         "varied": list(dict.fromkeys(key for one in cases for key in one["columns"])),
         "cases": cases,
-        "records": [{"record": name} for name in records],
+        "records": records.to_dict("records"),
         "unusable": [],
     }
     (path / "run.json").write_text(json.dumps(told | info), encoding="utf-8")

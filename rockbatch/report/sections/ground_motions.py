@@ -10,6 +10,11 @@ from rockbatch.report.finished import Finished
 from rockbatch.report.markup import Markup, join, tag
 from rockbatch.report.table import Head, table
 
+PULSE_LIKE = (
+    "by the criterion of Baker (2007), of the record before scaling; late, weak: no, because the pulse arrives late or PGV is "
+    "below 0.3 m/s"
+)
+
 
 def section(contents: Contents) -> Section | None:
     """The ground motions that could be used."""
@@ -20,9 +25,9 @@ def section(contents: Contents) -> Section | None:
 
 
 def _spectra(finished: Finished) -> Markup:
-    """Their response spectra; nothing where run.json has no spectra, as of very large suites."""
+    """Their response spectra; nothing where run.json has no spectra, as of very large suites, or a target: drawn with that."""
     records, spectra = finished.info["records"], finished.info.get("spectra")
-    if not spectra or len(spectra["sa_g"]) != len(records):
+    if "target" in finished.info or not spectra or len(spectra["sa_g"]) != len(records):
         return join()
     caption = (
         f"Pseudo-spectral accelerations of the horizontal components, {100 * spectra['damping']:g} % damped, before "
@@ -35,6 +40,7 @@ def _records(finished: Finished) -> Markup:
     """The ground motions as they were used, like the paper's Table 1, the weakest first."""
     heads = [
         Head("record"),
+        Head("station", note="its components count as one record"),
         Head("PGA [g]", ".3f"),
         Head("PGV [m/s]", ".3f"),
         Head("PGD [m]", ".3f"),
@@ -50,10 +56,14 @@ def _records(finished: Finished) -> Markup:
         Head("M", note="magnitude"),
         Head("distance [km]"),
         Head("factor", ".4g", "what brought the record to the study's target"),
+        Head("pulse-like", note=PULSE_LIKE),
+        Head("pulse indicator", ".2f", "pulse_indicator: above 0.85 pulse-like, below 0.15 not"),
+        Head("pulse [s]", ".2f", "pulse_period_s: period of the largest pulse"),
     ]
     names = (
-        "record", "pga_g", "pgv_m_s", "pgd_m", "pga_v_g", "arias_m_s", "d5_95_s", "dt_s", "npts", "duration_s",
-        "processed", "check", "azimuth_deg", "magnitude", "distance_km", "factor",
+        "record", "station", "pga_g", "pgv_m_s", "pgd_m", "pga_v_g", "arias_m_s", "d5_95_s", "dt_s", "npts", "duration_s",
+        "processed", "check", "azimuth_deg", "magnitude", "distance_km", "factor", "pulse", "pulse_indicator",
+        "pulse_period_s",
     )  # fmt: skip
     scaled = any(record.get("factor", 1.0) != 1.0 for record in finished.info["records"])
     ordered = sorted(finished.info["records"], key=lambda record: (record["pga_g"], record["record"]))
