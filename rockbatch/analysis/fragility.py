@@ -115,7 +115,8 @@ def fragility(
         make_ready(asked, listener)
         waves = Waves(asked, journal, carrier, listener.progress)
         curves = assess(asked, spec, records, waves)
-        results.info |= described(curves, spec, asked, records)
+        results.info |= described(curves, spec, asked, len(records))
+        results.info["stations"] = len({motion.of_station for motion in records})
         results.keep_table(POINTS, points(curves, spec, asked.varied))
         if spec.method == "ida":
             names = [motion.name for motion in records]

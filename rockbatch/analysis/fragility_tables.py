@@ -10,7 +10,6 @@ from rockbatch.analysis.fragility_curves import Curve
 from rockbatch.analysis.ida import Capacity
 from rockbatch.analysis.limit_states import words
 from rockbatch.analysis.lognormal import Lognormal, Values
-from rockbatch.motions import Motion
 from rockbatch.study import Study
 from rockbatch.study.fragility import FragilitySpec
 
@@ -93,7 +92,7 @@ def _found(one: Capacity) -> str:
     return "below the lowest level" if one.decided.low == 0 else "exceeded"
 
 
-def described(curves: Sequence[Curve], spec: FragilitySpec, study: Study, records: Sequence[Motion]) -> dict[str, Any]:
+def described(curves: Sequence[Curve], spec: FragilitySpec, study: Study, records: int) -> dict[str, Any]:
     """What fragility.json says: what was asked, and every curve; an open bound of an interval is null."""
     return {
         "method": spec.method,
@@ -102,8 +101,7 @@ def described(curves: Sequence[Curve], spec: FragilitySpec, study: Study, record
         "levels": spec.levels,
         "tolerance": spec.tolerance if spec.method == "ida" else None,
         "confidence": spec.confidence,
-        "records": len(records),
-        "stations": len({motion.of_station for motion in records}),
+        "records": records,
         "polarities": study.motions.polarity,
         "curves": [_described(curve, spec) for curve in curves],
     }
