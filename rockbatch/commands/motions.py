@@ -4,6 +4,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from rockbatch.batch.listening import count
 from rockbatch.commands.messages import say
 
 if TYPE_CHECKING:
@@ -31,11 +32,13 @@ COLUMNS = (
     "processed",
     "check",
     "processing",
+    "station",
 )
 """Of the CSV: a row for each record, then for each file that is not used, with the reason."""
 
 _SHOWN = {  # heads of the table in the terminal, and how their numbers are written
     "record": ("record", ""),
+    "station": ("station", ""),
     "dt_s": ("dt [s]", "g"),
     "npts": ("npts", "d"),
     "duration_s": ("length [s]", ".2f"),
@@ -50,7 +53,7 @@ _SHOWN = {  # heads of the table in the terminal, and how their numbers are writ
     "file_h": ("horizontal", ""),
     "file_v": ("vertical", ""),
 }
-_TEXTS = ("record", "check", "file_h", "file_v")
+_TEXTS = ("record", "station", "check", "file_h", "file_v")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -86,7 +89,9 @@ def main(arguments: argparse.Namespace) -> int:
     _list("No vertical", [(name, "none beside it that fits") for name in found.without_vertical])
     _list("Not used", [(file.source, file.reason) for file in found.unusable])
     _list("Left out", [(file.source, file.reason) for file in found.left_out])
-    say(f"{len(found.motions)} records, {len(found.unusable)} files not used, {len(found.left_out)} left out")
+    stations = len({motion.of_station for motion in found.motions})
+    told = f"{len(found.motions)} records, {len(found.unusable)} files not used, {len(found.left_out)} left out"
+    say(f"{told}; {count(stations, 'station')}")
     if arguments.strict and found.unusable:
         return 2
     return 1 if found.unusable or not found.motions else 0
@@ -116,6 +121,7 @@ def _row(motion: "Motion") -> dict[str, Any]:
         "processed": None if motion.processed is None else ("yes" if motion.processed else "no"),
         "check": ", ".join(finding.what for finding in motion.findings) or None,
         "processing": "; ".join(motion.notes),
+        "station": motion.of_station,
     }
 
 
