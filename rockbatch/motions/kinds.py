@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from rockbatch.motions.limits import STEPS, is_step
 from rockbatch.toml.kinds import KindError, number, text
 from rockbatch.units import acceleration_factor
 
@@ -22,6 +23,13 @@ def vertical(value: Any) -> bool | str:
     if not isinstance(value, bool) and value != "required":
         raise KindError('true, false or "required"')
     return value
+
+
+def step(value: Any) -> float:
+    """A sampling interval [s]."""
+    if not is_step(number(value)):
+        raise KindError(f"a sampling interval of {STEPS}")
+    return float(value)
 
 
 def azimuth(value: Any) -> float:

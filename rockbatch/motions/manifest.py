@@ -29,7 +29,7 @@ RECORD = {
     "role": Key(choice("horizontal", "vertical"), '"vertical"'),
     "azimuth": Key(kinds.azimuth, "228"),
     "unit": Key(kinds.unit, '"cm/s2"'),
-    "dt": Key(positive, "0.01"),
+    "dt": Key(kinds.step, "0.01"),
     "scale": Key(positive, "1.0"),
     "polarity": Key(choice("+", "-"), '"-"'),
     "station": Key(text, '"Rinaldi"'),

@@ -9,7 +9,7 @@ from typing import Literal
 
 import numpy as np
 
-from rockbatch.motions.common_span import on_common_samples, overlap
+from rockbatch.motions.common_span import on_common_samples, overlap, too_unlike
 from rockbatch.motions.component import Component
 from rockbatch.motions.measures import state_at
 from rockbatch.motions.motion import Motion, MotionSet, Unusable
@@ -62,18 +62,13 @@ def to_motions(
     used: set[int] = set()
     motions: list[Motion] = []
     for station, component in horizontals:
-        notes = list(component.notes)
-        notes += replaced.get(id(component), [])
+        notes = [*component.notes, *replaced.get(id(component), [])]
         partner = None
         if vertical:
             together = [v for v in _candidates(component, station, verticals) if overlap(component, v)]
-            if len(together) > 1:
-                notes.append(f"no vertical: there are {len(together)} of them for this station")
-                names = ", ".join(v.source for v in together)
-                reason = f"several vertical components of one station ({names}): keep one of them"
-                unusable += [Unusable(v.name, v.source, reason) for v in together if id(v) not in used]
-            elif together:
-                partner = together[0]
+            partner, refused = _partner(component, together)
+            notes += [f"no vertical: {v.source}: {why}" for v, why in refused]
+            unusable += [Unusable(v.name, v.source, why) for v, why in refused if id(v) not in used]
             used.update(id(v) for v in together)
         motion = _motion(component, partner, notes)
         motions.append(replace(motion, lacks_vertical=bool(vertical) and motion.vertical is None))
@@ -160,6 +155,17 @@ def _candidates(horizontal: Component, station: int, verticals: Sequence[Sequenc
     of_site = [v for group in verticals for v in group if v.site == horizontal.site]
     first = min((v.folder for v in of_site), default="")
     return [v for v in of_site if v.folder == first]
+
+
+def _partner(h: Component, together: Sequence[Component]) -> tuple[Component | None, list[tuple[Component, str]]]:
+    """Which of the vertical components of its station and time goes with a horizontal one; the others, and why not."""
+    refused = [(v, why) for v in together if (why := too_unlike(h, v))]
+    fitting = [v for v in together if not too_unlike(h, v)]
+    if len(fitting) < 2:
+        return (fitting[0] if fitting else None), refused
+    names = ", ".join(v.source for v in fitting)
+    reason = f"several vertical components of one station ({names}): keep one of them"
+    return None, [*refused, *((v, reason) for v in fitting)]
 
 
 def _motion(h: Component, v: Component | None, notes: Iterable[str]) -> Motion:

@@ -10,7 +10,7 @@ import numpy as np
 
 from rockbatch.errors import InputError
 from rockbatch.motions.component import Component, Seat
-from rockbatch.motions.formats.fixed_width import is_cut_short, lines_of, number_in
+from rockbatch.motions.formats.fixed_width import LOOKED_AT, is_cut_short, lines_of, number_in
 from rockbatch.motions.formats.header_lines import moment
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.record_file import RecordFile
@@ -121,7 +121,7 @@ def _values(lines: list[str], first: int, npts: int) -> Samples:
             f"the header says NDATA: {npts}, but {end - first} lines follow it, from line {first + 1} on; "
             "fetch the file again"
         )
-    if is_cut_short([line.strip() for line in lines[first:end]]):
+    if is_cut_short([line.strip() for line in lines[max(first, end - LOOKED_AT) : end]]):
         raise InputError(f'line {end}: found "{lines[end - 1][:40]}", shorter than all others: the file is cut')
     return np.array([number_in(lines[i], i) for i in range(first, end)])
 
