@@ -6,6 +6,8 @@ from rockbatch.motions.limits import STEPS, is_step
 from rockbatch.toml.kinds import KindError, number, text
 from rockbatch.units import acceleration_factor
 
+_LONGEST_NAME = 1000
+
 
 def unit(value: Any) -> str:
     """A unit of acceleration, as it was written."""
@@ -15,6 +17,13 @@ def unit(value: Any) -> str:
         raise
     except ValueError as error:
         raise KindError(str(error).rpartition("; write ")[2]) from None
+    return str(value)
+
+
+def file_name(value: Any) -> str:
+    """The name of a file, as one that there can be."""
+    if "\x00" in text(value) or len(value) > _LONGEST_NAME:
+        raise KindError("the name of a file")
     return str(value)
 
 
