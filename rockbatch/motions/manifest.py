@@ -214,7 +214,8 @@ def _described(component: Component, entry: Entry, gravity: float) -> Component:
         initial = initial and initial.times(-1.0)
         notes.append(f"sign reversed as {where} says")
     if "station" in values:
-        component = replace(component, station=values["station"], site="")
+        origin = replace(component.origin, station=values["station"])
+        component = replace(component, station=values["station"], site="", origin=origin)
     return replace(
         component,
         acceleration=component.acceleration * factor if factor != 1.0 else component.acceleration,

@@ -14,6 +14,7 @@ from rockbatch.motions.component import Component
 from rockbatch.motions.measures import state_at
 from rockbatch.motions.motion import Motion, MotionSet, Unusable
 from rockbatch.motions.orientation import same_azimuth
+from rockbatch.motions.origin import directed
 from rockbatch.motions.plausible import ANY, Judged, doubt, findings, fits
 from rockbatch.motions.stations import by_station
 from rockbatch.motions.turning import turn_pairs
@@ -96,7 +97,7 @@ def _believed(judged: Iterable[Judged], patterns: Mapping[str, Sequence[str]], r
         motion, odd = each.motion, findings(each)
         keys = {*each.component.confirmed, *(key for key, names in patterns.items() if fits(motion.name, names))}
         if motion.lacks_vertical and required:
-            unusable.append(Unusable(motion.name, motion.files, _NO_VERTICAL))
+            unusable.append(Unusable(motion.name, motion.files, f"{motion.label} {_NO_VERTICAL}"))
         elif why := doubt(motion.name, odd, keys):
             unusable.append(Unusable(motion.name, motion.files, why))
         else:
@@ -198,6 +199,7 @@ def _motion(h: Component, v: Component | None, notes: Iterable[str]) -> Motion:
         distance_km=h.distance_km,
         initial=initial,
         processed=h.processed,
+        origin=directed(h.origin, h.orientation),
     )
 
 

@@ -118,6 +118,10 @@ def _describe_motion(motion: Motion, gravity: float) -> dict[str, Any]:
     vertical = motion.pga_vertical
     return {
         "record": motion.name,
+        "label": motion.label,
+        "event": motion.origin.event,
+        "station_name": motion.origin.station,
+        "direction": motion.origin.direction,
         "dt_s": motion.dt,
         "npts": motion.npts,
         "duration_s": motion.duration,

@@ -18,6 +18,7 @@ from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.limits import MOST_SAMPLES, STEPS, is_step
 from rockbatch.motions.motion import Samples
 from rockbatch.motions.orientation import UNKNOWN, orientation_of, split_stem
+from rockbatch.motions.origin import origin_of
 from rockbatch.units import acceleration_factor
 
 if TYPE_CHECKING:
@@ -131,6 +132,7 @@ def read_component(file: RecordFile) -> list[Component]:
             seat=Seat(record.station.upper()),
             event=f"{record.event} {record.date}".strip().upper() if record.date else "",
             processed=record.by_peer or None,
+            origin=origin_of(record.event, record.station, record.date),
         )
     ]
 

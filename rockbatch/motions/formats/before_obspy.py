@@ -18,7 +18,7 @@ _UNDEFINED = -12345  # of SAC; as text for its words of eight letters
 _SAC_HEADER, _FLOATS, _INTEGERS = 632, 70, 40  # bytes; words of four bytes, floats first
 _SAC_FLOATS = {  # word, the least and the largest value
     "DELTA": (0, 1e-5, 1.0),
-    "B": (5, -1e8, 1e8),
+    "B": (5, -1e10, 1e10),  # some count from 1970
     "CMPAZ": (57, -360.0, 720.0),
     "CMPINC": (58, -180.0, 180.0),
 }

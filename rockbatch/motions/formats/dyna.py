@@ -16,6 +16,7 @@ from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.formats.recording import Recording, to_components
 from rockbatch.motions.motion import Samples, Unusable
+from rockbatch.motions.origin import origin_of
 
 SUFFIXES = frozenset({".asc"})
 
@@ -44,6 +45,7 @@ def _parse(text: str) -> list[Recording]:
     unit = header["UNITS"]
     codes = tuple(header.get(key, "") for key in ("NETWORK", "STATION_CODE", "LOCATION"))
     stream = header["STREAM"]
+    year = header.get("EVENT_DATE_YYYYMMDD", "")[:4]
     event = header.get("EVENT_ID") or header["EVENT_NAME"]
     return [
         Recording(
@@ -58,6 +60,7 @@ def _parse(text: str) -> list[Recording]:
             processed=_processed(header),
             seat=Seat(codes[1], codes[0], codes[2]),
             event=event,
+            origin=origin_of(header["EVENT_NAME"], header.get("STATION_NAME") or codes[1], year),
             stated_peak=_peak(header) if unit.lower() == "cm/s^2" else None,
             header={key.lower(): value for key, value in header.items() if value},
         )

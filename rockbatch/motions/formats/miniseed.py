@@ -12,6 +12,7 @@ from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.formats.with_obspy import read_stream
 from rockbatch.motions.motion import Unusable
 from rockbatch.motions.orientation import Orientation, is_clock, orientation_of, unknown
+from rockbatch.motions.origin import origin_of
 from rockbatch.units import acceleration_factor
 
 if TYPE_CHECKING:
@@ -129,6 +130,9 @@ def _component(
         unit="" if entry is not None and entry.sensitivity else unit,
         raw=True,
         processed=False,
+        origin=origin_of(
+            date=stats.starttime.strftime("%Y-%m-%d"), station=f"{stats.network}.{stats.station}".strip(".")
+        ),
         seat=Seat(stats.station, stats.network, stats.location),
         notes=(origin,),
     )
