@@ -6,7 +6,7 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-_LEAST, _PER_MIB = 20.0, 2.0  # s: ten times what the slowest reader takes
+_LEAST, _PER_MIB = 20.0, 2.0  # s: twenty times what the slowest reader takes, that of text columns
 _LOOKS = 0.5  # s between looks at the clock, at most
 
 

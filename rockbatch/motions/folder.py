@@ -195,7 +195,9 @@ def _readings(
     except OSError as error:
         reason = f"cannot be read: {error.strerror or error}"
     except TooLongError:
-        reason = "its reading was ended after a time in which other files of its size are read ten times; it is damaged"
+        reason = (
+            "its reading was ended, after a time in which other files of its size are read twenty times: it is damaged"
+        )
     except Exception as error:  # the type tells that a reader is at fault
         reason = f"its reader failed: {type(error).__name__}: {error}"
     return [with_legible_texts(Unusable(stem, file.source, reason, lacks=lacks))]

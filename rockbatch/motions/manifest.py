@@ -260,8 +260,11 @@ def is_manifest(path: Path) -> bool:
     """Whether a file of a manifest's name is one: a ``motions.csv`` may be a record, if none of its columns is "file"."""
     if path.suffix == ".toml":
         return True
-    with path.open("rb") as file:
-        head = _first_line(file.read(_LONGEST_HEAD).decode("utf-8-sig", "replace"))
+    try:
+        with path.open("rb") as file:
+            head = _first_line(file.read(_LONGEST_HEAD).decode("utf-8-sig", "replace"))
+    except OSError:
+        return True  # what cannot be read is told with the other mistakes
     try:
         return "file" in [cell.strip() for cell in next(csv.reader([head], delimiter=_delimiter(head)), [])]
     except csv.Error:

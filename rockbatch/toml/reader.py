@@ -260,7 +260,7 @@ class Table:
 def _unreadable(path: Path, error: OSError) -> str:
     if isinstance(error, FileNotFoundError):
         return f"{path}: no such file{nearby(path, str(path))}"
-    return f"{path}: cannot be read as a study file: {error.strerror or error}"
+    return f"{path}: cannot be read: {error.strerror or error}"
 
 
 def nearby(path: Path, written: str) -> str:

@@ -1,7 +1,9 @@
 """Nothing that a file holds can hurt: damaged in whatever way, it ends in components or a reason, and soon."""
 
 import tempfile
+import time
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -23,14 +25,24 @@ SECONDS, MEGABYTES = 1.0, 300
 """What a file of some kB may take."""
 
 
-def read_all_ways_of_damage(name: str, inputs: int, seed: int) -> tuple[int, int]:
-    """Read so many damaged files of a format; how many gave components, and how many a reason."""
+class Counts(NamedTuple):
+    """How many files gave components, or were read; how many gave a reason; and the computing time of the slowest [s]."""
+
+    good: int
+    refused: int
+    slowest: float
+
+
+def read_all_ways_of_damage(name: str, inputs: int, seed: int) -> Counts:
+    """Read so many damaged files of a format."""
     rng = np.random.default_rng(seed)
     components = reasons = 0
+    slowest = 0.0
     for _ in range(inputs):
         file, whole = SAMPLES[name][int(rng.integers(len(SAMPLES[name])))]
         data = damaged(whole, rng)
         record = RecordFile(Path(file), file, data, options=OPTIONS[int(rng.integers(len(OPTIONS)))])
+        started = time.process_time()
         try:
             with bounds(SECONDS, MEGABYTES):
                 found = read_record(record)
@@ -42,13 +54,14 @@ def read_all_ways_of_damage(name: str, inputs: int, seed: int) -> tuple[int, int
             raise
         else:
             told = "components"
+        slowest = max(slowest, time.process_time() - started)
         assert told.strip()
         for reading in found:
             assert isinstance(reading, Unusable) or np.isfinite(reading.acceleration).all()
             assert isinstance(reading, Unusable) or 0 < reading.dt < np.inf
         components += bool(found)
         reasons += not found
-    return components, reasons
+    return Counts(components, reasons, slowest)
 
 
 def test_there_are_samples_of_every_format_and_all_of_them_are_read():
@@ -63,9 +76,9 @@ def test_there_are_samples_of_every_format_and_all_of_them_are_read():
 
 @pytest.mark.parametrize("name", sorted(SAMPLES))
 def test_a_damaged_file_ends_in_components_or_a_reason(name):
-    components, reasons = read_all_ways_of_damage(name, 150, seed=1)
-    assert components > 0
-    assert reasons > 20
+    counts = read_all_ways_of_damage(name, 150, seed=1)
+    assert counts.good > 0
+    assert counts.refused > 20
 
 
 @pytest.mark.slow
@@ -103,15 +116,17 @@ b.csv,NS,horizontal,0,cm/s2,0.01,,Rinaldi
 }
 
 
-def read_damaged_manifests(folder: Path, name: str, inputs: int, seed: int) -> tuple[int, int]:
-    """Read a folder with so many damaged manifests, one after the other; how many were read, how many refused."""
+def read_damaged_manifests(folder: Path, name: str, inputs: int, seed: int) -> Counts:
+    """Read a folder with so many damaged manifests, one after the other."""
     rng = np.random.default_rng(seed)
+    slowest = 0.0
     write_at2(folder, "a000.AT2", wiggle(50))
     (folder / "b.csv").write_text("NS,UD\n" + "".join(f"{a:.5f},{a / 2:.5f}\n" for a in wiggle(50, 2)))
     read = refused = 0
     for _ in range(inputs):
         (folder / name).write_bytes(damaged(MANIFESTS[name].encode(), rng))
         problems: tuple[str, ...] = ()
+        started = time.process_time()
         try:
             with bounds(SECONDS, MEGABYTES):
                 found = read_motions(folder)
@@ -122,15 +137,16 @@ def read_damaged_manifests(folder: Path, name: str, inputs: int, seed: int) -> t
             sources = {one.source.partition(" ")[0] for one in (*found.motions, *found.unusable, *found.left_out)}
             assert sources >= {"a000.AT2", "b.csv"}
             read += 1
+        slowest = max(slowest, time.process_time() - started)
         assert all(str(folder) in problem for problem in problems)
-    return read, refused
+    return Counts(read, refused, slowest)
 
 
 @pytest.mark.parametrize("name", MANIFESTS)
 def test_a_damaged_manifest_is_read_or_refused(tmp_path, name):
-    read, refused = read_damaged_manifests(tmp_path, name, 150, seed=1)
-    assert read > 0
-    assert refused > 20
+    counts = read_damaged_manifests(tmp_path, name, 150, seed=1)
+    assert counts.good > 0
+    assert counts.refused > 20
 
 
 @pytest.mark.slow
