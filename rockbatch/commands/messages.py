@@ -48,8 +48,8 @@ def tell_motions(motions: "MotionSet") -> None:
         say(f"not used: {file.source}: {file.reason}")
     for one, other in _twice(motions):
         say(f"{one} and {other} have the same samples: checks count them once, curves twice; leave one out")
-    if motions.without_vertical:
-        say(f"no vertical: {', '.join(motions.without_vertical)}")
+    if lacking := [motion.named for motion in motions.motions if motion.lacks_vertical]:
+        say(f"no vertical: {'; '.join(lacking)}")
     if motions.left_out:
         say(f"{count(len(motions.left_out), 'file')} left out, or no records: `rockbatch motions` says why")
 

@@ -32,13 +32,19 @@ COLUMNS = (
     "processed",
     "check",
     "processing",
+    "event",
+    "station_name",
+    "direction",
     "station",
 )
 """Of the CSV: a row for each record, then for each file that is not used, with the reason."""
 
 _SHOWN = {  # heads of the table in the terminal, and how their numbers are written
     "record": ("record", ""),
-    "station": ("station", ""),
+    "event": ("event", ""),
+    "station_name": ("station", ""),
+    "direction": ("direction", ""),
+    "station": ("counts as", ""),
     "dt_s": ("dt [s]", "g"),
     "npts": ("npts", "d"),
     "duration_s": ("length [s]", ".2f"),
@@ -53,7 +59,7 @@ _SHOWN = {  # heads of the table in the terminal, and how their numbers are writ
     "file_h": ("horizontal", ""),
     "file_v": ("vertical", ""),
 }
-_TEXTS = ("record", "station", "check", "file_h", "file_v")
+_TEXTS = ("record", "event", "station_name", "direction", "station", "check", "file_h", "file_v")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -85,8 +91,9 @@ def main(arguments: argparse.Namespace) -> int:
     if arguments.csv:
         _write(arguments.csv, rows, found)
     print(_table(rows))
-    _list("What was done", [(motion.name, note) for motion in found.motions for note in motion.notes])
-    _list("No vertical", [(name, "none beside it that fits") for name in found.without_vertical])
+    _list("What was done", [(motion.named, note) for motion in found.motions for note in motion.notes])
+    lacking = [motion.named for motion in found.motions if motion.lacks_vertical]
+    _list("No vertical", [(name, "none beside it that fits") for name in lacking])
     _list("Not used", [(file.source, file.reason) for file in found.unusable])
     _list("Left out", [(file.source, file.reason) for file in found.left_out])
     stations = len({motion.of_station for motion in found.motions})
@@ -121,6 +128,9 @@ def _row(motion: "Motion") -> dict[str, Any]:
         "processed": None if motion.processed is None else ("yes" if motion.processed else "no"),
         "check": ", ".join(finding.what for finding in motion.findings) or None,
         "processing": "; ".join(motion.notes),
+        "event": motion.origin.event or None,
+        "station_name": motion.origin.station or None,
+        "direction": motion.origin.direction or None,
         "station": motion.of_station,
     }
 

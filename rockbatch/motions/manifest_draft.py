@@ -125,4 +125,4 @@ def _remark(name: str, reason: str) -> str:
 
 
 def _written(value: Any) -> str:
-    return json.dumps(value, ensure_ascii=False) if isinstance(value, str) else f"{value:g}"
+    return json.dumps(legible(value), ensure_ascii=False) if isinstance(value, str) else f"{value:g}"

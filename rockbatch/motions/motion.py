@@ -7,6 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from rockbatch.errors import InputError
+from rockbatch.motions.origin import NOBODY_KNOWS, Origin
 
 Samples = npt.NDArray[np.float64]
 
@@ -77,6 +78,8 @@ class Motion:
         Whether its agency has corrected the horizontal component; ``None`` where the file does not say.
     findings : tuple of Finding
         What is odd about it, told when it was read.
+    origin : Origin
+        Event, station and direction in words, as far as its header says them.
     lacks_vertical : bool
         Whether a vertical component was asked for, and there is none.
     station : str
@@ -99,6 +102,7 @@ class Motion:
     initial: Initial | None = None
     processed: bool | None = None
     findings: tuple[Finding, ...] = ()
+    origin: Origin = NOBODY_KNOWS
     lacks_vertical: bool = False
     station: str = ""
 
@@ -126,6 +130,22 @@ class Motion:
             )
         if wrong:
             raise InputError(*wrong)
+
+    @property
+    def label(self) -> str:
+        """What it is called among people: "Imperial Valley 1979, Meloland, 270"; its file where the header tells nothing."""
+        return self.origin.label or (self.name if self.source in ("", "pulse") else self.source)
+
+    @property
+    def named(self) -> str:
+        """Its label, with its name in tables beside it where that is another one."""
+        return self.label if self.label == self.name else f"{self.label} ({self.name})"
+
+    def named_within(self, width: int) -> str:
+        """Likewise, of a label that is longer the beginning and the end, which tell event and direction."""
+        label, half = self.label, width // 2
+        short = label if len(label) <= width else f"{label[:half]}…{label[half - width + 1 :]}"
+        return self.named.replace(label, short, 1)
 
     @property
     def files(self) -> str:

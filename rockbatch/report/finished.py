@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from rockbatch.checks.suite import counts_as, simulated
 from rockbatch.errors import InputError
 from rockbatch.report.labels import Key, Series, digits_that_tell, named, quantity
-from rockbatch.report.markup import number
+from rockbatch.report.markup import Markup, join, number, tag
 from rockbatch.results.reading import Saved, read_saved
 from rockbatch.study import PIER_KEYS
 
@@ -103,9 +103,23 @@ class Finished:
         told = ", ".join(filter(None, also))
         return self.series[run["series"]].label + (f" ({told})" if told else "")
 
+    def label(self, record: str) -> str:
+        """What a record is called among people: event, station and direction; its name where the header tells nothing."""
+        return str(self.records.get(record, {}).get("label") or record)
+
+    def named(self, record: str) -> str:
+        """A record's label, with its name in tables beside it where that is another one."""
+        label = self.label(record)
+        return label if label == record else f"{label} ({record})"
+
+    def shown(self, record: str) -> Markup:
+        """Likewise on the page, the name in the tables in smaller words."""
+        label = self.label(record)
+        return join(label) if label == record else join(label, " ", tag("span", record, class_="muted path"))
+
     def where(self, run: "pd.Series[Any]") -> str:
         """Which run this is, in words."""
-        return f"{run['record']}, case {self.which(run)}"
+        return f"{self.named(run['record'])}, case {self.which(run)}"
 
 
 def read(directory: Path) -> Finished:

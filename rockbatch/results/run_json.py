@@ -139,6 +139,10 @@ def _describe_motion(motion: Motion, gravity: float, with_pulse: bool) -> dict[s
     return {
         "record": motion.name,
         "station": motion.of_station,
+        "label": motion.label,
+        "event": motion.origin.event,
+        "station_name": motion.origin.station,
+        "direction": motion.origin.direction,
         "dt_s": motion.dt,
         "npts": motion.npts,
         "duration_s": motion.duration,

@@ -20,7 +20,7 @@ MOTIONS = {
     "polarity": Key(choice("+", "-"), '["+", "-"]', many=True),
     "scale": Key(positive, "[1.0]", many=True),
     "unit": Key(kinds.unit, '"cm/s2"'),
-    "dt": Key(positive, "0.01"),
+    "dt": Key(kinds.step, "0.01"),
     "columns": Key(text, '["time", "000", "090", "up"]', many=True, distinct=False),
     "sensitivity": Key(nonzero, "428000.0"),
     "role": Key(choice(*ROLES), '"horizontal"'),

@@ -33,7 +33,7 @@ def _spectra(finished: Finished) -> Markup:
         f"Pseudo-spectral accelerations of the horizontal components, {100 * spectra['damping']:g} % damped, before "
         "the study's scale."
     )
-    return figure(response_spectra.draw(spectra, [record["record"] for record in records]), caption)
+    return figure(response_spectra.draw(spectra, [finished.label(record["record"]) for record in records]), caption)
 
 
 def _records(finished: Finished) -> Markup:
@@ -61,17 +61,24 @@ def _records(finished: Finished) -> Markup:
         Head("pulse [s]", ".2f", "pulse_period_s: period of the largest pulse"),
     ]
     names = (
-        "record", "station", "pga_g", "pgv_m_s", "pgd_m", "pga_v_g", "arias_m_s", "d5_95_s", "dt_s", "npts", "duration_s",
+        "station", "pga_g", "pgv_m_s", "pgd_m", "pga_v_g", "arias_m_s", "d5_95_s", "dt_s", "npts", "duration_s",
         "processed", "check", "azimuth_deg", "magnitude", "distance_km", "factor", "pulse", "pulse_indicator",
         "pulse_period_s",
     )  # fmt: skip
     scaled = any(record.get("factor", 1.0) != 1.0 for record in finished.info["records"])
     ordered = sorted(finished.info["records"], key=lambda record: (record["pga_g"], record["record"]))
-    rows = [[_told(record, name) if name != "factor" or scaled else None for name in names] for record in ordered]
+    rows = [
+        [
+            finished.shown(record["record"]),
+            *(_told(record, name) if name != "factor" or scaled else None for name in names),
+        ]
+        for record in ordered
+    ]
     measured = table(heads, rows, sortable=True, name="Ground motions")
     lacking = finished.info.get("without_vertical")
-    without = tag("p", f"no vertical: {', '.join(lacking)}") if lacking else ""
-    return join(measured, without, tag("h3", "Where they come from, and what was done to them"), _sources(ordered))
+    without = tag("p", f"no vertical: {'; '.join(map(finished.named, lacking))}") if lacking else ""
+    told = tag("h3", "Where they come from, and what was done to them")
+    return join(measured, without, told, _sources(finished, ordered))
 
 
 def _told(record: dict[str, Any], name: str) -> Any:
@@ -83,11 +90,11 @@ def _told(record: dict[str, Any], name: str) -> Any:
     return record.get(name)
 
 
-def _sources(records: Sequence[dict[str, Any]]) -> Markup:
+def _sources(finished: Finished, records: Sequence[dict[str, Any]]) -> Markup:
     heads = [Head("record"), Head("horizontal from"), Head("vertical from"), Head("what was done")]
     rows: list[list[object]] = []
     for record in records:
         notes = tag("ul", *(tag("li", note) for note in record["notes"])) if record["notes"] else ""
         sources = (record[name] and tag("span", record[name], class_="path") for name in ("source", "vertical_source"))
-        rows.append([record["record"], *sources, notes])
+        rows.append([finished.shown(record["record"]), *sources, notes])
     return table(heads, rows, prose=True, name="Sources")
