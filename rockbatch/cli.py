@@ -9,7 +9,7 @@ from typing import Any
 
 from rockbatch._version import __version__
 from rockbatch.commands import accuracy, check, fragility, merge, motions, report, run, sensitivity, spectrum
-from rockbatch.errors import InputError, MissingColumns
+from rockbatch.errors import AboutResults, InputError
 
 COMMANDS = {
     "run": run,
@@ -36,7 +36,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parsed = parser.parse_args(arguments)
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("always", MissingColumns)
+            warnings.simplefilter("always", AboutResults)
             warnings.showwarning = _plainly(warnings.showwarning)
             return COMMANDS[parsed.command].main(parsed)
     except InputError as error:
@@ -63,7 +63,7 @@ def _plainly(otherwise: Callable[..., None]) -> Callable[..., None]:
     said = set()
 
     def show(message: Warning | str, category: type[Warning], *place: Any) -> None:
-        if not issubclass(category, MissingColumns):
+        if not issubclass(category, AboutResults):
             otherwise(message, category, *place)
         elif str(message) not in said:
             said.add(str(message))

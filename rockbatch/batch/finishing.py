@@ -2,6 +2,7 @@
 
 import datetime
 import json
+import math
 import platform
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -19,12 +20,13 @@ from rockbatch.batch.threads import cores
 from rockbatch.checks import Verdict, write_verdicts
 from rockbatch.checks.verdicts import CHECKS
 from rockbatch.errors import InputError
+from rockbatch.files import read_text
 from rockbatch.motions import MotionSet
 from rockbatch.report import REPORT, write_report
 from rockbatch.results.checking import verdicts
 from rockbatch.results.columns import PEAKS, unusable_rows
 from rockbatch.results.histories_file import HISTORIES
-from rockbatch.results.reading import Saved, read_saved
+from rockbatch.results.reading import Saved, edited, read_saved
 from rockbatch.results.run_json import INFO, describe, write_info
 from rockbatch.study import Study
 
@@ -74,22 +76,36 @@ def what_was_run(
 
 
 def cost_of_finished(directory: Path, info: dict[str, Any]) -> dict[str, Any] | None:
-    """What the runs in ``directory`` cost, if they are those of ``info``, all of them; else None."""
+    """What the runs in ``directory`` cost, if they are those of ``info``, all of them; else None.
+
+    Raises ``InputError`` where they are, and their table is not as it was written: it is nobody's to write over.
+    """
     try:
-        earlier = json.loads((directory / INFO).read_text(encoding="utf-8"))
+        earlier = json.loads(read_text(directory / INFO))
         same = all(earlier[name] == info[name] for name in ("digest", "runs", "varied", "unusable"))
-        cost = {name: earlier[name] for name in ("jobs", "wall_s", "kept")}
-    except (OSError, ValueError, LookupError, TypeError):
+        cost = {name: earlier[name] for name in ("jobs", "wall_s", "kept", "peaks")}
+        jobs, wall_s, kept = (float(cost[name]) for name in ("jobs", "wall_s", "kept"))
+    except (OSError, ValueError, LookupError, TypeError, RecursionError):
         return None
-    return cost if same and (directory / PEAKS).exists() else None
+    if not (same and math.isfinite(jobs + wall_s + kept) and (directory / PEAKS).exists()):
+        return None
+    if differs := edited(directory, earlier):
+        raise InputError(
+            f"{directory / PEAKS}: {differs}; nothing is run: keep it as a copy elsewhere if it was edited, and run the "
+            "study again with --fresh"
+        )
+    return cost
 
 
-def write_peaks(journal: Journal, motions: MotionSet) -> None:
-    """Write peaks.csv; what belongs to earlier ones goes first, so that they cannot be mixed up."""
+def write_peaks(journal: Journal, motions: MotionSet) -> dict[str, Any]:
+    """Write peaks.csv; what belongs to earlier ones goes first, so that they cannot be mixed up.
+
+    Returns its number of rows and its digest, as run.json has them.
+    """
     directory = journal.path.parent
     for name in (INFO, HISTORIES, CHECKS, REPORT):
         (directory / name).unlink(missing_ok=True)
-    journal.write_in_order(directory / PEAKS, unusable_rows(motions))
+    return journal.write_in_order(directory / PEAKS, unusable_rows(motions))._asdict()
 
 
 def finish(

@@ -24,9 +24,56 @@ from rockbatch.pier import (
     yield_deflection,
 )
 from rockbatch.results.columns import units
+from rockbatch.results.shape import Maybe
 from rockbatch.study import Case, Study
 
 INFO = "run.json"
+
+_NUMBER = (float, None)
+_VALUES = {str: (float, str)}
+_NUMBERS_OF_BASE = (
+    "beta", "eta", "epsilon", "n", "omega_v", "delta_s_m", "delta_y_m", "stiffness_kN_m", "yield_kN", "restitution",
+)  # fmt: skip
+_OF_FILE = {"name": str, "source": str, "reason": str}
+
+SHAPE = {
+    "rockbatch": str,
+    "created": str,
+    "command": [str],
+    "study": {"path": str, "title": str, "notes": str, "text": str, "sha256": str},
+    "versions": {str: str},
+    "machine": str,
+    "numerics": {"tolerance": _NUMBER, "substeps": (int, None), "quiet_s": float},
+    "varied": [str],
+    "cases": [
+        {
+            "case": str,
+            "columns": _VALUES,
+            "pier": dict.fromkeys(("alpha", "p", "mu", "gravity", "size_m", "half_width_m", "height_m"), float),
+            "base": ("rigid", "elastic", "yielding"),
+            "parameters": {name: Maybe(_NUMBER) for name in _NUMBERS_OF_BASE}
+            | {name: Maybe((str, None)) for name in ("spring", "kinematics", "flight")},
+        }
+    ],
+    "records": [
+        {"record": str, "source": str, "vertical_source": (str, None), "notes": [str], "npts": int}
+        | dict.fromkeys(("dt_s", "duration_s", "pga_g"), float)
+        | dict.fromkeys(("pga_v_g", "pgv_m_s", "pgd_m"), _NUMBER)
+        | {name: Maybe(_NUMBER) for name in ("arias_m_s", "d5_95_s", "azimuth_deg", "magnitude", "distance_km")}
+        | {"factor": Maybe(float), "processed": Maybe((bool, None)), "findings": Maybe([{"what": str}])}
+    ],
+    "unusable": [_OF_FILE],
+    "references": [{"record": str, "case": str, "columns": _VALUES, "theta_max_over_alpha": float, "source": str}],
+    "runs": int,
+    "jobs": int,
+    "wall_s": float,
+    "kept": Maybe(int),
+    "peaks": Maybe({"rows": int, "sha256": str}),
+    "without_vertical": Maybe([str]),
+    "spectra": Maybe(({"damping": float, "period_s": [float], "sa_g": [[float]]}, None)),
+    "left_out": Maybe([_OF_FILE]),
+}
+"""What readers of run.json rely on; the rest of it is for people."""
 
 MOST_SPECTRA = 200
 """Motions whose spectra go into run.json; each takes about 10 ms."""
@@ -53,7 +100,7 @@ def describe(study: Study, motions: MotionSet) -> dict[str, Any]:
         "without_vertical": motions.without_vertical,
         "records": [_describe_motion(motion, study.cases[0].pier.gravity) for motion in motions.motions],
         "spectra": _spectra(motions.motions, study.cases[0].pier.gravity),
-        "unusable": [asdict(file) for file in motions.unusable],
+        "unusable": [asdict(file) | {"lacks": list(file.lacks)} for file in motions.unusable],
         "left_out": [asdict(file) for file in motions.left_out],
         "references": [
             {
