@@ -76,6 +76,11 @@ def is_plain(path: Path) -> bool:
         return False
 
 
+def opened_text(path: Path) -> io.TextIOWrapper:
+    """As :func:`opened`, for a table: UTF-8, with its line breaks as they are."""
+    return io.TextIOWrapper(io.BufferedReader(opened(path)), encoding="utf-8", newline="")
+
+
 def read_text(path: Path) -> str:
     """The whole of a UTF-8 file of a folder of results; ``InputError`` as :func:`opened`, and for one that is too large."""
     with opened(path) as file:
@@ -209,9 +214,9 @@ def read_table(path: Path) -> "pd.DataFrame":
 
 
 def csv_cell(value: object) -> object:
-    """What a CSV writer is given for ``value``: nothing for None and NaN, ten digits of a float, a text that is safe."""
+    """What a CSV writer is given for ``value``: nothing for None and NaN, ten digits of a float, a text that does no harm."""
     if value is None or value != value:
         return ""
     if isinstance(value, float):
         return f"{value:.10g}"
-    return csv_safe(value) if isinstance(value, str) else value
+    return csv_safe(legible(value, keep="\t\r\n")) if isinstance(value, str) else value

@@ -13,14 +13,12 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, NamedTuple, Self
 
+from rockbatch.batch.plan import MOST_RUNS
 from rockbatch.errors import InputError
 from rockbatch.files import csv_cell, csv_plain, only_writer, opened, replacing, told_when_full
 
 ABSENT = -1
 ROWS_AT_ONCE = 1000
-
-MOST_RUNS = 100_000_000
-"""Of a journal that is not told how many there can be."""
 
 MOST_OF_A_LINE = 1 << 20
 """Bytes; a longer one is damage, and is not held in memory."""
@@ -56,7 +54,7 @@ class Journal:
     fresh : bool
         Whether to drop what an earlier process has left there.
     runs : int
-        How many runs there are: a row with a higher number is none of them.
+        How many runs there are, where that is known: a row with a higher number is none of them.
     tell : function, optional
         Called with a sentence about lines that are damaged.
 

@@ -19,6 +19,9 @@ from rockbatch.study import Study
 if TYPE_CHECKING:
     import pandas as pd
 
+MOST_WORST = 1000
+"""Histories that are kept unless a study asks for all: those of a hundred thousand cases would fill a disk."""
+
 
 def keep_histories(
     saved: Saved, study: Study, runs: Sequence[PlannedRun], progress: Callable[[], object] | None = None
@@ -82,19 +85,20 @@ def worst(table: "pd.DataFrame", cases: int) -> list[int]:
     """Number of the worst run of each case, in the order of the cases; none for a case that only failed.
 
     An overturned pier is worse than any rotation, and the earlier the worse. Flight that ended a run counts by the
-    rotation until then. Of equals the first is taken.
+    rotation until then. Of equals the first is taken. Of more than :data:`MOST_WORST` cases, those with the worst runs.
     """
-    found = []
-    for first in range(cases):
-        rows = table.iloc[first::cases]
-        status = rows["status"].to_numpy()
-        falls = rows["t_end_s"].where(status == "overturned").to_numpy(float)
-        rotations = rows["theta_max_over_alpha"].where(status != "failed").to_numpy(float)
-        if not np.isnan(falls).all():
-            found.append(first + cases * int(np.nanargmin(falls)))
-        elif not np.isnan(rotations).all():
-            found.append(first + cases * int(np.nanargmax(rotations)))
-    return found
+    if table.empty:
+        return []
+    status = table["status"].to_numpy()
+    falls = table["t_end_s"].where(status == "overturned", np.inf).fillna(np.inf).to_numpy(float).reshape(-1, cases)
+    peaks = table["theta_max_over_alpha"].where(status != "failed").fillna(-np.inf)
+    rotations = peaks.to_numpy(float).reshape(-1, cases)
+    fell, stood = np.isfinite(falls).any(axis=0), np.isfinite(rotations).any(axis=0)
+    of_case = np.where(fell, falls.argmin(axis=0), rotations.argmax(axis=0))
+    badness = np.where(fell, -falls.min(axis=0), rotations.max(axis=0))
+    worst_first = np.lexsort((-badness, ~fell))
+    chosen = worst_first[(fell | stood)[worst_first]][:MOST_WORST]
+    return [int(cases * of_case[case] + case) for case in np.sort(chosen)]
 
 
 def _response(study: Study, planned: PlannedRun, row: "pd.Series") -> Response:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rockbatch.errors import InputError
-from rockbatch.files import csv_plain, csv_text, write_whole
+from rockbatch.files import csv_plain, csv_text, legible, opened_text, write_whole
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -104,10 +104,15 @@ def read_verdicts(directory: Path) -> list[Verdict]:
     """Read checks.csv in ``directory``; empty where there is none, ``InputError`` where it is damaged."""
     path = Path(directory) / CHECKS
     try:
-        with path.open(encoding="utf-8", newline="") as file:
-            return [_from_row({name: csv_plain(cell) for name, cell in row.items()}) for row in csv.DictReader(file)]
+        with opened_text(path) as file:
+            return [
+                _from_row({name: legible(csv_plain(cell)) for name, cell in row.items()})
+                for row in csv.DictReader(file)
+            ]
     except FileNotFoundError:
         return []
+    except InputError:
+        raise
     except (AttributeError, KeyError, TypeError, ValueError, csv.Error) as error:
         raise InputError(f"{path}: damaged ({error}); start `rockbatch check` again") from None
 

@@ -8,7 +8,7 @@ from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rockbatch.commands.messages import say
+from rockbatch.commands.messages import say, show
 
 if TYPE_CHECKING:
     from rockbatch.checks import Verdict
@@ -35,7 +35,9 @@ def main(arguments: argparse.Namespace) -> int:
     if unusable := len(saved.info["unusable"]):
         say(f"files that are no usable records, and in no suite: {unusable}")
     code = tell(found, write_verdicts(arguments.directory, found))
-    if (arguments.directory / "report.html").exists():
+    from rockbatch.files import is_plain
+
+    if is_plain(arguments.directory / "report.html"):
         from rockbatch.report import write_report
 
         say(str(write_report(arguments.directory)))
@@ -44,7 +46,7 @@ def main(arguments: argparse.Namespace) -> int:
 
 def tell(verdicts: Sequence["Verdict"], path: Path) -> int:
     """Print the verdicts, which are in ``path``; returns 1 if a check fails or is not decided, else 0."""
-    print(table(verdicts))
+    show(table(verdicts))
     ways = ("pass", "fail", "not decided", "does not apply")
     count = {way: sum(verdict.verdict == way for verdict in verdicts) for way in ways}
     say(", ".join(f"{n} {way}" for way, n in count.items() if n))

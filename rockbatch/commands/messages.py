@@ -1,10 +1,11 @@
-"""What commands tell, on stderr."""
+"""What commands tell: messages on stderr, what they were asked for on stdout."""
 
 import sys
 from contextlib import AbstractContextManager
 from typing import TYPE_CHECKING
 
 from rockbatch.batch.listening import Listener, Told, count
+from rockbatch.commands.streams import tell
 
 if TYPE_CHECKING:
     from rockbatch.motions import MotionSet
@@ -30,7 +31,12 @@ class Terminal(Listener):
 
 def say(text: str) -> None:
     """Print a message where it does not mix with what a command was asked for."""
-    print(text, file=sys.stderr, flush=True)
+    tell(sys.stderr, text)
+
+
+def show(text: str) -> None:
+    """Print what a command was asked for."""
+    tell(sys.stdout, text)
 
 
 def tell_motions(motions: "MotionSet") -> None:

@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rockbatch.commands.messages import say
+from rockbatch.commands.messages import say, show
 
 if TYPE_CHECKING:
     from rockbatch.motions import LeftOut, Motion, MotionSet, Unusable
@@ -81,7 +81,7 @@ def main(arguments: argparse.Namespace) -> int:
     rows = [_row(motion) for motion in found.motions]
     if arguments.csv:
         _write(arguments.csv, rows, found)
-    print(_table(rows))
+    show(_table(rows))
     _list("What was done", [(motion.name, note) for motion in found.motions for note in motion.notes])
     _list("No vertical", [(name, "none beside it that fits") for name in found.without_vertical])
     _list("Not used", [(file.source, file.reason) for file in found.unusable])
@@ -149,6 +149,6 @@ def _table(rows: list[dict[str, Any]]) -> str:
 
 def _list(title: str, entries: list[tuple[str, str]]) -> None:
     if entries:
-        print(f"\n{title}")
+        show(f"\n{title}")
         for name, words in entries:
-            print(f"  {name}: {words}")
+            show(f"  {name}: {words}")

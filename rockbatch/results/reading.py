@@ -1,7 +1,6 @@
 """What a run left in its folder: ``peaks.csv`` and ``run.json``, read back and held against each other."""
 
 import csv
-import io
 import json
 import math
 import warnings
@@ -11,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rockbatch.errors import EditedTable, InputError, MissingColumns
-from rockbatch.files import csv_plain, opened, read_text, sha256_of
+from rockbatch.files import csv_plain, legible, opened, opened_text, read_text, sha256_of
 from rockbatch.results.columns import COUNTS, MORE, PEAKS, STATUSES, STAYING, TEXTS, names
 from rockbatch.results.run_json import INFO, SHAPE
 from rockbatch.results.shape import unfit
@@ -90,7 +89,7 @@ def edited(directory: Path, info: Mapping[str, Any]) -> str:
 
 def _read_info(path: Path, problems: list[str]) -> dict[str, Any]:
     try:
-        info = json.loads(read_text(path))
+        info = _legible(json.loads(read_text(path)))
     except FileNotFoundError:
         problems.append(f"{path}: not there; give a folder that `rockbatch run` has written")
         return {}
@@ -109,11 +108,20 @@ def _read_info(path: Path, problems: list[str]) -> dict[str, Any]:
     return info if isinstance(info, dict) else {}
 
 
+def _legible(value: Any) -> Any:
+    """``value`` of JSON with texts that can be shown, wherever they come from; those of several lines keep them."""
+    if isinstance(value, str):
+        return legible(value, keep="\t\r\n")
+    if isinstance(value, list):
+        return [_legible(item) for item in value]
+    return {_legible(key): _legible(item) for key, item in value.items()} if isinstance(value, dict) else value
+
+
 def _read_peaks(path: Path, varied: Sequence[str], problems: list[str]) -> "pd.DataFrame | None":
     import pandas as pd
 
     try:
-        with _text(path) as file:
+        with opened_text(path) as file:
             head = next(csv.reader(file), [])
     except FileNotFoundError:
         problems.append(f"{path}: not there; give a folder that `rockbatch run` has written")
@@ -152,23 +160,19 @@ def _read_peaks(path: Path, varied: Sequence[str], problems: list[str]) -> "pd.D
         problems += _bad_cells(path, head, numbers)
         return None
     for name in texts:
-        escaped = table[name].str.contains("'", regex=False)
-        if escaped.any():
-            table.loc[escaped, name] = table.loc[escaped, name].map(csv_plain)
+        meant = {cell: legible(csv_plain(cell), keep="\t\r\n") for cell in table[name].unique()}
+        if any(cell != text for cell, text in meant.items()):
+            table[name] = table[name].map(meant)
     for name in varied:
         table[name] = _values(table[name])
     return table
-
-
-def _text(path: Path) -> io.TextIOWrapper:
-    return io.TextIOWrapper(io.BufferedReader(opened(path)), encoding="utf-8", newline="")
 
 
 def _bad_cells(path: Path, head: Sequence[str], numbers: Sequence[str]) -> list[str]:
     """Every row of another length and every cell that should be a number and is not, with its line."""
     found: list[str] = []
     try:
-        with _text(path) as file:
+        with opened_text(path) as file:
             reader = csv.reader(file)
             next(reader)
             for cells in reader:

@@ -7,7 +7,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from rockbatch.files import write_whole
+from rockbatch.files import replacing
 from rockbatch.motions import MotionSet, measures
 from rockbatch.motions.motion import Motion
 from rockbatch.motions.spectrum import suite_spectra
@@ -187,5 +187,18 @@ def _describe_motion(motion: Motion, gravity: float) -> dict[str, Any]:
 
 
 def write_info(directory: Path, info: Mapping[str, Any]) -> None:
-    """Write run.json into ``directory``, whole or not at all."""
-    write_whole(directory / INFO, json.dumps(info, indent=1, ensure_ascii=False) + "\n")
+    """Write run.json into ``directory``, whole or not at all: a line for each entry, and for each case, record or file of one."""
+    with replacing(directory / INFO) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
+        for number, (name, value) in enumerate(info.items()):
+            file.write(("{" if number == 0 else ",") + f"\n {_json(name)}: ")
+            if isinstance(value, list) and value and isinstance(value[0], dict):
+                for place, item in enumerate(value):
+                    file.write(("[" if place == 0 else ",") + f"\n  {_json(item)}")
+                file.write("\n ]")
+            else:
+                file.write(_json(value))
+        file.write("\n}\n")
+
+
+def _json(value: Any) -> str:
+    return json.dumps(value, ensure_ascii=False)

@@ -56,7 +56,7 @@ def _unfit(value: Any, shape: Any, at: str) -> Iterator[Problem]:
         for number, item in enumerate(value):
             yield from _unfit(item, shape[0], f"{at}[{number}]")
     elif isinstance(shape, tuple):
-        if not any(fits(value, one) for one in shape):
+        if not any(fits(value, one) if isinstance(one, list | dict) else _is(value, one) for one in shape):
             yield Problem(at, " or ".join(map(_words, shape)))
     elif not _is(value, shape):
         yield Problem(at, _words(shape))
@@ -71,11 +71,21 @@ def _unfit_object(value: Any, shape: dict[Any, Any], at: str) -> Iterator[Proble
             yield from _unfit(item, shape[str], f"{at}.{key[:40]}")
         return
     for key, wanted in shape.items():
-        place = f"{at}.{key}" if at else key
         if key in value:
-            yield from _unfit(value[key], wanted.shape if isinstance(wanted, Maybe) else wanted, place)
+            wanted = wanted.shape if isinstance(wanted, Maybe) else wanted
+            if not _soon(value[key], wanted):
+                yield from _unfit(value[key], wanted, f"{at}.{key}" if at else key)
         elif not isinstance(wanted, Maybe):
-            yield Problem(place, "", missing=True)
+            yield Problem(f"{at}.{key}" if at else key, "", missing=True)
+
+
+def _soon(value: Any, shape: Any) -> bool:
+    """Whether it takes no more than a look to see that ``value`` fits: most are single, and there are millions."""
+    if type(shape) is tuple:
+        shape = shape[0]
+    if shape is float:
+        return type(value) is float and -MOST < value < MOST
+    return shape is str and type(value) is str
 
 
 def _is(value: Any, kind: Any) -> bool:

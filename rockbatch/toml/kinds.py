@@ -6,6 +6,9 @@ import math
 from collections.abc import Callable, Iterable
 from typing import Any
 
+from rockbatch.files import legible
+from rockbatch.units import LEAST, MOST
+
 
 class KindError(ValueError):
     """A value that cannot be used: what was expected, and the value that was probably meant."""
@@ -31,6 +34,8 @@ def number(value: Any) -> float:
         converted = math.inf
     if not math.isfinite(converted):
         raise KindError("a finite number")
+    if converted != 0 and not LEAST <= abs(converted) <= MOST:
+        raise KindError(f"0, or a number from {LEAST:g} to {MOST:g}")
     return converted
 
 
@@ -73,6 +78,8 @@ def text(value: Any) -> str:
     """Text that is not empty."""
     if not isinstance(value, str) or not value.strip():
         raise KindError("text in quotes")
+    if legible(value, keep="\t\r\n") != value:
+        raise KindError("text without control characters")
     return value
 
 

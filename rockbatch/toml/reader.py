@@ -186,12 +186,14 @@ class Table:
             if not settings:
                 self._wrong(name, key, whole, KindError("at least one value"))
         usable: list[Setting] = []
+        seen = set()
         for setting in settings:
             converted = self._converted(name, key, setting)
             if converted is None:
                 continue
-            if key.distinct and any(converted == earlier.value for earlier in usable):
+            if key.distinct and converted in seen:
                 self.complain_about(setting, f"{name} = {shown(setting.value)}: given twice; write it once")
+            seen.add(converted)
             usable.append(Setting(converted, setting.at))
         return usable or None
 

@@ -24,7 +24,7 @@ TABLE = (
     b"a,0.3,\n"
     b'"D\xc3\xbczce, ""\xe2\x9f\x82"" \xe5\x9c\xb0\xe9\x9c\x87",,\n'
     b'"two\nlines\r\n",1,"7,b,\n"\n'
-    b"not Unicode \\udcff,-1e-300,\0\n"
+    b"not Unicode \\xff,-1e-300,\\x00\n"
     b",3,'\n"
 )
 

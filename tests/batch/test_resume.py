@@ -248,11 +248,15 @@ def test_a_finished_table_that_was_changed_is_told_left_alone_and_only_replaced_
     capsys.readouterr()
     assert main(command) == 2
     told = capsys.readouterr().err
-    assert f"{out / 'peaks.csv'}: not as `rockbatch run` wrote it, with {RUNS} rows: it was edited, or is damaged" in told
+    assert (
+        f"{out / 'peaks.csv'}: not as `rockbatch run` wrote it, with {RUNS} rows: it was edited, or is damaged" in told
+    )
     assert "keep it as a copy elsewhere if it was edited, and run the study again with --fresh" in told
     assert (out / "peaks.csv").read_text(encoding="utf-8") == changed
     assert (out / "report.html").read_bytes() == report
-    assert main(["report", str(out), "--out", str(tmp_path / "page.html")]) == 0  # its words are shown, and that is told
+    assert (
+        main(["report", str(out), "--out", str(tmp_path / "page.html")]) == 0
+    )  # its words are shown, and that is told
     assert "it was edited, or is damaged; what it says now is shown" in capsys.readouterr().err
     assert main([*command, "--fresh"]) == 0
     assert (out / "peaks.csv").read_bytes() == undisturbed
