@@ -187,9 +187,9 @@ BYTES = (flipped, cut, hole, zeros, lines)
 TEXT = (*BYTES, number, number, number, number, word, word)
 
 
-def damaged(data: bytes, rng: Rng, ways: tuple[Callable[[bytes, Rng], bytes], ...]) -> bytes:
-    """``data``, damaged in one to three of these ways."""
-    for _ in range(int(rng.integers(1, 4))):
+def damaged(data: bytes, rng: Rng, ways: tuple[Callable[[bytes, Rng], bytes], ...], most: int = 3) -> bytes:
+    """``data``, damaged in one or more of these ways."""
+    for _ in range(int(rng.integers(1, most + 1))):
         data = ways[int(rng.integers(len(ways)))](data, rng)
     return data
 
@@ -290,7 +290,7 @@ class Sample:
             self.rows = list(csv.DictReader(file))
 
     def damage_study(self, rng: Rng) -> str:
-        text = damaged(STUDY.encode(), rng, TEXT)
+        text = damaged(STUDY.encode(), rng, (*BYTES, word, *10 * [number]), most=2)
         self.study.with_name("damaged.toml").write_bytes(text)
         study = rb.load_study(self.study.with_name("damaged.toml"))
         work = sum(pulse.duration_s / pulse.dt_s for pulse in study.motions.pulses) + study.numerics.quiet_s

@@ -54,12 +54,11 @@ def opened(path: Path, mode: Literal["rb", "r+b"] = "rb") -> io.FileIO:
         if error.errno in (errno.ELOOP, errno.EISDIR, errno.ENXIO):
             raise _not_plain(path, "no plain file") from None
         raise
-    file = io.FileIO(handle, mode)
     told = os.fstat(handle)
     if not stat.S_ISREG(told.st_mode) or (mode == "r+b" and told.st_nlink > 1):
-        file.close()
+        os.close(handle)
         raise _not_plain(path, "a file with several names" if stat.S_ISREG(told.st_mode) else "no plain file")
-    return file
+    return io.FileIO(handle, mode)
 
 
 def _not_plain(path: Path, what: str) -> InputError:

@@ -143,7 +143,8 @@ def _read_peaks(path: Path, varied: Sequence[str], problems: list[str]) -> "pd.D
     numbers = [name for name in head if name not in texts]
     try:
         # A record may be called "NA": only an empty number is missing
-        with opened(path) as file:
+        with opened(path) as file, warnings.catch_warnings():
+            warnings.simplefilter("error", pd.errors.ParserWarning)  # of a row with more cells, the last would be lost
             table = pd.read_csv(
                 file, keep_default_na=False, na_values={name: [""] for name in numbers}, encoding="utf-8",
                 index_col=False, dtype={**dict.fromkeys(texts, "str"), **dict.fromkeys(numbers, "float64")},
@@ -152,7 +153,7 @@ def _read_peaks(path: Path, varied: Sequence[str], problems: list[str]) -> "pd.D
             table[name] = table[name].astype("Int64")
         sound = table["status"].isin(STATUSES).all() and not table[numbers].isin([math.inf, -math.inf]).any(axis=None)
         sound = sound and not (table["scale"].isna() & (table["case"] != "")).any()
-    except (ValueError, TypeError) as error:
+    except (ValueError, TypeError, pd.errors.ParserWarning) as error:
         found = _bad_cells(path, head, numbers)
         problems += found or [f"{path}: not a table ({error}); start `rockbatch run` again"]
         return None
