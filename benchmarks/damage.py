@@ -2,8 +2,8 @@
 
     python benchmarks/damage.py --studies 5000 --journals 2000 --folders 2000 --seed 1
 
-Whatever ends in anything but an ``InputError``, takes longer than SECONDS or more than MEGABYTES, or gives a row that the
-undamaged file does not have, is a failure: it is printed with its seed, and the exit code is 1.
+Whatever ends in anything but an ``InputError``, takes more than SECONDS of processor time or more than MEGABYTES, or gives a
+row that the undamaged file does not have, is a failure: it is printed with its seed, and the exit code is 1.
 """
 
 import argparse
@@ -365,24 +365,24 @@ def quiet() -> Iterator[None]:
 
 @contextlib.contextmanager
 def bounded() -> Iterator[None]:
-    """Ends what takes too long or too much memory; what hangs in C ends the process, with its stack."""
+    """Ends what takes too long or too much memory; what waits, or hangs in C, ends the process, with its stack."""
     import resource
 
     def too_long(*_: object) -> None:
-        raise TookTooLongError(f"longer than {SECONDS} s")
+        raise TookTooLongError(f"more than {SECONDS} s of processor time")
 
     size = int(re.search(r"VmSize:\s+(\d+)", Path("/proc/self/status").read_text())[1]) << 10  # type: ignore[index]
-    before, handler = resource.getrlimit(resource.RLIMIT_AS), signal.signal(signal.SIGALRM, too_long)
+    before, handler = resource.getrlimit(resource.RLIMIT_AS), signal.signal(signal.SIGPROF, too_long)
     resource.setrlimit(resource.RLIMIT_AS, (size + (MEGABYTES << 20), before[1]))
-    faulthandler.dump_traceback_later(3 * SECONDS, exit=True)
-    signal.setitimer(signal.ITIMER_REAL, SECONDS)
+    faulthandler.dump_traceback_later(120, exit=True)
+    signal.setitimer(signal.ITIMER_PROF, SECONDS)
     try:
         yield
     finally:
-        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.setitimer(signal.ITIMER_PROF, 0)
         faulthandler.cancel_dump_traceback_later()
         resource.setrlimit(resource.RLIMIT_AS, before)
-        signal.signal(signal.SIGALRM, handler)
+        signal.signal(signal.SIGPROF, handler)
 
 
 def repeated(task: Task, times: int, seed: int, first: int = 0) -> tuple[Counter[str], list[str]]:

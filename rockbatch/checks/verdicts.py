@@ -124,6 +124,8 @@ def _from_row(row: Mapping[str, str]) -> Verdict:
     for name in (*_BEFORE, *_AFTER):
         kind = kinds[name]
         read[name] = (float(row[name]) if row[name] else math.nan) if kind is float else kind(row[name])
+    if read["verdict"] not in (PASS, FAIL, NOT_DECIDED, DOES_NOT_APPLY) or read["sense"] not in ("at most", "at least"):
+        raise ValueError(f"{read['sense']!r}, {read['verdict']!r}: no verdict")
     return Verdict(columns=columns, **read)
 
 

@@ -180,7 +180,10 @@ class Pier:
         inertia about it, 0 for a deck on bearings that does not turn with the pier. Drift is read at ``top_m``, by default the
         higher of shaft and deck. See :meth:`of_parts`.
         """
-        wrong = not_positive(height_m=(height_m, " [m]"), mass_t=(mass_t, " [t]"), deck_mass_t=(deck_mass_t, " [t]"))
+        wrong = not_positive(
+            width_m=(width_m, " [m]"), height_m=(height_m, " [m]"), mass_t=(mass_t, " [t]"),
+            deck_mass_t=(deck_mass_t, " [t]"),
+        )  # fmt: skip
         if wrong:
             raise InputError(*wrong)
         deck = Part(deck_mass_t, height_m if deck_height_m is None else deck_height_m, deck_inertia_t_m2)

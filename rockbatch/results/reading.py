@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     import pandas as pd
 
 MOST_PROBLEMS = 20
+MOST_COUNT = 1 << 53
+"""Up to which a float holds every whole number."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,6 +70,13 @@ def read_saved(directory: Path) -> Saved:
     peaks = _read_peaks(directory / PEAKS, [] if problems else info["varied"], problems)
     if problems or peaks is None:
         raise InputError(*problems)
+    for name in info["varied"]:
+        words = any(isinstance(case["columns"].get(name), str) for case in info["cases"])
+        if not words and peaks[name].dtype != "float64":
+            raise InputError(
+                f"{directory / PEAKS}: {name} is a number in every case of {INFO}, and here it is not; the two files belong to "
+                "different runs, or are damaged; start `rockbatch run` again"
+            )
     if differs := edited(directory, info):
         warnings.warn(f"{directory / PEAKS}: {differs}; what it says now is shown", EditedTable, stacklevel=2)
     missing = tuple(name for name in names(MORE) if name not in peaks)
@@ -150,6 +159,8 @@ def _read_peaks(path: Path, varied: Sequence[str], problems: list[str]) -> "pd.D
                 index_col=False, dtype={**dict.fromkeys(texts, "str"), **dict.fromkeys(numbers, "float64")},
             )  # fmt: skip
         for name in table.columns.intersection(list(COUNTS)):
+            if (table[name].abs() > MOST_COUNT).any():
+                raise ValueError(f"{name} is out of range")
             table[name] = table[name].astype("Int64")
         sound = table["status"].isin(STATUSES).all() and not table[numbers].isin([math.inf, -math.inf]).any(axis=None)
         sound = sound and not (table["scale"].isna() & (table["case"] != "")).any()
@@ -204,7 +215,7 @@ def _is_number(text: str, whole: bool) -> bool:
         value = float(text or 0)
     except ValueError:
         return False
-    return math.isfinite(value) and (value.is_integer() or not whole)
+    return math.isfinite(value) and (not whole or (value.is_integer() and abs(value) <= MOST_COUNT))
 
 
 def _values(texts: "pd.Series[str]") -> "pd.Series[Any]":

@@ -35,7 +35,7 @@ def number(value: Any) -> float:
     if not math.isfinite(converted):
         raise KindError("a finite number")
     if converted != 0 and not LEAST <= abs(converted) <= MOST:
-        raise KindError(f"0, or a number from {LEAST:g} to {MOST:g}")
+        raise KindError(f"a number of the size {LEAST:g} to {MOST:g}")
     return converted
 
 

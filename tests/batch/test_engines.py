@@ -217,7 +217,8 @@ def test_a_scheduler_that_goes_is_told_in_a_sentence(file, tmp_path):
         _, told = run.communicate(timeout=60)
         assert run.returncode == 2
         assert time.monotonic() - started < 40
-        assert "lost (the connection to the scheduler broke); give the same command again to go on" in told
+        assert f"rockbatch: {address}: lost (" in told
+        assert "give the same command again to go on, with a scheduler and workers that are there" in told
         assert "Traceback" not in told
         assert "distributed." not in told
     finally:

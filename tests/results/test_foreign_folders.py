@@ -85,7 +85,8 @@ def test_the_door_opens_plain_files_only(tmp_path):
         with pytest.raises(rb.InputError, match="neither read nor written"):
             opened(path)
     os.link(plain, tmp_path / "other")
-    assert opened(plain).read() == b"text"
+    with opened(plain) as file:
+        assert file.read() == b"text"
     with pytest.raises(rb.InputError, match="a file with several names"):
         opened(plain, "r+b")  # to write there would change a file that may be in another folder
     with pytest.raises(FileNotFoundError):
