@@ -164,7 +164,7 @@ def test_progress_is_a_bar_with_the_time_left_on_a_terminal_that_has_a_size(size
 def started(study, out, redirected, **more):
     """The command line in a shell of its own; its exit code and what it said on stderr."""
     command = f"{sys.executable} -m rockbatch run {study} --out {out} --jobs 1 {redirected}"
-    done = subprocess.run(command, shell=True, capture_output=True, text=True, env=os.environ | more)
+    done = subprocess.run(command, shell=True, capture_output=True, text=True, errors="replace", env=os.environ | more)
     return done.returncode, done.stderr
 
 
