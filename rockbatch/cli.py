@@ -7,12 +7,26 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from rockbatch._version import __version__
-from rockbatch.commands import accuracy, check, fragility, merge, motions, report, run, sensitivity, spectrum
+from rockbatch.commands import (
+    accuracy,
+    check,
+    examples,
+    fragility,
+    init,
+    merge,
+    motions,
+    report,
+    run,
+    sensitivity,
+    spectrum,
+)
 from rockbatch.commands.messages import say
 from rockbatch.commands.streams import is_lost
 from rockbatch.errors import AboutResults, InputError
 
 COMMANDS = {
+    "init": init,
+    "examples": examples,
     "run": run,
     "merge": merge,
     "motions": motions,

@@ -1,5 +1,6 @@
 """What commands tell: messages on stderr, what they were asked for on stdout."""
 
+import shutil
 import sys
 from contextlib import AbstractContextManager
 from typing import TYPE_CHECKING
@@ -8,6 +9,8 @@ from rockbatch.batch.listening import Listener, Told, count
 from rockbatch.commands.streams import tell
 
 if TYPE_CHECKING:
+    import pandas as pd
+
     from rockbatch.motions import MotionSet
 
 
@@ -37,6 +40,12 @@ def say(text: str) -> None:
 def show(text: str) -> None:
     """Print what a command was asked for."""
     tell(sys.stdout, text)
+
+
+def in_width(table: "pd.DataFrame", index: bool = True) -> str:
+    """A table as text; where it is shown on a terminal, its columns go below each other rather than beyond the edge."""
+    width = shutil.get_terminal_size().columns if sys.stdout.isatty() else None
+    return table.to_string(index=index, line_width=width)
 
 
 def tell_motions(motions: "MotionSet") -> None:

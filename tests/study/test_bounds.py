@@ -7,7 +7,6 @@ from studies import PADS, PIER, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.batch import carrying_out
-from rockbatch.batch.kept_histories import worst
 from rockbatch.cli import main
 from rockbatch.study import lists
 
@@ -101,12 +100,3 @@ def test_as_many_cases_as_there_may_be_are_told_to_the_end(tmp_path, monkeypatch
     page = (tmp_path / "out/report.html").read_text(encoding="utf-8")
     assert "Shown are the 2,000 worst of 3,000 runs." in page
     assert len(page) < 2_500_000
-
-
-def test_of_many_cases_the_histories_of_the_worst_are_kept(monkeypatch):
-    import pandas as pd
-
-    monkeypatch.setattr("rockbatch.batch.kept_histories.MOST_WORST", 2)
-    rows = [("ok", 0.1), ("ok", 0.4), ("overturned", 1.6), ("ok", 0.3)]
-    table = pd.DataFrame([{"status": s, "theta_max_over_alpha": theta, "t_end_s": 9.0} for s, theta in rows])
-    assert worst(table, 4) == [1, 2]
