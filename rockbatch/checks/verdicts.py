@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from rockbatch.checks.rules import is_ban
 from rockbatch.errors import InputError
-from rockbatch.files import csv_plain, csv_text, write_whole
+from rockbatch.files import csv_plain, csv_text, legible, opened_text, write_whole
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -126,10 +126,15 @@ def read_verdicts(directory: Path) -> list[Verdict]:
     """Read checks.csv in ``directory``; empty where there is none, ``InputError`` where it is damaged."""
     path = Path(directory) / CHECKS
     try:
-        with path.open(encoding="utf-8", newline="") as file:
-            return [_from_row({name: csv_plain(cell) for name, cell in row.items()}) for row in csv.DictReader(file)]
+        with opened_text(path) as file:
+            return [
+                _from_row({name: legible(csv_plain(cell)) for name, cell in row.items()})
+                for row in csv.DictReader(file)
+            ]
     except FileNotFoundError:
         return []
+    except InputError:
+        raise
     except (AttributeError, KeyError, TypeError, ValueError, csv.Error) as error:
         raise InputError(f"{path}: damaged ({error}); start `rockbatch check` again") from None
 
@@ -143,6 +148,8 @@ def _from_row(row: Mapping[str, str]) -> Verdict:
             continue
         kind = kinds[name]
         read[name] = (float(row[name]) if row[name] else math.nan) if kind is float else kind(row[name])
+    if read["verdict"] not in (PASS, FAIL, NOT_DECIDED, DOES_NOT_APPLY) or read["sense"] not in ("at most", "at least"):
+        raise ValueError(f"{read['sense']!r}, {read['verdict']!r}: no verdict")
     return Verdict(columns=columns, **read)
 
 

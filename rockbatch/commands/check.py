@@ -7,7 +7,7 @@ from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rockbatch.commands.messages import say
+from rockbatch.commands.messages import say, show
 
 if TYPE_CHECKING:
     from rockbatch.checks import Verdict
@@ -35,7 +35,9 @@ def main(arguments: argparse.Namespace) -> int:
     if unusable := len(saved.info["unusable"]):
         say(f"files that are no usable records, and in no suite: {unusable}")
     code = tell(found, write_verdicts(arguments.directory, found))
-    if (arguments.directory / "report.html").exists():
+    from rockbatch.files import is_plain
+
+    if is_plain(arguments.directory / "report.html"):
         from rockbatch.report import write_report
 
         say(str(write_report(arguments.directory)))
@@ -47,7 +49,7 @@ def tell(verdicts: Sequence["Verdict"], path: Path) -> int:
     from rockbatch.checks import wording
 
     many = len(verdicts) > wording.MOST
-    print(summed_up(verdicts) if many else table(verdicts))
+    show(summed_up(verdicts) if many else table(verdicts))
     count = wording.count_of(verdicts)
     say(", ".join(f"{n} {way}" for way, n in count.items() if n))
     say(f"{path}{': all of them' if many else ''}")

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rockbatch.batch.listening import count
-from rockbatch.commands.messages import say
+from rockbatch.commands.messages import say, show
 
 if TYPE_CHECKING:
     from rockbatch.motions import LeftOut, Motion, MotionSet, Unusable
@@ -90,7 +90,7 @@ def main(arguments: argparse.Namespace) -> int:
     rows = [_row(motion) for motion in found.motions]
     if arguments.csv:
         _write(arguments.csv, rows, found)
-    print(_table(rows))
+    show(_table(rows))
     _list("What was done", [(motion.named, note) for motion in found.motions for note in motion.notes])
     lacking = [motion.named for motion in found.motions if motion.lacks_vertical]
     _list("No vertical", [(name, "none beside it that fits") for name in lacking])
@@ -165,6 +165,6 @@ def _table(rows: list[dict[str, Any]]) -> str:
 
 def _list(title: str, entries: list[tuple[str, str]]) -> None:
     if entries:
-        print(f"\n{title}")
+        show(f"\n{title}")
         for name, words in entries:
-            print(f"  {name}: {words}")
+            show(f"  {name}: {words}")

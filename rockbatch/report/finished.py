@@ -78,7 +78,13 @@ class Finished:
     def place(self, case: str, columns: Mapping[str, Any]) -> tuple[int, int]:
         """Places in ``series`` and ``piers`` of a case with the given varied values."""
         varied = self.info["varied"]
-        return self.places[foundation(case, columns, varied)], self.pier_places[_pier(columns, varied)]
+        try:
+            return self.places[foundation(case, columns, varied)], self.pier_places[_pier(columns, varied)]
+        except KeyError:
+            raise InputError(
+                f"{self.saved.directory}: there is a history of case {case} that peaks.csv or run.json does not list; the "
+                "files belong to different runs; start `rockbatch run` again"
+            ) from None
 
     def by_pga(self, names: Sequence[str]) -> list[str]:
         """``names`` of records, the weakest first."""

@@ -25,6 +25,8 @@ PART = f"{PEAKS}.part"
 TERMS = ("kinetic", "potential", "elastic", "input", "plastic", "impact", "p_delta", "constraint", "remainder")
 """Terms of the energy ledger, in the order in which the core returns them."""
 
+STATUSES = ("ok", "overturned", "flight", "failed")
+
 ALL = ("rigid", "elastic", "yielding")
 SPRINGS = ("elastic", "yielding")
 YIELDING = ("yielding",)

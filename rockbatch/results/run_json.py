@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from rockbatch.files import write_whole
+from rockbatch.files import replacing
 from rockbatch.motions import MotionSet, measures
 from rockbatch.motions.motion import Motion
 from rockbatch.motions.spectrum import periods_over, suite_spectra
@@ -29,9 +29,56 @@ from rockbatch.pier import (
     yield_deflection,
 )
 from rockbatch.results.columns import units
+from rockbatch.results.shape import Maybe
 from rockbatch.study import Case, Study
 
 INFO = "run.json"
+
+_NUMBER = (float, None)
+_VALUES = {str: (float, str)}
+_NUMBERS_OF_BASE = (
+    "beta", "eta", "epsilon", "n", "omega_v", "delta_s_m", "delta_y_m", "stiffness_kN_m", "yield_kN", "restitution",
+)  # fmt: skip
+_OF_FILE = {"name": str, "source": str, "reason": str}
+
+SHAPE = {
+    "rockbatch": str,
+    "created": str,
+    "command": [str],
+    "study": {"path": str, "title": str, "notes": str, "text": str, "sha256": str},
+    "versions": {str: str},
+    "machine": str,
+    "numerics": {"tolerance": _NUMBER, "substeps": (int, None), "quiet_s": float},
+    "varied": [str],
+    "cases": [
+        {
+            "case": str,
+            "columns": _VALUES,
+            "pier": dict.fromkeys(("alpha", "p", "mu", "gravity", "size_m", "half_width_m", "height_m"), float),
+            "base": ("rigid", "elastic", "yielding"),
+            "parameters": {name: Maybe(_NUMBER) for name in _NUMBERS_OF_BASE}
+            | {name: Maybe((str, None)) for name in ("spring", "kinematics", "flight")},
+        }
+    ],
+    "records": [
+        {"record": str, "source": str, "vertical_source": (str, None), "notes": [str], "npts": int}
+        | dict.fromkeys(("dt_s", "duration_s", "pga_g"), float)
+        | dict.fromkeys(("pga_v_g", "pgv_m_s", "pgd_m"), _NUMBER)
+        | {name: Maybe(_NUMBER) for name in ("arias_m_s", "d5_95_s", "azimuth_deg", "magnitude", "distance_km")}
+        | {"factor": Maybe(float), "processed": Maybe((bool, None)), "findings": Maybe([{"what": str}])}
+    ],
+    "unusable": [_OF_FILE],
+    "references": [{"record": str, "case": str, "columns": _VALUES, "theta_max_over_alpha": float, "source": str}],
+    "runs": int,
+    "jobs": int,
+    "wall_s": float,
+    "kept": Maybe(int),
+    "peaks": Maybe({"rows": int, "sha256": str}),
+    "without_vertical": Maybe([str]),
+    "spectra": Maybe(({"damping": float, "period_s": [float], "sa_g": [[float]]}, None)),
+    "left_out": Maybe([_OF_FILE]),
+}
+"""What readers of run.json rely on; the rest of it is for people."""
 
 MOST_SPECTRA = 200
 """Motions whose spectra go into run.json; each takes about 10 ms."""
@@ -63,7 +110,7 @@ def describe(study: Study, motions: MotionSet) -> dict[str, Any]:
         "records": [_describe_motion(motion, gravity, with_pulses) for motion in motions.motions],
         "spectra": _spectra(motions.motions, gravity, target),
         **({} if target is None else {"target": target.described(motions.motions, gravity)}),
-        "unusable": [asdict(file) for file in motions.unusable],
+        "unusable": [asdict(file) | {"lacks": list(file.lacks)} for file in motions.unusable],
         "left_out": [asdict(file) for file in motions.left_out],
         "references": [
             {
@@ -173,5 +220,18 @@ def _pulse(motion: Motion) -> dict[str, Any]:
 
 
 def write_info(directory: Path, info: Mapping[str, Any]) -> None:
-    """Write run.json into ``directory``, whole or not at all."""
-    write_whole(directory / INFO, json.dumps(info, indent=1, ensure_ascii=False) + "\n")
+    """Write run.json into ``directory``, whole or not at all: a line for each entry, and for each case, record or file of one."""
+    with replacing(directory / INFO) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
+        for number, (name, value) in enumerate(info.items()):
+            file.write(("{" if number == 0 else ",") + f"\n {_json(name)}: ")
+            if isinstance(value, list) and value and isinstance(value[0], dict):
+                for place, item in enumerate(value):
+                    file.write(("[" if place == 0 else ",") + f"\n  {_json(item)}")
+                file.write("\n ]")
+            else:
+                file.write(_json(value))
+        file.write("\n}\n")
+
+
+def _json(value: Any) -> str:
+    return json.dumps(value, ensure_ascii=False)

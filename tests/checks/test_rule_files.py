@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
-from check_samples import RIGID, case, folder, runs
+from check_samples import RECORD, RIGID, case, folder, runs
 from studies import PADS, SINE, study_text
 
 import rockbatch as rb
@@ -243,14 +243,20 @@ def test_wrong_input_exits_with_2_and_leaves_no_table(tmp_path, monkeypatch, cap
 
 def test_files_that_could_not_be_used_are_told_beside_the_verdicts(tmp_path, capsys):
     peaks = pd.concat([runs([0.1]), runs([math.nan], "", record="notes", status="failed")])
-    out = folder(tmp_path / "out", peaks, [case()], MARGIN, unusable=[{"name": "notes"}])
+    out = folder(
+        tmp_path / "out",
+        peaks,
+        [case()],
+        MARGIN,
+        unusable=[{"name": "notes", "source": "notes.txt", "reason": "no record"}],
+    )
     assert main(["check", str(out)]) == 0
     assert "no usable records, and in no suite: 1" in capsys.readouterr().err
 
 
 def test_a_record_without_any_row_is_not_forgotten(tmp_path):
     """run.json names it: the run was interrupted before."""
-    records = [{"record": name} for name in ("r0", "r1", "r2")]
+    records = [RECORD | {"record": name} for name in ("r0", "r1", "r2")]
     out = folder(tmp_path / "out", runs([0.1, 0.2]), [case()], MARGIN, records=records)
     assert main(["check", str(out)]) == 1
 

@@ -9,13 +9,17 @@ import pandas as pd
 
 from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, YieldingBase
 from rockbatch.results.columns import MORE, STAYING, names
-from rockbatch.results.reading import SECTIONS
 from rockbatch.results.run_json import describe_case
 from rockbatch.study import Case
 
 PIER = Pier(alpha=0.2, p=1.0, mass_t=3000.0)
 """R0 = 7.3575 m, b = 1.46171 m, h = 7.21084 m."""
 PADS = YieldingBase(beta=50.0, eta=2.5)
+
+RECORD = {
+    "source": "x.AT2", "vertical_source": None, "notes": [], "npts": 100, "dt_s": 0.01, "duration_s": 0.99, "pga_g": 0.5,
+    "pga_v_g": None, "pgv_m_s": None, "pgd_m": None,
+}  # fmt: skip
 
 
 def case(name: str = "pads", base: Base = PADS, **columns: float | str) -> dict[str, Any]:
@@ -47,12 +51,14 @@ def folder(path: Path, peaks: pd.DataFrame, cases: list[dict[str, Any]], checks:
     path.mkdir(exist_ok=True)
     table.to_csv(path / "peaks.csv", index=False, float_format="%.10g")
     records = peaks.loc[peaks["case"] != "", ["record", "station"]].drop_duplicates("record")
-    told = dict.fromkeys(SECTIONS, "") | {
-        "study": {"path": "pier.toml", "text": checks},
+    told = {
+        "rockbatch": "0", "created": "", "command": [], "versions": {}, "machine": "",
+        "study": {"path": "pier.toml", "title": "", "notes": "", "text": checks, "sha256": ""},
+        "numerics": {"tolerance": 1e-4, "substeps": None, "quiet_s": 2.0},
         "varied": list(dict.fromkeys(key for one in cases for key in one["columns"])),
         "cases": cases,
-        "records": records.to_dict("records"),
-        "unusable": [],
-    }
+        "records": [RECORD | one for one in records.to_dict("records")],
+        "unusable": [], "references": [], "runs": len(peaks), "jobs": 1, "wall_s": 1.0,
+    }  # fmt: skip
     (path / "run.json").write_text(json.dumps(told | info), encoding="utf-8")
     return path
