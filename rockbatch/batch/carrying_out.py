@@ -86,4 +86,4 @@ def _images(
 
 def row_of(run: PlannedRun, outcome: Outcome) -> dict[str, Any]:
     """Row of peaks.csv of a run that is finished."""
-    return row(run.motion.name, run.polarity, run.scale, run.case, outcome) | {MIRROR_OF: run.mirror_of}
+    return row(run.motion, run.polarity, run.scale, run.case, outcome) | {MIRROR_OF: run.mirror_of}

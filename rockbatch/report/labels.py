@@ -31,7 +31,7 @@ SYMBOLS = {
     "deck_inertia_t_m2": ("deck inertia", "t m²"),
     "top_m": ("top", "m"),
 }
-BASE_KEYS = ("beta", "eta", "epsilon", "spring", "n", "kinematics", "flight", "restitution")
+BASE_KEYS = ("beta", "eta", "epsilon", "spring", "n", "kinematics", "flight", "restitution", "friction")
 
 Key = tuple[object, ...]
 """What tells one foundation from another: the case, and its varied values in the order of the study."""

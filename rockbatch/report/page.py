@@ -9,6 +9,7 @@ from rockbatch.report.pair import Pair
 from rockbatch.report.sections import (
     accuracy,
     answer,
+    forces,
     fragility,
     ground_motions,
     histories,
@@ -31,6 +32,7 @@ SECTIONS: tuple[Callable[[Contents], Section | None], ...] = (
     verdicts.section,
     published.section,
     peaks.section,
+    forces.section,
     statistics.section,
     fragility.section,
     spectrum.section,

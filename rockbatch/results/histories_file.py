@@ -10,6 +10,8 @@
           t, theta, …   the columns of Response.history, shape (n,), those of springs where there are any
           events        t, kind, pivot, before, after: the columns of Response.events
           ledger        the terms of the energy ledger, where it was asked for
+          forces        what is sized, the columns of Response.forces, where it was asked for
+          impacts       with them, the columns of Response.impacts
 
 Every dataset of numbers has an attribute ``unit``; "1" is none.
 """
@@ -28,7 +30,7 @@ from rockbatch.errors import InputError
 from rockbatch.files import replacing
 from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase
 from rockbatch.results.columns import TERMS
-from rockbatch.results.response import EVENT_TYPES, Response
+from rockbatch.results.response import EVENT_TYPES, FORCE_UNITS, IMPACT_UNITS, Response
 
 if TYPE_CHECKING:
     import h5py
@@ -87,8 +89,8 @@ def write(path: Path, responses: Iterable[Response], info: Mapping[str, Any]) ->
 
 def _check_room(path: Path, response: Response) -> None:
     """HDF5 does not survive a full disk: it may take the process with it at exit."""
-    tables = [table for table in (response.history, response.events, response.ledger) if table is not None]
-    needed = MARGIN + sum(int(table.memory_usage().sum()) for table in tables)
+    tables = (response.history, response.events, response.ledger, response.forces, response.impacts)
+    needed = MARGIN + sum(int(table.memory_usage().sum()) for table in tables if table is not None)
     free = disk_usage(path.parent).free
     if free < needed:
         raise InputError(
@@ -120,6 +122,13 @@ def _write(group: "h5py.Group", response: Response) -> None:
         ledger = group.create_group("ledger")
         for name in TERMS:
             _put(ledger, name, response.ledger[name].to_numpy(), "J/kg")
+    if response.forces is not None and response.impacts is not None:
+        forces, impacts = group.create_group("forces"), group.create_group("impacts")
+        for name, unit in FORCE_UNITS.items():
+            _put(forces, name, response.forces[name].to_numpy(), unit)
+        for name, unit in IMPACT_UNITS.items():
+            _put(impacts, name, response.impacts[name].to_numpy(), unit)
+        impacts["pivot"] = np.array(response.impacts["pivot"], dtype="S16")
 
 
 def _put(group: "h5py.Group", name: str, values: "np.ndarray[Any, Any]", unit: str) -> None:
@@ -216,6 +225,12 @@ def _read(group: "h5py.Group") -> Response:
     ledger = None
     if "ledger" in group:
         ledger = pd.DataFrame({"t": columns["t"]} | {name: group["ledger"][name][:] for name in TERMS})
+    forces = impacts = None
+    if "forces" in group:
+        forces = pd.DataFrame({"t": columns["t"]} | {name: group["forces"][name][:] for name in FORCE_UNITS})
+        impacts = pd.DataFrame({name: group["impacts"][name][:] for name in IMPACT_UNITS})
+        impacts.insert(1, "pivot", group["impacts"]["pivot"].asstr()[:])
+        impacts = impacts.astype({"pivot": "str"})
     return Response(
         **_attributes(group),
         columns=_attributes(group["varied"]),
@@ -224,6 +239,8 @@ def _read(group: "h5py.Group") -> Response:
         history=pd.DataFrame(columns),
         events=pd.DataFrame(events).astype(EVENT_TYPES),
         ledger=ledger,
+        forces=forces,
+        impacts=impacts,
     )
 
 

@@ -43,6 +43,7 @@ NUMERICS = {
 OUTPUT = {
     "histories": Key(choice("worst", "all", "none"), '"all"'),
     "ledger": Key(boolean, "true"),
+    "forces": Key(boolean, "true"),
     "both_laws": Key(boolean, "true"),
 }
 REFERENCE = {
@@ -105,6 +106,8 @@ def load_study(path: str | os.PathLike[str], *, motions: str | os.PathLike[str] 
     varied = varied_pier + varied_case
     references = _references(file, cases, varied)
     output = _output(file)
+    if not output.forces:
+        _complain_about_friction(file)
     checks = read_rules(file, partial(_unfit, cases, motion_spec, output) if cases else None)
     file.finish()
     return Study(
@@ -141,6 +144,7 @@ def _unfit(cases: Sequence[Expanded], motions: MotionSpec, output: Output, rule:
         scales=motions.scale,
         polarities=motions.polarity,
         other_law=output.both_laws,
+        forces=output.forces,
     )
     told = [{"case": each.name, "base": each.base.name, "pier": described(each.pier)} for each in cases]
     yield from implausible(rule, told)
@@ -165,6 +169,17 @@ def _numerics(file: TomlFile) -> Numerics:
 def _output(file: TomlFile) -> Output:
     table = file.table("output")
     return Output() if table is None else Output(**table.read(OUTPUT))
+
+
+def _complain_about_friction(file: TomlFile) -> None:
+    """The forces that friction is held against cost a second run at every step: the study says that it wants them."""
+    for table in file.tables("case", title="name"):
+        if "friction" in table.data:
+            table.complain(
+                "friction: nothing to hold it against; write forces = true under [output], which computes the friction "
+                "demand, or leave it out",
+                "friction",
+            )
 
 
 def _references(file: TomlFile, cases: Sequence[Expanded], varied: Iterable[str]) -> tuple[Reference, ...]:

@@ -114,12 +114,15 @@ class Output:
         The runs whose histories are kept: the worst record of each case, all, or none.
     ledger : bool
         The energy ledger of every run (THEORY.md, 9).
+    forces : bool
+        What designers size, of every run: base shear, friction, supports, gaps, the deck, impacts (THEORY.md, 7).
     both_laws : bool
         The settlement of yielding springs by the other spring law too (THEORY.md, 7); a third run at the kept step.
     """
 
     histories: str = "worst"
     ledger: bool = False
+    forces: bool = False
     both_laws: bool = True
 
 
