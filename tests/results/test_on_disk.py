@@ -40,7 +40,7 @@ STUDY = study_text(
         {"name": "elastic", "base": "elastic", "beta": 50},
         PADS | {"epsilon": 0.1, "spring": ["bouc-wen", "epp"]},
     ),
-    output={"histories": "all", "ledger": True},
+    output={"histories": "all", "ledger": True, "forces": True},
 )
 PIER = rb.Pier(0.2, 1.0)
 CREATED = "2007-06-25T10:00:00+00:00"
@@ -68,15 +68,18 @@ def results(tmp_path_factory):
     return rb.open_results(folder)
 
 
+TABLES = ("history", "events", "ledger", "forces", "impacts")
+
+
 def same(one, other):
     """Whether two responses are equal to the bit, types of columns included."""
-    for name in ("history", "events", "ledger"):
+    for name in TABLES:
         ours, theirs = getattr(one, name), getattr(other, name)
         if ours is None or theirs is None:
             assert ours is theirs
         else:
             pd.testing.assert_frame_equal(ours, theirs, check_exact=True)
-    frames = {"history": None, "events": None, "ledger": None}
+    frames = dict.fromkeys(TABLES)
     assert asdict(replace(one, **frames)) == asdict(replace(other, **frames))
     assert type(one.base) is type(other.base)
     return True
@@ -110,7 +113,9 @@ def test_every_response_comes_back_equal_to_the_bit(results):
         )  # fmt: skip
         if row.polarity == "-":
             motion = replace(motion, horizontal=-motion.horizontal)
-        again = simulate(response.pier, response.base, motion, substeps=int(row.substeps), case=row.case, ledger=True)
+        again = simulate(
+            response.pier, response.base, motion, substeps=int(row.substeps), case=row.case, ledger=True, forces=True
+        )
         columns = {"alpha": row.alpha} | ({"spring": row.spring} if row.case == "pads" else {})
         assert same(response, replace(again, columns=columns, polarity=row.polarity))
 
