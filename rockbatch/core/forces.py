@@ -4,6 +4,7 @@ An observer, like the ledger: it reads the rows of a history, and the equations 
 step they are looked at once more, in its middle; runs that do not ask for it pay nothing.
 """
 
+import math
 from typing import NamedTuple
 
 from rockbatch.core.equations import accelerations, geometry, rates
@@ -30,9 +31,14 @@ class Forces(NamedTuple):
     along: float  # velocity of the centre of mass over the ground, to the right, of springs as in full contact [m/s]
     up: float  # and upwards
     omega: float  # [rad/s]
+    friction: float  # |V|/N; infinite where nothing presses the pier down
+    clearance: float  # of the lower pivot [m]
 
 
 FORCES = record(Forces)
+
+LIFTED = 1e-9
+"""Of g: a normal force that is no more than rounding."""
 
 
 class Outline(NamedTuple):
@@ -51,6 +57,12 @@ def _put(out, i, found):
     line.gap_left, line.gap_right = found.gap_left, found.gap_right
     line.speed_left, line.speed_right = found.speed_left, found.speed_right
     line.deck, line.along, line.up, line.omega = found.deck, found.along, found.up, found.omega
+    line.friction, line.clearance = found.friction, found.clearance
+
+
+@kernel
+def _friction(gravity, shear, normal):
+    return abs(shear) / normal if normal > LIFTED * gravity else math.inf
 
 
 @kernel
@@ -70,11 +82,13 @@ def on_springs(m, deck, y, contact, waiting_left, waiting_right, horizontal, ver
     left, right = -m.yield_force * y.z_left, -m.yield_force * y.z_right
     free_left = 1.0 if contact.left == 0.0 and contact.held != LEFT else 0.0
     free_right = 1.0 if contact.right == 0.0 and contact.held != RIGHT else 0.0
+    gap_left = free_left * (y.v + at.lift_left - waiting_left)
+    gap_right = free_right * (y.v + at.lift_right - waiting_right)
     return Forces(
-        shear, left + right, left, right,
-        free_left * (y.v + at.lift_left - waiting_left), free_right * (y.v + at.lift_right - waiting_right),
+        shear, left + right, left, right, gap_left, gap_right,
         free_left * (y.v_rate + at.arm_left * y.omega), free_right * (y.v_rate + at.arm_right * y.omega),
         shear + swung, at.lever * y.omega, y.v_rate, y.omega,
+        _friction(m.gravity, shear, left + right), min(gap_left, gap_right),
     )  # fmt: skip
 
 
@@ -141,7 +155,7 @@ def on_rigid_base(m, outline, theta, omega, side, horizontal, vertical):
         gap = 0.0 * outline.width
         return Forces(
             horizontal, normal, 0.5 * (normal + more), 0.5 * (normal - more),
-            gap, gap, still, still, horizontal, still, still, omega,
+            gap, gap, still, still, horizontal, still, still, omega, _friction(m.gravity, horizontal, normal), gap,
         )  # fmt: skip
     turning, squared = acceleration(m, theta, side, horizontal, vertical), omega * omega
     sine, cosine = sine_and_cosine(side * m.alpha - theta)
@@ -155,6 +169,7 @@ def on_rigid_base(m, outline, theta, omega, side, horizontal, vertical):
         horizontal + along, normal, on_left * normal, on_right * normal,
         on_right * gap, on_left * gap, on_right * speed, on_left * speed,
         horizontal + deck, outline.size * cosine * omega, outline.size * sine * omega, omega,
+        _friction(m.gravity, horizontal + along, normal), 0.0 * outline.width,
     )  # fmt: skip
 
 
@@ -195,3 +210,30 @@ def forces_on_rigid_base(m, outline, rows, ground, dt, out, middles):
                 theta, omega = leaning, 0.5 * (start_omega + omega) + 0.125 * h * (k_start - k_end)
             ah, av = 0.5 * (ah_start + ah), 0.5 * (av_start + av)
         _put(middles, i, on_rigid_base(m, outline, theta, omega, side, ah, av))
+
+
+@entry
+def greatest(kinds, at_rows, in_middles, out):
+    """Greatest magnitudes of a run: at its rows, in the middles of its steps, and between, where the parabola through the
+    middle and both ends of a step turns.
+
+    Parameters
+    ----------
+    kinds : ndarray, shape (n,)
+        Of the rows.
+    at_rows, in_middles : ndarray, shape (n, k)
+        The numbers of Forces, or others alike.
+    out : ndarray of zeros, shape (k,)
+        Filled.
+    """
+    for i in range(len(kinds)):
+        for j in range(len(out)):
+            end = at_rows[i, j]
+            out[j] = max(out[j], abs(end))
+            if i == 0 or kinds[i] > 0.0:
+                continue
+            start, middle = at_rows[i - 1, j], in_middles[i, j]
+            out[j] = max(out[j], abs(middle))
+            slope, bend = end - start, start + end - 2.0 * middle
+            if abs(slope) < 2.0 * abs(bend) < math.inf:
+                out[j] = max(out[j], abs(middle - slope * slope / (8.0 * bend)))

@@ -1,14 +1,16 @@
 """Forces of a run that was written down, and what of them a designer sizes: their peaks, the hardest impact, uplift."""
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from rockbatch.core import types
-from rockbatch.core.forces import FORCES, Outline, forces_on_rigid_base, forces_on_springs
+from rockbatch.core.forces import FORCES, LIFTED, Forces, Outline, forces_on_rigid_base, forces_on_springs, greatest
+from rockbatch.core.records import numbers
 from rockbatch.motions.motion import Samples
-from rockbatch.pier import Base, Pier, RigidBase, YieldingBase
+from rockbatch.pier import Pier, RigidBase, YieldingBase
 from rockbatch.results.outcome import Outcome, PeakForces
 from rockbatch.results.response import FORCE_UNITS, IMPACT_UNITS
 from rockbatch.simulation.models import block, ground_of, springs
@@ -16,9 +18,6 @@ from rockbatch.simulation.runs import Run
 
 if TYPE_CHECKING:
     import pandas as pd
-
-LIFTED = 1e-9
-"""Of g: a normal force that is no more than rounding."""
 
 _UPLIFTS = (types.SEPARATION_LEFT, types.SEPARATION_RIGHT, types.LIFT_OFF)
 _LANDINGS = (types.IMPACT_LEFT, types.IMPACT_RIGHT, types.IMPACT_BOTH, types.REST)
@@ -54,15 +53,15 @@ def _outline(pier: Pier) -> Outline:
     return Outline(size, width, 1.0, float(pier.deck - pier.height))
 
 
-def friction(found: np.recarray, gravity: float) -> Samples:
-    """|V|/N at every moment: infinite where nothing presses the pier down."""
-    pressed = found.normal > LIFTED * gravity
-    return np.where(pressed, np.abs(found.shear) / np.where(pressed, found.normal, 1.0), math.inf)
+def _events(rows: np.recarray, kinds: Sequence[float]) -> np.ndarray:
+    """Places of the rows behind events of these ``kinds``."""
+    events = np.flatnonzero(rows.kind > 0.0)
+    return events[np.isin(rows.kind[events], kinds)]
 
 
 def impacts(rows: np.recarray, found: np.recarray) -> Impacts:
     """Impacts between neighbouring rows: the speed before, and by how much the momentum changes."""
-    after = np.flatnonzero(np.isin(rows.kind, _LANDINGS))
+    after = _events(rows, _LANDINGS)
     before, kind = after - 1, rows.kind[after]
     left, right = np.abs(found.speed_left[before]), np.abs(found.speed_right[before])
     comes_down = np.where(kind == types.REST, np.where(left > 0.0, types.IMPACT_LEFT, types.IMPACT_RIGHT), kind)
@@ -76,7 +75,7 @@ def forces_table(t: Samples, found: np.recarray, gravity: float) -> "pd.DataFram
     import pandas as pd
 
     half = 0.5 * gravity
-    told = [found.shear, found.normal, friction(found, gravity), found.left / half, found.right / half]
+    told = [found.shear, found.normal, found.friction, found.left / half, found.right / half]
     told += [found.gap_left, found.gap_right, found.speed_left, found.speed_right, found.deck]
     return pd.DataFrame({"t": t.copy(), **dict(zip(FORCE_UNITS, told, strict=True))})
 
@@ -86,8 +85,8 @@ def impacts_table(rows: np.recarray, found: np.recarray) -> "pd.DataFrame":
     import pandas as pd
 
     own = impacts(rows, found)
-    numbers = (rows.t[own.after], own.speed, own.horizontal, own.vertical)
-    table = pd.DataFrame(dict(zip(IMPACT_UNITS, numbers, strict=True)))
+    told = [rows.t[own.after], own.speed, own.horizontal, own.vertical]
+    table = pd.DataFrame(dict(zip(IMPACT_UNITS, told, strict=True)))
     table.insert(1, "pivot", np.array(["left", "both", "right"], dtype=object)[own.side + 1])
     return table.astype({"pivot": "str"})
 
@@ -102,45 +101,30 @@ def peak_forces(run: Run, outcome: Outcome, rows: np.recarray) -> tuple[PeakForc
         standing = np.flatnonzero(np.abs(rows.theta) <= pier.alpha)
         rows = rows[: standing[-1] + 1].view(np.recarray)
     found, middles = observed(run, rows, steps=True)
-    steps = rows.kind <= types.SAMPLE
-
-    def most(name: str) -> float:
-        return float(_greatest(found[name], middles[name], steps).max())
-
-    asked = _greatest(friction(found, pier.gravity), friction(middles, pier.gravity), steps)
+    extremes = np.zeros(len(Forces._fields))
+    greatest(rows.kind, numbers(found), numbers(middles), extremes)
+    most = Forces(*extremes.tolist())
     landings = impacts(rows, found)
-    carried = [most(side) / (0.5 * pier.gravity) for side in ("left", "right")]
+    carried = [force / (0.5 * pier.gravity) for force in (most.left, most.right)]
     if isinstance(base, YieldingBase):
         carried = [min(force, base.eta) for force in carried]  # a parabola may top it
     peaks = PeakForces(
-        base_shear=most("shear"),
-        normal_force=most("normal"),
-        friction_demand=float(asked.max()),
+        base_shear=most.shear,
+        normal_force=most.normal,
+        friction_demand=most.friction,
         pivot_left=carried[0],
         pivot_right=carried[1],
-        heel_gap_left=most("gap_left"),
-        heel_gap_right=most("gap_right"),
-        heel_speed_left=most("speed_left"),
-        heel_speed_right=most("speed_right"),
-        deck_acceleration=most("deck"),
-        omega_over_p=most("omega") / pier.p,
+        heel_gap_left=most.gap_left,
+        heel_gap_right=most.gap_right,
+        heel_speed_left=most.speed_left,
+        heel_speed_right=most.speed_right,
+        deck_acceleration=most.deck,
+        omega_over_p=most.omega / pier.p,
         **_hardest(landings),
         **_first_uplift(run, rows),
-        **_flown(base, rows, found, middles, steps),
+        **_flown(run, outcome, rows, most.clearance),
     )
-    return peaks, _limits(run, rows, found, asked, peaks)
-
-
-def _greatest(at_rows: Samples, in_middles: Samples, steps: np.ndarray) -> Samples:
-    """Greatest magnitude at each row and, where a step ends there, in its middle and where the parabola through the middle
-    and both ends turns; shape (n,)."""
-    start = np.concatenate([at_rows[:1], at_rows[:-1]])
-    greatest = np.fmax(np.abs(at_rows), np.where(steps, np.abs(in_middles), 0.0))
-    with np.errstate(invalid="ignore", divide="ignore"):
-        slope, bend = at_rows - start, start + at_rows - 2.0 * in_middles
-        between = np.abs(in_middles - slope * slope / (8.0 * bend))
-        turns = steps & (np.abs(slope) < 2.0 * np.abs(bend)) & np.isfinite(between)
-    return np.where(turns, np.fmax(greatest, between), greatest)
+    return peaks, _limits(run, rows, found, peaks)
 
 
 def _hardest(landings: Impacts) -> dict[str, float]:
@@ -158,29 +142,24 @@ def _hardest(landings: Impacts) -> dict[str, float]:
 
 def _first_uplift(run: Run, rows: np.recarray) -> dict[str, float]:
     """When a pivot first lifts, and the magnitude of the horizontal ground acceleration then; nothing if none does."""
-    first = np.flatnonzero(np.isin(rows.kind, _UPLIFTS))[:1]
-    if len(first) == 0:
+    lifted = _events(rows, _UPLIFTS)
+    if len(lifted) == 0:
         return {}
-    t, samples = float(rows.t[first[0]]), np.append(run.motion.horizontal, 0.0)
+    t, samples = float(rows.t[lifted[0]]), np.append(run.motion.horizontal, 0.0)
     shaken = float(np.interp(t, np.arange(len(samples)) * run.motion.dt, samples))
     return {"first_uplift": t, "uplift_ground": abs(shaken)}
 
 
-def _flown(
-    base: Base, rows: np.recarray, found: np.recarray, middles: np.recarray, steps: np.ndarray
-) -> dict[str, float]:
+def _flown(run: Run, outcome: Outcome, rows: np.recarray, clearance: float) -> dict[str, float]:
     """How long both pivots were in the air, and how high the lower one; nothing without flight that was followed."""
-    if isinstance(base, RigidBase):
+    if outcome.t_flight is None or isinstance(run.base, RigidBase):
         return {}
-    flying = steps & (rows.left == 0.0) & (rows.right == 0.0) & (rows.held == 0.0)
+    flying = (rows.kind <= 0.0) & (rows.left == 0.0) & (rows.right == 0.0) & (rows.held == 0.0)
     lasted = float(np.diff(rows.t, prepend=0.0)[flying].sum())
-    if lasted == 0.0:
-        return {}
-    at_rows, in_middles = (np.minimum(each.gap_left, each.gap_right) for each in (found, middles))
-    return {"flight_duration": lasted, "flight_height": float(_greatest(at_rows, in_middles, steps).max())}
+    return {"flight_duration": lasted, "flight_height": clearance} if lasted > 0.0 else {}
 
 
-def _limits(run: Run, rows: np.recarray, found: np.recarray, asked: Samples, peaks: PeakForces) -> str:
+def _limits(run: Run, rows: np.recarray, found: np.recarray, peaks: PeakForces) -> str:
     """What the forces say that the model does not follow: sliding, and a rigid base that would have to pull."""
     notes = []
     if isinstance(run.base, RigidBase):
@@ -195,8 +174,11 @@ def _limits(run: Run, rows: np.recarray, found: np.recarray, asked: Samples, pea
         return "; ".join(notes)
     most = max(peaks.friction_demand, peaks.impact_friction_demand or 0.0)
     if most > has:
-        beyond = asked > has
-        when = f"at {float(rows.t[int(beyond.argmax())]):.2f} s" if beyond.any() else "at an impact"
+        when = "at an impact"
+        if peaks.friction_demand > has:
+            beyond = found.friction > has  # the greatest may lie between rows
+            first = int(beyond.argmax()) if beyond.any() else int(found.friction.argmax())
+            when = f"at {float(rows.t[first]):.2f} s"
         told = f"reaches {most:.3g}" if math.isfinite(most) else "has no limit, as nothing presses the pier down"
         notes.append(
             f"would slide {when}: the friction demand {told}, the interface has {has:g}; sliding is not followed"

@@ -48,7 +48,9 @@ def test_drift_uplift_and_pga_follow_from_rotation_geometry_and_motion(tmp_path)
     assert theta > 1e-3
     assert row["top_drift_m"] == pytest.approx(34.0 * theta, rel=1e-12)
     assert row["heel_uplift_m"] == pytest.approx(4.0 * theta, rel=1e-12)
-    assert row["pga_g"] == pytest.approx(0.5 * math.sin(2 * math.pi * 0.12 / 0.5), rel=1e-12)  # the sample next to its peak
+    assert row["pga_g"] == pytest.approx(
+        0.5 * math.sin(2 * math.pi * 0.12 / 0.5), rel=1e-12
+    )  # the sample next to its peak
 
 
 def test_forces_are_in_kilonewtons_too_where_the_mass_is_known(tmp_path):

@@ -175,7 +175,7 @@ def test_the_rigid_bases_equations_give_rotations_and_times():
     assert_units([later], [S])
 
 
-FORCES = (*(ACCELERATION,) * 4, M, M, SPEED, SPEED, ACCELERATION, SPEED, SPEED, RAD / S)
+FORCES = (*(ACCELERATION,) * 4, M, M, SPEED, SPEED, ACCELERATION, SPEED, SPEED, RAD / S, ONE, M)
 
 
 @KINEMATICS
