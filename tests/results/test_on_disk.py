@@ -193,7 +193,7 @@ def test_flight_is_the_last_event_of_a_run_that_it_ends(tmp_path):
 
 
 def test_every_number_has_a_unit_and_a_length_that_fits(results):
-    """Units are those that pint reads; all columns of a run have as many rows as its time."""
+    """Units are those that pint reads; all columns of a run have as many rows as its time, or as it has impacts."""
     registry = pint.UnitRegistry()
     seen = set()
     with h5py.File(results.directory / "histories.h5") as file:
@@ -201,12 +201,15 @@ def test_every_number_has_a_unit_and_a_length_that_fits(results):
         def look(name, item):
             if isinstance(item, h5py.Dataset) and item.dtype.kind != "S":
                 seen.add(str(registry(item.attrs["unit"]).units if item.attrs["unit"] != "1" else "1"))
-                if "/events/" not in name:
-                    assert item.shape == file[f"{'/'.join(name.split('/')[:2])}/t"].shape
+                own = name.split("/")[2]
+                if own != "events":
+                    of = f"{'/'.join(name.split('/')[:2])}/{'impacts/t' if own == 'impacts' else 't'}"
+                    assert item.shape == file[of].shape
 
         file.visititems(look)
     assert seen == {
-        "second", "radian", "radian / second", "meter", "newton / kilogram", "joule / kilogram", "meter / second ** 2", "1"
+        "second", "radian", "radian / second", "meter", "newton / kilogram", "joule / kilogram", "meter / second ** 2",
+        "meter / second", "1",
     }  # fmt: skip
 
 
@@ -224,6 +227,8 @@ def test_the_file_says_what_it_is_and_what_made_it(results):
         assert set(run) == {
             "base",
             "events",
+            "forces",
+            "impacts",
             "ledger",
             "pier",
             "varied",
