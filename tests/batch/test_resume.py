@@ -47,7 +47,7 @@ def write(path, title="Long", last_scale=1.2):
         motions={"polarity": ["+", "-"], "scale": [0.2, 0.4, 0.6, 0.8, 1.0, last_scale]},
         pulses=(SINE | {"duration_s": 2.0},),
         cases=(RIGID, pads),
-        output={"both_laws": False, "histories": "none", "forces": True},
+        output={"both_laws": False, "histories": "none"},
     )
     return write_study(path.parent, text, path.name)
 

@@ -125,6 +125,24 @@ def test_a_fragility_of_a_demand_of_forces_asks_for_them(tmp_path):
     assert list(shear["exceeded"]) == [0, 1]
 
 
+def test_shares_with_forces_are_merged_to_the_bytes_of_one_run(tmp_path):
+    path = str(study(tmp_path, motions={"polarity": ["+", "-"], "scale": [0.5, 1.0]}))
+    assert main(["run", path, "--out", str(tmp_path / "whole")]) == 0
+    shares = [str(tmp_path / n) for n in "12"]
+    for n, share in enumerate(shares, 1):
+        assert main(["run", path, "--shard", f"{n}/2", "--out", share]) == 0
+    assert main(["merge", path, "--out", str(tmp_path / "merged"), *shares]) == 0
+    assert (tmp_path / "merged" / "peaks.csv").read_bytes() == (tmp_path / "whole" / "peaks.csv").read_bytes()
+    assert (cells(tmp_path / "merged")["base_shear_m_s2"] != "").all()
+
+
+def test_finished_runs_without_forces_do_not_pass_for_those_with(tmp_path, capsys):
+    share = ["--shard", "1/2", "--out", str(tmp_path / "out")]
+    assert main(["run", str(study(tmp_path, forces=False)), *share]) == 0
+    assert main(["run", str(study(tmp_path)), *share]) == 2
+    assert "something has changed (numerics)" in capsys.readouterr().err
+
+
 def test_a_run_that_is_too_long_to_be_written_down_has_no_forces(tmp_path, monkeypatch):
     monkeypatch.setattr("rockbatch.batch.groups.MOST_STEPS_OBSERVED", 100)
     row = rb.run(study(tmp_path, cases=(RIGID,))).iloc[0]
