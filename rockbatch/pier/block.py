@@ -112,7 +112,13 @@ class Pier:
 
     @classmethod
     def of_parts(
-        cls, width_m: float, parts: Iterable[Part], *, top_m: float | None = None, gravity: float = GRAVITY
+        cls,
+        width_m: float,
+        parts: Iterable[Part],
+        *,
+        top_m: float | None = None,
+        deck_height_m: float | None = None,
+        gravity: float = GRAVITY,
     ) -> "Pier":
         """Pier of any shape, with what it carries (THEORY.md, 1).
 
@@ -124,6 +130,8 @@ class Pier:
             Or of (mass_t, height_m, inertia_t_m2): masses m_i at heights h_i, with inertias I_i about their own centres.
         top_m : float, optional
             Where drift is read [m]; at the highest part's centre by default.
+        deck_height_m : float, optional
+            Where the deck's acceleration is told [m]; at the top by default.
 
         Returns
         -------
@@ -155,7 +163,8 @@ class Pier:
         size = math.hypot(0.5 * width_m, height)
         top = max(part.height_m for part in parts) if top_m is None else top_m
         alpha = math.atan2(0.5 * width_m, height)
-        return cls.from_size(alpha, size, mass * size**2 / inertia, gravity, mass_t=mass, top_m=top)
+        pier = cls.from_size(alpha, size, mass * size**2 / inertia, gravity, mass_t=mass, top_m=top)
+        return pier if deck_height_m in (None, top) else replace(pier, deck_height_m=deck_height_m)
 
     @classmethod
     def with_deck(
@@ -182,7 +191,7 @@ class Pier:
         deck = Part(deck_mass_t, height_m if deck_height_m is None else deck_height_m, deck_inertia_t_m2)
         top = max(height_m, deck.height_m) if top_m is None else top_m
         parts = [Part.shaft(width_m, height_m, mass_t), deck]
-        return replace(cls.of_parts(width_m, parts, top_m=top, gravity=gravity), deck_height_m=deck.height_m)
+        return cls.of_parts(width_m, parts, top_m=top, deck_height_m=deck.height_m, gravity=gravity)
 
     @classmethod
     def frame(cls, column: "Pier", columns: int, deck_mass_t: float) -> "Pier":

@@ -1,7 +1,7 @@
 """The piers of a study file, with every combination of listed values: [pier] and [[pier.part]]."""
 
 from collections.abc import Sequence
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from typing import Any
 
 from rockbatch.errors import InputError
@@ -131,7 +131,7 @@ def _of_parts(values: dict[str, Any], parts: int, rest: dict[str, Any]) -> Pier:
         deck = values["deck_height_m"] if "deck_height_m" in values else values["height_m"]
         all_of_them.append(Part(values["deck_mass_t"], deck, values.get("deck_inertia_t_m2", 0.0)))
     top = max(values.get("height_m", 0.0), *(part.height_m for part in all_of_them))
-    return replace(Pier.of_parts(values["width_m"], all_of_them, **{"top_m": top} | rest), deck_height_m=deck)
+    return Pier.of_parts(values["width_m"], all_of_them, **{"top_m": top, "deck_height_m": deck} | rest)
 
 
 def _complain_where_due(table: Table, chosen: Chosen, problem: str) -> None:
