@@ -134,9 +134,9 @@ def _response(study: Study, planned: PlannedRun, row: "pd.Series") -> Response:
     # With the same steps it comes to the same bits; of the row only ten digits are on disk
     outcome = run_fixed(run.pier, run.base, run.motion, int(row["substeps"]), quiet_s)
     outcome = replace(outcome, status=row["status"], reason=row["reason"])
-    told = row.get("energy_input_J_kg", float("nan"))
+    told, sized = row.get("energy_input_J_kg", float("nan")), row.get("base_shear_m_s2", float("nan"))
     return histories(
         run, outcome, quiet_s, case.name, case.columns,
-        ledger=told == told,  # very long runs have none
+        ledger=told == told, forces=sized == sized,  # very long runs have none
         polarity=planned.polarity, scale=planned.scale,
     )  # fmt: skip

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from rockbatch.checks.choices import chooses, unmet
-from rockbatch.checks.demands import DEMANDS, Case
+from rockbatch.checks.demands import DEMANDS, FORCES, Case
 from rockbatch.checks.rules import Rule
 from rockbatch.checks.statistics import STATISTICS, Values
 from rockbatch.checks.suite import (
@@ -32,6 +32,9 @@ if TYPE_CHECKING:
     import pandas as pd
 
 MOST_NAMES = 5
+
+
+NOT_WEIGHED = "the study does not say what the pier weighs"
 
 
 def judge(
@@ -68,6 +71,7 @@ def judge(
     stations = dict(records or _stations(runs))
     polarities, scales = list(runs["polarity"].unique()), [float(scale) for scale in runs["scale"].unique()]
     there: dict[str, Any] = {"scales": scales, "polarities": polarities, "other_law": OTHER_LAW in runs}
+    there["forces"] = FORCES in runs
     there["cases"] = list(dict.fromkeys(str(case["case"]) for case in cases))
     wrong = [f"check {shown(rule.name)}: {problem}" for rule in rules for problem in unmet(rule, **there)]
     if wrong:
@@ -136,10 +140,12 @@ def _verdict(rule: Rule, suite: "pd.DataFrame", case: Case, scale: float, count:
     )
     if case["base"] not in demand.bases:
         return none
+    if demand.weighed and "mass_t" not in case["pier"]:
+        return replace(none, note=NOT_WEIGHED)
     if demand.of_the_case:
         value = float(demand.of(suite, case).value[0])
         if math.isnan(value):
-            return replace(none, note="the study does not say what the pier weighs")
+            return replace(none, note=NOT_WEIGHED)
         verdict, note = _decide(rule, value, value)
         ratio, margin = _against(rule, value)
         return replace(none, value=value, low=value, high=value, ratio=ratio, margin=margin, verdict=verdict, note=note)

@@ -37,9 +37,11 @@ class RigidBase:
 
     ``restitution`` is the factor e on the angular velocity at an impact; ``None`` means :attr:`Pier.restitution`, Housner's
     e = 1 − 2μ/(1+μ) sin²α, which conserves the angular momentum about the new pivot, or 0 where that is negative.
+    ``friction``, if known, is the coefficient of the interface: a run says where its forces ask for more (THEORY.md, 7).
     """
 
     restitution: float | None = None
+    friction: float | None = field(default=None, kw_only=True)
 
     name = "rigid"
 
@@ -58,12 +60,15 @@ class ElasticBase:
         The paper's equations, or those that hold for large rotations.
     flight : "stop" or "guided"
         What happens when both pivots are off the ground: the analysis ends, or shear keys guide the pier down.
+    friction : float, optional
+        Coefficient of the interface, if known: a run says where its forces ask for more, and goes on (THEORY.md, 7).
     """
 
     beta: float
     epsilon: float = 0.0
     kinematics: Kinematics = "first-order"
     flight: Flight = "stop"
+    friction: float | None = field(default=None, kw_only=True)
 
     name = "elastic"
 
@@ -196,18 +201,18 @@ Base = RigidBase | ElasticBase | YieldingBase
 
 def problems(pier: Pier, base: Base) -> list[str]:
     """What is impossible about ``pier`` on ``base``: one sentence each, with the limit; empty if nothing."""
+    wrong = not_positive(friction=(base.friction, ", the coefficient of the interface"))
     if isinstance(base, RigidBase):
         e = base.restitution
         if e is not None and not 0 <= e <= 1:
-            return [f"restitution = {e:g}: must be within 0..1 (leave it out for Housner's value)"]
-        return []
+            wrong.append(f"restitution = {e:g}: must be within 0..1 (leave it out for Housner's value)")
+        return wrong
     if pier.deck_over_columns is not None:
         return [
             f"columns: a rocking frame is solved on rigid ground only, and this base is {base.name}. On springs the columns "
             "sink by themselves, the deck no longer moves level, and no one block stands for them (Makris & Vassiliou 2013); "
             'write base = "rigid", or leave columns out for a single pier'
         ]
-    wrong = []
     least = least_beta(pier, base)
     if base.beta > MOST:
         wrong.append(f"beta = {base.beta:g}: must be {MOST:g} at most")

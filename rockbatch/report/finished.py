@@ -29,7 +29,7 @@ class Finished:
         The two files.
     runs : DataFrame
         The rows of ``peaks.csv`` that were simulated, without mirror images, and more of each: ``series`` and ``pier``,
-        places in the lists below; ``alpha`` [rad]; ``pga_g``, that of the scaled motion; ``with_vertical``, "" unless the
+        places in the lists below; ``alpha`` [rad]; ``pga`` [g], that of the scaled motion; ``with_vertical``, "" unless the
         study has both.
     series : list of Series
         The foundations.
@@ -167,7 +167,7 @@ def finished(saved: Saved) -> Finished:
     for column, name in enumerate(("series", "pier", "alpha")):
         runs[name] = kinds.map({kind: fact[column] for kind, fact in facts.items()})
     pga = {record["record"]: record["pga_g"] for record in info["records"]}
-    runs["pga_g"] = runs["record"].map(pga).astype("float64") * runs["scale"]
+    runs["pga"] = runs["record"].map(pga).astype("float64") * runs["scale"]
     runs["with_vertical"] = _with_vertical(runs)
     keys = [key for key in varied if key in PIER_KEYS]
     digits = [digits_that_tell(values) for values in zip(*piers, strict=True)]

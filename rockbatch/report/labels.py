@@ -33,6 +33,7 @@ SYMBOLS = {
 }
 BASE_KEYS = (
     "beta", "stiffness_kN_m", "eta", "yield_kN", "epsilon", "spring", "n", "kinematics", "flight", "restitution",
+    "friction",
 )  # fmt: skip
 SAME = {"beta": "stiffness_kN_m", "eta": "yield_kN"}
 """Keys of a study that say the same, without units and with: a foundation is called by the one that its study gives."""

@@ -25,10 +25,12 @@ def group_in(group: "h5py.Group", name: str) -> "h5py.Group":
     return found
 
 
-def array_in(group: "h5py.Group", name: str, kind: str, length: int | None = None) -> "np.ndarray[Any, Any]":
+def array_in(
+    group: "h5py.Group", name: str, kind: str, length: int | None = None, *, finite: bool = True
+) -> "np.ndarray[Any, Any]":
     """A dataset of one dimension that lies in ``group``, with its bytes: numbers of ``kind`` "f" or "i", or texts "S".
 
-    Texts come as ``str``. ``length`` is the number of values that there have to be.
+    Texts come as ``str``. ``length`` is the number of values that there have to be; ``finite`` ones unless they may be infinite.
     """
     import h5py
 
@@ -42,7 +44,7 @@ def array_in(group: "h5py.Group", name: str, kind: str, length: int | None = Non
     if length is not None and len(found) != length:
         raise ValueError(f"{name} has {len(found)} values instead of {length}")
     values = found.asstr()[:] if kind == "S" else found[:]
-    if kind == "f" and np.isinf(values).any():
+    if kind == "f" and finite and np.isinf(values).any():
         raise ValueError(f"{name} has infinite values")
     return np.asarray(values)
 

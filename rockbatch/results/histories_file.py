@@ -10,6 +10,8 @@
           t, theta, …   the columns of Response.history, shape (n,), those of springs where there are any
           events        t, kind, pivot, before, after: the columns of Response.events
           ledger        the terms of the energy ledger, where it was asked for
+          forces        what is sized, the columns of Response.forces, where it was asked for
+          impacts       with them, the columns of Response.impacts
 
 Every dataset of numbers has an attribute ``unit``; "1" is none.
 """
@@ -29,7 +31,7 @@ from rockbatch.files import opened, replacing
 from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase
 from rockbatch.results.columns import TERMS
 from rockbatch.results.hdf5 import array_in, attribute, attributes_of, group_in
-from rockbatch.results.response import EVENT_TYPES, Response
+from rockbatch.results.response import EVENT_TYPES, FORCE_UNITS, IMPACT_UNITS, Response
 
 if TYPE_CHECKING:
     import h5py
@@ -93,8 +95,8 @@ def write(path: Path, responses: Iterable[Response], info: Mapping[str, Any]) ->
 
 def _check_room(path: Path, response: Response) -> None:
     """HDF5 does not survive a full disk: it may take the process with it at exit."""
-    tables = [table for table in (response.history, response.events, response.ledger) if table is not None]
-    needed = MARGIN + sum(int(table.memory_usage().sum()) for table in tables)
+    tables = (response.history, response.events, response.ledger, response.forces, response.impacts)
+    needed = MARGIN + sum(int(table.memory_usage().sum()) for table in tables if table is not None)
     free = disk_usage(path.parent).free
     if free < needed:
         raise InputError(
@@ -126,6 +128,13 @@ def _write(group: "h5py.Group", response: Response) -> None:
         ledger = group.create_group("ledger")
         for name in TERMS:
             _put(ledger, name, response.ledger[name].to_numpy(), "J/kg")
+    if response.forces is not None and response.impacts is not None:
+        forces, impacts = group.create_group("forces"), group.create_group("impacts")
+        for name, unit in FORCE_UNITS.items():
+            _put(forces, name, response.forces[name].to_numpy(), unit)
+        for name, unit in IMPACT_UNITS.items():
+            _put(impacts, name, response.impacts[name].to_numpy(), unit)
+        impacts["pivot"] = np.array(response.impacts["pivot"], dtype="S16")
 
 
 def _put(group: "h5py.Group", name: str, values: "np.ndarray[Any, Any]", unit: str) -> None:
@@ -225,6 +234,12 @@ def _read(group: "h5py.Group") -> Response:
     if "ledger" in group:
         terms = group_in(group, "ledger")
         ledger = pd.DataFrame({"t": t} | {name: array_in(terms, name, "f", len(t)) for name in TERMS})
+    forces = impacts = None
+    if "forces" in group:
+        told = group_in(group, "forces")
+        columns_of_forces = {name: array_in(told, name, "f", len(t), finite=name != "friction") for name in FORCE_UNITS}
+        forces = pd.DataFrame({"t": t} | columns_of_forces)
+        impacts = _impacts(group_in(group, "impacts"))
     return Response(
         **_run(group),
         columns=attributes_of(group_in(group, "varied")),
@@ -233,7 +248,19 @@ def _read(group: "h5py.Group") -> Response:
         history=pd.DataFrame(columns),
         events=_events(group_in(group, "events"), len(t)),
         ledger=ledger,
+        forces=forces,
+        impacts=impacts,
     )
+
+
+def _impacts(group: "h5py.Group") -> "pd.DataFrame":
+    """The table of impacts."""
+    import pandas as pd
+
+    t = array_in(group, "t", "f")
+    found: dict[str, Any] = {"t": t, "pivot": array_in(group, "pivot", "S", len(t))}
+    found |= {name: array_in(group, name, "f", len(t)) for name in IMPACT_UNITS}
+    return pd.DataFrame(found).astype({"pivot": "str"})
 
 
 def _run(group: "h5py.Group") -> dict[str, Any]:

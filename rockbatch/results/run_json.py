@@ -153,10 +153,11 @@ def describe_case(case: Case) -> dict[str, Any]:
 
 
 def _describe_base(pier: Pier, base: Base) -> dict[str, Any]:
+    interface = {} if base.friction is None else {"friction": base.friction}
     if isinstance(base, RigidBase):
         of_frame = None if pier.deck_over_columns is None else pier.restitution  # None stands for Housner's
-        return {"restitution": of_frame if base.restitution is None else base.restitution}
-    told = _springs(pier, base)
+        return {"restitution": of_frame if base.restitution is None else base.restitution, **interface}
+    told = _springs(pier, base) | interface
     if isinstance(base, YieldingBase):
         told |= {
             "eta": base.eta,

@@ -25,7 +25,8 @@ from rockbatch.study.plausible import CONFIRM, MASSES, complain_unless_usual, co
 from rockbatch.toml.kinds import choice, number, positive, shown, text
 from rockbatch.toml.reader import Key, Setting, Table, TomlFile
 
-_RIGID = {"restitution": Key(number, "0.9", many=True)}
+_INTERFACE = {"friction": Key(positive, "0.5", many=True)}
+_RIGID = {"restitution": Key(number, "0.9", many=True), **_INTERFACE}
 _ELASTIC = {
     "beta": Key(number, "40.0", many=True),
     "stiffness_kN_m": Key(positive, "2.0e6", many=True),
@@ -33,6 +34,7 @@ _ELASTIC = {
     "epsilon": Key(number, "0.05", many=True),
     "kinematics": Key(choice(*get_args(Kinematics)), '"first-order"', many=True),
     "flight": Key(choice(*get_args(Flight)), '"stop"', many=True),
+    **_INTERFACE,
 }
 _YIELDING = _ELASTIC | {
     "eta": Key(number, "2.5", many=True),

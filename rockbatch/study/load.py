@@ -44,6 +44,7 @@ OUTPUT = {
     "histories": Key(choice("worst", "all", "none"), '"all"'),
     "histories_MB": Key(positive, "50"),
     "ledger": Key(boolean, "true"),
+    "forces": Key(boolean, "true"),
     "both_laws": Key(boolean, "true"),
     "intensity": Key(boolean, "true"),
     "sa_periods_s": Key(positive, "[0.5, 1.0, 2.0]", many=True),
@@ -111,6 +112,8 @@ def load_study(path: str | os.PathLike[str], *, motions: str | os.PathLike[str] 
     references = _references(file, cases, varied)
     output = _output(file)
     counted = read_count(file)
+    if not output.forces:
+        _complain_about_friction(file)
     checks = read_rules(file, partial(_unfit, cases, motion_spec, output) if cases else None, counted)
     file.finish()
     return Study(
@@ -148,6 +151,7 @@ def _unfit(cases: Sequence[Expanded], motions: MotionSpec, output: Output, rule:
         scales=motions.scale,
         polarities=motions.polarity,
         other_law=output.both_laws,
+        forces=output.forces,
     )
     told = [{"case": each.name, "base": each.base.name, "pier": described(each.pier)} for each in cases]
     yield from implausible(rule, told)
@@ -179,6 +183,17 @@ def _output(file: TomlFile) -> Output:
             table.complain("sa_periods_s: is for intensity = true; write that too, or leave it out", "sa_periods_s")
         read["sa_periods_s"] = tuple(setting.value for setting in read["sa_periods_s"])
     return Output(**read)
+
+
+def _complain_about_friction(file: TomlFile) -> None:
+    """The forces that friction is held against cost a second run at every step: the study says that it wants them."""
+    for table in file.tables("case", title="name"):
+        if "friction" in table.data:
+            table.complain(
+                "friction: nothing to hold it against; write forces = true under [output], which computes the friction "
+                "demand, or leave it out",
+                "friction",
+            )
 
 
 def _references(file: TomlFile, cases: Sequence[Expanded], varied: Iterable[str]) -> tuple[Reference, ...]:

@@ -117,6 +117,8 @@ class Output:
         How large their file may become with "worst".
     ledger : bool
         The energy ledger of every run (THEORY.md, 9).
+    forces : bool
+        What designers size, of every run: base shear, friction, supports, gaps, the deck, impacts (THEORY.md, 7).
     both_laws : bool
         The settlement of yielding springs by the other spring law too (THEORY.md, 7); a third run at the kept step.
     intensity : bool
@@ -129,6 +131,7 @@ class Output:
     histories: str = "worst"
     histories_MB: float = 20.0  # noqa: N815 (the study's key)
     ledger: bool = False
+    forces: bool = False
     both_laws: bool = True
     intensity: bool = False
     sa_periods_s: tuple[float, ...] = (0.5, 1.0, 2.0, 4.0)

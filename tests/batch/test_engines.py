@@ -33,7 +33,7 @@ STUDY = study_text(
     motions={"polarity": ["+", "-"], "scale": [0.5, 0.75, 1.0]},
     pulses=(SINE, COSINE),
     cases=(RIGID, PADS | {"beta": [30, 40, 50], "eta": [2.0, 2.5, 3.0], "epsilon": 0.1}),
-    output={"both_laws": False, "histories": "none"},
+    output={"both_laws": False, "histories": "none", "forces": True},
 )
 RUNS = 2 * 2 * 3 * 10
 

@@ -48,7 +48,7 @@ def at_a_glance(finished: Finished, runs: "pd.DataFrame", records: "Sequence[str
     rows: list[list[object]] = []
     for name in records:
         values = [found.get((name, place, sign)) for place, _ in series for sign in signs]
-        pga = next((run["pga_g"] for run in values if run), math.nan)
+        pga = next((run["pga"] for run in values if run), math.nan)
         rows.append([finished.shown(name), pga, *(outcome(run, stood.max()) for run in values)])
     return table(heads, rows, name="Peak rotations in numbers")
 
