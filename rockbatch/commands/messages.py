@@ -38,7 +38,7 @@ def tell_motions(motions: "MotionSet") -> None:
     for file in motions.unusable:
         say(f"not used: {file.source}: {file.reason}")
     for one, other in _twice(motions):
-        say(f"{one} and {other} have the same samples: checks count them once, curves twice; leave one out")
+        say(f"{one} and {other} are the same record: it counts twice; leave one out")
     if motions.without_vertical:
         say(f"no vertical: {', '.join(motions.without_vertical)}")
     if motions.left_out:
