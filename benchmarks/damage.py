@@ -77,6 +77,9 @@ name = "no overturning"
 demand = "theta_max_over_alpha"
 at_most = 0.5
 reason = "a test"
+[fragility]
+measure = "PGA"
+levels_g = [0.2, 0.4, 0.8]
 [output]
 both_laws = false
 histories = "worst"
@@ -280,6 +283,7 @@ class Sample:
             assert main(["run", str(self.study), "--out", str(folder / "out"), "--shard", "1/1"]) == 0
             self.journal = (folder / "out" / PART).read_bytes()
             assert main(["run", str(self.study), "--out", str(folder / "out")]) == 0
+            assert main(["fragility", str(self.study), "--out", str(folder / "out")]) == 0
         self.folder, self.scratch = folder / "out", folder / "scratch"
         loaded = rb.load_study(self.study)
         motions = ground_motions(loaded)
@@ -320,7 +324,7 @@ class Sample:
         """A file of a folder is damaged, and its report made and its checks held; a changed table is told."""
         shutil.rmtree(self.scratch, ignore_errors=True)
         shutil.copytree(self.folder, self.scratch)
-        names = ("run.json", "run.json", "peaks.csv", "histories.h5", "checks.csv")
+        names = ("run.json", "run.json", "peaks.csv", "histories.h5", "checks.csv", "fragility.json")
         path = self.scratch / names[int(rng.integers(len(names)))]
         before = path.read_bytes()
         if path.suffix == ".h5" and rng.random() < 0.6:
