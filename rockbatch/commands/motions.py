@@ -32,7 +32,7 @@ COLUMNS = (
     "check",
     "processing",
     "event",
-    "station",
+    "station_name",
     "direction",
 )
 """Of the CSV: a row for each record, then for each file that is not used, with the reason."""
@@ -40,7 +40,7 @@ COLUMNS = (
 _SHOWN = {  # heads of the table in the terminal, and how their numbers are written
     "record": ("record", ""),
     "event": ("event", ""),
-    "station": ("station", ""),
+    "station_name": ("station name", ""),
     "direction": ("direction", ""),
     "dt_s": ("dt [s]", "g"),
     "npts": ("npts", "d"),
@@ -56,7 +56,7 @@ _SHOWN = {  # heads of the table in the terminal, and how their numbers are writ
     "file_h": ("horizontal", ""),
     "file_v": ("vertical", ""),
 }
-_TEXTS = ("record", "event", "station", "direction", "check", "file_h", "file_v")
+_TEXTS = ("record", "event", "station_name", "direction", "check", "file_h", "file_v")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -124,7 +124,7 @@ def _row(motion: "Motion") -> dict[str, Any]:
         "check": ", ".join(finding.what for finding in motion.findings) or None,
         "processing": "; ".join(motion.notes),
         "event": motion.origin.event or None,
-        "station": motion.origin.station or None,
+        "station_name": motion.origin.station or None,
         "direction": motion.origin.direction or None,
     }
 

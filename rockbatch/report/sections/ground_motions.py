@@ -52,17 +52,13 @@ def _records(finished: Finished) -> Markup:
         Head("factor", ".4g", "what brought the record to the study's target"),
     ]
     names = (
-        "pga_g", "pgv_m_s", "pgd_m", "pga_v_g", "arias_m_s", "d5_95_s", "dt_s", "npts", "duration_s",
+        "record", "pga_g", "pgv_m_s", "pgd_m", "pga_v_g", "arias_m_s", "d5_95_s", "dt_s", "npts", "duration_s",
         "processed", "check", "azimuth_deg", "magnitude", "distance_km", "factor",
     )  # fmt: skip
     scaled = any(record.get("factor", 1.0) != 1.0 for record in finished.info["records"])
     ordered = sorted(finished.info["records"], key=lambda record: (record["pga_g"], record["record"]))
     rows = [
-        [
-            finished.shown(record["record"]),
-            *(_told(record, name) if name != "factor" or scaled else None for name in names),
-        ]
-        for record in ordered
+        [_told(finished, record, name) if name != "factor" or scaled else None for name in names] for record in ordered
     ]
     measured = table(heads, rows, sortable=True, name="Ground motions")
     lacking = finished.info.get("without_vertical")
@@ -71,8 +67,10 @@ def _records(finished: Finished) -> Markup:
     return join(measured, without, told, _sources(finished, ordered))
 
 
-def _told(record: dict[str, Any], name: str) -> Any:
+def _told(finished: Finished, record: dict[str, Any], name: str) -> Any:
     """A value of run.json, as the table of ground motions has it."""
+    if name == "record":
+        return finished.shown(record["record"])
     if name == "processed":
         return {True: "yes", False: "no"}.get(record.get(name, ""))
     if name == "check":
