@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING
 
 from rockbatch.batch.listening import count
-from rockbatch.commands.messages import say
+from rockbatch.commands.messages import say, show
 
 if TYPE_CHECKING:
     from rockbatch.batch.finishing import FinishedBatch
@@ -24,7 +24,7 @@ def tell(finished: "FinishedBatch", study: "Study") -> int:
     peaks = simulated(finished.saved.peaks)
     by_pga = sorted(finished.motions.motions, key=lambda motion: motion.pga)
     named = {motion.name: motion.short for motion in by_pga}
-    print(summary(peaks, study.varied, named))
+    show(summary(peaks, study.varied, named))
     if warning := other_law(peaks.assign(record=peaks["record"].map(named)), study.varied):
         say(warning)
     if study.checks:

@@ -82,6 +82,8 @@ class Motion:
         Event, station and direction in words, as far as its header says them.
     lacks_vertical : bool
         Whether a vertical component was asked for, and there is none.
+    station : str
+        What the components of one station in one earthquake share, which count as one record; empty for a record of its own.
 
     Raises ``InputError`` for samples that are no numbers and components of different lengths.
     """
@@ -102,6 +104,7 @@ class Motion:
     findings: tuple[Finding, ...] = ()
     origin: Origin = NOBODY_KNOWS
     lacks_vertical: bool = False
+    station: str = ""
 
     def __post_init__(self) -> None:
         wrong = []
@@ -148,6 +151,11 @@ class Motion:
     def files(self) -> str:
         """Where its components came from."""
         return ", ".join(source for source in (self.source, self.vertical_source) if source)
+
+    @property
+    def of_station(self) -> str:
+        """The record that it counts as: its station's, or its own."""
+        return self.station or self.name
 
     @property
     def npts(self) -> int:

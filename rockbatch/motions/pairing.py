@@ -16,6 +16,7 @@ from rockbatch.motions.motion import Motion, MotionSet, Unusable
 from rockbatch.motions.orientation import same_azimuth
 from rockbatch.motions.origin import directed
 from rockbatch.motions.plausible import ANY, Judged, doubt, findings, fits
+from rockbatch.motions.station_names import station_names
 from rockbatch.motions.stations import by_station
 from rockbatch.motions.turning import turn_pairs
 from rockbatch.toml.kinds import shown
@@ -54,6 +55,7 @@ def to_motions(
     kept, replaced = _without_doubles([c for c in components if not c.orientation.vertical], packaged)
     stations = by_station([*components, *(c for c in kept if not c.folder)])
     number = {id(c): i for i, station in enumerate(stations) for c in station}
+    known_as = station_names(stations)
     verticals = [[c for c in station if c.orientation.vertical] for station in stations]
     unusable: list[Unusable] = []
     horizontals = [(number[id(c)], c) for c in kept]
@@ -72,7 +74,8 @@ def to_motions(
             unusable += [Unusable(v.name, v.source, why) for v, why in refused if id(v) not in used]
             used.update(id(v) for v in together)
         motion = _motion(component, partner, notes)
-        motions.append(replace(motion, lacks_vertical=bool(vertical) and motion.vertical is None))
+        lacking = bool(vertical) and motion.vertical is None
+        motions.append(replace(motion, station=known_as[station], lacks_vertical=lacking))
     if vertical:
         reason = "a vertical component without a usable horizontal one of its station in its folder"
         left = [v for group in verticals for v in group if id(v) not in used]

@@ -8,7 +8,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rockbatch.checks.suite import simulated
+from rockbatch.checks.suite import counts_as, simulated
 from rockbatch.errors import InputError
 from rockbatch.report.labels import Key, Series, digits_that_tell, named, quantity
 from rockbatch.report.markup import Markup, join, number, tag
@@ -29,7 +29,7 @@ class Finished:
         The two files.
     runs : DataFrame
         The rows of ``peaks.csv`` that were simulated, without mirror images, and more of each: ``series`` and ``pier``,
-        places in the lists below; ``alpha`` [rad]; ``pga_g``, that of the scaled motion; ``with_vertical``, "" unless the
+        places in the lists below; ``alpha`` [rad]; ``pga`` [g], that of the scaled motion; ``with_vertical``, "" unless the
         study has both.
     series : list of Series
         The foundations.
@@ -59,6 +59,12 @@ class Finished:
         """What ``run.json`` knows about each ground motion."""
         return {record["record"]: record for record in self.info["records"]}
 
+    @property
+    def count(self) -> str:
+        """What counts as one record: "station", or "component"; the latter too where the stations are not known."""
+        count = str(self.info.get("count", "station"))
+        return "component" if counts_as(self.runs, count)[1] else count
+
     @cached_property
     def both_directions(self) -> bool:
         """Whether motions were run as recorded and reversed."""
@@ -72,7 +78,13 @@ class Finished:
     def place(self, case: str, columns: Mapping[str, Any]) -> tuple[int, int]:
         """Places in ``series`` and ``piers`` of a case with the given varied values."""
         varied = self.info["varied"]
-        return self.places[foundation(case, columns, varied)], self.pier_places[_pier(columns, varied)]
+        try:
+            return self.places[foundation(case, columns, varied)], self.pier_places[_pier(columns, varied)]
+        except KeyError:
+            raise InputError(
+                f"{self.saved.directory}: there is a history of case {case} that peaks.csv or run.json does not list; the "
+                "files belong to different runs; start `rockbatch run` again"
+            ) from None
 
     def by_pga(self, names: Sequence[str]) -> list[str]:
         """``names`` of records, the weakest first."""
@@ -155,7 +167,7 @@ def finished(saved: Saved) -> Finished:
     for column, name in enumerate(("series", "pier", "alpha")):
         runs[name] = kinds.map({kind: fact[column] for kind, fact in facts.items()})
     pga = {record["record"]: record["pga_g"] for record in info["records"]}
-    runs["pga_g"] = runs["record"].map(pga).astype("float64") * runs["scale"]
+    runs["pga"] = runs["record"].map(pga).astype("float64") * runs["scale"]
     runs["with_vertical"] = _with_vertical(runs)
     keys = [key for key in varied if key in PIER_KEYS]
     digits = [digits_that_tell(values) for values in zip(*piers, strict=True)]

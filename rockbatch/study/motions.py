@@ -74,7 +74,11 @@ def read_motions_table(file: TomlFile, replaced_by: Path | None = None) -> Motio
 
 
 def _path(table: Table, entry: Setting) -> Path:
-    path = table.file.path.parent / Path(entry.value).expanduser()
+    try:
+        path = table.file.path.parent / Path(entry.value).expanduser()
+    except RuntimeError:
+        table.complain_about(entry, f"path = {shown(entry.value)}: there is no home folder here; write the whole path")
+        return Path(entry.value)
     if not path.exists():
         missing = _missing(path, entry.value, "; paths are relative to the study file")
         table.complain_about(entry, f"path = {shown(entry.value, 200)}: {missing}")

@@ -8,6 +8,7 @@ from itertools import islice
 from typing import Any
 
 from rockbatch.files import legible
+from rockbatch.units import LEAST, MOST
 
 _LONGEST = 100  # characters of a word that others are compared with
 
@@ -36,6 +37,8 @@ def number(value: Any) -> float:
         converted = math.inf
     if not math.isfinite(converted):
         raise KindError("a finite number")
+    if converted != 0 and not LEAST <= abs(converted) <= MOST:
+        raise KindError(f"a number of the size {LEAST:g} to {MOST:g}")
     return converted
 
 
@@ -78,6 +81,8 @@ def text(value: Any) -> str:
     """Text that is not empty."""
     if not isinstance(value, str) or not value.strip():
         raise KindError("text in quotes")
+    if legible(value, keep="\t\r\n") != value:
+        raise KindError("text without control characters")
     return value
 
 

@@ -33,7 +33,7 @@ def draw(
     drawn = []
     by_record = dict(list(runs.groupby("record", sort=False)))
     for name in records:
-        pga = by_record[name]["pga_g"].iloc[0]
+        pga = by_record[name]["pga"].iloc[0]
         peak = f"PGA = {pga:.3f} g" if math.isfinite(pga) else ""
         title = tag("figcaption", tag("span", finished.shown(name)), " ", tag("span", peak, class_="muted"))
         drawn.append(tag("figure", title, panel.draw(finished.label(name), by_record[name])))
