@@ -15,7 +15,7 @@ def tell(finished: "FinishedBatch", study: "Study") -> int:
     from rockbatch.checks.suite import simulated
     from rockbatch.checks.verdicts import CHECKS
     from rockbatch.commands import check
-    from rockbatch.commands.summary import other_law, summary
+    from rockbatch.commands.summary import other_law, sliding, summary
 
     code = 0
     if finished.without:
@@ -24,7 +24,7 @@ def tell(finished: "FinishedBatch", study: "Study") -> int:
     peaks = simulated(finished.saved.peaks)
     by_pga = [motion.name for motion in sorted(finished.motions.motions, key=lambda motion: motion.pga)]
     print(summary(peaks, study.varied, by_pga))
-    if warning := other_law(peaks, study.varied):
+    for warning in filter(None, (other_law(peaks, study.varied), sliding(peaks))):
         say(warning)
     if study.checks:
         code = max(code, check.tell(finished.verdicts, finished.saved.directory / CHECKS))

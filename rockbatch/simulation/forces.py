@@ -11,7 +11,7 @@ from rockbatch.core.forces import FORCES, LIFTED, Forces, Outline, forces_on_rig
 from rockbatch.core.records import numbers
 from rockbatch.motions.motion import Samples
 from rockbatch.pier import Pier, RigidBase, YieldingBase
-from rockbatch.results.outcome import Outcome, PeakForces
+from rockbatch.results.outcome import WOULD_SLIDE, Outcome, PeakForces
 from rockbatch.results.response import FORCE_UNITS, IMPACT_UNITS
 from rockbatch.simulation.models import block, ground_of, springs
 from rockbatch.simulation.runs import Run
@@ -181,6 +181,6 @@ def _limits(run: Run, rows: np.recarray, found: np.recarray, peaks: PeakForces) 
             when = f"at {float(rows.t[first]):.2f} s"
         told = f"reaches {most:.3g}" if math.isfinite(most) else "has no limit, as nothing presses the pier down"
         notes.append(
-            f"would slide {when}: the friction demand {told}, the interface has {has:g}; sliding is not followed"
+            f"{WOULD_SLIDE} {when}: the friction demand {told}, the interface has {has:g}; sliding is not followed"
         )
     return "; ".join(notes)
