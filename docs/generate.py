@@ -45,7 +45,7 @@ DOCUMENTS = {
 
 def on_files(files: Files, config: MkDocsConfig) -> Files:
     """Add the pages, schemas and pictures that are made."""
-    made: dict[str, str | bytes] = {page: _included(TOP / document) for page, document in DOCUMENTS.items()}
+    made: dict[str, str | bytes] = {page: _included(document, page) for page, document in DOCUMENTS.items()}
     made |= {
         "reference/study.md": _study(),
         "reference/files.md": _other_files(),
@@ -59,6 +59,8 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
         made[f"pictures/{script.stem}.svg"] = _picture(script)
     for path, content in made.items():
         files.append(File.generated(config, path, content=content))
+    for image in sorted((HERE / "images").iterdir()):
+        files.append(File.generated(config, f"images/{image.name}", abs_src_path=str(image)))
     return files
 
 
@@ -68,6 +70,11 @@ def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Fil
         if f"<!-- {name} -->" in markdown:
             markdown = markdown.replace(f"<!-- {name} -->", "\n".join(table()))
     return markdown
+
+
+def on_page_content(html: str, page: Page, config: MkDocsConfig, files: Files) -> str:
+    """Names in docstrings without the roles of Sphinx before them."""
+    return re.sub(r":(?:attr|class|data|func|meth|mod):<code>", "<code>", html)
 
 
 def on_post_build(config: MkDocsConfig) -> None:
@@ -83,21 +90,32 @@ def on_post_build(config: MkDocsConfig) -> None:
 # Documents of the repository
 
 
-def _included(path: Path) -> str:
-    """A document as Python-Markdown wants it: what belongs to an item of a list is indented by four, and no line is very long."""
+def _included(document: str, page: str) -> str:
+    """A document as Python-Markdown wants it, with links as they are from its page.
+
+    What belongs to an item of a list is indented by four; an equation's number comes closer, so that no line is very long.
+    """
     lines = []
     indent = 0
-    for line in path.read_text(encoding="utf-8").splitlines():
+    for line in (TOP / document).read_text(encoding="utf-8").splitlines():
         if item := re.match(r"(- |\d+\. )", line):
             indent = len(item.group())
         elif line and not line.startswith(" "):
             indent = 0
         elif line:
-            line = " " * ((4 - indent) if indent else 0) + re.sub(
-                r" {5,}(\(\d)", r"    \1", line
-            )  # the equation's number
+            shift = " " * (4 - indent) if indent else ""
+            line = shift + re.sub(r" {5,}(\(\d)", r"    \1", line)
         lines.append(line)
-    return "\n".join(lines) + "\n"
+    text = "\n".join(lines) + "\n"
+    return re.sub(r"\]\(([\w./-]+)", lambda link: f"]({_on_site(link.group(1), document, page)}", text)
+
+
+def _on_site(link: str, document: str, page: str) -> str:
+    """Where what a document links to by a path is on the site, from its page; as it is if it is not there."""
+    target = os.path.normpath(Path(document).parent / link)
+    pages = {there: here for here, there in DOCUMENTS.items()}
+    found = pages.get(target, target.removeprefix("docs/") if target.startswith("docs/images/") else None)
+    return os.path.relpath(found, Path(page).parent) if found else link
 
 
 # The study file
@@ -292,7 +310,7 @@ def _outcomes() -> Iterator[str]:
 
 def _verified() -> Iterator[str]:
     """The section of the theory that lists what was compared with what."""
-    theory = _included(TOP / "THEORY.md")
+    theory = _included("THEORY.md", "verification.md")
     yield theory.partition("## 12. Verified against\n")[2].partition("\n## ")[0]
 
 

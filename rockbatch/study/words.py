@@ -147,6 +147,7 @@ NUMERICS = {
 OUTPUT_ABOUT = "What is kept beyond the table of peaks."
 OUTPUT = {
     "histories": 'Runs whose histories are kept: the "worst" record of each case, "all", or "none".',
+    "histories_MB": 'How large their file may become with "worst"; the greatest rotations are kept first.',
     "ledger": "Whether the energy ledger of every run is added to the table.",
     "both_laws": "Whether the settlement by the other spring law is found too, which takes one more run.",
 }
