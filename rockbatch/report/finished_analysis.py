@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rockbatch.files import read_table
+from rockbatch.files import read_table, read_text
 from rockbatch.report.labels import quantity
 
 if TYPE_CHECKING:
@@ -38,10 +38,10 @@ def read(directory: Path, name: str, sha256: str) -> FinishedAnalysis | None:
     report does without.
     """
     try:
-        info = json.loads((Path(directory) / f"{name}.json").read_text(encoding="utf-8"))
+        info = json.loads(read_text(Path(directory) / f"{name}.json"))
         if info["study"]["sha256"] != sha256:
             return None
-    except (OSError, ValueError, KeyError, TypeError):
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return None
     return FinishedAnalysis(Path(directory), info)
 

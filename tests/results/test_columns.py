@@ -44,6 +44,7 @@ duration_s = 2.0
 
 [output]
 ledger = true
+forces = true
 
 [[case]]
 name = "rigid"
@@ -99,6 +100,7 @@ def test_the_readme_lists_the_columns_as_the_table_has_them():
 def test_a_name_ends_with_its_unit():
     """``theta_res_drift_per_s`` is 1/s, ``energy_input_J_kg`` is J/kg; pint reads them all."""
     endings = {"s": "s", "m": "m", "rad": "rad", "J/kg": "J_kg", "m/s": "m_s", "1/s": "per_s"}
+    endings |= {"m/s^2": "m_s2", "kN": "kN", "kN*s": "kN_s", "standard_gravity": "g"}
     for column in COLUMNS.values():
         pint.Unit(column.unit)
         ended = [unit for unit, ending in endings.items() if column.name.endswith(f"_{ending}")]
@@ -109,7 +111,10 @@ def test_a_name_ends_with_its_unit():
 
 def test_every_number_of_an_outcome_has_its_column():
     taken = {column.of for column in COLUMNS.values() if isinstance(column.of, str)}
-    assert {field.name for field in fields(Outcome)} - taken == {"energies"}  # each term has a column of its own
+    assert {field.name for field in fields(Outcome)} - taken == {
+        "energies",
+        "forces",
+    }  # each of theirs has a column of its own
 
 
 def test_a_column_is_empty_where_the_table_says_that_it_does_not_apply(study, table):
@@ -146,7 +151,8 @@ def test_demands_read_columns_of_the_table_only():
 
 def test_the_page_shows_every_column_with_its_name_and_meaning(tmp_path):
     """All but which image a row is: the page has no mirror images. Those that belong together stand side by side."""
-    shown = names(on_page())
+    shown = names([*on_page(), *on_page("forces")])
+    assert len(shown) == len(set(shown))
     assert set(shown) == {*COLUMNS} - {"mirror_of"}
     for together in (["theta_res_over_alpha", "theta_res_error", "base_tilt_rad", "settlement_m"], ["reason", "note"]):
         start = shown.index(together[0])

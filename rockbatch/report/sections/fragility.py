@@ -35,6 +35,11 @@ def section(contents: Contents) -> Section | None:
 def _lead(info: Mapping[str, Any]) -> Markup:
     told = f"The probability that a limit is exceeded by a motion with a given {info['measure']}, from {info['records']} records"
     told += " (polarity: mirror images, counted once)" if len(info["polarities"]) > 1 else ""
+    if info.get("stations", info["records"]) < info["records"]:
+        told += (
+            f", components of {info['stations']} stations: each counts by itself, though those of a station are not independent, "
+            "so that the bands are too narrow"
+        )
     if info["method"] == "ida":
         told += (
             f". Incremental dynamic analysis: of each record the least intensity that exceeds the limit, from its first "

@@ -50,10 +50,11 @@ def _lead(info: dict[str, Any]) -> Markup:
     return tag(
         "p",
         f"The answer is the {STATISTICS[info['statistic']].words} of the suite of ", _peak(),
-        f". A run that overturned, or was ended by flight, counts as {info['overturned']:g}, and so does any larger "
-        f"rotation; a failed one with its best value. Of all runs: {runs}. Of the answer's variance, the first-order index "
-        "is the share that goes with the input alone, the total index what would be left if only it were unknown; the "
-        f"difference is its part in interactions. Whiskers: {100 * info['confidence']:g} % intervals.",
+        ", every component by itself. A run that overturned, or was ended by flight, counts as "
+        f"{info['overturned']:g}, and so does any larger rotation; a failed one with its best value. Of all runs: {runs}. Of the "
+        "answer's variance, the first-order index is the share that goes with the input alone, the total index what would be "
+        "left if only it were unknown; the difference is its part in interactions. "
+        f"Whiskers: {100 * info['confidence']:g} % intervals.",
     )  # fmt: skip
 
 

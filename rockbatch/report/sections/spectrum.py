@@ -47,7 +47,9 @@ def _spectra(found: FinishedAnalysis, suite: "pd.DataFrame") -> list[Markup]:
     many = bool((suite["count"] > 1).any())
     lead = "Largest rotation over slenderness against the size of the pier, a curve for each slenderness. "
     if many:
-        lead += "Solid: median of the suite; dashed and dotted: 84 % and 16 % quantiles. "
+        lead += (
+            "Solid: median of the suite; dashed and dotted: 84 % and 16 % quantiles; every component counts by itself. "
+        )
     lead += "Above the frame: overturned or ended by flight (∞), which counts as larger than any rotation."
     return [
         tag("p", lead),
