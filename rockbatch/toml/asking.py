@@ -6,7 +6,7 @@ from typing import Any
 
 from rockbatch.toml.kinds import Choice, Kind, KindError
 
-_NUMBERS = (-1e300, -1.0, 0.0, 1e-300, 0.5, 1.5, 1e300)
+_NUMBERS = (-1e9, -1.0, 0.0, 1e-14, 0.5, 1.5, 1e9)
 _WHOLE = (0, 1, 2, 3, 4)
 _TEXTS = ("", "x", "g")
 _OTHERS: tuple[Any, ...] = ([0.5, 0.5], {})
