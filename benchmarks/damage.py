@@ -36,6 +36,7 @@ from rockbatch.results.columns import PART, columns
 from rockbatch.study.suite import ground_motions
 
 SECONDS, MEGABYTES = 10, 1500
+AT_ONCE = 100
 
 STUDY = """
 title = "Damaged"
@@ -77,6 +78,9 @@ name = "no overturning"
 demand = "theta_max_over_alpha"
 at_most = 0.5
 reason = "a test"
+[fragility]
+measure = "PGA"
+levels_g = [0.2, 0.4, 0.8]
 [output]
 both_laws = false
 histories = "worst"
@@ -280,6 +284,7 @@ class Sample:
             assert main(["run", str(self.study), "--out", str(folder / "out"), "--shard", "1/1"]) == 0
             self.journal = (folder / "out" / PART).read_bytes()
             assert main(["run", str(self.study), "--out", str(folder / "out")]) == 0
+            assert main(["fragility", str(self.study), "--out", str(folder / "out")]) == 0
         self.folder, self.scratch = folder / "out", folder / "scratch"
         loaded = rb.load_study(self.study)
         motions = ground_motions(loaded)
@@ -320,7 +325,7 @@ class Sample:
         """A file of a folder is damaged, and its report made and its checks held; a changed table is told."""
         shutil.rmtree(self.scratch, ignore_errors=True)
         shutil.copytree(self.folder, self.scratch)
-        names = ("run.json", "run.json", "peaks.csv", "histories.h5", "checks.csv")
+        names = ("run.json", "run.json", "peaks.csv", "histories.h5", "checks.csv", "fragility.json")
         path = self.scratch / names[int(rng.integers(len(names)))]
         before = path.read_bytes()
         if path.suffix == ".h5" and rng.random() < 0.6:
@@ -408,7 +413,16 @@ def run(asked: dict[str, int], seed: int, first: int = 0) -> int:
     with tempfile.TemporaryDirectory(prefix="damage-") as folder:
         sample = Sample(Path(folder))
         for name, times in asked.items():
-            ends, bad = repeated(getattr(sample, f"damage_{name}"), times, seed, first)
+            ends: Counter[str] = Counter()
+            bad: list[str] = []
+            for start in range(0, times, AT_ONCE):
+                some, worse = repeated(
+                    getattr(sample, f"damage_{name}"), min(AT_ONCE, times - start), seed, first + start
+                )
+                ends, bad = ends + some, bad + worse
+                print(
+                    f"{name}: {ends.total() + len(bad)} of {times}, {len(bad)} ended badly", file=sys.stderr, flush=True
+                )
             print(f"{name}: {times} damaged, {len(bad)} ended badly")
             for end, count in ends.most_common():
                 print(f"    {count:6d}  {end}")
@@ -426,5 +440,5 @@ if __name__ == "__main__":
     parser.add_argument("--first", type=int, default=0, help="number of the first, to look at one again")
     given = parser.parse_args()
     warnings.simplefilter("error", RuntimeWarning)
-    wanted = {"study": given.studies, "journal": given.journals, "folder": given.folders}
+    wanted = {"journal": given.journals, "study": given.studies, "folder": given.folders}
     sys.exit(run({name: times for name, times in wanted.items() if times}, given.seed, given.first) > 0)

@@ -9,9 +9,6 @@ if TYPE_CHECKING:
     from rockbatch.batch.finishing import FinishedBatch
     from rockbatch.study import Study
 
-LABEL = 40
-"""Characters of what a record is called in the terminal's tables; its name in peaks.csv stands behind."""
-
 
 def tell(finished: "FinishedBatch", study: "Study") -> int:
     """Print the table of peaks and the verdicts, and say what is in the folder; returns the exit code."""
@@ -26,7 +23,7 @@ def tell(finished: "FinishedBatch", study: "Study") -> int:
         code = 1
     peaks = simulated(finished.saved.peaks)
     by_pga = sorted(finished.motions.motions, key=lambda motion: motion.pga)
-    named = {motion.name: motion.named_within(LABEL) for motion in by_pga}
+    named = {motion.name: motion.short for motion in by_pga}
     show(summary(peaks, study.varied, named))
     if warning := other_law(peaks.assign(record=peaks["record"].map(named)), study.varied):
         say(warning)

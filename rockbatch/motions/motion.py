@@ -141,11 +141,11 @@ class Motion:
         """Its label, with its name in tables beside it where that is another one."""
         return self.label if self.label == self.name else f"{self.label} ({self.name})"
 
-    def named_within(self, width: int) -> str:
-        """Likewise, of a label that is longer the beginning and the end, which tell event and direction."""
-        label, half = self.label, width // 2
-        short = label if len(label) <= width else f"{label[:half]}…{label[half - width + 1 :]}"
-        return self.named.replace(label, short, 1)
+    @property
+    def short(self) -> str:
+        """Likewise, of a label that fits into a line of a terminal beside numbers."""
+        short = self.origin.short.label
+        return f"{short} ({self.name})" if short else self.named
 
     @property
     def files(self) -> str:

@@ -13,6 +13,7 @@ _STATE = re.compile(r", *[A-Z]{2,3}$")
 _YEAR = re.compile(r"(?<!\d)(?:19|20)\d\d(?!\d)")
 _SHORT_YEAR = re.compile(r"(?<!\d)\d{1,2}/\d{1,2}/(\d\d)(?!\d)")
 _CENTURY = 30  # 29 is 2029, 30 is 1930: strong-motion records begin in 1933
+_EVENT, _STATION = 34, 18  # characters in a line of a terminal
 _CODE = 5  # letters that a word in capitals may have and be a code
 
 
@@ -40,6 +41,19 @@ class Origin:
         if not self.event and not self.station:
             return ""
         return ", ".join(filter(None, (self.event, self.station, self.direction)))
+
+    @property
+    def short(self) -> "Origin":
+        """With a station, and an event before its year, that fit into a line of a terminal beside numbers."""
+        event = self.event
+        if len(event) > _EVENT:
+            event = (
+                f"{event[: _EVENT - 6].rstrip()}… {event[-4:]}"
+                if _YEAR.match(event[-4:])
+                else f"{event[: _EVENT - 1]}…"
+            )
+        station = self.station if len(self.station) <= _STATION else f"{self.station[: _STATION - 1].rstrip(' -,')}…"
+        return Origin(event, station, self.direction)
 
 
 NOBODY_KNOWS = Origin()

@@ -86,6 +86,8 @@ class Column:
         Bases to which it applies; it is empty on others.
     stood : bool
         Whether it is empty where the pier overturned, or flight ended the run.
+    unbounded : bool
+        Whether a number may be infinite.
     sometimes : bool
         Whether only some of the runs to which it applies have one: a flight, a reason.
     suite : OfSuite or None
@@ -103,6 +105,7 @@ class Column:
     over_alpha: bool = False
     bases: tuple[str, ...] = ALL
     stood: bool = False
+    unbounded: bool = False
     sometimes: bool = False
     suite: OfSuite | None = None
     asked: Callable[[Study], bool] | None = None
@@ -284,7 +287,7 @@ _FORCES = (
     _force("normal_force_kN", _ITSELF, "normal_force", "kN", "N [kN]", ".0f", per="mass"),
     _force(
         "friction_demand", "greatest V over N at one time; inf where nothing presses the pier down, as in flight",
-        "friction_demand", "1", "V/N", ".4f",
+        "friction_demand", "1", "V/N", ".4f", unbounded=True,
     ),
     _force("pivot_force_left", _PIVOT, "pivot_left", "1", "support L/(Mg/2)", ".3f"),
     _force("pivot_force_right", _PIVOT, "pivot_right", "1", "support R/(Mg/2)", ".3f"),
@@ -351,6 +354,7 @@ COLUMNS = {column.name: column for column in (*STAYING, *MORE, *ASKED)}
 
 TEXTS = tuple(column.name for column in COLUMNS.values() if column.kind == "text")
 COUNTS = tuple(column.name for column in COLUMNS.values() if column.kind == "count")
+UNBOUNDED = tuple(column.name for column in COLUMNS.values() if column.unbounded)
 
 _FIELDS = {column.name: column.of for column in COLUMNS.values() if isinstance(column.of, str)}
 _FUNCTIONS = {column.name: column.of for column in COLUMNS.values() if callable(column.of)}

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from rockbatch.errors import EditedTable, InputError, MissingColumns
 from rockbatch.files import csv_plain, legible, opened, opened_text, read_text, sha256_of
-from rockbatch.results.columns import COUNTS, MORE, PEAKS, STATUSES, STAYING, TEXTS, names
+from rockbatch.results.columns import COUNTS, MORE, PEAKS, STATUSES, STAYING, TEXTS, UNBOUNDED, names
 from rockbatch.results.run_json import INFO, SHAPE
 from rockbatch.results.shape import unfit
 
@@ -162,7 +162,8 @@ def _read_peaks(path: Path, varied: Sequence[str], problems: list[str]) -> "pd.D
             if (table[name].abs() > MOST_COUNT).any():
                 raise ValueError(f"{name} is out of range")
             table[name] = table[name].astype("Int64")
-        sound = table["status"].isin(STATUSES).all() and not table[numbers].isin([math.inf, -math.inf]).any(axis=None)
+        finite = [name for name in numbers if name not in UNBOUNDED]
+        sound = table["status"].isin(STATUSES).all() and not table[finite].isin([math.inf, -math.inf]).any(axis=None)
         sound = sound and not (table["scale"].isna() & (table["case"] != "")).any()
     except (ValueError, TypeError, pd.errors.ParserWarning) as error:
         found = _bad_cells(path, head, numbers)
@@ -197,7 +198,7 @@ def _bad_cells(path: Path, head: Sequence[str], numbers: Sequence[str]) -> list[
                     f'{place}: {name} = "{row[name][:80]}": expected {"a whole number" if name in COUNTS else "a number"} '
                     "or nothing"
                     for name in numbers
-                    if not _is_number(row[name], name in COUNTS)
+                    if not _is_number(row[name], name in COUNTS, name in UNBOUNDED)
                 ]
                 if row["status"] not in STATUSES:
                     found.append(f'{place}: status = "{row["status"][:80]}": expected {", ".join(STATUSES)}')
@@ -210,11 +211,13 @@ def _bad_cells(path: Path, head: Sequence[str], numbers: Sequence[str]) -> list[
     return found
 
 
-def _is_number(text: str, whole: bool) -> bool:
+def _is_number(text: str, whole: bool, unbounded: bool) -> bool:
     try:
         value = float(text or 0)
     except ValueError:
         return False
+    if unbounded and value == math.inf:
+        return True
     return math.isfinite(value) and (not whole or (value.is_integer() and abs(value) <= MOST_COUNT))
 
 

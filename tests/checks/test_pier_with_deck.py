@@ -8,7 +8,9 @@ import pytest
 from report_page import Page
 
 import rockbatch as rb
+from rockbatch.batch.running import told
 from rockbatch.cli import main
+from rockbatch.study.suite import ground_motions
 
 STUDY = Path(rb.__file__).parents[1] / "configs" / "pier_with_deck.toml"
 STATIONS = {"NBLC", "PRPC", "1336", "HSES", "WTMC"}
@@ -80,6 +82,21 @@ def test_the_report_names_station_component_value_unit_and_margin(out):
         assert "m" in row
         assert any(f"{found['station']}, {found['record']} (+), {float(found['value']):.4g} m" in cell for cell in row)
     assert "report of EN 1998-2; the standard's own text could not be checked" in Page(text).text
+
+
+def test_every_place_counts_ten_records_of_five_stations(out, capsys):
+    study = rb.load_study(STUDY)
+    assert told(study, ground_motions(study)).startswith("10 records of 5 stations × 3 cases = 30 runs")
+    assert main(["motions", str(STUDY.parents[1] / "motions" / "near_fault")]) == 0
+    shown = capsys.readouterr()
+    assert shown.out.splitlines()[0].split()[:2] == ["record", "station"]
+    assert "10 records, 0 files not used, 0 left out; 5 stations" in shown.err
+    tables = Page((out / "report.html").read_text(encoding="utf-8")).tables
+    for name in ("records", "peaks"):
+        place = tables[name][0].index("station")
+        assert {row[place] for row in tables[name][1:11]} <= STATIONS
+    place = tables["suite"][0].index("n")
+    assert {row[place] for row in tables["suite"][1:3]} == {"5"}  # the rigid base has a record without a peak, too
 
 
 def test_the_terminal_says_the_same(out, capsys):

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
-from check_samples import case, folder, runs
+from check_samples import RECORD, case, folder, runs
 from studies import PADS, SINE, study_text, write_study
 
 import rockbatch as rb
@@ -248,9 +248,8 @@ def test_pulses_are_records_of_their_own_in_the_table_and_in_a_folder(tmp_path):
 
 
 def test_where_stations_are_not_known_components_count_and_it_is_said(tmp_path, capsys):
-    out = folder(
-        tmp_path / "out", pairs(*FOUR), [case()], CHECK, records=[{"record": f"{s}{i}"} for s in "ABCD" for i in (1, 2)]
-    )
+    records = [RECORD | {"record": f"{s}{i}"} for s in "ABCD" for i in (1, 2)]
+    out = folder(tmp_path / "out", pairs(*FOUR), [case()], CHECK, records=records)
     table = pd.read_csv(out / "peaks.csv").drop(columns="station")
     table.to_csv(out / "peaks.csv", index=False)
     with pytest.warns(MissingColumns, match="station"):

@@ -174,6 +174,26 @@ def test_a_vertical_of_a_far_finer_step_is_left_and_its_reason_told(tmp_path, dt
     assert not turned.motions
 
 
+def test_a_record_of_more_samples_than_a_day_has_is_refused(tmp_path, monkeypatch):
+    write_at2(tmp_path, "a000.AT2", wiggle(300))
+    write_at2(tmp_path, "b000.AT2", wiggle(100, 2))
+    for module in ("formats", "formats.at2", "common_span"):
+        monkeypatch.setattr(f"rockbatch.motions.{module}.MOST_SAMPLES", 200)
+    (tmp_path / "c_HNE.csv").write_text("acc [g]\n" + "".join(f"{a:.5f}\n" for a in wiggle(300, 3)))
+    found = read_motions(tmp_path, options=ReadOptions(dt=0.01))
+    assert names(found) == ["b000"]
+    assert ["200" in one.reason for one in found.unusable] == [True, True]
+
+
+def test_components_whose_common_samples_would_be_too_many_are_not_brought_together(tmp_path, monkeypatch):
+    monkeypatch.setattr("rockbatch.motions.common_span.MOST_SAMPLES", 250)
+    write_at2(tmp_path, "a000.AT2", wiggle(200), dt="0.02", title="X, 1/17/1994, S, 000")
+    write_at2(tmp_path, "aUP.AT2", wiggle(400, 2), dt="0.01", title="X, 1/17/1994, S, UP")
+    found = read_motions(tmp_path, confirmed=["*"])
+    assert [motion.vertical for motion in found.motions] == [None]
+    assert "more than 250 common samples" in found.unusable[0].reason
+
+
 def test_a_common_span_is_built_where_both_are_and_nowhere_else():
     """Ten samples at the end of a long record take memory for ten samples."""
     from rockbatch.motions.common_span import on_common_samples

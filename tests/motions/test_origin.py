@@ -139,14 +139,11 @@ def test_the_records_that_come_with_it_are_called_by_event_station_and_direction
     assert labels["20161113_110259_WTMC_20.S62W"] == "5 km south-west of Waiau 2016, Te Mara Farm Waiau, S62W"
 
 
-def test_in_a_terminal_s_table_a_long_label_keeps_its_event_and_direction(tmp_path):
-    write_at2(tmp_path, "a000.AT2", wiggle(), title=f"Event, 1/17/1994, {'Station ' * 8}, 000")
-    (motion,) = read_motions(tmp_path).motions
-    shown = motion.named_within(40)
-    assert shown.startswith("Event 1994, Station")
-    assert shown.endswith("Station, 000 (a000)")
-    assert len(shown) == 40 + len(" (a000)")
-    assert motion.named_within(200) == motion.named
+def test_in_a_terminal_s_table_a_long_label_keeps_its_year_and_direction():
+    long = Origin("A very long name of an event somewhere else 1994", "A station of many words, indeed", "000")
+    assert long.short.label == "A very long name of an event… 1994, A station of many…, 000"
+    for fits in (Origin("Imperial Valley 1979", "Meloland", "270"), Origin(), Origin("", "Meloland", "")):
+        assert fits.short == fits
 
 
 @needs_records

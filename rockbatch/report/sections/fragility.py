@@ -10,6 +10,7 @@ from rockbatch.report.contents import Contents
 from rockbatch.report.document import Section, figure
 from rockbatch.report.drawing.axes import Axes, Scale
 from rockbatch.report.drawing.svg import curve, key, line, marker, style_of, svg, text
+from rockbatch.report.finished_analysis import of_files
 from rockbatch.report.labels import quantity
 from rockbatch.report.markup import Markup, join, tag
 from rockbatch.report.table import Head, table
@@ -22,6 +23,7 @@ Curve = Mapping[str, Any]
 """One of ``curves`` of fragility.json."""
 
 
+@of_files("fragility")
 def section(contents: Contents) -> Section | None:
     """The curves; None where there are none."""
     found = contents.analysis("fragility")

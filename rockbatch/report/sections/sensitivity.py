@@ -10,7 +10,7 @@ from rockbatch.report.contents import Contents
 from rockbatch.report.document import Section, figure
 from rockbatch.report.drawing.axes import Axes, Scale, spanning
 from rockbatch.report.drawing.svg import key, line, lowered, rectangle, svg, text
-from rockbatch.report.finished_analysis import named
+from rockbatch.report.finished_analysis import named, of_files
 from rockbatch.report.labels import SYMBOLS
 from rockbatch.report.markup import Markup, join, number, tag
 from rockbatch.report.table import Head, table
@@ -24,6 +24,7 @@ TORNADO = ("case", "parameter", "low", "base", "high", "answer_low", "answer_bas
 SOBOL = ("case", "parameter", "first", "first_error", "total", "total_error")
 
 
+@of_files("sensitivity")
 def section(contents: Contents) -> Section | None:
     """The inputs one at a time, and all at once; None where they were not studied."""
     found = contents.analysis("sensitivity")
