@@ -13,6 +13,7 @@ from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, problems
 from rockbatch.results.columns import TERMS
 from rockbatch.results.outcome import Outcome
 from rockbatch.results.response import EVENT_TYPES, Response
+from rockbatch.simulation.forces import forces_table, impacts_table, observed
 from rockbatch.simulation.models import block, ground_of, least_substeps, springs
 from rockbatch.simulation.runs import Run, run_fixed, steps_of, written_run
 from rockbatch.simulation.settling import run_to_tolerance
@@ -47,6 +48,7 @@ def simulate(
     quiet_s: float = 2.0,
     case: str | None = None,
     ledger: bool = False,
+    forces: bool = False,
     wait: bool = True,
 ) -> Response:
     """Histories of one run.
@@ -65,6 +67,8 @@ def simulate(
         Name of the foundation; its kind by default.
     ledger : bool
         Keep the energy ledger too (THEORY.md, 9).
+    forces : bool
+        Keep the forces, and what lands at impacts, too (THEORY.md, 7).
     wait : bool
         Go on after ``quiet_s`` until nothing that comes later can exceed the peak; ``False``, with ``substeps``: end there.
 
@@ -91,7 +95,7 @@ def simulate(
     else:
         outcome = run_fixed(pier, foundation, motion, substeps, quiet_s, wait=wait)
     run = Run(pier, foundation, motion)
-    return histories(run, outcome, quiet_s, case or foundation.name, {}, ledger, wait=wait)
+    return histories(run, outcome, quiet_s, case or foundation.name, {}, ledger=ledger, forces=forces, wait=wait)
 
 
 def written(run: Run, outcome: Outcome, quiet_s: float, every_step: bool, wait: bool = True) -> np.recarray:
@@ -131,7 +135,9 @@ def histories(
     quiet_s: float,
     case: str,
     columns: dict[str, float | str],
+    *,
     ledger: bool = False,
+    forces: bool = False,
     polarity: str = "+",
     scale: float = 1.0,
     wait: bool = True,
@@ -151,12 +157,18 @@ def histories(
         table = pd.DataFrame(energies(run, rows)[shown], columns=list(TERMS))
         table.insert(0, "t", rows.t[shown])
     rows = rows[shown]
+    sized = landed = None
+    if forces:
+        moments, _ = observed(run, rows, steps=False)
+        sized, landed = forces_table(rows.t, moments, pier.gravity), impacts_table(rows, moments)
     state = _rigid_state(pier, rows) if isinstance(base, RigidBase) else _springs_state(pier, base, rows)
     t = rows.t.copy()
     vertical = np.zeros(len(t)) if motion.vertical is None else _ground(motion.vertical, motion.dt, t)
     history = pd.DataFrame({"t": t, **state, "ag_h": _ground(motion.horizontal, motion.dt, t), "ag_v": vertical})
     events = pd.DataFrame(_events(rows, outcome.t_flight), columns=list(EVENT_TYPES)).astype(EVENT_TYPES)
-    return Response(motion.name, case, columns, pier, base, outcome.status, history, events, table, polarity, scale)
+    return Response(
+        motion.name, case, columns, pier, base, outcome.status, history, events, table, polarity, scale, sized, landed
+    )  # fmt: skip
 
 
 def _events(rows: np.recarray, t_flight: float | None) -> list[tuple[float, str, str, int, int]]:

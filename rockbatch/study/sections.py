@@ -8,11 +8,12 @@ from collections.abc import Mapping
 from dataclasses import MISSING, dataclass, field, fields
 from typing import Any
 
-from rockbatch.checks.reading import CHECK
+from rockbatch.checks.reading import CHECK, SUITE
 from rockbatch.checks.reading import TOP as CHECKS_TOP
 from rockbatch.checks.rules import Rule
 from rockbatch.motions.manifest import RECORD
 from rockbatch.motions.scaling import Target
+from rockbatch.motions.spectrum_target import SpectrumTarget
 from rockbatch.pier import ElasticBase, Pier, YieldingBase
 from rockbatch.study import words
 from rockbatch.study.cases import BASE_KEYS, BASES, CASE
@@ -22,10 +23,10 @@ from rockbatch.study.motions import FEMA, MOTIONS, PULSE
 from rockbatch.study.piers import PART, PIER
 from rockbatch.study.plausible import CONFIRM
 from rockbatch.study.sensitivity import CHOICE, LOG_UNIFORM, SENSITIVITY, UNIFORM, SensitivitySpec
-from rockbatch.study.spec import MotionSpec, Numerics, Output
+from rockbatch.study.spec import MotionSpec, Numerics, Output, Study
 from rockbatch.study.spectrum import MAP, SPECTRUM, MapSpec
 from rockbatch.study.suite_keys import _SELECT as SELECT
-from rockbatch.study.suite_keys import _TARGET as TARGET
+from rockbatch.study.target import TARGET
 from rockbatch.toml.reader import Key
 
 
@@ -89,7 +90,7 @@ STUDY = (
     Section(("pier", "part"), words.PART_ABOUT, PART | CONFIRM, words.PART, many=True),
     Section(("motions",), words.MOTIONS_ABOUT, MOTIONS, words.MOTIONS, defaults=(MotionSpec,)),
     Section(("motions", "select"), words.SELECT_ABOUT, SELECT, words.SELECT),
-    Section(("motions", "target"), words.TARGET_ABOUT, TARGET, words.TARGET, defaults=(Target,)),
+    Section(("motions", "target"), words.TARGET_ABOUT, TARGET, words.TARGET, defaults=(Target, SpectrumTarget)),
     Section(("motions", "pulse"), words.PULSE_ABOUT, PULSE, words.PULSE, many=True),
     Section(("motions", "fema_p695"), words.FEMA_ABOUT, FEMA, words.FEMA, many=True),
     Section(
@@ -104,6 +105,7 @@ STUDY = (
     ),
     Section(("numerics",), words.NUMERICS_ABOUT, NUMERICS | CONFIRM, words.NUMERICS, defaults=(Numerics,)),
     Section(("output",), words.OUTPUT_ABOUT, OUTPUT, words.OUTPUT, defaults=(Output,)),
+    Section(("suite",), words.SUITE_ABOUT, SUITE, words.SUITE, defaults=(Study,)),
     Section(("check",), words.CHECK_ABOUT, CHECK, words.CHECK, many=True, defaults=(Rule,)),
     Section(
         ("reference",),
@@ -125,6 +127,7 @@ STUDY = (
 
 CHECKS = (
     Section((), "", CHECKS_TOP, words.TOP),
+    Section(("suite",), words.SUITE_ABOUT, SUITE, words.SUITE, defaults=(Study,)),
     Section(("check",), words.CHECK_ABOUT, CHECK, words.CHECK, many=True, required=True, defaults=(Rule,)),
 )
 """A file of checks, as ``rockbatch check --rules`` takes it."""

@@ -84,13 +84,34 @@ SELECT = {
     "magnitude": "Magnitude, which a manifest beside the records has to say.",
 }
 
-TARGET_ABOUT = "What each record is scaled to, by one factor on all its components."
+TARGET_ABOUT = (
+    "What records are scaled to, by one factor on all components of each: one measure (`pga_g`, `pgv_m_s`, or `sa_g` with "
+    "`period_s`), or a `spectrum` over `period_range_s`. The keys of a code's spectrum go with that code only."
+)
 TARGET = {
     "pga_g": "Peak ground acceleration of the horizontal component.",
     "pgv_m_s": "Peak ground velocity of the horizontal component.",
     "sa_g": "Pseudo-spectral acceleration at `period_s`.",
     "period_s": "Period of the oscillator of `sa_g`.",
-    "damping": "Damping of the oscillator of `sa_g`, as a fraction of critical damping.",
+    "damping": "Damping of the oscillators, as a fraction of critical damping.",
+    "spectrum": 'Target spectrum: "EN 1998-1", "ASCE 7", a file with periods [s] and spectral accelerations [g], or a list of '
+    "such pairs.",
+    "period_range_s": "Periods between which the records are fitted to the spectrum.",
+    "factors": 'What is scaled to the spectrum: "each" record, the whole "suite" by one factor, "both", one after the other, or '
+    '"none", only to compare.',
+    "pairs": 'Whether each component has its own spectrum, "apart", or each station one of both components, "srss", as in '
+    "EN 1998-2.",
+    "at_least": "Share of the target that the mean of the suite has to reach everywhere in the range.",
+    "type": "Type of the spectrum of EN 1998-1.",
+    "ground": "Ground type of EN 1998-1.",
+    "ag_g": "Design ground acceleration on ground A, with the importance factor, of EN 1998-1.",
+    "soil_factor": "Soil factor S of EN 1998-1; that of the ground type if it is not given.",
+    "tb_s": "Period T_B of EN 1998-1; that of the ground type if it is not given.",
+    "tc_s": "Period T_C of EN 1998-1; that of the ground type if it is not given.",
+    "td_s": "Period T_D of EN 1998-1; that of the ground type if it is not given.",
+    "sds_g": "Design spectral acceleration S_DS of ASCE 7, at short periods.",
+    "sd1_g": "Design spectral acceleration S_D1 of ASCE 7, at 1 s.",
+    "tl_s": "Long-period transition period T_L of ASCE 7.",
 }
 
 PULSE_ABOUT = "A pulse, which needs no file. Write as many as are wanted."
@@ -133,6 +154,8 @@ CASE = {
     "yield_kN": "Yield force F_y of one support, for a pier whose mass is known; or give `eta`.",
     "spring": 'Law of the supports: "bouc-wen", smooth, as in the paper, or "epp", elastic and then perfectly plastic.',
     "n": "Bouc–Wen exponent: the larger, the sharper the corner between elastic and plastic.",
+    "friction": "Coefficient of friction of the interface, for runs with `forces = true` under `[output]`: "
+    "those that would slide say so.",
     "confirm": _CONFIRM,
 }
 
@@ -148,19 +171,32 @@ OUTPUT_ABOUT = "What is kept beyond the table of peaks."
 OUTPUT = {
     "histories": 'Runs whose histories are kept: the "worst" record of each case, "all", or "none".',
     "histories_MB": 'How large their file may become with "worst"; the greatest rotations are kept first.',
+    "forces": "Whether what designers size is added: base shear, friction, forces of the supports, gaps, impacts, accelerations.",
+    "intensity": "Whether intensity measures of each motion are written, and which of them orders the peaks best.",
+    "sa_periods_s": "Periods of the spectral accelerations among the intensity measures.",
+    "estimate": "Whether what the equivalent oscillators of design practice give is written beside the peaks.",
     "ledger": "Whether the energy ledger of every run is added to the table.",
     "both_laws": "Whether the settlement by the other spring law is found too, which takes one more run.",
 }
 
+SUITE_ABOUT = "What holds for every check that does not say otherwise."
+_COUNT = (
+    'What counts as one record: a "station" in one earthquake, with the worst of its components and polarities, '
+    'or each "component".'
+)
+SUITE = {"count": _COUNT}
+
 CHECK_ABOUT = (
-    "A design check: a demand, how it is summed up over the records, and a limit. `rockbatch check` holds results against it. "
-    "A record counts once, with the worse of its polarities."
+    "A design check: a demand, how it is summed up over the records, and a limit. "
+    "`rockbatch check` holds results against it."
 )
 CHECK = {
     "name": "Its name in the table of verdicts.",
     "demand": "What is looked at.",
     "statistic": 'How the records are summed up; "max" if it is not given.',
     "above": 'With statistic = "count": the value that a record has to exceed to count; 0 for events if it is not given.',
+    "least": "Number of records below which nothing passes; what the statistic asks for if it is not given.",
+    "count": f"{_COUNT[:-1]}; what `[suite]` says if it is not given.",
     "at_most": "The limit.",
     "at_least": "The limit, for what belongs to the foundation, where more is better.",
     "basis": "Where the limit comes from.",
