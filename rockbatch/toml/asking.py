@@ -35,7 +35,7 @@ def told(kind: Kind) -> str:
     """What the kind takes, in the words with which it refuses anything else; the most particular of them."""
     asked: Iterable[Any] = (None, "", *_NUMBERS, *_WHOLE)
     if any(takes(kind, value) for value in (*_NUMBERS, *_WHOLE)):
-        asked = (None, *_NUMBERS, *_WHOLE)
+        asked = (None, "") if _words(kind) else (None, *_NUMBERS, *_WHOLE)
     refusals = [refused for value in asked if (refused := _refusal(kind, value))]
     return list(dict.fromkeys(refusals))[-1] if refusals else "anything"
 
@@ -67,5 +67,5 @@ def _bounds(kind: Kind) -> dict[str, float]:
 
 def _words(kind: Kind) -> list[str]:
     """Words that a kind takes beside what is no text, as it names them in quotes itself."""
-    quoted = (_refusal(kind, None) or "").split('"')[1::2]
-    return [word for word in quoted if takes(kind, word)]
+    quoted = [word for value in (None, "") for word in (_refusal(kind, value) or "").split('"')[1::2]]
+    return [word for word in dict.fromkeys(quoted) if takes(kind, word)]

@@ -125,6 +125,13 @@ def test_every_example_is_taken_by_the_reader_and_by_the_schema(name):
             assert properties is None or key in properties
 
 
+def place(value):
+    """A kind of one's own: a word, or a number."""
+    if isinstance(value, str) and value != "left":
+        raise kinds.KindError('"left" or an offset in m')
+    return value if value == "left" else kinds.number(value)
+
+
 @pytest.mark.parametrize(
     ("kind", "schema", "told"),
     [
@@ -135,6 +142,7 @@ def test_every_example_is_taken_by_the_reader_and_by_the_schema(name):
         (kinds.count, {"type": "integer", "minimum": 1}, "a whole number, 1 or above"),
         (kinds.boolean, {"type": "boolean"}, "true or false (without quotes)"),
         (kinds.text, {"type": "string", "minLength": 1}, "text in quotes"),
+        (place, {"anyOf": [{"type": "number"}, {"const": "left"}]}, '"left" or an offset in m'),
         (kinds.choice("a", "b"), {"enum": ["a", "b"]}, 'one of "a", "b"'),
     ],
 )
