@@ -8,7 +8,7 @@ import numpy as np
 from rockbatch.batch.plan import PlannedRun
 from rockbatch.errors import InputError
 from rockbatch.motions import Motion
-from rockbatch.pier import YieldingBase
+from rockbatch.pier import Base, YieldingBase
 from rockbatch.results.columns import TERMS
 from rockbatch.results.outcome import Outcome
 from rockbatch.simulation import Run, Stop, first_substeps, run_all_fixed, run_all_to_tolerance, steps_of
@@ -112,8 +112,14 @@ def _observed(run: Run, outcome: Outcome, quiet_s: float, output: Output, stop: 
     return outcome
 
 
+def _kind(base: Base) -> tuple[object, ...]:
+    """What kernels can hang on: all but the numbers that are the same to them, β, η and ε."""
+    return tuple(getattr(base, name, None) for name in ("name", "spring", "n", "kinematics", "flight"))
+
+
 def compile_kernels(study: Study) -> None:
     """Have every kernel that the study needs compiled, or loaded, before the clock starts."""
     still = Motion("still", 1e-3, np.zeros(2))
-    runs = [PlannedRun(still, "+", 1.0, case) for case in study.cases]
+    kinds = {_kind(case.base): case for case in study.cases}
+    runs = [PlannedRun(still, "+", 1.0, case) for case in kinds.values()]
     outcomes_of(runs, replace(study.numerics, quiet_s=0.0), study.output)

@@ -3,6 +3,7 @@
 Rotations are small: the heel of a pier that tilts by θ stands 2 b θ above its toe, and its top moves by its height times θ.
 """
 
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -56,6 +57,8 @@ class Demand:
         Values by the other spring law, shape (n,).
     most : Most or None
         Beyond which a limit says nothing.
+    verb : str
+        Of an event: what a record then does.
     of_forces : bool
         Whether it takes the columns that [output] forces = true brings.
     weighed : bool
@@ -69,8 +72,15 @@ class Demand:
     of_the_case: bool = False
     other_law: Callable[["pd.DataFrame", Case], Values] | None = None
     most: Most | None = None
+    verb: str = ""
     of_forces: bool = False
     weighed: bool = False
+
+    @property
+    def unit(self) -> str:
+        """That of its values, which stands in brackets in its words; empty for a pure number."""
+        found = re.search(r"\[(.+)\]", self.words)
+        return found[1] if found else ""
 
     @property
     def of_runs(self) -> bool:
@@ -265,9 +275,21 @@ DEMANDS = {
     ),
     "impacts": Demand("number of impacts", _column("impacts")),
     "separations": Demand("number of separations", _column("separations")),
-    "flight": Demand("both pivots off the ground", _event(lambda runs: runs["flight_s"].notna()), event=True),
-    "overturned": Demand("overturned", _event(lambda runs: runs["status"] == "overturned"), event=True),
-    "failed": Demand("not run, or not settled", _event(lambda runs: runs["status"] == "failed"), event=True),
+    "flight": Demand(
+        "both pivots off the ground",
+        _event(lambda runs: runs["flight_s"].notna()),
+        event=True,
+        verb="makes the pier fly",
+    ),
+    "overturned": Demand(
+        "overturned", _event(lambda runs: runs["status"] == "overturned"), event=True, verb="overturns the pier"
+    ),
+    "failed": Demand(
+        "not run, or not settled",
+        _event(lambda runs: runs["status"] == "failed"),
+        event=True,
+        verb="has a run that is missing or not settled",
+    ),
     **_OF_FORCES,
     "eta": Demand(
         "bearing capacity index, a support's yield force over its static one",

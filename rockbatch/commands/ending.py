@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING
 
 from rockbatch.batch.listening import count
-from rockbatch.commands.messages import say
+from rockbatch.commands.messages import say, show
 
 if TYPE_CHECKING:
     from rockbatch.batch.finishing import FinishedBatch
@@ -22,9 +22,11 @@ def tell(finished: "FinishedBatch", study: "Study") -> int:
         say(str(finished.without))
         code = 1
     peaks = simulated(finished.saved.peaks)
-    by_pga = [motion.name for motion in sorted(finished.motions.motions, key=lambda motion: motion.pga)]
-    print(summary(peaks, study.varied, by_pga))
-    for warning in filter(None, (other_law(peaks, study.varied), sliding(peaks))):
+    by_pga = sorted(finished.motions.motions, key=lambda motion: motion.pga)
+    named = {motion.name: motion.short for motion in by_pga}
+    show(summary(peaks, study.varied, named))
+    settling = other_law(peaks.assign(record=peaks["record"].map(named)), study.varied)
+    for warning in filter(None, (settling, sliding(peaks))):
         say(warning)
     if study.checks:
         code = max(code, check.tell(finished.verdicts, finished.saved.directory / CHECKS))

@@ -9,9 +9,13 @@ from typing import Any, Literal, Self, get_args
 
 from rockbatch.errors import InputError
 from rockbatch.pier.block import Pier, not_positive
+from rockbatch.units import MOST
 
 LEAST_ETA = 1.000001
 """Closer to 1, Bouc–Wen springs would have to sink without end to carry the weight."""
+
+MOST_EXPONENT = 1000.0
+"""Of Bouc–Wen springs: the corner is as sharp as that of elastic–perfectly plastic ones, which have none."""
 
 MOST_ETA = 100.0
 """Beyond it a wrong unit is likelier than the support: foundations bear 2 to 20 times what they carry."""
@@ -210,7 +214,9 @@ def problems(pier: Pier, base: Base) -> list[str]:
             'write base = "rigid", or leave columns out for a single pier'
         ]
     least = least_beta(pier, base)
-    if not (math.isfinite(base.beta) and base.beta > pier.least_beta):
+    if base.beta > MOST:
+        wrong.append(f"beta = {base.beta:g}: must be {MOST:g} at most")
+    elif not base.beta > pier.least_beta:
         wrong.append(
             f"beta = {base.beta:g}: the pier topples on its springs under its own weight; beta must be above "
             f"sqrt((1+mu) cos(alpha)/mu)/sin(alpha) = {pier.least_beta:.4g}"
@@ -226,14 +232,16 @@ def problems(pier: Pier, base: Base) -> list[str]:
     wrong += _unknown("kinematics", base.kinematics, get_args(Kinematics))
     wrong += _unknown("flight", base.flight, get_args(Flight))
     if isinstance(base, YieldingBase):
-        if not (math.isfinite(base.eta) and base.eta >= LEAST_ETA):
+        if base.eta > MOST:
+            wrong.append(f"eta = {base.eta:g}: must be {MOST:g} at most")
+        elif not base.eta >= LEAST_ETA:
             wrong.append(
                 f"eta = {base.eta:.10g}: the springs cannot carry the weight; eta = yield force over static force must "
                 f"be above 1 (at least {LEAST_ETA:.6f})"
             )
         wrong += _unknown("spring", base.spring, get_args(SpringLaw))
-        if not (math.isfinite(base.n) and base.n >= 1):
-            wrong.append(f"n = {base.n:g}: the Bouc–Wen exponent must be at least 1")
+        if not 1 <= base.n <= MOST_EXPONENT:
+            wrong.append(f"n = {base.n:g}: the Bouc–Wen exponent must be at least 1, and {MOST_EXPONENT:g} at most")
     return wrong
 
 

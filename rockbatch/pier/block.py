@@ -6,7 +6,10 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from rockbatch.errors import InputError
-from rockbatch.units import GRAVITY
+from rockbatch.units import GRAVITY, LEAST, MOST
+
+POSSIBLE = {"alpha": (1e-4, math.pi / 2), "p": (1e-3, 1e3), "mu": (1e-3, 1e9), "gravity": (1e-3, 1e3)}
+"""What a pier can be, far beyond what any is: p = 0.001 rad/s is one of 7000 km. Beyond it a run would never end."""
 
 
 class Part(NamedTuple):
@@ -73,6 +76,11 @@ class Pier:
                 f"alpha = {self.alpha:g}: must be below π/2 = 1.5708 rad; "
                 f"if it is in degrees, write {math.radians(self.alpha):.4g}"
             )
+        wrong = wrong or [
+            f"{name} = {value:g}: must be within {low:g} and {high:g}"
+            for name, (low, high) in POSSIBLE.items()
+            if not low <= (value := getattr(self, name)) <= high
+        ]
         if wrong:
             raise InputError(*wrong)
 
@@ -148,8 +156,8 @@ class Pier:
         for n, part in enumerate(parts, 1):
             wrong += not_positive(**{f"part_{n}_mass_t": (part.mass_t, " [t]")})
             for name, value in (("height_m", part.height_m), ("inertia_t_m2", part.inertia_t_m2)):
-                if not (math.isfinite(value) and value >= 0):
-                    wrong.append(f"part_{n}_{name} = {value:g}: must be 0 or a number above it")
+                if not (value == 0 or LEAST <= value <= MOST):
+                    wrong.append(f"part_{n}_{name} = {value:g}: must be 0 or a number above it, to {MOST:g}")
         if not parts:
             wrong.append("parts: there are none; a pier has one at least")
         if wrong:
@@ -185,7 +193,10 @@ class Pier:
         inertia about it, 0 for a deck on bearings that does not turn with the pier. Drift is read at ``top_m``, by default the
         higher of shaft and deck. See :meth:`of_parts`.
         """
-        wrong = not_positive(height_m=(height_m, " [m]"), mass_t=(mass_t, " [t]"), deck_mass_t=(deck_mass_t, " [t]"))
+        wrong = not_positive(
+            width_m=(width_m, " [m]"), height_m=(height_m, " [m]"), mass_t=(mass_t, " [t]"),
+            deck_mass_t=(deck_mass_t, " [t]"),
+        )  # fmt: skip
         if wrong:
             raise InputError(*wrong)
         deck = Part(deck_mass_t, height_m if deck_height_m is None else deck_height_m, deck_inertia_t_m2)
@@ -296,9 +307,9 @@ class Pier:
 def not_positive(**values: tuple[float | None, str]) -> list[str]:
     """What is said of those numbers that are given, and are not above 0; each comes with its unit or a hint."""
     return [
-        f"{name} = {value:g}: must be a number above 0{hint}"
+        f"{name} = {value:g}: must be a number above 0{hint}" + (f", {LEAST:g} to {MOST:g}" if value > 0 else "")
         for name, (value, hint) in values.items()
-        if value is not None and not (math.isfinite(value) and value > 0)
+        if value is not None and not LEAST <= value <= MOST
     ]
 
 

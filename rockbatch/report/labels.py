@@ -82,7 +82,7 @@ def symbol(key: str) -> str:
 
 def heading(words: str) -> Markup:
     """Words with their indices: "θ_max/α" has one."""
-    return Markup(re.sub(r"_([a-z]+)", lambda found: tag("sub", found[1]), escape(words)))
+    return Markup(re.sub(r"_([a-z0]+)", lambda found: tag("sub", found[1]), escape(words)))
 
 
 def head(column: Column) -> Head:

@@ -26,6 +26,8 @@ PART = f"{PEAKS}.part"
 TERMS = ("kinetic", "potential", "elastic", "input", "plastic", "impact", "p_delta", "constraint", "remainder")
 """Terms of the energy ledger, in the order in which the core returns them."""
 
+STATUSES = ("ok", "overturned", "flight", "failed")
+
 ALL = ("rigid", "elastic", "yielding")
 SPRINGS = ("elastic", "yielding")
 YIELDING = ("yielding",)
@@ -84,6 +86,8 @@ class Column:
         Bases to which it applies; it is empty on others.
     stood : bool
         Whether it is empty where the pier overturned, or flight ended the run.
+    unbounded : bool
+        Whether a number may be infinite.
     sometimes : bool
         Whether only some of the runs to which it applies have one: a flight, a reason.
     suite : OfSuite or None
@@ -101,6 +105,7 @@ class Column:
     over_alpha: bool = False
     bases: tuple[str, ...] = ALL
     stood: bool = False
+    unbounded: bool = False
     sometimes: bool = False
     suite: OfSuite | None = None
     asked: Callable[[Study], bool] | None = None
@@ -244,6 +249,11 @@ MORE = (
         kind="text", page=OnPage("note"), sometimes=True,
     ),
     Column(
+        "station",
+        "what the components of one station in one earthquake share, which checks count as one record; a pulse is its own",
+        kind="text", page=OnPage("station"),
+    ),
+    Column(
         "top_drift_m", "greatest drift of the top: the height at which it is read, times the greatest rotation",
         lambda ran: ran.pier.top * ran.outcome.theta_max, "m", OnPage("top drift [mm]", ".1f", 1000, "t_max_s"),
     ),
@@ -277,7 +287,7 @@ _FORCES = (
     _force("normal_force_kN", _ITSELF, "normal_force", "kN", "N [kN]", ".0f", per="mass"),
     _force(
         "friction_demand", "greatest V over N at one time; inf where nothing presses the pier down, as in flight",
-        "friction_demand", "1", "V/N", ".4f",
+        "friction_demand", "1", "V/N", ".4f", unbounded=True,
     ),
     _force("pivot_force_left", _PIVOT, "pivot_left", "1", "support L/(Mg/2)", ".3f"),
     _force("pivot_force_right", _PIVOT, "pivot_right", "1", "support R/(Mg/2)", ".3f"),
@@ -344,6 +354,7 @@ COLUMNS = {column.name: column for column in (*STAYING, *MORE, *ASKED)}
 
 TEXTS = tuple(column.name for column in COLUMNS.values() if column.kind == "text")
 COUNTS = tuple(column.name for column in COLUMNS.values() if column.kind == "count")
+UNBOUNDED = tuple(column.name for column in COLUMNS.values() if column.unbounded)
 
 _FIELDS = {column.name: column.of for column in COLUMNS.values() if isinstance(column.of, str)}
 _FUNCTIONS = {column.name: column.of for column in COLUMNS.values() if callable(column.of)}
@@ -354,8 +365,8 @@ _read_fields = attrgetter(*_FIELDS.values())
 def row(motion: Motion, polarity: str, scale: float, case: Case, outcome: Outcome) -> dict[str, Any]:
     """Row of peaks.csv: the names of a run under ``motion``, scaled and turned as ``polarity`` says, and its outcome over α."""
     alpha, ran = case.pier.alpha, Ran(outcome, case.pier, motion)
-    found: dict[str, Any] = {"record": motion.name, "case": case.name, "polarity": polarity, "scale": scale}
-    found |= case.columns
+    found: dict[str, Any] = {"record": motion.name, "station": motion.of_station, "case": case.name}
+    found |= {"polarity": polarity, "scale": scale, **case.columns}
     found |= zip(_FIELDS, _read_fields(outcome), strict=True)
     found |= {name: of(ran) for name, of in _FUNCTIONS.items()}
     for name in _OVER_ALPHA:

@@ -19,7 +19,7 @@ from rockbatch.pier import (
     least_beta,
     problems,
 )
-from rockbatch.study.lists import Chosen, combinations, listed
+from rockbatch.study.lists import Chosen, combinations, how_many, listed, too_many
 from rockbatch.study.piers import Values, has_mass
 from rockbatch.study.plausible import CONFIRM, MASSES, complain_unless_usual, complain_unless_usual_support, confirmed
 from rockbatch.toml.kinds import choice, number, positive, shown, text
@@ -87,6 +87,9 @@ def read_cases(file: TomlFile, piers: Sequence[tuple[Pier, Values]]) -> tuple[li
         varied |= dict.fromkeys(listed(table, BASE_KEYS))
         if "base" in own:
             read.append((_Read(table, name, own["base"], believed), settings))
+    if told := too_many(max(len(piers), 1) * sum(how_many(settings) for _, settings in read), "cases"):
+        file.complain(("case",), told)
+        return [], tuple(varied)
     expanded = [
         _expand(case, chosen, pier, pier_values)
         for pier, pier_values in piers or [(_ANY_PIER, {})]

@@ -6,7 +6,7 @@ from typing import Any
 
 from rockbatch.errors import InputError
 from rockbatch.pier import Part, Pier
-from rockbatch.study.lists import Chosen, combinations, listed
+from rockbatch.study.lists import Chosen, combinations, how_many, listed, too_many
 from rockbatch.study.plausible import CONFIRM, LENGTHS, MASSES, complain_unless_usual, confirmed
 from rockbatch.toml.kinds import KindError, count, not_negative, positive
 from rockbatch.toml.reader import Key, Setting, Table, TomlFile
@@ -70,6 +70,8 @@ def read_piers(file: TomlFile) -> tuple[list[tuple[Pier, Values]], tuple[str, ..
         its, names = _part(part, n)
         read |= its
         varied += names
+    if told := too_many(how_many(read), "piers"):
+        table.complain(told)
     if len(file.problems) > before:
         return [], ()
     piers = []

@@ -12,6 +12,7 @@ import pytest
 from check_samples import PADS, case
 from report_page import Page
 from report_samples import write_results
+from studies import RIGID, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.checks.demands import DEMANDS
@@ -247,3 +248,18 @@ def test_a_table_without_a_varied_key_is_refused(tmp_path):
     (tmp_path / "run.json").write_text(json.dumps(info | {"varied": ["beta"]}), encoding="utf-8")
     with pytest.raises(InputError, match="has no column beta"):
         read_saved(tmp_path)
+
+
+def test_a_demand_without_bound_comes_back_from_disk(tmp_path):
+    """A pier that flies is not held by friction at all: V/N is infinite, in the table, the histories and the page."""
+    station = Path(__file__).parents[2] / "motions" / "near_fault" / "kaikoura2016_wtmc"
+    pier, motions = {"alpha": 0.13, "p": 0.76}, {"path": str(station)}
+    text = study_text(pier=pier, motions=motions, pulses=(), cases=(RIGID,), output={"forces": True})
+    rb.run(write_study(tmp_path, text), out=tmp_path / "out")
+    opened = rb.open_results(tmp_path / "out")
+    flown = opened.peaks[opened.peaks["status"] == "flight"]
+    assert len(flown) == 2
+    assert np.isinf(flown["friction_demand"]).all()
+    assert np.isinf(opened.responses[0].forces["friction"]).any()
+    assert np.isfinite(flown["base_shear_m_s2"]).all()
+    assert (tmp_path / "out" / "report.html").exists()
