@@ -25,8 +25,8 @@ def tell(finished: "FinishedBatch", study: "Study") -> int:
     by_pga = sorted(finished.motions.motions, key=lambda motion: motion.pga)
     named = {motion.name: motion.short for motion in by_pga}
     show(summary(peaks, study.varied, named))
-    settling = other_law(peaks.assign(record=peaks["record"].map(named)), study.varied)
-    for warning in filter(None, (settling, sliding(peaks))):
+    told = peaks.assign(record=peaks["record"].map(named))
+    for warning in filter(None, (other_law(told, study.varied), sliding(told))):
         say(warning)
     if study.checks:
         code = max(code, check.tell(finished.verdicts, finished.saved.directory / CHECKS))
