@@ -1,6 +1,7 @@
 """The pier and what it stands on: a rigid block and three kinds of base (Palmeri & Makris 2007)."""
 
 from rockbatch.pier.bases import (
+    EPSILON_AND_ZETA,
     LEAST_ETA,
     MOST_ETA,
     WITH_EXPONENT,
@@ -13,7 +14,7 @@ from rockbatch.pier.bases import (
     YieldingBase,
     beta_of,
     eta_of,
-    highest_frequency,
+    fastest,
     in_kilonewtons,
     least_beta,
     problems,
@@ -26,6 +27,7 @@ from rockbatch.pier.bases import (
 from rockbatch.pier.block import Part, Pier, described
 
 __all__ = [
+    "EPSILON_AND_ZETA",
     "LEAST_ETA",
     "MOST_ETA",
     "WITH_EXPONENT",
@@ -41,7 +43,7 @@ __all__ = [
     "beta_of",
     "described",
     "eta_of",
-    "highest_frequency",
+    "fastest",
     "in_kilonewtons",
     "least_beta",
     "problems",

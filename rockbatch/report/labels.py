@@ -21,6 +21,7 @@ SYMBOLS = {
     "beta": ("β", ""),
     "eta": ("η", ""),
     "epsilon": ("ε", ""),
+    "zeta": ("ζ", ""),
     "n": ("n", ""),
     "restitution": ("e", ""),
     "stiffness_kN_m": ("K", "kN/m"),
@@ -31,7 +32,7 @@ SYMBOLS = {
     "deck_inertia_t_m2": ("deck inertia", "t m²"),
     "top_m": ("top", "m"),
 }
-BASE_KEYS = ("beta", "eta", "epsilon", "spring", "n", "kinematics", "flight", "restitution")
+BASE_KEYS = ("beta", "eta", "epsilon", "zeta", "spring", "n", "kinematics", "flight", "restitution")
 
 Key = tuple[object, ...]
 """What tells one foundation from another: the case, and its varied values in the order of the study."""

@@ -22,7 +22,18 @@ PEAKS = "peaks.csv"
 PART = f"{PEAKS}.part"
 """Finished runs of a table that is under way."""
 
-TERMS = ("kinetic", "potential", "elastic", "input", "plastic", "impact", "p_delta", "constraint", "remainder")
+TERMS = (
+    "kinetic",
+    "potential",
+    "elastic",
+    "input",
+    "plastic",
+    "impact",
+    "p_delta",
+    "constraint",
+    "damping",
+    "remainder",
+)
 """Terms of the energy ledger, in the order in which the core returns them."""
 
 ALL = ("rigid", "elastic", "yielding")

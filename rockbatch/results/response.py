@@ -38,7 +38,7 @@ class Response:
         ``t`` [s]; ``theta`` [rad], positive tilts right; ``omega`` = dθ/dt [rad/s]; ``v`` [m], the centre of
         mass above the position of unstressed springs; ``z_left``, ``z_right``, spring forces over the yield
         force, −1..0; ``v_left``, ``v_right`` [m], the pivots, up positive; ``force_left``, ``force_right`` [N/kg],
-        spring forces per unit mass of the pier, negative in compression; ``energy`` [J/kg], relative to the start;
+        forces of the supports per unit mass of the pier, negative in compression; ``energy`` [J/kg], relative to the start;
         ``ag_h``, ``ag_v`` [m/s²], the ground, positive right and up. On the rigid base ``v``, ``z_*``, ``v_*`` and
         ``force_*`` are NaN.
     events : DataFrame, one row per event
@@ -47,7 +47,8 @@ class Response:
     ledger : DataFrame or None
         Energies [J/kg] at the rows of ``history``, where they were asked for: stored ``kinetic``, ``potential``,
         ``elastic``, relative to the start; summed since, ``input``, ``plastic``, ``impact``, ``p_delta`` (first-order
-        kinematics), ``constraint`` (finite kinematics); and the ``remainder`` of their balance, the integrator's error.
+        kinematics), ``constraint`` (finite kinematics), ``damping`` (dashpots of the
+        supports); and the ``remainder`` of their balance, the integrator's error.
     polarity : str
         "-" where the motion's horizontal component was reversed, else "+".
     scale : float

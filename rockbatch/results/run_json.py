@@ -105,7 +105,7 @@ def _describe_base(pier: Pier, base: Base) -> dict[str, Any]:
 def _springs(pier: Pier, base: ElasticBase) -> dict[str, Any]:
     return {
         "beta": base.beta,
-        "epsilon": base.epsilon,
+        **({"epsilon": base.epsilon} if base.zeta is None else {"zeta": base.zeta}),
         "kinematics": base.kinematics,
         "flight": base.flight,
         "omega_v": vertical_frequency(pier, base),

@@ -114,7 +114,7 @@ def written(run: Run, outcome: Outcome, quiet_s: float, every_step: bool, wait: 
 
 
 def energies(run: Run, rows: np.recarray) -> Samples:
-    """Energy ledger [J/kg] at every row of a run: :data:`rockbatch.results.columns.TERMS`, shape (n, 9)."""
+    """Energy ledger [J/kg] at every row of a run: :data:`rockbatch.results.columns.TERMS`, shape (n, 10)."""
     pier, base = run.pier, run.base
     ground, dt = ground_of(run.motion), float(run.motion.dt)
     ledger = np.zeros(len(rows), LEDGER).view(np.recarray)
@@ -194,8 +194,10 @@ def _springs_state(pier: Pier, base: ElasticBase, rows: np.recarray) -> dict[str
     v, theta, z_left, z_right = rows.v, rows.theta, rows.z_left, rows.z_right
     b, h = m.half_width, m.height
     rise, drop, lever = b * theta, np.zeros(len(rows)), np.full(len(rows), h)
+    arm, middle = np.full(len(rows), b), np.zeros(len(rows))
     if m.finite is not None:
         rise, drop = b * np.sin(theta), h * (1.0 - np.cos(theta))
+        arm, middle = b * np.cos(theta), h * np.sin(theta)
         lever = h * np.cos(theta) + (rows.right - rows.left) * rise
     elastic = z_left**2 + z_right**2
     energy = (
@@ -212,7 +214,7 @@ def _springs_state(pier: Pier, base: ElasticBase, rows: np.recarray) -> dict[str
         "z_right": z_right,
         "v_left": v + rise + drop,
         "v_right": v - rise + drop,
-        "force_left": m.yield_force * z_left,
-        "force_right": m.yield_force * z_right,
+        "force_left": rows.left * (m.yield_force * z_left + m.damping * (rows.v_rate + (middle + arm) * rows.omega)),
+        "force_right": rows.right * (m.yield_force * z_right + m.damping * (rows.v_rate + (middle - arm) * rows.omega)),
         "energy": energy,
     }

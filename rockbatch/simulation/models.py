@@ -14,7 +14,7 @@ from rockbatch.pier import (
     RigidBase,
     SpringLaw,
     YieldingBase,
-    highest_frequency,
+    fastest,
     rocking_frequency,
     vertical_frequency,
     yield_deflection,
@@ -55,11 +55,13 @@ def springs(pier: Pier, base: ElasticBase) -> Springs:
         yield_deflection=float(yield_deflection(pier, base)),
         stiffness=float(omega_v**2 / (eta * pier.gravity)),
         yield_force=float(0.5 * eta * pier.gravity),
-        epsilon=float(base.epsilon),
+        epsilon=float(base.epsilon if base.zeta is None else 1.0),
+        damping=float((base.zeta or 0.0) * omega_v),
         law=law,
         guided=float(base.flight == "guided"),
         exponent=exponent,
         finite=True if base.kinematics == "finite" else None,
+        damped=True if base.zeta else None,
     )
 
 
@@ -95,7 +97,7 @@ def least_substeps(pier: Pier, base: Base, dt: float) -> int:
 def _substeps_for(largest: float, pier: Pier, base: Base, dt: float) -> int:
     if isinstance(base, RigidBase):
         return 1
-    return max(1, math.ceil(highest_frequency(pier, base) * dt / largest - 1e-9))
+    return max(1, math.ceil(fastest(pier, base) * dt / largest - 1e-9))
 
 
 def patience(pier: Pier, dt: float) -> int:

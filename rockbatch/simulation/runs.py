@@ -24,6 +24,7 @@ from rockbatch.core.types import (
     UNDECIDED,
     RigidRun,
     SpringRun,
+    Traits,
 )
 from rockbatch.motions.motion import Motion, Samples
 from rockbatch.pier import (
@@ -130,7 +131,9 @@ def written_run(
         return rigid.rigid_run(result), written
     m = springs(run.pier, run.base)
     written = np.recarray(rows, ROW)
-    result = two_springs.rock_side_by_side(m.exponent, m.finite, lines, ground, stop, locate, every_step, written)[0]
+    result = two_springs.rock_side_by_side(two_springs.traits_of(m), lines, ground, stop, locate, every_step, written)[
+        0
+    ]
     return two_springs.spring_run(result), written
 
 
@@ -170,7 +173,7 @@ def try_all(
 ) -> list[Trial | None]:
     """As :func:`run_all_fixed`, with the trajectories in short."""
     trials: list[Trial | None] = [_refused(run, steps, quiet_s) for run, steps in zip(runs, substeps, strict=True)]
-    alike: dict[tuple[float | int | None, bool | None] | None, list[int]] = {}
+    alike: dict[Traits | None, list[int]] = {}
     for i, run in enumerate(runs):
         if trials[i] is None:
             alike.setdefault(_kernel_of(run), []).append(i)
@@ -192,7 +195,7 @@ def try_all(
 
 
 def _rock(
-    kernel: tuple[float | int | None, bool | None] | None,
+    kernel: Traits | None,
     lines: Sequence[tuple[float, ...]],
     ground: Samples,
     stop: Stop,
@@ -203,18 +206,18 @@ def _rock(
         for result in rigid.rock_side_by_side(lines, ground, stop.flag, locate):
             yield None if result.status == RUNNING else rigid.rigid_run(result), result.extremes
         return
-    for result in two_springs.rock_side_by_side(*kernel, lines, ground, stop.flag, locate):
+    for result in two_springs.rock_side_by_side(kernel, lines, ground, stop.flag, locate):
         yield None if result.status == RUNNING else two_springs.spring_run(result), result.extremes
 
 
-def _kernel_of(run: Run) -> tuple[float | int | None, bool | None] | None:
-    """What runs that share compiled code have in common: types of the springs' exponent and kinematics, if any."""
+def _kernel_of(run: Run) -> Traits | None:
+    """What runs on springs that share compiled code have in common, by type."""
     if isinstance(run.base, RigidBase):
         return None
-    m = springs(run.pier, run.base)
-    if m.exponent is None:
-        return None, m.finite
-    return 1 if isinstance(m.exponent, int) else 0.5, m.finite  # numbers that differ: 1 == 1.0
+    traits = two_springs.traits_of(springs(run.pier, run.base))
+    if traits.exponent is None:
+        return traits
+    return traits._replace(exponent=1 if isinstance(traits.exponent, int) else 0.5)  # numbers that differ: 1 == 1.0
 
 
 def _refused(run: Run, substeps: int, quiet_s: float) -> Trial | None:
@@ -237,15 +240,15 @@ def _refused(run: Run, substeps: int, quiet_s: float) -> Trial | None:
 
 def _outcome(run: Run, substeps: int, found: SpringRun | RigidRun) -> Outcome:
     """Outcome of what a run came to, as it was found."""
-    pier, omega_v, t_impact = run.pier, None, math.nan
+    pier, omega_v, t_impact, zeta = run.pier, None, math.nan, 0.0
     status, reason = _STATUS[found.status]
     more: dict[str, Any] = {}
     if isinstance(found, SpringRun):
         assert not isinstance(run.base, RigidBase)
         more = _of_springs(run, found, survived=status == "ok")
-        omega_v, t_impact = vertical_frequency(pier, run.base), found.t_impact
+        omega_v, t_impact, zeta = vertical_frequency(pier, run.base), found.t_impact, run.base.zeta or 0.0
     if found.status == FLIGHT:
-        reason = cause_of_flight(run.motion, omega_v, pier.gravity, found.t_flight, t_impact)
+        reason = cause_of_flight(run.motion, omega_v, pier.gravity, found.t_flight, t_impact, zeta)
     note = ""
     if found.status == RESTLESS:
         note = _RESTLESS.format(seconds=found.t_end - run.motion.duration)

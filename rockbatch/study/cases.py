@@ -5,6 +5,7 @@ from dataclasses import asdict, replace
 from typing import Any, NamedTuple, get_args
 
 from rockbatch.pier import (
+    EPSILON_AND_ZETA,
     WITH_EXPONENT,
     Base,
     ElasticBase,
@@ -31,6 +32,7 @@ _ELASTIC = {
     "stiffness_kN_m": Key(positive, "2.0e6", many=True),
     "mass_t": Key(positive, "3000.0", many=True),
     "epsilon": Key(number, "0.05", many=True),
+    "zeta": Key(number, "0.05", many=True),
     "kinematics": Key(choice(*get_args(Kinematics)), '"first-order"', many=True),
     "flight": Key(choice(*get_args(Flight)), '"stop"', many=True),
 }
@@ -102,11 +104,15 @@ def _expand(case: _Read, chosen: Chosen, pier: Pier, pier_values: Values) -> Exp
     base = _base(case.base, given, pier)
     wrong = problems(pier, base)
     for problem in wrong:
+        if EPSILON_AND_ZETA in problem:  # told once, of the table
+            continue
         if not (any_pier and problem.startswith("beta")):
             _complain_where_due(case.table, chosen, problem, pier, base)
     if isinstance(base, ElasticBase) and not wrong and pier.mass_t is not None:
         complain_unless_usual_support(case.table, chosen, pier, base, case.believed)
     applying = {key: value for key, value in asdict(base).items() if value is not None} | given
+    if "zeta" in applying:
+        applying.pop("epsilon", None)
     if isinstance(base, YieldingBase) and not base.has_exponent:
         del applying["n"]
     return Expanded(case.name, pier, base, pier_values | applying)
@@ -166,6 +172,8 @@ def _case(table: Table) -> tuple[dict[str, Any], dict[str, list[Setting]], Colle
     read = table.read(CASE | keys | CONFIRM, unfit=unfit)
     believed = confirmed(table, read, keys)
     complain_unless_usual(table, "mass_t", read.get("mass_t", ()), MASSES["mass_t"], believed)
+    if "epsilon" in table.data and "zeta" in read:
+        table.complain(f"epsilon = {shown(table.data['epsilon'])}: {EPSILON_AND_ZETA}", "epsilon")
     if base in ("elastic", "yielding"):
         _check_one_of(table, "beta", "stiffness_kN_m")
     if base == "yielding":

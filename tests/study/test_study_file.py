@@ -644,3 +644,19 @@ def test_what_the_example_leaves_out_in_comments_can_be_put_in(tmp_path):
             said = ""
         assert "unknown" not in said, said
         assert "expected" not in said, said
+
+
+def test_zeta_takes_the_place_of_epsilon(tmp_path):
+    study = study_of(tmp_path, PIER, PULSE, case("beta = 40", "eta = 2.5", "zeta = [0.02, 0.05]"))
+    assert [only.base for only in study.cases] == [YieldingBase(40.0, eta=2.5, zeta=zeta) for zeta in (0.02, 0.05)]
+    assert [only.columns for only in study.cases] == [{"zeta": 0.02}, {"zeta": 0.05}]
+
+
+def test_epsilon_beside_zeta_is_told_once_with_its_line(tmp_path):
+    keys = case('name = "a"', "beta = 40", "epsilon = 0.1", "zeta = 0.05", base="elastic")
+    with pytest.raises(InputError) as error:
+        study_of(tmp_path, PIER, PULSE, keys)
+    (told,) = error.value.problems
+    assert "epsilon = 0.1: zeta is given too" in told
+    with pytest.raises(InputError, match="zeta = 5: damping of the supports"):
+        study_of(tmp_path, PIER, PULSE, case("beta = 40", "zeta = 5", base="elastic"))
