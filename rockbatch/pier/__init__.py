@@ -25,6 +25,7 @@ from rockbatch.pier.bases import (
     yield_deflection,
 )
 from rockbatch.pier.block import Part, Pier, described
+from rockbatch.pier.restraints import Damper, DamperKind, Restraint, Tendon, offsets, recentres, symmetric
 
 __all__ = [
     "EPSILON_AND_ZETA",
@@ -32,13 +33,17 @@ __all__ = [
     "MOST_ETA",
     "WITH_EXPONENT",
     "Base",
+    "Damper",
+    "DamperKind",
     "ElasticBase",
     "Flight",
     "Kinematics",
     "Part",
     "Pier",
+    "Restraint",
     "RigidBase",
     "SpringLaw",
+    "Tendon",
     "YieldingBase",
     "beta_of",
     "described",
@@ -46,9 +51,12 @@ __all__ = [
     "fastest",
     "in_kilonewtons",
     "least_beta",
+    "offsets",
     "problems",
+    "recentres",
     "rocking_frequency",
     "static_deflection",
+    "symmetric",
     "tilt_over_residual",
     "vertical_frequency",
     "yield_deflection",

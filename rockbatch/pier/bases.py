@@ -9,6 +9,7 @@ from typing import Any, Literal, Self, get_args
 
 from rockbatch.errors import InputError
 from rockbatch.pier.block import Pier, not_positive
+from rockbatch.pier.restraints import Restraint, wrong_restraints
 
 LEAST_ETA = 1.000001
 """Closer to 1, Bouc–Wen springs would have to sink without end to carry the weight."""
@@ -36,9 +37,11 @@ class RigidBase:
 
     ``restitution`` is the factor e on the angular velocity at an impact; ``None`` means :attr:`Pier.restitution`, Housner's
     e = 1 − 2μ/(1+μ) sin²α, which conserves the angular momentum about the new pivot, or 0 where that is negative.
+    ``restraints`` are dampers and tendons that tie the pier to the ground.
     """
 
     restitution: float | None = None
+    restraints: tuple[Restraint, ...] = ()
 
     name = "rigid"
 
@@ -214,9 +217,10 @@ def problems(pier: Pier, base: Base) -> list[str]:
     """What is impossible about ``pier`` on ``base``: one sentence each, with the limit; empty if nothing."""
     if isinstance(base, RigidBase):
         e = base.restitution
+        wrong = wrong_restraints(pier, base.restraints)
         if e is not None and not 0 <= e <= 1:
-            return [f"restitution = {e:g}: must be within 0..1 (leave it out for Housner's value)"]
-        return []
+            wrong.append(f"restitution = {e:g}: must be within 0..1 (leave it out for Housner's value)")
+        return wrong
     if pier.deck_over_columns is not None:
         return [
             f"columns: a rocking frame is solved on rigid ground only, and this base is {base.name}. On springs the columns "

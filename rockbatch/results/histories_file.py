@@ -14,6 +14,7 @@
 Every dataset of numbers has an attribute ``unit``; "1" is none.
 """
 
+import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict
@@ -26,7 +27,7 @@ import numpy as np
 
 from rockbatch.errors import InputError
 from rockbatch.files import replacing
-from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase
+from rockbatch.pier import Damper, ElasticBase, Pier, Restraint, RigidBase, Tendon, YieldingBase
 from rockbatch.results.columns import TERMS
 from rockbatch.results.response import EVENT_TYPES, Response
 
@@ -105,7 +106,10 @@ def _write(group: "h5py.Group", response: Response) -> None:
     _set(group, {name: getattr(response, name) for name in _OF_RUN})
     _set(group.create_group("varied"), response.columns)
     _set(group.create_group("pier"), asdict(response.pier))
-    _set(group.create_group("base"), {"name": response.base.name} | asdict(response.base))
+    base = {"name": response.base.name} | asdict(response.base)
+    if isinstance(response.base, RigidBase):
+        base["restraints"] = json.dumps([asdict(each) for each in response.base.restraints])
+    _set(group.create_group("base"), base)
     rigid = isinstance(response.base, RigidBase)
     for name, unit in UNITS.items():
         if not (rigid and name in _OF_SPRINGS):
@@ -206,6 +210,8 @@ def _read(group: "h5py.Group") -> Response:
 
     base = _attributes(group["base"])
     kind = _BASES[base.pop("name")]
+    if kind is RigidBase:
+        base["restraints"] = tuple(_restraint(**each) for each in json.loads(base["restraints"]))
     length = len(group["t"])
     absent = _OF_SPRINGS if kind is RigidBase else ()
     columns = {name: np.full(length, np.nan) if name in absent else group[name][:] for name in UNITS}
@@ -225,6 +231,10 @@ def _read(group: "h5py.Group") -> Response:
         events=pd.DataFrame(events).astype(EVENT_TYPES),
         ledger=ledger,
     )
+
+
+def _restraint(**values: Any) -> Restraint:
+    return Damper(**values) if "kind" in values else Tendon(**values)
 
 
 def _attributes(group: "h5py.Group") -> dict[str, Any]:

@@ -53,6 +53,9 @@ class Response:
         "-" where the motion's horizontal component was reversed, else "+".
     scale : float
         Factor on all components of the motion.
+    restraints : DataFrame or None
+        Elongation [m] and force [N/kg], positive in tension, of every damper and tendon at the rows of ``history``; of a run
+        that :func:`rockbatch.simulate` made, not of one that was read from a file.
     """
 
     record: str
@@ -66,6 +69,7 @@ class Response:
     ledger: "pd.DataFrame | None" = field(default=None, repr=False)
     polarity: str = "+"
     scale: float = 1.0
+    restraints: "pd.DataFrame | None" = None
 
     @property
     def t(self) -> Samples:

@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import math
 from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
@@ -15,6 +16,7 @@ from rockbatch.pier import (
     Base,
     ElasticBase,
     Pier,
+    Restraint,
     RigidBase,
     YieldingBase,
     described,
@@ -88,7 +90,8 @@ def describe_case(case: Case) -> dict[str, Any]:
 def _describe_base(pier: Pier, base: Base) -> dict[str, Any]:
     if isinstance(base, RigidBase):
         of_frame = None if pier.deck_over_columns is None else pier.restitution  # None stands for Housner's
-        return {"restitution": of_frame if base.restitution is None else base.restitution}
+        own: dict[str, Any] = {"restitution": of_frame if base.restitution is None else base.restitution}
+        return own | ({"restraints": [_described(each) for each in base.restraints]} if base.restraints else {})
     told = _springs(pier, base)
     if isinstance(base, YieldingBase):
         told |= {
@@ -100,6 +103,11 @@ def _describe_base(pier: Pier, base: Base) -> dict[str, Any]:
         if not base.has_exponent:
             del told["n"]
     return told
+
+
+def _described(restraint: Restraint) -> dict[str, Any]:
+    values = {name: value for name, value in asdict(restraint).items() if value is not None}
+    return {name: None if value == math.inf else value for name, value in values.items()}
 
 
 def _springs(pier: Pier, base: ElasticBase) -> dict[str, Any]:

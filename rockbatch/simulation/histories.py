@@ -13,6 +13,7 @@ from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, problems
 from rockbatch.results.columns import TERMS
 from rockbatch.results.outcome import Outcome
 from rockbatch.results.response import EVENT_TYPES, Response
+from rockbatch.simulation import restraints
 from rockbatch.simulation.models import block, ground_of, least_substeps, springs
 from rockbatch.simulation.runs import Run, run_fixed, steps_of, written_run
 from rockbatch.simulation.settling import run_to_tolerance
@@ -118,6 +119,8 @@ def energies(run: Run, rows: np.recarray) -> Samples:
     pier, base = run.pier, run.base
     ground, dt = ground_of(run.motion), float(run.motion.dt)
     ledger = np.zeros(len(rows), LEDGER).view(np.recarray)
+    if isinstance(base, RigidBase) and base.restraints:
+        return restraints.energies(pier, base, rows)
     if isinstance(base, RigidBase):
         ledger_on_rigid_base(block(pier, base), rows, ground, dt, ledger)
         return pier.inertia_about_pivot * numbers(ledger)
@@ -151,12 +154,15 @@ def histories(
         table = pd.DataFrame(energies(run, rows)[shown], columns=list(TERMS))
         table.insert(0, "t", rows.t[shown])
     rows = rows[shown]
+    devices = restraints.loops(pier, base, rows) if isinstance(base, RigidBase) and base.restraints else None
     state = _rigid_state(pier, rows) if isinstance(base, RigidBase) else _springs_state(pier, base, rows)
     t = rows.t.copy()
     vertical = np.zeros(len(t)) if motion.vertical is None else _ground(motion.vertical, motion.dt, t)
     history = pd.DataFrame({"t": t, **state, "ag_h": _ground(motion.horizontal, motion.dt, t), "ag_v": vertical})
     events = pd.DataFrame(_events(rows, outcome.t_flight), columns=list(EVENT_TYPES)).astype(EVENT_TYPES)
-    return Response(motion.name, case, columns, pier, base, outcome.status, history, events, table, polarity, scale)
+    return Response(
+        motion.name, case, columns, pier, base, outcome.status, history, events, table, polarity, scale, devices
+    )
 
 
 def _events(rows: np.recarray, t_flight: float | None) -> list[tuple[float, str, str, int, int]]:

@@ -12,7 +12,7 @@ from rockbatch.checks.plausible import implausible
 from rockbatch.checks.reading import CHECK, read_rules
 from rockbatch.checks.rules import Rule
 from rockbatch.errors import InputError
-from rockbatch.pier import described
+from rockbatch.pier import RigidBase, described, symmetric
 from rockbatch.study.cases import BASE_KEYS, CASE, Expanded, read_cases
 from rockbatch.study.motions import FEMA, MOTIONS, PULSE, SOURCES, read_motions_table
 from rockbatch.study.piers import PART, PIER, read_piers
@@ -105,6 +105,9 @@ def load_study(path: str | os.PathLike[str], *, motions: str | os.PathLike[str] 
     varied = varied_pier + varied_case
     references = _references(file, cases, varied)
     output = _output(file)
+    if len(motion_spec.polarity) > 1 and not all(_symmetric(each) for each in cases):
+        told = "dampers or tendons on one side make another run of the reversed motion, not the mirror image; keep one polarity"
+        file.complain(("motions", "polarity"), f"[motions]: {told}")
     checks = read_rules(file, partial(_unfit, cases, motion_spec, output) if cases else None)
     file.finish()
     return Study(
@@ -120,6 +123,10 @@ def load_study(path: str | os.PathLike[str], *, motions: str | os.PathLike[str] 
         output=output,
         checks=checks,
     )
+
+
+def _symmetric(case: Expanded) -> bool:
+    return not isinstance(case.base, RigidBase) or symmetric(case.pier, case.base.restraints)
 
 
 def given_study(study: str | os.PathLike[str] | Study, motions: str | os.PathLike[str] | None = None) -> Study:

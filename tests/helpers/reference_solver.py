@@ -316,7 +316,7 @@ class TwoSprings:
             return 0.0
         z, rate = y[ZL + i], self.rate(i, y) / self.dy
         if mode == "load" and self.law == "bouc-wen":
-            return rate * (1.0 - abs(z) ** self.n)
+            return rate * (1.0 - min(abs(z), 1.0) ** self.n)  # a trial of a large step may leave the law
         return rate
 
     def rhs(self, leg: tuple[float, ...]) -> Callable[[float, Sequence[float]], list[float]]:
