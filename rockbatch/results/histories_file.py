@@ -120,6 +120,10 @@ def _write(group: "h5py.Group", response: Response) -> None:
             events[name] = np.array(response.events[name], dtype="S16")
         else:
             _put(events, name, response.events[name].to_numpy(), UNITS.get(name, "1"))
+    if response.restraints is not None:
+        restraints = group.create_group("restraints")
+        for name in response.restraints.columns.drop("t"):
+            _put(restraints, name, response.restraints[name].to_numpy(), "N/kg" if name.endswith("force") else "m")
     if response.ledger is not None:
         ledger = group.create_group("ledger")
         for name in TERMS:
@@ -219,7 +223,10 @@ def _read(group: "h5py.Group") -> Response:
         name: group["events"][name].asstr()[:] if of == "str" else group["events"][name][:]
         for name, of in EVENT_TYPES.items()
     }
-    ledger = None
+    ledger = restraints = None
+    if "restraints" in group:
+        of_restraints = group["restraints"]
+        restraints = pd.DataFrame({"t": columns["t"]} | {name: of_restraints[name][:] for name in of_restraints})
     if "ledger" in group:
         ledger = pd.DataFrame({"t": columns["t"]} | {name: group["ledger"][name][:] for name in TERMS})
     return Response(
@@ -230,6 +237,7 @@ def _read(group: "h5py.Group") -> Response:
         history=pd.DataFrame(columns),
         events=pd.DataFrame(events).astype(EVENT_TYPES),
         ledger=ledger,
+        restraints=restraints,
     )
 
 

@@ -54,8 +54,8 @@ class Response:
     scale : float
         Factor on all components of the motion.
     restraints : DataFrame or None
-        Elongation [m] and force [N/kg], positive in tension, of every damper and tendon at the rows of ``history``; of a run
-        that :func:`rockbatch.simulate` made, not of one that was read from a file.
+        Elongation [m] and force [N/kg], positive in tension, of every damper and tendon at the rows of ``history``, such as
+        ``damper 1 left force``; ``None`` without.
     """
 
     record: str
@@ -69,7 +69,7 @@ class Response:
     ledger: "pd.DataFrame | None" = field(default=None, repr=False)
     polarity: str = "+"
     scale: float = 1.0
-    restraints: "pd.DataFrame | None" = None
+    restraints: "pd.DataFrame | None" = field(default=None, repr=False)
 
     @property
     def t(self) -> Samples:

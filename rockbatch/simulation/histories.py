@@ -155,7 +155,7 @@ def histories(
         table.insert(0, "t", rows.t[shown])
     rows = rows[shown]
     devices = restraints.loops(pier, base, rows) if isinstance(base, RigidBase) and base.restraints else None
-    state = _rigid_state(pier, rows) if isinstance(base, RigidBase) else _springs_state(pier, base, rows)
+    state = _rigid_state(pier, base, rows) if isinstance(base, RigidBase) else _springs_state(pier, base, rows)
     t = rows.t.copy()
     vertical = np.zeros(len(t)) if motion.vertical is None else _ground(motion.vertical, motion.dt, t)
     history = pd.DataFrame({"t": t, **state, "ag_h": _ground(motion.horizontal, motion.dt, t), "ag_v": vertical})
@@ -185,11 +185,13 @@ def _ground(acceleration: Samples, dt: float, t: Samples) -> Samples:
     return np.interp(t, np.arange(len(samples)) * dt, samples)
 
 
-def _rigid_state(pier: Pier, rows: np.recarray) -> dict[str, Samples]:
+def _rigid_state(pier: Pier, base: RigidBase, rows: np.recarray) -> dict[str, Samples]:
     theta, omega = rows.theta, rows.omega
     absent = np.full(len(rows), np.nan)
     climbed = np.cos(pier.alpha - np.abs(theta)) - math.cos(pier.alpha)
     energy = 0.5 * pier.inertia_about_pivot * omega**2 + pier.gravity * pier.size * climbed
+    if base.restraints:
+        energy = energy + restraints.stored(pier, base, rows)
     none = dict.fromkeys(("v", "z_left", "z_right", "v_left", "v_right", "force_left", "force_right"), absent)
     return {"theta": theta, "omega": omega, **none, "energy": energy}
 

@@ -66,6 +66,13 @@ def _stored(of: Element, rows: np.recarray, j: int) -> Samples:
     return 0.5 * pull * pull / of.stiffness
 
 
+def stored(pier: Pier, base: RigidBase, rows: np.recarray) -> Samples:
+    """Energy [J/kg] that all tendons store, relative to the start."""
+    laws = elements(pier, base)
+    found = sum((_stored(of, rows, j) for j, of in enumerate(laws) if of.kind == TENDON), np.zeros(len(rows)))
+    return found - found[0]
+
+
 def energies(pier: Pier, base: RigidBase, rows: np.recarray) -> Samples:
     """Energy ledger [J/kg] (THEORY.md, 9): ``elastic`` and ``plastic`` are of tendons, ``damping`` of dampers."""
     inertia = pier.inertia_about_pivot
@@ -74,11 +81,10 @@ def energies(pier: Pier, base: RigidBase, rows: np.recarray) -> Samples:
     dampers = [j for j, of in enumerate(laws) if of.kind != TENDON]
     kinetic = 0.5 * inertia * rows.omega**2
     potential = inertia * pier.p**2 * (np.cos(pier.alpha - np.abs(rows.theta)) - math.cos(pier.alpha))
-    elastic = sum((_stored(laws[j], rows, j) for j in tendons), np.zeros(len(rows)))
     plastic, damping = rows.lost[:, tendons].sum(axis=1), rows.lost[:, dampers].sum(axis=1)
     landed = np.isin(rows.kind, (types.IMPACT_LEFT, types.IMPACT_RIGHT, types.REST))
     drop = np.where(landed, np.append(0.0, kinetic[:-1] - kinetic[1:]), 0.0)
     impact, zero = np.cumsum(drop), np.zeros(len(rows))
-    parts = [kinetic - kinetic[0], potential - potential[0], elastic - elastic[0]]
+    parts = [kinetic - kinetic[0], potential - potential[0], stored(pier, base, rows)]
     remainder = sum(parts, zero) - rows.input + plastic + impact + damping
     return np.column_stack([*parts, rows.input, plastic, impact, zero, zero, damping, remainder])

@@ -328,3 +328,43 @@ def test_what_cannot_be_is_told():
         assert len(problems(FIG5, base(each))) == 1, each
     frame = Pier.frame(replace(Pier.rectangle(1.0, 5.0), mass_t=100.0), 2, 400.0)
     assert "columns" in problems(frame, base(Tendon(psi=0.1)))[0]
+
+
+def test_what_a_folder_keeps_of_dampers_comes_back(tmp_path):
+    """Loops in the file and the report; the energy of a history is that of the ledger."""
+    text = """
+    [pier]
+    alpha = 0.2
+    p = 1.0
+    [[motions.pulse]]
+    name = "sine"
+    shape = "sine"
+    amplitude_g = 1.0
+    period_s = 0.5
+    dt_s = 0.01
+    duration_s = 2.0
+    [numerics]
+    substeps = 4
+    [output]
+    histories = "all"
+    ledger = true
+    [[case]]
+    base = "rigid"
+    [[case.damper]]
+    kind = "friction"
+    f = 0.1
+    [case.tendon]
+    psi = 0.2
+    lambda = 0.5
+    """
+    (tmp_path / "study.toml").write_text(text)
+    table = rb.run(tmp_path / "study.toml", out=tmp_path / "out")
+    assert table["damper_force_over_weight"][0] == pytest.approx(0.1, rel=1e-9)
+    response = rb.open_results(tmp_path / "out").responses[0]
+    expected = rb.simulate(FIG5, response.base, pulse("sine", 0.5, 1.0, dt=0.01, end=2.0), substeps=4)
+    assert response.base == base(Damper("friction", f=0.1), Tendon(psi=0.2, lam=0.5))
+    assert set(response.restraints) == set(expected.restraints)
+    assert np.abs(response.restraints["damper 1 left force"]).max() == pytest.approx(0.1 * GRAVITY)
+    energy = response.ledger[["kinetic", "potential", "elastic"]].sum(axis=1)
+    np.testing.assert_allclose(response.energy, energy, atol=1e-9)
+    assert "damper 1 left" in (tmp_path / "out" / "report.html").read_text()
