@@ -1,17 +1,32 @@
 """The command line: subcommands, and how mistakes are told."""
 
 import argparse
-import os
 import sys
 import warnings
 from collections.abc import Callable, Sequence
 from typing import Any
 
 from rockbatch._version import __version__
-from rockbatch.commands import accuracy, check, fragility, merge, motions, report, run, sensitivity, spectrum
-from rockbatch.errors import InputError, MissingColumns
+from rockbatch.commands import (
+    accuracy,
+    check,
+    examples,
+    fragility,
+    init,
+    merge,
+    motions,
+    report,
+    run,
+    sensitivity,
+    spectrum,
+)
+from rockbatch.commands.messages import say
+from rockbatch.commands.streams import is_lost
+from rockbatch.errors import AboutResults, InputError
 
 COMMANDS = {
+    "init": init,
+    "examples": examples,
     "run": run,
     "merge": merge,
     "motions": motions,
@@ -33,28 +48,27 @@ def main(arguments: Sequence[str] | None = None) -> int:
     subparsers = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
     for name, command in COMMANDS.items():
         command.add_arguments(subparsers.add_parser(name, help=command.HELP, description=command.HELP))
-    parsed = parser.parse_args(arguments)
+    code = _carried_out(parser.parse_args(arguments))
+    return code or int(is_lost(sys.stdout))
+
+
+def _carried_out(parsed: argparse.Namespace) -> int:
+    """The exit code of a command; what went wrong is told in words."""
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("always", MissingColumns)
+            warnings.simplefilter("always", AboutResults)
             warnings.showwarning = _plainly(warnings.showwarning)
             return COMMANDS[parsed.command].main(parsed)
     except InputError as error:
         for problem in error.problems:
-            print(f"rockbatch: {problem}", file=sys.stderr)
+            say(f"rockbatch: {problem}")
         return 2
-    except BrokenPipeError:  # whoever reads has seen enough
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 1
     except OSError as error:
         place = f"{error.filename}: " if error.filename else ""
-        print(
-            f"rockbatch: {place}{error.strerror or error}; choose another place, or make this one usable",
-            file=sys.stderr,
-        )
+        say(f"rockbatch: {place}{error.strerror or error}; choose another place, or make this one usable")
         return 2
     except KeyboardInterrupt:
-        print("rockbatch: interrupted", file=sys.stderr)
+        say("rockbatch: interrupted")
         return 130
 
 
@@ -63,11 +77,11 @@ def _plainly(otherwise: Callable[..., None]) -> Callable[..., None]:
     said = set()
 
     def show(message: Warning | str, category: type[Warning], *place: Any) -> None:
-        if not issubclass(category, MissingColumns):
+        if not issubclass(category, AboutResults):
             otherwise(message, category, *place)
         elif str(message) not in said:
             said.add(str(message))
-            print(f"rockbatch: {message}", file=sys.stderr)
+            say(f"rockbatch: {message}")
 
     return show
 

@@ -1,4 +1,4 @@
-"""What the peak rotation hangs on: a sensitivity study, from what it asks to its tables.
+"""What the peak rotation depends on: a sensitivity study, from what it asks to its tables.
 
 The answer is a statistic of the suite, at every point: at both ends of each input alone, and at the points of Sobol's
 indices.
@@ -24,6 +24,7 @@ from rockbatch.batch.digests import digests
 from rockbatch.batch.listening import Progress, count, listener_of, make_ready, once
 from rockbatch.batch.threads import Engine, engine_of
 from rockbatch.checks.statistics import STATISTICS, Values
+from rockbatch.files import opened_text
 from rockbatch.motions import MotionSet
 from rockbatch.study import Study, given_study
 from rockbatch.study.sensitivity import Input, SensitivitySpec, Value, read_sensitivity
@@ -38,7 +39,7 @@ TORNADO_COLUMNS = ("parameter", "low", "base", "high", "answer_low", "answer_bas
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Sensitivity(Analysis):
-    """What the peak rotation hangs on; see also :class:`rockbatch.analysis.folder.Analysis`.
+    """What the peak rotation depends on; see also :class:`rockbatch.analysis.folder.Analysis`.
 
     Attributes
     ----------
@@ -70,7 +71,7 @@ def sensitivity(
     fresh: bool = False,
     progress: Progress = False,
 ) -> Sensitivity:
-    """What the peak rotation hangs on, one at a time and by Sobol's indices: [sensitivity] of a study.
+    """What the peak rotation depends on, one at a time and by Sobol's indices: [sensitivity] of a study.
 
     Parameters
     ----------
@@ -114,7 +115,7 @@ def sensitivity(
         with carrier:
             _carry_out(results, points, found, carrier)
             engine = str(carrier)
-        with (results.directory / sampled.RUNS).open(encoding="utf-8", newline="") as rows:
+        with opened_text(results.directory / sampled.RUNS) as rows:
             results.info["statuses"], values = values_of(csv.DictReader(rows), len(points), spec.overturned)
         swings, shares = tables(asked, spec, points, values)
         results.keep_table(ONE_AT_A_TIME, swings)

@@ -1,15 +1,17 @@
 """The runs whose histories are kept beside the peaks: run once more, and written down."""
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rockbatch.batch.plan import PlannedRun
 from rockbatch.errors import InputError
-from rockbatch.results.histories_file import HISTORIES, write
+from rockbatch.pier import RigidBase
+from rockbatch.results.columns import TERMS
+from rockbatch.results.histories_file import HISTORIES, OF_SPRINGS, UNITS, write
 from rockbatch.results.reading import Saved
 from rockbatch.results.response import Response
 from rockbatch.simulation import run_fixed
@@ -18,6 +20,9 @@ from rockbatch.study import Study
 
 if TYPE_CHECKING:
     import pandas as pd
+
+BYTES_OF_A_DATASET = 2500.0
+"""What HDF5 takes for a dataset beside its numbers, with its share of the groups."""
 
 
 def keep_histories(
@@ -45,7 +50,7 @@ def keep_histories(
         held in memory.
     """
     table = saved.peaks.iloc[: len(runs)]  # then come the files that could not be used
-    chosen = kept(study, table)
+    chosen = kept(study, runs, table).numbers
     if not chosen:
         return None
     path = saved.directory / HISTORIES
@@ -66,16 +71,45 @@ def keep_histories(
     return path
 
 
-def kept(study: Study, table: "pd.DataFrame") -> list[int]:
-    """Numbers of the runs whose histories the study asks for; one that was refused has none.
+@dataclass(frozen=True)
+class Kept:
+    """Numbers of the runs whose histories are kept, in their order, and how many were chosen but left out for their size."""
 
-    ``table`` has a row for each run, in their order.
+    numbers: list[int]
+    left_out: int = 0
+
+
+def kept(study: Study, runs: Sequence[PlannedRun], table: "pd.DataFrame") -> Kept:
+    """The runs whose histories the study asks for; one that was refused has none.
+
+    ``table`` has a row for each of ``runs``. With "worst", the greatest rotations go first, and what would make the file
+    larger than ``histories_MB`` is left out; one history is kept however large.
     """
-    if study.output.histories == "none":
-        return []
-    if study.output.histories == "worst":
-        return worst(table, len(study.cases))
-    return [int(number) for number in table["theta_max_over_alpha"].notna().to_numpy().nonzero()[0]]
+    output = study.output
+    if output.histories == "none":
+        return Kept([])
+    if output.histories == "all":
+        return Kept([int(number) for number in table["theta_max_over_alpha"].notna().to_numpy().nonzero()[0]])
+    chosen = worst(table, len(study.cases))
+    rotations = table["theta_max_over_alpha"].to_numpy(float)
+    numbers: list[int] = []
+    size = 0.0
+    for number in sorted(chosen, key=lambda number: -rotations[number]):
+        size += history_bytes(runs[number], table.iloc[number])
+        if numbers and size > 1e6 * output.histories_MB:
+            break
+        numbers.append(number)
+    return Kept(sorted(numbers, key=lambda number: number % len(study.cases)), len(chosen) - len(numbers))
+
+
+def history_bytes(run: PlannedRun, row: "Mapping[str, Any] | pd.Series") -> float:
+    """About what the history of a run takes on disk: eight bytes for each number of each sample and side of an event."""
+    columns = len(UNITS) - (len(OF_SPRINGS) if isinstance(run.case.base, RigidBase) else 0)
+    told = row.get("energy_input_J_kg")
+    if told is not None and told == told:
+        columns += len(TERMS)
+    rows = row["t_end_s"] / run.motion.dt + 2.0 * (row["impacts"] + row["separations"])
+    return columns * (BYTES_OF_A_DATASET + 8.0 * rows)
 
 
 def worst(table: "pd.DataFrame", cases: int) -> list[int]:
@@ -84,17 +118,15 @@ def worst(table: "pd.DataFrame", cases: int) -> list[int]:
     An overturned pier is worse than any rotation, and the earlier the worse. Flight that ended a run counts by the
     rotation until then. Of equals the first is taken.
     """
-    found = []
-    for first in range(cases):
-        rows = table.iloc[first::cases]
-        status = rows["status"].to_numpy()
-        falls = rows["t_end_s"].where(status == "overturned").to_numpy(float)
-        rotations = rows["theta_max_over_alpha"].where(status != "failed").to_numpy(float)
-        if not np.isnan(falls).all():
-            found.append(first + cases * int(np.nanargmin(falls)))
-        elif not np.isnan(rotations).all():
-            found.append(first + cases * int(np.nanargmax(rotations)))
-    return found
+    if table.empty:
+        return []
+    status = table["status"].to_numpy()
+    falls = table["t_end_s"].where(status == "overturned", np.inf).fillna(np.inf).to_numpy(float).reshape(-1, cases)
+    peaks = table["theta_max_over_alpha"].where(status != "failed").fillna(-np.inf)
+    rotations = peaks.to_numpy(float).reshape(-1, cases)
+    fell, stood = np.isfinite(falls).any(axis=0), np.isfinite(rotations).any(axis=0)
+    of_case = np.where(fell, falls.argmin(axis=0), rotations.argmax(axis=0))
+    return [int(cases * of_case[case] + case) for case in np.flatnonzero(fell | stood)]
 
 
 def _response(study: Study, planned: PlannedRun, row: "pd.Series") -> Response:
@@ -102,9 +134,9 @@ def _response(study: Study, planned: PlannedRun, row: "pd.Series") -> Response:
     # With the same steps it comes to the same bits; of the row only ten digits are on disk
     outcome = run_fixed(run.pier, run.base, run.motion, int(row["substeps"]), quiet_s)
     outcome = replace(outcome, status=row["status"], reason=row["reason"])
-    told = row.get("energy_input_J_kg", float("nan"))
+    told, sized = row.get("energy_input_J_kg", float("nan")), row.get("base_shear_m_s2", float("nan"))
     return histories(
         run, outcome, quiet_s, case.name, case.columns,
-        ledger=told == told,  # very long runs have none
+        ledger=told == told, forces=sized == sized,  # very long runs have none
         polarity=planned.polarity, scale=planned.scale,
     )  # fmt: skip

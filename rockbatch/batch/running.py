@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from rockbatch.batch.carrying_out import InMemory, carry_out, to_simulate
 from rockbatch.batch.digests import study_digests
-from rockbatch.batch.finishing import FinishedBatch, cost_of_finished, finish, what_was_run, write_peaks
+from rockbatch.batch.finishing import FinishedBatch, cost_of_finished, finish, to_be_replaced, what_was_run, write_peaks
 from rockbatch.batch.journal import Journal
 from rockbatch.batch.listening import Listener, Progress, count, listener_of, make_ready, once
 from rockbatch.batch.plan import Plan
@@ -129,12 +129,15 @@ def run_into(
     wanted = _share(len(runs), *share) if share else range(len(runs))
     digest = study_digests(study, motions)
     info = what_was_run(study, motions, runs, digest, command)
-    with Journal(directory / PART, columns(study), digest, fresh) as journal:
+    with Journal(directory / PART, columns(study), digest, fresh, runs=len(runs), tell=listener.say) as journal:
         cost = None if fresh or len(journal) else cost_of_finished(directory, info)
         if cost is not None:
             what = f"{told(study, motions)} are finished in {directory}"
             listener.say(f"{what}; nothing is left to run (--fresh runs them again)")
             return finish(directory, study, motions, runs, info | cost, listener)
+        replaced = None if fresh or share else to_be_replaced(directory, study)
+        if replaced:
+            listener.say(f"{replaced}, will be replaced")
         of_share = f"; share {share[0]} of {share[1]} is {{}}" if share else ""
         with engine:
             every = count(len(to_simulate(runs, wanted)), "run")
@@ -145,8 +148,7 @@ def run_into(
                 f"{journal.path}: share {share[0]} of {share[1]} is finished; `rockbatch merge` joins the shares"
             )
             return None
-        write_peaks(journal, motions)
-        cost["wall_s"] = round(time.monotonic() - started, 3)
+        cost |= {"peaks": write_peaks(journal, motions), "wall_s": round(time.monotonic() - started, 3)}
         return finish(directory, study, motions, runs, info | cost, listener)
 
 
@@ -186,4 +188,7 @@ def told(study: Study, motions: MotionSet) -> str:
         "case": len(study.cases),
     }
     counted = [count(n, noun) for noun, n in factors.items() if n > 1 or noun in ("record", "case")]
+    stations = len({motion.of_station for motion in motions.motions})
+    if stations < factors["record"]:
+        counted[0] += f" of {count(stations, 'station')}"
     return f"{' × '.join(counted)} = {count(math.prod(factors.values()), 'run')}{once(study)}"

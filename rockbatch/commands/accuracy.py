@@ -4,7 +4,7 @@ import argparse
 from typing import TYPE_CHECKING
 
 from rockbatch.commands.analyses import tell_files
-from rockbatch.commands.messages import Terminal
+from rockbatch.commands.messages import Terminal, in_width, show
 from rockbatch.commands.options import add_study, folder, study_of
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ def main(arguments: argparse.Namespace) -> int:
     from rockbatch.analysis.accuracy import accuracy
 
     found = accuracy(study, folder(arguments), runs=arguments.runs, progress=Terminal())
-    print(shown(found.accuracy))
+    show(shown(found.accuracy))
     tell_files(found)
     return 0
 
@@ -69,4 +69,4 @@ def shown(table: "pd.DataFrame") -> str:
         }
     )
     settled = table["reference_change"].max()
-    return f"Error of theta_max/alpha (references to {settled:.0e})\n{cells.to_string(index=False)}"
+    return f"Error of theta_max/alpha (references to {settled:.0e})\n{in_width(cells, index=False)}"

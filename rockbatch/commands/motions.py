@@ -4,7 +4,8 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rockbatch.commands.messages import say
+from rockbatch.batch.listening import count
+from rockbatch.commands.messages import say, show
 
 if TYPE_CHECKING:
     from rockbatch.motions import LeftOut, Motion, MotionSet, Unusable
@@ -31,11 +32,19 @@ COLUMNS = (
     "processed",
     "check",
     "processing",
+    "event",
+    "station_name",
+    "direction",
+    "station",
 )
 """Of the CSV: a row for each record, then for each file that is not used, with the reason."""
 
 _SHOWN = {  # heads of the table in the terminal, and how their numbers are written
     "record": ("record", ""),
+    "event": ("event", ""),
+    "station_name": ("station", ""),
+    "direction": ("direction", ""),
+    "station": ("counts as", ""),
     "dt_s": ("dt [s]", "g"),
     "npts": ("npts", "d"),
     "duration_s": ("length [s]", ".2f"),
@@ -50,7 +59,7 @@ _SHOWN = {  # heads of the table in the terminal, and how their numbers are writ
     "file_h": ("horizontal", ""),
     "file_v": ("vertical", ""),
 }
-_TEXTS = ("record", "check", "file_h", "file_v")
+_TEXTS = ("record", "event", "station_name", "direction", "station", "check", "file_h", "file_v")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -81,12 +90,15 @@ def main(arguments: argparse.Namespace) -> int:
     rows = [_row(motion) for motion in found.motions]
     if arguments.csv:
         _write(arguments.csv, rows, found)
-    print(_table(rows))
-    _list("What was done", [(motion.name, note) for motion in found.motions for note in motion.notes])
-    _list("No vertical", [(name, "none beside it that fits") for name in found.without_vertical])
+    show(_table(rows))
+    _list("What was done", [(motion.named, note) for motion in found.motions for note in motion.notes])
+    lacking = [motion.named for motion in found.motions if motion.lacks_vertical]
+    _list("No vertical", [(name, "none beside it that fits") for name in lacking])
     _list("Not used", [(file.source, file.reason) for file in found.unusable])
     _list("Left out", [(file.source, file.reason) for file in found.left_out])
-    say(f"{len(found.motions)} records, {len(found.unusable)} files not used, {len(found.left_out)} left out")
+    stations = len({motion.of_station for motion in found.motions})
+    told = f"{len(found.motions)} records, {len(found.unusable)} files not used, {len(found.left_out)} left out"
+    say(f"{told}; {count(stations, 'station')}")
     if arguments.strict and found.unusable:
         return 2
     return 1 if found.unusable or not found.motions else 0
@@ -116,6 +128,10 @@ def _row(motion: "Motion") -> dict[str, Any]:
         "processed": None if motion.processed is None else ("yes" if motion.processed else "no"),
         "check": ", ".join(finding.what for finding in motion.findings) or None,
         "processing": "; ".join(motion.notes),
+        "event": motion.origin.event or None,
+        "station_name": motion.origin.station or None,
+        "direction": motion.origin.direction or None,
+        "station": motion.of_station,
     }
 
 
@@ -149,6 +165,6 @@ def _table(rows: list[dict[str, Any]]) -> str:
 
 def _list(title: str, entries: list[tuple[str, str]]) -> None:
     if entries:
-        print(f"\n{title}")
+        show(f"\n{title}")
         for name, words in entries:
-            print(f"  {name}: {words}")
+            show(f"  {name}: {words}")

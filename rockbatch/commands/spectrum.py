@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from rockbatch.batch.listening import count
 from rockbatch.commands.analyses import asked, tell_files
-from rockbatch.commands.messages import say
+from rockbatch.commands.messages import in_width, say, show
 from rockbatch.commands.options import add_engine, add_study, study_of
 
 if TYPE_CHECKING:
@@ -32,13 +32,13 @@ def main(arguments: argparse.Namespace) -> int:
     found = spectrum(study, **asked(arguments))
     failed = 0
     if found.spectra is not None and found.spectrum is not None and found.spectrum_suite is not None:
-        print(shown(found.spectrum_suite, found.spectra))
+        show(shown(found.spectrum_suite, found.spectra))
         failed = int((found.spectrum["status"] == "failed").sum())
         if failed:
             runs = count(len(found.spectrum), "run")
             say(f"{failed} of {runs} failed and count in no quantile; the column reason says why")
     if found.overturning_map is not None:
-        print(shown_maps(found.overturning_map, study.varied))
+        show(shown_maps(found.overturning_map, study.varied))
     tell_files(found)
     return 1 if failed or found.unusable else 0
 
@@ -64,7 +64,7 @@ def shown(suite: "pd.DataFrame", spectrum: "SpectrumSpec") -> str:
     cells = pd.DataFrame(columns).rename_axis(axis, axis="columns").fillna("")
     of = suite[axis].nunique()
     some = f", {len(lines)} of {of} values of {axis}" if len(lines) < of else ""
-    return f"Median of theta_max/alpha{some}; ∞: overturned or ended by flight\n{cells.to_string()}"
+    return f"Median of theta_max/alpha{some}; ∞: overturned or ended by flight\n{in_width(cells)}"
 
 
 def spread(values: "np.ndarray") -> "np.ndarray":

@@ -1,8 +1,9 @@
 """The table of Fig. 7 in the terminal: θ_max/α of every record in every case, a block for each pier."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from rockbatch.commands.messages import in_width
 from rockbatch.study import PIER_KEYS
 
 if TYPE_CHECKING:
@@ -13,13 +14,17 @@ MOST_RUNS = 1000
 """Larger studies are told by their worst runs."""
 
 
-def summary(table: "pd.DataFrame", varied: tuple[str, ...], records: Sequence[str]) -> str:
-    """Blocks of text, a line for each of ``records`` in their order, the status beside the value where it is not "ok"."""
+def summary(table: "pd.DataFrame", varied: tuple[str, ...], records: Mapping[str, str]) -> str:
+    """Blocks of text, a line for each of ``records`` in their order, the status beside the value where it is not "ok".
+
+    ``records`` has for each name in the table what is written in its place.
+    """
     runs = table[table["case"] != ""]
     if len(runs) > MOST_RUNS:
-        return _worst(runs, varied)
+        return _worst(runs.assign(record=runs["record"].map(records)), varied)
     place = {name: i for i, name in enumerate(records)}
     runs = runs.sort_values("record", key=lambda names: names.map(place), kind="stable")
+    runs = runs.assign(record=runs["record"].map(records))
     pier_keys = [name for name in varied if name in PIER_KEYS]
     case_keys = [name for name in varied if name not in PIER_KEYS]
     rows = ["record", *(name for name in ("polarity", "scale") if runs[name].nunique() > 1)]
@@ -37,11 +42,11 @@ def _worst(runs: "pd.DataFrame", varied: tuple[str, ...]) -> str:
     ended = ", ".join(f"{count} {status}" for status, count in runs["status"].value_counts().items())
     shown = ["record", "polarity", "scale", "case", *varied, "status", "theta_max_over_alpha", "theta_max_error"]
     largest = runs.nlargest(10, "theta_max_over_alpha")[shown]
-    return f"{len(runs)} runs: {ended}\nThe largest theta_max/alpha\n{largest.to_string(index=False)}"
+    return f"{len(runs)} runs: {ended}\nThe largest theta_max/alpha\n{in_width(largest, index=False)}"
 
 
 def other_law(table: "pd.DataFrame", varied: Sequence[str]) -> str:
-    """A warning where the settlement hangs on the spring law, by a tenth and a millimetre or more; empty elsewhere."""
+    """A warning where the settlement depends on the spring law, by a tenth and a millimetre or more; empty elsewhere."""
     import numpy as np
 
     if "settlement_other_law_m" not in table:
@@ -55,7 +60,7 @@ def other_law(table: "pd.DataFrame", varied: Sequence[str]) -> str:
     told = ["scale", *varied] if table["scale"].nunique() > 1 else varied
     which = f"{worst['record']}, {worst['case']} {named(told, [worst[name] for name in told])}".rstrip()
     return (
-        f"settlement hangs on the spring law in {int(differ.sum())} runs, most in {which}: "
+        f"the settlement depends on the spring law in {int(differ.sum())} runs, most in {which}: "
         f"{1000 * worst['settlement_m']:z.1f} mm, by the other law {1000 * worst['settlement_other_law_m']:z.1f} mm"
     )
 
@@ -71,7 +76,7 @@ def _block(runs: "pd.DataFrame", rows: list[str], case_keys: list[str]) -> str:
         if run["status"] != "ok":
             cell = f"{run['status']} {cell}"
         cells.setdefault(line, {})[f"{run['case']} {varied}".strip()] = cell
-    return pd.DataFrame.from_dict(cells, orient="index").fillna("").to_string()
+    return in_width(pd.DataFrame.from_dict(cells, orient="index").fillna(""))
 
 
 def named(keys: Iterable[str], values: Iterable[Any]) -> str:

@@ -7,6 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from rockbatch.errors import InputError
+from rockbatch.motions.origin import NOBODY_KNOWS, Origin
 
 Samples = npt.NDArray[np.float64]
 
@@ -77,8 +78,12 @@ class Motion:
         Whether its agency has corrected the horizontal component; ``None`` where the file does not say.
     findings : tuple of Finding
         What is odd about it, told when it was read.
+    origin : Origin
+        Event, station and direction in words, as far as its header says them.
     lacks_vertical : bool
         Whether a vertical component was asked for, and there is none.
+    station : str
+        What the components of one station in one earthquake share, which count as one record; empty for a record of its own.
 
     Raises ``InputError`` for samples that are no numbers and components of different lengths.
     """
@@ -97,7 +102,9 @@ class Motion:
     initial: Initial | None = None
     processed: bool | None = None
     findings: tuple[Finding, ...] = ()
+    origin: Origin = NOBODY_KNOWS
     lacks_vertical: bool = False
+    station: str = ""
 
     def __post_init__(self) -> None:
         wrong = []
@@ -125,9 +132,30 @@ class Motion:
             raise InputError(*wrong)
 
     @property
+    def label(self) -> str:
+        """What it is called among people: "Imperial Valley 1979, Meloland, 270"; its file where the header tells nothing."""
+        return self.origin.label or (self.name if self.source in ("", "pulse") else self.source)
+
+    @property
+    def named(self) -> str:
+        """Its label, with its name in tables beside it where that is another one."""
+        return self.label if self.label == self.name else f"{self.label} ({self.name})"
+
+    @property
+    def short(self) -> str:
+        """Likewise, of a label that fits into a line of a terminal beside numbers."""
+        short = self.origin.short.label
+        return f"{short} ({self.name})" if short else self.named
+
+    @property
     def files(self) -> str:
         """Where its components came from."""
         return ", ".join(source for source in (self.source, self.vertical_source) if source)
+
+    @property
+    def of_station(self) -> str:
+        """The record that it counts as: its station's, or its own."""
+        return self.station or self.name
 
     @property
     def npts(self) -> int:

@@ -10,9 +10,13 @@ from typing import Any, Literal, Self, get_args
 from rockbatch.errors import InputError
 from rockbatch.pier.block import Pier, not_positive
 from rockbatch.pier.restraints import Restraint, wrong_restraints
+from rockbatch.units import MOST
 
 LEAST_ETA = 1.000001
 """Closer to 1, Bouc–Wen springs would have to sink without end to carry the weight."""
+
+MOST_EXPONENT = 1000.0
+"""Of Bouc–Wen springs: the corner is as sharp as that of elastic–perfectly plastic ones, which have none."""
 
 MOST_ETA = 100.0
 """Beyond it a wrong unit is likelier than the support: foundations bear 2 to 20 times what they carry."""
@@ -25,7 +29,7 @@ WITH_EXPONENT: tuple[SpringLaw, ...] = ("bouc-wen",)
 """Laws that an exponent n belongs to; the others have a sharp corner."""
 
 OTHER_LAW: dict[SpringLaw, SpringLaw] = {"bouc-wen": "epp", "epp": "bouc-wen"}
-"""For each law the one that shows how much a settlement hangs on it (THEORY.md, 7)."""
+"""For each law the one that shows how much a settlement depends on it (THEORY.md, 7)."""
 
 EPSILON_AND_ZETA = "zeta is given too, and a damped support takes a landing without an impulse; keep one"
 """What is said of both."""
@@ -38,10 +42,12 @@ class RigidBase:
     ``restitution`` is the factor e on the angular velocity at an impact; ``None`` means :attr:`Pier.restitution`, Housner's
     e = 1 − 2μ/(1+μ) sin²α, which conserves the angular momentum about the new pivot, or 0 where that is negative.
     ``restraints`` are dampers and tendons that tie the pier to the ground.
+    ``friction``, if known, is the coefficient of the interface: a run says where its forces ask for more (THEORY.md, 7).
     """
 
     restitution: float | None = None
     restraints: tuple[Restraint, ...] = ()
+    friction: float | None = field(default=None, kw_only=True)
 
     name = "rigid"
 
@@ -63,6 +69,8 @@ class ElasticBase:
     zeta : float or None
         ζ, 0..1: a dashpot beside each spring, C = ζ M ω_v, by its share of critical damping of the vertical vibration. It
         takes the place of ε: a pivot that lands on a damped support is borne without an impulse.
+    friction : float, optional
+        Coefficient of the interface, if known: a run says where its forces ask for more, and goes on (THEORY.md, 7).
     """
 
     beta: float
@@ -70,6 +78,7 @@ class ElasticBase:
     kinematics: Kinematics = "first-order"
     flight: Flight = "stop"
     zeta: float | None = field(default=None, kw_only=True)
+    friction: float | None = field(default=None, kw_only=True)
 
     name = "elastic"
 
@@ -215,9 +224,10 @@ Base = RigidBase | ElasticBase | YieldingBase
 
 def problems(pier: Pier, base: Base) -> list[str]:
     """What is impossible about ``pier`` on ``base``: one sentence each, with the limit; empty if nothing."""
+    wrong = not_positive(friction=(base.friction, ", the coefficient of the interface"))
     if isinstance(base, RigidBase):
         e = base.restitution
-        wrong = wrong_restraints(pier, base.restraints)
+        wrong += wrong_restraints(pier, base.restraints)
         if e is not None and not 0 <= e <= 1:
             wrong.append(f"restitution = {e:g}: must be within 0..1 (leave it out for Housner's value)")
         return wrong
@@ -227,9 +237,10 @@ def problems(pier: Pier, base: Base) -> list[str]:
             "sink by themselves, the deck no longer moves level, and no one block stands for them (Makris & Vassiliou 2013); "
             'write base = "rigid", or leave columns out for a single pier'
         ]
-    wrong = []
     least = least_beta(pier, base)
-    if not (math.isfinite(base.beta) and base.beta > pier.least_beta):
+    if base.beta > MOST:
+        wrong.append(f"beta = {base.beta:g}: must be {MOST:g} at most")
+    elif not base.beta > pier.least_beta:
         wrong.append(
             f"beta = {base.beta:g}: the pier topples on its springs under its own weight; beta must be above "
             f"sqrt((1+mu) cos(alpha)/mu)/sin(alpha) = {pier.least_beta:.4g}"
@@ -249,14 +260,16 @@ def problems(pier: Pier, base: Base) -> list[str]:
     wrong += _unknown("kinematics", base.kinematics, get_args(Kinematics))
     wrong += _unknown("flight", base.flight, get_args(Flight))
     if isinstance(base, YieldingBase):
-        if not (math.isfinite(base.eta) and base.eta >= LEAST_ETA):
+        if base.eta > MOST:
+            wrong.append(f"eta = {base.eta:g}: must be {MOST:g} at most")
+        elif not base.eta >= LEAST_ETA:
             wrong.append(
                 f"eta = {base.eta:.10g}: the springs cannot carry the weight; eta = yield force over static force must "
                 f"be above 1 (at least {LEAST_ETA:.6f})"
             )
         wrong += _unknown("spring", base.spring, get_args(SpringLaw))
-        if not (math.isfinite(base.n) and base.n >= 1):
-            wrong.append(f"n = {base.n:g}: the Bouc–Wen exponent must be at least 1")
+        if not 1 <= base.n <= MOST_EXPONENT:
+            wrong.append(f"n = {base.n:g}: the Bouc–Wen exponent must be at least 1, and {MOST_EXPONENT:g} at most")
     return wrong
 
 

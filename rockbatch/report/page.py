@@ -2,16 +2,20 @@
 
 from collections.abc import Callable
 
-from rockbatch.report.compared import checks, difference, figures, only_in_one, pairs, studies, suites
+from rockbatch.report.compared import checks, difference, figures, inputs, only_in_one, pairs, studies, suites
 from rockbatch.report.contents import Contents
 from rockbatch.report.document import Section, document
 from rockbatch.report.pair import Pair
 from rockbatch.report.sections import (
     accuracy,
     answer,
+    distribution,
+    estimate,
+    forces,
     fragility,
     ground_motions,
     histories,
+    intensity,
     notes,
     peak_rotations,
     peaks,
@@ -21,6 +25,7 @@ from rockbatch.report.sections import (
     spectrum,
     statistics,
     studied,
+    target,
     unusable,
     verdicts,
 )
@@ -31,12 +36,17 @@ SECTIONS: tuple[Callable[[Contents], Section | None], ...] = (
     verdicts.section,
     published.section,
     peaks.section,
+    forces.section,
     statistics.section,
+    distribution.section,
+    intensity.section,
+    estimate.section,
     fragility.section,
     spectrum.section,
     sensitivity.section,
     histories.section,
     studied.section,
+    target.section,
     ground_motions.section,
     unusable.section,
     accuracy.section,
@@ -52,6 +62,7 @@ SECTIONS_OF_TWO: tuple[Callable[[Pair], Section | None], ...] = (
     pairs.section,
     suites.section,
     only_in_one.section,
+    inputs.section,
     difference.section,
 )
 """Those of two folders, from ``compared/``, in the order of the page."""

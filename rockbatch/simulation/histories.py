@@ -14,6 +14,7 @@ from rockbatch.results.columns import TERMS
 from rockbatch.results.outcome import Outcome
 from rockbatch.results.response import EVENT_TYPES, Response
 from rockbatch.simulation import restraints
+from rockbatch.simulation.forces import forces_table, impacts_table, observed
 from rockbatch.simulation.models import block, ground_of, least_substeps, springs
 from rockbatch.simulation.runs import Run, run_fixed, steps_of, written_run
 from rockbatch.simulation.settling import run_to_tolerance
@@ -48,6 +49,7 @@ def simulate(
     quiet_s: float = 2.0,
     case: str | None = None,
     ledger: bool = False,
+    forces: bool = False,
     wait: bool = True,
 ) -> Response:
     """Histories of one run.
@@ -66,6 +68,8 @@ def simulate(
         Name of the foundation; its kind by default.
     ledger : bool
         Keep the energy ledger too (THEORY.md, 9).
+    forces : bool
+        Keep the forces, and what lands at impacts, too (THEORY.md, 7).
     wait : bool
         Go on after ``quiet_s`` until nothing that comes later can exceed the peak; ``False``, with ``substeps``: end there.
 
@@ -83,6 +87,8 @@ def simulate(
         wrong.append(f"substeps = {substeps}: must be a whole number")
     if substeps is not None and not wrong and substeps < (least := least_substeps(pier, foundation, motion.dt)):
         wrong.append(f"substeps = {substeps}: must be a whole number of at least {least} for this pier and motion")
+    if forces and isinstance(foundation, RigidBase) and foundation.restraints:
+        wrong.append("forces = True: they are not told of piers with dampers or tendons")
     if substeps is None and not wait:
         wrong.append("wait = False: the error of a run that is cut off cannot be told; give substeps")
     if wrong:
@@ -92,7 +98,7 @@ def simulate(
     else:
         outcome = run_fixed(pier, foundation, motion, substeps, quiet_s, wait=wait)
     run = Run(pier, foundation, motion)
-    return histories(run, outcome, quiet_s, case or foundation.name, {}, ledger, wait=wait)
+    return histories(run, outcome, quiet_s, case or foundation.name, {}, ledger=ledger, forces=forces, wait=wait)
 
 
 def written(run: Run, outcome: Outcome, quiet_s: float, every_step: bool, wait: bool = True) -> np.recarray:
@@ -134,7 +140,9 @@ def histories(
     quiet_s: float,
     case: str,
     columns: dict[str, float | str],
+    *,
     ledger: bool = False,
+    forces: bool = False,
     polarity: str = "+",
     scale: float = 1.0,
     wait: bool = True,
@@ -154,6 +162,10 @@ def histories(
         table = pd.DataFrame(energies(run, rows)[shown], columns=list(TERMS))
         table.insert(0, "t", rows.t[shown])
     rows = rows[shown]
+    sized = landed = None
+    if forces:
+        moments, _ = observed(run, rows, steps=False)
+        sized, landed = forces_table(rows.t, moments, pier.gravity), impacts_table(rows, moments)
     devices = restraints.loops(pier, base, rows) if isinstance(base, RigidBase) and base.restraints else None
     state = _rigid_state(pier, base, rows) if isinstance(base, RigidBase) else _springs_state(pier, base, rows)
     t = rows.t.copy()
@@ -161,8 +173,9 @@ def histories(
     history = pd.DataFrame({"t": t, **state, "ag_h": _ground(motion.horizontal, motion.dt, t), "ag_v": vertical})
     events = pd.DataFrame(_events(rows, outcome.t_flight), columns=list(EVENT_TYPES)).astype(EVENT_TYPES)
     return Response(
-        motion.name, case, columns, pier, base, outcome.status, history, events, table, polarity, scale, devices
-    )
+        motion.name, case, columns, pier, base, outcome.status, history, events, table, polarity, scale, sized, landed,
+        devices,
+    )  # fmt: skip
 
 
 def _events(rows: np.recarray, t_flight: float | None) -> list[tuple[float, str, str, int, int]]:

@@ -37,7 +37,7 @@ def _share(value: Any) -> float:
 
 
 SENSITIVITY = {
-    "statistic": Key(choice(*(name for name, each in STATISTICS.items() if each.of and not each.source)), '"median"'),
+    "statistic": Key(choice(*(name for name, each in STATISTICS.items() if each.of and not each.code)), '"median"'),
     "overturned": Key(positive, "1.0"),
     "samples": Key(_power_of_two, "64"),
     "confidence": Key(_share, "0.95"),
@@ -72,7 +72,7 @@ SPREADS = {"uniform": UNIFORM, "log_uniform": LOG_UNIFORM, "choice": CHOICE}
 
 @dataclass(frozen=True)
 class Input:
-    """Something that the answer may hang on.
+    """Something that the answer may depend on.
 
     Attributes
     ----------

@@ -15,7 +15,7 @@ from studies import PADS, RIGID, SINE, study_text, write_study
 import rockbatch as rb
 from rockbatch.batch.carrying_out import carry_out
 from rockbatch.batch.journal import Journal
-from rockbatch.batch.kept_histories import keep_histories, kept, worst
+from rockbatch.batch.kept_histories import history_bytes, keep_histories, kept, worst
 from rockbatch.batch.plan import Plan
 from rockbatch.batch.threads import Threads
 from rockbatch.results import histories_file
@@ -40,7 +40,7 @@ STUDY = study_text(
         {"name": "elastic", "base": "elastic", "beta": 50},
         PADS | {"epsilon": 0.1, "spring": ["bouc-wen", "epp"]},
     ),
-    output={"histories": "all", "ledger": True},
+    output={"histories": "all", "ledger": True, "forces": True},
 )
 PIER = rb.Pier(0.2, 1.0)
 CREATED = "2007-06-25T10:00:00+00:00"
@@ -68,15 +68,18 @@ def results(tmp_path_factory):
     return rb.open_results(folder)
 
 
+TABLES = ("history", "events", "ledger", "forces", "impacts")
+
+
 def same(one, other):
     """Whether two responses are equal to the bit, types of columns included."""
-    for name in ("history", "events", "ledger"):
+    for name in TABLES:
         ours, theirs = getattr(one, name), getattr(other, name)
         if ours is None or theirs is None:
             assert ours is theirs
         else:
             pd.testing.assert_frame_equal(ours, theirs, check_exact=True)
-    frames = {"history": None, "events": None, "ledger": None}
+    frames = dict.fromkeys(TABLES)
     assert asdict(replace(one, **frames)) == asdict(replace(other, **frames))
     assert type(one.base) is type(other.base)
     return True
@@ -110,7 +113,9 @@ def test_every_response_comes_back_equal_to_the_bit(results):
         )  # fmt: skip
         if row.polarity == "-":
             motion = replace(motion, horizontal=-motion.horizontal)
-        again = simulate(response.pier, response.base, motion, substeps=int(row.substeps), case=row.case, ledger=True)
+        again = simulate(
+            response.pier, response.base, motion, substeps=int(row.substeps), case=row.case, ledger=True, forces=True
+        )
         columns = {"alpha": row.alpha} | ({"spring": row.spring} if row.case == "pads" else {})
         assert same(response, replace(again, columns=columns, polarity=row.polarity))
 
@@ -188,7 +193,7 @@ def test_flight_is_the_last_event_of_a_run_that_it_ends(tmp_path):
 
 
 def test_every_number_has_a_unit_and_a_length_that_fits(results):
-    """Units are those that pint reads; all columns of a run have as many rows as its time."""
+    """Units are those that pint reads; all columns of a run have as many rows as its time, or as it has impacts."""
     registry = pint.UnitRegistry()
     seen = set()
     with h5py.File(results.directory / "histories.h5") as file:
@@ -196,12 +201,15 @@ def test_every_number_has_a_unit_and_a_length_that_fits(results):
         def look(name, item):
             if isinstance(item, h5py.Dataset) and item.dtype.kind != "S":
                 seen.add(str(registry(item.attrs["unit"]).units if item.attrs["unit"] != "1" else "1"))
-                if "/events/" not in name:
-                    assert item.shape == file[f"{'/'.join(name.split('/')[:2])}/t"].shape
+                own = name.split("/")[2]
+                if own != "events":
+                    of = f"{'/'.join(name.split('/')[:2])}/{'impacts/t' if own == 'impacts' else 't'}"
+                    assert item.shape == file[of].shape
 
         file.visititems(look)
     assert seen == {
-        "second", "radian", "radian / second", "meter", "newton / kilogram", "joule / kilogram", "meter / second ** 2", "1"
+        "second", "radian", "radian / second", "meter", "newton / kilogram", "joule / kilogram", "meter / second ** 2",
+        "meter / second", "1",
     }  # fmt: skip
 
 
@@ -219,6 +227,8 @@ def test_the_file_says_what_it_is_and_what_made_it(results):
         assert set(run) == {
             "base",
             "events",
+            "forces",
+            "impacts",
             "ledger",
             "pier",
             "varied",
@@ -321,10 +331,36 @@ def test_worst_is_what_a_study_keeps_that_does_not_say(tmp_path):
         assert response.ledger is None
 
 
+def test_the_worst_runs_go_first_where_not_all_fit(tmp_path):
+    saved, study, runs = carried_out(tmp_path, STUDY.replace('histories = "all"\nledger = true\n', ""))
+    every = kept(study, runs, saved.peaks)
+    sizes = {number: history_bytes(runs[number], saved.peaks.iloc[number]) for number in every.numbers}
+    rotations = saved.peaks["theta_max_over_alpha"]
+    by_rotation = sorted(every.numbers, key=lambda number: -rotations[number])
+    room = sum(sizes[number] for number in by_rotation[:3]) + 1.0
+    chosen = kept(replace(study, output=replace(study.output, histories_MB=room / 1e6)), runs, saved.peaks)
+    assert len(every.numbers) > 4
+    assert every.left_out == 0
+    assert sorted(chosen.numbers) == sorted(by_rotation[:3])
+    assert chosen.left_out == len(every.numbers) - 3
+    least = kept(replace(study, output=replace(study.output, histories_MB=1e-9)), runs, saved.peaks)
+    assert least.numbers == by_rotation[:1]  # a report without any would show no history at all
+
+
+def test_the_size_of_histories_is_told_beforehand(tmp_path):
+    saved, study, runs = carried_out(tmp_path)
+    told = sum(
+        history_bytes(runs[number], saved.peaks.iloc[number]) for number in kept(study, runs, saved.peaks).numbers
+    )
+    path = keep_histories(saved, study, runs)
+    assert path is not None
+    assert told == pytest.approx(path.stat().st_size, rel=0.1)
+
+
 def test_runs_that_were_refused_have_no_history(tmp_path):
-    saved, study, _ = carried_out(tmp_path)
+    saved, study, runs = carried_out(tmp_path)
     saved.peaks.loc[1, ["status", "theta_max_over_alpha"]] = ["failed", np.nan]
-    assert kept(study, saved.peaks) == [0, *range(2, len(saved.peaks))]
+    assert kept(study, runs, saved.peaks).numbers == [0, *range(2, len(saved.peaks))]
 
 
 def test_a_history_too_long_for_memory_is_told_and_the_others_are_there(tmp_path):
@@ -340,7 +376,7 @@ def test_progress_is_told_after_every_run_that_is_kept(tmp_path):
     saved, study, runs = carried_out(tmp_path)
     calls = []
     keep_histories(saved, study, runs, lambda: calls.append(None))
-    assert len(calls) == len(kept(study, saved.peaks))
+    assert len(calls) == len(kept(study, runs, saved.peaks).numbers)
 
 
 # Choosing one

@@ -176,3 +176,26 @@ def test_random_hard_cases_on_damped_supports_agree_with_the_reference(block):
         assert abs(outcome.impacts - expected.impacts) <= 1, seed
         compared += 1
     assert compared >= 8
+
+
+@pytest.mark.parametrize("kinematics", ["first-order", "finite"])
+def test_the_forces_of_damped_supports_are_what_the_pier_feels(kinematics):
+    """N/M = g + v̈_g + v̈ by differences of v̇ between events; a free pivot has no force, and its gap closes at 0."""
+    base = ElasticBase(40.0, kinematics=kinematics, zeta=0.1)
+    motion = pulse("sine", 0.5, 1.0, dt=0.005, end=2.0)
+    response = rb.simulate(FIG5, base, motion, substeps=16, quiet_s=0.0, wait=False, forces=True)
+    table, v, t = response.forces, response.history["v"].to_numpy(), response.t
+    second = np.full(len(t), np.nan)
+    second[1:-1] = (v[2:] - 2.0 * v[1:-1] + v[:-2]) / 0.005**2
+    events = response.events["t"].to_numpy()
+    even = np.array([abs(t[i] - t[i - 1] - 0.005) + abs(t[i + 1] - t[i] - 0.005) < 1e-9 for i in range(1, len(t) - 1)])
+    apart = np.array([np.abs(events - each).min() > 0.02 for each in t[1:-1]])
+    found, expected = table["normal_force"].to_numpy()[1:-1], GRAVITY + second[1:-1]
+    sure = even & apart
+    assert sure.sum() > 100
+    np.testing.assert_allclose(found[sure], expected[sure], atol=0.01 * GRAVITY)
+    assert (response.history["force_left"] <= 1e-9).all()
+    for side in ("left", "right"):
+        gap = table[f"heel_gap_{side}"]
+        assert gap.min() > -1e-9
+        assert gap.max() > 1e-3
