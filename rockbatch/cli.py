@@ -21,7 +21,7 @@ from rockbatch.commands import (
     spectrum,
 )
 from rockbatch.commands.messages import say
-from rockbatch.commands.streams import is_lost
+from rockbatch.commands.streams import is_lost, open_missing
 from rockbatch.errors import AboutResults, InputError
 
 COMMANDS = {
@@ -41,6 +41,7 @@ COMMANDS = {
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; returns the exit code (0 fine, 1 some record or check failed, 2 wrong input, 130)."""
+    open_missing()
     parser = argparse.ArgumentParser(
         prog="rockbatch", description="Peak rotations of stepping bridge piers under a folder of ground motions."
     )

@@ -14,7 +14,7 @@ from rockbatch.results.columns import TERMS
 from rockbatch.results.outcome import Outcome
 from rockbatch.results.response import EVENT_TYPES, Response
 from rockbatch.simulation import restraints
-from rockbatch.simulation.forces import forces_table, impacts_table, observed
+from rockbatch.simulation.forces import at_rows, forces_table, impacts_table
 from rockbatch.simulation.models import block, ground_of, least_substeps, springs
 from rockbatch.simulation.runs import Run, run_fixed, steps_of, written_run
 from rockbatch.simulation.settling import run_to_tolerance
@@ -164,7 +164,7 @@ def histories(
     rows = rows[shown]
     sized = landed = None
     if forces:
-        moments, _ = observed(run, rows, steps=False)
+        moments = at_rows(run, rows)
         sized, landed = forces_table(rows.t, moments, pier.gravity), impacts_table(rows, moments)
     devices = restraints.loops(pier, base, rows) if isinstance(base, RigidBase) and base.restraints else None
     state = _rigid_state(pier, base, rows) if isinstance(base, RigidBase) else _springs_state(pier, base, rows)

@@ -150,13 +150,14 @@ def test_a_manifest_states_no_such_interval(tmp_path, key):
         read_motions(tmp_path)
 
 
-def test_a_scale_that_takes_a_record_beyond_all_numbers_costs_this_record_only(tmp_path):
+def test_a_scale_that_takes_a_record_beyond_all_numbers_costs_this_record_only(tmp_path, monkeypatch):
+    monkeypatch.setattr("rockbatch.motions.formats.HUGE", 1e10)
     write_at2(tmp_path, "a000.AT2", wiggle())
     write_at2(tmp_path, "b000.AT2", wiggle(seed=2))
-    (tmp_path / "motions.toml").write_text('[[record]]\nfile = "a000.AT2"\nscale = 1e305\n')
+    (tmp_path / "motions.toml").write_text('[[record]]\nfile = "a000.AT2"\nscale = 1e15\n')
     found = read_motions(tmp_path)
     assert names(found) == ["b000"]
-    assert "finite" in found.unusable[0].reason
+    assert "beyond 1e+10 m/s²" in found.unusable[0].reason
 
 
 @pytest.mark.parametrize("dt", [1e-5, 2e-5])
