@@ -32,7 +32,7 @@ from rockbatch.core.two_springs import (
     spring_run,
     static_state,
 )
-from rockbatch.core.types import BOUC_WEN, RIGHT, SURVIVED, Contact, Ground, Rocking
+from rockbatch.core.types import BOUC_WEN, RIGHT, SURVIVED, Contact, Ground, Rocking, Traits
 from rockbatch.motions import Motion
 from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase
 from rockbatch.simulation import block, ground_of, springs
@@ -40,6 +40,7 @@ from rockbatch.simulation import block, ground_of, springs
 BARE_STEPS = 200_000
 BARE_ROCKING = 1e-6  # [s]: of a bare step on the rigid base, so that the block stays on its corner
 PASSES = 10_000
+PLAIN = Traits(None, None, None)  # n = 5, first-order kinematics, undamped
 
 
 @numba.njit(error_model="numpy")
@@ -70,9 +71,9 @@ def passes(lanes_table, lines, ground, count):
     """All lanes from the start, ``count`` passes of tiny steps: no sample is reached, and nothing happens."""
     lanes = lanes_table[0]
     for i in range(len(lines)):
-        begin(lanes, i, i, lines, ground, None, None, True)
+        begin(lanes, i, i, lines, ground, PLAIN, True)
     for _ in range(count):
-        one_pass(lanes, len(lines), None, None)
+        one_pass(lanes, len(lines), PLAIN)
 
 
 def of_law(law: str, base: YieldingBase) -> ElasticBase:
@@ -95,7 +96,7 @@ def measure(law: str, motion: Motion, substeps: int, runs: int, repeats: int) ->
     models = [springs(TOWER, of_law(law, base)) for base in foundations(runs)]
     lines = [run_line(m, dt, substeps, quiet, 0, len(ground)) for m in models]
     stop = np.zeros(1, np.uint8)
-    ends = [spring_run(line) for line in rock_side_by_side(None, None, lines, ground, stop)]
+    ends = [spring_run(line) for line in rock_side_by_side(PLAIN, lines, ground, stop)]
     if any(end.status != SURVIVED for end in ends):
         raise SystemExit(f"{law}: a run ended early; its steps are no measure")
     steps = sum(round(end.t_end / dt * substeps) for end in ends)
@@ -113,7 +114,7 @@ def measure(law: str, motion: Motion, substeps: int, runs: int, repeats: int) ->
     alone = (m, static_state(m), Contact(1.0, 1.0, branch, branch, 0.0), ground, dt / substeps, BARE_STEPS)
     times = interleaved(
         {
-            "whole": lambda: rock_side_by_side(None, None, lines, ground, stop),
+            "whole": lambda: rock_side_by_side(PLAIN, lines, ground, stop),
             "bare": lambda: bare(*alone),
         },
         repeats,

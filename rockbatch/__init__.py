@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from rockbatch.checks import Rule
     from rockbatch.errors import InputError
     from rockbatch.motions import Motion, pulse, read_motions
-    from rockbatch.pier import ElasticBase, Part, Pier, RigidBase, YieldingBase
+    from rockbatch.pier import Damper, ElasticBase, Part, Pier, RigidBase, Tendon, YieldingBase
     from rockbatch.report import report
     from rockbatch.results.checking import check
     from rockbatch.results.opened import open_results
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from rockbatch.study import load_study
 
 _HOMES = {
+    "Damper": "rockbatch.pier",
     "ElasticBase": "rockbatch.pier",
     "InputError": "rockbatch.errors",
     "Motion": "rockbatch.motions",
@@ -30,6 +31,7 @@ _HOMES = {
     "Response": "rockbatch.results.response",
     "RigidBase": "rockbatch.pier",
     "Rule": "rockbatch.checks",
+    "Tendon": "rockbatch.pier",
     "YieldingBase": "rockbatch.pier",
     "accuracy": "rockbatch.analysis.accuracy",
     "check": "rockbatch.results.checking",
@@ -46,6 +48,7 @@ _HOMES = {
 }
 
 __all__ = [
+    "Damper",
     "ElasticBase",
     "InputError",
     "Motion",
@@ -54,6 +57,7 @@ __all__ = [
     "Response",
     "RigidBase",
     "Rule",
+    "Tendon",
     "YieldingBase",
     "accuracy",
     "check",

@@ -104,7 +104,7 @@ def _read_base(lanes, i, m):
 
 
 @kernel
-def done(lanes, i, exponent, finite):
+def done(lanes, i, traits):
     """How the run in lane ``i`` ended if it is over at this sample, RUNNING where it goes on; residuals are read."""
     waiting, sample = lanes.waiting, lanes.clock.sample[i]
     samples, longest = waiting.samples[i], waiting.longest[i]
@@ -113,7 +113,7 @@ def done(lanes, i, exponent, finite):
     wait, decided = waiting.read_wait[i], waiting.decided_at[i] >= 0.0
     if decided and wait == 0.0:  # nothing can change any more
         return RUNNING if sample < samples else SURVIVED
-    m = model_of(lanes, i, exponent, finite)
+    m = model_of(lanes, i, traits)
     if decided:
         if sample == waiting.last_read[i] + wait:
             _read_base(lanes, i, m)

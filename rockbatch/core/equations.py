@@ -1,5 +1,6 @@
 """Equations of motion of the pier on two springs, once for all contacts and both kinematics (THEORY.md)."""
 
+from rockbatch.core.creep import acceleration_of_top, creep_rate, forces, share_left, with_creep
 from rockbatch.core.kernel import inlined, kernel
 from rockbatch.core.laws import within_yield, z_rate
 from rockbatch.core.trigonometry import sine_and_cosine
@@ -35,8 +36,7 @@ def geometry(m, theta):
 @inlined
 def accelerations(m, y, contact, at, horizontal, vertical):
     """v̈ [m/s²] and θ̈ [rad/s²] of state ``y`` under ground accelerations [m/s²]; ``at`` is its geometry."""
-    force_left = m.yield_force * y.z_left
-    force_right = m.yield_force * y.z_right
+    force_left, force_right = forces(m, y, contact, at)
     side = contact.right - contact.left
     lever = at.lever + side * at.swing
     moment = -force_left * at.moment_left - force_right * at.moment_right - lever * horizontal
@@ -47,10 +47,12 @@ def accelerations(m, y, contact, at, horizontal, vertical):
     v_acceleration = -m.gravity - vertical - force_left - force_right
     if contact.held == 0.0:
         return v_acceleration, moment * (1.0 / (m.inertia + effective * effective))
-    # A held pivot neither lifts nor presses: its acceleration is zero (Filippov's sliding mode).
+    # A held pivot neither lifts nor presses: it goes with its support (Filippov's sliding mode).
     if contact.held < 0.0:
-        return v_acceleration, -(v_acceleration + at.bend_left * y.omega * y.omega) / at.arm_left
-    return v_acceleration, -(v_acceleration + at.bend_right * y.omega * y.omega) / at.arm_right
+        free = v_acceleration - acceleration_of_top(m, y.z_left)
+        return v_acceleration, -(free + at.bend_left * y.omega * y.omega) / at.arm_left
+    free = v_acceleration - acceleration_of_top(m, y.z_right)
+    return v_acceleration, -(free + at.bend_right * y.omega * y.omega) / at.arm_right
 
 
 @inlined
@@ -65,19 +67,21 @@ def rates(m, y, contact, horizontal, vertical):
         y.omega,
         v_acceleration,
         theta_acceleration,
-        z_rate(m, y.z_left, left, contact.left_yields),
-        z_rate(m, y.z_right, right, contact.right_yields),
+        creep_rate(m, z_rate(m, y.z_left, left, contact.left_yields), y.z_left, contact.left),
+        creep_rate(m, z_rate(m, y.z_right, right, contact.right_yields), y.z_right, contact.right),
     )
 
 
 @kernel
 def pivot_acceleration(m, y, contact, side, horizontal, vertical):
-    """Vertical acceleration [m/s²] of the pivot on ``side`` (LEFT or RIGHT)."""
+    """Vertical acceleration [m/s²] of the pivot on ``side`` (LEFT or RIGHT), from its support if that were without it."""
     at = geometry(m, y.theta)
     v_acceleration, theta_acceleration = accelerations(m, y, contact, at, horizontal, vertical)
     if side == LEFT:
-        return v_acceleration + at.arm_left * theta_acceleration + at.bend_left * y.omega * y.omega
-    return v_acceleration + at.arm_right * theta_acceleration + at.bend_right * y.omega * y.omega
+        away = v_acceleration - acceleration_of_top(m, y.z_left)
+        return away + at.arm_left * theta_acceleration + at.bend_left * y.omega * y.omega
+    away = v_acceleration - acceleration_of_top(m, y.z_right)
+    return away + at.arm_right * theta_acceleration + at.bend_right * y.omega * y.omega
 
 
 @inlined
@@ -98,17 +102,18 @@ def step(m, y, k1, contact, ground, h):
     half = 0.5 * h
     horizontal_middle = ground.horizontal + half * ground.horizontal_slope
     vertical_middle = ground.vertical + half * ground.vertical_slope
-    k2 = rates(m, _along(y, k1, half), contact, horizontal_middle, vertical_middle)
-    k3 = rates(m, _along(y, k2, half), contact, horizontal_middle, vertical_middle)
+    share = share_left(m, half)
+    k2 = rates(m, with_creep(m, _along(y, k1, half), y, contact, share), contact, horizontal_middle, vertical_middle)
+    k3 = rates(m, with_creep(m, _along(y, k2, half), y, contact, share), contact, horizontal_middle, vertical_middle)
     k4 = rates(
         m,
-        _along(y, k3, h),
+        with_creep(m, _along(y, k3, h), y, contact, share * share),
         contact,
         ground.horizontal + h * ground.horizontal_slope,
         ground.vertical + h * ground.vertical_slope,
     )
     sixth = h * (1.0 / 6.0)
-    return State(
+    end = State(
         y.v + sixth * (k1.v + 2.0 * (k2.v + k3.v) + k4.v),
         y.theta + sixth * (k1.theta + 2.0 * (k2.theta + k3.theta) + k4.theta),
         y.v_rate + sixth * (k1.v_rate + 2.0 * (k2.v_rate + k3.v_rate) + k4.v_rate),
@@ -118,6 +123,7 @@ def step(m, y, k1, contact, ground, h):
             y.z_right + sixth * (k1.z_right + 2.0 * (k2.z_right + k3.z_right) + k4.z_right), contact.right_yields
         ),
     )
+    return with_creep(m, end, y, contact, share * share)
 
 
 @kernel

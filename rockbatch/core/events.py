@@ -4,9 +4,10 @@ Each pivot has two signals. On its spring: −z (separation) and the spring law'
 yield). Free: the gap to the waiting support (landing). Held: the two conditions under which it stops being held.
 """
 
+from rockbatch.core.creep import acceleration_of_top, lag, top, velocity_of_top
 from rockbatch.core.equations import geometry, holding, pivot_acceleration, touching, without
 from rockbatch.core.kernel import inlined, kernel
-from rockbatch.core.laws import branch_when_pressed, kink
+from rockbatch.core.laws import branch_of_landing, kink
 from rockbatch.core.roots import falls
 from rockbatch.core.types import LEFT, RIGHT, Signals
 
@@ -40,14 +41,34 @@ def _gap(gap, velocity, acceleration, rest, rounding):
 
 
 @inlined
+def _compression(m, z, z_rate, velocity, acceleration):
+    """Force over F_y with which a pivot presses its support, and its rate [1/s]."""
+    if m.damped is None:
+        return -z, -z_rate
+    slower = lag(m)
+    rising = z_rate / slower + acceleration
+    if abs(rising) <= NO_ACCELERATION * m.gravity:
+        rising = 0.0
+    return -(z + slower * velocity), -slower * rising
+
+
+@inlined
+def _above(m, position, velocity, acceleration, support, z, rest):
+    """Gap [m] of a free pivot over its support, and the velocity [m/s] with which it opens."""
+    velocity -= velocity_of_top(m, z)
+    acceleration -= acceleration_of_top(m, z)
+    gap = _gap(position - top(m, support, z), velocity, acceleration, rest, NO_GAP * m.yield_deflection)
+    return gap, _velocity(velocity, acceleration, rest)
+
+
+@inlined
 def _on_spring(m, z, z_rate, yields, velocity, acceleration, rest):
     """Values and slopes of the two signals of a pivot on its spring."""
     if abs(velocity) <= rest:
         if abs(acceleration) <= NO_ACCELERATION * m.gravity:
             acceleration = 0.0
         z_rate = _velocity(velocity, acceleration, rest) * m.stiffness
-    contact = -z
-    contact_slope = -z_rate
+    contact, contact_slope = _compression(m, z, z_rate, velocity, acceleration)
     law, law_slope = kink(m.law, yields, z, z_rate, velocity, acceleration)
     return contact, contact_slope, law, law_slope
 
@@ -67,7 +88,6 @@ def signals(m, y, k, contact, rest_left, rest_right, rest, horizontal, vertical)
     left_velocity = y.v_rate + at.arm_left * y.omega
     right_velocity = y.v_rate + at.arm_right * y.omega
     turning = y.omega * y.omega
-    rounding = NO_GAP * m.yield_deflection
     left_acceleration = k.v_rate + at.arm_left * k.omega + at.bend_left * turning
     right_acceleration = k.v_rate + at.arm_right * k.omega + at.bend_right * turning
 
@@ -77,15 +97,15 @@ def signals(m, y, k, contact, rest_left, rest_right, rest, horizontal, vertical)
             m, y.z_left, k.z_left, contact.left_yields, left_velocity, left_acceleration, rest
         )
     else:
-        left = _gap(y.v + at.lift_left - rest_left, left_velocity, left_acceleration, rest, rounding)
-        left_slope = _velocity(left_velocity, left_acceleration, rest)
+        position = y.v + at.lift_left
+        left, left_slope = _above(m, position, left_velocity, left_acceleration, rest_left, y.z_left, rest)
     if contact.right != 0.0:
         right, right_slope, right_law, right_law_slope = _on_spring(
             m, y.z_right, k.z_right, contact.right_yields, right_velocity, right_acceleration, rest
         )
     else:
-        right = _gap(y.v + at.lift_right - rest_right, right_velocity, right_acceleration, rest, rounding)
-        right_slope = _velocity(right_velocity, right_acceleration, rest)
+        position = y.v + at.lift_right
+        right, right_slope = _above(m, position, right_velocity, right_acceleration, rest_right, y.z_right, rest)
     if contact.held < 0.0:
         left, left_law = _held(m, y, contact, LEFT, horizontal, vertical)
         left_slope = 0.0
@@ -103,12 +123,14 @@ def quiet(f0, d0, f1, d1, h):
 
 @kernel
 def settle(m, y, contact, side, horizontal, vertical):
-    """Contacts of a pivot that is at its support with no velocity: the accelerations decide.
+    """Contacts of a pivot that is at its support and goes as it does: the accelerations decide.
 
     Contact equations that press it down keep it there; else free ones that lift it let it go; else neither has a
     solution, and it is held (Filippov's sliding mode).
     """
-    yields = branch_when_pressed(m.law)
+    at = geometry(m, y.theta)
+    arm, z = (at.arm_left, y.z_left) if side == LEFT else (at.arm_right, y.z_right)
+    yields = branch_of_landing(m, z, y.v_rate + arm * y.omega)
     on = touching(contact, side, yields)
     if pivot_acceleration(m, y, on, side, horizontal, vertical) < 0.0:
         return on

@@ -7,6 +7,7 @@ step they are looked at once more, in its middle; runs that do not ask for it pa
 import math
 from typing import NamedTuple
 
+from rockbatch.core.creep import forces, top, velocity_of_top
 from rockbatch.core.equations import accelerations, geometry, rates
 from rockbatch.core.kernel import entry, kernel
 from rockbatch.core.observed import contact_of, ground_at, middle_of, state_of
@@ -99,14 +100,16 @@ def on_springs(m, deck, y, contact, waiting_left, waiting_right, horizontal, ver
         sine, cosine = sine_and_cosine(y.theta)
         swung = (deck - m.height) * (cosine * turning - sine * squared)
     shear = horizontal + lever * turning + bend * squared
-    left, right = -m.yield_force * y.z_left, -m.yield_force * y.z_right
+    pull_left, pull_right = forces(m, y, contact, at)
+    left, right = -pull_left, -pull_right
     free_left = 1.0 if contact.left == 0.0 and contact.held != LEFT else 0.0
     free_right = 1.0 if contact.right == 0.0 and contact.held != RIGHT else 0.0
-    gap_left = free_left * (y.v + at.lift_left - waiting_left)
-    gap_right = free_right * (y.v + at.lift_right - waiting_right)
+    gap_left = free_left * (y.v + at.lift_left - top(m, waiting_left, y.z_left))
+    gap_right = free_right * (y.v + at.lift_right - top(m, waiting_right, y.z_right))
     return Forces(
         shear, left + right, left, right, gap_left, gap_right,
-        free_left * (y.v_rate + at.arm_left * y.omega), free_right * (y.v_rate + at.arm_right * y.omega),
+        free_left * (y.v_rate + at.arm_left * y.omega - velocity_of_top(m, y.z_left)),
+        free_right * (y.v_rate + at.arm_right * y.omega - velocity_of_top(m, y.z_right)),
         shear + swung, at.lever * y.omega, y.v_rate, y.omega,
         _friction(m.gravity, shear, left + right), min(gap_left, gap_right),
     )  # fmt: skip
@@ -150,8 +153,11 @@ def forces_on_springs(m, deck, rows, ground, dt, has, out, greatest, firsts):
     for i in range(len(rows)):
         y, contact, t = state_of(rows[i]), contact_of(rows[i]), rows[i].t
         at = geometry(m, y.theta)
-        waiting_left = _waits(was, contact, LEFT, waiting_left, y.v + at.lift_left)
-        waiting_right = _waits(was, contact, RIGHT, waiting_right, y.v + at.lift_right)
+        # A damped support creeps back to where it is unstressed
+        left_at = y.v + at.lift_left - m.yield_deflection * y.z_left
+        right_at = y.v + at.lift_right - m.yield_deflection * y.z_right
+        waiting_left = _waits(was, contact, LEFT, waiting_left, left_at)
+        waiting_right = _waits(was, contact, RIGHT, waiting_right, right_at)
         was = contact
         t_start = rows[i - 1].t if i > 0 else t
         t_middle = 0.5 * (t_start + t)

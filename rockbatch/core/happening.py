@@ -188,7 +188,7 @@ def _held_step(lanes, i, m, contact, x, length):
 
 
 @kernel
-def look(lanes, i, exponent, finite, locate, ground, history, row):
+def look(lanes, i, traits, locate, ground, history, row):
     """The piece in which something may have happened.
 
     Returns
@@ -200,7 +200,7 @@ def look(lanes, i, exponent, finite, locate, ground, history, row):
     row : int
         Next row of the history.
     """
-    m, contact, clock = model_of(lanes, i, exponent, finite), contact_of(lanes, i), lanes.clock
+    m, contact, clock = model_of(lanes, i, traits), contact_of(lanes, i), lanes.clock
     x, length, h = clock.start[i], clock.length[i], clock.step[i]
     if contact.held != 0.0:
         _held_step(lanes, i, m, contact, x, length)

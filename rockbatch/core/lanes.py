@@ -121,7 +121,7 @@ def _lanes(tuple_type, without=()):
 _MOMENT = np.dtype([("at", "f8", LANES), ("values", _lanes(Signals)), ("slopes", _lanes(Signals))])
 
 LANE = np.dtype([
-    ("model", _lanes(Springs, without=("finite",))),
+    ("model", _lanes(Springs, without=("finite", "damped"))),
     ("motion", _lanes(Motion)),
     ("clock", _lanes(Clock)),
     ("now", _lanes(State)),
@@ -159,12 +159,13 @@ def move(cells, i, j):
 
 
 @inlined
-def model_of(lanes, i, exponent, finite):
-    """Springs of lane ``i``, of the types that ``exponent`` and ``finite`` tell (see :class:`Springs`)."""
+def model_of(lanes, i, traits):
+    """Springs of lane ``i``, of the types that ``traits`` tell (see :class:`Springs`)."""
     m = lanes.model
     return Springs(
         m.half_width[i], m.height[i], m.inertia[i], m.gravity[i], m.yield_deflection[i], m.stiffness[i],
-        m.yield_force[i], m.epsilon[i], m.law[i], m.guided[i], _typed(exponent, m.exponent[i]), finite,
+        m.yield_force[i], m.epsilon[i], m.damping[i], m.law[i], m.guided[i], _typed(traits.exponent, m.exponent[i]),
+        traits.finite, traits.damped,
     )  # fmt: skip
 
 

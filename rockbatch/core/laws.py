@@ -107,6 +107,13 @@ def branch_after_jump(law, yields, z, velocity, rest):
     return 1.0 if law == BOUC_WEN or z <= -1.0 else yields
 
 
+@inlined
+def branch_of_landing(m, z, velocity):
+    """Branch of a spring at ``z`` that a pivot meets with ``velocity`` [m/s]; a damped support may be met on its way up."""
+    loaded = branch_when_pressed(m.law)
+    return loaded if m.damped is None else branch_after_jump(m.law, loaded, z, velocity, 0.0)
+
+
 @kernel
 def number(n):
     """The exponent as a number; None stands for 5."""

@@ -8,6 +8,7 @@ nothing. What is left over tests the equations, the events and the impacts at on
 import math
 from typing import NamedTuple
 
+from rockbatch.core.creep import forces
 from rockbatch.core.equations import accelerations, geometry, rates
 from rockbatch.core.kernel import entry, kernel
 from rockbatch.core.observed import contact_of, ground_at, middle_of, state_of
@@ -27,6 +28,7 @@ class Energies(NamedTuple):
     impact: float
     p_delta: float
     constraint: float
+    damping: float
     remainder: float
 
 
@@ -49,15 +51,16 @@ def _stored(m, y, contact):
 
 @kernel
 def _powers(m, y, k, contact, horizontal, vertical):
-    """Power of input, plastic work, P–Δ and constraint [W/kg]."""
+    """Power of input, plastic work, P–Δ, constraint and the dashpots under the pivots [W/kg]."""
     at = geometry(m, y.theta)
-    force_left = m.yield_force * y.z_left
-    force_right = m.yield_force * y.z_right
+    left, right = y.v_rate + at.arm_left * y.omega, y.v_rate + at.arm_right * y.omega
     shaken = -horizontal * _lever(at, contact) * y.omega - vertical * y.v_rate
-    plastic = contact.left * force_left * (y.v_rate + at.arm_left * y.omega - m.yield_deflection * k.z_left)
-    plastic += contact.right * force_right * (y.v_rate + at.arm_right * y.omega - m.yield_deflection * k.z_right)
+    plastic = contact.left * m.yield_force * y.z_left * (left - m.yield_deflection * k.z_left)
+    plastic += contact.right * m.yield_force * y.z_right * (right - m.yield_deflection * k.z_right)
+    damping = m.damping * (contact.left * left * left + contact.right * right * right)
     p_delta = 0.0
     if m.finite is None:
+        force_left, force_right = forces(m, y, contact, at)
         p_delta = -m.height * y.theta * (force_left + force_right) * y.omega
     constraint = 0.0
     if contact.held != 0:
@@ -65,7 +68,15 @@ def _powers(m, y, k, contact, horizontal, vertical):
         _, free = accelerations(m, y, released, at, horizontal, vertical)
         lever = _lever(at, contact) if m.finite is not None else m.height
         constraint = (m.inertia + lever * lever) * (k.omega - free) * y.omega
-    return shaken, plastic, p_delta, constraint
+    return shaken, plastic, p_delta, constraint, damping
+
+
+@kernel
+def _crept(m, contact, y, y_end):
+    """Energy [J/kg] that supports without their pivots have lost to their dashpots: all that their springs had stored."""
+    left = (1.0 - contact.left) * (y.z_left * y.z_left - y_end.z_left * y_end.z_left)
+    right = (1.0 - contact.right) * (y.z_right * y.z_right - y_end.z_right * y_end.z_right)
+    return 0.5 * m.yield_force * m.yield_deflection * (left + right)
 
 
 @kernel
@@ -99,7 +110,7 @@ def ledger_on_springs(m, rows, ground, dt, out):
     """
     y = state_of(rows[0])
     kinetic0, potential0, elastic0 = _stored(m, y, contact_of(rows[0]))
-    shaken, plastic, impact, p_delta, constraint = 0.0, 0.0, 0.0, 0.0, 0.0
+    shaken, plastic, impact, p_delta, constraint, damping = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(1, len(rows)):
         y_end = state_of(rows[i])
         contact = contact_of(rows[i])
@@ -123,20 +134,21 @@ def ledger_on_springs(m, rows, ground, dt, out):
             k_end = rates(m, y_end, contact, ah_end, av_end)
             middle = middle_of(y, k, y_end, k_end, h)
             k_middle = rates(m, middle, contact, ah_middle, av_middle)
-            s0, w0, d0, c0 = _powers(m, y, k, contact, ah, av)
-            s1, w1, d1, c1 = _powers(m, middle, k_middle, contact, ah_middle, av_middle)
-            s2, w2, d2, c2 = _powers(m, y_end, k_end, contact, ah_end, av_end)
+            s0, w0, d0, c0, q0 = _powers(m, y, k, contact, ah, av)
+            s1, w1, d1, c1, q1 = _powers(m, middle, k_middle, contact, ah_middle, av_middle)
+            s2, w2, d2, c2, q2 = _powers(m, y_end, k_end, contact, ah_end, av_end)
             shaken += h / 6.0 * (s0 + 4.0 * s1 + s2)
             plastic += h / 6.0 * (w0 + 4.0 * w1 + w2)
             p_delta += h / 6.0 * (d0 + 4.0 * d1 + d2)
             constraint += h / 6.0 * (c0 + 4.0 * c1 + c2)
+            damping += h / 6.0 * (q0 + 4.0 * q1 + q2) + _crept(m, contact, y, y_end)
         kinetic, potential, elastic = _stored(m, y_end, contact)
         line = out[i]
         line.kinetic, line.potential, line.elastic = kinetic - kinetic0, potential - potential0, elastic - elastic0
         line.input, line.plastic, line.impact = shaken, plastic, impact
-        line.p_delta, line.constraint = p_delta, constraint
+        line.p_delta, line.constraint, line.damping = p_delta, constraint, damping
         stored = line.kinetic + line.potential + line.elastic
-        line.remainder = stored - shaken + plastic + impact - p_delta - constraint
+        line.remainder = stored - shaken + plastic + impact - p_delta - constraint + damping
         y = y_end
 
 

@@ -5,6 +5,7 @@ sums over lanes. Each lane has its own pier, motion, step and time, and its arit
 comes to the same bits in any company.
 """
 
+from rockbatch.core.creep import lag, top
 from rockbatch.core.equations import rates, step
 from rockbatch.core.kernel import inlined
 from rockbatch.core.lanes import (
@@ -36,8 +37,11 @@ def _clear(m, on_spring, yields, support, start, end, z, z_end, h):
     beyond = excess(start.velocity, end.velocity, h)
     beyond_z = beyond * m.stiffness
     contact = min(-z, -z_end) - beyond_z
+    if m.damped is not None:  # the dashpot pulls most where the parabola through both velocities and the way is highest
+        bulge = 1.5 * abs((end.position - start.position) / h - 0.5 * (start.velocity + end.velocity))
+        contact -= lag(m) * (max(start.velocity, end.velocity) + bulge)
     until_yield = 1.0 + (min(z, z_end) - beyond_z)
-    gap = min(start.position, end.position) - (support + beyond)
+    gap = min(start.position, end.position) - (top(m, support, z_end) + beyond)  # a support creeps up
     contact = min(contact, until_yield) if may_yield(m.law, yields) else contact
     return contact if on_spring != 0.0 else gap
 
@@ -50,9 +54,9 @@ def _new_low(on_spring, start, end, lowest, h):
 
 
 @inlined
-def _stepped(lanes, i, exponent, finite):
+def _stepped(lanes, i, traits):
     """Lane ``i`` over its piece of a step, on the branches that its springs are on."""
-    m = model_of(lanes, i, exponent, finite)
+    m = model_of(lanes, i, traits)
     y, k = state(lanes.now, i), state(lanes.rates, i)
     clock = lanes.clock
     end = step(m, y, k, _free(lanes, i), ground_of(lanes, i, clock.start[i]), clock.length[i])
@@ -69,9 +73,9 @@ def _free(lanes, i):
 
 
 @inlined
-def _turned(lanes, i, exponent, finite):
+def _turned(lanes, i, traits):
     """Whether the piece of lane ``i`` stands, and its end as reversals have made it."""
-    m = model_of(lanes, i, exponent, finite)
+    m = model_of(lanes, i, traits)
     y, end, contact, h = state(lanes.before, i), state(lanes.now, i), _free(lanes, i), lanes.clock.length[i]
     supports, rest = lanes.supports, lanes.motion.rest[i]
     (left, right), (left_end, right_end) = pivots(m, y), pivots(m, end)
@@ -122,9 +126,9 @@ def _turned(lanes, i, exponent, finite):
 
 
 @inlined
-def _closed(lanes, i, exponent, finite):
+def _closed(lanes, i, traits):
     """Rates at the end of the piece of lane ``i``; extremes and the clock, where it stands."""
-    m = model_of(lanes, i, exponent, finite)
+    m = model_of(lanes, i, traits)
     clock, extremes, news = lanes.clock, lanes.extremes, lanes.news[i]
     y, end, contact = state(lanes.before, i), state(lanes.now, i), _free(lanes, i)
     x, h, stands = clock.start[i], clock.length[i], news < EVENTFUL
@@ -166,14 +170,14 @@ def _closed(lanes, i, exponent, finite):
 
 
 @inlined
-def one_pass(lanes, count, exponent, finite):
+def one_pass(lanes, count, traits):
     """The first ``count`` lanes over their pieces of a step.
 
     Three loops, for what depends on each other within one is too long a chain for a processor to overlap two of them.
     """
     for i in range(count):
-        _stepped(lanes, i, exponent, finite)
+        _stepped(lanes, i, traits)
     for i in range(count):
-        _turned(lanes, i, exponent, finite)
+        _turned(lanes, i, traits)
     for i in range(count):
-        _closed(lanes, i, exponent, finite)
+        _closed(lanes, i, traits)

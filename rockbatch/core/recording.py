@@ -21,6 +21,7 @@ class Line(NamedTuple):
     stiffness: float
     yield_force: float
     epsilon: float
+    damping: float
     law: float
     guided: float
     exponent: float

@@ -108,6 +108,9 @@ def corrected(m, contact, y, left, right):
     turn = -1.0 / (m.inertia + lever * lever)
     v = -(way_left + way_right)
     theta = turn * (at.moment_left * way_left + at.moment_right * way_right)
+    if m.damped is not None:  # the dashpots' impulse on the way
+        push_left += m.damping * contact.left * (v + at.arm_left * theta)
+        push_right += m.damping * contact.right * (v + at.arm_right * theta)
     return State(
         y.v + v,
         y.theta + theta,

@@ -5,11 +5,12 @@ Written for the left pivot; at the right one, the mirror image is handled (Î¸ â†
 
 from typing import NamedTuple
 
+from rockbatch.core.creep import lag, velocity_of_top
 from rockbatch.core.equations import geometry, on_ground, touching, without
 from rockbatch.core.events import settle
 from rockbatch.core.impact import land, land_flat
 from rockbatch.core.kernel import kernel
-from rockbatch.core.laws import after_kink, branch_after_jump, branch_when_pressed
+from rockbatch.core.laws import after_kink, branch_after_jump, branch_of_landing, branch_when_pressed
 from rockbatch.core.types import (
     HELD_LEFT,
     HELD_RIGHT,
@@ -34,7 +35,7 @@ LAW_RIGHT = 3
 
 
 class Supports(NamedTuple):
-    """Unstressed positions [m] at which the supports of free pivots wait; of others they mean nothing."""
+    """Positions [m] at which the supports of free pivots are unstressed; of others they mean nothing."""
 
     left: float
     right: float
@@ -97,12 +98,13 @@ def handle(m, y, contact, supports, which, rest, horizontal, vertical):
 @kernel
 def _at_left(m, y, contact, supports, of_law, rest, horizontal, vertical):
     """:func:`handle` for the left pivot, of its contact or of its spring's law."""
-    loaded = branch_when_pressed(m.law)
     if contact.held == LEFT:
+        at = geometry(m, y.theta)
         if not of_law:
-            return y, touching(contact, LEFT, loaded), supports, HELD_LEFT
-        position = y.v + geometry(m, y.theta).lift_left
-        return y, without(contact, LEFT), Supports(position, supports.right), SEPARATION_LEFT
+            yields = branch_of_landing(m, y.z_left, y.v_rate + at.arm_left * y.omega)
+            return y, touching(contact, LEFT, yields), supports, HELD_LEFT
+        waiting = Supports(y.v + at.lift_left - m.yield_deflection * y.z_left, supports.right)
+        return y, without(contact, LEFT), waiting, SEPARATION_LEFT
     if of_law:  # the spring changes its branch
         yields, z = after_kink(m.law, contact.left_yields, y.z_left)
         changed = State(y.v, y.theta, y.v_rate, y.omega, z, y.z_right)
@@ -114,20 +116,24 @@ def _at_left(m, y, contact, supports, of_law, rest, horizontal, vertical):
 
 @kernel
 def _separation(m, y, contact, supports, rest, horizontal, vertical):
-    """The left pivot's spring is unstressed."""
+    """The left pivot's support bears nothing: from here on it stays, or creeps back as fast as the pivot rises."""
     at = geometry(m, y.theta)
-    unstressed = State(y.v, y.theta, y.v_rate, y.omega, 0.0, y.z_right)
-    waiting = Supports(y.v + at.lift_left, supports.right)
-    if y.v_rate + at.arm_left * y.omega > rest:
-        return unstressed, without(contact, LEFT), waiting, SEPARATION_LEFT
-    after = settle(m, unstressed, contact, LEFT, horizontal, vertical)
+    velocity = y.v_rate + at.arm_left * y.omega
+    z = 0.0 if m.damped is None else -lag(m) * max(velocity, 0.0)
+    unborne = State(y.v, y.theta, y.v_rate, y.omega, z, y.z_right)
+    waiting = Supports(y.v + at.lift_left - m.yield_deflection * z, supports.right)
+    if m.damped is None and velocity > rest:
+        return unborne, without(contact, LEFT), waiting, SEPARATION_LEFT
+    after = settle(m, unborne, contact, LEFT, horizontal, vertical)
     kind = HELD_LEFT if on_ground(after) == on_ground(contact) else SEPARATION_LEFT
-    return unstressed, after, waiting, kind
+    return unborne, after, waiting, kind
 
 
 @kernel
 def _landing(m, y, contact, supports, rest, horizontal, vertical):
     """The left pivot meets its support; the right one may land at the same instant."""
+    if m.damped is not None:
+        return _damped_landing(m, y, contact, supports, rest, horizontal, vertical)
     at = geometry(m, y.theta)
     velocity = y.v_rate + at.arm_left * y.omega
     loaded = branch_when_pressed(m.law)
@@ -147,6 +153,15 @@ def _landing(m, y, contact, supports, rest, horizontal, vertical):
         return landed, touching(contact, LEFT, loaded), supports, IMPACT_LEFT
     after = settle(m, landed, contact, LEFT, horizontal, vertical)
     return landed, after, Supports(y.v + at.lift_left, supports.right), IMPACT_LEFT
+
+
+@kernel
+def _damped_landing(m, y, contact, supports, rest, horizontal, vertical):
+    """The left pivot meets the top of its damped support: its dashpot bears it at once, without an impulse."""
+    velocity = y.v_rate + geometry(m, y.theta).arm_left * y.omega
+    if abs(velocity - velocity_of_top(m, y.z_left)) <= rest:
+        return y, settle(m, y, contact, LEFT, horizontal, vertical), supports, IMPACT_LEFT
+    return y, touching(contact, LEFT, branch_of_landing(m, y.z_left, velocity)), supports, IMPACT_LEFT
 
 
 @kernel

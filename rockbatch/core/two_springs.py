@@ -40,7 +40,7 @@ from rockbatch.core.recording import LINE, NO_HISTORY, RESULT, Line, write
 from rockbatch.core.records import LANES
 from rockbatch.core.search import ready, seek_turn
 from rockbatch.core.transitions import Supports
-from rockbatch.core.types import RUNNING, SAMPLE, SURVIVED, Contact, SpringRun, State
+from rockbatch.core.types import RUNNING, SAMPLE, SURVIVED, Contact, SpringRun, State, Traits
 from rockbatch.core.types import STEP as BETWEEN_SAMPLES
 
 NONE = np.int64(0)  # a literal 0 would have every function that it is handed to compiled twice
@@ -72,7 +72,8 @@ def _put_model(lanes, i, run):
     m = lanes.model
     m.half_width[i], m.height[i], m.inertia[i], m.gravity[i] = run.half_width, run.height, run.inertia, run.gravity
     m.yield_deflection[i], m.stiffness[i], m.yield_force[i] = run.yield_deflection, run.stiffness, run.yield_force
-    m.epsilon[i], m.law[i], m.guided[i], m.exponent[i] = run.epsilon, run.law, run.guided, run.exponent
+    m.epsilon[i], m.damping[i], m.law[i], m.guided[i] = run.epsilon, run.damping, run.law, run.guided
+    m.exponent[i] = run.exponent
 
 
 @kernel
@@ -94,11 +95,11 @@ def _put_start(lanes, i, number, run, m, y):
 
 
 @kernel
-def begin(lanes, i, number, runs, ground, exponent, finite, locate):
+def begin(lanes, i, number, runs, ground, traits, locate):
     """Run ``number`` into lane ``i``, in its static state."""
     run = runs[number]
     _put_model(lanes, i, run)
-    m = model_of(lanes, i, exponent, finite)
+    m = model_of(lanes, i, traits)
     y = static_state(m)
     _put_start(lanes, i, number, run, m, y)
     expect(lanes, i, run.quiet_samples, run.patience, run.read_after, run.read_wait)
@@ -115,9 +116,9 @@ def begin(lanes, i, number, runs, ground, exponent, finite, locate):
 
 
 @kernel
-def _finish(lanes, i, exponent, finite, status, t, row, results):
+def _finish(lanes, i, traits, status, t, row, results):
     """What the run in lane ``i`` comes to, into ``results``."""
-    m = model_of(lanes, i, exponent, finite)
+    m = model_of(lanes, i, traits)
     y, contact = state(lanes.now, i), contact_of(lanes, i)
     waiting, extremes, counts, plastic = lanes.waiting, lanes.extremes, lanes.counts, lanes.motion.plastic[i]
     t_read, base_left, base_right = waiting.read[i] * lanes.clock.dt[i], waiting.read_left[i], waiting.read_right[i]
@@ -148,41 +149,41 @@ def _finish(lanes, i, exponent, finite, status, t, row, results):
 
 
 @entry
-def _rock(exponent, finite, runs, ground, locate, every_step, history, stop, lanes_table, cells, results):
+def _rock(traits, runs, ground, locate, every_step, history, stop, lanes_table, cells, results):
     """All ``runs``, as :func:`rock_side_by_side` has them; ``results`` of those that are stopped stay as they are."""
     lanes, recording = lanes_table[0], history.shape[0] > 0
     waiting, count, row = NONE, NONE, NONE
     while True:
         while count < LANES and waiting < len(runs):
-            begin(lanes, count, waiting, runs, ground, exponent, finite, locate)
+            begin(lanes, count, waiting, runs, ground, traits, locate)
             waiting += 1
             row = write(history, row, 0.0, state(lanes.now, count), contact_of(lanes, count), SAMPLE)
-            status = done(lanes, count, exponent, finite)
+            status = done(lanes, count, traits)
             if status == RUNNING:
                 count += 1
             else:
-                _finish(lanes, count, exponent, finite, status, 0.0, row, results)
+                _finish(lanes, count, traits, status, 0.0, row, results)
         if count == 0 or stop[0] != 0:
             return
         while count == LANES or (count > 0 and waiting == len(runs)):
-            one_pass(lanes, count, exponent, finite)
+            one_pass(lanes, count, traits)
             i = NONE
             while i < count:
                 news, status, t = lanes.news[i], SURVIVED, 0.0
                 if news >= EVENTFUL:
-                    status, t, row = _eventful(lanes, i, exponent, finite, locate, ground, history, row)
+                    status, t, row = _eventful(lanes, i, traits, locate, ground, history, row)
                 elif news != CALM or recording:
-                    row = _stood(lanes, i, exponent, finite, history, row)
+                    row = _stood(lanes, i, traits, history, row)
                 if status == SURVIVED:  # and the step is done
                     if lanes.clock.substep[i] == 0.0:
                         _put_ground(lanes, i, ground)
                     status = RUNNING
                     if news >= DUE or recording:
-                        status, t, row = _step_done(lanes, i, exponent, finite, every_step, history, row, results)
+                        status, t, row = _step_done(lanes, i, traits, every_step, history, row, results)
                 if status == RUNNING:
                     i += 1
                 else:
-                    _finish(lanes, i, exponent, finite, status, t, row, results)
+                    _finish(lanes, i, traits, status, t, row, results)
                     count -= 1
                     move(cells, count, i)
             if stop[0] != 0:
@@ -190,13 +191,13 @@ def _rock(exponent, finite, runs, ground, locate, every_step, history, stop, lan
 
 
 @kernel
-def _eventful(lanes, i, exponent, finite, locate, ground, history, row):
+def _eventful(lanes, i, traits, locate, ground, history, row):
     """The piece of lane ``i`` in which something may have happened; see :func:`rockbatch.core.happening.look`."""
     clock = lanes.clock
     turned = lanes.news[i] == TURNED and lanes.verdict[i] == SEARCH
-    if turned and seek_turn(lanes, i, model_of(lanes, i, exponent, finite)):
+    if turned and seek_turn(lanes, i, model_of(lanes, i, traits)):
         return RUNNING, 0.0, row
-    status, t, row = look(lanes, i, exponent, finite, locate, ground, history, row)
+    status, t, row = look(lanes, i, traits, locate, ground, history, row)
     if status == SURVIVED and clock.substep[i] == clock.substeps[i]:
         clock.sample[i] += 1.0
         clock.sample_time[i] = clock.sample[i] * clock.dt[i]
@@ -207,9 +208,9 @@ def _eventful(lanes, i, exponent, finite, locate, ground, history, row):
 
 
 @kernel
-def _stood(lanes, i, exponent, finite, history, row):
+def _stood(lanes, i, traits, history, row):
     """What a step that stands has left to do in lane ``i``: next row of the history."""
-    m, clock = model_of(lanes, i, exponent, finite), lanes.clock
+    m, clock = model_of(lanes, i, traits), lanes.clock
     sample_time = (clock.sample[i] - 1.0) * clock.dt[i] if clock.substep[i] == 0.0 else clock.sample_time[i]
     t = sample_time + clock.began[i]
     if lanes.extremes.new[i] > 0.0:
@@ -222,7 +223,7 @@ def _stood(lanes, i, exponent, finite, history, row):
 
 
 @kernel
-def _step_done(lanes, i, exponent, finite, every_step, history, row, results):
+def _step_done(lanes, i, traits, every_step, history, row, results):
     """A row of the history, and what is due at a sample: status (RUNNING while the run goes on), time, next row."""
     clock = lanes.clock
     sampled, t = clock.substep[i] == 0.0, clock.sample_time[i] + clock.start[i]
@@ -232,7 +233,7 @@ def _step_done(lanes, i, exponent, finite, every_step, history, row, results):
     if not sampled or clock.sample[i] < clock.due[i]:
         return RUNNING, t, row
     _turn_window(lanes, i, results)
-    status = done(lanes, i, exponent, finite)
+    status = done(lanes, i, traits)
     clock.due[i] = min(lanes.extremes.next_window[i], next_due(lanes, i))
     return status, t, row
 
@@ -251,16 +252,21 @@ def _turn_window(lanes, i, results):
 def run_line(m, *timing):
     """Line of a run of the pier ``m`` (Springs); ``timing`` is what Line has from ``dt`` on."""
     exponent = 5.0 if m.exponent is None else float(m.exponent)
-    return Line(*m[:-2], exponent, *timing)
+    return Line(*m[:-3], exponent, *timing)
 
 
-def rock_side_by_side(exponent, finite, lines, ground, stop, locate=True, every_step=False, history=NO_HISTORY):
+def traits_of(m):
+    """Traits of the pier ``m`` (Springs)."""
+    return Traits(m.exponent, m.finite, m.damped)
+
+
+def rock_side_by_side(traits, lines, ground, stop, locate=True, every_step=False, history=NO_HISTORY):
     """Runs of piers on two springs, as many at a time as there are lanes.
 
     Parameters
     ----------
-    exponent, finite
-        Of all their Springs: what their types tell, a float, an int or None, True or None.
+    traits : Traits
+        Of all their Springs, by type.
     lines : sequence of Line
     ground : ndarray, shape (rows, 4)
         Of :func:`rockbatch.core.ground.ground_rows`, of all their motions.
@@ -284,7 +290,7 @@ def rock_side_by_side(exponent, finite, lines, ground, stop, locate=True, every_
     results = np.recarray(len(lines), RESULT)
     results.status, results.extremes = RUNNING, np.nan
     lanes, cells = table()
-    _rock(exponent, finite, lines, ground, locate, every_step, history, stop, lanes, cells, results)
+    _rock(traits, lines, ground, locate, every_step, history, stop, lanes, cells, results)
     return results
 
 
@@ -297,7 +303,7 @@ def rock_on_springs(m, horizontal, vertical, dt, substeps, quiet_samples, histor
     lines = [run_line(m, dt, substeps, quiet_samples, 0, len(horizontal))]
     ground = ground_rows(horizontal, vertical, dt)
     never = np.zeros(1, np.uint8)
-    return spring_run(rock_side_by_side(m.exponent, m.finite, lines, ground, never, locate, every_step, history)[0])
+    return spring_run(rock_side_by_side(traits_of(m), lines, ground, never, locate, every_step, history)[0])
 
 
 def spring_run(result):

@@ -47,8 +47,8 @@ NEITHER = 0.0  # of the corners about which a block could rock: it rests on both
 class Springs(NamedTuple):
     """A pier on two springs, per unit mass (symbols: THEORY.md).
 
-    The last two are told apart by their types, hence when kernels are compiled: a call of ``pow``, ``sin`` or ``cos``
-    in an unused branch would cost the common model, n = 5 and first-order, its vector instructions.
+    The last three are told apart by their types, hence when kernels are compiled: a call of ``pow``, ``sin`` or ``cos``
+    in an unused branch would cost the common model, n = 5, first-order and undamped, its vector instructions.
     """
 
     half_width: float  # b [m]
@@ -58,11 +58,21 @@ class Springs(NamedTuple):
     yield_deflection: float  # δ_y [m]; the static deflection for elastic springs
     stiffness: float  # K/F_y = 1/δ_y [1/m]
     yield_force: float  # F_y/M [m/s²]
-    epsilon: float  # restitution of the landing pivot
+    epsilon: float  # restitution of the landing pivot; 1 for damped supports, whose dashpots lose the energy
+    damping: float  # C/M = ζ ω_v of each support's dashpot [1/s]
     law: float  # ELASTIC, BOUC_WEN or EPP
     guided: float  # 1: flight goes on, 0: it ends the run
     exponent: float | int | None  # n of Bouc–Wen; None for the paper's 5, int for other whole numbers up to 10
     finite: bool | None  # True: finite kinematics; None: first-order
+    damped: bool | None = None  # True: a dashpot beside each spring; None: none
+
+
+class Traits(NamedTuple):
+    """What kernels are compiled for: the types of these fields of Springs; their values do not matter."""
+
+    exponent: float | int | None
+    finite: bool | None
+    damped: bool | None
 
 
 class Block(NamedTuple):

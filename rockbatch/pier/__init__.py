@@ -1,6 +1,7 @@
 """The pier and what it stands on: a rigid block and three kinds of base (Palmeri & Makris 2007)."""
 
 from rockbatch.pier.bases import (
+    EPSILON_AND_ZETA,
     LEAST_ETA,
     MOST_ETA,
     WITH_EXPONENT,
@@ -13,7 +14,7 @@ from rockbatch.pier.bases import (
     YieldingBase,
     beta_of,
     eta_of,
-    highest_frequency,
+    fastest,
     in_kilonewtons,
     least_beta,
     problems,
@@ -24,29 +25,38 @@ from rockbatch.pier.bases import (
     yield_deflection,
 )
 from rockbatch.pier.block import Part, Pier, described
+from rockbatch.pier.restraints import Damper, DamperKind, Restraint, Tendon, offsets, recentres, symmetric
 
 __all__ = [
+    "EPSILON_AND_ZETA",
     "LEAST_ETA",
     "MOST_ETA",
     "WITH_EXPONENT",
     "Base",
+    "Damper",
+    "DamperKind",
     "ElasticBase",
     "Flight",
     "Kinematics",
     "Part",
     "Pier",
+    "Restraint",
     "RigidBase",
     "SpringLaw",
+    "Tendon",
     "YieldingBase",
     "beta_of",
     "described",
     "eta_of",
-    "highest_frequency",
+    "fastest",
     "in_kilonewtons",
     "least_beta",
+    "offsets",
     "problems",
+    "recentres",
     "rocking_frequency",
     "static_deflection",
+    "symmetric",
     "tilt_over_residual",
     "vertical_frequency",
     "yield_deflection",

@@ -9,6 +9,7 @@ from typing import Any, Literal, Self, get_args
 
 from rockbatch.errors import InputError
 from rockbatch.pier.block import Pier, not_positive
+from rockbatch.pier.restraints import Restraint, wrong_restraints
 from rockbatch.units import MOST
 
 LEAST_ETA = 1.000001
@@ -30,6 +31,9 @@ WITH_EXPONENT: tuple[SpringLaw, ...] = ("bouc-wen",)
 OTHER_LAW: dict[SpringLaw, SpringLaw] = {"bouc-wen": "epp", "epp": "bouc-wen"}
 """For each law the one that shows how much a settlement depends on it (THEORY.md, 7)."""
 
+EPSILON_AND_ZETA = "zeta is given too, and a damped support takes a landing without an impulse; keep one"
+"""What is said of both."""
+
 
 @dataclass(frozen=True)
 class RigidBase:
@@ -37,10 +41,12 @@ class RigidBase:
 
     ``restitution`` is the factor e on the angular velocity at an impact; ``None`` means :attr:`Pier.restitution`, Housner's
     e = 1 − 2μ/(1+μ) sin²α, which conserves the angular momentum about the new pivot, or 0 where that is negative.
+    ``restraints`` are dampers and tendons that tie the pier to the ground.
     ``friction``, if known, is the coefficient of the interface: a run says where its forces ask for more (THEORY.md, 7).
     """
 
     restitution: float | None = None
+    restraints: tuple[Restraint, ...] = ()
     friction: float | None = field(default=None, kw_only=True)
 
     name = "rigid"
@@ -60,6 +66,9 @@ class ElasticBase:
         The paper's equations, or those that hold for large rotations.
     flight : "stop" or "guided"
         What happens when both pivots are off the ground: the analysis ends, or shear keys guide the pier down.
+    zeta : float or None
+        ζ, 0..1: a dashpot beside each spring, C = ζ M ω_v, by its share of critical damping of the vertical vibration. It
+        takes the place of ε: a pivot that lands on a damped support is borne without an impulse.
     friction : float, optional
         Coefficient of the interface, if known: a run says where its forces ask for more, and goes on (THEORY.md, 7).
     """
@@ -68,6 +77,7 @@ class ElasticBase:
     epsilon: float = 0.0
     kinematics: Kinematics = "first-order"
     flight: Flight = "stop"
+    zeta: float | None = field(default=None, kw_only=True)
     friction: float | None = field(default=None, kw_only=True)
 
     name = "elastic"
@@ -191,9 +201,22 @@ def rocking_frequency(pier: Pier, base: ElasticBase) -> float:
     return math.sqrt(max(stiffness, 0.0) / (1 + mu * math.cos(alpha) ** 2))
 
 
-def highest_frequency(pier: Pier, base: ElasticBase) -> float:
-    """Greatest circular frequency [rad/s] in full contact: vertical, ω_v, or rocking."""
-    return max(vertical_frequency(pier, base), rocking_frequency(pier, base))
+def fastest(pier: Pier, base: ElasticBase) -> float:
+    """Greatest rate [rad/s] in full contact: of vertical vibration or rocking, or of what decays where they creep.
+
+    A vibration ω with the damping d, its decay's rate, has ω as its rate as long as d < ω, and d + √(d² − ω²) beyond;
+    d is ζ ω_v of the vertical one, and ζ ω_v μ sin²α/(1 + μ cos²α) of rocking (THEORY.md, 4).
+    """
+    damping = (base.zeta or 0.0) * vertical_frequency(pier, base)
+    share = pier.mu * math.sin(pier.alpha) ** 2 / (1 + pier.mu * math.cos(pier.alpha) ** 2)
+
+    def rate(omega: float, decay: float) -> float:
+        return omega if decay <= omega else decay + math.sqrt(decay**2 - omega**2)
+
+    return max(
+        rate(vertical_frequency(pier, base), damping),
+        rate(rocking_frequency(pier, base), damping * share),
+    )
 
 
 Base = RigidBase | ElasticBase | YieldingBase
@@ -204,6 +227,7 @@ def problems(pier: Pier, base: Base) -> list[str]:
     wrong = not_positive(friction=(base.friction, ", the coefficient of the interface"))
     if isinstance(base, RigidBase):
         e = base.restitution
+        wrong += wrong_restraints(pier, base.restraints)
         if e is not None and not 0 <= e <= 1:
             wrong.append(f"restitution = {e:g}: must be within 0..1 (leave it out for Housner's value)")
         return wrong
@@ -227,6 +251,10 @@ def problems(pier: Pier, base: Base) -> list[str]:
             f"beta = {base.beta:g}: the least push topples the pier, because Bouc–Wen springs near their yield force "
             f"(eta = {base.eta:g}, n = {base.n:g}) give way on the loaded side; beta must be above {least:.4g}"
         )
+    if base.zeta is not None and not 0 <= base.zeta <= 1:
+        wrong.append(f"zeta = {base.zeta:g}: damping of the supports, as a share of critical, must be within 0..1")
+    if base.zeta is not None and base.epsilon != 0:
+        wrong.append(f"epsilon = {base.epsilon:g}: {EPSILON_AND_ZETA}")
     if not 0 <= base.epsilon <= 1:
         wrong.append(f"epsilon = {base.epsilon:g}: the landing pivot's restitution must be within 0..1")
     wrong += _unknown("kinematics", base.kinematics, get_args(Kinematics))

@@ -21,6 +21,7 @@ SYMBOLS = {
     "beta": ("β", ""),
     "eta": ("η", ""),
     "epsilon": ("ε", ""),
+    "zeta": ("ζ", ""),
     "n": ("n", ""),
     "restitution": ("e", ""),
     "stiffness_kN_m": ("K", "kN/m"),
@@ -32,7 +33,7 @@ SYMBOLS = {
     "top_m": ("top", "m"),
 }
 BASE_KEYS = (
-    "beta", "stiffness_kN_m", "eta", "yield_kN", "epsilon", "spring", "n", "kinematics", "flight", "restitution",
+    "beta", "stiffness_kN_m", "eta", "yield_kN", "epsilon", "zeta", "spring", "n", "kinematics", "flight", "restitution",
     "friction",
 )  # fmt: skip
 SAME = {"beta": "stiffness_kN_m", "eta": "yield_kN"}

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from rockbatch.checks.suite import MIRROR_OF, OTHER_LAW
 from rockbatch.motions import Motion, MotionSet
-from rockbatch.pier import Pier
+from rockbatch.pier import Damper, Pier, Restraint, RigidBase, Tendon
 from rockbatch.results.outcome import Outcome
 from rockbatch.study import Case, Study
 
@@ -23,7 +23,18 @@ PEAKS = "peaks.csv"
 PART = f"{PEAKS}.part"
 """Finished runs of a table that is under way."""
 
-TERMS = ("kinetic", "potential", "elastic", "input", "plastic", "impact", "p_delta", "constraint", "remainder")
+TERMS = (
+    "kinetic",
+    "potential",
+    "elastic",
+    "input",
+    "plastic",
+    "impact",
+    "p_delta",
+    "constraint",
+    "damping",
+    "remainder",
+)
 """Terms of the energy ledger, in the order in which the core returns them."""
 
 STATUSES = ("ok", "overturned", "flight", "failed")
@@ -269,6 +280,48 @@ MORE = (
 )  # fmt: skip
 """Columns that follow those of the varied keys. A table of an earlier version may lack the last of them."""
 
+
+def _device(name: str, meaning: str, field: str, unit: str, page: OnPage, kind: type[Restraint]) -> Column:
+    """A column of studies that have dampers, or tendons."""
+
+    def has(study: Study) -> bool:
+        bases = (case.base for case in study.cases)
+        return any(isinstance(each, kind) for base in bases if isinstance(base, RigidBase) for each in base.restraints)
+
+    number: Literal["number", "count"] = "count" if field == "tendon_slack" else "number"
+    return Column(name, meaning, field, unit, page, number, sometimes=True, asked=has)
+
+
+DEVICES = (
+    _device(
+        "damper_force_over_weight", "greatest force of a damper over the pier's weight", "damper_force", "1",
+        OnPage("damper F/(M g)", ".4f"), Damper,
+    ),
+    _device(
+        "damper_stroke_m", "greatest elongation of a damper", "damper_stroke", "m",
+        OnPage("damper stroke [mm]", ".1f", 1000), Damper,
+    ),
+    _device(
+        "damper_speed_m_s", "greatest speed of a damper", "damper_speed", "m/s", OnPage("damper speed [m/s]", ".3f"),
+        Damper,
+    ),
+    _device(
+        "damper_energy_J_kg", "energy that all dampers take, per unit mass of the pier", "damper_energy", "J/kg",
+        OnPage("dampers [J/kg]", ".4f"), Damper,
+    ),
+    _device(
+        "tendon_force_over_weight", "greatest force of a tendon over the pier's weight", "tendon_force", "1",
+        OnPage("tendon T/(M g)", ".4f"), Tendon,
+    ),
+    _device(
+        "tendon_yield_m", "by how much the tendon that yielded most is longer for good", "tendon_yield", "m",
+        OnPage("tendon yield [mm]", ".2f", 1000), Tendon,
+    ),
+    _device(
+        "tendon_slack", "how often tendons went slack", "tendon_slack", "1", OnPage("slack", ".0f"), Tendon,
+    ),
+)  # fmt: skip
+"""Of dampers and tendons."""
 _ITSELF = "the same, not over the mass, where that is known"
 _PIVOT = "greatest force of each support over half the weight, z η on yielding springs; of a rigid base, where it bears all of N"
 _GAP = "heel gap: greatest height of each pivot above where its support waits, the stroke of a key or damper"
@@ -344,6 +397,7 @@ ASKED = (
         "settlement_other_law", "m", OnPage("by the other law [mm]", ".2f", 1000, "settlement_m"), bases=YIELDING,
         stood=True, asked=lambda study: study.output.both_laws,
     ),
+    *DEVICES,
     *map(_energy, TERMS),
     *_FORCES,
 )  # fmt: skip

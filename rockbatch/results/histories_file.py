@@ -16,6 +16,7 @@
 Every dataset of numbers has an attribute ``unit``; "1" is none.
 """
 
+import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict
@@ -28,7 +29,7 @@ import numpy as np
 
 from rockbatch.errors import InputError
 from rockbatch.files import opened, replacing
-from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase
+from rockbatch.pier import Damper, ElasticBase, Pier, Restraint, RigidBase, Tendon, YieldingBase
 from rockbatch.results.columns import TERMS
 from rockbatch.results.hdf5 import array_in, attribute, attributes_of, group_in
 from rockbatch.results.response import EVENT_TYPES, FORCE_UNITS, IMPACT_UNITS, Response
@@ -113,7 +114,10 @@ def _write(group: "h5py.Group", response: Response) -> None:
     _set(group, {name: getattr(response, name) for name in _OF_RUN})
     _set(group.create_group("varied"), response.columns)
     _set(group.create_group("pier"), asdict(response.pier))
-    _set(group.create_group("base"), {"name": response.base.name} | asdict(response.base))
+    base = {"name": response.base.name} | asdict(response.base)
+    if isinstance(response.base, RigidBase):
+        base["restraints"] = json.dumps([asdict(each) for each in response.base.restraints])
+    _set(group.create_group("base"), base)
     rigid = isinstance(response.base, RigidBase)
     for name, unit in UNITS.items():
         if not (rigid and name in OF_SPRINGS):
@@ -124,6 +128,10 @@ def _write(group: "h5py.Group", response: Response) -> None:
             events[name] = np.array(response.events[name], dtype="S16")
         else:
             _put(events, name, response.events[name].to_numpy(), UNITS.get(name, "1"))
+    if response.restraints is not None:
+        restraints = group.create_group("restraints")
+        for name in response.restraints.columns.drop("t"):
+            _put(restraints, name, response.restraints[name].to_numpy(), "N/kg" if name.endswith("force") else "m")
     if response.ledger is not None:
         ledger = group.create_group("ledger")
         for name in TERMS:
@@ -223,6 +231,9 @@ def _read(group: "h5py.Group") -> Response:
 
     base = attributes_of(group_in(group, "base"))
     kind = _BASES[base.pop("name")]
+    if kind is RigidBase:
+        told = json.loads(base["restraints"])
+        base["restraints"] = tuple(_restraint(**each) for each in told)
     t = array_in(group, "t", "f")
     if not len(t) or np.isnan(t).any() or (np.diff(t) < 0).any():
         raise ValueError("t is no rising time")
@@ -230,7 +241,10 @@ def _read(group: "h5py.Group") -> Response:
     columns = {
         name: np.full(len(t), np.nan) if name in absent else array_in(group, name, "f", len(t)) for name in UNITS
     }
-    ledger = None
+    ledger = restraints = None
+    if "restraints" in group:
+        loops = group_in(group, "restraints")
+        restraints = pd.DataFrame({"t": t} | {name: array_in(loops, name, "f", len(t)) for name in loops})
     if "ledger" in group:
         terms = group_in(group, "ledger")
         ledger = pd.DataFrame({"t": t} | {name: array_in(terms, name, "f", len(t)) for name in TERMS})
@@ -250,7 +264,12 @@ def _read(group: "h5py.Group") -> Response:
         ledger=ledger,
         forces=forces,
         impacts=impacts,
+        restraints=restraints,
     )
+
+
+def _restraint(**values: Any) -> Restraint:
+    return Damper(**values) if "kind" in values else Tendon(**values)
 
 
 def _impacts(group: "h5py.Group") -> "pd.DataFrame":

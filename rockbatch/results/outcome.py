@@ -110,6 +110,10 @@ class Outcome:
         Steps per sample.
     settlement_other_law : float or None
         Settlement [m] by the other law of yielding springs, where it was asked for.
+    damper_force, damper_stroke, damper_speed, damper_energy : float or None
+        Of dampers: greatest force over M g, elongation [m] and speed [m/s] of any; energy of all [J/kg].
+    tendon_force, tendon_yield, tendon_slack : float or None
+        Of tendons: greatest force over M g and plastic elongation [m] of any; how often they went slack.
     energies : mapping of str to float, or None
         Energy ledger at the end [J/kg], and the greatest ``remainder`` on the way, where it was asked for.
     forces : PeakForces or None
@@ -138,6 +142,13 @@ class Outcome:
     dissipated_left: float | None = None
     dissipated_right: float | None = None
     settlement_other_law: float | None = None
+    damper_force: float | None = None
+    damper_stroke: float | None = None
+    damper_speed: float | None = None
+    damper_energy: float | None = None
+    tendon_force: float | None = None
+    tendon_yield: float | None = None
+    tendon_slack: int | None = None
     energies: Mapping[str, float] | None = None
     forces: PeakForces | None = None
     note: str = ""

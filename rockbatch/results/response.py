@@ -55,7 +55,7 @@ class Response:
         ``t`` [s]; ``theta`` [rad], positive tilts right; ``omega`` = dθ/dt [rad/s]; ``v`` [m], the centre of
         mass above the position of unstressed springs; ``z_left``, ``z_right``, spring forces over the yield
         force, −1..0; ``v_left``, ``v_right`` [m], the pivots, up positive; ``force_left``, ``force_right`` [N/kg],
-        spring forces per unit mass of the pier, negative in compression; ``energy`` [J/kg], relative to the start;
+        forces of the supports per unit mass of the pier, negative in compression; ``energy`` [J/kg], relative to the start;
         ``ag_h``, ``ag_v`` [m/s²], the ground, positive right and up. On the rigid base ``v``, ``z_*``, ``v_*`` and
         ``force_*`` are NaN.
     events : DataFrame, one row per event
@@ -64,7 +64,8 @@ class Response:
     ledger : DataFrame or None
         Energies [J/kg] at the rows of ``history``, where they were asked for: stored ``kinetic``, ``potential``,
         ``elastic``, relative to the start; summed since, ``input``, ``plastic``, ``impact``, ``p_delta`` (first-order
-        kinematics), ``constraint`` (finite kinematics); and the ``remainder`` of their balance, the integrator's error.
+        kinematics), ``constraint`` (finite kinematics), ``damping`` (dashpots of the supports, dampers); and the ``remainder``
+        of their balance, the integrator's error.
     forces : DataFrame or None
         What is sized, at the rows of ``history``, where it was asked for (THEORY.md, 7): ``base_shear`` V/M, to the right on
         the pier, ``normal_force`` N/M [m/s²], ``friction`` |V|/N, ``pivot_…``, the supports' forces over half the weight,
@@ -76,6 +77,9 @@ class Response:
         "-" where the motion's horizontal component was reversed, else "+".
     scale : float
         Factor on all components of the motion.
+    restraints : DataFrame or None
+        Elongation [m] and force [N/kg], positive in tension, of every damper and tendon at the rows of ``history``, such as
+        ``damper 1 left force``; ``None`` without.
     """
 
     record: str
@@ -91,6 +95,7 @@ class Response:
     scale: float = 1.0
     forces: "pd.DataFrame | None" = field(default=None, repr=False)
     impacts: "pd.DataFrame | None" = field(default=None, repr=False)
+    restraints: "pd.DataFrame | None" = field(default=None, repr=False)
 
     @property
     def t(self) -> Samples:

@@ -20,6 +20,7 @@ from rockbatch.pier import (
     Base,
     ElasticBase,
     Pier,
+    Restraint,
     RigidBase,
     YieldingBase,
     described,
@@ -156,7 +157,8 @@ def _describe_base(pier: Pier, base: Base) -> dict[str, Any]:
     interface = {} if base.friction is None else {"friction": base.friction}
     if isinstance(base, RigidBase):
         of_frame = None if pier.deck_over_columns is None else pier.restitution  # None stands for Housner's
-        return {"restitution": of_frame if base.restitution is None else base.restitution, **interface}
+        own: dict[str, Any] = {"restitution": of_frame if base.restitution is None else base.restitution, **interface}
+        return own | ({"restraints": [_described(each) for each in base.restraints]} if base.restraints else {})
     told = _springs(pier, base) | interface
     if isinstance(base, YieldingBase):
         told |= {
@@ -170,10 +172,15 @@ def _describe_base(pier: Pier, base: Base) -> dict[str, Any]:
     return told
 
 
+def _described(restraint: Restraint) -> dict[str, Any]:
+    values = {name: value for name, value in asdict(restraint).items() if value is not None}
+    return {name: None if value == math.inf else value for name, value in values.items()}
+
+
 def _springs(pier: Pier, base: ElasticBase) -> dict[str, Any]:
     return {
         "beta": base.beta,
-        "epsilon": base.epsilon,
+        **({"epsilon": base.epsilon} if base.zeta is None else {"zeta": base.zeta}),
         "kinematics": base.kinematics,
         "flight": base.flight,
         "omega_v": vertical_frequency(pier, base),

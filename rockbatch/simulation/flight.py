@@ -7,9 +7,12 @@ import numpy as np
 from rockbatch.motions.motion import Motion
 
 _ADVICE = 'flight = "guided" goes on, for a pier whose shear keys hold it'
+_DAMP = f"see zeta, the damping of the supports; or {_ADVICE}"
 
 
-def cause_of_flight(motion: Motion, omega_v: float | None, gravity: float, t_flight: float, t_impact: float) -> str:
+def cause_of_flight(
+    motion: Motion, omega_v: float | None, gravity: float, t_flight: float, t_impact: float, zeta: float = 0.0
+) -> str:
     """Why a pier flies at ``t_flight`` [s], and what to do.
 
     Parameters
@@ -20,6 +23,8 @@ def cause_of_flight(motion: Motion, omega_v: float | None, gravity: float, t_fli
         g [m/s²].
     t_impact : float
         Time of the last impact before [s]; NaN without one.
+    zeta : float
+        Damping of the vertical vibration, as a share of critical.
     """
     at = f"both pivots left the ground at {t_flight:.3f} s: "
     until, down = 0.0, 0.0
@@ -31,10 +36,8 @@ def cause_of_flight(motion: Motion, omega_v: float | None, gravity: float, t_fli
         return f"{at}the ground fell away under the pier, with a vertical acceleration of {down:.2f} g"
     if t_flight - t_impact <= math.pi / omega_v:
         return f"{at}thrown up {1000 * (t_flight - t_impact):.0f} ms after an impact; {_ADVICE}"
-    hertz = omega_v / (2.0 * math.pi)
+    oscillator = f"vertical oscillator of {omega_v / (2.0 * math.pi):.3g} Hz, damping {100.0 * zeta:.3g} %"
     if until == 0.0:
-        return f"{at}vertical vibration of undamped springs ({hertz:.3g} Hz), excited by rocking; {_ADVICE}"
-    return (
-        f"{at}vertical vibration of undamped springs ({hertz:.3g} Hz) reached 1 g, {1.0 / until:.1f} times the ground's "
-        f"{until:.2f} g until then; {_ADVICE}"
-    )
+        return f"{at}{oscillator}, excited by rocking; {_DAMP}"
+    times = f"{1.0 / until:.1f} times the ground's {until:.2f} g until then"
+    return f"{at}{oscillator}, reached 1 g, {times}; {_DAMP}"

@@ -13,6 +13,7 @@ from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, problems
 from rockbatch.results.columns import TERMS
 from rockbatch.results.outcome import Outcome
 from rockbatch.results.response import EVENT_TYPES, Response
+from rockbatch.simulation import restraints
 from rockbatch.simulation.forces import at_rows, forces_table, impacts_table
 from rockbatch.simulation.models import block, ground_of, least_substeps, springs
 from rockbatch.simulation.runs import Run, run_fixed, steps_of, written_run
@@ -86,6 +87,8 @@ def simulate(
         wrong.append(f"substeps = {substeps}: must be a whole number")
     if substeps is not None and not wrong and substeps < (least := least_substeps(pier, foundation, motion.dt)):
         wrong.append(f"substeps = {substeps}: must be a whole number of at least {least} for this pier and motion")
+    if forces and isinstance(foundation, RigidBase) and foundation.restraints:
+        wrong.append("forces = True: they are not told of piers with dampers or tendons")
     if substeps is None and not wait:
         wrong.append("wait = False: the error of a run that is cut off cannot be told; give substeps")
     if wrong:
@@ -118,10 +121,12 @@ def written(run: Run, outcome: Outcome, quiet_s: float, every_step: bool, wait: 
 
 
 def energies(run: Run, rows: np.recarray) -> Samples:
-    """Energy ledger [J/kg] at every row of a run: :data:`rockbatch.results.columns.TERMS`, shape (n, 9)."""
+    """Energy ledger [J/kg] at every row of a run: :data:`rockbatch.results.columns.TERMS`, shape (n, 10)."""
     pier, base = run.pier, run.base
     ground, dt = ground_of(run.motion), float(run.motion.dt)
     ledger = np.zeros(len(rows), LEDGER).view(np.recarray)
+    if isinstance(base, RigidBase) and base.restraints:
+        return restraints.energies(pier, base, rows)
     if isinstance(base, RigidBase):
         ledger_on_rigid_base(block(pier, base), rows, ground, dt, ledger)
         return pier.inertia_about_pivot * numbers(ledger)
@@ -161,13 +166,15 @@ def histories(
     if forces:
         moments = at_rows(run, rows)
         sized, landed = forces_table(rows.t, moments, pier.gravity), impacts_table(rows, moments)
-    state = _rigid_state(pier, rows) if isinstance(base, RigidBase) else _springs_state(pier, base, rows)
+    devices = restraints.loops(pier, base, rows) if isinstance(base, RigidBase) and base.restraints else None
+    state = _rigid_state(pier, base, rows) if isinstance(base, RigidBase) else _springs_state(pier, base, rows)
     t = rows.t.copy()
     vertical = np.zeros(len(t)) if motion.vertical is None else _ground(motion.vertical, motion.dt, t)
     history = pd.DataFrame({"t": t, **state, "ag_h": _ground(motion.horizontal, motion.dt, t), "ag_v": vertical})
     events = pd.DataFrame(_events(rows, outcome.t_flight), columns=list(EVENT_TYPES)).astype(EVENT_TYPES)
     return Response(
-        motion.name, case, columns, pier, base, outcome.status, history, events, table, polarity, scale, sized, landed
+        motion.name, case, columns, pier, base, outcome.status, history, events, table, polarity, scale, sized, landed,
+        devices,
     )  # fmt: skip
 
 
@@ -191,11 +198,13 @@ def _ground(acceleration: Samples, dt: float, t: Samples) -> Samples:
     return np.interp(t, np.arange(len(samples)) * dt, samples)
 
 
-def _rigid_state(pier: Pier, rows: np.recarray) -> dict[str, Samples]:
+def _rigid_state(pier: Pier, base: RigidBase, rows: np.recarray) -> dict[str, Samples]:
     theta, omega = rows.theta, rows.omega
     absent = np.full(len(rows), np.nan)
     climbed = np.cos(pier.alpha - np.abs(theta)) - math.cos(pier.alpha)
     energy = 0.5 * pier.inertia_about_pivot * omega**2 + pier.gravity * pier.size * climbed
+    if base.restraints:
+        energy = energy + restraints.stored(pier, base, rows)
     none = dict.fromkeys(("v", "z_left", "z_right", "v_left", "v_right", "force_left", "force_right"), absent)
     return {"theta": theta, "omega": omega, **none, "energy": energy}
 
@@ -206,8 +215,10 @@ def _springs_state(pier: Pier, base: ElasticBase, rows: np.recarray) -> dict[str
     v, theta, z_left, z_right = rows.v, rows.theta, rows.z_left, rows.z_right
     b, h = m.half_width, m.height
     rise, drop, lever = b * theta, np.zeros(len(rows)), np.full(len(rows), h)
+    arm, middle = np.full(len(rows), b), np.zeros(len(rows))
     if m.finite is not None:
         rise, drop = b * np.sin(theta), h * (1.0 - np.cos(theta))
+        arm, middle = b * np.cos(theta), h * np.sin(theta)
         lever = h * np.cos(theta) + (rows.right - rows.left) * rise
     elastic = z_left**2 + z_right**2
     energy = (
@@ -224,7 +235,7 @@ def _springs_state(pier: Pier, base: ElasticBase, rows: np.recarray) -> dict[str
         "z_right": z_right,
         "v_left": v + rise + drop,
         "v_right": v - rise + drop,
-        "force_left": m.yield_force * z_left,
-        "force_right": m.yield_force * z_right,
+        "force_left": rows.left * (m.yield_force * z_left + m.damping * (rows.v_rate + (middle + arm) * rows.omega)),
+        "force_right": rows.right * (m.yield_force * z_right + m.damping * (rows.v_rate + (middle - arm) * rows.omega)),
         "energy": energy,
     }

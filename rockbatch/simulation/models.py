@@ -5,16 +5,20 @@ from functools import lru_cache
 
 from rockbatch.core.ground import ground_rows
 from rockbatch.core.laws import LARGEST_WHOLE
+from rockbatch.core.restrained.elements import FRICTION, HYSTERETIC, TENDON, VISCOUS, Element
 from rockbatch.core.types import BOUC_WEN, ELASTIC, EPP, Block, Springs
 from rockbatch.motions.motion import Motion, Samples
 from rockbatch.pier import (
     Base,
+    DamperKind,
     ElasticBase,
     Pier,
     RigidBase,
     SpringLaw,
+    Tendon,
     YieldingBase,
-    highest_frequency,
+    fastest,
+    offsets,
     rocking_frequency,
     vertical_frequency,
     yield_deflection,
@@ -37,6 +41,9 @@ READ_AFTER = 5.0
 LAWS: dict[SpringLaw, float] = {"bouc-wen": BOUC_WEN, "epp": EPP}
 """The core's codes of the laws of yielding springs."""
 
+DAMPERS: dict[DamperKind, float] = {"friction": FRICTION, "viscous": VISCOUS, "hysteretic": HYSTERETIC}
+"""The core's codes of dampers."""
+
 
 @lru_cache(maxsize=4096)
 def springs(pier: Pier, base: ElasticBase) -> Springs:
@@ -55,11 +62,13 @@ def springs(pier: Pier, base: ElasticBase) -> Springs:
         yield_deflection=float(yield_deflection(pier, base)),
         stiffness=float(omega_v**2 / (eta * pier.gravity)),
         yield_force=float(0.5 * eta * pier.gravity),
-        epsilon=float(base.epsilon),
+        epsilon=float(base.epsilon if base.zeta is None else 1.0),
+        damping=float((base.zeta or 0.0) * omega_v),
         law=law,
         guided=float(base.flight == "guided"),
         exponent=exponent,
         finite=True if base.kinematics == "finite" else None,
+        damped=True if base.zeta else None,
     )
 
 
@@ -74,6 +83,33 @@ def block(pier: Pier, base: RigidBase) -> Block:
     """What the core takes for ``pier`` on a rigid base: plain floats."""
     restitution = pier.restitution if base.restitution is None else base.restitution
     return Block(float(pier.alpha), float(pier.p), float(pier.gravity), float(restitution))
+
+
+def elements(pier: Pier, base: RigidBase) -> list[Element]:
+    """What the core takes for the dampers and tendons of ``base``: plain floats, per unit mass."""
+    found = []
+    b, g = pier.half_width, pier.gravity
+    for each in base.restraints:
+        for offset in offsets(pier, each):
+            if isinstance(each, Tendon):
+                stiffness = each.lam * g * pier.size / b**2
+                law = (TENDON, g * each.strength, stiffness, 0.0, 1.0, g * each.psi)
+            else:
+                soft = 1.0 / each.yield_m if each.kind == "hysteretic" else 0.0
+                law = (DAMPERS[each.kind], g * each.f, soft, each.nu * pier.p, each.exponent, 0.0)
+            kind, *numbers = law
+            found.append(Element(kind, abs(b + offset), abs(b - offset), *map(float, numbers)))
+    return found
+
+
+def restrained_frequency(pier: Pier, base: RigidBase) -> float:
+    """Greatest rate [1/s] that dampers and tendons bring: of vibration against their stiffness, of decay by linear dampers."""
+    stiff, slows = 0.0, 0.0
+    for each in elements(pier, base):
+        lever = max(each.from_left, each.from_right) ** 2 / pier.inertia_about_pivot
+        stiff += lever * each.stiffness * (each.strength if each.kind == HYSTERETIC else each.kind == TENDON)
+        slows += lever * each.coefficient
+    return max(math.sqrt(stiff), slows)
 
 
 def ground_of(motion: Motion) -> Samples:
@@ -94,8 +130,8 @@ def least_substeps(pier: Pier, base: Base, dt: float) -> int:
 
 def _substeps_for(largest: float, pier: Pier, base: Base, dt: float) -> int:
     if isinstance(base, RigidBase):
-        return 1
-    return max(1, math.ceil(highest_frequency(pier, base) * dt / largest - 1e-9))
+        return max(1, math.ceil(restrained_frequency(pier, base) * dt / largest - 1e-9))
+    return max(1, math.ceil(fastest(pier, base) * dt / largest - 1e-9))
 
 
 def patience(pier: Pier, dt: float) -> int:

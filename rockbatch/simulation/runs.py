@@ -2,14 +2,16 @@
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import Any, Final, Literal
 
 import numpy as np
 
 from rockbatch.core import two_springs
 from rockbatch.core.outcome import ON_ITS_SIDE
 from rockbatch.core.recording import ROW
+from rockbatch.core.restrained.elements import TENDON
+from rockbatch.core.restrained.runs import COLUMNS, Restrained, rock_restrained
 from rockbatch.core.rigid import runs as rigid
 from rockbatch.core.types import (
     CHATTER,
@@ -24,6 +26,7 @@ from rockbatch.core.types import (
     UNDECIDED,
     RigidRun,
     SpringRun,
+    Traits,
 )
 from rockbatch.motions.motion import Motion, Samples
 from rockbatch.pier import (
@@ -37,7 +40,16 @@ from rockbatch.pier import (
 )
 from rockbatch.results.outcome import Outcome
 from rockbatch.simulation.flight import cause_of_flight
-from rockbatch.simulation.models import block, first_substeps, ground_of, least_substeps, patience, readings, springs
+from rockbatch.simulation.models import (
+    block,
+    elements,
+    first_substeps,
+    ground_of,
+    least_substeps,
+    patience,
+    readings,
+    springs,
+)
 
 MOST_STEPS = 1e8
 """Steps that a run may take to settle, about a quarter of a minute of work."""
@@ -57,6 +69,9 @@ _STATUS = {
         'nothing damps; spring = "epp" does so least',
     ),
 }
+
+RESTRAINED: Final = "restrained"
+"""Of runs on a rigid base with dampers and tendons, which go one by one."""
 
 LEFT_ALONE = tuple(_STATUS[code][1] for code in (UNDECIDED, GROWING))
 """Reasons of runs that failed because nothing decided them for so long, which smaller steps do not change."""
@@ -123,6 +138,9 @@ def written_run(
     wait: bool = True,
 ) -> tuple[SpringRun | RigidRun, np.recarray]:
     """One run, and its history of at most ``rows`` rows; with ``every_step`` also between samples."""
+    if isinstance(run.base, RigidBase) and run.base.restraints:
+        found = restrained(run, substeps, quiet_s, wait, rows, every_step)
+        return found.run, rows_of(found)
     lines, ground, stop = [_line(run, substeps, quiet_s, 0, wait)], ground_of(run.motion), Stop().flag
     if isinstance(run.base, RigidBase):
         written = np.recarray(rows, rigid.ROW)
@@ -130,8 +148,42 @@ def written_run(
         return rigid.rigid_run(result), written
     m = springs(run.pier, run.base)
     written = np.recarray(rows, ROW)
-    result = two_springs.rock_side_by_side(m.exponent, m.finite, lines, ground, stop, locate, every_step, written)[0]
+    result = two_springs.rock_side_by_side(two_springs.traits_of(m), lines, ground, stop, locate, every_step, written)[
+        0
+    ]
     return two_springs.spring_run(result), written
+
+
+def restrained(
+    run: Run, substeps: int, quiet_s: float, wait: bool, rows: int = 0, every_step: bool = False
+) -> Restrained:
+    """One run on a rigid base with dampers and tendons."""
+    pier, base, motion = run.pier, run.base, run.motion
+    assert isinstance(base, RigidBase)
+    dt = float(motion.dt)
+    vertical = () if motion.vertical is None else motion.vertical
+    return rock_restrained(
+        block(pier, base),
+        elements(pier, base),
+        pier.inertia_about_pivot,
+        (motion.horizontal, vertical, dt),
+        substeps,
+        _quiet_samples(quiet_s, dt),
+        patience(pier, dt) if wait else 0,
+        rows=rows,
+        every_step=every_step,
+    )
+
+
+def rows_of(found: Restrained) -> np.recarray:
+    """The history of a restrained run by names: of each element its state and what it has lost, and the ground's work."""
+    n = len(found.use)
+    kind = np.dtype([*rigid.ROW.descr, ("state", "f8", (n,)), ("lost", "f8", (n,)), ("input", "f8")])
+    rows = np.recarray(len(found.history), kind)
+    rows.t, rows.theta, rows.omega, rows.kind = found.history[:, :COLUMNS].T
+    rows.state, rows.lost = found.history[:, COLUMNS : COLUMNS + n], found.history[:, COLUMNS + n : COLUMNS + 2 * n]
+    rows.input = found.history[:, -1]
+    return rows
 
 
 def run_fixed(
@@ -170,11 +222,15 @@ def try_all(
 ) -> list[Trial | None]:
     """As :func:`run_all_fixed`, with the trajectories in short."""
     trials: list[Trial | None] = [_refused(run, steps, quiet_s) for run, steps in zip(runs, substeps, strict=True)]
-    alike: dict[tuple[float | int | None, bool | None] | None, list[int]] = {}
+    alike: dict[Traits | Literal["restrained"] | None, list[int]] = {}
     for i, run in enumerate(runs):
         if trials[i] is None:
             alike.setdefault(_kernel_of(run), []).append(i)
+    for i in alike.pop(RESTRAINED, []):
+        if not stop:
+            trials[i] = _restrained_trial(runs[i], substeps[i], quiet_s, wait)
     for kernel, which in alike.items():
+        assert not isinstance(kernel, str)
         first_rows: dict[int, int] = {}
         grounds: list[Samples] = []
         lines = []
@@ -192,7 +248,7 @@ def try_all(
 
 
 def _rock(
-    kernel: tuple[float | int | None, bool | None] | None,
+    kernel: Traits | None,
     lines: Sequence[tuple[float, ...]],
     ground: Samples,
     stop: Stop,
@@ -203,18 +259,46 @@ def _rock(
         for result in rigid.rock_side_by_side(lines, ground, stop.flag, locate):
             yield None if result.status == RUNNING else rigid.rigid_run(result), result.extremes
         return
-    for result in two_springs.rock_side_by_side(*kernel, lines, ground, stop.flag, locate):
+    for result in two_springs.rock_side_by_side(kernel, lines, ground, stop.flag, locate):
         yield None if result.status == RUNNING else two_springs.spring_run(result), result.extremes
 
 
-def _kernel_of(run: Run) -> tuple[float | int | None, bool | None] | None:
-    """What runs that share compiled code have in common: types of the springs' exponent and kinematics, if any."""
+def _restrained_trial(run: Run, substeps: int, quiet_s: float, wait: bool) -> Trial:
+    """One run with dampers and tendons, with what they have been through."""
+    found = restrained(run, substeps, quiet_s, wait)
+    outcome = _outcome(run, substeps, found.run)
+    if outcome.status == "ok" and found.theta_end != 0.0 and math.isnan(found.run.t_rest) and found.sticks:
+        note = f"dampers hold the pier at a rotation of {found.theta_end:.3g} rad"
+        outcome = replace(outcome, note="; ".join(filter(None, (outcome.note, note))))
+    return Trial(replace(outcome, **_use(run, found.use)), found.extremes)
+
+
+def _use(run: Run, use: np.recarray) -> dict[str, Any]:
+    """What dampers and tendons have been through, by the fields of Outcome; None of what there is not."""
+    assert isinstance(run.base, RigidBase)
+    kinds = np.array([each.kind for each in elements(run.pier, run.base)])
+    dampers, tendons = use[kinds != TENDON].view(np.recarray), use[kinds == TENDON].view(np.recarray)
+    found: dict[str, Any] = {}
+    if len(dampers):
+        found["damper_force"] = float(np.maximum(dampers.most, -dampers.least).max()) / run.pier.gravity
+        found["damper_stroke"] = float(dampers.stroke.max())
+        found["damper_speed"] = float(dampers.speed.max())
+        found["damper_energy"] = float(dampers.lost.sum())
+    if len(tendons):
+        found["tendon_force"] = float(tendons.most.max()) / run.pier.gravity
+        found["tendon_yield"] = float(tendons.yielded.max())
+        found["tendon_slack"] = int(tendons.slack.sum())
+    return found
+
+
+def _kernel_of(run: Run) -> Traits | Literal["restrained"] | None:
+    """What runs that share compiled code have in common: the types of springs; whether dampers and tendons restrain them."""
     if isinstance(run.base, RigidBase):
-        return None
-    m = springs(run.pier, run.base)
-    if m.exponent is None:
-        return None, m.finite
-    return 1 if isinstance(m.exponent, int) else 0.5, m.finite  # numbers that differ: 1 == 1.0
+        return RESTRAINED if run.base.restraints else None
+    traits = two_springs.traits_of(springs(run.pier, run.base))
+    if traits.exponent is None:
+        return traits
+    return traits._replace(exponent=1 if isinstance(traits.exponent, int) else 0.5)  # numbers that differ: 1 == 1.0
 
 
 def _refused(run: Run, substeps: int, quiet_s: float) -> Trial | None:
@@ -237,15 +321,15 @@ def _refused(run: Run, substeps: int, quiet_s: float) -> Trial | None:
 
 def _outcome(run: Run, substeps: int, found: SpringRun | RigidRun) -> Outcome:
     """Outcome of what a run came to, as it was found."""
-    pier, omega_v, t_impact = run.pier, None, math.nan
+    pier, omega_v, t_impact, zeta = run.pier, None, math.nan, 0.0
     status, reason = _STATUS[found.status]
     more: dict[str, Any] = {}
     if isinstance(found, SpringRun):
         assert not isinstance(run.base, RigidBase)
         more = _of_springs(run, found, survived=status == "ok")
-        omega_v, t_impact = vertical_frequency(pier, run.base), found.t_impact
+        omega_v, t_impact, zeta = vertical_frequency(pier, run.base), found.t_impact, run.base.zeta or 0.0
     if found.status == FLIGHT:
-        reason = cause_of_flight(run.motion, omega_v, pier.gravity, found.t_flight, t_impact)
+        reason = cause_of_flight(run.motion, omega_v, pier.gravity, found.t_flight, t_impact, zeta)
     note = ""
     if found.status == RESTLESS:
         note = _RESTLESS.format(seconds=found.t_end - run.motion.duration)

@@ -5,6 +5,7 @@ from dataclasses import asdict, replace
 from typing import Any, NamedTuple, get_args
 
 from rockbatch.pier import (
+    EPSILON_AND_ZETA,
     WITH_EXPONENT,
     Base,
     ElasticBase,
@@ -22,6 +23,7 @@ from rockbatch.pier import (
 from rockbatch.study.lists import Chosen, combinations, how_many, listed, too_many
 from rockbatch.study.piers import Values, has_mass
 from rockbatch.study.plausible import CONFIRM, MASSES, complain_unless_usual, complain_unless_usual_support, confirmed
+from rockbatch.study.restraint_keys import ON_RIGID, RESTRAINTS, read_restraints, restraints_of
 from rockbatch.toml.kinds import choice, number, positive, shown, text
 from rockbatch.toml.reader import Key, Setting, Table, TomlFile
 
@@ -32,6 +34,7 @@ _ELASTIC = {
     "stiffness_kN_m": Key(positive, "2.0e6", many=True),
     "mass_t": Key(positive, "3000.0", many=True),
     "epsilon": Key(number, "0.05", many=True),
+    "zeta": Key(number, "0.05", many=True),
     "kinematics": Key(choice(*get_args(Kinematics)), '"first-order"', many=True),
     "flight": Key(choice(*get_args(Flight)), '"stop"', many=True),
     **_INTERFACE,
@@ -77,14 +80,14 @@ def read_cases(file: TomlFile, piers: Sequence[tuple[Pier, Values]]) -> tuple[li
     varied: dict[str, None] = {}
     names: set[str] = set()
     for table in tables:
-        own, settings, believed = _case(table)
+        own, settings, believed, of_restraints = _case(table)
         name = own.get("name", own.get("base", ""))
         if len(tables) > 1 and "name" not in table.data:
             table.complain('name is missing; of several cases each needs its own, for example name = "soft"')
         elif name in names:
             table.complain(f"name = {shown(name)}: given twice; give each case its own name", "name")
         names |= {name} - {""}
-        varied |= dict.fromkeys(listed(table, BASE_KEYS))
+        varied |= dict.fromkeys((*listed(table, BASE_KEYS), *of_restraints))
         if "base" in own:
             read.append((_Read(table, name, own["base"], believed), settings))
     if told := too_many(max(len(piers), 1) * sum(how_many(settings) for _, settings in read), "cases"):
@@ -107,11 +110,16 @@ def _expand(case: _Read, chosen: Chosen, pier: Pier, pier_values: Values) -> Exp
     base = _base(case.base, given, pier)
     wrong = problems(pier, base)
     for problem in wrong:
+        if EPSILON_AND_ZETA in problem:  # told once, of the table
+            continue
         if not (any_pier and problem.startswith("beta")):
             _complain_where_due(case.table, chosen, problem, pier, base)
     if isinstance(base, ElasticBase) and not wrong and pier.mass_t is not None:
         complain_unless_usual_support(case.table, chosen, pier, base, case.believed)
     applying = {key: value for key, value in asdict(base).items() if value is not None} | given
+    applying.pop("restraints", None)  # their own keys say them
+    if "zeta" in applying:
+        applying.pop("epsilon", None)
     if isinstance(base, YieldingBase) and not base.has_exponent:
         del applying["n"]
     return Expanded(case.name, pier, base, pier_values | applying)
@@ -123,7 +131,8 @@ def _base(name: str, given: Mapping[str, Any], pier: Pier) -> Base:
     Where β or η is missing, which is noted already, a possible value lets the rest be checked.
     """
     if name == "rigid":
-        return RigidBase(**given)
+        rigid = dict(given)
+        return RigidBase(restraints=restraints_of(pier, rigid), **rigid)
     own: dict[str, Any] = {"beta": 2 * pier.least_beta, **given}
     stiffness, strength, _ = (own.pop(key, None) for key in ("stiffness_kN_m", "yield_kN", "mass_t"))
     if stiffness and pier.mass_t:
@@ -151,8 +160,8 @@ def _without_repeats(all_of_them: Iterable[Chosen]) -> Iterator[Chosen]:
 # Mistakes that take more than one key to see
 
 
-def _case(table: Table) -> tuple[dict[str, Any], dict[str, list[Setting]], Collection[str]]:
-    """Name and base, the settings of that base, and the keys that are confirmed."""
+def _case(table: Table) -> tuple[dict[str, Any], dict[str, list[Setting]], Collection[str], Collection[str]]:
+    """Name and base, the settings of that base, the keys that are confirmed, and those of restraints that are lists."""
     base = table.data.get("base")
     keys = BASES.get(base, BASE_KEYS) if isinstance(base, str) else BASE_KEYS
     unfit = {
@@ -168,16 +177,26 @@ def _case(table: Table) -> tuple[dict[str, Any], dict[str, list[Setting]], Colle
     if has_mass(table.file) and "mass_t" in keys:
         keys = {name: key for name, key in keys.items() if name != "mass_t"}
         unfit["mass_t"] = "[pier] says already what the pier weighs; leave it out"
-    read = table.read(CASE | keys | CONFIRM, unfit=unfit)
+    restrained = base == "rigid"
+    if not restrained:
+        unfit |= dict.fromkeys(RESTRAINTS, ON_RIGID)
+    read = table.read(CASE | keys | CONFIRM, unfit=unfit, other=RESTRAINTS if restrained else ())
     believed = confirmed(table, read, keys)
     complain_unless_usual(table, "mass_t", read.get("mass_t", ()), MASSES["mass_t"], believed)
+    if "epsilon" in table.data and "zeta" in read:
+        table.complain(f"epsilon = {shown(table.data['epsilon'])}: {EPSILON_AND_ZETA}", "epsilon")
     if base in ("elastic", "yielding"):
         _check_one_of(table, "beta", "stiffness_kN_m")
     if base == "yielding":
         _check_one_of(table, "eta", "yield_kN")
     if "mass_t" in table.data and "mass_t" in keys and not {"stiffness_kN_m", "yield_kN"} & table.data.keys():
         table.complain("mass_t is for use with stiffness_kN_m or yield_kN; leave it out", "mass_t")
-    return read, {name: value for name, value in read.items() if name not in CASE}, believed
+    settings = {name: value for name, value in read.items() if name not in CASE}
+    of_restraints: Collection[str] = ()
+    if restrained:
+        more, of_restraints = read_restraints(table)
+        settings |= more
+    return read, settings, believed, of_restraints
 
 
 def _without_exponent(table: Table) -> str:

@@ -251,14 +251,17 @@ def test_a_rigid_base_is_followed_to_the_moment_at_which_the_ground_falls_away()
     assert peaks[0] == pytest.approx(peaks[1], rel=1e-6)
 
 
-def test_flight_says_that_undamped_springs_made_it_of_a_small_vertical_motion():
+def test_flight_says_that_the_undamped_oscillator_made_it_of_a_small_vertical_motion():
     """Resonance: 0.2 g at ω_v grows by π/2 times 0.2 g per half cycle until it lifts."""
     omega_v = 20.0
     t = np.arange(801) * 0.005
     shake = Motion("resonance", 0.005, np.zeros(801), 0.2 * 9.81 * np.sin(omega_v * t))
     outcome = run_to_tolerance(FIG5, ElasticBase(omega_v), shake, 1e-4)
     assert outcome.status == "flight"
-    assert "undamped springs (3.18 Hz) reached 1 g, 5.0 times the ground's 0.20 g until then" in outcome.reason
+    assert (
+        "vertical oscillator of 3.18 Hz, damping 0 %, reached 1 g, 5.0 times the ground's 0.20 g until then; see zeta"
+        in outcome.reason
+    )
     assert 'flight = "guided"' in outcome.reason
 
 
@@ -267,7 +270,9 @@ def test_flight_says_that_an_impact_threw_the_pier_up():
     still = Motion("still", 0.01, np.zeros(101))
     assert "thrown up 40 ms after an impact" in cause_of_flight(still, 20.0, 9.81, 0.54, 0.5)
     for t_impact in (0.3, math.nan):
-        assert "undamped springs (3.18 Hz), excited by rocking" in cause_of_flight(still, 20.0, 9.81, 0.54, t_impact)
+        assert "vertical oscillator of 3.18 Hz, damping 0 %, excited by rocking" in cause_of_flight(
+            still, 20.0, 9.81, 0.54, t_impact
+        )
 
 
 def test_a_flight_that_comes_when_nothing_can_exceed_the_peak_any_more_changes_no_outcome():

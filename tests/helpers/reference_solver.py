@@ -189,7 +189,7 @@ class Leg:
                 self.peak(s, float(dense(s)[theta]))
 
 
-V, TH, VD, OM, ZL, ZR, WL, WR, INPUT, PDELTA = range(10)
+V, TH, VD, OM, ZL, ZR, WL, WR, INPUT, PDELTA, LOST = range(11)
 SIDES = ("left", "right")
 
 
@@ -209,10 +209,14 @@ class TwoSprings:
         self.finite = base.kinematics == "finite"
         self.guided = base.flight == "guided"
         self.eps = base.epsilon
+        self.zeta = base.zeta or 0.0
+        self.c = self.zeta * self.omega_v  # C/M
+        if self.zeta:
+            self.lag, self.quick = self.c / self.fy, self.omega_v / (2.0 * self.zeta)
         z0 = -1.0 / eta
         self.v0 = -self.dy * self._static_integral(1.0 / eta)
         self.z0 = z0
-        self.y = [self.v0, 0.0, 0.0, 0.0, z0, z0, 0.0, 0.0, 0.0, 0.0]
+        self.y = [self.v0, 0.0, 0.0, 0.0, z0, z0, 0.0, 0.0, 0.0, 0.0, 0.0]
         self.mode = ["unload", "unload"]
         self.rest = [0.0, 0.0]  # o_i
         self.legs = ground_legs(motion, quiet_s)
@@ -261,8 +265,28 @@ class TwoSprings:
             return self.h * c + side * self.b * s, -self.h * s + side * self.b * c
         return self.h + side * self.b * y[TH], 0.0
 
+    # A damped support: force F_y z + C v̇_i under its pivot; without it, F_y z + C ẇ = 0, so that z falls off with τ
+
+    def forces(self, modes: Sequence[str], y: Sequence[float]) -> list[float]:
+        if not self.zeta:
+            return [self.fy * y[ZL], self.fy * y[ZR]]
+        off = ("free", "held")
+        return [0.0 if modes[i] in off else self.fy * y[ZL + i] + self.c * self.rate(i, y) for i in (0, 1)]
+
+    def top(self, i: int, y: Sequence[float]) -> float:
+        return self.rest[i] + (self.dy * y[ZL + i] if self.zeta else 0.0)
+
+    def top_rate(self, i: int, y: Sequence[float]) -> float:
+        return -self.dy * y[ZL + i] * self.quick if self.zeta else 0.0
+
+    def top_acceleration(self, i: int, y: Sequence[float]) -> float:
+        return self.dy * y[ZL + i] * self.quick**2 if self.zeta else 0.0
+
+    def pressed(self, i: int, y: Sequence[float]) -> float:
+        return -y[ZL + i] - (self.lag * self.rate(i, y) if self.zeta else 0.0)
+
     def accelerations(self, modes: Sequence[str], y: Sequence[float], ah: float, av: float) -> tuple[float, float]:
-        fl, fr = self.fy * y[ZL], self.fy * y[ZR]
+        fl, fr = self.forces(modes, y)
         vdd = -self.g - av - fl - fr
         H, Hp = self.lever(modes, y)
         th = y[TH]
@@ -275,22 +299,24 @@ class TwoSprings:
             thdd = (moment - H * ah) / (self.inertia + self.h**2)
         for i in (0, 1):
             if modes[i] == "held":  # between the two equations, so that the pivot stays where it is
-                thdd = -(vdd + self.bend(i, y) * y[OM] ** 2) / self.arm(i, y)
+                thdd = -(vdd - self.top_acceleration(i, y) + self.bend(i, y) * y[OM] ** 2) / self.arm(i, y)
         return vdd, thdd
 
     def pivot_acceleration(self, i: int, as_mode: str, y: Sequence[float], ah: float, av: float) -> float:
         modes = list(self.mode)
         modes[i] = as_mode
         vdd, thdd = self.accelerations(modes, y, ah, av)
-        return vdd + self.arm(i, y) * thdd + self.bend(i, y) * y[OM] ** 2
+        return vdd - self.top_acceleration(i, y) + self.arm(i, y) * thdd + self.bend(i, y) * y[OM] ** 2
 
     def z_rate(self, i: int, y: Sequence[float]) -> float:
         mode = self.mode[i]
+        if mode in ("free", "held") and self.zeta:
+            return -y[ZL + i] * self.quick
         if mode in ("free", "held", "yield"):
             return 0.0
         z, rate = y[ZL + i], self.rate(i, y) / self.dy
         if mode == "load" and self.law == "bouc-wen":
-            return rate * (1.0 - abs(z) ** self.n)
+            return rate * (1.0 - min(abs(z), 1.0) ** self.n)  # a trial of a large step may leave the law
         return rate
 
     def rhs(self, leg: tuple[float, ...]) -> Callable[[float, Sequence[float]], list[float]]:
@@ -301,13 +327,15 @@ class TwoSprings:
             ah, av = h0 + hs * (t - t0), v0 + vs * (t - t0)
             vdd, thdd = self.accelerations(self.mode, y, ah, av)
             zl, zr = self.z_rate(0, y), self.z_rate(1, y)
-            fl, fr = self.fy * y[ZL], self.fy * y[ZR]
-            wl = fl * (self.rate(0, y) - self.dy * zl) if y[ZL] else 0.0
-            wr = fr * (self.rate(1, y) - self.dy * zr) if y[ZR] else 0.0
+            on = [mode not in ("free", "held") for mode in self.mode]
+            wl = self.fy * y[ZL] * (self.rate(0, y) - self.dy * zl) if on[0] else 0.0
+            wr = self.fy * y[ZR] * (self.rate(1, y) - self.dy * zr) if on[1] else 0.0
+            lost = self.c * sum((self.rate(i, y) if on[i] else self.top_rate(i, y)) ** 2 for i in (0, 1))
+            fl, fr = self.forces(self.mode, y)
             H, _ = self.lever(self.mode, y)
             work = -ah * H * y[OM] - av * y[VD]
             pd = 0.0 if self.finite else -self.h * y[TH] * (fl + fr) * y[OM]
-            return [y[VD], y[OM], vdd, thdd, zl, zr, wl, wr, work, pd]
+            return [y[VD], y[OM], vdd, thdd, zl, zr, wl, wr, work, pd, lost]
 
         return f
 
@@ -318,7 +346,7 @@ class TwoSprings:
         for i in (0, 1):
             mode = self.mode[i]
             if mode == "free":
-                found.append((lambda t, y, i=i: self.pivot(i, y) - self.rest[i], 1e-14 * self.dy, i, "land"))
+                found.append((lambda t, y, i=i: self.pivot(i, y) - self.top(i, y), 1e-14 * self.dy, i, "land"))
             elif mode == "held":
                 for as_mode, sign in (("load", 1.0), ("free", -1.0)):
                     found.append(
@@ -332,18 +360,18 @@ class TwoSprings:
                         )
                     )
             elif self.law == "elastic":
-                found.append((lambda t, y, i=i: -y[ZL + i], 1e-14, i, "separate"))
+                found.append((lambda t, y, i=i: self.pressed(i, y), 1e-14, i, "separate"))
             elif self.law == "epp":
                 if mode == "yield":
                     found.append((lambda t, y, i=i: -self.rate(i, y), speed, i, "unload"))
                 else:
-                    found.append((lambda t, y, i=i: -y[ZL + i], 1e-14, i, "separate"))
+                    found.append((lambda t, y, i=i: self.pressed(i, y), 1e-14, i, "separate"))
                     found.append((lambda t, y, i=i: 1.0 + y[ZL + i], 1e-14, i, "yield"))
             elif mode == "load":
                 found.append((lambda t, y, i=i: -self.rate(i, y), speed, i, "unload"))
             else:
                 found.append((lambda t, y, i=i: self.rate(i, y), speed, i, "load"))
-                found.append((lambda t, y, i=i: -y[ZL + i], 1e-14, i, "separate"))
+                found.append((lambda t, y, i=i: self.pressed(i, y), 1e-14, i, "separate"))
         return found
 
     # Events
@@ -359,8 +387,8 @@ class TwoSprings:
             self.constraint += 0.5 * (self.lever(self.mode, self.y)[0] ** 2 - before**2) * self.y[OM] ** 2
 
     def _lift(self, t: float, i: int) -> None:
-        self.y[ZL + i] = 0.0
-        self.rest[i] = self.pivot(i, self.y)
+        self.y[ZL + i] = -self.lag * max(self.rate(i, self.y), 0.0) if self.zeta else 0.0
+        self.rest[i] = self.pivot(i, self.y) - self.dy * self.y[ZL + i]
         self._change(i, "free")
         self.out.separations += 1
         self._note(t, "separation", i)
@@ -369,6 +397,14 @@ class TwoSprings:
 
     def _land(self, t: float, i: int, ah: float, av: float) -> None:
         y, other = self.y, 1 - i
+        if self.zeta:  # no impulse
+            self.out.impacts += 1
+            self._note(t, "impact", i)
+            if abs(self.rate(i, y) - self.top_rate(i, y)) <= 1e-13 * self.omega_v * self.dy:
+                self._settle(t, i, ah, av)
+            else:
+                self._change(i, self._branch(i))
+            return
         both = (
             self.mode[other] == "free"
             and self.pivot(other, y) - self.rest[other] < 1e-13 * self.dy
@@ -400,10 +436,14 @@ class TwoSprings:
             if abs(self.rate(k, y)) <= 1e-13 * self.omega_v * self.dy:
                 self._settle(t, k, ah, av)
 
+    def _branch(self, i: int) -> str:
+        rising = bool(self.zeta) and self.rate(i, self.y) > 0.0
+        return "load" if self.law == "bouc-wen" and not rising else "unload"
+
     def _settle(self, t: float, i: int, ah: float, av: float) -> None:
         """A pivot at z = 0 without velocity: pressed down, lifted, or held between the two equations."""
         if self.pivot_acceleration(i, "load", self.y, ah, av) <= 0.0:
-            self.mode[i] = "load" if self.law == "bouc-wen" else "unload"
+            self.mode[i] = self._branch(i)
         elif self.pivot_acceleration(i, "free", self.y, ah, av) > 0.0:
             self._lift(t, i)
         else:
@@ -414,15 +454,16 @@ class TwoSprings:
         if kind == "land":
             self._land(t, i, ah, av)
         elif kind == "separate":
-            self.y[ZL + i] = 0.0
-            if self.rate(i, self.y) > 1e-13 * self.omega_v * self.dy:
+            self.y[ZL + i] = -self.lag * max(self.rate(i, self.y), 0.0) if self.zeta else 0.0
+            self.rest[i] = self.pivot(i, self.y) - self.dy * self.y[ZL + i]
+            if self.rate(i, self.y) > 1e-13 * self.omega_v * self.dy and not self.zeta:
                 self._lift(t, i)
             else:
                 self._settle(t, i, ah, av)
         elif kind == "released to free":
             self._lift(t, i)
         elif kind == "released to load":
-            self.mode[i] = "load" if self.law == "bouc-wen" else "unload"
+            self.mode[i] = self._branch(i)
         else:
             if kind == "yield":
                 self.y[ZL + i] = -1.0
@@ -467,6 +508,7 @@ class TwoSprings:
             "impact": self.impact_loss,
             "p_delta": y[PDELTA],
             "constraint": self.constraint,
+            "damping": y[LOST],
         }
         return out
 

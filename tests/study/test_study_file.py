@@ -13,7 +13,7 @@ from rockbatch.errors import InputError
 from rockbatch.motions.baseline import Offset
 from rockbatch.motions.scaling import Target
 from rockbatch.motions.selection import Selection
-from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase
+from rockbatch.pier import Damper, ElasticBase, Pier, RigidBase, Tendon, YieldingBase
 from rockbatch.study import FemaSpec, Numerics, Output, PulseSpec, Reference, Study, load_study
 from rockbatch.study.cases import BASE_KEYS, CASE
 from rockbatch.study.load import NUMERICS, REFERENCE, TOP
@@ -644,3 +644,71 @@ def test_what_the_example_leaves_out_in_comments_can_be_put_in(tmp_path):
             said = ""
         assert "unknown" not in said, said
         assert "expected" not in said, said
+
+
+def test_zeta_takes_the_place_of_epsilon(tmp_path):
+    study = study_of(tmp_path, PIER, PULSE, case("beta = 40", "eta = 2.5", "zeta = [0.02, 0.05]"))
+    assert [only.base for only in study.cases] == [YieldingBase(40.0, eta=2.5, zeta=zeta) for zeta in (0.02, 0.05)]
+    assert [only.columns for only in study.cases] == [{"zeta": 0.02}, {"zeta": 0.05}]
+
+
+def test_epsilon_beside_zeta_is_told_once_with_its_line(tmp_path):
+    keys = case('name = "a"', "beta = 40", "epsilon = 0.1", "zeta = 0.05", base="elastic")
+    with pytest.raises(InputError) as error:
+        study_of(tmp_path, PIER, PULSE, keys)
+    (told,) = error.value.problems
+    assert "epsilon = 0.1: zeta is given too" in told
+    with pytest.raises(InputError, match="zeta = 5: damping of the supports"):
+        study_of(tmp_path, PIER, PULSE, case("beta = 40", "zeta = 5", base="elastic"))
+
+
+HEAVY = "[pier]\nwidth_m = 4.0\nheight_m = 30.0\nmass_t = 2000.0\n"
+
+
+def test_dampers_and_tendons_by_kilonewtons_and_by_ratios(tmp_path):
+    """f = F_d/(M g), nu = C/(M p), psi = P0/(M g), lambda = k_t b²/(M g R0)."""
+    hysteretic = 'kind = "hysteretic"\nforce_kN = [450, 900]\nyield_mm = 5\n'
+    dampers = f'[[case.damper]]\n{hysteretic}[[case.damper]]\nkind = "viscous"\nnu = 0.5\n'
+    tendon = "[case.tendon]\nprestress_kN = 5000\nstiffness_kN_m = 40000\nyield_kN = 9000\nat = 0.5\n"
+    study = study_of(tmp_path, HEAVY, PULSE, f'[[case]]\nbase = "rigid"\n{dampers}{tendon}')
+    first, second = study.cases
+    weight = 2000.0 * 9.81
+    pier = first.pier
+    hysteretic, viscous, rod = first.base.restraints
+    assert hysteretic == Damper("hysteretic", f=450 / weight, yield_m=0.005)
+    assert viscous == Damper("viscous", nu=0.5)
+    assert rod == Tendon(5000 / weight, pytest.approx(40000 * 2.0**2 / (weight * pier.size)), 9000 / weight, 0.5)
+    assert second.base.restraints[0].f == 900 / weight
+    assert [case.columns for case in study.cases] == [{"damper_1_force_kN": 450}, {"damper_1_force_kN": 900}]
+
+
+@pytest.mark.parametrize(
+    ("keys", "told"),
+    [
+        ('kind = "friction"', "force_kN is missing"),
+        ('kind = "friction"\nf = 0.1\nforce_kN = 5', "force_kN and f"),
+        ('kind = "friction"\nf = 0.1\nyield_mm = 5', "yield_mm: does not apply"),
+        ('kind = "hysteretic"\nf = 0.1', "yield_mm is missing"),
+        ('kind = "viscous"\ncoefficient_kN_s_m = 5', "coefficient_kN_s_m: kN are of a pier whose mass is known"),
+        ('kind = "rubber"\nf = 0.1', "rubber"),
+        ('kind = "viscous"\nnu = 0.1\nat = "middle"', "an offset"),
+    ],
+)
+def test_what_is_wrong_about_a_damper_is_told(tmp_path, keys, told):
+    with pytest.raises(InputError) as error:
+        study_of(tmp_path, PIER, PULSE, f'[[case]]\nbase = "rigid"\n[[case.damper]]\n{keys}\n')
+    assert told in str(error.value)
+
+
+def test_dampers_on_springs_are_refused(tmp_path):
+    text = '[[case]]\nbase = "elastic"\nbeta = 40\n[[case.damper]]\nkind = "friction"\nf = 0.1\n'
+    with pytest.raises(InputError, match="on a rigid base only"):
+        study_of(tmp_path, PIER, PULSE, text)
+
+
+def test_dampers_on_one_side_have_no_mirror_image(tmp_path):
+    both = '[motions]\npolarity = ["+", "-"]\n' + PULSE
+    damper = '[[case]]\nbase = "rigid"\n[[case.damper]]\nkind = "friction"\nf = 0.1\n'
+    study_of(tmp_path, PIER, both, damper)
+    with pytest.raises(InputError, match="keep one polarity"):
+        study_of(tmp_path, PIER, both, damper + 'at = "left"\n')

@@ -59,6 +59,17 @@ SPRINGS = [
         pulse("sine", 0.8, 1.6, dt=0.01, end=3.0),
         id="stocky",
     ),
+    pytest.param(FIG5, ElasticBase(50, zeta=0.05), SHORT_SINE, id="damped"),
+    pytest.param(FIG5, ElasticBase(50, kinematics="finite", zeta=0.2), SHORT_SINE, id="damped-finite"),
+    pytest.param(FIG5, YieldingBase(50, zeta=0.05, eta=2.2), SHORT_SINE, id="damped-yielding"),
+    pytest.param(FIG6, YieldingBase(60, kinematics="finite", zeta=1.0, eta=2.5), SHORT_COSINE, id="critical-finite"),
+    pytest.param(FIG6, YieldingBase(40, zeta=0.01, eta=1.5, spring="epp"), SHORT_COSINE, id="damped-epp"),
+    pytest.param(
+        FIG5,
+        YieldingBase(50, flight="guided", zeta=0.1, eta=3.0, n=2.0),
+        with_vertical(SHORT_SINE, 25.0),
+        id="damped-guided-flight",
+    ),
 ]
 
 
@@ -110,14 +121,15 @@ def test_a_real_record_agrees_with_the_reference(base):
 
 @pytest.mark.parametrize(("pier", "base", "motion"), SPRINGS)
 def test_energy_ledger_closes(pier, base, motion):
-    """The core's stored energy against input − plastic − impact + P–Δ + constraint, which the reference integrates.
+    """The core's stored energy against input − plastic − impact − damping + P–Δ + constraint, which the reference integrates.
 
     The parts do not follow from each other, so a wrong sign or arm anywhere leaves a gap; 1e-7 of their sum is the
     error of the state at the end.
     """
     parts = reference(pier, base, motion).ledger
     end = rb.simulate(pier, base, motion, substeps=32, quiet_s=0.0, wait=False).energy[-1]
-    balance = parts["input"] - parts["plastic"] - parts["impact"] + parts["p_delta"] + parts["constraint"]
+    lost = parts["plastic"] + parts["impact"] + parts["damping"]
+    balance = parts["input"] - lost + parts["p_delta"] + parts["constraint"]
     size = sum(abs(part) for name, part in parts.items() if name != "stored")
     assert end == pytest.approx(balance, abs=1e-7 * size)
     assert parts["plastic"] >= -1e-15  # of an elastic spring: rounding

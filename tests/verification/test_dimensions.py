@@ -10,7 +10,7 @@ import pint
 import pytest
 from numba.core.registry import CPUDispatcher
 
-from rockbatch.core import equations, events, forces, impact, laws, trigonometry
+from rockbatch.core import creep, equations, events, forces, impact, laws, trigonometry
 from rockbatch.core.rigid import equations as rigid
 from rockbatch.core.types import BOUC_WEN, ELASTIC, EPP, Block, Contact, Geometry, Ground, Rocking, Springs, State
 
@@ -19,7 +19,7 @@ M, S, RAD, ONE = U.metre, U.second, U.radian, U.dimensionless
 SPEED, ACCELERATION, JERK = M / S, M / S**2, M / S**3
 
 UNITS = {  # of the fields, by the tuples' own comments
-    Springs: (M, M, M**2, ACCELERATION, M, 1 / M, ACCELERATION, ONE),
+    Springs: (M, M, M**2, ACCELERATION, M, 1 / M, ACCELERATION, ONE, 1 / S),
     State: (M, RAD, SPEED, RAD / S, ONE, ONE),
     Ground: (ACCELERATION, JERK, ACCELERATION, JERK),
     Geometry: (M,) * 12,
@@ -27,7 +27,7 @@ UNITS = {  # of the fields, by the tuples' own comments
 }
 RATES = (SPEED, RAD / S, ACCELERATION, RAD / S**2, 1 / S, 1 / S)
 
-PIER = (1.5, 7.2, 18.0, 9.81, 0.01, 100.0, 14.7, 0.1)
+PIER = (1.5, 7.2, 18.0, 9.81, 0.01, 100.0, 14.7, 0.1, 1.9)
 MOVING = (-0.004, 0.02, -0.01, 0.15, -0.3, -0.6)
 SHAKING = (2.0, -30.0, -1.0, 12.0)
 BLOCK = (0.2, 1.0, 9.81, 0.9)
@@ -42,6 +42,7 @@ CONTACTS = [
     pytest.param(Contact(1.0, 0.0, 1.0, 0.0, 1), id="right-held"),
 ]
 KINEMATICS = pytest.mark.parametrize("finite", [None, True], ids=["first-order", "finite"])
+DAMPED = pytest.mark.parametrize("damped", [None, True], ids=["undamped", "damped"])
 LAWS = pytest.mark.parametrize("law", [ELASTIC, BOUC_WEN, EPP], ids=["elastic", "bouc-wen", "epp"])
 
 
@@ -51,7 +52,7 @@ def plain_python(monkeypatch):
 
     A lever that is absent is written as 0.0; an exact zero has every dimension, so it gets that of its neighbours.
     """
-    modules: tuple[ModuleType, ...] = (laws, equations, impact, events, trigonometry, rigid, forces)
+    modules: tuple[ModuleType, ...] = (laws, creep, equations, impact, events, trigonometry, rigid, forces)
     compiled_geometry = equations.geometry
 
     def geometry(m, theta):
@@ -75,8 +76,8 @@ def quantities(kind, values, wrong=None):
     ]
 
 
-def pier(finite, law=BOUC_WEN, wrong=None):
-    return Springs(*quantities(Springs, PIER, wrong), law, 1.0, None, finite)
+def pier(finite, law=BOUC_WEN, wrong=None, damped=None):
+    return Springs(*quantities(Springs, PIER, wrong), law, 1.0, None, finite, damped)
 
 
 def state(wrong=None):
@@ -102,21 +103,24 @@ def test_levers_and_pivots_are_lengths(finite):
 
 
 @KINEMATICS
+@DAMPED
 @pytest.mark.parametrize("contact", CONTACTS)
-def test_rates_are_the_states_units_per_second_whatever_the_contact(finite, contact):
-    shaking = ground()
-    found = equations.rates(pier(finite), state(), contact, shaking.horizontal, shaking.vertical)
+def test_rates_are_the_states_units_per_second_whatever_the_contact(finite, damped, contact):
+    m, shaking = pier(finite, damped=damped), ground()
+    found = equations.rates(m, state(), contact, shaking.horizontal, shaking.vertical)
     assert_units(found, RATES)
     for side in (-1, 1):
-        pivot = equations.pivot_acceleration(pier(finite), state(), contact, side, shaking.horizontal, shaking.vertical)
+        pivot = equations.pivot_acceleration(m, state(), contact, side, shaking.horizontal, shaking.vertical)
         assert_units([pivot], [ACCELERATION])
 
 
 @KINEMATICS
-def test_a_step_ends_in_a_state(finite):
-    m, y, shaking = pier(finite), state(), ground()
-    k1 = equations.rates(m, y, BOTH, shaking.horizontal, shaking.vertical)
-    assert_units(equations.step(m, y, k1, BOTH, shaking, 0.001 * S), UNITS[State])
+@DAMPED
+@pytest.mark.parametrize("contact", CONTACTS[:4])
+def test_a_step_ends_in_a_state(finite, damped, contact):
+    m, y, shaking = pier(finite, damped=damped), state(), ground()
+    k1 = equations.rates(m, y, contact, shaking.horizontal, shaking.vertical)
+    assert_units(equations.step(m, y, k1, contact, shaking, 0.001 * S), UNITS[State])
 
 
 @KINEMATICS
@@ -141,11 +145,12 @@ def test_the_spring_law_gives_rates_deflections_and_work(n):
 
 
 @KINEMATICS
+@DAMPED
 @LAWS
 @pytest.mark.parametrize("contact", CONTACTS)
-def test_signals_compare_like_with_like_and_their_slopes_are_per_second(finite, law, contact):
-    """In contact −z, else the gap; on a spring the pivot's velocity, for an EPP spring its way to yield 1 + z."""
-    m, y, shaking = pier(finite, law), state(), ground()
+def test_signals_compare_like_with_like_and_their_slopes_are_per_second(finite, damped, law, contact):
+    """In contact the force over F_y, else the gap; on a spring the pivot's velocity, for an EPP spring its way to yield 1 + z."""
+    m, y, shaking = pier(finite, law, damped=damped), state(), ground()
     k = equations.rates(m, y, contact, shaking.horizontal, shaking.vertical)
     rest = events.at_rest(m)
     values, slopes = events.signals(m, y, k, contact, 0.001 * M, 0.002 * M, rest, shaking.horizontal, shaking.vertical)
@@ -224,10 +229,10 @@ def test_right_units_are_not_refused():
 
 
 @KINEMATICS
-@pytest.mark.parametrize("field", Springs._fields[:8])
+@pytest.mark.parametrize("field", Springs._fields[:9])
 def test_a_pier_with_one_wrong_unit_is_refused(finite, field):
     with pytest.raises(pint.DimensionalityError):
-        step_and_land(pier(finite, wrong=field), state(), ground())
+        step_and_land(pier(finite, wrong=field, damped=field == "damping" or None), state(), ground())
 
 
 @KINEMATICS

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from rockbatch.pier import ElasticBase, RigidBase, YieldingBase, yield_deflection
-from rockbatch.report.drawing.axes import Axes, Scale
+from rockbatch.report.drawing.axes import Axes, Scale, spanning
 from rockbatch.report.drawing.svg import Array, curve, lowered, text, thin
 from rockbatch.report.markup import Markup, join
 from rockbatch.results.response import Response
@@ -35,7 +35,7 @@ class History:
     band : float
         |θ/α| up to which a weakly rocking pier keeps both supports: paper, eq. 10. Zero on the rigid base.
     loops : Markup
-        Force against deflection of both springs; empty where they do not yield.
+        Force against deflection of both springs where they yield, or of dampers and tendons; else empty.
     """
 
     rigid: bool
@@ -73,8 +73,15 @@ def reduced(response: Response, left: float, width: float) -> History:
         (float(t[worst]), float(theta[worst])),
         (float(t[-1]), float(theta[-1])),
         _band(response),
-        _loops(response, left, width) if isinstance(response.base, YieldingBase) else Markup(""),
+        _foot(response, left, width),
     )
+
+
+def _foot(response: Response, left: float, width: float) -> Markup:
+    """Loops of yielding springs, or of the first two dampers and tendons."""
+    if isinstance(response.base, YieldingBase):
+        return _loops(response, left, width)
+    return Markup("") if response.restraints is None else _restraints(response, left, width)
 
 
 def _band(response: Response) -> float:
@@ -109,4 +116,24 @@ def _loops(response: Response, left: float, width: float) -> Markup:
         drawn += [frame, axes.readable("plane", line), name]
         drawn.append(text(axes.left + each / 2, LOOPS_HEIGHT - 3, lowered("v/δ", "y"), class_="m q"))
     drawn.append(text(left - 2, 10, lowered("F/F", "y"), class_="q"))
+    return join(*drawn)
+
+
+def _restraints(response: Response, left: float, width: float) -> Markup:
+    """F/(M g) against elongation [mm] of the first two dampers and tendons, side by side, each on its own scale."""
+    table = response.restraints
+    assert table is not None
+    names = [str(name).removesuffix(" force") for name in table if str(name).endswith(" force")][:2]
+    gap, drawn = 26.0, []
+    each = (width - gap) / 2
+    for place, name in enumerate(names):
+        way = 1000.0 * table[f"{name} elongation"].to_numpy(dtype=np.float64)
+        force = table[f"{name} force"].to_numpy(dtype=np.float64) / response.pier.gravity
+        across, down = spanning(way), spanning(force)
+        axes = Axes(left + place * (each + gap), 14, each, LOOPS_HEIGHT - 40, across, down)
+        line = curve(axes.across(way), axes.down(force), "curve", "F/(M g)")
+        drawn += [axes.frame(across.ticks(2), down.ticks(2)), axes.readable("plane", line)]
+        drawn.append(text(axes.left + 4, axes.top + axes.height - 5, name, class_="q"))
+        drawn.append(text(axes.left + each / 2, LOOPS_HEIGHT - 3, "e [mm]", class_="m q"))
+    drawn.append(text(left - 2, 10, "F/(M g)", class_="q"))
     return join(*drawn)

@@ -178,7 +178,10 @@ def _caption(pier: str, shown: Sequence[History], lines: bool) -> Markup:
         else "",
         ".",
         " At the foot, force against deflection of the left (L) and right (R) spring over their values at yield."
-        if any(one.loops for one in shown)
+        if any(one.loops and not one.rigid for one in shown)
+        else "",
+        " At the foot, force over the pier's weight against elongation of dampers and tendons."
+        if any(one.loops and one.rigid for one in shown)
         else "",
     ]
     return join(*said)

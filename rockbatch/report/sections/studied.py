@@ -98,6 +98,7 @@ def foundations(finished: Finished) -> Markup:
         Head("η", ".5g", note="yield over static deflection: capacity of a support over its static load"),
         *(Head(symbol(key), ",.0f", note) for key, note in in_kilonewtons.items()),
         Head("ε", note="restitution of the landing pivot's velocity"),
+        Head("ζ", note="damping of the supports, as a share of critical damping of the vertical vibration"),
         Head("spring"),
         Head("n", note="Bouc–Wen exponent"),
         Head("kinematics"),
@@ -107,7 +108,8 @@ def foundations(finished: Finished) -> Markup:
         Head(join(sub("δ", "s"), " [mm]"), ".2f", "static deflection"),
         Head(join(sub("δ", "y"), " [mm]"), ".2f", "yield deflection"),
     ]
-    names = ("beta", "eta", *in_kilonewtons, "epsilon", "spring", "n", "kinematics", "flight", "restitution", "omega_v")
+    given = ("epsilon", "zeta", "spring", "n", "kinematics", "flight", "restitution", "omega_v")
+    names = ("beta", "eta", *in_kilonewtons, *given)
     rows = []
     for case in finished.info["cases"]:
         values = case["parameters"]
@@ -117,7 +119,8 @@ def foundations(finished: Finished) -> Markup:
         rows.append([case["case"], *pier, case["base"], *(values.get(key) for key in names), *millimetres])
     legend = (
         "β: vertical over rocking frequency parameter. η: yield over static deflection, the capacity of a support over its "
-        "static load. ε: restitution of the pivot that lands. δ: deflections of a support, static and at yield."
+        "static load. ε: restitution of the pivot that lands. ζ: damping of the supports, as a share of critical. δ: deflections "
+        "of a support, static and at yield."
     )
     springs = any(case["base"] != "rigid" for case in finished.info["cases"])
     return join(table(heads, rows, name="Foundations"), tag("p", legend, class_="legend") if springs else "")

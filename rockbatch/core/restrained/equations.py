@@ -1,0 +1,103 @@
+"""Equations of a block that elements tie to the ground, in the frame of the corner about which it rocks.
+
+The numbers of a run that are integrated, y: tilt q = |θ| [rad], its rate w, the state of each element, the energy that each has
+taken and not given back [J/kg], and the work of the ground [J/kg].
+"""
+
+import math
+
+from rockbatch.core.kernel import kernel
+from rockbatch.core.restrained.elements import FRICTION, HYSTERETIC, STICKS, distance, force, loss_rate, state_rate
+
+
+@kernel
+def pull_back(elements, inertia, side, y, modes, goes):
+    """Angular deceleration [rad/s²] by all elements."""
+    total = 0.0
+    for j in range(len(elements)):
+        d = distance(elements[j], side)
+        half = math.cos(0.5 * y[0])
+        elongation, speed = 2.0 * d * math.sin(0.5 * y[0]), d * half * y[1]
+        total += force(elements[j], elongation, speed, y[2 + j], modes[j], goes) * d * half
+    return total / inertia
+
+
+@kernel
+def friction_bound(elements, inertia, side, tilt):
+    """Angular acceleration [rad/s²] that friction can hold."""
+    total = 0.0
+    for j in range(len(elements)):
+        if elements[j].kind == FRICTION:
+            total += elements[j].strength * distance(elements[j], side) * math.cos(0.5 * tilt)
+    return total / inertia
+
+
+@kernel
+def driven(m, side, tilt, horizontal, vertical):
+    """Acceleration of the tilt [rad/s²] by weight and ground (THEORY.md, 10)."""
+    lean = m.alpha - tilt
+    return -m.p * m.p / m.gravity * ((m.gravity + vertical) * math.sin(lean) + side * horizontal * math.cos(lean))
+
+
+@kernel
+def acceleration(m, elements, inertia, side, y, modes, goes, horizontal, vertical):
+    """Acceleration of the tilt [rad/s²]."""
+    return driven(m, side, y[0], horizontal, vertical) - pull_back(elements, inertia, side, y, modes, goes)
+
+
+@kernel
+def rates(m, elements, inertia, side, y, modes, goes, horizontal, vertical, k):
+    """Rates of ``y`` into ``k``."""
+    n = len(elements)
+    half = math.cos(0.5 * y[0])
+    k[0] = y[1]
+    k[1] = acceleration(m, elements, inertia, side, y, modes, goes, horizontal, vertical)
+    for j in range(n):
+        of = elements[j]
+        d = distance(of, side)
+        speed = d * half * y[1]
+        pull = force(of, 2.0 * d * math.sin(0.5 * y[0]), speed, y[2 + j], modes[j], goes)
+        k[2 + j] = state_rate(of, speed, y[2 + j], modes[j], goes)
+        k[2 + n + j] = loss_rate(of, speed, pull, modes[j])
+    push = driven(m, side, y[0], horizontal, vertical) - driven(m, side, y[0], 0.0, 0.0)
+    k[2 + 2 * n] = inertia * push * y[1]
+
+
+@kernel
+def step(m, elements, inertia, side, y, modes, goes, ground, h, work, end):
+    """One Runge–Kutta step of order 4 from ``y`` over ``h`` [s] into ``end``; ``work`` holds four rates and a stage.
+
+    What sticks stays as it is.
+    """
+    if goes == STICKS:
+        copy(y, end)
+        return
+    k1, k2, k3, k4, stage = work[0], work[1], work[2], work[3], work[4]
+    half = 0.5 * h
+    a, c = ground.horizontal, ground.vertical
+    a_middle, c_middle = a + half * ground.horizontal_slope, c + half * ground.vertical_slope
+    rates(m, elements, inertia, side, y, modes, goes, a, c, k1)
+    _along(y, k1, half, stage)
+    rates(m, elements, inertia, side, stage, modes, goes, a_middle, c_middle, k2)
+    _along(y, k2, half, stage)
+    rates(m, elements, inertia, side, stage, modes, goes, a_middle, c_middle, k3)
+    _along(y, k3, h, stage)
+    a_end, c_end = a + h * ground.horizontal_slope, c + h * ground.vertical_slope
+    rates(m, elements, inertia, side, stage, modes, goes, a_end, c_end, k4)
+    for i in range(len(y)):
+        end[i] = y[i] + h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i])
+    for j in range(len(elements)):
+        if elements[j].kind == HYSTERETIC:  # a step that resolves the law never gets beyond
+            end[2 + j] = min(max(end[2 + j], -1.0), 1.0)
+
+
+@kernel
+def copy(numbers, to):
+    for i in range(len(numbers)):
+        to[i] = numbers[i]
+
+
+@kernel
+def _along(y, k, h, out):
+    for i in range(len(y)):
+        out[i] = y[i] + h * k[i]

@@ -1,0 +1,144 @@
+"""What ties a pier to the ground beside its own weight: dampers and tendons (THEORY.md, 5)."""
+
+import math
+from dataclasses import dataclass, replace
+from typing import Literal, get_args
+
+from rockbatch.pier.block import Pier
+
+DamperKind = Literal["friction", "viscous", "hysteretic"]
+
+MOST_FORCE = 10.0
+"""Of the pier's weight, beyond which a wrong unit is likelier than the device."""
+
+
+@dataclass(frozen=True)
+class Damper:
+    """A damper between the pier and the ground.
+
+    Attributes
+    ----------
+    kind : "friction", "viscous" or "hysteretic"
+        F_d sgn(ė); C |ė|^a sgn(ė); F_d z with a two-sided Bouc–Wen law, n = 5, of which friction is the limit u_y → 0.
+    f : float
+        F_d/(M g) of a friction or hysteretic damper.
+    nu : float
+        C/(M p) of a viscous damper; with an exponent a, of C in (m/s)^-a.
+    yield_m : float
+        u_y of a hysteretic damper [m].
+    exponent : float
+        a of a viscous damper.
+    at : float, "left", "right" or None
+        Offset from the centre of the base [m], positive to the right; None: one at each pivot.
+    """
+
+    kind: DamperKind
+    f: float = 0.0
+    nu: float = 0.0
+    yield_m: float = 0.0
+    exponent: float = 1.0
+    at: float | str | None = None
+
+
+@dataclass(frozen=True)
+class Tendon:
+    """An unbonded tendon between the pier and the ground that takes tension only.
+
+    Attributes
+    ----------
+    psi : float
+        ψ = P0/(M g), its prestress.
+    lam : float
+        λ = k_t b²/(M g R0), its stiffness.
+    strength : float
+        T_y/(M g) at which it yields, and is longer from then on; infinite where it does not.
+    at : float, "left" or "right"
+        Offset from the centre of the base [m], positive to the right.
+    """
+
+    psi: float = 0.0
+    lam: float = 0.0
+    strength: float = math.inf
+    at: float | str = 0.0
+
+
+Restraint = Damper | Tendon
+
+
+def offsets(pier: Pier, restraint: Restraint) -> tuple[float, ...]:
+    """Where the elements of a restraint are, from the centre of the base [m]."""
+    b = pier.half_width
+    if restraint.at is None:
+        return -b, b
+    if isinstance(restraint.at, str):
+        return (-b,) if restraint.at == "left" else (b,)
+    return (float(restraint.at),)
+
+
+def wrong_restraints(pier: Pier, restraints: tuple[Restraint, ...]) -> list[str]:
+    """What is impossible about dampers and tendons under ``pier``: one sentence each; empty if nothing."""
+    wrong = []
+    if restraints and pier.deck_over_columns is not None:
+        wrong.append("columns: dampers and tendons of a rocking frame are not solved; leave them or columns out")
+    for each in restraints:
+        name = "tendon" if isinstance(each, Tendon) else "damper"
+        if isinstance(each.at, str) and each.at not in ("left", "right"):
+            wrong.append(f'{name}: at = "{each.at}": must be "left", "right" or an offset in m')
+        elif isinstance(each.at, float | int) and not abs(each.at) <= 2.0 * pier.half_width:
+            wrong.append(
+                f"{name}: at = {each.at:g}: must be within the base's width either side, {2 * pier.half_width:.4g} m"
+            )
+        wrong += _wrong_tendon(each) if isinstance(each, Tendon) else _wrong_damper(each)
+    return wrong
+
+
+def _wrong_damper(damper: Damper) -> list[str]:
+    wrong = []
+    if damper.kind not in get_args(DamperKind):
+        return [f'damper: kind = "{damper.kind}": must be ' + " or ".join(f'"{kind}"' for kind in get_args(DamperKind))]
+    if damper.kind == "viscous":
+        if not (math.isfinite(damper.nu) and damper.nu >= 0):
+            wrong.append(f"damper: nu = {damper.nu:g}: must be 0 or above")
+        if not 0.2 <= damper.exponent <= 2:
+            wrong.append(f"damper: exponent = {damper.exponent:g}: must be within 0.2..2")
+        return wrong
+    if not 0 <= damper.f <= MOST_FORCE:
+        wrong.append(f"damper: f = {damper.f:g}: its force over the weight must be within 0..{MOST_FORCE:g}")
+    if damper.kind == "hysteretic" and not (math.isfinite(damper.yield_m) and damper.yield_m > 0):
+        wrong.append(f"damper: yield_m = {damper.yield_m:g}: a hysteretic damper yields at a deflection above 0 m")
+    return wrong
+
+
+def _wrong_tendon(tendon: Tendon) -> list[str]:
+    wrong = []
+    if not 0 <= tendon.psi <= MOST_FORCE:
+        wrong.append(f"tendon: psi = {tendon.psi:g}: its prestress over the weight must be within 0..{MOST_FORCE:g}")
+    if not (math.isfinite(tendon.lam) and tendon.lam >= 0):
+        wrong.append(f"tendon: lambda = {tendon.lam:g}: must be 0 or above")
+    if not tendon.strength > tendon.psi:
+        wrong.append(
+            f"tendon: its yield force over the weight, {tendon.strength:g}, must be above its prestress, {tendon.psi:g}"
+        )
+    return wrong
+
+
+def recentres(pier: Pier, restraints: tuple[Restraint, ...]) -> bool:
+    """Whether weight and prestress overcome friction at small rotations, about either corner: 2 f < 1 + ψ, dampers at both.
+
+    Dampers without a yield deflection of theirs, and those with one, count alike.
+    """
+    for corner in (-pier.half_width, pier.half_width):
+        holds, rights = 0.0, 1.0
+        for each in restraints:
+            arms = sum(abs(offset - corner) for offset in offsets(pier, each)) / pier.half_width
+            holds += each.f * arms if isinstance(each, Damper) and each.kind != "viscous" else 0.0
+            rights += each.psi * arms if isinstance(each, Tendon) else 0.0
+        if holds >= rights:
+            return False
+    return True
+
+
+def symmetric(pier: Pier, restraints: tuple[Restraint, ...]) -> bool:
+    """Whether the mirror image of a run is that of the reversed motion: each element has its like on the other side."""
+    placed = [(offset, replace(each, at=0.0)) for each in restraints for offset in offsets(pier, each)]
+    return all(placed.count((-offset, each)) == placed.count((offset, each)) for offset, each in placed)

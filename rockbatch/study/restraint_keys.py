@@ -1,0 +1,138 @@
+"""Dampers and tendons of a case: [[case.damper]], and [case.tendon] or [[case.tendon]]."""
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any, get_args
+
+from rockbatch.pier import Damper, DamperKind, Pier, Restraint, Tendon
+from rockbatch.study.lists import listed
+from rockbatch.study.piers import has_mass
+from rockbatch.toml.kinds import KindError, choice, not_negative, number, positive, shown
+from rockbatch.toml.reader import Key, Setting, Table
+
+
+def _place(value: Any) -> float | str:
+    if isinstance(value, str) and value in ("left", "right"):
+        return value
+    if isinstance(value, str):
+        raise KindError('"left", "right" or an offset from the middle of the base in m')
+    return number(value)
+
+
+DAMPER = {
+    "kind": Key(choice(*get_args(DamperKind)), '"friction"', required=True),
+    "force_kN": Key(positive, "450.0", many=True),
+    "f": Key(not_negative, "0.02", many=True),
+    "yield_mm": Key(positive, "5.0", many=True),
+    "coefficient_kN_s_m": Key(not_negative, "900.0", many=True),
+    "nu": Key(not_negative, "0.5", many=True),
+    "exponent": Key(positive, "0.5", many=True),
+    "at": Key(_place, '"left"'),
+}
+TENDON = {
+    "prestress_kN": Key(not_negative, "5000.0", many=True),
+    "psi": Key(not_negative, "0.5", many=True),
+    "stiffness_kN_m": Key(not_negative, "40000.0", many=True),
+    "lambda": Key(not_negative, "1.0", many=True),
+    "yield_kN": Key(positive, "9000.0", many=True),
+    "at": Key(_place, "0.0"),
+}
+RESTRAINTS = ("damper", "tendon")
+ON_RIGID = 'dampers and tendons are solved on a rigid base only; leave them out, or write base = "rigid"'
+
+_IN_KN = ("force_kN", "coefficient_kN_s_m", "prestress_kN", "stiffness_kN_m", "yield_kN")
+_BELONG = {  # keys of a damper of each kind: those of which one is needed, then the others
+    "friction": (("force_kN", "f"), ()),
+    "hysteretic": (("force_kN", "f"), ("yield_mm",)),
+    "viscous": (("coefficient_kN_s_m", "nu"), ("exponent",)),
+}
+
+
+def read_restraints(case: Table) -> tuple[dict[str, Sequence[Setting]], tuple[str, ...]]:
+    """Settings of all dampers and tendons of a case, by names that set them apart, and which of them are lists."""
+    read: dict[str, Sequence[Setting]] = {}
+    varied: tuple[str, ...] = ()
+    for what, keys in (("damper", DAMPER), ("tendon", TENDON)):
+        for n, table in enumerate(_tables(case, what), 1):
+            found = table.read(keys)
+            for name, value in found.items():
+                read[f"{what}_{n}_{name}"] = value if isinstance(value, list) else [Setting(value, (*table.at, name))]
+            varied += tuple(f"{what}_{n}_{name}" for name in listed(table, keys))
+            if what == "damper":
+                _check_damper(table, found.get("kind"))
+            else:
+                _check_pairs(table, (("prestress_kN", "psi"), ("stiffness_kN_m", "lambda")))
+            _check_mass(table)
+    return read, varied
+
+
+def _tables(case: Table, what: str) -> list[Table]:
+    """One table, or several."""
+    if isinstance(case.data.get(what), dict):
+        return [Table(case.file, (*case.at, what), f"[case.{what}]", case.data[what])]
+    return case.file.tables(*case.at, what, title="kind")
+
+
+def _check_damper(table: Table, kind: str | None) -> None:
+    if kind is None:
+        return
+    either, others = _BELONG[kind]
+    for name in table.data.keys() & DAMPER.keys() - {"kind", "at", *either, *others}:
+        table.complain(f"{name}: does not apply to kind = {shown(kind)}; leave it out", name)
+    if not table.data.keys() & set(either):
+        table.complain(
+            f"{either[0]} is missing; write for example {either[0]} = {DAMPER[either[0]].example}, or {either[1]}"
+        )
+    _check_pairs(table, (either,))
+    if kind == "hysteretic" and "yield_mm" not in table.data:
+        table.complain('yield_mm is missing; write for example yield_mm = 5.0, or kind = "friction", its limit')
+
+
+def _check_pairs(table: Table, pairs: Sequence[Sequence[str]]) -> None:
+    for one, other in pairs:
+        if one in table.data and other in table.data:
+            table.complain(f"{one} and {other} are given, which fix the same; keep one", other)
+
+
+def _check_mass(table: Table) -> None:
+    for name in _IN_KN:
+        if name in table.data and not has_mass(table.file):
+            table.complain(f"{name}: kN are of a pier whose mass is known; write mass_t in [pier]", name)
+
+
+def restraints_of(pier: Pier, given: dict[str, Any]) -> tuple[Restraint, ...]:
+    """Dampers and tendons by the settings of :func:`read_restraints`, which are taken out of ``given``."""
+    taken: dict[str, dict[str, Any]] = {}
+    for name in [name for name in given if name.startswith(tuple(f"{what}_" for what in RESTRAINTS))]:
+        what, n, key = name.split("_", 2)
+        taken.setdefault(f"{what}_{n}", {})[key] = given.pop(name)
+    weight = None if pier.mass_t is None else pier.mass_t * pier.gravity
+    return tuple(
+        _damper(values, pier, weight) if name.startswith("damper") else _tendon(values, pier, weight)
+        for name, values in taken.items()
+        if name.startswith("tendon") or "kind" in values
+    )
+
+
+def _damper(values: Mapping[str, Any], pier: Pier, weight: float | None) -> Damper:
+    own = {name: values[name] for name in ("f", "nu", "exponent", "at") if name in values}
+    if "force_kN" in values and weight:
+        own["f"] = values["force_kN"] / weight
+    if "coefficient_kN_s_m" in values and weight:
+        own["nu"] = values["coefficient_kN_s_m"] * pier.gravity / (weight * pier.p)
+    if "yield_mm" in values:
+        own["yield_m"] = values["yield_mm"] / 1000.0
+    elif values["kind"] == "hysteretic":
+        own["yield_m"] = 0.001  # missing, which is noted: a possible value lets the rest be checked
+    return Damper(values["kind"], **own)
+
+
+def _tendon(values: Mapping[str, Any], pier: Pier, weight: float | None) -> Tendon:
+    own = {"psi": values.get("psi", 0.0), "lam": values.get("lambda", 0.0), "at": values.get("at", 0.0)}
+    strength = math.inf
+    if weight:
+        own["psi"] = values["prestress_kN"] / weight if "prestress_kN" in values else own["psi"]
+        if "stiffness_kN_m" in values:
+            own["lam"] = values["stiffness_kN_m"] * pier.half_width**2 / (weight * pier.size)
+        strength = values["yield_kN"] / weight if "yield_kN" in values else math.inf
+    return Tendon(strength=strength, **own)

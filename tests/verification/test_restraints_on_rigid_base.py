@@ -1,0 +1,370 @@
+"""Dampers and tendons of a pier on a rigid base (THEORY.md, 5) against closed forms and a derivation of their own.
+
+The reference below integrates the block with SciPy's DOP853; elongations and moments come from the coordinates of the points
+that an element joins, not from the half angles of the core.
+"""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from core_samples import FIG5, TOWER, pulse
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+
+import rockbatch as rb
+from rockbatch.core import types
+from rockbatch.core.restrained.runs import rock_restrained
+from rockbatch.motions.motion import Motion
+from rockbatch.pier import Damper, Pier, RigidBase, Tendon, problems, recentres
+from rockbatch.simulation import Run, run_fixed, run_to_tolerance, written_run
+from rockbatch.simulation.models import block, elements
+from rockbatch.units import GRAVITY
+
+ONE_SINE = pulse("sine", 0.5, 1.0, dt=1e-4, end=3.0)
+STILL = np.zeros(4001)
+
+
+def base(*restraints, restitution=None):
+    return RigidBase(restitution, restraints)
+
+
+def extremes(theta):
+    """Turning values of a history, and those of the samples beside them by a parabola."""
+    at = np.flatnonzero((np.abs(theta[1:-1]) > np.abs(theta[:-2])) & (np.abs(theta[1:-1]) >= np.abs(theta[2:]))) + 1
+    return theta[at]
+
+
+def free(pier, foundation, theta, dt=1e-3, samples=STILL):
+    """History of a block that is let go at ``theta`` [rad]: t, θ, θ̇, kind."""
+    found = rock_restrained(
+        block(pier, foundation), elements(pier, foundation), pier.inertia_about_pivot, (samples, (), dt), 4, 0,
+        theta=theta, rows=40_000,
+    )  # fmt: skip
+    return found.history[: found.run.rows]
+
+
+@pytest.mark.parametrize(
+    ("restraint", "first", "second"),
+    [
+        (None, -0.112103, 0.178073),
+        (Damper("friction", f=0.1), -0.099236, 0.137669),
+        (Damper("viscous", nu=1.0), -0.110036, 0.165510),
+        (Tendon(psi=0.5), -0.081923, 0.177956),
+        (Tendon(lam=1.0), -0.110447, 0.173430),
+    ],
+    ids=["none", "friction", "viscous", "prestress", "stiffness"],
+)
+def test_extremes_under_one_sine_of_two_independent_solvers(restraint, first, second):
+    """α = 0.2, μ = 3, p = 1, Housner's e, 1 g × 0.5 s sampled at 0.1 ms."""
+    foundation = base(*([restraint] if restraint else [Tendon()]))
+    found, rows = written_run(Run(FIG5, foundation, ONE_SINE), 1, 0.0, 40_000, wait=False)
+    turned = extremes(rows.theta[: found.rows]) / FIG5.alpha
+    assert turned[:2] == pytest.approx([first, second], abs=6e-7)
+
+
+@pytest.mark.parametrize(
+    ("tendon", "time"),
+    [(Tendon(), 1.3185043975), (Tendon(psi=0.5), 0.9647481830), (Tendon(lam=1.0), 1.0010008340)],
+    ids=["none", "prestress", "stiffness"],
+)
+def test_quarter_period_from_half_of_alpha(tendon, time):
+    rows = free(FIG5, base(tendon), 0.5 * FIG5.alpha)
+    assert rows[np.flatnonzero(rows[:, 3] > 0)[0], 0] * FIG5.p == pytest.approx(time, abs=2e-10)
+
+
+def test_free_decay_with_friction_is_that_of_the_energies():
+    """V(θ₁) + W(θ₁) = e² [V(θ₀) − W(θ₀)], V = cos(α − θ) − cos α, W = 4 f sin α sin(θ/2); f = 0.1."""
+    alpha, f, e = FIG5.alpha, 0.1, FIG5.restitution
+    theta, expected = 0.5 * alpha, []
+    for _ in range(2):
+        level = e**2 * (math.cos(alpha - theta) - math.cos(alpha) - 4 * f * math.sin(alpha) * math.sin(theta / 2))
+        low, high = 0.0, theta
+        for _ in range(200):
+            middle = 0.5 * (low + high)
+            over = math.cos(alpha - middle) - math.cos(alpha) + 4 * f * math.sin(alpha) * math.sin(middle / 2) > level
+            low, high = (low, middle) if over else (middle, high)
+        theta = low
+        expected.append(theta / alpha)
+    assert expected == pytest.approx([0.224305164, 0.119919682], abs=1e-9)
+    found = rock_restrained(
+        block(FIG5, base(Damper("friction", f=f))), elements(FIG5, base(Damper("friction", f=f))),
+        FIG5.inertia_about_pivot, (STILL, (), 2e-3), 8, 0, theta=0.5 * alpha, rows=80_000, every_step=True,
+    )  # fmt: skip
+    rows = found.history[: found.run.rows]
+    speeds = rows[np.flatnonzero(np.isin(rows[:, 3], (types.IMPACT_LEFT, types.IMPACT_RIGHT)))][:2, 2]
+    for speed, extreme in zip(speeds, expected, strict=True):  # ½ θ̇²/p² after the impact is V + W at the extreme
+        theta = extreme * alpha
+        climbed = math.cos(alpha - theta) - math.cos(alpha) + 4 * f * math.sin(alpha) * math.sin(theta / 2)
+        assert 0.5 * speed**2 / FIG5.p**2 == pytest.approx(climbed, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("restraint", "factor"),
+    [(Damper("friction", f=0.2), 1.4), (Tendon(psi=0.5), 1.5), (Tendon(psi=0.5, at="left"), 2.0)],
+)
+def test_lift_off_takes_what_friction_and_prestress_add(restraint, factor):
+    """|ü_g| = (1 + 2 f) g tan α, (1 + ψ) g tan α; a tendon at the other pivot has twice the arm."""
+    threshold = factor * GRAVITY * math.tan(FIG5.alpha)
+    for share, lifts in ((1.0 - 1e-9, 0), (1.0 + 1e-9, 1)):
+        steady = Motion("steady", 0.01, np.full(100, -share * threshold))  # to the right, about the right corner
+        outcome = run_fixed(FIG5, base(restraint), steady, 4, 0.0, wait=False)
+        assert outcome.separations == lifts
+
+
+@pytest.mark.parametrize(("f", "psi"), [(0.499, 0.0), (0.501, 0.0), (0.749, 0.5), (0.751, 0.5)])
+def test_it_recentres_below_the_edge_and_is_held_above(f, psi):
+    """2 f < 1 + ψ."""
+    restraints = (Damper("friction", f=f), Tendon(psi=psi))
+    foundation, goes_back = base(*restraints), 2 * f < 1 + psi
+    assert recentres(FIG5, restraints) == goes_back
+    motion = pulse("sine", 0.5, 2.0, dt=0.005, end=2.0)
+    outcome = run_to_tolerance(FIG5, foundation, motion, 1e-6)
+    assert outcome.status == "ok"
+    assert outcome.theta_max > 0.01 * FIG5.alpha
+    held = free(FIG5, foundation, 1e-3 * FIG5.alpha)
+    assert (held[-1, 1] == 1e-3 * FIG5.alpha) != goes_back
+
+
+def test_a_stiff_tendon_holds_a_pier_that_leans_beyond_alpha():
+    """λ > cos α hardens: cos(α − θ) − λ cos θ has its minimum at 0 alone. λ at cos α stands to a right angle, without falls."""
+    for lam in (math.cos(FIG5.alpha), 1.2):
+        rows = free(FIG5, base(Tendon(lam=lam), restitution=1.0), 1.3 * FIG5.alpha)
+        assert rows[:, 1].min() < -1.25 * FIG5.alpha
+    assert abs(free(FIG5, base(Tendon(lam=0.3)), 1.6 * FIG5.alpha, dt=3e-3)[-1, 1]) > 1.5  # falls
+
+
+def test_hysteretic_dampers_tend_to_friction_as_their_yield_deflection_vanishes():
+    motion = pulse("sine", 0.5, 1.0, dt=0.001, end=2.0)
+    friction = run_fixed(FIG5, base(Damper("friction", f=0.1)), motion, 4, 0.0, wait=False).theta_max
+    soft, hard = (
+        run_fixed(FIG5, base(Damper("hysteretic", f=0.1, yield_m=u)), motion, 16, 0.0, wait=False).theta_max
+        for u in (1e-3, 1e-4)
+    )
+    assert abs(hard - friction) < 0.4 * abs(soft - friction) < 0.02 * friction
+
+
+# Against the reference
+
+
+def moments(pier, tied, theta, omega):
+    """Moment over the mass [m²/s²] of an element about the corner, by coordinates: against the opening, positive.
+
+    ``tied`` is (offset, force of elongation [m] and its rate [m/s]).
+    """
+    offset, law = tied
+    corner = math.copysign(pier.half_width, theta)
+    c, s = math.cos(theta), math.sin(theta)
+    x0 = offset - corner  # from the corner, the ground's point; the pier's has turned by θ to the right
+    point = np.array([x0 * c, -x0 * s])
+    apart = point - np.array([x0, 0.0])
+    elongation = math.hypot(*apart)
+    if elongation == 0.0:
+        return 0.0
+    direction = apart / elongation
+    velocity = omega * np.array([point[1], -point[0]])
+    pull = -law(elongation, float(direction @ velocity)) * direction
+    torque = point[1] * pull[0] - point[0] * pull[1]  # positive to the right, as θ
+    return -torque * math.copysign(1.0, theta)
+
+
+def peak_of_reference(pier, motion, tied, t_end):
+    """Greatest |θ| until ``t_end`` by DOP853, from sample to sample, impacts located; laws without memory."""
+    e, inertia = pier.restitution, pier.inertia_about_pivot
+    t, y, side, peak = 0.0, [0.0, 0.0], 0.0, 0.0
+    samples = np.append(motion.horizontal, 0.0)
+
+    def rhs(t, y, side):
+        at = t / motion.dt
+        i = min(int(at), len(samples) - 2)
+        push = samples[i] + (at - i) * (samples[i + 1] - samples[i]) if at < len(samples) - 1 else 0.0
+        theta = y[0] if side * y[0] > 0.0 else side * 1e-300
+        lean = pier.alpha * side - theta
+        free = -(pier.p**2) * (math.sin(lean) + push / pier.gravity * math.cos(lean))
+        held = sum(moments(pier, each, theta, y[1]) for each in tied) / inertia
+        return [y[1], free - side * held]
+
+    def lands(t, y, side):
+        return side * y[0]
+
+    def turns(t, y, side):
+        return y[1]
+
+    lands.terminal, lands.direction = True, -1.0
+    turns.terminal = True
+    for i in range(round(t_end / motion.dt)):
+        t, end = i * motion.dt, (i + 1) * motion.dt
+        while t < end:
+            if side == 0.0:
+                opening = {way: (lambda s, way=way: way * rhs(s, [way * 1e-12, 0.0], way)[1]) for way in (1.0, -1.0)}
+                lifts = [way for way, excess in opening.items() if excess(end - 1e-9 * motion.dt) > 0.0]
+                if not lifts:
+                    break
+                side = lifts[0]
+                if opening[side](t) < 0.0:
+                    t = brentq(opening[side], t, end - 1e-9 * motion.dt, xtol=1e-15)
+                y = [0.0, side * 1e-13]
+            found = solve_ivp(rhs, (t, end), y, "DOP853", args=(side,), events=[lands, turns], rtol=1e-11, atol=1e-14)
+            t, y = float(found.t[-1]), found.y[:, -1].tolist()
+            peak = max(peak, abs(y[0]))
+            if len(found.t_events[0]):
+                y = [0.0, e * y[1]]
+                side = math.copysign(1.0, y[1])
+            elif len(found.t_events[1]):
+                y[1] = math.copysign(1e-13, rhs(t, [y[0], 0.0], side)[1])
+    return peak
+
+
+def clipped(psi, stiffness, gravity):
+    return lambda e, rate: max(psi * gravity + stiffness * e, 0.0)
+
+
+@pytest.mark.parametrize("at", ["left", 0.7, 0.0])
+def test_elements_at_offsets_agree_with_the_reference(at):
+    """A viscous damper with an exponent of 1.5 and a tendon, anywhere; to 1e-8 α."""
+    restraints = (Damper("viscous", nu=0.4, exponent=1.5, at=at), Tendon(psi=0.1, lam=0.5, at=at))
+    motion = pulse("sine", 0.5, 1.0, dt=0.01, end=1.6)
+    offset = -FIG5.half_width if at == "left" else at
+    stiffness = 0.5 * FIG5.gravity * FIG5.size / FIG5.half_width**2
+    tied = [
+        (offset, lambda e, rate: math.copysign(0.4 * FIG5.p * abs(rate) ** 1.5, rate)),
+        (offset, clipped(0.1, stiffness, FIG5.gravity)),
+    ]
+    outcome = run_fixed(FIG5, base(*restraints), motion, 64, 0.0, wait=False)
+    expected = peak_of_reference(FIG5, motion, tied, 1.6)
+    assert outcome.theta_max == pytest.approx(expected, abs=1e-8 * FIG5.alpha)
+
+
+YIELDS = base(
+    Damper("hysteretic", f=0.05, yield_m=0.01), Damper("friction", f=0.03, at="left"), Damper("viscous", nu=0.2),
+    Tendon(psi=0.2, lam=1.5, strength=0.3), Tendon(psi=0.05, lam=2.0, at=0.5),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "foundation",
+    [
+        base(Damper("friction", f=0.1)),
+        base(Tendon(psi=0.2, lam=1.5, strength=0.3)),
+        base(Damper("hysteretic", f=0.1, yield_m=0.01)),
+        YIELDS,
+    ],
+    ids=["turning", "yield and slack", "hysteretic", "all"],
+)
+def test_order_four_across_turning_yield_and_slack(foundation):
+    motion = pulse("sine", 0.5, 1.0, dt=0.02, end=3.0)
+    steps = np.array([4, 8, 16])
+    peaks = [run_fixed(FIG5, foundation, motion, int(k), 0.0, wait=False).theta_max for k in (*steps, 256)]
+    errors = np.abs(np.array(peaks[:-1]) - peaks[-1])
+    order = -np.polyfit(np.log(steps), np.log(errors), 1)[0]
+    assert order > 3.6
+
+
+@pytest.mark.parametrize(
+    "foundation", [base(Damper("friction", f=0.1)), base(Tendon(psi=0.2, lam=1.5, strength=0.3)), YIELDS]
+)
+def test_the_ledger_closes_with_what_dampers_and_tendons_take(foundation):
+    motion = pulse("sine", 0.5, 1.0, dt=0.01, end=4.0)
+    response = rb.simulate(FIG5, foundation, motion, substeps=16, quiet_s=0.0, ledger=True, wait=False)
+    ledger = response.ledger
+    assert ledger["remainder"].abs().max() < 1e-8 * ledger["input"].abs().max()
+    taken = ledger["damping"] + ledger["plastic"]
+    assert taken.iloc[-1] > 0.1 * ledger["input"].iloc[-1]
+    work = 0.0  # of the loops that are shown
+    for name in [name for name in response.restraints if name.endswith("force")]:
+        force, way = response.restraints[name], response.restraints[name.replace("force", "elongation")]
+        work += float(np.sum(0.5 * (force[1:].to_numpy() + force[:-1].to_numpy()) * np.diff(way)))
+    stored = ledger["elastic"].iloc[-1]
+    assert work == pytest.approx(taken.iloc[-1] + stored, rel=0.02)
+
+
+def test_a_tendon_that_yielded_is_slack_when_the_pier_lands():
+    """Prestress lost: T = P0 + k (u − u_0) is below 0 at u = 0 once u_0 > P0/k; the next lift-off is that without a tendon."""
+    tendon = Tendon(psi=0.02, lam=2.0, strength=0.1)
+    outcome = run_to_tolerance(FIG5, base(tendon), pulse("sine", 0.5, 1.0, dt=0.01, end=3.0), 1e-6)
+    stiffness = 2.0 * FIG5.gravity * FIG5.size / FIG5.half_width**2
+    assert outcome.tendon_force == pytest.approx(0.1, rel=1e-12)
+    assert outcome.tendon_slack >= 1
+    stroke = FIG5.half_width * 2.0 * math.sin(0.5 * outcome.theta_max)
+    assert outcome.tendon_yield == pytest.approx(stroke - 0.08 * FIG5.gravity / stiffness, rel=1e-9)
+
+
+def test_what_dampers_have_been_through():
+    """Friction: F_d, a stroke of 4 b sin(θ_max/2) at the pivots, F_d times the ways there and back."""
+    motion = pulse("sine", 0.5, 1.0, dt=0.005, end=1.2)
+    outcome = run_fixed(FIG5, base(Damper("friction", f=0.1)), motion, 8, 0.0, wait=False)
+    assert outcome.damper_force == pytest.approx(0.1, rel=1e-12)
+    assert outcome.damper_stroke == pytest.approx(4 * FIG5.half_width * math.sin(0.5 * outcome.theta_max), rel=1e-9)
+    assert 0.1 < outcome.damper_speed < 1.0
+    viscous = run_fixed(FIG5, base(Damper("viscous", nu=1.0)), motion, 8, 0.0, wait=False)
+    assert viscous.damper_force * FIG5.gravity == pytest.approx(FIG5.p * viscous.damper_speed, rel=1e-9)
+
+
+def test_mirror_images_with_elements_on_one_side():
+    """Element on the left and a push to the right are those on the right and a push to the left."""
+    motion = pulse("sine", 0.5, 1.0, dt=0.01, end=2.0)
+    other = Motion("other", motion.dt, -motion.horizontal)
+    left = run_fixed(FIG5, base(Damper("friction", f=0.1, at="left")), motion, 4, 0.0, wait=False)
+    right = run_fixed(FIG5, base(Damper("friction", f=0.1, at="right")), other, 4, 0.0, wait=False)
+    assert left.theta_max == right.theta_max
+    assert left.damper_energy == pytest.approx(right.damper_energy, rel=1e-12)
+
+
+def test_without_force_the_block_is_that_of_the_lanes():
+    motion = pulse("sine", 1.5, dt=0.01, end=4.0)
+    bare = run_fixed(TOWER, RigidBase(), motion, 8, 0.0, wait=False)
+    tied = run_fixed(TOWER, base(Damper("friction", f=0.0)), motion, 8, 0.0, wait=False)
+    assert tied.theta_max == pytest.approx(bare.theta_max, abs=1e-10 * TOWER.alpha)
+    assert (tied.status, tied.impacts) == (bare.status, bare.impacts)
+
+
+def test_what_cannot_be_is_told():
+    wrong = [
+        Damper("friction", f=-0.1), Damper("hysteretic", f=0.1), Damper("viscous", nu=1.0, exponent=5.0), Damper("rubber"),
+        Tendon(psi=-1.0), Tendon(psi=0.5, strength=0.4), Tendon(at="middle"), Damper("friction", f=0.1, at=99.0),
+    ]  # fmt: skip
+    for each in wrong:
+        assert len(problems(FIG5, base(each))) == 1, each
+    frame = Pier.frame(replace(Pier.rectangle(1.0, 5.0), mass_t=100.0), 2, 400.0)
+    assert "columns" in problems(frame, base(Tendon(psi=0.1)))[0]
+
+
+def test_what_a_folder_keeps_of_dampers_comes_back(tmp_path):
+    """Loops in the file and the report; the energy of a history is that of the ledger."""
+    text = """
+    [pier]
+    alpha = 0.2
+    p = 1.0
+    [[motions.pulse]]
+    name = "sine"
+    shape = "sine"
+    amplitude_g = 1.0
+    period_s = 0.5
+    dt_s = 0.01
+    duration_s = 2.0
+    [numerics]
+    substeps = 4
+    [output]
+    histories = "all"
+    ledger = true
+    [[case]]
+    base = "rigid"
+    [[case.damper]]
+    kind = "friction"
+    f = 0.1
+    [case.tendon]
+    psi = 0.2
+    lambda = 0.5
+    """
+    (tmp_path / "study.toml").write_text(text)
+    table = rb.run(tmp_path / "study.toml", out=tmp_path / "out")
+    assert table["damper_force_over_weight"][0] == pytest.approx(0.1, rel=1e-9)
+    response = rb.open_results(tmp_path / "out").responses[0]
+    expected = rb.simulate(FIG5, response.base, pulse("sine", 0.5, 1.0, dt=0.01, end=2.0), substeps=4)
+    assert response.base == base(Damper("friction", f=0.1), Tendon(psi=0.2, lam=0.5))
+    assert set(response.restraints) == set(expected.restraints)
+    assert np.abs(response.restraints["damper 1 left force"]).max() == pytest.approx(0.1 * GRAVITY)
+    energy = response.ledger[["kinetic", "potential", "elastic"]].sum(axis=1)
+    np.testing.assert_allclose(response.energy, energy, atol=1e-9)
+    assert "damper 1 left" in (tmp_path / "out" / "report.html").read_text()
