@@ -21,12 +21,15 @@ Schema = dict[str, Any]
 def schema_of(sections: Sequence[Section], title: str) -> Schema:
     """The schema of a file with these sections, of which the one at the top comes first and outer ones before inner."""
     tables: dict[tuple[str, ...], Schema] = {}
+    inner = {name for section in sections for name in section.inner}
     for section in sections:
         table = tables[section.at] = _table(section)
         if section.at:
             outer = tables[section.at[:-1]]
             name = section.at[-1]
-            outer["properties"][name] = {"type": "array", "items": table} if section.many else table
+            several = {"type": "array", "items": table}
+            either = {"anyOf": [table, several]} if name in inner else several
+            outer["properties"][name] = either if section.many else table
             if section.required:
                 outer["required"] = [*outer.get("required", []), name]
     return {"$schema": "http://json-schema.org/draft-07/schema#", "title": title, **tables[()]}
@@ -51,6 +54,7 @@ def _table(section: Section) -> Schema:
 def _only(section: Section, base: str) -> Schema:
     """Which keys a case on this base may have."""
     names = [name for name in section.keys if base in section.only_for.get(name, (base,))]
+    names += [name for name, bases in section.inner.items() if base in bases]
     return {
         "if": {"properties": {"base": {"const": base}}, "required": ["base"]},
         "then": {"propertyNames": {"enum": names}},

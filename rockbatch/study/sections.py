@@ -22,6 +22,7 @@ from rockbatch.study.load import NUMERICS, OUTPUT, REFERENCE, SELECTING, TOP
 from rockbatch.study.motions import FEMA, MOTIONS, PULSE
 from rockbatch.study.piers import PART, PIER
 from rockbatch.study.plausible import CONFIRM
+from rockbatch.study.restraint_keys import DAMPER, RESTRAINTS, TENDON
 from rockbatch.study.sensitivity import CHOICE, LOG_UNIFORM, SENSITIVITY, UNIFORM, SensitivitySpec
 from rockbatch.study.spec import MotionSpec, Numerics, Output, Study
 from rockbatch.study.spectrum import MAP, SPECTRUM, MapSpec
@@ -51,6 +52,8 @@ class Section:
         Dataclasses whose fields have the values of keys that are not written.
     only_for : mapping
         The values of the key ``base`` for which a key is read, where that is not all of them.
+    inner : mapping
+        Tables within it of which there may be one or several, with the values of ``base`` for which they are read.
     free : str
         Pattern of further keys, numbers that :attr:`keys` cannot list because a study makes their names.
     """
@@ -63,6 +66,7 @@ class Section:
     required: bool = False
     defaults: tuple[type, ...] = ()
     only_for: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    inner: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     free: str = ""
 
     @property
@@ -102,7 +106,10 @@ STUDY = (
         required=True,
         defaults=(YieldingBase, ElasticBase),
         only_for={name: _bases(name) for name in BASE_KEYS if len(_bases(name)) < len(BASES)},
+        inner=dict.fromkeys(RESTRAINTS, ("rigid",)),
     ),
+    Section(("case", "damper"), words.DAMPER_ABOUT, DAMPER, words.DAMPER, many=True),
+    Section(("case", "tendon"), words.TENDON_ABOUT, TENDON, words.TENDON, many=True),
     Section(("numerics",), words.NUMERICS_ABOUT, NUMERICS | CONFIRM, words.NUMERICS, defaults=(Numerics,)),
     Section(("output",), words.OUTPUT_ABOUT, OUTPUT, words.OUTPUT, defaults=(Output,)),
     Section(("suite",), words.SUITE_ABOUT, SUITE, words.SUITE, defaults=(Study,)),
@@ -113,7 +120,7 @@ STUDY = (
         REFERENCE | SELECTING,
         words.REFERENCE | dict.fromkeys(SELECTING, words.SELECTING),
         many=True,
-        free=rf"^part_[1-9][0-9]*_({'|'.join(PART)})$",
+        free=rf"^(part|damper|tendon)_[1-9][0-9]*_({'|'.join({**PART, **DAMPER, **TENDON})})$",
     ),
     Section(("fragility",), words.FRAGILITY_ABOUT, FRAGILITY, words.FRAGILITY, defaults=(FragilitySpec,)),
     Section(("spectrum",), words.SPECTRUM_ABOUT, SPECTRUM, words.SPECTRUM),

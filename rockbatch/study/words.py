@@ -147,6 +147,7 @@ CASE = {
     "stiffness_kN_m": "Stiffness K of one support, for a pier whose mass is known; or give `beta`.",
     "mass_t": "Mass of all that rocks, unless `[pier]` says it.",
     "epsilon": "Restitution ε of the pivot that lands, from 0 (it stays) to 1 (it bounces without loss).",
+    "zeta": "Dashpot beside each spring, as a share ζ of the critical damping of the vertical vibration; instead of `epsilon`.",
     "kinematics": 'The paper\'s equations, "first-order", or those that hold for rotations of any size.',
     "flight": 'What happens when both pivots are off the ground: "stop" ends the run, "guided" goes on, for a pier '
     "held by shear keys.",
@@ -157,6 +158,27 @@ CASE = {
     "friction": "Coefficient of friction of the interface, for runs with `forces = true` under `[output]`: "
     "those that would slide say so.",
     "confirm": _CONFIRM,
+}
+
+DAMPER_ABOUT = "A damper between the pier and rigid ground. Write as many as there are."
+DAMPER = {
+    "kind": "What its force depends on: the direction of the motion, a yielding displacement, or the speed.",
+    "force_kN": "Force of a friction or hysteretic damper, for a pier whose mass is known; or give `f`.",
+    "f": "Force of a friction or hysteretic damper over the weight.",
+    "yield_mm": "Yield displacement of a hysteretic damper.",
+    "coefficient_kN_s_m": "Coefficient C of a viscous damper, in kN and m/s to the power of `exponent`; or give `nu`.",
+    "nu": "Coefficient of a viscous damper as C/(M p).",
+    "exponent": "Exponent of the speed of a viscous damper.",
+    "at": "Where it is: a pivot, or an offset [m] from the middle of the base; one at each pivot if it is not given.",
+}
+TENDON_ABOUT = "An unbonded tendon between the pier and rigid ground, which takes tension only."
+TENDON = {
+    "prestress_kN": "Its prestress P0, for a pier whose mass is known; or give `psi`.",
+    "psi": "Prestress over the weight.",
+    "stiffness_kN_m": "Its stiffness k_t, for a pier whose mass is known; or give `lambda`.",
+    "lambda": "Stiffness as λ = k_t b²/(M g R0).",
+    "yield_kN": "Force at which it yields; it does not yield if this is not given.",
+    "at": "Where it is: a pivot, or an offset [m] from the middle of the base; on the axis if it is not given.",
 }
 
 NUMERICS_ABOUT = "How exact the results are."
@@ -280,7 +302,7 @@ SENSITIVITY = {
 UNIFORM_ABOUT = "Inputs of which every value in a range is as likely as another: the least and the largest value."
 LOG_UNIFORM_ABOUT = "Inputs that are as likely to be half as to be twice: the least and the largest value."
 RANGES = {name: PIER[name] for name in ("alpha", "p", "mu")} | {
-    name: CASE[name] for name in ("restitution", "beta", "epsilon", "eta", "n", "stiffness_kN_m", "yield_kN")
+    name: CASE[name] for name in ("restitution", "beta", "epsilon", "zeta", "eta", "n", "stiffness_kN_m", "yield_kN")
 }
 CHOICE_ABOUT = "Inputs with two values, both as likely."
 CHOICE = {
