@@ -293,6 +293,19 @@ def test_a_bar_is_drawn_where_it_is_asked_for(study, capfd):
     assert "/6 [" in capfd.readouterr().err
 
 
+def test_without_a_word_a_bar_is_drawn_on_a_terminal_only(study, capfd, monkeypatch):
+    from rockbatch.batch import listening
+
+    monkeypatch.setattr(listening, "SHORT", 0.0)
+    rb.run(study)
+    assert capfd.readouterr().err == ""
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    rb.run(study, progress=False)
+    assert capfd.readouterr().err == ""
+    rb.run(study)
+    assert "/6 [" in capfd.readouterr().err
+
+
 def test_doors_are_cheap_until_they_are_opened():
     code = "import sys, rockbatch as rb\ndir(rb); rb.report; rb.load_study\n"
     code += "print([m for m in ('numba', 'obspy', 'h5py', 'matplotlib', 'scipy') if m in sys.modules])"

@@ -71,7 +71,7 @@ def accuracy(
     *,
     runs: int = RUNS,
     motions: str | os.PathLike[str] | None = None,
-    progress: Progress = False,
+    progress: Progress = None,
 ) -> Accuracy:
     """Error of θ_max/α against time per run, for this study on this machine, beside SciPy's solvers.
 
@@ -97,8 +97,9 @@ def accuracy(
 
     Examples
     --------
-    >>> found = rb.accuracy("configs/fig7.toml", runs=5)
-    >>> found.accuracy[["method", "substeps", "error_max", "seconds_per_run"]]
+    >>> found = rb.accuracy("pier4.toml", runs=2, scipy=False)
+    >>> found
+    >>> found.accuracy[["method", "substeps", "runs"]].head(3)
     """
     if runs < 1:
         raise InputError(f"runs = {runs}: must be at least 1")

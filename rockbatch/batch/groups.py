@@ -9,10 +9,9 @@ from rockbatch.batch.plan import PlannedRun
 from rockbatch.errors import InputError
 from rockbatch.motions import Motion
 from rockbatch.pier import YieldingBase
-from rockbatch.results.columns import TERMS
 from rockbatch.results.outcome import Outcome
 from rockbatch.simulation import Run, Stop, first_substeps, run_all_fixed, run_all_to_tolerance, steps_of
-from rockbatch.simulation.histories import energies, written
+from rockbatch.simulation.histories import energies, with_energies, written
 from rockbatch.study import Numerics, Output, Study
 
 MOST_STEPS_OF_A_LEDGER = 1_000_000
@@ -95,9 +94,7 @@ def _with_ledger(run: Run, outcome: Outcome, quiet_s: float, stop: Stop) -> Outc
         rows = written(run, outcome, quiet_s, every_step=True)
     except InputError:  # too many impacts to be written down
         return outcome
-    terms = energies(run, rows)
-    at_end = dict(zip(TERMS, map(float, terms[-1]), strict=True))
-    return replace(outcome, energies=at_end | {"remainder": float(abs(terms[:, -1]).max())})
+    return with_energies(outcome, energies(run, rows))
 
 
 def compile_kernels(study: Study) -> None:

@@ -12,7 +12,8 @@ import numpy as np
 from rockbatch.motions.common_span import on_common_samples, overlap
 from rockbatch.motions.component import Component
 from rockbatch.motions.measures import state_at
-from rockbatch.motions.motion import Motion, MotionSet, Unusable
+from rockbatch.motions.motion import Motion, Unusable
+from rockbatch.motions.motion_set import MotionSet
 from rockbatch.motions.orientation import same_azimuth
 from rockbatch.motions.plausible import ANY, Judged, doubt, findings, fits
 from rockbatch.motions.stations import by_station

@@ -33,6 +33,11 @@ class RigidBase:
 
     ``restitution`` is the factor e on the angular velocity at an impact; ``None`` means :attr:`Pier.restitution`, Housner's
     e = 1 − 2μ/(1+μ) sin²α, which conserves the angular momentum about the new pivot, or 0 where that is negative.
+
+    Examples
+    --------
+    >>> rb.RigidBase().name, rb.RigidBase(restitution=0.9).restitution
+    ('rigid', 0.9)
     """
 
     restitution: float | None = None
@@ -54,6 +59,11 @@ class ElasticBase:
         The paper's equations, or those that hold for large rotations.
     flight : "stop" or "guided"
         What happens when both pivots are off the ground: the analysis ends, or shear keys guide the pier down.
+
+    Examples
+    --------
+    >>> rb.ElasticBase(beta=80, epsilon=0.05).kinematics
+    'first-order'
     """
 
     beta: float
@@ -84,6 +94,13 @@ class YieldingBase(ElasticBase):
         The paper's smooth law (eq. 8), or elastic–perfectly plastic.
     n : float
         Bouc–Wen exponent ≥ 1; 5 in the paper.
+
+    Examples
+    --------
+    >>> tall = rb.Pier.with_deck(width_m=8, height_m=30, mass_t=2000, deck_mass_t=1000)
+    >>> pads = rb.YieldingBase.from_stiffness(tall, stiffness_kN_m=2e6, yield_kN=40e3, epsilon=0.05)
+    >>> f"beta = {pads.beta:.2f}, eta = {pads.eta:.3f}"
+    'beta = 58.84, eta = 2.718'
     """
 
     eta: float = field(kw_only=True)

@@ -12,10 +12,10 @@ if TYPE_CHECKING:
 
 def plot(history: "pd.DataFrame", events: "pd.DataFrame", pier: Pier, base: Base, title: str) -> "Figure":
     """See :meth:`rockbatch.Response.plot`, which hands over its tables ``history`` and ``events``."""
-    from matplotlib.figure import Figure
+    from rockbatch.results.figure import ShownFigure
 
     loops = not isinstance(base, RigidBase)
-    figure = Figure(figsize=(7.0, 9.0 if loops else 7.0), layout="constrained")
+    figure = ShownFigure(figsize=(7.0, 9.0 if loops else 7.0), layout="constrained")
     names: list[Any] = [["rotation"] * 2, ["velocity"] * 2, ["energy"] * 2, ["ground"] * 2]
     axes = figure.subplot_mosaic([*names, ["left", "right"]] if loops else names)
     t = history["t"].to_numpy()
