@@ -236,13 +236,15 @@ def test_the_accuracy_is_saved_as_the_command_writes_it(study, nowhere, monkeypa
     np.testing.assert_allclose(written[numbers.columns].astype("float64"), numbers, rtol=1e-5)
     with pytest.raises(rb.InputError, match="runs = 0"):
         rb.accuracy(study, runs=0)
+    with pytest.raises(rb.InputError, match="seconds = 0"):
+        rb.accuracy(study, seconds=0)
 
 
 def test_the_command_measures_as_many_runs_as_the_function():
     from rockbatch.analysis import accuracy
-    from rockbatch.commands.accuracy import RUNS
+    from rockbatch.commands.accuracy import RUNS, SECONDS
 
-    assert accuracy.RUNS == RUNS
+    assert (accuracy.RUNS, accuracy.SECONDS) == (RUNS, SECONDS)
 
 
 def test_a_report_is_made_of_one_folder_or_of_two(commanded, tmp_path):
