@@ -8,10 +8,24 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from rockbatch._version import __version__
-from rockbatch.commands import accuracy, check, fragility, merge, motions, report, run, sensitivity, spectrum
+from rockbatch.commands import (
+    accuracy,
+    check,
+    examples,
+    fragility,
+    init,
+    merge,
+    motions,
+    report,
+    run,
+    sensitivity,
+    spectrum,
+)
 from rockbatch.errors import InputError, MissingColumns
 
 COMMANDS = {
+    "init": init,
+    "examples": examples,
     "run": run,
     "merge": merge,
     "motions": motions,

@@ -6,10 +6,12 @@ import subprocess
 import sys
 import time
 
+import pandas as pd
 import pytest
 from studies import study_text, write_study
 
 from rockbatch.cli import main
+from rockbatch.commands.messages import in_width
 
 STUDY = study_text(title="A <pulse> & a pier")
 
@@ -155,3 +157,14 @@ def test_progress_is_a_bar_with_the_time_left_on_a_terminal_that_has_a_size(size
             assert "/3 [" in shown
             assert "<" in shown  # time spent < time left
     os.close(ours)
+
+
+def test_wide_tables_fit_the_terminal(monkeypatch):
+    """On a terminal columns that do not fit go below the others; elsewhere a line is a row, for whoever reads it in."""
+    table = pd.DataFrame({f"case {i}": [0.1, 0.2] for i in range(30)}, index=["one", "other"])
+    assert len(in_width(table).splitlines()) == 3
+    monkeypatch.setattr("sys.stdout.isatty", lambda: True, raising=False)
+    monkeypatch.setenv("COLUMNS", "60")
+    lines = in_width(table).splitlines()
+    assert max(map(len, lines)) <= 60
+    assert all(any(f"case {i}" in line for line in lines) for i in range(30))

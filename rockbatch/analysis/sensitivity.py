@@ -1,4 +1,4 @@
-"""What the peak rotation hangs on: a sensitivity study, from what it asks to its tables.
+"""What the peak rotation depends on: a sensitivity study, from what it asks to its tables.
 
 The answer is a statistic of the suite, at every point: at both ends of each input alone, and at the points of Sobol's
 indices.
@@ -38,7 +38,7 @@ TORNADO_COLUMNS = ("parameter", "low", "base", "high", "answer_low", "answer_bas
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Sensitivity(Analysis):
-    """What the peak rotation hangs on; see also :class:`rockbatch.analysis.folder.Analysis`.
+    """What the peak rotation depends on; see also :class:`rockbatch.analysis.folder.Analysis`.
 
     Attributes
     ----------
@@ -70,7 +70,7 @@ def sensitivity(
     fresh: bool = False,
     progress: Progress = None,
 ) -> Sensitivity:
-    """What the peak rotation hangs on, one at a time and by Sobol's indices: [sensitivity] of a study.
+    """What the peak rotation depends on, one at a time and by Sobol's indices: [sensitivity] of a study.
 
     Parameters
     ----------

@@ -19,6 +19,7 @@ from rockbatch.batch.threads import cores
 from rockbatch.checks import Verdict, write_verdicts
 from rockbatch.checks.verdicts import CHECKS
 from rockbatch.errors import InputError
+from rockbatch.files import legible
 from rockbatch.motions import MotionSet
 from rockbatch.report import REPORT, write_report
 from rockbatch.results.checking import verdicts
@@ -84,6 +85,29 @@ def cost_of_finished(directory: Path, info: dict[str, Any]) -> dict[str, Any] | 
     return cost if same and (directory / PEAKS).exists() else None
 
 
+def to_be_replaced(directory: Path, study: Study) -> str | None:
+    """What results there are in ``directory`` that those of ``study`` will replace, in words; None where there are none.
+
+    Raises
+    ------
+    InputError
+        Where they are of another study: of another file, or of one that is not there any more and had another title.
+    """
+    try:
+        earlier = json.loads((directory / INFO).read_text(encoding="utf-8"))
+        path, title = Path(earlier["study"]["path"]), str(earlier["study"]["title"])
+        created = str(earlier["created"])[:16].replace("T", " ")
+    except (OSError, ValueError, LookupError, TypeError):
+        return None
+    same = path.samefile(study.path) if path.exists() and study.path.exists() else title == study.title
+    if not same:
+        raise InputError(
+            f'{directory} holds the results of another study, {legible(str(path))}, "{legible(title)}", of {legible(created)}; '
+            "choose another folder with --out, or replace them with --fresh"
+        )
+    return f"the results of an earlier version of the study, of {legible(created)}, in {directory}"
+
+
 def write_peaks(journal: Journal, motions: MotionSet) -> None:
     """Write peaks.csv; what belongs to earlier ones goes first, so that they cannot be mixed up."""
     directory = journal.path.parent
@@ -112,9 +136,15 @@ def _keep_histories(
     saved: Saved, study: Study, runs: Plan, listener: Listener
 ) -> tuple[Path | None, InputError | None]:
     """Write the histories that the study asks for: their file, and why some are not in it."""
-    number = len(kept(study, saved.peaks.iloc[: len(runs)]))
+    chosen = kept(study, runs, saved.peaks.iloc[: len(runs)])
+    if chosen.left_out:
+        number = len(chosen.numbers)
+        listener.say(
+            f"{HISTORIES}: {number} of the {number + chosen.left_out} worst runs, those with the greatest rotations; more would "
+            f"exceed [output] histories_MB = {study.output.histories_MB:g}"
+        )
     try:
-        with listener.progress(number) as told:
+        with listener.progress(len(chosen.numbers)) as told:
             path = keep_histories(saved, study, runs, None if told is None else lambda: told(1))
     except InputError as error:
         return None, error

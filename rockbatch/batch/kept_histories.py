@@ -1,15 +1,17 @@
 """The runs whose histories are kept beside the peaks: run once more, and written down."""
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rockbatch.batch.plan import PlannedRun
 from rockbatch.errors import InputError
-from rockbatch.results.histories_file import HISTORIES, write
+from rockbatch.pier import RigidBase
+from rockbatch.results.columns import TERMS
+from rockbatch.results.histories_file import HISTORIES, OF_SPRINGS, UNITS, write
 from rockbatch.results.reading import Saved
 from rockbatch.results.response import Response
 from rockbatch.simulation import run_fixed
@@ -18,6 +20,9 @@ from rockbatch.study import Study
 
 if TYPE_CHECKING:
     import pandas as pd
+
+BYTES_OF_A_DATASET = 2500.0
+"""What HDF5 takes for a dataset beside its numbers, with its share of the groups."""
 
 
 def keep_histories(
@@ -45,7 +50,7 @@ def keep_histories(
         held in memory.
     """
     table = saved.peaks.iloc[: len(runs)]  # then come the files that could not be used
-    chosen = kept(study, table)
+    chosen = kept(study, runs, table).numbers
     if not chosen:
         return None
     path = saved.directory / HISTORIES
@@ -66,16 +71,45 @@ def keep_histories(
     return path
 
 
-def kept(study: Study, table: "pd.DataFrame") -> list[int]:
-    """Numbers of the runs whose histories the study asks for; one that was refused has none.
+@dataclass(frozen=True)
+class Kept:
+    """Numbers of the runs whose histories are kept, in their order, and how many were chosen but left out for their size."""
 
-    ``table`` has a row for each run, in their order.
+    numbers: list[int]
+    left_out: int = 0
+
+
+def kept(study: Study, runs: Sequence[PlannedRun], table: "pd.DataFrame") -> Kept:
+    """The runs whose histories the study asks for; one that was refused has none.
+
+    ``table`` has a row for each of ``runs``. With "worst", the greatest rotations go first, and what would make the file
+    larger than ``histories_MB`` is left out; one history is kept however large.
     """
-    if study.output.histories == "none":
-        return []
-    if study.output.histories == "worst":
-        return worst(table, len(study.cases))
-    return [int(number) for number in table["theta_max_over_alpha"].notna().to_numpy().nonzero()[0]]
+    output = study.output
+    if output.histories == "none":
+        return Kept([])
+    if output.histories == "all":
+        return Kept([int(number) for number in table["theta_max_over_alpha"].notna().to_numpy().nonzero()[0]])
+    chosen = worst(table, len(study.cases))
+    rotations = table["theta_max_over_alpha"].to_numpy(float)
+    numbers: list[int] = []
+    size = 0.0
+    for number in sorted(chosen, key=lambda number: -rotations[number]):
+        size += history_bytes(runs[number], table.iloc[number])
+        if numbers and size > 1e6 * output.histories_MB:
+            break
+        numbers.append(number)
+    return Kept(sorted(numbers, key=chosen.index), len(chosen) - len(numbers))
+
+
+def history_bytes(run: PlannedRun, row: "Mapping[str, Any] | pd.Series") -> float:
+    """About what the history of a run takes on disk: eight bytes for each number of each sample and side of an event."""
+    columns = len(UNITS) - (len(OF_SPRINGS) if isinstance(run.case.base, RigidBase) else 0)
+    told = row.get("energy_input_J_kg")
+    if told is not None and told == told:
+        columns += len(TERMS)
+    rows = row["t_end_s"] / run.motion.dt + 2.0 * (row["impacts"] + row["separations"])
+    return columns * (BYTES_OF_A_DATASET + 8.0 * rows)
 
 
 def worst(table: "pd.DataFrame", cases: int) -> list[int]:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from rockbatch.batch.carrying_out import InMemory, carry_out, to_simulate
 from rockbatch.batch.digests import study_digests
-from rockbatch.batch.finishing import FinishedBatch, cost_of_finished, finish, what_was_run, write_peaks
+from rockbatch.batch.finishing import FinishedBatch, cost_of_finished, finish, to_be_replaced, what_was_run, write_peaks
 from rockbatch.batch.journal import Journal
 from rockbatch.batch.listening import Listener, Progress, count, listener_of, make_ready, once
 from rockbatch.batch.plan import Plan
@@ -141,6 +141,9 @@ def run_into(
             what = f"{told(study, motions)} are finished in {directory}"
             listener.say(f"{what}; nothing is left to run (--fresh runs them again)")
             return finish(directory, study, motions, runs, info | cost, listener)
+        replaced = None if fresh or share else to_be_replaced(directory, study)
+        if replaced:
+            listener.say(f"{replaced}, will be replaced")
         of_share = f"; share {share[0]} of {share[1]} is {{}}" if share else ""
         with engine:
             every = count(len(to_simulate(runs, wanted)), "run")

@@ -4,7 +4,7 @@ import argparse
 from typing import TYPE_CHECKING
 
 from rockbatch.commands.analyses import tell_files
-from rockbatch.commands.messages import Terminal
+from rockbatch.commands.messages import Terminal, in_width
 from rockbatch.commands.options import add_study, folder, study_of
 
 if TYPE_CHECKING:
@@ -91,4 +91,4 @@ def shown(table: "pd.DataFrame") -> str:
         }
     )
     settled = table["reference_change"].max()
-    return f"Error of theta_max/alpha (references to {settled:.0e})\n{cells.to_string(index=False)}"
+    return f"Error of theta_max/alpha (references to {settled:.0e})\n{in_width(cells, index=False)}"

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from rockbatch.batch.listening import count
 from rockbatch.commands.analyses import asked, tell_files
-from rockbatch.commands.messages import say
+from rockbatch.commands.messages import in_width, say
 from rockbatch.commands.options import add_engine, add_study, study_of
 
 if TYPE_CHECKING:
@@ -83,7 +83,7 @@ def table(curves: Sequence["Curve"], spec: "FragilitySpec") -> str:
     if little := sum(curve.says_little for curve in curves):
         some = f"{little} of {count(len(curves), 'curve')} {'says' if little == 1 else 'say'} little"
         title += f"; {some}: too many runs are undecided"
-    return "\n".join([title, found.to_string(index=False), *limits, *notes])
+    return "\n".join([title, in_width(found, index=False), *limits, *notes])
 
 
 def _interval(bounds: tuple[float, float]) -> str:

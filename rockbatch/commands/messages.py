@@ -1,5 +1,6 @@
 """What commands tell, on stderr."""
 
+import shutil
 import sys
 from contextlib import AbstractContextManager
 from typing import TYPE_CHECKING
@@ -7,6 +8,8 @@ from typing import TYPE_CHECKING
 from rockbatch.batch.listening import Listener, Told, count
 
 if TYPE_CHECKING:
+    import pandas as pd
+
     from rockbatch.motions import MotionSet
 
 
@@ -31,6 +34,12 @@ class Terminal(Listener):
 def say(text: str) -> None:
     """Print a message where it does not mix with what a command was asked for."""
     print(text, file=sys.stderr, flush=True)
+
+
+def in_width(table: "pd.DataFrame", index: bool = True) -> str:
+    """A table as text; where it is shown on a terminal, its columns go below each other rather than beyond the edge."""
+    width = shutil.get_terminal_size().columns if sys.stdout.isatty() else None
+    return table.to_string(index=index, line_width=width)
 
 
 def tell_motions(motions: "MotionSet") -> None:

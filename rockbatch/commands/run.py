@@ -3,9 +3,13 @@
 import argparse
 import re
 import sys
+from typing import TYPE_CHECKING
 
 from rockbatch.commands.messages import Terminal
 from rockbatch.commands.options import add_engine, add_study, engine, folder, study_of
+
+if TYPE_CHECKING:
+    from rockbatch.study import Study
 
 HELP = "run every record of a study in every case; write the table of peaks and the report"
 
@@ -19,6 +23,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="I/N",
         help="carry out the I-th of N shares only, in a folder of its own, for `rockbatch merge`",
     )
+    parser.add_argument(
+        "--dry-run",
+        action="store_true",
+        help="write nothing; say how many runs there are, and how long and how much disk they will take",
+    )
 
 
 def _shard(text: str) -> tuple[int, int]:
@@ -31,6 +40,8 @@ def _shard(text: str) -> tuple[int, int]:
 
 def main(arguments: argparse.Namespace) -> int:
     study = study_of(arguments)
+    if arguments.dry_run:
+        return _expect(study, arguments.jobs)
 
     from rockbatch.batch.running import run_into
     from rockbatch.commands.ending import tell
@@ -44,3 +55,25 @@ def main(arguments: argparse.Namespace) -> int:
         command=sys.argv[1:], fresh=arguments.fresh, share=arguments.shard,
     )  # fmt: skip
     return 0 if finished is None else tell(finished, study)
+
+
+def _expect(study: "Study", jobs: int | None) -> int:
+    """Say what the study would take."""
+    from rockbatch.batch.expecting import expected
+    from rockbatch.batch.threads import cores
+
+    found = expected(study, jobs or cores(), Terminal())
+    threads = "1 thread" if found.jobs == 1 else f"{found.jobs} threads"
+    print(found.what)
+    print(f"{in_words(found.seconds)} on {threads}, as {found.tried} of them took; then the report")
+    print(f"peaks.csv: about {found.table / 1e6:.2g} MB; histories: about {found.histories / 1e6:.2g} MB")
+    return 0
+
+
+def in_words(seconds: float) -> str:
+    """A time as one would say it: "less than 1 s", "40 s", "12 min", "3.5 h"."""
+    if seconds < 1.0:
+        return "less than 1 s"
+    if seconds < 90.0:
+        return f"about {seconds:.0f} s"
+    return f"about {seconds / 60.0:.0f} min" if seconds < 5400.0 else f"about {seconds / 3600.0:.1f} h"

@@ -1,16 +1,16 @@
-"""``rockbatch sensitivity``: what the peak rotation hangs on, one at a time and by Sobol's indices."""
+"""``rockbatch sensitivity``: what the peak rotation depends on, one at a time and by Sobol's indices."""
 
 import argparse
 from typing import TYPE_CHECKING
 
 from rockbatch.commands.analyses import asked, tell_files
-from rockbatch.commands.messages import say
+from rockbatch.commands.messages import in_width, say
 from rockbatch.commands.options import add_engine, add_study, study_of
 
 if TYPE_CHECKING:
     import pandas as pd
 
-HELP = "which parameters the peak rotation hangs on: one at a time, and Sobol indices over stated ranges"
+HELP = "which parameters the peak rotation depends on: one at a time, and Sobol indices over stated ranges"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -57,7 +57,7 @@ def shown(swings: "pd.DataFrame", shares: "pd.DataFrame", varied: tuple[str, ...
 def _aligned(cells: "dict[str, pd.Series]") -> str:
     import pandas as pd
 
-    return pd.DataFrame(cells).to_string(index=False)
+    return in_width(pd.DataFrame(cells), index=False)
 
 
 def _value(value: object) -> str:

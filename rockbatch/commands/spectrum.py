@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from rockbatch.batch.listening import count
 from rockbatch.commands.analyses import asked, tell_files
-from rockbatch.commands.messages import say
+from rockbatch.commands.messages import in_width, say
 from rockbatch.commands.options import add_engine, add_study, study_of
 
 if TYPE_CHECKING:
@@ -64,7 +64,7 @@ def shown(suite: "pd.DataFrame", spectrum: "SpectrumSpec") -> str:
     cells = pd.DataFrame(columns).rename_axis(axis, axis="columns").fillna("")
     of = suite[axis].nunique()
     some = f", {len(lines)} of {of} values of {axis}" if len(lines) < of else ""
-    return f"Median of theta_max/alpha{some}; ∞: overturned or ended by flight\n{cells.to_string()}"
+    return f"Median of theta_max/alpha{some}; ∞: overturned or ended by flight\n{in_width(cells)}"
 
 
 def spread(values: "np.ndarray") -> "np.ndarray":

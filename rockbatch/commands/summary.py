@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
+from rockbatch.commands.messages import in_width
 from rockbatch.study import PIER_KEYS
 
 if TYPE_CHECKING:
@@ -37,11 +38,11 @@ def _worst(runs: "pd.DataFrame", varied: tuple[str, ...]) -> str:
     ended = ", ".join(f"{count} {status}" for status, count in runs["status"].value_counts().items())
     shown = ["record", "polarity", "scale", "case", *varied, "status", "theta_max_over_alpha", "theta_max_error"]
     largest = runs.nlargest(10, "theta_max_over_alpha")[shown]
-    return f"{len(runs)} runs: {ended}\nThe largest theta_max/alpha\n{largest.to_string(index=False)}"
+    return f"{len(runs)} runs: {ended}\nThe largest theta_max/alpha\n{in_width(largest, index=False)}"
 
 
 def other_law(table: "pd.DataFrame", varied: Sequence[str]) -> str:
-    """A warning where the settlement hangs on the spring law, by a tenth and a millimetre or more; empty elsewhere."""
+    """A warning where the settlement depends on the spring law, by a tenth and a millimetre or more; empty elsewhere."""
     import numpy as np
 
     if "settlement_other_law_m" not in table:
@@ -55,7 +56,7 @@ def other_law(table: "pd.DataFrame", varied: Sequence[str]) -> str:
     told = ["scale", *varied] if table["scale"].nunique() > 1 else varied
     which = f"{worst['record']}, {worst['case']} {named(told, [worst[name] for name in told])}".rstrip()
     return (
-        f"settlement hangs on the spring law in {int(differ.sum())} runs, most in {which}: "
+        f"the settlement depends on the spring law in {int(differ.sum())} runs, most in {which}: "
         f"{1000 * worst['settlement_m']:z.1f} mm, by the other law {1000 * worst['settlement_other_law_m']:z.1f} mm"
     )
 
@@ -71,7 +72,7 @@ def _block(runs: "pd.DataFrame", rows: list[str], case_keys: list[str]) -> str:
         if run["status"] != "ok":
             cell = f"{run['status']} {cell}"
         cells.setdefault(line, {})[f"{run['case']} {varied}".strip()] = cell
-    return pd.DataFrame.from_dict(cells, orient="index").fillna("").to_string()
+    return in_width(pd.DataFrame.from_dict(cells, orient="index").fillna(""))
 
 
 def named(keys: Iterable[str], values: Iterable[Any]) -> str:

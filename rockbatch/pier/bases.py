@@ -24,7 +24,7 @@ WITH_EXPONENT: tuple[SpringLaw, ...] = ("bouc-wen",)
 """Laws that an exponent n belongs to; the others have a sharp corner."""
 
 OTHER_LAW: dict[SpringLaw, SpringLaw] = {"bouc-wen": "epp", "epp": "bouc-wen"}
-"""For each law the one that shows how much a settlement hangs on it (THEORY.md, 7)."""
+"""For each law the one that shows how much a settlement depends on it (THEORY.md, 7)."""
 
 
 @dataclass(frozen=True)

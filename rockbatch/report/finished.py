@@ -1,6 +1,7 @@
 """Finished results as the report sees them: every run with its pier, its foundation and its ground motion."""
 
 import math
+import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -9,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from rockbatch.checks.suite import simulated
 from rockbatch.errors import InputError
-from rockbatch.report.labels import Key, Series, named, quantity
+from rockbatch.report.labels import Key, Series, digits_that_tell, named, quantity
 from rockbatch.report.markup import number
 from rockbatch.results.reading import Saved, read_saved
 from rockbatch.study import PIER_KEYS
@@ -115,7 +116,7 @@ def finished(saved: Saved) -> Finished:
         key = foundation(case["case"], case["columns"], varied)
         grouped.setdefault(key, []).append(case)
         entries[key, _pier(case["columns"], varied)] = case
-    series = named(grouped, [key for key in varied if _of_foundation(key)])
+    series = named(grouped, [key for key in varied if _of_foundation(key)], _given(info["study"]["text"]))
     places = {key: place for place, key in enumerate(series)}
 
     runs = simulated(saved.peaks[saved.peaks["case"] != ""]).copy()
@@ -143,8 +144,18 @@ def finished(saved: Saved) -> Finished:
     runs["pga_g"] = runs["record"].map(pga).astype("float64") * runs["scale"]
     runs["with_vertical"] = _with_vertical(runs)
     keys = [key for key in varied if key in PIER_KEYS]
-    words = [", ".join(map(quantity, keys, values)) for values in piers] or [""]
+    digits = [digits_that_tell(values) for values in zip(*piers, strict=True)]
+    words = [", ".join(map(quantity, keys, values, digits)) for values in piers] or [""]
     return Finished(saved, runs, list(series.values()), words, places, piers, cases)
+
+
+def _given(text: str) -> dict[str, set[str]]:
+    """Keys that a study's text gives for each case, by its name; none where it is no study."""
+    try:
+        cases = tomllib.loads(text).get("case", [])
+        return {str(case.get("name", case.get("base"))): set(case) for case in cases}
+    except (tomllib.TOMLDecodeError, AttributeError, TypeError):
+        return {}
 
 
 def as_dicts(runs: "pd.DataFrame") -> list[dict[str, Any]]:

@@ -1,7 +1,7 @@
 """What foundations, piers and quantities are called on the page."""
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -31,7 +31,11 @@ SYMBOLS = {
     "deck_inertia_t_m2": ("deck inertia", "t m²"),
     "top_m": ("top", "m"),
 }
-BASE_KEYS = ("beta", "eta", "epsilon", "spring", "n", "kinematics", "flight", "restitution")
+BASE_KEYS = (
+    "beta", "stiffness_kN_m", "eta", "yield_kN", "epsilon", "spring", "n", "kinematics", "flight", "restitution",
+)  # fmt: skip
+SAME = {"beta": "stiffness_kN_m", "eta": "yield_kN"}
+"""Keys of a study that say the same, without units and with: a foundation is called by the one that its study gives."""
 
 Key = tuple[object, ...]
 """What tells one foundation from another: the case, and its varied values in the order of the study."""
@@ -47,12 +51,21 @@ class Series:
     index: int  # among those of its kind, rigid or not
 
 
-def quantity(key: str, value: object) -> str:
-    """A value in words that stay on one line: "β = 40", "p = 0.38 rad/s", "kinematics finite"."""
+def quantity(key: str, value: object, digits: int = 10) -> str:
+    """A value in words that stay on one line: "β = 40", "p = 0.38 rad/s", "K = 2.5 GN/m", "kinematics finite"."""
     symbol, unit = SYMBOLS.get(key, (key, ""))
-    if isinstance(value, float | int):
-        return f"{symbol} = {value:.10g} {unit}".strip().replace(" ", "\u00a0")
-    return f"{symbol} {value}"
+    if not isinstance(value, float | int):
+        return f"{symbol} {value}"
+    if unit.startswith("kN"):
+        power = next((power for power in (2, 1) if abs(value) >= 1000.0**power), 0)
+        value, unit = value / 1000.0**power, "kMG"[power] + unit[1:]
+    return f"{symbol} = {value:.{digits}g} {unit}".strip().replace(" ", "\u00a0")
+
+
+def digits_that_tell(values: Iterable[object], least: int = 3) -> int:
+    """Significant digits, ``least`` or more, with which numbers that differ look different."""
+    numbers = {value for value in values if isinstance(value, float | int)}
+    return next((n for n in range(least, 10) if len({f"{value:.{n}g}" for value in numbers}) == len(numbers)), 10)
 
 
 def counted(count: int, word: str) -> str:
@@ -78,15 +91,21 @@ def head(column: Column) -> Head:
     return Head(heading(column.page.head), column.page.form, f"{column.name}{factor}: {column.meaning}")
 
 
-def named(cases: Mapping[Key, Sequence[dict[str, Any]]], varied: Sequence[str]) -> dict[Key, Series]:
+def named(
+    cases: Mapping[Key, Sequence[dict[str, Any]]], varied: Sequence[str], given: Mapping[str, Collection[str]]
+) -> dict[Key, Series]:
     """A series for each foundation, called after what sets it apart from the others.
 
-    ``cases`` are those of run.json, one for each pier on which the foundation was run.
+    ``cases`` are those of run.json, one for each pier on which the foundation was run; ``given`` holds the keys that the
+    study gives for each case, by its name.
     """
-    constants = {key: _constants(same) for key, same in cases.items()}
+    constants = {key: _as_given(_constants(same), given.get(str(key[0]), ())) for key, same in cases.items()}
     rigid = {key for key, same in cases.items() if same[0]["base"] == "rigid"}
     differing = {
         kind: _differing([constants[key] for key in cases if (key in rigid) is kind], varied) for kind in (True, False)
+    }
+    digits = {
+        name: digits_that_tell(values.get(name) for values in constants.values()) for name in {*BASE_KEYS, *varied}
     }
     names = [key[0] for key in cases if key not in rigid]
     short = len(set(names)) == len(names) and all(len(str(name)) <= 3 for name in names)
@@ -94,7 +113,8 @@ def named(cases: Mapping[Key, Sequence[dict[str, Any]]], varied: Sequence[str]) 
     count = {True: 0, False: 0}
     for key in cases:
         kind = key in rigid
-        words = [quantity(name, constants[key][name]) for name in differing[kind] if name in constants[key]]
+        own = [name for name in differing[kind] if name in constants[key]]
+        words = [quantity(name, constants[key][name], digits[name]) for name in own]
         case, index = str(key[0]), count[kind]
         count[kind] += 1
         label = f"{case}: {', '.join(words)}" if words else case
@@ -118,3 +138,9 @@ def _constants(cases: Sequence[dict[str, Any]]) -> dict[str, object]:
         and value is not None
         and all({**case["parameters"], **case["columns"]}.get(key) == value for case in cases)
     }
+
+
+def _as_given(constants: dict[str, object], given: Collection[str]) -> dict[str, object]:
+    """Without the other one of two keys that say the same."""
+    unsaid = {free if unit in given else unit for free, unit in SAME.items()}
+    return {key: value for key, value in constants.items() if key not in unsaid}

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from rockbatch.report.compared import checks, difference, figures, only_in_one, pairs, studies, suites
+from rockbatch.report.compared import checks, difference, figures, inputs, only_in_one, pairs, studies, suites
 from rockbatch.report.contents import Contents
 from rockbatch.report.document import Section, document
 from rockbatch.report.pair import Pair
@@ -52,6 +52,7 @@ SECTIONS_OF_TWO: tuple[Callable[[Pair], Section | None], ...] = (
     pairs.section,
     suites.section,
     only_in_one.section,
+    inputs.section,
     difference.section,
 )
 """Those of two folders, from ``compared/``, in the order of the page."""

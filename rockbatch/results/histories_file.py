@@ -59,7 +59,8 @@ UNITS = {
 }
 """Units of the columns of a history, in their order."""
 
-_OF_SPRINGS = ("v", "z_left", "z_right", "v_left", "v_right", "force_left", "force_right")
+OF_SPRINGS = ("v", "z_left", "z_right", "v_left", "v_right", "force_left", "force_right")
+"""Those that only piers on springs have."""
 _OF_RUN = ("record", "case", "polarity", "scale", "status")
 _BASES = {base.name: base for base in (RigidBase, ElasticBase, YieldingBase)}
 _DAMAGE = (OSError, KeyError, ValueError, TypeError, RuntimeError, AttributeError)
@@ -108,7 +109,7 @@ def _write(group: "h5py.Group", response: Response) -> None:
     _set(group.create_group("base"), {"name": response.base.name} | asdict(response.base))
     rigid = isinstance(response.base, RigidBase)
     for name, unit in UNITS.items():
-        if not (rigid and name in _OF_SPRINGS):
+        if not (rigid and name in OF_SPRINGS):
             _put(group, name, response.history[name].to_numpy(), unit)
     events = group.create_group("events")
     for name in EVENT_TYPES:
@@ -209,7 +210,7 @@ def _read(group: "h5py.Group") -> Response:
     base = _attributes(group["base"])
     kind = _BASES[base.pop("name")]
     length = len(group["t"])
-    absent = _OF_SPRINGS if kind is RigidBase else ()
+    absent = OF_SPRINGS if kind is RigidBase else ()
     columns = {name: np.full(length, np.nan) if name in absent else group[name][:] for name in UNITS}
     events = {
         name: group["events"][name].asstr()[:] if of == "str" else group["events"][name][:]

@@ -42,6 +42,7 @@ NUMERICS = {
 }
 OUTPUT = {
     "histories": Key(choice("worst", "all", "none"), '"all"'),
+    "histories_MB": Key(positive, "50"),
     "ledger": Key(boolean, "true"),
     "both_laws": Key(boolean, "true"),
 }

@@ -71,7 +71,7 @@ SPREADS = {"uniform": UNIFORM, "log_uniform": LOG_UNIFORM, "choice": CHOICE}
 
 @dataclass(frozen=True)
 class Input:
-    """Something that the answer may hang on.
+    """Something that the answer may depend on.
 
     Attributes
     ----------

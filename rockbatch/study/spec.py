@@ -112,6 +112,8 @@ class Output:
     ----------
     histories : "worst", "all" or "none"
         The runs whose histories are kept: the worst record of each case, all, or none.
+    histories_MB : float
+        How large their file may become with "worst".
     ledger : bool
         The energy ledger of every run (THEORY.md, 9).
     both_laws : bool
@@ -119,6 +121,7 @@ class Output:
     """
 
     histories: str = "worst"
+    histories_MB: float = 20.0  # noqa: N815 (the study's key)
     ledger: bool = False
     both_laws: bool = True
 

@@ -1,4 +1,4 @@
-"""What the answer hangs on: Sobol indices against known ones, inputs that cannot matter, and the mistakes of a file."""
+"""What the answer depends on: Sobol indices against known ones, inputs that cannot matter, and the mistakes of a file."""
 
 import json
 import math
@@ -289,7 +289,7 @@ def test_a_case_that_has_none_of_the_inputs_is_left_out(tmp_path):
 def test_the_report_shows_both_pictures_and_says_how_overturned_runs_count(folder):
     report = (folder / "analyses.html").read_text(encoding="utf-8")
     for words in (
-        "What the answer hangs on",
+        "What the answer depends on",
         "maximum of the suite",
         "counts as 1,",
         "One input at a time",

@@ -69,5 +69,10 @@ def figures(text: str) -> list[ET.Element]:
     ]
 
 
+def panels(text: str) -> list[ET.Element]:
+    """The pictures of peak rotations, one for each ground motion, scale and pier."""
+    return [svg for svg in figures(text) if "marks" in svg.attrib["class"]]
+
+
 def svg_texts(figure: ET.Element) -> list[str]:
     return ["".join(node.itertext()) for node in figure.iter() if node.tag.endswith("text")]

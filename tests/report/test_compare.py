@@ -7,7 +7,7 @@ import sys
 
 import pandas as pd
 import pytest
-from report_page import Page, figures
+from report_page import Page, panels
 from report_samples import FIG7, FOUNDATIONS, case_entry, three_piers, write_results
 
 from rockbatch.cli import main
@@ -47,9 +47,9 @@ def test_runs_of_one_record_and_case_stand_side_by_side_with_their_ratio(tmp_pat
 def test_panels_hold_both_studies(tmp_path):
     a, b = two(tmp_path)
     text = write_comparison(a, b).read_text(encoding="utf-8")
-    panels = [svg for svg in figures(text) if "marks" in svg.attrib["class"]]
-    assert len(panels) == len(FIG7)
-    marks = [node.get("class") for node in panels[0].iter() if node.tag.endswith("use")]
+    drawn = panels(text)
+    assert len(drawn) == len(FIG7)
+    marks = [node.get("class") for node in drawn[0].iter() if node.tag.endswith("use")]
     assert sorted(marks) == sorted(["s1", "s1 open", "s2", "s2 open", "s3", "s3 open", "s4", "s4 open"])
 
 
@@ -118,3 +118,26 @@ def test_the_command_makes_the_report_again_or_compares_without_the_compiler(tmp
 def test_a_folder_without_results_is_refused_in_words(tmp_path, capsys):
     assert main(["report", str(tmp_path)]) == 2
     assert "give a folder that `rockbatch run` has written" in capsys.readouterr().err
+
+
+def test_what_differs_in_the_inputs_is_a_row_each_and_nothing_else_is(tmp_path):
+    tall = Pier(alpha=0.13, p=0.36)
+    cases = [case_entry(name, {}, PIER, foundation) for name, foundation in FOUNDATIONS]
+    stiffer = YieldingBase(beta=40.0001, eta=2.5, epsilon=0.05)
+    others = [
+        case_entry(name, {}, tall, stiffer if name == "1" else foundation) for name, foundation in FOUNDATIONS[:4]
+    ]
+    a, b = two(tmp_path, {"cases": cases}, {"cases": others, "records": FIG7[:5]})
+    rows = {row[0]: row[1:] for row in Page(write_comparison(a, b).read_text(encoding="utf-8")).tables["inputs"][1:]}
+    assert set(rows) == {"pier: p [rad/s]", "pier: R0 [m]", "cases", "1: β", "ground motions"}
+    assert rows["pier: p [rad/s]"] == ["0.38", "0.36"]
+    assert rows["1: β"] == ["40", "40.0001"]  # with the digits that tell them apart
+    assert rows["cases"] == ["rigid, 1, 2, 3, 4", "rigid, 1, 2, 3"]
+    assert rows["ground motions"][0].startswith("CPM000, ERZ-NS, ")
+    assert "CPM000" not in rows["ground motions"][1]
+
+
+def test_inputs_that_are_the_same_are_said_to_be(tmp_path):
+    page = Page(write_comparison(*two(tmp_path)).read_text(encoding="utf-8"))
+    assert "inputs" not in page.tables
+    assert "Pier, foundations, motions and numerics are the same in both." in page.text

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from report_page import Page, figures, svg_texts
+from report_page import Page, figures, panels, svg_texts
 from report_samples import FIG7, FOUNDATIONS, case_entry, response, three_piers, write_results
 
 from rockbatch.errors import InputError
@@ -90,7 +90,7 @@ def test_the_axis_is_not_stretched_by_a_pier_that_overturned(tmp_path):
 def test_each_value_of_a_pier_key_has_its_own_figure_and_table(tmp_path):
     text = report(tmp_path, cases=three_piers(), varied=("p",))
     page = Page(text)
-    assert len(figures(text)) == 3 * len(FIG7)
+    assert len(panels(text)) == 3 * len(FIG7)
     for p in ("0.38", "0.36", "0.35"):
         assert f"p = {p} rad/s. Largest rotation" in page.text
     assert len(page.tables["figure"]) == 3 * (1 + len(FIG7))
@@ -313,14 +313,14 @@ def test_fifty_records_on_five_foundations_stay_below_two_megabytes(tmp_path):
     records = [(f"RSN{i}_EVENT_STATION{i:03d}_WITH_A_LONG_NAME", 0.1 + 0.02 * i) for i in range(50)]
     text = report(tmp_path, records=records)
     assert len(text.encode()) < 2e6
-    assert len(figures(text)) == 50
+    assert len(panels(text)) == 50
     assert len(re.findall("PGA = ", text)) == 50
 
 
 def test_both_directions_and_scales_are_told_apart(tmp_path):
     text = report(tmp_path, polarities=("+", "-"), scales=(1.0, 2.0))
     page = Page(text)
-    assert len(figures(text)) == 2 * len(FIG7)
+    assert len(panels(text)) == 2 * len(FIG7)
     assert page.tables["figure"][0][2:4] == ["rigid (+)", "rigid (-)"]
     assert "as recorded and reversed, scaled by 1, 2: 120 runs." in page.text
     # PGA is that of the scaled motion
@@ -422,7 +422,7 @@ def test_of_a_big_study_the_worst_is_shown_and_the_page_says_so(tmp_path):
     assert len(page.tables["peaks"]) == 1 + 1000
     assert {row[0] for row in page.tables["peaks"][1:21]} == {"R7"}
     assert "The worst 1,000 of 12,000 rows are shown." in page.text
-    assert len(figures(text)) == 60
+    assert len(panels(text)) == 60
     assert "Shown are the 60 records with the worst runs of 600." in page.text
     assert ">R7</span>" in text
 
@@ -445,8 +445,8 @@ def test_a_damaged_table_is_told_with_every_line_at_once(tmp_path):
 
 def test_error_bars_are_drawn_where_they_are_longer_than_their_marker(tmp_path):
     text = report(tmp_path, changes={("SYL360", "2"): {"theta_max_error": 0.02}})
-    panels = [svg for svg in figures(text) if "marks" in svg.attrib["class"]]
-    bars = [sum(node.get("class") == "bar" for node in panel.iter()) for panel in panels]
+    drawn = panels(text)
+    bars = [sum(node.get("class") == "bar" for node in panel.iter()) for panel in drawn]
     assert bars == [int(name == "SYL360") for name, _ in FIG7]
     assert "± 2e-02" in text
 

@@ -15,7 +15,7 @@ from studies import PADS, RIGID, SINE, study_text, write_study
 import rockbatch as rb
 from rockbatch.batch.carrying_out import carry_out
 from rockbatch.batch.journal import Journal
-from rockbatch.batch.kept_histories import keep_histories, kept, worst
+from rockbatch.batch.kept_histories import history_bytes, keep_histories, kept, worst
 from rockbatch.batch.plan import Plan
 from rockbatch.batch.threads import Threads
 from rockbatch.results import histories_file
@@ -321,10 +321,36 @@ def test_worst_is_what_a_study_keeps_that_does_not_say(tmp_path):
         assert response.ledger is None
 
 
+def test_the_worst_runs_go_first_where_not_all_fit(tmp_path):
+    saved, study, runs = carried_out(tmp_path, STUDY.replace('histories = "all"\nledger = true\n', ""))
+    every = kept(study, runs, saved.peaks)
+    sizes = {number: history_bytes(runs[number], saved.peaks.iloc[number]) for number in every.numbers}
+    rotations = saved.peaks["theta_max_over_alpha"]
+    by_rotation = sorted(every.numbers, key=lambda number: -rotations[number])
+    room = sum(sizes[number] for number in by_rotation[:3]) + 1.0
+    chosen = kept(replace(study, output=replace(study.output, histories_MB=room / 1e6)), runs, saved.peaks)
+    assert len(every.numbers) > 4
+    assert every.left_out == 0
+    assert sorted(chosen.numbers) == sorted(by_rotation[:3])
+    assert chosen.left_out == len(every.numbers) - 3
+    least = kept(replace(study, output=replace(study.output, histories_MB=1e-9)), runs, saved.peaks)
+    assert least.numbers == by_rotation[:1]  # a report without any would show no history at all
+
+
+def test_the_size_of_histories_is_told_beforehand(tmp_path):
+    saved, study, runs = carried_out(tmp_path)
+    told = sum(
+        history_bytes(runs[number], saved.peaks.iloc[number]) for number in kept(study, runs, saved.peaks).numbers
+    )
+    path = keep_histories(saved, study, runs)
+    assert path is not None
+    assert told == pytest.approx(path.stat().st_size, rel=0.1)
+
+
 def test_runs_that_were_refused_have_no_history(tmp_path):
-    saved, study, _ = carried_out(tmp_path)
+    saved, study, runs = carried_out(tmp_path)
     saved.peaks.loc[1, ["status", "theta_max_over_alpha"]] = ["failed", np.nan]
-    assert kept(study, saved.peaks) == [0, *range(2, len(saved.peaks))]
+    assert kept(study, runs, saved.peaks).numbers == [0, *range(2, len(saved.peaks))]
 
 
 def test_a_history_too_long_for_memory_is_told_and_the_others_are_there(tmp_path):
@@ -340,7 +366,7 @@ def test_progress_is_told_after_every_run_that_is_kept(tmp_path):
     saved, study, runs = carried_out(tmp_path)
     calls = []
     keep_histories(saved, study, runs, lambda: calls.append(None))
-    assert len(calls) == len(kept(study, saved.peaks))
+    assert len(calls) == len(kept(study, runs, saved.peaks).numbers)
 
 
 # Choosing one

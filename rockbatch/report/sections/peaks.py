@@ -107,7 +107,7 @@ def on_scale(name: str, value: float | None) -> float | None:
 
 
 def _ratcheting(finished: Finished) -> Markup:
-    """That settlement hangs on the spring law, and by how much where both were run."""
+    """That settlement depends on the spring law, and by how much where both were run."""
     if not any(case["parameters"].get("spring") for case in finished.info["cases"]):
         return Markup("")
     told = "Bouc–Wen springs ratchet: they settle a little with every cycle, elastic–perfectly plastic ones do not. "

@@ -42,7 +42,7 @@ def section(contents: Contents) -> Section | None:
         parts.append(figure(_tornado(both), f"{words}: one input at a time, all others as in the study."))
         parts.append(figure(_bars(both), f"{words}: all inputs at once over their ranges."))
         parts.append(_numbers(both))
-    return Section("What the answer hangs on", "sensitivity", join(*parts))
+    return Section("What the answer depends on", "sensitivity", join(*parts))
 
 
 def _lead(info: dict[str, Any]) -> Markup:

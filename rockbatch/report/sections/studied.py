@@ -4,6 +4,7 @@ import math
 
 from rockbatch.report.contents import Contents
 from rockbatch.report.document import Section
+from rockbatch.report.drawing import pier as drawing
 from rockbatch.report.finished import Finished
 from rockbatch.report.labels import counted, symbol
 from rockbatch.report.markup import Markup, join, number, tag
@@ -35,9 +36,11 @@ def studied(finished: Finished, level: str = "h3") -> Markup:
         + (" Polarity: mirror images, counted once." if finished.mirrored else "")
     )
     described = tag("ul", *(tag("li", _pier(pier)) for pier in piers.values()))
+    bases = {case["base"] for case in info["cases"]}
+    drawn = tag("div", *drawing.piers(list(piers.values()), bases), class_="piers") if piers else ""
     return join(
-        tag("p", extent[0].upper() + extent[1:]), described, tag("p", _motions(finished)), tag(level, "Foundations"),
-        foundations(finished),
+        tag("p", extent[0].upper() + extent[1:]), described, drawn, tag("p", _motions(finished)),
+        tag(level, "Foundations"), foundations(finished),
     )  # fmt: skip
 
 
@@ -83,9 +86,17 @@ def foundations(finished: Finished) -> Markup:
     """What the piers stand on: parameters, and the deflections that follow from them."""
     varied_pier = [key for key in finished.info["varied"] if key in PIER_KEYS]
     heads = [Head("case"), *(Head(symbol(key)) for key in varied_pier), Head("base")]
+    weighed = {
+        "stiffness_kN_m": "stiffness of a support",
+        "yield_kN": "force at which a support yields",
+    }
+    in_kilonewtons = {
+        key: note for key, note in weighed.items() if any(key in case["parameters"] for case in finished.info["cases"])
+    }
     heads += [
-        Head("β", note="vertical over rocking frequency parameter"),
-        Head("η", note="yield over static deflection: capacity of a support over its static load"),
+        Head("β", ".5g", note="vertical over rocking frequency parameter"),
+        Head("η", ".5g", note="yield over static deflection: capacity of a support over its static load"),
+        *(Head(symbol(key), ",.0f", note) for key, note in in_kilonewtons.items()),
         Head("ε", note="restitution of the landing pivot's velocity"),
         Head("spring"),
         Head("n", note="Bouc–Wen exponent"),
@@ -96,7 +107,7 @@ def foundations(finished: Finished) -> Markup:
         Head(join(sub("δ", "s"), " [mm]"), ".2f", "static deflection"),
         Head(join(sub("δ", "y"), " [mm]"), ".2f", "yield deflection"),
     ]
-    names = ("beta", "eta", "epsilon", "spring", "n", "kinematics", "flight", "restitution", "omega_v")
+    names = ("beta", "eta", *in_kilonewtons, "epsilon", "spring", "n", "kinematics", "flight", "restitution", "omega_v")
     rows = []
     for case in finished.info["cases"]:
         values = case["parameters"]

@@ -1,0 +1,23 @@
+"""``rockbatch examples``: the studies that come with rockbatch."""
+
+import argparse
+
+from rockbatch.examples import examples
+
+HELP = "list the example studies that come with rockbatch"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    del parser  # nothing can be asked
+
+
+def main(arguments: argparse.Namespace) -> int:
+    del arguments
+    every = examples()
+    width = max(len(example.name) for example in every)
+    for example in every:
+        needs = ' (needs pip install "rockbatch[records]")' if example.package else ""
+        print(f"{example.name:<{width}}  {example.title}{needs}")
+    print("\nA copy to work on, with its records: rockbatch init FOLDER --example NAME")
+    print(f"Or as they are:                      rockbatch {every[0].command} {every[0].path}")
+    return 0

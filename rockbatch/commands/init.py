@@ -1,0 +1,30 @@
+"""``rockbatch init``: a study of one's own to begin with."""
+
+import argparse
+from pathlib import Path
+
+from rockbatch.examples import CHECKS, FIRST, copy
+
+HELP = "write a study of your own to begin with, its design checks and records of five near-fault stations"
+STUDY = "pier.toml"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("folder", type=Path, nargs="?", default=Path(), metavar="FOLDER", help="where (default: here)")
+    parser.add_argument(
+        "--example", default=FIRST, metavar="NAME", help="begin with another example; `rockbatch examples` lists them"
+    )
+
+
+def main(arguments: argparse.Namespace) -> int:
+    study = STUDY if arguments.example == FIRST else f"{arguments.example}.toml"
+    written = copy(arguments.example, arguments.folder, study)
+    for path in written:
+        print(path)
+    there = "" if arguments.folder == Path() else f"cd {arguments.folder}\n    "
+    print(f"\nNext:\n\n    {there}rockbatch run {study}\n")
+    print(
+        f"It leaves a report in {Path('reports', Path(study).stem, 'report.html')}. Then put in the numbers of your pier and a"
+    )
+    print(f"folder of your records ({study} says where), and agree on limits ({CHECKS} has many to choose from).")
+    return 0

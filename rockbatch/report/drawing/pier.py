@@ -1,0 +1,88 @@
+"""The pier as it stands, to scale: the pivots on which it steps, its centre of mass, and what it stands on."""
+
+import math
+from collections.abc import Collection, Mapping, Sequence
+from typing import Any
+
+from rockbatch.report.drawing.svg import line, lowered, rectangle, svg, text
+from rockbatch.report.markup import Markup, number, tag
+
+HEIGHT = 190.0
+"""Of the highest pier [px]."""
+
+SIDE, ABOVE, BELOW = 46.0, 14.0, 44.0
+"""Room beside, above and below a pier for what is written there [px]."""
+
+SPRING = 20.0
+"""Height of a support's spring [px]: not to scale, it has none."""
+
+MOST = 4
+"""Piers that are drawn; more would say nothing new."""
+
+
+def piers(all_of_them: Sequence[Mapping[str, Any]], bases: Collection[str]) -> list[Markup]:
+    """A picture of each pier, at one scale; ``all_of_them`` as run.json has them, ``bases`` what they stand on."""
+    shown = all_of_them[:MOST]
+    scale = HEIGHT / max(_top(pier) for pier in shown)
+    return [_pier(pier, scale, any(base != "rigid" for base in bases)) for pier in shown]
+
+
+def _top(pier: Mapping[str, Any]) -> float:
+    """Height of the highest point [m]; of a uniform block unless it is known."""
+    return float(pier.get("top_m") or 2.0 * pier["height_m"])
+
+
+def _pier(pier: Mapping[str, Any], scale: float, springs: bool) -> Markup:
+    b, h, top = (scale * length for length in (pier["half_width_m"], pier["height_m"], _top(pier)))
+    middle, ground = SIDE + max(b, 30.0), ABOVE + max(top, h)
+    width, height = 2.0 * middle, ground + BELOW
+    left, right, centre = middle - b, middle + b, ground - h
+    arc = 0.45 * math.hypot(b, h)
+    end = right - arc * math.sin(pier["alpha"]), ground - arc * math.cos(pier["alpha"])
+    drawn = [
+        rectangle(left, ground - top, 2.0 * b, top, "band"),
+        tag("path", d=f"M{left:.1f} {ground:.1f}V{ground - top:.1f}H{right:.1f}V{ground:.1f}z", class_="rigid"),
+        line(right, ground, middle, centre, "rigid d1"),
+        line(right, ground, right, ground - 1.15 * arc, "edge"),
+        tag(
+            "path",
+            d=f"M{right:.1f} {ground - arc:.1f}A{arc:.1f} {arc:.1f} 0 0 0 {end[0]:.1f} {end[1]:.1f}",
+            class_="edge",
+        ),
+        text(right + 4.0, ground - arc + 3.0, "α"),
+        text(middle - 5.0, 0.5 * (centre + ground), lowered("R", "0"), class_="e"),
+        tag("circle", cx=f"{middle:.1f}", cy=f"{centre:.1f}", r=2.6, class_="peak"),
+        *_length(right + 26.0, ground, right + 26.0, centre, f"h = {number(pier['height_m'], '.3g')} m"),
+        *(mark for x in (left, right) for mark in _support(x, ground, springs)),
+        *_length(left, ground + 32.0, right, ground + 32.0, f"2b = {number(2.0 * pier['half_width_m'], '.3g')} m"),
+    ]
+    what = "two springs" if springs else "rigid ground"
+    said = (
+        f"The pier to scale on {what}: {2.0 * pier['half_width_m']:.3g} m between its pivots, centre of mass "
+        f"{pier['height_m']:.3g} m above them, slenderness {pier['alpha']:.3g} rad"
+    )
+    return tag("figure", svg(width, height, *drawn, description=said), style=f"width:{width:.0f}px")
+
+
+def _support(x: float, ground: float, spring: bool) -> list[Markup]:
+    """What is under a pivot: a spring on the ground, or the ground."""
+    below = ground + (SPRING if spring else 0.0)
+    parts = [line(x - 9.0, below, x + 9.0, below, "rigid")]
+    parts += [line(x + at, below, x + at - 4.0, below + 5.0, "edge") for at in (-5.0, 0.0, 5.0, 9.0)]
+    if spring:
+        turns = "".join(
+            f"L{x + side:.1f} {ground + (i + 1) * SPRING / 6:.1f}" for i, side in enumerate((4, -4, 4, -4, 4))
+        )
+        parts.append(tag("path", d=f"M{x:.1f} {ground:.1f}{turns}L{x:.1f} {below:.1f}", class_="rigid"))
+    return parts
+
+
+def _length(x1: float, y1: float, x2: float, y2: float, words: str) -> list[Markup]:
+    """A line with its ends and its length, below or beside it."""
+    flat = y1 == y2
+    ends = [
+        line(x, y - 3.0, x, y + 3.0, "edge") if flat else line(x - 3.0, y, x + 3.0, y, "edge")
+        for x, y in ((x1, y1), (x2, y2))
+    ]
+    told = text(0.5 * (x1 + x2), y1 + 10.0, words, class_="m") if flat else text(x1 + 4.0, 0.5 * (y1 + y2), words)
+    return [line(x1, y1, x2, y2, "edge"), *ends, told]

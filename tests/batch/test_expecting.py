@@ -1,0 +1,79 @@
+"""What a dry run says, held against what the run then leaves."""
+
+import pytest
+from studies import PADS, RIGID, study_text, write_study
+
+from rockbatch.batch import expecting
+from rockbatch.batch.expecting import expected
+from rockbatch.batch.listening import Listener
+from rockbatch.cli import main
+from rockbatch.commands.run import in_words
+from rockbatch.study import load_study
+
+CASES = (RIGID, PADS | {"beta": [30, 40, 50, 60], "eta": [2.5, 3.0, 3.5]})
+
+
+@pytest.fixture
+def study(tmp_path):
+    text = study_text(motions={"polarity": ["+", "-"], "scale": [0.5, 1.0, 1.5]}, cases=CASES)
+    return write_study(tmp_path, text)
+
+
+def test_runs_and_sizes_are_those_that_come_out(study, tmp_path):
+    found = expected(load_study(study), 2, Listener())
+    out = tmp_path / "out"
+    main(["run", str(study), "--out", str(out)])
+    assert found.runs == 39  # of 78 rows half are mirror images
+    assert found.tried == 39
+    assert found.what == "1 record × 3 scales × 13 cases = 39 runs (polarity: mirror images, counted once)"
+    assert found.table == pytest.approx((out / "peaks.csv").stat().st_size, rel=0.5)
+    assert found.histories == pytest.approx((out / "histories.h5").stat().st_size, rel=0.5)
+
+
+def test_time_of_a_few_stands_for_all(study, monkeypatch):
+    """A clock that counts steps: whatever is tried, the same is foreseen for all."""
+    loaded, foreseen = load_study(study), []
+    for tried in (1, 7, 39):
+        steps, outcomes_of = [0.0], expecting.outcomes_of
+
+        def counted(runs, *rest, steps=steps, outcomes_of=outcomes_of):
+            steps[0] += sum(expecting._steps(loaded, run) for run in runs)
+            return outcomes_of(runs, *rest)
+
+        monkeypatch.setattr(expecting, "TRIED", tried)
+        monkeypatch.setattr(expecting, "outcomes_of", counted)
+        monkeypatch.setattr(expecting.time, "perf_counter", lambda steps=steps: steps[0])
+        found = expected(loaded, 1, Listener())
+        assert found.tried == tried
+        foreseen.append(found.seconds)
+        monkeypatch.undo()
+    assert foreseen == pytest.approx([foreseen[0]] * 3)
+    assert expected(loaded, 1, Listener()).seconds < 60.0
+
+
+def test_nothing_is_written(study, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    before = sorted(tmp_path.rglob("*"))
+    assert main(["run", str(study), "--dry-run", "--jobs", "1"]) == 0
+    assert sorted(tmp_path.rglob("*")) == before
+    told = capsys.readouterr().out
+    assert "= 39 runs" in told
+    assert "on 1 thread, as 39 of them took" in told
+
+
+def test_runs_that_are_tried_are_spread_and_not_too_many_steps(monkeypatch):
+    steps = [1e6] * 90 + [1e9] * 10
+    chosen = expecting._spread(steps)
+    assert sum(steps[i] for i in chosen) <= max(expecting.STEPS_TRIED, 1e9)
+    assert len(set(chosen)) == len(chosen) >= 1
+    assert expecting._spread([1e12]) == [0]
+    monkeypatch.setattr(expecting, "TRIED", 10)
+    assert sorted(expecting._spread([1.0] * 100)) == [round(10 * i + 4.5) for i in range(10)]
+
+
+@pytest.mark.parametrize(
+    ("seconds", "words"),
+    [(0.3, "less than 1 s"), (40.4, "about 40 s"), (600.0, "about 10 min"), (12600.0, "about 3.5 h")],
+)
+def test_times_are_told_in_words(seconds, words):
+    assert in_words(seconds) == words

@@ -1,0 +1,60 @@
+"""Results are never replaced without a word, and those of another study not at all unless it is asked for."""
+
+import pytest
+from studies import study_text, write_study
+
+from rockbatch.cli import main
+
+
+def run(study, out, *more):
+    return main(["run", str(study), "--out", str(out), *more])
+
+
+@pytest.fixture
+def finished(tmp_path):
+    """A study and its results."""
+    study = write_study(tmp_path, study_text(title="Pier 4"), "pier.toml")
+    out = tmp_path / "reports" / "pier"
+    run(study, out)
+    return study, out
+
+
+def test_an_earlier_version_is_named(finished, capsys):
+    study, out = finished
+    study.write_text(study.read_text(encoding="utf-8").replace("0.2", "0.21"), encoding="utf-8")
+    capsys.readouterr()
+    run(study, out)
+    told = capsys.readouterr().err
+    assert "the results of an earlier version of the study, of 20" in told
+    assert f"in {out}, will be replaced" in told
+    capsys.readouterr()
+    run(study, out)
+    assert "replaced" not in capsys.readouterr().err  # nothing is left to run
+
+
+def test_another_study_of_the_same_name_does_not_take_its_place(finished, tmp_path, capsys):
+    study, out = finished
+    (tmp_path / "other").mkdir()
+    other = write_study(tmp_path / "other", study_text(title="Pier 4", pier={"alpha": 0.3, "p": 1.0}), "pier.toml")
+    before = {path.name: path.read_bytes() for path in out.iterdir()}
+    capsys.readouterr()
+    assert run(other, out) == 2
+    told = capsys.readouterr().err
+    assert f'{out} holds the results of another study, {study}, "Pier 4", of 20' in told
+    assert "--out" in told
+    assert {path.name: path.read_bytes() for path in out.iterdir()} == before
+    run(other, out, "--fresh")
+    assert (out / "peaks.csv").read_bytes() != before["peaks.csv"]
+
+
+def test_a_study_that_has_moved_is_known_by_its_title(finished, tmp_path, capsys):
+    study, out = finished
+    moved = study.rename(tmp_path / "renamed.toml")
+    moved.write_text(moved.read_text(encoding="utf-8").replace("0.2", "0.21"), encoding="utf-8")
+    capsys.readouterr()
+    run(moved, out)
+    assert "an earlier version of the study" in capsys.readouterr().err
+    moved.unlink()
+    other = write_study(tmp_path, study_text(title="Pier 5"), "pier5.toml")
+    assert run(other, out) == 2
+    assert '"Pier 4"' in capsys.readouterr().err

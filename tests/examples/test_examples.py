@@ -1,0 +1,100 @@
+"""The studies that come with rockbatch: found, copied with their records, and there in a wheel too."""
+
+import os
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from rockbatch.cli import main
+from rockbatch.errors import InputError
+from rockbatch.examples import FIRST, copy, examples
+from rockbatch.study import load_study
+from rockbatch.study.suite import ground_motions
+
+CHECKOUT = Path(__file__).parents[2]
+NAMES = [example.name for example in examples()]
+
+
+def test_every_config_is_an_example_and_the_first_study_comes_first():
+    assert sorted(NAMES) == sorted(path.stem for path in (CHECKOUT / "configs").glob("*.toml"))
+    assert NAMES[0] == FIRST
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_copy_is_the_same_study_on_its_own_records(name, tmp_path):
+    written = copy(name, tmp_path / "mine", "pier.toml")
+    own, original = load_study(written[0]), load_study(CHECKOUT / "configs" / f"{name}.toml")
+    assert own.cases == original.cases
+    assert own.numerics == original.numerics
+    assert own.checks == original.checks
+    for path in own.motions.paths:
+        assert path.is_relative_to(tmp_path)
+        assert path.is_dir()
+
+
+def test_the_first_study_has_the_stations_that_come_with_rockbatch(tmp_path):
+    study = load_study(copy(FIRST, tmp_path, "pier.toml")[0])
+    found = ground_motions(study)
+    assert len(found.motions) == 10
+    assert not found.unusable
+    assert all(motion.vertical is not None for motion in found.motions)
+    assert (tmp_path / "records" / "README.md").read_text(encoding="utf-8").count("licence")  # goes with its records
+
+
+@pytest.mark.parametrize("taken", ["pier.toml", "checks.toml", "records"])
+def test_nothing_is_overwritten_and_nothing_half_written(taken, tmp_path):
+    (tmp_path / taken).mkdir()
+    with pytest.raises(InputError, match=taken):
+        copy(FIRST, tmp_path, "pier.toml")
+    assert [path.name for path in tmp_path.iterdir()] == [taken]
+
+
+def test_what_is_no_example_is_answered_with_those_that_are():
+    with pytest.raises(InputError, match=r"there is no example 'fig8'; there are first_study, .*fig7"):
+        copy("fig8", Path("mine"), "pier.toml")
+
+
+def test_init_and_then_the_command_that_it_names_lead_to_a_report(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(["init", "mine"]) == 0
+    told = capsys.readouterr().out
+    assert "cd mine\n    rockbatch run pier.toml\n" in told
+    monkeypatch.chdir(tmp_path / "mine")
+    main(["run", "pier.toml"])
+    assert Path("reports", "pier", "report.html").stat().st_size > 10_000
+    peaks = pd.read_csv(Path("reports", "pier", "peaks.csv"))
+    assert len(peaks) == 30
+    assert set(peaks["status"]) <= {"ok", "flight"}
+
+
+def test_examples_are_listed_with_what_they_need(capsys):
+    assert main(["examples"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    needs = {line.split()[0] for line in lines if "rockbatch[records]" in line}
+    assert {"fig7", "fragility", "spectrum"} <= needs
+    assert FIRST not in needs
+    assert "near_fault" not in needs
+
+
+def test_a_wheel_has_them(tmp_path):
+    """Built from this checkout, unpacked elsewhere, and used there."""
+    subprocess.run(
+        [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", str(tmp_path)],
+        cwd=CHECKOUT, check=True, capture_output=True,
+    )  # fmt: skip
+    (wheel,) = tmp_path.glob("*.whl")
+    installed = tmp_path / "installed"
+    zipfile.ZipFile(wheel).extractall(installed)
+    environment = os.environ | {"PYTHONPATH": str(installed)}
+    subprocess.run(
+        [sys.executable, "-m", "rockbatch", "init", "mine"],
+        cwd=tmp_path, env=environment, check=True, capture_output=True,
+    )  # fmt: skip
+    assert len(list((tmp_path / "mine" / "records").rglob("*.V2*"))) == 7
+    names = {path.stem for path in (installed / "rockbatch" / "examples" / "configs").glob("*.toml")}
+    assert names == set(NAMES)
+    assert (installed / "rockbatch" / "report" / "style.css").exists()

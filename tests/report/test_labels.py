@@ -1,0 +1,85 @@
+"""What foundations are called: by what sets them apart, in the study's own keys and units, with no more digits than it takes."""
+
+import math
+
+import pytest
+from studies import RIGID, study_text, write_study
+
+import rockbatch as rb
+from rockbatch.report.drawing import pier as drawing
+from rockbatch.report.finished import read
+from rockbatch.report.labels import digits_that_tell, quantity
+
+MASS = {"width_m": 4.0, "height_m": 20.0, "mass_t": 1000.0}
+
+
+def labels(folder, *cases, pier=MASS):
+    """Labels of the foundations of a study with these cases."""
+    rb.run(write_study(folder, study_text(pier=pier, cases=cases, output={"histories": "none"})), out=folder / "out")
+    return [series.label for series in read(folder / "out").series]
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "words"),
+    [
+        ("stiffness_kN_m", 2.5e6, "K = 2.5 GN/m"),
+        ("stiffness_kN_m", 800.0, "K = 800 kN/m"),
+        ("yield_kN", 37000.0, "F_y = 37 MN"),
+        ("yield_kN", 999.0, "F_y = 999 kN"),
+        ("beta", 50.65704515, "β = 50.65704515"),
+        ("kinematics", "finite", "kinematics finite"),
+    ],
+)
+def test_quantities_have_units_of_their_size(key, value, words):
+    assert quantity(key, value).replace("\u00a0", " ") == words
+
+
+def test_digits_are_as_many_as_tell_values_apart():
+    assert digits_that_tell([40.0, 50.0, 50.0, "epp", None]) == 3
+    assert digits_that_tell([1001.0, 1002.0]) == 4
+    assert digits_that_tell([0.123456, 0.123457]) == 6
+    assert digits_that_tell([1.0, 1.0 + 1e-15]) == 10
+
+
+def test_a_foundation_is_called_by_the_keys_of_its_study(tmp_path):
+    pads = {"name": "pads", "base": "yielding", "stiffness_kN_m": 1.5e6, "yield_kN": [9e3, 12.3456e3]}
+    found = labels(tmp_path, RIGID, pads)
+    assert [label.replace("\u00a0", " ") for label in found] == ["rigid", "pads: F_y = 9 MN", "pads: F_y = 12.3 MN"]
+
+
+def test_with_a_mass_but_beta_and_eta_it_is_called_by_these(tmp_path):
+    soft = {"name": "pads", "base": "yielding", "beta": [30.0, 40.0], "eta": 2.5}
+    found = labels(tmp_path, soft)
+    assert [label.replace("\u00a0", " ") for label in found] == ["pads: β = 30", "pads: β = 40"]
+
+
+def test_each_case_is_called_in_its_own_way(tmp_path):
+    one = {"name": "one", "base": "elastic", "beta": 30.0}
+    other = {"name": "other", "base": "elastic", "stiffness_kN_m": 1.5e6}
+    found = labels(tmp_path, one, other)
+    assert [label.replace("\u00a0", " ") for label in found] == ["one: β = 30", "other: K = 1.5 GN/m"]
+
+
+def test_the_pier_is_drawn_to_scale():
+    """Widths and heights of the outline, read back from the picture, are in the ratio of the pier's."""
+    piers = [
+        {"alpha": 0.2, "half_width_m": 4.0, "height_m": 20.0, "top_m": 30.0},
+        {"alpha": 0.1, "half_width_m": 1.0, "height_m": 10.0},
+    ]
+    outlines = []
+    for drawn in drawing.piers(piers, {"rigid", "yielding"}):
+        move = str(drawn).split('<path d="M')[1].split("z")[0]
+        left, rest = move.split(" ", 1)
+        ground, rest = rest.split("V", 1)
+        top, rest = rest.split("H")
+        right = rest.split("V")[0]
+        outlines.append((float(right) - float(left), float(ground) - float(top)))
+    (wide, tall), (narrow, low) = outlines
+    assert wide / tall == pytest.approx(8.0 / 30.0, rel=0.01)
+    assert narrow / low == pytest.approx(2.0 / 20.0, rel=0.02)
+    assert tall / low == pytest.approx(30.0 / 20.0, rel=0.01)
+
+
+def test_no_more_piers_are_drawn_than_can_be_taken_in():
+    pier = {"alpha": math.atan(0.2), "half_width_m": 4.0, "height_m": 20.0}
+    assert len(drawing.piers([pier] * 20, {"rigid"})) == drawing.MOST
