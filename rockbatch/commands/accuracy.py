@@ -10,7 +10,8 @@ from rockbatch.commands.options import add_study, folder, study_of
 if TYPE_CHECKING:
     import pandas as pd
 
-HELP = "measure error against time per run, for this study on this machine"
+HELP = "measure error against time of a study on this machine"
+EXAMPLE = "rockbatch accuracy pier.toml --no-scipy"
 RUNS, SECONDS = 24, 60.0
 
 

@@ -13,7 +13,8 @@ from rockbatch.commands.messages import say
 if TYPE_CHECKING:
     from rockbatch.checks import Verdict
 
-HELP = "hold finished results against design checks; write checks.csv, and into the report"
+HELP = "hold finished results against design checks"
+EXAMPLE = "rockbatch check reports/pier"
 WIDTH = 100
 HEAD = ("check", "records", "demand", "limit", "ratio", "margin", "verdict")
 

@@ -9,7 +9,8 @@ from rockbatch.commands.messages import say
 if TYPE_CHECKING:
     from rockbatch.motions import LeftOut, MotionSet, Unusable
 
-HELP = "show the records in a file or folder: components, dt, intensity, what was done, and what could not be used"
+HELP = "show what is in a folder of records, and what is not used"
+EXAMPLE = "rockbatch motions records --csv records.csv"
 
 _SHOWN = {  # heads of the table in the terminal, and how their numbers are written
     "record": ("record", ""),
