@@ -199,6 +199,8 @@ def test_an_analysis_has_the_tables_of_the_command_and_saves_them(study, command
             getattr(found, table), read_table(commanded / name / f"{table}.csv"), check_exact=True
         )
         assert f"{table} ({len(found.tables[table])} rows)" in repr(found)
+    assert f"<strong>{name} of &#x27;Doors&#x27;</strong>" in found._repr_html_()
+    assert found._repr_html_().count("<td>rigid</td>") > 0
     saved = found.save(nowhere / "saved")
     assert_same_folder(nowhere / "saved", commanded / name, [f"{table}.csv" for table in ANALYSES[name]])
     assert sorted(path.name for path in saved) == files(nowhere / "saved")

@@ -109,7 +109,8 @@ def accuracy(
     --------
     >>> found = rb.accuracy("pier4.toml", runs=2, scipy=False)
     >>> found
-    <accuracy of 'Pier 4': accuracy (13 rows)>
+    <accuracy of 'Pier 4'>
+      tables  accuracy (13 rows)
     >>> found.accuracy[["method", "substeps", "runs"]].head(3)
         method  substeps  runs
     0  located         1     2

@@ -84,7 +84,8 @@ def fragility(
     --------
     >>> found = rb.fragility("pier4.toml")
     >>> found
-    <fragility of 'Pier 4': fragility (16 rows), fragility_runs (16 rows)>
+    <fragility of 'Pier 4'>
+      tables  fragility (16 rows), fragility_runs (16 rows)
     >>> [path.name for path in found.save("reports/fragility")]
     ['fragility.csv', 'fragility_runs.csv', 'fragility.json', 'analyses.html']
     """

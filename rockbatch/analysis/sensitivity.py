@@ -94,7 +94,8 @@ def sensitivity(
     --------
     >>> found = rb.sensitivity("pier4.toml")
     >>> found
-    <sensitivity of 'Pier 4': sensitivity_runs (72 rows), sensitivity (3 rows), sobol (3 rows)>
+    <sensitivity of 'Pier 4'>
+      tables  sensitivity_runs (72 rows), sensitivity (3 rows), sobol (3 rows)
     >>> found.sobol[["case", "parameter"]]
         case parameter
     0  rigid     alpha

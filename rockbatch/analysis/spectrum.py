@@ -89,7 +89,8 @@ def spectrum(
     --------
     >>> found = rb.spectrum("pier4.toml")
     >>> found
-    <spectrum of 'Pier 4': spectrum (12 rows), spectrum_suite (6 rows)>
+    <spectrum of 'Pier 4'>
+      tables  spectrum (12 rows), spectrum_suite (6 rows)
     >>> found.spectrum_suite[["case", "two_pi_over_p_s", "overturned"]].head(3)
         case  two_pi_over_p_s  overturned
     0  rigid              3.0           2
