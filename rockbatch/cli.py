@@ -23,7 +23,9 @@ from rockbatch.commands import (
     sensitivity,
     spectrum,
 )
-from rockbatch.errors import InputError, MissingColumns
+from rockbatch.commands.messages import say
+from rockbatch.commands.streams import is_lost
+from rockbatch.errors import AboutResults, InputError
 
 COMMANDS = {
     "init": init,
@@ -81,27 +83,27 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if parsed.command is None:
         understood.print_help()
         return 2
+    code = _carried_out(parsed)
+    return code or int(is_lost(sys.stdout))
+
+
+def _carried_out(parsed: argparse.Namespace) -> int:
+    """The exit code of a command; what went wrong is told in words."""
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("always", MissingColumns)
+            warnings.simplefilter("always", AboutResults)
             warnings.showwarning = _plainly(warnings.showwarning)
             return COMMANDS[parsed.command].main(parsed)
     except InputError as error:
         for problem in error.problems:
-            print(f"rockbatch: {problem}", file=sys.stderr)
+            say(f"rockbatch: {problem}")
         return 2
-    except BrokenPipeError:  # whoever reads has seen enough
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 1
     except OSError as error:
         place = f"{error.filename}: " if error.filename else ""
-        print(
-            f"rockbatch: {place}{error.strerror or error}; choose another place, or make this one usable",
-            file=sys.stderr,
-        )
+        say(f"rockbatch: {place}{error.strerror or error}; choose another place, or make this one usable")
         return 2
     except KeyboardInterrupt:
-        print("rockbatch: interrupted", file=sys.stderr)
+        say("rockbatch: interrupted")
         return 130
 
 
@@ -110,11 +112,11 @@ def _plainly(otherwise: Callable[..., None]) -> Callable[..., None]:
     said = set()
 
     def show(message: Warning | str, category: type[Warning], *place: Any) -> None:
-        if not issubclass(category, MissingColumns):
+        if not issubclass(category, AboutResults):
             otherwise(message, category, *place)
         elif str(message) not in said:
             said.add(str(message))
-            print(f"rockbatch: {message}", file=sys.stderr)
+            say(f"rockbatch: {message}")
 
     return show
 

@@ -31,5 +31,13 @@ class UnstatedError(InputError):
         self.keys = keys
 
 
-class MissingColumns(UserWarning):
+class AboutResults(UserWarning):
+    """What there is to know of a folder of results that is opened."""
+
+
+class MissingColumns(AboutResults):
     """Results of an earlier version, without columns that it did not have yet."""
+
+
+class EditedTable(AboutResults):
+    """A ``peaks.csv`` that is not as it was written."""

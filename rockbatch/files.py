@@ -1,15 +1,22 @@
-"""Files written whole or not at all, by one process at a time, and texts from elsewhere that do no harm in them."""
+"""The files of a folder of results, and texts from elsewhere: the one door for each.
+
+A folder may come from anybody. What is read there, or gone on with, is a plain file of that folder (:func:`opened`);
+what is new takes its place as a whole (:func:`replacing`); and one process at a time writes (:func:`only_writer`). A
+text from elsewhere is :func:`legible` before it is shown, and :func:`csv_safe` in a table.
+"""
 
 import csv
 import errno
+import hashlib
 import io
 import os
 import re
+import stat
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from rockbatch.errors import InputError
 
@@ -21,8 +28,71 @@ LOCK = "rockbatch.lock"
 UNFINISHED = ".unfinished"
 NAMES = ("record", "case", "polarity", "status", "reason", "mirror_of", "map", "limit")
 """Columns of tables that hold words from elsewhere."""
-_FORMULA = re.compile(r"'*[=+\-@\t\r\n].", re.DOTALL)
+MOST_TEXT = 1 << 30
+"""Bytes of a file that is read as a whole: run.json of the largest study takes a third of it."""
+
+_PLAIN_ONLY = sum(getattr(os, flag, 0) for flag in ("O_NOFOLLOW", "O_NONBLOCK", "O_CLOEXEC", "O_BINARY"))
+"""A link is not followed, and a pipe does not keep whoever opens it waiting."""
+
+_FORMULA = re.compile(r"(?:\A|(?<=;))(?='*[=+\-@\t\r\n].)", re.DOTALL)
+_SAVED_FORMULA = re.compile(r"(?:\A|(?<=;))'(?='*[=+\-@\t\r\n].)", re.DOTALL)
 _UNPRINTABLE = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028\u2029\u202a-\u202e\u2066-\u2069\ud800-\udfff]")
+
+
+def opened(path: Path, mode: Literal["rb", "r+b"] = "rb") -> io.FileIO:
+    """Open a file of a folder of results, without a buffer; "r+b" makes it if it is not there.
+
+    Raises ``InputError`` for whatever is no plain file of that folder: a link, which could lead anywhere, a pipe, a
+    device, a folder, and for writing a file that has a second name elsewhere. ``FileNotFoundError`` as ``open`` does.
+    """
+    path = Path(path)
+    if path.is_symlink():
+        raise _not_plain(path, "a link")
+    try:
+        handle = os.open(path, (os.O_RDONLY if mode == "rb" else os.O_RDWR | os.O_CREAT) | _PLAIN_ONLY, 0o666)
+    except OSError as error:
+        if error.errno in (errno.ELOOP, errno.EISDIR, errno.ENXIO):
+            raise _not_plain(path, "no plain file") from None
+        raise
+    told = os.fstat(handle)
+    if not stat.S_ISREG(told.st_mode) or (mode == "r+b" and told.st_nlink > 1):
+        os.close(handle)
+        raise _not_plain(path, "a file with several names" if stat.S_ISREG(told.st_mode) else "no plain file")
+    return io.FileIO(handle, mode)
+
+
+def _not_plain(path: Path, what: str) -> InputError:
+    return InputError(
+        f"{path}: {what}, which is neither read nor written in a folder of results; remove it, or put a plain file there"
+    )
+
+
+def is_plain(path: Path) -> bool:
+    """Whether there is a plain file."""
+    try:
+        return stat.S_ISREG(os.lstat(path).st_mode)
+    except (OSError, ValueError):
+        return False
+
+
+def opened_text(path: Path) -> io.TextIOWrapper:
+    """As :func:`opened`, for a table: UTF-8, with its line breaks as they are."""
+    return io.TextIOWrapper(io.BufferedReader(opened(path)), encoding="utf-8", newline="")
+
+
+def read_text(path: Path) -> str:
+    """The whole of a UTF-8 file of a folder of results; ``InputError`` as :func:`opened`, and for one that is too large."""
+    with opened(path) as file:
+        size = os.fstat(file.fileno()).st_size
+        if size > MOST_TEXT:
+            raise InputError(f"{path}: {size / 1e9:.1f} GB, more than `rockbatch` ever writes into such a file")
+        return file.read(size).decode()
+
+
+def sha256_of(path: Path) -> str:
+    """Digest of a file of a folder of results."""
+    with opened(path) as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 @contextmanager
@@ -93,11 +163,13 @@ def only_writer(folder: Path) -> Iterator[None]:
         lock.release()
 
 
-def legible(text: str) -> str:
+def legible(text: str, keep: str = "") -> str:
     """``text`` with control characters, and bytes of a file's name that are no text, written as ``\\x1b``: it can be
-    printed, stays on its line, and goes into UTF-8."""
+    printed, stays on its line, and goes into UTF-8. ``keep`` are those that stay: line breaks of a text of several."""
 
     def escaped(found: re.Match[str]) -> str:
+        if found[0] in keep:
+            return found[0]
         code = ord(found[0])
         byte = code - 0xDC00 if 0xDC80 <= code <= 0xDCFF else code  # how Python carries such a byte
         return f"\\x{byte:02x}" if byte <= 0xFF else f"\\u{byte:04x}"
@@ -108,15 +180,16 @@ def legible(text: str) -> str:
 def csv_safe(text: str) -> str:
     """``text`` as a cell that no spreadsheet takes for a formula (OWASP, "CSV injection").
 
-    Where it begins with = + - @, a tab or a line break, an apostrophe goes before it; also before apostrophes that
-    are followed by one of these, so that :func:`csv_plain` gives the text back. A sign alone stays as it is.
+    Where it, or what follows a semicolon in it (which separates cells in half of the world), begins with = + - @, a tab or
+    a line break, an apostrophe goes before that; also before apostrophes that are followed by one of these, so that
+    :func:`csv_plain` gives the text back. A sign alone stays as it is.
     """
-    return f"'{text}" if _FORMULA.match(text) else text
+    return _FORMULA.sub("'", text)
 
 
 def csv_plain(cell: str) -> str:
     """The text that :func:`csv_safe` made ``cell`` of."""
-    return cell[1:] if cell.startswith("'") and _FORMULA.match(cell) else cell
+    return _SAVED_FORMULA.sub("", cell) if "'" in cell else cell
 
 
 def csv_text(columns: Sequence[str], rows: Iterable[Mapping[str, object]]) -> str:
@@ -132,16 +205,17 @@ def read_table(path: Path) -> "pd.DataFrame":
     """A table that was written so; names in it that look like numbers stay names."""
     import pandas as pd
 
-    table = pd.read_csv(path, keep_default_na=False, na_values=[""], dtype=dict.fromkeys(NAMES, "str"))
+    with opened(path) as file:
+        table = pd.read_csv(file, keep_default_na=False, na_values=[""], dtype=dict.fromkeys(NAMES, "str"))
     for name in table.columns.intersection(list(NAMES)):
         table[name] = table[name].fillna("").map(csv_plain)
     return table
 
 
 def csv_cell(value: object) -> object:
-    """What a CSV writer is given for ``value``: nothing for None and NaN, ten digits of a float, a text that is safe."""
+    """What a CSV writer is given for ``value``: nothing for None and NaN, ten digits of a float, a text that does no harm."""
     if value is None or value != value:
         return ""
     if isinstance(value, float):
         return f"{value:.10g}"
-    return csv_safe(value) if isinstance(value, str) else value
+    return csv_safe(legible(value, keep="\t\r\n")) if isinstance(value, str) else value

@@ -5,6 +5,9 @@ import re
 GRAVITY = 9.81
 """Acceleration of gravity [m/s²] that the reference paper uses (its R0 = 7.36 m for p = 1 rad/s, μ = 3)."""
 
+LEAST, MOST = 1e-15, 1e15
+"""No number that anybody states is smaller, but for 0, or larger, whatever its unit: products and powers of some stay finite."""
+
 _ACCELERATION_IN_M_S2 = {
     "m/s2": 1.0,
     "cm/s2": 0.01,

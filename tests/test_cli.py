@@ -207,3 +207,88 @@ def test_wide_tables_fit_the_terminal(monkeypatch):
     lines = in_width(table).splitlines()
     assert max(map(len, lines)) <= 60
     assert all(any(f"case {i}" in line for line in lines) for i in range(30))
+
+
+# Whatever the terminal can print
+
+
+def started(study, out, redirected, **more):
+    """The command line in a shell of its own; its exit code and what it said on stderr."""
+    command = f"{sys.executable} -m rockbatch run {study} --out {out} --jobs 1 {redirected}"
+    done = subprocess.run(command, shell=True, capture_output=True, text=True, errors="replace", env=os.environ | more)
+    return done.returncode, done.stderr
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="shells of Unix")
+@pytest.mark.parametrize(
+    ("redirected", "more", "code"),
+    [
+        ("", {"PYTHONIOENCODING": "ascii"}, 0), ("", {"PYTHONIOENCODING": "latin-1"}, 0), ("> /dev/full", {}, 1),
+        ("2> /dev/full", {}, 0), ("> /dev/full 2> /dev/full", {}, 1), (">&- 2>&-", {}, 0),
+    ],
+)  # fmt: skip
+def test_a_run_ends_with_its_report_whatever_becomes_of_stdout_and_stderr(tmp_path, redirected, more, code):
+    study = write_study(tmp_path, study_text(cases=[{"name": "θ-é-地", "base": "rigid"}]))
+    ended, told = started(study, tmp_path / "out", redirected, **more)
+    assert (tmp_path / "out/report.html").exists()
+    assert ended == code
+    assert "Traceback" not in told
+    assert "Exception" not in told
+    assert ("what was asked for cannot be printed (No space left on device)" in told) == (redirected == "> /dev/full")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="shells of Unix")
+def test_checks_and_their_report_do_not_need_a_reader(study, tmp_path):
+    rules = tmp_path / "rules.toml"
+    rules.write_text(
+        '[[check]]\nname = "é"\ndemand = "theta_max_over_alpha"\nat_most = 9.0\nreason = "r"\n', encoding="utf-8"
+    )
+    assert main(["run", str(study), "--out", str(tmp_path / "out")]) == 0
+    before = (tmp_path / "out/report.html").read_bytes()
+    check = f"{sys.executable} -m rockbatch check {tmp_path / 'out'} --rules {rules}"
+    done = subprocess.run(f"({check}; echo $? >&2) | true", shell=True, capture_output=True, text=True)
+    assert done.stderr.split()[-1] == "1"
+    assert "Traceback" not in done.stderr
+    assert (tmp_path / "out/report.html").read_bytes() != before
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of Unix")
+def test_an_interrupt_while_modules_are_loaded_is_told_as_any_other(study):
+    code = f"""
+import os, signal, sys
+
+class Interrupts:
+    def find_spec(self, name, path=None, target=None):
+        if name == "rockbatch.commands.run":
+            os.kill(os.getpid(), signal.SIGINT)
+
+sys.meta_path.insert(0, Interrupts())
+sys.argv = ["rockbatch", "run", {str(study)!r}]
+from rockbatch.__main__ import main
+sys.exit(main())
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (130, "rockbatch: interrupted\n")
+
+
+@pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() != 0, reason="only root can become a user without entry")
+def test_where_nobody_is_at_home_it_runs_and_a_path_from_home_is_told(tmp_path):
+    """As in a container that is started under a number: no HOME, and no entry in the table of users."""
+    code = """
+import os, sys
+os.environ.pop("HOME", None)
+os.setuid(54321)
+import rockbatch.core.kernel as kernel
+from pathlib import Path
+kernel._CORE = Path("/nowhere")
+print(kernel._usable_folder())
+from rockbatch.cli import main
+sys.exit(main(["run", sys.argv[1]]))
+"""
+    study = write_study(tmp_path, study_text(motions={"path": "~/records"}))
+    for folder in (tmp_path, *tmp_path.parents[:2]):
+        folder.chmod(0o755)
+    done = subprocess.run([sys.executable, "-c", code, str(study)], capture_output=True, text=True)
+    assert done.returncode == 2, done.stderr
+    assert "kernels-" in done.stdout
+    assert 'path = "~/records": there is no home folder here; write the whole path' in done.stderr

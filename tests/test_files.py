@@ -16,22 +16,33 @@ def test_a_cell_that_a_spreadsheet_would_calculate_gets_an_apostrophe(text):
     assert csv_safe(text) == f"'{text}"
 
 
+def test_so_does_what_half_of_the_world_takes_for_a_cell_of_its_own():
+    """Where a comma is in decimals, a semicolon separates cells."""
+    assert csv_safe("a;=1+1;b;-2+3") == "a;'=1+1;b;'-2+3"
+    assert csv_safe("a; b;c") == "a; b;c"
+
+
 @pytest.mark.parametrize("text", ["RSN1063_RRS228", "a=b", "", "+", "-", "'quoted'", "Δ-1"])
 def test_other_texts_and_a_polarity_stay_as_they_are(text):
     assert csv_safe(text) == text
 
 
-@given(st.text(alphabet="'=+-@\t\nab", max_size=6))
+@given(st.text(alphabet="'=+-@\t\nab;", max_size=6))
 def test_a_safe_cell_gives_its_text_back_and_is_no_formula(text):
     cell = csv_safe(text)
     assert csv_plain(cell) == text
-    assert len(cell) < 2 or cell[0] not in "=+-@\t\r\n"
+    for part in cell.split(";"):
+        assert len(part) < 2 or part[0] not in "=+-@\t\r\n"
 
 
 def test_numbers_in_a_csv_stay_numbers_and_texts_cannot_break_it():
     rows = [{"a": -1.5, "b": '=1,"x"\ny'}, {"a": math.nan, "b": None}, {"b": -3}]
     written = csv_text(("a", "b"), rows)
     assert list(csv.reader(io.StringIO(written))) == [["a", "b"], ["-1.5", '\'=1,"x"\ny'], ["", ""], ["", "-3"]]
+
+
+def test_what_a_terminal_would_obey_is_written_out_in_a_table():
+    assert csv_text(("a",), [{"a": "x\x1b[2J\x9b"}]) == "a\nx\\x1b[2J\\x9b\n"
 
 
 def test_what_a_terminal_would_obey_is_shown_instead():

@@ -10,7 +10,7 @@ from rockbatch.analysis.error_and_time import Clock, measure, references
 from rockbatch.analysis.folder import Analysis
 from rockbatch.batch.listening import Progress, listener_of, make_ready
 from rockbatch.errors import InputError
-from rockbatch.files import write_whole
+from rockbatch.files import is_plain, read_text, write_whole
 from rockbatch.report import write_report
 from rockbatch.results.columns import PEAKS
 from rockbatch.results.run_json import INFO
@@ -60,12 +60,12 @@ class Accuracy(Analysis):
     def _has_results(self, directory: Path) -> bool:
         """Whether the folder holds results of this very study with these motions, whose report can show the table."""
         try:
-            info = json.loads((directory / INFO).read_text(encoding="utf-8"))
+            info = json.loads(read_text(directory / INFO))
             records = tuple(record["record"] for record in info["records"])
             same = info["study"]["sha256"] == self.accuracy["study"].iloc[0] and records == self.records
-        except (OSError, ValueError, KeyError, TypeError):
+        except (OSError, ValueError, KeyError, TypeError, RecursionError):
             return False
-        return same and (directory / PEAKS).exists()
+        return same and is_plain(directory / PEAKS)
 
 
 def accuracy(

@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from rockbatch._version import __version__
 from rockbatch.batch.journal import Journal
 from rockbatch.batch.listening import Listener, count
-from rockbatch.files import csv_text, only_writer, read_table, write_whole
+from rockbatch.errors import InputError
+from rockbatch.files import csv_text, is_plain, only_writer, read_table, read_text, sha256_of, write_whole
 from rockbatch.motions import Unusable
 from rockbatch.report import write_analyses
 from rockbatch.showing import Shown, several
@@ -108,16 +109,24 @@ class AnalysisFolder:
             "sha256": sha256,
         }
         self.info: dict[str, Any] = {"rockbatch": __version__, "study": of_study, "files": [], "digests": {}}
-        self._earlier = {} if fresh else _digests(self.path)
+        self._earlier = {} if fresh else _earlier(self.path)
 
     def has(self, file: str, digest: Mapping[str, str]) -> bool:
-        """Whether ``file`` holds the runs with that digest already."""
-        return self._earlier.get(file) == digest and (self.directory / file).exists()
+        """Whether ``file`` holds the runs with that digest already; ``InputError`` where it is not as it was written."""
+        path, found = self.directory / file, self._earlier.get(file)
+        if not (isinstance(found, dict) and found.get("runs") == digest and is_plain(path)):
+            return False
+        if found.get("sha256") != sha256_of(path):
+            raise InputError(
+                f"{path}: not as it was written; nothing is run: keep it as a copy elsewhere if it was edited, and start "
+                "over with --fresh"
+            )
+        return True
 
     @contextmanager
     def journal(self, file: str, columns: Sequence[str], digest: Mapping[str, str]) -> Iterator[Journal]:
         """The journal of the runs in ``file``; tells what is in it already, and what stays in it after Ctrl-C."""
-        with Journal(self.directory / f"{file}.part", columns, digest, self.fresh) as journal:
+        with Journal(self.directory / f"{file}.part", columns, digest, self.fresh, tell=self.listener.say) as journal:
             if len(journal):
                 self.listener.say(f"{count(len(journal), 'run')} are finished already (--fresh starts over)")
             try:
@@ -131,7 +140,7 @@ class AnalysisFolder:
         """Note that ``file`` is finished, and which runs it holds."""
         self.info["files"].append(file)
         if digest is not None:
-            self.info["digests"][file] = dict(digest)
+            self.info["digests"][file] = {"runs": dict(digest), "sha256": sha256_of(self.directory / file)}
         self._write_info()
 
     def keep_table(self, file: str, table: "pd.DataFrame") -> None:
@@ -174,9 +183,9 @@ def analysis_folder(
         yield AnalysisFolder(Path(directory), name, study, listener=listener, passing=True)
 
 
-def _digests(path: Path) -> dict[str, Any]:
-    """Digests of the runs in each file, as an earlier analysis has noted them."""
+def _earlier(path: Path) -> dict[str, Any]:
+    """Digests of the runs in each file, and of the file, as an earlier analysis has noted them."""
     try:
-        return dict(json.loads(path.read_text(encoding="utf-8"))["digests"])
-    except (OSError, ValueError, KeyError, TypeError):
+        return dict(json.loads(read_text(path))["digests"])
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return {}

@@ -62,6 +62,9 @@ def fragility(
 ) -> Fragility:
     """How probable overturning, and every limit of a check, is at a given intensity: [fragility] of a study.
 
+    Every horizontal component is a record here, whatever [suite] says: a probability is that of a motion along the pier. Those
+    of one station are not independent, so that the bands are then too narrow.
+
     Parameters
     ----------
     study, motions, jobs, fresh, progress
@@ -116,6 +119,7 @@ def fragility(
         waves = Waves(asked, journal, carrier, listener.progress)
         curves = assess(asked, spec, records, waves)
         results.info |= described(curves, spec, asked, len(records))
+        results.info["stations"] = len({motion.of_station for motion in records})
         results.keep_table(POINTS, points(curves, spec, asked.varied))
         if spec.method == "ida":
             names = [motion.name for motion in records]

@@ -14,6 +14,7 @@ from rockbatch.analysis.ida import Bracket, Capacity, Looks, bisect, capacity
 from rockbatch.analysis.limit_states import EXCEEDED, LEFT_OUT, UNDECIDED, WITHSTOOD, applies, states
 from rockbatch.analysis.lognormal import Capacities, Lognormal, Values, fit
 from rockbatch.batch.plan import PlannedRun, Runs, scaled
+from rockbatch.checks.demands import DEMANDS
 from rockbatch.checks.rules import Rule
 from rockbatch.errors import InputError
 from rockbatch.motions import Motion
@@ -166,7 +167,11 @@ def _ratio(bounds: tuple[float, float]) -> float:
 
 def output(spec: FragilitySpec) -> Output:
     """What the runs have to bring beyond their peaks."""
-    return Output(histories="none", both_laws=any(rule.other_law for rule in spec.limits))
+    return Output(
+        histories="none",
+        both_laws=any(rule.other_law for rule in spec.limits),
+        forces=any(DEMANDS[rule.demand].of_forces for rule in spec.limits),
+    )
 
 
 def intensities(motions: Iterable[Motion], spec: FragilitySpec, gravity: float) -> list[float]:

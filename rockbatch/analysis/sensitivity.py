@@ -24,6 +24,7 @@ from rockbatch.batch.digests import digests
 from rockbatch.batch.listening import Progress, count, listener_of, make_ready, once
 from rockbatch.batch.threads import Engine, engine_of
 from rockbatch.checks.statistics import STATISTICS, Values
+from rockbatch.files import opened_text
 from rockbatch.motions import MotionSet
 from rockbatch.study import Study, given_study
 from rockbatch.study.sensitivity import Input, SensitivitySpec, Value, read_sensitivity
@@ -120,7 +121,7 @@ def sensitivity(
         with carrier:
             _carry_out(results, points, found, carrier)
             engine = str(carrier)
-        with (results.directory / sampled.RUNS).open(encoding="utf-8", newline="") as rows:
+        with opened_text(results.directory / sampled.RUNS) as rows:
             results.info["statuses"], values = values_of(csv.DictReader(rows), len(points), spec.overturned)
         swings, shares = tables(asked, spec, points, values)
         results.keep_table(ONE_AT_A_TIME, swings)

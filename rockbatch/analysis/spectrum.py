@@ -14,7 +14,7 @@ from rockbatch.batch.digests import digests
 from rockbatch.batch.groups import NOTHING_MORE
 from rockbatch.batch.listening import Progress, count, listener_of, make_ready, once
 from rockbatch.batch.threads import Engine, engine_of
-from rockbatch.files import read_table
+from rockbatch.files import is_plain, read_table
 from rockbatch.motions import MotionSet
 from rockbatch.results.columns import columns
 from rockbatch.study import Study, given_study
@@ -157,7 +157,7 @@ def _carry_out_maps(results: AnalysisFolder, maps: Sequence[MapSpec], carrier: E
     told = ("name", "shape", "tolerance", "width")
     results.info["maps"] = [{name: getattr(spec, name) for name in told} for spec in maps]
     digest = digests([], maps=maps, cases=study.cases, numerics=study.numerics)
-    if results.has(of_runs, digest) and (results.directory / file).exists():
+    if results.has(of_runs, digest) and is_plain(results.directory / file):
         results.keep(file)
         results.keep(of_runs, digest)
         return

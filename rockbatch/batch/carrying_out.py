@@ -7,9 +7,10 @@ from typing import Any
 
 from rockbatch.batch.groups import NOTHING_MORE
 from rockbatch.batch.journal import Journal
-from rockbatch.batch.plan import Chosen, PlannedRun, Runs
+from rockbatch.batch.plan import MOST_RUNS, Chosen, PlannedRun, Runs
 from rockbatch.batch.threads import Engine
 from rockbatch.checks.suite import MIRROR_OF
+from rockbatch.errors import InputError
 from rockbatch.results.columns import row
 from rockbatch.results.outcome import Outcome
 from rockbatch.study import Numerics, Output
@@ -62,7 +63,15 @@ def carry_out(
 
 
 def to_simulate(runs: Runs, wanted: range, journal: Container[int] = (), first: int = 0) -> "array[int]":
-    """Indices of the runs that give all those that are ``wanted`` and not in ``journal``, themselves or their mirror images."""
+    """Indices of the runs that give all those that are ``wanted`` and not in ``journal``, themselves or their mirror images.
+
+    Raises ``InputError`` for more than :data:`MOST_RUNS`.
+    """
+    if len(runs) > MOST_RUNS:
+        raise InputError(
+            f"{len(runs):,} runs, more than {MOST_RUNS:,}: records × polarities × scales × cases; split the study, by its "
+            "records for example"
+        )
 
     def is_left(index: int) -> bool:
         return index in wanted and first + index not in journal
@@ -86,4 +95,4 @@ def _images(
 
 def row_of(run: PlannedRun, outcome: Outcome) -> dict[str, Any]:
     """Row of peaks.csv of a run that is finished."""
-    return row(run.motion.name, run.polarity, run.scale, run.case, outcome) | {MIRROR_OF: run.mirror_of}
+    return row(run.motion, run.polarity, run.scale, run.case, outcome) | {MIRROR_OF: run.mirror_of}

@@ -3,9 +3,11 @@
 import logging
 import signal
 import threading
-from collections.abc import Generator, Iterator, Sequence
-from contextlib import contextmanager
+import time
+from collections.abc import Generator, Iterable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
+from importlib.util import find_spec
 from types import TracebackType
 from typing import TYPE_CHECKING, Self
 
@@ -28,7 +30,13 @@ MOST_RUNS_OF_A_TASK = 16 * 1024
 """A task is to take about a second: what the scheduler spends on each is then nothing."""
 
 PATIENCE_S = 60
-"""How long the scheduler and its first worker may take to appear."""
+"""How long the scheduler and its first worker may take to appear, and how long there may be no worker later on."""
+
+GONE_S = 10
+"""How long a scheduler that was there may not answer."""
+
+GLANCE_S = 1.0
+"""How often it is looked whether scheduler and workers are still there."""
 
 
 class Dask:
@@ -50,12 +58,16 @@ class Dask:
         self.workers = workers or cores()
         self._client: Client | None = None
         self._records: Records | None = None
+        self._opened = ExitStack()
 
     def __enter__(self) -> Self:
         try:
+            from dask import config
             from distributed import Client
         except ImportError:
             raise InputError('the engine dask is not installed: pip install "rockbatch[dask]"') from None
+        self._opened.enter_context(_quiet())
+        self._opened.enter_context(config.set({"distributed.comm.timeouts.connect": f"{GONE_S} s"}))
         try:
             if self.address is None:
                 with _deaf_to_interrupts():
@@ -71,15 +83,28 @@ class Dask:
                 f"scheduler {self.address or 'of this machine'}: no workers ({error or 'none came'}); start them with "
                 "`dask scheduler` and `dask worker ADDRESS`, and give the address"
             ) from error
+        self._check_workers(self._client)
         self._records = Records(self._client)
         return self
+
+    def _check_workers(self, client: "Client") -> None:
+        """Workers without rockbatch end at the first message about it, and whoever waits for them waits for ever."""
+        found = client.run(find_spec, "rockbatch", on_error="return")
+        without = [address for address, spec in found.items() if spec is None or isinstance(spec, Exception)]
+        if without:
+            self.__exit__(None, None, None)
+            raise InputError(
+                f"there is no rockbatch where these workers run: {', '.join(without)}; install the same version there, in the "
+                "Python that starts `dask worker`"
+            )
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         if self._client is not None:
-            self._client.close()
+            self._client.close(timeout=GONE_S)
             self._client = None
+        self._opened.close()
 
     def __str__(self) -> str:
         where = self.address or "this machine"
@@ -88,13 +113,14 @@ class Dask:
     @property
     def jobs(self) -> int:
         """Threads of all workers that there are now."""
-        return sum(self._client.nthreads().values()) if self._client else 0
+        there = self._client is not None and self._client.status == "running"
+        return sum(self._client.nthreads().values()) if self._client and there else 0
 
     def outcomes(
         self, runs: Sequence[PlannedRun], numerics: Numerics, output: Output = NOTHING_MORE
     ) -> Generator[Outcomes, None, None]:
         """See :class:`rockbatch.batch.threads.Engine`."""
-        from distributed import CancelledError, as_completed
+        from distributed import CancelledError
         from distributed.scheduler import KilledWorker
 
         records = self._records
@@ -102,23 +128,21 @@ class Dask:
         assert records is not None, "an engine is a context"
         waiting = groups(runs, numerics, max(self.jobs, 1), MOST_RUNS_OF_A_TASK)
         pending: dict[Future, range] = {}
-        flow = as_completed()
 
         def hand_out() -> None:
             most = AHEAD * max(self.jobs, 1)
             while len(pending) < most and (group := next(waiting, None)):
-                future = records.submit(runs[group.start : group.stop], numerics, output)
-                pending[future] = group
-                flow.add(future)
+                pending[records.submit(runs[group.start : group.stop], numerics, output)] = group
 
         try:
             hand_out()
-            for future in flow:
-                group = pending[future]
-                found = future.result()
-                del pending[future]
-                yield finished(group, found)
-                hand_out()
+            while pending:
+                for future in self._finished_of(self._client, pending):
+                    group = pending[future]
+                    found = future.result()
+                    del pending[future]
+                    yield finished(group, found)
+                    hand_out()
         except KeyboardInterrupt:
             yield from _kept(pending)
             raise
@@ -129,9 +153,30 @@ class Dask:
                 f"last {error.last_worker.address}; look at its log and memory, and give the same command again"
             ) from error
         except (CancelledError, OSError) as error:
-            raise InputError(f"{self}: lost ({error}); give the same command again to go on") from error
+            why = "the connection to the scheduler broke" if isinstance(error, CancelledError) else error
+            raise InputError(
+                f"{self.address or 'the cluster of this machine'}: lost ({why}); give the same command again to go on, with a "
+                "scheduler and workers that are there"
+            ) from error
         finally:
-            self._client.cancel(list(pending))
+            if self._client.status == "running":
+                self._client.cancel(list(pending))
+
+    def _finished_of(self, client: "Client", pending: "Iterable[Future]") -> "list[Future]":
+        """Those that have finished, one at least; ``OSError`` where there is nobody any more to finish them."""
+        from distributed import TimeoutError as NotYetError
+        from distributed import wait
+
+        seen = time.monotonic()
+        while True:
+            try:
+                return list(wait(list(pending), timeout=GLANCE_S, return_when="FIRST_COMPLETED").done)
+            except NotYetError:
+                patience, who = (PATIENCE_S, "worker") if client.status == "running" else (GONE_S, "scheduler")
+                if who == "worker" and client.nthreads():
+                    seen = time.monotonic()
+                if time.monotonic() - seen > patience:
+                    raise OSError(f"no {who} for {patience:g} s") from None
 
 
 def _kept(pending: "dict[Future, range]") -> Iterator[Outcomes]:
@@ -183,6 +228,20 @@ class Records:
         if keep:  # with the motion, whose id must not become another's
             self._sent[id(motion)] = motion, future
         return future
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """What distributed logs of connections that are lost is told in a sentence of our own."""
+    names = [name for name in logging.root.manager.loggerDict if name.partition(".")[0] == "distributed"]
+    levels = {logging.getLogger(name): logging.getLogger(name).level for name in names}
+    for logger in levels:
+        logger.setLevel(logging.CRITICAL)
+    try:
+        yield
+    finally:
+        for logger, level in levels.items():
+            logger.setLevel(level)
 
 
 @contextmanager

@@ -23,7 +23,7 @@ def digests(motions: Iterable[Motion], **settings: object) -> dict[str, str]:
     found = {name: hashlib.sha256(repr(value).encode()) for name, value in settings.items()}
     found["motions"] = hashlib.sha256()
     for motion in motions:
-        found["motions"].update(repr((motion.name, motion.dt, motion.npts, motion.initial)).encode())
+        found["motions"].update(repr((motion.name, motion.station, motion.dt, motion.npts, motion.initial)).encode())
         for samples in (motion.horizontal, motion.vertical):
             found["motions"].update(b"none" if samples is None else samples.tobytes())
     return {name: each.hexdigest()[:16] for name, each in found.items()} | {"program": program()}
@@ -35,7 +35,7 @@ def study_digests(study: Study, motions: MotionSet) -> dict[str, str]:
         motions.motions,
         cases=study.cases,
         scales=(study.motions.polarity, study.motions.scale),
-        numerics=(study.numerics, study.output.both_laws, study.output.ledger),
+        numerics=(study.numerics, study.output.both_laws, study.output.ledger, study.output.forces),
     )
 
 

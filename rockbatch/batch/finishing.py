@@ -2,6 +2,7 @@
 
 import datetime
 import json
+import math
 import platform
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,19 +14,21 @@ from rockbatch._version import __version__
 from rockbatch.batch.carrying_out import to_simulate
 from rockbatch.batch.journal import Journal
 from rockbatch.batch.kept_histories import keep_histories, kept
-from rockbatch.batch.listening import Listener
+from rockbatch.batch.listening import Listener, told_if_slow
 from rockbatch.batch.plan import Plan
 from rockbatch.batch.threads import cores
 from rockbatch.checks import Verdict, write_verdicts
 from rockbatch.checks.verdicts import CHECKS
 from rockbatch.errors import InputError
-from rockbatch.files import legible
+from rockbatch.files import legible, read_text
 from rockbatch.motions import MotionSet
 from rockbatch.report import REPORT, write_report
 from rockbatch.results.checking import verdicts
 from rockbatch.results.columns import PEAKS, unusable_rows
+from rockbatch.results.estimate import ESTIMATE, write_estimate
 from rockbatch.results.histories_file import HISTORIES
-from rockbatch.results.reading import Saved, read_saved
+from rockbatch.results.intensity import INTENSITY, write_intensity
+from rockbatch.results.reading import Saved, edited, read_saved
 from rockbatch.results.run_json import INFO, describe, write_info
 from rockbatch.study import Study
 
@@ -75,14 +78,25 @@ def what_was_run(
 
 
 def cost_of_finished(directory: Path, info: dict[str, Any]) -> dict[str, Any] | None:
-    """What the runs in ``directory`` cost, if they are those of ``info``, all of them; else None."""
+    """What the runs in ``directory`` cost, if they are those of ``info``, all of them; else None.
+
+    Raises ``InputError`` where they are, and their table is not as it was written: it is nobody's to write over.
+    """
     try:
-        earlier = json.loads((directory / INFO).read_text(encoding="utf-8"))
+        earlier = json.loads(read_text(directory / INFO))
         same = all(earlier[name] == info[name] for name in ("digest", "runs", "varied", "unusable"))
-        cost = {name: earlier[name] for name in ("jobs", "wall_s", "kept")}
-    except (OSError, ValueError, LookupError, TypeError):
+        cost = {name: earlier[name] for name in ("jobs", "wall_s", "kept", "peaks")}
+        jobs, wall_s, kept = (float(cost[name]) for name in ("jobs", "wall_s", "kept"))
+    except (OSError, ValueError, LookupError, TypeError, RecursionError):
         return None
-    return cost if same and (directory / PEAKS).exists() else None
+    if not (same and math.isfinite(jobs + wall_s + kept) and (directory / PEAKS).exists()):
+        return None
+    if differs := edited(directory, earlier):
+        raise InputError(
+            f"{directory / PEAKS}: {differs}; nothing is run: keep it as a copy elsewhere if it was edited, and run the "
+            "study again with --fresh"
+        )
+    return cost
 
 
 def to_be_replaced(directory: Path, study: Study) -> str | None:
@@ -94,10 +108,10 @@ def to_be_replaced(directory: Path, study: Study) -> str | None:
         Where they are of another study: of another file, or of one that is not there any more and had another title.
     """
     try:
-        earlier = json.loads((directory / INFO).read_text(encoding="utf-8"))
+        earlier = json.loads(read_text(directory / INFO))
         path, title = Path(earlier["study"]["path"]), str(earlier["study"]["title"])
         created = str(earlier["created"])[:16].replace("T", " ")
-    except (OSError, ValueError, LookupError, TypeError):
+    except (OSError, ValueError, LookupError, TypeError, RecursionError):
         return None
     same = path.samefile(study.path) if path.exists() and study.path.exists() else title == study.title
     if not same:
@@ -108,12 +122,15 @@ def to_be_replaced(directory: Path, study: Study) -> str | None:
     return f"the results of an earlier version of the study, of {legible(created)}, in {directory}"
 
 
-def write_peaks(journal: Journal, motions: MotionSet) -> None:
-    """Write peaks.csv; what belongs to earlier ones goes first, so that they cannot be mixed up."""
+def write_peaks(journal: Journal, motions: MotionSet) -> dict[str, Any]:
+    """Write peaks.csv; what belongs to earlier ones goes first, so that they cannot be mixed up.
+
+    Returns its number of rows and its digest, as run.json has them.
+    """
     directory = journal.path.parent
-    for name in (INFO, HISTORIES, CHECKS, REPORT):
+    for name in (INFO, HISTORIES, INTENSITY, ESTIMATE, CHECKS, REPORT):
         (directory / name).unlink(missing_ok=True)
-    journal.write_in_order(directory / PEAKS, unusable_rows(motions))
+    return journal.write_in_order(directory / PEAKS, unusable_rows(motions))._asdict()
 
 
 def finish(
@@ -123,13 +140,27 @@ def finish(
 
     ``info`` is what run.json is to say: :func:`what_was_run`, ``jobs``, ``wall_s`` and ``kept``.
     """
-    write_info(directory, info)
-    saved = read_saved(directory)
+    with told_if_slow(listener, f"writing {INFO}"):
+        write_info(directory, info)
+        saved = read_saved(directory)
     histories, without = _keep_histories(saved, study, runs, listener)
-    judged = verdicts(saved) if study.checks else []
-    checks = write_verdicts(directory, judged) if study.checks else None
-    written = (directory / PEAKS, directory / INFO, histories, checks, write_report(directory))
+    with told_if_slow(listener, f"holding {len(study.checks)} checks against {len(study.cases)} cases"):
+        judged = verdicts(saved) if study.checks else []
+        checks = write_verdicts(directory, judged) if study.checks else None
+    beside = _beside_peaks(saved, study, motions)
+    with told_if_slow(listener, f"writing {REPORT}"):
+        report = write_report(directory)
+    written = (directory / PEAKS, directory / INFO, *beside, histories, checks, report)
     return FinishedBatch(saved, motions, judged, tuple(path for path in written if path), without)
+
+
+def _beside_peaks(saved: Saved, study: Study, motions: MotionSet) -> list[Path]:
+    """Write the tables that the study asks for beside the peaks, and take away those of another time."""
+    asked = ((INTENSITY, study.output.intensity, write_intensity), (ESTIMATE, study.output.estimate, write_estimate))
+    for name, wanted, _ in asked:
+        if not wanted:
+            (saved.directory / name).unlink(missing_ok=True)
+    return [write(saved.directory, saved.peaks, study, motions.motions) for _, wanted, write in asked if wanted]
 
 
 def _keep_histories(

@@ -8,14 +8,14 @@ import numpy as np
 from rockbatch.batch.plan import PlannedRun
 from rockbatch.errors import InputError
 from rockbatch.motions import Motion
-from rockbatch.pier import YieldingBase
+from rockbatch.pier import Base, YieldingBase
 from rockbatch.results.outcome import Outcome
 from rockbatch.simulation import Run, Stop, first_substeps, run_all_fixed, run_all_to_tolerance, steps_of
-from rockbatch.simulation.histories import energies, with_energies, written
+from rockbatch.simulation.histories import with_observed, written
 from rockbatch.study import Numerics, Output, Study
 
-MOST_STEPS_OF_A_LEDGER = 1_000_000
-"""Longer runs have no ledger in the table: each is written down whole, 100 bytes a step."""
+MOST_STEPS_OBSERVED = 1_000_000
+"""Longer runs have no ledger and no forces in the table: each is written down whole, 100 bytes a step."""
 
 LEAST_GROUP, MOST_GROUP = 32, 1024
 """Runs in a group: enough to fill the lanes; few enough that little is lost when the last ones leave them empty."""
@@ -58,9 +58,9 @@ def outcomes_of(
         outcomes = run_all_to_tolerance(simulated, numerics.tolerance, quiet_s, stop)
     if output.both_laws:
         outcomes = _with_other_law(simulated, outcomes, quiet_s, stop)
-    if output.ledger:
+    if output.ledger or output.forces:
         outcomes = [
-            outcome and _with_ledger(run, outcome, quiet_s, stop)
+            outcome and _observed(run, outcome, quiet_s, output, stop)
             for run, outcome in zip(simulated, outcomes, strict=True)
         ]
     return outcomes
@@ -84,21 +84,27 @@ def _with_other_law(
     return outcomes
 
 
-def _with_ledger(run: Run, outcome: Outcome, quiet_s: float, stop: Stop) -> Outcome | None:
-    """With the energy ledger at the end of the run, unless that is very long or was refused."""
+def _observed(run: Run, outcome: Outcome, quiet_s: float, output: Output, stop: Stop) -> Outcome | None:
+    """With what observers make of the run, written down: energy ledger and forces; unless it is very long or was refused."""
     if stop:
         return None
-    if not outcome.was_run or steps_of(run.motion, outcome.substeps, quiet_s) > MOST_STEPS_OF_A_LEDGER:
+    if not outcome.was_run or steps_of(run.motion, outcome.substeps, quiet_s) > MOST_STEPS_OBSERVED:
         return outcome
     try:
         rows = written(run, outcome, quiet_s, every_step=True)
     except InputError:  # too many impacts to be written down
         return outcome
-    return with_energies(outcome, energies(run, rows))
+    return with_observed(run, outcome, rows, output.ledger, output.forces)
+
+
+def _kind(base: Base) -> tuple[object, ...]:
+    """What kernels can hang on: all but the numbers that are the same to them, β, η and ε."""
+    return tuple(getattr(base, name, None) for name in ("name", "spring", "n", "kinematics", "flight"))
 
 
 def compile_kernels(study: Study) -> None:
     """Have every kernel that the study needs compiled, or loaded, before the clock starts."""
     still = Motion("still", 1e-3, np.zeros(2))
-    runs = [PlannedRun(still, "+", 1.0, case) for case in study.cases]
+    kinds = {_kind(case.base): case for case in study.cases}
+    runs = [PlannedRun(still, "+", 1.0, case) for case in kinds.values()]
     outcomes_of(runs, replace(study.numerics, quiet_s=0.0), study.output)

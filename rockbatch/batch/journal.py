@@ -1,20 +1,34 @@
 """The rows of finished runs, on disk from the moment they are finished, until the table is written in its order."""
 
 import csv
+import hashlib
 import io
 import os
+import re
+import zlib
 from array import array
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from types import TracebackType
-from typing import Any, BinaryIO, Self
+from typing import Any, NamedTuple, Self
 
+from rockbatch.batch.plan import MOST_RUNS
 from rockbatch.errors import InputError
-from rockbatch.files import csv_cell, csv_plain, only_writer, replacing, told_when_full
+from rockbatch.files import csv_cell, csv_plain, only_writer, opened, replacing, told_when_full
 
 ABSENT = -1
 ROWS_AT_ONCE = 1000
+
+MOST_OF_A_LINE = 1 << 20
+"""Bytes; a longer one is damage, and is not held in memory."""
+
+
+class Written(NamedTuple):
+    """A table that was written: its rows, those that belong to no run included, and the digest of its file."""
+
+    rows: int
+    sha256: str
 
 
 class Journal:
@@ -22,7 +36,9 @@ class Journal:
 
     The file survives whatever ends the process. Its first line says what is run and names the columns; then comes a
     line for each finished run, in whatever order they finish: its number, and its cells as they will be in the table.
-    What a crash has left of a last line is dropped by whoever goes on. Memory holds only where each row stands.
+    Before each line stands a checksum (CRC-32), which of a row covers the first line too, so that a row counts for its
+    own study only. What a crash has left of a last line is dropped by whoever goes on; other lines that are damaged are
+    told and dropped, each alone, and their runs are carried out again. Memory holds only where each row stands.
 
     Use it as a context; meanwhile no other process can write into its folder. At the end of the context the file goes
     if the table was written or no run is finished; else it stays.
@@ -37,40 +53,57 @@ class Journal:
         What the rows depend on, in plural words, each with its digest: ``{"cases": "5f1c…", "motions": "09ab…"}``.
     fresh : bool
         Whether to drop what an earlier process has left there.
+    runs : int
+        How many runs there are, where that is known: a row with a higher number is none of them.
+    tell : function, optional
+        Called with a sentence about lines that are damaged.
 
     Raises
     ------
     InputError
-        On entry, if the file holds runs of another digest, or if another process is writing into the folder; from
-        whatever writes, if the disk is full.
+        On entry, if the file holds runs of another digest, if it is no plain file, or if another process is writing into
+        the folder; from whatever writes, if the disk is full.
     """
 
-    def __init__(self, path: Path, columns: Sequence[str], digest: Mapping[str, str], fresh: bool = False) -> None:
+    def __init__(
+        self, path: Path, columns: Sequence[str], digest: Mapping[str, str], fresh: bool = False, *,
+        runs: int = MOST_RUNS, tell: Callable[[str], object] | None = None,
+    ) -> None:  # fmt: skip
         self.path = path
         self.columns = list(columns)
         self.digest = dict(digest)
+        self.runs = runs
         self._fresh = fresh
+        self._tell = tell or (lambda _: None)
+        self._first = _line([_told(self.digest), *self.columns])[:-1]
+        self._seed = zlib.crc32(self._first)
+        self._forget()
+        self._written = False
+        self._remedy = "undo that to go on, choose another folder with --out, or start over with --fresh"
+
+    def _forget(self) -> None:
         self._starts, self._sizes = array("q"), array("q")  # of each row [bytes], by the number of its run
         self._count = 0
         self._head = 0  # bytes of the first line
         self._end = 0
-        self._written = False
-        self._remedy = "undo that to go on, choose another folder with --out, or start over with --fresh"
 
     def __enter__(self) -> Self:
-        with ExitStack() as opened, told_when_full(self.path):
+        with ExitStack() as entered, told_when_full(self.path):
             self.path.parent.mkdir(parents=True, exist_ok=True)
-            opened.enter_context(only_writer(self.path.parent))
+            entered.enter_context(only_writer(self.path.parent))
             if self._fresh:
                 self.path.unlink(missing_ok=True)
-            self.path.touch()
-            self._file = opened.enter_context(self.path.open("r+b", buffering=0))
-            self._recover()
+            self._file = opened(self.path, "r+b")
+            entered.callback(lambda: self._file.close())
+            if damaged := self._recover():
+                kept = f"the {self._count} runs that are whole count, the others are carried out again"
+                self._tell(f"{self.path}: {_damaged(damaged)}; {kept}")
+                self._write_whole_rows_only()
             self._file.truncate(self._end)
             if self._end == 0:
-                self._append(_line([_told(self.digest), *self.columns]))
+                self._append(_sealed(self._first))
                 self._head = self._end
-            self._opened = opened.pop_all()
+            self._opened = entered.pop_all()
         return self
 
     def __exit__(
@@ -113,10 +146,11 @@ class Journal:
 
         Raises ``InputError`` if it is of another digest, or if the same run has another row there.
         """
-        other = Journal(path, self.columns, self.digest)
+        other = Journal(path, self.columns, self.digest, runs=self.runs)
         other._remedy = "undo that, or have its share run again"
-        with path.open("rb", buffering=0) as other._file:
-            other._recover()
+        with opened(path) as other._file:
+            if damaged := other._recover():
+                self._tell(f"{path}: {_damaged(damaged)}; they are passed over")
             for number in other:
                 if number in self and other._row(number) != self._row(number):
                     raise InputError(f"{path}: run {number} has come to something else than elsewhere; leave one out")
@@ -124,31 +158,40 @@ class Journal:
             for first in range(0, len(news), ROWS_AT_ONCE):
                 self._add((number, other._row(number)) for number in news[first : first + ROWS_AT_ONCE])
 
-    def write_in_order(self, path: Path, extra_rows: Iterable[Mapping[str, Any]] = ()) -> None:
+    def write_in_order(self, path: Path, extra_rows: Iterable[Mapping[str, Any]] = ()) -> Written:
         """Write the table, whole or not at all: finished runs by their numbers, then rows that belong to no run.
 
         The journal has then served its purpose and goes at the end of the context.
         """
+        digest, rows = hashlib.sha256(), -1
         with replacing(path) as temporary, temporary.open("wb") as file:
-            file.write(_line(self.columns))
-            file.writelines(map(self._row, self))
-            file.writelines(_line(self._cells(row)) for row in extra_rows)
+            for line in self._lines_in_order(extra_rows):
+                file.write(line)
+                digest.update(line)
+                rows += 1
         self._written = True
+        return Written(rows, digest.hexdigest())
+
+    def _lines_in_order(self, extra_rows: Iterable[Mapping[str, Any]]) -> Iterator[bytes]:
+        yield _line(self.columns)
+        yield from map(self._row, self)
+        yield from (_line(self._cells(row)) for row in extra_rows)
 
     def _cells(self, row: Mapping[str, Any]) -> list[Any]:
         return [csv_cell(row.get(name)) for name in self.columns]
 
     def _row(self, number: int) -> bytes:
         self._file.seek(self._starts[number])
-        return self._file.read(self._sizes[number])
+        return _unfolded(self._file.read(self._sizes[number]))
 
     def _add(self, rows: Iterable[tuple[int, bytes]]) -> None:
         block = bytearray()
         places = []
         for number, row in rows:
-            block += b"%d," % number
-            places.append((number, self._end + len(block), len(row)))
-            block += row
+            line = _sealed(b"%d," % number + row[:-1], self._seed)
+            block += line
+            size = _size_of_cells(line)
+            places.append((number, self._end + len(block) - size, size))
         self._append(block)
         for place in places:
             self._remember(*place)
@@ -169,54 +212,113 @@ class Journal:
         self._count += self._starts[number] == ABSENT
         self._starts[number], self._sizes[number] = start, size
 
-    def _recover(self) -> None:
-        """Find the rows that an earlier process has finished, up to a damaged one."""
-        with self.path.open("rb") as file:
-            places = _places(file)
-            _, self._head, head = next(places, (0, 0, []))
-            self._end = self._head
-            for start, end, (number, *cells) in places:
-                if len(cells) != len(head) - 1 or not number.isdecimal():
-                    break
-                first = start + len(number) + 1
-                self._remember(int(number), first, end - first)
-                self._end = end
-        if self._end and head != [_told(self.digest), *self.columns]:
-            if self._count:
-                raise InputError(self._refusal(head[0]))
-            self._end = 0
+    def _recover(self) -> int:
+        """Find the rows that an earlier process has finished; returns how many lines are damaged.
 
-    def _refusal(self, told: str) -> str:
-        """What to do about a journal with another first line, that begins with ``told``."""
-        there = dict(part.partition(":")[::2] for part in told.split())
-        others = [name for name, digest in self.digest.items() if there.get(name) != digest] or ["columns"]
-        return (
-            f"{self.path}: holds {self._count} finished runs, but since then something has changed ({', '.join(others)}); "
+        Raises ``InputError`` where there are rows of another study, or where nothing tells of which study they are.
+        """
+        self._forget()
+        lines = _whole_lines(self._file)
+        self._head, line = next(lines, (0, b""))
+        first = _unsealed(line)
+        if first not in (None, self._first):
+            self._refuse_rows_of(first, lines)
+            return 0
+        damaged, rows, self._end = int(self._head > 0 and first is None), 0, self._head
+        for self._end, line in lines:
+            rows += 1
+            number = self._number(_unsealed(line, self._seed))
+            if number is None:
+                damaged += 1
+            else:
+                size = _size_of_cells(line)
+                self._remember(number, self._end - size, size)
+        if rows and first is None and not self._count:
+            raise InputError(
+                f"{self.path}: its first line is damaged, or of another version, and none of its {rows} rows are of this "
+                "study as it is now; choose another folder with --out, or start over with --fresh"
+            )
+        if not self._count:
+            self._forget()
+        return damaged
+
+    def _number(self, body: bytes | None) -> int | None:
+        """Number of the run whose row ``body`` is; None where it is no row of this table."""
+        found = _NUMBER.match(body or b"")
+        if body is None or not found or int(found[1]) >= self.runs:
+            return None
+        try:
+            (cells,) = csv.reader([body.decode()], strict=True)
+        except (csv.Error, UnicodeDecodeError, ValueError):
+            return None
+        return int(found[1]) if len(cells) == len(self.columns) + 1 else None
+
+    def _write_whole_rows_only(self) -> None:
+        """Leave out what is damaged, so that it is told once."""
+        with replacing(self.path) as temporary, temporary.open("wb") as file:
+            file.write(_sealed(self._first))
+            file.writelines(_sealed(b"%d," % number + self._row(number)[:-1], self._seed) for number in self)
+        self._file.close()
+        self._file = opened(self.path, "r+b")
+        self._recover()
+
+    def _refuse_rows_of(self, first: bytes, lines: Iterator[tuple[int, bytes]]) -> None:
+        """Tell what has changed since a journal with another first line, unless it has no rows."""
+        seed = zlib.crc32(first)
+        there = sum(_unsealed(line, seed) is not None for _, line in lines)
+        self._forget()
+        if not there:
+            return
+        told = first.decode(errors="replace").partition(",")[0]
+        digests = dict(part.partition(":")[::2] for part in told.split())
+        others = [name for name, digest in self.digest.items() if digests.get(name) != digest] or ["columns"]
+        raise InputError(
+            f"{self.path}: holds {there} finished runs, but since then something has changed ({', '.join(others)}); "
             f"{self._remedy}"
         )
 
 
-def _places(file: BinaryIO) -> Iterator[tuple[int, int, list[str]]]:
-    """First byte of each row, the byte after its last, and its cells, until one is torn or is no row."""
-    end = 0
+_NUMBER = re.compile(rb"(\d{1,15}),")
 
-    def whole_lines() -> Iterator[str]:
-        nonlocal end
-        for line in file:
-            if not line.endswith(b"\n"):
-                return
-            end += len(line)
-            yield line.decode()
 
-    start = 0
-    try:
-        for cells in csv.reader(whole_lines(), strict=True):
-            if not cells:
-                return
-            yield start, end, cells
-            start = end
-    except (csv.Error, UnicodeDecodeError):
-        return
+def _whole_lines(file: io.FileIO) -> Iterator[tuple[int, bytes]]:
+    """The byte after each line, and the line; one that is too long to be a row comes empty, a last one without an end not."""
+    end, whole = 0, True
+    with os.fdopen(os.dup(file.fileno()), "rb") as buffered:
+        buffered.seek(0)
+        while part := buffered.readline(MOST_OF_A_LINE):
+            end += len(part)
+            ended = part.endswith(b"\n")
+            if ended:
+                yield end, part if whole else b""
+            whole = ended
+
+
+def _sealed(body: bytes, seed: int = 0) -> bytes:
+    """A line of the file: a checksum, and ``body`` on one line, whatever line breaks its cells hold."""
+    folded = body.replace(b"\\", b"\\\\").replace(b"\n", b"\\n")
+    return b"%08x %b\n" % (zlib.crc32(folded, seed), folded)
+
+
+def _unsealed(line: bytes, seed: int = 0) -> bytes | None:
+    """What was sealed; None where the line is damaged."""
+    folded = line[9:-1]
+    return _unfolded(folded) if line[:9] == b"%08x " % zlib.crc32(folded, seed) else None
+
+
+def _unfolded(body: bytes) -> bytes:
+    if b"\\" not in body:
+        return body
+    return re.sub(rb"\\(.)", lambda found: b"\n" if found[1] == b"n" else found[1], body)
+
+
+def _size_of_cells(line: bytes) -> int:
+    """Bytes of a line behind its number."""
+    return len(line) - line.index(b",") - 1
+
+
+def _damaged(lines: int) -> str:
+    return f"{lines} line{'s are' if lines > 1 else ' is'} damaged"
 
 
 def _line(cells: Iterable[Any]) -> bytes:

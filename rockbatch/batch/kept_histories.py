@@ -99,7 +99,7 @@ def kept(study: Study, runs: Sequence[PlannedRun], table: "pd.DataFrame") -> Kep
         if numbers and size > 1e6 * output.histories_MB:
             break
         numbers.append(number)
-    return Kept(sorted(numbers, key=chosen.index), len(chosen) - len(numbers))
+    return Kept(sorted(numbers, key=lambda number: number % len(study.cases)), len(chosen) - len(numbers))
 
 
 def history_bytes(run: PlannedRun, row: "Mapping[str, Any] | pd.Series") -> float:
@@ -118,17 +118,15 @@ def worst(table: "pd.DataFrame", cases: int) -> list[int]:
     An overturned pier is worse than any rotation, and the earlier the worse. Flight that ended a run counts by the
     rotation until then. Of equals the first is taken.
     """
-    found = []
-    for first in range(cases):
-        rows = table.iloc[first::cases]
-        status = rows["status"].to_numpy()
-        falls = rows["t_end_s"].where(status == "overturned").to_numpy(float)
-        rotations = rows["theta_max_over_alpha"].where(status != "failed").to_numpy(float)
-        if not np.isnan(falls).all():
-            found.append(first + cases * int(np.nanargmin(falls)))
-        elif not np.isnan(rotations).all():
-            found.append(first + cases * int(np.nanargmax(rotations)))
-    return found
+    if table.empty:
+        return []
+    status = table["status"].to_numpy()
+    falls = table["t_end_s"].where(status == "overturned", np.inf).fillna(np.inf).to_numpy(float).reshape(-1, cases)
+    peaks = table["theta_max_over_alpha"].where(status != "failed").fillna(-np.inf)
+    rotations = peaks.to_numpy(float).reshape(-1, cases)
+    fell, stood = np.isfinite(falls).any(axis=0), np.isfinite(rotations).any(axis=0)
+    of_case = np.where(fell, falls.argmin(axis=0), rotations.argmax(axis=0))
+    return [int(cases * of_case[case] + case) for case in np.flatnonzero(fell | stood)]
 
 
 def _response(study: Study, planned: PlannedRun, row: "pd.Series") -> Response:
@@ -136,9 +134,9 @@ def _response(study: Study, planned: PlannedRun, row: "pd.Series") -> Response:
     # With the same steps it comes to the same bits; of the row only ten digits are on disk
     outcome = run_fixed(run.pier, run.base, run.motion, int(row["substeps"]), quiet_s)
     outcome = replace(outcome, status=row["status"], reason=row["reason"])
-    told = row.get("energy_input_J_kg", float("nan"))
+    told, sized = row.get("energy_input_J_kg", float("nan")), row.get("base_shear_m_s2", float("nan"))
     return histories(
         run, outcome, quiet_s, case.name, case.columns,
-        ledger=told == told,  # very long runs have none
+        ledger=told == told, forces=sized == sized,  # very long runs have none
         polarity=planned.polarity, scale=planned.scale,
     )  # fmt: skip

@@ -3,7 +3,7 @@
 import sys
 import warnings
 from collections.abc import Callable
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
 from threading import Timer
 from typing import TYPE_CHECKING
 
@@ -14,6 +14,9 @@ if TYPE_CHECKING:
 
     from rockbatch.motions import MotionSet
     from rockbatch.study import Study
+
+PATIENCE_S = 1.5
+"""What takes longer is told."""
 
 Told = Callable[[int], object]
 """Called with the number of things that are done since the last call."""
@@ -97,11 +100,19 @@ def make_ready(study: "Study", listener: Listener) -> None:
     """Have the kernels loaded before the clock starts; where they must be compiled first, it takes a while and is told."""
     from rockbatch.batch.groups import compile_kernels
 
-    words = "compiling the kernels (once for each kind of foundation, 20 to 30 s)"
-    told = Timer(1.5, listener.say, [words])  # to load them takes less
-    told.start()
-    try:
+    with told_if_slow(listener, "compiling the kernels (once for each kind of foundation, 20 to 30 s)"):
         compile_kernels(study)
+
+
+@contextmanager
+def told_if_slow(listener: Listener, words: str) -> "Iterator[None]":
+    """Says what is under way, if it takes a while."""
+    told = Timer(PATIENCE_S, listener.say, [words])
+    told.daemon = True
+    with suppress(RuntimeError):  # of no more threads, those that carry out the runs tell
+        told.start()
+    try:
+        yield
     finally:
         told.cancel()
 

@@ -26,7 +26,7 @@ def merge(
     listener.motions(motions)
     runs = Plan(study, motions)
     digest = study_digests(study, motions)
-    with Journal(directory / PART, columns(study), digest) as journal:
+    with Journal(directory / PART, columns(study), digest, runs=len(runs), tell=listener.say) as journal:
         problems = []
         for share in shares:
             try:
@@ -43,9 +43,8 @@ def merge(
             )
         if problems:
             raise InputError(*problems)
-        write_peaks(journal, motions)
         info = what_was_run(study, motions, runs, digest, command)
-        info |= {"jobs": 0, "wall_s": 0.0, "kept": info["runs"]}
+        info |= {"peaks": write_peaks(journal, motions), "jobs": 0, "wall_s": 0.0, "kept": info["runs"]}
         return finish(directory, study, motions, runs, info, listener)
 
 

@@ -67,6 +67,10 @@ class Runs(Sequence[PlannedRun]):
         return map(self.run, range(len(self)))
 
 
+MOST_RUNS = 10_000_000
+"""Of a table, which is held in memory when it is finished, some 300 bytes a row."""
+
+
 class Plan(Runs):
     """The runs of a study: record, polarity, scale, case, the last running fastest.
 

@@ -135,7 +135,7 @@ def run_into(
     wanted = _share(len(runs), *share) if share else range(len(runs))
     digest = study_digests(study, motions)
     info = what_was_run(study, motions, runs, digest, command)
-    with Journal(directory / PART, columns(study), digest, fresh) as journal:
+    with Journal(directory / PART, columns(study), digest, fresh, runs=len(runs), tell=listener.say) as journal:
         cost = None if fresh or len(journal) else cost_of_finished(directory, info)
         if cost is not None:
             what = f"{told(study, motions)} are finished in {directory}"
@@ -154,8 +154,7 @@ def run_into(
                 f"{journal.path}: share {share[0]} of {share[1]} is finished; `rockbatch merge` joins the shares"
             )
             return None
-        write_peaks(journal, motions)
-        cost["wall_s"] = round(time.monotonic() - started, 3)
+        cost |= {"peaks": write_peaks(journal, motions), "wall_s": round(time.monotonic() - started, 3)}
         return finish(directory, study, motions, runs, info | cost, listener)
 
 
@@ -195,4 +194,7 @@ def told(study: Study, motions: MotionSet) -> str:
         "case": len(study.cases),
     }
     counted = [count(n, noun) for noun, n in factors.items() if n > 1 or noun in ("record", "case")]
+    stations = len({motion.of_station for motion in motions.motions})
+    if stations < factors["record"]:
+        counted[0] += f" of {count(stations, 'station')}"
     return f"{' × '.join(counted)} = {count(math.prod(factors.values()), 'run')}{once(study)}"

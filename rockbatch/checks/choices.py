@@ -4,6 +4,7 @@ import fnmatch
 import math
 from collections.abc import Collection, Iterator
 
+from rockbatch.checks.demands import DEMANDS
 from rockbatch.checks.rules import Rule
 from rockbatch.toml.kinds import closest, shown
 
@@ -19,7 +20,13 @@ def chooses(rule: Rule, case: str, scale: float) -> bool:
 
 
 def unmet(
-    rule: Rule, *, cases: Collection[str], scales: Collection[float], polarities: Collection[str], other_law: bool
+    rule: Rule,
+    *,
+    cases: Collection[str],
+    scales: Collection[float],
+    polarities: Collection[str],
+    other_law: bool,
+    forces: bool,
 ) -> Iterator[str]:
     """What the rule chooses and is not there, each told in a message that starts with the name of its key."""
     for pattern in rule.case:
@@ -37,6 +44,8 @@ def unmet(
             "other_law: there is no settlement by the other law; write both_laws = true under [output] of the study "
             "and run it, or leave other_law out"
         )
+    if DEMANDS[rule.demand].of_forces and not forces:
+        yield f"demand = {shown(rule.demand)}: there are no forces; write forces = true under [output] of the study and run it"
 
 
 def _fits(name: str, pattern: str) -> bool:

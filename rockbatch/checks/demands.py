@@ -3,6 +3,7 @@
 Rotations are small: the heel of a pier that tilts by θ stands 2 b θ above its toe, and its top moves by its height times θ.
 """
 
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -56,6 +57,12 @@ class Demand:
         Values by the other spring law, shape (n,).
     most : Most or None
         Beyond which a limit says nothing.
+    verb : str
+        Of an event: what a record then does.
+    of_forces : bool
+        Whether it takes the columns that [output] forces = true brings.
+    weighed : bool
+        Whether it takes the mass of the pier.
     """
 
     words: str
@@ -65,6 +72,15 @@ class Demand:
     of_the_case: bool = False
     other_law: Callable[["pd.DataFrame", Case], Values] | None = None
     most: Most | None = None
+    verb: str = ""
+    of_forces: bool = False
+    weighed: bool = False
+
+    @property
+    def unit(self) -> str:
+        """That of its values, which stands in brackets in its words; empty for a pure number."""
+        found = re.search(r"\[(.+)\]", self.words)
+        return found[1] if found else ""
 
     @property
     def of_runs(self) -> bool:
@@ -153,12 +169,85 @@ def _parameter(name: str) -> Callable[["pd.DataFrame", Case], Found]:
     return lambda runs, case: _without_error(np.array([float(case["parameters"].get(name, np.nan))]))
 
 
+def _forces(words: str, *columns: str, factor: Callable[[Case], float] = lambda case: 1.0, **more: Any) -> Demand:
+    """The greatest of some columns of forces, times ``factor``; 0 where a run has forces, and of this none: no impact, say."""
+
+    def found(runs: "pd.DataFrame", case: Case) -> Found:
+        value = np.maximum.reduce([_numbers(runs, column) for column in columns])
+        none = np.isnan(value) & ~np.isnan(_numbers(runs, FORCES))
+        return _without_error(factor(case) * np.where(none, 0.0, value))
+
+    return Demand(words, found, of_forces=True, weighed=columns[0].endswith(("_kN", "_kN_s")), **more)
+
+
+def _thousand(case: Case) -> float:
+    return 1000.0
+
+
+def _per_g(case: Case) -> float:
+    return 1.0 / float(case["pier"]["gravity"])
+
+
+_GAPS = ("heel_gap_left_m", "heel_gap_right_m")
+_DECK = "greatest absolute horizontal acceleration of the deck"
+
+FORCES = "base_shear_m_s2"
+"""A column that every run with forces has."""
+
+MOST_FRICTION = 2.0
+"""Coefficient of friction: concrete on concrete has 0.4 to 1."""
+
+_OF_FORCES = {
+    "base_shear_m_s2": _forces("greatest base shear over the mass [m/s²]", "base_shear_m_s2"),
+    "base_shear_kN": _forces("greatest base shear [kN]", "base_shear_kN"),
+    "normal_force_m_s2": _forces("greatest normal force of all supports over the mass [m/s²]", "normal_force_m_s2"),
+    "normal_force_kN": _forces("greatest normal force of all supports [kN]", "normal_force_kN"),
+    "friction_demand": _forces(
+        "greatest base shear over the normal force at the time",
+        "friction_demand",
+        most=Most(lambda case: MOST_FRICTION, "is more than any interface has"),
+    ),
+    "impact_friction_demand": _forces(
+        "greatest horizontal over vertical impulse of an impact",
+        "impact_friction_demand",
+        most=Most(lambda case: MOST_FRICTION, "is more than any interface has"),
+    ),
+    "pivot_force": _forces("greatest force of a support over half the weight", "pivot_force_left", "pivot_force_right"),
+    "pivot_force_kN": _forces("greatest force of a support [kN]", "pivot_force_left_kN", "pivot_force_right_kN"),
+    "heel_gap_m": _forces(
+        "greatest height of a pivot above its support [m]", *_GAPS, most=Most(_width, "is more than the pier is wide")
+    ),
+    "heel_gap_mm": _forces(
+        "greatest height of a pivot above its support [mm]",
+        *_GAPS,
+        factor=_thousand,
+        most=Most(lambda case: 1000.0 * _width(case), "is more than the pier is wide"),
+    ),
+    "heel_speed_m_s": _forces(
+        "greatest speed of a pivot from or to its support [m/s]", "heel_speed_left_m_s", "heel_speed_right_m_s"
+    ),
+    "deck_acceleration_m_s2": _forces(f"{_DECK} [m/s²]", "deck_acceleration_m_s2"),
+    "deck_acceleration_g": _forces(f"{_DECK} [g]", "deck_acceleration_m_s2", factor=_per_g),
+    "landing_velocity_m_s": _forces("speed of the pivot at the hardest impact [m/s]", "landing_velocity_m_s"),
+    "impulse_m_s": _forces("vertical impulse of the hardest impact over the mass [m/s]", "impulse_m_s"),
+    "impulse_kN_s": _forces("vertical impulse of the hardest impact [kN s]", "impulse_kN_s"),
+    "flight_duration_s": _forces("time with both pivots in the air [s]", "flight_duration_s", bases=_SPRINGS),
+    "flight_height_m": _forces("height of the lower pivot in flight [m]", "flight_height_m", bases=_SPRINGS),
+    "omega_max_over_p": _forces("greatest angular velocity over p", "omega_max_over_p"),
+}
+
 DEMANDS = {
     "theta_max_over_alpha": _rotation("greatest rotation over α", "theta_max", lambda case: 1.0),
     "theta_max_rad": _rotation("greatest rotation [rad]", "theta_max", _alpha),
     "top_drift_m": _rotation("greatest drift of the top [m]", "theta_max", lambda case: _top(case) * _alpha(case)),
     "heel_uplift_m": _rotation(
         "greatest rise of the heel above the toe [m]", "theta_max", lambda case: _width(case) * _alpha(case)
+    ),
+    "top_drift_mm": _rotation(
+        "greatest drift of the top [mm]", "theta_max", lambda case: 1000.0 * _top(case) * _alpha(case)
+    ),
+    "heel_uplift_mm": _rotation(
+        "greatest rise of the heel above the toe [mm]", "theta_max", lambda case: 1000.0 * _width(case) * _alpha(case)
     ),
     "theta_res_over_alpha": _rotation("residual rotation over α", "theta_res", lambda case: 1.0, _SPRINGS),
     "theta_res_rad": _rotation("residual rotation [rad]", "theta_res", _alpha, _SPRINGS),
@@ -186,9 +275,22 @@ DEMANDS = {
     ),
     "impacts": Demand("number of impacts", _column("impacts")),
     "separations": Demand("number of separations", _column("separations")),
-    "flight": Demand("both pivots off the ground", _event(lambda runs: runs["flight_s"].notna()), event=True),
-    "overturned": Demand("overturned", _event(lambda runs: runs["status"] == "overturned"), event=True),
-    "failed": Demand("not run, or not settled", _event(lambda runs: runs["status"] == "failed"), event=True),
+    "flight": Demand(
+        "both pivots off the ground",
+        _event(lambda runs: runs["flight_s"].notna()),
+        event=True,
+        verb="makes the pier fly",
+    ),
+    "overturned": Demand(
+        "overturned", _event(lambda runs: runs["status"] == "overturned"), event=True, verb="overturns the pier"
+    ),
+    "failed": Demand(
+        "not run, or not settled",
+        _event(lambda runs: runs["status"] == "failed"),
+        event=True,
+        verb="has a run that is missing or not settled",
+    ),
+    **_OF_FORCES,
     "eta": Demand(
         "bearing capacity index, a support's yield force over its static one",
         _parameter("eta"),

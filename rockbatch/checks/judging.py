@@ -9,10 +9,21 @@ import numpy as np
 import numpy.typing as npt
 
 from rockbatch.checks.choices import chooses, unmet
-from rockbatch.checks.demands import DEMANDS, Case
+from rockbatch.checks.demands import DEMANDS, FORCES, Case
 from rockbatch.checks.rules import Rule
 from rockbatch.checks.statistics import STATISTICS, Values
-from rockbatch.checks.suite import OTHER_LAW, by_record, complete, counted, simulated, without_other_law
+from rockbatch.checks.suite import (
+    OTHER_LAW,
+    by_record,
+    complete,
+    counted,
+    counts_as,
+    governing,
+    lacking,
+    of_runs,
+    simulated,
+    without_other_law,
+)
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, Verdict
 from rockbatch.errors import InputError
 from rockbatch.toml.kinds import shown
@@ -20,9 +31,18 @@ from rockbatch.toml.kinds import shown
 if TYPE_CHECKING:
     import pandas as pd
 
+MOST_NAMES = 5
+
+
+NOT_WEIGHED = "the study does not say what the pier weighs"
+
 
 def judge(
-    rules: Sequence[Rule], peaks: "pd.DataFrame", cases: Sequence[Case], records: Sequence[str] = ()
+    rules: Sequence[Rule],
+    peaks: "pd.DataFrame",
+    cases: Sequence[Case],
+    records: Mapping[str, str] | None = None,
+    count: str = "station",
 ) -> list[Verdict]:
     """Hold every rule against every case at every scale.
 
@@ -34,8 +54,11 @@ def judge(
         once.
     cases : sequence of mappings
         ``cases`` of run.json, or some of them.
-    records : sequence of str, optional
-        Names of all records; a run that is missing counts as failed. By default those in ``peaks``.
+    records : mapping, optional
+        Names of all horizontal components, each with its station, empty where nobody knows it; a run that is missing counts as
+        failed. By default those in ``peaks``, with its column ``station``.
+    count : str
+        How those rules count that do not say it, one of :data:`rockbatch.checks.rules.COUNTS`.
 
     Raises
     ------
@@ -45,9 +68,10 @@ def judge(
     runs = peaks[peaks["case"] != ""]
     if runs.empty:
         raise InputError("there is no run to check")
-    planned = list(records) or list(runs["record"].unique())
+    stations = dict(records or _stations(runs))
     polarities, scales = list(runs["polarity"].unique()), [float(scale) for scale in runs["scale"].unique()]
     there: dict[str, Any] = {"scales": scales, "polarities": polarities, "other_law": OTHER_LAW in runs}
+    there["forces"] = FORCES in runs
     there["cases"] = list(dict.fromkeys(str(case["case"]) for case in cases))
     wrong = [f"check {shown(rule.name)}: {problem}" for rule in rules for problem in unmet(rule, **there)]
     if wrong:
@@ -60,13 +84,19 @@ def judge(
         mine = by_name.get(case["case"], runs[:0])
         mine = mine[_has(mine, case["columns"])]
         for scale in scales:
-            suite = complete(mine[mine["scale"] == scale], planned, polarities)
+            suite = complete(mine[mine["scale"] == scale], stations, polarities)
             for rule in rules:
                 if chooses(rule, str(case["case"]), scale):
                     # Of a mirror image the demands are the same
                     its = suite[suite["polarity"] == rule.polarity] if rule.polarity in polarities else suite
-                    verdicts.append(_verdict(rule, its, case, scale))
+                    verdicts.append(_verdict(rule, its, case, scale, rule.count or count))
     return verdicts
+
+
+def _stations(runs: "pd.DataFrame") -> dict[str, str]:
+    """The station of every record in a table; empty where it does not say."""
+    known = runs["station"].fillna("").astype(str) if "station" in runs else [""] * len(runs)
+    return dict(zip(runs["record"], known, strict=True))
 
 
 def _has(runs: "pd.DataFrame", columns: Mapping[str, float | str]) -> npt.NDArray[np.bool_]:
@@ -80,7 +110,7 @@ def _has(runs: "pd.DataFrame", columns: Mapping[str, float | str]) -> npt.NDArra
     return found
 
 
-def _verdict(rule: Rule, suite: "pd.DataFrame", case: Case, scale: float) -> Verdict:
+def _verdict(rule: Rule, suite: "pd.DataFrame", case: Case, scale: float, count: str) -> Verdict:
     demand = DEMANDS[rule.demand]
     none = Verdict(
         check=rule.name,
@@ -105,35 +135,71 @@ def _verdict(rule: Rule, suite: "pd.DataFrame", case: Case, scale: float) -> Ver
         counting=rule.counting,
         counted="" if demand.of_the_case else counted(rule, suite),
         note=f"a {case['base']} base has no {rule.demand}",
+        count="" if demand.of_the_case else count,
+        unit="" if rule.statistic == "count" else demand.unit,
     )
     if case["base"] not in demand.bases:
         return none
+    if demand.weighed and "mass_t" not in case["pier"]:
+        return replace(none, note=NOT_WEIGHED)
     if demand.of_the_case:
         value = float(demand.of(suite, case).value[0])
         if math.isnan(value):
-            return replace(none, note="the study does not say what the pier weighs")
+            return replace(none, note=NOT_WEIGHED)
         verdict, note = _decide(rule, value, value)
         ratio, margin = _against(rule, value)
         return replace(none, value=value, low=value, high=value, ratio=ratio, margin=margin, verdict=verdict, note=note)
-    bounds = by_record(rule, suite, case)
+    return _of_suite(rule, suite, case, none)
+
+
+def _of_suite(rule: Rule, suite: "pd.DataFrame", case: Case, none: Verdict) -> Verdict:
+    """The verdict on a statistic of a suite; ``none`` is what is known of it before."""
+    runs, kept = of_runs(rule, suite, case)
+    counted_as, unknown = counts_as(suite, none.count)
+    bounds = by_record(runs, kept, counted_as)
     n = len(bounds.value)
     value, low, high = (_statistic(rule, each) for each in (bounds.value, bounds.low, bounds.high))
     if np.isinf(bounds.high).sum() > np.isinf(bounds.low).sum() and rule.statistic == "asce7-16":
         high = math.inf  # a response that is not known is not one of the unacceptable
-    verdict, why = _decide(rule, low, high, n)
+    verdict, why = _decide(rule, low, high, "component" if unknown else none.count, n)
     remark = STATISTICS[rule.statistic or "max"].remark
     missing = without_other_law(rule, suite, case)
     notes = [
         why,
         remark(bounds.high) if remark and n else "",
+        unknown,
+        "" if none.count == "component" else _told_lacking(lacking(kept, counted_as)),
         f"by the other spring law {missing} of the runs did not go through" if missing else "",
-        "" if bounds.estimated or demand.event else "no error estimate",
+        "" if bounds.estimated or DEMANDS[rule.demand].event else "no error estimate",
     ]
-    note = "; ".join(filter(None, notes))
     ratio, margin = _against(rule, value)
-    return replace(
-        none, records=n, value=value, low=low, high=high, ratio=ratio, margin=margin, verdict=verdict, note=note
+    found = replace(
+        none,
+        records=n,
+        value=value,
+        low=low,
+        high=high,
+        ratio=ratio,
+        margin=margin,
+        verdict=verdict,
+        count="component" if unknown else none.count,
+        note="; ".join(filter(None, notes)),
     )
+    at = governing(runs, kept, by_bound=verdict == NOT_DECIDED and low <= rule.limit < high)
+    if at is None:
+        return found
+    run = suite.iloc[at]
+    station, record, polarity = (str(run[name]) for name in ("station", "record", "polarity"))
+    return replace(found, station=station, record=record, polarity=polarity, governing=float(runs.value[at]))
+
+
+def _told_lacking(records: Mapping[str, tuple[int, int]]) -> str:
+    """Records whose worst direction may be one that does not count."""
+    if not records:
+        return ""
+    told = [f"{name} ({some} of {all_})" for name, (some, all_) in records.items()]
+    more = f" and {len(told) - MOST_NAMES} more" if len(told) > MOST_NAMES else ""
+    return f"not every direction counts, and the worst may be another: {', '.join(told[:MOST_NAMES])}{more}"
 
 
 def _statistic(rule: Rule, values: Values) -> float:
@@ -143,20 +209,31 @@ def _statistic(rule: Rule, values: Values) -> float:
     return float((values > (rule.above or 0.0)).sum()) if statistic.of is None else statistic.of(values)
 
 
-def _decide(rule: Rule, low: float, high: float, records: int | None = None) -> tuple[str, str]:
+def _decide(rule: Rule, low: float, high: float, count: str = "", records: int | None = None) -> tuple[str, str]:
     """The verdict on a demand within these bounds, and why there is none; ``records`` where it is a statistic of some."""
     within, beyond = high <= rule.limit, low > rule.limit
     if rule.sense == "at least":
         within, beyond = low >= rule.limit, high < rule.limit
+    few = "" if records is None else _too_few(rule, count, records)
     if beyond:
-        return FAIL, ""
-    statistic = STATISTICS[rule.statistic or "max"]
-    if records is not None and records < statistic.least:
-        told = "1 record counts" if records == 1 else f"{records} records count"
-        return NOT_DECIDED, f"{told}; {statistic.source} asks for {statistic.least}" if statistic.source else told
+        return FAIL, few
+    if few:
+        return NOT_DECIDED, few
     if within:
         return PASS, ""
     return NOT_DECIDED, f"between {low:.4g} and {'any value' if math.isinf(high) else f'{high:.4g}'}"
+
+
+def _too_few(rule: Rule, count: str, records: int) -> str:
+    """That fewer records count than have to, and who asks for more; empty where there are enough."""
+    statistic = STATISTICS[rule.statistic or "max"]
+    least, who = statistic.least, statistic.code
+    if rule.least is not None and rule.least > least:
+        least, who = rule.least, "the check"
+    if records >= least:
+        return ""
+    told = f"1 {count} counts" if records == 1 else f"{records} {count}s count"
+    return f"{told}; {who} asks for {least}" if who else told
 
 
 def _against(rule: Rule, value: float) -> tuple[float, float]:

@@ -6,10 +6,10 @@ from pathlib import Path
 from typing import Any
 
 from rockbatch.checks.demands import DEMANDS
-from rockbatch.checks.rules import BASES, CONFIRMED, COUNTING, Rule
+from rockbatch.checks.rules import BASES, CONFIRMED, COUNTING, COUNTS, Rule
 from rockbatch.checks.statistics import STATISTICS
 from rockbatch.errors import InputError
-from rockbatch.toml.kinds import boolean, choice, not_negative, number, positive, shown, text
+from rockbatch.toml.kinds import boolean, choice, count, not_negative, number, positive, shown, text
 from rockbatch.toml.reader import Key, Table, TomlFile
 
 CHECK = {
@@ -17,6 +17,8 @@ CHECK = {
     "demand": Key(choice(*DEMANDS), '"theta_max_over_alpha"', required=True),
     "statistic": Key(choice(*STATISTICS), '"mean"'),
     "above": Key(not_negative, "0.5"),
+    "least": Key(count, "7"),
+    "count": Key(choice(*COUNTS), '"component"'),
     "at_most": Key(number, "0.5"),
     "at_least": Key(number, "2.0"),
     "basis": Key(choice(*BASES), '"code"'),
@@ -32,6 +34,9 @@ CHECK = {
 }
 """Keys of a [[check]]; :class:`Rule` says what they mean."""
 
+SUITE = {"count": Key(choice(*COUNTS), '"component"')}
+"""Keys of [suite]: what holds for every [[check]] that does not say otherwise."""
+
 TOP = {"title": Key(text, '"Checks of a stepping pier"'), "notes": Key(text, '"Limits as agreed."')}
 
 
@@ -42,16 +47,18 @@ def load_rules(path: str | os.PathLike[str]) -> tuple[Rule, ...]:
     """
     file = TomlFile.read(Path(path))
     if "pier" not in file.data:
-        Table(file, (), "", file.data).read(TOP, other=("check",))
-    rules = read_rules(file)
+        Table(file, (), "", file.data).read(TOP, other=("check", "suite"))
+    rules = read_rules(file, counted=read_count(file))
     if not file.data.get("check"):
         file.complain((), "no checks; write at least one [[check]] with name, demand, at_most and reason")
     file.finish()
     return rules
 
 
-def read_rules(file: TomlFile, unmet: Callable[[Rule], Iterable[str]] | None = None) -> tuple[Rule, ...]:
-    """The usable [[check]] tables of ``file``; mistakes are noted there.
+def read_rules(
+    file: TomlFile, unmet: Callable[[Rule], Iterable[str]] | None = None, counted: str | None = None
+) -> tuple[Rule, ...]:
+    """The usable [[check]] tables of ``file``; mistakes are noted there. Those that do not say how they count do as ``counted``.
 
     ``unmet`` tells what a rule chooses and the study does not have, as :func:`rockbatch.checks.choices.unmet` does.
     """
@@ -67,6 +74,8 @@ def read_rules(file: TomlFile, unmet: Callable[[Rule], Iterable[str]] | None = N
             names.add(name)
         if len(file.problems) == before:
             values = {key: _plain(value) for key, value in read.items()}
+            if counted and "demand" in values and not DEMANDS[values["demand"]].of_the_case:
+                values.setdefault("count", counted)
             try:
                 rule = Rule(**values)
             except InputError as error:
@@ -77,6 +86,12 @@ def read_rules(file: TomlFile, unmet: Callable[[Rule], Iterable[str]] | None = N
             for problem in wrong:
                 _complain(table, problem)
     return tuple(rules)
+
+
+def read_count(file: TomlFile) -> str | None:
+    """What [suite] of ``file`` says that counts as one record, one of ``COUNTS``; None where it says nothing."""
+    table = file.table("suite")
+    return None if table is None else table.read(SUITE).get("count")
 
 
 def _plain(value: Any) -> Any:

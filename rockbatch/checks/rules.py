@@ -22,6 +22,14 @@ value
 left out
     Not at all; the verdict says how many.
 """
+COUNTS = ("station", "component")
+"""What counts as one record:
+
+station
+    All components, directions and polarities of one station in one earthquake, with the worst of them.
+component
+    Every horizontal component by itself, with the worse of its polarities.
+"""
 CONFIRMED = ("at_most", "at_least", "above")
 USUAL = {"overturned": "infinite", "flight": "unknown", "failed": "unknown"}
 
@@ -30,8 +38,8 @@ USUAL = {"overturned": "infinite", "flight": "unknown", "failed": "unknown"}
 class Rule:
     """One check.
 
-    A record counts once, with the worse of its polarities; components of one station are records of their own. Each scale is
-    a suite of its own, as is each case.
+    A record is a station: its components, the angles that they are turned to and both polarities are directions of it, and it
+    counts once, with the worst of them, for every statistic. Each scale is a suite of its own, as is each case.
 
     Attributes
     ----------
@@ -45,6 +53,10 @@ class Rule:
         A key of :data:`rockbatch.checks.statistics.STATISTICS`; "max" unless given.
     above : float or None
         With "count", what a record has to exceed to count; 0 unless given for events such as flight.
+    least : int or None
+        Number of records below which nothing passes; that of the statistic if it is larger or nothing is given.
+    count : "station", "component" or None
+        What counts as one record, one of :data:`COUNTS`; ``None`` takes what [suite] of the study says, or "station".
     reason : str
         Clause, source, or why, in words.
     basis : "code", "literature" or "judgement"
@@ -80,6 +92,8 @@ class Rule:
     at_least: float | None = None
     statistic: str | None = None
     above: float | None = None
+    least: int | None = None
+    count: str | None = None
     reason: str = ""
     basis: str = "judgement"
     case: tuple[str, ...] = ()
@@ -112,12 +126,19 @@ class Rule:
         return getattr(self, status) or usual
 
     @property
+    def is_ban(self) -> bool:
+        """Whether it asks that an event happens under no record."""
+        return is_ban(self.demand, self.statistic or "max", self.limit)
+
+    @property
     def words(self) -> str:
         """What is compared with the limit: "mean of theta_max_over_alpha"."""
         demand = DEMANDS[self.demand]
         if demand.of_the_case:
             return self.demand
         told = STATISTICS[self.statistic or "max"].words
+        if self.is_ban:
+            return f"no record {demand.verb}"
         if self.statistic != "count":
             return f"{told} of {self.demand}"
         return f"{told} with {self.demand}" + ("" if demand.event and not self.above else f" above {self.above:g}")
@@ -131,10 +152,15 @@ class Rule:
         return "; ".join(f"{', '.join(one for one in USUAL if self.counts(one) == way)}: {way}" for way in ways)
 
 
+def is_ban(demand: str, statistic: str, limit: float) -> bool:
+    """Whether a check with these asks that an event happens under no record."""
+    return demand in DEMANDS and DEMANDS[demand].event and statistic == "max" and 0 <= limit < 1
+
+
 def _unknown_words(rule: Rule) -> list[str]:
     allowed: dict[str, Iterable[str]] = {
         "demand": DEMANDS, "statistic": STATISTICS, "basis": BASES, "polarity": ("+", "-"),
-        "overturned": COUNTING, "flight": COUNTING, "failed": COUNTING,
+        "count": COUNTS, "overturned": COUNTING, "flight": COUNTING, "failed": COUNTING,
     }  # fmt: skip
     wrong = []
     for name, words in allowed.items():
@@ -163,13 +189,19 @@ def _misfits(rule: Rule) -> list[str]:
         wrong.append(f"at_least = {rule.at_least:g}: more of {rule.demand} is worse; write at_most = {rule.at_least:g}")
     elif not math.isfinite(rule.limit):
         wrong.append(f"{rule.sense.replace(' ', '_')} = {rule.limit:g}: must be a finite number")
-    if demand.of_the_case and rule.statistic is not None:
-        wrong.append(f"statistic: {rule.demand} is the same for all records; leave it out")
+    if demand.of_the_case:
+        given = [name for name in ("statistic", "least", "count") if getattr(rule, name) is not None]
+        wrong += [f"{name}: {rule.demand} is the same for all records; leave it out" for name in given]
     if rule.above is not None and rule.statistic != "count":
         wrong.append('above: is for statistic = "count"; leave it out')
     elif rule.statistic == "count" and rule.above is None and not (demand.event or demand.of_the_case):
         wrong.append("above is missing, what a record has to exceed to count; write for example above = 0.5")
-    if demand.event and rule.statistic in ("asce7-16", "en1998-1"):
+    statistic = STATISTICS[rule.statistic or "max"]
+    if rule.least is not None and rule.least < statistic.least:
+        wrong.append(
+            f"least = {rule.least}: {statistic.code or 'a statistic'} asks for {statistic.least}; leave it out"
+        )
+    if demand.event and statistic.code:
         wrong.append(
             f'statistic = "{rule.statistic}": is for quantities, and {rule.demand} is yes or no; write "max" or "count"'
         )
@@ -177,7 +209,7 @@ def _misfits(rule: Rule) -> list[str]:
     if not demand.of_runs:
         wrong += [f"{name}: says nothing about {rule.demand}; leave it out" for name in given]
     elif rule.statistic == "asce7-16":
-        wrong += [f"{name}: is unacceptable by ASCE 7-16, 16.4.1.1; leave it out" for name in given]
+        wrong += [f"{name}: is unacceptable by ASCE 7-16; leave it out" for name in given]
     if rule.other_law and demand.other_law is None:
         told = " and ".join(name for name, each in DEMANDS.items() if each.other_law)
         wrong.append(f"other_law: is for {told}; leave it out")

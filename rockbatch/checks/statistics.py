@@ -1,6 +1,7 @@
 """What a suite of records comes to.
 
-Every statistic grows with each of its values as long as they are finite, so that it maps bounds to bounds.
+Every statistic grows with each of its values as long as they are finite, so that it maps bounds to bounds. A code's own are by
+what is commonly said of it: ``unchecked`` tells what each rests on, as no clause's own text was at hand.
 """
 
 import math
@@ -12,8 +13,8 @@ import numpy.typing as npt
 
 Values = npt.NDArray[np.float64]
 
-EN_MEAN = 7
-"""Number of records from which EN 1998-1 takes the mean."""
+MEAN_FROM = 7
+"""Number of records from which the mean counts in bridge codes and in EN 1998-1, and the greatest of fewer."""
 
 
 def quantile(values: Values, q: float) -> float:
@@ -30,6 +31,10 @@ def quantile(values: Values, q: float) -> float:
 
 def _mean(values: Values) -> float:
     return float(values.mean())
+
+
+def _max(values: Values) -> float:
+    return float(values.max())
 
 
 def _asce7_16(values: Values) -> float:
@@ -49,12 +54,12 @@ def _asce7_16_remark(values: Values) -> str:
     return f"{n} unacceptable responses: more than 1" if n else ""
 
 
-def _en1998_1(values: Values) -> float:
-    return _mean(values) if len(values) >= EN_MEAN else float(values.max())
+def _mean_or_worst(values: Values) -> float:
+    return _mean(values) if len(values) >= MEAN_FROM else _max(values)
 
 
-def _en1998_1_remark(values: Values) -> str:
-    return "" if len(values) >= EN_MEAN else f"the most unfavourable of fewer than {EN_MEAN} records"
+def _mean_or_worst_remark(values: Values) -> str:
+    return "" if len(values) >= MEAN_FROM else f"the most unfavourable of fewer than {MEAN_FROM} records"
 
 
 @dataclass(frozen=True)
@@ -69,8 +74,10 @@ class Statistic:
         Of finite or infinite values; ``None`` for the count of those above a threshold, which the rule gives.
     least : int
         Number of records below which nothing can pass.
-    source : str
-        Clause that asks for this number.
+    code : str
+        The code whose own it is; empty for a plain statistic.
+    unchecked : str
+        Of a code's own: what it rests on, and what it was not held against.
     remark : function or None
         Of the values: what to know about the way taken, in words, or nothing.
     """
@@ -78,24 +85,56 @@ class Statistic:
     words: str
     of: Callable[[Values], float] | None
     least: int = 1
-    source: str = ""
+    code: str = ""
+    unchecked: str = ""
     remark: Callable[[Values], str] | None = None
 
 
 STATISTICS = {
-    "max": Statistic("maximum", lambda values: float(values.max())),
+    "max": Statistic("maximum", _max),
     "mean": Statistic("mean", _mean),
     "median": Statistic("median", lambda values: quantile(values, 0.5)),
     "p84": Statistic("84 % quantile", lambda values: quantile(values, 0.84)),
     "count": Statistic("number of records", None),
-    "asce7-16": Statistic("mean by ASCE 7-16", _asce7_16, 11, "ASCE 7-16, 16.2.2", _asce7_16_remark),
-    "en1998-1": Statistic("design value by EN 1998-1", _en1998_1, 3, "EN 1998-1, 3.2.3.1.2(4)", _en1998_1_remark),
-}
+    "asce7-16": Statistic(
+        "mean by ASCE 7-16", _asce7_16, 11, "ASCE 7-16",
+        "eleven motions, their mean, and one unacceptable response at most, as Hamburger (2014) presented the proposed chapter "
+        "16; neither the 120 % of the median nor the clauses' own text (look into 16.2.2 and 16.4.1.1) could be checked",
+        _asce7_16_remark,
+    ),
+    "en1998-1": Statistic(
+        "design value by EN 1998-1", _mean_or_worst, 3, "EN 1998-1",
+        "at least three records, the mean from seven on, as EN 1998 is commonly cited; the clauses' own text (look into "
+        "EN 1998-1:2004, 3.2.3.1.2 and 4.3.3.4.3) could not be checked",
+        _mean_or_worst_remark,
+    ),
+    "en1998-2": Statistic(
+        "design value by EN 1998-2", _mean_or_worst, 3, "EN 1998-2",
+        "at least three recordings, the mean from seven on, as Iervolino, Maddaloni & Cosenza (2009, Journal of Earthquake "
+        "Engineering 13, 1125–1152) report of EN 1998-2; the standard's own text could not be checked. It takes pairs of "
+        "horizontal components at once: a planar model takes the worse of them alone",
+        _mean_or_worst_remark,
+    ),
+    "aashto": Statistic(
+        "design value by AASHTO", _mean_or_worst, 3, "AASHTO",
+        "the maximum of three to six records, the mean from seven on, as AASHTO's specifications for bridges are commonly "
+        "cited; neither their own text nor a report of it could be checked. They take all components at once: a planar model "
+        "takes the worse horizontal one alone, with the vertical",
+        _mean_or_worst_remark,
+    ),
+    "nzs1170.5": Statistic(
+        "maximum by NZS 1170.5", _max, 3, "NZS 1170.5",
+        "the maximum of a family of at least three records, as NZS 1170.5 is commonly cited; neither the standard's own text "
+        "nor a report of it could be checked, nor how it chooses and scales the family, which is left to the study",
+    ),
+}  # fmt: skip
 """Statistics by the name that a rule gives them.
 
 asce7-16
-    ASCE 7-16, ch. 16: mean of at least 11 records. At most one of them may respond unacceptably (Risk Categories I and II
-    only), and 120 % of the median then takes the place of the mean, but no less than the mean of the others (16.4.1.1).
-en1998-1
-    EN 1998-1:2004, 4.3.3.4.3(3): mean of at least 7 records, the most unfavourable of fewer.
+    Mean of at least 11 records. At most one of them may respond unacceptably (Risk Categories I and II only), and 120 % of the
+    median then takes the place of the mean, but no less than the mean of the others.
+en1998-1, en1998-2, aashto
+    Mean of at least 7 records, the most unfavourable of fewer; at least 3.
+nzs1170.5
+    The most unfavourable of at least 3 records.
 """

@@ -1,9 +1,11 @@
 """The runs of one case at one scale: what each record demands, and between which bounds."""
 
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from rockbatch.checks.demands import DEMANDS, Case
 from rockbatch.checks.rules import USUAL, Rule
@@ -20,7 +22,9 @@ NOT_RUN = "not run"
 
 
 class Bounds(NamedTuple):
-    """What each record demands, shape (n,), and the bounds within which it lies; ``estimated``: whether by error estimates.
+    """What each record, or each run, demands, shape (n,), and the bounds within which it lies.
+
+    ``estimated``: whether by error estimates.
 
     Where the upper bound alone is infinite, ``value`` is the lower one.
     """
@@ -36,31 +40,67 @@ def simulated(runs: "pd.DataFrame") -> "pd.DataFrame":
     return runs[runs[MIRROR_OF] == ""] if MIRROR_OF in runs else runs
 
 
-def complete(runs: "pd.DataFrame", records: Sequence[str], polarities: Sequence[str]) -> "pd.DataFrame":
-    """``runs`` of a case at one scale, and a failed one for each that is missing, as after an interrupt."""
+def complete(runs: "pd.DataFrame", stations: Mapping[str, str], polarities: Sequence[str]) -> "pd.DataFrame":
+    """``runs`` of a case at one scale, and a failed one for each that is missing, as after an interrupt.
+
+    ``stations`` has all records, each with its station, which is empty where nobody knows it.
+    """
     import pandas as pd
 
-    planned = pd.MultiIndex.from_product([records, polarities], names=["record", "polarity"]).to_frame(index=False)
+    planned = pd.MultiIndex.from_product([list(stations), polarities], names=["record", "polarity"]).to_frame(
+        index=False
+    )
     all_of_them = planned.merge(runs, how="outer", on=["record", "polarity"])
     missing = all_of_them["status"].isna()
     all_of_them.loc[missing, ["status", "reason"]] = ["failed", NOT_RUN]
+    all_of_them["station"] = all_of_them["record"].map(stations)
     return all_of_them
 
 
-def by_record(rule: Rule, runs: "pd.DataFrame", case: Case) -> Bounds:
-    """What each record demands: the worse of its polarities. Empty where every run is left out."""
-    bounds, kept = of_runs(rule, runs, case)
-    names, record = np.unique(runs["record"].to_numpy()[kept].astype(str), return_inverse=True)
+def counts_as(runs: "pd.DataFrame", count: str) -> "tuple[pd.Series[str], str]":
+    """What each run counts as, and why that is not its station where the rule asks for it; one of ``COUNTS`` is asked."""
+    if count == "component":
+        return runs["record"], ""
+    known = runs["station"].fillna("").astype(str)
+    if (known == "").any():
+        return runs["record"], (
+            "these results do not say which components are of one station, so that each counts as a record; start "
+            "`rockbatch run` again"
+        )
+    return known, ""
+
+
+def by_record(runs: Bounds, kept: npt.NDArray[np.bool_], counted_as: "pd.Series[str]") -> Bounds:
+    """What each record demands: the worst of its runs, those that are ``kept``. Empty where every run is left out."""
+    names, record = np.unique(counted_as.to_numpy()[kept].astype(str), return_inverse=True)
 
     def worst(of_runs: Values) -> Values:
         found = np.zeros(len(names))  # no demand is negative
         np.maximum.at(found, record, of_runs[kept])
         return found
 
-    return Bounds(worst(bounds.value), worst(bounds.low), worst(bounds.high), bounds.estimated)
+    return Bounds(worst(runs.value), worst(runs.low), worst(runs.high), runs.estimated)
 
 
-def of_runs(rule: Rule, runs: "pd.DataFrame", case: Case) -> tuple[Bounds, np.ndarray]:
+def governing(runs: Bounds, kept: npt.NDArray[np.bool_], *, by_bound: bool) -> int | None:
+    """Place of the run that demands most, ``by_bound`` of the one that may; None where nothing demands anything."""
+    first, second = (runs.high, runs.value) if by_bound else (runs.value, runs.high)
+    order = [i for i in np.lexsort((-second, -first)) if kept[i]]  # a stable sort: of equal ones the first
+    return int(order[0]) if order and first[order[0]] > 0 else None
+
+
+def lacking(kept: npt.NDArray[np.bool_], counted_as: "pd.Series[str]") -> dict[str, tuple[int, int]]:
+    """Records with fewer runs than the others have, or than were planned: how many count, and of how many.
+
+    Their worst direction may be the one that is missing.
+    """
+    planned, left = Counter(counted_as), Counter(counted_as[kept])
+    usual = max(Counter(planned.values()).items(), key=lambda item: (item[1], item[0]))[0] if planned else 0
+    wanted = {name: max(n, usual) for name, n in planned.items()}
+    return {name: (left[name], n) for name, n in wanted.items() if 0 < left[name] < n}
+
+
+def of_runs(rule: Rule, runs: "pd.DataFrame", case: Case) -> tuple[Bounds, npt.NDArray[np.bool_]]:
     """Bounds of every run, and which of them count at all."""
     demand = DEMANDS[rule.demand]
     value, error = demand.of(runs, case)

@@ -3,12 +3,13 @@
 import csv
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import asdict, dataclass, fields
+from dataclasses import MISSING, asdict, dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from rockbatch.checks.rules import is_ban
 from rockbatch.errors import InputError
-from rockbatch.files import csv_plain, csv_text, write_whole
+from rockbatch.files import csv_plain, csv_text, legible, opened_text, write_whole
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -48,6 +49,14 @@ class Verdict:
         How runs count that do not go through to their end, and how many there were; empty where there is nothing to say.
     note : str
         Why nothing was decided, and what else there is to know.
+    count : str
+        What counts as one record, one of :data:`rockbatch.checks.rules.COUNTS`; empty for a demand of the case.
+    unit : str
+        Of value, bounds, limit and margin; empty for a pure number.
+    station, record, polarity : str
+        The run that governs: whose demand is the largest, or, where nothing is decided, may be; empty where there is none.
+    governing : float
+        What that run demands; NaN where there is none.
     """
 
     check: str
@@ -72,9 +81,22 @@ class Verdict:
     counting: str
     counted: str
     note: str
+    count: str = ""
+    unit: str = ""
+    station: str = ""
+    record: str = ""
+    polarity: str = ""
+    governing: float = math.nan
+
+    @property
+    def is_ban(self) -> bool:
+        """Whether it asks that an event happens under no record, so that its numbers say no more than yes or no."""
+        return is_ban(self.demand, self.statistic, self.limit)
 
 
 _NAMES = tuple(field.name for field in fields(Verdict))
+_LATER = tuple(field.name for field in fields(Verdict) if field.default is not MISSING)
+"""Columns that an earlier version did not write yet."""
 _BEFORE, _AFTER = ("check", "case"), tuple(name for name in _NAMES if name not in ("check", "case", "columns"))
 
 
@@ -104,10 +126,15 @@ def read_verdicts(directory: Path) -> list[Verdict]:
     """Read checks.csv in ``directory``; empty where there is none, ``InputError`` where it is damaged."""
     path = Path(directory) / CHECKS
     try:
-        with path.open(encoding="utf-8", newline="") as file:
-            return [_from_row({name: csv_plain(cell) for name, cell in row.items()}) for row in csv.DictReader(file)]
+        with opened_text(path) as file:
+            return [
+                _from_row({name: legible(csv_plain(cell)) for name, cell in row.items()})
+                for row in csv.DictReader(file)
+            ]
     except FileNotFoundError:
         return []
+    except InputError:
+        raise
     except (AttributeError, KeyError, TypeError, ValueError, csv.Error) as error:
         raise InputError(f"{path}: damaged ({error}); start `rockbatch check` again") from None
 
@@ -117,8 +144,12 @@ def _from_row(row: Mapping[str, str]) -> Verdict:
     kinds: dict[str, Any] = {field.name: field.type for field in fields(Verdict)}
     read: dict[str, Any] = {}
     for name in (*_BEFORE, *_AFTER):
+        if name in _LATER and name not in row:
+            continue
         kind = kinds[name]
         read[name] = (float(row[name]) if row[name] else math.nan) if kind is float else kind(row[name])
+    if read["verdict"] not in (PASS, FAIL, NOT_DECIDED, DOES_NOT_APPLY) or read["sense"] not in ("at most", "at least"):
+        raise ValueError(f"{read['sense']!r}, {read['verdict']!r}: no verdict")
     return Verdict(columns=columns, **read)
 
 

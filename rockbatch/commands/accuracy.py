@@ -4,7 +4,7 @@ import argparse
 from typing import TYPE_CHECKING
 
 from rockbatch.commands.analyses import tell_files
-from rockbatch.commands.messages import Terminal, in_width
+from rockbatch.commands.messages import Terminal, in_width, show
 from rockbatch.commands.options import add_study, folder, study_of
 
 if TYPE_CHECKING:
@@ -61,7 +61,7 @@ def main(arguments: argparse.Namespace) -> int:
         scipy=not arguments.no_scipy,
         progress=Terminal(),
     )
-    print(shown(found.accuracy))
+    show(shown(found.accuracy))
     tell_files(found)
     return 0
 

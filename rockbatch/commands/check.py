@@ -1,14 +1,13 @@
 """``rockbatch check``: design checks on finished results, as a table, as checks.csv and in the report."""
 
 import argparse
-import math
 import textwrap
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rockbatch.commands.messages import say
+from rockbatch.commands.messages import say, show
 
 if TYPE_CHECKING:
     from rockbatch.checks import Verdict
@@ -16,7 +15,8 @@ if TYPE_CHECKING:
 HELP = "hold finished results against design checks"
 EXAMPLE = "rockbatch check reports/pier"
 WIDTH = 100
-HEAD = ("check", "records", "demand", "limit", "ratio", "margin", "verdict")
+WORST = 10
+"""Verdicts that are told in full where there are too many for all."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -36,7 +36,9 @@ def main(arguments: argparse.Namespace) -> int:
     if unusable := len(saved.info["unusable"]):
         say(f"files that are no usable records, and in no suite: {unusable}")
     code = tell(found, write_verdicts(arguments.directory, found))
-    if (arguments.directory / "report.html").exists():
+    from rockbatch.files import is_plain
+
+    if is_plain(arguments.directory / "report.html"):
         from rockbatch.report import write_report
 
         say(str(write_report(arguments.directory)))
@@ -45,68 +47,126 @@ def main(arguments: argparse.Namespace) -> int:
 
 def tell(verdicts: Sequence["Verdict"], path: Path) -> int:
     """Print the verdicts, which are in ``path``; returns 1 if a check fails or is not decided, else 0."""
-    print(table(verdicts))
-    ways = ("pass", "fail", "not decided", "does not apply")
-    count = {way: sum(verdict.verdict == way for verdict in verdicts) for way in ways}
+    from rockbatch.checks import wording
+
+    many = len(verdicts) > wording.MOST
+    show(summed_up(verdicts) if many else table(verdicts))
+    count = wording.count_of(verdicts)
     say(", ".join(f"{n} {way}" for way, n in count.items() if n))
-    say(str(path))
+    say(f"{path}{': all of them' if many else ''}")
     if not (count["pass"] or count["fail"] or count["not decided"]):
         say("none of the checks applies to these cases")
     return 0 if count["pass"] and not (count["fail"] or count["not decided"]) else 1
 
 
-def table(verdicts: Iterable["Verdict"]) -> str:
+def table(verdicts: Sequence["Verdict"]) -> str:
     """A block of lines for each case and scale, then what each check asks."""
+    return "\n\n".join([*_blocks(verdicts), _checks(verdicts)])
+
+
+def summed_up(verdicts: Sequence["Verdict"]) -> str:
+    """How many verdicts of each kind every check has, the worst of them, and what each check asks."""
+    from rockbatch.checks import wording
+
+    by_check: dict[str, list[Verdict]] = {}
+    for one in verdicts:
+        by_check.setdefault(one.check, []).append(one)
+    rows = [(name, *map(str, wording.count_of(same).values())) for name, same in by_check.items()]
+    head = ("check", *wording.WAYS)
+    widths = [max(map(len, column)) for column in zip(head, *rows, strict=True)]
+    counts = "\n".join(
+        "  ".join([row[0].ljust(widths[0]), *(n.rjust(w) for n, w in zip(row[1:], widths[1:], strict=True))])
+        for row in (head, *rows)
+    )
+    parts = [f"{len(verdicts)} verdicts\n{counts}"]
+    if worst := wording.worst_first(verdicts)[:WORST]:
+        parts += ["The worst", *_blocks(worst)]
+    return "\n\n".join([*parts, _checks(verdicts)])
+
+
+def _blocks(verdicts: Sequence["Verdict"]) -> list[str]:
+    """A block of lines for verdicts beside each other of one case and scale."""
+    from rockbatch.checks import wording
     from rockbatch.commands.summary import named
 
-    verdicts = list(verdicts)
-    widths = [max(map(len, column)) for column in zip(HEAD, *map(_cells, verdicts), strict=True)]
+    head = ("check", wording.records_of(verdicts), "demand", "limit", "ratio", "margin", "unit", "verdict")
+    widths = [max(map(len, column)) for column in zip(head, *map(_cells, verdicts), strict=True)]
     many_scales = len({verdict.scale for verdict in verdicts}) > 1
     blocks = []
     for (case, columns, scale), block in groupby(verdicts, key=lambda v: (v.case, v.columns, v.scale)):
         values = columns | ({"scale": scale} if many_scales else {})
-        blocks.append("\n".join([f"{case}  {named(values, values.values())}".rstrip(), *_lines(list(block), widths)]))
-    asked = {verdict.check: verdict for verdict in verdicts}
-    return "\n\n".join([*blocks, "\n".join(["Checks", *map(_asked, asked.values())])])
+        lines = [f"{case}  {named(values, values.values())}".rstrip(), _line(head, widths)]
+        for verdict in block:
+            lines += _lines(verdict, widths)
+        blocks.append("\n".join(lines))
+    return blocks
 
 
-def _lines(verdicts: list["Verdict"], widths: list[int]) -> list[str]:
-    lines = [_line(HEAD, widths)]
-    for verdict in verdicts:
-        lines.append(_line(_cells(verdict), widths))
-        if verdict.verdict == "does not apply":
-            continue
-        if told := "; ".join(filter(None, (verdict.counted, verdict.note))):
-            lines.append(textwrap.fill(told, WIDTH, initial_indent=" " * 6, subsequent_indent=" " * 6))
+def _lines(verdict: "Verdict", widths: list[int]) -> list[str]:
+    """The numbers of a verdict, then what there is to know beside them: the run that governs first."""
+    from rockbatch.checks import wording
+    from rockbatch.commands.marks import coloured
+
+    lines = [coloured(_line(_cells(verdict), widths), verdict.verdict)]
+    if verdict.verdict == "does not apply":
+        return lines
+    told = (wording.governing(verdict), verdict.counted, verdict.note)
+    if any(told):
+        lines.append(_filled("; ".join(filter(None, told)), 6, 6))
     return lines
 
 
 def _line(cells: Sequence[str], widths: list[int]) -> str:
-    numbers = "  ".join(cell.rjust(width) for cell, width in zip(cells[1:-1], widths[1:-1], strict=True))
-    return f"  {cells[0].ljust(widths[0])}  {numbers}  {cells[-1]}"
+    numbers = "  ".join(cell.rjust(width) for cell, width in zip(cells[1:-2], widths[1:-2], strict=True))
+    return f"  {cells[0].ljust(widths[0])}  {numbers}  {cells[-2].ljust(widths[-2])}  {cells[-1]}"
 
 
 def _cells(verdict: "Verdict") -> tuple[str, ...]:
-    at_least = ">= " if math.isinf(verdict.high) and math.isfinite(verdict.value) else ""
-    sign = "<=" if verdict.sense == "at most" else ">="
-    loud = {"fail": "FAIL", "not decided": "NOT DECIDED"}
+    from rockbatch.checks import wording
+    from rockbatch.commands.marks import mark
+
     return (
         verdict.check,
         str(verdict.records) if verdict.records else "",
-        at_least + _number(verdict.value, ".4g"),
-        f"{sign} {verdict.limit:.4g}",
-        _number(verdict.ratio, ".4f" if 0.995 <= verdict.ratio < 1.005 and verdict.ratio != 1 else ".2f"),
-        _number(verdict.margin, ".3g"),
-        loud.get(verdict.verdict, verdict.verdict),
+        _plain(wording.demanded(verdict)),
+        _plain(wording.limit(verdict, ("<=", ">="))),
+        _plain(wording.ratio(verdict)),
+        _plain(wording.margin(verdict)),
+        verdict.unit,
+        mark(verdict.verdict),
     )
 
 
-def _number(value: float, form: str) -> str:
-    return "" if math.isnan(value) else f"{value:{form}}"
+def _plain(text: str) -> str:
+    for sign, instead in {"\u00a0": " ", "∞": "inf", "≥": ">=", "≤": "<="}.items():
+        text = text.replace(sign, instead)
+    return text
+
+
+def _checks(verdicts: Sequence["Verdict"]) -> str:
+    """What each check asks, and why; what a record is, and what the statistics of codes rest on."""
+    from rockbatch.checks import wording
+
+    first = {verdict.check: verdict for verdict in reversed(verdicts)}
+    names = dict.fromkeys(verdict.check for verdict in verdicts)
+    rests = {one.statistic: one for one in reversed(verdicts) if wording.unchecked(one)}
+    lines = [_asked(first[name]) for name in names]
+    lines += [_filled(told, 2, 6) for told in wording.counting(verdicts)]
+    lines += [_filled(f"{name}: {wording.unchecked(one)}.", 2, 6) for name, one in rests.items()]
+    return "\n".join(["Checks", *lines])
 
 
 def _asked(verdict: "Verdict") -> str:
     """What a check asks, and why."""
-    asked = f"{verdict.check}: {verdict.words} {verdict.sense} {verdict.limit:g} [{verdict.basis}] {verdict.reason}"
+    from rockbatch.checks import wording
+
+    asked = f"{verdict.check}: {wording.asked(verdict)} [{verdict.basis}] {verdict.reason}"
     counting = f" ({verdict.counting})" if verdict.counting else ""
-    return textwrap.fill(asked.rstrip() + counting, WIDTH, initial_indent="  ", subsequent_indent=" " * 6)
+    return _filled(asked.rstrip() + counting, 2, 6)
+
+
+def _filled(text: str, first: int, rest: int) -> str:
+    from rockbatch.commands.marks import shown
+
+    filled = textwrap.fill(text, WIDTH, initial_indent=" " * first, subsequent_indent=" " * rest)
+    return shown(filled, filled.encode("ascii", "replace").decode())

@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING
 
 from rockbatch.batch.listening import count
-from rockbatch.commands.messages import say
+from rockbatch.commands.messages import say, show
 
 if TYPE_CHECKING:
     from rockbatch.batch.finishing import FinishedBatch
@@ -22,9 +22,10 @@ def tell(finished: "FinishedBatch", study: "Study") -> int:
         say(str(finished.without))
         code = 1
     peaks = simulated(finished.saved.peaks)
-    by_pga = [motion.name for motion in sorted(finished.motions.motions, key=lambda motion: motion.pga)]
-    print(summary(peaks, study.varied, by_pga))
-    if warning := other_law(peaks, study.varied):
+    by_pga = sorted(finished.motions.motions, key=lambda motion: motion.pga)
+    named = {motion.name: motion.short for motion in by_pga}
+    show(summary(peaks, study.varied, named))
+    if warning := other_law(peaks.assign(record=peaks["record"].map(named)), study.varied):
         say(warning)
     if study.checks:
         code = max(code, check.tell(finished.verdicts, finished.saved.directory / CHECKS))

@@ -2,6 +2,7 @@
 
 import argparse
 
+from rockbatch.commands.messages import show
 from rockbatch.examples import examples
 
 HELP = "list the studies that come with rockbatch"
@@ -18,7 +19,7 @@ def main(arguments: argparse.Namespace) -> int:
     width = max(len(example.name) for example in every)
     for example in every:
         needs = ' (needs pip install "rockbatch[records]")' if example.package else ""
-        print(f"{example.name:<{width}}  {example.title}{needs}")
-    print("\nA copy to work on, with its records: rockbatch init FOLDER --example NAME")
-    print(f"Or as they are:                      rockbatch {every[0].command} {every[0].path}")
+        show(f"{example.name:<{width}}  {example.title}{needs}")
+    show("\nA copy to work on, with its records: rockbatch init FOLDER --example NAME")
+    show(f"Or as they are:                      rockbatch {every[0].command} {every[0].path}")
     return 0

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from rockbatch.batch.listening import count
 from rockbatch.commands.analyses import asked, tell_files
-from rockbatch.commands.messages import in_width, say
+from rockbatch.commands.messages import in_width, say, show
 from rockbatch.commands.options import add_engine, add_study, study_of
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ def main(arguments: argparse.Namespace) -> int:
 
     options = asked(arguments)
     found = fragility(study, **options)
-    print(table(found.curves, found.spec))
+    show(table(found.curves, found.spec))
     tell_files(found)
     failed = any(stripe.failed for curve in found.curves for stripe in curve.stripes)
     if failed:

@@ -3,6 +3,7 @@
 import argparse
 from pathlib import Path
 
+from rockbatch.commands.messages import show
 from rockbatch.examples import CHECKS, FIRST, copy
 
 HELP = "write a study of your own to begin with, and its records"
@@ -21,11 +22,11 @@ def main(arguments: argparse.Namespace) -> int:
     study = STUDY if arguments.example == FIRST else f"{arguments.example}.toml"
     written = copy(arguments.example, arguments.folder, study)
     for path in written:
-        print(path)
+        show(str(path))
     there = "" if arguments.folder == Path() else f"cd {arguments.folder}\n    "
-    print(f"\nNext:\n\n    {there}rockbatch run {study}\n")
-    print(
+    show(f"\nNext:\n\n    {there}rockbatch run {study}\n")
+    show(
         f"It leaves a report in {Path('reports', Path(study).stem, 'report.html')}. Then put in the numbers of your pier and a"
     )
-    print(f"folder of your records ({study} says where), and agree on limits ({CHECKS} has many to choose from).")
+    show(f"folder of your records ({study} says where), and agree on limits ({CHECKS} has many to choose from).")
     return 0

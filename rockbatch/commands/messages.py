@@ -1,4 +1,4 @@
-"""What commands tell, on stderr."""
+"""What commands tell: messages on stderr, what they were asked for on stdout."""
 
 import shutil
 import sys
@@ -6,6 +6,7 @@ from contextlib import AbstractContextManager
 from typing import TYPE_CHECKING
 
 from rockbatch.batch.listening import Listener, Told, count
+from rockbatch.commands.streams import tell
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -33,7 +34,12 @@ class Terminal(Listener):
 
 def say(text: str) -> None:
     """Print a message where it does not mix with what a command was asked for."""
-    print(text, file=sys.stderr, flush=True)
+    tell(sys.stderr, text)
+
+
+def show(text: str) -> None:
+    """Print what a command was asked for."""
+    tell(sys.stdout, text)
 
 
 def in_width(table: "pd.DataFrame", index: bool = True) -> str:
@@ -47,9 +53,9 @@ def tell_motions(motions: "MotionSet") -> None:
     for file in motions.unusable:
         say(f"not used: {file.source}: {file.reason}")
     for one, other in _twice(motions):
-        say(f"{one} and {other} are the same record: it counts twice; leave one out")
-    if motions.without_vertical:
-        say(f"no vertical: {', '.join(motions.without_vertical)}")
+        say(f"{one} and {other} have the same samples: checks count them once, curves twice; leave one out")
+    if lacking := [motion.named for motion in motions.motions if motion.lacks_vertical]:
+        say(f"no vertical: {'; '.join(lacking)}")
     if motions.left_out:
         say(f"{count(len(motions.left_out), 'file')} left out, or no records: `rockbatch motions` says why")
 

@@ -4,7 +4,8 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rockbatch.commands.messages import say
+from rockbatch.batch.listening import count
+from rockbatch.commands.messages import say, show
 
 if TYPE_CHECKING:
     from rockbatch.motions import LeftOut, MotionSet, Unusable
@@ -14,6 +15,10 @@ EXAMPLE = "rockbatch motions records --csv records.csv"
 
 _SHOWN = {  # heads of the table in the terminal, and how their numbers are written
     "record": ("record", ""),
+    "event": ("event", ""),
+    "station_name": ("station", ""),
+    "direction": ("direction", ""),
+    "station": ("counts as", ""),
     "dt_s": ("dt [s]", "g"),
     "npts": ("npts", "d"),
     "duration_s": ("length [s]", ".2f"),
@@ -59,12 +64,15 @@ def main(arguments: argparse.Namespace) -> int:
     rows = [row(motion) for motion in found]
     if arguments.csv:
         _write(arguments.csv, rows, found)
-    print(_table(rows))
-    _list("What was done", [(motion.name, note) for motion in found.motions for note in motion.notes])
-    _list("No vertical", [(name, "none beside it that fits") for name in found.without_vertical])
+    show(_table(rows))
+    _list("What was done", [(motion.named, note) for motion in found.motions for note in motion.notes])
+    lacking = [motion.named for motion in found.motions if motion.lacks_vertical]
+    _list("No vertical", [(name, "none beside it that fits") for name in lacking])
     _list("Not used", [(file.source, file.reason) for file in found.unusable])
     _list("Left out", [(file.source, file.reason) for file in found.left_out])
-    say(f"{len(found.motions)} records, {len(found.unusable)} files not used, {len(found.left_out)} left out")
+    stations = len({motion.of_station for motion in found.motions})
+    told = f"{len(found.motions)} records, {len(found.unusable)} files not used, {len(found.left_out)} left out"
+    say(f"{told}; {count(stations, 'station')}")
     if arguments.strict and found.unusable:
         return 2
     return 1 if found.unusable or not found.motions else 0
@@ -105,6 +113,6 @@ def _table(rows: list[dict[str, Any]]) -> str:
 
 def _list(title: str, entries: list[tuple[str, str]]) -> None:
     if entries:
-        print(f"\n{title}")
+        show(f"\n{title}")
         for name, words in entries:
-            print(f"  {name}: {words}")
+            show(f"  {name}: {words}")

@@ -40,8 +40,17 @@ def add_engine(parser: argparse.ArgumentParser) -> None:
         help="threads of this process (default), or a dask.distributed cluster",
     )
     parser.add_argument(
-        "--scheduler", metavar="ADDRESS", help="a dask scheduler that runs already (default: processes of this machine)"
+        "--scheduler",
+        type=_address,
+        metavar="ADDRESS",
+        help="a dask scheduler that runs already (default: processes of this machine)",
     )
+
+
+def _address(text: str) -> str:
+    if not text.strip():
+        raise argparse.ArgumentTypeError("must be an address such as tcp://10.0.0.1:8786; it is empty")
+    return text
 
 
 def _jobs(text: str) -> int:

@@ -1,10 +1,13 @@
 """How far a batch is: a bar with the time left on a terminal, plain lines elsewhere."""
 
+import io
 import os
 import sys
 import time
 from types import TracebackType
 from typing import Any, Self, TextIO
+
+from rockbatch.commands.streams import give_up, tell
 
 SECONDS_BETWEEN_LINES = 2.0
 
@@ -15,7 +18,7 @@ class Progress:
     def __init__(self, total: int, stream: TextIO | None = None) -> None:
         self.total = total
         self.done = 0
-        self.stream = stream or sys.stderr
+        self.stream = stream or sys.stderr or io.StringIO()
         self.started = time.monotonic()
         self.last_line = self.started
         self.bar: Any = None
@@ -36,13 +39,17 @@ class Progress:
     def __call__(self, runs: int = 1) -> None:
         self.done += runs
         if self.bar is not None:
-            self.bar.update(runs)
+            try:
+                self.bar.update(runs)
+            except OSError as error:
+                self.bar = None
+                give_up(self.stream, error)
             return
         now = time.monotonic()
         if now - self.last_line >= SECONDS_BETWEEN_LINES:
             self.last_line = now
             left = (now - self.started) * (self.total - self.done) / self.done
-            print(f"{self.done} of {self.total} runs, {left:.0f} s left", file=self.stream, flush=True)
+            tell(self.stream, f"{self.done} of {self.total} runs, {left:.0f} s left")
 
 
 def _can_draw(stream: TextIO) -> bool:

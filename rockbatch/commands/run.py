@@ -5,7 +5,7 @@ import re
 import sys
 from typing import TYPE_CHECKING
 
-from rockbatch.commands.messages import Terminal
+from rockbatch.commands.messages import Terminal, show
 from rockbatch.commands.options import add_engine, add_study, engine, folder, study_of
 
 if TYPE_CHECKING:
@@ -65,9 +65,9 @@ def _expect(study: "Study", jobs: int | None) -> int:
 
     found = expected(study, jobs or cores(), Terminal())
     threads = "1 thread" if found.jobs == 1 else f"{found.jobs} threads"
-    print(found.what)
-    print(f"{in_words(found.seconds)} on {threads}, as {found.tried} of them took; then the report")
-    print(f"peaks.csv: about {found.table / 1e6:.2g} MB; histories: about {found.histories / 1e6:.2g} MB")
+    show(found.what)
+    show(f"{in_words(found.seconds)} on {threads}, as {found.tried} of them took; then the report")
+    show(f"peaks.csv: about {found.table / 1e6:.2g} MB; histories: about {found.histories / 1e6:.2g} MB")
     return 0
 
 

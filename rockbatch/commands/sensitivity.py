@@ -4,7 +4,7 @@ import argparse
 from typing import TYPE_CHECKING
 
 from rockbatch.commands.analyses import asked, tell_files
-from rockbatch.commands.messages import in_width, say
+from rockbatch.commands.messages import in_width, say, show
 from rockbatch.commands.options import add_engine, add_study, study_of
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ def main(arguments: argparse.Namespace) -> int:
     from rockbatch.analysis.sensitivity import sensitivity
 
     found = sensitivity(study, **asked(arguments))
-    print(shown(found.sensitivity, found.sobol, study.varied))
+    show(shown(found.sensitivity, found.sobol, study.varied))
     ended = ", ".join(f"{number} {status}" for status, number in sorted(found.info["statuses"].items()))
     cut = f"theta_max/alpha = {found.spec.overturned:g}"
     say(f"{ended}; runs that overturned or were ended by flight count as {cut}")

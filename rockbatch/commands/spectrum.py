@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from rockbatch.batch.listening import count
 from rockbatch.commands.analyses import asked, tell_files
-from rockbatch.commands.messages import in_width, say
+from rockbatch.commands.messages import in_width, say, show
 from rockbatch.commands.options import add_engine, add_study, study_of
 
 if TYPE_CHECKING:
@@ -33,13 +33,13 @@ def main(arguments: argparse.Namespace) -> int:
     found = spectrum(study, **asked(arguments))
     failed = 0
     if found.spectra is not None and found.spectrum is not None and found.spectrum_suite is not None:
-        print(shown(found.spectrum_suite, found.spectra))
+        show(shown(found.spectrum_suite, found.spectra))
         failed = int((found.spectrum["status"] == "failed").sum())
         if failed:
             runs = count(len(found.spectrum), "run")
             say(f"{failed} of {runs} failed and count in no quantile; the column reason says why")
     if found.overturning_map is not None:
-        print(shown_maps(found.overturning_map, study.varied))
+        show(shown_maps(found.overturning_map, study.varied))
     tell_files(found)
     return 1 if failed or found.unusable else 0
 

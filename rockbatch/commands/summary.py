@@ -1,6 +1,6 @@
 """The table of Fig. 7 in the terminal: θ_max/α of every record in every case, a block for each pier."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from rockbatch.commands.messages import in_width
@@ -14,13 +14,17 @@ MOST_RUNS = 1000
 """Larger studies are told by their worst runs."""
 
 
-def summary(table: "pd.DataFrame", varied: tuple[str, ...], records: Sequence[str]) -> str:
-    """Blocks of text, a line for each of ``records`` in their order, the status beside the value where it is not "ok"."""
+def summary(table: "pd.DataFrame", varied: tuple[str, ...], records: Mapping[str, str]) -> str:
+    """Blocks of text, a line for each of ``records`` in their order, the status beside the value where it is not "ok".
+
+    ``records`` has for each name in the table what is written in its place.
+    """
     runs = table[table["case"] != ""]
     if len(runs) > MOST_RUNS:
-        return _worst(runs, varied)
+        return _worst(runs.assign(record=runs["record"].map(records)), varied)
     place = {name: i for i, name in enumerate(records)}
     runs = runs.sort_values("record", key=lambda names: names.map(place), kind="stable")
+    runs = runs.assign(record=runs["record"].map(records))
     pier_keys = [name for name in varied if name in PIER_KEYS]
     case_keys = [name for name in varied if name not in PIER_KEYS]
     rows = ["record", *(name for name in ("polarity", "scale") if runs[name].nunique() > 1)]

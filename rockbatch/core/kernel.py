@@ -26,12 +26,12 @@ def core_digest(folder: Path = _CORE) -> str:
 def _usable_folder() -> str:
     """First of: beside the sources, the user's cache, a temporary folder, that can be written to."""
     name = f"kernels-{core_digest()}"
-    for parent in (_CORE / "__pycache__", Path.home() / ".cache" / "rockbatch"):
-        folder = parent / name
+    for parent in (lambda: _CORE / "__pycache__", lambda: Path.home() / ".cache" / "rockbatch"):
         try:
+            folder = parent() / name
             folder.mkdir(parents=True, exist_ok=True)
             tempfile.TemporaryFile(dir=folder).close()
-        except (OSError, RuntimeError):
+        except (OSError, RuntimeError):  # the latter where nobody is at home
             continue
         return str(folder)
     return tempfile.mkdtemp(prefix=name)

@@ -10,9 +10,10 @@ from typing import NamedTuple
 
 from rockbatch.core.equations import accelerations, geometry, rates
 from rockbatch.core.kernel import entry, kernel
+from rockbatch.core.observed import contact_of, ground_at, middle_of, state_of
 from rockbatch.core.records import record
 from rockbatch.core.rigid.equations import acceleration
-from rockbatch.core.types import IMPACT_BOTH, IMPACT_LEFT, IMPACT_RIGHT, LIFT_OFF, Contact, State
+from rockbatch.core.types import IMPACT_BOTH, IMPACT_LEFT, IMPACT_RIGHT, LIFT_OFF, Contact
 
 
 class Energies(NamedTuple):
@@ -30,26 +31,6 @@ class Energies(NamedTuple):
 
 
 LEDGER = record(Energies)
-
-
-@kernel
-def _state(row):
-    return State(row.v, row.theta, row.v_rate, row.omega, row.z_left, row.z_right)
-
-
-@kernel
-def _contact(row):
-    return Contact(row.left, row.right, row.left_yields, row.right_yields, row.held)
-
-
-@kernel
-def _ground_at(ground, dt, middle, t):
-    """Ground accelerations, horizontal and vertical, at ``t``, in the sampling interval in which ``middle`` lies."""
-    sample = int(middle / dt)
-    if sample >= len(ground):
-        return 0.0, 0.0
-    after = t - sample * dt
-    return ground[sample, 0] + after * ground[sample, 1], ground[sample, 2] + after * ground[sample, 3]
 
 
 @kernel
@@ -100,20 +81,6 @@ def _impact_loss(m, before, kind):
     return lost * velocity * velocity / (1.0 + arm * arm / inertia)
 
 
-@kernel
-def _middle(y, k, y_end, k_end, h):
-    """State in the middle of a step, from the cubic Hermite polynomial."""
-    eighth = 0.125 * h
-    return State(
-        0.5 * (y.v + y_end.v) + eighth * (k.v - k_end.v),
-        0.5 * (y.theta + y_end.theta) + eighth * (k.theta - k_end.theta),
-        0.5 * (y.v_rate + y_end.v_rate) + eighth * (k.v_rate - k_end.v_rate),
-        0.5 * (y.omega + y_end.omega) + eighth * (k.omega - k_end.omega),
-        0.5 * (y.z_left + y_end.z_left) + eighth * (k.z_left - k_end.z_left),
-        0.5 * (y.z_right + y_end.z_right) + eighth * (k.z_right - k_end.z_right),
-    )
-
-
 @entry
 def ledger_on_springs(m, rows, ground, dt, out):
     """Ledger of a run on two springs.
@@ -130,31 +97,31 @@ def ledger_on_springs(m, rows, ground, dt, out):
     out : recarray of Energies, zeros, shape (n,)
         Filled at every row.
     """
-    y = _state(rows[0])
-    kinetic0, potential0, elastic0 = _stored(m, y, _contact(rows[0]))
+    y = state_of(rows[0])
+    kinetic0, potential0, elastic0 = _stored(m, y, contact_of(rows[0]))
     shaken, plastic, impact, p_delta, constraint = 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(1, len(rows)):
-        y_end = _state(rows[i])
-        contact = _contact(rows[i])
+        y_end = state_of(rows[i])
+        contact = contact_of(rows[i])
         kind = int(rows[i].kind)
         if kind > 0:  # the other side of an event
             at = geometry(m, y.theta)
             if kind in (IMPACT_LEFT, IMPACT_RIGHT, IMPACT_BOTH):
                 impact += _impact_loss(m, y, kind)
             if m.finite is not None:
-                was, now = _lever(at, _contact(rows[i - 1])), _lever(at, contact)
+                was, now = _lever(at, contact_of(rows[i - 1])), _lever(at, contact)
                 both = at.lever * at.lever * (y_end.omega * y_end.omega - y.omega * y.omega)
                 constraint += 0.5 * (now * now * y_end.omega * y_end.omega - was * was * y.omega * y.omega - both)
         else:
             t, t_end = rows[i - 1].t, rows[i].t
             h = t_end - t
             t_middle = 0.5 * (t + t_end)
-            ah, av = _ground_at(ground, dt, t_middle, t)
-            ah_end, av_end = _ground_at(ground, dt, t_middle, t_end)
+            ah, av = ground_at(ground, dt, t_middle, t)
+            ah_end, av_end = ground_at(ground, dt, t_middle, t_end)
             ah_middle, av_middle = 0.5 * (ah + ah_end), 0.5 * (av + av_end)
             k = rates(m, y, contact, ah, av)
             k_end = rates(m, y_end, contact, ah_end, av_end)
-            middle = _middle(y, k, y_end, k_end, h)
+            middle = middle_of(y, k, y_end, k_end, h)
             k_middle = rates(m, middle, contact, ah_middle, av_middle)
             s0, w0, d0, c0 = _powers(m, y, k, contact, ah, av)
             s1, w1, d1, c1 = _powers(m, middle, k_middle, contact, ah_middle, av_middle)
@@ -196,8 +163,8 @@ def ledger_on_rigid_base(m, rows, ground, dt, out):
             t_middle = 0.5 * (t + t_end)
             leaning = theta + end_theta if theta != 0.0 or end_theta != 0.0 else omega  # a bounce between two impacts
             side = 1.0 if leaning > 0.0 else -1.0
-            ah, av = _ground_at(ground, dt, t_middle, t)
-            ah_end, av_end = _ground_at(ground, dt, t_middle, t_end)
+            ah, av = ground_at(ground, dt, t_middle, t)
+            ah_end, av_end = ground_at(ground, dt, t_middle, t_end)
             k = acceleration(m, theta, side, ah, av)
             k_end = acceleration(m, end_theta, side, ah_end, av_end)
             middle_theta = 0.5 * (theta + end_theta) + 0.125 * h * (omega - end_omega)

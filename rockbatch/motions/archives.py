@@ -12,6 +12,7 @@ import zipfile
 import zlib
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path, PurePosixPath
 
 from rockbatch.errors import InputError
@@ -90,9 +91,15 @@ def is_member(path: Path) -> bool:
     """Whether a path leads to a file in an archive."""
     archive = archive_of(path)
     try:
-        return archive is not None and any(path == member.path for member in members(archive))
+        return archive is not None and path in _paths_in(archive, archive.stat().st_mtime_ns)
     except (InputError, OSError):
         return False
+
+
+@lru_cache(maxsize=8)
+def _paths_in(archive: Path, mtime_ns: int) -> frozenset[Path]:
+    """Paths of the files in an archive; ``mtime_ns`` keeps a new one from being taken for the old one."""
+    return frozenset(member.path for member in members(archive))
 
 
 def archive_of(path: Path) -> Path | None:
@@ -121,8 +128,8 @@ def content(path: Path, first: int | None = None) -> bytes:
         raise InputError(f"larger than {LARGEST // 2**20} MiB")
     with path.open("rb") as file:
         if path.suffix.lower() == ".gz":
-            return _from_gzip(file.read(LARGEST), first)
-        return file.read(LARGEST if first is None else first)
+            return _from_gzip(file.read(size), first)
+        return file.read(size if first is None else min(first, size))  # what is asked for is allocated
 
 
 def _from_gzip(data: bytes, first: int | None) -> bytes:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rockbatch.motions.component import Component
+from rockbatch.motions.limits import MOST_SAMPLES, MOST_STEPS
 from rockbatch.motions.motion import Samples
 
 _SAME_STEP = 1e-6  # relative: steps that differ by less are the same, printed otherwise
@@ -44,6 +45,22 @@ def overlap(a: Component, b: Component) -> bool:
     return a.start < b.start + b.duration and b.start < a.start + a.duration
 
 
+def too_unlike(a: Component, b: Component) -> str:
+    """Why two components cannot be brought to common samples; empty where they can."""
+    if max(a.dt, b.dt) > MOST_STEPS * min(a.dt, b.dt):
+        return f"dt = {b.dt:g} s beside {a.dt:g} s of {a.name}, more than {MOST_STEPS} times apart"
+    if min(a.duration, b.duration) > MOST_SAMPLES * min(a.dt, b.dt):
+        return f"it and {a.name} would take more than {MOST_SAMPLES:,} common samples"
+    return ""
+
+
+def _parts(first: Component, second: Component) -> int:
+    """In how many parts a step of the first component is cut so that it is no coarser than that of the second."""
+    if abs(first.dt - second.dt) <= _SAME_STEP * first.dt:
+        return 1
+    return math.ceil(first.dt / second.dt * (1 - _SAME_STEP))
+
+
 def on_common_samples(first: Component, second: Component, names: tuple[str, str]) -> Common:
     """Both components on common samples, over their common time, with notes with their ``names``.
 
@@ -64,10 +81,12 @@ def on_common_samples(first: Component, second: Component, names: tuple[str, str
         dt, a, b = first.dt, a[start:end], b[start - shift : end - shift]
         begin, offset = start * dt, shift * dt
     else:
-        parts = 1 if same_step else math.ceil(first.dt / second.dt * (1 - _SAME_STEP))
+        parts = _parts(first, second)
         dt = first.dt / parts
-        times = np.arange((len(a) - 1) * parts + 1) * dt
         slack = _SAME_SAMPLE * dt
+        earliest = max(0, math.floor((offset - slack) / dt) - 1)
+        latest = min((len(a) - 1) * parts, math.ceil((offset + second.duration + slack) / dt) + 1)
+        times = np.arange(earliest, latest + 1) * dt
         times = times[(times >= offset - slack) & (times <= offset + second.duration + slack)]
         begin = float(times[0]) if len(times) else 0.0
         a = np.interp(times / first.dt, np.arange(len(a)), a)

@@ -7,6 +7,7 @@ import numpy as np
 
 from rockbatch.motions.motion import Initial, Samples
 from rockbatch.motions.orientation import UNKNOWN, Orientation
+from rockbatch.motions.origin import NOBODY_KNOWS, Origin
 
 
 @dataclass(frozen=True)
@@ -102,6 +103,8 @@ class Component:
         Whether the agency has corrected it (filter, baseline, instrument); ``None`` where the file does not say.
     initial : Initial or None
         The ground's state at the first sample, where the file tells it.
+    origin : Origin
+        What the header calls event and station.
     notes : tuple of str
         What was done to the data.
     """
@@ -125,6 +128,7 @@ class Component:
     event: str = ""
     processed: bool | None = None
     initial: Initial | None = None
+    origin: Origin = NOBODY_KNOWS
     notes: tuple[str, ...] = ()
 
     @property

@@ -14,11 +14,11 @@ from pathlib import Path
 import numpy as np
 
 from rockbatch.motions.archives import bare
-from rockbatch.motions.common_span import overlap
 from rockbatch.motions.component import NOWHERE, Component, file_of
 from rockbatch.motions.formats import is_usual
 from rockbatch.motions.motion import LeftOut, Samples
 from rockbatch.motions.orientation import UNKNOWN, same_azimuth
+from rockbatch.motions.station_names import in_one_event
 
 _CORRECTED = {True: 0, None: 1, False: 2}
 _ALIKE = 0.7  # correlation: real files of one recording have 0.98 and more, other records 0.63 at most, halves 0.46
@@ -113,8 +113,7 @@ def _same_recording(a: Component, b: Component, whole: Set[str]) -> bool:
         return False
     if len({_rsn(a), _rsn(b)} - {""}) > 1:
         return False
-    unknown_time = a.start is None or b.start is None
-    if not (bool(a.event) and a.event == b.event if unknown_time else overlap(a, b)):
+    if not in_one_event(a, b):
         return False
     may_be_parts = (
         a.processed == b.processed and abs(a.dt - b.dt) <= _SAME_STEP * a.dt and whole >= {_file(a), _file(b)}

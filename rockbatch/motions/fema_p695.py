@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 from rockbatch.errors import InputError
 from rockbatch.motions.component import Component
 from rockbatch.motions.orientation import Orientation, orientation_of
+from rockbatch.motions.origin import Origin
 from rockbatch.motions.turning import resolved
 from rockbatch.units import GRAVITY
 
@@ -36,8 +37,8 @@ class Station:
         PEER's record sequence number.
     event, code : str
         As in the component's name: "NORTHR" and "SYL".
-    title : str
-        The station's name in words.
+    title, quake : str
+        The station's name, and the event's with its year, in words.
     set : str
         Which of ``SETS`` it belongs to.
     labels : tuple of two str
@@ -52,6 +53,7 @@ class Station:
     event: str
     code: str
     title: str
+    quake: str
     set: str
     labels: tuple[str, str]
     steps: tuple[float, float]
@@ -90,6 +92,7 @@ def rotated(station: str, azimuth: float, gravity: float = GRAVITY) -> Component
         site=f"RSN{found.rsn}",
         source=f"{_package()}, {found.name}",
         processed=True,
+        origin=normal.origin,
         notes=(f"turned to {azimuth:g}° from {normal.name} and {parallel.name}",),
     )
 
@@ -152,7 +155,7 @@ def _stations(which: str) -> tuple[Station, ...]:
     """The stations of one set, from its tables."""
     with _open(which) as store:
         rows = store["groundmotions/table"][:]
-        titles = {int(row["index"]): row["values_block_2"][1].decode() for row in store["records/table"][:]}
+        told = {int(row["index"]): row for row in store["records/table"][:]}
     components: dict[int, list[tuple[str, float]]] = {}
     numbers: dict[int, int] = {}
     for row in rows:  # component a comes before component b
@@ -164,7 +167,9 @@ def _stations(which: str) -> tuple[Station, ...]:
     for index, ((first, dt_first), (second, dt_second)) in components.items():
         event, code, label = _split_name(first)
         labels, steps = (label, _split_name(second)[2]), (dt_first, dt_second)
-        found.append(Station(numbers[index], event, code, titles[index], which, labels, steps, index))
+        quake, title = (text.decode() for text in told[index]["values_block_2"][:2])
+        year = int(told[index]["values_block_1"][1])
+        found.append(Station(numbers[index], event, code, title, f"{quake} {year}", which, labels, steps, index))
     return tuple(found)
 
 
@@ -190,4 +195,5 @@ def _recorded(station: Station, which: int, gravity: float) -> Component:
         site=f"RSN{station.rsn}",
         source=f"{_package()}, {station.event}/{station.code}{label}",
         processed=True,
+        origin=Origin(station.quake, station.title),
     )

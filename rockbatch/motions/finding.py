@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from rockbatch.errors import InputError
@@ -37,12 +37,15 @@ class Found:
         Why it is not to be opened; empty where it may be a record.
     companion : str
         What it is instead of a record; empty where it may be one.
+    root : Path or None
+        Where links may lead: the folder that was given, or that of a file that was.
     """
 
     path: Path
     source: str
     refusal: str = ""
     companion: str = ""
+    root: Path | None = None
 
 
 def files_of(given: Sequence[Path]) -> Iterator[Found]:
@@ -50,7 +53,7 @@ def files_of(given: Sequence[Path]) -> Iterator[Found]:
     seen: set[Path] = set()
     for root in given:
         prefix = f"{root.absolute().name}/" if len(given) > 1 and root.is_dir() else ""
-        inside = os.path.realpath(root)
+        inside = Path(os.path.realpath(root if root.is_dir() else root.parent))
         for path in sorted(_below(root)) if root.is_dir() else [root]:
             real = Path(os.path.realpath(path))
             if real in seen:
@@ -65,7 +68,8 @@ def files_of(given: Sequence[Path]) -> Iterator[Found]:
             elif not real.is_file():
                 yield Found(path, source, "not a regular file")
             elif path.suffix.lower() != ".xml":  # StationXML goes with the records beside it
-                yield from _of_archive(path, source) if archives.is_zip(path) else [_regular(path, source)]
+                found = _of_archive(path, source) if archives.is_zip(path) else [_regular(path, source)]
+                yield from (replace(file, root=inside) for file in found)
 
 
 def _of_archive(path: Path, source: str) -> Iterator[Found]:

@@ -6,21 +6,24 @@ import re
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
+
+import numpy as np
 
 from rockbatch.errors import InputError, UnstatedError
-from rockbatch.files import legible
 from rockbatch.motions import archives, fema_p695
 from rockbatch.motions.baseline import Offset, corrected
+from rockbatch.motions.bounded import TooLongError, bounded
 from rockbatch.motions.component import Component, file_of
 from rockbatch.motions.doubles import without_doubles
 from rockbatch.motions.finding import MANIFESTS, Found, files_of
-from rockbatch.motions.formats import HEAD, ReadOptions, RecordFile, format_of, read_record
+from rockbatch.motions.formats import HEAD, ReadOptions, RecordFile, format_of, read_record, usable
 from rockbatch.motions.manifest import Entry, Manifest, described, is_manifest, options_of
 from rockbatch.motions.motion import LeftOut, Unusable
 from rockbatch.motions.motion_set import MotionSet
 from rockbatch.motions.orientation import counted, is_clock, split_stem, unknown
 from rockbatch.motions.pairing import to_motions
+from rockbatch.motions.texts import with_legible_texts
 from rockbatch.units import GRAVITY
 
 _RSN = re.compile(r"RSN[_ ]?0*(\d+)(?!\d)", re.IGNORECASE)
@@ -142,8 +145,7 @@ def read_files(
             file, manifest, options or ReadOptions(), gravity, offset or Offset(), file.path in numbered
         )
     manifest.finish()
-    readings = _without_renamed(readings, found)
-    return [_legible(reading) for reading in readings], {file.source: file.path for file in found}
+    return _without_renamed(readings, found), {file.source: file.path for file in found}
 
 
 def _without_renamed(readings: Sequence[Reading], found: Sequence[Found]) -> list[Reading]:
@@ -195,24 +197,50 @@ def _numbered(found: Sequence[Found]) -> set[Path]:
 
 def _readings(
     file: Found, manifest: Manifest, options: ReadOptions, gravity: float, offset: Offset, numbered: bool
-) -> Sequence[Reading]:
-    """What one file is: components, and what its manifest leaves out, or the one reason why there are none."""
+) -> list[Reading]:
+    """What one file is: components, and what its manifest leaves out, or the one reason why there are none.
+
+    Whatever a file does ends here: it costs no other file, and its texts go on as they can be shown anywhere.
+    """
     stem = archives.bare(file.path).stem
+    lacks: tuple[str, ...] = ()
+    try:
+        with np.errstate(over="ignore", invalid="ignore"):  # what becomes of absurd numbers is looked at
+            found = _used(file, manifest, options, gravity, offset, numbered)
+        return [with_legible_texts(reading) for reading in found]
+    except InputError as error:
+        reason = "; ".join(error.problems)
+        lacks = error.keys if isinstance(error, UnstatedError) else ()
+    except OSError as error:
+        reason = f"cannot be read: {error.strerror or error}"
+    except TooLongError:
+        reason = (
+            "its reading was ended, after a time in which other files of its size are read twenty times: it is damaged"
+        )
+    except Exception as error:  # the type tells that a reader is at fault
+        reason = f"its reader failed: {type(error).__name__}: {error}"
+    return [with_legible_texts(Unusable(stem, file.source, reason, lacks=lacks))]
+
+
+def _used(
+    file: Found, manifest: Manifest, options: ReadOptions, gravity: float, offset: Offset, numbered: bool
+) -> list[Reading]:
+    """What one file is, with what a manifest says about it; raises what comes up in its reading."""
+    path = archives.bare(file.path)
     entries = manifest.of(file.path)
     if any(not entry.use and entry.component is None for entry in entries):
-        return [LeftOut(stem, file.source, f"use = false in {entries[0].table.file.path.name}")]
+        return [LeftOut(path.stem, file.source, f"use = false in {entries[0].table.file.path.name}")]
     if file.companion:
-        return [LeftOut(stem, file.source, f"no record: {file.companion}")]
+        return [LeftOut(path.stem, file.source, f"no record: {file.companion}")]
     if file.refusal:
-        return [Unusable(stem, file.source, file.refusal)]
+        return [Unusable(path.stem, file.source, file.refusal)]
     read = _read(file, options_of(entries, options), gravity)
     others = [reading for reading in read if isinstance(reading, Unusable)]
     readings: list[Reading] = [_left_out(reading, entries) or reading for reading in others]
-    path = archives.bare(file.path)
     components = [_placed(reading, path, numbered) for reading in read if isinstance(reading, Component)]
     for component, used in described(components, entries, gravity, others):
         if used:
-            readings.append(_without_offset(_directed(component, options.role), offset))
+            readings.append(usable(_without_offset(_directed(component, options.role), offset)))
         else:
             where = entries[0].table.file.path.name
             readings.append(LeftOut(component.name, component.source, f"use = false in {where}"))
@@ -230,22 +258,13 @@ def _left_out(unusable: Unusable, entries: Sequence[Entry]) -> LeftOut | None:
 
 
 def _read(file: Found, options: ReadOptions, gravity: float) -> Sequence[Component | Unusable]:
-    """Components of one file, or the one reason why there are none; never an exception."""
+    """Components of one file, read within a bound."""
     path = archives.bare(file.path)
-    lacks: tuple[str, ...] = ()
-    try:
-        data = archives.content(file.path, HEAD)
-        if format_of(path.suffix, data) is not None:  # else its first bytes are enough to say what it is not
-            data = archives.content(file.path)
-        return read_record(RecordFile(path, file.source, data, options, gravity))
-    except InputError as error:
-        reason = "; ".join(error.problems)
-        lacks = error.keys if isinstance(error, UnstatedError) else ()
-    except OSError as error:
-        reason = f"cannot be read: {error.strerror or error}"
-    except Exception as error:  # one bad file shall not cost the others; the type tells that a reader is at fault
-        reason = f"its reader failed: {type(error).__name__}: {error}"
-    return [Unusable(path.stem, file.source, reason, lacks=lacks)]
+    data = archives.content(file.path, HEAD)
+    if format_of(path.suffix, data) is not None:  # else its first bytes are enough to say what it is not
+        data = archives.content(file.path)
+    with bounded(len(data)):
+        return read_record(RecordFile(path, file.source, data, options, gravity, file.root))
 
 
 def _placed(component: Component, path: Path, numbered: bool) -> Component:
@@ -273,11 +292,3 @@ def _without_offset(component: Component, offset: Offset) -> Component | Unusabl
         return corrected(component, offset)
     except InputError as error:
         return Unusable(component.name, component.source, str(error))
-
-
-def _legible(reading: Reading) -> Reading:
-    """With texts that came from the file, or its name, as they can be shown anywhere."""
-    texts: dict[str, Any] = {"name": legible(reading.name), "source": legible(reading.source)}
-    if isinstance(reading, Component):
-        return replace(reading, **texts, notes=tuple(map(legible, reading.notes)))
-    return replace(reading, **texts, reason=legible(reading.reason))

@@ -2,8 +2,11 @@
 
 from typing import Any
 
+from rockbatch.motions.limits import STEPS, is_step
 from rockbatch.toml.kinds import KindError, number, text
 from rockbatch.units import acceleration_factor
+
+_LONGEST_NAME = 1000
 
 
 def unit(value: Any) -> str:
@@ -17,11 +20,25 @@ def unit(value: Any) -> str:
     return str(value)
 
 
+def file_name(value: Any) -> str:
+    """The name of a file, as one that there can be."""
+    if "\x00" in text(value) or len(value) > _LONGEST_NAME:
+        raise KindError("the name of a file")
+    return str(value)
+
+
 def vertical(value: Any) -> bool | str:
     """Whether vertical components are used: true, false, or "required"."""
     if not isinstance(value, bool) and value != "required":
         raise KindError('true, false or "required"')
     return value
+
+
+def step(value: Any) -> float:
+    """A sampling interval [s]."""
+    if not is_step(number(value)):
+        raise KindError(f"a sampling interval of {STEPS}")
+    return float(value)
 
 
 def azimuth(value: Any) -> float:

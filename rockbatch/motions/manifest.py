@@ -5,6 +5,7 @@ the folder that the names of the files start from.
 """
 
 import csv
+import io
 import os
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
@@ -23,13 +24,13 @@ from rockbatch.toml.reader import Key, Table, TomlFile
 from rockbatch.units import acceleration_factor
 
 RECORD = {
-    "file": Key(text, '"RSN1063_NORTHR_RRS228.AT2"', required=True),
+    "file": Key(kinds.file_name, '"RSN1063_NORTHR_RRS228.AT2"', required=True),
     "component": Key(text, '"NS"'),
     "use": Key(boolean, "false"),
     "role": Key(choice("horizontal", "vertical"), '"vertical"'),
     "azimuth": Key(kinds.azimuth, "228"),
     "unit": Key(kinds.unit, '"cm/s2"'),
-    "dt": Key(positive, "0.01"),
+    "dt": Key(kinds.step, "0.01"),
     "scale": Key(positive, "1.0"),
     "polarity": Key(choice("+", "-"), '"-"'),
     "station": Key(text, '"Rinaldi"'),
@@ -38,9 +39,10 @@ RECORD = {
     "confirm": Key(boolean, "true"),
     "confirm_pga": Key(boolean, "true"),
 }
+_MOST_HINTS = 10  # for files that are not there: each is compared with all that are
+_LONGEST_HEAD = 1000  # bytes of the first line of a CSV
 _CONFIRM = ("confirm", "confirm_pga")
 _TEXTS = ("file", "component", "role", "unit", "polarity", "station")
-_LARGEST = 4 * 2**20  # bytes, some ten thousand records
 _SAME = 1e-9  # relative: factors of units, and steps, that differ by less are the same
 
 
@@ -92,8 +94,11 @@ class Manifest:
         self.files.append(file)
         Table(file, (), "", file.data).read({}, other=("record",))
         folder = Path(os.path.realpath(file.path.parent))
+        seen: set[tuple[Path, str | None]] = set()
         for table in file.tables("record", title="file"):
             values = table.read(RECORD)
+            if file.is_full:
+                return
             if "file" not in values:
                 continue
             path = Path(os.path.realpath(folder / values["file"]))
@@ -101,14 +106,13 @@ class Manifest:
                 table.complain(
                     f"file = {shown(values['file'])}: lies outside this folder; put a manifest there", "file"
                 )
-            elif not path.is_file() and not is_member(path):
-                names = [entry.name for entry in path.parent.iterdir()] if path.parent.is_dir() else []
-                meant = closest(path.name, sorted(names))
-                hint = f"; did you mean {(path.parent / meant).relative_to(folder).as_posix()}?" if meant else ""
+            elif not _is_there(path):
+                hint = _nearby(path, folder) if len(file.problems) < _MOST_HINTS else ""
                 table.complain(f"file = {shown(values['file'])}: no such file in {folder}{hint}", "file")
-            elif any(other.component == values.get("component") for other in self.entries.get(path, [])):
+            elif (path, values.get("component")) in seen:
                 table.complain(f"file = {shown(values['file'])}: given twice; write one table for it", "file")
             else:
+                seen.add((path, values.get("component")))
                 self.entries.setdefault(path, []).append(Entry(path, table, values))
 
     def of(self, path: Path) -> list[Entry]:
@@ -130,6 +134,24 @@ class Manifest:
             raise InputError(*problems)
 
 
+def _is_there(path: Path) -> bool:
+    """Whether there is such a file, on the disk or in an archive."""
+    try:
+        return path.is_file() or is_member(path)
+    except OSError:  # a name that is too long, a folder that is closed
+        return False
+
+
+def _nearby(path: Path, folder: Path) -> str:
+    """What file was meant, if there is one of a similar name."""
+    try:
+        names = os.listdir(path.parent)
+    except OSError:
+        return ""
+    meant = closest(path.name, sorted(names))
+    return f"; did you mean {(path.parent / meant).relative_to(folder).as_posix()}?" if meant else ""
+
+
 def options_of(entries: Sequence[Entry], options: ReadOptions) -> ReadOptions:
     """``options`` with the unit and the sampling interval that the manifest has for the whole file."""
     for entry in entries:
@@ -148,6 +170,8 @@ def described(
     """
     chosen: list[tuple[Component, bool]] = [(component, True) for component in components]
     for entry in entries:
+        if entry.table.file.is_full:
+            break
         meant = [i for i, c in enumerate(components) if entry.component in (None, c.name, c.orientation.label)]
         if not meant and components and not any(map(entry.is_for, others)):
             labels = [*(c.orientation.label or c.name for c in components), *(other.label for other in others)]
@@ -190,7 +214,8 @@ def _described(component: Component, entry: Entry, gravity: float) -> Component:
         initial = initial and initial.times(-1.0)
         notes.append(f"sign reversed as {where} says")
     if "station" in values:
-        component = replace(component, station=values["station"], site="")
+        origin = replace(component.origin, station=values["station"])
+        component = replace(component, station=values["station"], site="", origin=origin)
     return replace(
         component,
         acceleration=component.acceleration * factor if factor != 1.0 else component.acceleration,
@@ -228,8 +253,6 @@ def _orientation(found: Orientation, entry: Entry) -> Orientation:
 
 def _open(path: Path) -> TomlFile:
     """The manifest as TOML, whichever of the two it is."""
-    if path.stat().st_size > _LARGEST:
-        raise InputError(f"{path}: larger than {_LARGEST // 2**20} MiB; a manifest has a few lines for each record")
     return TomlFile.read(path) if path.suffix == ".toml" else _from_csv(path)
 
 
@@ -237,9 +260,19 @@ def is_manifest(path: Path) -> bool:
     """Whether a file of a manifest's name is one: a ``motions.csv`` may be a record, if none of its columns is "file"."""
     if path.suffix == ".toml":
         return True
-    with path.open("rb") as file:
-        head = file.readline(1000).decode("utf-8-sig", "replace")
-    return "file" in [cell.strip() for cell in next(csv.reader([head], delimiter=_delimiter(head)), [])]
+    try:
+        with path.open("rb") as file:
+            head = _first_line(file.read(_LONGEST_HEAD).decode("utf-8-sig", "replace"))
+    except OSError:
+        return True  # what cannot be read is told with the other mistakes
+    try:
+        return "file" in [cell.strip() for cell in next(csv.reader([head], delimiter=_delimiter(head)), [])]
+    except csv.Error:
+        return False
+
+
+def _first_line(text: str) -> str:
+    return io.StringIO(text, newline=None).readline()
 
 
 def _delimiter(head: str) -> str:
@@ -247,19 +280,26 @@ def _delimiter(head: str) -> str:
 
 
 def _from_csv(path: Path) -> TomlFile:
-    """A ``motions.csv`` as if it were TOML; empty cells are keys that are not there."""
-    try:
-        content = path.read_text("utf-8-sig")
-    except UnicodeDecodeError:
-        raise InputError(f"{path}: not UTF-8 text; save it as CSV in the encoding UTF-8") from None
-    lines = content.splitlines()
-    delimiter = _delimiter(lines[0])
-    reader = csv.reader(lines, delimiter=delimiter)
-    names = [name.strip() for name in next(reader)]
+    """A ``motions.csv`` as if it were TOML, with any of the three line ends; empty cells are keys that are not there."""
+    content = TomlFile.text_of(path)
+    delimiter = _delimiter(_first_line(content))
+    reader = csv.reader(io.StringIO(content, newline=""), delimiter=delimiter)
     records: list[dict[str, Any]] = []
     file = TomlFile(path, content, {"record": records}, {})
+    try:
+        _take_rows(file, reader, records, delimiter)
+    except csv.Error as error:
+        raise InputError(f"{path}:{reader.line_num}: not a line of a CSV file: {error}") from None
+    return file
+
+
+def _take_rows(file: TomlFile, reader: Any, records: list[dict[str, Any]], delimiter: str) -> None:
+    """Put a table for each row of the CSV ``reader`` into ``records``, and note the lines, and mistakes, in ``file``."""
+    names = [name.strip() for name in next(reader)]
     file.lines[("header",)] = 1
     for name in names:
+        if file.is_full:
+            break
         if name not in RECORD:
             meant = closest(name, RECORD)
             instead = f"did you mean {meant}?" if meant else "write one of " + ", ".join(RECORD)
@@ -276,7 +316,6 @@ def _from_csv(path: Path) -> TomlFile:
         }
         file.lines.update({(*at, name): reader.line_num for name in given})
         records.append({name: _value(name, cell, delimiter) for name, cell in given.items()})
-    return file
 
 
 def _value(name: str, cell: str, delimiter: str) -> Any:

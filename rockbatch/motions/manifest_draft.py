@@ -125,4 +125,5 @@ def _remark(name: str, reason: str) -> str:
 
 
 def _written(value: Any) -> str:
-    return json.dumps(value, ensure_ascii=False) if isinstance(value, str) else f"{value:g}"
+    """A value as TOML writes it; a text without what neither TOML nor a terminal takes, such as the character DEL."""
+    return json.dumps(legible(value), ensure_ascii=False) if isinstance(value, str) else f"{value:g}"

@@ -1,4 +1,4 @@
-"""Intensity measures: peak acceleration, velocity and displacement, Arias intensity and significant duration.
+"""Intensity measures: peak acceleration, velocity and displacement, Arias intensity, CAV and durations.
 
 For velocity and displacement the acceleration is linear between its samples and is integrated as it stands, from the
 velocity and displacement that the record's file tells for its first sample, else from rest: no baseline is fitted.
@@ -117,3 +117,42 @@ def _energy(acceleration: Samples, dt: float) -> Samples:
     """
     squares = acceleration * acceleration
     return np.concatenate(([0.0], np.cumsum(0.5 * dt * (squares[:-1] + squares[1:]))))
+
+
+def cumulative_absolute_velocity(acceleration: Samples, dt: float) -> float:
+    """CAV = ∫|a| dt [m/s] over the whole record (EPRI 1988), exact for a straight between its samples."""
+    first, second = np.abs(acceleration[:-1]), np.abs(acceleration[1:])
+    both = first + second
+    crosses = acceleration[:-1] * acceleration[1:] < 0
+    return float(0.5 * dt * np.where(crosses, (first**2 + second**2) / np.where(crosses, both, 1.0), both).sum())
+
+
+def bracketed_duration(acceleration: Samples, dt: float, threshold: float) -> float:
+    """Time [s] from the first to the last exceedance of ``threshold`` [m/s²] by |a| (Bolt 1973); 0 without any."""
+    above = np.flatnonzero(np.abs(acceleration) > threshold)
+    if len(above) == 0:
+        return 0.0
+
+    def beyond(last_above: int, outside: int) -> float:
+        """Part of the interval towards a sample that is not above, over which it still is."""
+        if not 0 <= outside < len(acceleration):
+            return 0.0
+        inside = abs(acceleration[last_above])
+        return float(
+            (inside - threshold) / (inside - math.copysign(1.0, acceleration[last_above]) * acceleration[outside])
+        )
+
+    first, last = int(above[0]), int(above[-1])
+    return (last - first + beyond(first, first - 1) + beyond(last, last + 1)) * dt
+
+
+def uniform_duration(acceleration: Samples, dt: float, threshold: float) -> float:
+    """Time [s] during which |a| exceeds ``threshold`` [m/s²], all exceedances together (Bolt 1973)."""
+
+    def above(a: Samples) -> float:
+        least, largest = np.minimum(a[:-1], a[1:]), np.maximum(a[:-1], a[1:])
+        level = largest == least
+        share = np.clip((largest - threshold) / np.where(level, 1.0, largest - least), 0.0, 1.0)
+        return float(np.where(level, largest > threshold, share).sum())
+
+    return dt * (above(acceleration) + above(-acceleration))

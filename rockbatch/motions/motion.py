@@ -7,6 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from rockbatch.errors import InputError
+from rockbatch.motions.origin import NOBODY_KNOWS, Origin
 from rockbatch.showing import Shown
 from rockbatch.units import GRAVITY
 
@@ -79,8 +80,12 @@ class Motion(Shown):
         Whether its agency has corrected the horizontal component; ``None`` where the file does not say.
     findings : tuple of Finding
         What is odd about it, told when it was read.
+    origin : Origin
+        Event, station and direction in words, as far as its header says them.
     lacks_vertical : bool
         Whether a vertical component was asked for, and there is none.
+    station : str
+        What the components of one station in one earthquake share, which count as one record; empty for a record of its own.
 
     Raises ``InputError`` for samples that are no numbers and components of different lengths.
 
@@ -110,7 +115,9 @@ class Motion(Shown):
     initial: Initial | None = None
     processed: bool | None = None
     findings: tuple[Finding, ...] = ()
+    origin: Origin = NOBODY_KNOWS
     lacks_vertical: bool = False
+    station: str = ""
 
     def __post_init__(self) -> None:
         wrong = []
@@ -138,9 +145,30 @@ class Motion(Shown):
             raise InputError(*wrong)
 
     @property
+    def label(self) -> str:
+        """What it is called among people: "Imperial Valley 1979, Meloland, 270"; its file where the header tells nothing."""
+        return self.origin.label or (self.name if self.source in ("", "pulse") else self.source)
+
+    @property
+    def named(self) -> str:
+        """Its label, with its name in tables beside it where that is another one."""
+        return self.label if self.label == self.name else f"{self.label} ({self.name})"
+
+    @property
+    def short(self) -> str:
+        """Likewise, of a label that fits into a line of a terminal beside numbers."""
+        short = self.origin.short.label
+        return f"{short} ({self.name})" if short else self.named
+
+    @property
     def files(self) -> str:
         """Where its components came from."""
         return ", ".join(source for source in (self.source, self.vertical_source) if source)
+
+    @property
+    def of_station(self) -> str:
+        """The record that it counts as: its station's, or its own."""
+        return self.station or self.name
 
     @property
     def npts(self) -> int:
@@ -165,6 +193,7 @@ class Motion(Shown):
     def _told(self) -> tuple[str, dict[str, str]]:
         """See :class:`Shown`."""
         return f"ground motion {self.name}", {
+            "record": self.origin.label,
             "samples": f"{self.npts} at {self.dt:g} s: {self.duration:.2f} s",
             "PGA": f"{self.pga / GRAVITY:.3f} g"
             + ("" if self.pga_vertical is None else f", vertical {self.pga_vertical / GRAVITY:.3f} g"),

@@ -33,13 +33,19 @@ COLUMNS = (
     "processed",
     "check",
     "processing",
+    "event",
+    "station_name",
+    "direction",
+    "station",
 )
 """Of :meth:`MotionSet.table`, and keys of :func:`row`."""
 
-TEXTS = ("record", "file_h", "file_v", "processed", "check", "processing")
+TEXTS = (
+    "record", "file_h", "file_v", "processed", "check", "processing", "event", "station_name", "direction", "station",
+)  # fmt: skip
 """Those of them that hold words; the others hold numbers."""
 
-_AT_A_GLANCE = ["record", "dt_s", "duration_s", "pga_h_g", "pga_v_g", "pgv_h_m_s"]
+_AT_A_GLANCE = ["record", "event", "station_name", "direction", "dt_s", "duration_s", "pga_h_g", "pga_v_g", "pgv_h_m_s"]
 
 
 @dataclass(frozen=True, repr=False)
@@ -108,12 +114,13 @@ class MotionSet(Shown):
 
         Returns
         -------
-        DataFrame, shape (len, 18)
+        DataFrame, shape (len, 22)
             ``record``; ``file_h`` and ``file_v``, where its components are from; ``dt_s``, ``npts``, ``duration_s``;
             ``pga_h_g``, ``pga_v_g`` [9.81 m/s²], ``pgv_h_m_s``, ``pgd_h_m``, ``arias_m_s`` and ``d5_95_s``, measures of the
             record (:mod:`rockbatch.motions.measures`); ``azimuth_deg``, ``magnitude``, ``distance_km``, where known;
             ``processed``, "yes" or "no", as its agency says; ``check``, what is odd about it; ``processing``, what was done
-            to it here. Words are "" and numbers NaN where there are none.
+            to it here; ``event``, ``station_name``, ``direction``, as its header says; ``station``, what components that
+            count as one record share. Words are "" and numbers NaN where there are none.
         """
         import pandas as pd
 
@@ -138,7 +145,8 @@ class MotionSet(Shown):
 
     def _beneath(self) -> "pd.DataFrame":
         """See :class:`Shown`."""
-        return self.table()[_AT_A_GLANCE].round(3)
+        table = self.table()[_AT_A_GLANCE].round(3)
+        return table.loc[:, (table != "").any()]  # without words that nobody knows
 
 
 def row(motion: Motion) -> dict[str, Any]:
@@ -163,6 +171,10 @@ def row(motion: Motion) -> dict[str, Any]:
         "processed": None if motion.processed is None else ("yes" if motion.processed else "no"),
         "check": ", ".join(finding.what for finding in motion.findings) or None,
         "processing": "; ".join(motion.notes),
+        "event": motion.origin.event or None,
+        "station_name": motion.origin.station or None,
+        "direction": motion.origin.direction or None,
+        "station": motion.of_station,
     }
 
 

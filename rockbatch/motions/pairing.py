@@ -9,13 +9,15 @@ from typing import Literal
 
 import numpy as np
 
-from rockbatch.motions.common_span import on_common_samples, overlap
+from rockbatch.motions.common_span import on_common_samples, overlap, too_unlike
 from rockbatch.motions.component import Component
 from rockbatch.motions.measures import state_at
 from rockbatch.motions.motion import Motion, Unusable
 from rockbatch.motions.motion_set import MotionSet
 from rockbatch.motions.orientation import same_azimuth
+from rockbatch.motions.origin import directed
 from rockbatch.motions.plausible import ANY, Judged, doubt, findings, fits
+from rockbatch.motions.station_names import station_names
 from rockbatch.motions.stations import by_station
 from rockbatch.motions.turning import turn_pairs
 from rockbatch.toml.kinds import shown
@@ -54,6 +56,7 @@ def to_motions(
     kept, replaced = _without_doubles([c for c in components if not c.orientation.vertical], packaged)
     stations = by_station([*components, *(c for c in kept if not c.folder)])
     number = {id(c): i for i, station in enumerate(stations) for c in station}
+    known_as = station_names(stations)
     verticals = [[c for c in station if c.orientation.vertical] for station in stations]
     unusable: list[Unusable] = []
     horizontals = [(number[id(c)], c) for c in kept]
@@ -63,21 +66,17 @@ def to_motions(
     used: set[int] = set()
     motions: list[Motion] = []
     for station, component in horizontals:
-        notes = list(component.notes)
-        notes += replaced.get(id(component), [])
+        notes = [*component.notes, *replaced.get(id(component), [])]
         partner = None
         if vertical:
             together = [v for v in _candidates(component, station, verticals) if overlap(component, v)]
-            if len(together) > 1:
-                notes.append(f"no vertical: there are {len(together)} of them for this station")
-                names = ", ".join(v.source for v in together)
-                reason = f"several vertical components of one station ({names}): keep one of them"
-                unusable += [Unusable(v.name, v.source, reason) for v in together if id(v) not in used]
-            elif together:
-                partner = together[0]
+            partner, refused = _partner(component, together)
+            notes += [f"no vertical: {v.source}: {why}" for v, why in refused]
+            unusable += [Unusable(v.name, v.source, why) for v, why in refused if id(v) not in used]
             used.update(id(v) for v in together)
         motion = _motion(component, partner, notes)
-        motions.append(replace(motion, lacks_vertical=bool(vertical) and motion.vertical is None))
+        lacking = bool(vertical) and motion.vertical is None
+        motions.append(replace(motion, station=known_as[station], lacks_vertical=lacking))
     if vertical:
         reason = "a vertical component without a usable horizontal one of its station in its folder"
         left = [v for group in verticals for v in group if id(v) not in used]
@@ -102,7 +101,7 @@ def _believed(judged: Iterable[Judged], patterns: Mapping[str, Sequence[str]], r
         motion, odd = each.motion, findings(each)
         keys = {*each.component.confirmed, *(key for key, names in patterns.items() if fits(motion.name, names))}
         if motion.lacks_vertical and required:
-            unusable.append(Unusable(motion.name, motion.files, _NO_VERTICAL))
+            unusable.append(Unusable(motion.name, motion.files, f"{motion.label} {_NO_VERTICAL}"))
         elif why := doubt(motion.name, odd, keys):
             unusable.append(Unusable(motion.name, motion.files, why))
         else:
@@ -163,6 +162,17 @@ def _candidates(horizontal: Component, station: int, verticals: Sequence[Sequenc
     return [v for v in of_site if v.folder == first]
 
 
+def _partner(h: Component, together: Sequence[Component]) -> tuple[Component | None, list[tuple[Component, str]]]:
+    """Which of the vertical components of its station and time goes with a horizontal one; the others, and why not."""
+    refused = [(v, why) for v in together if (why := too_unlike(h, v))]
+    fitting = [v for v in together if not too_unlike(h, v)]
+    if len(fitting) < 2:
+        return (fitting[0] if fitting else None), refused
+    names = ", ".join(v.source for v in fitting)
+    reason = f"several vertical components of one station ({names}): keep one of them"
+    return None, [*refused, *((v, reason) for v in fitting)]
+
+
 def _motion(h: Component, v: Component | None, notes: Iterable[str]) -> Motion:
     """The motion of a horizontal component and its vertical one."""
     said = list(notes)
@@ -193,6 +203,7 @@ def _motion(h: Component, v: Component | None, notes: Iterable[str]) -> Motion:
         distance_km=h.distance_km,
         initial=initial,
         processed=h.processed,
+        origin=directed(h.origin, h.orientation),
     )
 
 

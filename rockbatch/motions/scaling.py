@@ -1,5 +1,7 @@
-"""Records scaled to a target: a PGA, a PGV, or a spectral acceleration."""
+"""Records scaled to a target: a PGA, a PGV, a spectral acceleration, or a whole spectrum."""
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from rockbatch.errors import InputError
@@ -7,6 +9,7 @@ from rockbatch.motions import measures
 from rockbatch.motions.motion import Motion, Unusable
 from rockbatch.motions.motion_set import MotionSet
 from rockbatch.motions.spectrum import spectral_acceleration
+from rockbatch.motions.spectrum_target import SpectrumTarget
 
 
 @dataclass(frozen=True)
@@ -37,8 +40,11 @@ class Target:
             return f"SA({self.period_s:g} s, {100 * self.damping:g} %) = {self.sa_g:g} g"
         return f"PGA = {self.pga_g:g} g" if self.pga_g is not None else f"PGV = {self.pgv_m_s:g} m/s"
 
-    def factor(self, motion: Motion, gravity: float) -> float:
-        """What brings ``motion`` to the target; infinite for one without motion."""
+    def factors_of(self, motions: Sequence[Motion], gravity: float) -> list[float]:
+        """What brings each of ``motions`` to the target; infinite for one without motion."""
+        return [self._factor(motion, gravity) for motion in motions]
+
+    def _factor(self, motion: Motion, gravity: float) -> float:
         if self.pga_g is not None:
             wanted, found = self.pga_g * gravity, motion.pga
         elif self.pgv_m_s is not None:
@@ -48,17 +54,18 @@ class Target:
             assert self.period_s is not None
             wanted = self.sa_g * gravity
             found = float(spectral_acceleration(motion.horizontal, motion.dt, [self.period_s], self.damping)[0])
-        return wanted / found if found > 0 else float("inf")
+        return wanted / found if found > 0 else math.inf
 
 
-def at_target(found: MotionSet, target: Target, gravity: float) -> MotionSet:
+def at_target(found: MotionSet, target: Target | SpectrumTarget, gravity: float) -> MotionSet:
     """All motions scaled to ``target``, with the factor noted; one without motion is unusable."""
     motions: list[Motion] = []
     unusable: list[Unusable] = []
-    for motion in found.motions:
-        factor = target.factor(motion, gravity)
-        if factor == float("inf"):
+    for motion, factor in zip(found.motions, target.factors_of(found.motions, gravity), strict=True):
+        if math.isinf(factor):
             unusable.append(Unusable(motion.name, motion.files, f"has no motion that can be scaled to {target}"))
+        elif factor == 1.0:
+            motions.append(motion)
         else:
             motions.append(_scaled(motion, factor, f"scaled by {factor:.4g} to {target}"))
     return replace(found, motions=motions, unusable=[*found.unusable, *unusable])

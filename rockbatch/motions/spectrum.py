@@ -9,6 +9,7 @@ linear its solution is exact (Nigam & Jennings 1969, BSSA 59(2), 909–922, in c
 """
 
 import math
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -70,13 +71,23 @@ def spectral_acceleration(
     return peaks
 
 
-def suite_spectra(motions: list[Motion], gravity: float, damping: float = 0.05) -> dict[str, object]:
-    """Horizontal spectra of motions at ``PERIODS``, as run.json has them: ``damping``, ``period_s`` and, in the order
-    of the motions, ``sa_g``."""
-    spectra = [spectral_acceleration(m.horizontal, m.dt, PERIODS, damping) / gravity for m in motions]
+def periods_over(low: float, high: float) -> npt.NDArray[np.float64]:
+    """``PERIODS``, and as many a decade beyond them as it takes to reach from ``low`` to ``high`` [s]."""
+    before = max(0, math.ceil(20 * math.log10(PERIODS[0] / low) - 1e-9))
+    after = max(0, math.ceil(20 * math.log10(high / PERIODS[-1]) - 1e-9))
+    return np.asarray(PERIODS[0] * 10.0 ** (np.arange(-before, len(PERIODS) + after) / 20.0), dtype=np.float64)
+
+
+def suite_spectra(
+    motions: list[Motion], gravity: float, damping: float = 0.05, periods: npt.ArrayLike = PERIODS
+) -> dict[str, Any]:
+    """Horizontal spectra of motions, as run.json has them: ``damping``, ``period_s`` and, in the order of the motions,
+    ``sa_g``."""
+    at = np.asarray(periods, dtype=np.float64)
+    spectra = [spectral_acceleration(m.horizontal, m.dt, at, damping) / gravity for m in motions]
     return {
         "damping": damping,
-        "period_s": [float(f"{period:.4g}") for period in PERIODS],
+        "period_s": [float(f"{period:.4g}") for period in at],
         "sa_g": [[float(f"{value:.4g}") for value in spectrum] for spectrum in spectra],
     }
 

@@ -10,6 +10,11 @@ from rockbatch.motions.component import Component, file_of
 _NUMBERED = re.compile(r"RSN\d+")
 
 
+def is_numbered(site: str) -> bool:
+    """Whether a site is PEER's number of a record, which no other record has."""
+    return _NUMBERED.fullmatch(site) is not None
+
+
 def by_station(components: Iterable[Component]) -> list[list[Component]]:
     """Components of one station, folder and time together: by header first, then by name; in order of their first ones.
 
@@ -25,7 +30,7 @@ def by_station(components: Iterable[Component]) -> list[list[Component]]:
     for group in (part for whole in by_header.values() for record in _by_time(whole) for part in _by_file(record)):
         folder, headed = group[0].folder, bool(group[0].station)
         sites = list(dict.fromkeys(component.site for component in group if component.site))
-        of_name = (known.get((folder, site, headed and not _NUMBERED.fullmatch(site))) for site in sites)
+        of_name = (known.get((folder, site, headed and not is_numbered(site))) for site in sites)
         station = next((other for other in of_name if other and _may_join(other, group)), None)
         if station is None:
             station = group

@@ -8,7 +8,7 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
-from rockbatch.motions.common_span import Common, on_common_samples, overlap
+from rockbatch.motions.common_span import Common, on_common_samples, overlap, too_unlike
 from rockbatch.motions.component import Component
 from rockbatch.motions.measures import state_at
 from rockbatch.motions.motion import Initial, Samples, Unusable
@@ -63,7 +63,10 @@ def _obstacle(horizontals: Sequence[Component]) -> str:
     between = abs((_azimuth(second) - _azimuth(first) + 180.0) % 360.0 - 180.0)
     if abs(between - 90.0) > _SQUARE:
         return f"{first.name} and {second.name} are {between:g}° apart, not square to each other"
-    return "" if overlap(first, second) else f"{first.name} and {second.name} have no time in common"
+    if not overlap(first, second):
+        return f"{first.name} and {second.name} have no time in common"
+    why = too_unlike(first, second)
+    return f"{second.name}: {why}" if why else ""
 
 
 def _azimuth(component: Component) -> float:

@@ -9,9 +9,13 @@ from typing import Any, Literal, Self, get_args
 
 from rockbatch.errors import InputError
 from rockbatch.pier.block import Pier, not_positive
+from rockbatch.units import MOST
 
 LEAST_ETA = 1.000001
 """Closer to 1, Bouc–Wen springs would have to sink without end to carry the weight."""
+
+MOST_EXPONENT = 1000.0
+"""Of Bouc–Wen springs: the corner is as sharp as that of elastic–perfectly plastic ones, which have none."""
 
 MOST_ETA = 100.0
 """Beyond it a wrong unit is likelier than the support: foundations bear 2 to 20 times what they carry."""
@@ -33,6 +37,7 @@ class RigidBase:
 
     ``restitution`` is the factor e on the angular velocity at an impact; ``None`` means :attr:`Pier.restitution`, Housner's
     e = 1 − 2μ/(1+μ) sin²α, which conserves the angular momentum about the new pivot, or 0 where that is negative.
+    ``friction``, if known, is the coefficient of the interface: a run says where its forces ask for more (THEORY.md, 7).
 
     Examples
     --------
@@ -41,6 +46,7 @@ class RigidBase:
     """
 
     restitution: float | None = None
+    friction: float | None = field(default=None, kw_only=True)
 
     name = "rigid"
 
@@ -59,6 +65,8 @@ class ElasticBase:
         The paper's equations, or those that hold for large rotations.
     flight : "stop" or "guided"
         What happens when both pivots are off the ground: the analysis ends, or shear keys guide the pier down.
+    friction : float, optional
+        Coefficient of the interface, if known: a run says where its forces ask for more, and goes on (THEORY.md, 7).
 
     Examples
     --------
@@ -70,6 +78,7 @@ class ElasticBase:
     epsilon: float = 0.0
     kinematics: Kinematics = "first-order"
     flight: Flight = "stop"
+    friction: float | None = field(default=None, kw_only=True)
 
     name = "elastic"
 
@@ -209,20 +218,22 @@ Base = RigidBase | ElasticBase | YieldingBase
 
 def problems(pier: Pier, base: Base) -> list[str]:
     """What is impossible about ``pier`` on ``base``: one sentence each, with the limit; empty if nothing."""
+    wrong = not_positive(friction=(base.friction, ", the coefficient of the interface"))
     if isinstance(base, RigidBase):
         e = base.restitution
         if e is not None and not 0 <= e <= 1:
-            return [f"restitution = {e:g}: must be within 0..1 (leave it out for Housner's value)"]
-        return []
+            wrong.append(f"restitution = {e:g}: must be within 0..1 (leave it out for Housner's value)")
+        return wrong
     if pier.deck_over_columns is not None:
         return [
             f"columns: a rocking frame is solved on rigid ground only, and this base is {base.name}. On springs the columns "
             "sink by themselves, the deck no longer moves level, and no one block stands for them (Makris & Vassiliou 2013); "
             'write base = "rigid", or leave columns out for a single pier'
         ]
-    wrong = []
     least = least_beta(pier, base)
-    if not (math.isfinite(base.beta) and base.beta > pier.least_beta):
+    if base.beta > MOST:
+        wrong.append(f"beta = {base.beta:g}: must be {MOST:g} at most")
+    elif not base.beta > pier.least_beta:
         wrong.append(
             f"beta = {base.beta:g}: the pier topples on its springs under its own weight; beta must be above "
             f"sqrt((1+mu) cos(alpha)/mu)/sin(alpha) = {pier.least_beta:.4g}"
@@ -238,14 +249,16 @@ def problems(pier: Pier, base: Base) -> list[str]:
     wrong += _unknown("kinematics", base.kinematics, get_args(Kinematics))
     wrong += _unknown("flight", base.flight, get_args(Flight))
     if isinstance(base, YieldingBase):
-        if not (math.isfinite(base.eta) and base.eta >= LEAST_ETA):
+        if base.eta > MOST:
+            wrong.append(f"eta = {base.eta:g}: must be {MOST:g} at most")
+        elif not base.eta >= LEAST_ETA:
             wrong.append(
                 f"eta = {base.eta:.10g}: the springs cannot carry the weight; eta = yield force over static force must "
                 f"be above 1 (at least {LEAST_ETA:.6f})"
             )
         wrong += _unknown("spring", base.spring, get_args(SpringLaw))
-        if not (math.isfinite(base.n) and base.n >= 1):
-            wrong.append(f"n = {base.n:g}: the Bouc–Wen exponent must be at least 1")
+        if not 1 <= base.n <= MOST_EXPONENT:
+            wrong.append(f"n = {base.n:g}: the Bouc–Wen exponent must be at least 1, and {MOST_EXPONENT:g} at most")
     return wrong
 
 

@@ -2,11 +2,14 @@
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from rockbatch.errors import InputError
-from rockbatch.units import GRAVITY
+from rockbatch.units import GRAVITY, LEAST, MOST
+
+POSSIBLE = {"alpha": (1e-4, math.pi / 2), "p": (1e-3, 1e3), "mu": (1e-3, 1e9), "gravity": (1e-3, 1e3)}
+"""What a pier can be, far beyond what any is: p = 0.001 rad/s is one of 7000 km. Beyond it a run would never end."""
 
 
 class Part(NamedTuple):
@@ -48,6 +51,8 @@ class Pier:
         Height above the pivots at which drift is read [m]; twice that of the centre of mass where it is not given.
     deck_over_columns : float, optional
         γ = m_d/(N m_c) of a rocking frame, whose equivalent block this is; see :meth:`frame`.
+    deck_height_m : float, optional
+        Height above the pivots of the deck's centre [m], whose acceleration is told; the top where it is not given.
 
     Raises ``InputError`` with all that is impossible.
 
@@ -68,6 +73,7 @@ class Pier:
     mass_t: float | None = None
     top_m: float | None = None
     deck_over_columns: float | None = None
+    deck_height_m: float | None = None
 
     def __post_init__(self) -> None:
         wrong = not_positive(
@@ -78,12 +84,18 @@ class Pier:
             mass_t=(self.mass_t, " [t]"),
             top_m=(self.top_m, " [m]"),
             deck_over_columns=(self.deck_over_columns, ""),
+            deck_height_m=(self.deck_height_m, " [m]"),
         )
         if self.alpha >= math.pi / 2:
             wrong.append(
                 f"alpha = {self.alpha:g}: must be below π/2 = 1.5708 rad; "
                 f"if it is in degrees, write {math.radians(self.alpha):.4g}"
             )
+        wrong = wrong or [
+            f"{name} = {value:g}: must be within {low:g} and {high:g}"
+            for name, (low, high) in POSSIBLE.items()
+            if not low <= (value := getattr(self, name)) <= high
+        ]
         if wrong:
             raise InputError(*wrong)
 
@@ -123,7 +135,13 @@ class Pier:
 
     @classmethod
     def of_parts(
-        cls, width_m: float, parts: Iterable[Part], *, top_m: float | None = None, gravity: float = GRAVITY
+        cls,
+        width_m: float,
+        parts: Iterable[Part],
+        *,
+        top_m: float | None = None,
+        deck_height_m: float | None = None,
+        gravity: float = GRAVITY,
     ) -> "Pier":
         """Pier of any shape, with what it carries (THEORY.md, 1).
 
@@ -135,6 +153,8 @@ class Pier:
             Or of (mass_t, height_m, inertia_t_m2): masses m_i at heights h_i, with inertias I_i about their own centres.
         top_m : float, optional
             Where drift is read [m]; at the highest part's centre by default.
+        deck_height_m : float, optional
+            Where the deck's acceleration is told [m]; at the top by default.
 
         Returns
         -------
@@ -151,8 +171,8 @@ class Pier:
         for n, part in enumerate(parts, 1):
             wrong += not_positive(**{f"part_{n}_mass_t": (part.mass_t, " [t]")})
             for name, value in (("height_m", part.height_m), ("inertia_t_m2", part.inertia_t_m2)):
-                if not (math.isfinite(value) and value >= 0):
-                    wrong.append(f"part_{n}_{name} = {value:g}: must be 0 or a number above it")
+                if not (value == 0 or LEAST <= value <= MOST):
+                    wrong.append(f"part_{n}_{name} = {value:g}: must be 0 or a number above it, to {MOST:g}")
         if not parts:
             wrong.append("parts: there are none; a pier has one at least")
         if wrong:
@@ -166,7 +186,8 @@ class Pier:
         size = math.hypot(0.5 * width_m, height)
         top = max(part.height_m for part in parts) if top_m is None else top_m
         alpha = math.atan2(0.5 * width_m, height)
-        return cls.from_size(alpha, size, mass * size**2 / inertia, gravity, mass_t=mass, top_m=top)
+        pier = cls.from_size(alpha, size, mass * size**2 / inertia, gravity, mass_t=mass, top_m=top)
+        return pier if deck_height_m in (None, top) else replace(pier, deck_height_m=deck_height_m)
 
     @classmethod
     def with_deck(
@@ -187,12 +208,16 @@ class Pier:
         inertia about it, 0 for a deck on bearings that does not turn with the pier. Drift is read at ``top_m``, by default the
         higher of shaft and deck. See :meth:`of_parts`.
         """
-        wrong = not_positive(height_m=(height_m, " [m]"), mass_t=(mass_t, " [t]"), deck_mass_t=(deck_mass_t, " [t]"))
+        wrong = not_positive(
+            width_m=(width_m, " [m]"), height_m=(height_m, " [m]"), mass_t=(mass_t, " [t]"),
+            deck_mass_t=(deck_mass_t, " [t]"),
+        )  # fmt: skip
         if wrong:
             raise InputError(*wrong)
         deck = Part(deck_mass_t, height_m if deck_height_m is None else deck_height_m, deck_inertia_t_m2)
         top = max(height_m, deck.height_m) if top_m is None else top_m
-        return cls.of_parts(width_m, [Part.shaft(width_m, height_m, mass_t), deck], top_m=top, gravity=gravity)
+        parts = [Part.shaft(width_m, height_m, mass_t), deck]
+        return cls.of_parts(width_m, parts, top_m=top, deck_height_m=deck.height_m, gravity=gravity)
 
     @classmethod
     def frame(cls, column: "Pier", columns: int, deck_mass_t: float) -> "Pier":
@@ -272,6 +297,11 @@ class Pier:
         return 2.0 * self.height if self.top_m is None else self.top_m
 
     @property
+    def deck(self) -> float:
+        """Height above the pivots at which the deck's acceleration is told [m]: ``deck_height_m``, or that of the top."""
+        return self.top if self.deck_height_m is None else self.deck_height_m
+
+    @property
     def restitution(self) -> float:
         """Factor e on the angular velocity at an impact on rigid ground, which keeps the angular momentum (THEORY.md, 5).
 
@@ -292,15 +322,16 @@ class Pier:
 def not_positive(**values: tuple[float | None, str]) -> list[str]:
     """What is said of those numbers that are given, and are not above 0; each comes with its unit or a hint."""
     return [
-        f"{name} = {value:g}: must be a number above 0{hint}"
+        f"{name} = {value:g}: must be a number above 0{hint}" + (f", {LEAST:g} to {MOST:g}" if value > 0 else "")
         for name, (value, hint) in values.items()
-        if value is not None and not (math.isfinite(value) and value > 0)
+        if value is not None and not LEAST <= value <= MOST
     ]
 
 
 def described(pier: Pier) -> dict[str, float]:
-    """A pier by the names and units of run.json; mass, top and γ only where it has them."""
-    given = {"mass_t": pier.mass_t, "top_m": pier.top_m, "deck_over_columns": pier.deck_over_columns}
+    """A pier by the names and units of run.json; mass, top, γ and deck only where it has them."""
+    optional = ("mass_t", "top_m", "deck_over_columns", "deck_height_m")
+    given = {name: getattr(pier, name) for name in optional}
     return {
         "alpha": pier.alpha,
         "p": pier.p,

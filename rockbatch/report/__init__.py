@@ -11,7 +11,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING
 
 from rockbatch.checks import as_table, read_verdicts
-from rockbatch.files import write_whole
+from rockbatch.files import is_plain, read_text, write_whole
 from rockbatch.report.contents import Contents, read
 from rockbatch.report.finished import read as read_finished
 from rockbatch.report.page import comparison, page
@@ -83,9 +83,9 @@ def write_analyses(directory: Path, study: Study) -> Path:
 
 def _holds_results(directory: Path, sha256: str) -> bool:
     try:
-        info = json.loads((directory / "run.json").read_text(encoding="utf-8"))
-        return bool(info["study"]["sha256"] == sha256) and (directory / "peaks.csv").exists()
-    except (OSError, ValueError, KeyError, TypeError):
+        info = json.loads(read_text(directory / "run.json"))
+        return bool(info["study"]["sha256"] == sha256) and is_plain(directory / "peaks.csv")
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return False
 
 

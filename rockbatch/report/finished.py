@@ -8,10 +8,10 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rockbatch.checks.suite import simulated
+from rockbatch.checks.suite import counts_as, simulated
 from rockbatch.errors import InputError
 from rockbatch.report.labels import Key, Series, digits_that_tell, named, quantity
-from rockbatch.report.markup import number
+from rockbatch.report.markup import Markup, join, number, tag
 from rockbatch.results.reading import Saved, read_saved
 from rockbatch.study import PIER_KEYS
 
@@ -29,7 +29,7 @@ class Finished:
         The two files.
     runs : DataFrame
         The rows of ``peaks.csv`` that were simulated, without mirror images, and more of each: ``series`` and ``pier``,
-        places in the lists below; ``alpha`` [rad]; ``pga_g``, that of the scaled motion; ``with_vertical``, "" unless the
+        places in the lists below; ``alpha`` [rad]; ``pga`` [g], that of the scaled motion; ``with_vertical``, "" unless the
         study has both.
     series : list of Series
         The foundations.
@@ -59,6 +59,12 @@ class Finished:
         """What ``run.json`` knows about each ground motion."""
         return {record["record"]: record for record in self.info["records"]}
 
+    @property
+    def count(self) -> str:
+        """What counts as one record: "station", or "component"; the latter too where the stations are not known."""
+        count = str(self.info.get("count", "station"))
+        return "component" if counts_as(self.runs, count)[1] else count
+
     @cached_property
     def both_directions(self) -> bool:
         """Whether motions were run as recorded and reversed."""
@@ -72,7 +78,13 @@ class Finished:
     def place(self, case: str, columns: Mapping[str, Any]) -> tuple[int, int]:
         """Places in ``series`` and ``piers`` of a case with the given varied values."""
         varied = self.info["varied"]
-        return self.places[foundation(case, columns, varied)], self.pier_places[_pier(columns, varied)]
+        try:
+            return self.places[foundation(case, columns, varied)], self.pier_places[_pier(columns, varied)]
+        except KeyError:
+            raise InputError(
+                f"{self.saved.directory}: there is a history of case {case} that peaks.csv or run.json does not list; the "
+                "files belong to different runs; start `rockbatch run` again"
+            ) from None
 
     def by_pga(self, names: Sequence[str]) -> list[str]:
         """``names`` of records, the weakest first."""
@@ -97,9 +109,23 @@ class Finished:
         told = ", ".join(filter(None, also))
         return self.series[run["series"]].label + (f" ({told})" if told else "")
 
+    def label(self, record: str) -> str:
+        """What a record is called among people: event, station and direction; its name where the header tells nothing."""
+        return str(self.records.get(record, {}).get("label") or record)
+
+    def named(self, record: str) -> str:
+        """A record's label, with its name in tables beside it where that is another one."""
+        label = self.label(record)
+        return label if label == record else f"{label} ({record})"
+
+    def shown(self, record: str) -> Markup:
+        """Likewise on the page, the name in the tables in smaller words."""
+        label = self.label(record)
+        return join(label) if label == record else join(label, " ", tag("span", record, class_="muted path"))
+
     def where(self, run: "pd.Series[Any]") -> str:
         """Which run this is, in words."""
-        return f"{run['record']}, case {self.which(run)}"
+        return f"{self.named(run['record'])}, case {self.which(run)}"
 
 
 def read(directory: Path) -> Finished:
@@ -141,7 +167,7 @@ def finished(saved: Saved) -> Finished:
     for column, name in enumerate(("series", "pier", "alpha")):
         runs[name] = kinds.map({kind: fact[column] for kind, fact in facts.items()})
     pga = {record["record"]: record["pga_g"] for record in info["records"]}
-    runs["pga_g"] = runs["record"].map(pga).astype("float64") * runs["scale"]
+    runs["pga"] = runs["record"].map(pga).astype("float64") * runs["scale"]
     runs["with_vertical"] = _with_vertical(runs)
     keys = [key for key in varied if key in PIER_KEYS]
     digits = [digits_that_tell(values) for values in zip(*piers, strict=True)]

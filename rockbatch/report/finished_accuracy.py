@@ -5,6 +5,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from rockbatch.files import opened_text
+
 NUMBERS = (
     "substeps", "tolerance", "runs", "error_median", "error_95", "error_max", "seconds_per_run", "status_differs",
     "reference_change",
@@ -42,7 +44,7 @@ def read(path: Path, study: str) -> list[Level]:
     Empty where the file is missing, of another state of the study, or not such a table: the report does without.
     """
     try:
-        with path.open(encoding="utf-8", newline="") as file:
+        with opened_text(path) as file:
             rows = list(csv.DictReader(file))
         if any(row["study"] != study for row in rows):
             return []

@@ -33,6 +33,7 @@ SYMBOLS = {
 }
 BASE_KEYS = (
     "beta", "stiffness_kN_m", "eta", "yield_kN", "epsilon", "spring", "n", "kinematics", "flight", "restitution",
+    "friction",
 )  # fmt: skip
 SAME = {"beta": "stiffness_kN_m", "eta": "yield_kN"}
 """Keys of a study that say the same, without units and with: a foundation is called by the one that its study gives."""
@@ -81,7 +82,7 @@ def symbol(key: str) -> str:
 
 def heading(words: str) -> Markup:
     """Words with their indices: "θ_max/α" has one."""
-    return Markup(re.sub(r"_([a-z]+)", lambda found: tag("sub", found[1]), escape(words)))
+    return Markup(re.sub(r"_([a-z0]+)", lambda found: tag("sub", found[1]), escape(words)))
 
 
 def head(column: Column) -> Head:

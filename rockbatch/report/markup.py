@@ -3,14 +3,16 @@
 import html
 import math
 
+from rockbatch.files import legible
+
 
 class Markup(str):
     """Text that is HTML already."""
 
 
 def escape(content: object) -> str:
-    """``content`` as HTML; only :class:`Markup` goes through as it is."""
-    return content if isinstance(content, Markup) else html.escape(str(content))
+    """``content`` as HTML, legible; only :class:`Markup` goes through as it is."""
+    return content if isinstance(content, Markup) else html.escape(legible(str(content), keep="\t\r\n"))
 
 
 def join(*children: object, between: str = "") -> Markup:
@@ -21,7 +23,7 @@ def join(*children: object, between: str = "") -> Markup:
 def tag(name: str, *children: object, **attributes: object) -> Markup:
     """An element; ``class_`` becomes ``class``, ``aria_label`` ``aria-label``; None and False leave one out."""
     written = [
-        f" {key.rstrip('_').replace('_', '-')}" + ("" if value is True else f'="{html.escape(str(value))}"')
+        f" {key.rstrip('_').replace('_', '-')}" + ("" if value is True else f'="{escape(str(value))}"')
         for key, value in attributes.items()
         if value is not None and value is not False
     ]

@@ -3,10 +3,12 @@
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from rockbatch.checks import Rule, Verdict, as_table, judge, load_rules, read_rules
 from rockbatch.checks.plausible import implausible
+from rockbatch.checks.reading import read_count
+from rockbatch.checks.rules import COUNTS
 from rockbatch.errors import InputError
 from rockbatch.results.reading import Saved, read_saved
 from rockbatch.results.run_json import describe_case
@@ -67,26 +69,30 @@ def verdicts(
 ) -> list[Verdict]:
     """As :func:`check`, one :class:`Verdict` for each row."""
     given = _given(rules)
+    records: Mapping[str, str] | None = None
     if isinstance(results, Saved | str | os.PathLike):
         saved = results if isinstance(results, Saved) else read_saved(Path(results))
-        rules = _of_study(saved.info["study"]) if given is None else given
+        file = TomlFile.parse(Path(saved.info["study"]["path"]), saved.info["study"]["text"])
+        count = read_count(file) or COUNTS[0]
+        own = _own_rules(file, count) if given is None else ()
         table, cases = saved.peaks, saved.info["cases"]
-        records = [record["record"] for record in saved.info["records"]]
+        records = {record["record"]: record.get("station", "") for record in saved.info["records"]}
     else:
         if study is None:
             raise InputError(
                 "check: a table does not say which piers it is about; give study = the study it was run from"
             )
         study = study if isinstance(study, Study) else load_study(study)
-        rules = study.checks if given is None else given
-        table, cases, records = results, [describe_case(case) for case in study.cases], []
+        own, count = study.checks, study.count
+        table, cases = results, [describe_case(case) for case in study.cases]
+    rules = own if given is None else given
     if not rules:
         raise InputError("no checks: the study has no [[check]]; add some, or give a file of rules")
     if given is not None:  # the study's own are held against its piers when it is read
         wrong = [f"check {shown(rule.name)}: {problem}" for rule in given for problem in implausible(rule, cases)]
         if wrong:
             raise InputError(*wrong)
-    return judge(rules, table, cases, records)
+    return judge(rules, table, cases, records, count)
 
 
 def _given(rules: PathLike | Iterable[Rule] | None) -> Sequence[Rule] | None:
@@ -95,9 +101,8 @@ def _given(rules: PathLike | Iterable[Rule] | None) -> Sequence[Rule] | None:
     return load_rules(rules) if isinstance(rules, str | os.PathLike) else tuple(rules)
 
 
-def _of_study(study: Mapping[str, Any]) -> tuple[Rule, ...]:
+def _own_rules(file: TomlFile, count: str) -> tuple[Rule, ...]:
     """The rules in the text of a study, as run.json keeps it."""
-    file = TomlFile.parse(Path(study["path"]), study["text"])
-    rules = read_rules(file)
+    rules = read_rules(file, counted=count)
     file.finish()
     return rules

@@ -11,7 +11,8 @@ from operator import attrgetter
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from rockbatch.checks.suite import MIRROR_OF, OTHER_LAW
-from rockbatch.motions import MotionSet
+from rockbatch.motions import Motion, MotionSet
+from rockbatch.pier import Pier
 from rockbatch.results.outcome import Outcome
 from rockbatch.study import Case, Study
 
@@ -25,6 +26,8 @@ PART = f"{PEAKS}.part"
 TERMS = ("kinetic", "potential", "elastic", "input", "plastic", "impact", "p_delta", "constraint", "remainder")
 """Terms of the energy ledger, in the order in which the core returns them."""
 
+STATUSES = ("ok", "overturned", "flight", "failed")
+
 ALL = ("rigid", "elastic", "yielding")
 SPRINGS = ("elastic", "yielding")
 YIELDING = ("yielding",)
@@ -34,13 +37,22 @@ class OnPage(NamedTuple):
     """How a column stands in the report: under what, with its unit there; format; factor from the file's unit to the page's.
 
     Of a word after a low line, the page makes an index: "θ_max/α". ``behind`` names the column after which it is put, where
-    that is not the one before it in the file.
+    that is not the one before it in the file. ``table`` is the section in whose tables it is.
     """
 
     head: str
     form: str = ".10g"
     factor: int = 1
     behind: str = ""
+    table: Literal["peaks", "forces"] = "peaks"
+
+
+class Ran(NamedTuple):
+    """A run that is finished: what it came to, and under which motion, as it was run, with which pier."""
+
+    outcome: Outcome
+    pier: Pier
+    motion: Motion
 
 
 class OfSuite(NamedTuple):
@@ -61,7 +73,7 @@ class Column:
     meaning : str
         What it is, in a sentence; the same for those that are told together.
     of : str, function or None
-        Field of :class:`Outcome`, or function of one; None for what names the run.
+        Field of :class:`Outcome`, or function of :class:`Ran`; None for what names the run.
     unit : str
         Of a number, as pint reads it; "1" is none.
     page : OnPage or None
@@ -74,6 +86,8 @@ class Column:
         Bases to which it applies; it is empty on others.
     stood : bool
         Whether it is empty where the pier overturned, or flight ended the run.
+    unbounded : bool
+        Whether a number may be infinite.
     sometimes : bool
         Whether only some of the runs to which it applies have one: a flight, a reason.
     suite : OfSuite or None
@@ -84,13 +98,14 @@ class Column:
 
     name: str
     meaning: str
-    of: str | Callable[[Outcome], Any] | None = None
+    of: str | Callable[[Ran], Any] | None = None
     unit: str = "1"
     page: OnPage | None = None
     kind: Literal["number", "count", "text"] = "number"
     over_alpha: bool = False
     bases: tuple[str, ...] = ALL
     stood: bool = False
+    unbounded: bool = False
     sometimes: bool = False
     suite: OfSuite | None = None
     asked: Callable[[Study], bool] | None = None
@@ -104,8 +119,8 @@ class Column:
 
 
 def _energy(term: str) -> Column:
-    def of(outcome: Outcome) -> float | None:
-        return None if outcome.energies is None else outcome.energies[term]
+    def of(ran: Ran) -> float | None:
+        return None if ran.outcome.energies is None else ran.outcome.energies[term]
 
     return Column(
         f"energy_{term}_J_kg",
@@ -115,6 +130,28 @@ def _energy(term: str) -> Column:
         OnPage(f"{term.replace('_', '-')} [J/kg]", ".0e" if term == "remainder" else ".4f"),
         asked=lambda study: study.output.ledger,
     )
+
+
+def _force(
+    name: str, meaning: str, field: str, unit: str, head: str, form: str, factor: int = 1, *, per: str = "", **more: Any
+) -> Column:
+    """A column of what designers size, a ``field`` of PeakForces; ``per``: over "g", or times the "mass" that is known."""
+
+    def of(ran: Ran) -> float | None:
+        found = None if ran.outcome.forces is None else getattr(ran.outcome.forces, field)
+        times = {"g": 1.0 / ran.pier.gravity, "mass": ran.pier.mass_t, "half the weight": _half_weight(ran.pier)}
+        factor = times.get(per, 1.0)
+        return None if found is None or factor is None else found * factor
+
+    page = OnPage(head, form, factor, table="forces")
+    if per in ("mass", "half the weight"):
+        more["sometimes"] = True
+    told = f"{meaning}; with [output] forces = true"
+    return Column(name, told, of, unit, page, asked=lambda study: study.output.forces, **more)
+
+
+def _half_weight(pier: Pier) -> float | None:
+    return None if pier.mass_t is None else 0.5 * pier.mass_t * pier.gravity
 
 
 STAYING = (
@@ -211,8 +248,90 @@ MORE = (
         "note", "what else there is to know of a run that is right: counts that have not settled, say", "note",
         kind="text", page=OnPage("note"), sometimes=True,
     ),
+    Column(
+        "station",
+        "what the components of one station in one earthquake share, which checks count as one record; a pulse is its own",
+        kind="text", page=OnPage("station"),
+    ),
+    Column(
+        "top_drift_m", "greatest drift of the top: the height at which it is read, times the greatest rotation",
+        lambda ran: ran.pier.top * ran.outcome.theta_max, "m", OnPage("top drift [mm]", ".1f", 1000, "t_max_s"),
+    ),
+    Column(
+        "heel_uplift_m", "greatest rise of the heel above the toe: the width between the pivots, times the greatest rotation",
+        lambda ran: 2.0 * ran.pier.half_width * ran.outcome.theta_max, "m",
+        OnPage("heel uplift [mm]", ".1f", 1000, "top_drift_m"),
+    ),
+    Column(
+        "pga_g", "peak horizontal ground acceleration of the motion as it was run, over g",
+        lambda ran: ran.motion.pga / ran.pier.gravity, "standard_gravity", OnPage("PGA [g]", ".3f", behind="heel_uplift_m"),
+    ),
 )  # fmt: skip
 """Columns that follow those of the varied keys. A table of an earlier version may lack the last of them."""
+
+_ITSELF = "the same, not over the mass, where that is known"
+_PIVOT = "greatest force of each support over half the weight, z η on yielding springs; of a rigid base, where it bears all of N"
+_GAP = "heel gap: greatest height of each pivot above where its support waits, the stroke of a key or damper"
+_SPEED = "greatest speed at which the heel gap opens or closes"
+
+_FORCES = (
+    _force(
+        "base_shear_m_s2", "greatest base shear V over the mass, without the impulses of impacts", "base_shear", "m/s^2",
+        "V/M [m/s²]", ".3f",
+    ),
+    _force("base_shear_kN", _ITSELF, "base_shear", "kN", "V [kN]", ".0f", per="mass"),
+    _force(
+        "normal_force_m_s2", "greatest normal force N of all supports over the mass, likewise", "normal_force", "m/s^2",
+        "N/M [m/s²]", ".3f",
+    ),
+    _force("normal_force_kN", _ITSELF, "normal_force", "kN", "N [kN]", ".0f", per="mass"),
+    _force(
+        "friction_demand", "greatest V over N at one time; inf where nothing presses the pier down, as in flight",
+        "friction_demand", "1", "V/N", ".4f", unbounded=True,
+    ),
+    _force("pivot_force_left", _PIVOT, "pivot_left", "1", "support L/(Mg/2)", ".3f"),
+    _force("pivot_force_right", _PIVOT, "pivot_right", "1", "support R/(Mg/2)", ".3f"),
+    _force("pivot_force_left_kN", _ITSELF, "pivot_left", "kN", "support L [kN]", ".0f", per="half the weight"),
+    _force("pivot_force_right_kN", _ITSELF, "pivot_right", "kN", "support R [kN]", ".0f", per="half the weight"),
+    _force("heel_gap_left_m", _GAP, "heel_gap_left", "m", "heel gap L [mm]", ".1f", 1000),
+    _force("heel_gap_right_m", _GAP, "heel_gap_right", "m", "heel gap R [mm]", ".1f", 1000),
+    _force("heel_speed_left_m_s", _SPEED, "heel_speed_left", "m/s", "heel speed L [m/s]", ".3f"),
+    _force("heel_speed_right_m_s", _SPEED, "heel_speed_right", "m/s", "heel speed R [m/s]", ".3f"),
+    _force(
+        "deck_acceleration_m_s2", "greatest absolute horizontal acceleration of the deck, or of the top where there is none",
+        "deck_acceleration", "m/s^2", "deck [m/s²]", ".3f",
+    ),
+    _force(
+        "landing_velocity_m_s", "speed of the pivot that lands, at the hardest impact", "landing_velocity", "m/s",
+        "landing [m/s]", ".3f", sometimes=True,
+    ),
+    _force(
+        "impulse_m_s", "its vertical impulse over the mass", "impulse", "m/s", "impulse/M [m/s]", ".3f", sometimes=True
+    ),
+    _force("impulse_kN_s", _ITSELF, "impulse", "kN*s", "impulse [kN s]", ".0f", per="mass"),
+    _force(
+        "impact_friction_demand", "greatest horizontal over vertical impulse of an impact", "impact_friction_demand", "1",
+        "V/N at impact", ".4f", sometimes=True,
+    ),
+    _force(
+        "first_uplift_s", "when a pivot first leaves its support", "first_uplift", "s", "first uplift [s]", ".3f",
+        sometimes=True,
+    ),
+    _force(
+        "first_uplift_g", "magnitude of the horizontal ground acceleration then, over g", "uplift_ground",
+        "standard_gravity", "ground then [g]", ".4f", per="g", sometimes=True,
+    ),
+    _force(
+        "flight_duration_s", "how long both pivots were in the air, all flights together", "flight_duration", "s",
+        "in flight [s]", ".3f", bases=SPRINGS, sometimes=True,
+    ),
+    _force(
+        "flight_height_m", "how high the lower pivot rose above its support in flight", "flight_height", "m",
+        "flight height [mm]", ".1f", 1000, bases=SPRINGS, sometimes=True,
+    ),
+    _force("omega_max_over_p", "greatest angular velocity over p", "omega_over_p", "1", "θ̇_max/p", ".4f"),
+)  # fmt: skip
+"""What designers size, until the run ends or the pier leans beyond α for good."""
 
 ASKED = (
     Column(
@@ -226,6 +345,7 @@ ASKED = (
         stood=True, asked=lambda study: study.output.both_laws,
     ),
     *map(_energy, TERMS),
+    *_FORCES,
 )  # fmt: skip
 """Columns at the end of a table whose study asks for them."""
 
@@ -234,6 +354,7 @@ COLUMNS = {column.name: column for column in (*STAYING, *MORE, *ASKED)}
 
 TEXTS = tuple(column.name for column in COLUMNS.values() if column.kind == "text")
 COUNTS = tuple(column.name for column in COLUMNS.values() if column.kind == "count")
+UNBOUNDED = tuple(column.name for column in COLUMNS.values() if column.unbounded)
 
 _FIELDS = {column.name: column.of for column in COLUMNS.values() if isinstance(column.of, str)}
 _FUNCTIONS = {column.name: column.of for column in COLUMNS.values() if callable(column.of)}
@@ -241,12 +362,13 @@ _OVER_ALPHA = tuple(column.name for column in COLUMNS.values() if column.over_al
 _read_fields = attrgetter(*_FIELDS.values())
 
 
-def row(record: str, polarity: str, scale: float, case: Case, outcome: Outcome) -> dict[str, Any]:
-    """Row of peaks.csv: the names of a run, and its outcome over α."""
-    alpha = case.pier.alpha
-    found: dict[str, Any] = {"record": record, "case": case.name, "polarity": polarity, "scale": scale, **case.columns}
+def row(motion: Motion, polarity: str, scale: float, case: Case, outcome: Outcome) -> dict[str, Any]:
+    """Row of peaks.csv: the names of a run under ``motion``, scaled and turned as ``polarity`` says, and its outcome over α."""
+    alpha, ran = case.pier.alpha, Ran(outcome, case.pier, motion)
+    found: dict[str, Any] = {"record": motion.name, "station": motion.of_station, "case": case.name}
+    found |= {"polarity": polarity, "scale": scale, **case.columns}
     found |= zip(_FIELDS, _read_fields(outcome), strict=True)
-    found |= {name: of(outcome) for name, of in _FUNCTIONS.items()}
+    found |= {name: of(ran) for name, of in _FUNCTIONS.items()}
     for name in _OVER_ALPHA:
         if found[name] is not None:
             found[name] /= alpha
@@ -312,11 +434,11 @@ def in_words(name: str, value: Any) -> str:
     return value if isinstance(value, str) else format(page.factor * float(value), page.form)
 
 
-def on_page() -> list[Column]:
-    """Columns that the report shows, in its order: beside each other what is read together."""
+def on_page(shown: str = "peaks") -> list[Column]:
+    """Columns in the report's tables of ``shown``, in their order: beside each other what is read together."""
     order: list[str] = []
     for column in COLUMNS.values():
-        if column.page:
+        if column.page and column.page.table == shown:
             place = order.index(column.page.behind) + 1 if column.page.behind else len(order)
             order.insert(place, column.name)
     return [COLUMNS[name] for name in order]

@@ -10,6 +10,8 @@
           t, theta, …   the columns of Response.history, shape (n,), those of springs where there are any
           events        t, kind, pivot, before, after: the columns of Response.events
           ledger        the terms of the energy ledger, where it was asked for
+          forces        what is sized, the columns of Response.forces, where it was asked for
+          impacts       with them, the columns of Response.impacts
 
 Every dataset of numbers has an attribute ``unit``; "1" is none.
 """
@@ -25,10 +27,11 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 
 from rockbatch.errors import InputError
-from rockbatch.files import replacing
+from rockbatch.files import opened, replacing
 from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase
 from rockbatch.results.columns import TERMS
-from rockbatch.results.response import EVENT_TYPES, Response
+from rockbatch.results.hdf5 import array_in, attribute, attributes_of, group_in
+from rockbatch.results.response import EVENT_TYPES, FORCE_UNITS, IMPACT_UNITS, Response
 
 if TYPE_CHECKING:
     import h5py
@@ -67,6 +70,10 @@ _DAMAGE = (OSError, KeyError, ValueError, TypeError, RuntimeError, AttributeErro
 """What h5py raises where something is missing or broken."""
 
 
+class _NotTheseError(InputError):
+    """A sound file that is none of histories, or none of this run."""
+
+
 def write(path: Path, responses: Iterable[Response], info: Mapping[str, Any]) -> None:
     """Write ``responses`` to ``path`` one by one, whole or not at all; ``info`` is that of ``run.json``.
 
@@ -88,8 +95,8 @@ def write(path: Path, responses: Iterable[Response], info: Mapping[str, Any]) ->
 
 def _check_room(path: Path, response: Response) -> None:
     """HDF5 does not survive a full disk: it may take the process with it at exit."""
-    tables = [table for table in (response.history, response.events, response.ledger) if table is not None]
-    needed = MARGIN + sum(int(table.memory_usage().sum()) for table in tables)
+    tables = (response.history, response.events, response.ledger, response.forces, response.impacts)
+    needed = MARGIN + sum(int(table.memory_usage().sum()) for table in tables if table is not None)
     free = disk_usage(path.parent).free
     if free < needed:
         raise InputError(
@@ -121,6 +128,13 @@ def _write(group: "h5py.Group", response: Response) -> None:
         ledger = group.create_group("ledger")
         for name in TERMS:
             _put(ledger, name, response.ledger[name].to_numpy(), "J/kg")
+    if response.forces is not None and response.impacts is not None:
+        forces, impacts = group.create_group("forces"), group.create_group("impacts")
+        for name, unit in FORCE_UNITS.items():
+            _put(forces, name, response.forces[name].to_numpy(), unit)
+        for name, unit in IMPACT_UNITS.items():
+            _put(impacts, name, response.impacts[name].to_numpy(), unit)
+        impacts["pivot"] = np.array(response.impacts["pivot"], dtype="S16")
 
 
 def _put(group: "h5py.Group", name: str, values: "np.ndarray[Any, Any]", unit: str) -> None:
@@ -159,10 +173,10 @@ class Responses(Sequence[Response]):
         import pandas as pd
 
         rows = []
-        if self.path.exists():
+        if self.path.exists() or self.path.is_symlink():
             with self._opened() as runs:
-                groups = [runs[_name(number)] for number in range(len(runs))]
-                rows = [_attributes(group) | _attributes(group["varied"]) for group in groups]
+                groups = [group_in(runs, _name(number)) for number in range(len(runs))]
+                rows = [_run(group) | attributes_of(group_in(group, "varied")) for group in groups]
         return pd.DataFrame(rows, columns=[*_OF_RUN, *self._info["varied"]])
 
     def __len__(self) -> int:
@@ -177,7 +191,7 @@ class Responses(Sequence[Response]):
             return [self[number] for number in range(*which.indices(len(self)))]
         number = range(len(self))[which]  # IndexError as of any sequence
         with self._opened() as runs:
-            response = _read(runs[_name(number)])
+            response = _read(group_in(runs, _name(number)))
         return response if self._peaks is None else replace(response, row=_row_of(response, self._peaks))
 
     @contextmanager
@@ -185,48 +199,59 @@ class Responses(Sequence[Response]):
         """The group of runs; errors on the way are told in words."""
         import h5py
 
-        try:
-            with h5py.File(self.path, "r") as file:
-                self._check(file)
-                yield file["runs"]
-        except InputError:
-            raise
-        except _DAMAGE as error:
-            raise InputError(f"{self.path}: damaged ({error}); start `rockbatch run` again") from error
+        with opened(self.path) as plain:
+            try:
+                with h5py.File(plain, "r") as file:
+                    self._check(file)
+                    yield group_in(file, "runs")
+            except _NotTheseError:
+                raise
+            except _DAMAGE as error:
+                raise InputError(f"{self.path}: damaged ({error}); start `rockbatch run` again") from error
 
     def _check(self, file: "h5py.File") -> None:
-        if file.attrs.get("format") != FORMAT:
-            raise InputError(f"{self.path}: not the histories of a study; start `rockbatch run` again")
-        if (file.attrs["created"], file.attrs["sha256"]) != (self._info["created"], self._info["study"]["sha256"]):
-            raise InputError(
-                f"{self.path}: written on {file.attrs['created']}, by another run than run.json "
-                f"({self._info['created']}); start `rockbatch run` again"
+        if attribute(file, "format") != FORMAT:
+            raise _NotTheseError(f"{self.path}: not the histories of a study; start `rockbatch run` again")
+        created = attribute(file, "created")
+        if (created, attribute(file, "sha256")) != (self._info["created"], self._info["study"]["sha256"]):
+            raise _NotTheseError(
+                f"{self.path}: written on {created}, by another run than run.json ({self._info['created']}); start "
+                "`rockbatch run` again"
             )
 
 
 def _read(group: "h5py.Group") -> Response:
     import pandas as pd
 
-    base = _attributes(group["base"])
+    base = attributes_of(group_in(group, "base"))
     kind = _BASES[base.pop("name")]
-    length = len(group["t"])
+    t = array_in(group, "t", "f")
+    if not len(t) or np.isnan(t).any() or (np.diff(t) < 0).any():
+        raise ValueError("t is no rising time")
     absent = OF_SPRINGS if kind is RigidBase else ()
-    columns = {name: np.full(length, np.nan) if name in absent else group[name][:] for name in UNITS}
-    events = {
-        name: group["events"][name].asstr()[:] if of == "str" else group["events"][name][:]
-        for name, of in EVENT_TYPES.items()
+    columns = {
+        name: np.full(len(t), np.nan) if name in absent else array_in(group, name, "f", len(t)) for name in UNITS
     }
     ledger = None
     if "ledger" in group:
-        ledger = pd.DataFrame({"t": columns["t"]} | {name: group["ledger"][name][:] for name in TERMS})
+        terms = group_in(group, "ledger")
+        ledger = pd.DataFrame({"t": t} | {name: array_in(terms, name, "f", len(t)) for name in TERMS})
+    forces = impacts = None
+    if "forces" in group:
+        told = group_in(group, "forces")
+        columns_of_forces = {name: array_in(told, name, "f", len(t), finite=name != "friction") for name in FORCE_UNITS}
+        forces = pd.DataFrame({"t": t} | columns_of_forces)
+        impacts = _impacts(group_in(group, "impacts"))
     return Response(
-        **_attributes(group),
-        columns=_attributes(group["varied"]),
-        pier=Pier(**_attributes(group["pier"])),
+        **_run(group),
+        columns=attributes_of(group_in(group, "varied")),
+        pier=Pier(**attributes_of(group_in(group, "pier"))),
         base=kind(**base),
         history=pd.DataFrame(columns),
-        events=pd.DataFrame(events).astype(EVENT_TYPES),
+        events=_events(group_in(group, "events"), len(t)),
         ledger=ledger,
+        forces=forces,
+        impacts=impacts,
     )
 
 
@@ -239,6 +264,33 @@ def _row_of(response: Response, peaks: "pd.DataFrame") -> "pd.Series[Any] | None
     return None if same.empty else same.iloc[0].rename(response.record)
 
 
-def _attributes(group: "h5py.Group") -> dict[str, Any]:
-    """Attributes as Python's own numbers and texts."""
-    return {name: value.item() if isinstance(value, np.generic) else value for name, value in group.attrs.items()}
+def _impacts(group: "h5py.Group") -> "pd.DataFrame":
+    """The table of impacts."""
+    import pandas as pd
+
+    t = array_in(group, "t", "f")
+    found: dict[str, Any] = {"t": t, "pivot": array_in(group, "pivot", "S", len(t))}
+    found |= {name: array_in(group, name, "f", len(t)) for name in IMPACT_UNITS}
+    return pd.DataFrame(found).astype({"pivot": "str"})
+
+
+def _run(group: "h5py.Group") -> dict[str, Any]:
+    """Which run it is; the names are texts, the scale is a number."""
+    found = {name: attribute(group, name) for name in _OF_RUN}
+    for name, value in found.items():
+        if not isinstance(value, float if name == "scale" else str):
+            raise ValueError(f"the attribute {name} is missing, or of another kind")
+    return found
+
+
+def _events(group: "h5py.Group", rows: int) -> "pd.DataFrame":
+    """The table of events, whose ``before`` and ``after`` are places in a history of so many rows."""
+    import pandas as pd
+
+    length = len(array_in(group, "t", "f"))
+    kinds = {"str": "S", "int64": "i", "float64": "f"}
+    events = pd.DataFrame({name: array_in(group, name, kinds[of], length) for name, of in EVENT_TYPES.items()})
+    places = events[["before", "after"]].to_numpy()
+    if ((places < 0) | (places >= rows)).any():
+        raise ValueError("an event is beyond the end of the history")
+    return events.astype(EVENT_TYPES)

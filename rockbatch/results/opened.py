@@ -9,8 +9,11 @@ from typing import TYPE_CHECKING
 
 from rockbatch.checks.suite import simulated
 from rockbatch.errors import InputError
+from rockbatch.files import read_table
 from rockbatch.results.columns import in_words
+from rockbatch.results.estimate import ESTIMATE
 from rockbatch.results.histories_file import HISTORIES, Responses
+from rockbatch.results.intensity import INTENSITY, orders
 from rockbatch.results.reading import Saved, read_saved
 from rockbatch.results.response import Response
 from rockbatch.showing import Shown, several
@@ -31,6 +34,41 @@ class Results(Shown, Saved):
     def responses(self) -> Responses:
         """The runs whose histories were kept, each read when it is asked for; none if the study asked for none."""
         return Responses(self.directory / HISTORIES, self.info, self.peaks)
+
+    @cached_property
+    def intensity(self) -> "pd.DataFrame":
+        """``intensity.csv``: measures of each run's motion, where the study asks for them ([output] intensity = true)."""
+        return self._beside(INTENSITY, "intensity")
+
+    @cached_property
+    def intensity_order(self) -> "pd.DataFrame":
+        """How well each of the measures orders the peaks, a row for each case, scale and measure:
+        :class:`rockbatch.results.intensity.Order`."""
+        return orders(self.intensity, self.info["varied"])
+
+    @cached_property
+    def estimate(self) -> "pd.DataFrame":
+        """``estimate.csv``: the estimates of design practice beside the peaks ([output] estimate = true)."""
+        return self._beside(ESTIMATE, "estimate")
+
+    def plot_cdf(self) -> "Figure":
+        """The distribution of θ_max/α over the records, a curve for each case, pier and scale: a matplotlib Figure.
+
+        A station counts as one record, with the worst of its components, unless the study counts them apart. Records under
+        which the pier overturned, or that were ended by flight, are what a curve lacks of 1 at its right end, where a cross
+        says so.
+        """
+        from rockbatch.results.plots import plot_cdf
+
+        return plot_cdf(self.peaks, self.info["varied"], str(self.info.get("count", "station")))
+
+    def _beside(self, name: str, key: str) -> "pd.DataFrame":
+        path = self.directory / name
+        if not path.exists():
+            raise InputError(
+                f"{path}: not there; write [output] {key} = true in the study, and start `rockbatch run` again"
+            )
+        return read_table(path)
 
     def response(self, record: str | None = None, case: str | None = None, **more: float | str) -> Response:
         """The response of one run.

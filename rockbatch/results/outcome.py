@@ -6,6 +6,70 @@ from dataclasses import dataclass, replace
 
 
 @dataclass(frozen=True)
+class PeakForces:
+    """What a run asks of the design, until it ends or the pier leans beyond α for good; SI units, per unit mass of the pier.
+
+    Magnitudes; ``None`` where it does not apply (THEORY.md, 7).
+
+    Attributes
+    ----------
+    base_shear, normal_force : float
+        Greatest V/M, and N/M of all supports, without the impulses of impacts [m/s²].
+    friction_demand : float
+        Greatest |V|/N; infinite where nothing presses the pier down.
+    pivot_left, pivot_right : float
+        Greatest force of each support over half the weight.
+    heel_gap_left, heel_gap_right : float
+        Greatest height of each pivot above where its support waits [m].
+    heel_speed_left, heel_speed_right : float
+        Greatest speed at which these open or close [m/s].
+    deck_acceleration : float
+        Greatest absolute horizontal acceleration of the deck [m/s²].
+    omega_over_p : float
+        Greatest |θ̇|/p.
+    landing_velocity, impulse : float or None
+        Of the hardest impact: speed of the pivot that lands, and vertical impulse over M [m/s].
+    impact_friction_demand : float or None
+        Greatest horizontal over vertical impulse of an impact.
+    first_uplift, uplift_ground : float or None
+        When a pivot first lifts [s], and magnitude of the horizontal ground acceleration then [m/s²].
+    flight_duration, flight_height : float or None
+        How long both pivots were in the air, all flights together [s], and how high the lower one was [m].
+    """
+
+    base_shear: float
+    normal_force: float
+    friction_demand: float
+    pivot_left: float
+    pivot_right: float
+    heel_gap_left: float
+    heel_gap_right: float
+    heel_speed_left: float
+    heel_speed_right: float
+    deck_acceleration: float
+    omega_over_p: float
+    landing_velocity: float | None = None
+    impulse: float | None = None
+    impact_friction_demand: float | None = None
+    first_uplift: float | None = None
+    uplift_ground: float | None = None
+    flight_duration: float | None = None
+    flight_height: float | None = None
+
+    def mirrored(self) -> "PeakForces":
+        """Those of the mirror image."""
+        return replace(
+            self,
+            pivot_left=self.pivot_right,
+            pivot_right=self.pivot_left,
+            heel_gap_left=self.heel_gap_right,
+            heel_gap_right=self.heel_gap_left,
+            heel_speed_left=self.heel_speed_right,
+            heel_speed_right=self.heel_speed_left,
+        )
+
+
+@dataclass(frozen=True)
 class Outcome:
     """What a run comes to. SI units, angles in radians; ``None`` where it does not apply.
 
@@ -45,6 +109,8 @@ class Outcome:
         Settlement [m] by the other law of yielding springs, where it was asked for.
     energies : mapping of str to float, or None
         Energy ledger at the end [J/kg], and the greatest ``remainder`` on the way, where it was asked for.
+    forces : PeakForces or None
+        What it asks of the design, where it was asked for.
     """
 
     status: str
@@ -70,6 +136,7 @@ class Outcome:
     dissipated_right: float | None = None
     settlement_other_law: float | None = None
     energies: Mapping[str, float] | None = None
+    forces: PeakForces | None = None
     note: str = ""
 
     @property
@@ -88,6 +155,7 @@ class Outcome:
             ductility_right=self.ductility_left,
             dissipated_left=self.dissipated_right,
             dissipated_right=self.dissipated_left,
+            forces=self.forces and self.forces.mirrored(),
         )
 
 

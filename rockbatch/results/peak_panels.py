@@ -1,6 +1,7 @@
 """The figure of the peaks with matplotlib, as Palmeri & Makris (2007), Fig. 7; the report draws its own."""
 
 import math
+import textwrap
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -18,6 +19,8 @@ if TYPE_CHECKING:
 
 MOST_PANELS = 24
 MOST_COLUMNS = 4
+TITLE = 32
+"""Letters in a line of a panel's title."""
 
 INSTEAD = {
     "overturned": ("X", "overturned"),
@@ -87,9 +90,10 @@ def plot(peaks: "pd.DataFrame", info: Mapping[str, Any]) -> "Figure":
     rows = math.ceil(len(records) / columns)
     figure = ShownFigure(figsize=(1.2 + 2.2 * columns, 1.4 + 1.9 * rows), layout="constrained")
     grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
+    labels = {record["record"]: record.get("label") for record in info["records"]}
     for axes, name in zip(grid.flat, records, strict=False):
         panels.draw(axes, runs[runs["record"] == name])
-        axes.set_title(name, fontsize="small")
+        axes.set_title(textwrap.fill(labels.get(name) or name, TITLE), fontsize="small")
     for axes in grid.flat[len(records) :]:
         axes.set_visible(False)
     for axes in grid.flat[max(len(records) - columns, 0) : len(records)]:

@@ -4,24 +4,23 @@ import csv
 import json
 import math
 import warnings
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rockbatch.errors import InputError, MissingColumns
-from rockbatch.files import csv_plain
-from rockbatch.results.columns import COUNTS, MORE, PEAKS, STAYING, TEXTS, names
-from rockbatch.results.run_json import INFO
+from rockbatch.errors import EditedTable, InputError, MissingColumns
+from rockbatch.files import csv_plain, legible, opened, opened_text, read_text, sha256_of
+from rockbatch.results.columns import COUNTS, MORE, PEAKS, STATUSES, STAYING, TEXTS, UNBOUNDED, names
+from rockbatch.results.run_json import INFO, SHAPE
+from rockbatch.results.shape import unfit
 
 if TYPE_CHECKING:
     import pandas as pd
 
-SECTIONS = (
-    "rockbatch", "created", "command", "study", "versions", "machine", "numerics", "varied", "cases",
-    "records", "unusable", "references", "runs", "jobs", "wall_s",
-)  # fmt: skip
 MOST_PROBLEMS = 20
+MOST_COUNT = 1 << 53
+"""Up to which a float holds every whole number."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,14 +61,24 @@ class Saved:
 def read_saved(directory: Path) -> Saved:
     """Read what ``rockbatch run`` wrote into ``directory``.
 
-    Raises ``InputError``, with all that is wrong at once, where a file is missing or damaged. Warns of ``MissingColumns``.
+    Raises ``InputError``, with all that is wrong at once, where a file is missing or damaged. Warns of ``MissingColumns``,
+    and of an ``EditedTable``.
     """
     directory = Path(directory)
     problems: list[str] = []
     info = _read_info(directory / INFO, problems)
-    peaks = _read_peaks(directory / PEAKS, info.get("varied", []), problems)
+    peaks = _read_peaks(directory / PEAKS, [] if problems else info["varied"], problems)
     if problems or peaks is None:
         raise InputError(*problems)
+    for name in info["varied"]:
+        words = any(isinstance(case["columns"].get(name), str) for case in info["cases"])
+        if not words and peaks[name].dtype != "float64":
+            raise InputError(
+                f"{directory / PEAKS}: {name} is a number in every case of {INFO}, and here it is not; the two files belong to "
+                "different runs, or are damaged; start `rockbatch run` again"
+            )
+    if differs := edited(directory, info):
+        warnings.warn(f"{directory / PEAKS}: {differs}; what it says now is shown", EditedTable, stacklevel=2)
     missing = tuple(name for name in names(MORE) if name not in peaks)
     for name in missing:
         peaks[name] = "" if name in TEXTS else math.nan
@@ -79,33 +88,55 @@ def read_saved(directory: Path) -> Saved:
     return saved
 
 
+def edited(directory: Path, info: Mapping[str, Any]) -> str:
+    """What tells that ``peaks.csv`` is not the one that ``info`` was written with; empty where nothing does."""
+    noted = info.get("peaks")
+    if noted is None or sha256_of(directory / PEAKS) == noted["sha256"]:
+        return ""
+    return f"not as `rockbatch run` wrote it, with {noted['rows']} rows: it was edited, or is damaged"
+
+
 def _read_info(path: Path, problems: list[str]) -> dict[str, Any]:
     try:
-        info = json.loads(path.read_text(encoding="utf-8"))
+        info = _legible(json.loads(read_text(path)))
     except FileNotFoundError:
         problems.append(f"{path}: not there; give a folder that `rockbatch run` has written")
         return {}
-    except ValueError as error:
+    except InputError as error:
+        problems += error.problems
+        return {}
+    except (ValueError, RecursionError) as error:
         line = getattr(error, "lineno", 1)
         problems.append(f"{path}:{line}: not JSON ({error}); start `rockbatch run` again")
         return {}
-    if not isinstance(info, dict):
-        problems.append(f"{path}: not what `rockbatch run` writes; start it again")
-        return {}
-    missing = [name for name in SECTIONS if name not in info]
+    found = list(unfit(info, SHAPE, MOST_PROBLEMS))
+    missing = [problem.place for problem in found if problem.missing and problem.place in SHAPE]
     if missing:
         problems.append(f"{path}: has no {', '.join(missing)}; start `rockbatch run` again with this version")
-    return info
+    problems += [f"{path}: {one}; start `rockbatch run` again" for one in found if one.place not in missing]
+    return info if isinstance(info, dict) else {}
+
+
+def _legible(value: Any) -> Any:
+    """``value`` of JSON with texts that can be shown, wherever they come from; those of several lines keep them."""
+    if isinstance(value, str):
+        return legible(value, keep="\t\r\n")
+    if isinstance(value, list):
+        return [_legible(item) for item in value]
+    return {_legible(key): _legible(item) for key, item in value.items()} if isinstance(value, dict) else value
 
 
 def _read_peaks(path: Path, varied: Sequence[str], problems: list[str]) -> "pd.DataFrame | None":
     import pandas as pd
 
     try:
-        with path.open(encoding="utf-8", newline="") as file:
+        with opened_text(path) as file:
             head = next(csv.reader(file), [])
     except FileNotFoundError:
         problems.append(f"{path}: not there; give a folder that `rockbatch run` has written")
+        return None
+    except InputError as error:
+        problems += error.problems
         return None
     except (UnicodeDecodeError, csv.Error) as error:
         problems.append(f"{path}:1: not a table ({error}); start `rockbatch run` again")
@@ -114,24 +145,37 @@ def _read_peaks(path: Path, varied: Sequence[str], problems: list[str]) -> "pd.D
     if missing:
         problems.append(f"{path}:1: has no column {', '.join(missing)}; start `rockbatch run` again")
         return None
+    if len(set(head)) < len(head):
+        problems.append(f"{path}:1: has a column twice; start `rockbatch run` again")
+        return None
     texts = [name for name in head if name in TEXTS or name in varied or name == "vertical"]
     numbers = [name for name in head if name not in texts]
     try:
         # A record may be called "NA": only an empty number is missing
-        table = pd.read_csv(
-            path, keep_default_na=False, na_values={name: [""] for name in numbers}, encoding="utf-8", index_col=False,
-            dtype={**dict.fromkeys(texts, "str"), **dict.fromkeys(numbers, "float64")},
-        )  # fmt: skip
+        with opened(path) as file, warnings.catch_warnings():
+            warnings.simplefilter("error", pd.errors.ParserWarning)  # of a row with more cells, the last would be lost
+            table = pd.read_csv(
+                file, keep_default_na=False, na_values={name: [""] for name in numbers}, encoding="utf-8",
+                index_col=False, dtype={**dict.fromkeys(texts, "str"), **dict.fromkeys(numbers, "float64")},
+            )  # fmt: skip
         for name in table.columns.intersection(list(COUNTS)):
+            if (table[name].abs() > MOST_COUNT).any():
+                raise ValueError(f"{name} is out of range")
             table[name] = table[name].astype("Int64")
-    except (ValueError, TypeError) as error:
+        finite = [name for name in numbers if name not in UNBOUNDED]
+        sound = table["status"].isin(STATUSES).all() and not table[finite].isin([math.inf, -math.inf]).any(axis=None)
+        sound = sound and not (table["scale"].isna() & (table["case"] != "")).any()
+    except (ValueError, TypeError, pd.errors.ParserWarning) as error:
         found = _bad_cells(path, head, numbers)
         problems += found or [f"{path}: not a table ({error}); start `rockbatch run` again"]
         return None
+    if not sound:
+        problems += _bad_cells(path, head, numbers)
+        return None
     for name in texts:
-        escaped = table[name].str.startswith("'")
-        if escaped.any():
-            table.loc[escaped, name] = table.loc[escaped, name].map(csv_plain)
+        meant = {cell: legible(csv_plain(cell), keep="\t\r\n") for cell in table[name].unique()}
+        if any(cell != text for cell, text in meant.items()):
+            table[name] = table[name].map(meant)
     for name in varied:
         table[name] = _values(table[name])
     return table
@@ -141,7 +185,7 @@ def _bad_cells(path: Path, head: Sequence[str], numbers: Sequence[str]) -> list[
     """Every row of another length and every cell that should be a number and is not, with its line."""
     found: list[str] = []
     try:
-        with path.open(encoding="utf-8", newline="") as file:
+        with opened_text(path) as file:
             reader = csv.reader(file)
             next(reader)
             for cells in reader:
@@ -151,23 +195,30 @@ def _bad_cells(path: Path, head: Sequence[str], numbers: Sequence[str]) -> list[
                     continue
                 row = dict(zip(head, cells, strict=True))
                 found += [
-                    f'{place}: {name} = "{row[name]}": expected {"a whole number" if name in COUNTS else "a number"} '
+                    f'{place}: {name} = "{row[name][:80]}": expected {"a whole number" if name in COUNTS else "a number"} '
                     "or nothing"
                     for name in numbers
-                    if not _is_number(row[name], name in COUNTS)
+                    if not _is_number(row[name], name in COUNTS, name in UNBOUNDED)
                 ]
+                if row["status"] not in STATUSES:
+                    found.append(f'{place}: status = "{row["status"][:80]}": expected {", ".join(STATUSES)}')
+                if row["case"] and not row["scale"]:
+                    found.append(f"{place}: a run without scale")
+                if len(found) > MOST_PROBLEMS:
+                    return [*found[:MOST_PROBLEMS], f"{path}: and more"]
     except (UnicodeDecodeError, csv.Error) as error:
         found.append(f"{path}: not a table ({error}); start `rockbatch run` again")
-    more = len(found) - MOST_PROBLEMS
-    return [*found[:MOST_PROBLEMS], *([f"{path}: and {more} more"] if more > 0 else [])]
+    return found
 
 
-def _is_number(text: str, whole: bool) -> bool:
+def _is_number(text: str, whole: bool, unbounded: bool) -> bool:
     try:
         value = float(text or 0)
     except ValueError:
         return False
-    return value.is_integer() if whole else True
+    if unbounded and value == math.inf:
+        return True
+    return math.isfinite(value) and (not whole or (value.is_integer() and abs(value) <= MOST_COUNT))
 
 
 def _values(texts: "pd.Series[str]") -> "pd.Series[Any]":

@@ -17,6 +17,23 @@ if TYPE_CHECKING:
 
 Samples = npt.NDArray[np.float64]
 
+FORCE_UNITS = {
+    "base_shear": "m/s^2",
+    "normal_force": "m/s^2",
+    "friction": "1",
+    "pivot_left": "1",
+    "pivot_right": "1",
+    "heel_gap_left": "m",
+    "heel_gap_right": "m",
+    "heel_speed_left": "m/s",
+    "heel_speed_right": "m/s",
+    "deck_acceleration": "m/s^2",
+}
+"""Columns of the table of forces, but for the time, with their units."""
+
+IMPACT_UNITS = {"t": "s", "landing_velocity": "m/s", "impulse_horizontal": "m/s", "impulse_vertical": "m/s"}
+"""Columns of the table of impacts, but for the pivot, with their units."""
+
 EVENT_TYPES = {"t": "float64", "kind": "str", "pivot": "str", "before": "int64", "after": "int64"}
 """Columns of the table of events."""
 
@@ -51,6 +68,13 @@ class Response(Shown):
         Energies [J/kg] at the rows of ``history``, where they were asked for: stored ``kinetic``, ``potential``,
         ``elastic``, relative to the start; summed since, ``input``, ``plastic``, ``impact``, ``p_delta`` (first-order
         kinematics), ``constraint`` (finite kinematics); and the ``remainder`` of their balance, the integrator's error.
+    forces : DataFrame or None
+        What is sized, at the rows of ``history``, where it was asked for (THEORY.md, 7): ``base_shear`` V/M, to the right on
+        the pier, ``normal_force`` N/M [m/s²], ``friction`` |V|/N, ``pivot_…``, the supports' forces over half the weight,
+        ``heel_gap_…`` [m], ``heel_speed_…`` [m/s], opening, ``deck_acceleration`` [m/s²].
+    impacts : DataFrame or None
+        With the forces: of each impact ``t`` [s], the ``pivot`` that lands, ``landing_velocity`` [m/s], down, and the
+        impulse on the pier per unit mass, ``impulse_horizontal``, to the right, and ``impulse_vertical`` [m/s].
     polarity : str
         "-" where the motion's horizontal component was reversed, else "+".
     scale : float
@@ -84,6 +108,8 @@ class Response(Shown):
     ledger: "pd.DataFrame | None" = field(default=None, repr=False)
     polarity: str = "+"
     scale: float = 1.0
+    forces: "pd.DataFrame | None" = field(default=None, repr=False)
+    impacts: "pd.DataFrame | None" = field(default=None, repr=False)
     row: "pd.Series[Any] | None" = None
 
     @property

@@ -2,15 +2,20 @@
 
 import hashlib
 import json
+import math
 from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from rockbatch.files import write_whole
+import numpy as np
+
+from rockbatch.files import replacing
 from rockbatch.motions import MotionSet, measures
 from rockbatch.motions.motion import Motion
-from rockbatch.motions.spectrum import suite_spectra
+from rockbatch.motions.spectrum import periods_over, suite_spectra
+from rockbatch.motions.spectrum_target import SpectrumTarget
+from rockbatch.motions.velocity_pulses import pulse_of
 from rockbatch.pier import (
     Base,
     ElasticBase,
@@ -24,9 +29,56 @@ from rockbatch.pier import (
     yield_deflection,
 )
 from rockbatch.results.columns import units
+from rockbatch.results.shape import Maybe
 from rockbatch.study import Case, Study
 
 INFO = "run.json"
+
+_NUMBER = (float, None)
+_VALUES = {str: (float, str)}
+_NUMBERS_OF_BASE = (
+    "beta", "eta", "epsilon", "n", "omega_v", "delta_s_m", "delta_y_m", "stiffness_kN_m", "yield_kN", "restitution",
+)  # fmt: skip
+_OF_FILE = {"name": str, "source": str, "reason": str}
+
+SHAPE = {
+    "rockbatch": str,
+    "created": str,
+    "command": [str],
+    "study": {"path": str, "title": str, "notes": str, "text": str, "sha256": str},
+    "versions": {str: str},
+    "machine": str,
+    "numerics": {"tolerance": _NUMBER, "substeps": (int, None), "quiet_s": float},
+    "varied": [str],
+    "cases": [
+        {
+            "case": str,
+            "columns": _VALUES,
+            "pier": dict.fromkeys(("alpha", "p", "mu", "gravity", "size_m", "half_width_m", "height_m"), float),
+            "base": ("rigid", "elastic", "yielding"),
+            "parameters": {name: Maybe(_NUMBER) for name in _NUMBERS_OF_BASE}
+            | {name: Maybe((str, None)) for name in ("spring", "kinematics", "flight")},
+        }
+    ],
+    "records": [
+        {"record": str, "source": str, "vertical_source": (str, None), "notes": [str], "npts": int}
+        | dict.fromkeys(("dt_s", "duration_s", "pga_g"), float)
+        | dict.fromkeys(("pga_v_g", "pgv_m_s", "pgd_m"), _NUMBER)
+        | {name: Maybe(_NUMBER) for name in ("arias_m_s", "d5_95_s", "azimuth_deg", "magnitude", "distance_km")}
+        | {"factor": Maybe(float), "processed": Maybe((bool, None)), "findings": Maybe([{"what": str}])}
+    ],
+    "unusable": [_OF_FILE],
+    "references": [{"record": str, "case": str, "columns": _VALUES, "theta_max_over_alpha": float, "source": str}],
+    "runs": int,
+    "jobs": int,
+    "wall_s": float,
+    "kept": Maybe(int),
+    "peaks": Maybe({"rows": int, "sha256": str}),
+    "without_vertical": Maybe([str]),
+    "spectra": Maybe(({"damping": float, "period_s": [float], "sa_g": [[float]]}, None)),
+    "left_out": Maybe([_OF_FILE]),
+}
+"""What readers of run.json rely on; the rest of it is for people."""
 
 MOST_SPECTRA = 200
 """Motions whose spectra go into run.json; each takes about 10 ms."""
@@ -34,6 +86,9 @@ MOST_SPECTRA = 200
 
 def describe(study: Study, motions: MotionSet) -> dict[str, Any]:
     """What run.json says about a study and its motions."""
+    gravity = study.cases[0].pier.gravity
+    target = study.motions.target if isinstance(study.motions.target, SpectrumTarget) else None
+    with_pulses = target is not None or study.output.intensity
     return {
         "study": {
             "path": str(study.path),
@@ -48,12 +103,14 @@ def describe(study: Study, motions: MotionSet) -> dict[str, Any]:
             "quiet_s": study.numerics.quiet_s,
         },
         "varied": list(study.varied),
+        "count": study.count,
         "units": units(study),
         "cases": [describe_case(case) for case in study.cases],
         "without_vertical": motions.without_vertical,
-        "records": [_describe_motion(motion, study.cases[0].pier.gravity) for motion in motions.motions],
-        "spectra": _spectra(motions.motions, study.cases[0].pier.gravity),
-        "unusable": [asdict(file) for file in motions.unusable],
+        "records": [_describe_motion(motion, gravity, with_pulses) for motion in motions.motions],
+        "spectra": _spectra(motions.motions, gravity, target),
+        **({} if target is None else {"target": target.described(motions.motions, gravity)}),
+        "unusable": [asdict(file) | {"lacks": list(file.lacks)} for file in motions.unusable],
         "left_out": [asdict(file) for file in motions.left_out],
         "references": [
             {
@@ -68,9 +125,19 @@ def describe(study: Study, motions: MotionSet) -> dict[str, Any]:
     }
 
 
-def _spectra(motions: list[Motion], gravity: float) -> dict[str, Any] | None:
-    """Response spectra of the suite, where that is soon done."""
-    return suite_spectra(motions, gravity) if len(motions) <= MOST_SPECTRA else None
+def _spectra(motions: list[Motion], gravity: float, target: SpectrumTarget | None) -> dict[str, Any] | None:
+    """Response spectra of the suite, where that is soon done; with the target's damping and periods, if it has one."""
+    if len(motions) > MOST_SPECTRA:
+        return None
+    if target is None:
+        return suite_spectra(motions, gravity)
+    found = suite_spectra(motions, gravity, target.spectrum.damping, periods_over(*target.range_s))
+    of_target = target.spectrum.at(np.array(found["period_s"], dtype=np.float64))
+    mean = target.mean(np.array(found["sa_g"], dtype=np.float64), motions)
+    return found | {
+        "mean_sa_g": [float(f"{sa:.4g}") for sa in mean],
+        "target_sa_g": [None if math.isnan(sa) else float(f"{sa:.4g}") for sa in of_target],
+    }
 
 
 def describe_case(case: Case) -> dict[str, Any]:
@@ -86,10 +153,11 @@ def describe_case(case: Case) -> dict[str, Any]:
 
 
 def _describe_base(pier: Pier, base: Base) -> dict[str, Any]:
+    interface = {} if base.friction is None else {"friction": base.friction}
     if isinstance(base, RigidBase):
         of_frame = None if pier.deck_over_columns is None else pier.restitution  # None stands for Housner's
-        return {"restitution": of_frame if base.restitution is None else base.restitution}
-    told = _springs(pier, base)
+        return {"restitution": of_frame if base.restitution is None else base.restitution, **interface}
+    told = _springs(pier, base) | interface
     if isinstance(base, YieldingBase):
         told |= {
             "eta": base.eta,
@@ -114,10 +182,15 @@ def _springs(pier: Pier, base: ElasticBase) -> dict[str, Any]:
     }
 
 
-def _describe_motion(motion: Motion, gravity: float) -> dict[str, Any]:
+def _describe_motion(motion: Motion, gravity: float, with_pulse: bool) -> dict[str, Any]:
     vertical = motion.pga_vertical
     return {
         "record": motion.name,
+        "station": motion.of_station,
+        "label": motion.label,
+        "event": motion.origin.event,
+        "station_name": motion.origin.station,
+        "direction": motion.origin.direction,
         "dt_s": motion.dt,
         "npts": motion.npts,
         "duration_s": motion.duration,
@@ -130,6 +203,7 @@ def _describe_motion(motion: Motion, gravity: float) -> dict[str, Any]:
         "azimuth_deg": motion.azimuth,
         "magnitude": motion.magnitude,
         "distance_km": motion.distance_km,
+        **(_pulse(motion) if with_pulse else {}),
         "factor": motion.factor,
         "source": motion.source,
         "vertical_source": motion.vertical_source,
@@ -139,6 +213,26 @@ def _describe_motion(motion: Motion, gravity: float) -> dict[str, Any]:
     }
 
 
+def _pulse(motion: Motion) -> dict[str, Any]:
+    """Whether a motion is pulse-like, by the criterion of Baker (2007)."""
+    found = pulse_of(motion)
+    period = None if math.isnan(found.period_s) else float(f"{found.period_s:.4g}")
+    return {"pulse": found.kind, "pulse_indicator": float(f"{found.indicator:.4g}"), "pulse_period_s": period}
+
+
 def write_info(directory: Path, info: Mapping[str, Any]) -> None:
-    """Write run.json into ``directory``, whole or not at all."""
-    write_whole(directory / INFO, json.dumps(info, indent=1, ensure_ascii=False) + "\n")
+    """Write run.json into ``directory``, whole or not at all: a line for each entry, and for each case, record or file of one."""
+    with replacing(directory / INFO) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
+        for number, (name, value) in enumerate(info.items()):
+            file.write(("{" if number == 0 else ",") + f"\n {_json(name)}: ")
+            if isinstance(value, list) and value and isinstance(value[0], dict):
+                for place, item in enumerate(value):
+                    file.write(("[" if place == 0 else ",") + f"\n  {_json(item)}")
+                file.write("\n ]")
+            else:
+                file.write(_json(value))
+        file.write("\n}\n")
+
+
+def _json(value: Any) -> str:
+    return json.dumps(value, ensure_ascii=False)

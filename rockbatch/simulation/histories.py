@@ -14,6 +14,7 @@ from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, problems
 from rockbatch.results.columns import TERMS, as_series, row
 from rockbatch.results.outcome import Outcome
 from rockbatch.results.response import EVENT_TYPES, Response
+from rockbatch.simulation.forces import forces_table, impacts_table, observed, peak_forces
 from rockbatch.simulation.models import block, ground_of, least_substeps, springs
 from rockbatch.simulation.runs import Run, run_fixed, steps_of, written_run
 from rockbatch.simulation.settling import run_to_tolerance
@@ -48,6 +49,7 @@ def simulate(
     quiet_s: float = 2.0,
     case: str | None = None,
     ledger: bool = False,
+    forces: bool = False,
     wait: bool = True,
 ) -> Response:
     """One run: what it comes to, as a row of peaks.csv, and its histories.
@@ -66,6 +68,8 @@ def simulate(
         Name of the foundation; its kind by default.
     ledger : bool
         Keep the energy ledger too (THEORY.md, 9).
+    forces : bool
+        Keep the forces, and what lands at impacts, too (THEORY.md, 7).
     wait : bool
         Go on after ``quiet_s`` until nothing that comes later can exceed the peak; ``False``, with ``substeps``: end there.
 
@@ -111,10 +115,11 @@ def simulate(
     if not outcome.was_run:
         raise InputError(f"{motion.name}: {outcome.reason}")
     run, name = Run(pier, foundation, motion), case or foundation.name
-    if ledger:
-        outcome = with_energies(outcome, energies(run, written(run, outcome, quiet_s, every_step=True, wait=wait)))
-    found = histories(run, outcome, quiet_s, name, {}, ledger, wait=wait)
-    return replace(found, row=as_series(row(motion.name, "+", 1.0, Case(name, pier, foundation, {}), outcome)))
+    found = histories(run, outcome, quiet_s, name, {}, ledger=ledger, forces=forces, wait=wait)
+    if ledger or forces:
+        rows = written(run, outcome, quiet_s, every_step=True, wait=wait)
+        outcome = with_observed(run, outcome, rows, ledger, forces)
+    return replace(found, row=as_series(row(motion, "+", 1.0, Case(name, pier, foundation, {}), outcome)))
 
 
 def written(run: Run, outcome: Outcome, quiet_s: float, every_step: bool, wait: bool = True) -> np.recarray:
@@ -148,10 +153,17 @@ def energies(run: Run, rows: np.recarray) -> Samples:
     return numbers(ledger)
 
 
-def with_energies(outcome: Outcome, terms: Samples) -> Outcome:
-    """With the energy ledger at the end of the run, and the greatest remainder on the way; ``terms`` as :func:`energies`."""
-    at_end = dict(zip(TERMS, map(float, terms[-1]), strict=True))
-    return replace(outcome, energies=at_end | {"remainder": float(abs(terms[:, -1]).max())})
+def with_observed(run: Run, outcome: Outcome, rows: np.recarray, ledger: bool, forces: bool) -> Outcome:
+    """With what observers make of the run, written down at every step: the energy ledger at its end, with the greatest
+    remainder on the way, and the greatest forces."""
+    if ledger:
+        terms = energies(run, rows)
+        at_end = dict(zip(TERMS, map(float, terms[-1]), strict=True))
+        outcome = replace(outcome, energies=at_end | {"remainder": float(abs(terms[:, -1]).max())})
+    if forces:
+        peaks, note = peak_forces(run, outcome, rows)
+        outcome = replace(outcome, forces=peaks, note="; ".join(filter(None, (outcome.note, note))))
+    return outcome
 
 
 def histories(
@@ -160,7 +172,9 @@ def histories(
     quiet_s: float,
     case: str,
     columns: dict[str, float | str],
+    *,
     ledger: bool = False,
+    forces: bool = False,
     polarity: str = "+",
     scale: float = 1.0,
     wait: bool = True,
@@ -180,12 +194,18 @@ def histories(
         table = pd.DataFrame(energies(run, rows)[shown], columns=list(TERMS))
         table.insert(0, "t", rows.t[shown])
     rows = rows[shown]
+    sized = landed = None
+    if forces:
+        moments, _ = observed(run, rows, steps=False)
+        sized, landed = forces_table(rows.t, moments, pier.gravity), impacts_table(rows, moments)
     state = _rigid_state(pier, rows) if isinstance(base, RigidBase) else _springs_state(pier, base, rows)
     t = rows.t.copy()
     vertical = np.zeros(len(t)) if motion.vertical is None else _ground(motion.vertical, motion.dt, t)
     history = pd.DataFrame({"t": t, **state, "ag_h": _ground(motion.horizontal, motion.dt, t), "ag_v": vertical})
     events = pd.DataFrame(_events(rows, outcome.t_flight), columns=list(EVENT_TYPES)).astype(EVENT_TYPES)
-    return Response(motion.name, case, columns, pier, base, outcome.status, history, events, table, polarity, scale)
+    return Response(
+        motion.name, case, columns, pier, base, outcome.status, history, events, table, polarity, scale, sized, landed
+    )  # fmt: skip
 
 
 def _events(rows: np.recarray, t_flight: float | None) -> list[tuple[float, str, str, int, int]]:

@@ -19,13 +19,14 @@ from rockbatch.pier import (
     least_beta,
     problems,
 )
-from rockbatch.study.lists import Chosen, combinations, listed
+from rockbatch.study.lists import Chosen, combinations, how_many, listed, too_many
 from rockbatch.study.piers import Values, has_mass
 from rockbatch.study.plausible import CONFIRM, MASSES, complain_unless_usual, complain_unless_usual_support, confirmed
 from rockbatch.toml.kinds import choice, number, positive, shown, text
 from rockbatch.toml.reader import Key, Setting, Table, TomlFile
 
-_RIGID = {"restitution": Key(number, "0.9", many=True)}
+_INTERFACE = {"friction": Key(positive, "0.5", many=True)}
+_RIGID = {"restitution": Key(number, "0.9", many=True), **_INTERFACE}
 _ELASTIC = {
     "beta": Key(number, "40.0", many=True),
     "stiffness_kN_m": Key(positive, "2.0e6", many=True),
@@ -33,6 +34,7 @@ _ELASTIC = {
     "epsilon": Key(number, "0.05", many=True),
     "kinematics": Key(choice(*get_args(Kinematics)), '"first-order"', many=True),
     "flight": Key(choice(*get_args(Flight)), '"stop"', many=True),
+    **_INTERFACE,
 }
 _YIELDING = _ELASTIC | {
     "eta": Key(number, "2.5", many=True),
@@ -85,6 +87,9 @@ def read_cases(file: TomlFile, piers: Sequence[tuple[Pier, Values]]) -> tuple[li
         varied |= dict.fromkeys(listed(table, BASE_KEYS))
         if "base" in own:
             read.append((_Read(table, name, own["base"], believed), settings))
+    if told := too_many(max(len(piers), 1) * sum(how_many(settings) for _, settings in read), "cases"):
+        file.complain(("case",), told)
+        return [], tuple(varied)
     expanded = [
         _expand(case, chosen, pier, pier_values)
         for pier, pier_values in piers or [(_ANY_PIER, {})]

@@ -1,5 +1,6 @@
 """Lists in a study file: every combination of their values."""
 
+import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import product
 
@@ -7,6 +8,24 @@ from rockbatch.toml.reader import Setting, Table
 
 Chosen = dict[str, Setting]
 """One value of each key."""
+
+MOST_CASES = 100_000
+"""Of a study: piers times foundations. Each stands in run.json and in the report, and is held in memory."""
+
+
+def how_many(settings: Mapping[str, Sequence[Setting]]) -> int:
+    """Number of combinations."""
+    return math.prod(map(len, settings.values()))
+
+
+def too_many(number: int, what: str) -> str:
+    """What is said of more than :data:`MOST_CASES`; empty for fewer."""
+    if number <= MOST_CASES:
+        return ""
+    return (
+        f"{number:,} {what}, more than {MOST_CASES:,}: every value of a list is combined with every other; write shorter "
+        "lists, or several studies; `rockbatch sensitivity` samples what has no room for a grid"
+    )
 
 
 def combinations(settings: Mapping[str, Sequence[Setting]]) -> Iterator[Chosen]:

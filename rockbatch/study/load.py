@@ -9,8 +9,8 @@ from typing import Any
 
 from rockbatch.checks.choices import unmet
 from rockbatch.checks.plausible import implausible
-from rockbatch.checks.reading import CHECK, read_rules
-from rockbatch.checks.rules import Rule
+from rockbatch.checks.reading import CHECK, SUITE, read_count, read_rules
+from rockbatch.checks.rules import COUNTS, Rule
 from rockbatch.errors import InputError
 from rockbatch.pier import described
 from rockbatch.study.cases import BASE_KEYS, CASE, Expanded, read_cases
@@ -26,7 +26,7 @@ TOP = {
     "notes": Key(text, '"Soil class C."'),
 }
 ANALYSES = ("fragility", "spectrum", "sensitivity")  # each read by its own command
-SECTIONS = ("pier", "motions", "numerics", "output", "case", "reference", "check", *ANALYSES)
+SECTIONS = ("pier", "motions", "numerics", "output", "case", "reference", "suite", "check", *ANALYSES)
 
 
 def _tolerance(value: Any) -> float:
@@ -44,7 +44,11 @@ OUTPUT = {
     "histories": Key(choice("worst", "all", "none"), '"all"'),
     "histories_MB": Key(positive, "50"),
     "ledger": Key(boolean, "true"),
+    "forces": Key(boolean, "true"),
     "both_laws": Key(boolean, "true"),
+    "intensity": Key(boolean, "true"),
+    "sa_periods_s": Key(positive, "[0.5, 1.0, 2.0]", many=True),
+    "estimate": Key(boolean, "true"),
 }
 REFERENCE = {
     "record": Key(text, '"*LGP*"', required=True),
@@ -59,6 +63,7 @@ HOMES = {
     name: home
     for home, names in (
         ("[[check]]", CHECK),  # first: the keys that it shares belong to the others
+        ("[suite]", SUITE),
         ("[[pier.part]]", PART),
         ("[pier]", PIER),
         ("[motions]", MOTIONS.keys() | SOURCES),
@@ -112,7 +117,10 @@ def load_study(path: str | os.PathLike[str], *, motions: str | os.PathLike[str] 
     varied = varied_pier + varied_case
     references = _references(file, cases, varied)
     output = _output(file)
-    checks = read_rules(file, partial(_unfit, cases, motion_spec, output) if cases else None)
+    counted = read_count(file)
+    if not output.forces:
+        _complain_about_friction(file)
+    checks = read_rules(file, partial(_unfit, cases, motion_spec, output) if cases else None, counted)
     file.finish()
     return Study(
         title=top.get("title", file.path.stem),
@@ -126,6 +134,7 @@ def load_study(path: str | os.PathLike[str], *, motions: str | os.PathLike[str] 
         varied=varied,
         output=output,
         checks=checks,
+        count=counted or COUNTS[0],
     )
 
 
@@ -148,6 +157,7 @@ def _unfit(cases: Sequence[Expanded], motions: MotionSpec, output: Output, rule:
         scales=motions.scale,
         polarities=motions.polarity,
         other_law=output.both_laws,
+        forces=output.forces,
     )
     told = [{"case": each.name, "base": each.base.name, "pier": described(each.pier)} for each in cases]
     yield from implausible(rule, told)
@@ -171,7 +181,25 @@ def _numerics(file: TomlFile) -> Numerics:
 
 def _output(file: TomlFile) -> Output:
     table = file.table("output")
-    return Output() if table is None else Output(**table.read(OUTPUT))
+    if table is None:
+        return Output()
+    read = table.read(OUTPUT)
+    if "sa_periods_s" in read:
+        if not read.get("intensity"):
+            table.complain("sa_periods_s: is for intensity = true; write that too, or leave it out", "sa_periods_s")
+        read["sa_periods_s"] = tuple(setting.value for setting in read["sa_periods_s"])
+    return Output(**read)
+
+
+def _complain_about_friction(file: TomlFile) -> None:
+    """The forces that friction is held against cost a second run at every step: the study says that it wants them."""
+    for table in file.tables("case", title="name"):
+        if "friction" in table.data:
+            table.complain(
+                "friction: nothing to hold it against; write forces = true under [output], which computes the friction "
+                "demand, or leave it out",
+                "friction",
+            )
 
 
 def _references(file: TomlFile, cases: Sequence[Expanded], varied: Iterable[str]) -> tuple[Reference, ...]:

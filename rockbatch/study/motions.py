@@ -20,7 +20,7 @@ MOTIONS = {
     "polarity": Key(choice("+", "-"), '["+", "-"]', many=True),
     "scale": Key(positive, "[1.0]", many=True),
     "unit": Key(kinds.unit, '"cm/s2"'),
-    "dt": Key(positive, "0.01"),
+    "dt": Key(kinds.step, "0.01"),
     "columns": Key(text, '["time", "000", "090", "up"]', many=True, distinct=False),
     "sensitivity": Key(nonzero, "428000.0"),
     "role": Key(choice(*ROLES), '"horizontal"'),
@@ -74,7 +74,11 @@ def read_motions_table(file: TomlFile, replaced_by: Path | None = None) -> Motio
 
 
 def _path(table: Table, entry: Setting) -> Path:
-    path = table.file.path.parent / Path(entry.value).expanduser()
+    try:
+        path = table.file.path.parent / Path(entry.value).expanduser()
+    except RuntimeError:
+        table.complain_about(entry, f"path = {shown(entry.value)}: there is no home folder here; write the whole path")
+        return Path(entry.value)
     if not path.exists():
         missing = _missing(path, entry.value, "; paths are relative to the study file")
         table.complain_about(entry, f"path = {shown(entry.value, 200)}: {missing}")

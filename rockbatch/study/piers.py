@@ -6,7 +6,7 @@ from typing import Any
 
 from rockbatch.errors import InputError
 from rockbatch.pier import Part, Pier
-from rockbatch.study.lists import Chosen, combinations, listed
+from rockbatch.study.lists import Chosen, combinations, how_many, listed, too_many
 from rockbatch.study.plausible import CONFIRM, LENGTHS, MASSES, complain_unless_usual, confirmed
 from rockbatch.toml.kinds import KindError, count, not_negative, positive
 from rockbatch.toml.reader import Key, Setting, Table, TomlFile
@@ -70,6 +70,8 @@ def read_piers(file: TomlFile) -> tuple[list[tuple[Pier, Values]], tuple[str, ..
         its, names = _part(part, n)
         read |= its
         varied += names
+    if told := too_many(how_many(read), "piers"):
+        table.complain(told)
     if len(file.problems) > before:
         return [], ()
     piers = []
@@ -126,11 +128,12 @@ def _of_parts(values: dict[str, Any], parts: int, rest: dict[str, Any]) -> Pier:
         Part(**{name: values[f"part_{n}_{name}"] for name in PART if f"part_{n}_{name}" in values})
         for n in range(1, parts + 1)
     ]
+    deck = None
     if "deck_mass_t" in values:
-        height = values["deck_height_m"] if "deck_height_m" in values else values["height_m"]
-        all_of_them.append(Part(values["deck_mass_t"], height, values.get("deck_inertia_t_m2", 0.0)))
+        deck = values["deck_height_m"] if "deck_height_m" in values else values["height_m"]
+        all_of_them.append(Part(values["deck_mass_t"], deck, values.get("deck_inertia_t_m2", 0.0)))
     top = max(values.get("height_m", 0.0), *(part.height_m for part in all_of_them))
-    return Pier.of_parts(values["width_m"], all_of_them, **{"top_m": top} | rest)
+    return Pier.of_parts(values["width_m"], all_of_them, **{"top_m": top, "deck_height_m": deck} | rest)
 
 
 def _complain_where_due(table: Table, chosen: Chosen, problem: str) -> None:

@@ -37,7 +37,7 @@ def _share(value: Any) -> float:
 
 
 SENSITIVITY = {
-    "statistic": Key(choice(*(name for name, each in STATISTICS.items() if each.of and not each.source)), '"median"'),
+    "statistic": Key(choice(*(name for name, each in STATISTICS.items() if each.of and not each.code)), '"median"'),
     "overturned": Key(positive, "1.0"),
     "samples": Key(_power_of_two, "64"),
     "confidence": Key(_share, "0.95"),

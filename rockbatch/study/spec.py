@@ -8,6 +8,7 @@ from rockbatch.checks.rules import Rule
 from rockbatch.motions.baseline import Offset
 from rockbatch.motions.scaling import Target
 from rockbatch.motions.selection import Selection
+from rockbatch.motions.spectrum_target import SpectrumTarget
 from rockbatch.pier import Base, Pier
 
 
@@ -56,7 +57,7 @@ class MotionSpec:
         Directions [degrees from north] that horizontal pairs are turned to; none: as recorded.
     select : Selection
         Which records are used.
-    target : Target or None
+    target : Target, SpectrumTarget or None
         What records are scaled to; ``scale`` comes on top. Pulses have their own amplitude.
     confirm, confirm_pga : tuple of str
         Names, or patterns with * and ?, of records that are right whatever is odd about them, or about their PGA.
@@ -78,7 +79,7 @@ class MotionSpec:
     offset: Offset = field(default_factory=Offset)
     azimuths: tuple[float, ...] = ()
     select: Selection = field(default_factory=Selection)
-    target: Target | None = None
+    target: Target | SpectrumTarget | None = None
     confirm: tuple[str, ...] = ()
     confirm_pga: tuple[str, ...] = ()
     strict: bool = False
@@ -116,14 +117,25 @@ class Output:
         How large their file may become with "worst".
     ledger : bool
         The energy ledger of every run (THEORY.md, 9).
+    forces : bool
+        What designers size, of every run: base shear, friction, supports, gaps, the deck, impacts (THEORY.md, 7).
     both_laws : bool
         The settlement of yielding springs by the other spring law too (THEORY.md, 7); a third run at the kept step.
+    intensity : bool
+        Intensity measures beside the peaks, and which of them orders the peaks best; spectral accelerations are those at
+        ``sa_periods_s`` [s].
+    estimate : bool
+        What the equivalent oscillators of design practice give, beside the peaks.
     """
 
     histories: str = "worst"
     histories_MB: float = 20.0  # noqa: N815 (the study's key)
     ledger: bool = False
+    forces: bool = False
     both_laws: bool = True
+    intensity: bool = False
+    sa_periods_s: tuple[float, ...] = (0.5, 1.0, 2.0, 4.0)
+    estimate: bool = False
 
 
 @dataclass(frozen=True)
@@ -152,7 +164,8 @@ class Study:
     """A study file, checked, with every combination of pier, case and listed values as one :class:`Case`.
 
     ``path`` and ``text`` are the file and its text, ``varied`` the names of the keys that were lists, ``checks`` the
-    rules that its results are held against.
+    rules that its results are held against, ``count`` what counts as one record of its suite, one of
+    :data:`rockbatch.checks.rules.COUNTS`.
     """
 
     title: str
@@ -166,3 +179,4 @@ class Study:
     varied: tuple[str, ...]
     output: Output = Output()
     checks: tuple[Rule, ...] = ()
+    count: str = "station"

@@ -177,7 +177,9 @@ def _piers(
     """
     weighed = has_mass(table.file)
     others = dict.fromkeys(
-        replace(case.pier, alpha=1.0, p=1.0, top_m=None, mass_t=case.pier.mass_t if weighed else None)
+        replace(
+            case.pier, alpha=1.0, p=1.0, top_m=None, deck_height_m=None, mass_t=case.pier.mass_t if weighed else None
+        )
         for case in study.cases
     )
     piers = []

@@ -5,10 +5,10 @@ from typing import Any
 
 from rockbatch.motions import kinds
 from rockbatch.motions.baseline import RULES, Offset
-from rockbatch.motions.scaling import Target
 from rockbatch.motions.selection import Selection
 from rockbatch.motions.turning import every
-from rockbatch.toml.kinds import KindError, boolean, choice, not_negative, number, positive, text
+from rockbatch.study.target import read_target
+from rockbatch.toml.kinds import KindError, boolean, choice, not_negative, number, text
 from rockbatch.toml.reader import Key, Setting, Table
 
 
@@ -23,12 +23,6 @@ def _bound(value: Any) -> float:
     if isinstance(value, float) and math.isinf(value) and value > 0:
         return value
     return number(value)
-
-
-def _fraction(value: Any) -> float:
-    if not 0 <= number(value) < 1:
-        raise KindError("a fraction of critical damping, within 0..1")
-    return float(value)
 
 
 def _angle(value: Any) -> float:
@@ -55,13 +49,6 @@ _SELECT = {
     "d5_95_s": Key(_bound, "[5, 40]", many=True, distinct=False),
     "magnitude": Key(_bound, "[6.5, 8.0]", many=True, distinct=False),
 }
-_TARGET = {
-    "pga_g": Key(positive, "0.4"),
-    "pgv_m_s": Key(positive, "0.5"),
-    "sa_g": Key(positive, "0.8"),
-    "period_s": Key(positive, "1.0"),
-    "damping": Key(_fraction, "0.05"),
-}
 
 
 def read_suite(motions: Table, read: dict[str, Any]) -> dict[str, Any]:
@@ -80,7 +67,7 @@ def read_suite(motions: Table, read: dict[str, Any]) -> dict[str, Any]:
         limits = {name: _range(table, name, given) for name, given in table.read(_SELECT).items()}
         found["select"] = Selection(**limits)
     if "target" in read and (table := motions.file.table(*motions.at, "target")):
-        found["target"] = _target(table)
+        found["target"] = read_target(table)
     return found
 
 
@@ -120,19 +107,3 @@ def _range(table: Table, name: str, given: list[Setting]) -> tuple[float, float]
     if not isinstance(written, list) or len(values) == len(written):  # else a value is refused already
         table.complain(f"{name} = {written}: must be two values in order, the least and the largest", name)
     return None
-
-
-def _target(table: Table) -> Target | None:
-    before = len(table.file.problems)
-    read = table.read(_TARGET)
-    measures = [name for name in ("pga_g", "pgv_m_s", "sa_g") if name in table.data]
-    if len(measures) != 1:
-        found = " and ".join(measures) + " are given" if measures else "it is missing what to scale to"
-        table.complain(f"{found}; write one of pga_g, pgv_m_s, or sa_g with period_s", *measures[1:2])
-    elif measures == ["sa_g"] and "period_s" not in table.data:
-        table.complain("period_s is missing beside sa_g; write for example period_s = 1.0", "sa_g")
-    elif measures != ["sa_g"]:
-        for name in ("period_s", "damping"):
-            if name in table.data:
-                table.complain(f"{name}: is for sa_g only; leave it out", name)
-    return Target(**read) if len(table.file.problems) == before else None

@@ -4,7 +4,13 @@ import difflib
 import json
 import math
 from collections.abc import Callable, Iterable
+from itertools import islice
 from typing import Any
+
+from rockbatch.files import legible
+from rockbatch.units import LEAST, MOST
+
+_LONGEST = 100  # characters of a word that others are compared with
 
 
 class KindError(ValueError):
@@ -31,6 +37,8 @@ def number(value: Any) -> float:
         converted = math.inf
     if not math.isfinite(converted):
         raise KindError("a finite number")
+    if converted != 0 and not LEAST <= abs(converted) <= MOST:
+        raise KindError(f"a number of the size {LEAST:g} to {MOST:g}")
     return converted
 
 
@@ -73,6 +81,8 @@ def text(value: Any) -> str:
     """Text that is not empty."""
     if not isinstance(value, str) or not value.strip():
         raise KindError("text in quotes")
+    if legible(value, keep="\t\r\n") != value:
+        raise KindError("text without control characters")
     return value
 
 
@@ -91,20 +101,23 @@ def choice(*options: str) -> Kind:
 def closest(word: str, known: Iterable[str]) -> str | None:
     """The known word that ``word`` was probably meant to be, whatever its case."""
     by_lower = {name.lower(): name for name in known}
-    found = difflib.get_close_matches(word.lower(), by_lower, n=1)
+    found = difflib.get_close_matches(word[:_LONGEST].lower(), by_lower, n=1)
     return by_lower[found[0]] if found else None
 
 
 def shown(value: Any, limit: int = 60) -> str:
-    """The value as TOML writes it, cut where it is long."""
+    """The value as TOML writes it, cut where it is long, and legible whatever it holds."""
     if isinstance(value, bool):
         written = str(value).lower()
     elif isinstance(value, str):
-        written = json.dumps(value, ensure_ascii=False)  # TOML's basic strings are JSON's
+        written = json.dumps(value[: limit + 1], ensure_ascii=False)  # TOML's basic strings are JSON's
     elif isinstance(value, list):
-        written = "[" + ", ".join(map(shown, value)) + "]"
+        written = "[" + ", ".join(map(shown, value[:limit])) + "]"
     elif isinstance(value, dict):
-        written = "{ " + ", ".join(f"{key} = {shown(item)}" for key, item in value.items()) + " }"
+        written = "{ " + ", ".join(f"{key} = {shown(item)}" for key, item in islice(value.items(), limit)) + " }"
+    elif isinstance(value, int) and value.bit_length() > 64:
+        written = hex(value)  # Python refuses to write thousands of digits
     else:
         written = str(value)
+    written = legible(written)
     return written if len(written) <= limit else written[: limit - 1] + "…"

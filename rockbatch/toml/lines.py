@@ -7,25 +7,36 @@ At = tuple[str | int, ...]
 """Place of a value: keys and list indices from the top, such as ("case", 1, "beta", 0)."""
 
 
+_DEEPEST = 32  # tables and lists within one another
+_MOST_ELEMENTS = 10_000  # of a list whose lines are kept; the others are where the list begins
+
+# possessive throughout (++, *+): a file takes time in proportion to its size, whatever it holds
 _STRING = "|".join(
     (
-        r'"""(?:\\.|[^\\])*?"""(?:"{0,2})',  # one or two quotes may stand before the closing three
-        r"'''.*?'''(?:'{0,2})",
-        r'"(?:\\.|[^"\\\n])*"',
-        r"'[^'\n]*'",
+        r'"""(?:[^"\\]++|\\.|"{1,2}(?!"))*+"""(?:"{0,2})',  # one or two quotes may stand before the closing three
+        r"'''(?:[^']++|'{1,2}(?!'))*+'''(?:'{0,2})",
+        r'"(?:[^"\\\n]++|\\.)*+"',
+        r"'[^'\n]*+'",
     )
 )
 _TOKENS = {
     "string": re.compile(_STRING, re.DOTALL),
     "key": re.compile(rf"[A-Za-z0-9_-]+|{_STRING}", re.DOTALL),
     "space": re.compile(r"[ \t]*"),
-    "blank": re.compile(r"(?:[ \t\r\n]|#[^\n]*)*"),
+    "blank": re.compile(r"(?:[ \t\r\n]++|#[^\n]*+)*+"),
     "plain": re.compile(r"[^,\]}#\n]*"),  # a number, a boolean or a date
 }
 
 
+class TooDeepError(ValueError):
+    """Tables or lists within one another, deeper than any study or manifest has them."""
+
+
 def key_lines(text: str) -> dict[At, int]:
-    """Line (from 1) of every table, key and list element in ``text``, which must be valid TOML."""
+    """Line (from 1) of every table, key and list element in ``text``.
+
+    Raises :class:`TooDeepError` before a parser would be long over it, ``ValueError`` where the text is no TOML.
+    """
     scan = _Scan(text)
     scan.document()
     return scan.lines
@@ -35,6 +46,7 @@ class _Scan:
     def __init__(self, text: str) -> None:
         self.text = text
         self.here = 0
+        self.counted, self.lines_above = 0, 0  # up to here there are so many line ends
         self.lines: dict[At, int] = {}
         self.last_element: dict[At, int] = {}  # of each array of tables
 
@@ -49,10 +61,14 @@ class _Scan:
         return self.text[self.here : self.here + 1]
 
     def line(self) -> int:
-        return self.text.count("\n", 0, self.here) + 1
+        self.lines_above += self.text.count("\n", self.counted, self.here)
+        self.counted = self.here
+        return self.lines_above + 1
 
     def mark(self, at: At, line: int) -> None:
         """Also for the tables on the way that dotted keys imply."""
+        if len(at) > _DEEPEST:
+            raise TooDeepError(f"line {line}: tables or lists within one another, more than {_DEEPEST} deep")
         for depth in range(1, len(at) + 1):
             self.lines.setdefault(at[:depth], line)
 
@@ -95,7 +111,7 @@ class _Scan:
             part = self.take("key")
             parts.append(tomllib.loads(f"x = {part}")["x"] if part[0] in "\"'" else part)
             self.take("space")
-            if self.peek() != ".":
+            if self.peek() != "." or len(parts) > _DEEPEST:
                 return tuple(parts)
             self.here += 1
 
@@ -110,11 +126,15 @@ class _Scan:
         self.here += 1
         index = 0
         while self.take("blank") is not None and self.peek() not in ("]", "}"):
+            if not self.peek():
+                raise ValueError(f"line {self.line()}: not valid TOML")
             if inline_table:
                 self.pair(at)
-            else:
+            elif index < _MOST_ELEMENTS or self.peek() in ("[", "{"):
                 self.mark((*at, index), self.line())
                 self.value((*at, index))
+            else:
+                self.value(at)
             index += 1
             self.take("blank")
             if self.peek() == ",":

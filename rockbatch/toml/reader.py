@@ -10,7 +10,13 @@ from typing import Any, NamedTuple
 
 from rockbatch.errors import InputError
 from rockbatch.toml.kinds import Kind, KindError, closest, shown
-from rockbatch.toml.lines import At, key_lines
+from rockbatch.toml.lines import At, TooDeepError, key_lines
+
+LARGEST = 4 * 2**20
+"""Bytes of a study or a manifest: ten thousand records with all that can be said of them."""
+
+MOST_TOLD = 100
+"""Mistakes of a file that are told at once."""
 
 
 @dataclass(frozen=True)
@@ -55,44 +61,66 @@ class TomlFile:
     homes: Mapping[str, str] = field(default_factory=dict)
     """The table a key belongs to, for keys found in another one."""
     problems: list[tuple[int, str]] = field(default_factory=list)
+    """The first ones, ``MOST_TOLD`` at most: line and message."""
 
     @classmethod
     def read(cls, path: Path) -> "TomlFile":
         """Read and parse. Raises :class:`InputError` with the line where this is not TOML."""
+        return cls.parse(path, cls.text_of(path))
+
+    @staticmethod
+    def text_of(path: Path) -> str:
+        """The text of a file. Raises :class:`InputError` where it cannot be read, is too large or no UTF-8."""
         try:
-            content = path.read_bytes()
+            with path.open("rb") as opened:
+                content = opened.read(LARGEST + 1)
         except OSError as error:
             raise InputError(_unreadable(path, error)) from None
+        if len(content) > LARGEST:
+            raise InputError(f"{path}: larger than {LARGEST // 2**20} MiB, which no study and no manifest is")
         try:
-            text = content.decode("utf-8-sig")
+            return content.decode("utf-8-sig")
         except UnicodeDecodeError as error:
             line = content.count(b"\n", 0, error.start) + 1
             raise InputError(f"{path}:{line}: not UTF-8 text; save the file in the encoding UTF-8") from None
-        return cls.parse(path, text)
 
     @classmethod
     def parse(cls, path: Path, text: str) -> "TomlFile":
         """Parse the text of a file, which need not be there any more. Raises :class:`InputError` as :meth:`read` does."""
+        lines: dict[At, int] = {}
         try:
-            return cls(path, text, tomllib.loads(text), key_lines(text))
-        except RecursionError:
-            raise InputError(f"{path}: lists or tables are nested too deeply") from None
-        except ValueError as error:
+            lines = key_lines(text)
+        except TooDeepError as error:
+            raise InputError(f"{path}: {error}") from None
+        except ValueError:
+            pass  # the parser tells better what is wrong, and gets no further
+        try:
+            return cls(path, text, tomllib.loads(text), lines)
+        except (ValueError, RecursionError) as error:
             raise InputError(_syntax_error(path, text, str(error))) from None
 
     def complain(self, at: At, message: str) -> None:
         """Note a mistake about the value at ``at``; one that is missing counts where its table starts."""
+        if self.is_full:
+            return
         depth = next((n for n in range(len(at), 0, -1) if at[:n] in self.lines), 0)
         line = self.lines.get(at[:depth], 0)
         problem = (line, f"{self.path}:{line}: {message}" if line else f"{self.path}: {message}")
         if problem not in self.problems:
             self.problems.append(problem)
 
+    @property
+    def is_full(self) -> bool:
+        """Whether there are as many mistakes as are told at once, so that nobody need look for more."""
+        return len(self.problems) >= MOST_TOLD
+
     def finish(self) -> None:
         """Raise :class:`InputError` with all mistakes, in the order of the file, if there are any."""
-        in_order = sorted(self.problems, key=lambda problem: problem[0])
+        in_order = [message for _, message in sorted(self.problems, key=lambda problem: problem[0])]
+        if self.is_full:
+            in_order.append(f"{self.path}: {MOST_TOLD} mistakes are told at once; there may be more")
         if in_order:
-            raise InputError(*(message for _, message in in_order))
+            raise InputError(*in_order)
 
     def table(self, *at: str | int, required: str = "") -> "Table | None":
         """The table ``[at]``; None where there is none. ``required``: what to write if it is missing."""
@@ -160,6 +188,8 @@ class Table:
         unfit = unfit or {}
         usable = {}
         for name, value in self.data.items():
+            if self.file.is_full:
+                break
             if name in keys:
                 found = self._checked(name, keys[name], value)
                 if found is not None:
@@ -186,12 +216,16 @@ class Table:
             if not settings:
                 self._wrong(name, key, whole, KindError("at least one value"))
         usable: list[Setting] = []
+        seen: set[str] = set()
         for setting in settings:
             converted = self._converted(name, key, setting)
+            if self.file.is_full:
+                break
             if converted is None:
                 continue
-            if key.distinct and any(converted == earlier.value for earlier in usable):
+            if key.distinct and repr(converted) in seen:
                 self.complain_about(setting, f"{name} = {shown(setting.value)}: given twice; write it once")
+            seen.add(repr(converted))
             usable.append(Setting(converted, setting.at))
         return usable or None
 
@@ -219,13 +253,14 @@ class Table:
             instead = f"did you mean {meant}?"
         else:
             instead = "write one of " + ", ".join(known)
-        self.complain(f"{shown(name) if not name.isidentifier() else name}: {what}; {instead}", name)
+        written = name if name.isidentifier() and len(name) <= _LONGEST else shown(name)
+        self.complain(f"{written}: {what}; {instead}", name)
 
 
 def _unreadable(path: Path, error: OSError) -> str:
     if isinstance(error, FileNotFoundError):
         return f"{path}: no such file{nearby(path, str(path))}"
-    return f"{path}: cannot be read as a study file: {error.strerror or error}"
+    return f"{path}: cannot be read: {error.strerror or error}"
 
 
 def nearby(path: Path, written: str) -> str:
@@ -237,6 +272,8 @@ def nearby(path: Path, written: str) -> str:
     meant = closest(path.name, sorted(names))
     return f"; did you mean {Path(written).parent / meant}?" if meant else ""
 
+
+_LONGEST = 200  # characters of a line that are looked at: the patterns below take the square of their number
 
 _SLIPS = (  # what people write, and what TOML wants
     (r"=\s*[+-]?\d+,\d+\s*$", "decimals take a point: 0.13"),
@@ -252,11 +289,11 @@ _SLIPS = (  # what people write, and what TOML wants
 
 
 def _syntax_error(path: Path, text: str, error: str) -> str:
-    found = re.search(r"\s*\(at (?:line (\d+), column \d+|end of document)\)", error)
-    reason = error[: found.start()] if found else error
+    found = re.search(r"\(at (?:line (\d+), column \d+|end of document)\)", error)
+    reason = (error[: found.start()] if found else error)[:_LONGEST].strip()
     all_lines = text.split("\n")
     number = int(found.group(1)) if found and found.group(1) else max(1, len(text.rstrip().split("\n")))
-    line = all_lines[number - 1].strip()
+    line = all_lines[number - 1].strip()[:_LONGEST]
     bare = re.sub(r"\s#.*", "", line)
     hint = next((f"; {advice}" for pattern, advice in _SLIPS if re.search(pattern, bare)), "")
     if "overwrite" in reason or "declare" in reason or "twice" in reason:

@@ -392,6 +392,16 @@ def test_undecided_runs_are_told_first_in_the_table_the_files_and_the_report(tmp
     assert "30 of 120 runs undecided: 30 failed" in page
 
 
+@pytest.mark.parametrize(("stations", "said"), [(30, False), (15, True)])
+def test_components_of_one_station_make_bands_that_are_too_narrow_and_it_is_said(tmp_path, stations, said):
+    (curve,), spec, study = made_up(tmp_path, STRIPES, stands_or_falls)
+    told = described([curve], spec, study, 30) | {"stations": stations, "study": {"sha256": "here"}}
+    (tmp_path / "fragility.json").write_text(json.dumps(told), encoding="utf-8")
+    page = section(Contents(tmp_path, told["study"])).content
+    words = ", components of 15 stations: each counts by itself"
+    assert (words in page, "the bands are too narrow" in page) == (said, said)
+
+
 @pytest.mark.parametrize(
     ("fragility", "words"),
     [

@@ -1,10 +1,13 @@
 """Engines: whatever carries out the runs, and whatever becomes of it meanwhile, the table is the same bytes."""
 
+import contextlib
+import json
 import os
 import pickle
 import signal
 import subprocess
 import sys
+import time
 
 import pytest
 from studies import COSINE, PADS, RIGID, SINE, study_text, write_study
@@ -30,7 +33,7 @@ STUDY = study_text(
     motions={"polarity": ["+", "-"], "scale": [0.5, 0.75, 1.0]},
     pulses=(SINE, COSINE),
     cases=(RIGID, PADS | {"beta": [30, 40, 50], "eta": [2.0, 2.5, 3.0], "epsilon": 0.1}),
-    output={"both_laws": False, "histories": "none"},
+    output={"both_laws": False, "histories": "none", "forces": True},
 )
 RUNS = 2 * 2 * 3 * 10
 
@@ -139,6 +142,107 @@ def test_runs_at_which_workers_die_end_the_batch_and_what_is_finished_is_kept(tm
             table(tmp_path, study, runs, Dask(cluster.scheduler_address), lambda _: os.kill(worker.pid, signal.SIGKILL))
     with Journal(tmp_path / "peaks.csv.part", columns(study), {}) as journal:
         assert 0 < len(journal) < RUNS
+
+
+WITHOUT_ROCKBATCH = """
+import sys
+
+class Blocked:
+    def find_spec(self, name, path=None, target=None):
+        if name.partition(".")[0] == "rockbatch":
+            raise ModuleNotFoundError("No module named 'rockbatch'", name="rockbatch")
+
+sys.meta_path.insert(0, Blocked())
+from distributed.cli.dask_worker import main
+main(["ADDRESS", "--no-nanny", "--nthreads", "1", "--no-dashboard"])
+"""
+
+
+def test_a_worker_without_rockbatch_is_told_before_anything_waits_for_it(file, tmp_path, capsys):
+    """It would end at the first task, and whoever waits for that would wait for ever."""
+    pytest.importorskip("distributed")
+    scheduler = subprocess.Popen(
+        [sys.executable, "-m", "distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard",
+         "--scheduler-file", str(tmp_path / "scheduler.json")], stderr=subprocess.DEVNULL,
+    )  # fmt: skip
+    address = address_of(tmp_path / "scheduler.json")
+    code = WITHOUT_ROCKBATCH.replace("ADDRESS", address)
+    worker = subprocess.Popen([sys.executable, "-c", code], stderr=subprocess.DEVNULL)
+    try:
+        assert main(["run", str(file), "--out", str(tmp_path / "out"), "--scheduler", address]) == 2
+        assert "there is no rockbatch where these workers run: tcp://127.0.0.1:" in capsys.readouterr().err
+    finally:
+        worker.kill()
+        scheduler.kill()
+        worker.wait()
+        scheduler.wait()
+
+
+def address_of(file):
+    """Of a scheduler that was started with this file."""
+    until = time.monotonic() + 60
+    while time.monotonic() < until:
+        with contextlib.suppress(OSError, ValueError):
+            return json.loads(file.read_text())["address"]
+        time.sleep(0.1)
+    raise AssertionError("no scheduler")
+
+
+@pytest.mark.slow
+def test_a_scheduler_that_goes_is_told_in_a_sentence(file, tmp_path):
+    """And soon; in a process of its own, because distributed logs to the real stderr."""
+    pytest.importorskip("distributed")
+    file.write_text(file.read_text().replace("[0.5, 0.75, 1.0]", str([0.5 + 0.001 * i for i in range(2000)])))
+    dask = [sys.executable, "-m"]
+    scheduler = subprocess.Popen(
+        [*dask, "distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard",
+         "--scheduler-file", str(tmp_path / "scheduler.json")], stderr=subprocess.DEVNULL,
+    )  # fmt: skip
+    address = address_of(tmp_path / "scheduler.json")
+    worker = subprocess.Popen(
+        [*dask, "distributed.cli.dask_worker", address, "--no-nanny", "--no-dashboard"], stderr=subprocess.DEVNULL
+    )
+    part = tmp_path / "out" / "peaks.csv.part"
+    run = subprocess.Popen(
+        [*dask, "rockbatch", "run", str(file), "--out", str(part.parent), "--scheduler", address],
+        stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    try:
+        until = time.monotonic() + 120
+        while not (part.exists() and part.read_bytes().count(b"\n") > 1):
+            assert time.monotonic() < until
+            time.sleep(0.1)
+        scheduler.kill()
+        started = time.monotonic()
+        _, told = run.communicate(timeout=60)
+        assert run.returncode == 2
+        assert time.monotonic() - started < 40
+        assert f"rockbatch: {address}: lost (" in told
+        assert "give the same command again to go on, with a scheduler and workers that are there" in told
+        assert "Traceback" not in told
+        assert "distributed." not in told
+    finally:
+        for process in (worker, scheduler, run):
+            process.kill()
+            process.wait()
+
+
+def test_an_empty_address_is_a_mistake_and_not_threads(file, tmp_path, capsys):
+    with pytest.raises(SystemExit) as ended:
+        main(["run", str(file), "--out", str(tmp_path / "out"), "--scheduler", ""])
+    assert ended.value.code == 2
+    assert "--scheduler: must be an address such as tcp://10.0.0.1:8786; it is empty" in capsys.readouterr().err
+
+
+def test_where_no_more_threads_can_be_started_a_sentence_says_so(file, tmp_path, capsys, monkeypatch):
+    """As under `ulimit -u`, which does not hold for root."""
+
+    def refuses(_):
+        raise RuntimeError("can't start new thread")
+
+    monkeypatch.setattr("threading.Thread.start", refuses)
+    assert main(["run", str(file), "--out", str(tmp_path / "out")]) == 2
+    assert "no more threads can be started: the number of processes is limited here" in capsys.readouterr().err
 
 
 def test_the_command_line_carries_out_a_study_on_processes_of_this_machine(file, tmp_path, capsys):

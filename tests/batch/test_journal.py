@@ -1,5 +1,6 @@
 """The journal: whatever ends its process and however, the rows that it had are there, each once and whole."""
 
+import os
 import tracemalloc
 
 import numpy as np
@@ -23,7 +24,7 @@ TABLE = (
     b"a,0.3,\n"
     b'"D\xc3\xbczce, ""\xe2\x9f\x82"" \xe5\x9c\xb0\xe9\x9c\x87",,\n'
     b'"two\nlines\r\n",1,"7,b,\n"\n'
-    b"not Unicode \\udcff,-1e-300,\0\n"
+    b"not Unicode \\xff,-1e-300,\\x00\n"
     b",3,'\n"
 )
 
@@ -64,7 +65,10 @@ def test_the_table_is_in_the_order_of_the_numbers_however_the_runs_finish(path):
 def test_wherever_the_file_is_cut_the_rows_before_are_kept_and_the_table_ends_with_the_same_bytes(path):
     interrupted(path, ROWS)
     whole = path.read_bytes()
-    ends = [whole.index(row) + len(row) for row in TABLE.splitlines(keepends=True)[1:] if row.endswith(b"\n")]
+    ends = [at + 1 for at, byte in enumerate(whole) if byte == ord("\n")][
+        1:
+    ]  # a row is a line, whatever its cells hold
+    assert len(ends) == len(ROWS)
     kept = []
     for length in range(len(whole) + 1):
         path.write_bytes(whole[:length])
@@ -82,14 +86,112 @@ def test_wherever_the_file_is_cut_the_rows_before_are_kept_and_the_table_ends_wi
     "torn", [b"\0" * 100, b"\0\0\n4,x,1,\n", b"4,x,1\n", b"\xff\xff,\n5,x,1,\n", b'4,"x,1,\n', b"\n"]
 )
 def test_what_a_power_cut_leaves_behind_the_last_row_is_dropped_for_good(path, torn):
-    """Also whole lines behind a damaged one: they would come back when the damaged one is written over."""
     interrupted(path, {0: ROWS[0]})
     before = path.read_bytes()
     path.write_bytes(before + torn)
-    with pytest.raises(KeyboardInterrupt), Journal(path, COLUMNS, DIGEST) as journal:
+    told = []
+    with pytest.raises(KeyboardInterrupt), Journal(path, COLUMNS, DIGEST, tell=told.append) as journal:
         raise KeyboardInterrupt
     assert list(journal) == [0]
     assert path.read_bytes() == before
+    assert len(told) == (b"\n" in torn)  # a last line without its end is what every kill may leave
+
+
+# Damage
+
+
+def reopened(path, runs=12):
+    """What is found there, and what is told of it."""
+    told = []
+    with pytest.raises(KeyboardInterrupt), Journal(path, COLUMNS, DIGEST, runs=runs, tell=told.append) as journal:  # noqa: PT012
+        found = {number: journal[number] for number in journal}
+        raise KeyboardInterrupt
+    return found, told
+
+
+def test_a_flipped_bit_costs_the_rows_of_its_line_alone_and_is_told_once(path):
+    """Never a wrong row, wherever it is; and not the rows behind it, nor all of them where the first line is hit."""
+    interrupted(path, ROWS)
+    whole = path.read_bytes()
+    right, _ = reopened(path)
+    assert list(right) == list(ROWS)
+    lines = whole.count(b"\n")
+    for bit in range(0, 8 * len(whole), 7):  # each place of a byte in turn
+        damaged = bytearray(whole)
+        damaged[bit // 8] ^= 1 << bit % 8
+        path.write_bytes(damaged)
+        found, told = reopened(path)
+        assert found == {number: right[number] for number in found}
+        line = whole.count(b"\n", 0, bit // 8)
+        joined = whole[bit // 8] == ord("\n")  # with the next line, or torn off as the last one
+        assert len(right) - len(found) == (line > 0) + (joined and line + 1 < lines)
+        assert len(told) == (not (joined and line + 1 == lines))
+        assert reopened(path) == (found, [])
+
+
+def test_damaged_rows_are_told_dropped_alone_and_run_again(path):
+    interrupted(path, ROWS)
+    lines = path.read_bytes().splitlines(keepends=True)
+    lines[2] = lines[2].replace(b"zce", b"zca")
+    path.write_bytes(b"".join(lines))
+    found, told = reopened(path)
+    assert list(found) == [0, 2, 3, 11]
+    assert told == [f"{path}: 1 line is damaged; the 4 runs that are whole count, the others are carried out again"]
+    assert ended(path) == (TABLE, [0, 2, 3, 11])
+
+
+def test_a_row_of_a_run_that_the_plan_does_not_have_is_none(path):
+    """It would be one more in the table, and a number of 900 million asks for memory to remember it by."""
+    interrupted(path, ROWS)
+    found, told = reopened(path, runs=11)
+    assert list(found) == [0, 1, 2, 3]
+    assert "1 line is damaged" in told[0]
+
+
+def test_rows_of_no_study_that_can_be_told_are_refused_as_those_of_another(path):
+    """A first line that is gone, with rows that do not belong to this study; and a journal without checksums."""
+    interrupted(path, ROWS)
+    lines = path.read_bytes().splitlines(keepends=True)
+    for there in ([b"x" + lines[0], *lines[1:]], [b"cases:5f1c motions:09ab,record,theta,reason\n", b"0,a,0.3,\n"]):
+        path.write_bytes(b"".join(there))
+        with pytest.raises(InputError, match=r"first line is damaged, or of another version, and none of its \d rows"):
+            Journal(path, COLUMNS, DIGEST | {"cases": "0000"}).__enter__()
+        assert path.read_bytes() == b"".join(there)
+    with Journal(path, COLUMNS, DIGEST, fresh=True) as journal:
+        assert len(journal) == 0
+
+
+def test_a_line_without_end_is_not_held_in_memory(path):
+    interrupted(path, ROWS)
+    with path.open("ab") as file:
+        file.write(b"1" * 20_000_000 + b"\n")
+    tracemalloc.start()
+    try:
+        found, told = reopened(path)
+        _, peak = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert list(found) == list(ROWS)
+    assert "1 line is damaged" in told[0]
+    assert peak < 5_000_000
+
+
+# Files that lead elsewhere
+
+
+@pytest.mark.parametrize("kind", ["link", "pipe", "folder", "second name"])
+def test_a_journal_that_is_no_plain_file_of_its_folder_is_refused_and_what_it_leads_to_stays(path, tmp_path, kind):
+    path.parent.mkdir()
+    notes = tmp_path / "notes.txt"
+    notes.write_text("precious\n")
+    {"link": lambda: path.symlink_to(notes), "pipe": lambda: os.mkfifo(path), "folder": path.mkdir,
+     "second name": lambda: os.link(notes, path)}[kind]()  # fmt: skip
+    for fresh in (False, True) if kind == "folder" else (False,):
+        with pytest.raises((InputError, OSError)):
+            Journal(path, COLUMNS, DIGEST, fresh).__enter__()
+    with Journal(tmp_path / "new" / "peaks.csv.part", COLUMNS, DIGEST) as journal, pytest.raises((InputError, OSError)):
+        journal.add_from(path) if kind != "second name" else Journal(path, COLUMNS, DIGEST).__enter__()
+    assert notes.read_text() == "precious\n"
 
 
 def test_finished_rows_are_read_back_as_the_texts_of_the_table(path):

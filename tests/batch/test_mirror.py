@@ -29,7 +29,7 @@ STUDY = study_text(
     motions={"polarity": ["+", "-"], "scale": [0.5, 1.0]},
     pulses=(SINE, COSINE | {"amplitude_g": 0.7}),
     cases=(PADS | {"beta": [30, 50], "epsilon": 0.1},),
-    output={"histories": "all", "ledger": True},
+    output={"histories": "all", "ledger": True, "forces": True},
     check=[{"name": "half", "demand": "theta_max_over_alpha", "at_most": 0.001, "reason": "margin"}],
 )
 ROWS = 2 * 2 * 2 * 2

@@ -222,6 +222,71 @@ def test_in_a_finished_folder_nothing_is_left_to_run_and_the_rest_is_made_again(
     assert (out / "peaks.csv").read_bytes() == undisturbed
 
 
+def without_the_tail(text):
+    return "".join(text.splitlines(keepends=True)[:40])
+
+
+def sorted_rows(text):
+    first, *rows = text.splitlines(keepends=True)
+    return first + "".join(sorted(rows))
+
+
+def another_number(text):
+    return text.replace("0.", "1.", 1)
+
+
+@pytest.mark.parametrize("change", [without_the_tail, sorted_rows, another_number])
+def test_a_finished_table_that_was_changed_is_told_left_alone_and_only_replaced_when_asked(
+    study, tmp_path, undisturbed, capsys, change
+):
+    out = tmp_path / "out"
+    command = ["run", str(study), "--out", str(out)]
+    assert main(command) == 0
+    changed = change(undisturbed.decode())
+    (out / "peaks.csv").write_text(changed, encoding="utf-8", newline="")
+    report = (out / "report.html").read_bytes()
+    capsys.readouterr()
+    assert main(command) == 2
+    told = capsys.readouterr().err
+    assert (
+        f"{out / 'peaks.csv'}: not as `rockbatch run` wrote it, with {RUNS} rows: it was edited, or is damaged" in told
+    )
+    assert "keep it as a copy elsewhere if it was edited, and run the study again with --fresh" in told
+    assert (out / "peaks.csv").read_text(encoding="utf-8") == changed
+    assert (out / "report.html").read_bytes() == report
+    assert (
+        main(["report", str(out), "--out", str(tmp_path / "page.html")]) == 0
+    )  # its words are shown, and that is told
+    assert "it was edited, or is damaged; what it says now is shown" in capsys.readouterr().err
+    assert main([*command, "--fresh"]) == 0
+    assert (out / "peaks.csv").read_bytes() == undisturbed
+
+
+def test_a_folder_with_a_file_that_cannot_be_used_counts_as_finished_too(study, tmp_path, capsys):
+    (tmp_path / "records").mkdir()
+    (tmp_path / "records" / "a.at2").write_text("no record")
+    study.write_text(study.read_text().replace("[motions]\n", '[motions]\npath = "records"\n'))
+    command = ["run", str(study), "--out", str(tmp_path / "out")]
+    assert main(command) == 1
+    capsys.readouterr()
+    assert main(command) == 1
+    assert "nothing is left to run" in capsys.readouterr().err
+
+
+def test_damaged_rows_of_a_journal_are_told_and_run_again(study, tmp_path, undisturbed, capsys):
+    out = tmp_path / "out"
+    assert main(["run", str(study), "--out", str(out), "--shard", "1/1"]) == 0
+    part = out / "peaks.csv.part"
+    lines = part.read_bytes().splitlines(keepends=True)
+    for row in (5, 300):
+        lines[row] = lines[row].replace(b",ok,", b",0k,")
+    part.write_bytes(b"".join(lines))
+    assert main(["run", str(study), "--out", str(out)]) == 0
+    told = capsys.readouterr().err
+    assert f"{part}: 2 lines are damaged; the {RUNS - 2} runs that are whole count, the others are carried out" in told
+    assert (out / "peaks.csv").read_bytes() == undisturbed
+
+
 def test_a_table_without_its_run_json_does_not_count_as_finished(study, tmp_path, undisturbed, capsys):
     out = tmp_path / "out"
     out.mkdir()

@@ -22,7 +22,9 @@ def judged(table, *, one=None, records=(), demand="theta_max_over_alpha", at_mos
     """The only verdict."""
     if "at_least" in asked:
         at_most = None
-    (verdict,) = judge([Rule("check", demand, at_most, **asked)], table, [one or case()], records)
+    (verdict,) = judge(
+        [Rule("check", demand, at_most, **asked)], table, [one or case()], dict.fromkeys(records, "") or None
+    )
     return verdict
 
 
@@ -80,7 +82,7 @@ def test_a_statistic_over_the_records_is_what_a_hand_computes(asked, expected):
     [
         (7, 0.4, "pass", ""),
         (6, 0.6, "fail", "most unfavourable of fewer than 7"),
-        (2, 0.2, "not decided", "EN 1998-1, 3.2.3.1.2(4) asks for 3"),
+        (2, 0.2, "not decided", "2 stations count; EN 1998-1 asks for 3"),
     ],
 )
 def test_en1998_takes_the_mean_of_seven_records_and_the_worst_of_fewer(count, value, verdict, note):
@@ -102,7 +104,7 @@ def test_asce7_takes_the_mean_of_eleven_records_and_decides_nothing_on_ten():
     assert judged(eleven(), statistic="asce7-16", at_most=0.61).verdict == "pass"
     ten = judged(eleven()[:10], statistic="asce7-16", at_most=10.0)
     assert ten.verdict == "not decided"
-    assert "10 records count; ASCE 7-16, 16.2.2 asks for 11" in ten.note
+    assert "10 stations count; ASCE 7-16 asks for 11" in ten.note
     assert judged(eleven()[:10], statistic="asce7-16", at_most=0.5).verdict == "fail"  # 0.55
 
 
@@ -210,7 +212,7 @@ def test_a_case_of_which_nothing_was_run_is_not_decided():
 
 def test_nothing_is_decided_where_all_is_left_out():
     found = judged(runs([0.1], status="failed"), failed="left out")
-    assert (found.verdict, found.records, found.note) == ("not decided", 0, "0 records count; no error estimate")
+    assert (found.verdict, found.records, found.note) == ("not decided", 0, "0 stations count; no error estimate")
 
 
 # Errors
@@ -270,6 +272,30 @@ ROW = {
     "impacts": 12,
     "separations": 13,
 }
+FORCES = {
+    "base_shear_m_s2": 3.0,
+    "base_shear_kN": 9000.0,
+    "normal_force_m_s2": 12.0,
+    "normal_force_kN": 36000.0,
+    "friction_demand": 0.3,
+    "impact_friction_demand": 0.15,
+    "pivot_force_left": 2.2,
+    "pivot_force_right": 2.1,
+    "pivot_force_left_kN": 32373.0,
+    "pivot_force_right_kN": 30901.5,
+    "heel_gap_left_m": 0.1,
+    "heel_gap_right_m": 0.15,
+    "heel_speed_left_m_s": 0.7,
+    "heel_speed_right_m_s": 0.6,
+    "deck_acceleration_m_s2": 4.905,
+    "landing_velocity_m_s": math.nan,  # no impact
+    "impulse_m_s": 0.4,
+    "impulse_kN_s": 1200.0,
+    "flight_duration_s": 0.05,
+    "flight_height_m": 0.002,
+    "omega_max_over_p": 0.2,
+}
+ROW |= FORCES
 B, H = 7.3575 * math.sin(0.2), 7.3575 * math.cos(0.2)
 TILT_OVER_RESIDUAL = 1 - 9.81 * H / (50.0 * B) ** 2
 BY_HAND = {  # value and error for θ_max/α = 0.3, α = 0.2
@@ -293,6 +319,16 @@ BY_HAND = {  # value and error for θ_max/α = 0.3, α = 0.2
     "static_deflection_m": (9.81 / 50.0**2, 0.0),
     "yield_kN": (2.5 * 3000 * 9.81 / 2, 0.0),
     "stiffness_kN_m": (50.0**2 * 3000 / 2, 0.0),
+    "top_drift_mm": (2000 * H * 0.06, 2000 * H * 0.0002),
+    "heel_uplift_mm": (2000 * B * 0.06, 2000 * B * 0.0002),
+    **{name: (value, 0.0) for name, value in FORCES.items() if "left" not in name and "right" not in name},
+    "pivot_force": (2.2, 0.0),
+    "pivot_force_kN": (32373.0, 0.0),
+    "heel_gap_m": (0.15, 0.0),
+    "heel_gap_mm": (150.0, 0.0),
+    "heel_speed_m_s": (0.7, 0.0),
+    "deck_acceleration_g": (0.5, 0.0),
+    "landing_velocity_m_s": (0.0, 0.0),
 }
 
 
@@ -308,11 +344,30 @@ def test_a_demand_that_a_base_does_not_have_does_not_apply(demand):
     table = pd.concat([runs([0.3], name, **ROW) for name in ("rigid", "elastic", "pads")])
     found = judge([Rule("check", demand, 100.0)], table, [RIGID, ELASTIC, case()])
     springs = {"theta_res_over_alpha", "theta_res_rad", "base_tilt_rad", "differential_settlement_m", "settlement_m",
-               "toe_settlement_m", "static_deflection_m", "stiffness_kN_m"}  # fmt: skip
+               "toe_settlement_m", "static_deflection_m", "stiffness_kN_m", "flight_duration_s", "flight_height_m"}  # fmt: skip
     expected = {"rigid": demand not in springs, "elastic": True, "pads": True}
     if demand in ("eta", "ductility", "yield_kN"):
         expected = {"rigid": False, "elastic": False, "pads": True}
     assert {each.case: each.verdict != "does not apply" for each in found} == expected
+
+
+@pytest.mark.parametrize("demand", [name for name, demand in DEMANDS.items() if demand.of_forces])
+def test_a_demand_of_forces_is_refused_where_nobody_asked_for_them(demand):
+    with pytest.raises(InputError, match=rf'demand = "{demand}": there are no forces; write forces = true under'):
+        judged(runs([0.3]), demand=demand, at_most=100.0)
+
+
+@pytest.mark.parametrize("demand", [name for name, demand in DEMANDS.items() if demand.weighed])
+def test_a_force_of_a_pier_that_nobody_has_weighed_does_not_apply(demand):
+    one = case()
+    del one["pier"]["mass_t"]
+    found = judged(runs([0.3], **FORCES), one=one, demand=demand, at_most=100.0)
+    assert (found.verdict, found.note) == ("does not apply", "the study does not say what the pier weighs")
+
+
+def test_a_friction_demand_without_limit_fails():
+    found = judged(runs([0.3], **FORCES | {"friction_demand": INF}), demand="friction_demand", at_most=0.5)
+    assert (found.value, found.verdict) == (INF, "fail")
 
 
 def test_the_worked_values_belong_to_the_sample_pier():

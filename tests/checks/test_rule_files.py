@@ -1,6 +1,7 @@
 """Checks as users meet them: rules in TOML, ``rockbatch check``, ``rb.check`` and checks.csv."""
 
 import math
+import os
 import re
 import runpy
 import subprocess
@@ -9,13 +10,14 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
-from check_samples import RIGID, case, folder, runs
+from check_samples import RECORD, RIGID, case, folder, runs
 from studies import PADS, SINE, study_text
 
 import rockbatch as rb
 from rockbatch.checks import load_rules, read_verdicts, write_verdicts
 from rockbatch.checks.reading import CHECK
 from rockbatch.cli import main
+from rockbatch.commands import marks
 from rockbatch.errors import InputError
 from rockbatch.results.checking import verdicts
 
@@ -178,9 +180,10 @@ def passing(tmp_path):
 def test_all_passing_exits_with_0_and_writes_the_table(passing, capsys):
     assert main(["check", str(passing)]) == 0
     printed = capsys.readouterr()
-    margin, flight = (line.split() for line in printed.out.splitlines()[2:4])
-    assert margin == ["margin", "2", "0.4", "<=", "0.5", "0.80", "0.1", "pass"]
-    assert flight == ["no", "flight", "2", "0", "<=", "0", "0.00", "0", "pass"]
+    margin, governs, flight = (line.split() for line in printed.out.splitlines()[2:5])
+    assert margin == ["margin", "2", "0.4", "<=", "0.5", "0.80", "0.1", "✓", "pass"]
+    assert governs == ["governs:", "r1", "(+),", "0.4"]
+    assert flight == ["no", "flight", "2", "none", "none", "✓", "pass"]
     assert "margin: maximum of theta_max_over_alpha at most 0.5 [code] clause 7" in printed.out
     assert "(overturned: infinite; flight, failed: unknown)" in printed.out.replace("\n      ", " ")
     assert "2 pass" in printed.err
@@ -240,14 +243,20 @@ def test_wrong_input_exits_with_2_and_leaves_no_table(tmp_path, monkeypatch, cap
 
 def test_files_that_could_not_be_used_are_told_beside_the_verdicts(tmp_path, capsys):
     peaks = pd.concat([runs([0.1]), runs([math.nan], "", record="notes", status="failed")])
-    out = folder(tmp_path / "out", peaks, [case()], MARGIN, unusable=[{"name": "notes"}])
+    out = folder(
+        tmp_path / "out",
+        peaks,
+        [case()],
+        MARGIN,
+        unusable=[{"name": "notes", "source": "notes.txt", "reason": "no record"}],
+    )
     assert main(["check", str(out)]) == 0
     assert "no usable records, and in no suite: 1" in capsys.readouterr().err
 
 
 def test_a_record_without_any_row_is_not_forgotten(tmp_path):
     """run.json names it: the run was interrupted before."""
-    records = [{"record": name} for name in ("r0", "r1", "r2")]
+    records = [RECORD | {"record": name} for name in ("r0", "r1", "r2")]
     out = folder(tmp_path / "out", runs([0.1, 0.2]), [case()], MARGIN, records=records)
     assert main(["check", str(out)]) == 1
 
@@ -260,6 +269,62 @@ def test_the_table_fits_a_hundred_columns(tmp_path, capsys):
     lines = capsys.readouterr().out.splitlines()
     assert max(map(len, lines)) <= 100
     assert {"pads  beta=40", "pads  beta=50"} <= set(lines)
+
+
+def many(tmp_path, most=40):
+    """A folder of cases, each with a greater peak than the one before; every other one flew."""
+    betas = [float(beta) for beta in range(30, 30 + most)]
+    table = pd.concat(
+        runs([0.1, beta / 100], beta=beta, status=["ok", "flight" if beta % 2 else "ok"], flight_s=[math.nan, 1.0])
+        for beta in betas
+    )
+    return folder(tmp_path / "out", table, [case(beta=beta) for beta in betas], MARGIN)
+
+
+def test_many_verdicts_are_summed_up_and_the_worst_told(tmp_path, capsys):
+    """Those up to half of α pass or, where one run flew, are left open; there are forty of them, and ten are told."""
+    out = many(tmp_path)
+    assert main(["check", str(out)]) == 1
+    printed = capsys.readouterr()
+    lines = printed.out.splitlines()
+    assert lines[0] == "40 verdicts"
+    assert lines[2].split() == ["margin", "11", "19", "10", "0"]
+    told = [line for line in lines if line.startswith("pads  beta=")]
+    assert told == [f"pads  beta={beta}" for beta in range(69, 59, -1)]
+    assert "checks.csv: all of them" in printed.err
+    assert len(read_verdicts(out)) == 40
+    (tmp_path / "few").mkdir()
+    main(["check", str(many(tmp_path / "few", 30))])
+    assert capsys.readouterr().out.count("pads  beta=") == 30
+
+
+@pytest.mark.parametrize(
+    ("terminal", "asked", "colour"), [(True, {}, True), (True, {"NO_COLOR": "1"}, False), (False, {}, False)]
+)
+def test_verdicts_are_coloured_on_a_terminal_unless_nobody_wants_it(monkeypatch, terminal, asked, colour):
+    for name in ("NO_COLOR", "TERM"):
+        monkeypatch.delenv(name, raising=False)
+    for name, value in asked.items():
+        monkeypatch.setenv(name, value)
+    monkeypatch.setattr(sys.stdout, "isatty", lambda: terminal, raising=False)
+    found = [marks.coloured("x", verdict) for verdict in ("pass", "fail", "not decided", "does not apply")]
+    assert found == (["\x1b[32mx\x1b[0m", "\x1b[31mx\x1b[0m", "\x1b[33mx\x1b[0m", "x"] if colour else ["x"] * 4)
+
+
+@pytest.mark.parametrize(
+    ("encoding", "expected"),
+    [
+        ("utf-8", ["✓ pass", "✗ FAIL", "? NOT DECIDED", "– does not apply"]),
+        ("ascii", ["+ pass", "x FAIL", "? NOT DECIDED", "- does not apply"]),
+    ],
+)
+def test_every_verdict_has_a_sign_and_a_word_that_the_terminal_can_show(passing, encoding, expected):
+    code = "from rockbatch.commands.marks import mark\n"
+    code += "for way in ('pass', 'fail', 'not decided', 'does not apply'): print(mark(way))\n"
+    code += f"from rockbatch.cli import main; main(['check', {str(passing)!r}])"
+    environment = os.environ | {"PYTHONIOENCODING": encoding}
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=True, env=environment)
+    assert done.stdout.decode(encoding).splitlines()[:4] == expected
 
 
 def test_the_verdicts_stand_in_the_report(tmp_path):

@@ -9,13 +9,17 @@ import pandas as pd
 
 from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, YieldingBase
 from rockbatch.results.columns import MORE, STAYING, names
-from rockbatch.results.reading import SECTIONS
 from rockbatch.results.run_json import describe_case
 from rockbatch.study import Case
 
 PIER = Pier(alpha=0.2, p=1.0, mass_t=3000.0)
 """R0 = 7.3575 m, b = 1.46171 m, h = 7.21084 m."""
 PADS = YieldingBase(beta=50.0, eta=2.5)
+
+RECORD = {
+    "source": "x.AT2", "vertical_source": None, "notes": [], "npts": 100, "dt_s": 0.01, "duration_s": 0.99, "pga_g": 0.5,
+    "pga_v_g": None, "pgv_m_s": None, "pgd_m": None,
+}  # fmt: skip
 
 
 def case(name: str = "pads", base: Base = PADS, **columns: float | str) -> dict[str, Any]:
@@ -27,13 +31,15 @@ RIGID, ELASTIC = case("rigid", RigidBase()), case("elastic", ElasticBase(beta=50
 
 
 def runs(theta: Any = (0.1, 0.2, 0.6, 0.3), name: str = "pads", **cells: Any) -> pd.DataFrame:
-    """One run that went well for each value of θ_max/α; ``cells`` has a value, or one for each run, for other columns."""
+    """One run that went well for each value of θ_max/α, each of a station of its own; ``cells`` has a value, or one for each
+    run, for other columns."""
     table = pd.DataFrame({"theta_max_over_alpha": [float(value) for value in theta]})
     table["record"] = [f"r{i}" for i in range(len(table))]
     table["case"], table["polarity"], table["scale"], table["status"], table["reason"] = name, "+", 1.0, "ok", ""
     for column in names((*STAYING, *MORE)):
         if column not in table:
             table[column] = math.nan
+    table["station"] = table["record"]
     for column, value in cells.items():
         table[column] = value
     return table
@@ -44,13 +50,15 @@ def folder(path: Path, peaks: pd.DataFrame, cases: list[dict[str, Any]], checks:
     table = peaks.reindex(columns=list(dict.fromkeys([*names(STAYING), *names(MORE), *peaks.columns])))
     path.mkdir(exist_ok=True)
     table.to_csv(path / "peaks.csv", index=False, float_format="%.10g")
-    records = peaks.loc[peaks["case"] != "", "record"].unique()
-    told = dict.fromkeys(SECTIONS, "") | {
-        "study": {"path": "pier.toml", "text": checks},
+    records = peaks.loc[peaks["case"] != "", ["record", "station"]].drop_duplicates("record")
+    told = {
+        "rockbatch": "0", "created": "", "command": [], "versions": {}, "machine": "",
+        "study": {"path": "pier.toml", "title": "", "notes": "", "text": checks, "sha256": ""},
+        "numerics": {"tolerance": 1e-4, "substeps": None, "quiet_s": 2.0},
         "varied": list(dict.fromkeys(key for one in cases for key in one["columns"])),
         "cases": cases,
-        "records": [{"record": name} for name in records],
-        "unusable": [],
-    }
+        "records": [RECORD | one for one in records.to_dict("records")],
+        "unusable": [], "references": [], "runs": len(peaks), "jobs": 1, "wall_s": 1.0,
+    }  # fmt: skip
     (path / "run.json").write_text(json.dumps(told | info), encoding="utf-8")
     return path

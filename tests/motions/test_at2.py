@@ -111,7 +111,7 @@ def test_a_file_cut_within_its_last_number_is_an_error_though_the_count_is_right
         (at2_text(VALUES).replace("E-0", "X-0", 1), r"line \d+: found"),
         (at2_text([*VALUES[:5], np.nan, *VALUES[5:]], number=lambda v: f" {v:.7e}"), 'value 6 of 13 is "nan"'),
         (at2_text([*VALUES[:5], np.inf, *VALUES[5:]], number=lambda v: f" {v:.7e}"), 'value 6 of 13 is "inf"'),
-        (at2_text(VALUES, count="NPTS= 12, DT= 0.0 SEC"), "line 4.*time step above 0"),
+        (at2_text(VALUES, count="NPTS= 12, DT= 0.0 SEC"), "line 4.*time step of 1e-05 to 1 s"),
         (at2_text(VALUES, unit="VELOCITY TIME SERIES IN UNITS OF CM/S"), "VELOCITY TIME.*accelerations"),
         (at2_text(range(12), number=lambda v: f" 1_{v:.0f}"), r'line 5: found "1_0"'),
     ],

@@ -230,6 +230,17 @@ def test_the_draft_changes_nothing_until_it_is_edited(tmp_path):
     assert text.count("[[record]]\nfile") == 5
 
 
+def test_the_draft_of_a_header_with_odd_characters_is_a_manifest(tmp_path):
+    """DEL, which TOML does not allow in a text nor in a remark, and what a terminal would obey."""
+    odd = "ST\x7fA\x1b[2J"
+    write_at2(tmp_path, "a000.AT2", wiggle(50, 1), title=title("000", odd))
+    write_at2(tmp_path, "b.AT2", wiggle(50, 2), title=title("090", odd))
+    before = read_motions(tmp_path)
+    text = write_draft(tmp_path).read_text(encoding="utf-8")
+    assert not set(text) & {"\x7f", "\x1b"}
+    assert [motion.name for motion in read_motions(tmp_path).motions] == [motion.name for motion in before.motions]
+
+
 def test_the_draft_has_a_line_to_fill_in_for_each_unit_and_interval_that_a_file_lacks(tmp_path):
     """What is asked for is enough: with the lines filled in, every file is a record."""
     timed, plain, nothing = ([f"{value:.6f}" for value in wiggle(50, seed)] for seed in (1, 2, 3))

@@ -213,3 +213,60 @@ def test_spectra_of_a_suite_are_in_g_and_in_order():
     np.testing.assert_allclose(
         found["sa_g"][0], spectral_acceleration(motions[0].horizontal, 0.01, PERIODS) / 10, rtol=1e-3
     )
+
+
+def test_the_cav_of_a_sine_is_four_amplitudes_over_omega_each_period():
+    omega, dt = 2 * math.pi, 0.001
+    a = 3.0 * np.sin(omega * np.arange(5001) * dt)
+    assert measures.cumulative_absolute_velocity(a, dt) == pytest.approx(5 * 4 * 3.0 / omega, rel=1e-5)
+
+
+def test_the_cav_counts_both_sides_of_a_zero_between_samples():
+    assert measures.cumulative_absolute_velocity(np.array([3.0, -1.0]), 2.0) == pytest.approx(1.5 * 1.5 + 0.5 * 0.5)
+    assert measures.cumulative_absolute_velocity(np.array([0.0, 0.0, 0.0]), 1.0) == 0.0
+    fine = np.interp(np.arange(0, 2001 * 4 - 3) / 4, np.arange(2001), shaking())
+    assert measures.cumulative_absolute_velocity(fine, 0.0025) == pytest.approx(
+        measures.cumulative_absolute_velocity(shaking(), 0.01), rel=1e-12
+    )
+
+
+def test_the_cav_tends_to_that_of_eqsig_as_samples_grow_dense():
+    # eqsig sums trapezoids of |a|, too large where a changes its sign between samples: by the square of the step
+    off = []
+    for dt in (0.01, 0.002):
+        theirs = eqsig.im.calc_cav(eqsig.AccSignal(shaking(dt), dt))[-1]
+        off.append(theirs / measures.cumulative_absolute_velocity(shaking(dt), dt) - 1)
+    assert 0 < off[1] < 2e-4
+    assert off[0] == pytest.approx(25 * off[1], rel=0.2)
+
+
+def test_durations_of_a_rectangle_are_its_length_and_of_two_their_sum_and_span():
+    a = np.zeros(1001)
+    a[100:201], a[600:651] = 2.0, -3.0
+    ramps = 4 * 0.01 * 0.5  # on either side half of an interval is above half the height
+    assert measures.bracketed_duration(a, 0.01, 1.0) == pytest.approx(5.5 + 0.005 + 0.01 * 2 / 3)
+    assert measures.uniform_duration(a, 0.01, 1.0) == pytest.approx(1.0 + 0.5 + 2 * 0.005 + 2 * 0.01 * 2 / 3)
+    assert measures.uniform_duration(np.abs(np.minimum(a, 2)), 0.01, 1.5) < 1.5 + ramps
+    assert measures.bracketed_duration(a, 0.01, 3.0) == measures.uniform_duration(a, 0.01, 3.0) == 0.0
+
+
+def test_durations_above_a_level_of_a_sine_are_those_of_its_arc():
+    dt, level = 1e-4, 0.5
+    a = np.sin(2 * math.pi * np.arange(20001) * dt)  # two periods
+    above = 1 - 2 * math.asin(level) / math.pi  # share of the time that |sin| > level
+    assert measures.uniform_duration(a, dt, level) == pytest.approx(2 * above, rel=1e-6)
+    assert measures.bracketed_duration(a, dt, level) == pytest.approx(
+        2 - 2 * math.asin(level) / (2 * math.pi), rel=1e-6
+    )
+
+
+def test_durations_are_those_of_the_straight_lines_between_samples():
+    a = shaking(0.02)
+    fine = np.interp(np.arange((len(a) - 1) * 50 + 1) / 50, np.arange(len(a)), a)
+    above = np.abs(fine) > 2.0
+    places = np.flatnonzero(above)
+    assert measures.uniform_duration(a, 0.02, 2.0) == pytest.approx(above.sum() * 0.0004, abs=0.02)
+    assert measures.bracketed_duration(a, 0.02, 2.0) == pytest.approx((places[-1] - places[0]) * 0.0004, abs=0.001)
+    edge = np.array([5.0, 1.0, 5.0])  # above at both ends of the record
+    assert measures.bracketed_duration(edge, 1.0, 2.0) == 2.0
+    assert measures.uniform_duration(edge, 1.0, 2.0) == pytest.approx(1.5)

@@ -197,10 +197,10 @@ def test_a_required_vertical_costs_a_record_that_has_none_and_a_strict_study_eve
     found = ground_motions(study_of(tmp_path, 'vertical = "required"\n'))
     assert [motion.name for motion in found.motions] == ["has000"]
     (refused,) = found.unusable
-    assert refused.reason.startswith("has no vertical component, and the study requires it")
+    assert refused.reason.startswith("X 1994, lacks, 000 has no vertical component, and the study requires it")
     with pytest.raises(InputError) as caught:
         ground_motions(study_of(tmp_path, 'vertical = "required"\nstrict = true\n'))
-    assert caught.value.problems[0].startswith("lacks000.AT2: has no vertical component")
+    assert caught.value.problems[0].startswith("lacks000.AT2: X 1994, lacks, 000 has no vertical component")
 
 
 def test_a_vertical_that_does_not_last_over_the_peak_is_none(tmp_path):
@@ -214,9 +214,9 @@ def test_run_and_its_report_name_the_records_without_a_vertical(tmp_path, capsys
     with_one_vertical(tmp_path / "records")
     study_of(tmp_path, '[output]\nhistories = "none"\n')
     assert main(["run", str(tmp_path / "study.toml"), "--out", str(tmp_path / "out")]) == 0
-    assert "no vertical: lacks000\n" in capsys.readouterr().err
+    assert "no vertical: X 1994, lacks, 000 (lacks000)\n" in capsys.readouterr().err
     report = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
-    assert "<p>no vertical: lacks000</p>" in report
+    assert "<p>no vertical: X 1994, lacks, 000 (lacks000)</p>" in report
     study_of(tmp_path, 'vertical = "required"\n[output]\nhistories = "none"\n')
     assert main(["run", str(tmp_path / "study.toml"), "--out", str(tmp_path / "out")]) == 1
     rows = list(csv.DictReader((tmp_path / "out" / "peaks.csv").read_text().splitlines()))

@@ -41,6 +41,34 @@ def test_a_quantity_that_does_not_apply_has_no_statistics():
     assert suite(np.array([math.nan, math.nan]), ["ok", "ok"]).count == 0
 
 
+def test_runs_of_one_station_count_once_with_the_worst_of_them():
+    values = np.array([0.1, 0.4, 0.3, 0.2, 0.5, 7.0, 0.1, math.nan])
+    status = ["ok", "ok", "ok", "ok", "ok", "overturned", "ok", "failed"]
+    found = suite(values, status, ["A", "A", "B", "B", "C", "C", "D", "D"])
+    assert (found.count, found.standing, found.overturned, found.failed) == (3, 2, 1, 1)
+    assert found.mean == pytest.approx(0.35, rel=1e-14)
+    assert (found.median, found.largest) == (0.4, math.inf)
+    both = suite(np.array([1.0, 1.0]), ["flight", "overturned"], ["A", "A"])
+    assert (both.count, both.overturned, both.flight) == (1, 1, 0)
+
+
+@pytest.mark.parametrize(("count", "n", "largest"), [("station", "3", "worse"), ("component", "6", "every")])
+def test_the_table_counts_as_the_checks_do(tmp_path, count, n, largest):
+    stations = {record: f"S{i // 2}" for i, (record, _) in enumerate(FIG7)}
+    changes = {(record, "rigid"): {"theta_max_over_alpha": 0.1 * i} for i, (record, _) in enumerate(FIG7, 1)}
+    changes = {key: values | {"station": stations[key[0]]} for key, values in changes.items()}
+    for record, station in stations.items():
+        for case in "1234":
+            changes[record, case] = {"station": station}
+    write_results(tmp_path, changes=changes, count=count)
+    page = Page(write_report(tmp_path, []).read_text(encoding="utf-8"))
+    head = page.tables["suite"][0]
+    row = dict(zip(head, next(row for row in page.tables["suite"] if row[0] == "rigid"), strict=True))
+    assert row["n"] == n
+    assert float(row["mean"]) == pytest.approx({"worse": 0.4, "every": 0.35}[largest])  # of 0.2, 0.4, 0.6; of 0.1 … 0.6
+    assert "A record is a" in page.text
+
+
 def test_the_table_says_how_many_stood_and_which_percentiles_fall_on_overturned_runs(tmp_path):
     changes = {(record, "2"): {"status": "overturned"} for record, _ in FIG7[:2]}
     write_results(tmp_path, changes=changes)

@@ -12,6 +12,7 @@ import pytest
 from check_samples import PADS, case
 from report_page import Page
 from report_samples import write_results
+from studies import RIGID, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.checks.demands import DEMANDS
@@ -44,6 +45,7 @@ duration_s = 2.0
 
 [output]
 ledger = true
+forces = true
 
 [[case]]
 name = "rigid"
@@ -99,6 +101,7 @@ def test_the_readme_lists_the_columns_as_the_table_has_them():
 def test_a_name_ends_with_its_unit():
     """``theta_res_drift_per_s`` is 1/s, ``energy_input_J_kg`` is J/kg; pint reads them all."""
     endings = {"s": "s", "m": "m", "rad": "rad", "J/kg": "J_kg", "m/s": "m_s", "1/s": "per_s"}
+    endings |= {"m/s^2": "m_s2", "kN": "kN", "kN*s": "kN_s", "standard_gravity": "g"}
     for column in COLUMNS.values():
         pint.Unit(column.unit)
         ended = [unit for unit, ending in endings.items() if column.name.endswith(f"_{ending}")]
@@ -109,7 +112,10 @@ def test_a_name_ends_with_its_unit():
 
 def test_every_number_of_an_outcome_has_its_column():
     taken = {column.of for column in COLUMNS.values() if isinstance(column.of, str)}
-    assert {field.name for field in fields(Outcome)} - taken == {"energies"}  # each term has a column of its own
+    assert {field.name for field in fields(Outcome)} - taken == {
+        "energies",
+        "forces",
+    }  # each of theirs has a column of its own
 
 
 def test_a_column_is_empty_where_the_table_says_that_it_does_not_apply(study, table):
@@ -146,7 +152,8 @@ def test_demands_read_columns_of_the_table_only():
 
 def test_the_page_shows_every_column_with_its_name_and_meaning(tmp_path):
     """All but which image a row is: the page has no mirror images. Those that belong together stand side by side."""
-    shown = names(on_page())
+    shown = names([*on_page(), *on_page("forces")])
+    assert len(shown) == len(set(shown))
     assert set(shown) == {*COLUMNS} - {"mirror_of"}
     for together in (["theta_res_over_alpha", "theta_res_error", "base_tilt_rad", "settlement_m"], ["reason", "note"]):
         start = shown.index(together[0])
@@ -241,3 +248,18 @@ def test_a_table_without_a_varied_key_is_refused(tmp_path):
     (tmp_path / "run.json").write_text(json.dumps(info | {"varied": ["beta"]}), encoding="utf-8")
     with pytest.raises(InputError, match="has no column beta"):
         read_saved(tmp_path)
+
+
+def test_a_demand_without_bound_comes_back_from_disk(tmp_path):
+    """A pier that flies is not held by friction at all: V/N is infinite, in the table, the histories and the page."""
+    station = Path(__file__).parents[2] / "motions" / "near_fault" / "kaikoura2016_wtmc"
+    pier, motions = {"alpha": 0.13, "p": 0.76}, {"path": str(station)}
+    text = study_text(pier=pier, motions=motions, pulses=(), cases=(RIGID,), output={"forces": True})
+    rb.run(write_study(tmp_path, text), out=tmp_path / "out")
+    opened = rb.open_results(tmp_path / "out")
+    flown = opened.peaks[opened.peaks["status"] == "flight"]
+    assert len(flown) == 2
+    assert np.isinf(flown["friction_demand"]).all()
+    assert np.isinf(opened.responses[0].forces["friction"]).any()
+    assert np.isfinite(flown["base_shear_m_s2"]).all()
+    assert (tmp_path / "out" / "report.html").exists()

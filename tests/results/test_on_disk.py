@@ -40,7 +40,7 @@ STUDY = study_text(
         {"name": "elastic", "base": "elastic", "beta": 50},
         PADS | {"epsilon": 0.1, "spring": ["bouc-wen", "epp"]},
     ),
-    output={"histories": "all", "ledger": True},
+    output={"histories": "all", "ledger": True, "forces": True},
 )
 PIER = rb.Pier(0.2, 1.0)
 CREATED = "2007-06-25T10:00:00+00:00"
@@ -68,15 +68,18 @@ def results(tmp_path_factory):
     return rb.open_results(folder)
 
 
+TABLES = ("history", "events", "ledger", "forces", "impacts")
+
+
 def same(one, other):
     """Whether two responses are equal to the bit, types of columns included."""
-    for name in ("history", "events", "ledger"):
+    for name in TABLES:
         ours, theirs = getattr(one, name), getattr(other, name)
         if ours is None or theirs is None:
             assert ours is theirs
         else:
             pd.testing.assert_frame_equal(ours, theirs, check_exact=True)
-    frames = {"history": None, "events": None, "ledger": None, "row": None}  # the row is in peaks.csv
+    frames = dict.fromkeys((*TABLES, "row"))  # the row is in peaks.csv
     assert asdict(replace(one, **frames)) == asdict(replace(other, **frames))
     assert type(one.base) is type(other.base)
     return True
@@ -110,7 +113,9 @@ def test_every_response_comes_back_equal_to_the_bit(results):
         )  # fmt: skip
         if row.polarity == "-":
             motion = replace(motion, horizontal=-motion.horizontal)
-        again = simulate(response.pier, response.base, motion, substeps=int(row.substeps), case=row.case, ledger=True)
+        again = simulate(
+            response.pier, response.base, motion, substeps=int(row.substeps), case=row.case, ledger=True, forces=True
+        )
         columns = {"alpha": row.alpha} | ({"spring": row.spring} if row.case == "pads" else {})
         assert same(response, replace(again, columns=columns, polarity=row.polarity))
 
@@ -188,7 +193,7 @@ def test_flight_is_the_last_event_of_a_run_that_it_ends(tmp_path):
 
 
 def test_every_number_has_a_unit_and_a_length_that_fits(results):
-    """Units are those that pint reads; all columns of a run have as many rows as its time."""
+    """Units are those that pint reads; all columns of a run have as many rows as its time, or as it has impacts."""
     registry = pint.UnitRegistry()
     seen = set()
     with h5py.File(results.directory / "histories.h5") as file:
@@ -196,12 +201,15 @@ def test_every_number_has_a_unit_and_a_length_that_fits(results):
         def look(name, item):
             if isinstance(item, h5py.Dataset) and item.dtype.kind != "S":
                 seen.add(str(registry(item.attrs["unit"]).units if item.attrs["unit"] != "1" else "1"))
-                if "/events/" not in name:
-                    assert item.shape == file[f"{'/'.join(name.split('/')[:2])}/t"].shape
+                own = name.split("/")[2]
+                if own != "events":
+                    of = f"{'/'.join(name.split('/')[:2])}/{'impacts/t' if own == 'impacts' else 't'}"
+                    assert item.shape == file[of].shape
 
         file.visititems(look)
     assert seen == {
-        "second", "radian", "radian / second", "meter", "newton / kilogram", "joule / kilogram", "meter / second ** 2", "1"
+        "second", "radian", "radian / second", "meter", "newton / kilogram", "joule / kilogram", "meter / second ** 2",
+        "meter / second", "1",
     }  # fmt: skip
 
 
@@ -219,6 +227,8 @@ def test_the_file_says_what_it_is_and_what_made_it(results):
         assert set(run) == {
             "base",
             "events",
+            "forces",
+            "impacts",
             "ledger",
             "pier",
             "varied",

@@ -10,7 +10,7 @@ import pint
 import pytest
 from numba.core.registry import CPUDispatcher
 
-from rockbatch.core import equations, events, impact, laws, trigonometry
+from rockbatch.core import equations, events, forces, impact, laws, trigonometry
 from rockbatch.core.rigid import equations as rigid
 from rockbatch.core.types import BOUC_WEN, ELASTIC, EPP, Block, Contact, Geometry, Ground, Rocking, Springs, State
 
@@ -51,7 +51,7 @@ def plain_python(monkeypatch):
 
     A lever that is absent is written as 0.0; an exact zero has every dimension, so it gets that of its neighbours.
     """
-    modules: tuple[ModuleType, ...] = (laws, equations, impact, events, trigonometry, rigid)
+    modules: tuple[ModuleType, ...] = (laws, equations, impact, events, trigonometry, rigid, forces)
     compiled_geometry = equations.geometry
 
     def geometry(m, theta):
@@ -173,6 +173,28 @@ def test_the_rigid_bases_equations_give_rotations_and_times():
     later, _ = rigid.lift_off(m, Ground(1.8 * ACCELERATION, 40.0 * JERK, 0.0 * ACCELERATION, 0.0 * JERK), h)
     assert 0.0 * S < later < h
     assert_units([later], [S])
+
+
+FORCES = (*(ACCELERATION,) * 4, M, M, SPEED, SPEED, ACCELERATION, SPEED, SPEED, RAD / S, ONE, M)
+
+
+@KINEMATICS
+@pytest.mark.parametrize("contact", CONTACTS)
+def test_forces_gaps_and_speeds_have_their_units_on_springs(finite, contact):
+    shaking = ground()
+    found = forces.on_springs(
+        pier(finite), 31.0 * M, state(), contact, 0.001 * M, 0.002 * M, shaking.horizontal, shaking.vertical
+    )
+    assert_units(found, FORCES)
+
+
+@pytest.mark.parametrize("side", [-1.0, 0.0, 1.0])
+def test_forces_gaps_and_speeds_have_their_units_on_a_rigid_base(side):
+    m, outline = Block(*quantities(Block, BLOCK)), forces.Outline(7.4 * M, 3.0 * M, 1.0, 24.0 * M)
+    found = forces.on_rigid_base(
+        m, outline, 0.05 * side * RAD, -0.1 * RAD / S, side, 0.5 * ACCELERATION, -1.0 * ACCELERATION
+    )
+    assert_units(found, FORCES)
 
 
 # What they refuse

@@ -32,9 +32,22 @@ from rockbatch.motions.formats import (
     usc,
 )
 from rockbatch.motions.formats.record_file import ROLES, ReadOptions, RecordFile
+from rockbatch.motions.limits import HUGE, MOST_SAMPLES, STEPS, is_step
 from rockbatch.motions.motion import Unusable
+from rockbatch.motions.texts import with_legible_texts
 
-__all__ = ["FORMATS", "HEAD", "ROLES", "Format", "ReadOptions", "RecordFile", "format_of", "is_usual", "read_record"]
+__all__ = [
+    "FORMATS",
+    "HEAD",
+    "ROLES",
+    "Format",
+    "ReadOptions",
+    "RecordFile",
+    "format_of",
+    "is_usual",
+    "read_record",
+    "usable",
+]
 
 HEAD = 4096
 """Bytes that a format is known by."""
@@ -102,23 +115,29 @@ def format_of(suffix: str, head: bytes) -> Format | None:
 
 
 def read_record(file: RecordFile) -> Sequence[Component | Unusable]:
-    """Components of a file, or ``InputError`` with the reason why there are none."""
+    """Components of a file, their texts made legible, or ``InputError`` with the reason why there are none."""
     known = format_of(file.path.suffix, file.data)
     if known is None:
         raise InputError(_not_recognised(file))
     with np.errstate(over="ignore", invalid="ignore"):  # what becomes of absurd numbers is looked at below
-        return [_usable(reading) for reading in known.read(file)]
+        return [usable(with_legible_texts(reading)) for reading in known.read(file)]
 
 
-def _usable(reading: Component | Unusable) -> Component | Unusable:
-    """A component that a motion can be made of, or what it lacks."""
+def usable(reading: Component | Unusable) -> Component | Unusable:
+    """A component that a motion can be made of, or what is wrong with it."""
     if isinstance(reading, Unusable):
         return reading
     if len(reading.acceleration) < 2:
-        return Unusable(reading.name, reading.source, "found one sample; expected at least two")
-    if not np.isfinite(reading.acceleration).all():
-        return Unusable(reading.name, reading.source, "holds values that are not finite numbers")
-    return reading
+        why = "found one sample; expected at least two"
+    elif not (np.abs(reading.acceleration) < HUGE).all():
+        why = f"holds values that are not finite numbers, or beyond {HUGE:g} m/s²"
+    elif not is_step(reading.dt):
+        why = f"found a sampling interval of {reading.dt:g} s; expected {STEPS}"
+    elif len(reading.acceleration) > MOST_SAMPLES:
+        why = f"found {len(reading.acceleration)} samples; {MOST_SAMPLES:,} are the most, more than a day: cut the event out"
+    else:
+        return reading
+    return Unusable(reading.name, reading.source, why, reading.orientation.label)
 
 
 def _not_recognised(file: RecordFile) -> str:

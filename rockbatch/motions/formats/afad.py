@@ -16,6 +16,7 @@ from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.formats.recording import Recording, to_components
 from rockbatch.motions.motion import Samples, Unusable
+from rockbatch.motions.origin import origin_of
 
 SUFFIXES: frozenset[str] = frozenset()
 
@@ -63,6 +64,7 @@ def _parse(text: str) -> list[Recording]:
             processed=False,
             seat=Seat(station, "TK"),
             event=header.get("EARTHQUAKE DATE", ""),
+            origin=origin_of(date=header.get("EARTHQUAKE DATE", ""), station=header.get("PLACE") or station),
             header={"station": header.get("PLACE", ""), "event": header.get("EARTHQUAKE DATE", "")},
         )
         for i, label in enumerate(labels)

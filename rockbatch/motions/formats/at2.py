@@ -12,11 +12,13 @@ import numpy as np
 
 from rockbatch.errors import InputError, UnstatedError
 from rockbatch.motions.component import Component, Seat
-from rockbatch.motions.formats.fixed_width import is_cut_short
+from rockbatch.motions.formats.fixed_width import LOOKED_AT, is_cut_short
 from rockbatch.motions.formats.obspy_plugin import FileLike, first_bytes, name_and_bytes
 from rockbatch.motions.formats.record_file import RecordFile
+from rockbatch.motions.limits import MOST_SAMPLES, STEPS, is_step
 from rockbatch.motions.motion import Samples
 from rockbatch.motions.orientation import UNKNOWN, orientation_of, split_stem
+from rockbatch.motions.origin import origin_of
 from rockbatch.units import acceleration_factor
 
 if TYPE_CHECKING:
@@ -38,6 +40,9 @@ _DATE = re.compile(r"\d{1,2}/\d{1,2}/\d{2,4}|\d{4}-\d{2}-\d{2}")
 _SIGNED = re.compile(rf"[-+]?{_NUMBER}", re.IGNORECASE)
 _HEADER_LINES = 10  # the count stands in line 4; a few lines of grace for hand-edited headers
 _HEADER_BYTES = 2048
+_HEADER_CHARACTERS = 8192
+_BLANK = re.compile(r"\s")
+_PIECE = 2**20  # characters that are looked at together
 _WIDEST = 40  # characters of a number; longer ones are no numbers, and would cost the patterns long
 
 
@@ -127,29 +132,33 @@ def read_component(file: RecordFile) -> list[Component]:
             seat=Seat(record.station.upper()),
             event=f"{record.event} {record.date}".strip().upper() if record.date else "",
             processed=record.by_peer or None,
+            origin=origin_of(record.event, record.station, record.date),
         )
     ]
 
 
 def _parse(text: str) -> _At2:
     """What the text of an AT2 file says; ``InputError`` with the line where it cannot be used."""
-    lines = text.rstrip("\x00\x1a").splitlines()
-    at = next((i for i, line in enumerate(lines[:_HEADER_LINES]) if _count_and_step(line)), None)
+    lines = text[:_HEADER_CHARACTERS].splitlines(keepends=True)[:_HEADER_LINES]
+    at = next((i for i, line in enumerate(lines) if _count_and_step(line)), None)
     found = None if at is None else _count_and_step(lines[at])
     if at is None or found is None:
         raise InputError(
-            f"lines 1–{min(len(lines), _HEADER_LINES)}: no number of points and time step found; "
+            f"lines 1–{len(lines)}: no number of points and time step found; "
             'expected a line such as "NPTS= 4316, DT= .0100 SEC"'
         )
     npts, dt = int(found["npts"]), float(found["dt"].upper().replace("D", "E"))
-    if npts < 1 or not (np.isfinite(dt) and dt > 0):
-        raise InputError(f'line {at + 1}: found "{lines[at].strip()}"; expected a count and a time step above 0')
+    if not 1 <= npts <= MOST_SAMPLES or not is_step(dt):
+        raise InputError(
+            f'line {at + 1}: found "{lines[at].strip()[:80]}"; expected a count from 1 to {MOST_SAMPLES:,}, and a time step of '
+            f"{STEPS}"
+        )
     header = " ".join(lines[:at])
     if quantity := re.search(r"\b(?:VELOCITY|DISPLACEMENT) TIME\b", header, re.IGNORECASE):
         raise InputError(f'header: found "{quantity[0]}…"; expected accelerations: take the .AT2 file of this record')
     unit = _UNIT.search(header)
-    event, date, station, component = _title(lines[1]) if at > 1 else ("", "", "", "")
-    values = _values(lines, at + 1, npts)
+    event, date, station, component = _title(lines[1].strip()) if at > 1 else ("", "", "", "")
+    values = _values(text, sum(map(len, lines[: at + 1])), npts)
     return _At2(event, date, station, component, unit[1] if unit else None, dt, values, "PEER" in header.upper())
 
 
@@ -176,46 +185,76 @@ def _title(line: str) -> tuple[str, str, str, str]:
     return event, fields[at][start.start() :], station, component
 
 
-def _values(lines: list[str], first: int, npts: int) -> Samples:
-    """The ``npts`` numbers from line ``first`` on, or ``InputError``: never one more or less."""
-    body = [line for line in lines[first:] if not line.isspace()]
-    tokens = " ".join(body).split()
+def _values(text: str, start: int, npts: int) -> Samples:
+    """The ``npts`` numbers from the character ``start`` on, or ``InputError``: never one more or less."""
     try:
-        if any("_" in line for line in body):  # Python would read 1_0 as ten
-            raise ValueError
-        values = np.array([float(token) for token in tokens])
+        values, last = _between_blanks(text, start)
     except ValueError:
-        tokens = _fixed_width([line.rstrip() for line in body if line], npts) or [
-            token.upper().replace("D", "E") for token in tokens
-        ]
-        values = np.array([_number(token, lines, first) for token in tokens])
+        values, last = _touching_or_double(text, start, npts)
     if len(values) != npts:
         raise InputError(f"the header says NPTS = {npts}, but the file holds {len(values)} values; fetch it again")
     if not np.isfinite(values).all():
         i = int(np.flatnonzero(~np.isfinite(values))[0])
-        raise InputError(f'value {i + 1} of {npts} is "{tokens[i]}"; expected finite numbers')
-    if is_cut_short(tokens):
-        raise InputError(f'the last value is "{tokens[-1]}", shorter than all others: the file is cut; fetch it again')
+        raise InputError(f'value {i + 1} of {npts} is "{values[i]}"; expected finite numbers')
+    if is_cut_short(last):
+        raise InputError(f'the last value is "{last[-1]}", shorter than all others: the file is cut; fetch it again')
     return values
 
 
-def _number(token: str, lines: list[str], first: int) -> float:
-    """``token`` as a number, or ``InputError`` with the line that it stands in."""
+def _between_blanks(text: str, start: int) -> tuple[Samples, list[str]]:
+    """The numbers from ``start`` on, and the last of them as they are written; ``ValueError`` where one is none.
+
+    A piece of the file after the other: its words as Python's objects would take thirty times its size.
+    """
+    end = len(text.rstrip("\x00\x1a"))
+    values, last = [np.empty(0)], list[str]()
+    while start < end:
+        blank = _BLANK.search(text, start + _PIECE, end)
+        stop = blank.end() if blank else end
+        tokens = text[start:stop].split()
+        if any("_" in token for token in tokens):  # Python would read 1_0 as ten
+            raise ValueError
+        values.append(np.array([float(token) for token in tokens]))
+        last = [*last, *tokens][-LOOKED_AT:]
+        start = stop
+    return np.concatenate(values), last
+
+
+def _touching_or_double(text: str, start: int, npts: int) -> tuple[Samples, list[str]]:
+    """Likewise, of Fortran's columns that touch, or numbers in double precision; ``InputError`` with the line."""
+    lines = text[start:].rstrip("\x00\x1a").splitlines()
+    body = [line.rstrip() for line in lines if line.strip()]
+    width = _width(body, npts)
+    if width is None:
+        first = text.count("\n", 0, start)
+        fields = ((token, first + i) for i, line in enumerate(lines) for token in line.split())
+        values = np.fromiter((_number(token, at) for token, at in fields), float)
+        return values, [token for line in body[-LOOKED_AT:] for token in line.split()][-LOOKED_AT:]
+    cells = (line[at : at + width] for line in body for at in range(0, len(line), width))
+    values = np.fromiter((float(_plain(cell)) for cell in cells), float)
+    return values, [line[at : at + width].strip() for line in body[-LOOKED_AT:] for at in range(0, len(line), width)][
+        -LOOKED_AT:
+    ]
+
+
+def _plain(number: str) -> str:
+    """A number of Fortran's as Python reads it."""
+    return number.strip().upper().replace("D", "E")
+
+
+def _number(token: str, at: int) -> float:
+    """``token`` of the line with index ``at`` as a number, or ``InputError``."""
     if (len(token) <= _WIDEST and _SIGNED.fullmatch(token)) or token.lower().lstrip("+-") in (
         "nan",
         "inf",
         "infinity",
     ):
-        return float(token)
-    original = token.lower()
-    line = next((i for i in range(first, len(lines)) if original in lines[i].lower().replace("d", "e")), first)
-    raise InputError(
-        f'line {line + 1}: found "{token[:40]}"; expected numbers separated by blanks, or in equal columns'
-    )
+        return float(_plain(token))
+    raise InputError(f'line {at + 1}: found "{token[:40]}"; expected numbers separated by blanks, or in equal columns')
 
 
-def _fixed_width(lines: list[str], npts: int) -> list[str] | None:
-    """Fields of Fortran columns whose values touch, such as 5E15.7; ``None`` unless they come to ``npts``.
+def _width(lines: list[str], npts: int) -> int | None:
+    """Width of Fortran columns whose values touch, such as 5E15.7; ``None`` unless they come to ``npts`` numbers.
 
     The count tells how many fields a full line has, and so how wide they are.
     """
@@ -225,7 +264,8 @@ def _fixed_width(lines: list[str], npts: int) -> list[str] | None:
         per_line = longest // width
         if longest % width or not per_line * full < npts <= per_line * (full + 1):
             continue
-        fields = [line[at : at + width].strip() for line in lines for at in range(0, len(line), width)]
-        if len(fields) == npts and all(map(_SIGNED.fullmatch, fields)):
-            return [field.upper().replace("D", "E") for field in fields]
+        if sum(-(-len(line) // width) for line in lines) == npts and all(
+            _SIGNED.fullmatch(line[at : at + width].strip()) for line in lines for at in range(0, len(line), width)
+        ):
+            return width
     return None

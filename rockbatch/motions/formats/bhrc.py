@@ -16,6 +16,7 @@ from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.formats.recording import Recording, to_components
 from rockbatch.motions.motion import Unusable
 from rockbatch.motions.orientation import Orientation
+from rockbatch.motions.origin import origin_of
 
 SUFFIXES: frozenset[str] = frozenset()
 
@@ -78,6 +79,7 @@ def _channel(lines: list[str], at: int) -> tuple[Recording, int]:
         processed=False,
         seat=Seat(station.upper()),
         event=title["file"],
+        origin=origin_of(date=event.removeprefix("Origin Time :"), station=station),
         header={"station": station, "event": event},
     )
     return recording, end + 1

@@ -20,6 +20,7 @@ from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.formats.recording import Recording, to_components
 from rockbatch.motions.motion import Initial, Samples, Unusable
 from rockbatch.motions.orientation import orientation_of
+from rockbatch.motions.origin import origin_of
 from rockbatch.units import acceleration_factor
 
 SUFFIXES = frozenset({".v0", ".v1", ".v2", ".v3", ".v0c", ".v1c", ".v2c", ".v3c"})
@@ -212,10 +213,19 @@ def _recording(header: _Header, series: re.Match[str], values: Samples, at: int)
         ),
         event=line_at(header.text, 1),
         initial=_initial(header) if stage == "corrected" else None,
+        origin=origin_of(line_at(header.text, 1), _station_name(header) or station, line_at(header.text, 3)),
         stated_peak=None if peak == header.unknown else peak,
         notes=(f"location: {where}",) if where else (),
         header={"station": line_at(header.text, 4).strip(), "event": line_at(header.text, 1).strip()},
     )
+
+
+def _station_name(header: _Header) -> str:
+    """What stands behind number and codes: "Statn No: 02-008040 Code:NP-8040   USGS  AK:Anchorage;R B Atwood Bld"."""
+    line = line_at(header.text, 4)
+    said = _CODE.search(line)
+    words = re.split(r" {2,}", line[said.end() :].strip()) if said else []
+    return re.sub(r"^[A-Z]{2}:", "", words[-1]) if words else ""
 
 
 def _initial(header: _Header) -> Initial | None:

@@ -19,6 +19,7 @@ from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.formats.recording import Recording, Series, to_components
 from rockbatch.motions.formats.renadic import is_renadic
 from rockbatch.motions.motion import Samples, Unusable
+from rockbatch.motions.origin import Origin, origin_of
 from rockbatch.units import acceleration_factor
 
 SUFFIXES = frozenset({".v1", ".v2", ".v3", ".raw"})
@@ -133,6 +134,7 @@ def _channel(lines: list[str], at: int) -> tuple[Recording, int]:
             processed=volume == 2,
             seat=_seat(lines, header, station, codes, place),
             event=f"{line_at(lines, header + 1)} {line_at(lines, header + 2).partition('(')[0]}",
+            origin=_origin(lines, header, station),
             velocities=others.get("veloc"),  # the header's initial velocity has the wrong sign in files of the USGS
             displacements=others.get("displ"),
             stated_peak=_stated_peak(lines, at, volume, accelerations.unit),
@@ -141,6 +143,12 @@ def _channel(lines: list[str], at: int) -> tuple[Recording, int]:
         ),
         end + 1,
     )
+
+
+def _origin(lines: list[str], header: int, station: str) -> Origin:
+    """Event and station by their lines, of which the right half is about the recorder in some files."""
+    event, date, name = (re.split(r"   |\(", line_at(lines, header + i))[0] for i in (1, 2, 5))
+    return origin_of(event, name or station, date)
 
 
 def _seat(

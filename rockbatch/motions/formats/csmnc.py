@@ -15,6 +15,7 @@ from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.formats.recording import Recording, to_components
 from rockbatch.motions.motion import Unusable
+from rockbatch.motions.origin import origin_of
 
 SUFFIXES: frozenset[str] = frozenset()
 
@@ -67,6 +68,7 @@ def _parse(text: str) -> list[Recording]:
             processed=not kind["un"],
             seat=Seat(station, "CN", place=_place(lines)),
             event=lines[1][:60],
+            origin=origin_of(lines[2], station, lines[1]),
             stated_peak=None if peak is None else number_in(peak["peak"], at + 1),
             header={"station": station, "event": lines[2].strip()[:60]},
         )

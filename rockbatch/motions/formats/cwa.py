@@ -11,6 +11,7 @@ from rockbatch.motions.formats.recording import Recording, to_components
 from rockbatch.motions.formats.table import read_table
 from rockbatch.motions.formats.time_steps import on_even_steps
 from rockbatch.motions.motion import Unusable
+from rockbatch.motions.origin import origin_of
 
 SUFFIXES = frozenset({".txt", ".dat", ".acc", ".asc"})
 
@@ -57,6 +58,7 @@ def _parse(text: str) -> list[Recording]:
             processed=False,
             seat=Seat(station, "TW"),
             event=began,
+            origin=origin_of(date=began.partition("-")[0], station=station),
             notes=notes,
             header={"start": began, "instrument": header.get("InstrumentKind", "")},
         )

@@ -10,12 +10,13 @@ import numpy as np
 
 from rockbatch.errors import InputError
 from rockbatch.motions.component import Component, Seat
-from rockbatch.motions.formats.fixed_width import is_cut_short, lines_of, number_in
+from rockbatch.motions.formats.fixed_width import LOOKED_AT, is_cut_short, lines_of, number_in
 from rockbatch.motions.formats.header_lines import moment
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.formats.recording import Recording, to_components
 from rockbatch.motions.motion import Samples, Unusable
+from rockbatch.motions.origin import origin_of
 
 SUFFIXES = frozenset({".asc"})
 
@@ -44,6 +45,7 @@ def _parse(text: str) -> list[Recording]:
     unit = header["UNITS"]
     codes = tuple(header.get(key, "") for key in ("NETWORK", "STATION_CODE", "LOCATION"))
     stream = header["STREAM"]
+    year = header.get("EVENT_DATE_YYYYMMDD", "")[:4]
     event = header.get("EVENT_ID") or header["EVENT_NAME"]
     return [
         Recording(
@@ -58,6 +60,7 @@ def _parse(text: str) -> list[Recording]:
             processed=_processed(header),
             seat=Seat(codes[1], codes[0], codes[2]),
             event=event,
+            origin=origin_of(header["EVENT_NAME"], header.get("STATION_NAME") or codes[1], year),
             stated_peak=_peak(header) if unit.lower() == "cm/s^2" else None,
             header={key.lower(): value for key, value in header.items() if value},
         )
@@ -121,7 +124,7 @@ def _values(lines: list[str], first: int, npts: int) -> Samples:
             f"the header says NDATA: {npts}, but {end - first} lines follow it, from line {first + 1} on; "
             "fetch the file again"
         )
-    if is_cut_short([line.strip() for line in lines[first:end]]):
+    if is_cut_short([line.strip() for line in lines[max(first, end - LOOKED_AT) : end]]):
         raise InputError(f'line {end}: found "{lines[end - 1][:40]}", shorter than all others: the file is cut')
     return np.array([number_in(lines[i], i) for i in range(first, end)])
 

@@ -9,22 +9,29 @@ from typing import TypeVar
 import numpy as np
 
 from rockbatch.errors import InputError
+from rockbatch.motions.limits import HUGE
 from rockbatch.motions.motion import Samples
 
 T = TypeVar("T")
 
-HUGE = 1e30
-"""What no acceleration reaches in any unit; its powers and sums stay within the range of floats."""
-
+_LONGEST = 10**6  # characters of a line
 _MANY = 100  # numbers that do not have the same number of decimals by chance
+
+LOOKED_AT = 1000
+"""How many numbers at the end of a file ``is_cut_short`` needs."""
 
 
 def lines_of(text: str) -> list[str]:
     """Lines of a file with any of the three line ends, less what old programs write after the last one.
 
-    ``str.splitlines`` would also break at the control characters that Latin-1 texts may hold.
+    ``str.splitlines`` would also break at the control characters that Latin-1 texts may hold. Raises ``InputError`` for
+    a line that is longer than any of numbers, whose words would take thirty times its size.
     """
-    return text.rstrip("\x00\x1a\r\n").replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    lines = text.rstrip("\x00\x1a\r\n").replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    too_long = next((i for i, line in enumerate(lines) if len(line) > _LONGEST), None)
+    if too_long is not None:
+        raise InputError(f"line {too_long + 1} has {len(lines[too_long]):,} characters; expected {_LONGEST:,} at most")
+    return lines
 
 
 def one_after_another(text: str, channel: Callable[[list[str], int], tuple[T, int]]) -> list[T]:
@@ -85,14 +92,16 @@ def spaced_numbers(lines: Sequence[str], first: int, count: int, per_line: int) 
             f"the header says {count} values, {needed} lines from line {first + 1} on, but there are {end - first}; "
             "fetch the file again"
         )
+    values = np.empty(count)
     tokens: list[str] = []
     for i in range(first, end):
         fields = lines[i].split()
-        expected = min(per_line, count - len(tokens))
+        at = (i - first) * per_line
+        expected = min(per_line, count - at)
         if len(fields) != expected:
             raise InputError(f"line {i + 1}: found {len(fields)} numbers; expected {expected}")
-        tokens += fields
-    values = np.array([number_in(token, first + i // per_line) for i, token in enumerate(tokens)])
+        values[at : at + expected] = [number_in(field, i) for field in fields]
+        tokens = [*tokens, *fields][-LOOKED_AT:] if i >= end - LOOKED_AT else fields
     if is_cut_short(tokens):
         raise InputError(f'line {end}: found "{tokens[-1][:40]}", shorter than all others: the file is cut')
     return values
@@ -112,7 +121,7 @@ def number_in(field: str, at: int) -> float:
 
 
 def is_cut_short(tokens: Sequence[str]) -> bool:
-    """Whether the last number has fewer characters after its point than all others, which agree.
+    """Whether the last number has fewer characters after its point than the others before it, which agree.
 
     A file that was cut within it has all its values, and the last one wrong.
     """
@@ -123,4 +132,4 @@ def is_cut_short(tokens: Sequence[str]) -> bool:
     if len(tokens) < _MANY or "." not in tokens[-2]:
         return False
     usual = tail(tokens[-2])
-    return tail(tokens[-1]) < usual and all(tail(token) == usual for token in tokens[:-1])
+    return tail(tokens[-1]) < usual and all(tail(token) == usual for token in tokens[-LOOKED_AT:-1])

@@ -14,6 +14,7 @@ from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.formats.recording import Recording, Series, to_components
 from rockbatch.motions.motion import Samples, Unusable
+from rockbatch.motions.origin import origin_of
 
 SUFFIXES = frozenset({".v1a", ".v2a"})
 
@@ -94,6 +95,7 @@ def _component(lines: list[str], at: int) -> tuple[Recording, int]:
         processed=not title["un"],
         seat=Seat(site, "NZ", title["id"].rpartition("_")[2][:2]),
         event=title["id"],
+        origin=origin_of(line_at(lines, at + 6), lines[at + 2] or site, line_at(lines, at + 7)),
         velocities=_series(blocks[1], line_at(lines, at + 14)),
         displacements=_series(blocks[2], line_at(lines, at + 15)),
         stated_peak=stated if stated > _SHARP and peak["unit"] == unit else None,

@@ -5,6 +5,7 @@ from rockbatch.motions.component import Component, Seat
 from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.formats.with_obspy import read_stream
 from rockbatch.motions.orientation import orientation_of, unknown
+from rockbatch.motions.origin import origin_of
 
 SUFFIXES = frozenset({".ew", ".ns", ".ud", ".ew1", ".ns1", ".ud1", ".ew2", ".ns2", ".ud2"})
 
@@ -40,6 +41,7 @@ def read_knet(file: RecordFile) -> list[Component]:
             start=stats.starttime.timestamp,
             raw=True,
             processed=False,
+            origin=origin_of(date=stats.knet.evot.strftime("%Y-%m-%d %H:%M"), station=stats.station),
             seat=Seat(stats.station, location=level),
             notes=(_LEVELS[level],) if level in _LEVELS else (),
         )

@@ -12,6 +12,7 @@ from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.formats.with_obspy import read_stream
 from rockbatch.motions.motion import Unusable
 from rockbatch.motions.orientation import Orientation, is_clock, orientation_of, unknown
+from rockbatch.motions.origin import origin_of
 from rockbatch.units import acceleration_factor
 
 if TYPE_CHECKING:
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 SUFFIXES = frozenset({".mseed", ".ms", ".miniseed"})
 
 _YEARS = 1900, 2100
+_TOLD = 5  # of the .xml files that could not be read
 _APART, _LEAST_APART = 3.0, 60.0  # times the longest piece of a channel, and seconds: more lies between two events
 
 
@@ -48,7 +50,8 @@ def read_miniseed(file: RecordFile) -> list[Component | Unusable]:
     segments: dict[str, list[Trace]] = {}
     for trace in stream:
         segments.setdefault(trace.id, []).append(trace)
-    known = stationxml.channels_beside(file.path.parent)
+    known, refused = stationxml.channels_beside(file.path.parent, file.root)
+    unread = f" (not read: {', '.join(refused[:_TOLD])})" if refused else ""
     readings: list[Component | Unusable] = []
     for channel_id, traces in segments.items():
         events = _events(traces)
@@ -61,7 +64,7 @@ def read_miniseed(file: RecordFile) -> list[Component | Unusable]:
             try:
                 if len(pieces) > 1:
                     raise InputError(f"{channel_id} has gaps or overlaps: {len(pieces)} pieces; join them first")
-                readings.append(_component(name, source, file, pieces[0], known))
+                readings.append(_component(name, source, file, pieces[0], known, unread))
             except InputError as error:
                 readings.append(Unusable(name, source, str(error), channel_id.rpartition(".")[2]))
     return readings
@@ -81,8 +84,10 @@ def _events(traces: list["Trace"]) -> list[list["Trace"]]:
     return events
 
 
-def _component(name: str, source: str, file: RecordFile, trace: "Trace", known: list[stationxml.Channel]) -> Component:
-    """One channel as a component, by its StationXML entry or by what the study states."""
+def _component(
+    name: str, source: str, file: RecordFile, trace: "Trace", known: list[stationxml.Channel], unread: str
+) -> Component:
+    """One channel as a component, by its StationXML entry or by what the study states; ``unread``: which were not read."""
     stats = trace.stats
     if not np.issubdtype(trace.data.dtype, np.number):
         raise InputError(f"{trace.id} holds text, not samples")
@@ -101,12 +106,14 @@ def _component(name: str, source: str, file: RecordFile, trace: "Trace", known: 
         origin = f"sensitivity {sensitivity:g} counts per {unit} as stated"
     elif entries:
         lack = "no sensitivity" if entry is not None else f"no epoch that covers {stats.starttime}"
-        raise InputError(f"the StationXML beside it has {lack} for {trace.id}; add it, or state sensitivity = …")
+        raise InputError(
+            f"the StationXML beside it has {lack} for {trace.id}; add it, or state sensitivity = …{unread}"
+        )
     else:
         raise InputError(
             f"counts without a sensitivity: put the StationXML of {stats.network}.{stats.station} "
             f"(an .xml with channel {trace.id}) into the folder, or state sensitivity = … "
-            "(counts per m/s²) in the study"
+            f"(counts per m/s²) in the study{unread}"
         )
     try:
         factor = acceleration_factor(unit, file.gravity)
@@ -123,6 +130,9 @@ def _component(name: str, source: str, file: RecordFile, trace: "Trace", known: 
         unit="" if entry is not None and entry.sensitivity else unit,
         raw=True,
         processed=False,
+        origin=origin_of(
+            date=stats.starttime.strftime("%Y-%m-%d"), station=f"{stats.network}.{stats.station}".strip(".")
+        ),
         seat=Seat(stats.station, stats.network, stats.location),
         notes=(origin,),
     )

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from rockbatch.errors import InputError
 from rockbatch.motions.formats.stated_step import SAME_STEP
+from rockbatch.motions.limits import STEPS, is_step
 from rockbatch.units import GRAVITY, acceleration_factor
 
 ROLES = ("horizontal",)
@@ -65,8 +66,8 @@ class ReadOptions:
                 acceleration_factor(self.unit)
             except ValueError as error:
                 wrong.append(f'unit = "{self.unit}": {error}')
-        if self.dt is not None and not (math.isfinite(self.dt) and self.dt > 0):
-            wrong.append(f"dt = {self.dt:g}: must be a number above 0 [s]")
+        if self.dt is not None and not is_step(self.dt):
+            wrong.append(f"dt = {self.dt:g}: must be {STEPS}")
         if self.sensitivity is not None and not (math.isfinite(self.sensitivity) and self.sensitivity != 0):
             wrong.append(f"sensitivity = {self.sensitivity:g}: must be a number other than 0 [counts per unit]")
         if self.role not in (None, *ROLES):
@@ -103,13 +104,14 @@ class ReadOptions:
 
 @dataclass(frozen=True)
 class RecordFile:
-    """A file to be read: where it lies, its bytes, and what the study says about it."""
+    """A file to be read: where it lies, its bytes, what the study says about it, and the folder that links stay in."""
 
     path: Path
     source: str
     data: bytes
     options: ReadOptions = field(default_factory=ReadOptions)
     gravity: float = GRAVITY
+    root: Path | None = None
 
     @property
     def stem(self) -> str:

@@ -11,6 +11,7 @@ from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.measures import initial_of
 from rockbatch.motions.motion import Initial, Samples, Unusable
 from rockbatch.motions.orientation import Orientation, is_clock, orientation_of, unknown
+from rockbatch.motions.origin import NOBODY_KNOWS, Origin
 from rockbatch.units import acceleration_factor, length_factor
 
 _SAME_PEAK = 0.01  # relative: header peaks are rounded, and taken before the last decimals of the data were cut
@@ -58,6 +59,8 @@ class Recording:
         Peak that the header states, in ``unit``; its sign is not to be trusted.
     notes : tuple of str
         What was done to the data.
+    origin : Origin
+        What the header calls event and station.
     header : dict
         What else the header says.
     """
@@ -79,6 +82,7 @@ class Recording:
     displacements: Series | None = None
     stated_peak: float | None = None
     notes: tuple[str, ...] = ()
+    origin: Origin = NOBODY_KNOWS
     header: dict[str, str] = field(default_factory=dict)
 
 
@@ -126,6 +130,7 @@ def _component(file: RecordFile, recording: Recording, name: str, source: str) -
         seat=recording.seat,
         event=" ".join(recording.event.upper().split()),
         processed=recording.processed,
+        origin=recording.origin,
         initial=initial_of(acceleration, recording.dt, *series) or recording.initial,
         notes=tuple(notes),
     )

@@ -17,6 +17,7 @@ from rockbatch.motions.formats.recording import Recording, to_components
 from rockbatch.motions.formats.time_steps import on_even_steps
 from rockbatch.motions.motion import Unusable
 from rockbatch.motions.orientation import is_clock
+from rockbatch.motions.origin import origin_of
 from rockbatch.units import GRAVITY, acceleration_factor
 
 SUFFIXES = frozenset({".v1", ".raw"})
@@ -91,6 +92,7 @@ def _channel(lines: list[str], at: int) -> tuple[tuple[Recording, float], int]:
         processed=False,
         seat=Seat(lines[at + 5].strip().upper()),
         event=lines[at + 1],
+        origin=origin_of(lines[at + 1], lines[at + 5]),
         stated_peak=_peak(units["peak"], unit),
         notes=notes,
         header={"station": lines[at + 5].strip(), "event": lines[at + 1].strip()},

@@ -1,12 +1,18 @@
 """SAC (binary): one component, in a unit that its header does not tell reliably."""
 
+from typing import TYPE_CHECKING
+
 from rockbatch.errors import UnstatedError
 from rockbatch.motions.component import Component, Seat
 from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.formats.with_obspy import read_stream
 from rockbatch.motions.motion import Unusable
 from rockbatch.motions.orientation import Orientation, is_clock, orientation_of, split_stem, unknown
+from rockbatch.motions.origin import Origin, origin_of
 from rockbatch.units import acceleration_factor
+
+if TYPE_CHECKING:
+    from obspy.core.trace import Stats
 
 SUFFIXES = frozenset({".sac"})
 
@@ -53,9 +59,16 @@ def read_sac(file: RecordFile) -> list[Component | Unusable]:
             seat=Seat(stats.station if start >= _FIRST_YEAR else "", stats.network, stats.location),
             unit=options.unit or "m/s2",
             raw=True,
+            origin=_origin(stats, start),
             notes=(f"unit {options.unit or 'm/s2'} as stated",),
         )
     ]
+
+
+def _origin(stats: "Stats", start: float) -> Origin:
+    """By the header's name of the event (KEVNM), or the day of the record."""
+    day = stats.starttime.strftime("%Y-%m-%d") if start >= _FIRST_YEAR else ""
+    return origin_of(str(stats.sac.get("kevnm", "")), f"{stats.network}.{stats.station}".strip("."), day)
 
 
 def _by_angles(sac: dict[str, float]) -> Orientation | None:

@@ -16,6 +16,7 @@ from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.formats.recording import Recording, to_components
 from rockbatch.motions.motion import Unusable
+from rockbatch.motions.origin import origin_of
 
 SUFFIXES = frozenset({".smc"})
 
@@ -82,6 +83,7 @@ def _parse(text: str) -> list[Recording]:
             processed=title["kind"] == "2",
             seat=Seat(f"{station['name']} {integers[29]}".upper(), place=station["name"].upper()),
             event="" if unknown in (year, day, hour, minute) else f"{year}-{day:03d} {hour}:{minute}",
+            origin=origin_of(line_at(lines, 3)[25:], station["name"], line_at(lines, 3)[:25]),
             stated_peak=max(peaks, default=None),
             notes=("its header flags a problem: read its comments",) if integers[17] == 1 else (),
             header={"station": station["name"], "event": line_at(lines, 3)[25:].strip()},

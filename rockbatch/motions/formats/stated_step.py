@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from rockbatch.errors import InputError
-from rockbatch.motions.formats.fixed_width import HUGE
+from rockbatch.motions.limits import HUGE
 
 SECONDS = {"s": 1.0, "sec": 1.0, "secs": 1.0, "second": 1.0, "seconds": 1.0, "ms": 1e-3, "msec": 1e-3}
 """Units of time [s]."""

@@ -1,11 +1,13 @@
 """Text to a table of numbers: comment and header lines, and columns however a program or Excel separates them."""
 
 import re
+from array import array
 
 import numpy as np
 
 from rockbatch.errors import InputError
-from rockbatch.motions.formats.fixed_width import HUGE, is_cut_short, lines_of
+from rockbatch.motions.formats.fixed_width import LOOKED_AT, is_cut_short, lines_of
+from rockbatch.motions.limits import HUGE
 from rockbatch.motions.motion import Samples
 
 _COMMENT = ("#", "%")
@@ -21,32 +23,32 @@ def read_table(text: str) -> tuple[list[str], Samples]:
     ``InputError`` with the line for a row unlike those above it, and for commas that may be either.
     """
     header: list[str] = []
-    rows: list[list[float]] = []
-    at: list[int] = []
+    rows, at, width = array("d"), array("q"), 0
     lines = lines_of(text)
     separators = _separators(lines)
     for i, line in enumerate(lines):
         stripped = line.strip()
         comment = stripped.startswith(_COMMENT)
         row = None if comment else _numbers(stripped, *separators)
-        if row and (not rows or len(row) == len(rows[0])):
-            rows.append(row)
+        if row and len(row) == (width or len(row)):
+            width = len(row)
+            rows.extend(row)
             at.append(i)
         elif row:
-            raise InputError(f"line {i + 1}: found {len(row)} numbers; expected {len(rows[0])} as above")
+            raise InputError(f"line {i + 1}: found {len(row)} numbers; expected {width} as above")
         elif stripped.strip(' ;,\t"'):
             if rows and not comment:
-                raise InputError(f'line {i + 1}: found "{stripped[:60]}"; expected {len(rows[0])} numbers as above')
+                raise InputError(f'line {i + 1}: found "{stripped[:60]}"; expected {width} numbers as above')
             if len(header) < _MOST_HEADER:
                 header.append(stripped.lstrip("#% \t")[:_LONGEST])
     if not rows:
         raise InputError("no columns of numbers found in it")
-    table = np.array(rows)
+    table = np.array(rows).reshape(-1, width)
     wild = ~(np.abs(table) < HUGE).all(axis=1)
     if wild.any():
         i = at[int(wild.argmax())]
         raise InputError(f'line {i + 1}: found "{lines[i].strip()[:60]}"; expected finite numbers')
-    if is_cut_short([lines[i].split()[-1].replace(",", ".") for i in at]):
+    if is_cut_short([lines[i].split()[-1].replace(",", ".") for i in at[-LOOKED_AT:]]):
         raise InputError(
             f"line {at[-1] + 1}: its last number is shorter than all others: the file is cut; fetch it again"
         )

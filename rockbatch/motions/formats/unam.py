@@ -15,6 +15,7 @@ from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.formats.recording import Recording, to_components
 from rockbatch.motions.motion import Samples, Unusable
+from rockbatch.motions.origin import origin_of
 
 SUFFIXES: frozenset[str] = frozenset()
 
@@ -61,6 +62,7 @@ def _parse(text: str) -> list[Recording]:
     unit = _value(header, "UNIDADES DE LOS DATOS").partition("(")[0].strip()
     station = _value(header, "CLAVE DE LA ESTACION")
     start = _start(header)
+    origin = origin_of("", header.get("NOMBRE DE LA ESTACION") or station, header.get("FECHA DEL SISMO [GMT]", ""))
     return [
         Recording(
             label=way,
@@ -74,6 +76,7 @@ def _parse(text: str) -> list[Recording]:
             processed=False,
             seat=Seat(station),
             event=f"{header.get('FECHA DEL SISMO [GMT]', '')} {header.get('HORA EPICENTRO (GMT)', '')}",
+            origin=origin,
             stated_peak=peaks[i] if unit.lower() == "gal" else None,
             header={"station": header.get("NOMBRE DE LA ESTACION", ""), "file": header.get("NOMBRE DEL ARCHIVO", "")},
         )

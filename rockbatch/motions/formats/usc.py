@@ -15,6 +15,7 @@ from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.formats.recording import Recording, to_components
 from rockbatch.motions.formats.time_steps import on_even_steps
 from rockbatch.motions.motion import Samples, Unusable
+from rockbatch.motions.origin import origin_of
 
 SUFFIXES: frozenset[str] = frozenset()
 
@@ -72,6 +73,7 @@ def _channel(lines: list[str], at: int) -> tuple[Recording, int]:
         processed=False,
         seat=Seat(station),
         event=f"{event}, {date}",
+        origin=origin_of(event, line_at(lines, at + 5)[:70], date),
         notes=notes,
         header={"station": line_at(lines, at + 5)[:70].strip(), "event": event},
     )

@@ -2,7 +2,7 @@
 
 Left to find the format itself, ``obspy.read`` unpickles files that look like a pickled Stream, which runs
 their code. Bytes are handed over rather than a path, so that nothing in a file's name is taken for a pattern
-or an address.
+or an address, and after a look at the header (``before_obspy``).
 """
 
 import io
@@ -13,6 +13,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from rockbatch.errors import InputError
+from rockbatch.motions.formats.before_obspy import CHECKS
 
 if TYPE_CHECKING:
     from obspy import Stream
@@ -31,7 +32,8 @@ def _told_to_nobody() -> Iterator[list[str]]:
 
 
 def read_stream(data: bytes, name: str) -> "Stream":
-    """ObsPy's reading of ``data`` in the format ``name``; ``InputError`` where it refuses or complains."""
+    """ObsPy's reading of ``data`` in the format ``name``; ``InputError`` where its header cannot be, or ObsPy complains."""
+    data = CHECKS[name](data)
     with warnings.catch_warnings(record=True) as caught, _told_to_nobody() as unraised:
         warnings.simplefilter("always")
         from obspy import read  # which warns of its own use of the standard library

@@ -33,10 +33,10 @@ def draw(
     drawn = []
     by_record = dict(list(runs.groupby("record", sort=False)))
     for name in records:
-        pga = by_record[name]["pga_g"].iloc[0]
+        pga = by_record[name]["pga"].iloc[0]
         peak = f"PGA = {pga:.3f} g" if math.isfinite(pga) else ""
-        title = tag("figcaption", tag("span", name), " ", tag("span", peak, class_="muted"))
-        drawn.append(tag("figure", title, panel.draw(name, by_record[name])))
+        title = tag("figcaption", tag("span", finished.shown(name)), " ", tag("span", peak, class_="muted"))
+        drawn.append(tag("figure", title, panel.draw(finished.label(name), by_record[name])))
     grid = tag("div", *drawn, class_="panels", style=f"--w:{width:.0f}px", tabindex="0", role="group",
                aria_label="Panels; arrow keys go through the values")  # fmt: skip
     return join(grid, _legend(present, sides, runs))

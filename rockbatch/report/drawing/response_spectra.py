@@ -7,28 +7,33 @@ from typing import Any
 import numpy as np
 
 from rockbatch.report.drawing.axes import Axes, Scale
-from rockbatch.report.drawing.svg import COLOURS, curve, key, line, svg, text
+from rockbatch.report.drawing.svg import COLOURS, Array, curve, key, line, rectangle, svg, text
 from rockbatch.report.markup import Markup, join
 
 LABELLED = COLOURS
 """Suites of as many records show which is which; larger ones show their spread."""
 
 
-def draw(spectra: dict[str, Any], names: Sequence[str]) -> Markup:
+def draw(spectra: dict[str, Any], names: Sequence[str], fitted: tuple[float, float] | None = None) -> Markup:
     """Pseudo-spectral acceleration [g] over the period [s], both logarithmic.
 
-    ``spectra`` is that of run.json: ``damping``, ``period_s`` and, in the order of ``names``, ``sa_g``.
+    ``spectra`` is that of run.json: ``damping``, ``period_s``, in the order of ``names`` ``sa_g``, and perhaps
+    ``target_sa_g``, to which the suite's ``mean_sa_g`` is ``fitted`` between two periods [s].
     """
     periods, values = np.array(spectra["period_s"], dtype=float), np.array(spectra["sa_g"], dtype=float)
-    shown = values[values > 0]
+    target = np.array(spectra.get("target_sa_g", ()), dtype=float)
+    shown = np.concatenate((values[values > 0], target[target > 0]))
     top = float(shown.max(initial=1e-3))
     low = max(float(shown.min(initial=top)), 1e-4 * top)  # a record that is nearly nothing must not flatten the rest
     axes = Axes(44, 12, 560, 268, Scale(periods[0], periods[-1], log=True), Scale(low / 1.2, 1.2 * top, log=True))
     few = len(names) <= LABELLED
     drawn = [axes.frame(_ticks(axes.x), _ticks(axes.y))]
+    if fitted is not None:
+        left, right = (float(axes.across(period)) for period in fitted)
+        drawn.insert(0, rectangle(left, axes.top, right - left, axes.height, "band"))
     entries = []
 
-    def add(spectrum: Sequence[float], class_: str, name: str, named: bool = True) -> None:
+    def add(spectrum: Array, class_: str, name: str, named: bool = True) -> None:
         y = axes.down(np.maximum(spectrum, axes.y.low))
         drawn.append(curve(axes.across(periods), y, class_, name))
         if named:
@@ -36,14 +41,17 @@ def draw(spectra: dict[str, Any], names: Sequence[str]) -> Markup:
 
     for i, (name, spectrum) in enumerate(zip(names, values, strict=True)):
         add(spectrum, f"level s{i + 1}" if few else "level faint", name, named=few)
-    if len(names) > 1:
+    if len(target):
+        add(np.array(spectra["mean_sa_g"], dtype=float), "level ink d1", "mean of the records")
+        add(target, "target", "target")
+    elif len(names) > 1:
         add(np.median(values, axis=0), "level ink", "median")
     if not few:
         for percent in (16, 84):
             add(np.percentile(values, percent, axis=0), "level ink d2", f"{percent} %")
     drawn.append(text(axes.left + axes.width / 2, 308, "period [s]", class_="m q"))
     drawn.append(text(axes.left + 4, 9, "SA [g]", class_="q"))
-    said = f"Response spectra of {len(names)} ground motions"
+    said = f"Response spectra of {len(names)} ground motions" + (" and their target" if len(target) else "")
     return join(svg(616, 312, *drawn, description=said, class_="plot spectra"), key(entries))
 
 

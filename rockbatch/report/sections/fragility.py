@@ -10,6 +10,7 @@ from rockbatch.report.contents import Contents
 from rockbatch.report.document import Section, figure
 from rockbatch.report.drawing.axes import Axes, Scale
 from rockbatch.report.drawing.svg import curve, key, line, marker, style_of, svg, text
+from rockbatch.report.finished_analysis import of_files
 from rockbatch.report.labels import quantity
 from rockbatch.report.markup import Markup, join, tag
 from rockbatch.report.table import Head, table
@@ -22,6 +23,7 @@ Curve = Mapping[str, Any]
 """One of ``curves`` of fragility.json."""
 
 
+@of_files("fragility")
 def section(contents: Contents) -> Section | None:
     """The curves; None where there are none."""
     found = contents.analysis("fragility")
@@ -35,6 +37,11 @@ def section(contents: Contents) -> Section | None:
 def _lead(info: Mapping[str, Any]) -> Markup:
     told = f"The probability that a limit is exceeded by a motion with a given {info['measure']}, from {info['records']} records"
     told += " (polarity: mirror images, counted once)" if len(info["polarities"]) > 1 else ""
+    if info.get("stations", info["records"]) < info["records"]:
+        told += (
+            f", components of {info['stations']} stations: each counts by itself, though those of a station are not independent, "
+            "so that the bands are too narrow"
+        )
     if info["method"] == "ida":
         told += (
             f". Incremental dynamic analysis: of each record the least intensity that exceeds the limit, from its first "

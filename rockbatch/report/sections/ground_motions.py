@@ -1,6 +1,7 @@
 """The ground motions: their response spectra, their measures, and where they come from."""
 
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import Any
 
 from rockbatch.report.contents import Contents
@@ -9,6 +10,11 @@ from rockbatch.report.drawing import response_spectra
 from rockbatch.report.finished import Finished
 from rockbatch.report.markup import Markup, join, tag
 from rockbatch.report.table import Head, table
+
+PULSE_LIKE = (
+    "by the criterion of Baker (2007), of the record before scaling; late, weak: no, because the pulse arrives late or PGV is "
+    "below 0.3 m/s"
+)
 
 
 def section(contents: Contents) -> Section | None:
@@ -20,21 +26,28 @@ def section(contents: Contents) -> Section | None:
 
 
 def _spectra(finished: Finished) -> Markup:
-    """Their response spectra; nothing where run.json has no spectra, as of very large suites."""
+    """Their response spectra; nothing where run.json has no spectra, as of very large suites, or a target: drawn with that."""
     records, spectra = finished.info["records"], finished.info.get("spectra")
-    if not spectra or len(spectra["sa_g"]) != len(records):
+    if "target" in finished.info or not spectra or len(spectra["sa_g"]) != len(records) or not _drawable(**spectra):
         return join()
     caption = (
         f"Pseudo-spectral accelerations of the horizontal components, {100 * spectra['damping']:g} % damped, before "
         "the study's scale."
     )
-    return figure(response_spectra.draw(spectra, [record["record"] for record in records]), caption)
+    return figure(response_spectra.draw(spectra, [finished.label(record["record"]) for record in records]), caption)
+
+
+def _drawable(period_s: Sequence[float], sa_g: Sequence[Sequence[float]], damping: float) -> bool:
+    """Whether periods rise, and every spectrum has a value for each; a file of somebody else's may say anything."""
+    rising = all(a < b for a, b in pairwise([0.0, *period_s]))
+    return rising and len(period_s) > 1 and all(len(one) == len(period_s) and min(one) >= 0 for one in sa_g)
 
 
 def _records(finished: Finished) -> Markup:
     """The ground motions as they were used, like the paper's Table 1, the weakest first."""
     heads = [
         Head("record"),
+        Head("station", note="its components count as one record"),
         Head("PGA [g]", ".3f"),
         Head("PGV [m/s]", ".3f"),
         Head("PGD [m]", ".3f"),
@@ -50,18 +63,29 @@ def _records(finished: Finished) -> Markup:
         Head("M", note="magnitude"),
         Head("distance [km]"),
         Head("factor", ".4g", "what brought the record to the study's target"),
+        Head("pulse-like", note=PULSE_LIKE),
+        Head("pulse indicator", ".2f", "pulse_indicator: above 0.85 pulse-like, below 0.15 not"),
+        Head("pulse [s]", ".2f", "pulse_period_s: period of the largest pulse"),
     ]
     names = (
-        "record", "pga_g", "pgv_m_s", "pgd_m", "pga_v_g", "arias_m_s", "d5_95_s", "dt_s", "npts", "duration_s",
-        "processed", "check", "azimuth_deg", "magnitude", "distance_km", "factor",
+        "station", "pga_g", "pgv_m_s", "pgd_m", "pga_v_g", "arias_m_s", "d5_95_s", "dt_s", "npts", "duration_s",
+        "processed", "check", "azimuth_deg", "magnitude", "distance_km", "factor", "pulse", "pulse_indicator",
+        "pulse_period_s",
     )  # fmt: skip
     scaled = any(record.get("factor", 1.0) != 1.0 for record in finished.info["records"])
     ordered = sorted(finished.info["records"], key=lambda record: (record["pga_g"], record["record"]))
-    rows = [[_told(record, name) if name != "factor" or scaled else None for name in names] for record in ordered]
+    rows = [
+        [
+            finished.shown(record["record"]),
+            *(_told(record, name) if name != "factor" or scaled else None for name in names),
+        ]
+        for record in ordered
+    ]
     measured = table(heads, rows, sortable=True, name="Ground motions")
     lacking = finished.info.get("without_vertical")
-    without = tag("p", f"no vertical: {', '.join(lacking)}") if lacking else ""
-    return join(measured, without, tag("h3", "Where they come from, and what was done to them"), _sources(ordered))
+    without = tag("p", f"no vertical: {'; '.join(map(finished.named, lacking))}") if lacking else ""
+    told = tag("h3", "Where they come from, and what was done to them")
+    return join(measured, without, told, _sources(finished, ordered))
 
 
 def _told(record: dict[str, Any], name: str) -> Any:
@@ -73,11 +97,11 @@ def _told(record: dict[str, Any], name: str) -> Any:
     return record.get(name)
 
 
-def _sources(records: Sequence[dict[str, Any]]) -> Markup:
+def _sources(finished: Finished, records: Sequence[dict[str, Any]]) -> Markup:
     heads = [Head("record"), Head("horizontal from"), Head("vertical from"), Head("what was done")]
     rows: list[list[object]] = []
     for record in records:
         notes = tag("ul", *(tag("li", note) for note in record["notes"])) if record["notes"] else ""
         sources = (record[name] and tag("span", record[name], class_="path") for name in ("source", "vertical_source"))
-        rows.append([record["record"], *sources, notes])
+        rows.append([finished.shown(record["record"]), *sources, notes])
     return table(heads, rows, prose=True, name="Sources")

@@ -52,7 +52,9 @@ def _figures(finished: Finished, responses: Sequence[Response]) -> list[tuple[Ma
         for number in same:
             back = behind[number]
             title = _title(finished, kept[number])
-            picture = _column(drawn[number], None if back is None else drawn[back], scales, kept[number]["record"])
+            picture = _column(
+                drawn[number], None if back is None else drawn[back], scales, finished.label(kept[number]["record"])
+            )
             cells.append(tag("figure", tag("figcaption", title), picture))
         grid = tag("div", *cells, class_="histories")
         lines = any(behind[number] is not None for number in same)
@@ -109,7 +111,7 @@ def _scale(shown: Sequence[History], row: int) -> Scale:
 def _title(finished: Finished, run: Row) -> Markup:
     also = [f"scaled by {run['scale']:g}" if run["scale"] != 1 else "", "reversed" if run["polarity"] == "-" else ""]
     told = ", ".join(filter(None, also))
-    record = tag("span", run["record"] + (f", {told}" if told else ""), class_="muted")
+    record = tag("span", finished.named(run["record"]) + (f", {told}" if told else ""), class_="muted")
     return join(tag("span", finished.series[run["series"]].label), " ", record)
 
 

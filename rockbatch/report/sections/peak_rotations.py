@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from rockbatch.report.contents import Contents
 from rockbatch.report.document import Section, figure
 from rockbatch.report.drawing.panels import draw
-from rockbatch.report.finished import Finished
+from rockbatch.report.finished import Finished, worst_first
 from rockbatch.report.markup import Markup, join, tag
 from rockbatch.report.sections.peaks import at_a_glance
 from rockbatch.report.table import THETA
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 MOST_RECORDS = 60
 MOST_FIGURES = 12
 MOST_MARKS = 12_000  # on the page: a megabyte and a half
+MOST_OF_A_FIGURE = 2_000  # foundations under one record, each with its line in the legend
 
 
 def section(contents: Contents) -> Section | None:
@@ -67,11 +68,15 @@ def figures(finished: Finished, caption: Sequence[object], *, side: str = "polar
         # Piers are compared on one axis; larger motions have their own
         top = ceiling(finished.runs[finished.runs["scale"] == runs["scale"].iloc[0]])
         records = chosen(finished, runs, min(len(groups), MOST_FIGURES))
-        every = runs["record"].nunique()
+        every, all_of_them = runs["record"].nunique(), len(runs)
+        if runs["record"].value_counts().max() > MOST_OF_A_FIGURE:
+            runs = worst_first(runs[runs["record"].isin(records)], MOST_OF_A_FIGURE)
+            records = [name for name in records if name in set(runs["record"])]
         told = [
             tag("strong", f"{words}. ") if words else "", *caption,
             " Symbols in the shaded strip are runs without a largest rotation: the pier overturned, or left the ground."
             if runs["status"].isin(NO_PEAK).any() else "",
+            f" Shown are the {len(runs):,} worst of {all_of_them:,} runs." if len(runs) < all_of_them else
             f" Shown are the {len(records):,} records with the worst runs of {every:,}." if len(records) < every else "",
         ]  # fmt: skip
         shown.append(figure(draw(finished, runs, records, top, side), *told))

@@ -48,8 +48,8 @@ def at_a_glance(finished: Finished, runs: "pd.DataFrame", records: "Sequence[str
     rows: list[list[object]] = []
     for name in records:
         values = [found.get((name, place, sign)) for place, _ in series for sign in signs]
-        pga = next((run["pga_g"] for run in values if run), math.nan)
-        rows.append([name, pga, *(outcome(run, stood.max()) for run in values)])
+        pga = next((run["pga"] for run in values if run), math.nan)
+        rows.append([finished.shown(name), pga, *(outcome(run, stood.max()) for run in values)])
     return table(heads, rows, name="Peak rotations in numbers")
 
 
@@ -74,7 +74,10 @@ def _every_run(finished: Finished) -> Markup:
     runs, varied = finished.runs, finished.info["varied"]
     # These say something only where they change
     also = {"polarity": finished.both_directions, "scale": runs["scale"].nunique() > 1}
-    names = {"record": head(COLUMNS["record"]), "case": head(COLUMNS["case"])}
+    names = {"record": head(COLUMNS["record"])}
+    if (runs["station"] != "").any() and (runs["station"] != runs["record"]).any():
+        names["station"] = head(COLUMNS["station"])
+    names["case"] = head(COLUMNS["case"])
     names |= {key: Head(symbol(key), note=key) for key in varied}
     names |= {name: head(COLUMNS[name]) for name, changes in also.items() if changes}
     if runs["with_vertical"].nunique() > 1:
@@ -86,7 +89,14 @@ def _every_run(finished: Finished) -> Markup:
         if name not in COLUMNS and name not in ("vertical", *varied)
     }
     shown = worst_first(runs, MOST_ROWS)
-    rows = [[*(run[name] for name in names), *(_cell(name, run[name]) for name in columns)] for run in as_dicts(shown)]
+    rows = [
+        [
+            finished.shown(run["record"]),
+            *(run[name] for name in names if name != "record"),
+            *(_cell(name, run[name]) for name in columns),
+        ]
+        for run in as_dicts(shown)
+    ]
     told = tag("p", alarm(f"{PEAKS} {finished.saved.told_missing}"), ".") if finished.saved.missing else ""
     heads = [*names.values(), *columns.values()]
     drawn = table(heads, rows, sortable=True, name="Every run")

@@ -39,7 +39,7 @@ def _published(finished: Finished) -> Markup:
             difference = 100 * (ours / theirs - 1) if ours is not None and theirs else None
             rows.append(
                 [
-                    run["record"],
+                    finished.shown(run["record"]),
                     case,
                     *(run[key] for key in keys),
                     outcome(run),

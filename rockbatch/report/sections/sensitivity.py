@@ -10,7 +10,7 @@ from rockbatch.report.contents import Contents
 from rockbatch.report.document import Section, figure
 from rockbatch.report.drawing.axes import Axes, Scale, spanning
 from rockbatch.report.drawing.svg import key, line, lowered, rectangle, svg, text
-from rockbatch.report.finished_analysis import named
+from rockbatch.report.finished_analysis import named, of_files
 from rockbatch.report.labels import SYMBOLS
 from rockbatch.report.markup import Markup, join, number, tag
 from rockbatch.report.table import Head, table
@@ -24,6 +24,7 @@ TORNADO = ("case", "parameter", "low", "base", "high", "answer_low", "answer_bas
 SOBOL = ("case", "parameter", "first", "first_error", "total", "total_error")
 
 
+@of_files("sensitivity")
 def section(contents: Contents) -> Section | None:
     """The inputs one at a time, and all at once; None where they were not studied."""
     found = contents.analysis("sensitivity")
@@ -50,10 +51,11 @@ def _lead(info: dict[str, Any]) -> Markup:
     return tag(
         "p",
         f"The answer is the {STATISTICS[info['statistic']].words} of the suite of ", _peak(),
-        f". A run that overturned, or was ended by flight, counts as {info['overturned']:g}, and so does any larger "
-        f"rotation; a failed one with its best value. Of all runs: {runs}. Of the answer's variance, the first-order index "
-        "is the share that goes with the input alone, the total index what would be left if only it were unknown; the "
-        f"difference is its part in interactions. Whiskers: {100 * info['confidence']:g} % intervals.",
+        ", every component by itself. A run that overturned, or was ended by flight, counts as "
+        f"{info['overturned']:g}, and so does any larger rotation; a failed one with its best value. Of all runs: {runs}. Of the "
+        "answer's variance, the first-order index is the share that goes with the input alone, the total index what would be "
+        "left if only it were unknown; the difference is its part in interactions. "
+        f"Whiskers: {100 * info['confidence']:g} % intervals.",
     )  # fmt: skip
 
 

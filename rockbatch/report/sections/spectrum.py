@@ -9,7 +9,7 @@ from rockbatch.report.document import Section, figure
 from rockbatch.report.drawing import overturning_map
 from rockbatch.report.drawing.axes import Axes, Scale
 from rockbatch.report.drawing.svg import COLOURS, curve, key, line, lowered, marker, rectangle, svg, text
-from rockbatch.report.finished_analysis import FinishedAnalysis, named
+from rockbatch.report.finished_analysis import FinishedAnalysis, named, of_files
 from rockbatch.report.labels import quantity, symbol
 from rockbatch.report.markup import Markup, join, tag
 from rockbatch.report.table import sub
@@ -22,6 +22,7 @@ ACROSS = {"two_pi_over_p_s": "2π/p [s]"}
 QUANTILES = {"median": "", "p16": " d2", "p84": " d1"}
 
 
+@of_files("spectrum")
 def section(contents: Contents) -> Section | None:
     """Spectra and maps; None where there are none."""
     found = contents.analysis("spectrum")
@@ -47,7 +48,9 @@ def _spectra(found: FinishedAnalysis, suite: "pd.DataFrame") -> list[Markup]:
     many = bool((suite["count"] > 1).any())
     lead = "Largest rotation over slenderness against the size of the pier, a curve for each slenderness. "
     if many:
-        lead += "Solid: median of the suite; dashed and dotted: 84 % and 16 % quantiles. "
+        lead += (
+            "Solid: median of the suite; dashed and dotted: 84 % and 16 % quantiles; every component counts by itself. "
+        )
     lead += "Above the frame: overturned or ended by flight (∞), which counts as larger than any rotation."
     return [
         tag("p", lead),

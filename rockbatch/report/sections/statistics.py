@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rockbatch.checks.suite import counts_as
 from rockbatch.report.contents import Contents
 from rockbatch.report.document import Section
 from rockbatch.report.finished import Finished
@@ -19,11 +20,14 @@ from rockbatch.results.suite_statistics import Suite, suite
 if TYPE_CHECKING:
     import pandas as pd
 
+RECORDS = {
+    "station": "A record is a station, as in the checks: the worst of its components and polarities counts.",
+    "component": "A record is a horizontal component, with the worse of its polarities.",
+}
 WORDS = (
-    "Every run of the suite counts: each ground motion and scale of the group, mirror images once. A run that overturned, or was "
-    "ended by flight, has no largest value and counts as larger than any (∞) in the median, the percentiles and the "
-    "maximum; the mean is then that of the runs that stood, with their number. A failed run is unknown and counts in "
-    "its own column only. Percentiles are linear between the runs in order."
+    " One under which the pier overturned, or that was ended by flight, has no largest value and counts as larger than any (∞) "
+    "in the median, the percentiles and the maximum; the mean is then that of the records that stood, with their number. One "
+    "with a failed run is unknown and counts in its own column only. Percentiles are linear between the records in order."
 )
 
 
@@ -38,7 +42,7 @@ def section(contents: Contents) -> Section | None:
     if len(shown) < len(names):
         runs = runs[runs.set_index(keys).index.isin(list(shown))]
     sides = {str(side): dict(list(same.groupby(keys))) for side, same in runs.groupby("with_vertical")}
-    content = join(told_apart(len(shown), len(names)), tables(sides, shown, heads))
+    content = join(told_apart(len(shown), len(names)), tables(sides, shown, heads, finished.count))
     return Section("The suite in each case", "suite", content)
 
 
@@ -69,6 +73,7 @@ def tables(
     sides: "Mapping[str, Mapping[Any, pd.DataFrame]]",
     names: Mapping[Hashable, Sequence[str]],
     heads: Sequence[Head],
+    count: str,
 ) -> Markup:
     """A table for each quantity that has values.
 
@@ -78,15 +83,21 @@ def tables(
         Runs of each row, for every side that is compared, by the words for the side; one side needs no words.
     names : mapping
         Texts of the first cells of each row, which stand under ``heads``.
+    count : str
+        What counts as one record, one of :data:`rockbatch.checks.rules.COUNTS`.
     """
-    drawn = [tag("p", WORDS)]
+    drawn = [tag("p", RECORDS[count] + WORDS)]
     for column in COLUMNS.values():
         if column.suite is None or column.page is None:
             continue
         says, form = heading(column.suite.heading), column.suite.form
         found = {
             side: {
-                key: suite(column.page.factor * runs[column.name].to_numpy(dtype=np.float64), runs["status"].to_list())
+                key: suite(
+                    column.page.factor * runs[column.name].to_numpy(dtype=np.float64),
+                    runs["status"].to_list(),
+                    counts_as(runs, count)[0].to_list(),
+                )
                 for key, runs in groups.items()
                 if runs[column.name].notna().any()
             }
@@ -100,15 +111,15 @@ def tables(
 
 
 _COLUMNS = {
-    "count": ("n", "runs with an outcome"),
-    "mean": ("mean", "of the runs that stood"),
+    "count": ("n", "records with an outcome"),
+    "mean": ("mean", "of the records that stood"),
     "median": ("median", None),
-    "low": ("16 %", "value that 16 % of the runs do not exceed"),
-    "high": ("84 %", "value that 84 % of the runs do not exceed"),
+    "low": ("16 %", "value that 16 % of the records do not exceed"),
+    "high": ("84 %", "value that 84 % of the records do not exceed"),
     "largest": ("maximum", None),
-    "overturned": ("overturned", "runs in which the pier overturned"),
-    "flight": ("flight", "runs that ended when both pivots left the ground"),
-    "failed": ("failed", "runs without an outcome"),
+    "overturned": ("overturned", "records under which the pier overturned"),
+    "flight": ("flight", "records with a run that ended when both pivots left the ground"),
+    "failed": ("failed", "records with a run without an outcome"),
 }
 
 

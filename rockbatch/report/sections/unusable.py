@@ -24,7 +24,7 @@ def _unusable(finished: Finished) -> Markup:
     """Files and runs that gave no result, and why."""
     rows = [[entry["name"], "", entry["source"], entry["reason"]] for entry in finished.info["unusable"]]
     failed = finished.runs[finished.runs["status"] == "failed"]
-    rows += [[run["record"], finished.which(run), "", run["reason"]] for _, run in failed.iterrows()]
+    rows += [[finished.shown(run["record"]), finished.which(run), "", run["reason"]] for _, run in failed.iterrows()]
     return table([Head("record"), Head("case"), Head("file"), Head("why")], rows, prose=True, name="Not used")
 
 

@@ -3,27 +3,42 @@
 import math
 from collections.abc import Sequence
 
-from rockbatch.checks import Verdict
+from rockbatch.checks import Verdict, wording
+from rockbatch.checks.verdicts import CHECKS, DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS
 from rockbatch.report.contents import Contents
 from rockbatch.report.document import Section
 from rockbatch.report.labels import quantity
 from rockbatch.report.markup import Markup, join, number, tag
-from rockbatch.report.table import Head, alarm, table
+from rockbatch.report.table import Head, table
 
-SIGNS = {"pass": "✓", "fail": "✗", "not decided": "?", "does not apply": "–"}
 BASIS = {"code": "code clause", "literature": "literature", "judgement": "engineering judgement"}
+SAID = {PASS: "passes:", FAIL: "fails:", NOT_DECIDED: "not decided:", DOES_NOT_APPLY: "does not apply"}
+CLASSES = {PASS: "pass", FAIL: "fail", NOT_DECIDED: "undecided", DOES_NOT_APPLY: "muted"}
 MOST_NAMES = 6
 
 
 def section(contents: Contents) -> Section | None:
-    """Every check in every case, what the checks ask, and what does not pass; None where nothing was checked."""
+    """Every check in every case, what the checks ask, and every verdict, or the worst of many; None without checks."""
     verdicts = contents.verdicts
     if not verdicts:
         return None
-    parts = [legend(), matrix(verdicts), tag("h3", "What the checks ask"), _asked(verdicts)]
-    if any(one.verdict in ("fail", "not decided") for one in verdicts):
-        parts += [tag("h3", "What does not pass"), _shortfalls(verdicts)]
-    return Section("Every check", "checks", join(*parts))
+    parts: list[object] = [legend()]
+    if len(verdicts) > wording.MOST:
+        every = tag("summary", f"All {len(verdicts)} verdicts, a row for each case")
+        worst = wording.worst_first(verdicts)[: wording.MOST]
+        parts += [_counts(verdicts), tag("details", every, matrix(verdicts)), tag("h3", "The worst verdicts")]
+        parts.append(_every(worst) if worst else tag("p", "Nothing fails or is left undecided."))
+        parts.append(tag("p", "All of them, with what governs each, are in ", tag("code", CHECKS), "."))
+    else:
+        rest = [one for one in verdicts if one.verdict not in (FAIL, NOT_DECIDED)]
+        parts += [matrix(verdicts), tag("h3", "Every verdict"), _every([*wording.worst_first(verdicts), *rest])]
+    return Section("Every check", "checks", join(*parts, tag("h3", "What the checks ask"), _asked(verdicts)))
+
+
+def mark(verdict: str, words: str) -> Markup:
+    """A verdict's sign before ``words``, in its colour; the sign has a name for those who hear the page."""
+    sign = tag("span", wording.SIGNS[verdict], role="img", aria_label=SAID[verdict])
+    return tag("span", sign, f"\u00a0{words}" if words else "", class_=CLASSES[verdict])
 
 
 def answer(verdicts: Sequence[Verdict]) -> Markup:
@@ -39,17 +54,17 @@ def answer(verdicts: Sequence[Verdict]) -> Markup:
     undecided = [case for case, found in kinds.items() if "not decided" in found and "fail" not in found]
     passing = [case for case in kinds if case not in failing and case not in undecided]
     if len(passing) == len(cases):
-        return join(tag("strong", "✓ Every check passes"), f" in {_among(len(cases), len(cases))}.")
-    parts = []
-    if passing:
-        words = f"✓ {_among(len(passing), len(cases))} pass{'es' * (len(passing) == 1)} every check"
-        parts.append(join(tag("strong", words), f": {_listed(passing)}."))
-    if failing:
-        words = f"✗ {_among(len(failing), len(cases))} fail{'s' * (len(failing) == 1)}"
-        parts.append(join(alarm(words), f": {_listed(failing)}."))
-    if undecided:
-        words = f"? {_among(len(undecided), len(cases))} cannot be decided"
-        parts.append(join(alarm(words), f": {_listed(undecided)}."))
+        return join(tag("strong", mark(PASS, "Every check passes")), f" in {_among(len(cases), len(cases))}.")
+    told = [
+        (PASS, passing, f"pass{'es' * (len(passing) == 1)} every check"),
+        (FAIL, failing, f"fail{'s' * (len(failing) == 1)}"),
+        (NOT_DECIDED, undecided, "cannot be decided"),
+    ]
+    parts = [
+        join(tag("strong", mark(verdict, f"{_among(len(some), len(cases))} {words}")), f": {_listed(some)}.")
+        for verdict, some, words in told
+        if some
+    ]
     return tag("ul", *(tag("li", part) for part in parts), class_="answer")
 
 
@@ -68,17 +83,21 @@ def _by_case(verdicts: Sequence[Verdict]) -> dict[str, list[Verdict]]:
     scaled = len({one.scale for one in verdicts}) > 1
     cases: dict[str, list[Verdict]] = {}
     for one in verdicts:
-        words = [quantity(key, value) for key, value in one.columns.items()]
-        words += [f"motions scaled by {one.scale:g}"] if scaled else []
-        cases.setdefault(one.case + (f" ({', '.join(words)})" if words else ""), []).append(one)
+        cases.setdefault(_case(one, scaled), []).append(one)
     return cases
+
+
+def _case(one: Verdict, scaled: bool) -> str:
+    words = [quantity(key, value) for key, value in one.columns.items()]
+    words += [f"motions scaled by {one.scale:g}"] if scaled else []
+    return one.case + (f" ({', '.join(words)})" if words else "")
 
 
 def legend() -> Markup:
     """What :func:`matrix` shows."""
     words = (
-        "Demand over limit; above 1 is too much. ✓ passes, ✗ fails, ? not decided: the bounds of the demand straddle the "
-        "limit, or records are missing; – does not apply."
+        "Demand over limit; above 1 is too much; of events, whether there are any. ✓ passes, ✗ fails, ? not decided: the bounds "
+        "of the demand straddle the limit, or records are missing; – does not apply."
     )
     return tag("p", words, class_="legend")
 
@@ -94,60 +113,67 @@ def matrix(verdicts: Sequence[Verdict]) -> Markup:
 
 
 def _cell(one: Verdict) -> Markup:
-    ratio = "" if math.isnan(one.ratio) else "∞" if math.isinf(one.ratio) else f"{one.ratio:.2f}"
-    if ratio == "1.00" and one.ratio != 1:
-        ratio = f"{one.ratio:.4f}"  # beside its limit: on which side?
-    shown = f"{SIGNS[one.verdict]}\u00a0{ratio}".strip()
-    return alarm(shown) if one.verdict in ("fail", "not decided") else tag("span", shown)
+    return mark(one.verdict, wording.demanded(one) if one.is_ban else wording.ratio(one))
+
+
+def _counts(verdicts: Sequence[Verdict]) -> Markup:
+    """A row for each check: how many of its verdicts there are of each kind."""
+    by_check: dict[str, list[Verdict]] = {}
+    for one in verdicts:
+        by_check.setdefault(one.check, []).append(one)
+    rows = [
+        [name, *(mark(way, str(n)) if n else "" for way, n in wording.count_of(same).items())]
+        for name, same in by_check.items()
+    ]
+    return table([Head("check"), *(Head(way) for way in wording.WAYS)], rows, name="Verdicts of each kind")
 
 
 def _asked(verdicts: Sequence[Verdict]) -> Markup:
     heads = [
         Head("check"),
-        Head("demand"),
-        Head("limit"),
+        Head("asks"),
         Head("limit from"),
         Head("reason"),
         Head("how runs count that did not go through"),
     ]
     first = {one.check: one for one in reversed(verdicts)}
-    names = dict.fromkeys(one.check for one in verdicts)
-    asked = [first[name] for name in names]
-    rows = [
-        [one.check, one.words, _limit(one), BASIS.get(one.basis, one.basis), one.reason, one.counting] for one in asked
-    ]
-    return table(heads, rows, prose=True, name="What the checks ask")
+    asked = [first[name] for name in dict.fromkeys(one.check for one in verdicts)]
+    rows = [[one.check, wording.asked(one), BASIS.get(one.basis, one.basis), one.reason, one.counting] for one in asked]
+    rests = {one.statistic: wording.unchecked(one) for one in asked}
+    told = [*wording.counting(verdicts), *(f"{name}: {words}." for name, words in rests.items() if words)]
+    return join(table(heads, rows, prose=True, name="What the checks ask"), *(tag("p", words) for words in told))
 
 
-def _shortfalls(verdicts: Sequence[Verdict]) -> Markup:
+def _every(verdicts: Sequence[Verdict]) -> Markup:
+    """A row for each verdict: its numbers with their unit, the run that governs, and what else there is to know."""
     bounds = "bounds left by errors, by the other spring law and by runs without an outcome"
     heads = [
         Head("check"),
         Head("case"),
+        Head("verdict"),
         Head("demand"),
         Head("between", note=bounds),
         Head("limit"),
-        Head("records"),
-        Head("verdict"),
+        Head("margin", note="distance to the limit; negative beyond it"),
+        Head("unit"),
+        Head(wording.records_of(verdicts), note="that count"),
+        Head(
+            "governing run", note="station, component and polarity, and what that run demands; of a mean, the largest"
+        ),
         Head("note"),
     ]
-    rows: list[list[object]] = []
-    for case, same in _by_case(verdicts).items():
-        for one in same:
-            if one.verdict not in ("fail", "not decided"):
-                continue
-            low, high = _short(one.low), _short(one.high)
-            between = f"{low} – {high}" if low != high else ""
-            note = "; ".join(filter(None, (one.counted, one.note)))
-            verdict = alarm(f"{SIGNS[one.verdict]} {one.verdict}")
-            rows.append([one.check, case, _short(one.value), between, _limit(one), one.records or None, verdict, note])
-    rows.sort(key=lambda row: "fail" not in str(row[6]))
-    return table(heads, rows, sortable=True, prose=True, name="What does not pass")
+    scaled = len({one.scale for one in verdicts}) > 1
+    rows = [
+        [
+            one.check, _case(one, scaled), mark(one.verdict, one.verdict), wording.demanded(one), _between(one),
+            "" if math.isnan(one.value) else wording.limit(one), wording.margin(one), one.unit, one.records or None,
+            wording.governing(one), "; ".join(filter(None, (one.counted, one.note))),
+        ]
+        for one in verdicts
+    ]  # fmt: skip
+    return table(heads, rows, sortable=True, prose=True, name="Verdicts")
 
 
-def _limit(one: Verdict) -> str:
-    return f"{'≤' if one.sense == 'at most' else '≥'}\u00a0{one.limit:.4g}"
-
-
-def _short(value: float) -> str:
-    return "∞" if math.isinf(value) else number(value)
+def _between(one: Verdict) -> str:
+    low, high = ("∞" if math.isinf(value) else number(value) for value in (one.low, one.high))
+    return f"{low} – {high}" if low != high and not one.is_ban else ""

@@ -1,0 +1,173 @@
+"""Elastic spectra that suites are held against: shapes of codes by their parameters, and tables."""
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple, Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from rockbatch.errors import InputError
+
+Array = npt.NDArray[np.float64]
+
+
+class Spectrum(Protocol):
+    """What every one of them can tell."""
+
+    @property
+    def damping(self) -> float:
+        """Fraction of critical damping."""
+
+    @property
+    def limits(self) -> tuple[float, float]:
+        """Least and largest period [s] for which it is defined."""
+
+    def at(self, periods: Array) -> Array:
+        """Spectral acceleration [g] at periods [s], shape (n,); NaN where it is not defined."""
+
+
+class Shape(NamedTuple):
+    """Soil factor and corner periods [s] of EN 1998-1, Tables 3.2 and 3.3."""
+
+    soil_factor: float
+    tb_s: float
+    tc_s: float
+    td_s: float
+
+
+EUROCODE = {
+    1: {
+        "A": Shape(1.0, 0.15, 0.4, 2.0),
+        "B": Shape(1.2, 0.15, 0.5, 2.0),
+        "C": Shape(1.15, 0.2, 0.6, 2.0),
+        "D": Shape(1.35, 0.2, 0.8, 2.0),
+        "E": Shape(1.4, 0.15, 0.5, 2.0),
+    },
+    2: {
+        "A": Shape(1.0, 0.05, 0.25, 1.2),
+        "B": Shape(1.35, 0.05, 0.25, 1.2),
+        "C": Shape(1.5, 0.1, 0.25, 1.2),
+        "D": Shape(1.8, 0.1, 0.3, 1.2),
+        "E": Shape(1.6, 0.05, 0.25, 1.2),
+    },
+}
+"""Recommended values by type of spectrum and ground type; national annexes have their own."""
+
+
+@dataclass(frozen=True)
+class EurocodeSpectrum:
+    """Horizontal elastic spectrum of EN 1998-1:2004, 3.2.2.2, eqs. (3.2) to (3.6), up to 4 s.
+
+    ``ag_g`` is a_g = γ_I a_gR on ground type A [g]; η = √(10/(5 + ξ)) ≥ 0.55 follows from ``damping`` (ξ in percent).
+    """
+
+    ag_g: float
+    shape: Shape
+    damping: float = 0.05
+    name: str = "EN 1998-1"
+    limits: tuple[float, float] = (0.0, 4.0)
+
+    def __str__(self) -> str:
+        return f"{self.name}, a_g = {self.ag_g:g} g, {100 * self.damping:g} %"
+
+    def at(self, periods: Array) -> Array:
+        """See :class:`Spectrum`."""
+        s, tb, tc, td = self.shape
+        eta = max(math.sqrt(10.0 / (5.0 + 100.0 * self.damping)), 0.55)
+        plateau = 2.5 * eta
+        t = np.maximum(periods, 1e-12)
+        rising = 1.0 + t / tb * (plateau - 1.0)
+        falling = plateau * np.select([t <= tc, t <= td], [1.0, tc / t], tc * td / t**2)
+        return _within(self.limits, periods, self.ag_g * s * np.where(t < tb, rising, falling))
+
+
+@dataclass(frozen=True)
+class AsceSpectrum:
+    """Two-period design response spectrum of ASCE/SEI 7-16, 11.4.6, for 5 % damping."""
+
+    sds_g: float
+    sd1_g: float
+    tl_s: float
+    damping: float = 0.05
+    limits: tuple[float, float] = (0.0, math.inf)
+
+    def __str__(self) -> str:
+        return f"ASCE 7, S_DS = {self.sds_g:g} g, S_D1 = {self.sd1_g:g} g, T_L = {self.tl_s:g} s, 5 %"
+
+    def at(self, periods: Array) -> Array:
+        """See :class:`Spectrum`."""
+        ts = self.sd1_g / self.sds_g
+        t0 = 0.2 * ts
+        t = np.maximum(periods, 1e-12)
+        falling = np.where(t <= self.tl_s, self.sd1_g / t, self.sd1_g * self.tl_s / t**2)
+        return np.select([t < t0, t <= ts], [self.sds_g * (0.4 + 0.6 * t / t0), self.sds_g], falling)
+
+
+@dataclass(frozen=True)
+class TableSpectrum:
+    """A spectrum given at some periods [s], growing, in g; straight between them in logarithms."""
+
+    periods: tuple[float, ...]
+    sa_g: tuple[float, ...]
+    damping: float = 0.05
+    name: str = "table"
+
+    def __post_init__(self) -> None:
+        wrong = []
+        if len(self.periods) < 2:
+            wrong.append("a spectrum has two periods at least")
+        if any(not (0 < value < math.inf) for value in (*self.periods, *self.sa_g)):
+            wrong.append("periods [s] and spectral accelerations [g] must be numbers above 0")
+        elif any(b <= a for a, b in zip(self.periods, self.periods[1:], strict=False)):
+            wrong.append("periods must grow from line to line")
+        if wrong:
+            raise InputError(*(f"{self.name}: {what}" for what in wrong))
+
+    def __str__(self) -> str:
+        return f"{self.name}, {100 * self.damping:g} %"
+
+    @property
+    def limits(self) -> tuple[float, float]:
+        """See :class:`Spectrum`."""
+        return self.periods[0], self.periods[-1]
+
+    def at(self, periods: Array) -> Array:
+        """See :class:`Spectrum`."""
+        logs = np.interp(np.log(np.maximum(periods, 1e-12)), np.log(self.periods), np.log(self.sa_g))
+        return _within(self.limits, periods, np.exp(logs))
+
+
+def read_spectrum(path: Path, damping: float = 0.05) -> TableSpectrum:
+    """A table of a text file: a period [s] and a spectral acceleration [g] on each line, perhaps under a header.
+
+    Raises ``InputError`` with the line that is no such pair.
+    """
+    periods: list[float] = []
+    values: list[float] = []
+    try:
+        lines = path.read_text(encoding="utf-8-sig").splitlines()
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"{path}: cannot be read as a spectrum: {error}") from None
+    for number, line in enumerate(lines, 1):
+        cells = line.replace(",", " ").replace(";", " ").split()
+        if not cells or cells[0].startswith("#"):
+            continue
+        try:
+            period, value = map(float, cells)
+        except ValueError:
+            if not periods:
+                continue  # its header
+            raise InputError(
+                f"{path}:{number}: expected a period [s] and a spectral acceleration [g]: {line.strip()[:60]}"
+            ) from None
+        periods.append(period)
+        values.append(value)
+    return TableSpectrum(tuple(periods), tuple(values), damping, path.name)
+
+
+def _within(limits: tuple[float, float], periods: Array, values: Array) -> Array:
+    low, high = limits
+    inside = (np.asarray(periods) >= low * (1 - 1e-9)) & (np.asarray(periods) <= high * (1 + 1e-9))
+    return np.where(inside, values, math.nan)

@@ -1,0 +1,22 @@
+"""What a record can be: beyond these a header is damaged, or the file no record, and arrays would not fit into memory."""
+
+SHORTEST_STEP, LONGEST_STEP = 1e-5, 1.0
+"""Sampling interval [s]: recorders take 20 to 1000 samples a second; digitised film and simulations stay within, too."""
+
+MOST_STEPS = 20
+"""How many times finer the sampling of one component of a record may be than that of another."""
+
+MOST_SAMPLES = 2 * 10**7
+"""Of a component, also after its times were made even: a day at 200 Hz has 17 million."""
+
+HUGE = 1e30
+"""What no acceleration reaches in any unit; its powers and sums stay within the range of floats."""
+
+
+def is_step(dt: float) -> bool:
+    """Whether ``dt`` [s] may be the sampling interval of a record."""
+    return SHORTEST_STEP <= dt <= LONGEST_STEP
+
+
+STEPS = f"{SHORTEST_STEP:g} to {LONGEST_STEP:g} s"
+"""The interval's limits in words."""

@@ -1,0 +1,28 @@
+"""Texts of headers, manifests and names of files, which go no further than the reader as they are."""
+
+from dataclasses import fields, is_dataclass, replace
+from typing import Any, TypeVar, cast
+
+from rockbatch.files import legible
+
+T = TypeVar("T")
+
+
+def with_legible_texts(found: T) -> T:
+    """A dataclass with every text in it ``legible``, also those of tuples and of dataclasses within."""
+    values = {field.name: getattr(found, field.name) for field in fields(cast(Any, found))}
+    changed = {name: new for name, value in values.items() if (new := _legible(value)) is not value}
+    return cast(T, replace(cast(Any, found), **changed)) if changed else found
+
+
+def _legible(value: Any) -> Any:
+    """The value itself where nothing in it had to be changed."""
+    if isinstance(value, str):
+        shown = legible(value)
+        return value if shown == value else shown
+    if type(value) is tuple:
+        shown_each = tuple(map(_legible, value))
+        return value if all(new is old for new, old in zip(shown_each, value, strict=True)) else shown_each
+    if is_dataclass(value) and not isinstance(value, type):
+        return with_legible_texts(value)
+    return value

@@ -1,0 +1,48 @@
+"""What one record says and what a suite says: the distribution of the largest rotations."""
+
+from rockbatch.checks.suite import counts_as
+from rockbatch.report.contents import Contents
+from rockbatch.report.document import Section, figure, paragraphs
+from rockbatch.report.drawing import distribution
+from rockbatch.report.finished import Finished
+from rockbatch.report.markup import Markup, join, tag
+from rockbatch.report.sections.statistics import RECORDS
+
+MOST_PANELS = 12
+MOST_CURVES = 21
+"""Of a panel: three times seven colours; more cannot be told apart."""
+LEAST_RECORDS = 3
+"""Fewer have no distribution."""
+
+ONE_RECORD = (
+    "The peak under one record predicts no earthquake. Held against shaking tables, planar rocking models miss the "
+    "response to a single motion, and tests do not even repeat themselves; they meet the distribution of the maxima "
+    "over an ensemble of motions (Bachmann, Strand, Vassiliou, Broccardo & Stojadinović 2018, Earthq. Eng. Struct. "
+    "Dyn. 47(2), 535–552; Vassiliou et al. 2021, Earthquake Spectra, doi 10.1177/8755293020988017). Judge by the suite."
+)
+
+
+def section(contents: Contents) -> Section | None:
+    """The sentence that belongs to every peak, and a curve for each case where there are enough records."""
+    finished = contents.finished
+    if finished is None or finished.runs.empty:
+        return None
+    return Section("One record and the suite", "distribution", join(paragraphs(ONE_RECORD), _picture(finished)))
+
+
+def _picture(finished: Finished) -> Markup:
+    if counts_as(finished.runs, finished.count)[0].nunique() < LEAST_RECORDS:
+        return tag("p", "There are too few records for a distribution.", class_="muted")
+    groups = finished.groups()
+    shown = groups[:MOST_PANELS]
+    places = sorted({int(place) for _, runs in shown for place in runs["series"].unique()})
+    if len(places) > MOST_CURVES:
+        shown = [(words, runs[runs["series"].isin(places[:MOST_CURVES])]) for words, runs in shown]
+    caption = (
+        "Share of the records under which the largest rotation does not exceed a value; steps are single records. "
+        f"{RECORDS[finished.count]} Those under which the pier overturned, or that were ended by flight, exceed every "
+        "value: they stand at the right edge. Records with a failed run do not count."
+    )
+    caption += f" The first {len(shown)} of {len(groups)} groups are shown." if len(shown) < len(groups) else ""
+    caption += f" The first {MOST_CURVES} of {len(places)} foundations are shown." if len(places) > MOST_CURVES else ""
+    return figure(distribution.draw(shown, finished.series, finished.count), caption)

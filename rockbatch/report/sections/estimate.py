@@ -1,0 +1,131 @@
+"""What the equivalent oscillators of design practice would have estimated, beside what was computed; a comparison."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from rockbatch.files import read_table
+from rockbatch.report.contents import Contents
+from rockbatch.report.document import Section, paragraphs
+from rockbatch.report.finished import Finished, as_dicts
+from rockbatch.report.labels import heading
+from rockbatch.report.markup import Markup, join, tag
+from rockbatch.report.table import THETA_FORMAT, Head, alarm, table
+from rockbatch.results.estimate import DAMPING, ESTIMATE, START
+from rockbatch.results.suite_statistics import NO_PEAK
+
+MOST_FOUNDATIONS = 8
+"""With a column of their own; of more the least and the largest rotation are shown."""
+
+METHODS = {"priestley": "Priestley et al. (1978)", "fema_356": "FEMA 356"}
+
+OUTCOMES = {
+    "rocks": "converges in",
+    "no convergence": "does not converge in",
+    "overturns": "reaches α in",
+    "stays": "below the threshold",
+}
+
+WORDS = (
+    "A comparison, not a result of this study, and nothing to design by: a rigid block on rigid ground under the "
+    "horizontal component alone, taken for an elastic oscillator. Its period is that of free rocking, T = (4/p) "
+    f"arcosh(1/(1 − θ/α)) (Housner 1963); from θ/α = {START:g} on, the rotation S_d(T, ζ)/R_0 that the record's own "
+    "elastic spectrum gives is put in again until it repeats itself. With r = e², what an impact leaves of the energy, "
+    "ζ = −0.34 ln r stands for Priestley et al. (1978), by Makris & Konstantinidis (2003), and ζ = 0.4 (1 − √r) for "
+    "FEMA 356 (2000). These formulas are known from later literature; they could not be checked against the text of "
+    "their sources.",
+    "The iteration need not converge: spectra of single records are jagged, and it then goes to and fro between "
+    "several rotations. Makris & Konstantinidis (2003, Earthq. Eng. Struct. Dyn. 32(2), 265–289) show why a rocking "
+    "block is no such oscillator, and that the method should not be used.",
+    "Housner's threshold: below PGA = g tan α a block on rigid ground does not lift off; it stays. A vertical "
+    "component, which lowers the threshold while it points down, is not in it.",
+)
+
+
+def section(contents: Contents) -> Section | None:
+    """The estimates of every run; None where the study does not ask for them."""
+    finished = contents.finished
+    path = contents.directory / ESTIMATE
+    if finished is None or not path.exists():
+        return None
+    runs = as_dicts(read_table(path))
+    if not runs:
+        return None
+    content = join(paragraphs(*map(heading, WORDS)), _summary(runs), _table(finished, runs))
+    return Section("Code estimates, for comparison", "estimate", content)
+
+
+def _summary(runs: list[dict[str, Any]]) -> Markup:
+    """How often each method has an answer, and how far it is off on rigid ground or springs alike."""
+    sentences = []
+    for method, name in METHODS.items():
+        outcomes = [run[f"{method}_outcome"] for run in runs]
+        ratios = [
+            run[f"{method}_theta_over_alpha"] / run["theta_max_over_alpha"]
+            for run in runs
+            if run[f"{method}_outcome"] == "rocks" and run["status"] == "ok" and run["theta_max_over_alpha"] > 0
+        ]
+        counts = ", ".join(f"{words} {outcomes.count(kind)}" for kind, words in OUTCOMES.items() if kind in outcomes)
+        sentence = f"{name} (ζ = {_dampings(runs, method)}), of {len(runs)} runs: {counts}"
+        if ratios:
+            low, middle, high = np.percentile(ratios, [0, 50, 100])
+            sentence += f"; where it gives a rotation, that is {low:.2f} to {high:.2f} times the computed one"
+            sentence += f", {middle:.2f} in the median, over all foundations"
+        sentences.append(f"{sentence}.")
+    return paragraphs(*sentences)
+
+
+def _dampings(runs: list[dict[str, Any]], method: str) -> str:
+    """The equivalent damping of the piers, in percent."""
+    found = sorted({round(100 * run[f"{method}_damping"], 2) for run in runs})
+    return f"{found[0]:g} %" if len(found) == 1 else f"{found[0]:g} to {found[-1]:g} %"
+
+
+def _table(finished: Finished, runs: list[dict[str, Any]]) -> Markup:
+    """A row for each motion and pier: the estimates for rigid ground, and what was computed on each foundation."""
+    rows: dict[tuple[str, int, float, str], dict[int, dict[str, Any]]] = {}
+    for run in runs:
+        series, pier = finished.place(run["case"], run)
+        rows.setdefault((run["record"], pier, run["scale"], run["polarity"]), {})[series] = run
+    signs, scales = {key[3] for key in rows}, {key[2] for key in rows}
+    places = sorted({place for same in rows.values() for place in same})
+    each = len(places) <= MOST_FOUNDATIONS
+    computed = [finished.series[place].label for place in places] if each else ["least", "largest"]
+    heads = [
+        Head("record"),
+        Head("pier"),
+        Head("scale"),
+        Head("polarity"),
+        Head("PGA/(g tan α)", ".2f", "pga_over_g_tan_alpha: up to 1 a block on rigid ground stays"),
+        *(Head(name, THETA_FORMAT, f"{method}_theta_over_alpha", "estimated θ/α") for method, name in METHODS.items()),
+        *(Head(name, THETA_FORMAT, "theta_max_over_alpha", "computed θ/α") for name in computed),
+    ]
+    written = []
+    for (record, place_of_pier, scale, sign), same in rows.items():
+        one = next(iter(same.values()))
+        found = [_computed(same.get(place)) for place in places] if each else _range(list(same.values()))
+        names = [record, finished.piers[place_of_pier] or None, scale if len(scales) > 1 else None]
+        estimates = (_estimate(one, method) for method in DAMPING)
+        told = [*names, sign if len(signs) > 1 else None, one["pga_over_g_tan_alpha"], *estimates, *found]
+        written.append(told)
+    where = tag("p", "Every run: ", tag("code", ESTIMATE), class_="muted")
+    return join(table(heads, written, sortable=True, name="Code estimates"), where)
+
+
+def _estimate(run: Mapping[str, Any], method: str) -> object:
+    outcome = run[f"{method}_outcome"]
+    return run[f"{method}_theta_over_alpha"] if outcome == "rocks" else outcome
+
+
+def _computed(run: Mapping[str, Any] | None) -> object:
+    if run is None:
+        return None
+    return run["theta_max_over_alpha"] if run["status"] == "ok" else alarm(run["status"])
+
+
+def _range(runs: list[dict[str, Any]]) -> list[object]:
+    """The least and the largest rotation; where the pier overturned or flew, that is the largest."""
+    stood = [run["theta_max_over_alpha"] for run in runs if run["status"] == "ok"]
+    gone = next((run for run in runs if run["status"] in NO_PEAK), None)
+    return [min(stood, default=None), max(stood, default=None) if gone is None else _computed(gone)]

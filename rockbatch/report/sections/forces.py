@@ -1,0 +1,93 @@
+"""What designers size: the greatest forces, gaps and velocities of every case, and those of every run."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rockbatch.report.contents import Contents
+from rockbatch.report.document import Section
+from rockbatch.report.finished import Finished, worst_first
+from rockbatch.report.labels import counted, head
+from rockbatch.report.markup import Markup, join, tag
+from rockbatch.report.sections.peaks import on_scale
+from rockbatch.report.table import MOST_ROWS, Head, alarm, table, told_apart
+from rockbatch.results.columns import Column, on_page
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+_LEAST = ("first_uplift_s", "first_uplift_g")
+"""Of these less is worse."""
+
+
+def section(contents: Contents) -> Section | None:
+    """Forces, where the study has asked for them."""
+    finished = contents.finished
+    if finished is None:
+        return None
+    shown = [column for column in on_page("forces") if column.name in finished.runs]
+    if not shown or finished.runs.empty:
+        return None
+    lead = tag(
+        "p",
+        "The greatest values of each case over its records, and below those of every run, until it ends or the pier leans beyond "
+        "α for good. Forces are without the impulses of impacts; |V|/N is inf where both pivots are in the air, when keys alone "
+        "hold the pier. Of the first uplift, the earliest and the weakest ground are shown.",
+    )
+    parts = [lead, _sliding(finished), _of_frames(finished), _of_cases(finished, shown), tag("h3", "Every run")]
+    return Section("Forces", "forces", join(*parts, _every_run(finished, shown)))
+
+
+def _of_cases(finished: Finished, shown: list[Column]) -> Markup:
+    """A row for each case: the worst of its runs, column by column."""
+    rows: list[list[object]] = []
+    for words, group in finished.groups():
+        for place in group["series"].unique():
+            runs, label = group[group["series"] == place], finished.series[int(place)].label
+            rows.append([f"{label} ({words})" if words else label, *(_worst(column, runs) for column in shown)])
+    return table([Head("case"), *map(head, shown)], rows, sortable=True, name="Forces of every case")
+
+
+def _worst(column: Column, runs: "pd.DataFrame") -> float | None:
+    values = runs[column.name].dropna()
+    if values.empty:
+        return None
+    return on_scale(column.name, float(values.min() if column.name in _LEAST else values.max()))
+
+
+def _every_run(finished: Finished, shown: list[Column]) -> Markup:
+    runs = worst_first(finished.runs, MOST_ROWS)
+    rows = [
+        [run["record"], finished.which(run), *(on_scale(column.name, run[column.name]) for column in shown)]
+        for _, run in runs.iterrows()
+    ]
+    heads = [Head("record"), Head("case"), *map(head, shown)]
+    drawn = table(heads, rows, sortable=True, name="Forces of every run")
+    return join(told_apart(len(runs), len(finished.runs), "worst"), drawn)
+
+
+def _sliding(finished: Finished) -> Markup:
+    """How many runs ask more friction than their interface has."""
+    runs = finished.runs
+    pairs = zip(runs["series"], runs["pier"], strict=True)
+    has = np.array([finished.cases[pair]["parameters"].get("friction", np.inf) for pair in pairs])
+    if not np.isfinite(has).any():
+        return Markup("")
+    asked = runs[["friction_demand", "impact_friction_demand"]].max(axis=1).to_numpy()
+    slides, known = asked > has, np.isfinite(has) & ~np.isnan(asked)
+    if not slides.any():
+        return tag("p", f"No run asks more friction than its interface has, of {counted(int(known.sum()), 'run')}.")
+    told = f"{counted(int(slides.sum()), 'run')} of {int(known.sum())}: the friction demand is greater than the interface's. "
+    return tag(
+        "p", alarm(told), "The pier would slide there, which the model does not follow: see the notes of the runs."
+    )
+
+
+def _of_frames(finished: Finished) -> Markup:
+    if not any("deck_over_columns" in case["pier"] for case in finished.info["cases"]):
+        return Markup("")
+    return tag(
+        "p",
+        "Of a frame V, N, supports and impulses are those of all columns together, and |V|/N is their quotient: how the columns "
+        "share them hangs on the deck, and one of them may ask more.",
+    )

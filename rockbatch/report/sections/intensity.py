@@ -1,0 +1,88 @@
+"""Intensity measures of the motions, and which of them orders the peaks best, case by case."""
+
+import math
+from typing import TYPE_CHECKING
+
+from rockbatch.files import read_table
+from rockbatch.report.contents import Contents
+from rockbatch.report.document import Section, paragraphs
+from rockbatch.report.finished import Finished
+from rockbatch.report.markup import Markup, join, tag
+from rockbatch.report.table import Head, table
+from rockbatch.results.intensity import INTENSITY, LEAST_RUNS, MEANING, orders
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+SYMBOLS = {
+    "pga_over_g_tan_alpha": "PGA/(g tan α)",
+    "p_pgv_over_g_tan_alpha": "p PGV/(g tan α)",
+    "bracketed_s": "bracketed duration",
+    "uniform_s": "uniform duration",
+    "cav_m_s": "CAV",
+}
+
+
+def section(contents: Contents) -> Section | None:
+    """Which measure orders the peaks best in each case; None where the study does not ask for measures."""
+    finished = contents.finished
+    path = contents.directory / INTENSITY
+    if finished is None or not path.exists():
+        return None
+    found = read_table(path)
+    if found.empty:
+        return None
+    order = orders(found, finished.info["varied"])
+    explained = (
+        "How well each measure of the motion orders the largest rotations of a case: Spearman's rank correlation ρ (1: in the "
+        "same order, −1: in the opposite one), and the dispersion σ, the standard deviation of ln θ about the line of least "
+        "squares on ln of the measure. A good measure has ρ near 1 and a small σ."
+    )
+    counted = (
+        "Runs that overturned, or were ended by flight, have no largest rotation: they rank above all others, alike among "
+        "themselves, and are left out of the line. So are runs that stayed (θ = 0). With both polarities or several "
+        "components of a station the runs are not independent of each other; with few runs ρ is little more than chance."
+    )
+    files = join("The measures of every run: ", tag("code", INTENSITY), f"; lines and ρ from {LEAST_RUNS} runs on.")
+    return Section(
+        "Intensity measures", "intensity", join(paragraphs(explained, counted, files), _order(finished, order))
+    )
+
+
+def _order(finished: Finished, order: "pd.DataFrame") -> Markup:
+    """A table of rank correlations and one of dispersions, with a row for each case and scale."""
+    varied = finished.info["varied"]
+    many_scales = order["scale"].nunique() > 1
+    names = list(dict.fromkeys(order["measure"]))
+    ranks: list[list[object]] = []
+    lines: list[list[object]] = []
+    for key, same in order.groupby(["case", *varied, "scale"], sort=False, dropna=False):
+        series, pier = finished.place(str(key[0]), dict(zip(varied, key[1:-1], strict=True)))
+        words = ", ".join(filter(None, (finished.series[series].label, finished.piers[pier])))
+        by = same.set_index("measure")
+        rho, sigma, first = by["rank_correlation"], by["dispersion"], by.iloc[0]
+        case = [words, float(first["scale"]) if many_scales else None]
+        best = _symbol(rho.idxmax()) if rho.notna().any() else "—"
+        ranks.append([*case, first["runs"], first["without_peak"], best, *(_told(rho[name]) for name in names)])
+        best = _symbol(sigma.idxmin()) if sigma.notna().any() else "—"
+        lines.append([*case, first["fitted"], None, best, *(_told(sigma[name]) for name in names)])
+    measures = [
+        Head(_symbol(name), ".2f", f"{name}: {MEANING.get(name, 'spectral acceleration [g]')}") for name in names
+    ]
+    heads = [Head("case"), Head("scale of motions"), Head("runs", ".0f")]
+    heads += [Head("without a peak", ".0f", "overturned, or ended by flight")]
+    return join(
+        tag("h3", "Rank correlation ρ with θ"),
+        table([*heads, Head("largest"), *measures], ranks, sortable=True, name="Rank correlation"),
+        tag("h3", "Dispersion σ of ln θ"),
+        table([*heads, Head("least"), *measures], lines, sortable=True, name="Dispersion"),
+    )
+
+
+def _told(value: float) -> float | str:
+    return "—" if math.isnan(value) else float(value)
+
+
+def _symbol(name: object) -> str:
+    """PGA/(g tan α), or the spectral acceleration of sa_0.5s_g: S_a(0.5 s)."""
+    return SYMBOLS.get(str(name)) or f"SA({str(name).removeprefix('sa_').removesuffix('s_g')}\u00a0s)"

@@ -1,0 +1,83 @@
+"""The one door to HDF5 files, which may come from anybody: what lies in the file itself, in the shapes that it has room for.
+
+HDF5 can lead elsewhere: links into other files, datasets whose bytes are in other files (external storage) or in other
+datasets (virtual ones), and sizes without bytes behind them. Whoever reads here gets a ``ValueError`` instead.
+"""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    import h5py
+
+MOST_OF_A_TEXT = 10_000_000
+"""Characters of a text that is kept in an attribute: the study's is the longest."""
+
+
+def group_in(group: "h5py.Group", name: str) -> "h5py.Group":
+    """A group that lies in ``group`` itself."""
+    import h5py
+
+    found = _member(group, name)
+    if not isinstance(found, h5py.Group):
+        raise ValueError(f"{name} is no group")
+    return found
+
+
+def array_in(
+    group: "h5py.Group", name: str, kind: str, length: int | None = None, *, finite: bool = True
+) -> "np.ndarray[Any, Any]":
+    """A dataset of one dimension that lies in ``group``, with its bytes: numbers of ``kind`` "f" or "i", or texts "S".
+
+    Texts come as ``str``. ``length`` is the number of values that there have to be; ``finite`` ones unless they may be infinite.
+    """
+    import h5py
+
+    found = _member(group, name)
+    if not isinstance(found, h5py.Dataset) or found.ndim != 1 or found.dtype.kind != kind:
+        raise ValueError(f"{name} is no list of {'texts' if kind == 'S' else 'numbers'}")
+    if found.external or found.is_virtual or found.chunks:
+        raise ValueError(f"the bytes of {name} are not where `rockbatch` writes them")
+    if found.id.get_storage_size() != found.nbytes or found.nbytes > _size(group):
+        raise ValueError(f"{name} has {found.size} values, and no room for them in the file")
+    if length is not None and len(found) != length:
+        raise ValueError(f"{name} has {len(found)} values instead of {length}")
+    values = found.asstr()[:] if kind == "S" else found[:]
+    if kind == "f" and finite and np.isinf(values).any():
+        raise ValueError(f"{name} has infinite values")
+    return np.asarray(values)
+
+
+def attributes_of(item: "h5py.Group") -> dict[str, Any]:
+    """The attributes of a group, as Python's own numbers and texts."""
+    return {name: attribute(item, name) for name in item.attrs}
+
+
+def attribute(item: "h5py.Group", name: str) -> Any:
+    """One attribute, as Python's own number or text; None where there is none."""
+    if name not in item.attrs:
+        return None
+    told = item.attrs.get_id(name)
+    if told.shape != () or told.dtype.kind not in "fiubO":
+        raise ValueError(f"the attribute {name} is neither a number nor a text")
+    value = item.attrs[name]
+    value = value.item() if isinstance(value, np.generic) else value
+    if not isinstance(value, str | int | float) or (isinstance(value, str) and len(value) > MOST_OF_A_TEXT):
+        raise ValueError(f"the attribute {name} is neither a number nor a text")
+    return value
+
+
+def _member(group: "h5py.Group", name: str) -> Any:
+    import h5py
+
+    link = group.get(name, getlink=True)
+    if link is None:
+        raise ValueError(f"{name} is missing")
+    if not isinstance(link, h5py.HardLink):
+        raise ValueError(f"{name} is a link that leads elsewhere")
+    return group[name]
+
+
+def _size(group: "h5py.Group") -> int:
+    return int(group.file.id.get_filesize())

@@ -1,0 +1,154 @@
+"""Intensity measures of each run's motion, as a rocking pier sees them, and how well they order the peaks."""
+
+import math
+from collections.abc import Iterator, Sequence
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from rockbatch.motions import Motion, measures
+from rockbatch.motions.spectrum import spectral_acceleration
+from rockbatch.results import beside_peaks
+from rockbatch.results.suite_statistics import NO_PEAK
+from rockbatch.study import Study
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+INTENSITY = "intensity.csv"
+
+MEANING = {
+    "pga_over_g_tan_alpha": "PGA over g tan α, the ground acceleration that lifts the pier off rigid ground",
+    "p_pgv_over_g_tan_alpha": "p PGV over g tan α",
+    "bracketed_s": "bracketed duration: from the first to the last time that the acceleration exceeds g tan α [s]",
+    "uniform_s": "uniform duration: all the time that the acceleration exceeds g tan α [s]",
+    "cav_m_s": "cumulative absolute velocity, ∫|a| dt [m/s]",
+}
+"""Measures by their columns; beside them ``sa_Ts_g`` is the spectral acceleration [g] at T seconds, 5 % damped."""
+
+LEAST_RUNS = 3
+"""With values, for a rank correlation or a line."""
+
+Array = npt.NDArray[np.float64]
+
+
+def write_intensity(directory: Path, peaks: "pd.DataFrame", study: Study, motions: Sequence[Motion]) -> Path:
+    """Write intensity.csv beside ``peaks``, with a row for each run that was simulated."""
+    return beside_peaks.write(directory / INTENSITY, list(_rows(peaks, study, motions)))
+
+
+def _rows(peaks: "pd.DataFrame", study: Study, motions: Sequence[Motion]) -> Iterator[dict[str, Any]]:
+    periods = study.output.sa_periods_s
+    by_name = {motion.name: motion for motion in motions}
+
+    @cache
+    def of_record(name: str) -> tuple[float, float, Array]:
+        """PGV [m/s], CAV [m/s] and spectral accelerations [m/s²] of a motion before the study's scale."""
+        a, dt = by_name[name].horizontal, by_name[name].dt
+        pgv = measures.pgv(a, dt, by_name[name].initial)
+        return pgv, measures.cumulative_absolute_velocity(a, dt), spectral_acceleration(a, dt, periods)
+
+    @cache
+    def durations(name: str, threshold: float) -> tuple[float, float]:
+        a, dt = by_name[name].horizontal, by_name[name].dt
+        return measures.bracketed_duration(a, dt, threshold), measures.uniform_duration(a, dt, threshold)
+
+    for row, motion, scale, pier in beside_peaks.runs(peaks, study, motions):
+        uplift = pier.gravity * math.tan(pier.alpha)
+        pgv, cav, sa = of_record(motion.name)
+        bracketed, uniform = durations(motion.name, uplift / scale)
+        values = (scale * motion.pga / uplift, pier.p * scale * pgv / uplift, bracketed, uniform, scale * cav)
+        of_spectrum = {_column(period): scale * float(s) / pier.gravity for period, s in zip(periods, sa, strict=True)}
+        yield {**row, **dict(zip(MEANING, values, strict=True)), **of_spectrum}
+
+
+def _column(period: float) -> str:
+    return f"sa_{period:g}s_g"
+
+
+class Order(NamedTuple):
+    """How well a measure orders the peaks of a case at one scale.
+
+    Attributes
+    ----------
+    runs, without_peak : int
+        Runs that count, and those of them that overturned, or were ended by flight: they rank above all others.
+    rank_correlation : float
+        Spearman's ρ of the measure and θ_max; NaN with fewer than three runs, or where all are alike.
+    fitted : int
+        Runs that stood and moved, by which the line ln θ_max = a + b ln(measure) is drawn, with least squares.
+    slope, dispersion : float
+        b, and the standard deviation of ln θ_max about the line; NaN with fewer than three.
+    """
+
+    runs: int
+    without_peak: int
+    rank_correlation: float
+    fitted: int
+    slope: float
+    dispersion: float
+
+
+def measures_of(table: "pd.DataFrame") -> list[str]:
+    """The columns of intensity.csv that are measures."""
+    return [str(name) for name in table if name in MEANING or str(name).startswith("sa_")]
+
+
+def order_of(measure: Array, theta: Array, status: Sequence[str]) -> Order:
+    """How well ``measure`` orders ``theta``, shape (n,), of runs with that ``status``; failed ones do not count."""
+    kinds = np.asarray(status, dtype=object)
+    gone = np.isin(kinds, NO_PEAK)
+    peaks = np.where(gone, math.inf, theta)
+    counts = (kinds != "failed") & ~np.isnan(peaks) & ~np.isnan(measure)
+    peaks, measure, gone = peaks[counts], measure[counts], gone[counts]
+    drawn = np.isfinite(peaks) & (peaks > 0) & (measure > 0)
+    slope, dispersion = _line(np.log(measure[drawn]), np.log(peaks[drawn]))
+    return Order(len(peaks), int(gone.sum()), _spearman(measure, peaks), int(drawn.sum()), slope, dispersion)
+
+
+def _spearman(x: Array, y: Array) -> float:
+    """Spearman's rank correlation: that of the ranks, of which equal values share the mean."""
+    if len(x) < LEAST_RUNS:
+        return math.nan
+    of_x, of_y = _ranks(x), _ranks(y)
+    of_x, of_y = of_x - of_x.mean(), of_y - of_y.mean()
+    size = math.sqrt(float(of_x @ of_x) * float(of_y @ of_y))
+    return float(of_x @ of_y) / size if size > 0 else math.nan
+
+
+def _ranks(values: Array) -> Array:
+    _, places, counts = np.unique(values, return_inverse=True, return_counts=True)
+    return np.asarray((np.cumsum(counts) - 0.5 * (counts - 1))[places], dtype=np.float64)
+
+
+def _line(x: Array, y: Array) -> tuple[float, float]:
+    """Slope of the line of least squares, and the standard deviation about it, by n − 2."""
+    if len(x) < LEAST_RUNS or np.ptp(x) == 0:
+        return math.nan, math.nan
+    slope, intercept = np.polyfit(x, y, 1)
+    residual = y - intercept - slope * x
+    return float(slope), math.sqrt(float(residual @ residual) / (len(x) - 2))
+
+
+def orders(table: "pd.DataFrame", varied: Sequence[str]) -> "pd.DataFrame":
+    """One row for each case, scale and measure of intensity.csv: its names, ``measure``, and the fields of :class:`Order`."""
+    import pandas as pd
+
+    keys = ["case", *varied, "scale"]
+    rows = [
+        {
+            **dict(zip(keys, key, strict=True)),
+            "measure": name,
+            **order_of(
+                same[name].to_numpy(dtype=np.float64),
+                same["theta_max_over_alpha"].to_numpy(dtype=np.float64),
+                same["status"].to_list(),
+            )._asdict(),
+        }
+        for key, same in table.groupby(keys, sort=False, dropna=False)
+        for name in measures_of(table)
+    ]
+    return pd.DataFrame(rows, columns=[*keys, "measure", *Order._fields])

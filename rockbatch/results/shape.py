@@ -1,0 +1,104 @@
+"""What JSON from elsewhere has to look like before anything is made of it.
+
+A shape is a type (``str``, ``bool``, ``int``, ``float`` for any finite number), a tuple of shapes of which one has to fit
+(``None`` among them), ``[shape]`` for a list of such, ``{str: shape}`` for an object with any keys, or an object of the keys
+that there have to be, or may be where the shape is :class:`Maybe`. Other keys are nobody's business.
+"""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import islice
+from typing import Any, NamedTuple
+
+MOST = 1e30
+"""Beyond it no number of a result is one, and arithmetic with it overflows."""
+
+_WORDS = {str: "a text", bool: "true or false", int: "a whole number", float: "a number", None: "null"}
+
+
+@dataclass(frozen=True)
+class Maybe:
+    """The shape of a key that can be missing."""
+
+    shape: Any
+
+
+class Problem(NamedTuple):
+    """What does not fit: where, and what was expected there; ``str`` says both."""
+
+    place: str
+    expected: str
+    missing: bool = False
+
+    def __str__(self) -> str:
+        place = self.place or "the whole"
+        return f"{place} is missing" if self.missing else f"{place}: expected {self.expected}"
+
+
+def unfit(value: Any, shape: Any, most: int | None = None) -> Iterator[Problem]:
+    """The first ``most`` parts of ``value`` that do not fit; none if all of it does."""
+    return islice(_unfit(value, shape, ""), most)
+
+
+def fits(value: Any, shape: Any) -> bool:
+    """Whether all of ``value`` fits."""
+    return next(unfit(value, shape), None) is None
+
+
+def _unfit(value: Any, shape: Any, at: str) -> Iterator[Problem]:
+    if isinstance(shape, dict):
+        yield from _unfit_object(value, shape, at)
+    elif isinstance(shape, list):
+        if not isinstance(value, list):
+            yield Problem(at, "a list")
+            return
+        for number, item in enumerate(value):
+            yield from _unfit(item, shape[0], f"{at}[{number}]")
+    elif isinstance(shape, tuple):
+        if not any(fits(value, one) if isinstance(one, list | dict) else _is(value, one) for one in shape):
+            yield Problem(at, " or ".join(map(_words, shape)))
+    elif not _is(value, shape):
+        yield Problem(at, _words(shape))
+
+
+def _unfit_object(value: Any, shape: dict[Any, Any], at: str) -> Iterator[Problem]:
+    if not isinstance(value, dict):
+        yield Problem(at, "an object")
+        return
+    if str in shape:
+        for key, item in value.items():
+            yield from _unfit(item, shape[str], f"{at}.{key[:40]}")
+        return
+    for key, wanted in shape.items():
+        if key in value:
+            wanted = wanted.shape if isinstance(wanted, Maybe) else wanted
+            if not _soon(value[key], wanted):
+                yield from _unfit(value[key], wanted, f"{at}.{key}" if at else key)
+        elif not isinstance(wanted, Maybe):
+            yield Problem(f"{at}.{key}" if at else key, "", missing=True)
+
+
+def _soon(value: Any, shape: Any) -> bool:
+    """Whether it takes no more than a look to see that ``value`` fits: most are single, and there are millions."""
+    if type(shape) is tuple:
+        shape = shape[0]
+    if shape is float:
+        return type(value) is float and -MOST < value < MOST
+    return shape is str and type(value) is str
+
+
+def _is(value: Any, kind: Any) -> bool:
+    if kind is None or kind is bool or kind is str:
+        return value is None if kind is None else isinstance(value, kind)
+    if isinstance(kind, str):
+        return bool(value == kind)
+    if isinstance(value, bool) or not isinstance(value, int if kind is int else int | float):
+        return False
+    return abs(value) < MOST and math.isfinite(value)
+
+
+def _words(shape: Any) -> str:
+    if isinstance(shape, list | dict):
+        return "a list" if isinstance(shape, list) else "an object"
+    return f'"{shape}"' if isinstance(shape, str) else _WORDS[shape]

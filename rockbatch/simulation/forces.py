@@ -1,0 +1,186 @@
+"""Forces of a run that was written down, and what of them a designer sizes: their peaks, the hardest impact, uplift."""
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from rockbatch.core import types
+from rockbatch.core.forces import FORCES, LIFTED, Forces, Outline, forces_on_rigid_base, forces_on_springs, greatest
+from rockbatch.core.records import numbers
+from rockbatch.motions.motion import Samples
+from rockbatch.pier import Pier, RigidBase, YieldingBase
+from rockbatch.results.outcome import Outcome, PeakForces
+from rockbatch.results.response import FORCE_UNITS, IMPACT_UNITS
+from rockbatch.simulation.models import block, ground_of, springs
+from rockbatch.simulation.runs import Run
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+_UPLIFTS = (types.SEPARATION_LEFT, types.SEPARATION_RIGHT, types.LIFT_OFF)
+_LANDINGS = (types.IMPACT_LEFT, types.IMPACT_RIGHT, types.IMPACT_BOTH, types.REST)
+
+
+class Impacts(NamedTuple):
+    """The impacts of a run, each shape (k,): the place of the row after it, what lands (−1 left, 1 right, 0 both), the
+    greatest speed of what lands [m/s], and the impulse on the pier per unit mass [m/s], horizontal and vertical."""
+
+    after: np.ndarray
+    side: np.ndarray
+    speed: Samples
+    horizontal: Samples
+    vertical: Samples
+
+
+def observed(run: Run, rows: np.recarray, steps: bool) -> tuple[np.recarray, np.recarray]:
+    """Forces (core.forces.Forces) at every row of a run, and in the middle of every step; ``steps``: the rows have them all."""
+    pier, ground, dt = run.pier, ground_of(run.motion), float(run.motion.dt)
+    found, middles = np.recarray(len(rows), FORCES), np.recarray(len(rows) if steps else 0, FORCES)
+    if isinstance(run.base, RigidBase):
+        forces_on_rigid_base(block(pier, run.base), _outline(pier), rows, ground, dt, found, middles)
+    else:
+        forces_on_springs(springs(pier, run.base), float(pier.deck), rows, ground, dt, found, middles)
+    return found, middles
+
+
+def _outline(pier: Pier) -> Outline:
+    """The deck of a frame rests on corners of its columns, twice as far from their pivots as their centres of mass are."""
+    size, width = float(pier.size), 2.0 * float(pier.half_width)
+    if pier.deck_over_columns is not None:
+        return Outline(size, width, width / math.sin(pier.alpha) / size, 0.0)
+    return Outline(size, width, 1.0, float(pier.deck - pier.height))
+
+
+def _events(rows: np.recarray, kinds: Sequence[float]) -> np.ndarray:
+    """Places of the rows behind events of these ``kinds``."""
+    events = np.flatnonzero(rows.kind > 0.0)
+    return events[np.isin(rows.kind[events], kinds)]
+
+
+def impacts(rows: np.recarray, found: np.recarray) -> Impacts:
+    """Impacts between neighbouring rows: the speed before, and by how much the momentum changes."""
+    after = _events(rows, _LANDINGS)
+    before, kind = after - 1, rows.kind[after]
+    left, right = np.abs(found.speed_left[before]), np.abs(found.speed_right[before])
+    comes_down = np.where(kind == types.REST, np.where(left > 0.0, types.IMPACT_LEFT, types.IMPACT_RIGHT), kind)
+    side = np.where(comes_down == types.IMPACT_LEFT, -1, np.where(comes_down == types.IMPACT_RIGHT, 1, 0))
+    speed = np.where(side < 0, left, np.where(side > 0, right, np.maximum(left, right)))
+    return Impacts(after, side, speed, found.along[after] - found.along[before], found.up[after] - found.up[before])
+
+
+def forces_table(t: Samples, found: np.recarray, gravity: float) -> "pd.DataFrame":
+    """:attr:`Response.forces` at the times ``t`` [s]."""
+    import pandas as pd
+
+    half = 0.5 * gravity
+    told = [found.shear, found.normal, found.friction, found.left / half, found.right / half]
+    told += [found.gap_left, found.gap_right, found.speed_left, found.speed_right, found.deck]
+    return pd.DataFrame({"t": t.copy(), **dict(zip(FORCE_UNITS, told, strict=True))})
+
+
+def impacts_table(rows: np.recarray, found: np.recarray) -> "pd.DataFrame":
+    """:attr:`Response.impacts` of a run with these forces."""
+    import pandas as pd
+
+    own = impacts(rows, found)
+    told = [rows.t[own.after], own.speed, own.horizontal, own.vertical]
+    table = pd.DataFrame(dict(zip(IMPACT_UNITS, told, strict=True)))
+    table.insert(1, "pivot", np.array(["left", "both", "right"], dtype=object)[own.side + 1])
+    return table.astype({"pivot": "str"})
+
+
+def peak_forces(run: Run, outcome: Outcome, rows: np.recarray) -> tuple[PeakForces, str]:
+    """What a run asks of the design, and a note on what it tells that the model does not follow; empty where there is none.
+
+    ``rows`` are those of a history with every step. An overturned pier counts until it leans beyond α for good.
+    """
+    pier, base = run.pier, run.base
+    if outcome.status == "overturned":
+        standing = np.flatnonzero(np.abs(rows.theta) <= pier.alpha)
+        rows = rows[: standing[-1] + 1].view(np.recarray)
+    found, middles = observed(run, rows, steps=True)
+    extremes = np.zeros(len(Forces._fields))
+    greatest(rows.kind, numbers(found), numbers(middles), extremes)
+    most = Forces(*extremes.tolist())
+    landings = impacts(rows, found)
+    carried = [force / (0.5 * pier.gravity) for force in (most.left, most.right)]
+    if isinstance(base, YieldingBase):
+        carried = [min(force, base.eta) for force in carried]  # a parabola may top it
+    peaks = PeakForces(
+        base_shear=most.shear,
+        normal_force=most.normal,
+        friction_demand=most.friction,
+        pivot_left=carried[0],
+        pivot_right=carried[1],
+        heel_gap_left=most.gap_left,
+        heel_gap_right=most.gap_right,
+        heel_speed_left=most.speed_left,
+        heel_speed_right=most.speed_right,
+        deck_acceleration=most.deck,
+        omega_over_p=most.omega / pier.p,
+        **_hardest(landings),
+        **_first_uplift(run, rows),
+        **_flown(run, outcome, rows, most.clearance),
+    )
+    return peaks, _limits(run, rows, found, peaks)
+
+
+def _hardest(landings: Impacts) -> dict[str, float]:
+    """The hardest impact, that of the greatest landing velocity; nothing without one."""
+    if len(landings.after) == 0:
+        return {}
+    hardest = int(landings.speed.argmax())
+    told = {"landing_velocity": float(landings.speed[hardest]), "impulse": float(landings.vertical[hardest])}
+    pressed = landings.vertical > 0.0
+    if pressed.any():
+        shares = np.abs(landings.horizontal[pressed]) / landings.vertical[pressed]
+        told["impact_friction_demand"] = float(shares.max())
+    return told
+
+
+def _first_uplift(run: Run, rows: np.recarray) -> dict[str, float]:
+    """When a pivot first lifts, and the magnitude of the horizontal ground acceleration then; nothing if none does."""
+    lifted = _events(rows, _UPLIFTS)
+    if len(lifted) == 0:
+        return {}
+    t, samples = float(rows.t[lifted[0]]), np.append(run.motion.horizontal, 0.0)
+    shaken = float(np.interp(t, np.arange(len(samples)) * run.motion.dt, samples))
+    return {"first_uplift": t, "uplift_ground": abs(shaken)}
+
+
+def _flown(run: Run, outcome: Outcome, rows: np.recarray, clearance: float) -> dict[str, float]:
+    """How long both pivots were in the air, and how high the lower one; nothing without flight that was followed."""
+    if outcome.t_flight is None or isinstance(run.base, RigidBase):
+        return {}
+    flying = (rows.kind <= 0.0) & (rows.left == 0.0) & (rows.right == 0.0) & (rows.held == 0.0)
+    lasted = float(np.diff(rows.t, prepend=0.0)[flying].sum())
+    return {"flight_duration": lasted, "flight_height": clearance} if lasted > 0.0 else {}
+
+
+def _limits(run: Run, rows: np.recarray, found: np.recarray, peaks: PeakForces) -> str:
+    """What the forces say that the model does not follow: sliding, and a rigid base that would have to pull."""
+    notes = []
+    if isinstance(run.base, RigidBase):
+        pulled = found.normal < -LIFTED * run.pier.gravity
+        if pulled.any():
+            t = float(rows.t[int(pulled.argmax())])
+            notes.append(
+                f"at {t:.2f} s the ground would have to hold the pier down: it would leave it, which is not followed"
+            )
+    has = run.base.friction
+    if has is None:
+        return "; ".join(notes)
+    most = max(peaks.friction_demand, peaks.impact_friction_demand or 0.0)
+    if most > has:
+        when = "at an impact"
+        if peaks.friction_demand > has:
+            beyond = found.friction > has  # the greatest may lie between rows
+            first = int(beyond.argmax()) if beyond.any() else int(found.friction.argmax())
+            when = f"at {float(rows.t[first]):.2f} s"
+        told = f"reaches {most:.3g}" if math.isfinite(most) else "has no limit, as nothing presses the pier down"
+        notes.append(
+            f"would slide {when}: the friction demand {told}, the interface has {has:g}; sliding is not followed"
+        )
+    return "; ".join(notes)

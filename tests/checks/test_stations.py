@@ -1,0 +1,299 @@
+"""A record of a suite is a station: what passes with two components of four stations is no seven records."""
+
+import csv
+import math
+import statistics
+from pathlib import Path
+
+import pandas as pd
+import pytest
+from check_samples import RECORD, case, folder, runs
+from studies import PADS, SINE, study_text, write_study
+
+import rockbatch as rb
+from rockbatch.checks import Rule, judge, load_rules, read_verdicts
+from rockbatch.cli import main
+from rockbatch.errors import InputError, MissingColumns
+from rockbatch.results.checking import verdicts
+
+INF = math.inf
+
+
+def pairs(*stations, **cells):
+    """Runs of stations A, B …, each with the θ_max/α of its components A1, A2 …"""
+    names = "ABCDEFGHIJKLM"[: len(stations)]
+    table = runs([theta for station in stations for theta in station], **cells)
+    table["station"] = [name for name, station in zip(names, stations, strict=True) for _ in station]
+    table["record"] = [
+        f"{name}{i}" for name, station in zip(names, stations, strict=True) for i in range(1, len(station) + 1)
+    ]
+    return table
+
+
+def judged(table, *, records=None, count="station", at_most=0.5, demand="theta_max_over_alpha", **asked):
+    (verdict,) = judge([Rule("check", demand, at_most, **asked)], table, [case()], records, count)
+    return verdict
+
+
+FOUR = ((0.1, 0.2), (0.3, 0.1), (0.2, 0.9), (0.1, 0.1))
+"""Components of four stations: the mean of the eight is 0.25, that of the worse ones 0.375, the greatest 0.9."""
+SEVEN = tuple((0.1 * i, 0.05 * i) for i in range(1, 8))
+
+
+@pytest.mark.parametrize("statistic", ["en1998-1", "en1998-2", "aashto", "nzs1170.5"])
+def test_eight_components_of_four_stations_are_no_seven_records(statistic):
+    found = judged(pairs(*FOUR), statistic=statistic)
+    assert (found.records, found.count, found.value, found.verdict) == (4, "station", 0.9, "fail")
+    asked_for = judged(pairs(*FOUR), statistic=statistic, count="component")
+    mean = statistic != "nzs1170.5"
+    assert (asked_for.records, asked_for.count) == (8, "component")
+    assert (asked_for.value, asked_for.verdict) == ((pytest.approx(0.25), "pass") if mean else (0.9, "fail"))
+
+
+@pytest.mark.parametrize(
+    ("statistic", "value"),
+    [("en1998-1", 0.4), ("en1998-2", 0.4), ("aashto", 0.4), ("nzs1170.5", 0.7), ("mean", 0.4), ("median", 0.4)],
+)
+def test_of_seven_stations_the_worse_components_count(statistic, value):
+    found = judged(pairs(*SEVEN), statistic=statistic, at_most=1.0)
+    assert (found.records, found.runs, found.value) == (7, 14, pytest.approx(value))
+    assert "most unfavourable" not in found.note
+
+
+@pytest.mark.parametrize("statistic", ["en1998-1", "en1998-2", "aashto", "nzs1170.5"])
+def test_two_stations_decide_nothing_however_many_components_they_have(statistic):
+    found = judged(pairs((0.1,) * 6, (0.2,) * 6), statistic=statistic)
+    assert found.verdict == "not decided"
+    assert "2 stations count; " in found.note
+    assert " asks for 3" in found.note
+
+
+def test_a_count_is_of_stations():
+    found = judged(pairs((0.6, 0.7), (0.6, 0.1), (0.1, 0.2)), statistic="count", above=0.5, at_most=2)
+    assert (found.value, found.verdict, found.unit) == (2, "pass", "")
+
+
+def test_both_components_of_one_station_are_one_unacceptable_response_under_asce7():
+    stations = [(0.1, 0.1)] * 11
+    status = ["overturned", "overturned", *["ok"] * 20]
+    found = judged(pairs(*stations, status=status), statistic="asce7-16")
+    assert (found.records, found.value, found.verdict) == (11, pytest.approx(0.12), "pass")
+    apart = judged(pairs(*stations, status=status), statistic="asce7-16", count="component")
+    assert (apart.records, apart.verdict) == (22, "fail")
+
+
+# What goes wrong in one direction
+
+
+def test_a_component_that_failed_leaves_its_station_unknown():
+    """The other one stood, but is not known to be the worse."""
+    table = pairs(*FOUR, status=["failed", *["ok"] * 7])
+    found = judged(table, statistic="max", at_most=1.0)
+    assert (found.verdict, found.records, found.high) == ("not decided", 4, INF)
+    assert (found.station, found.record) == ("A", "A1")
+
+
+def test_a_component_that_is_left_out_is_told_with_its_station():
+    """It still counts, by the direction that is left: nobody shall take that for the worse one."""
+    table = pairs(*FOUR, status=["ok", "ok", "ok", "ok", "ok", "failed", "ok", "ok"])
+    found = judged(table, statistic="max", failed="left out")
+    assert (found.verdict, found.value, found.records) == ("pass", 0.3, 4)
+    assert "not every direction counts, and the worst may be another: C (1 of 2)" in found.note
+
+
+def test_a_station_of_which_one_component_could_not_be_read_is_told():
+    found = judged(pairs((0.1, 0.2), (0.3,), (0.2, 0.1)), statistic="en1998-2")
+    assert (found.verdict, found.records) == ("pass", 3)
+    assert "the worst may be another: B (1 of 2)" in found.note
+
+
+def test_where_every_station_has_one_component_none_is_missing():
+    """As where records are turned to the axis of the bridge."""
+    assert "direction" not in judged(pairs((0.1,), (0.2,), (0.3,))).note
+
+
+def test_a_component_that_was_not_run_is_one_that_failed():
+    stations = {"A1": "A", "A2": "A", "B1": "B"}
+    found = judged(pairs((0.1,), (0.2,)), records=stations)
+    assert (found.verdict, found.records, found.counted) == ("not decided", 2, "1 not run (unknown)")
+
+
+# Polarities and scales
+
+
+def test_polarities_are_directions_and_mirror_images_are_none():
+    plus, minus = pairs(*FOUR), pairs(*(tuple(2 * each for each in station) for station in FOUR), polarity="-")
+    found = judged(pd.concat([plus, minus]), statistic="mean", at_most=1.0)
+    assert (found.records, found.runs, found.value) == (4, 16, pytest.approx(0.75))
+    assert (found.station, found.record, found.polarity) == ("C", "C2", "-")
+    mirrored = pd.concat([plus.assign(mirror_of=""), minus.assign(mirror_of="+")])
+    assert judged(mirrored, statistic="mean").value == pytest.approx(0.375)
+
+
+def test_a_station_at_three_scales_is_no_three_records():
+    table = pd.concat([pairs(*FOUR[:2], scale=scale) for scale in (1.0, 1.5, 2.0)])
+    found = judge([Rule("check", "theta_max_over_alpha", 0.5, statistic="en1998-2")], table, [case()])
+    assert [(one.scale, one.records, one.verdict) for one in found] == [
+        (scale, 2, "not decided") for scale in (1.0, 1.5, 2.0)
+    ]
+
+
+# What governs
+
+
+@pytest.mark.parametrize(
+    ("asked", "governs"),
+    [
+        ({}, ("C", "C2", 0.9)),
+        ({"statistic": "mean"}, ("C", "C2", 0.9)),
+        ({"demand": "top_drift_m", "statistic": "en1998-2"}, ("C", "C2", pytest.approx(0.9 * 0.2 * 2 * 7.2108408))),
+        ({"demand": "overturned", "at_most": 0}, ("", "", math.nan)),
+    ],
+)
+def test_a_verdict_names_the_run_that_governs_and_what_it_demands(asked, governs):
+    found = judged(pairs(*FOUR), **asked)
+    assert (found.station, found.record) == governs[:2]
+    assert found.governing == pytest.approx(governs[2], nan_ok=True)
+    assert found.unit == ("m" if asked.get("demand") == "top_drift_m" else "")
+
+
+def test_what_is_not_decided_names_the_run_that_leaves_it_open():
+    """Not the largest value that is known, which another run has."""
+    table = pairs(*FOUR, status=["ok", "flight", *["ok"] * 6])
+    found = judged(table, at_most=1.0)
+    assert (found.verdict, found.record, found.governing, found.value) == ("not decided", "A2", 0.2, 0.9)
+    too_few = judged(pairs(*FOUR[1:3]), at_most=1.0, statistic="aashto")
+    assert (too_few.verdict, too_few.record) == ("not decided", "B2")
+
+
+def test_an_event_names_the_run_in_which_it_happens():
+    table = pairs(*FOUR, status=["ok"] * 6 + ["overturned", "ok"])
+    found = judged(table, demand="overturned", at_most=0)
+    assert (found.verdict, found.station, found.record, found.governing) == ("fail", "D", "D1", 1.0)
+
+
+# Fewest records, and what counts
+
+
+def test_any_statistic_can_ask_for_more_records():
+    assert judged(pairs(*FOUR), statistic="mean", least=4).verdict == "pass"
+    found = judged(pairs(*FOUR), statistic="mean", least=5)
+    assert (found.verdict, found.note.split("; ")[:2]) == ("not decided", ["4 stations count", "the check asks for 5"])
+    assert judged(pairs(*FOUR), statistic="mean", least=5, count="component").verdict == "pass"
+    assert judged(pairs(*FOUR), statistic="max", least=5).verdict == "fail"  # more records lower no maximum
+
+
+@pytest.mark.parametrize(
+    ("asked", "problem"),
+    [
+        ({"statistic": "en1998-2", "least": 2}, "least = 2: EN 1998-2 asks for 3; leave it out"),
+        ({"count": "stations"}, 'count = "stations": expected one of "station"'),
+        ({"demand": "eta", "at_most": None, "at_least": 2, "least": 3}, "least: eta is the same for all records"),
+        ({"demand": "flight", "statistic": "aashto"}, "flight is yes or no"),
+    ],
+)
+def test_what_makes_no_sense_is_refused(asked, problem):
+    with pytest.raises(InputError) as caught:
+        Rule(**({"name": "check", "demand": "theta_max_over_alpha", "at_most": 0.5} | asked))
+    assert any(problem in each for each in caught.value.problems)
+
+
+CHECK = '[[check]]\nname = "peak"\ndemand = "theta_max_over_alpha"\nstatistic = "mean"\nat_most = 0.5\nreason = "r"\n'
+COMPONENT = '[suite]\ncount = "component"\n'
+
+
+def counts(out, rules=None):
+    return [(one.records, one.count) for one in verdicts(out, rules)]
+
+
+def test_a_suite_says_what_counts_and_a_check_may_say_otherwise(tmp_path):
+    own = folder(tmp_path / "a", pairs(*FOUR), [case()], CHECK)
+    assert counts(own) == [(4, "station")]
+    suite = folder(tmp_path / "b", pairs(*FOUR), [case()], COMPONENT + CHECK)
+    assert counts(suite) == [(8, "component")]
+    other = CHECK.replace("peak", "other") + 'count = "station"\n'
+    both = folder(tmp_path / "c", pairs(*FOUR), [case()], COMPONENT + CHECK + other)
+    assert counts(both) == [(8, "component"), (4, "station")]
+    # Rules from elsewhere count as the study does, unless they say it
+    assert counts(suite, [Rule("peak", "theta_max_over_alpha", 0.5)]) == [(8, "component")]
+    file = tmp_path / "rules.toml"
+    file.write_text(CHECK)
+    assert counts(suite, file) == [(8, "component")]
+    file.write_text(COMPONENT.replace("component", "station") + CHECK)
+    assert [rule.count for rule in load_rules(file)] == ["station"]
+    assert counts(suite, file) == [(4, "station")]
+
+
+def test_a_mistake_under_suite_is_told_with_its_line(tmp_path):
+    text = study_text(suite={"count": "pair"})
+    path = write_study(tmp_path, text)
+    with pytest.raises(InputError, match=r'\[suite\]: count = "pair": expected one of "station", "component"'):
+        rb.load_study(path)
+    path = write_study(tmp_path, study_text(suite={"counts": "station"}))
+    with pytest.raises(InputError, match=r"counts: unknown key; did you mean count\?"):
+        rb.load_study(path)
+    path = write_study(tmp_path, study_text(suite={"count": "component"}))
+    assert rb.load_study(path).count == "component"
+
+
+def test_pulses_are_records_of_their_own_in_the_table_and_in_a_folder(tmp_path):
+    path = write_study(tmp_path, study_text(pulses=(SINE, SINE | {"name": "other"}), cases=(PADS,)) + "\n" + CHECK)
+    assert main(["run", str(path), "--out", str(tmp_path / "out"), "--jobs", "1"]) == 0
+    from_folder, from_table = rb.check(tmp_path / "out"), rb.check(rb.run(path, jobs=1), study=path)
+    pd.testing.assert_frame_equal(from_folder, from_table)
+    assert list(from_folder["records"]) == [2]
+
+
+# Folders of an earlier version
+
+
+def test_where_stations_are_not_known_components_count_and_it_is_said(tmp_path, capsys):
+    records = [RECORD | {"record": f"{s}{i}"} for s in "ABCD" for i in (1, 2)]
+    out = folder(tmp_path / "out", pairs(*FOUR), [case()], CHECK, records=records)
+    table = pd.read_csv(out / "peaks.csv").drop(columns="station")
+    table.to_csv(out / "peaks.csv", index=False)
+    with pytest.warns(MissingColumns, match="station"):
+        (found,) = verdicts(out)
+    assert (found.records, found.count) == (8, "component")
+    assert "these results do not say which components are of one station" in found.note
+    assert main(["check", str(out)]) == 0
+    printed = capsys.readouterr().out
+    assert " components " in printed.splitlines()[1]
+    assert "do not say which components are of one station" in " ".join(printed.split())
+
+
+def test_verdicts_of_an_earlier_version_are_still_read(tmp_path):
+    out = folder(tmp_path / "out", pairs(*FOUR), [case()], CHECK)
+    assert main(["check", str(out)]) == 0
+    new = ["count", "unit", "station", "record", "polarity", "governing"]
+    pd.read_csv(out / "checks.csv").drop(columns=new).to_csv(out / "checks.csv", index=False)
+    (found,) = read_verdicts(out)
+    assert (found.records, found.station, found.count) == (4, "", "")
+
+
+# The numbers, by hand
+
+
+def by_hand(path: Path, statistic, count):
+    """What the columns of peaks.csv come to, without a line of the package."""
+    worst: dict[str, float] = {}
+    with path.open(encoding="utf-8", newline="") as file:
+        for row in csv.DictReader(file):
+            name = row["station" if count == "station" else "record"]
+            worst[name] = max(worst.get(name, 0.0), float(row["theta_max_over_alpha"]))
+    values = list(worst.values())
+    if statistic == "mean" or (statistic not in ("max", "nzs1170.5") and len(values) >= 7):
+        return len(values), statistics.fmean(values)
+    return len(values), max(values)
+
+
+@pytest.mark.parametrize("stations", [FOUR, SEVEN], ids=["four", "seven"])
+@pytest.mark.parametrize("count", ["station", "component"])
+@pytest.mark.parametrize("statistic", ["max", "mean", "en1998-1", "en1998-2", "aashto", "nzs1170.5"])
+def test_a_verdict_is_what_plain_python_makes_of_peaks_csv(tmp_path, stations, count, statistic):
+    table = pd.concat([pairs(*stations), pairs(*stations, polarity="-").assign(theta_max_over_alpha=0.15)])
+    out = folder(tmp_path / "out", table, [case()])
+    (found,) = verdicts(out, [Rule("peak", "theta_max_over_alpha", 0.5, statistic=statistic, count=count)])
+    records, value = by_hand(out / "peaks.csv", statistic, count)
+    assert (found.records, found.value) == (records, pytest.approx(value, rel=1e-9))
+    assert found.verdict == ("pass" if value <= 0.5 else "fail")

@@ -1,0 +1,306 @@
+"""Files that would cost their folder: for ever to read, more memory than there is, words that rule a terminal, links out."""
+
+import struct
+import threading
+import time
+import tracemalloc
+
+import numpy as np
+import pytest
+from bounds import bounds
+from damaged_files import traced
+from fixed_column_files import csmip_channel
+from motion_files import at2_text, wiggle, write_at2
+from waveform_files import channel_xml, station_xml, trace, write_mseed
+
+from rockbatch.motions import bounded, read_motions
+from rockbatch.motions.bounded import TooLongError
+from rockbatch.motions.component import Component
+from rockbatch.motions.formats import FORMATS, ReadOptions
+from rockbatch.motions.formats import sac as sac_format
+from rockbatch.motions.formats.before_obspy import CHECKS
+from rockbatch.motions.manifest_draft import write_draft
+
+
+def names(found) -> list[str]:
+    return [motion.name for motion in found.motions]
+
+
+def sac_with(word: int, value: float) -> bytes:
+    """A SAC file with another float or integer as a word of its header."""
+    data = bytearray(traced("SAC"))
+    data[4 * word : 4 * word + 4] = struct.pack("<f" if word < 70 else "<i", value)
+    return bytes(data)
+
+
+@pytest.mark.parametrize("value", [1e30, -1e30, np.inf, np.nan, 0.0])
+def test_no_word_of_a_sac_header_keeps_its_reader_for_ever(tmp_path, value):
+    """ObsPy brings the event's longitude below 180° by subtracting 360° as often as that takes."""
+    for word in range(70):
+        (tmp_path / f"w{word:02d}_HNE.sac").write_bytes(sac_with(word, value))
+    with bounds(20, 500):
+        found = read_motions(tmp_path, options=ReadOptions(unit="m/s2"), confirmed=["*"])
+    assert {one.source for one in found.unusable} >= {"w00_HNE.sac"}  # DELTA
+    assert len(found.motions) + len(found.unusable) + len(found.left_out) == 70
+    event = [*found.motions, *found.left_out]  # copies of one another: where the event was is nobody's concern
+    assert {"w35_HNE", "w36_HNE"} <= {one.name for one in event}
+
+
+def test_a_damaged_word_of_a_sac_header_is_told_by_its_name(tmp_path):
+    for word, value in ((0, -0.01), (71, 4000), (79, -1), (85, 2), (105, 0)):
+        (tmp_path / f"w{word}.sac").write_bytes(sac_with(word, value))
+    reasons = {one.name: one.reason for one in read_motions(tmp_path, options=ReadOptions(unit="g")).unusable}
+    for name, said in {"w0": "DELTA", "w71": "NZJDAY = 4000", "w79": "NPTS", "w85": "IFTYPE", "w105": "LEVEN"}.items():
+        assert said in reasons[name]
+
+
+def test_a_control_header_whose_blockette_has_no_length_ends(tmp_path):
+    """ObsPy goes on by the length that it reads there: by nothing, for ever."""
+    (tmp_path / "x.seed").write_bytes(b"000001V 0110000" + b"0" * 500 + traced("MSEED"))
+    (tmp_path / "y.seed").write_bytes(b"000001V 0100011 2.4990" + b"0" * 500)
+    (tmp_path / "z.mseed").write_bytes(traced("MSEED"))
+    with bounds(10, 500):
+        found = read_motions(tmp_path, options=ReadOptions(unit="m/s2"), confirmed=["*"])
+    assert names(found) == ["z"]
+
+
+def test_a_blockette_that_leads_back_is_refused(tmp_path):
+    data = bytearray(traced("MSEED"))
+    at = int.from_bytes(data[46:48], "big")
+    data[at + 2 : at + 4] = at.to_bytes(2, "big")
+    (tmp_path / "x.mseed").write_bytes(data)
+    with bounds(10, 500):
+        (told,) = read_motions(tmp_path, options=ReadOptions(unit="m/s2")).unusable
+    assert "blockette" in told.reason
+
+
+def test_every_format_that_obspy_reads_has_a_check_before(monkeypatch):
+    from rockbatch.motions.formats import with_obspy
+
+    with pytest.raises(KeyError):
+        with_obspy.read_stream(b"", "PICKLE")
+    assert set(CHECKS) == {"SAC", "MSEED", "KNET"}
+
+
+def test_a_reader_that_does_not_end_is_ended_and_costs_no_other_file(tmp_path, monkeypatch):
+    def for_ever(file):
+        while True:
+            pass
+
+    changed = [(sac_format.read_sac, for_ever)]
+    formats = tuple(
+        type(known)(
+            known.name, known.suffixes, known.matches, dict(changed).get(known.read, known.read), known.anywhere
+        )
+        for known in FORMATS
+    )
+    monkeypatch.setattr("rockbatch.motions.formats.FORMATS", formats)
+    monkeypatch.setattr(bounded, "_LEAST", 0.3)
+    (tmp_path / "bad.sac").write_bytes(traced("SAC"))
+    write_at2(tmp_path, "good090.AT2", wiggle())
+    with bounds(20, 500):
+        found = read_motions(tmp_path)
+    assert names(found) == ["good090"]
+    assert [one.source for one in found.unusable] == ["bad.sac"]
+    assert "ended" in found.unusable[0].reason
+
+
+def test_a_bound_ends_the_thread_that_it_is_in_and_leaves_nothing_behind():
+    ended = []
+
+    def reader() -> None:
+        try:
+            with bounded.bounded(0):
+                while True:
+                    pass
+        except TooLongError:
+            ended.append(True)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(bounded, "_LEAST", 0.2)
+        thread = threading.Thread(target=reader)
+        thread.start()
+        thread.join(20)
+        assert ended == [True]
+        with bounded.bounded(0):
+            pass
+        time.sleep(0.5)  # nothing comes after its end
+    assert not [each for each in threading.enumerate() if each.name == "rockbatch-bounded"]
+
+
+@pytest.mark.parametrize("dt", ["1e200", "1E6", "10.", "1E-7", "1e-300", "1E-30"])
+def test_an_interval_that_no_recorder_has_costs_its_file_only(tmp_path, dt):
+    write_at2(tmp_path, "bad000.AT2", wiggle(), dt=dt)
+    write_at2(tmp_path, "badUP.AT2", wiggle(seed=3), dt=dt)
+    write_at2(tmp_path, "good000.AT2", wiggle(seed=2))
+    with bounds(10, 500):
+        found = read_motions(tmp_path)
+    assert names(found) == ["good000"]
+    assert {one.name for one in found.unusable} == {"bad000", "badUP"}
+    assert all("1e-05 to 1 s" in one.reason for one in found.unusable)
+
+
+@pytest.mark.parametrize("key", ["dt = 1e200", "dt = 1e-9"])
+def test_a_manifest_states_no_such_interval(tmp_path, key):
+    from rockbatch.errors import InputError
+
+    write_at2(tmp_path, "a000.AT2", wiggle())
+    (tmp_path / "motions.toml").write_text(f'[[record]]\nfile = "a000.AT2"\n{key}\n')
+    with pytest.raises(InputError, match="1e-05 to 1 s"):
+        read_motions(tmp_path)
+
+
+def test_a_scale_that_takes_a_record_beyond_all_numbers_costs_this_record_only(tmp_path):
+    write_at2(tmp_path, "a000.AT2", wiggle())
+    write_at2(tmp_path, "b000.AT2", wiggle(seed=2))
+    (tmp_path / "motions.toml").write_text('[[record]]\nfile = "a000.AT2"\nscale = 1e305\n')
+    found = read_motions(tmp_path)
+    assert names(found) == ["b000"]
+    assert "finite" in found.unusable[0].reason
+
+
+@pytest.mark.parametrize("dt", [1e-5, 2e-5])
+def test_a_vertical_of_a_far_finer_step_is_left_and_its_reason_told(tmp_path, dt):
+    """A grid of the finer step over the whole of the coarser record would be a thousand times its size."""
+    write_at2(tmp_path, "a000.AT2", wiggle(60_000), dt="0.02", title="X, 1/17/1994, S, 000")
+    write_at2(tmp_path, "aUP.AT2", wiggle(200, 2), dt=f"{dt:g}", title="X, 1/17/1994, S, UP")
+    with bounds(20, 300):
+        found = read_motions(tmp_path, confirmed=["*"])
+    assert names(found) == ["a000"]
+    assert found.motions[0].lacks_vertical
+    assert ["more than 20 times" in one.reason for one in found.unusable] == [True]
+    with bounds(20, 300):
+        turned = read_motions(tmp_path, azimuths=(45.0,))
+    assert not turned.motions
+
+
+def test_a_record_of_more_samples_than_a_day_has_is_refused(tmp_path, monkeypatch):
+    write_at2(tmp_path, "a000.AT2", wiggle(300))
+    write_at2(tmp_path, "b000.AT2", wiggle(100, 2))
+    for module in ("formats", "formats.at2", "common_span"):
+        monkeypatch.setattr(f"rockbatch.motions.{module}.MOST_SAMPLES", 200)
+    (tmp_path / "c_HNE.csv").write_text("acc [g]\n" + "".join(f"{a:.5f}\n" for a in wiggle(300, 3)))
+    found = read_motions(tmp_path, options=ReadOptions(dt=0.01))
+    assert names(found) == ["b000"]
+    assert ["200" in one.reason for one in found.unusable] == [True, True]
+
+
+def test_components_whose_common_samples_would_be_too_many_are_not_brought_together(tmp_path, monkeypatch):
+    monkeypatch.setattr("rockbatch.motions.common_span.MOST_SAMPLES", 250)
+    write_at2(tmp_path, "a000.AT2", wiggle(200), dt="0.02", title="X, 1/17/1994, S, 000")
+    write_at2(tmp_path, "aUP.AT2", wiggle(400, 2), dt="0.01", title="X, 1/17/1994, S, UP")
+    found = read_motions(tmp_path, confirmed=["*"])
+    assert [motion.vertical for motion in found.motions] == [None]
+    assert "more than 250 common samples" in found.unusable[0].reason
+
+
+def test_a_common_span_is_built_where_both_are_and_nowhere_else():
+    """Ten samples at the end of a long record take memory for ten samples."""
+    from rockbatch.motions.common_span import on_common_samples
+    from rockbatch.motions.orientation import Orientation
+
+    long = Component("h", 0.01, wiggle(10**6), Orientation("000", azimuth=0.0), start=1e9)
+    short = Component("v", 0.005, wiggle(200, 2), Orientation("UP", vertical=True), start=1e9 + 5000.0025)
+    tracemalloc.start()
+    try:
+        common = on_common_samples(long, short, ("horizontal", "vertical"))
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert 195 <= len(common.first) == len(common.second) <= 200
+    assert common.begins == pytest.approx((5000.005, 0.0025), abs=1e-6)
+    assert peak < 10e6 + 8 * 10**6  # the indices of the long one's samples, once
+
+
+def test_a_large_file_takes_a_few_times_its_size():
+    """One with all its words as Python's objects takes 36 times as much."""
+    from pathlib import Path
+
+    from rockbatch.motions.formats import RecordFile, read_record
+
+    data = at2_text(wiggle(200_000)).encode()
+    tracemalloc.start()
+    try:
+        (found,) = read_record(RecordFile(Path("x000.AT2"), "x000.AT2", data))
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert isinstance(found, Component)
+    assert len(found.acceleration) == 200_000
+    assert peak < 15 * len(data) + 30 * 2**20
+
+
+ESCAPE = "\x1b]0;owned\x07\x1b[31m"
+
+
+def test_words_of_a_header_come_no_further_than_the_reader(tmp_path):
+    """A vertical without a horizontal is told with its station's words; a label stands in its name."""
+    text = "\n".join(csmip_channel("Up", wiggle(50), volume=2, number=1, place=f"Ground {ESCAPE}")) + "\n"
+    (tmp_path / "x.V2").write_text(text)
+    write_at2(tmp_path, "b.AT2", wiggle(), title=f"Ev{ESCAPE}ent, 1/17/1994, Sta\x7ftion\u009b5m, 21\x1b[31m")
+    write_at2(tmp_path, "c\x1b[2J000.AT2", wiggle(seed=4))
+    found = read_motions(tmp_path)
+    texts = repr([vars(one) for one in (*found.motions, *found.unusable, *found.left_out)])
+    shown = [*(str(v) for one in (*found.unusable, *found.left_out) for v in vars(one).values())]
+    shown += [word for motion in found.motions for word in (motion.name, motion.source, *motion.notes)]
+    assert len(found.unusable) >= 1
+    assert "owned" in texts
+    assert not any(ord(sign) < 32 or 127 <= ord(sign) < 160 for text in shown for sign in text)
+
+
+def test_a_delete_sign_in_a_header_leaves_the_drafted_manifest_one_that_can_be_read(tmp_path):
+    write_at2(tmp_path, "a.AT2", wiggle(), title="Event, 1/17/1994, Sta\x7ftion\x1b, 000")
+    write_at2(tmp_path, "b.AT2", wiggle(seed=2), title="Event, 1/17/1994, Sta\x7ftion\x1b, UP")
+    write_draft(tmp_path)
+    (motion,) = read_motions(tmp_path).motions
+    assert motion.vertical_source == "b.AT2"
+
+
+def test_station_xml_is_not_followed_out_of_the_folder(tmp_path):
+    outside = tmp_path / "outside"
+    outside.mkdir()
+    station_xml(outside, channel_xml("HNN"))
+    records = tmp_path / "records"
+    (records / "below").mkdir(parents=True)
+    write_mseed(records / "below" / "x.mseed", trace("HNN"))
+    (records / "below" / "stations.xml").symlink_to(outside / "stations.xml")
+    found = read_motions(records)
+    assert not found.motions
+    reasons = {one.source: one.reason for one in found.unusable}
+    assert "stations.xml: a link that leads out of the folder" in reasons["below/x.mseed"]
+    assert "a link that leads out" in reasons["below/stations.xml"]
+    station_xml(records, channel_xml("HNN"))
+    (records / "below" / "stations.xml").unlink()
+    (records / "below" / "stations.xml").symlink_to(records / "stations.xml")
+    assert names(read_motions(records)) == ["x"]
+
+
+def test_a_stray_xml_costs_no_record_whatever_it_is(tmp_path, monkeypatch):
+    station_xml(tmp_path, channel_xml("HNN"))
+    write_mseed(tmp_path / "x.mseed", trace("HNN"))
+    (tmp_path / "a.xml").write_text('<?xml version="1.0" encoding="no-such-thing"?><a/>')
+    (tmp_path / "b.xml").write_bytes(b"\xff\xfe\x00")
+    (tmp_path / "c.xml").write_text('<?xml version="1.0" encoding="utf-32"?><a/>')
+    (tmp_path / "d.xml").write_text("<FDSNStationXML>" + "<a>" * 200_000)
+    entities = "".join(f'<!ENTITY e{i} "{f"&e{i - 1};" * 10}">' for i in range(1, 12))
+    (tmp_path / "e.xml").write_text(f'<!DOCTYPE a [<!ENTITY e0 "ha">{entities}]><FDSNStationXML>&e11;</FDSNStationXML>')
+    with bounds(10, 500):
+        assert names(read_motions(tmp_path)) == ["x"]
+
+
+def test_station_xml_is_read_up_to_a_size_that_is_told_and_no_tree_is_built(tmp_path, monkeypatch):
+    from rockbatch.motions.formats import stationxml
+
+    write_mseed(tmp_path / "x.mseed", trace("HNN"))
+    station_xml(tmp_path, "<a/>" * 500_000, channel_xml("HNN"))
+    tracemalloc.start()
+    try:
+        assert len(stationxml.channels_beside(tmp_path)[0]) == 1
+        assert tracemalloc.get_traced_memory()[1] < 6 * 2**20  # of a file of 2 MB
+    finally:
+        tracemalloc.stop()
+    assert names(read_motions(tmp_path)) == ["x"]
+    monkeypatch.setattr(stationxml, "LARGEST", 2**20)
+    stationxml._channels.cache_clear()
+    (told,) = read_motions(tmp_path).unusable
+    assert "stations.xml: larger than 1 MiB" in told.reason

@@ -1,0 +1,188 @@
+"""What records are called: event and year, station, direction, by their headers; the name in tables stays their file's."""
+
+import csv
+import io
+import json
+from pathlib import Path
+
+import pytest
+from agency_files import cwa_text, dyna_text, geonet_text, knet_text, renadic_text
+from damaged_files import traced
+from fixed_column_files import cosmos_text, csmip_text, smc_text
+from motion_files import at2_text, needs_records, wiggle, write_at2
+from national_files import afad_text, bhrc_text, csmnc_text, unam_text, usc_text
+from studies import FOLDER_STUDY, write_study
+
+from rockbatch.cli import main
+from rockbatch.motions import ReadOptions, read_motions
+from rockbatch.motions.orientation import orientation_of, unknown
+from rockbatch.motions.origin import Origin, directed, origin_of
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.mark.parametrize(
+    ("event", "date", "called"),
+    [
+        ("IMPERIAL VALLEY, CA  EARTHQUAKE", "15 OCT 1979 - 2317 UTC", "Imperial Valley 1979"),
+        ("Imperial Valley-06", "10/15/1979", "Imperial Valley-06 1979"),
+        ("CAPE MENDOCINO", "04/25/92 1806", "Cape Mendocino 1992"),
+        ("X", "1/17/29", "X 2029"),
+        ("Record of Point MacKenzie Earthquake of Fri Nov 30, 2018 17:29 UTC", "", "Point MacKenzie 2018"),
+        ("Rcrd of Fri Jul  5, 2019 20:19:37.0 PDT", "", "Fri Jul 5, 2019"),
+        ("MAULE 2010", "01/01/1980 0:00:00 (GMT)", "Maule 2010"),
+        ("MAULE 2010", "", "Maule 2010"),
+        ("5 km south-west of Waiau", "2016 November 13         11:02:56 UT", "5 km south-west of Waiau 2016"),
+        ("", "2018-01-24 19:51", "2018-01-24"),
+        ("", "", ""),
+        ("   ,", "", ""),
+    ],
+)
+def test_an_event_is_called_by_its_name_and_year(event, date, called):
+    assert origin_of(event, date=date).event == called
+
+
+@pytest.mark.parametrize(
+    ("header", "called"),
+    [
+        ("EL CENTRO - HWY 8/MELOLAND OVERPASS", "El Centro - Hwy 8/Meloland Overpass"),
+        ("LGPC", "LGPC"),
+        ("NP.8040", "NP.8040"),
+        ("SYLMAR", "Sylmar"),
+        ("Te Mara Farm Waiau", "Te Mara Farm Waiau"),
+        ("HESPERIA - 4TH & PALM", "Hesperia - 4TH & Palm"),
+    ],
+)
+def test_a_station_is_not_shouted_and_a_code_stays_a_code(header, called):
+    assert origin_of(station=header).station == called
+
+
+def test_directions_are_three_digits_or_what_the_header_has():
+    labels = {"270 DEG": "270", "0": "000", "N28W": "N28W", "HNE": "HNE", "21": "021"}
+    for label, called in labels.items():
+        orientation = orientation_of(label)
+        assert orientation is not None
+        assert directed(Origin("e"), orientation).direction == called
+    assert directed(Origin("e"), unknown()).direction == ""
+
+
+FILES = {
+    "a.AT2": at2_text(wiggle()),
+    "a.EW": knet_text()[0],
+    "a.V2A": geonet_text(2),
+    "a.ASC": dyna_text(),
+    "a.V1c": cosmos_text(),
+    "a.V2": csmip_text(2),
+    "a.smc": smc_text(),
+    "b.V1": renadic_text(),
+    "a.s0a": usc_text(),
+    "c.V1": bhrc_text(),
+    "a.dat": csmnc_text(),
+    "a.txt": afad_text(),
+    "CANA1709.191": unam_text(),
+    "b.dat": cwa_text(),
+}
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_every_agency_s_header_gives_its_record_a_name_of_words(tmp_path, name):
+    """None of them is called by its file alone."""
+    (tmp_path / name).write_bytes(FILES[name].encode("latin-1"))
+    found = read_motions(tmp_path, confirmed=["*"], vertical=False)
+    assert found.motions
+    for motion in found.motions:
+        assert motion.origin.event
+        assert motion.origin.station
+        assert motion.label == ", ".join((motion.origin.event, motion.origin.station, motion.origin.direction))
+        assert motion.label.isprintable()
+        assert motion.named == f"{motion.label} ({motion.name})"
+
+
+@pytest.mark.parametrize("form", ["SAC", "MSEED"])
+def test_what_has_no_event_is_called_by_its_day(tmp_path, form):
+    import obspy
+
+    stream = obspy.read(io.BytesIO(traced(form)), format=form)
+    stream[0].stats.starttime = obspy.UTCDateTime(2019, 7, 6, 3, 19)
+    stream.write(str(tmp_path / f"x.{form.lower()}"), format=form)
+    (motion,) = read_motions(tmp_path, options=ReadOptions(unit="m/s2"), confirmed=["*"]).motions
+    assert motion.label == "2019-07-06, CI.LRL, HNE"
+
+
+def test_a_record_whose_header_tells_nothing_is_called_by_its_file(tmp_path):
+    """Neither CHAN24 alone, as its name in tables is, nor anything that nobody said."""
+    (tmp_path / "meloland").mkdir()
+    rows = "".join(f"{a:.5f}\n" for a in wiggle())
+    (tmp_path / "meloland" / "CHAN24_270.csv").write_text(f"# dt = 0.01 s\n# acceleration in g\n{rows}")
+    (motion,) = read_motions(tmp_path).motions
+    assert (motion.name, motion.label) == ("CHAN24_270", "meloland/CHAN24_270.csv")
+
+
+def test_a_manifest_s_station_stands_in_the_name_and_a_turned_pair_has_its_azimuth(tmp_path):
+    write_at2(tmp_path, "a000.AT2", wiggle(), title="EVENT, 1/17/1994, STATION, 000")
+    write_at2(tmp_path, "a090.AT2", wiggle(seed=2), title="EVENT, 1/17/1994, STATION, 090")
+    (tmp_path / "motions.toml").write_text(
+        "".join(f'[[record]]\nfile = "a{azimuth}.AT2"\nstation = "Rinaldi"\n' for azimuth in ("000", "090"))
+    )
+    assert [motion.label for motion in read_motions(tmp_path).motions] == [
+        "EVENT 1994, Rinaldi, 000",
+        "EVENT 1994, Rinaldi, 090",
+    ]
+    (turned,) = read_motions(tmp_path, azimuths=(30.0,)).motions
+    assert turned.label == "EVENT 1994, Rinaldi, 030"
+
+
+def test_the_records_that_come_with_it_are_called_by_event_station_and_direction():
+    found = read_motions(ROOT / "motions" / "near_fault", confirmed=["*"])
+    labels = {motion.name: motion.label for motion in found.motions}
+    assert labels["CHAN24"] == "Imperial Valley 1979, El Centro - Hwy 8/Meloland Overpass, 270"
+    assert labels["20161113_110259_WTMC_20.S62W"] == "5 km south-west of Waiau 2016, Te Mara Farm Waiau, S62W"
+
+
+def test_in_a_terminal_s_table_a_long_label_keeps_its_year_and_direction():
+    long = Origin("A very long name of an event somewhere else 1994", "A station of many words, indeed", "000")
+    assert long.short.label == "A very long name of an event… 1994, A station of many…, 000"
+    for fits in (Origin("Imperial Valley 1979", "Meloland", "270"), Origin(), Origin("", "Meloland", "")):
+        assert fits.short == fits
+
+
+@needs_records
+def test_real_records_have_names_of_words_where_their_headers_have_them():
+    from motion_files import RECORDS
+
+    named = {m.name: m.label for m in read_motions(RECORDS / "table1", confirmed=["*"]).motions}
+    assert named["RSN1063_NORTHR_RRS228"].startswith("Northridge-01 1994, Rinaldi Receiving Sta")
+    assert named["RSN825_CAPEMEND_CPM000"] == "Cape Mendocino 1992, Cape Mendocino, 000"
+
+
+def test_tables_keep_the_name_and_report_terminal_and_run_json_say_the_words(tmp_path, capsys):
+    records = tmp_path / "records"
+    write_at2(records, "CHAN24.AT2", wiggle(400, scale=0.5), title="IMPERIAL VALLEY, 10/15/79, MELOLAND, 270")
+    label = "Imperial Valley 1979, Meloland, 270"
+    path = write_study(tmp_path, FOLDER_STUDY + '[output]\nhistories = "none"\n')
+    assert main(["run", str(path), "--out", str(tmp_path / "out")]) == 0
+    assert f"{label} (CHAN24)" in capsys.readouterr().out
+    rows = list(csv.DictReader((tmp_path / "out" / "peaks.csv").read_text(encoding="utf-8").splitlines()))
+    assert {row["record"] for row in rows} == {"CHAN24"}
+    (record,) = json.loads((tmp_path / "out" / "run.json").read_text(encoding="utf-8"))["records"]
+    told = [record[key] for key in ("record", "label", "event", "station_name", "direction")]
+    assert told == ["CHAN24", label, "Imperial Valley 1979", "Meloland", "270"]
+    report = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert f"{label} (CHAN24), case" in report
+    assert f'<th scope="row">{label} <span class="muted path">CHAN24</span></th>' in report
+    assert ">CHAN24</th>" not in report
+
+
+def test_the_motions_command_lists_event_station_and_direction(tmp_path, capsys):
+    write_at2(tmp_path, "CHAN24.AT2", wiggle(), title="IMPERIAL VALLEY, 10/15/79, MELOLAND, 270")
+    assert main(["motions", str(tmp_path), "--csv", str(tmp_path / "out.csv")]) == 0
+    shown = capsys.readouterr().out
+    assert "Imperial Valley 1979" in shown
+    assert "Imperial Valley 1979, Meloland, 270 (CHAN24)" in shown
+    (row,) = csv.DictReader((tmp_path / "out.csv").read_text(encoding="utf-8").splitlines())
+    assert (row["record"], row["event"], row["station"], row["direction"]) == (
+        "CHAN24",
+        "Imperial Valley 1979",
+        "Meloland",
+        "270",
+    )

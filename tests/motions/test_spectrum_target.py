@@ -1,0 +1,235 @@
+"""Target spectra by the formulas of their codes, and the factors that fit a suite to them."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from studies import study_text, write_study
+
+from rockbatch.errors import InputError
+from rockbatch.motions import Motion, MotionSet
+from rockbatch.motions.design_spectra import EUROCODE, AsceSpectrum, EurocodeSpectrum, TableSpectrum, read_spectrum
+from rockbatch.motions.scaling import at_target
+from rockbatch.motions.spectrum import PERIODS, periods_over, spectral_acceleration
+from rockbatch.motions.spectrum_target import SpectrumTarget
+from rockbatch.study import load_study
+
+
+def shaking(seed: int, size: float = 1.0) -> Motion:
+    """Ten seconds of noise in a bell [m/s²]."""
+    t = np.arange(1001) * 0.01
+    draw = np.random.default_rng(seed)
+    waves = sum(draw.normal() * np.sin(2 * np.pi * f * t + draw.uniform(0, 6)) for f in np.arange(0.2, 8.0, 0.2))
+    return Motion(f"m{seed}", 0.01, size * np.exp(-(((t - 4) / 2) ** 2)) * waves)
+
+
+SUITE = [shaking(1), shaking(2, 3.0), shaking(3, 0.5)]
+TABLE = TableSpectrum((0.1, 0.5, 2.0, 6.0), (0.8, 0.9, 0.3, 0.05))
+
+
+# The shapes
+
+
+def test_the_eurocode_spectrum_meets_its_corner_values():
+    for by_ground in EUROCODE.values():
+        for shape in by_ground.values():
+            spectrum = EurocodeSpectrum(0.3, shape)
+            t = np.array([0.0, shape.tb_s, shape.tc_s, shape.td_s, 4.0, 4.01])
+            top = 0.3 * shape.soil_factor * 2.5
+            wanted = [top / 2.5, top, top, top * shape.tc_s / shape.td_s, top * shape.tc_s * shape.td_s / 16]
+            assert spectrum.at(t)[:5] == pytest.approx(wanted)
+            assert math.isnan(spectrum.at(t)[5])  # 3.2.2.2: up to 4 s
+
+
+def test_eurocode_damping_scales_all_but_the_ground_acceleration_and_has_a_floor():
+    shape = EUROCODE[1]["B"]
+    t = np.array([0.0, 0.3, 1.0])
+    for damping, eta in ((0.02, math.sqrt(10 / 7)), (0.05, 1.0), (0.10, math.sqrt(10 / 15)), (0.5, 0.55)):
+        ratio = EurocodeSpectrum(1.0, shape, damping).at(t) / EurocodeSpectrum(1.0, shape).at(t)
+        assert ratio == pytest.approx([1.0, eta, eta])
+
+
+def test_the_asce_spectrum_meets_its_corner_values():
+    spectrum = AsceSpectrum(sds_g=1.0, sd1_g=0.6, tl_s=8.0)
+    t = np.array([0.0, 0.06, 0.12, 0.6, 1.2, 8.0, 16.0])
+    assert spectrum.at(t) == pytest.approx([0.4, 0.7, 1.0, 1.0, 0.5, 0.075, 0.6 * 8 / 256])
+
+
+def test_a_table_is_straight_in_logarithms_and_ends_where_it_ends():
+    assert TABLE.at(np.array([0.5, 1.0, 6.0])) == pytest.approx([0.9, math.sqrt(0.9 * 0.3), 0.05])
+    assert np.isnan(TABLE.at(np.array([0.09, 6.1]))).all()
+
+
+@pytest.mark.parametrize(
+    "text", ["period_s,sa_g\n0.1,0.8\n2,0.3\n", "0.1 0.8\n\n# more\n2.0\t0.3", "T;Sa\n0.1;0.8\n2;0.3"]
+)
+def test_a_spectrum_is_read_from_columns_of_any_kind(tmp_path, text):
+    (tmp_path / "t.csv").write_text(text)
+    found = read_spectrum(tmp_path / "t.csv", 0.02)
+    assert (found.periods, found.sa_g, found.damping) == ((0.1, 2.0), (0.8, 0.3), 0.02)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("0.1, 0.8\n0.2, x\n", ":2: expected a period"),
+        ("0.1, 0.8\n0.2\n", ":2: expected a period"),
+        ("0.2, 0.8\n0.1, 0.7\n", "must grow"),
+        ("0.1, 0.8\n", "two periods at least"),
+        ("0.0, 0.8\n1, 1\n", "above 0"),
+    ],
+)
+def test_a_damaged_spectrum_is_told(tmp_path, text, said):
+    (tmp_path / "t.csv").write_text(text)
+    with pytest.raises(InputError, match=said):
+        read_spectrum(tmp_path / "t.csv")
+
+
+def test_periods_of_spectra_reach_as_far_as_the_target_asks():
+    assert periods_over(0.2, 4.0) == pytest.approx(PERIODS)
+    wide = periods_over(0.03, 9.0)
+    assert (wide[0] <= 0.03, wide[-1] >= 9.0, set(np.round(PERIODS, 9)) <= set(np.round(wide, 9))) == (True, True, True)
+
+
+# The factors
+
+
+def spectra(motions, target):
+    return np.array([spectral_acceleration(m.horizontal, m.dt, target.periods, 0.05) / 10.0 for m in motions])
+
+
+def test_each_record_exceeds_the_target_as_much_as_it_falls_below_it():
+    target = SpectrumTarget(TABLE, (0.3, 3.0), "each")
+    assert (target.periods[0], target.periods[-1], len(target.periods)) == (0.3, 3.0, 21)
+    scaled = at_target(MotionSet(SUITE), target, 10.0).motions
+    off = np.log(spectra(scaled, target) / TABLE.at(target.periods))
+    np.testing.assert_allclose(off.mean(axis=1), 0.0, atol=1e-12)
+    for motion, before in zip(scaled, SUITE, strict=True):
+        np.testing.assert_allclose(motion.horizontal, before.horizontal * motion.factor)
+        assert motion.notes == (f"scaled by {motion.factor:.4g} to the spectrum table, 5 % between 0.3 s and 3 s",)
+
+
+def test_components_of_a_station_share_their_factor():
+    pair = [replace(SUITE[0], station="S"), replace(SUITE[1], station="S"), SUITE[2]]
+    target = SpectrumTarget(TABLE, (0.3, 3.0), "each")
+    alone, together = target.factors_of(SUITE, 10.0), target.factors_of(pair, 10.0)
+    # least squares of both: the geometric mean of the pair meets the target
+    assert together == pytest.approx([math.sqrt(alone[0] * alone[1])] * 2 + [alone[2]])
+
+
+def test_pairs_make_one_spectrum_by_the_root_of_the_sum_of_squares():
+    pair = [replace(SUITE[0], station="S"), replace(SUITE[1], station="S"), SUITE[2]]
+    target = SpectrumTarget(TABLE, (0.3, 3.0), "each", "srss")
+    assert (target.share, replace(target, pairs="apart").share, replace(target, at_least=1.0).share) == (1.3, 0.9, 1.0)
+    scaled = at_target(MotionSet(pair), target, 10.0).motions
+    assert scaled[0].factor == scaled[1].factor != scaled[2].factor
+    found = spectra(scaled, target)
+    of_pair, alone = np.hypot(found[0], found[1]), found[2]
+    for one in (of_pair, alone):
+        assert np.log(one / TABLE.at(target.periods)).mean() == pytest.approx(0.0, abs=1e-12)
+    told = target.described(scaled, 10.0)
+    np.testing.assert_allclose(told["mean_sa_g"], (of_pair + alone) / 2, rtol=1e-4)
+    assert (told["pairs"], told["alone"], told["at_least"]) == ("srss", 1, 1.3)
+    raised = at_target(MotionSet(pair), replace(target, factors="both"), 10.0).motions
+    found = spectra(raised, target)
+    mean = (np.hypot(found[0], found[1]) + found[2]) / 2
+    assert (mean / TABLE.at(target.periods)).min() == pytest.approx(1.3)
+
+
+@pytest.mark.parametrize("share", [0.9, 1.3])
+def test_a_suite_gets_the_least_factor_by_which_its_mean_is_nowhere_below_the_share(share):
+    target = SpectrumTarget(TABLE, (0.3, 3.0), "suite", at_least=share)
+    scaled = at_target(MotionSet(SUITE), target, 10.0).motions
+    assert len({round(motion.factor, 12) for motion in scaled}) == 1
+    over = spectra(scaled, target).mean(axis=0) / TABLE.at(target.periods)
+    assert over.min() == pytest.approx(share)
+
+
+def test_both_fits_each_and_raises_all_where_the_mean_is_too_low_but_never_lowers_them():
+    each = SpectrumTarget(TABLE, (0.3, 3.0), "each").factors_of(SUITE, 10.0)
+    high = SpectrumTarget(TABLE, (0.3, 3.0), "both", at_least=1.2)
+    ratio = np.array(high.factors_of(SUITE, 10.0)) / each
+    assert ratio == pytest.approx([ratio[0]] * 3)
+    assert ratio[0] > 1.0
+    over = spectra(at_target(MotionSet(SUITE), high, 10.0).motions, high).mean(axis=0) / TABLE.at(high.periods)
+    assert over.min() == pytest.approx(1.2)
+    assert SpectrumTarget(TABLE, (0.3, 3.0), "both", at_least=0.01).factors_of(SUITE, 10.0) == pytest.approx(each)
+
+
+def test_none_leaves_records_as_they_are_and_says_how_they_compare():
+    target = SpectrumTarget(TABLE, (0.3, 3.0), "none")
+    assert at_target(MotionSet(SUITE), target, 10.0).motions == SUITE
+    told = target.described(SUITE, 10.0)
+    np.testing.assert_allclose(told["mean_sa_g"], spectra(SUITE, target).mean(axis=0), rtol=1e-4)
+    np.testing.assert_allclose(told["sa_g"], TABLE.at(target.periods), rtol=1e-4)
+
+
+def test_a_record_without_motion_is_unusable_and_does_not_spoil_the_others():
+    still = replace(SUITE[0], name="still", horizontal=np.zeros(1001))
+    for factors in ("each", "suite", "both"):
+        target = SpectrumTarget(TABLE, (0.3, 3.0), factors)
+        found = at_target(MotionSet([SUITE[0], still]), target, 10.0)
+        assert [motion.name for motion in found.motions] == ["m1"]
+        assert found.motions[0].factor == pytest.approx(target.factors_of(SUITE[:1], 10.0)[0])
+        assert "no motion that can be scaled to the spectrum table" in found.unusable[0].reason
+
+
+def test_a_range_beyond_the_target_is_refused():
+    with pytest.raises(InputError, match=r"defined from 0.1 s to 6 s"):
+        SpectrumTarget(TABLE, (0.05, 3.0))
+    with pytest.raises(InputError, match="lesser one first"):
+        SpectrumTarget(TABLE, (3.0, 0.3))
+
+
+# From the study file
+
+EUROCODE_KEYS = {"spectrum": "EN 1998-1", "type": 1, "ground": "B", "ag_g": 0.3, "period_range_s": [0.4, 4.0]}
+
+
+def study_with(folder, target):
+    return load_study(write_study(folder, study_text(motions={"target": target}))).motions.target
+
+
+def test_a_study_names_codes_tables_and_files(tmp_path):
+    found = study_with(tmp_path, EUROCODE_KEYS)
+    assert found == SpectrumTarget(
+        EurocodeSpectrum(0.3, EUROCODE[1]["B"], 0.05, "EN 1998-1 type 1, ground B"), (0.4, 4.0), "both", "apart"
+    )
+    annex = study_with(tmp_path, EUROCODE_KEYS | {"tc_s": 0.4, "damping": 0.1, "factors": "suite", "at_least": 1.3})
+    assert (annex.spectrum.shape, annex.spectrum.damping) == (EUROCODE[1]["B"]._replace(tc_s=0.4), 0.1)
+    assert (annex.factors, annex.at_least) == ("suite", 1.3)
+    asce = {"spectrum": "asce7", "sds_g": 1.0, "sd1_g": 0.6, "tl_s": 8.0, "period_range_s": [1, 12]}
+    assert study_with(tmp_path, asce).spectrum == AsceSpectrum(1.0, 0.6, 8.0)
+    pairs = {"spectrum": [[0.1, 1.0], [4.0, 0.2]], "period_range_s": [0.2, 2.0], "damping": 0.02}
+    assert study_with(tmp_path, pairs).spectrum == TableSpectrum((0.1, 4.0), (1.0, 0.2), 0.02, "spectrum")
+    (tmp_path / "site.csv").write_text("T [s], Sa [g]\n0.1, 1.0\n4.0, 0.2\n")
+    of_file = study_with(tmp_path, {"spectrum": "site.csv", "period_range_s": [0.2, 2.0]})
+    assert of_file.spectrum == TableSpectrum((0.1, 4.0), (1.0, 0.2), 0.05, "site.csv")
+
+
+@pytest.mark.parametrize(
+    ("target", "said"),
+    [
+        ({"spectrum": "EN 1998-1", "period_range_s": [0.4, 4]}, "ag_g is missing"),
+        ({"spectrum": "EN 1998-1", "period_range_s": [0.4, 4]}, "ground is missing"),
+        (EUROCODE_KEYS | {"period_range_s": [0.4, 5.0]}, "defined from 0 s to 4 s"),
+        (EUROCODE_KEYS | {"period_range_s": [4.0, 0.4]}, r"write for example period_range_s = \[0.4, 4.0\]"),
+        (EUROCODE_KEYS | {"ground": "F"}, 'ground = "F": expected one of'),
+        (EUROCODE_KEYS | {"type": 3}, "expected 1 or 2"),
+        (EUROCODE_KEYS | {"tb_s": 0.6}, "must grow in this order"),
+        (EUROCODE_KEYS | {"sds_g": 1.0}, 'sds_g = 1.0: is for spectrum = "ASCE 7"'),
+        (EUROCODE_KEYS | {"pga_g": 1.0}, "is for a target of one measure"),
+        (EUROCODE_KEYS | {"factors": "every"}, 'factors = "every": expected one of'),
+        (EUROCODE_KEYS | {"pairs": "rotd100"}, 'pairs = "rotd100": expected one of'),
+        ({"spectrum": "EN1998", "period_range_s": [0.4, 4]}, 'no such file.*did you mean "EN 1998-1"'),
+        ({"spectrum": "asce 7", "period_range_s": [0.4, 4]}, "sds_g is missing"),
+        ({"spectrum": [[1.0, 0.1], [0.5, 0.2]], "period_range_s": [0.6, 0.9]}, "periods must grow"),
+        ({"spectrum": [0.1, 0.2], "period_range_s": [0.6, 0.9]}, "or pairs of a period"),
+        ({"spectrum": [[1.0, 0.1], [1.5, 0.2]]}, "period_range_s is missing"),
+        ({"pga_g": 0.4, "ground": "B"}, "is for a target with spectrum"),
+    ],
+)
+def test_what_is_wrong_about_a_target_is_told(tmp_path, target, said):
+    with pytest.raises(InputError, match=said):
+        study_with(tmp_path, target)

@@ -1,0 +1,106 @@
+"""Components of one station in one earthquake are one record, wherever and however often its files lie."""
+
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import rockbatch as rb
+from rockbatch.motions import ReadOptions
+from rockbatch.motions.component import Component, Seat
+from rockbatch.motions.orientation import Orientation
+from rockbatch.motions.station_names import station_names
+
+RECORDS = Path(rb.__file__).parents[1] / "motions" / "near_fault"
+WTMC = RECORDS / "kaikoura2016_wtmc" / "20161113_110259_WTMC_20.V2A"
+NOISE = np.random.default_rng(1)
+
+
+def component(name: str, *, samples: int = 500, **more: object) -> Component:
+    return Component(name, 0.01, NOISE.normal(size=samples), Orientation("H", azimuth=0.0), **more)
+
+
+def text_record(path: Path, samples: np.ndarray) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    rows = [f"{0.01 * i:.2f} {value:.6f}" for i, value in enumerate(samples)]
+    path.write_text("time 000\n" + "\n".join(rows) + "\n")
+
+
+def counted(path: Path, **more: object) -> dict[str, int]:
+    """How many horizontal components each station has."""
+    found = [motion.station for motion in rb.read_motions(path, **more).motions]
+    return {station: found.count(station) for station in found}
+
+
+def test_the_packaged_records_are_five_stations_of_two_components():
+    assert counted(RECORDS) == {"NBLC": 2, "PRPC": 2, "1336": 2, "HSES": 2, "WTMC": 2}
+
+
+def test_every_angle_that_a_pair_is_turned_to_is_a_direction_of_its_station():
+    assert counted(WTMC.parent, azimuths=(0.0, 30.0, 60.0)) == {"WTMC": 3}
+
+
+def test_a_station_whose_files_are_used_twice_counts_once(tmp_path):
+    """A manifest may say that both are used; they are one record all the same."""
+    for name in ("a", "b"):
+        (tmp_path / name).mkdir()
+        shutil.copy(WTMC, tmp_path / name)
+    assert counted(tmp_path) == {"WTMC": 2}
+    for name in ("a", "b"):
+        (tmp_path / name / "motions.toml").write_text(f'[[record]]\nfile = "{WTMC.name}"\nuse = true\n')
+    assert counted(tmp_path) == {"WTMC": 4}
+
+
+def test_a_scaled_copy_is_of_the_station_that_it_copies(tmp_path):
+    """Nothing in the file says so, and its name neither; its samples do, as far as they are printed."""
+    wave = NOISE.normal(size=400)
+    for name, samples in (("quake/one", wave), ("twice/half as much again", -1.5 * wave), ("else/other", wave[::-1])):
+        text_record(tmp_path / f"{name}.txt", samples)
+    stations = [motion.station for motion in rb.read_motions(tmp_path, options=ReadOptions(unit="m/s2")).motions]
+    assert len(stations) == 3
+    assert len(set(stations)) == 2
+
+
+def test_two_formats_of_one_recording_are_one_record_by_their_headers():
+    """Corrected and uncorrected files name stations differently, and lie in folders of their own."""
+    v1 = component("v1", station="LGPC, uncorrected", folder="/v1", seat=Seat("LGPC"), event="1989", samples=480)
+    v2 = component("v2", station="LGPC, corrected", folder="/v2", seat=Seat("lgpc", "CI"), event="1989")
+    sac = component("sac", station="CI.LGPC.00", folder="/sac", seat=Seat("LGPC", "CI"), start=5.0)
+    later = component("later", station="CI.LGPC.00", folder="/sac", seat=Seat("LGPC", "CI"), start=500.0)
+    names = station_names([[v1], [v2], [sac], [later]])
+    assert names[0] == names[1]
+    assert len(set(names)) == 3, "without a time in common nothing says that they are of one event"
+
+
+@pytest.mark.parametrize(
+    ("more", "stations"),
+    [
+        ([{"site": "RSN825", "folder": "/a"}, {"site": "RSN825", "folder": "/b"}], 1),
+        ([{"site": "RSN825"}, {"site": "RSN828"}], 2),
+        (
+            [{"site": "LGPC", "folder": "/a"}, {"site": "LGPC", "folder": "/b"}],
+            2,
+        ),  # by name alone: two earthquakes, maybe
+        ([{"seat": Seat("LGPC"), "event": "A"}, {"seat": Seat("LGPC"), "event": "B"}], 2),
+        ([{"seat": Seat("7", "CI"), "event": "A"}, {"seat": Seat("7", "NC"), "event": "A"}], 2),
+        # Parts of a long recording, and sensors of a structure, shake in one earthquake
+        ([{"station": "S, 1994", "folder": "/a"}, {"station": "S, 1994", "folder": "/a"}], 1),
+        ([{"seat": Seat("S", location="00"), "event": "A"}, {"seat": Seat("S", location="10"), "event": "A"}], 1),
+    ],
+)
+def test_what_headers_and_names_say_decides(more, stations):
+    found = station_names([[component(f"c{i}", **each)] for i, each in enumerate(more)])
+    assert len(set(found)) == stations
+
+
+def test_several_records_of_one_station_are_told_apart_by_event_or_folder():
+    kobe, niigata = ([component("c", seat=Seat("TAK"), event=event)] for event in ("1995", "2004"))
+    assert station_names([kobe, niigata]) == ["TAK 1995", "TAK 2004"]
+    one, two = ([component("c", site="LGP", folder=f"/{folder}")] for folder in ("loma", "other"))
+    assert station_names([one, two]) == ["LGP loma", "LGP other"]
+    assert station_names([[component("x")], [component("x")]]) == ["x", "x (2)"]
+
+
+def test_a_motion_that_is_made_in_python_is_a_record_of_its_own():
+    assert rb.pulse("sine", name="p", amplitude=1.0, period=1.0, dt=0.01, duration=2.0).of_station == "p"

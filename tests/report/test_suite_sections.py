@@ -1,0 +1,184 @@
+"""What the report says of a suite: its distribution, target spectrum and pulses, intensity measures and code estimates."""
+
+import json
+import math
+
+import pytest
+from report_page import Page
+from report_samples import case_entry, write_results
+from studies import COSINE, SINE, study_text, write_study
+
+import rockbatch as rb
+from rockbatch.pier import Pier, YieldingBase
+from rockbatch.report import write_report
+from rockbatch.report.contents import read
+from rockbatch.report.sections import distribution, estimate, intensity, target
+
+PULSES = tuple(
+    {**shape, "name": f"{shape['shape']} {size}", "amplitude_g": size}
+    for shape in (SINE, COSINE)
+    for size in (0.15, 0.3, 0.6)
+)
+
+
+@pytest.fixture(scope="module")
+def asked(tmp_path_factory):
+    """The folder of a study that asks for all of it."""
+    folder = tmp_path_factory.mktemp("suite")
+    text = study_text(
+        pier={"alpha": [0.2, 0.3], "p": 1.0},
+        motions={"target": {"spectrum": [[0.1, 1.0], [2.0, 0.4]], "period_range_s": [0.2, 1.5], "factors": "none"}},
+        pulses=PULSES,
+        output={"intensity": True, "estimate": True, "histories": "none"},
+    )
+    rb.run(write_study(folder, text), out=folder / "out")
+    return folder / "out"
+
+
+def page_of(folder, module):
+    return Page(module.section(read(folder, ())).content)
+
+
+# The distribution
+
+
+def test_every_report_says_that_one_record_predicts_nothing_and_shows_the_suite(tmp_path):
+    write_results(tmp_path, changes={("CPM000", "2"): {"status": "overturned"}, ("SYL360", "2"): {"status": "flight"}})
+    found = distribution.section(read(tmp_path, ()))
+    page = Page(found.content)
+    assert "predicts no earthquake" in page.text
+    assert "Bachmann" in page.text
+    assert "33 % overturned, or ended by flight" in found.content
+    assert found.content.count("<figure") == 2  # the whole, and one panel
+    assert found.content.count('data-name="') == 5
+
+
+def test_too_few_motions_have_no_distribution(tmp_path):
+    write_results(tmp_path, records=[("A", 0.3), ("B", 0.4)])
+    page = page_of(tmp_path, distribution)
+    assert "too few records" in page.text
+    assert "predicts no earthquake" in page.text
+
+
+def test_more_groups_than_panels_are_told(tmp_path):
+    write_results(tmp_path, scales=tuple(0.1 * i for i in range(1, 15)))
+    found = distribution.section(read(tmp_path, ()))
+    assert found.content.count("<figcaption>motions scaled") == 12
+    assert "The first 12 of 14 groups are shown." in Page(found.content).text
+
+
+def test_more_foundations_than_can_be_told_apart_are_not_drawn(tmp_path):
+    pier = Pier(alpha=0.13, p=0.38)
+    etas = [2.0 + 0.1 * i for i in range(25)]
+    cases = [case_entry("soil", {"eta": eta}, pier, YieldingBase(beta=40.0, eta=eta)) for eta in etas]
+    write_results(tmp_path, cases=cases, varied=("eta",))
+    content = distribution.section(read(tmp_path, ())).content
+    assert content.count('data-name="') == 21
+    assert "The first 21 of 25 foundations are shown." in content
+
+
+# Intensity measures
+
+
+def test_intensity_measures_are_shown_by_case_with_the_best_of_each(asked):
+    shown = page_of(asked, intensity)
+    order = rb.open_results(asked).intensity_order
+    assert "they rank above all others" in shown.text
+    rows = [row for row in shown.tables[""] if row[0] != "case"]
+    ranks, lines = rows[:4], rows[4:]
+    for row, (_, same) in zip(ranks, order.groupby(["case", "alpha"], sort=False), strict=True):
+        one = same.set_index("measure")
+        assert row[-len(one) :] == [f"{value:.2f}" for value in one["rank_correlation"]]
+        assert row[1] == "6"
+        assert intensity._symbol(one["rank_correlation"].idxmax()) in row
+    for row, (_, same) in zip(lines, order.groupby(["case", "alpha"], sort=False), strict=True):
+        one = same.set_index("measure")
+        assert row[-len(one) :] == ["—" if value != value else f"{value:.2f}" for value in one["dispersion"]]
+
+
+# Code estimates
+
+
+def test_estimates_are_labelled_as_a_comparison_that_need_not_converge(asked):
+    page = page_of(asked, estimate)
+    for words in (
+        "A comparison, not a result",
+        "need not converge",
+        "could not be checked",
+        "g tan α",
+        "FEMA 356 (ζ =",
+    ):
+        assert words in page.text
+    table = rb.open_results(asked).estimate
+    outcomes = table["priestley_outcome"].value_counts()
+    assert f"below the threshold {outcomes['stays']}" in page.text
+    found = table[table["priestley_outcome"] == "rocks"]["priestley_theta_over_alpha"]
+    assert all(f"{value:.4f}" in page.text for value in found)
+
+
+def test_of_many_foundations_the_least_and_the_largest_rotation_stand_beside_the_estimates(tmp_path):
+    pads = {"name": "pads", "base": "elastic", "beta": [20 + i for i in range(9)], "epsilon": 0.05}
+    output = {"estimate": True, "histories": "none"}
+    text = study_text(pulses=PULSES[:3], cases=(pads,), output=output, numerics={"substeps": 2})
+    table = rb.run(write_study(tmp_path, text), out=tmp_path / "out")
+    rows = page_of(tmp_path / "out", estimate).tables[""]
+    assert rows[1][-2:] == ["least", "largest"]
+    for row in rows[2:]:
+        theta = table[table["record"] == row[0]]["theta_max_over_alpha"]
+        assert row[-2:] == [f"{theta.min():.4f}", f"{theta.max():.4f}"]
+    assert len(rows) == 2 + 3
+
+
+# The target spectrum
+
+
+def test_the_target_is_drawn_with_every_record_and_the_mean_over_it(asked):
+    section = target.section(read(asked, ()))
+    page = Page(section.content)
+    for name in ("target", "mean of the records", *(pulse["name"] for pulse in PULSES)):
+        assert f'data-name="{name}"' in section.content
+    told = json.loads((asked / "run.json").read_text(encoding="utf-8"))["target"]
+    over = [mean / aim for mean, aim in zip(told["mean_sa_g"], told["sa_g"], strict=True)]
+    assert f"is {min(over):.2f} of the target at least" in page.text
+    assert f"{max(over):.2f} at most" in page.text
+    assert "below the 0.9 that is asked for" in page.text
+    assert "nothing is scaled to the target" in page.text
+    assert "no conformity is claimed" in page.text
+
+
+def test_pulses_and_distances_are_counted(asked, tmp_path):
+    info = json.loads((asked / "run.json").read_text(encoding="utf-8"))
+    kinds = [record["pulse"] for record in info["records"]]
+    page = page_of(asked, target)
+    assert f"{kinds.count('yes')} of 6 horizontal components" in page.text
+    assert "No distance from the source is known" in page.text
+    for record, distance in zip(info["records"], (5.0, 15.0, 40.0, None, None, None), strict=True):
+        record["distance_km"] = distance
+    (tmp_path / "run.json").write_text(json.dumps(info), encoding="utf-8")
+    (tmp_path / "peaks.csv").write_bytes((asked / "peaks.csv").read_bytes())
+    text = page_of(tmp_path, target).text
+    assert "Of 3 components with a known distance 2 were recorded within 15 km; of the other 3 it is not known" in text
+
+
+def test_stations_without_a_pair_are_told_where_pairs_are_asked_for(asked, tmp_path):
+    info = json.loads((asked / "run.json").read_text(encoding="utf-8"))
+    info["target"] |= {"pairs": "srss", "alone": 6}
+    (tmp_path / "run.json").write_text(json.dumps(info), encoding="utf-8")
+    (tmp_path / "peaks.csv").write_bytes((asked / "peaks.csv").read_bytes())
+    text = page_of(tmp_path, target).text
+    assert "6 stations without two components" in text
+    assert "the square root of the sum of its components' squares" in text
+    assert "without two components" not in page_of(asked, target).text
+
+
+def test_the_page_of_it_all_is_whole_and_spectra_are_drawn_once(asked):
+    text = write_report(asked).read_text(encoding="utf-8")
+    assert text.count('class="plot spectra"') == 1
+    headings = Page(text).headings
+    names = (
+        "The suite in each case", "One record and the suite", "Intensity measures", "Code estimates, for comparison",
+        "What was studied", "The suite against its target spectrum", "Ground motions",
+    )  # fmt: skip
+    places = [headings.index(name) for name in names]
+    assert places == sorted(places)
+    assert math.isfinite(rb.open_results(asked).intensity["cav_m_s"].sum())

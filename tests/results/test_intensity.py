@@ -1,0 +1,213 @@
+"""Intensity measures and code estimates beside the peaks: their values, who is asked, and what overturned runs count for."""
+
+import math
+
+import numpy as np
+import pytest
+import scipy.stats
+from studies import COSINE, SINE, study_text, write_study
+
+import rockbatch as rb
+from rockbatch.errors import InputError
+from rockbatch.motions import measures
+from rockbatch.motions.spectrum import spectral_acceleration
+from rockbatch.pier import Pier
+from rockbatch.results.estimate import DAMPING, Estimate, estimate, rocking_period
+from rockbatch.results.intensity import order_of
+from rockbatch.results.suite_statistics import distribution
+
+PULSES = tuple(
+    {**shape, "name": f"{shape['shape']} {size}", "amplitude_g": size}
+    for shape in (SINE, COSINE)
+    for size in (0.15, 0.3, 0.6)
+)
+ASKED = {"intensity": True, "estimate": True, "sa_periods_s": [0.5, 1.25], "histories": "none"}
+
+
+def written(folder, output=ASKED, **more):
+    text = study_text(pier={"alpha": [0.2, 0.3], "p": 1.0}, output=output, **{"pulses": PULSES, **more})
+    rb.run(write_study(folder, text), out=folder / "out")
+    return rb.open_results(folder / "out")
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory):
+    return written(tmp_path_factory.mktemp("intensity"), motions={"polarity": ["+", "-"], "scale": [1.0, 1.5]})
+
+
+def test_every_simulated_run_has_its_measures_in_the_order_of_the_peaks(results):
+    table = results.intensity
+    peaks = results.peaks[results.peaks["mirror_of"] == ""].reset_index(drop=True)
+    assert len(table) == 6 * 2 * 4
+    for name in ("record", "case", "scale", "alpha", "status", "theta_max_over_alpha"):
+        assert (table[name] == peaks[name]).all() or np.allclose(table[name], peaks[name], equal_nan=True)
+
+
+def test_measures_are_those_of_the_scaled_motion_and_the_runs_own_pier(results):
+    for row in results.intensity.to_dict("records"):
+        pulse = next(pulse for pulse in PULSES if pulse["name"] == row["record"])
+        motion = rb.pulse(
+            pulse["shape"], name="p", amplitude=pulse["amplitude_g"] * 9.81 * row["scale"], period=pulse["period_s"],
+            dt=pulse["dt_s"], duration=pulse["duration_s"],
+        )  # fmt: skip
+        a, uplift = motion.horizontal, 9.81 * math.tan(row["alpha"])
+        assert row["pga_over_g_tan_alpha"] == pytest.approx(motion.pga / uplift)
+        assert row["p_pgv_over_g_tan_alpha"] == pytest.approx(1.0 * measures.pgv(a, motion.dt) / uplift)
+        assert row["bracketed_s"] == pytest.approx(measures.bracketed_duration(a, motion.dt, uplift))
+        assert row["uniform_s"] == pytest.approx(measures.uniform_duration(a, motion.dt, uplift))
+        assert row["cav_m_s"] == pytest.approx(measures.cumulative_absolute_velocity(a, motion.dt))
+        sa = spectral_acceleration(a, motion.dt, [0.5, 1.25]) / 9.81
+        assert [row["sa_0.5s_g"], row["sa_1.25s_g"]] == pytest.approx(sa)
+
+
+def test_order_has_a_row_for_each_case_scale_and_measure(results):
+    order = results.intensity_order
+    assert len(order) == 4 * 2 * 7
+    one = order[(order["case"] == "rigid") & (order["alpha"] == 0.3) & (order["scale"] == 1.0)]
+    assert set(one["runs"]) == {6}
+    runs = results.intensity.query("case == 'rigid' and alpha == 0.3 and scale == 1.0")
+    peak = runs["theta_max_over_alpha"].where(runs["status"] == "ok", math.inf)
+    for row in one.to_dict("records"):
+        wanted = scipy.stats.spearmanr(runs[row["measure"]], peak.rank()).statistic
+        assert row["rank_correlation"] == pytest.approx(wanted)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_rank_correlation_and_line_are_those_of_scipy_ties_and_all(seed):
+    draw = np.random.default_rng(seed)
+    measure = np.round(draw.lognormal(size=30), 1)
+    theta = np.round(measure * draw.lognormal(0, 0.5, size=30), 1) + 0.1
+    found = order_of(measure, theta, ["ok"] * 30)
+    assert found.rank_correlation == pytest.approx(scipy.stats.spearmanr(measure, theta).statistic)
+    moved = measure > 0
+    line = scipy.stats.linregress(np.log(measure[moved]), np.log(theta[moved]))
+    residual = np.log(theta[moved]) - line.intercept - line.slope * np.log(measure[moved])
+    assert found.slope == pytest.approx(line.slope)
+    assert found.dispersion == pytest.approx(math.sqrt((residual**2).sum() / (moved.sum() - 2)))
+
+
+def test_overturned_runs_rank_above_all_and_are_left_out_of_the_line():
+    measure = np.array([1.0, 2.0, 3.0, 4.0, 5.0, 6.0])
+    theta = np.array([0.1, 0.2, 0.3, 0.05, 0.01, np.nan])
+    status = ["ok", "ok", "ok", "overturned", "flight", "failed"]
+    found = order_of(measure, theta, status)
+    assert (found.runs, found.without_peak, found.fitted) == (5, 2, 3)
+    assert found.rank_correlation == pytest.approx(scipy.stats.spearmanr([1, 2, 3, 4, 5], [1, 2, 3, 4, 4]).statistic)
+    assert (found.slope, found.dispersion) == (pytest.approx(1.0), pytest.approx(0.0, abs=1e-7))
+
+
+def test_runs_that_stayed_rank_lowest_and_have_no_logarithm():
+    found = order_of(np.array([1.0, 2.0, 3.0]), np.array([0.0, 0.0, 0.1]), ["ok"] * 3)
+    assert found.rank_correlation == pytest.approx(scipy.stats.spearmanr([1, 2, 3], [1, 1, 2]).statistic)
+    assert found.fitted == 1
+    assert math.isnan(found.dispersion)
+    assert math.isnan(order_of(np.ones(4), np.arange(4.0), ["ok"] * 4).rank_correlation)
+    assert math.isnan(order_of(np.arange(2.0), np.arange(2.0), ["ok"] * 2).rank_correlation)
+
+
+def test_nobody_gets_what_nobody_asked_for_and_tables_of_another_time_go(tmp_path):
+    results = written(tmp_path)
+    assert {record["pulse"] for record in results.info["records"]} <= {"yes", "no", "ambiguous", "late", "weak"}
+    plain = written(tmp_path, {"histories": "none"})
+    assert not any((tmp_path / "out" / name).exists() for name in ("intensity.csv", "estimate.csv"))
+    assert "pulse" not in plain.info["records"][0]
+    assert "target" not in plain.info
+    with pytest.raises(InputError, match=r"write \[output\] intensity = true"):
+        plain.intensity  # noqa: B018
+    with pytest.raises(InputError, match=r"write \[output\] estimate = true"):
+        plain.estimate  # noqa: B018
+
+
+def test_periods_without_the_table_are_refused(tmp_path):
+    with pytest.raises(InputError, match="sa_periods_s: is for intensity = true"):
+        rb.load_study(write_study(tmp_path, study_text(output={"sa_periods_s": [1.0]})))
+
+
+# What design practice would estimate
+
+
+def test_the_period_of_free_rocking_is_housners():
+    """Four quarters of θ̈ = p²(θ − α) from rest at φα: 1 − (1 − φ) cosh pt = 0."""
+    for share in (0.01, 0.3, 0.9):
+        quarter = float(rocking_period(share, 0.5)) / 4
+        assert (1 - share) * math.cosh(0.5 * quarter) == pytest.approx(1.0)
+
+
+def test_the_damping_of_priestley_is_that_of_the_decay_of_free_rocking():
+    """After n impacts φ_n = 1 − √(1 − rⁿ (1 − (1 − φ0)²)) (Housner 1963); a cycle has two: ζ = ln(φ0/φ_n)/(π n)."""
+    for alpha in (0.1, 0.15, 0.2):
+        pier = Pier(alpha=alpha, p=1.0)
+        r = pier.restitution**2
+        for start in (0.1, 0.15, 0.2):
+            left = 1 - math.sqrt(1 - r**4 * (1 - (1 - start) ** 2))
+            # 0.34 is a fit; it grows with the amplitude, to 0.46 at φ0 = 0.5
+            assert DAMPING["priestley"](pier) == pytest.approx(math.log(start / left) / (math.pi * 4), rel=0.05)
+        assert DAMPING["fema_356"](pier) == pytest.approx(0.4 * (1 - math.sqrt(r)))
+
+
+def test_the_iteration_ends_at_a_fixed_point_or_says_why_not():
+    assert estimate(lambda share: 0.1 + 0.5 * share) == Estimate(pytest.approx(0.2, rel=1e-3), "rocks")
+    assert estimate(lambda share: 0.1 * share) == Estimate(0.0, "stays")
+    assert estimate(lambda share: 2.0 * share).outcome == "overturns"
+    turning = estimate(lambda share: 0.7 - share)  # goes to and fro between START and 0.2
+    assert (turning.outcome, math.isnan(turning.theta_over_alpha)) == ("no convergence", True)
+
+
+def test_an_estimate_stays_below_the_uplift_threshold_and_is_a_fixed_point_of_the_spectrum_above(results):
+    table = results.estimate
+    assert len(table) == len(results.intensity)
+    low = table["pga_over_g_tan_alpha"] <= 1
+    assert low.any()
+    assert set(table["priestley_outcome"][low]) == set(table["fema_356_outcome"][low]) == {"stays"}
+    assert set(table["theta_max_over_alpha"][low & (table["case"] == "rigid")]) == {0.0}
+    found = table[(table["priestley_outcome"] == "rocks")].drop_duplicates(["record", "alpha", "scale"])
+    assert len(found) > 0
+    for row in found.to_dict("records"):
+        pulse = next(pulse for pulse in PULSES if pulse["name"] == row["record"])
+        a = rb.pulse(
+            pulse["shape"], name="p", amplitude=pulse["amplitude_g"] * 9.81 * row["scale"], period=pulse["period_s"],
+            dt=pulse["dt_s"], duration=pulse["duration_s"],
+        ).horizontal  # fmt: skip
+        pier = Pier(alpha=row["alpha"], p=1.0)
+        share = row["priestley_theta_over_alpha"]
+        period = float(rocking_period(share, pier.p))
+        moved = (
+            spectral_acceleration(a, pulse["dt_s"], [period], row["priestley_damping"])[0] * (period / 2 / math.pi) ** 2
+        )
+        # the spectrum is tabulated at 120 periods and straight between them
+        assert moved / pier.size / pier.alpha == pytest.approx(share, rel=5e-3)
+
+
+# The distribution
+
+
+def test_a_distribution_counts_overturned_runs_as_larger_than_any():
+    values = np.array([0.3, -0.1, 0.2, 0.9, 0.5, np.nan])
+    theta, share = distribution(values, ["ok", "ok", "ok", "overturned", "flight", "failed"])
+    assert theta.tolist() == [0.1, 0.2, 0.3]
+    assert share.tolist() == pytest.approx([0.2, 0.4, 0.6])
+    by_station = distribution(
+        values, ["ok", "ok", "ok", "overturned", "flight", "failed"], ["A", "A", "B", "C", "B", "C"]
+    )
+    assert [each.tolist() for each in by_station] == [[0.3], [pytest.approx(1 / 3)]]
+    theta, share = distribution(np.array([0.4]), ["overturned"])
+    assert (len(theta), len(share)) == (0, 0)
+
+
+def test_the_distribution_is_drawn_with_a_curve_for_each_case_pier_and_scale(results):
+    (axes,) = results.plot_cdf().axes
+    assert len([line for line in axes.lines if line.get_marker() == "None"]) == 2 * 2 * 2
+    assert axes.lines[0].get_label() == "rigid, alpha = 0.2, scale = 1"
+    first = results.peaks.query("case == 'rigid' and alpha == 0.2 and scale == 1.0 and mirror_of == ''")
+    stood = first["status"] == "ok"
+    assert axes.lines[0].get_xdata()[1:-1].tolist() == sorted(first["theta_max_over_alpha"][stood])
+    assert axes.lines[0].get_ydata()[-1] == pytest.approx(stood.mean())
+
+
+def test_a_suite_that_all_overturned_has_a_picture_too(tmp_path):
+    strong = {**SINE, "amplitude_g": 9.0, "period_s": 3.0}
+    found = written(tmp_path, {"histories": "none"}, pulses=(strong,), cases=({"name": "rigid", "base": "rigid"},))
+    assert set(found.peaks["status"]) == {"overturned"}
+    (axes,) = found.plot_cdf().axes
+    assert axes.get_xlim() == (0.0, 1.0)
+    assert [line.get_marker() for line in axes.lines] == ["None", "x"] * 2

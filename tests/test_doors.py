@@ -1,0 +1,50 @@
+"""One door for the files of a results folder, and one for the terminal: nobody goes round them."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from rockbatch.analysis.folder import AnalysisFolder
+from rockbatch.errors import InputError
+from rockbatch.study import load_study
+
+TOP = Path(__file__).parents[1] / "rockbatch"
+OF_FOLDERS = ("analysis", "batch", "checks", "report", "results")
+ROUND = re.compile(
+    r"(?<!temporary)\.open\(|(?<![.\w])open\(|(?<!joinpath\(name\))\.read_text\(|\.read_bytes\(|\.write_text\(|\.touch\("
+)
+
+
+def lines_of(*packages):
+    """Lines of code, with their places."""
+    for package in packages:
+        for path in sorted((TOP / package).rglob("*.py")):
+            for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+                yield f"{path.relative_to(TOP)}:{number}", line
+
+
+def test_files_of_a_results_folder_are_opened_by_one_door():
+    """`rockbatch.files`, or h5py given what that has opened; of its own sources the program reads the bytes."""
+    found = [place for place, line in lines_of(*OF_FOLDERS) if ROUND.search(line)]
+    assert [place for place in found if not place.startswith("batch/digests.py")] == []
+
+
+def test_commands_print_by_one_door():
+    found = [place for place, line in lines_of("commands") if re.search(r"\bprint\(|sys\.std\w+\.write", line)]
+    assert {place.partition(":")[0] for place in found} <= {"commands/streams.py"}
+
+
+def test_a_table_of_an_analysis_that_was_edited_is_told_and_left_alone(tmp_path):
+    study = load_study(TOP.parent / "configs" / "fig5.toml")
+    before = AnalysisFolder(tmp_path, "fragility", study)
+    (tmp_path / "runs.csv").write_text("a\n1\n")
+    before.keep("runs.csv", {"cases": "5f1c"})
+    assert AnalysisFolder(tmp_path, "fragility", study).has("runs.csv", {"cases": "5f1c"})
+    assert not AnalysisFolder(tmp_path, "fragility", study).has("runs.csv", {"cases": "other"})
+    (tmp_path / "runs.csv").write_text("a\n2\n")
+    assert not AnalysisFolder(tmp_path, "fragility", study, fresh=True).has("runs.csv", {"cases": "5f1c"})
+    with pytest.raises(
+        InputError, match=r"runs\.csv: not as it was written; nothing is run: keep it as a copy elsewhere"
+    ):
+        AnalysisFolder(tmp_path, "fragility", study).has("runs.csv", {"cases": "5f1c"})

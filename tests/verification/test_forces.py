@@ -1,0 +1,386 @@
+"""What designers size, against closed forms, momentum, and accelerations by differences of positions; no code of the core."""
+
+import math
+from dataclasses import asdict, replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+import rockbatch as rb
+from rockbatch.batch.groups import outcomes_of
+from rockbatch.batch.plan import PlannedRun
+from rockbatch.study import Case, Numerics, Output
+
+G = 9.81
+PIER = rb.Pier(0.2, 1.0)
+FINE = 2e-4
+"""Sampling of the histories that are differentiated [s]: at ω_v = 50 rad/s a second difference is wrong by 8·10⁻⁶ of it."""
+
+
+def shaken(dt=0.01, amplitude=1.0):
+    """Eight seconds with a vertical component, linear between samples of 0.01 s; ``dt`` [s] divides them."""
+    t = np.arange(0.0, 8.005, 0.01)
+    fades = np.sin(np.pi * np.clip(t / 4, 0, 1)) ** 2
+    components = amplitude * G * np.sin(2 * np.pi * t) * fades, 2.0 * np.sin(5 * t) * fades
+    finer = np.arange(800 * round(0.01 / dt) + 1) * dt
+    return rb.Motion("smooth", dt, *(np.interp(finer, t, each) for each in components))
+
+
+BASES = {
+    "rigid": rb.RigidBase(),
+    "elastic": rb.ElasticBase(50, 0.1, flight="guided"),
+    "bouc-wen": rb.YieldingBase(50, 0.1, flight="guided", eta=2.2),
+    "epp, finite": rb.YieldingBase(50, 0.1, flight="guided", eta=2.2, spring="epp", kinematics="finite"),
+    "elastic, finite": rb.ElasticBase(50, 0.3, flight="guided", kinematics="finite"),
+}
+EVERY_BASE = pytest.mark.parametrize("name", BASES)
+
+
+def outcome_of(pier, base, motion, *, forces=True, **numerics):
+    run = PlannedRun(motion, "+", 1.0, Case("case", pier, base, {}))
+    (outcome,) = outcomes_of([run], Numerics(**numerics), Output(both_laws=False, forces=forces))
+    return outcome
+
+
+def sized(pier, base, motion, **numerics):
+    return outcome_of(pier, base, motion, **numerics).forces
+
+
+@pytest.fixture(scope="module")
+def responses():
+    """A fine history on each base, with its forces; steps between the samples keep the integrator's error out of it."""
+    motion = shaken(FINE)
+    return {name: rb.simulate(PIER, base, motion, substeps=1, forces=True) for name, base in BASES.items()}
+
+
+# Positions and velocities of the centre of mass, and of the deck, as one would draw them
+
+
+def centre(response):
+    """Where the centre of mass is over the ground [m], to the right and up; not of finite springs to the right."""
+    pier, theta = response.pier, response.theta
+    if isinstance(response.base, rb.RigidBase):
+        leans = pier.alpha - np.abs(theta)
+        along = np.sign(theta) * pier.size * (math.sin(pier.alpha) - np.sin(leans))
+        return along, pier.size * np.cos(leans)
+    return pier.height * theta, response.v
+
+
+def velocity(response):
+    """Of a block's centre of mass [m/s], to the right and up."""
+    pier, theta, omega = response.pier, response.theta, response.omega
+    leans = np.sign(theta) * (pier.alpha - np.abs(theta))
+    return pier.size * np.cos(leans) * omega, pier.size * np.sin(leans) * omega
+
+
+def smooth_rows(response):
+    """Rows at a sample with samples beside them and no event between."""
+    t, events = response.t, response.events["t"].to_numpy()
+    even = np.zeros(len(t), dtype=bool)
+    even[1:-1] = (np.abs(t[1:-1] - t[:-2] - FINE) < 1e-9) & (np.abs(t[2:] - t[1:-1] - FINE) < 1e-9)
+    for event in events:
+        even &= np.abs(t - event) > 1.5 * FINE
+    return np.flatnonzero(even)
+
+
+def second_difference(x, rows):
+    return (x[rows - 1] - 2.0 * x[rows] + x[rows + 1]) / FINE**2
+
+
+def close(found, expected, share=1e-3):
+    """Within ``share`` of the greatest; two in a thousand rows may lie beside a kink of a spring's law."""
+    assert len(found) > 10_000
+    off = np.abs(found - expected) > share * np.abs(found).max()
+    return np.count_nonzero(off) <= 2e-3 * len(found)
+
+
+# Closed forms
+
+
+@pytest.mark.parametrize(("alpha", "demand"), [(0.2, 0.381245667), (0.13, 0.331249756)])
+def test_friction_demand_under_a_step_of_1_g_is_that_at_its_start(alpha, demand):
+    """V/N = (1 − ¾ cos α (cos α − sin α))/(1 + ¾ sin α (cos α − sin α)), and less from there to θ = α, where it overturns."""
+    motion = rb.Motion("step", 0.005, np.full(3000, G))
+    outcome = outcome_of(rb.Pier(alpha, 1.0), rb.RigidBase(), motion)
+    assert outcome.status == "overturned"
+    assert outcome.forces.friction_demand == pytest.approx(demand, abs=1e-9)
+    c, s = math.cos(alpha), math.sin(alpha)
+    assert demand == pytest.approx((1 - 0.75 * c * (c - s)) / (1 + 0.75 * s * (c - s)), abs=1e-9)
+
+
+@pytest.mark.parametrize("alpha", [0.2, 0.13])
+def test_friction_demand_at_the_onset_of_uplift_is_tan_alpha(alpha):
+    response = rb.simulate(rb.Pier(alpha, 1.0), rb.RigidBase(), shaken(), forces=True)
+    lifts = response.events.loc[response.events["kind"] == "lift-off", "after"]
+    assert len(lifts) >= 1
+    assert response.forces["friction"].to_numpy()[lifts] == pytest.approx(math.tan(alpha), rel=1e-12)
+    forces = sized(rb.Pier(alpha, 1.0), rb.RigidBase(), replace(shaken(), vertical=None))
+    assert forces.uplift_ground == pytest.approx(G * math.tan(alpha), rel=1e-12)
+
+
+@pytest.mark.parametrize(("alpha", "demand"), [(0.2, 0.150486602), (0.13, 0.097635785)])
+def test_friction_demand_at_an_impact_is_a_matter_of_alpha_alone(alpha, demand):
+    """¾ sin α cos α/(1 − ¾ sin²α) for μ = 3."""
+    forces = sized(rb.Pier(alpha, 1.0), rb.RigidBase(), shaken(amplitude=0.5))
+    assert forces.impact_friction_demand == pytest.approx(demand, abs=1e-9)
+    response = rb.simulate(rb.Pier(alpha, 1.0), rb.RigidBase(), shaken(amplitude=0.5), forces=True)
+    shares = response.impacts["impulse_horizontal"].abs() / response.impacts["impulse_vertical"]
+    assert len(shares) > 3
+    assert shares.to_numpy() == pytest.approx(demand, abs=1e-9)
+
+
+def test_a_pier_at_rest_bears_its_weight_and_half_of_it_on_each_support():
+    still = rb.Motion("still", 0.01, np.zeros(100))
+    for base in BASES.values():
+        forces = sized(PIER, base, still)
+        assert (forces.base_shear, forces.friction_demand) == (0.0, 0.0)
+        assert forces.normal_force == pytest.approx(G, rel=1e-12)
+        assert (forces.pivot_left, forces.pivot_right) == (pytest.approx(1.0, rel=1e-12), pytest.approx(1.0, rel=1e-12))
+        assert (forces.heel_gap_left, forces.deck_acceleration, forces.omega_over_p) == (0.0, 0.0, 0.0)
+        assert (forces.landing_velocity, forces.first_uplift, forces.flight_duration) == (None, None, None)
+
+
+def test_a_block_at_rest_that_is_shaken_below_uplift_leans_on_one_corner():
+    """½ ± ü_g h/(2 b g) of the weight; at the onset of uplift one corner bears it all, and twice the half of it."""
+    almost = 0.999 * G * math.tan(PIER.alpha)
+    forces = sized(PIER, rb.RigidBase(), rb.Motion("push", 0.01, np.linspace(0.0, almost, 200)))
+    assert forces.pivot_left == pytest.approx(1.999, rel=1e-12)
+    assert (forces.pivot_right, forces.first_uplift) == (pytest.approx(1.0, rel=1e-12), None)
+    assert forces.friction_demand == pytest.approx(0.999 * math.tan(PIER.alpha), rel=1e-12)
+
+
+# Newton's laws
+
+
+@EVERY_BASE
+def test_normal_force_is_that_of_the_centre_of_mass_by_differences_of_its_height(name, responses):
+    response = responses[name]
+    rows = smooth_rows(response)
+    expected = G + response.history["ag_v"].to_numpy()[rows] + second_difference(centre(response)[1], rows)
+    assert close(response.forces["normal_force"].to_numpy()[rows], expected)
+
+
+@pytest.mark.parametrize("name", ["rigid", "elastic", "bouc-wen"])
+def test_base_shear_is_that_of_the_centre_of_mass_by_differences_of_its_place(name, responses):
+    response = responses[name]
+    rows = smooth_rows(response)
+    expected = response.history["ag_h"].to_numpy()[rows] + second_difference(centre(response)[0], rows)
+    assert close(response.forces["base_shear"].to_numpy()[rows], expected)
+
+
+@pytest.mark.parametrize("name", ["epp, finite", "elastic, finite"])
+def test_base_shear_of_finite_springs_is_that_of_the_horizontal_velocity(name, responses):
+    """H θ̇ with H = h cos θ + b sin θ (c_R − c_L), by central differences; contact is where a support presses."""
+    response = responses[name]
+    theta, pressed = response.theta, [response.forces[f"pivot_{side}"].to_numpy() > 0.0 for side in ("right", "left")]
+    side = pressed[0].astype(float) - pressed[1]
+    rows = smooth_rows(response)
+    rows = rows[(side[rows] == side[rows - 1]) & (side[rows] == side[rows + 1])]
+    lever = PIER.height * np.cos(theta) + PIER.half_width * np.sin(theta) * side
+    speed = lever * response.omega
+    expected = response.history["ag_h"].to_numpy()[rows] + (speed[rows + 1] - speed[rows - 1]) / (2 * FINE)
+    assert close(response.forces["base_shear"].to_numpy()[rows], expected)
+
+
+@pytest.mark.parametrize("name", ["rigid", "elastic"])
+def test_the_deck_accelerates_as_a_point_at_its_height_does(name):
+    pier = rb.Pier.with_deck(4.0, 30.0, 2000.0, 1000.0, deck_height_m=33.0, top_m=36.0)
+    assert pier.deck == 33.0
+    motion = shaken(FINE, amplitude=0.5)
+    response = rb.simulate(pier, BASES[name], motion, substeps=1, forces=True)
+    rows = smooth_rows(response)
+    place = centre(response)[0] + (33.0 - pier.height) * (np.sin(response.theta) if name == "rigid" else response.theta)
+    expected = response.history["ag_h"].to_numpy()[rows] + second_difference(place, rows)
+    assert np.abs(expected).max() > 1.0
+    assert close(response.forces["deck_acceleration"].to_numpy()[rows], expected)
+
+
+def integral(response, values):
+    """By the trapezoidal rule; both sides of an event are rows, at one time."""
+    return float(np.trapezoid(values, response.t))
+
+
+@EVERY_BASE
+def test_forces_and_impulses_together_change_the_momentum(name, responses):
+    """From rest: ∫(N/M − g − v̈_g) dt + Σ J = v̇; and ∫(V/M − ü_g) dt + Σ J = ẋ, but for finite springs, whose H jumps."""
+    base, response = BASES[name], responses[name]
+    history, forces, impacts = response.history, response.forces, response.impacts
+    rigid = isinstance(base, rb.RigidBase)
+    gained = integral(response, forces["normal_force"] - G - history["ag_v"]) + impacts["impulse_vertical"].sum()
+    up = velocity(response)[1][-1] if rigid else (response.v[-1] - response.v[-2]) / (response.t[-1] - response.t[-2])
+    passed = impacts["impulse_vertical"].sum()
+    assert passed > 0.5
+    assert gained == pytest.approx(up, abs=2e-4 * passed)
+    if rigid or base.kinematics == "first-order":
+        gained = integral(response, forces["base_shear"] - history["ag_h"]) + impacts["impulse_horizontal"].sum()
+        along = velocity(response)[0][-1] if rigid else PIER.height * response.omega[-1]
+        assert gained == pytest.approx(along, abs=2e-4 * impacts["impulse_horizontal"].abs().sum())
+
+
+@EVERY_BASE
+def test_an_impulse_changes_the_spin_by_its_moment(name, responses):
+    """(I0/M) Δθ̇ = ±a J_v − H J_h about the centre of mass: it acts at the pivot that lands and nowhere else."""
+    base, response = BASES[name], responses[name]
+    impacts = response.impacts
+    events = response.events[response.events["t"].isin(impacts["t"])]
+    events = events[events["kind"].isin(["impact", "rest"])]
+    assert len(events) == len(impacts) > 3
+    theta, omega = response.theta, response.omega
+    for (_, impact), before, after in zip(impacts.iterrows(), events["before"], events["after"], strict=True):
+        side = {"left": 1.0, "right": -1.0}[impact["pivot"]]
+        arm, lever = side * PIER.half_width, PIER.height
+        if not isinstance(base, rb.RigidBase) and base.kinematics == "finite":
+            c, s = math.cos(theta[after]), math.sin(theta[after])
+            arm, lever = arm * c + lever * s, lever * c
+        moment = arm * impact["impulse_vertical"] - lever * impact["impulse_horizontal"]
+        assert moment == pytest.approx(PIER.inertia * (omega[after] - omega[before]), abs=1e-9)
+
+
+@EVERY_BASE
+def test_gaps_are_the_pivots_above_where_they_left_their_supports(name, responses):
+    base, response = BASES[name], responses[name]
+    forces, t = response.forces, response.t
+    for side in ("left", "right"):
+        gap, speed = forces[f"heel_gap_{side}"].to_numpy(), forces[f"heel_speed_{side}"].to_numpy()
+        if isinstance(base, rb.RigidBase):
+            sign = 1.0 if side == "left" else -1.0
+            expected = 2 * PIER.half_width * np.sin(np.clip(sign * response.theta, 0.0, None))
+            assert gap == pytest.approx(expected, abs=1e-12)
+        else:
+            own = response.events[response.events["pivot"].isin([side, "both"])]
+            leaves = own[own["kind"] == "separation"]
+            assert len(leaves) > 1
+            for leave, back in pairwise([*leaves["after"], len(t)]):
+                free = np.arange(leave, back)
+                free = free[: np.argmax(forces[f"pivot_{side}"].to_numpy()[free] > 0.0) or len(free)]
+                position = response.history[f"v_{side}"].to_numpy()
+                assert gap[free] == pytest.approx(position[free] - position[leave], abs=1e-12)
+        rows = smooth_rows(response)
+        assert close(speed[rows], (gap[rows + 1] - gap[rows - 1]) / (2 * FINE))
+        assert np.abs(gap).max() > 0.01
+
+
+# Peaks
+
+
+@EVERY_BASE
+def test_peaks_are_those_of_a_history_that_is_many_times_finer(name, responses):
+    """Those of an ordinary run; between rows the parabola through three points of a step finds them to 10⁻⁵ (ω_v h ≤ 0.1)."""
+    base, response = BASES[name], responses[name]
+    outcome = outcome_of(PIER, base, shaken())
+    assert outcome.substeps <= 6
+    found = asdict(outcome.forces)
+    fine = response.forces.abs().max()
+    names = {"base_shear": "base_shear", "normal_force": "normal_force", "deck_acceleration": "deck_acceleration"}
+    names |= {name: name for name in fine.index if name.startswith(("pivot_", "heel_"))}
+    for column, of_history in names.items():
+        assert found[column] == pytest.approx(fine[of_history], rel=2e-5), column
+    assert found["friction_demand"] == (
+        math.inf if math.isinf(fine["friction"]) else pytest.approx(fine["friction"], rel=1e-4)
+    )
+    hardest = response.impacts.loc[response.impacts["landing_velocity"].idxmax()]
+    assert found["landing_velocity"] == pytest.approx(hardest["landing_velocity"], rel=2e-5)
+    assert found["impulse"] == pytest.approx(hardest["impulse_vertical"], rel=2e-5)
+    assert found["omega_over_p"] == pytest.approx(np.abs(response.omega).max() / PIER.p, rel=2e-5)
+    lifts = response.events[response.events["kind"].isin(["separation", "lift-off"])]
+    assert found["first_uplift"] == pytest.approx(lifts["t"].iloc[0], abs=1e-6)
+
+
+def test_flight_is_as_long_and_as_high_as_both_gaps_say(responses):
+    response, forces = responses["elastic"], responses["elastic"].forces
+    outcome = outcome_of(PIER, BASES["elastic"], shaken())
+    flying = (forces["pivot_left"] <= 0.0) & (forces["pivot_right"] <= 0.0)
+    assert outcome.forces.flight_duration == pytest.approx(integral(response, flying.astype(float)), rel=0.02)
+    lower = np.minimum(forces["heel_gap_left"], forces["heel_gap_right"])
+    assert outcome.forces.flight_height == pytest.approx(lower.max(), rel=1e-4)
+    assert math.isinf(outcome.forces.friction_demand)
+
+
+def test_a_yielding_support_bears_no_more_than_it_can():
+    forces = sized(PIER, rb.YieldingBase(50, eta=1.5, spring="epp", flight="guided"), shaken())
+    assert max(forces.pivot_left, forces.pivot_right) == 1.5
+
+
+@EVERY_BASE
+@pytest.mark.parametrize("amplitude", [0.6, 1.0, 3.0])
+def test_the_reversed_motion_exchanges_left_and_right_and_keeps_the_rest(name, amplitude):
+    base = BASES[name]
+    motion = shaken(amplitude=amplitude)
+    there = outcome_of(PIER, base, motion)
+    back = outcome_of(PIER, base, replace(motion, horizontal=-motion.horizontal))
+    mirrored, expected = asdict(there.mirrored().forces), asdict(back.forces)
+    for field, value in expected.items():
+        assert mirrored[field] == (value if value is None else pytest.approx(value, rel=1e-8, abs=1e-12)), field
+    assert there.mirrored().mirrored() == there
+
+
+@EVERY_BASE
+@pytest.mark.parametrize("numerics", [{}, {"tolerance": None, "substeps": 8}], ids=["tolerance", "substeps"])
+def test_who_asks_for_forces_gets_the_same_run(name, numerics):
+    base = BASES[name]
+    for amplitude in (1.0, 3.0):
+        motion = shaken(amplitude=amplitude)
+        without = outcome_of(PIER, base, motion, forces=False, **numerics)
+        assert without.forces is None
+        assert replace(outcome_of(PIER, base, motion, **numerics), forces=None) == without
+
+
+# What the model does not follow
+
+
+def test_an_overturning_pier_counts_until_it_leans_beyond_alpha_for_good():
+    """Falling on, it would press ever less and shear ever more: without the cut the demand had no limit."""
+    motion = rb.Motion("push", 0.01, np.full(300, 0.3 * G))
+    outcome = outcome_of(PIER, rb.RigidBase(), motion)
+    assert outcome.status == "overturned"
+    forces = outcome.forces
+    assert forces.heel_gap_right == pytest.approx(2 * PIER.half_width * math.sin(PIER.alpha), rel=0.1)
+    assert forces.heel_gap_right < 2 * PIER.half_width * math.sin(PIER.alpha)
+    assert forces.friction_demand < 0.5
+
+
+def test_a_run_says_where_it_would_slide():
+    motion, friction = shaken(), 0.25
+    least = sized(PIER, rb.RigidBase(), motion).friction_demand
+    assert least > friction
+    note = outcome_of(PIER, rb.RigidBase(friction=friction), motion).note
+    response = rb.simulate(PIER, rb.RigidBase(), motion, forces=True)
+    first = response.t[np.argmax(response.forces["friction"].to_numpy() > friction)]
+    assert note.startswith("would slide at ")
+    assert float(note.split()[3]) == pytest.approx(first, abs=0.011)
+    assert f"the friction demand reaches {least:.3g}, the interface has 0.25; sliding is not followed" in note
+    assert outcome_of(PIER, rb.RigidBase(friction=2 * least), motion).note == ""
+    assert "has no limit" in outcome_of(PIER, replace(BASES["elastic"], friction=5.0), motion).note
+    hard = outcome_of(PIER, rb.RigidBase(restitution=0.1, friction=2.0), replace(motion, vertical=None))
+    assert hard.forces.friction_demand < 2.0 < hard.forces.impact_friction_demand
+    assert "would slide at an impact" in hard.note
+
+
+def test_a_rigid_base_that_would_have_to_pull_is_told():
+    """The ground falls at 0.97 g under a block that rocks: the corner would be lifted by the rotation."""
+    t = np.arange(0, 2.001, 0.005)
+    falls = -0.97 * G * np.clip((t - 1.0) / 0.05, 0, 1)
+    motion = rb.Motion("drop", 0.005, 0.8 * G * np.sin(2 * np.pi * t), falls)
+    outcome = outcome_of(PIER, rb.RigidBase(), motion)
+    assert "the ground would have to hold the pier down" in outcome.note
+    assert math.isinf(outcome.forces.friction_demand)
+
+
+def test_a_frame_has_the_shear_and_the_weight_of_its_columns_and_its_deck():
+    """Columns turn about their pivots, the deck moves as their tops do, twice as far; all over M = N m_c + m_d."""
+    column = rb.Pier.rectangle(2.0, 10.0, mass_t=100.0)
+    frame = rb.Pier.frame(column, 4, 600.0)
+    response = rb.simulate(frame, rb.RigidBase(), shaken(FINE, amplitude=0.6), substeps=1, forces=True)
+    rows, theta = smooth_rows(response), response.theta
+    leans = column.alpha - np.abs(theta)
+    along = np.sign(theta) * column.size * (math.sin(column.alpha) - np.sin(leans))
+    up = column.size * np.cos(leans)
+    for name, place, given in (("base_shear", along, "ag_h"), ("normal_force", up, "ag_v")):
+        moved = (400.0 * second_difference(place, rows) + 600.0 * second_difference(2 * place, rows)) / 1000.0
+        expected = moved + response.history[given].to_numpy()[rows] + (G if name == "normal_force" else 0.0)
+        assert close(response.forces[name].to_numpy()[rows], expected)
+    deck = response.history["ag_h"].to_numpy()[rows] + second_difference(2 * along, rows)
+    assert close(response.forces["deck_acceleration"].to_numpy()[rows], deck)
+    gap = response.forces[["heel_gap_left", "heel_gap_right"]].max(axis=1).to_numpy()
+    assert gap == pytest.approx(2 * column.half_width * np.sin(np.abs(theta)), abs=1e-12)
