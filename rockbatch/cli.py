@@ -24,7 +24,7 @@ from rockbatch.commands import (
     spectrum,
 )
 from rockbatch.commands.messages import say
-from rockbatch.commands.streams import is_lost
+from rockbatch.commands.streams import is_lost, open_missing
 from rockbatch.errors import AboutResults, InputError
 
 COMMANDS = {
@@ -73,6 +73,7 @@ def parser() -> argparse.ArgumentParser:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; returns the exit code: :data:`EXIT_CODES`. Without a command it lists those that there are."""
+    open_missing()
     understood = parser()
     if "_ARGCOMPLETE" in os.environ:  # the shell asks what may come next
         with suppress(ImportError):

@@ -14,8 +14,11 @@ from rockbatch.simulation import Run, Stop, first_substeps, run_all_fixed, run_a
 from rockbatch.simulation.histories import with_observed, written
 from rockbatch.study import Numerics, Output, Study
 
-MOST_STEPS_OBSERVED = 1_000_000
-"""Longer runs have no ledger and no forces in the table: each is written down whole, 100 bytes a step."""
+MOST_STEPS_OF_A_LEDGER = 1_000_000
+"""Longer runs have no ledger in the table: each is written down whole, 100 bytes a step, and its energies beside it."""
+
+MOST_STEPS_OF_FORCES = 5_000_000
+"""Longer runs have no forces in the table: each is written down whole, half a gigabyte."""
 
 LEAST_GROUP, MOST_GROUP = 32, 1024
 """Runs in a group: enough to fill the lanes; few enough that little is lost when the last ones leave them empty."""
@@ -88,13 +91,16 @@ def _observed(run: Run, outcome: Outcome, quiet_s: float, output: Output, stop: 
     """With what observers make of the run, written down: energy ledger and forces; unless it is very long or was refused."""
     if stop:
         return None
-    if not outcome.was_run or steps_of(run.motion, outcome.substeps, quiet_s) > MOST_STEPS_OBSERVED:
+    steps = steps_of(run.motion, outcome.substeps, quiet_s)
+    ledger = output.ledger and steps <= MOST_STEPS_OF_A_LEDGER
+    sized = output.forces and steps <= MOST_STEPS_OF_FORCES
+    if not outcome.was_run or not (ledger or sized):
         return outcome
     try:
         rows = written(run, outcome, quiet_s, every_step=True)
     except InputError:  # too many impacts to be written down
         return outcome
-    return with_observed(run, outcome, rows, output.ledger, output.forces)
+    return with_observed(run, outcome, rows, ledger, sized)
 
 
 def _kind(base: Base) -> tuple[object, ...]:

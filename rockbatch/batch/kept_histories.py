@@ -8,18 +8,22 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rockbatch.batch.plan import PlannedRun
+from rockbatch.checks.demands import FORCES
 from rockbatch.errors import InputError
 from rockbatch.pier import RigidBase
 from rockbatch.results.columns import TERMS
 from rockbatch.results.histories_file import HISTORIES, OF_SPRINGS, UNITS, write
 from rockbatch.results.reading import Saved
-from rockbatch.results.response import Response
+from rockbatch.results.response import FORCE_UNITS, Response
 from rockbatch.simulation import run_fixed
 from rockbatch.simulation.histories import histories
 from rockbatch.study import Study
 
 if TYPE_CHECKING:
     import pandas as pd
+
+LEDGER = "energy_input_J_kg"
+"""A column of every run with an energy ledger."""
 
 BYTES_OF_A_DATASET = 2500.0
 """What HDF5 takes for a dataset beside its numbers, with its share of the groups."""
@@ -105,11 +109,18 @@ def kept(study: Study, runs: Sequence[PlannedRun], table: "pd.DataFrame") -> Kep
 def history_bytes(run: PlannedRun, row: "Mapping[str, Any] | pd.Series") -> float:
     """About what the history of a run takes on disk: eight bytes for each number of each sample and side of an event."""
     columns = len(UNITS) - (len(OF_SPRINGS) if isinstance(run.case.base, RigidBase) else 0)
-    told = row.get("energy_input_J_kg")
-    if told is not None and told == told:
+    if _has(row, LEDGER):
         columns += len(TERMS)
+    if _has(row, FORCES):
+        columns += len(FORCE_UNITS)
     rows = row["t_end_s"] / run.motion.dt + 2.0 * (row["impacts"] + row["separations"])
     return columns * (BYTES_OF_A_DATASET + 8.0 * rows)
+
+
+def _has(row: "Mapping[str, Any] | pd.Series", column: str) -> bool:
+    """Whether the row has a number there: what was asked for, and very long runs have not."""
+    told = row.get(column)
+    return told is not None and told == told
 
 
 def worst(table: "pd.DataFrame", cases: int) -> list[int]:
@@ -134,9 +145,8 @@ def _response(study: Study, planned: PlannedRun, row: "pd.Series") -> Response:
     # With the same steps it comes to the same bits; of the row only ten digits are on disk
     outcome = run_fixed(run.pier, run.base, run.motion, int(row["substeps"]), quiet_s)
     outcome = replace(outcome, status=row["status"], reason=row["reason"])
-    told, sized = row.get("energy_input_J_kg", float("nan")), row.get("base_shear_m_s2", float("nan"))
     return histories(
         run, outcome, quiet_s, case.name, case.columns,
-        ledger=told == told, forces=sized == sized,  # very long runs have none
+        ledger=_has(row, LEDGER), forces=_has(row, FORCES),
         polarity=planned.polarity, scale=planned.scale,
     )  # fmt: skip

@@ -15,7 +15,7 @@ def tell(finished: "FinishedBatch", study: "Study") -> int:
     from rockbatch.checks.suite import simulated
     from rockbatch.checks.verdicts import CHECKS
     from rockbatch.commands import check
-    from rockbatch.commands.summary import other_law, summary
+    from rockbatch.commands.summary import other_law, sliding, summary
 
     code = 0
     if finished.without:
@@ -25,7 +25,8 @@ def tell(finished: "FinishedBatch", study: "Study") -> int:
     by_pga = sorted(finished.motions.motions, key=lambda motion: motion.pga)
     named = {motion.name: motion.short for motion in by_pga}
     show(summary(peaks, study.varied, named))
-    if warning := other_law(peaks.assign(record=peaks["record"].map(named)), study.varied):
+    told = peaks.assign(record=peaks["record"].map(named))
+    for warning in filter(None, (other_law(told, study.varied), sliding(told))):
         say(warning)
     if study.checks:
         code = max(code, check.tell(finished.verdicts, finished.saved.directory / CHECKS))

@@ -20,9 +20,16 @@ _COLOURS = re.compile(r"(\x1b\[(?:0|31|32|33)m)")
 _lost: dict[TextIO, OSError] = {}
 
 
+def open_missing() -> None:
+    """Have a stdout and a stderr where a program is started without: files that are opened later must not take their places."""
+    for name in ("stdout", "stderr"):
+        if getattr(sys, name) is None:
+            setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115
+
+
 def tell(stream: TextIO | None, text: str) -> None:
     """Print ``text`` to a stream, as far as that can take it."""
-    if stream is None or stream in _lost:  # some programs are started without
+    if stream is None or stream in _lost:
         return
     parts = _COLOURS.split(text) if stream.isatty() else [text]
     safe = "".join(part if i % 2 else legible(part, keep="\n") for i, part in enumerate(parts))

@@ -65,6 +65,19 @@ def other_law(table: "pd.DataFrame", varied: Sequence[str]) -> str:
     )
 
 
+def sliding(table: "pd.DataFrame") -> str:
+    """A warning where the friction demand is greater than what the interface has; empty elsewhere."""
+    from rockbatch.results.outcome import WOULD_SLIDE
+
+    slides = int(table["note"].str.contains(WOULD_SLIDE).sum())
+    if not slides:
+        return ""
+    runs = "1 run asks" if slides == 1 else f"{slides} runs ask"
+    return (
+        f"{runs} more friction than the interface has: the pier would slide, which is not followed; see the column note"
+    )
+
+
 def _block(runs: "pd.DataFrame", rows: list[str], case_keys: list[str]) -> str:
     import pandas as pd
 

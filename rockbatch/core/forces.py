@@ -40,6 +40,11 @@ FORCES = record(Forces)
 LIFTED = 1e-9
 """Of g: a normal force that is no more than rounding."""
 
+NEVER = -1.0
+"""Time of what does not happen."""
+
+_FRICTION = Forces._fields.index("friction")
+
 
 class Outline(NamedTuple):
     """What a block on a rigid base has beside Block."""
@@ -58,6 +63,21 @@ def _put(out, i, found):
     line.speed_left, line.speed_right = found.speed_left, found.speed_right
     line.deck, line.along, line.up, line.omega = found.deck, found.along, found.up, found.omega
     line.friction, line.clearance = found.friction, found.clearance
+
+
+@kernel
+def _include(greatest, firsts, start, middle, end, t, has, gravity):
+    """Bring the greatest magnitudes, and the first times, up to a step that ends at ``t`` [s]: its ends, its middle, and where
+    the parabola through the three turns."""
+    for j in range(len(greatest)):
+        slope, bend = end[j] - start[j], start[j] + end[j] - 2.0 * middle[j]
+        greatest[j] = max(greatest[j], max(abs(middle[j]), abs(end[j])))
+        if abs(slope) < 2.0 * abs(bend) < math.inf:
+            greatest[j] = max(greatest[j], abs(middle[j] - slope * slope / (8.0 * bend)))
+    if firsts[0] == NEVER and greatest[_FRICTION] > has:
+        firsts[0] = t
+    if firsts[1] == NEVER and min(middle.normal, end.normal) < -LIFTED * gravity:
+        firsts[1] = t
 
 
 @kernel
@@ -92,9 +112,17 @@ def on_springs(m, deck, y, contact, waiting_left, waiting_right, horizontal, ver
     )  # fmt: skip
 
 
+@kernel
+def _waits(was, contact, side, waiting, position):
+    """Where the support on ``side`` waits [m]: where its pivot has left it, which is at ``position`` now."""
+    before, now = (was.left, contact.left) if side == LEFT else (was.right, contact.right)
+    left = (before != 0.0 or was.held == side) and now == 0.0 and contact.held != side
+    return position if left else waiting
+
+
 @entry
-def forces_on_springs(m, deck, rows, ground, dt, out, middles):
-    """Forces of a run on two springs.
+def forces_on_springs(m, deck, rows, ground, dt, has, out, greatest, firsts):
+    """Forces of a run on two springs: at every row, or the greatest of the whole run.
 
     Parameters
     ----------
@@ -102,42 +130,47 @@ def forces_on_springs(m, deck, rows, ground, dt, out, middles):
     deck : float
         Height of the deck above the pivots [m].
     rows : recarray of recording.Row, shape (n,)
-        History as the run wrote it, with both sides of every event.
+        History as the run wrote it, with both sides of every event; for the greatest, with every step.
     ground : ndarray, shape (npts, 4)
         The motion of the run, of :func:`rockbatch.core.ground.ground_rows`.
     dt : float
         Its sampling interval [s].
-    out : recarray of Forces, shape (n,)
+    has : float
+        Friction of the interface.
+    out : recarray of Forces, shape (n,) or (0,)
         Filled at every row.
-    middles : recarray of Forces, shape (n,) or (0,)
-        Filled in the middle of the step that ends at a row; at the other side of an event, as ``out``. Only of a history
-        that has every step.
+    greatest : ndarray of zeros, shape (12 and more,) or (0,)
+        Filled with the greatest magnitude of each of Forces, at the rows, in the middles of steps and between.
+    firsts : ndarray of NEVER, shape (2,)
+        Filled beside ``greatest``: when |V|/N first exceeds ``has``, and when N is first negative [s].
     """
     waiting_left, waiting_right = 0.0 * deck, 0.0 * deck
     was = contact_of(rows[0])
+    before = on_springs(m, deck, state_of(rows[0]), was, waiting_left, waiting_right, ground[0, 0], ground[0, 2])
     for i in range(len(rows)):
         y, contact, t = state_of(rows[i]), contact_of(rows[i]), rows[i].t
         at = geometry(m, y.theta)
-        # A support waits where its pivot has left it
-        if (was.left != 0.0 or was.held == LEFT) and contact.left == 0.0 and contact.held != LEFT:
-            waiting_left = y.v + at.lift_left
-        if (was.right != 0.0 or was.held == RIGHT) and contact.right == 0.0 and contact.held != RIGHT:
-            waiting_right = y.v + at.lift_right
+        waiting_left = _waits(was, contact, LEFT, waiting_left, y.v + at.lift_left)
+        waiting_right = _waits(was, contact, RIGHT, waiting_right, y.v + at.lift_right)
         was = contact
-        before = rows[i - 1].t if i > 0 else t
-        middle = 0.5 * (before + t)
-        ah, av = ground_at(ground, dt, middle, t)
-        _put(out, i, on_springs(m, deck, y, contact, waiting_left, waiting_right, ah, av))
-        if len(middles) == 0:
+        t_start = rows[i - 1].t if i > 0 else t
+        t_middle = 0.5 * (t_start + t)
+        ah, av = ground_at(ground, dt, t_middle, t)
+        found = on_springs(m, deck, y, contact, waiting_left, waiting_right, ah, av)
+        if len(out) > 0:
+            _put(out, i, found)
+        if len(greatest) == 0:
             continue
+        start, middle = found, found
         if i > 0 and rows[i].kind <= 0.0:
-            start = state_of(rows[i - 1])
-            ah_start, av_start = ground_at(ground, dt, middle, before)
-            ah_middle, av_middle = 0.5 * (ah_start + ah), 0.5 * (av_start + av)
-            k_start, k_end = rates(m, start, contact, ah_start, av_start), rates(m, y, contact, ah, av)
-            y = middle_of(start, k_start, y, k_end, t - before)
-            ah, av = ah_middle, av_middle
-        _put(middles, i, on_springs(m, deck, y, contact, waiting_left, waiting_right, ah, av))
+            y_start, start = state_of(rows[i - 1]), before
+            ah_start, av_start = ground_at(ground, dt, t_middle, t_start)
+            k_start, k_end = rates(m, y_start, contact, ah_start, av_start), rates(m, y, contact, ah, av)
+            y = middle_of(y_start, k_start, y, k_end, t - t_start)
+            ah, av = 0.5 * (ah_start + ah), 0.5 * (av_start + av)
+            middle = on_springs(m, deck, y, contact, waiting_left, waiting_right, ah, av)
+        _include(greatest, firsts, start, middle, found, t, has, m.gravity)
+        before = found
 
 
 @kernel
@@ -187,53 +220,32 @@ def _corner(row):
 
 
 @entry
-def forces_on_rigid_base(m, outline, rows, ground, dt, out, middles):
+def forces_on_rigid_base(m, outline, rows, ground, dt, has, out, greatest, firsts):
     """Forces of a run on a rigid base: ``m`` is a Block, ``outline`` an Outline, ``rows`` (rigid.lane.Row) its history;
     otherwise as :func:`forces_on_springs`."""
+    before = on_rigid_base(m, outline, rows[0].theta, rows[0].omega, _corner(rows[0]), ground[0, 0], ground[0, 2])
     for i in range(len(rows)):
         theta, omega, side, t = rows[i].theta, rows[i].omega, _corner(rows[i]), rows[i].t
-        before = rows[i - 1].t if i > 0 else t
-        middle = 0.5 * (before + t)
-        ah, av = ground_at(ground, dt, middle, t)
-        _put(out, i, on_rigid_base(m, outline, theta, omega, side, ah, av))
-        if len(middles) == 0:
+        t_start = rows[i - 1].t if i > 0 else t
+        t_middle = 0.5 * (t_start + t)
+        ah, av = ground_at(ground, dt, t_middle, t)
+        found = on_rigid_base(m, outline, theta, omega, side, ah, av)
+        if len(out) > 0:
+            _put(out, i, found)
+        if len(greatest) == 0:
             continue
+        start, middle = found, found
         if i > 0 and rows[i].kind <= 0.0:
-            start_theta, start_omega = rows[i - 1].theta, rows[i - 1].omega
-            ah_start, av_start = ground_at(ground, dt, middle, before)
-            h = t - before
-            leaning = 0.5 * (start_theta + theta) + 0.125 * h * (start_omega - omega)
+            theta_start, omega_start, start = rows[i - 1].theta, rows[i - 1].omega, before
+            ah_start, av_start = ground_at(ground, dt, t_middle, t_start)
+            h = t - t_start
+            leaning = 0.5 * (theta_start + theta) + 0.125 * h * (omega_start - omega)
             side = NEITHER if leaning == 0.0 else (RIGHT if leaning > 0.0 else LEFT)
             if side != NEITHER:
-                k_start = acceleration(m, start_theta, side, ah_start, av_start)
+                k_start = acceleration(m, theta_start, side, ah_start, av_start)
                 k_end = acceleration(m, theta, side, ah, av)
-                theta, omega = leaning, 0.5 * (start_omega + omega) + 0.125 * h * (k_start - k_end)
+                theta, omega = leaning, 0.5 * (omega_start + omega) + 0.125 * h * (k_start - k_end)
             ah, av = 0.5 * (ah_start + ah), 0.5 * (av_start + av)
-        _put(middles, i, on_rigid_base(m, outline, theta, omega, side, ah, av))
-
-
-@entry
-def greatest(kinds, at_rows, in_middles, out):
-    """Greatest magnitudes of a run: at its rows, in the middles of its steps, and between, where the parabola through the
-    middle and both ends of a step turns.
-
-    Parameters
-    ----------
-    kinds : ndarray, shape (n,)
-        Of the rows.
-    at_rows, in_middles : ndarray, shape (n, k)
-        The numbers of Forces, or others alike.
-    out : ndarray of zeros, shape (k,)
-        Filled.
-    """
-    for i in range(len(kinds)):
-        for j in range(len(out)):
-            end = at_rows[i, j]
-            out[j] = max(out[j], abs(end))
-            if i == 0 or kinds[i] > 0.0:
-                continue
-            start, middle = at_rows[i - 1, j], in_middles[i, j]
-            out[j] = max(out[j], abs(middle))
-            slope, bend = end - start, start + end - 2.0 * middle
-            if abs(slope) < 2.0 * abs(bend) < math.inf:
-                out[j] = max(out[j], abs(middle - slope * slope / (8.0 * bend)))
+            middle = on_rigid_base(m, outline, theta, omega, side, ah, av)
+        _include(greatest, firsts, start, middle, found, t, has, m.gravity)
+        before = found

@@ -22,9 +22,9 @@ def unit(value: Any) -> str:
 
 def file_name(value: Any) -> str:
     """The name of a file, as one that there can be."""
-    if "\x00" in text(value) or len(value) > _LONGEST_NAME:
+    if isinstance(value, str) and ("\x00" in value or len(value) > _LONGEST_NAME):
         raise KindError("the name of a file")
-    return str(value)
+    return str(text(value))
 
 
 def vertical(value: Any) -> bool | str:
@@ -36,9 +36,9 @@ def vertical(value: Any) -> bool | str:
 
 def step(value: Any) -> float:
     """A sampling interval [s]."""
-    if not is_step(number(value)):
+    if isinstance(value, int | float) and not is_step(value):
         raise KindError(f"a sampling interval of {STEPS}")
-    return float(value)
+    return number(value)
 
 
 def azimuth(value: Any) -> float:

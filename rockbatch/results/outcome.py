@@ -4,6 +4,9 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
+WOULD_SLIDE = "would slide"
+"""Words of a note on a run whose friction demand is greater than what the interface has."""
+
 
 @dataclass(frozen=True)
 class PeakForces:

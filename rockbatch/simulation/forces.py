@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from rockbatch.core import types
-from rockbatch.core.forces import FORCES, LIFTED, Forces, Outline, forces_on_rigid_base, forces_on_springs, greatest
-from rockbatch.core.records import numbers
+from rockbatch.core.forces import FORCES, NEVER, Forces, Outline, forces_on_rigid_base, forces_on_springs
 from rockbatch.motions.motion import Samples
 from rockbatch.pier import Pier, RigidBase, YieldingBase
-from rockbatch.results.outcome import Outcome, PeakForces
+from rockbatch.results.outcome import WOULD_SLIDE, Outcome, PeakForces
 from rockbatch.results.response import FORCE_UNITS, IMPACT_UNITS
 from rockbatch.simulation.models import block, ground_of, springs
 from rockbatch.simulation.runs import Run
@@ -34,15 +33,39 @@ class Impacts(NamedTuple):
     vertical: Samples
 
 
-def observed(run: Run, rows: np.recarray, steps: bool) -> tuple[np.recarray, np.recarray]:
-    """Forces (core.forces.Forces) at every row of a run, and in the middle of every step; ``steps``: the rows have them all."""
-    pier, ground, dt = run.pier, ground_of(run.motion), float(run.motion.dt)
-    found, middles = np.recarray(len(rows), FORCES), np.recarray(len(rows) if steps else 0, FORCES)
-    if isinstance(run.base, RigidBase):
-        forces_on_rigid_base(block(pier, run.base), _outline(pier), rows, ground, dt, found, middles)
+class Greatest(NamedTuple):
+    """The greatest magnitudes of a run; when |V|/N first exceeds the interface's friction, and N is first negative [s]."""
+
+    forces: Forces
+    slides: float | None
+    pulls: float | None
+
+
+def at_rows(run: Run, rows: np.recarray) -> np.recarray:
+    """Forces (core.forces.Forces) at every row of a run that has both sides of every event."""
+    found = np.recarray(len(rows), FORCES)
+    _observe(run, rows, found, np.zeros(0), np.full(2, NEVER))
+    return found
+
+
+def greatest(run: Run, rows: np.recarray) -> Greatest:
+    """The greatest forces of a run, ``rows`` of which are all its steps."""
+    extremes, firsts = np.zeros(len(Forces._fields)), np.full(2, NEVER)
+    _observe(run, rows, np.recarray(0, FORCES), extremes, firsts)
+    slides, pulls = (None if t == NEVER else float(t) for t in firsts)
+    return Greatest(Forces(*extremes.tolist()), slides, pulls)
+
+
+def _observe(run: Run, rows: np.recarray, found: np.recarray, extremes: Samples, firsts: Samples) -> None:
+    if len(rows) == 0:
+        return
+    pier, base = run.pier, run.base
+    has = math.inf if base.friction is None else float(base.friction)
+    rest = (rows, ground_of(run.motion), float(run.motion.dt), has, found, extremes, firsts)
+    if isinstance(base, RigidBase):
+        forces_on_rigid_base(block(pier, base), _outline(pier), *rest)
     else:
-        forces_on_springs(springs(pier, run.base), float(pier.deck), rows, ground, dt, found, middles)
-    return found, middles
+        forces_on_springs(springs(pier, base), float(pier.deck), *rest)
 
 
 def _outline(pier: Pier) -> Outline:
@@ -100,11 +123,10 @@ def peak_forces(run: Run, outcome: Outcome, rows: np.recarray) -> tuple[PeakForc
     if outcome.status == "overturned":
         standing = np.flatnonzero(np.abs(rows.theta) <= pier.alpha)
         rows = rows[: standing[-1] + 1].view(np.recarray)
-    found, middles = observed(run, rows, steps=True)
-    extremes = np.zeros(len(Forces._fields))
-    greatest(rows.kind, numbers(found), numbers(middles), extremes)
-    most = Forces(*extremes.tolist())
-    landings = impacts(rows, found)
+    whole = greatest(run, rows)
+    most = whole.forces
+    events = rows[(rows.kind > 0.0) | (rows.kind == types.BEFORE_EVENT)].view(np.recarray)
+    landings = impacts(events, at_rows(run, events))
     carried = [force / (0.5 * pier.gravity) for force in (most.left, most.right)]
     if isinstance(base, YieldingBase):
         carried = [min(force, base.eta) for force in carried]  # a parabola may top it
@@ -121,10 +143,10 @@ def peak_forces(run: Run, outcome: Outcome, rows: np.recarray) -> tuple[PeakForc
         deck_acceleration=most.deck,
         omega_over_p=most.omega / pier.p,
         **_hardest(landings),
-        **_first_uplift(run, rows),
+        **_first_uplift(run, events),
         **_flown(run, outcome, rows, most.clearance),
     )
-    return peaks, _limits(run, rows, found, peaks)
+    return peaks, _limits(run, whole, peaks)
 
 
 def _hardest(landings: Impacts) -> dict[str, float]:
@@ -159,28 +181,19 @@ def _flown(run: Run, outcome: Outcome, rows: np.recarray, clearance: float) -> d
     return {"flight_duration": lasted, "flight_height": clearance} if lasted > 0.0 else {}
 
 
-def _limits(run: Run, rows: np.recarray, found: np.recarray, peaks: PeakForces) -> str:
+def _limits(run: Run, whole: Greatest, peaks: PeakForces) -> str:
     """What the forces say that the model does not follow: sliding, and a rigid base that would have to pull."""
     notes = []
-    if isinstance(run.base, RigidBase):
-        pulled = found.normal < -LIFTED * run.pier.gravity
-        if pulled.any():
-            t = float(rows.t[int(pulled.argmax())])
-            notes.append(
-                f"at {t:.2f} s the ground would have to hold the pier down: it would leave it, which is not followed"
-            )
+    if whole.pulls is not None and isinstance(run.base, RigidBase):
+        notes.append(
+            f"at {whole.pulls:.2f} s the ground would have to hold the pier down: it would leave it, which is not followed"
+        )
     has = run.base.friction
-    if has is None:
-        return "; ".join(notes)
     most = max(peaks.friction_demand, peaks.impact_friction_demand or 0.0)
-    if most > has:
-        when = "at an impact"
-        if peaks.friction_demand > has:
-            beyond = found.friction > has  # the greatest may lie between rows
-            first = int(beyond.argmax()) if beyond.any() else int(found.friction.argmax())
-            when = f"at {float(rows.t[first]):.2f} s"
+    if has is not None and most > has:
+        when = "at an impact" if whole.slides is None else f"at {whole.slides:.2f} s"
         told = f"reaches {most:.3g}" if math.isfinite(most) else "has no limit, as nothing presses the pier down"
         notes.append(
-            f"would slide {when}: the friction demand {told}, the interface has {has:g}; sliding is not followed"
+            f"{WOULD_SLIDE} {when}: the friction demand {told}, the interface has {has:g}; sliding is not followed"
         )
     return "; ".join(notes)

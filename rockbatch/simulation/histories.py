@@ -14,7 +14,7 @@ from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, problems
 from rockbatch.results.columns import TERMS, as_series, row
 from rockbatch.results.outcome import Outcome
 from rockbatch.results.response import EVENT_TYPES, Response
-from rockbatch.simulation.forces import forces_table, impacts_table, observed, peak_forces
+from rockbatch.simulation.forces import at_rows, forces_table, impacts_table, peak_forces
 from rockbatch.simulation.models import block, ground_of, least_substeps, springs
 from rockbatch.simulation.runs import Run, run_fixed, steps_of, written_run
 from rockbatch.simulation.settling import run_to_tolerance
@@ -196,7 +196,7 @@ def histories(
     rows = rows[shown]
     sized = landed = None
     if forces:
-        moments, _ = observed(run, rows, steps=False)
+        moments = at_rows(run, rows)
         sized, landed = forces_table(rows.t, moments, pier.gravity), impacts_table(rows, moments)
     state = _rigid_state(pier, rows) if isinstance(base, RigidBase) else _springs_state(pier, base, rows)
     t = rows.t.copy()

@@ -42,9 +42,9 @@ _YIELDING = _ELASTIC | {
     "spring": Key(choice(*get_args(SpringLaw)), '"bouc-wen"', many=True),
     "n": Key(number, "5", many=True),
 }
-_BASES = {"rigid": _RIGID, "elastic": _ELASTIC, "yielding": _YIELDING}
+BASES = {"rigid": _RIGID, "elastic": _ELASTIC, "yielding": _YIELDING}
 BASE_KEYS = _RIGID | _YIELDING
-CASE = {"name": Key(text, '"soft"'), "base": Key(choice(*_BASES), '"yielding"', required=True)}
+CASE = {"name": Key(text, '"soft"'), "base": Key(choice(*BASES), '"yielding"', required=True)}
 
 _ANY_PIER = Pier(alpha=1.0, p=1.0)
 """Stands in where no pier can be read, so that what does not depend on it is checked all the same."""
@@ -154,10 +154,10 @@ def _without_repeats(all_of_them: Iterable[Chosen]) -> Iterator[Chosen]:
 def _case(table: Table) -> tuple[dict[str, Any], dict[str, list[Setting]], Collection[str]]:
     """Name and base, the settings of that base, and the keys that are confirmed."""
     base = table.data.get("base")
-    keys = _BASES.get(base, BASE_KEYS) if isinstance(base, str) else BASE_KEYS
+    keys = BASES.get(base, BASE_KEYS) if isinstance(base, str) else BASE_KEYS
     unfit = {
         name: f"does not apply to base = {shown(base)}; leave it out, or write "
-        + " or ".join(f'base = "{other}"' for other in _BASES if name in _BASES[other])
+        + " or ".join(f'base = "{other}"' for other in BASES if name in BASES[other])
         for name in BASE_KEYS.keys() - keys.keys()
     }
     if (sharp := _without_exponent(table)) and "n" in keys:

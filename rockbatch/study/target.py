@@ -1,5 +1,6 @@
 """What records are scaled to: ``target`` in [motions], one measure or a whole spectrum."""
 
+from dataclasses import replace
 from typing import Any
 
 from rockbatch.errors import InputError
@@ -72,6 +73,9 @@ _SPECTRUM = {
     "at_least": Key(positive, "0.9"),
     "damping": _MEASURE["damping"],
 }
+TARGET = _MEASURE | {name: replace(key, required=False) for name, key in (_SPECTRUM | _EUROCODE | _ASCE).items()}
+"""Every key that a target may have, of one measure or of a spectrum."""
+
 _OWN = {"EN 1998-1": _EUROCODE, "ASCE 7": _ASCE}
 _UNFIT_FOR_SPECTRUM = dict.fromkeys(
     ("pga_g", "pgv_m_s", "sa_g", "period_s"), "is for a target of one measure, not for a spectrum; leave it out"

@@ -4,6 +4,7 @@ import difflib
 import json
 import math
 from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from itertools import islice
 from typing import Any
 
@@ -86,16 +87,22 @@ def text(value: Any) -> str:
     return value
 
 
-def choice(*options: str) -> Kind:
+@dataclass(frozen=True)
+class Choice:
     """One of a few words."""
 
-    def check(value: Any) -> str:
-        if value not in options:
-            meant = closest(value, options) if isinstance(value, str) else None
-            raise KindError("one of " + ", ".join(map(shown, options)), meant and shown(meant))
+    options: tuple[str, ...]
+
+    def __call__(self, value: Any) -> str:
+        if value not in self.options:
+            meant = closest(value, self.options) if isinstance(value, str) else None
+            raise KindError("one of " + ", ".join(map(shown, self.options)), meant and shown(meant))
         return str(value)
 
-    return check
+
+def choice(*options: str) -> Choice:
+    """The kind of one of ``options``."""
+    return Choice(options)
 
 
 def closest(word: str, known: Iterable[str]) -> str | None:

@@ -18,7 +18,9 @@ def traced(form: str) -> bytes:
 
     counts = np.random.default_rng(0).integers(-(2**20), 2**20, 700)
     data = counts.astype(np.int32 if form == "MSEED" else np.float32)
-    header = {"network": "CI", "station": "LRL", "channel": "HNE", "sampling_rate": 100.0}
+    header: dict[str, object] = {"network": "CI", "station": "LRL", "channel": "HNE", "sampling_rate": 100.0}
+    if form == "SAC":  # with places, of which ObsPy takes the distance
+        header["sac"] = {"stla": 35.5, "stlo": -117.6, "evla": 35.8, "evlo": -117.6, "lcalda": 1}
     target = io.BytesIO()
     obspy.Stream([obspy.Trace(data, header)]).write(target, format=form)
     return target.getvalue()

@@ -13,6 +13,7 @@ from fixed_column_files import csmip_channel
 from motion_files import at2_text, wiggle, write_at2
 from waveform_files import channel_xml, station_xml, trace, write_mseed
 
+from rockbatch.errors import InputError
 from rockbatch.motions import bounded, read_motions
 from rockbatch.motions.bounded import TooLongError
 from rockbatch.motions.component import Component
@@ -58,6 +59,8 @@ def test_a_control_header_whose_blockette_has_no_length_ends(tmp_path):
     """ObsPy goes on by the length that it reads there: by nothing, for ever."""
     (tmp_path / "x.seed").write_bytes(b"000001V 0110000" + b"0" * 500 + traced("MSEED"))
     (tmp_path / "y.seed").write_bytes(b"000001V 0100011 2.4990" + b"0" * 500)
+    with pytest.raises(InputError, match="a blockette of 0 bytes"):
+        CHECKS["MSEED"]((tmp_path / "x.seed").read_bytes())
     (tmp_path / "z.mseed").write_bytes(traced("MSEED"))
     with bounds(10, 500):
         found = read_motions(tmp_path, options=ReadOptions(unit="m/s2"), confirmed=["*"])
@@ -142,21 +145,20 @@ def test_an_interval_that_no_recorder_has_costs_its_file_only(tmp_path, dt):
 
 @pytest.mark.parametrize("key", ["dt = 1e200", "dt = 1e-9"])
 def test_a_manifest_states_no_such_interval(tmp_path, key):
-    from rockbatch.errors import InputError
-
     write_at2(tmp_path, "a000.AT2", wiggle())
     (tmp_path / "motions.toml").write_text(f'[[record]]\nfile = "a000.AT2"\n{key}\n')
     with pytest.raises(InputError, match="1e-05 to 1 s"):
         read_motions(tmp_path)
 
 
-def test_a_scale_that_takes_a_record_beyond_all_numbers_costs_this_record_only(tmp_path):
+def test_a_scale_that_takes_a_record_beyond_all_numbers_costs_this_record_only(tmp_path, monkeypatch):
+    monkeypatch.setattr("rockbatch.motions.formats.HUGE", 1e10)
     write_at2(tmp_path, "a000.AT2", wiggle())
     write_at2(tmp_path, "b000.AT2", wiggle(seed=2))
-    (tmp_path / "motions.toml").write_text('[[record]]\nfile = "a000.AT2"\nscale = 1e305\n')
+    (tmp_path / "motions.toml").write_text('[[record]]\nfile = "a000.AT2"\nscale = 1e15\n')
     found = read_motions(tmp_path)
     assert names(found) == ["b000"]
-    assert "finite" in found.unusable[0].reason
+    assert "beyond 1e+10 m/s²" in found.unusable[0].reason
 
 
 @pytest.mark.parametrize("dt", [1e-5, 2e-5])

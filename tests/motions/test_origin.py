@@ -180,7 +180,7 @@ def test_the_motions_command_lists_event_station_and_direction(tmp_path, capsys)
     assert "Imperial Valley 1979" in shown
     assert "Imperial Valley 1979, Meloland, 270 (CHAN24)" in shown
     (row,) = csv.DictReader((tmp_path / "out.csv").read_text(encoding="utf-8").splitlines())
-    assert (row["record"], row["event"], row["station"], row["direction"]) == (
+    assert (row["record"], row["event"], row["station_name"], row["direction"]) == (
         "CHAN24",
         "Imperial Valley 1979",
         "Meloland",

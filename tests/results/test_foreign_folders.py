@@ -217,6 +217,7 @@ def places(shape, value, at=()):
         yield from places(shape[0], value[0], (*at, 0))
 
 
+@pytest.mark.filterwarnings("ignore::rockbatch.errors.AboutResults")  # of a digest that is another
 @pytest.mark.parametrize("command", ["report", "check"])
 def test_whatever_stands_in_the_place_of_a_value_of_run_json_there_are_words(foreign, command):
     """Every place that is read, with one of many values: a page, a sentence, or verdicts."""

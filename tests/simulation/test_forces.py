@@ -91,11 +91,12 @@ def test_no_interface_has_less_than_no_friction(tmp_path, friction):
         rb.simulate(rb.Pier(0.2, 1.0), rb.RigidBase(friction=friction), rb.Motion("still", 0.01, np.zeros(9)))
 
 
-def test_a_list_of_frictions_is_a_case_each_and_the_table_and_the_report_say_which_slide(tmp_path):
+def test_a_list_of_frictions_is_a_case_each_and_the_table_and_the_report_say_which_slide(tmp_path, capsys):
     cases = (RIGID | {"friction": [0.1, 0.9]}, ON_PADS | {"friction": 0.9, "flight": "guided"})
     check = [{"name": "keys", "demand": "friction_demand", "at_most": 0.3, "reason": "r", "case": "rigid"}]
     path = study(tmp_path, cases=cases, check=check)
     assert main(["run", str(path), "--out", str(tmp_path / "out")]) == 1
+    told = capsys.readouterr().err
     results = rb.open_results(tmp_path / "out")
     rigid = results.peaks[results.peaks["case"] == "rigid"].set_index("friction")
     assert "would slide" in rigid.loc[0.1, "note"]
@@ -106,7 +107,9 @@ def test_a_list_of_frictions_is_a_case_each_and_the_table_and_the_report_say_whi
     page = Page((tmp_path / "out" / "report.html").read_text(encoding="utf-8"))
     assert page.headings.index("Forces") == page.headings.index("Every run") + 1
     slides = (results.peaks["friction_demand"] > results.peaks["friction"]).sum()
-    assert f"{slides} run" in page.text.replace("one run", "1 run")
+    assert slides == 1
+    assert "1 run asks more friction than the interface has: the pier would slide" in told
+    assert "one run of 3: the friction demand is greater" in page.text
     assert "The pier would slide there, which the model does not follow" in page.text
     head, *rows = page.tables["forces"]
     shown = {row[0]: row[head.index("V/N")] for row in rows[: len(results.info["cases"])]}
@@ -144,7 +147,7 @@ def test_finished_runs_without_forces_do_not_pass_for_those_with(tmp_path, capsy
 
 
 def test_a_run_that_is_too_long_to_be_written_down_has_no_forces(tmp_path, monkeypatch):
-    monkeypatch.setattr("rockbatch.batch.groups.MOST_STEPS_OBSERVED", 100)
+    monkeypatch.setattr("rockbatch.batch.groups.MOST_STEPS_OF_FORCES", 100)
     row = rb.run(study(tmp_path, cases=(RIGID,))).iloc[0]
     assert row["status"] == "ok"
     assert math.isnan(row["base_shear_m_s2"])

@@ -1,0 +1,326 @@
+"""What the site takes from the program itself and from the documents at the repository's top; a hook of MkDocs.
+
+Nothing of it is kept: the study file's reference and schemas come from the reader's tables, the columns from theirs, the
+commands from their parsers, the figures of the verification from the CSV files in benchmarks/, the pictures from gallery/.
+"""
+
+import contextlib
+import csv
+import importlib.util
+import io
+import json
+import os
+import re
+from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from mkdocs.config.defaults import MkDocsConfig
+from mkdocs.exceptions import PluginError
+from mkdocs.structure.files import File, Files
+from mkdocs.structure.pages import Page
+
+import rockbatch
+from rockbatch.checks.demands import DEMANDS
+from rockbatch.checks.statistics import STATISTICS
+from rockbatch.cli import COMMANDS, main
+from rockbatch.results.columns import as_markdown
+from rockbatch.study.schema import schema_of
+from rockbatch.study.sections import FILES, MANIFEST, STUDY, Section
+from rockbatch.toml import asking
+from rockbatch.toml.kinds import Choice, shown
+from rockbatch.toml.reader import Key
+
+HERE = Path(__file__).parent
+TOP = HERE.parent
+DOCUMENTS = {
+    "theory.md": "THEORY.md",
+    "performance.md": "benchmarks/README.md",
+    "extending.md": "CONTRIBUTING.md",
+    "reference/motions.md": "motions/README.md",
+}
+"""Pages that are documents of the repository."""
+
+
+def on_files(files: Files, config: MkDocsConfig) -> Files:
+    """Add the pages, schemas and pictures that are made."""
+    made: dict[str, str | bytes] = {page: _included(document, page) for page, document in DOCUMENTS.items()}
+    made |= {
+        "reference/study.md": _study(),
+        "reference/files.md": _other_files(),
+        "reference/columns.md": _columns(),
+        "reference/commands.md": _commands(),
+        "reference/python.md": _python(),
+    }
+    for name, sections in FILES.items():
+        made[f"reference/{name}.schema.json"] = json.dumps(schema_of(sections, f"rockbatch {name}"), indent=1)
+    for script in sorted((HERE / "gallery").glob("*.py")):
+        made[f"pictures/{script.stem}.svg"] = _picture(script)
+    for path, content in made.items():
+        files.append(File.generated(config, path, content=content))
+    for image in sorted((HERE / "images").iterdir()):
+        files.append(File.generated(config, f"images/{image.name}", abs_src_path=str(image)))
+    return files
+
+
+def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Files) -> str:
+    """Put the counted figures in the place of ``<!-- name -->``."""
+    for name, table in COUNTED.items():
+        if f"<!-- {name} -->" in markdown:
+            markdown = markdown.replace(f"<!-- {name} -->", "\n".join(table()))
+    return markdown
+
+
+def on_page_content(html: str, page: Page, config: MkDocsConfig, files: Files) -> str:
+    """Names in docstrings without the roles of Sphinx before them."""
+    return re.sub(r":(?:attr|class|data|func|meth|mod):<code>", "<code>", html)
+
+
+def on_post_build(config: MkDocsConfig) -> None:
+    """Refuse a site that would load anything from the network."""
+    loading = re.compile(
+        r'<(?:script|img|iframe)[^>]*\ssrc="?(?:https?:)?//|<link[^>]*stylesheet[^>]*href="?(?:https?:)?//'
+    )
+    for page in Path(config.site_dir).rglob("*.html"):
+        if found := loading.search(page.read_text(encoding="utf-8")):
+            raise PluginError(f"{page}: loads something from the network: {found.group()}")
+
+
+# Documents of the repository
+
+
+def _included(document: str, page: str) -> str:
+    """A document as Python-Markdown wants it, with links as they are from its page.
+
+    What belongs to an item of a list is indented by four; an equation's number comes closer, so that no line is very long.
+    """
+    lines = []
+    indent = 0
+    for line in (TOP / document).read_text(encoding="utf-8").splitlines():
+        if item := re.match(r"(- |\d+\. )", line):
+            indent = len(item.group())
+        elif line and not line.startswith(" "):
+            indent = 0
+        elif line:
+            shift = " " * (4 - indent) if indent else ""
+            line = shift + re.sub(r" {5,}(\(\d)", r"    \1", line)
+        lines.append(line)
+    text = "\n".join(lines) + "\n"
+    return re.sub(r"\]\(([\w./-]+)", lambda link: f"]({_on_site(link.group(1), document, page)}", text)
+
+
+def _on_site(link: str, document: str, page: str) -> str:
+    """Where what a document links to by a path is on the site, from its page; as it is if it is not there."""
+    target = os.path.normpath(Path(document).parent / link)
+    pages = {there: here for here, there in DOCUMENTS.items()}
+    found = pages.get(target, target.removeprefix("docs/") if target.startswith("docs/images/") else None)
+    return os.path.relpath(found, Path(page).parent) if found else link
+
+
+# The study file
+
+
+def _study() -> str:
+    return "\n".join(
+        [
+            "# The study file",
+            "",
+            "A study is a TOML file. This page lists every table and key that rockbatch reads; it is made of the reader's own",
+            "tables. A key that may have several values is marked *or a list*: the study then runs every combination.",
+            "",
+            "Every mistake in a study is told at once, with its line and what to write instead, before anything runs. Editors",
+            "that know JSON Schema (Taplo, Even Better TOML) underline most of them while you write: put",
+            "[study.schema.json](study.schema.json) beside the study and, as its first line,",
+            "",
+            "```toml",
+            "#:schema study.schema.json",
+            "```",
+            "",
+            "`python -m rockbatch.study.schema study > study.schema.json` writes the same file.",
+            "",
+            *_sections(STUDY),
+            *_demands(),
+        ]
+    )
+
+
+def _other_files() -> str:
+    return "\n".join(
+        [
+            "# Files of checks and manifests",
+            "",
+            "## A file of checks",
+            "",
+            "`rockbatch check DIR --rules RULES.toml` holds results against the checks of a file of their own. It has the keys",
+            "`title` and `notes`, and tables `[[check]]` as in [the study file](study.md#check), where they are described.",
+            "Its schema is [checks.schema.json](checks.schema.json).",
+            "",
+            "## A manifest",
+            "",
+            "Its schema is [manifest.schema.json](manifest.schema.json).",
+            "",
+            *_sections(section for section in MANIFEST if section.at),
+        ]
+    )
+
+
+def _sections(sections: Iterable[Section]) -> Iterator[str]:
+    for section in sections:
+        anchor = "-".join(section.at) or "top"
+        heading = f"`{section.header}`" if section.header else "At the top"
+        yield from (f"## {heading} {{ #{anchor} }}", "", section.about, "")
+        if section.only_for:
+            yield from ("| key | value | default | bases | meaning |", "| --- | --- | --- | --- | --- |")
+        else:
+            yield from ("| key | value | default | meaning |", "| --- | --- | --- | --- |")
+        for name, key in section.keys.items():
+            bases = f" {', '.join(section.only_for.get(name, ())) or 'all'} |" if section.only_for else ""
+            yield f"| `{name}` | {_value(key)} | {_default(section, name)} |{bases} {section.words.get(name, '')} |"
+        yield ""
+
+
+def _value(key: Key) -> str:
+    if isinstance(key.kind, Choice):
+        told = "one of " + ", ".join(f"`{shown(option)}`" for option in key.kind.options)
+        if len(key.kind.options) > 10:
+            told = "one of [these](#demands)"
+    else:
+        told = f"{asking.told(key.kind)}, such as `{key.example}`"
+    return told + (", or a list" if key.many else "")
+
+
+def _default(section: Section, name: str) -> str:
+    if section.keys[name].required:
+        return "**required**"
+    default = section.default(name)
+    if default is None:
+        return ""
+    return f"`{shown(list(default)) if isinstance(default, tuple) else _number(default)}`"
+
+
+def _number(value: Any) -> str:
+    return f"{value:g}" if isinstance(value, float) else shown(value)
+
+
+def _demands() -> Iterator[str]:
+    yield from ("## What a check may ask { #demands }", "", "| demand | meaning | bases |", "| --- | --- | --- |")
+    for name, demand in DEMANDS.items():
+        yield f"| `{name}` | {demand.words} | {', '.join(demand.bases)} |"
+    yield from ("", "## Statistics over the records { #statistics }", "", "| statistic | meaning |", "| --- | --- |")
+    for name, statistic in STATISTICS.items():
+        yield f"| `{name}` | {statistic.words} |"
+    yield ""
+
+
+# Columns, commands, Python
+
+
+def _columns() -> str:
+    return "\n".join(
+        [
+            "# Columns of peaks.csv",
+            "",
+            "`peaks.csv` has a row for each record, polarity, scale and case, in the order of the study. A list in the study",
+            "adds a column of its own name after `substeps`. An empty cell means that the column does not apply to that run.",
+            "",
+            as_markdown(),
+        ]
+    )
+
+
+def _commands() -> str:
+    parts = [(HERE / "commands.md").read_text(encoding="utf-8")]
+    for name in COMMANDS:
+        parts += [f"## rockbatch {name} {{ #{name} }}", "", "```text", _help(name), "```", ""]
+    return "\n".join(parts)
+
+
+def _help(command: str) -> str:
+    """What ``rockbatch COMMAND --help`` prints."""
+    told, width = io.StringIO(), os.environ.get("COLUMNS")
+    os.environ["COLUMNS"] = "84"
+    try:
+        with contextlib.redirect_stdout(told), contextlib.suppress(SystemExit):
+            main([command, "--help"])
+    finally:
+        os.environ.pop("COLUMNS") if width is None else os.environ.update(COLUMNS=width)
+    return told.getvalue().rstrip()
+
+
+def _python() -> str:
+    parts = [
+        "# Python",
+        "",
+        "`import rockbatch as rb` has these names; modules behind them are for those who extend rockbatch.",
+        "",
+    ]
+    for name in rockbatch.__all__:
+        found = getattr(rockbatch, name)
+        home = (
+            found.__name__ if isinstance(found, ModuleType) else found.__module__
+        )  # rb.report is its package, which can be called
+        parts += [f"::: {home}.{name}", ""]
+    return "\n".join(parts)
+
+
+# Pictures and counts
+
+
+def _picture(script: Path) -> bytes:
+    spec = importlib.util.spec_from_file_location(script.stem, script)
+    if spec is None or spec.loader is None:
+        raise PluginError(f"{script}: is no script")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    picture = io.BytesIO()
+    module.draw().savefig(picture, format="svg", metadata={"Date": None})
+    return picture.getvalue()
+
+
+def _errors() -> Iterator[str]:
+    """How true errors compare with the reported ones, base by base, from benchmarks/error_estimates.csv."""
+    rows = _csv("error_estimates.csv")
+    yield from ("| base | quantity | true ≤ reported | greatest true error |", "| --- | --- | --- | --- |")
+    for base in [*dict.fromkeys(row["base"] for row in rows), ""]:
+        for quantity, told in (("theta_max", "θ_max/α"), ("theta_res", "θ_res/α")):
+            pairs = [
+                (float(row[f"{quantity}_true"]), float(row[f"{quantity}_reported"]))
+                for row in rows
+                if base in ("", row["base"]) and "nan" not in (row[f"{quantity}_true"], row[f"{quantity}_reported"])
+            ]
+            if pairs:
+                within = sum(true <= reported for true, reported in pairs)
+                worst = max(true for true, _ in pairs)
+                yield f"| {base or 'all'} | {told} | {within} of {len(pairs)} | {worst:.1e} |"
+
+
+def _outcomes() -> Iterator[str]:
+    """How many hard cases ended in which way, and the remarks on them, from benchmarks/outcomes.csv."""
+    rows = _csv("outcomes.csv")
+    ways = ("ok", "overturned", "flight", "failed")
+    yield from (f"| kind of case | cases | {' | '.join(ways)} | remarks |", "| --- |" + " --- |" * (len(ways) + 2))
+    for stratum in [*dict.fromkeys(row["stratum"] for row in rows), ""]:
+        own = [row for row in rows if stratum in ("", row["stratum"])]
+        counts = " | ".join(str(sum(row["status"] == way for row in own)) for way in ways)
+        remarks = [row["verdict"] for row in own if row["verdict"]]
+        told = ", ".join(f"{remarks.count(remark)} {remark}" for remark in dict.fromkeys(remarks))
+        yield f"| {stratum or 'all'} | {len(own)} | {counts} | {told} |"
+
+
+def _verified() -> Iterator[str]:
+    """The section of the theory that lists what was compared with what."""
+    theory = _included("THEORY.md", "verification.md")
+    yield theory.partition("## 12. Verified against\n")[2].partition("\n## ")[0]
+
+
+def _csv(name: str) -> list[dict[str, str]]:
+    with (TOP / "benchmarks" / name).open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+COUNTED: dict[str, Callable[[], Iterator[str]]] = {
+    "error estimates": _errors,
+    "outcomes": _outcomes,
+    "verified against": _verified,
+}

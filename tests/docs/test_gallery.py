@@ -1,0 +1,35 @@
+"""The pictures of the gallery: each script draws one, with axes that say what they show, and the page has it."""
+
+import importlib.util
+import re
+from io import BytesIO
+from pathlib import Path
+
+import pytest
+
+DOCS = Path(__file__).parents[2] / "docs"
+SCRIPTS = sorted((DOCS / "gallery").glob("*.py"))
+
+
+def drawn(path):
+    """The figure of the script at ``path``."""
+    spec = importlib.util.spec_from_file_location(path.stem, path)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module.draw()
+
+
+@pytest.mark.parametrize("path", SCRIPTS, ids=lambda path: path.stem)
+def test_each_script_draws_a_picture(path):
+    figure = drawn(path)
+    picture = BytesIO()
+    figure.savefig(picture, format="png", dpi=40)
+    assert picture.getvalue().startswith(b"\x89PNG")
+    for axes in figure.axes:
+        assert axes.has_data()
+        assert not axes.axison or axes.get_ylabel() or axes.get_shared_y_axes().get_siblings(axes) != [axes]
+
+
+def test_the_page_has_every_picture_and_no_other():
+    page = (DOCS / "pages" / "gallery.md").read_text(encoding="utf-8")
+    assert sorted(re.findall(r"\(pictures/(\w+)\.svg\)", page)) == [path.stem for path in SCRIPTS]

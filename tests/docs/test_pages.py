@@ -1,0 +1,67 @@
+"""What the pages tell a reader to write is taken by the program as it is now."""
+
+import re
+import shutil
+import tomllib
+from pathlib import Path
+
+import pytest
+from jsonschema import Draft7Validator
+
+from rockbatch.cli import COMMANDS, main
+from rockbatch.study.schema import schema_of
+from rockbatch.study.sections import MANIFEST, STUDY
+
+ROOT = Path(__file__).parents[2]
+PAGES = sorted([*(ROOT / "docs" / "pages").rglob("*.md"), ROOT / "docs" / "commands.md"])
+SCHEMAS = [Draft7Validator(schema_of(sections, "")) for sections in (STUDY, MANIFEST)]
+SHELL = re.compile(r"^(?:\.venv/bin/)?(\w+) ?(\S*)(.*?)(?:#.*)?$")
+
+
+def blocks(page, language):
+    """The texts between ```language and ``` on a page."""
+    return re.findall(rf"^```{language}\n(.*?)^```$", page.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)
+
+
+TOML = [(page.stem, text) for page in PAGES for text in blocks(page, "toml")]
+LINES = [(page.stem, line) for page in PAGES for text in blocks(page, "sh") for line in text.splitlines()]
+
+
+@pytest.mark.parametrize(("page", "text"), TOML, ids=[page for page, _ in TOML])
+def test_every_piece_of_a_study_has_keys_and_values_that_are_read(page, text):
+    data = tomllib.loads(text)
+    schema = SCHEMAS["record" in data]
+    wrong = [error.message for error in schema.iter_errors(data) if error.validator != "required"]
+    assert wrong == []
+
+
+@pytest.mark.parametrize(("page", "line"), LINES, ids=[f"{page}: {line}" for page, line in LINES])
+def test_every_command_is_there(page, line, capsys):
+    program, word, rest = SHELL.match(line).groups() if not line.startswith((". ", "cd ")) else ("", "", "")
+    if program == "rockbatch":
+        assert word in COMMANDS
+        with pytest.raises(SystemExit):
+            main([word, "--help"])
+        assert [flag for flag in re.findall(r"--[\w-]+", rest) if flag not in capsys.readouterr().out] == []
+    elif program == "make":
+        assert re.search(rf"^{word}:", (ROOT / "Makefile").read_text(encoding="utf-8"), re.MULTILINE)
+    elif program == "python":
+        assert (ROOT / word).is_file()
+    else:
+        assert program == ""
+
+
+def test_the_tutorial_comes_to_a_verdict(tmp_path, monkeypatch, capsys):
+    study = next(text for text in blocks(ROOT / "docs" / "pages" / "tutorial.md", "toml") if text.startswith("title"))
+    shutil.copytree(ROOT / "motions" / "near_fault" / "imperialvalley1979_meloland", tmp_path / "records")
+    (tmp_path / "pier.toml").write_text(study, encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    assert main(["motions", "records"]) == 0
+    code = main(["run", "pier.toml"])
+    assert (tmp_path / "reports" / "pier" / "report.html").is_file()
+    capsys.readouterr()
+    assert main(["check", "reports/pier"]) == code
+    told = capsys.readouterr().out
+    assert code == ("FAIL" in told)
+    assert "no overturning" in told
+    assert "uplift of the heel" in told
