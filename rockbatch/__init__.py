@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from rockbatch.batch.running import run
     from rockbatch.checks import Rule
     from rockbatch.errors import InputError
-    from rockbatch.motions import Motion, pulse, read_motions
+    from rockbatch.motions import Motion, MotionSet, ReadOptions, pulse, read_motions
     from rockbatch.pier import Damper, ElasticBase, Part, Pier, RigidBase, Tendon, YieldingBase
     from rockbatch.report import report
     from rockbatch.results.checking import check
@@ -26,8 +26,10 @@ _HOMES = {
     "ElasticBase": "rockbatch.pier",
     "InputError": "rockbatch.errors",
     "Motion": "rockbatch.motions",
+    "MotionSet": "rockbatch.motions",
     "Part": "rockbatch.pier",
     "Pier": "rockbatch.pier",
+    "ReadOptions": "rockbatch.motions",
     "Response": "rockbatch.results.response",
     "RigidBase": "rockbatch.pier",
     "Rule": "rockbatch.checks",
@@ -52,8 +54,10 @@ __all__ = [
     "ElasticBase",
     "InputError",
     "Motion",
+    "MotionSet",
     "Part",
     "Pier",
+    "ReadOptions",
     "Response",
     "RigidBase",
     "Rule",

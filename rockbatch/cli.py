@@ -1,9 +1,12 @@
 """The command line: subcommands, and how mistakes are told."""
+# PYTHON_ARGCOMPLETE_OK: shells with argcomplete's global completion complete it, too
 
 import argparse
+import os
 import sys
 import warnings
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from typing import Any
 
 from rockbatch._version import __version__
@@ -39,17 +42,49 @@ COMMANDS = {
 }
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line; returns the exit code (0 fine, 1 some record or check failed, 2 wrong input, 130)."""
-    open_missing()
-    parser = argparse.ArgumentParser(
-        prog="rockbatch", description="Peak rotations of stepping bridge piers under a folder of ground motions."
+EXIT_CODES = """exit codes:
+  0    all is fine
+  1    a record could not be used, a run failed, or a check did not pass
+  2    the input is wrong, and nothing was run
+  130  interrupted; what is finished is kept"""
+
+
+def parser() -> argparse.ArgumentParser:
+    """What the command line understands."""
+    plain = argparse.RawDescriptionHelpFormatter
+    commands = "\n".join(f"  {name:<13}{command.HELP}" for name, command in COMMANDS.items())
+    first = "first steps:\n  rockbatch init mypier\n  cd mypier\n  rockbatch run pier.toml"
+    found = argparse.ArgumentParser(
+        prog="rockbatch",
+        usage="rockbatch [-h] [--version] COMMAND ...",
+        description="Peak rotations of stepping bridge piers under a folder of ground motions.",
+        epilog=f"commands:\n{commands}\n\n{first}\n\n{EXIT_CODES}",
+        formatter_class=plain,
     )
-    parser.add_argument("--version", action="version", version=f"rockbatch {__version__}")
-    subparsers = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    found.add_argument("--version", action="version", version=f"rockbatch {__version__}")
+    subparsers = found.add_subparsers(dest="command", metavar="COMMAND", prog="rockbatch", help=argparse.SUPPRESS)
     for name, command in COMMANDS.items():
-        command.add_arguments(subparsers.add_parser(name, help=command.HELP, description=command.HELP))
-    code = _carried_out(parser.parse_args(arguments))
+        epilog = f"example:\n  {command.EXAMPLE}\n\n{EXIT_CODES}"
+        command.add_arguments(
+            subparsers.add_parser(name, description=command.HELP, epilog=epilog, formatter_class=plain)
+        )
+    return found
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line; returns the exit code: :data:`EXIT_CODES`. Without a command it lists those that there are."""
+    open_missing()
+    understood = parser()
+    if "_ARGCOMPLETE" in os.environ:  # the shell asks what may come next
+        with suppress(ImportError):
+            import argcomplete
+
+            argcomplete.autocomplete(understood)
+    parsed = understood.parse_args(arguments)
+    if parsed.command is None:
+        understood.print_help()
+        return 2
+    code = _carried_out(parsed)
     return code or int(is_lost(sys.stdout))
 
 

@@ -6,6 +6,16 @@ class InputError(ValueError):
 
     ``problems`` holds one message per mistake. Each names the place, what was found, what was expected and
     what to write instead.
+
+    Examples
+    --------
+    >>> try:
+    ...     rb.Pier(alpha=7.4, p=0.0)
+    ... except rb.InputError as error:
+    ...     for problem in error.problems:
+    ...         print(problem)
+    p = 0: must be a number above 0 [rad/s]
+    alpha = 7.4: must be below π/2 = 1.5708 rad; if it is in degrees, write 0.1292
     """
 
     def __init__(self, *problems: str) -> None:

@@ -11,7 +11,7 @@ import pandas as pd
 import pytest
 from studies import study_text, write_study
 
-from rockbatch.cli import main
+from rockbatch.cli import COMMANDS, EXIT_CODES, main, parser
 from rockbatch.commands.messages import in_width
 
 STUDY = study_text(title="A <pulse> & a pier")
@@ -133,12 +133,50 @@ def test_help_loads_neither_compiler_nor_tables_nor_obspy():
     assert done.stdout.splitlines()[-1] == "[]"
 
 
+def test_without_a_command_all_are_listed_with_a_line_each(capsys, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "80")
+    assert main([]) == 2
+    lines = capsys.readouterr().out.splitlines()
+    assert max(map(len, lines)) <= 80
+    assert lines[0] == "usage: rockbatch [-h] [--version] COMMAND ..."
+    for name, command in COMMANDS.items():
+        assert [line.split(None, 1) for line in lines if line.startswith(f"  {name} ")] == [[name, command.HELP]]
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_help_has_an_example_that_is_understood_and_the_exit_codes(name, capsys):
+    with pytest.raises(SystemExit) as ended:
+        main([name, "--help"])
+    assert ended.value.code == 0
+    told = capsys.readouterr().out
+    example = COMMANDS[name].EXAMPLE
+    assert f"example:\n  {example}\n" in told
+    assert EXIT_CODES in told
+    assert told.startswith(f"usage: rockbatch {name} ")
+    program, *words = example.split()
+    assert program == "rockbatch"
+    assert parser().parse_args(words).command == name
+
+
+def test_a_shell_is_told_the_commands_and_options_that_may_come_next(tmp_path):
+    def completed(line):
+        asked = {
+            "_ARGCOMPLETE": "1", "_ARGCOMPLETE_SHELL": "bash", "_ARGCOMPLETE_STDOUT_FILENAME": str(tmp_path / "told"),
+            "COMP_LINE": line, "COMP_POINT": str(len(line)), "COMP_TYPE": "9", "_ARGCOMPLETE_IFS": "\n",
+        }  # fmt: skip
+        code = "from rockbatch.cli import main; main()"
+        subprocess.run([sys.executable, "-c", code], env=os.environ | asked, check=True, capture_output=True)
+        return (tmp_path / "told").read_text(encoding="utf-8").split()
+
+    assert completed("rockbatch s") == ["spectrum", "sensitivity"]
+    assert "--no-scipy" in completed("rockbatch accuracy --no")
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="pseudo-terminals are of Unix")
 @pytest.mark.parametrize(("size", "drawn"), [((30, 100), True), ((0, 0), False)])
 def test_progress_is_a_bar_with_the_time_left_on_a_terminal_that_has_a_size(size, drawn):
     """A terminal without a size gets plain lines, as a file does."""
     import fcntl
-    import os
     import pty
     import struct
     import termios

@@ -199,6 +199,8 @@ def test_an_analysis_has_the_tables_of_the_command_and_saves_them(study, command
             getattr(found, table), read_table(commanded / name / f"{table}.csv"), check_exact=True
         )
         assert f"{table} ({len(found.tables[table])} rows)" in repr(found)
+    assert f"<strong>{name} of &#x27;Doors&#x27;</strong>" in found._repr_html_()
+    assert found._repr_html_().count("<td>rigid</td>") > 0
     saved = found.save(nowhere / "saved")
     assert_same_folder(nowhere / "saved", commanded / name, [f"{table}.csv" for table in ANALYSES[name]])
     assert sorted(path.name for path in saved) == files(nowhere / "saved")
@@ -236,13 +238,15 @@ def test_the_accuracy_is_saved_as_the_command_writes_it(study, nowhere, monkeypa
     np.testing.assert_allclose(written[numbers.columns].astype("float64"), numbers, rtol=1e-5)
     with pytest.raises(rb.InputError, match="runs = 0"):
         rb.accuracy(study, runs=0)
+    with pytest.raises(rb.InputError, match="seconds = 0"):
+        rb.accuracy(study, seconds=0)
 
 
 def test_the_command_measures_as_many_runs_as_the_function():
     from rockbatch.analysis import accuracy
-    from rockbatch.commands.accuracy import RUNS
+    from rockbatch.commands.accuracy import RUNS, SECONDS
 
-    assert accuracy.RUNS == RUNS
+    assert (accuracy.RUNS, accuracy.SECONDS) == (RUNS, SECONDS)
 
 
 def test_a_report_is_made_of_one_folder_or_of_two(commanded, tmp_path):
@@ -290,6 +294,19 @@ def test_mistakes_are_told_before_anything_is_written(study, nowhere, name):
 
 def test_a_bar_is_drawn_where_it_is_asked_for(study, capfd):
     rb.run(study, progress=True)
+    assert "/6 [" in capfd.readouterr().err
+
+
+def test_without_a_word_a_bar_is_drawn_on_a_terminal_only(study, capfd, monkeypatch):
+    from rockbatch.batch import listening
+
+    monkeypatch.setattr(listening, "SHORT", 0.0)
+    rb.run(study)
+    assert capfd.readouterr().err == ""
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    rb.run(study, progress=False)
+    assert capfd.readouterr().err == ""
+    rb.run(study)
     assert "/6 [" in capfd.readouterr().err
 
 

@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
-from rockbatch.analysis.error_and_time import measure, references
+from rockbatch.analysis.error_and_time import Clock, measure, references
 from rockbatch.analysis.folder import Analysis
-from rockbatch.batch.listening import Progress, listener_of
+from rockbatch.batch.listening import Progress, listener_of, make_ready
 from rockbatch.errors import InputError
 from rockbatch.files import is_plain, read_text, write_whole
 from rockbatch.report import write_report
@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 
 RUNS = 24
 """That are measured, unless another number is asked for."""
+
+SECONDS = 60.0
+"""That it takes at most, or little more, unless another number is asked for."""
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -70,8 +73,10 @@ def accuracy(
     out: str | os.PathLike[str] | None = None,
     *,
     runs: int = RUNS,
+    seconds: float = SECONDS,
+    scipy: bool = True,
     motions: str | os.PathLike[str] | None = None,
-    progress: Progress = False,
+    progress: Progress = None,
 ) -> Accuracy:
     """Error of θ_max/α against time per run, for this study on this machine, beside SciPy's solvers.
 
@@ -83,7 +88,12 @@ def accuracy(
         Folder for ``accuracy.csv``; where it holds results of the study, their report shows it. Without it nothing is
         written.
     runs : int
-        How many runs are measured, spread over the study.
+        How many runs are measured, spread over the study; fewer where there is no time for more.
+    seconds : float
+        How long it may take [s], once the kernels are compiled. What there is no time for is left out: runs, the longest of
+        the fixed steps, repetitions, the tightest of SciPy's tolerances.
+    scipy : bool
+        Whether SciPy's solvers are measured too; they are slow.
 
     Returns
     -------
@@ -97,18 +107,30 @@ def accuracy(
 
     Examples
     --------
-    >>> found = rb.accuracy("configs/fig7.toml", runs=5)
-    >>> found.accuracy[["method", "substeps", "error_max", "seconds_per_run"]]
+    >>> found = rb.accuracy("pier4.toml", runs=2, scipy=False)
+    >>> found
+    <accuracy of 'Pier 4'>
+      tables  accuracy (13 rows)
+    >>> found.accuracy[["method", "substeps", "runs"]].head(3)
+        method  substeps  runs
+    0  located         1     2
+    1  located         2     2
+    2  located         4     2
     """
     if runs < 1:
         raise InputError(f"runs = {runs}: must be at least 1")
+    if not seconds > 0:
+        raise InputError(f"seconds = {seconds:g}: must be above 0")
     asked, listener = given_study(study, motions), listener_of(progress)
     found = ground_motions(asked)
+    make_ready(asked, listener)
+    clock = Clock(seconds)
+    chosen = references(asked, found, runs, listener, clock)
     measured = Accuracy(
         study=asked,
         info={},
         unusable=tuple(found.unusable),
-        accuracy=measure(asked, references(asked, found, runs, listener)),
+        accuracy=measure(asked, chosen, scipy, listener, clock),
         records=tuple(motion.name for motion in found.motions),
     )
     return measured if out is None else replace(measured, files=measured.save(out))

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rockbatch.batch.groups import outcomes_of
-from rockbatch.batch.listening import Listener
+from rockbatch.batch.listening import Listener, Told, count
 from rockbatch.batch.plan import Plan, PlannedRun
 from rockbatch.batch.threads import cores
 from rockbatch.errors import InputError
@@ -54,8 +54,23 @@ ACCEPTED = 1e-9
 
 HALVINGS = 10
 
+REFERENCES, STEPS = 0.4, 0.7
+"""Shares of the time by which the references, and then the steps, are to be finished; what is left is SciPy's."""
+
+Setting = dict[str, Any]
 Simulate = Callable[[Sequence[PlannedRun]], list[tuple[str, float]]]
 """From runs to their status and θ_max [rad]."""
+
+
+class Clock:
+    """How long a measurement may take: so many ``seconds`` from now on."""
+
+    def __init__(self, seconds: float = math.inf) -> None:
+        self.seconds, self.started = seconds, time.monotonic()
+
+    def left(self, share: float = 1.0) -> float:
+        """Seconds until ``share`` of the time is over."""
+        return self.started + share * self.seconds - time.monotonic()
 
 
 @dataclass(frozen=True)
@@ -74,14 +89,19 @@ def spread(runs: Sequence[PlannedRun], most: int) -> list[PlannedRun]:
     return [runs[i] for i in np.linspace(0, len(runs) - 1, most).round().astype(int)]
 
 
-def reference(run: PlannedRun, quiet_s: float) -> Reference | None:
-    """Halve the step until it does not matter any more; None for a run that does not get there."""
+def reference(run: PlannedRun, quiet_s: float, seconds: float = math.inf) -> Reference | None:
+    """Halve the step until it does not matter any more; None for a run that does not get there, or not in ``seconds``."""
     pier, base = run.case.pier, run.case.base
+    clock, took = Clock(seconds), 0.0
     substeps = 2 * first_substeps(pier, base, run.motion.dt)
     outcome, change = run_fixed(pier, base, run.motion, substeps, quiet_s), math.inf
     for _ in range(HALVINGS):
+        if 2 * took > clock.left():  # half the step takes twice the time
+            break
+        started = time.monotonic()
         substeps *= 2
         fine = run_fixed(pier, base, run.motion, substeps, quiet_s)
+        took = time.monotonic() - started
         # The greatest rotation of a pier that overturns is where its run ended: only the outcome counts
         moved = 0.0 if fine.status == "overturned" else abs(fine.theta_max - outcome.theta_max) / pier.alpha
         change = moved if fine.status == outcome.status and fine.status != "failed" else math.inf
@@ -91,36 +111,60 @@ def reference(run: PlannedRun, quiet_s: float) -> Reference | None:
     return Reference(run, outcome, change) if change <= ACCEPTED else None
 
 
-def references(study: Study, motions: MotionSet, most: int, listener: Listener) -> list[Reference]:
-    """References of at most so many runs of the study, but for those that do not settle.
+def references(
+    study: Study, motions: MotionSet, most: int, listener: Listener, clock: Clock | None = None
+) -> list[Reference]:
+    """References of at most so many runs of the study, as many as there is time for, but for those that do not settle.
 
-    Raises ``InputError`` if none does.
+    Raises ``InputError`` if there is none.
     """
+    clock = clock or Clock()
     runs = Plan(study, motions)
     chosen = spread(runs, most)
-    listener.say(f"{len(chosen)} of {len(runs)} runs: first their references, then a minute or so of measurements")
-    found = []
+    listener.say(f"{len(chosen)} of {len(runs)} runs: their references, with ever smaller steps")
+    settled: dict[int, Reference] = {}
+    tried = 0
     with listener.progress(len(chosen)) as told:
-        for run in chosen:
-            found.append(reference(run, study.numerics.quiet_s))
+        for i in sorted(range(len(chosen)), key=_scattered):
+            left = clock.left(REFERENCES if settled else 1.0)
+            if left <= 0:
+                break
+            found = reference(chosen[i], study.numerics.quiet_s, left)
+            settled |= {} if found is None else {i: found}
+            tried += 1
             if told is not None:
                 told(1)
-    settled = [one for one in found if one is not None]
     if not settled:
         raise InputError(
-            f"{study.path}: no run settles with ever smaller steps, so there is nothing to measure errors against"
+            f"{study.path}: no run settles with ever smaller steps, so there is nothing to measure errors against; "
+            "give it more time, or look at the runs that failed"
         )
-    if len(settled) < len(found):
-        listener.say(f"left out: {len(found) - len(settled)} that do not settle with ever smaller steps")
-    return settled
+    if len(settled) < tried:
+        listener.say(
+            f"left out: {count(tried - len(settled), 'run')} that did not settle with ever smaller steps in time"
+        )
+    if tried < len(chosen):
+        listener.say(f"left out, for want of time: {count(len(chosen) - tried, 'run')} (--seconds gives more)")
+    return [settled[i] for i in sorted(settled)]
 
 
-def measure(study: Study, references: Sequence[Reference], scipy: bool = True) -> "pd.DataFrame":
+def _scattered(i: int) -> float:
+    """A key by which the first few of a range are spread over all of it, wherever one stops: multiples of the golden section."""
+    return i * 0.6180339887498949 % 1.0
+
+
+def measure(
+    study: Study,
+    references: Sequence[Reference],
+    scipy: bool = True,
+    listener: Listener | None = None,
+    clock: Clock | None = None,
+) -> "pd.DataFrame":
     """Time and error of fixed steps, with and without the location of events, of the study's own setting, and of SciPy.
 
     Everything runs in one thread, and its processor time counts, whatever else the machine does: medians of
-    :data:`REPEATS` passes over all runs. SciPy: one pass over at most :data:`SCIPY_RUNS` runs, on springs, until ours
-    end.
+    :data:`REPEATS` passes over all runs, of fewer where ``clock`` says so. SciPy: one pass over at most :data:`SCIPY_RUNS`
+    runs, on springs, until ours end; the tolerances for which there is time.
 
     Returns
     -------
@@ -128,6 +172,20 @@ def measure(study: Study, references: Sequence[Reference], scipy: bool = True) -
     """
     import pandas as pd
 
+    listener, clock = listener or Listener(), clock or Clock()
+    rows = _of_steps(study, references, listener, clock)
+    if scipy:
+        rows += _yardstick(references, listener, clock)
+    table = pd.DataFrame(rows, columns=list(COLUMNS))
+    table["substeps"] = table["substeps"].astype("Int64")
+    table["tolerance"] = table["tolerance"].astype("float64")
+    table["machine"] = f"{platform.system()} {platform.machine()}, {cores()} processors"
+    table["study"] = hashlib.sha256(study.text.encode()).hexdigest()
+    return table
+
+
+def _of_steps(study: Study, references: Sequence[Reference], listener: Listener, clock: Clock) -> list[dict[str, Any]]:
+    """The study's own setting, which is measured first, below those with fixed steps for which there is time."""
     numerics = study.numerics
 
     def fixed(substeps: int, locate: bool) -> Simulate:
@@ -137,29 +195,38 @@ def measure(study: Study, references: Sequence[Reference], scipy: bool = True) -
 
         return simulate
 
-    rows = []
-    for method, locate in (("located", True), ("not located", False)):
-        for substeps in SUBSTEPS:
-            setting = {"method": method, "substeps": substeps, "tolerance": None}
-            rows.append(setting | _measured(references, fixed(substeps, locate), REPEATS))
-    setting = {"method": "study", "substeps": numerics.substeps, "tolerance": numerics.tolerance}
-    rows.append(setting | _measured(references, lambda runs: _ends(outcomes_of(runs, numerics)), REPEATS))
-    if scipy:
-        rows += _yardstick(references)
-    table = pd.DataFrame(rows, columns=list(COLUMNS))
-    table["substeps"] = table["substeps"].astype("Int64")
-    table["tolerance"] = table["tolerance"].astype("float64")
-    table["machine"] = f"{platform.system()} {platform.machine()}, {cores()} processors"
-    table["study"] = hashlib.sha256(study.text.encode()).hexdigest()
-    return table
+    own: Setting = {"method": "study", "substeps": numerics.substeps, "tolerance": numerics.tolerance}
+    settings: list[tuple[Setting, Simulate]] = [(own, lambda runs: _ends(outcomes_of(runs, numerics)))]
+    settings += [
+        ({"method": method, "substeps": substeps, "tolerance": None}, fixed(substeps, locate))
+        for substeps in SUBSTEPS
+        for method, locate in (("located", True), ("not located", False))
+    ]
+    listener.say(f"errors and times of {len(settings)} settings on {count(len(references), 'run')}")
+    rows: list[dict[str, Any]] = []
+    took = 0.0
+    with listener.progress(len(settings) * len(references)) as told:
+        for place, (setting, simulate) in enumerate(settings):
+            if rows and 2 * took > clock.left():  # twice the steps take twice the time
+                listener.say(f"left out, for want of time: from {setting['substeps']} steps per sample on")
+                break
+            started, share = time.monotonic(), (place + 1) / len(settings)
+            until = clock.left(REFERENCES + share * (STEPS - REFERENCES))
+            rows.append(setting | _measured(references, simulate, REPEATS, until))
+            took = time.monotonic() - started
+            if told is not None:
+                told(len(references))
+    order = ("located", "not located", "study")
+    return sorted(rows, key=lambda row: order.index(row["method"]))
 
 
 def _ends(outcomes: Sequence[Outcome | None]) -> list[tuple[str, float]]:
     return [(outcome.status, outcome.theta_max) for outcome in outcomes if outcome is not None]  # none was stopped
 
 
-def _yardstick(references: Sequence[Reference]) -> list[dict[str, Any]]:
-    from rockbatch.simulation.yardstick import solve
+def _yardstick(references: Sequence[Reference], listener: Listener, clock: Clock) -> list[dict[str, Any]]:
+    """SciPy's solvers, from the loosest tolerance on; one that takes half of what time is left is not asked for more."""
+    from rockbatch.simulation.yardstick import OutOfTimeError, solve
 
     chosen = [one for one in references if not isinstance(one.run.case.base, RigidBase) and one.outcome.status == "ok"]
     if len(chosen) > SCIPY_RUNS:  # from the middle of the study's halves
@@ -169,26 +236,41 @@ def _yardstick(references: Sequence[Reference]) -> list[dict[str, Any]]:
 
     after = {id(one.run): one.outcome.t_end - one.run.motion.duration for one in chosen}
 
-    def solver(method: str, tolerance: float) -> Simulate:
-        return lambda runs: [
-            solve(run.case.pier, run.case.base, run.motion, method, tolerance, after[id(run)])  # type: ignore[arg-type]
-            for run in runs
-        ]
+    def solver(method: str, tolerance: float, told: Told | None = None) -> Simulate:
+        def solved(run: PlannedRun) -> tuple[str, float]:
+            pier, base, seconds = run.case.pier, run.case.base, 0.5 * clock.left()
+            found = solve(pier, base, run.motion, method, tolerance, after[id(run)], seconds)  # type: ignore[arg-type]
+            if told is not None:
+                told(1)
+            return found
 
-    solver("LSODA", 1e-3)([chosen[0].run])  # compiles what is called from Python
-    return [
-        {"method": f"SciPy {method}", "substeps": None, "tolerance": tolerance}
-        | _measured(chosen, solver(method, tolerance), 1)
-        for method in SCIPY
-        for tolerance in SCIPY_TOLERANCES
-    ]
+        return lambda runs: list(map(solved, runs))
+
+    listener.say("SciPy's solvers on the same equations (--no-scipy leaves them out)")
+    rows: list[dict[str, Any]] = []
+    going = list(SCIPY)
+    with listener.progress(len(SCIPY) * len(SCIPY_TOLERANCES) * len(chosen)) as told:
+        for tolerance in SCIPY_TOLERANCES:
+            for method in tuple(going):
+                setting = {"method": f"SciPy {method}", "substeps": None, "tolerance": tolerance}
+                try:
+                    if not rows:  # compiles what is called from Python
+                        solver("LSODA", 1e-3)([chosen[0].run])
+                    rows.append(setting | _measured(chosen, solver(method, tolerance, told), 1))
+                except OutOfTimeError:
+                    going.remove(method)
+                    listener.say(f"left out, for want of time: SciPy {method} from rtol {tolerance:.0e} on")
+    return sorted(rows, key=lambda row: row["method"])
 
 
-def _measured(references: Sequence[Reference], simulate: Simulate, repeats: int) -> dict[str, Any]:
-    """Errors and times of ``simulate`` over the referenced runs."""
+def _measured(
+    references: Sequence[Reference], simulate: Simulate, repeats: int, seconds: float = math.inf
+) -> dict[str, Any]:
+    """Errors and times of ``simulate`` over the referenced runs; once at least, again while there are ``seconds`` left."""
     runs = [one.run for one in references]
-    times = []
-    for _ in range(repeats):
+    times: list[float] = []
+    clock = Clock(seconds)
+    while not times or (len(times) < repeats and clock.left() > 0):
         start = time.thread_time()
         found = simulate(runs)
         times.append(time.thread_time() - start)

@@ -17,6 +17,7 @@ from rockbatch.errors import InputError
 from rockbatch.files import csv_text, is_plain, only_writer, read_table, read_text, sha256_of, write_whole
 from rockbatch.motions import Unusable
 from rockbatch.report import write_analyses
+from rockbatch.showing import Shown, several
 from rockbatch.study import Study
 
 if TYPE_CHECKING:
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class Analysis:
+class Analysis(Shown):
     """What an analysis came to: each of its tables is an attribute with the name of its CSV file, None where there is none.
 
     Attributes
@@ -52,9 +53,19 @@ class Analysis:
         """Those that there are, by their names."""
         return {name: table for name in self.TABLES if (table := getattr(self, name)) is not None}
 
-    def __repr__(self) -> str:
-        told = ", ".join(f"{name} ({count(len(table), 'row')})" for name, table in self.tables.items())
-        return f"<{self.NAME} of {self.study.title!r}: {told}>"
+    def _told(self) -> tuple[str, dict[str, str]]:
+        """See :class:`Shown`."""
+        tables = ", ".join(f"{name} ({count(len(table), 'row')})" for name, table in self.tables.items())
+        files = several(len(self.files), "file")
+        return f"{self.NAME} of {self.study.title!r}", {
+            "tables": tables,
+            "not used": several(len(self.unusable), "file") + (", see .unusable" if self.unusable else ""),
+            "written": files and f"{files} in {self.files[0].parent}",
+        }
+
+    def _beneath(self) -> "pd.DataFrame | None":
+        """See :class:`Shown`."""
+        return self.tables.get(self.NAME)
 
     def save(self, folder: str | os.PathLike[str]) -> tuple[Path, ...]:
         """Write what the command leaves in ``folder``: the tables, NAME.json and the report; returns their paths.

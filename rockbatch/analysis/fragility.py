@@ -58,7 +58,7 @@ def fragility(
     motions: str | os.PathLike[str] | None = None,
     jobs: int | Engine | None = None,
     fresh: bool = False,
-    progress: Progress = False,
+    progress: Progress = None,
 ) -> Fragility:
     """How probable overturning, and every limit of a check, is at a given intensity: [fragility] of a study.
 
@@ -85,9 +85,12 @@ def fragility(
 
     Examples
     --------
-    >>> found = rb.fragility("configs/fragility.toml")
-    >>> found.fragility[["case", "limit_state", "level", "p"]]
-    >>> found.save("reports/fragility")
+    >>> found = rb.fragility("pier4.toml")
+    >>> found
+    <fragility of 'Pier 4'>
+      tables  fragility (16 rows), fragility_runs (16 rows)
+    >>> [path.name for path in found.save("reports/fragility")]
+    ['fragility.csv', 'fragility_runs.csv', 'fragility.json', 'analyses.html']
     """
     started = time.monotonic()
     asked, listener, carrier = given_study(study, motions), listener_of(progress), engine_of(jobs)

@@ -69,7 +69,7 @@ def sensitivity(
     motions: str | os.PathLike[str] | None = None,
     jobs: int | Engine | None = None,
     fresh: bool = False,
-    progress: Progress = False,
+    progress: Progress = None,
 ) -> Sensitivity:
     """What the peak rotation depends on, one at a time and by Sobol's indices: [sensitivity] of a study.
 
@@ -93,9 +93,15 @@ def sensitivity(
 
     Examples
     --------
-    >>> found = rb.sensitivity("configs/sensitivity.toml")
-    >>> found.sobol[["case", "parameter", "first", "total"]]
-    >>> found.save("reports/sensitivity")
+    >>> found = rb.sensitivity("pier4.toml")
+    >>> found
+    <sensitivity of 'Pier 4'>
+      tables  sensitivity_runs (72 rows), sensitivity (3 rows), sobol (3 rows)
+    >>> found.sobol[["case", "parameter"]]
+        case parameter
+    0  rigid     alpha
+    1   pads     alpha
+    2   pads       eta
     """
     started = time.monotonic()
     asked, listener, carrier = given_study(study, motions), listener_of(progress), engine_of(jobs)

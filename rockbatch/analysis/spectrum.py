@@ -62,7 +62,7 @@ def spectrum(
     motions: str | os.PathLike[str] | None = None,
     jobs: int | Engine | None = None,
     fresh: bool = False,
-    progress: Progress = False,
+    progress: Progress = None,
 ) -> Spectrum:
     """Rocking spectra over the size of the pier, and maps of the pulses that overturn it: [spectrum] of a study.
 
@@ -87,9 +87,15 @@ def spectrum(
 
     Examples
     --------
-    >>> found = rb.spectrum("configs/spectrum.toml")
-    >>> found.spectrum_suite[["case", "alpha", "two_pi_over_p_s", "median"]]
-    >>> found.save("reports/spectrum")
+    >>> found = rb.spectrum("pier4.toml")
+    >>> found
+    <spectrum of 'Pier 4'>
+      tables  spectrum (12 rows), spectrum_suite (6 rows)
+    >>> found.spectrum_suite[["case", "two_pi_over_p_s", "overturned"]].head(3)
+        case  two_pi_over_p_s  overturned
+    0  rigid              3.0           2
+    1   pads              3.0           2
+    2  rigid              5.5           0
     """
     started = time.monotonic()
     asked, carrier = given_study(study, motions), engine_of(jobs)

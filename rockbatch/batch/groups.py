@@ -9,11 +9,9 @@ from rockbatch.batch.plan import PlannedRun
 from rockbatch.errors import InputError
 from rockbatch.motions import Motion
 from rockbatch.pier import Base, YieldingBase
-from rockbatch.results.columns import TERMS
 from rockbatch.results.outcome import Outcome
 from rockbatch.simulation import Run, Stop, first_substeps, run_all_fixed, run_all_to_tolerance, steps_of
-from rockbatch.simulation.forces import peak_forces
-from rockbatch.simulation.histories import energies, written
+from rockbatch.simulation.histories import with_observed, written
 from rockbatch.study import Numerics, Output, Study
 
 MOST_STEPS_OF_A_LEDGER = 1_000_000
@@ -102,14 +100,7 @@ def _observed(run: Run, outcome: Outcome, quiet_s: float, output: Output, stop: 
         rows = written(run, outcome, quiet_s, every_step=True)
     except InputError:  # too many impacts to be written down
         return outcome
-    if ledger:
-        terms = energies(run, rows)
-        at_end = dict(zip(TERMS, map(float, terms[-1]), strict=True))
-        outcome = replace(outcome, energies=at_end | {"remainder": float(abs(terms[:, -1]).max())})
-    if sized:
-        forces, note = peak_forces(run, outcome, rows)
-        outcome = replace(outcome, forces=forces, note="; ".join(filter(None, (outcome.note, note))))
-    return outcome
+    return with_observed(run, outcome, rows, ledger, sized)
 
 
 def _kind(base: Base) -> tuple[object, ...]:

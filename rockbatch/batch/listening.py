@@ -1,5 +1,7 @@
 """What whoever waits for a batch hears of it: its motions, what is under way, and how far that is."""
 
+import sys
+import warnings
 from collections.abc import Callable
 from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
 from threading import Timer
@@ -20,6 +22,10 @@ Told = Callable[[int], object]
 """Called with the number of things that are done since the last call."""
 
 
+SHORT = 1.0
+"""What takes less [s] has no bar that nobody asked for."""
+
+
 class Listener:
     """Hears of a batch while it goes on; this one keeps it to itself."""
 
@@ -35,14 +41,19 @@ class Listener:
 
 
 class Bars(Listener):
-    """A bar for whatever is under way, in a terminal or a notebook."""
+    """A bar for whatever is under way, in a terminal or a notebook, once it has taken ``delay`` [s]."""
+
+    def __init__(self, delay: float = 0.0) -> None:
+        self.delay = delay
 
     @contextmanager
     def progress(self, total: int) -> "Iterator[Told]":
         """See :class:`Listener`."""
-        from tqdm.auto import tqdm
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of a notebook without widgets, which gets a bar in characters
+            from tqdm.auto import tqdm
 
-        with tqdm(total=total, unit="run", leave=False) as bar:
+        with tqdm(total=total, unit="run", leave=False, delay=self.delay) as bar:
             yield bar.update
 
 
@@ -65,12 +76,17 @@ class Calls(Listener):
         yield told
 
 
-Progress = bool | Callable[[int, int], object] | Listener
+Progress = bool | Callable[[int, int], object] | Listener | None
 """What functions take as ``progress``."""
 
 
 def listener_of(progress: Progress) -> Listener:
-    """Who hears of a batch: nobody, a bar (True), a function of what is done and of all, or a listener as it is."""
+    """Who hears of a batch: a bar (True), nobody (False), a function of what is done and of all, or a listener as it is.
+
+    Without a word (None), a bar where stderr is a terminal, and nobody elsewhere.
+    """
+    if progress is None:
+        return Bars(SHORT) if sys.stderr is not None and sys.stderr.isatty() else Listener()
     if isinstance(progress, Listener):
         return progress
     if callable(progress):

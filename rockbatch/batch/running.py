@@ -31,7 +31,7 @@ def run(
     motions: str | os.PathLike[str] | None = None,
     jobs: int | Engine | None = None,
     fresh: bool = False,
-    progress: Progress = False,
+    progress: Progress = None,
 ) -> "pd.DataFrame":
     """Run every record of a study in every case.
 
@@ -50,9 +50,9 @@ def run(
         depend on it.
     fresh : bool
         Whether to start over, instead of going on with what is finished in ``out``.
-    progress : bool or function of two ints
-        True for a bar; or what is called with the number of things that are done, and of all: first of the runs, then of
-        the histories that are kept.
+    progress : bool or function of two ints, optional
+        True for a bar, in a notebook too; False for none; by default one where stderr is a terminal. Or what is called with
+        the number of things that are done, and of all: first of the runs, then of the histories that are kept.
 
     Returns
     -------
@@ -68,10 +68,16 @@ def run(
 
     Examples
     --------
-    >>> table = rb.run("configs/fig7.toml")
-    >>> table.groupby("case")["theta_max_over_alpha"].median()
-    >>> rb.run("configs/fig7.toml", out="reports/fig7", progress=True)
-    >>> rb.open_results("reports/fig7").history(case="rigid", p=0.38)
+    >>> table = rb.run("pier4.toml")
+    >>> table.groupby("case")["theta_max_over_alpha"].median().round(4)
+    case
+    pads     0.1741
+    rigid    0.2100
+    Name: theta_max_over_alpha, dtype: float64
+    >>> kept = rb.run("pier4.toml", out="reports/pier4")
+    >>> rb.open_results("reports/pier4").history(record="one-sine", case="rigid")[["t", "theta"]].tail(1)
+           t     theta
+    407  4.0  0.019396
     """
     asked, listener, engine = given_study(study, motions), listener_of(progress), engine_of(jobs)
     if out is None:

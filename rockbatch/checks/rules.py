@@ -76,6 +76,14 @@ class Rule:
         Those of at_most, at_least and above that are right though nothing exceeds them (:mod:`rockbatch.checks.plausible`).
 
     Raises ``InputError`` with all that is wrong; each message starts with the name of its attribute.
+
+    Examples
+    --------
+    >>> limit = rb.Rule("rotation", "theta_max_over_alpha", at_most=0.3, statistic="median", reason="agreed")
+    >>> rb.check(rb.run("pier4.toml"), [limit], study="pier4.toml")[["case", "value", "limit", "verdict"]].round(2)
+        case  value  limit verdict
+    0  rigid   0.21    0.3    pass
+    1   pads   0.17    0.3    pass
     """
 
     name: str

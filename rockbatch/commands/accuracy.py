@@ -10,8 +10,9 @@ from rockbatch.commands.options import add_study, folder, study_of
 if TYPE_CHECKING:
     import pandas as pd
 
-HELP = "measure error against time per run, for this study on this machine"
-RUNS = 24
+HELP = "measure error against time of a study on this machine"
+EXAMPLE = "rockbatch accuracy pier.toml --no-scipy"
+RUNS, SECONDS = 24, 60.0
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -23,6 +24,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="N",
         help=f"runs to measure, spread over the study (default: {RUNS})",
     )
+    parser.add_argument(
+        "--seconds",
+        type=_seconds,
+        default=SECONDS,
+        metavar="S",
+        help=f"how long it may take; what there is no time for is left out (default: {SECONDS:g})",
+    )
+    parser.add_argument("--no-scipy", action="store_true", help="leave out SciPy's solvers, which are slow")
 
 
 def _runs(text: str) -> int:
@@ -32,12 +41,26 @@ def _runs(text: str) -> int:
     return runs
 
 
+def _seconds(text: str) -> float:
+    seconds = float(text)
+    if not seconds > 0:
+        raise argparse.ArgumentTypeError(f"{text}: must be above 0")
+    return seconds
+
+
 def main(arguments: argparse.Namespace) -> int:
     study = study_of(arguments)
 
     from rockbatch.analysis.accuracy import accuracy
 
-    found = accuracy(study, folder(arguments), runs=arguments.runs, progress=Terminal())
+    found = accuracy(
+        study,
+        folder(arguments),
+        runs=arguments.runs,
+        seconds=arguments.seconds,
+        scipy=not arguments.no_scipy,
+        progress=Terminal(),
+    )
     show(shown(found.accuracy))
     tell_files(found)
     return 0

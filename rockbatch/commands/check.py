@@ -12,7 +12,8 @@ from rockbatch.commands.messages import say, show
 if TYPE_CHECKING:
     from rockbatch.checks import Verdict
 
-HELP = "hold finished results against design checks; write checks.csv, and into the report"
+HELP = "hold finished results against design checks"
+EXAMPLE = "rockbatch check reports/pier"
 WIDTH = 100
 WORST = 10
 """Verdicts that are told in full where there are too many for all."""

@@ -5,7 +5,8 @@ import argparse
 from rockbatch.commands.messages import show
 from rockbatch.examples import examples
 
-HELP = "list the example studies that come with rockbatch"
+HELP = "list the studies that come with rockbatch"
+EXAMPLE = "rockbatch examples"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -14,7 +14,8 @@ if TYPE_CHECKING:
     from rockbatch.analysis.fragility_curves import Curve
     from rockbatch.study.fragility import FragilitySpec
 
-HELP = "fragility curves for overturning and the limits of the checks, from stripes or incremental dynamic analysis"
+HELP = "fragility curves for overturning and for design checks"
+EXAMPLE = "rockbatch fragility pier.toml --jobs 4"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -6,7 +6,8 @@ from pathlib import Path
 from rockbatch.commands.messages import show
 from rockbatch.examples import CHECKS, FIRST, copy
 
-HELP = "write a study of your own to begin with, its design checks and records of five near-fault stations"
+HELP = "write a study of your own to begin with, and its records"
+EXAMPLE = "rockbatch init mypier"
 STUDY = "pier.toml"
 
 

@@ -7,7 +7,8 @@ from pathlib import Path
 from rockbatch.commands.messages import Terminal
 from rockbatch.commands.options import add_study, folder, study_of
 
-HELP = "join the shares of `rockbatch run --shard`: the same results as if one machine had run them all"
+HELP = "join the shares of `rockbatch run --shard`"
+EXAMPLE = "rockbatch merge pier.toml one two"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

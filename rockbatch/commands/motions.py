@@ -8,36 +8,10 @@ from rockbatch.batch.listening import count
 from rockbatch.commands.messages import say, show
 
 if TYPE_CHECKING:
-    from rockbatch.motions import LeftOut, Motion, MotionSet, Unusable
+    from rockbatch.motions import LeftOut, MotionSet, Unusable
 
-HELP = "show the records in a file or folder: components, dt, intensity, what was done, and what could not be used"
-
-COLUMNS = (
-    "record",
-    "file_h",
-    "file_v",
-    "dt_s",
-    "npts",
-    "duration_s",
-    "pga_h_g",
-    "pga_v_g",
-    "pgv_h_m_s",
-    "pgd_h_m",
-    "arias_m_s",
-    "d5_95_s",
-    "reason",
-    "azimuth_deg",
-    "magnitude",
-    "distance_km",
-    "processed",
-    "check",
-    "processing",
-    "event",
-    "station_name",
-    "direction",
-    "station",
-)
-"""Of the CSV: a row for each record, then for each file that is not used, with the reason."""
+HELP = "show what is in a folder of records, and what is not used"
+EXAMPLE = "rockbatch motions records --csv records.csv"
 
 _SHOWN = {  # heads of the table in the terminal, and how their numbers are written
     "record": ("record", ""),
@@ -59,7 +33,6 @@ _SHOWN = {  # heads of the table in the terminal, and how their numbers are writ
     "file_h": ("horizontal", ""),
     "file_v": ("vertical", ""),
 }
-_TEXTS = ("record", "event", "station_name", "direction", "station", "check", "file_h", "file_v")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -77,6 +50,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def main(arguments: argparse.Namespace) -> int:
     from rockbatch.errors import InputError
     from rockbatch.motions import ReadOptions, read_motions
+    from rockbatch.motions.motion_set import row
 
     columns = tuple(arguments.columns.split(",")) if arguments.columns else None
     options = ReadOptions(arguments.unit, arguments.dt, columns, arguments.sensitivity, arguments.role)
@@ -87,7 +61,7 @@ def main(arguments: argparse.Namespace) -> int:
             raise InputError("--write-manifest: give one folder, which it is written into")
         say(str(write_draft(arguments.path[0], options)))
     found = read_motions(arguments.path, options=options)
-    rows = [_row(motion) for motion in found.motions]
+    rows = [row(motion) for motion in found]
     if arguments.csv:
         _write(arguments.csv, rows, found)
     show(_table(rows))
@@ -104,56 +78,30 @@ def main(arguments: argparse.Namespace) -> int:
     return 1 if found.unusable or not found.motions else 0
 
 
-def _row(motion: "Motion") -> dict[str, Any]:
-    from rockbatch.motions import measures
-    from rockbatch.units import GRAVITY
-
-    a, dt, vertical = motion.horizontal, motion.dt, motion.pga_vertical
-    return {
-        "record": motion.name,
-        "file_h": motion.source,
-        "file_v": motion.vertical_source,
-        "dt_s": dt,
-        "npts": motion.npts,
-        "duration_s": motion.duration,
-        "pga_h_g": motion.pga / GRAVITY,
-        "pga_v_g": None if vertical is None else vertical / GRAVITY,
-        "pgv_h_m_s": measures.pgv(a, dt, motion.initial),
-        "pgd_h_m": measures.believable_pgd(motion),
-        "arias_m_s": measures.arias_intensity(a, dt),
-        "d5_95_s": measures.significant_duration(a, dt),
-        "azimuth_deg": motion.azimuth,
-        "magnitude": motion.magnitude,
-        "distance_km": motion.distance_km,
-        "processed": None if motion.processed is None else ("yes" if motion.processed else "no"),
-        "check": ", ".join(finding.what for finding in motion.findings) or None,
-        "processing": "; ".join(motion.notes),
-        "event": motion.origin.event or None,
-        "station_name": motion.origin.station or None,
-        "direction": motion.origin.direction or None,
-        "station": motion.of_station,
-    }
-
-
 def _write(path: Path, rows: list[dict[str, Any]], found: "MotionSet") -> None:
     from rockbatch.errors import InputError
     from rockbatch.files import csv_text, write_whole
+    from rockbatch.motions.motion_set import COLUMNS
 
     files: list[Unusable | LeftOut] = [*found.unusable, *found.left_out]
     not_used = [{"record": file.name, "file_h": file.source, "reason": file.reason} for file in files]
+    heads = list(COLUMNS)
+    heads.insert(heads.index("azimuth_deg"), "reason")
     try:
-        write_whole(path, csv_text(COLUMNS, [*rows, *not_used]))
+        write_whole(path, csv_text(heads, [*rows, *not_used]))
     except OSError as error:
         raise InputError(f"{path}: cannot be written: {error.strerror or error}") from None
 
 
 def _table(rows: list[dict[str, Any]]) -> str:
     """The rows in columns of equal width; a column without a value is left out."""
+    from rockbatch.motions.motion_set import TEXTS
+
     used = {key: shown for key, shown in _SHOWN.items() if key == "record" or any(row[key] is not None for row in rows)}
     lines = [[head for head, _ in used.values()]]
     lines += [["" if row[key] is None else format(row[key], form) for key, (_, form) in used.items()] for row in rows]
     widths = [max(len(line[i]) for line in lines) for i in range(len(used))]
-    left = [key in _TEXTS for key in used]
+    left = [key in TEXTS for key in used]
     return "\n".join(
         "  ".join(
             cell.ljust(width) if text else cell.rjust(width)

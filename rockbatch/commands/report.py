@@ -5,7 +5,8 @@ from pathlib import Path
 
 from rockbatch.commands.messages import say
 
-HELP = "make the report of finished results again, or compare two studies"
+HELP = "make the report again, or compare two studies"
+EXAMPLE = "rockbatch report reports/pier reports/other"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

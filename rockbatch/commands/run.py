@@ -11,7 +11,8 @@ from rockbatch.commands.options import add_engine, add_study, engine, folder, st
 if TYPE_CHECKING:
     from rockbatch.study import Study
 
-HELP = "run every record of a study in every case; write the table of peaks and the report"
+HELP = "run every record on every foundation; table and report"
+EXAMPLE = "rockbatch run pier.toml --out reports/pier"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

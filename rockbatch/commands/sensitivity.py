@@ -10,7 +10,8 @@ from rockbatch.commands.options import add_engine, add_study, study_of
 if TYPE_CHECKING:
     import pandas as pd
 
-HELP = "which parameters the peak rotation depends on: one at a time, and Sobol indices over stated ranges"
+HELP = "which parameters the peak rotation depends on most"
+EXAMPLE = "rockbatch sensitivity pier.toml"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

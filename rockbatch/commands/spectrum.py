@@ -14,7 +14,8 @@ if TYPE_CHECKING:
 
     from rockbatch.study.spectrum import SpectrumSpec
 
-HELP = "rocking spectra over the size of the pier, and maps of the pulses that overturn it"
+HELP = "rocking spectra, and maps of the pulses that overturn"
+EXAMPLE = "rockbatch spectrum pier.toml"
 MOST_LINES = 12
 """Of a table for the terminal."""
 

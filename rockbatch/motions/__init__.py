@@ -2,7 +2,8 @@
 
 from rockbatch.motions.folder import read_motions
 from rockbatch.motions.formats import ReadOptions
-from rockbatch.motions.motion import LeftOut, Motion, MotionSet, Unusable
+from rockbatch.motions.motion import LeftOut, Motion, Unusable
+from rockbatch.motions.motion_set import MotionSet
 from rockbatch.motions.pulses import pulse
 
 __all__ = ["LeftOut", "Motion", "MotionSet", "ReadOptions", "Unusable", "pulse", "read_motions"]

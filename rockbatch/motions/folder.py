@@ -19,7 +19,8 @@ from rockbatch.motions.doubles import without_doubles
 from rockbatch.motions.finding import MANIFESTS, Found, files_of
 from rockbatch.motions.formats import HEAD, ReadOptions, RecordFile, format_of, read_record, usable
 from rockbatch.motions.manifest import Entry, Manifest, described, is_manifest, options_of
-from rockbatch.motions.motion import LeftOut, MotionSet, Unusable
+from rockbatch.motions.motion import LeftOut, Unusable
+from rockbatch.motions.motion_set import MotionSet
 from rockbatch.motions.orientation import counted, is_clock, split_stem, unknown
 from rockbatch.motions.pairing import to_motions
 from rockbatch.motions.texts import with_legible_texts
@@ -73,6 +74,24 @@ def read_motions(
     InputError
         For paths that do not exist, stations that are unknown, and mistakes in manifests, all at once. A file
         that cannot be used is no error: it is in ``unusable``, with the reason.
+
+    Returns
+    -------
+    MotionSet
+        A list of motions, with a table of what is known of them.
+
+    Examples
+    --------
+    >>> motions = rb.read_motions("motions/near_fault")
+    >>> motions
+    <10 ground motions>
+      records   20160214_001345_NBLC_20.N00E, 20160214_001345_NBLC_20.N90W, 20160214_001346_PRPC_20.N00E, and 7 more
+      PGA       0.184 to 0.992 g
+      vertical  10 of 10
+    >>> for motion in motions[4:6]:
+    ...     print(motion.name, motion.dt, round(motion.pga, 2))
+    CHAN15 0.01 3.05
+    CHAN24 0.01 2.93
     """
     given = [Path(paths)] if isinstance(paths, str | os.PathLike) else [Path(path) for path in paths]
     problems = [_missing(path) for path in given if not path.exists()]

@@ -1,13 +1,15 @@
 """What a ground motion is: one horizontal component, perhaps with its station's vertical one."""
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 
 from rockbatch.errors import InputError
 from rockbatch.motions.origin import NOBODY_KNOWS, Origin
+from rockbatch.showing import Shown
+from rockbatch.units import GRAVITY
 
 Samples = npt.NDArray[np.float64]
 
@@ -46,8 +48,8 @@ class Finding:
     key: str = "confirm"
 
 
-@dataclass(frozen=True)
-class Motion:
+@dataclass(frozen=True, repr=False)
+class Motion(Shown):
     """A ground motion in SI units, sampled evenly and linear between its samples.
 
     Attributes
@@ -86,6 +88,17 @@ class Motion:
         What the components of one station in one earthquake share, which count as one record; empty for a record of its own.
 
     Raises ``InputError`` for samples that are no numbers and components of different lengths.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> shake = rb.Motion("shake", dt=0.01, horizontal=9.81 * np.sin(np.arange(200) / 10))
+    >>> shake
+    <ground motion shake>
+      samples  200 at 0.01 s: 1.99 s
+      PGA      1.000 g
+    >>> round(shake.times(0.5).pga, 2)
+    4.9
     """
 
     name: str
@@ -177,6 +190,17 @@ class Motion:
         """Peak vertical ground acceleration [m/s²], ``None`` where there is no vertical component."""
         return None if self.vertical is None else float(np.abs(self.vertical).max())
 
+    def _told(self) -> tuple[str, dict[str, str]]:
+        """See :class:`Shown`."""
+        return f"ground motion {self.name}", {
+            "record": self.origin.label,
+            "samples": f"{self.npts} at {self.dt:g} s: {self.duration:.2f} s",
+            "PGA": f"{self.pga / GRAVITY:.3f} g"
+            + ("" if self.pga_vertical is None else f", vertical {self.pga_vertical / GRAVITY:.3f} g"),
+            "from": self.files,
+            "check": ", ".join(finding.what for finding in self.findings),
+        }
+
     def times(self, factor: float, reverse: bool = False) -> "Motion":
         """The motion with both components ``factor`` times as large, the horizontal one reversed if ``reverse``."""
         along = -factor if reverse else factor
@@ -210,17 +234,3 @@ class LeftOut:
     name: str
     source: str
     reason: str
-
-
-@dataclass(frozen=True)
-class MotionSet:
-    """Everything that was found: motions in order, what could not be used, and what was left out on purpose."""
-
-    motions: list[Motion] = field(default_factory=list)
-    unusable: list[Unusable] = field(default_factory=list)
-    left_out: list[LeftOut] = field(default_factory=list)
-
-    @property
-    def without_vertical(self) -> list[str]:
-        """Names of the motions whose vertical component was asked for, and is not there."""
-        return [motion.name for motion in self.motions if motion.lacks_vertical]

@@ -12,7 +12,8 @@ import numpy as np
 from rockbatch.motions.common_span import on_common_samples, overlap, too_unlike
 from rockbatch.motions.component import Component
 from rockbatch.motions.measures import state_at
-from rockbatch.motions.motion import Motion, MotionSet, Unusable
+from rockbatch.motions.motion import Motion, Unusable
+from rockbatch.motions.motion_set import MotionSet
 from rockbatch.motions.orientation import same_azimuth
 from rockbatch.motions.origin import directed
 from rockbatch.motions.plausible import ANY, Judged, doubt, findings, fits

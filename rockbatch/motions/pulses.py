@@ -64,6 +64,15 @@ def pulse(
     ------
     InputError
         With every value that cannot be.
+
+    Examples
+    --------
+    >>> motion = rb.pulse("sine", name="one-sine", amplitude=9.81, period=0.5, dt=0.005, duration=2.0)
+    >>> motion
+    <ground motion one-sine>
+      samples  401 at 0.005 s: 2.00 s
+      PGA      1.000 g
+      from     pulse
     """
     problems = _problems(shape, amplitude, period, dt, duration, gamma, nu)
     if not name.strip():

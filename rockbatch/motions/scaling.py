@@ -6,7 +6,8 @@ from dataclasses import dataclass, replace
 
 from rockbatch.errors import InputError
 from rockbatch.motions import measures
-from rockbatch.motions.motion import Motion, MotionSet, Unusable
+from rockbatch.motions.motion import Motion, Unusable
+from rockbatch.motions.motion_set import MotionSet
 from rockbatch.motions.spectrum import spectral_acceleration
 from rockbatch.motions.spectrum_target import SpectrumTarget
 

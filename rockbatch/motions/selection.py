@@ -3,7 +3,8 @@
 from dataclasses import dataclass, fields, replace
 
 from rockbatch.motions import measures
-from rockbatch.motions.motion import LeftOut, Motion, MotionSet, Unusable
+from rockbatch.motions.motion import LeftOut, Motion, Unusable
+from rockbatch.motions.motion_set import MotionSet
 
 Range = tuple[float, float]
 

@@ -43,6 +43,11 @@ class RigidBase:
     e = 1 − 2μ/(1+μ) sin²α, which conserves the angular momentum about the new pivot, or 0 where that is negative.
     ``restraints`` are dampers and tendons that tie the pier to the ground.
     ``friction``, if known, is the coefficient of the interface: a run says where its forces ask for more (THEORY.md, 7).
+
+    Examples
+    --------
+    >>> rb.RigidBase().name, rb.RigidBase(restitution=0.9).restitution
+    ('rigid', 0.9)
     """
 
     restitution: float | None = None
@@ -71,6 +76,11 @@ class ElasticBase:
         takes the place of ε: a pivot that lands on a damped support is borne without an impulse.
     friction : float, optional
         Coefficient of the interface, if known: a run says where its forces ask for more, and goes on (THEORY.md, 7).
+
+    Examples
+    --------
+    >>> rb.ElasticBase(beta=80, epsilon=0.05).kinematics
+    'first-order'
     """
 
     beta: float
@@ -103,6 +113,13 @@ class YieldingBase(ElasticBase):
         The paper's smooth law (eq. 8), or elastic–perfectly plastic.
     n : float
         Bouc–Wen exponent ≥ 1; 5 in the paper.
+
+    Examples
+    --------
+    >>> tall = rb.Pier.with_deck(width_m=8, height_m=30, mass_t=2000, deck_mass_t=1000)
+    >>> pads = rb.YieldingBase.from_stiffness(tall, stiffness_kN_m=2e6, yield_kN=40e3, epsilon=0.05)
+    >>> f"beta = {pads.beta:.2f}, eta = {pads.eta:.3f}"
+    'beta = 58.84, eta = 2.718'
     """
 
     eta: float = field(kw_only=True)

@@ -13,7 +13,13 @@ POSSIBLE = {"alpha": (1e-4, math.pi / 2), "p": (1e-3, 1e3), "mu": (1e-3, 1e9), "
 
 
 class Part(NamedTuple):
-    """A part of a pier, its centre on the axis: mass [t], height above the pivots [m], rotary inertia about it [t m²]."""
+    """A part of a pier, its centre on the axis: mass [t], height above the pivots [m], rotary inertia about it [t m²].
+
+    Examples
+    --------
+    >>> rb.Part.shaft(width_m=8.0, height_m=30.0, mass_t=2000.0)
+    Part(mass_t=2000.0, height_m=15.0, inertia_t_m2=160666.66666666666)
+    """
 
     mass_t: float
     height_m: float
@@ -49,6 +55,15 @@ class Pier:
         Height above the pivots of the deck's centre [m], whose acceleration is told; the top where it is not given.
 
     Raises ``InputError`` with all that is impossible.
+
+    Examples
+    --------
+    >>> tower = rb.Pier(alpha=0.13, p=0.38)
+    >>> f"R0 = {tower.size:.1f} m, e = {tower.restitution:.4f}"
+    'R0 = 51.0 m, e = 0.9748'
+    >>> tall = rb.Pier.with_deck(width_m=8, height_m=30, mass_t=2000, deck_mass_t=1000)
+    >>> f"alpha = {tall.alpha:.4f} rad, p = {tall.p:.4f} rad/s, mu = {tall.mu:.3f}"
+    'alpha = 0.1974 rad, p = 0.6206 rad/s, mu = 4.017'
     """
 
     alpha: float

@@ -147,7 +147,14 @@ def report(
 
     Examples
     --------
-    >>> rb.report("reports/pier4", "reports/pier5").path
+    >>> table = rb.run("pier4.toml", out="reports/pier4")
+    >>> rb.report("reports/pier4")
+    <report of reports/pier4: reports/pier4/report.html>
+    >>> rb.report("reports/pier4", "reports/pier4", out="both.html").peaks["study"].value_counts()
+    study
+    A    4
+    B    4
+    Name: count, dtype: int64
     """
     folders = (Path(directory),) if other is None else (Path(directory), Path(other))
     path = _write(folders, None if out is None else Path(out))

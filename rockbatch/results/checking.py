@@ -49,6 +49,14 @@ def check(
     ------
     InputError
         For mistakes in the rules, with their lines, and for rules that do not fit the results.
+
+    Examples
+    --------
+    >>> table = rb.run("pier4.toml", out="reports/pier4")
+    >>> rb.check("reports/pier4")[["check", "case", "verdict"]]
+          check   case verdict
+    0  rotation  rigid    pass
+    1  rotation   pads    pass
     """
     return as_table(verdicts(results, rules, study=study))
 

@@ -4,7 +4,7 @@ The file, its types and units, the report's tables and tooltips, the comparison 
 :data:`COLUMNS`. A new column is a row at the end of :data:`MORE`, and a number in :class:`Outcome` for it.
 """
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 from operator import attrgetter
@@ -458,8 +458,19 @@ def as_table(rows: Iterable[Mapping[str, Any]], study: Study) -> "pd.DataFrame":
     """The rows of peaks.csv as a DataFrame: NaN where a number does not apply, counts that can be missing."""
     import pandas as pd
 
-    varied = study.varied
-    table = pd.DataFrame(list(rows), columns=columns(study))
+    return _typed(pd.DataFrame(list(rows), columns=columns(study)), study.varied)
+
+
+def as_series(cells: Mapping[str, Any]) -> "pd.Series[Any]":
+    """A row on its own, as it stands in a table: what every table has, and of what is asked for what there is."""
+    import pandas as pd
+
+    there = [column for column in ASKED if cells.get(column.name) is not None]
+    table = pd.DataFrame([cells], columns=names((*STAYING, *MORE, *there)))
+    return _typed(table, ()).iloc[0].rename(cells["record"])
+
+
+def _typed(table: "pd.DataFrame", varied: Sequence[str]) -> "pd.DataFrame":
     texts = [name for name in table if name in TEXTS]
     table[texts] = table[texts].fillna("")
     for name in table.columns.difference([*TEXTS, *varied, *COUNTS]):
@@ -467,6 +478,14 @@ def as_table(rows: Iterable[Mapping[str, Any]], study: Study) -> "pd.DataFrame":
     for name in table.columns.intersection(list(COUNTS)):
         table[name] = table[name].astype("Int64")
     return table
+
+
+def in_words(name: str, value: Any) -> str:
+    """A value of a column as the report writes it, in the page's unit; empty where there is none."""
+    page = COLUMNS[name].page
+    if value is None or value != value or page is None:
+        return ""
+    return value if isinstance(value, str) else format(page.factor * float(value), page.form)
 
 
 def on_page(shown: str = "peaks") -> list[Column]:

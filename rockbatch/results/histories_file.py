@@ -19,7 +19,7 @@ Every dataset of numbers has an attribute ``unit``; "1" is none.
 import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from functools import cached_property
 from pathlib import Path
 from shutil import disk_usage
@@ -164,12 +164,13 @@ class Responses(Sequence[Response]):
     """The responses in a ``histories.h5``, each read when it is asked for; none where there is no file.
 
     Using them raises ``InputError`` where the file is damaged, is something else, or does not belong to the run that
-    ``info``, its ``run.json``, tells of.
+    ``info``, its ``run.json``, tells of. Each response gets its row of ``peaks``, where those are given.
     """
 
-    def __init__(self, path: Path, info: Mapping[str, Any]) -> None:
+    def __init__(self, path: Path, info: Mapping[str, Any], peaks: "pd.DataFrame | None" = None) -> None:
         self.path = path
         self._info = info
+        self._peaks = peaks
 
     @cached_property
     def runs(self) -> "pd.DataFrame":
@@ -198,7 +199,8 @@ class Responses(Sequence[Response]):
             return [self[number] for number in range(*which.indices(len(self)))]
         number = range(len(self))[which]  # IndexError as of any sequence
         with self._opened() as runs:
-            return _read(group_in(runs, _name(number)))
+            response = _read(group_in(runs, _name(number)))
+        return response if self._peaks is None else replace(response, row=_row_of(response, self._peaks))
 
     @contextmanager
     def _opened(self) -> Iterator["h5py.Group"]:
@@ -270,6 +272,15 @@ def _read(group: "h5py.Group") -> Response:
 
 def _restraint(**values: Any) -> Restraint:
     return Damper(**values) if "kind" in values else Tendon(**values)
+
+
+def _row_of(response: Response, peaks: "pd.DataFrame") -> "pd.Series[Any] | None":
+    """The row of a response: that with its names, whose numbers have ten digits there."""
+    named = {name: getattr(response, name) for name in ("record", "case", "polarity", "scale")} | response.columns
+    same = peaks
+    for name, value in named.items():
+        same = same[same[name] == (float(f"{value:.10g}") if isinstance(value, float) else value)]
+    return None if same.empty else same.iloc[0].rename(response.record)
 
 
 def _impacts(group: "h5py.Group") -> "pd.DataFrame":

@@ -7,13 +7,16 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rockbatch.checks.suite import simulated
 from rockbatch.errors import InputError
 from rockbatch.files import read_table
+from rockbatch.results.columns import in_words
 from rockbatch.results.estimate import ESTIMATE
 from rockbatch.results.histories_file import HISTORIES, Responses
 from rockbatch.results.intensity import INTENSITY, orders
 from rockbatch.results.reading import Saved, read_saved
 from rockbatch.results.response import Response
+from rockbatch.showing import Shown, several
 from rockbatch.toml.kinds import closest, shown
 
 if TYPE_CHECKING:
@@ -23,14 +26,14 @@ if TYPE_CHECKING:
 MOST_CANDIDATES = 8
 
 
-@dataclass(frozen=True, eq=False)
-class Results(Saved):
+@dataclass(frozen=True, eq=False, repr=False)
+class Results(Shown, Saved):
     """The results in a folder: ``directory``, ``info`` (run.json), ``peaks``, and the histories that were kept."""
 
     @cached_property
     def responses(self) -> Responses:
         """The runs whose histories were kept, each read when it is asked for; none if the study asked for none."""
-        return Responses(self.directory / HISTORIES, self.info)
+        return Responses(self.directory / HISTORIES, self.info, self.peaks)
 
     @cached_property
     def intensity(self) -> "pd.DataFrame":
@@ -111,6 +114,41 @@ class Results(Saved):
         """:attr:`Response.events` of one run, chosen as for :meth:`response`."""
         return self.response(record, case, **more).events
 
+    def plot(self) -> "Figure":
+        """The peaks of every run, as the paper's Fig. 7: a panel for each record, θ_max/α over the foundations, lines for the
+        rigid base, a colour for each pier and scale. A matplotlib Figure: ``results.plot().savefig("peaks.pdf")``."""
+        from rockbatch.results.peak_panels import plot
+
+        return plot(self.peaks, self.info)
+
+    def _told(self) -> tuple[str, dict[str, str]]:
+        """See :class:`Shown`."""
+        runs = simulated(self.peaks[self.peaks["case"] != ""])
+        counts = runs["status"].value_counts()
+        facts = {"runs": f"{len(runs)}: " + ", ".join(f"{n} {status}" for status, n in counts.items())}
+        stood = runs[runs["status"] == "ok"]
+        if not stood.empty:
+            worst = stood.iloc[int(stood["theta_max_over_alpha"].argmax())]
+            also = [f"{name} = {shown(worst[name])}" for name in self.info["varied"] if worst[name] == worst[name]]
+            where = ", ".join([f"{worst['record']} on {worst['case']}", *also])
+            facts["largest"] = f"θ_max/α = {in_words('theta_max_over_alpha', worst['theta_max_over_alpha'])}, {where}"
+        facts["not used"] = several(int((self.peaks["case"] == "").sum()), "file")
+        facts["histories"] = HISTORIES if (self.directory / HISTORIES).exists() else ""
+        return f"results of {self.info['study']['title']!r} in {self.directory}", facts
+
+    def _beneath(self) -> "pd.DataFrame":
+        """See :class:`Shown`."""
+        columns = [
+            "record",
+            "case",
+            *self.info["varied"],
+            "status",
+            "theta_max_over_alpha",
+            "theta_max_error",
+            "settlement_m",
+        ]
+        return simulated(self.peaks)[columns]
+
     def _none(self, name: str, value: float | str, among: "pd.DataFrame") -> str:
         there = among[name].dropna().unique().tolist()
         meant = closest(value, map(str, there)) if isinstance(value, str) else None
@@ -132,6 +170,19 @@ def open_results(directory: str | os.PathLike[str]) -> Results:
     -----
     MissingColumns
         Where an earlier version wrote them, without columns that it did not have yet.
+
+    Examples
+    --------
+    >>> table = rb.run("pier4.toml", out="reports/pier4")
+    >>> results = rb.open_results("reports/pier4")
+    >>> results
+    <results of 'Pier 4' in reports/pier4>
+      runs       4: 4 ok
+      largest    θ_max/α = 0.24223, one-cosine on rigid
+      histories  histories.h5
+    >>> results.response("one-sine", "rigid").status
+    'ok'
+    >>> results.plot().savefig("peaks.png")
     """
     saved = read_saved(Path(directory))
     return Results(saved.directory, saved.info, saved.peaks, saved.missing)

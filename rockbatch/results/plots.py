@@ -18,10 +18,10 @@ if TYPE_CHECKING:
 
 def plot(history: "pd.DataFrame", events: "pd.DataFrame", pier: Pier, base: Base, title: str) -> "Figure":
     """See :meth:`rockbatch.Response.plot`, which hands over its tables ``history`` and ``events``."""
-    from matplotlib.figure import Figure
+    from rockbatch.results.figure import ShownFigure
 
     loops = not isinstance(base, RigidBase)
-    figure = Figure(figsize=(7.0, 9.0 if loops else 7.0), layout="constrained")
+    figure = ShownFigure(figsize=(7.0, 9.0 if loops else 7.0), layout="constrained")
     names: list[Any] = [["rotation"] * 2, ["velocity"] * 2, ["energy"] * 2, ["ground"] * 2]
     axes = figure.subplot_mosaic([*names, ["left", "right"]] if loops else names)
     t = history["t"].to_numpy()
@@ -53,9 +53,9 @@ def plot(history: "pd.DataFrame", events: "pd.DataFrame", pier: Pier, base: Base
 def plot_cdf(peaks: "pd.DataFrame", varied: Sequence[str], count: str) -> "Figure":
     """See :meth:`rockbatch.results.opened.Results.plot_cdf`, which hands over the rows of peaks.csv, the varied keys,
     and what counts as one record."""
-    from matplotlib.figure import Figure
+    from rockbatch.results.figure import ShownFigure
 
-    figure = Figure(figsize=(6.0, 4.0), layout="constrained")
+    figure = ShownFigure(figsize=(6.0, 4.0), layout="constrained")
     axes = figure.subplots()
     runs = simulated(peaks[peaks["case"] != ""])
     keys = [name for name in ("case", *varied, "scale") if name == "case" or runs[name].nunique() > 1]

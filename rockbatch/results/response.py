@@ -1,12 +1,15 @@
 """What a simulation returns: the histories of one record on one foundation."""
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
+from rockbatch.errors import InputError
 from rockbatch.pier import Base, Pier
+from rockbatch.results.columns import in_words
+from rockbatch.showing import Shown
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -35,9 +38,9 @@ EVENT_TYPES = {"t": "float64", "kind": "str", "pivot": "str", "before": "int64",
 """Columns of the table of events."""
 
 
-@dataclass(frozen=True, eq=False)
-class Response:
-    """Histories of one run. SI units; angles in radians; energy per unit mass.
+@dataclass(frozen=True, eq=False, repr=False)
+class Response(Shown):
+    """What one run came to, and its histories. SI units; angles in radians; energy per unit mass.
 
     Attributes
     ----------
@@ -80,6 +83,22 @@ class Response:
     restraints : DataFrame or None
         Elongation [m] and force [N/kg], positive in tension, of every damper and tendon at the rows of ``history``, such as
         ``damper 1 left force``; ``None`` without.
+    row : Series or None
+        What the run came to: its row of ``peaks.csv``, by the names and in the units of its columns; NaN, or "", where one
+        does not apply.
+
+    Examples
+    --------
+    >>> pier, base = rb.Pier(alpha=0.2, p=1.0), rb.ElasticBase(beta=50, epsilon=0.1)
+    >>> motion = rb.pulse("sine", name="one-sine", amplitude=9.81, period=0.5, dt=0.005, duration=2.0)
+    >>> response = rb.simulate(pier, base, motion)
+    >>> response.status, int(response.row["impacts"])
+    ('ok', 5)
+    >>> f"{response.theta_max / pier.alpha:.4f}", response.theta_max_error < 1e-4 * pier.alpha
+    ('0.1713', True)
+    >>> response.history[["t", "theta", "omega"]].tail(1).round(4)
+           t   theta   omega
+    822  4.0  0.0014 -0.0801
     """
 
     record: str
@@ -96,6 +115,37 @@ class Response:
     forces: "pd.DataFrame | None" = field(default=None, repr=False)
     impacts: "pd.DataFrame | None" = field(default=None, repr=False)
     restraints: "pd.DataFrame | None" = field(default=None, repr=False)
+    row: "pd.Series[Any] | None" = None
+
+    @property
+    def theta_max(self) -> float:
+        """Greatest rotation |θ| until the end of the run [rad]; NaN where nothing was run."""
+        return self.pier.alpha * self._number("theta_max_over_alpha")
+
+    @property
+    def theta_max_error(self) -> float:
+        """Estimated error of ``theta_max`` [rad]; NaN with a fixed step, and where the pier did not stand."""
+        return self.pier.alpha * self._number("theta_max_error")
+
+    @property
+    def theta_res(self) -> float:
+        """Residual rotation [rad]; NaN on the rigid base, and where the pier did not stand."""
+        return self.pier.alpha * self._number("theta_res_over_alpha")
+
+    @property
+    def settlement(self) -> float:
+        """Mean settlement of the supports [m]; NaN on the rigid base, and where the pier did not stand."""
+        return self._number("settlement_m")
+
+    @property
+    def reason(self) -> str:
+        """Why the run failed, or what made the pier fly; empty otherwise."""
+        return str(self._of_row()["reason"])
+
+    @property
+    def note(self) -> str:
+        """What else there is to know of a run that is right; empty otherwise."""
+        return str(self._of_row()["note"])
 
     @property
     def t(self) -> Samples:
@@ -137,9 +187,43 @@ class Response:
         springs: a matplotlib Figure, ``response.plot().savefig("pier.pdf")``."""
         from rockbatch.results.plots import plot
 
+        return plot(self.history, self.events, self.pier, self.base, self._title)
+
+    def _told(self) -> tuple[str, dict[str, str]]:
+        """See :class:`Shown`."""
+        kinds = self.events["kind"].value_counts(sort=False)
+        facts = {
+            "history": f"{len(self.history)} rows until {self.t[-1]:.2f} s" if len(self.history) else "",
+            "events": ", ".join(f"{count} × {kind}" for kind, count in kinds.items()),
+        }
+        if self.row is not None:
+            peak, error, time = (
+                in_words(name, self.row[name]) for name in ("theta_max_over_alpha", "theta_max_error", "t_max_s")
+            )
+            settled = in_words("settlement_m", self.row["settlement_m"])
+            facts = {
+                "θ_max/α": f"{peak}{f' ± {error}' if error else ''} at {time} s" if peak else "",
+                "θ_res/α": in_words("theta_res_over_alpha", self.row["theta_res_over_alpha"]),
+                "settlement": settled and f"{settled} mm",
+                "reason": self.reason,
+                "note": self.note,
+            } | facts
+        return f"response {self._title}", facts
+
+    @property
+    def _title(self) -> str:
         sign = f", polarity {self.polarity}" if self.polarity != "+" else ""
-        title = f"{self.record} × {self.scale:g}{sign}, {self.case}: {self.status}"
-        return plot(self.history, self.events, self.pier, self.base, title)
+        return f"{self.record} × {self.scale:g}{sign}, {self.case}: {self.status}"
+
+    def _of_row(self) -> "pd.Series[Any]":
+        if self.row is None:
+            raise InputError(
+                f"{self._title}: these are histories alone; take them from `open_results(...).response(...)`"
+            )
+        return self.row
+
+    def _number(self, column: str) -> float:
+        return float(self._of_row()[column])
 
     def _history(self, column: str) -> Samples:
         return self.history[column].to_numpy(dtype=np.float64)

@@ -1,6 +1,7 @@
 """Histories of one run: what the core wrote, with names, units and what follows from it."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -10,15 +11,15 @@ from rockbatch.core.records import numbers
 from rockbatch.errors import InputError
 from rockbatch.motions.motion import Motion, Samples
 from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, problems
-from rockbatch.results.columns import TERMS
+from rockbatch.results.columns import TERMS, as_series, row
 from rockbatch.results.outcome import Outcome
 from rockbatch.results.response import EVENT_TYPES, Response
 from rockbatch.simulation import restraints
-from rockbatch.simulation.forces import at_rows, forces_table, impacts_table
+from rockbatch.simulation.forces import at_rows, forces_table, impacts_table, peak_forces
 from rockbatch.simulation.models import block, ground_of, least_substeps, springs
 from rockbatch.simulation.runs import Run, run_fixed, steps_of, written_run
 from rockbatch.simulation.settling import run_to_tolerance
-from rockbatch.study.spec import LEAST_TOLERANCE
+from rockbatch.study.spec import LEAST_TOLERANCE, Case
 
 _EVENTS = {
     types.SEPARATION_LEFT: ("separation", "left"),
@@ -52,7 +53,7 @@ def simulate(
     forces: bool = False,
     wait: bool = True,
 ) -> Response:
-    """Histories of one run.
+    """One run: what it comes to, as a row of peaks.csv, and its histories.
 
     Parameters
     ----------
@@ -73,10 +74,27 @@ def simulate(
     wait : bool
         Go on after ``quiet_s`` until nothing that comes later can exceed the peak; ``False``, with ``substeps``: end there.
 
+    Returns
+    -------
+    Response
+        ``status``, ``theta_max`` [rad], ``theta_max_error``, ``settlement`` [m], ``reason`` and the whole ``row``, but for the
+        settlement by the other spring law; and the histories ``t``, ``theta``, …, of the same steps.
+
     Raises
     ------
     InputError
-        If the pier cannot stand on the foundation, with the limits.
+        If the pier cannot stand on the foundation, with the limits; if the run would take too many steps.
+
+    Examples
+    --------
+    >>> motion = rb.pulse("sine", name="one-sine", amplitude=9.81, period=0.5, dt=0.005, duration=2.0)
+    >>> response = rb.simulate(rb.Pier(alpha=0.2, p=1.0), rb.RigidBase(), motion)
+    >>> response
+    <response one-sine × 1, rigid: ok>
+      θ_max/α  0.17801 ± 4e-11 at 1.30 s
+      history  808 rows until 4.00 s
+      events   1 × lift-off, 3 × impact
+    >>> response.plot().savefig("one-sine.pdf")
     """
     wrong = problems(pier, foundation)
     if not tolerance >= LEAST_TOLERANCE:
@@ -97,8 +115,14 @@ def simulate(
         outcome = run_to_tolerance(pier, foundation, motion, tolerance, quiet_s)
     else:
         outcome = run_fixed(pier, foundation, motion, substeps, quiet_s, wait=wait)
-    run = Run(pier, foundation, motion)
-    return histories(run, outcome, quiet_s, case or foundation.name, {}, ledger=ledger, forces=forces, wait=wait)
+    if not outcome.was_run:
+        raise InputError(f"{motion.name}: {outcome.reason}")
+    run, name = Run(pier, foundation, motion), case or foundation.name
+    found = histories(run, outcome, quiet_s, name, {}, ledger=ledger, forces=forces, wait=wait)
+    if ledger or forces:
+        rows = written(run, outcome, quiet_s, every_step=True, wait=wait)
+        outcome = with_observed(run, outcome, rows, ledger, forces)
+    return replace(found, row=as_series(row(motion, "+", 1.0, Case(name, pier, foundation, {}), outcome)))
 
 
 def written(run: Run, outcome: Outcome, quiet_s: float, every_step: bool, wait: bool = True) -> np.recarray:
@@ -132,6 +156,19 @@ def energies(run: Run, rows: np.recarray) -> Samples:
         return pier.inertia_about_pivot * numbers(ledger)
     ledger_on_springs(springs(pier, base), rows, ground, dt, ledger)
     return numbers(ledger)
+
+
+def with_observed(run: Run, outcome: Outcome, rows: np.recarray, ledger: bool, forces: bool) -> Outcome:
+    """With what observers make of the run, written down at every step: the energy ledger at its end, with the greatest
+    remainder on the way, and the greatest forces."""
+    if ledger:
+        terms = energies(run, rows)
+        at_end = dict(zip(TERMS, map(float, terms[-1]), strict=True))
+        outcome = replace(outcome, energies=at_end | {"remainder": float(abs(terms[:, -1]).max())})
+    if forces:
+        peaks, note = peak_forces(run, outcome, rows)
+        outcome = replace(outcome, forces=peaks, note="; ".join(filter(None, (outcome.note, note))))
+    return outcome
 
 
 def histories(

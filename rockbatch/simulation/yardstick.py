@@ -6,6 +6,7 @@ come here, for SciPy takes a second to load.
 """
 
 import math
+import time
 from typing import Any
 
 import numpy as np
@@ -23,8 +24,18 @@ from rockbatch.simulation.models import springs
 MOST_EVENTS = 100_000
 
 
+class OutOfTimeError(Exception):
+    """A solver that was not ready in the time that it was given."""
+
+
 def solve(
-    pier: Pier, base: ElasticBase, motion: Motion, method: str, tolerance: float, quiet_s: float = 2.0
+    pier: Pier,
+    base: ElasticBase,
+    motion: Motion,
+    method: str,
+    tolerance: float,
+    quiet_s: float = 2.0,
+    seconds: float = math.inf,
 ) -> tuple[str, float]:
     """Status and θ_max [rad] of a run on springs.
 
@@ -36,6 +47,8 @@ def solve(
         Relative, and absolute in units of δ_y for v, α for θ, these times ω_v and p for their rates, and 1 for z.
     quiet_s : float
         Time after the record [s]; the run ends there even if the pier might still overturn.
+    seconds : float
+        What the solver may take [s]; raises :class:`OutOfTimeError` then.
 
     Returns
     -------
@@ -57,7 +70,11 @@ def solve(
     branch = branch_when_pressed(m.law)
     contact, supports = Contact(1.0, 1.0, branch, branch, 0.0), Supports(math.nan, math.nan)
 
+    until = time.monotonic() + seconds
+
     def rhs(s: float, y: Any) -> Any:
+        if time.monotonic() > until:
+            raise OutOfTimeError
         return rates(m, State(*y.tolist()), contact, horizontal(s), vertical(s))
 
     def values(s: float, state: State) -> Any:  # the rates, here the state itself, matter to slopes only

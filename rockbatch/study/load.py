@@ -100,6 +100,12 @@ def load_study(path: str | os.PathLike[str], *, motions: str | os.PathLike[str] 
     InputError
         With every mistake in the order of the file: the line, what was found, what was expected, and what to
         write instead.
+
+    Examples
+    --------
+    >>> study = rb.load_study("pier4.toml")
+    >>> study.title, [case.name for case in study.cases]
+    ('Pier 4', ['rigid', 'pads'])
     """
     file = TomlFile.read(Path(path))
     file.homes = HOMES

@@ -2,6 +2,7 @@
 
 import csv
 import math
+from contextlib import contextmanager
 from dataclasses import replace
 
 import numpy as np
@@ -9,12 +10,14 @@ import pytest
 from studies import PADS, RIGID, SINE, study_text, write_study
 
 import rockbatch.analysis.error_and_time
-from rockbatch.analysis.error_and_time import COLUMNS, SUBSTEPS, measure, reference, spread
+from rockbatch.analysis.error_and_time import COLUMNS, SUBSTEPS, Clock, measure, reference, references, spread
+from rockbatch.batch.listening import Listener
 from rockbatch.batch.plan import Plan
 from rockbatch.cli import main
+from rockbatch.errors import InputError
 from rockbatch.motions import Motion, pulse
 from rockbatch.pier import ElasticBase, Pier, YieldingBase
-from rockbatch.simulation import run_fixed
+from rockbatch.simulation import run_fixed, yardstick
 from rockbatch.simulation.yardstick import solve
 from rockbatch.study import load_study
 from rockbatch.study.suite import ground_motions
@@ -157,6 +160,92 @@ def test_the_yardstick_tells_flight():
     assert theta_max / pier.alpha == pytest.approx(ours.theta_max / pier.alpha, abs=1e-6)
 
 
+class Heard(Listener):
+    """Keeps what is said, and how much was done of how much."""
+
+    def __init__(self):
+        self.said, self.counts = [], []
+
+    def say(self, text):
+        self.said.append(text)
+
+    @contextmanager
+    def progress(self, total):
+        self.counts.append([0, total])
+
+        def told(more):
+            self.counts[-1][0] += more
+
+        yield told
+
+
+class Scripted(Clock):
+    """A clock with time for so many questions, and none after them."""
+
+    def __init__(self, questions):
+        super().__init__()
+        self.questions = questions
+
+    def left(self, share=1.0):
+        self.questions -= 1
+        return math.inf if self.questions >= 0 else -1.0
+
+
+def test_references_stop_in_time_and_are_spread_over_the_study_wherever_they_do(measured):
+    study, every, _ = measured
+    motions, heard = ground_motions(study), Heard()
+    kept = references(study, motions, 12, heard, Scripted(2))
+    assert len(kept) == 2
+    assert [one.outcome.theta_max for one in kept] == [every[i].outcome.theta_max for i in (0, 5)]
+    assert heard.counts == [[2, 12]]
+    assert "left out, for want of time: 10 runs (--seconds gives more)" in heard.said
+    with pytest.raises(InputError, match="give it more time"):
+        references(study, motions, 12, Listener(), Scripted(0))
+
+
+def test_without_time_the_setting_of_the_study_is_measured_and_nothing_else(measured):
+    study, every, _ = measured
+    heard = Heard()
+    table = measure(study, every[1:3], listener=heard, clock=Clock(1e-9))
+    assert table["method"].to_list() == ["study"]
+    assert table["error_max"][0] <= study.numerics.tolerance
+    assert [told for told in heard.said if told.startswith("left out")] == [
+        "left out, for want of time: from 1 steps per sample on",
+        "left out, for want of time: SciPy DOP853 from rtol 1e-04 on",
+        "left out, for want of time: SciPy LSODA from rtol 1e-04 on",
+    ]
+
+
+def test_a_solver_that_takes_too_long_is_not_asked_for_more(measured, monkeypatch):
+    study, every, _ = measured
+    asked = []
+
+    def solved(pier, base, motion, method, tolerance, quiet_s, seconds):
+        asked.append((method, tolerance))
+        if method == "DOP853" and tolerance < 1e-4:
+            raise yardstick.OutOfTimeError
+        return "ok", 0.0
+
+    monkeypatch.setattr(yardstick, "solve", solved)
+    heard = Heard()
+    table = measure(study, every, listener=heard)
+    scipy = table[table["method"].str.startswith("SciPy")]
+    assert list(zip(scipy["method"], scipy["tolerance"], strict=True)) == [
+        ("SciPy DOP853", 1e-4), *(("SciPy LSODA", tolerance) for tolerance in (1e-4, 1e-6, 1e-8, 1e-10)),
+    ]  # fmt: skip
+    assert [pair for pair in asked if pair[0] == "DOP853"] == [("DOP853", 1e-4)] * 2 + [("DOP853", 1e-6)]
+    assert "left out, for want of time: SciPy DOP853 from rtol 1e-06 on" in heard.said
+    assert [total for _, total in heard.counts] == [13 * 12, 16]
+    assert heard.counts[0][0] == 13 * 12
+
+
+def test_the_yardstick_stops_in_time():
+    pier, base = Pier(alpha=0.15, p=1.0), ElasticBase(beta=30.0, epsilon=0.2)
+    motion = pulse("sine", name="sine", amplitude=0.6 * 9.81, period=0.8, dt=0.02, duration=3.0)
+    with pytest.raises(yardstick.OutOfTimeError):
+        solve(pier, base, motion, "LSODA", 1e-9, seconds=0.0)
+
+
 @pytest.fixture
 def brief(monkeypatch):
     """One loose tolerance of SciPy's and one pass: the rows are what matters."""
@@ -197,6 +286,16 @@ def test_without_results_there_is_a_table_but_no_report(study_file, tmp_path, br
     with open(out / "accuracy.csv", encoding="utf-8", newline="") as file:
         methods = {row["method"] for row in csv.DictReader(file)}
     assert methods == {"located", "not located", "study"}  # the run is on the rigid base: nothing for the yardstick
+
+
+def test_the_command_leaves_scipy_out_where_it_is_told_to(study_file, tmp_path, brief, capsys):
+    out = tmp_path / "out"
+    assert main(["accuracy", str(study_file), "--out", str(out), "--runs", "3", "--no-scipy"]) == 0
+    assert "SciPy" not in (out / "accuracy.csv").read_text(encoding="utf-8")
+    with pytest.raises(SystemExit) as ended:
+        main(["accuracy", str(study_file), "--seconds", "0"])
+    assert ended.value.code == 2
+    assert "must be above 0" in capsys.readouterr().err
 
 
 def test_a_damaged_table_does_not_keep_the_report_from_being_written(study_file, tmp_path):

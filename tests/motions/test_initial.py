@@ -13,7 +13,8 @@ from rockbatch.batch.digests import digests
 from rockbatch.motions import Motion, measures, read_motions
 from rockbatch.motions.component import Component
 from rockbatch.motions.formats import RecordFile, read_record
-from rockbatch.motions.motion import Initial, MotionSet
+from rockbatch.motions.motion import Initial
+from rockbatch.motions.motion_set import MotionSet
 from rockbatch.motions.orientation import Orientation
 from rockbatch.motions.pairing import to_motions
 from rockbatch.motions.scaling import Target, at_target

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from studies import PADS, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
 
@@ -98,3 +99,77 @@ def test_a_plot_shows_the_histories_over_their_units_and_each_loop_while_its_spr
         assert np.nanmax(ax.lines[0].get_ydata()) < 0
     figure.savefig(tmp_path / "response.png")
     assert (tmp_path / "response.png").stat().st_size > 10_000
+
+
+STUDY = study_text(
+    pulses=[SINE | {"dt_s": 0.005, "duration_s": 6.0}],
+    cases=[RIGID, PADS | {"name": "yielding", "eta": 2.2, "epsilon": 0.1}],
+    numerics={"quiet_s": 0.0},
+    output={"both_laws": False, "ledger": True, "forces": True},
+)
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("study")
+    rb.run(write_study(folder, STUDY), folder / "out")
+    return rb.open_results(folder / "out")
+
+
+@pytest.mark.parametrize("base", ["rigid", "yielding"])
+def test_a_response_has_the_row_of_the_table_simulated_or_opened(finished, base):
+    simulated = rb.simulate(PIER, BASES[base], PULSE, quiet_s=0.0, ledger=True, forces=True)
+    opened = finished.response(case=base)
+    table = finished.peaks[finished.peaks["case"] == base].iloc[0]
+    nothing = list(set(table.index) - set(simulated.row.index))  # as forces in kN of a pier without a mass
+    assert table[nothing].isna().all()
+    for row in (simulated.row, opened.row):
+        assert list(row.index) == [name for name in table.index if name in row]
+        for name, value in table.drop(nothing).items():
+            expected = value if isinstance(value, str) else pytest.approx(value, rel=1e-9, abs=0, nan_ok=True)
+            assert row[name] == expected, name
+    assert simulated.theta_max == pytest.approx(opened.theta_max, rel=1e-9)
+    assert np.abs(simulated.theta).max() <= simulated.theta_max * (1 + 1e-12)
+    assert simulated.theta_max == pytest.approx(np.abs(simulated.theta).max(), rel=1e-3)  # the peak is between samples
+    assert 0 < simulated.theta_max_error < 1e-4 * PIER.alpha
+
+
+def test_what_does_not_apply_is_nan_and_words_are_empty():
+    fixed = rb.simulate(PIER, BASES["rigid"], PULSE, substeps=4)
+    assert np.isnan([fixed.theta_max_error, fixed.settlement, fixed.theta_res]).all()
+    assert (fixed.status, fixed.reason, fixed.note) == ("ok", "", "")
+    assert "energy_input_J_kg" not in fixed.row
+
+
+def test_an_overturned_pier_says_so_in_its_row_and_in_its_repr():
+    strong = rb.pulse("sine", name="strong", amplitude=40.0, period=2.0, dt=0.005, duration=2.0)
+    response = rb.simulate(PIER, BASES["rigid"], strong, case="rock")
+    assert response.row["status"] == response.status == "overturned"
+    assert repr(response).startswith("<response strong × 1, rock: overturned>")
+    assert np.isnan(response.theta_max_error)
+
+
+def test_a_response_tells_of_itself_in_a_few_lines(response):
+    lines = repr(response).splitlines()
+    assert len(lines) <= 8
+    assert f"{response.theta_max / PIER.alpha:.5f} ± " in lines[1]
+    impacts = (response.events["kind"] == "impact").sum()
+    assert f"{impacts} × impact" in lines[-1]
+    html = response._repr_html_()
+    assert html.count("<tr>") == len(lines) - 1
+    assert f"{response.theta_max / PIER.alpha:.5f}" in html
+
+
+def test_a_run_that_would_take_too_long_is_refused_with_the_reason():
+    endless = rb.Motion("endless", 0.001, np.zeros(1000))
+    with pytest.raises(rb.InputError, match=r"endless: would take .* steps"):
+        rb.simulate(PIER, BASES["rigid"], endless, quiet_s=1e9)
+
+
+def test_histories_alone_say_where_there_is_a_row():
+    from dataclasses import replace
+
+    alone = replace(rb.simulate(PIER, BASES["rigid"], PULSE), row=None)
+    assert "θ_max" not in repr(alone)
+    with pytest.raises(rb.InputError, match="histories alone"):
+        _ = alone.theta_max

@@ -39,6 +39,17 @@ class ReadOptions:
         Counts per ``unit`` (per m/s² where no unit is stated) of MiniSEED and SAC files.
     instead : frozenset of str
         Which of these a manifest states for this very file, in place of what it says itself.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> _ = Path("shake.txt").write_text("0.0 0.1\\n0.3 0.0\\n-0.2 0.1\\n")
+    >>> stated = rb.ReadOptions(unit="g", dt=0.01, columns=("090", "up"))
+    >>> rb.read_motions("shake.txt", options=stated)
+    <1 ground motion>
+      records   shake.090
+      PGA       0.300 g
+      vertical  1 of 1
     """
 
     unit: str | None = None

@@ -1,0 +1,183 @@
+"""Everything that was found in files and folders: motions in order, and what is none."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from difflib import get_close_matches
+from typing import TYPE_CHECKING, Any, overload
+
+from rockbatch.errors import InputError
+from rockbatch.motions import measures
+from rockbatch.motions.motion import LeftOut, Motion, Unusable
+from rockbatch.showing import Shown, several
+from rockbatch.units import GRAVITY
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+COLUMNS = (
+    "record",
+    "file_h",
+    "file_v",
+    "dt_s",
+    "npts",
+    "duration_s",
+    "pga_h_g",
+    "pga_v_g",
+    "pgv_h_m_s",
+    "pgd_h_m",
+    "arias_m_s",
+    "d5_95_s",
+    "azimuth_deg",
+    "magnitude",
+    "distance_km",
+    "processed",
+    "check",
+    "processing",
+    "event",
+    "station_name",
+    "direction",
+    "station",
+)
+"""Of :meth:`MotionSet.table`, and keys of :func:`row`."""
+
+TEXTS = (
+    "record", "file_h", "file_v", "processed", "check", "processing", "event", "station_name", "direction", "station",
+)  # fmt: skip
+"""Those of them that hold words; the others hold numbers."""
+
+_AT_A_GLANCE = ["record", "event", "station_name", "direction", "dt_s", "duration_s", "pga_h_g", "pga_v_g", "pgv_h_m_s"]
+
+
+@dataclass(frozen=True, repr=False)
+class MotionSet(Shown):
+    """Motions in order, and beside them what could not be used, and what was left out on purpose.
+
+    It has a length and is gone through as a list of its motions; one is taken by its place or by its name.
+
+    Attributes
+    ----------
+    motions : list of Motion
+    unusable : list of Unusable
+        Files, or components, that could not be used, each with its reason.
+    left_out : list of LeftOut
+        Files and records that nobody misses, each with its reason.
+
+    Examples
+    --------
+    >>> motions = rb.read_motions("motions/near_fault")
+    >>> len(motions), motions[0].name
+    (10, '20160214_001345_NBLC_20.N00E')
+    >>> [round(motion.pga, 2) for motion in motions[:2]]
+    [1.86, 1.8]
+    >>> motions["CHAN24"].dt
+    0.01
+    >>> motions.table()[["record", "pga_h_g", "pga_v_g"]].nlargest(1, "pga_h_g").round(2)
+                             record  pga_h_g  pga_v_g
+    8  20161113_110259_WTMC_20.N28W     0.99     1.84
+    """
+
+    motions: list[Motion] = field(default_factory=list)
+    unusable: list[Unusable] = field(default_factory=list)
+    left_out: list[LeftOut] = field(default_factory=list)
+
+    @property
+    def without_vertical(self) -> list[str]:
+        """Names of the motions whose vertical component was asked for, and is not there."""
+        return [motion.name for motion in self.motions if motion.lacks_vertical]
+
+    def __len__(self) -> int:
+        return len(self.motions)
+
+    def __iter__(self) -> Iterator[Motion]:
+        return iter(self.motions)
+
+    def __contains__(self, which: object) -> bool:
+        return any(motion is which or motion.name == which for motion in self.motions)
+
+    @overload
+    def __getitem__(self, which: int | str) -> Motion: ...
+    @overload
+    def __getitem__(self, which: slice) -> list[Motion]: ...
+    def __getitem__(self, which: int | str | slice) -> Motion | list[Motion]:
+        """A motion by its place or its name, or several by their places; ``InputError`` for a name that is not there."""
+        if not isinstance(which, str):
+            return self.motions[which]
+        for motion in self.motions:
+            if motion.name == which:
+                return motion
+        close = get_close_matches(which, [motion.name for motion in self.motions], 1)
+        hint = f'did you mean "{close[0]}"?' if close else f"there are {_listed(self.motions)}"
+        raise InputError(f'there is no motion "{which}"; {hint}')
+
+    def table(self) -> "pd.DataFrame":
+        """What is known of each motion, a row for each, as ``rockbatch motions --csv`` has it.
+
+        Returns
+        -------
+        DataFrame, shape (len, 22)
+            ``record``; ``file_h`` and ``file_v``, where its components are from; ``dt_s``, ``npts``, ``duration_s``;
+            ``pga_h_g``, ``pga_v_g`` [9.81 m/s²], ``pgv_h_m_s``, ``pgd_h_m``, ``arias_m_s`` and ``d5_95_s``, measures of the
+            record (:mod:`rockbatch.motions.measures`); ``azimuth_deg``, ``magnitude``, ``distance_km``, where known;
+            ``processed``, "yes" or "no", as its agency says; ``check``, what is odd about it; ``processing``, what was done
+            to it here; ``event``, ``station_name``, ``direction``, as its header says; ``station``, what components that
+            count as one record share. Words are "" and numbers NaN where there are none.
+        """
+        import pandas as pd
+
+        rows = pd.DataFrame([row(motion) for motion in self.motions], columns=list(COLUMNS))
+        texts = list(TEXTS)
+        rows[texts] = rows[texts].fillna("").astype("str")
+        for name in rows.columns.difference([*texts, "npts"]):
+            rows[name] = rows[name].astype("float64")
+        return rows.astype({"npts": "int64"})
+
+    def _told(self) -> tuple[str, dict[str, str]]:
+        """See :class:`Shown`."""
+        pga = sorted(motion.pga / GRAVITY for motion in self.motions)
+        vertical = sum(motion.vertical is not None for motion in self.motions)
+        return several(len(self), "ground motion") or "no ground motions", {
+            "records": _listed(self.motions),
+            "PGA": " to ".join(f"{value:.3f}" for value in dict.fromkeys((pga[0], pga[-1]))) + " g" if pga else "",
+            "vertical": f"{vertical} of {len(self)}" if pga else "",
+            "not used": several(len(self.unusable), "file") + (", see .unusable" if self.unusable else ""),
+            "left out": several(len(self.left_out), "file") + (", see .left_out" if self.left_out else ""),
+        }
+
+    def _beneath(self) -> "pd.DataFrame":
+        """See :class:`Shown`."""
+        table = self.table()[_AT_A_GLANCE].round(3)
+        return table.loc[:, (table != "").any()]  # without words that nobody knows
+
+
+def row(motion: Motion) -> dict[str, Any]:
+    """The row of a motion in :meth:`MotionSet.table`; None where there is nothing to say."""
+    a, dt, vertical = motion.horizontal, motion.dt, motion.pga_vertical
+    return {
+        "record": motion.name,
+        "file_h": motion.source,
+        "file_v": motion.vertical_source,
+        "dt_s": dt,
+        "npts": motion.npts,
+        "duration_s": motion.duration,
+        "pga_h_g": motion.pga / GRAVITY,
+        "pga_v_g": None if vertical is None else vertical / GRAVITY,
+        "pgv_h_m_s": measures.pgv(a, dt, motion.initial),
+        "pgd_h_m": measures.believable_pgd(motion),
+        "arias_m_s": measures.arias_intensity(a, dt),
+        "d5_95_s": measures.significant_duration(a, dt),
+        "azimuth_deg": motion.azimuth,
+        "magnitude": motion.magnitude,
+        "distance_km": motion.distance_km,
+        "processed": None if motion.processed is None else ("yes" if motion.processed else "no"),
+        "check": ", ".join(finding.what for finding in motion.findings) or None,
+        "processing": "; ".join(motion.notes),
+        "event": motion.origin.event or None,
+        "station_name": motion.origin.station or None,
+        "direction": motion.origin.direction or None,
+        "station": motion.of_station,
+    }
+
+
+def _listed(motions: Sequence[Motion]) -> str:
+    names = [motion.name for motion in motions[:3]]
+    return ", ".join([*names, *([f"and {len(motions) - 3} more"] if len(motions) > 3 else [])])

@@ -1,0 +1,164 @@
+"""The figure of the peaks with matplotlib, as Palmeri & Makris (2007), Fig. 7; the report draws its own."""
+
+import math
+import textwrap
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from rockbatch.checks.suite import simulated
+from rockbatch.errors import InputError
+from rockbatch.results.suite_statistics import NO_PEAK
+from rockbatch.study import PIER_KEYS
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+MOST_PANELS = 24
+MOST_COLUMNS = 4
+TITLE = 32
+"""Letters in a line of a panel's title."""
+
+INSTEAD = {
+    "overturned": ("X", "overturned"),
+    "flight": ("^", "left the ground"),
+    "failed": ("$?$", "failed, see reason"),
+}
+"""Markers, and their words, of runs without a largest rotation; they stand above the axis' values."""
+
+SPREAD = 0.4
+"""Of the distance of two foundations, over which the marks of different piers and scales are spread."""
+
+_LINES = ("-", "--", ":", "-.")
+
+
+@dataclass(frozen=True)
+class _Panels:
+    """What all panels share: the places of foundations, the colours of piers and scales, and the top of the axis."""
+
+    places: dict[str, int]
+    colours: dict[str, str]
+    lines: dict[str, str]
+    top: float
+
+    def draw(self, axes: "Axes", runs: "pd.DataFrame") -> None:
+        """The runs of one record."""
+        axes.axhspan(self.top, 1.15 * self.top, color="0.95")
+        axes.set(xlim=(-1, max(len(self.places), 1)), ylim=(0, 1.15 * self.top))
+        axes.grid(alpha=0.3)
+        axes.set_xticks(list(self.places.values()), list(self.places), rotation=90 if len(self.places) > 3 else 0)
+        axes.tick_params(labelsize="x-small")
+        for group, of_group in runs.groupby("group", sort=False):
+            colour = self.colours[str(group)]
+            beside = SPREAD * (list(self.colours).index(str(group)) / len(self.colours) - 0.5)
+            stood = of_group[of_group["status"] == "ok"]
+            springs = stood[~stood["rigid"]]
+            x, error = (
+                springs["foundation"].map(self.places) + beside,
+                springs["theta_max_error"].fillna(0.0),
+            )
+            axes.errorbar(
+                x, springs["theta_max_over_alpha"], error, fmt="o", markersize=4, color=colour, label=group or None
+            )
+            for name, theta in stood[stood["rigid"]][["foundation", "theta_max_over_alpha"]].itertuples(index=False):
+                label = ", ".join(filter(None, (name, str(group))))
+                axes.axhline(theta, color=colour, linewidth=1.0, linestyle=self.lines[name], label=label)
+            for status, (marker, words) in INSTEAD.items():
+                places = of_group["foundation"][of_group["status"] == status].map(self.places).fillna(-0.6) + beside
+                if len(places):
+                    height = [1.07 * self.top] * len(places)
+                    axes.plot(places, height, linestyle="", marker=marker, color=colour, label=words)
+
+
+def plot(peaks: "pd.DataFrame", info: Mapping[str, Any]) -> "Figure":
+    """See :meth:`rockbatch.results.opened.Results.plot`, which hands over peaks.csv and run.json.
+
+    Of many records, the :data:`MOST_PANELS` with the worst runs have a panel, in order of peak ground acceleration. Raises
+    ``InputError`` where there are no runs.
+    """
+    from rockbatch.results.figure import ShownFigure
+
+    runs = _runs(peaks, info)
+    if runs.empty:
+        raise InputError("there are no runs to plot: no record could be used, as the column reason of peaks.csv says")
+    records, every = _records(runs, info), runs["record"].nunique()
+    panels = _panels(runs[runs["record"].isin(records)])
+    columns = min(MOST_COLUMNS, len(records))
+    rows = math.ceil(len(records) / columns)
+    figure = ShownFigure(figsize=(1.2 + 2.2 * columns, 1.4 + 1.9 * rows), layout="constrained")
+    grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
+    labels = {record["record"]: record.get("label") for record in info["records"]}
+    for axes, name in zip(grid.flat, records, strict=False):
+        panels.draw(axes, runs[runs["record"] == name])
+        axes.set_title(textwrap.fill(labels.get(name) or name, TITLE), fontsize="small")
+    for axes in grid.flat[len(records) :]:
+        axes.set_visible(False)
+    for axes in grid.flat[max(len(records) - columns, 0) : len(records)]:
+        axes.tick_params(labelbottom=True)
+    shown = f" ({len(records)} of {every} records, the worst)" if len(records) < every else ""
+    figure.suptitle(info["study"]["title"] + shown)
+    figure.supylabel("θ$_{max}$/α")
+    _legend(figure)
+    return figure
+
+
+def _runs(peaks: "pd.DataFrame", info: Mapping[str, Any]) -> "pd.DataFrame":
+    """The rows that were simulated, with the ``foundation`` of each in words, whether it is ``rigid``, and its ``group``: the
+    varied values of its pier, and its scale."""
+    runs = simulated(peaks[peaks["case"] != ""])
+    varied = info["varied"]
+    rigid = {case["case"] for case in info["cases"] if case["base"] == "rigid"}
+    of_pier = [
+        name for name in (*varied, "scale") if name in PIER_KEYS or (name == "scale" and runs[name].nunique() > 1)
+    ]
+    of_base = [name for name in varied if name not in PIER_KEYS]
+    return runs.assign(
+        foundation=_words(runs, ["case", *of_base]), rigid=runs["case"].isin(rigid), group=_words(runs, of_pier)
+    )
+
+
+def _words(runs: "pd.DataFrame", names: Sequence[str]) -> "list[str]":
+    """The values of columns ``names`` in words, for each run; those that do not apply are left out."""
+
+    def told(name: str, value: object) -> str:
+        if value != value:
+            return ""
+        written = f"{value:g}" if isinstance(value, float) else str(value)
+        return written if name == "case" else f"{name} = {written}"
+
+    columns = [[told(name, value) for value in runs[name]] for name in names]
+    return [", ".join(filter(None, words)) for words in zip(*columns, strict=True)] if columns else [""] * len(runs)
+
+
+def _records(runs: "pd.DataFrame", info: Mapping[str, Any]) -> list[str]:
+    """Records that have a panel, in order of their PGA: all, or those with the worst runs."""
+    badness = runs["theta_max_over_alpha"].where(~runs["status"].isin(NO_PEAK), math.inf)
+    worst = badness.groupby(runs["record"]).max().sort_values(ascending=False, kind="stable")
+    pga = {record["record"]: record["pga_g"] for record in info["records"]}
+    return sorted(worst.index[:MOST_PANELS], key=lambda name: (pga.get(name, math.inf), name))
+
+
+def _panels(runs: "pd.DataFrame") -> _Panels:
+    stood = runs[runs["status"] == "ok"]
+    highest = float((stood["theta_max_over_alpha"] + stood["theta_max_error"].fillna(0.0)).max())
+    rigid = list(runs["foundation"][runs["rigid"]].unique())
+    springs = runs["foundation"][~runs["rigid"]].unique()
+    return _Panels(
+        places={str(name): place for place, name in enumerate(springs)},
+        colours={str(group): f"C{place % 10}" for place, group in enumerate(runs["group"].unique())},
+        lines={name: _LINES[place % len(_LINES)] for place, name in enumerate(rigid)},
+        top=1.1 * highest if highest > 0 else 1.0,
+    )
+
+
+def _legend(figure: "Figure") -> None:
+    """What lines, colours and markers mean, once for all panels."""
+    entries: dict[str, Artist] = {}
+    for axes in figure.axes:
+        for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
+            entries.setdefault(label, handle)
+    if entries:
+        figure.legend(list(entries.values()), list(entries), loc="outside lower center", ncols=4, fontsize="small")

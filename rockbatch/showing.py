@@ -1,0 +1,45 @@
+"""What objects tell of themselves: a few lines in a terminal, a small table in a notebook."""
+
+from collections.abc import Mapping
+from html import escape
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+MOST_ROWS = 12
+"""Of a table in a notebook."""
+
+
+class Shown:
+    """An object whose ``repr`` and whose picture in a notebook are made of the same few facts."""
+
+    def _told(self) -> tuple[str, Mapping[str, str]]:
+        """What it is, and facts about it by their names; those without words are left out."""
+        raise NotImplementedError
+
+    def _beneath(self) -> "pd.DataFrame | None":
+        """A table to show below the facts, in notebooks only; its first rows are."""
+        return None
+
+    def __repr__(self) -> str:
+        title, facts = self._told()
+        facts = {name: words for name, words in facts.items() if words}
+        width = max(map(len, facts), default=0)
+        return "\n".join([f"<{title}>", *(f"  {name:<{width}}  {words}" for name, words in facts.items())])
+
+    def _repr_html_(self) -> str:
+        title, facts = self._told()
+        rows = [f"<tr><th>{escape(name)}</th><td>{escape(words)}</td></tr>" for name, words in facts.items() if words]
+        shown = f"<p><strong>{escape(title)}</strong></p>" + (f"<table>{''.join(rows)}</table>" if rows else "")
+        table = self._beneath()
+        if table is None or table.empty:
+            return shown
+        more = len(table) - MOST_ROWS
+        rest = f"<p>and {more} more</p>" if more > 0 else ""
+        return shown + table.head(MOST_ROWS).to_html(index=False, na_rep="", border=0) + rest
+
+
+def several(n: int, noun: str) -> str:
+    """A number of things: "1 run", "2 runs"; empty for none."""
+    return "" if n == 0 else f"{n} {noun}" if n == 1 else f"{n} {noun}s"
