@@ -10,10 +10,10 @@ run: .venv/.run
 	$(BIN)/rockbatch run configs/fig7.toml
 
 test: .venv/.test
-	$(BIN)/python -m pytest -m "not slow"
+	$(BIN)/python -m pytest -n auto --dist loadfile -m "not slow"
 
 slow: .venv/.test
-	$(BIN)/python -m pytest -m slow
+	$(BIN)/python -m pytest -n auto --dist loadfile -m slow
 
 lint: .venv/.test
 	$(BIN)/ruff check .
