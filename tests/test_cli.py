@@ -262,6 +262,7 @@ class Interrupts:
         if name == "rockbatch.commands.run":
             os.kill(os.getpid(), signal.SIGINT)
 
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell ignores it in what it runs in the background
 sys.meta_path.insert(0, Interrupts())
 sys.argv = ["rockbatch", "run", {str(study)!r}]
 from rockbatch.__main__ import main

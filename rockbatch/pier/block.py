@@ -8,7 +8,7 @@ from typing import NamedTuple
 from rockbatch.errors import InputError
 from rockbatch.units import GRAVITY, LEAST, MOST
 
-POSSIBLE = {"alpha": (1e-4, math.pi / 2), "p": (1e-3, 1e3), "mu": (1e-3, 1e9), "gravity": (1e-3, 1e3)}
+POSSIBLE = {"alpha": (1e-4, math.pi / 2), "p": (1e-3, 1e3), "mu": (1e-3, 1e12), "gravity": (1e-3, 1e3)}
 """What a pier can be, far beyond what any is: p = 0.001 rad/s is one of 7000 km. Beyond it a run would never end."""
 
 

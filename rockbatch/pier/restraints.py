@@ -30,6 +30,15 @@ class Damper:
         a of a viscous damper.
     at : float, "left", "right" or None
         Offset from the centre of the base [m], positive to the right; None: one at each pivot.
+
+    Examples
+    --------
+    >>> steel = rb.Damper("hysteretic", f=0.05, yield_m=0.005)
+    >>> base = rb.RigidBase(restraints=(steel,))
+    >>> motion = rb.pulse("sine", name="one-sine", amplitude=9.81, period=0.5, dt=0.005, duration=2.0)
+    >>> response = rb.simulate(rb.Pier(alpha=0.2, p=1.0), base, motion)
+    >>> response.status
+    'ok'
     """
 
     kind: DamperKind
@@ -54,6 +63,14 @@ class Tendon:
         T_y/(M g) at which it yields, and is longer from then on; infinite where it does not.
     at : float, "left" or "right"
         Offset from the centre of the base [m], positive to the right.
+
+    Examples
+    --------
+    >>> base = rb.RigidBase(restraints=(rb.Tendon(psi=0.5, lam=0.3),))
+    >>> motion = rb.pulse("sine", name="one-sine", amplitude=9.81, period=0.5, dt=0.005, duration=2.0)
+    >>> response = rb.simulate(rb.Pier(alpha=0.2, p=1.0), base, motion)
+    >>> list(response.restraints)[1:]
+    ['tendon 1 elongation', 'tendon 1 force']
     """
 
     psi: float = 0.0

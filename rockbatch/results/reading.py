@@ -70,6 +70,11 @@ def read_saved(directory: Path) -> Saved:
     peaks = _read_peaks(directory / PEAKS, [] if problems else info["varied"], problems)
     if problems or peaks is None:
         raise InputError(*problems)
+    if unknown := {name for case in info["cases"] for name in case["columns"]} - set(info["varied"]):
+        raise InputError(
+            f"{directory / INFO}: cases vary {', '.join(sorted(unknown))}, and varied does not say so; start `rockbatch run` "
+            "again"
+        )
     for name in info["varied"]:
         words = any(isinstance(case["columns"].get(name), str) for case in info["cases"])
         if not words and peaks[name].dtype != "float64":
