@@ -311,7 +311,10 @@ def _outcomes() -> Iterator[str]:
 def _verified() -> Iterator[str]:
     """The section of the theory that lists what was compared with what."""
     theory = _included("THEORY.md", "verification.md")
-    yield theory.partition("## 12. Verified against\n")[2].partition("\n## ")[0]
+    _, heading, section = theory.partition("## 12. Verified against\n")
+    if not heading:
+        raise LookupError("THEORY.md has no section 12, Verified against: name the one that lists what was compared")
+    yield section.partition("\n## ")[0]
 
 
 def _csv(name: str) -> list[dict[str, str]]:
