@@ -83,3 +83,12 @@ def test_the_pier_is_drawn_to_scale():
 def test_no_more_piers_are_drawn_than_can_be_taken_in():
     pier = {"alpha": math.atan(0.2), "half_width_m": 4.0, "height_m": 20.0}
     assert len(drawing.piers([pier] * 20, {"rigid"})) == drawing.MOST
+
+
+@pytest.mark.parametrize(
+    "wrong", [{"height_m": 0.0}, {"half_width_m": -1.0}, {"height_m": 1e300}, {"top_m": -3.0}, {"alpha": 0}]
+)
+def test_a_pier_that_cannot_be_is_not_drawn(wrong):
+    pier = {"alpha": math.atan(0.2), "half_width_m": 4.0, "height_m": 20.0}
+    assert drawing.piers([pier | wrong], {"rigid"}) == []
+    assert len(drawing.piers([pier | wrong, pier], {"rigid"})) == 1

@@ -211,7 +211,7 @@ def places(shape, value, at=()):
     if at:
         yield at
     if isinstance(shape, dict) and str not in shape and isinstance(value, dict):
-        for key in shape.keys() & value.keys():
+        for key in sorted(shape.keys() & value.keys()):
             yield from places(shape[key], value[key], (*at, key))
     if isinstance(shape, list) and value:
         yield from places(shape[0], value[0], (*at, 0))

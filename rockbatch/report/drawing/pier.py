@@ -21,10 +21,25 @@ MOST = 4
 
 
 def piers(all_of_them: Sequence[Mapping[str, Any]], bases: Collection[str]) -> list[Markup]:
-    """A picture of each pier, at one scale; ``all_of_them`` as run.json has them, ``bases`` what they stand on."""
-    shown = all_of_them[:MOST]
+    """A picture of each pier, at one scale; ``all_of_them`` as run.json has them, ``bases`` what they stand on.
+
+    None of a pier that cannot be: a run.json of somebody else's may say anything.
+    """
+    shown = [pier for pier in all_of_them if _can_be(pier)][:MOST]
+    if not shown:
+        return []
     scale = HEIGHT / max(_top(pier) for pier in shown)
     return [_pier(pier, scale, any(base != "rigid" for base in bases)) for pier in shown]
+
+
+def _can_be(pier: Mapping[str, Any]) -> bool:
+    width, height = 2.0 * pier["half_width_m"], pier["height_m"]
+    return (
+        0.0 < pier["alpha"] < 0.5 * math.pi
+        and 0.0 < height < 1e6
+        and 0.0 < width < 100.0 * height
+        and 0.0 < _top(pier) < 1e6
+    )
 
 
 def _top(pier: Mapping[str, Any]) -> float:
