@@ -41,6 +41,14 @@ _NUMBERS_OF_BASE = (
     "beta", "eta", "epsilon", "n", "omega_v", "delta_s_m", "delta_y_m", "stiffness_kN_m", "yield_kN", "restitution",
 )  # fmt: skip
 _OF_FILE = {"name": str, "source": str, "reason": str}
+_SPECTRA = {
+    "damping": float, "period_s": [float], "sa_g": [[float]], "mean_sa_g": Maybe([_NUMBER]),
+    "target_sa_g": Maybe([_NUMBER]),
+}  # fmt: skip
+_TARGET = {
+    "spectrum": str, "range_s": [float], "factors": ("each", "suite", "both", "none"), "pairs": ("apart", "srss"),
+    "alone": int, "at_least": float, "period_s": [float], "sa_g": [float], "mean_sa_g": [float],
+}  # fmt: skip
 
 SHAPE = {
     "rockbatch": str,
@@ -66,6 +74,8 @@ SHAPE = {
         | dict.fromkeys(("dt_s", "duration_s", "pga_g"), float)
         | dict.fromkeys(("pga_v_g", "pgv_m_s", "pgd_m"), _NUMBER)
         | {name: Maybe(_NUMBER) for name in ("arias_m_s", "d5_95_s", "azimuth_deg", "magnitude", "distance_km")}
+        | {name: Maybe(_NUMBER) for name in ("pulse_indicator", "pulse_period_s")}
+        | {name: Maybe((str, None)) for name in ("label", "event", "station", "station_name", "direction", "pulse")}
         | {"factor": Maybe(float), "processed": Maybe((bool, None)), "findings": Maybe([{"what": str}])}
     ],
     "unusable": [_OF_FILE],
@@ -76,7 +86,9 @@ SHAPE = {
     "kept": Maybe(int),
     "peaks": Maybe({"rows": int, "sha256": str}),
     "without_vertical": Maybe([str]),
-    "spectra": Maybe(({"damping": float, "period_s": [float], "sa_g": [[float]]}, None)),
+    "spectra": Maybe((_SPECTRA, None)),
+    "target": Maybe(_TARGET),
+    "count": Maybe(("station", "component", None)),
     "left_out": Maybe([_OF_FILE]),
 }
 """What readers of run.json rely on; the rest of it is for people."""

@@ -251,6 +251,38 @@ def test_a_run_json_that_is_none_is_told(foreign, text, words):
     assert words in told(foreign)
 
 
+TARGET = {
+    "spectrum": "mine", "range_s": [0.1, 1.0], "factors": "none", "pairs": "apart", "alone": 0, "at_least": 0.9,
+    "period_s": [0.1, 1.0], "sa_g": [1.0, 0.5], "mean_sa_g": [0.9, 0.6],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("wrong", "words"),
+    [
+        ({}, ""), ({"sa_g": "x"}, "target.sa_g: expected a list"), ({"factors": {}}, "target.factors: expected"),
+        ({"range_s": [None]}, "target.range_s[0]: expected a number"), ({"period_s": []}, ""), ({"mean_sa_g": [1.0]}, ""),
+        ({"range_s": [0.1]}, ""), ({"sa_g": [0.0, 0.0]}, ""),
+    ],
+)  # fmt: skip
+def test_a_target_that_is_none_is_told_or_left_out(foreign, wrong, words):
+    info = json.loads((foreign / "run.json").read_text(encoding="utf-8")) | {"target": TARGET | wrong}
+    (foreign / "run.json").write_text(json.dumps(info), encoding="utf-8")
+    assert words in told(foreign)
+    if not words:
+        shown = "The suite against its target spectrum" in (foreign / "report.html").read_text(encoding="utf-8")
+        assert shown is (wrong == {})
+
+
+@pytest.mark.parametrize("more", [{"target_sa_g": [1.0]}, {"mean_sa_g": [], "target_sa_g": []}])
+def test_spectra_that_do_not_fit_their_periods_are_not_drawn(foreign, more):
+    info = json.loads((foreign / "run.json").read_text(encoding="utf-8"))
+    info["spectra"] |= more
+    (foreign / "run.json").write_text(json.dumps(info), encoding="utf-8")
+    assert told(foreign) == ""
+    assert "Pseudo-spectral" not in (foreign / "report.html").read_text(encoding="utf-8")
+
+
 @pytest.mark.parametrize("command", ["report", "check"])
 def test_a_case_of_values_that_the_table_does_not_have_is_told(foreign, command):
     info = json.loads((foreign / "run.json").read_text(encoding="utf-8"))

@@ -1,7 +1,8 @@
 """The response spectra of the suite: what the records ask of structures of any period, in one picture."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,20 @@ from rockbatch.report.markup import Markup, join
 
 LABELLED = COLOURS
 """Suites of as many records show which is which; larger ones show their spread."""
+
+
+def drawable(spectra: Mapping[str, Any]) -> bool:
+    """Whether periods rise, and every spectrum has a value for each; a file of somebody else's may say anything."""
+    periods, more = spectra["period_s"], [spectra[name] for name in ("mean_sa_g", "target_sa_g") if name in spectra]
+    rising = len(periods) > 1 and all(a < b for a, b in pairwise([0.0, *periods]))
+    both = len(more) != 1
+    there = all(len(one) == len(periods) for one in [*spectra["sa_g"], *more])
+    return (
+        rising
+        and both
+        and there
+        and all(value is None or value >= 0 for one in [*spectra["sa_g"], *more] for value in one)
+    )
 
 
 def draw(spectra: dict[str, Any], names: Sequence[str], fitted: tuple[float, float] | None = None) -> Markup:

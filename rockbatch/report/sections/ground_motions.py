@@ -1,7 +1,6 @@
 """The ground motions: their response spectra, their measures, and where they come from."""
 
 from collections.abc import Sequence
-from itertools import pairwise
 from typing import Any
 
 from rockbatch.report.contents import Contents
@@ -28,19 +27,18 @@ def section(contents: Contents) -> Section | None:
 def _spectra(finished: Finished) -> Markup:
     """Their response spectra; nothing where run.json has no spectra, as of very large suites, or a target: drawn with that."""
     records, spectra = finished.info["records"], finished.info.get("spectra")
-    if "target" in finished.info or not spectra or len(spectra["sa_g"]) != len(records) or not _drawable(**spectra):
+    if (
+        "target" in finished.info
+        or not spectra
+        or len(spectra["sa_g"]) != len(records)
+        or not response_spectra.drawable(spectra)
+    ):
         return join()
     caption = (
         f"Pseudo-spectral accelerations of the horizontal components, {100 * spectra['damping']:g} % damped, before "
         "the study's scale."
     )
     return figure(response_spectra.draw(spectra, [finished.label(record["record"]) for record in records]), caption)
-
-
-def _drawable(period_s: Sequence[float], sa_g: Sequence[Sequence[float]], damping: float) -> bool:
-    """Whether periods rise, and every spectrum has a value for each; a file of somebody else's may say anything."""
-    rising = all(a < b for a, b in pairwise([0.0, *period_s]))
-    return rising and len(period_s) > 1 and all(len(one) == len(period_s) and min(one) >= 0 for one in sa_g)
 
 
 def _records(finished: Finished) -> Markup:

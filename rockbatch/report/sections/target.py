@@ -40,7 +40,7 @@ def section(contents: Contents) -> Section | None:
     """Spectra against their target; None where the study has no target spectrum."""
     finished = contents.finished
     target = None if finished is None else finished.info.get("target")
-    if finished is None or target is None or not finished.info["records"]:
+    if finished is None or target is None or not finished.info["records"] or not _sound(target):
         return None
     records = finished.info["records"]
     content = join(
@@ -52,11 +52,20 @@ def section(contents: Contents) -> Section | None:
     return Section("The suite against its target spectrum", "target", content)
 
 
+def _sound(target: Mapping[str, Any]) -> bool:
+    """Whether the parts of a target fit each other; a file of somebody else's may say anything."""
+    periods, spectra = target["period_s"], (target["sa_g"], target["mean_sa_g"])
+    fitting = all(len(one) == len(periods) > 0 for one in spectra)
+    return (
+        len(target["range_s"]) == 2 and min(target["range_s"]) > 0 and fitting and min((*periods, *target["sa_g"])) > 0
+    )
+
+
 def _fit(target: Mapping[str, Any], records: Sequence[Mapping[str, Any]]) -> Markup:
     low, high = target["range_s"]
     share = f"{target['at_least']:g}"
     scaled = FACTORS[target["factors"]].format(share=share)
-    factors = [record["factor"] for record in records]
+    factors = [record.get("factor", 1.0) for record in records]
     told = (
         f" (factors {min(factors):.3g} to {max(factors):.3g}, in the table of ground motions)"
         if target["factors"] != "none"
@@ -85,7 +94,7 @@ def _over(target: Mapping[str, Any]) -> "np.ndarray[Any, np.dtype[np.float64]]":
 
 def _picture(spectra: dict[str, Any] | None, target: Mapping[str, Any], records: Sequence[Mapping[str, Any]]) -> Markup:
     """Target, records and mean; nothing where run.json has no spectra, as of very large suites."""
-    if not spectra or len(spectra["sa_g"]) != len(records):
+    if not spectra or len(spectra["sa_g"]) != len(records) or not response_spectra.drawable(spectra):
         return join()
     low, high = target["range_s"]
     drawn = response_spectra.draw(spectra, [record["record"] for record in records], (low, high))
@@ -113,7 +122,8 @@ def _ratios(target: Mapping[str, Any]) -> Markup:
 def _near_source(records: Sequence[Mapping[str, Any]]) -> Markup:
     kinds = [record.get("pulse") for record in records]
     pulses, open_ = kinds.count("yes"), kinds.count("ambiguous")
-    periods = sorted(record["pulse_period_s"] for record in records if record.get("pulse") == "yes")
+    told_periods = (record.get("pulse_period_s") for record in records if record.get("pulse") == "yes")
+    periods = sorted(period for period in told_periods if period is not None)
     told = f"{pulses} of {counted(len(records), 'horizontal component')} ({100 * pulses / len(records):.0f} %) "
     told += f"{'is' if pulses == 1 else 'are'} pulse-like"
     stations = {record.get("station") or record["record"] for record in records}
@@ -126,7 +136,7 @@ def _near_source(records: Sequence[Mapping[str, Any]]) -> Markup:
         "and an early pulse. It was made for fault-normal components; another direction of the same record may be "
         "judged otherwise."
     )
-    far = [record["distance_km"] for record in records]
+    far = [record.get("distance_km") for record in records]
     known = [distance for distance in far if distance is not None]
     near = sum(distance <= NEAR_KM for distance in known)
     where = "No distance from the source is known; a manifest has a place for it (distance_km in motions.toml)."
