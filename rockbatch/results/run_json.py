@@ -38,7 +38,8 @@ INFO = "run.json"
 _NUMBER = (float, None)
 _VALUES = {str: (float, str)}
 _NUMBERS_OF_BASE = (
-    "beta", "eta", "epsilon", "n", "omega_v", "delta_s_m", "delta_y_m", "stiffness_kN_m", "yield_kN", "restitution",
+    "beta", "eta", "epsilon", "n", "omega_v", "delta_s_m", "delta_y_m", "stiffness_kN_m", "yield_kN", "restitution", "zeta",
+    "friction",
 )  # fmt: skip
 _OF_FILE = {"name": str, "source": str, "reason": str}
 _SPECTRA = {
@@ -63,7 +64,8 @@ SHAPE = {
         {
             "case": str,
             "columns": _VALUES,
-            "pier": dict.fromkeys(("alpha", "p", "mu", "gravity", "size_m", "half_width_m", "height_m"), float),
+            "pier": dict.fromkeys(("alpha", "p", "mu", "gravity", "size_m", "half_width_m", "height_m"), float)
+            | {name: Maybe(_NUMBER) for name in ("mass_t", "top_m", "deck_height_m", "deck_over_columns")},
             "base": ("rigid", "elastic", "yielding"),
             "parameters": {name: Maybe(_NUMBER) for name in _NUMBERS_OF_BASE}
             | {name: Maybe((str, None)) for name in ("spring", "kinematics", "flight")},
