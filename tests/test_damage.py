@@ -27,7 +27,7 @@ def test_a_damaged_one_ends_in_words_or_in_what_is_right(sample, what, times):
 
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::UserWarning")
-@pytest.mark.parametrize(("what", "times"), [("study", 2000), ("journal", 2000), ("folder", 500)])
+@pytest.mark.parametrize(("what", "times"), [("study", 2000), ("journal", 2000), ("folder", 200)])
 def test_thousands_do(sample, what, times):
     _, bad = damage.repeated(getattr(sample, f"damage_{what}"), times, seed=4)
     assert bad == []

@@ -90,7 +90,7 @@ SHAPE = {
     "without_vertical": Maybe([str]),
     "spectra": Maybe((_SPECTRA, None)),
     "target": Maybe(_TARGET),
-    "count": Maybe(("station", "component", None)),
+    "count": Maybe(("station", "component")),
     "left_out": Maybe([_OF_FILE]),
 }
 """What readers of run.json rely on; the rest of it is for people."""

@@ -426,3 +426,12 @@ def test_the_script_that_sizes_a_foundation_prints_what_its_docstring_says(capsy
     done["main"]()
     printed = [line.split() for line in capsys.readouterr().out.splitlines()]
     assert printed == [line.split() for line in done["__doc__"].strip().splitlines()[-len(printed) :]]
+
+
+def test_checks_after_the_last_mistake_that_is_told_are_not_made(tmp_path):
+    """So many mistakes that no more are noted: a check without its keys is then none, and no traceback either."""
+    path = tmp_path / "rules.toml"
+    path.write_text("[[check]]\nwrong = 1\n" * 300 + "[[check]]\n", encoding="utf-8")
+    with pytest.raises(InputError) as error:
+        load_rules(path)
+    assert len(error.value.problems) < 300

@@ -274,6 +274,13 @@ def test_a_target_that_is_none_is_told_or_left_out(foreign, wrong, words):
         assert shown is (wrong == {})
 
 
+@pytest.mark.parametrize("count", [-1, "x", None, {}])
+def test_a_way_of_counting_that_is_none_is_told(foreign, count):
+    info = json.loads((foreign / "run.json").read_text(encoding="utf-8")) | {"count": count}
+    (foreign / "run.json").write_text(json.dumps(info), encoding="utf-8")
+    assert 'count: expected "station" or "component"' in told(foreign)
+
+
 @pytest.mark.parametrize("more", [{"target_sa_g": [1.0]}, {"mean_sa_g": [], "target_sa_g": []}])
 def test_spectra_that_do_not_fit_their_periods_are_not_drawn(foreign, more):
     info = json.loads((foreign / "run.json").read_text(encoding="utf-8"))
