@@ -150,8 +150,9 @@ def _read_peaks(path: Path, varied: Sequence[str], problems: list[str]) -> "pd.D
     if missing:
         problems.append(f"{path}:1: has no column {', '.join(missing)}; start `rockbatch run` again")
         return None
-    if len(set(head)) < len(head):
-        problems.append(f"{path}:1: has a column twice; start `rockbatch run` again")
+    if len(set(head)) < len(head) or "" in head:
+        which = "without a name" if "" in head else "twice"
+        problems.append(f"{path}:1: has a column {which}; start `rockbatch run` again")
         return None
     texts = [name for name in head if name in TEXTS or name in varied or name == "vertical"]
     numbers = [name for name in head if name not in texts]

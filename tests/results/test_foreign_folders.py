@@ -274,6 +274,13 @@ def test_a_target_that_is_none_is_told_or_left_out(foreign, wrong, words):
         assert shown is (wrong == {})
 
 
+def test_a_column_without_a_name_is_told(foreign):
+    lines = (foreign / "peaks.csv").read_text(encoding="utf-8").splitlines()
+    text = "\n".join([lines[0] + ",", *(line + "," for line in lines[1:])])
+    (foreign / "peaks.csv").write_text(text, encoding="utf-8")
+    assert "peaks.csv:1: has a column without a name" in told(foreign)
+
+
 @pytest.mark.parametrize("count", [-1, "x", None, {}])
 def test_a_way_of_counting_that_is_none_is_told(foreign, count):
     info = json.loads((foreign / "run.json").read_text(encoding="utf-8")) | {"count": count}
