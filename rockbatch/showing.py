@@ -1,5 +1,6 @@
 """What objects tell of themselves: a few lines in a terminal, a small table in a notebook."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from html import escape
 from typing import TYPE_CHECKING
@@ -11,12 +12,12 @@ MOST_ROWS = 12
 """Of a table in a notebook."""
 
 
-class Shown:
+class Shown(ABC):
     """An object whose ``repr`` and whose picture in a notebook are made of the same few facts."""
 
+    @abstractmethod
     def _told(self) -> tuple[str, Mapping[str, str]]:
         """What it is, and facts about it by their names; those without words are left out."""
-        raise NotImplementedError
 
     def _beneath(self) -> "pd.DataFrame | None":
         """A table to show below the facts, in notebooks only; its first rows are."""
