@@ -356,7 +356,7 @@ def _of_springs(run: Run, found: SpringRun, survived: bool) -> dict[str, Any]:
     assert not isinstance(base, RigidBase)
     more: dict[str, Any] = {}
     if survived:
-        # From the base's tilt to the rotation, static on the deformed base (THEORY.md, 14)
+        # From the base's tilt to the rotation, static on the deformed base (THEORY.md, eq. 20)
         omega_v = vertical_frequency(pier, base)
         lean = 1.0 / tilt_over_residual(pier.gravity, pier.height, pier.half_width, omega_v)
         tilt = 0.5 * (found.base_left - found.base_right) / pier.half_width

@@ -146,7 +146,7 @@ def test_no_error_below_rounding_is_ever_claimed(monkeypatch):
 
 
 def test_the_first_step_respects_the_highest_frequency_of_the_springs():
-    """ω_v of the tower is 30.4 rad/s at β = 80; a stocky pier rocks faster than it bounces (ω_r, THEORY.md, 13)."""
+    """ω_v of the tower is 30.4 rad/s at β = 80; a stocky pier rocks faster than it bounces (ω_r, THEORY.md, eq. 12)."""
     assert first_substeps(TOWER, ElasticBase(80.0), 0.01) == math.ceil(30.4 * 0.01 / 0.2)
     stocky = Pier(1.2, 1.0)
     squared = 3 * math.sin(1.2) ** 2 * 100.0**2 - 4 * math.cos(1.2)

@@ -1,4 +1,4 @@
-"""Dampers and tendons of a pier on a rigid base (THEORY.md, 5) against closed forms and a derivation of their own.
+"""A pier on a rigid base (THEORY.md, Dampers and tendons) against closed forms and a derivation of their own.
 
 The reference below integrates the block with SciPy's DOP853; elongations and moments come from the coordinates of the points
 that an element joins, not from the half angles of the core.

@@ -34,7 +34,7 @@ def friction_bound(elements, inertia, side, tilt):
 
 @kernel
 def driven(m, side, tilt, horizontal, vertical):
-    """Acceleration of the tilt [rad/s²] by weight and ground (THEORY.md, 10)."""
+    """Acceleration of the tilt [rad/s²] by weight and ground (THEORY.md, eq. 14)."""
     lean = m.alpha - tilt
     return -m.p * m.p / m.gravity * ((m.gravity + vertical) * math.sin(lean) + side * horizontal * math.cos(lean))
 

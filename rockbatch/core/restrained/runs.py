@@ -1,4 +1,4 @@
-"""Runs of a block on a rigid base with dampers and tendons, one at a time (THEORY.md, 5).
+"""Runs of a block on a rigid base with dampers and tendons, one at a time (THEORY.md, Dampers and tendons).
 
 Simpler than the lanes, which know nothing of elements: every step is scalar, from event to event.
 """

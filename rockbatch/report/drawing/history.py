@@ -33,7 +33,7 @@ class History:
     end : tuple of float
         Time and θ/α at the end.
     band : float
-        |θ/α| up to which a weakly rocking pier keeps both supports: paper, eq. 10. Zero on the rigid base.
+        |θ/α| up to which a weakly rocking pier keeps both supports: THEORY.md, eq. 10. Zero on the rigid base.
     loops : Markup
         Force against deflection of both springs where they yield, or of dampers and tendons; else empty.
     """
