@@ -1,7 +1,8 @@
 """What the site takes from the program itself and from the documents at the repository's top; a hook of MkDocs.
 
 Nothing of it is kept: the study file's reference and schemas come from the reader's tables, the columns from theirs, the
-commands from their parsers, the figures of the verification from the CSV files in benchmarks/, the pictures from gallery/.
+commands from their parsers, the figures of the verification from the CSV files in benchmarks/, the pictures from gallery/. The
+verification is a PDF, too.
 """
 
 import contextlib
@@ -20,6 +21,7 @@ from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.exceptions import PluginError
 from mkdocs.structure.files import File, Files
 from mkdocs.structure.pages import Page
+from printing import as_pdf
 
 import rockbatch
 from rockbatch.checks.demands import DEMANDS
@@ -55,8 +57,9 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
     }
     for name, sections in FILES.items():
         made[f"reference/{name}.schema.json"] = json.dumps(schema_of(sections, f"rockbatch {name}"), indent=1)
-    for script in sorted((HERE / "gallery").glob("*.py")):
-        made[f"pictures/{script.stem}.svg"] = _picture(script)
+    pictures = {f"pictures/{script.stem}.svg": _picture(script) for script in sorted((HERE / "gallery").glob("*.py"))}
+    made |= pictures
+    made["verification.pdf"] = _verification(pictures)
     for path, content in made.items():
         files.append(File.generated(config, path, content=content))
     for image in sorted((HERE / "images").iterdir()):
@@ -66,10 +69,7 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
 
 def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Files) -> str:
     """Put the counted figures in the place of ``<!-- name -->``."""
-    for name, table in COUNTED.items():
-        if f"<!-- {name} -->" in markdown:
-            markdown = markdown.replace(f"<!-- {name} -->", "\n".join(table()))
-    return markdown
+    return _counted(markdown)
 
 
 def on_page_content(html: str, page: Page, config: MkDocsConfig, files: Files) -> str:
@@ -267,7 +267,7 @@ def _python() -> str:
     return "\n".join(parts)
 
 
-# Pictures and counts
+# Pictures, counts and paper
 
 
 def _picture(script: Path) -> bytes:
@@ -311,6 +311,22 @@ def _outcomes() -> Iterator[str]:
         remarks = [row["verdict"] for row in own if row["verdict"]]
         told = ", ".join(f"{remarks.count(remark)} {remark}" for remark in dict.fromkeys(remarks))
         yield f"| {stratum or 'all'} | {len(own)} | {counts} | {told} |"
+
+
+def _counted(text: str) -> str:
+    for name, table in COUNTED.items():
+        if f"<!-- {name} -->" in text:
+            text = text.replace(f"<!-- {name} -->", "\n".join(table()))
+    return text
+
+
+def _verification(pictures: dict[str, bytes]) -> bytes:
+    """The page of that name as a report on paper, with the sources that it cites."""
+    _, heading, sources = (TOP / "THEORY.md").read_text(encoding="utf-8").partition("\n## Sources\n")
+    text = _counted((HERE / "pages" / "verification.md").read_text(encoding="utf-8"))
+    text += heading + sources.partition("\n### ")[0]
+    shown = {path: picture for path, picture in pictures.items() if f"({path})" in text}
+    return as_pdf(text, "Verification of rockbatch", f"rockbatch {rockbatch.__version__}", shown)
 
 
 def _csv(name: str) -> list[dict[str, str]]:
