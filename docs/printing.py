@@ -3,7 +3,7 @@
 import json
 import re
 import tempfile
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -112,15 +112,17 @@ def _inline(element: Element, within_table: bool = False) -> str:
     return _text(element.text or "") + "".join(_spans(element, within_table))
 
 
-def _spans(element: Element, within_table: bool) -> Iterable[str]:
+def _spans(element: Element, within_table: bool) -> Iterator[str]:
     for child in element:
         match child.tag:
             case "code":
                 told = child.text or ""
                 yield f"#raw({_string(_BREAKS.sub(chr(0x200B), told) if within_table else told)})"
-            case "em" | "strong":
-                yield f"#{ {'em': 'emph'}.get(child.tag, 'strong') }[{_inline(child, within_table)}]"
-            case "a":  # of the site's pages, only the text: the paper has no others
+            case "em":
+                yield f"#emph[{_inline(child, within_table)}]"
+            case "strong":
+                yield f"#strong[{_inline(child, within_table)}]"
+            case "a":  # other pages of the site are not at hand on paper
                 yield _inline(child, within_table)
             case "br":
                 yield " \\ "
