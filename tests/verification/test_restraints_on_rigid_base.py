@@ -274,6 +274,18 @@ def test_order_four_across_turning_yield_and_slack(foundation):
     assert order > 3.6
 
 
+def test_a_damper_that_yields_within_a_step_is_resolved_from_the_coarsest_on():
+    """0.2 mm, which a corner passes forty times over in a step of 20 ms: order 4 from one step a sample, and errors that tell."""
+    foundation = base(Damper("hysteretic", f=0.1, yield_m=2e-4))
+    motion = pulse("sine", 0.5, 1.0, dt=0.02, end=3.0)
+    peaks = [run_fixed(FIG5, foundation, motion, k, 0.0, wait=False).theta_max for k in (1, 2, 4, 8, 256)]
+    errors = np.abs(np.array(peaks[:-1]) - peaks[-1]) / FIG5.alpha
+    assert errors[0] < 1e-6
+    assert errors[3] < errors[0] / 200.0
+    settled = run_to_tolerance(FIG5, foundation, motion, 1e-4, 0.0)
+    assert abs(settled.theta_max - peaks[-1]) <= settled.theta_max_error
+
+
 @pytest.mark.parametrize(
     "foundation", [base(Damper("friction", f=0.1)), base(Tendon(psi=0.2, lam=1.5, strength=0.3)), YIELDS]
 )

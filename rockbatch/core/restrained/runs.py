@@ -23,7 +23,7 @@ from rockbatch.core.restrained.elements import (
     distance,
     force,
 )
-from rockbatch.core.restrained.equations import acceleration, copy, friction_bound
+from rockbatch.core.restrained.equations import acceleration, copy, friction_bound, longest
 from rockbatch.core.restrained.events import (
     LANDS,
     OF_TENDONS,
@@ -205,7 +205,7 @@ def _turn(m, elements, inertia, y, modes, log, ground):
 
 
 @kernel
-def _move(m, elements, inertia, y, end, modes, log, ground, t, left, dt, history, use, work, marks):
+def _move(m, elements, inertia, y, end, modes, log, ground, t, left, h, dt, history, use, work, marks):
     """The block off its rest for ``left`` [s], or until something happens: how long that is."""
     side = log.side[0]
     if log.goes[0] == STICKS:
@@ -215,7 +215,8 @@ def _move(m, elements, inertia, y, end, modes, log, ground, t, left, dt, history
         log.goes[0] = goes
         set_modes(elements, side, y, modes, goes)
         return at
-    used, which = piece(m, elements, inertia, side, y, modes, log.goes[0], ground, left, work, marks, end)
+    most = min(left, longest(m, elements, inertia, side, y, modes, log.goes[0], ground, h, dt))
+    used, which = piece(m, elements, inertia, side, y, modes, log.goes[0], ground, most, work, marks, end)
     _take_in(m, elements, inertia, y, end, modes, log, ground, used, t, use, work)
     copy(end, y)
     there = later(ground, used)
@@ -300,7 +301,9 @@ def _rock(
                 if log.side[0] == NEITHER:
                     used = _rest(m, elements, inertia, y, modes, log, here, t, left, history)
                 else:
-                    used = _move(m, elements, inertia, y, end, modes, log, here, t, left, dt, history, use, work, marks)
+                    used = _move(
+                        m, elements, inertia, y, end, modes, log, here, t, left, h, dt, history, use, work, marks
+                    )
                 done = done + used if used < left else whole
             t = t_sample + start + done
             status = fallen(y[0])
