@@ -16,9 +16,9 @@ from rockbatch.results.histories_file import Responses
 from rockbatch.results.response import Response
 
 MOST_COLUMNS = 40
-LEFT, WIDTH = 30.0, 214.0  # px
-TOPS, HEIGHTS = (14.0, 126.0, 204.0, 282.0), (94.0, 60.0, 60.0, 60.0)
-FOOT = 372.0
+LEFT, WIDTH = 42.0, 176.0  # px
+TOPS, HEIGHTS = (17.0, 134.0, 218.0, 302.0), (94.0, 60.0, 60.0, 60.0)
+FOOT = 398.0
 LABELS = (QUANTITIES[0], QUANTITIES[1], QUANTITIES[2], lowered("ü", "g", "/g"))
 
 Row = dict[str, Any]
@@ -56,7 +56,7 @@ def _figures(finished: Finished, responses: Sequence[Response]) -> list[tuple[Ma
                 drawn[number], None if back is None else drawn[back], scales, finished.label(kept[number]["record"])
             )
             cells.append(tag("figure", tag("figcaption", title), picture))
-        grid = tag("div", *cells, class_="histories")
+        grid = tag("div", *cells, class_="histories", style=f"--w:{LEFT + WIDTH + 6:.0f}px")
         lines = any(behind[number] is not None for number in same)
         found.append((grid, _caption(finished.piers[pier], [drawn[number] for number in same], lines)))
     return found
@@ -124,14 +124,14 @@ def _column(own: History, behind: History | None, scales: Sequence[Scale], recor
         if row == 0 and own.band:
             y = np.clip(axes.down(np.array([own.band, -own.band])), top, top + height)
             drawn.append(rectangle(LEFT, y[0], WIDTH, y[1] - y[0], "band"))
-        drawn.append(axes.frame(axes.x.ticks(5), scale.ticks(4 if row == 0 else 3), x_numbers=row == len(TOPS) - 1))
+        drawn.append(axes.frame(axes.x.ticks(4), scale.ticks(5 if row == 0 else 4), x_numbers=row == len(TOPS) - 1))
         curves = [_curve(axes, *own.curves[row], "curve rigid" if own.rigid else "curve", QUANTITIES[row])]
         if behind is not None and row < 3:
             curves.insert(0, _curve(axes, *behind.curves[row], "curve behind", f"{QUANTITIES[row]}, rigid base"))
         drawn.append(axes.readable("time", *curves))
         if row == 0:
             drawn.append(_events(axes, own))
-        drawn.append(text(LEFT - 2, top - 4, LABELS[row], class_="q"))
+        drawn.append(text(LEFT - 2, top - 5, LABELS[row], class_="q"))
     drawn.append(text(LEFT + WIDTH / 2, FOOT - 4, "t [s]", class_="m q"))
     height = FOOT
     if own.loops:
