@@ -26,7 +26,7 @@ def draw(levels: Sequence[Level]) -> Markup:
     errors = [
         max(error, LEAST) for level in timed for error in (level.error_median, level.error_max) if error is not None
     ]
-    axes = Axes(44, 20, 424, 260, _decades(times), _decades(errors))
+    axes = Axes(44, 20, 384, 260, _decades(times), _decades(errors))
     drawn = [axes.frame(axes.x.ticks(6), axes.y.ticks(8))]
     for method, (shape, colour, _, side) in METHODS.items():
         at = [level for level in timed if level.method == method]
@@ -51,7 +51,7 @@ def draw(levels: Sequence[Level]) -> Markup:
         entries.append((marker("star", 11, 7, colour="ink large"), f"this study: {setting}"))
     entries += [(line(0, 7, 22, 7, "level"), "largest error"), (line(0, 7, 22, 7, "level d2"), "median error")]
     said = "Error of θmax/α against time per run"
-    return join(svg(480, 318, *drawn, description=said, class_="plot marks alone"), key(entries))
+    return join(svg(440, 318, *drawn, description=said, class_="plot marks alone"), key(entries))
 
 
 def _decades(values: Sequence[float]) -> Scale:

@@ -27,7 +27,7 @@ def draw(
     runs = runs.assign(side=runs[side])
     present = [finished.series[place] for place in sorted(runs["series"].unique())]
     ticks = {series.index: series.tick for series in present if not series.rigid}
-    width = min(max(176.0, 56 + 13.0 * (max(ticks, default=0) + 1)), 420.0)
+    width = min(max(166.0, 56 + 13.0 * (max(ticks, default=0) + 1)), 900.0)
     sides = sorted(runs["side"].unique())
     panel = _Panel(finished.series, top, bool(runs["status"].isin(NO_PEAK).any()), ticks, width, sides)
     drawn = []

@@ -19,6 +19,8 @@ MOST_COLUMNS = 40
 LEFT, WIDTH = 42.0, 176.0  # px
 TOPS, HEIGHTS = (17.0, 134.0, 218.0, 302.0), (94.0, 60.0, 60.0, 60.0)
 FOOT = 398.0
+OVER = 1.5
+"""Rotation over α beyond which the picture of a pier that overturns ends."""
 LABELS = (QUANTITIES[0], QUANTITIES[1], QUANTITIES[2], lowered("ü", "g", "/g"))
 
 Row = dict[str, Any]
@@ -108,6 +110,14 @@ def _scale(shown: Sequence[History], row: int) -> Scale:
     return spanning(*(history.curves[row][1] for history in stood), *bands)
 
 
+def _standing(own: History, row: int) -> Array:
+    """A quantity until the pier is on its way over: what it does on the ground would hide how it rocked."""
+    t, theta = own.curves[0]
+    over = np.flatnonzero(np.abs(theta) > OVER)
+    times, values = own.curves[row]
+    return values[times <= t[over[0]]] if len(over) else values
+
+
 def _title(finished: Finished, run: Row) -> Markup:
     also = [f"scaled by {run['scale']:g}" if run["scale"] != 1 else "", "reversed" if run["polarity"] == "-" else ""]
     told = ", ".join(filter(None, also))
@@ -119,7 +129,7 @@ def _column(own: History, behind: History | None, scales: Sequence[Scale], recor
     end = max(own.end[0], behind.end[0] if behind else 0.0) or 1.0
     drawn: list[Markup] = []
     for row, (top, height) in enumerate(zip(TOPS, HEIGHTS, strict=True)):
-        scale = scales[row] if own.status == "ok" else spanning(own.curves[row][1])
+        scale = scales[row] if own.status == "ok" else spanning(_standing(own, row))
         axes = Axes(LEFT, top, WIDTH, height, Scale(0, end), scale)
         if row == 0 and own.band:
             y = np.clip(axes.down(np.array([own.band, -own.band])), top, top + height)
@@ -161,7 +171,7 @@ def _events(axes: Axes, own: History) -> Markup:
         )
         marks += [tag("circle", cx=f"{x:.1f}", cy=f"{y:.1f}", r="2.2", class_="peak"), value]
     if own.status in ("overturned", "flight"):
-        end = float(axes.across(own.end[0])), float(axes.down(own.end[1]))
+        end = float(axes.across(own.end[0])), float(axes.down(np.clip(own.end[1], axes.y.low, axes.y.high)))
         marks.append(marker(own.status, *end, colour="alarm"))
     return join(*marks)
 

@@ -18,7 +18,7 @@ from rockbatch.report.table import Head, table
 if TYPE_CHECKING:
     import pandas as pd
 
-WIDTH, LEFT, TOP, ROW = 480, 84, 20, 30
+WIDTH, LEFT, TOP, ROW = 440, 84, 20, 30
 BAR = 12
 TORNADO = ("case", "parameter", "low", "base", "high", "answer_low", "answer_base", "answer_high")
 SOBOL = ("case", "parameter", "first", "first_error", "total", "total_error")
