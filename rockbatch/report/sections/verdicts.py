@@ -75,7 +75,7 @@ def answer(verdicts: Sequence[Verdict]) -> Markup:
 
 def _among(some: int, all_: int) -> str:
     if some == all_:
-        return "the only case" if all_ == 1 else f"all {all_} cases"
+        return {1: "the only case", 2: "both cases"}.get(all_, f"all {all_} cases")
     return f"{some} of {all_} cases"
 
 
