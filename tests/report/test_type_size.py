@@ -1,14 +1,19 @@
 """The smallest words of every picture can be read, on a wide screen, on a narrow one and on paper."""
 
 import re
+import zlib
 
+import numpy as np
 import pytest
-from browser import CHROMIUM, browse
+from browser import CHROMIUM, browse, chromium
 from report_page import figures
 from studies import PADS, RIGID, SINE, study_text, write_study
 
 from rockbatch.cli import main
 from rockbatch.report import write_report
+from rockbatch.report.drawing.history import QUANTITIES, History
+from rockbatch.report.markup import Markup
+from rockbatch.report.sections.histories import picture
 
 STUDY = study_text(
     title="Every picture",
@@ -82,3 +87,45 @@ def test_the_smallest_words_of_every_picture_can_be_read(tmp_path, report, width
     found = browse(tmp_path, report, MEASURE, size=(width, 900))["smallest"]
     assert set(found) == PICTURES
     assert {name: size for name, size in found.items() if size < 11} == {}
+
+
+@pytest.mark.skipif(CHROMIUM is None, reason="needs Chromium")
+def test_no_page_is_printed_smaller_because_a_table_is_too_wide(tmp_path, report):
+    """Chromium shrinks every page until the widest thing on any fits. Skia draws 300 units to an inch: 3.125 to a pixel."""
+    text = report.read_text(encoding="utf-8")
+    for name in ("short", "long", "strong"):
+        text = text.replace(f">{name}<", f">{name} motion of a station with a name of its own, 5 km south-west<")
+    page = tmp_path / "report.html"
+    page.write_text(text, encoding="utf-8")
+    chromium(tmp_path, f"--print-to-pdf={tmp_path / 'report.pdf'}", "--no-pdf-header-footer", page.as_uri())
+    scales = set()
+    for stream in re.findall(rb"stream\r?\n(.*?)endstream", (tmp_path / "report.pdf").read_bytes(), re.DOTALL):
+        try:
+            drawn = zlib.decompress(stream)
+        except zlib.error:
+            continue
+        if found := re.match(rb"\s*\.2399\d* 0 0 -\.2399\d* 0 \d+ cm\s+q\s+([\d.]+) 0 0", drawn):
+            scales.add(float(found[1]))
+    assert scales == {3.125}
+
+
+def test_a_pier_that_overturns_leaves_the_picture_and_does_not_flatten_how_it_rocked():
+    t = np.linspace(0.0, 20.0, 2001)
+    theta = np.where(t < 10.0, 0.4 * np.sin(t), 0.4 * np.sin(10.0) - np.expm1(t - 10.0))
+    none = np.array([])
+    fell = History(
+        True,
+        "overturned",
+        [(t, theta)] * len(QUANTITIES),
+        none,
+        none,
+        none,
+        (20.0, 1e4),
+        (20.0, theta[-1]),
+        0.0,
+        Markup(""),
+    )
+    drawn = picture(fell, None, [], "record")
+    ranges = [[float(end) for end in found.split()] for found in re.findall(r'data-y="([^"]*)"', drawn)]
+    assert len(ranges) == len(QUANTITIES)
+    assert all(-2.0 < low < -0.4 < 0.4 < high < 2.0 for low, high in ranges)

@@ -54,10 +54,10 @@ def _figures(finished: Finished, responses: Sequence[Response]) -> list[tuple[Ma
         for number in same:
             back = behind[number]
             title = _title(finished, kept[number])
-            picture = _column(
+            drawing = picture(
                 drawn[number], None if back is None else drawn[back], scales, finished.label(kept[number]["record"])
             )
-            cells.append(tag("figure", tag("figcaption", title), picture))
+            cells.append(tag("figure", tag("figcaption", title), drawing))
         grid = tag("div", *cells, class_="histories", style=f"--w:{LEFT + WIDTH + 6:.0f}px")
         lines = any(behind[number] is not None for number in same)
         found.append((grid, _caption(finished.piers[pier], [drawn[number] for number in same], lines)))
@@ -125,7 +125,7 @@ def _title(finished: Finished, run: Row) -> Markup:
     return join(tag("span", finished.series[run["series"]].label), " ", record)
 
 
-def _column(own: History, behind: History | None, scales: Sequence[Scale], record: str) -> Markup:
+def picture(own: History, behind: History | None, scales: Sequence[Scale], record: str) -> Markup:
     end = max(own.end[0], behind.end[0] if behind else 0.0) or 1.0
     drawn: list[Markup] = []
     for row, (top, height) in enumerate(zip(TOPS, HEIGHTS, strict=True)):
