@@ -9,7 +9,7 @@ from report_page import Page
 from report_samples import FIG7, case_entry, write_results
 
 from rockbatch.checks import write_verdicts
-from rockbatch.pier import Pier, YieldingBase
+from rockbatch.pier import Pier, RigidBase, YieldingBase
 from rockbatch.report import write_report
 
 PIER = Pier(alpha=0.13, p=0.38)
@@ -105,3 +105,12 @@ def test_the_whole_answer_is_on_the_first_screen(tmp_path, many):
     """
     found = browse(tmp_path, page, act, size=(1400, 900))
     assert 0 < found["answer"] < found["figure"] < 900
+
+
+def test_long_names_of_what_has_no_peak_leave_the_figure_its_room(tmp_path):
+    names = ["a foundation with a long name", "another one with a long name"]
+    cases = [case_entry(name, {}, PIER, RigidBase()) for name in names]
+    write_results(tmp_path, cases=cases, changes={("RRS228", name): {"status": "overturned"} for name in names})
+    text = write_report(tmp_path, []).read_text(encoding="utf-8")
+    worst = re.search(r'<span class="ends">(.*?)</span></span>', text, re.DOTALL)[1]
+    assert Page(worst).text == "2"

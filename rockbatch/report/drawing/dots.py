@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 FIRST, LAST = 1.5, 97.0
 """Where the axis begins and ends [% of the width]."""
+MOST_LETTERS = 20
+"""Of the names of foundations without a peak; where they are longer, their number stands for them."""
 MIDDLE = 10
 """Of a row of 20 px."""
 FAILED = {"failed": "no result: the run failed"}
@@ -108,7 +110,7 @@ def _mark(run: Run, at: float, marks: Marks) -> Markup:
 
 
 def _without_peak(runs: "pd.DataFrame", marks: Marks) -> Markup:
-    """What had no peak: by the foundation's letter, or how many."""
+    """What had no peak: by the foundations' letters, or how many."""
     told = []
     for status, words in (EVENTS | FAILED).items():
         some = runs[runs["status"] == status]
@@ -119,7 +121,13 @@ def _without_peak(runs: "pd.DataFrame", marks: Marks) -> Markup:
                 "svg", _sign(status), class_="plot", viewBox="4 0 14 14", width=14, height=14, aria_hidden="true"
             )
             told.append(
-                tag("span", sign, names or str(len(some)), title=f"{len(some)} × {words}", class_=_class(status))
+                tag(
+                    "span",
+                    sign,
+                    names if 0 < len(names) <= MOST_LETTERS else str(len(some)),
+                    title=f"{len(some)} × {words}",
+                    class_=_class(status),
+                )
             )
     return tag("span", *told, class_="ends")
 

@@ -126,7 +126,7 @@ def draw(own: "pd.DataFrame") -> tuple[Markup, list[Entry]]:
     """The picture of one map, and its legend."""
     drawn = strips(own)
     across = Scale(float(drawn[0].frequencies[0]), float(drawn[-1].frequencies[-1]))
-    axes = Axes(32, 20, WIDTH - 44, HEIGHT - 58, across, Scale(float(own["low"].min()), float(own["high"].max())))
+    axes = Axes(32, 26, WIDTH - 44, HEIGHT - 64, across, Scale(float(own["low"].min()), float(own["high"].max())))
     present = [name for name in REGIONS if REGIONS[name][0] and any(name in strip.outcomes for strip in drawn)]
     picture = [
         # One path for each outcome, or a hair of background would shine through where two strips meet
