@@ -3,7 +3,7 @@
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: run test lint slow docs clean
+.PHONY: run test lint slow docs screenshots clean
 
 run: .venv/.run
 	$(BIN)/rockbatch run configs/near_fault.toml
@@ -24,6 +24,10 @@ lint: .venv/.test
 docs: .venv/.docs
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet --config-file docs/mkdocs.yml
 	@echo "build/docs/index.html"
+
+screenshots: .venv/.run
+	$(BIN)/python -m pip install --quiet pypdfium2
+	$(BIN)/python docs/screenshots/take.py
 
 .venv/bin/python:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
