@@ -1,8 +1,8 @@
 """What a pier that is left alone can still do: how far its energy carries it, and whether over the summit.
 
 The ground is at rest. Between impacts energy is kept, at impacts and by yielding it is lost, so the energy of this
-moment bounds every later rotation (THEORY.md, 6). Energies are per unit mass [J/kg]. ``load`` is what the supports carry at
-rest [m/s²]: g, and what tendons add to it without an arm h θ of their own.
+moment bounds every later rotation (THEORY.md, When a run is over). Energies are per unit mass [J/kg]. ``load`` is
+what the supports carry at rest [m/s²]: g, and what tendons add to it without an arm h θ of their own.
 """
 
 import math
@@ -57,7 +57,7 @@ def rocking_stiffness(m):
 
 @kernel
 def rocking_period(m):
-    """Of rocking in full contact [s]: 2π/ω_r (THEORY.md, 13)."""
+    """Of rocking in full contact [s]: 2π/ω_r (THEORY.md, eq. 12)."""
     return 2.0 * math.pi * math.sqrt((m.inertia + m.height * m.height) / rocking_stiffness(m))
 
 

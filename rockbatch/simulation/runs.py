@@ -145,32 +145,32 @@ def written_run(
     wait: bool = True,
 ) -> tuple[SpringRun | RigidRun, np.recarray]:
     """One run, and its history of at most ``rows`` rows; with ``every_step`` also between samples."""
-    stop = Stop().flag
+    stop = Stop()
     if run.base.restraints and isinstance(run.base, RigidBase):
-        found = restrained(run, substeps, quiet_s, wait, rows, every_step)
+        found = restrained(run, substeps, quiet_s, stop, wait, rows, every_step)
         return found.run, rows_of(found)
     if run.base.restraints:
         written = np.recarray(rows, ROW)
-        on_springs = restrained_on_springs(run, substeps, quiet_s, wait, stop, written, every_step)
+        on_springs = restrained_on_springs(run, substeps, quiet_s, stop, wait, written, every_step)
         assert on_springs.run is not None
         return on_springs.run, with_notes(written, on_springs)
     lines, ground = [_line(run, substeps, quiet_s, 0, wait)], ground_of(run.motion)
     if isinstance(run.base, RigidBase):
         written = np.recarray(rows, rigid.ROW)
-        result = rigid.rock_side_by_side(lines, ground, stop, locate, every_step, written)[0]
+        result = rigid.rock_side_by_side(lines, ground, stop.flag, locate, every_step, written)[0]
         return rigid.rigid_run(result), written
     m = springs(run.pier, run.base)
     written = np.recarray(rows, ROW)
-    result = two_springs.rock_side_by_side(two_springs.traits_of(m), lines, ground, stop, locate, every_step, written)[
-        0
-    ]
+    result = two_springs.rock_side_by_side(
+        two_springs.traits_of(m), lines, ground, stop.flag, locate, every_step, written
+    )[0]
     return two_springs.spring_run(result), written
 
 
 def restrained(
-    run: Run, substeps: int, quiet_s: float, wait: bool, rows: int = 0, every_step: bool = False
+    run: Run, substeps: int, quiet_s: float, stop: Stop, wait: bool, rows: int = 0, every_step: bool = False
 ) -> Restrained:
-    """One run on a rigid base with dampers and tendons."""
+    """One run on a rigid base with dampers and tendons; its status is RUNNING if it was stopped."""
     pier, base, motion = run.pier, run.base, run.motion
     assert isinstance(base, RigidBase)
     dt = float(motion.dt)
@@ -182,6 +182,7 @@ def restrained(
         (motion.horizontal, vertical, dt),
         substeps,
         _quiet_samples(quiet_s, dt),
+        stop.flag,
         patience(pier, dt) if wait else 0,
         rows=rows,
         every_step=every_step,
@@ -192,8 +193,8 @@ def restrained_on_springs(
     run: Run,
     substeps: int,
     quiet_s: float,
+    stop: Stop,
     wait: bool,
-    stop: "np.ndarray[Any, Any]",
     history: np.recarray = NO_HISTORY,
     every_step: bool = False,
 ) -> RestrainedOnSprings:
@@ -203,7 +204,7 @@ def restrained_on_springs(
     vertical = () if motion.vertical is None else motion.vertical
     line, ground = _line(run, substeps, quiet_s, 0, wait), (motion.horizontal, vertical, float(motion.dt))
     return rock_restrained_on_springs(
-        springs(pier, base), line, elements(pier, base), ground, stop, history, every_step
+        springs(pier, base), line, elements(pier, base), ground, stop.flag, history, every_step
     )
 
 
@@ -274,7 +275,7 @@ def try_all(
             alike.setdefault(_kernel_of(run), []).append(i)
     for i in alike.pop(RESTRAINED, []):
         if not stop:
-            trials[i] = _restrained_trial(runs[i], substeps[i], quiet_s, wait, stop)
+            trials[i] = _restrained_trial(runs[i], substeps[i], quiet_s, stop, wait)
     for kernel, which in alike.items():
         assert not isinstance(kernel, str)
         first_rows: dict[int, int] = {}
@@ -309,15 +310,17 @@ def _rock(
         yield None if result.status == RUNNING else two_springs.spring_run(result), result.extremes
 
 
-def _restrained_trial(run: Run, substeps: int, quiet_s: float, wait: bool, stop: Stop) -> Trial | None:
-    """One run with dampers and tendons, with what they have been through."""
+def _restrained_trial(run: Run, substeps: int, quiet_s: float, stop: Stop, wait: bool) -> Trial | None:
+    """One run with dampers and tendons, with what they have been through; ``None`` if it was stopped."""
     if not isinstance(run.base, RigidBase):
-        on_springs = restrained_on_springs(run, substeps, quiet_s, wait, stop.flag)
+        on_springs = restrained_on_springs(run, substeps, quiet_s, stop, wait)
         if on_springs.run is None:
             return None
         outcome = _at_rest(run, on_springs, _outcome(run, substeps, on_springs.run))
         return Trial(replace(outcome, **_use(run, on_springs.use)), on_springs.extremes)
-    found = restrained(run, substeps, quiet_s, wait)
+    found = restrained(run, substeps, quiet_s, stop, wait)
+    if found.run.status == RUNNING:
+        return None
     outcome = _outcome(run, substeps, found.run)
     if outcome.status == "ok" and found.theta_end != 0.0 and math.isnan(found.run.t_rest) and found.sticks:
         note = f"dampers hold the pier at a rotation of {found.theta_end:.3g} rad"
@@ -423,7 +426,7 @@ def _of_springs(run: Run, found: SpringRun, survived: bool) -> dict[str, Any]:
     assert not isinstance(base, RigidBase)
     more: dict[str, Any] = {}
     if survived:
-        # From the base's tilt to the rotation, static on the deformed base (THEORY.md, 14)
+        # From the base's tilt to the rotation, static on the deformed base (THEORY.md, eq. 20)
         omega_v = vertical_frequency(pier, base)
         lean = 1.0 / tilt_over_residual(pier.gravity, pier.height, pier.half_width, omega_v)
         tilt = 0.5 * (found.base_left - found.base_right) / pier.half_width

@@ -1,4 +1,4 @@
-"""Dampers and tendons of a pier on two springs (THEORY.md, 5) against closed forms, limits, and a solver of their own."""
+"""Dampers and tendons of a pier on two springs (THEORY.md, Dampers and tendons) against a solver of their own, and limits."""
 
 import math
 from dataclasses import replace

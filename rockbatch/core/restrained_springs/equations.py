@@ -1,10 +1,11 @@
-"""Equations of a pier on two springs that elements tie to the ground (THEORY.md, 5).
+"""Equations of a pier on two springs that elements tie to the ground (THEORY.md, Dampers and tendons).
 
 At one moment the elements are a force and a moment on the pier (``Pull``), and all that is known of a pier on springs holds
 with them. What is integrated beside its State, x: the state of each element, the energy that each has taken and not given back
 [J/kg], the work of the ground [J/kg], and what the elements' P–Δ moments have put in [J/kg].
 """
 
+import math
 from typing import NamedTuple
 
 from rockbatch.core.creep import share_left, with_creep
@@ -12,6 +13,7 @@ from rockbatch.core.equations import accelerations, along, geometry, pulled, rat
 from rockbatch.core.kernel import kernel
 from rockbatch.core.laws import within_yield
 from rockbatch.core.restrained.elements import FRICTION, HYSTERETIC, STICKS, force, loss_rate, state_rate
+from rockbatch.core.restrained.equations import PLASTIC, TRAVEL
 from rockbatch.core.trigonometry import sine_and_cosine
 from rockbatch.core.types import State
 
@@ -140,6 +142,26 @@ def all_rates(m, elements, level, y, x, modes, goes, contact, horizontal, vertic
 
 
 @kernel
+def longest(m, elements, level, y, x, modes, goes, contact, ground, h, dt):
+    """The longest step [s], ``h`` at most, that resolves hysteretic dampers, as ``restrained.equations.longest`` has it."""
+    share, asked = 1.0, False
+    for j in range(len(elements)):
+        asked = asked or (elements[j].kind == HYSTERETIC and goes[j] * x[j] < 1.0)
+    if not asked:
+        return h
+    a, c = ground.horizontal, ground.vertical
+    under, _, _ = under_elements(m, elements, level, y, x, modes, goes, contact, a, c)
+    v_acceleration, theta_acceleration = accelerations(under, y, contact, geometry(m, y.theta), a, c)
+    for j in range(len(elements)):
+        of = elements[j]
+        if of.kind == HYSTERETIC and goes[j] * x[j] < 1.0:
+            at = gap(m, of, y, level)
+            way = (abs(at.speed) + abs(lifted(y, at, v_acceleration, theta_acceleration)) * h) * dt * of.stiffness
+            share = min(share, TRAVEL / way) if way > 0.0 else share
+    return share * h
+
+
+@kernel
 def step(m, elements, level, y, x, modes, goes, contact, ground, h, work, end_x):
     """One Runge–Kutta step of order 4 over ``h`` [s]: the State, and ``x`` into ``end_x``. ``work``: rates and a stage."""
     kx, stage = work[0], work[1]
@@ -159,8 +181,8 @@ def step(m, elements, level, y, x, modes, goes, contact, ground, h, work, end_x)
             end_x[i] += weight * kx[i]
             stage[i] = x[i] + ahead * kx[i]
     for j in range(len(elements)):
-        if elements[j].kind == HYSTERETIC:  # a step that resolves the law never gets beyond
-            end_x[j] = min(max(end_x[j], -1.0), 1.0)
+        if elements[j].kind == HYSTERETIC and abs(end_x[j]) > 1.0 - PLASTIC:
+            end_x[j] = math.copysign(1.0, end_x[j])
     end = along(y, total, 1.0)
     left, right = within_yield(end.z_left, contact.left_yields), within_yield(end.z_right, contact.right_yields)
     end = State(end.v, end.theta, end.v_rate, end.omega, left, right)

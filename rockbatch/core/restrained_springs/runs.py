@@ -1,4 +1,4 @@
-"""Runs of a pier on two springs with dampers and tendons, one at a time (THEORY.md, 5).
+"""Runs of a pier on two springs with dampers and tendons, one at a time (THEORY.md, Dampers and tendons).
 
 What a run is while it is under way stands in the first of the lanes (``rockbatch.core.lanes``), which begin it, watch its
 extremes, and decide when it is over, as they do of a pier without elements. Steps, and the search for events, are scalar.
@@ -17,7 +17,7 @@ from rockbatch.core.lanes import contact_of, ground_of, model_of, put_state, sta
 from rockbatch.core.outcome import fallen
 from rockbatch.core.recording import LINE, RESULT, write
 from rockbatch.core.restrained.elements import ELEMENT, HYSTERETIC, STICKS, TENDON, USE, VISCOUS, force, stored
-from rockbatch.core.restrained_springs.equations import gap, lifted, under_elements
+from rockbatch.core.restrained_springs.equations import gap, lifted, longest, under_elements
 from rockbatch.core.restrained_springs.events import (
     NONE,
     OF_ELEMENTS,
@@ -151,9 +151,10 @@ def _step(lanes, m, tie, ground, sub, every_step, history, row):
     while done_so_far < h:
         y, contact, supports = state(lanes.now, 0), contact_of(lanes, 0), supports_of(lanes, 0)
         x, left = start + done_so_far, h - done_so_far
-        here = ground_of(lanes, 0, x)
+        here, dt = ground_of(lanes, 0, x), lanes.clock.dt[0]
+        most = min(left, longest(m, tie.elements, level, y, tie.x, tie.modes, tie.goes, contact, here, h, dt))
         used, which, end, k, k_end = piece(
-            m, tie.elements, level, y, tie.x, tie.modes, tie.goes, contact, supports, lanes.motion.rest[0], here, left,
+            m, tie.elements, level, y, tie.x, tie.modes, tie.goes, contact, supports, lanes.motion.rest[0], here, most,
             tie.work, tie.marks, tie.end,
         )  # fmt: skip
         include(lanes, 0, m, y, end, contact, t_sample + x, used)
@@ -170,6 +171,9 @@ def _step(lanes, m, tie, ground, sub, every_step, history, row):
                 status = CHATTER
             if status != SURVIVED:
                 return status, t, row
+        elif every_step and done_so_far < h:
+            x = start + done_so_far
+            row = _write(lanes, m, tie, history, row, t_sample + x, STEP, ground_of(lanes, 0, x))
     return fallen(lanes.now.theta[0]), t_sample + start + h, row
 
 
