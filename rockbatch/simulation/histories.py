@@ -7,6 +7,7 @@ import numpy as np
 
 from rockbatch.core import types
 from rockbatch.core.ledger import LEDGER, ledger_on_rigid_base, ledger_on_springs
+from rockbatch.core.recording import ROW
 from rockbatch.core.records import numbers
 from rockbatch.errors import InputError
 from rockbatch.motions.motion import Motion, Samples
@@ -154,8 +155,12 @@ def energies(run: Run, rows: np.recarray) -> Samples:
     if isinstance(base, RigidBase):
         ledger_on_rigid_base(block(pier, base), rows, ground, dt, ledger)
         return pier.inertia_about_pivot * numbers(ledger)
-    pulls = np.ascontiguousarray(rows.pull) if base.restraints else np.zeros((len(rows), 2))
-    ledger_on_springs(springs(pier, base), rows, pulls, ground, dt, ledger)
+    pulls, plain = np.zeros((len(rows), 2)), rows
+    if base.restraints:
+        pulls, plain = rows.pull.copy(), np.recarray(len(rows), ROW)
+        for name in ROW.names or ():
+            plain[name] = rows[name]
+    ledger_on_springs(springs(pier, base), plain, pulls, ground, dt, ledger)
     return restraints.with_elements(pier, base, rows, numbers(ledger)) if base.restraints else numbers(ledger)
 
 
