@@ -104,6 +104,11 @@ def longest(m, elements, inertia, side, y, modes, goes, ground, h, dt):
     The shorter by one and the same factor for all ``h``, so that a run with half the step halves these steps too: what it
     changes goes on telling the error.
     """
+    asked = False
+    for j in range(len(elements)):
+        asked = asked or (elements[j].kind == HYSTERETIC and goes * y[2 + j] < 1.0)
+    if not asked:
+        return h
     turn = abs(acceleration(m, elements, inertia, side, y, modes, goes, ground.horizontal, ground.vertical))
     share = 1.0
     for j in range(len(elements)):
