@@ -27,6 +27,9 @@ GROWTH = 0.5
 NEAREST = 1e-3
 """Of a step: the shortest that this asks for, from a turning or to it."""
 
+SLOWEST = 1e-12
+"""Speed [m/s] below which the slope of such a damper's force grows no more."""
+
 PLASTIC = 1e-14
 """How near to 1 the |z| of a hysteretic damper is 1: 1 − z decays by exp(−5 e/u_y) and would take steps of u_y for ever."""
 
@@ -132,8 +135,11 @@ def longest(m, elements, inertia, side, y, modes, goes, ground, h, dt):
         if of.kind == HYSTERETIC and goes * z < 1.0:
             way = distance(of, side) * (abs(y[1]) + turn * h) * dt * of.stiffness
             share = min(share, TRAVEL / way) if way > 0.0 else share
-        if _is_root(of) and turn > 0.0:
-            share = min(share, max(GROWTH * abs(y[1]) / (turn * h), NEAREST))
+        if _is_root(of):
+            d = distance(of, side)
+            slope = of.coefficient * of.exponent * max(d * abs(y[1]), SLOWEST) ** (of.exponent - 1.0) * d * d / inertia
+            grown = GROWTH * abs(y[1]) / (turn * h) if turn > 0.0 else 0.0
+            share = min(share, max(min(grown, GROWTH / (slope * dt) if slope > 0.0 else 1.0), NEAREST))
     return share * h
 
 
