@@ -51,6 +51,15 @@ def test_every_solver_is_as_accurate_as_asked(benchmark):
             assert float(row[3]) <= module.ACCURACY
 
 
+def test_errors_are_held_against_the_reported_ones_with_dampers_too(benchmark):
+    module = benchmark("error_estimates")
+    motion = pulse("sine", name="sine", amplitude=4.0, period=0.8, dt=0.01, duration=4.0)
+    rows = [module.verify(name, base, motion, 1e-4) for name, base in [*module.TIED.items()][:2]]
+    assert all(row["settled"] and 0.0 < row["theta_max_true"] <= row["theta_max_reported"] for row in rows)
+    (everything,) = [row for row in cells(module.summary(rows)) if row[0] == "all"]
+    assert everything[:4] == ["all", "2", "theta_max", "2 of 2 (100.00%)"]
+
+
 @pytest.mark.parametrize(
     ("package", "solver", "tolerance", "error"),
     [

@@ -117,7 +117,7 @@ def history_bytes(run: PlannedRun, row: "Mapping[str, Any] | pd.Series") -> floa
     """
     pier, base = run.case.pier, run.case.base
     columns = len(UNITS) - (len(OF_SPRINGS) if isinstance(base, RigidBase) else 0)
-    columns += 2 * sum(len(offsets(pier, each)) for each in getattr(base, "restraints", ()))  # elongations and forces
+    columns += 2 * sum(len(offsets(pier, each)) for each in base.restraints)  # elongations and forces
     if _has(row, LEDGER):
         columns += len(TERMS)
     if _has(row, FORCES):

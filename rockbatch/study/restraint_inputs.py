@@ -25,12 +25,6 @@ class Parameter(NamedTuple):
     divisor: float
 
 
-def tied(case: Case) -> tuple[Restraint, ...]:
-    """Dampers and tendons of a case."""
-    restraints: tuple[Restraint, ...] = getattr(case.base, "restraints", ())
-    return restraints
-
-
 def is_of_restraint(name: str) -> bool:
     """Whether an input is one of a damper or tendon."""
     return "." in name
@@ -82,8 +76,8 @@ def with_values(pier: Pier, restraints: Sequence[Restraint], values: Mapping[str
 
 def unclear(names: Iterable[str], case: Case) -> dict[str, str]:
     """Which names of inputs do not say whose they are in this case, or say it twice, and what to write instead."""
-    own = numbered(case.pier, tied(case))
-    where = parameters(case.pier, tied(case))
+    own = numbered(case.pier, case.base.restraints)
+    where = parameters(case.pier, case.base.restraints)
     told: dict[str, str] = {}
     fixed: dict[tuple[int, str], str] = {}
     for name in filter(is_of_restraint, names):
@@ -103,7 +97,7 @@ def why_none(name: str, cases: Iterable[Case]) -> str:
     what, number = table.partition("_")[::2]
     most, kinds, heavy = 0, set(), False
     for case in cases:
-        mine = [each for each in tied(case) if isinstance(each, Damper) == (what == "damper")]
+        mine = [each for each in case.base.restraints if isinstance(each, Damper) == (what == "damper")]
         most, heavy = max(most, len(mine)), heavy or case.pier.mass_t is not None
         kinds |= {each.kind if isinstance(each, Damper) else "tendon" for each in mine}
     if not most:

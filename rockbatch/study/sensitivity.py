@@ -15,7 +15,6 @@ from rockbatch.study.restraint_inputs import (
     own_restraint_values,
     parameters,
     problem_in_words,
-    tied,
     unclear,
     why_none,
     with_values,
@@ -160,7 +159,7 @@ class SensitivitySpec:
 
 def applying(inputs: Iterable[Input], case: Case) -> tuple[Input, ...]:
     """The inputs that a case has."""
-    own = {*_of_base(case), *OF_PIER, *OF_MOTION, *_in_kilonewtons(case), *parameters(case.pier, tied(case))}
+    own = {*_of_base(case), *OF_PIER, *OF_MOTION, *_in_kilonewtons(case), *parameters(case.pier, case.base.restraints)}
     return tuple(each for each in inputs if each.name in own)
 
 
@@ -179,7 +178,7 @@ def varied(case: Case, values: Mapping[str, Value]) -> Case:
             given[ratio] = (beta_of if ratio == "beta" else eta_of)(pier, given.pop(name))
     of_restraints = {name: given.pop(name) for name in list(given) if is_of_restraint(name)}
     if of_restraints:
-        given["restraints"] = with_values(pier, tied(case), of_restraints)
+        given["restraints"] = with_values(pier, case.base.restraints, of_restraints)
     return replace(case, pier=pier, base=replace(case.base, **given))
 
 
@@ -188,7 +187,7 @@ def own_values(study: Study, case: Case) -> dict[str, Any]:
     of_motion = {"vertical": study.motions.vertical, "polarity": study.motions.polarity[0]}
     pier = {name: getattr(case.pier, name) for name in OF_PIER}
     base = {each.name: getattr(case.base, each.name) for each in fields(case.base)}
-    return pier | base | _in_kilonewtons(case) | own_restraint_values(case.pier, tied(case)) | of_motion
+    return pier | base | _in_kilonewtons(case) | own_restraint_values(case.pier, case.base.restraints) | of_motion
 
 
 def _in_kilonewtons(case: Case) -> dict[str, float]:

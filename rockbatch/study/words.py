@@ -309,8 +309,8 @@ RANGES_OF = {
     "tendon": {name: told for name, told in TENDON.items() if name != "at"},
 }
 RANGES_WITHIN = {
-    what: f"Inputs of a {what}, the least and the largest value; or write {what}.{key} = {example} in the table above. Where "
-    f"several {what}s of a case have the key, {what}_1 is the first of them, {what}_2 the next."
+    what: f"Inputs of the {what} of a case, the least and the largest value; or write {what}.{key} = {example} above. "
+    f"Where several {what}s of a case have the key, {what}_1 is the first that the case has, {what}_2 the next."
     for what, key, example in (("damper", "f", "[0.01, 0.05]"), ("tendon", "psi", "[0.2, 0.8]"))
 }
 CHOICE_ABOUT = "Inputs with two values, both as likely."

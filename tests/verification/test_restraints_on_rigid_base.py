@@ -286,6 +286,16 @@ def test_a_damper_that_yields_within_a_step_is_resolved_from_the_coarsest_on():
     assert abs(settled.theta_max - peaks[-1]) <= settled.theta_max_error
 
 
+def test_a_damper_whose_force_is_a_root_of_the_speed_is_resolved_where_it_turns():
+    """√|ė| has no Taylor series at a turning: steps from one and to one grow and shrink with the speed."""
+    foundation = base(Damper("viscous", nu=0.3, exponent=0.5))
+    motion = pulse("sine", 0.5, 1.0, dt=0.02, end=3.0)
+    peaks = [run_fixed(FIG5, foundation, motion, k, 0.0, wait=False).theta_max for k in (1, 2, 4, 512)]
+    errors = np.abs(np.array(peaks[:-1]) - peaks[-1]) / FIG5.alpha
+    assert errors[0] < 1e-7
+    assert errors[2] < errors[0] / 8.0
+
+
 @pytest.mark.parametrize(
     "foundation", [base(Damper("friction", f=0.1)), base(Tendon(psi=0.2, lam=1.5, strength=0.3)), YIELDS]
 )

@@ -7,10 +7,28 @@ taken and not given back [J/kg], and the work of the ground [J/kg].
 import math
 
 from rockbatch.core.kernel import kernel
-from rockbatch.core.restrained.elements import FRICTION, HYSTERETIC, STICKS, distance, force, loss_rate, state_rate
+from rockbatch.core.restrained.elements import (
+    FRICTION,
+    HYSTERETIC,
+    STICKS,
+    VISCOUS,
+    distance,
+    force,
+    loss_rate,
+    state_rate,
+)
 
 TRAVEL = 0.5
 """Of u_y: what a hysteretic damper may be drawn out by in one step of a sample's length, and less the more steps a sample has."""
+
+GROWTH = 0.5
+"""By which share of itself the speed of a viscous damper may grow or fall in a step: |ė|^a has no Taylor series at 0."""
+
+NEAREST = 1e-3
+"""Of a step: the shortest that this asks for, from a turning or to it."""
+
+SLOWEST = 1e-12
+"""Speed [m/s] below which the slope of such a damper's force grows no more."""
 
 PLASTIC = 1e-14
 """How near to 1 the |z| of a hysteretic damper is 1: 1 − z decays by exp(−5 e/u_y) and would take steps of u_y for ever."""
@@ -99,11 +117,17 @@ def step(m, elements, inertia, side, y, modes, goes, ground, h, work, end):
 
 @kernel
 def longest(m, elements, inertia, side, y, modes, goes, ground, h, dt):
-    """The longest step [s], ``h`` at most, that resolves the law of hysteretic dampers that are not plastic all along it.
+    """The longest step [s], ``h`` at most, that resolves the laws of dampers: of a hysteretic one that is not plastic all along
+    it, and of a viscous one with an exponent that is no whole number, near a turning.
 
     The shorter by one and the same factor for all ``h``, so that a run with half the step halves these steps too: what it
     changes goes on telling the error.
     """
+    asked = False
+    for j in range(len(elements)):
+        asked = asked or (elements[j].kind == HYSTERETIC and goes * y[2 + j] < 1.0) or _is_root(elements[j])
+    if not asked:
+        return h
     turn = abs(acceleration(m, elements, inertia, side, y, modes, goes, ground.horizontal, ground.vertical))
     share = 1.0
     for j in range(len(elements)):
@@ -111,7 +135,18 @@ def longest(m, elements, inertia, side, y, modes, goes, ground, h, dt):
         if of.kind == HYSTERETIC and goes * z < 1.0:
             way = distance(of, side) * (abs(y[1]) + turn * h) * dt * of.stiffness
             share = min(share, TRAVEL / way) if way > 0.0 else share
+        if _is_root(of):
+            d = distance(of, side)
+            slope = of.coefficient * of.exponent * max(d * abs(y[1]), SLOWEST) ** (of.exponent - 1.0) * d * d / inertia
+            grown = GROWTH * abs(y[1]) / (turn * h) if turn > 0.0 else 0.0
+            share = min(share, max(min(grown, GROWTH / (slope * dt) if slope > 0.0 else 1.0), NEAREST))
     return share * h
+
+
+@kernel
+def _is_root(of):
+    """Whether the force is no smooth function of the speed where that is 0."""
+    return of.kind == VISCOUS and of.exponent != math.floor(of.exponent)
 
 
 @kernel
