@@ -1,5 +1,8 @@
 """Mistakes of the user, told all at once and without a traceback, and what they should know of results they open."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 
 class InputError(ValueError):
     """Input that cannot be used as it stands.
@@ -29,6 +32,20 @@ class UnstatedError(InputError):
     def __init__(self, problem: str, *keys: str) -> None:
         super().__init__(problem)
         self.keys = keys
+
+
+@contextmanager
+def starting_threads(otherwise: str = "") -> Iterator[None]:
+    """Have it said in words, by ``InputError``, that no more threads can be started, and what else to do but allow them."""
+    try:
+        yield
+    except RuntimeError as error:
+        if "start new thread" not in str(error):
+            raise
+        raise InputError(
+            "no more threads can be started: the number of processes is limited here (ulimit -u, or a container's limit); "
+            f"allow more{otherwise}"
+        ) from error
 
 
 class AboutResults(UserWarning):
