@@ -57,4 +57,4 @@ class MissingColumns(AboutResults):
 
 
 class EditedTable(AboutResults):
-    """A ``peaks.csv`` that is not as it was written."""
+    """A table, or what an analysis says of itself, that is not as it was written."""
