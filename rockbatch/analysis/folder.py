@@ -140,8 +140,8 @@ class AnalysisFolder:
     def keep(self, file: str, digest: Mapping[str, str] | None = None) -> None:
         """Note that ``file`` is finished, and which runs it holds."""
         self.info["files"].append(file)
-        runs = {} if digest is None else {"runs": dict(digest)}
-        self.info["digests"][file] = {**runs, "sha256": sha256_of(self.directory / file)}
+        noted = self.info["digests"].get(file, {}) if digest is None else {"runs": dict(digest)}
+        self.info["digests"] = self.info["digests"] | {file: noted | {"sha256": sha256_of(self.directory / file)}}
         self._write_info()
 
     def keep_table(self, file: str, table: "pd.DataFrame") -> None:
