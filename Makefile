@@ -3,7 +3,7 @@
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: run test lint slow docs clean
+.PHONY: run test lint slow docs screenshots clean
 
 run: .venv/.run
 	$(BIN)/rockbatch run configs/near_fault.toml
@@ -25,10 +25,15 @@ docs: .venv/.docs
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet --config-file docs/mkdocs.yml
 	@echo "build/docs/index.html"
 
+screenshots: .venv/.run
+	$(BIN)/python -m pip install --quiet pypdfium2
+	$(BIN)/python docs/screenshots/take.py
+
 .venv/bin/python:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
 	  { echo "rockbatch needs Python 3.11 or newer; try: make $(MAKECMDGOALS) PYTHON=python3.12"; exit 1; }
 	$(PYTHON) -m venv .venv
+	@echo "installing rockbatch and what it needs into .venv (about 1 GB, a few minutes)"
 
 .venv/.run: .venv/bin/python pyproject.toml
 	$(BIN)/python -m pip install --quiet --editable ".[records]"

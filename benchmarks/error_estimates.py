@@ -81,7 +81,7 @@ def verify(name: str, base: Base, motion: Motion, tolerance: float) -> dict[str,
 
 
 def summary(rows: list[dict[str, object]]) -> list[str]:
-    """Lines of the table in THEORY.md: covered, worst ratio, per base and quantity."""
+    """Lines of the table in docs/pages/verification.md: covered, worst ratio, per base and quantity."""
     lines = ["| base | runs | quantity | true ≤ reported | worst true/reported | greatest true error | other outcome |",
              "| --- | --- | --- | --- | --- | --- | --- |"]  # fmt: skip
     for base in [*BASES, "all"]:

@@ -22,8 +22,8 @@ is held against the whole truth, through the flight and after it: the pier must 
 "later" marks what goes wrong after the end of the run: it stopped too early.
 
 Bouc–Wen springs ratchet on vibration that nothing damps, so that some piers topple after minutes of it. On them the truth
-is taken until 40/p after the motion, as long as rockbatch waits (THEORY.md, 6); those that topple later are counted
-("ratchets over").
+is taken until 40/p after the motion, as long as rockbatch waits (THEORY.md, When a run is over); those that
+topple later are counted ("ratchets over").
 --within 60 asks for the truth until 60 s after the motion on all bases.
 
 References are kept in FOLDER (outcomes.json; a new version of the pool or the solver starts anew); by default a folder

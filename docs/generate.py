@@ -1,7 +1,8 @@
 """What the site takes from the program itself and from the documents at the repository's top; a hook of MkDocs.
 
 Nothing of it is kept: the study file's reference and schemas come from the reader's tables, the columns from theirs, the
-commands from their parsers, the figures of the verification from the CSV files in benchmarks/, the pictures from gallery/.
+commands from their parsers, the figures of the verification from the CSV files in benchmarks/, the pictures from gallery/. The
+verification is a PDF, too.
 """
 
 import contextlib
@@ -20,6 +21,7 @@ from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.exceptions import PluginError
 from mkdocs.structure.files import File, Files
 from mkdocs.structure.pages import Page
+from printing import as_pdf
 
 import rockbatch
 from rockbatch.checks.demands import DEMANDS
@@ -55,8 +57,9 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
     }
     for name, sections in FILES.items():
         made[f"reference/{name}.schema.json"] = json.dumps(schema_of(sections, f"rockbatch {name}"), indent=1)
-    for script in sorted((HERE / "gallery").glob("*.py")):
-        made[f"pictures/{script.stem}.svg"] = _picture(script)
+    pictures = {f"pictures/{script.stem}.svg": _picture(script) for script in sorted((HERE / "gallery").glob("*.py"))}
+    made |= pictures
+    made["verification.pdf"] = _verification(pictures)
     for path, content in made.items():
         files.append(File.generated(config, path, content=content))
     for image in sorted((HERE / "images").iterdir()):
@@ -66,10 +69,7 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
 
 def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Files) -> str:
     """Put the counted figures in the place of ``<!-- name -->``."""
-    for name, table in COUNTED.items():
-        if f"<!-- {name} -->" in markdown:
-            markdown = markdown.replace(f"<!-- {name} -->", "\n".join(table()))
-    return markdown
+    return _counted(markdown)
 
 
 def on_page_content(html: str, page: Page, config: MkDocsConfig, files: Files) -> str:
@@ -104,7 +104,7 @@ def _included(document: str, page: str) -> str:
             indent = 0
         elif line:
             shift = " " * (4 - indent) if indent else ""
-            line = shift + re.sub(r" {5,}(\(\d)", r"    \1", line)
+            line = shift + re.sub(r" {5,}(\(\d+\)$)", r"    \1", line)
         lines.append(line)
     text = "\n".join(lines) + "\n"
     return re.sub(r"\]\(([\w./-]+)", lambda link: f"]({_on_site(link.group(1), document, page)}", text)
@@ -113,8 +113,11 @@ def _included(document: str, page: str) -> str:
 def _on_site(link: str, document: str, page: str) -> str:
     """Where what a document links to by a path is on the site, from its page; as it is if it is not there."""
     target = os.path.normpath(Path(document).parent / link)
-    pages = {there: here for here, there in DOCUMENTS.items()}
-    found = pages.get(target, target.removeprefix("docs/") if target.startswith("docs/images/") else None)
+    on_site = {there: here for here, there in DOCUMENTS.items()}
+    found = on_site.get(target)
+    for folder, there in (("docs/images/", "images/"), ("docs/pages/", "")):
+        if target.startswith(folder):
+            found = there + target.removeprefix(folder)
     return os.path.relpath(found, Path(page).parent) if found else link
 
 
@@ -264,7 +267,7 @@ def _python() -> str:
     return "\n".join(parts)
 
 
-# Pictures and counts
+# Pictures, counts and paper
 
 
 def _picture(script: Path) -> bytes:
@@ -281,7 +284,8 @@ def _picture(script: Path) -> bytes:
 def _errors() -> Iterator[str]:
     """How true errors compare with the reported ones, base by base, from benchmarks/error_estimates.csv."""
     rows = _csv("error_estimates.csv")
-    yield from ("| base | quantity | true ≤ reported | greatest true error |", "| --- | --- | --- | --- |")
+    yield "| base | quantity | true ≤ reported | greatest true/reported | greatest true error |"
+    yield "| --- | --- | --- | --- | --- |"
     for base in [*dict.fromkeys(row["base"] for row in rows), ""]:
         for quantity, told in (("theta_max", "θ_max/α"), ("theta_res", "θ_res/α")):
             pairs = [
@@ -291,8 +295,9 @@ def _errors() -> Iterator[str]:
             ]
             if pairs:
                 within = sum(true <= reported for true, reported in pairs)
+                ratio = max(true / reported for true, reported in pairs)
                 worst = max(true for true, _ in pairs)
-                yield f"| {base or 'all'} | {told} | {within} of {len(pairs)} | {worst:.1e} |"
+                yield f"| {base or 'all'} | {told} | {within} of {len(pairs)} | {ratio:.2g} | {worst:.1e} |"
 
 
 def _outcomes() -> Iterator[str]:
@@ -308,13 +313,20 @@ def _outcomes() -> Iterator[str]:
         yield f"| {stratum or 'all'} | {len(own)} | {counts} | {told} |"
 
 
-def _verified() -> Iterator[str]:
-    """The section of the theory that lists what was compared with what."""
-    theory = _included("THEORY.md", "verification.md")
-    _, heading, section = theory.partition("## 12. Verified against\n")
-    if not heading:
-        raise LookupError("THEORY.md has no section 12, Verified against: name the one that lists what was compared")
-    yield section.partition("\n## ")[0]
+def _counted(text: str) -> str:
+    for name, table in COUNTED.items():
+        if f"<!-- {name} -->" in text:
+            text = text.replace(f"<!-- {name} -->", "\n".join(table()))
+    return text
+
+
+def _verification(pictures: dict[str, bytes]) -> bytes:
+    """The page of that name as a report on paper, with the sources that it cites."""
+    _, heading, sources = (TOP / "THEORY.md").read_text(encoding="utf-8").partition("\n## Sources\n")
+    text = _counted((HERE / "pages" / "verification.md").read_text(encoding="utf-8"))
+    text += heading + sources.partition("\n### ")[0]
+    shown = {path: picture for path, picture in pictures.items() if f"({path})" in text}
+    return as_pdf(text, "Verification of rockbatch", f"rockbatch {rockbatch.__version__}", shown)
 
 
 def _csv(name: str) -> list[dict[str, str]]:
@@ -325,5 +337,4 @@ def _csv(name: str) -> list[dict[str, str]]:
 COUNTED: dict[str, Callable[[], Iterator[str]]] = {
     "error estimates": _errors,
     "outcomes": _outcomes,
-    "verified against": _verified,
 }

@@ -109,7 +109,7 @@ def test_deflections_and_frequency_follow_from_each_other():
 
 
 def test_the_base_tilts_with_the_residual_rotation_less_the_closer_the_pier_is_to_toppling():
-    """Eq. 14; at the least β that carries the pier in rotation, whatever tilt is left topples it."""
+    """THEORY.md, eq. 20; at the least β that carries the pier in rotation, whatever tilt is left topples it."""
 
     def at(omega_v):
         return tilt_over_residual(FIG5.gravity, FIG5.height, FIG5.half_width, omega_v)

@@ -1,4 +1,4 @@
-"""The pair of order 8(5,3) by Dormand and Prince (Hairer's DOP853) on the model of /THEORY.md, compiled.
+"""The compiled pair of order 8(5,3) by Dormand and Prince (Hairer's DOP853) on the model of /THEORY.md.
 
 All compiled functions are in this file, because Numba's cache on disk sees changes of one file only. A block on a rigid
 base and one on two springs are the same problem to it: a smooth right-hand side as long as ``mode`` stays, and six

@@ -104,8 +104,10 @@ def _observed(run: Run, outcome: Outcome, quiet_s: float, output: Output, stop: 
 
 
 def _kind(base: Base) -> tuple[object, ...]:
-    """What kernels can hang on: all but the numbers that are the same to them, β, η and ε."""
-    return tuple(getattr(base, name, None) for name in ("name", "spring", "n", "kinematics", "flight"))
+    """What kernels can hang on: all but the numbers that are the same to them, β, η and ε; of ζ, dampers and tendons whether
+    there are any."""
+    told = tuple(getattr(base, name, None) for name in ("name", "spring", "n", "kinematics", "flight"))
+    return *told, *(bool(getattr(base, name, None)) for name in ("zeta", "restraints"))
 
 
 def compile_kernels(study: Study) -> None:

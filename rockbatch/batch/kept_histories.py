@@ -10,7 +10,7 @@ import numpy as np
 from rockbatch.batch.plan import PlannedRun
 from rockbatch.checks.demands import FORCES
 from rockbatch.errors import InputError
-from rockbatch.pier import RigidBase
+from rockbatch.pier import RigidBase, offsets
 from rockbatch.results.columns import TERMS
 from rockbatch.results.histories_file import HISTORIES, OF_SPRINGS, UNITS, write
 from rockbatch.results.reading import Saved
@@ -108,7 +108,9 @@ def kept(study: Study, runs: Sequence[PlannedRun], table: "pd.DataFrame") -> Kep
 
 def history_bytes(run: PlannedRun, row: "Mapping[str, Any] | pd.Series") -> float:
     """About what the history of a run takes on disk: eight bytes for each number of each sample and side of an event."""
-    columns = len(UNITS) - (len(OF_SPRINGS) if isinstance(run.case.base, RigidBase) else 0)
+    pier, base = run.case.pier, run.case.base
+    columns = len(UNITS) - (len(OF_SPRINGS) if isinstance(base, RigidBase) else 0)
+    columns += 2 * sum(len(offsets(pier, each)) for each in getattr(base, "restraints", ()))  # elongations and forces
     if _has(row, LEDGER):
         columns += len(TERMS)
     if _has(row, FORCES):

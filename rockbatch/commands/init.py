@@ -1,6 +1,9 @@
 """``rockbatch init``: a study of one's own to begin with."""
 
 import argparse
+import shlex
+import shutil
+import sys
 from pathlib import Path
 
 from rockbatch.commands.messages import show
@@ -24,9 +27,15 @@ def main(arguments: argparse.Namespace) -> int:
     for path in written:
         show(str(path))
     there = "" if arguments.folder == Path() else f"cd {arguments.folder}\n    "
-    show(f"\nNext:\n\n    {there}rockbatch run {study}\n")
+    show(f"\nNext:\n\n    {there}{_called()} run {study}\n")
     show(
-        f"It leaves a report in {Path('reports', Path(study).stem, 'report.html')}. Then put in the numbers of your pier and a"
+        f"It leaves a report in {Path('reports', Path(study).stem, 'report.html')}. Then put the numbers of your pier and the"
     )
-    show(f"folder of your records ({study} says where), and agree on limits ({CHECKS} has many to choose from).")
+    show(f"folder of your records (path) into {study}, and agree on limits ({CHECKS} has many to choose from).")
     return 0
+
+
+def _called() -> str:
+    """What a shell needs to find rockbatch from any folder: its name, or its path where the name would not do."""
+    here = shutil.which("rockbatch", path=str(Path(sys.executable).parent))
+    return "rockbatch" if here is None or shutil.which("rockbatch") == here else shlex.quote(here)

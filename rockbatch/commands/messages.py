@@ -57,7 +57,7 @@ def tell_motions(motions: "MotionSet") -> None:
     if lacking := [motion.named for motion in motions.motions if motion.lacks_vertical]:
         say(f"no vertical: {'; '.join(lacking)}")
     if motions.left_out:
-        say(f"{count(len(motions.left_out), 'file')} left out, or no records: `rockbatch motions` says why")
+        say(f"{count(len(motions.left_out), 'file')} left out: `rockbatch motions FOLDER` lists them and says why")
 
 
 def _twice(motions: "MotionSet") -> list[tuple[str, str]]:

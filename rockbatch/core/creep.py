@@ -1,4 +1,4 @@
-"""Damped supports: a dashpot beside each spring, and how a support creeps back when its pivot has left (THEORY.md, 4).
+"""Damped supports: a dashpot beside each spring, and how a support creeps back without its pivot (THEORY.md, Damped supports).
 
 A support without mass and without its pivot follows F_y z + C ẇ = 0: z decays with τ = C/K, and what bears the pivot
 again is the top of the support, at the unstressed position plus δ_y z. The decay is had in closed form, because

@@ -1,4 +1,4 @@
-"""When a run on springs is over, and when its residuals are read (THEORY.md, 6 and 7).
+"""When a run on springs is over, and when its residuals are read (THEORY.md, When a run is over).
 
 Looked at once a sample, from the end of the record on.
 """

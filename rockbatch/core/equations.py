@@ -1,4 +1,4 @@
-"""Equations of motion of the pier on two springs, once for all contacts and both kinematics (THEORY.md)."""
+"""Equations of motion of the pier on two springs, once for all contacts and both kinematics (THEORY.md, eqs. 4 to 9)."""
 
 from rockbatch.core.creep import acceleration_of_top, creep_rate, forces, share_left, with_creep
 from rockbatch.core.kernel import inlined, kernel
@@ -9,7 +9,7 @@ from rockbatch.core.types import LEFT, Contact, Geometry, State
 
 @inlined
 def geometry(m, theta):
-    """Pivots and levers at rotation ``theta`` (model: paper, eqs. 3–7; finite: THEORY.md)."""
+    """Pivots and levers at rotation ``theta`` (THEORY.md, eqs. 5 and 6; finite: THEORY.md, eqs. 8 and 9)."""
     b, h = m.half_width, m.height
     if m.finite is not None:
         s, c = sine_and_cosine(theta)

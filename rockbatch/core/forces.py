@@ -1,4 +1,4 @@
-"""What the ground, the supports and the gaps under the pivots take of a run that was written down (THEORY.md, 7).
+"""What the ground, the supports and the gaps under the pivots take of a run that was written down (THEORY.md, Forces).
 
 An observer, like the ledger: it reads the rows of a history, and the equations of motion give the forces of each. Within a
 step they are looked at once more, in its middle; runs that do not ask for it pay nothing.

@@ -1,7 +1,7 @@
 """What a pier that is left alone can still do: how far its energy carries it, and whether over the summit.
 
 The ground is at rest. Between impacts energy is kept, at impacts and by yielding it is lost, so the energy of this
-moment bounds every later rotation (THEORY.md, 6). Energies are per unit mass [J/kg].
+moment bounds every later rotation (THEORY.md, When a run is over). Energies are per unit mass [J/kg].
 """
 
 import math
@@ -56,7 +56,7 @@ def rocking_stiffness(m):
 
 @kernel
 def rocking_period(m):
-    """Of rocking in full contact [s]: 2π/ω_r (THEORY.md, 13)."""
+    """Of rocking in full contact [s]: 2π/ω_r (THEORY.md, eq. 12)."""
     return 2.0 * math.pi * math.sqrt((m.inertia + m.height * m.height) / rocking_stiffness(m))
 
 

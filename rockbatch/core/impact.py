@@ -1,4 +1,4 @@
-"""Landing: an impulse at the pivot alone multiplies its velocity by ε (Psycharis & Jennings 1983; THEORY.md)."""
+"""Landing: an impulse at the pivot alone multiplies its velocity by ε (Psycharis & Jennings 1983; THEORY.md, eq. 11)."""
 
 from rockbatch.core.equations import geometry
 from rockbatch.core.kernel import kernel

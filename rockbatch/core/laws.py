@@ -1,4 +1,4 @@
-"""The laws of a spring: ż = (v̇/δ_y)(1 − |z|ⁿ) while it yields, v̇/δ_y otherwise (paper, eqs. 8 and 9).
+"""The laws of a spring: ż = (v̇/δ_y)(1 − |z|ⁿ) while it yields, v̇/δ_y otherwise (THEORY.md, eq. 7).
 
 z = F/F_y is in [−1, 0]. Bouc–Wen is on the inelastic branch whenever it is being compressed; the elastic–perfectly
 plastic spring only once z = −1, where the same expression gives ż = 0; the elastic spring never. What tells one law from

@@ -1,4 +1,4 @@
-"""The energy ledger of a run that was written down: where the input went, and what is left over (THEORY.md).
+"""The energy ledger of a run that was written down: where the input went, and what is left over (THEORY.md, Energy ledger).
 
 An observer: it takes the rows of a history, step by step, and integrates the power of each term by Simpson's rule, with
 the state in the middle of a step from the cubic Hermite polynomial through its ends. Runs that do not ask for it pay

@@ -1,4 +1,4 @@
-"""Reversals of springs without a search: what the other branch would have made of the rest of a step (THEORY.md, 6)."""
+"""Reversals without a search: what the other branch would have made of a step's rest (THEORY.md, Reversals of springs)."""
 
 from typing import NamedTuple
 

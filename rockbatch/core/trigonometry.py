@@ -1,4 +1,4 @@
-"""Sine and cosine by arithmetic alone, which the lanes' passes can take for several angles at once (THEORY.md, 6).
+"""Sine and cosine by arithmetic alone, which the lanes' passes can take for several angles at once (docs/pages/lanes.md).
 
 A call of the machine's ``sin`` would end the compiler's attempt to turn a loop into vector instructions.
 """

@@ -45,7 +45,7 @@ NEITHER = 0.0  # of the corners about which a block could rock: it rests on both
 
 
 class Springs(NamedTuple):
-    """A pier on two springs, per unit mass (symbols: THEORY.md).
+    """A pier on two springs, per unit mass (THEORY.md, Symbols).
 
     The last three are told apart by their types, hence when kernels are compiled: a call of ``pow``, ``sin`` or ``cos``
     in an unused branch would cost the common model, n = 5, first-order and undamped, its vector instructions.

@@ -29,7 +29,7 @@ WITH_EXPONENT: tuple[SpringLaw, ...] = ("bouc-wen",)
 """Laws that an exponent n belongs to; the others have a sharp corner."""
 
 OTHER_LAW: dict[SpringLaw, SpringLaw] = {"bouc-wen": "epp", "epp": "bouc-wen"}
-"""For each law the one that shows how much a settlement depends on it (THEORY.md, 7)."""
+"""For each law the one that shows how much a settlement depends on it (THEORY.md, Results of a run)."""
 
 EPSILON_AND_ZETA = "zeta is given too, and a damped support takes a landing without an impulse; keep one"
 """What is said of both."""
@@ -42,7 +42,7 @@ class RigidBase:
     ``restitution`` is the factor e on the angular velocity at an impact; ``None`` means :attr:`Pier.restitution`, Housner's
     e = 1 − 2μ/(1+μ) sin²α, which conserves the angular momentum about the new pivot, or 0 where that is negative.
     ``restraints`` are dampers and tendons that tie the pier to the ground.
-    ``friction``, if known, is the coefficient of the interface: a run says where its forces ask for more (THEORY.md, 7).
+    ``friction``, if known, is the coefficient of the interface: a run says where its forces ask for more (THEORY.md, Forces).
 
     Examples
     --------
@@ -75,7 +75,7 @@ class ElasticBase:
         ζ, 0..1: a dashpot beside each spring, C = ζ M ω_v, by its share of critical damping of the vertical vibration. It
         takes the place of ε: a pivot that lands on a damped support is borne without an impulse.
     friction : float, optional
-        Coefficient of the interface, if known: a run says where its forces ask for more, and goes on (THEORY.md, 7).
+        Coefficient of the interface, if known: a run says where its forces ask for more, and goes on (THEORY.md, Forces).
 
     Examples
     --------
@@ -110,7 +110,7 @@ class YieldingBase(ElasticBase):
     eta : float
         Bearing capacity index η = δ_y/δ_s > 1.
     spring : "bouc-wen" or "epp"
-        The paper's smooth law (eq. 8), or elastic–perfectly plastic.
+        The paper's smooth law (THEORY.md, eq. 7), or elastic–perfectly plastic.
     n : float
         Bouc–Wen exponent ≥ 1; 5 in the paper.
 
@@ -176,7 +176,7 @@ def in_kilonewtons(pier: Pier, base: ElasticBase) -> dict[str, float]:
 
 
 def least_beta(pier: Pier, base: ElasticBase) -> float:
-    """β below which the pier topples on its springs under its own weight, or at the least push (THEORY.md, 9).
+    """β below which the pier topples on its springs under its own weight, or at the least push (THEORY.md, eq. 13).
 
     A Bouc–Wen spring under the weight, z = −1/η, is softer where it is loaded than where it is unloaded, by the factor
     r = 1 − η⁻ⁿ; both together have 2r/(1 + r) of the elastic springs' stiffness in rotation.
@@ -204,7 +204,7 @@ def yield_deflection(pier: Pier, base: ElasticBase) -> float:
 
 
 def tilt_over_residual(gravity: float, height: float, half_width: float, omega_v: float) -> float:
-    """Tilt of the base over the residual rotation, 1 − g h/(ω_v² b²): the weight leans the pier (THEORY.md, eq. 14).
+    """Tilt of the base over the residual rotation, 1 − g h/(ω_v² b²): the weight leans the pier (THEORY.md, eq. 20).
 
     ``gravity`` g [m/s²]; ``height`` h and ``half_width`` b [m], of the centre of mass from the pivots; ``omega_v`` [rad/s].
     """
@@ -212,7 +212,7 @@ def tilt_over_residual(gravity: float, height: float, half_width: float, omega_v
 
 
 def rocking_frequency(pier: Pier, base: ElasticBase) -> float:
-    """Circular frequency ω_r [rad/s] of rocking in full contact, on elastic springs (THEORY.md, 13)."""
+    """Circular frequency ω_r [rad/s] of rocking in full contact, on elastic springs (THEORY.md, eq. 12)."""
     mu, alpha = pier.mu, pier.alpha
     stiffness = mu * (math.sin(alpha) * base.beta * pier.p) ** 2 - (1 + mu) * pier.p**2 * math.cos(alpha)
     return math.sqrt(max(stiffness, 0.0) / (1 + mu * math.cos(alpha) ** 2))
@@ -222,7 +222,7 @@ def fastest(pier: Pier, base: ElasticBase) -> float:
     """Greatest rate [rad/s] in full contact: of vertical vibration or rocking, or of what decays where they creep.
 
     A vibration ω with the damping d, its decay's rate, has ω as its rate as long as d < ω, and d + √(d² − ω²) beyond;
-    d is ζ ω_v of the vertical one, and ζ ω_v μ sin²α/(1 + μ cos²α) of rocking (THEORY.md, 4).
+    d is ζ ω_v of the vertical one, and ζ ω_v μ sin²α/(1 + μ cos²α) of rocking (THEORY.md, Damped supports).
     """
     damping = (base.zeta or 0.0) * vertical_frequency(pier, base)
     share = pier.mu * math.sin(pier.alpha) ** 2 / (1 + pier.mu * math.cos(pier.alpha) ** 2)

@@ -40,7 +40,7 @@ class Pier:
     alpha : float
         Slenderness α [rad]: the angle at a pivot between the vertical and the line to the centre of mass.
     p : float
-        Frequency parameter [rad/s], p² = μ/(1+μ) g/R0 (paper, eq. 2).
+        Frequency parameter [rad/s], p² = μ/(1+μ) g/R0 (THEORY.md, eq. 1).
     mu : float
         Shape factor μ = M R0²/I0; 3 for a rectangle.
     gravity : float
@@ -143,7 +143,7 @@ class Pier:
         deck_height_m: float | None = None,
         gravity: float = GRAVITY,
     ) -> "Pier":
-        """Pier of any shape, with what it carries (THEORY.md, 1).
+        """Pier of any shape, with what it carries (THEORY.md, The pier).
 
         Parameters
         ----------
@@ -303,7 +303,7 @@ class Pier:
 
     @property
     def restitution(self) -> float:
-        """Factor e on the angular velocity at an impact on rigid ground, which keeps the angular momentum (THEORY.md, 5).
+        """Factor e on the angular velocity at an impact on rigid ground, which keeps the angular momentum (THEORY.md, eq. 16).
 
         Housner's 1 − 2μ/(1+μ) sin²α, or (1 − 3/2 sin²α + 3γ cos 2α)/(1 + 3γ) of a frame (Makris & Vassiliou 2013). A pier so
         stocky that this is negative would have to turn back through the corner that it has just landed on: it stops, e = 0.

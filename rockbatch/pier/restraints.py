@@ -1,4 +1,4 @@
-"""What ties a pier to the ground beside its own weight: dampers and tendons (THEORY.md, 5)."""
+"""What ties a pier to the ground beside its own weight: dampers and tendons (THEORY.md, Dampers and tendons)."""
 
 import math
 from dataclasses import dataclass, replace

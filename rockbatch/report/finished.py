@@ -119,9 +119,11 @@ class Finished:
         return label if label == record else f"{label} ({record})"
 
     def shown(self, record: str) -> Markup:
-        """Likewise on the page, the name in the tables in smaller words."""
+        """Likewise on the page, the name in the tables in paler words."""
         label = self.label(record)
-        return join(label) if label == record else join(label, " ", tag("span", record, class_="muted path"))
+        if label == record:
+            return join(label)
+        return tag("span", label, " ", tag("span", record, class_="muted path"), class_="record")
 
     def where(self, run: "pd.Series[Any]") -> str:
         """Which run this is, in words."""

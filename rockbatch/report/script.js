@@ -106,7 +106,7 @@ for (const svg of document.querySelectorAll("svg.marks")) {
   svg.addEventListener("pointerdown", nearest);
   svg.addEventListener("pointerleave", left);
 }
-for (const grid of document.querySelectorAll(".panels")) {
+for (const grid of document.querySelectorAll(".panels, .dots")) {
   let at = -1;
   grid.addEventListener("keydown", (event) => {
     const step = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 }[event.key];
@@ -115,7 +115,7 @@ for (const grid of document.querySelectorAll(".panels")) {
     const marks = marksOf(grid);
     at = (at + step + marks.length) % marks.length;
     marks[at].scrollIntoView({ block: "nearest" });
-    const panel = marks[at].closest("figure").querySelector("figcaption").textContent;
+    const panel = marks[at].closest("[data-of]")?.dataset.of ?? marks[at].closest("figure").querySelector("figcaption").textContent;
     point(marks[at]);
     tip.textContent = `${panel}\n${tip.textContent}`;
   });

@@ -8,6 +8,8 @@ from rockbatch.report.markup import Markup, join, number, tag
 
 WHOLE = ".10g"  # as it was given
 MOST_ROWS = 1000
+MOST_OPEN = 60
+"""Rows of a table that stands open; a longer one is unfolded by whom it concerns, and not printed."""
 
 
 class Head(NamedTuple):
@@ -31,7 +33,7 @@ def table(
 
     ``prose``: its cells hold words that go over several lines.
 
-    Of more than :data:`MOST_ROWS` rows the first are shown, and it says so.
+    Of more than :data:`MOST_ROWS` rows the first are shown, and it says so; more than :data:`MOST_OPEN` are folded up.
     """
     whole = list(rows)
     rows = whole[:MOST_ROWS]
@@ -55,6 +57,8 @@ def table(
     wide = tag(
         "div", drawn, class_="wide prose" if prose else "wide", tabindex="0", role="region", aria_label=name or "Table"
     )
+    if len(rows) > MOST_OPEN:
+        wide = tag("details", tag("summary", f"{name or 'Table'}: {len(rows):,} rows"), wide)
     return join(told_apart(len(rows), len(whole)), wide)
 
 

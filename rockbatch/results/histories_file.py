@@ -9,6 +9,7 @@
           pier, base    attributes: their parameters, as in rockbatch.pier; SI, angles in radians
           t, theta, …   the columns of Response.history, shape (n,), those of springs where there are any
           events        t, kind, pivot, before, after: the columns of Response.events
+          restraints    elongation and force of each damper and tendon, where there are any: Response.restraints
           ledger        the terms of the energy ledger, where it was asked for
           forces        what is sized, the columns of Response.forces, where it was asked for
           impacts       with them, the columns of Response.impacts
@@ -96,7 +97,9 @@ def write(path: Path, responses: Iterable[Response], info: Mapping[str, Any]) ->
 
 def _check_room(path: Path, response: Response) -> None:
     """HDF5 does not survive a full disk: it may take the process with it at exit."""
-    tables = (response.history, response.events, response.ledger, response.forces, response.impacts)
+    tables = (
+        response.history, response.events, response.ledger, response.forces, response.impacts, response.restraints,
+    )  # fmt: skip
     needed = MARGIN + sum(int(table.memory_usage().sum()) for table in tables if table is not None)
     free = disk_usage(path.parent).free
     if free < needed:

@@ -12,7 +12,7 @@ WOULD_SLIDE = "would slide"
 class PeakForces:
     """What a run asks of the design, until it ends or the pier leans beyond α for good; SI units, per unit mass of the pier.
 
-    Magnitudes; ``None`` where it does not apply (THEORY.md, 7).
+    Magnitudes; ``None`` where it does not apply (THEORY.md, Results of a run).
 
     Attributes
     ----------
@@ -93,7 +93,7 @@ class Outcome:
     settlement : float or None
         Mean plastic settlement of the supports since the start [m].
     t_read : float or None
-        When residual rotation, tilt and settlement of a yielding base were read [s] (THEORY.md, 7).
+        When residual rotation, tilt and settlement of a yielding base were read [s] (THEORY.md, Results of a run).
     settlement_drift, theta_res_drift : float or None
         How fast they went on changing then [m/s, rad/s].
     impacts, separations : int

@@ -70,7 +70,7 @@ class Response(Shown):
         kinematics), ``constraint`` (finite kinematics), ``damping`` (dashpots of the supports, dampers); and the ``remainder``
         of their balance, the integrator's error.
     forces : DataFrame or None
-        What is sized, at the rows of ``history``, where it was asked for (THEORY.md, 7): ``base_shear`` V/M, to the right on
+        What is sized, at the rows of ``history``, where it was asked for (THEORY.md, Forces): ``base_shear`` V/M, to the right on
         the pier, ``normal_force`` N/M [m/s²], ``friction`` |V|/N, ``pivot_…``, the supports' forces over half the weight,
         ``heel_gap_…`` [m], ``heel_speed_…`` [m/s], opening, ``deck_acceleration`` [m/s²].
     impacts : DataFrame or None

@@ -68,9 +68,9 @@ def simulate(
     case : str, optional
         Name of the foundation; its kind by default.
     ledger : bool
-        Keep the energy ledger too (THEORY.md, 9).
+        Keep the energy ledger too (THEORY.md, Energy ledger).
     forces : bool
-        Keep the forces, and what lands at impacts, too (THEORY.md, 7).
+        Keep the forces, and what lands at impacts, too (THEORY.md, Forces).
     wait : bool
         Go on after ``quiet_s`` until nothing that comes later can exceed the peak; ``False``, with ``substeps``: end there.
 
@@ -247,7 +247,7 @@ def _rigid_state(pier: Pier, base: RigidBase, rows: np.recarray) -> dict[str, Sa
 
 
 def _springs_state(pier: Pier, base: ElasticBase, rows: np.recarray) -> dict[str, Samples]:
-    """State, pivots, and the energy stored since the start (THEORY.md): kinetic, potential and elastic."""
+    """State, pivots, and the energy stored since the start (THEORY.md, Results of a run): kinetic, potential and elastic."""
     m = springs(pier, base)
     v, theta, z_left, z_right = rows.v, rows.theta, rows.z_left, rows.z_right
     b, h = m.half_width, m.height

@@ -74,7 +74,7 @@ def stored(pier: Pier, base: RigidBase, rows: np.recarray) -> Samples:
 
 
 def energies(pier: Pier, base: RigidBase, rows: np.recarray) -> Samples:
-    """Energy ledger [J/kg] (THEORY.md, 9): ``elastic`` and ``plastic`` are of tendons, ``damping`` of dampers."""
+    """Energy ledger [J/kg] (THEORY.md, Energy ledger): ``elastic`` and ``plastic`` are of tendons, ``damping`` of dampers."""
     inertia = pier.inertia_about_pivot
     laws = elements(pier, base)
     tendons = [j for j, of in enumerate(laws) if of.kind == TENDON]

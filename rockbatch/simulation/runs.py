@@ -139,7 +139,7 @@ def written_run(
 ) -> tuple[SpringRun | RigidRun, np.recarray]:
     """One run, and its history of at most ``rows`` rows; with ``every_step`` also between samples."""
     if isinstance(run.base, RigidBase) and run.base.restraints:
-        found = restrained(run, substeps, quiet_s, wait, rows, every_step)
+        found = restrained(run, substeps, quiet_s, Stop(), wait, rows, every_step)
         return found.run, rows_of(found)
     lines, ground, stop = [_line(run, substeps, quiet_s, 0, wait)], ground_of(run.motion), Stop().flag
     if isinstance(run.base, RigidBase):
@@ -155,9 +155,9 @@ def written_run(
 
 
 def restrained(
-    run: Run, substeps: int, quiet_s: float, wait: bool, rows: int = 0, every_step: bool = False
+    run: Run, substeps: int, quiet_s: float, stop: Stop, wait: bool, rows: int = 0, every_step: bool = False
 ) -> Restrained:
-    """One run on a rigid base with dampers and tendons."""
+    """One run on a rigid base with dampers and tendons; its status is RUNNING if it was stopped."""
     pier, base, motion = run.pier, run.base, run.motion
     assert isinstance(base, RigidBase)
     dt = float(motion.dt)
@@ -169,6 +169,7 @@ def restrained(
         (motion.horizontal, vertical, dt),
         substeps,
         _quiet_samples(quiet_s, dt),
+        stop.flag,
         patience(pier, dt) if wait else 0,
         rows=rows,
         every_step=every_step,
@@ -228,7 +229,7 @@ def try_all(
             alike.setdefault(_kernel_of(run), []).append(i)
     for i in alike.pop(RESTRAINED, []):
         if not stop:
-            trials[i] = _restrained_trial(runs[i], substeps[i], quiet_s, wait)
+            trials[i] = _restrained_trial(runs[i], substeps[i], quiet_s, stop, wait)
     for kernel, which in alike.items():
         assert not isinstance(kernel, str)
         first_rows: dict[int, int] = {}
@@ -263,9 +264,11 @@ def _rock(
         yield None if result.status == RUNNING else two_springs.spring_run(result), result.extremes
 
 
-def _restrained_trial(run: Run, substeps: int, quiet_s: float, wait: bool) -> Trial:
-    """One run with dampers and tendons, with what they have been through."""
-    found = restrained(run, substeps, quiet_s, wait)
+def _restrained_trial(run: Run, substeps: int, quiet_s: float, stop: Stop, wait: bool) -> Trial | None:
+    """One run with dampers and tendons, with what they have been through; ``None`` if it was stopped."""
+    found = restrained(run, substeps, quiet_s, stop, wait)
+    if found.run.status == RUNNING:
+        return None
     outcome = _outcome(run, substeps, found.run)
     if outcome.status == "ok" and found.theta_end != 0.0 and math.isnan(found.run.t_rest) and found.sticks:
         note = f"dampers hold the pier at a rotation of {found.theta_end:.3g} rad"
@@ -356,7 +359,7 @@ def _of_springs(run: Run, found: SpringRun, survived: bool) -> dict[str, Any]:
     assert not isinstance(base, RigidBase)
     more: dict[str, Any] = {}
     if survived:
-        # From the base's tilt to the rotation, static on the deformed base (THEORY.md, 14)
+        # From the base's tilt to the rotation, static on the deformed base (THEORY.md, eq. 20)
         omega_v = vertical_frequency(pier, base)
         lean = 1.0 / tilt_over_residual(pier.gravity, pier.height, pier.half_width, omega_v)
         tilt = 0.5 * (found.base_left - found.base_right) / pier.half_width

@@ -1,4 +1,4 @@
-"""Error control: each run with ever smaller steps, until what it says no longer depends on them (THEORY.md, 6)."""
+"""Error control: ever smaller steps until results do not depend on them (THEORY.md, The error that a row reports)."""
 
 import math
 from collections.abc import Sequence

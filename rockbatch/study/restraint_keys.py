@@ -1,6 +1,5 @@
 """Dampers and tendons of a case: [[case.damper]], and [case.tendon] or [[case.tendon]]."""
 
-import math
 from collections.abc import Mapping, Sequence
 from typing import Any, get_args
 
@@ -40,12 +39,32 @@ TENDON = {
 RESTRAINTS = ("damper", "tendon")
 ON_RIGID = 'dampers and tendons are solved on a rigid base only; leave them out, or write base = "rigid"'
 
-_IN_KN = ("force_kN", "coefficient_kN_s_m", "prestress_kN", "stiffness_kN_m", "yield_kN")
+IN_KN = ("force_kN", "coefficient_kN_s_m", "prestress_kN", "stiffness_kN_m", "yield_kN")
 _BELONG = {  # keys of a damper of each kind: those of which one is needed, then the others
     "friction": (("force_kN", "f"), ()),
     "hysteretic": (("force_kN", "f"), ("yield_mm",)),
     "viscous": (("coefficient_kN_s_m", "nu"), ("exponent",)),
 }
+KEYS_OF = {kind: (*either, *others) for kind, (either, others) in _BELONG.items()} | {
+    "tendon": tuple(name for name in TENDON if name != "at")
+}
+"""Keys with numbers of a damper of each kind, and of a tendon."""
+
+
+def fields_of(pier: Pier) -> dict[str, tuple[str, float]]:
+    """The field of Damper or Tendon that each key gives, and the key's value over the field's; in kN where the mass is known."""
+    found = {name: (name, 1.0) for name in ("f", "nu", "exponent", "psi")}
+    found |= {"yield_mm": ("yield_m", 1000.0), "lambda": ("lam", 1.0)}
+    if pier.mass_t is not None:
+        weight = pier.mass_t * pier.gravity
+        found |= {
+            "force_kN": ("f", weight),
+            "coefficient_kN_s_m": ("nu", weight * pier.p / pier.gravity),
+            "prestress_kN": ("psi", weight),
+            "stiffness_kN_m": ("lam", weight * pier.size / pier.half_width**2),
+            "yield_kN": ("strength", weight),
+        }
+    return found
 
 
 def read_restraints(case: Table) -> tuple[dict[str, Sequence[Setting]], tuple[str, ...]]:
@@ -95,7 +114,7 @@ def _check_pairs(table: Table, pairs: Sequence[Sequence[str]]) -> None:
 
 
 def _check_mass(table: Table) -> None:
-    for name in _IN_KN:
+    for name in IN_KN:
         if name in table.data and not has_mass(table.file):
             table.complain(f"{name}: kN are of a pier whose mass is known; write mass_t in [pier]", name)
 
@@ -106,33 +125,16 @@ def restraints_of(pier: Pier, given: dict[str, Any]) -> tuple[Restraint, ...]:
     for name in [name for name in given if name.startswith(tuple(f"{what}_" for what in RESTRAINTS))]:
         what, n, key = name.split("_", 2)
         taken.setdefault(f"{what}_{n}", {})[key] = given.pop(name)
-    weight = None if pier.mass_t is None else pier.mass_t * pier.gravity
     return tuple(
-        _damper(values, pier, weight) if name.startswith("damper") else _tendon(values, pier, weight)
-        for name, values in taken.items()
-        if name.startswith("tendon") or "kind" in values
+        _restraint(values, pier) for name, values in taken.items() if name.startswith("tendon") or "kind" in values
     )
 
 
-def _damper(values: Mapping[str, Any], pier: Pier, weight: float | None) -> Damper:
-    own = {name: values[name] for name in ("f", "nu", "exponent", "at") if name in values}
-    if "force_kN" in values and weight:
-        own["f"] = values["force_kN"] / weight
-    if "coefficient_kN_s_m" in values and weight:
-        own["nu"] = values["coefficient_kN_s_m"] * pier.gravity / (weight * pier.p)
-    if "yield_mm" in values:
-        own["yield_m"] = values["yield_mm"] / 1000.0
-    elif values["kind"] == "hysteretic":
-        own["yield_m"] = 0.001  # missing, which is noted: a possible value lets the rest be checked
-    return Damper(values["kind"], **own)
-
-
-def _tendon(values: Mapping[str, Any], pier: Pier, weight: float | None) -> Tendon:
-    own = {"psi": values.get("psi", 0.0), "lam": values.get("lambda", 0.0), "at": values.get("at", 0.0)}
-    strength = math.inf
-    if weight:
-        own["psi"] = values["prestress_kN"] / weight if "prestress_kN" in values else own["psi"]
-        if "stiffness_kN_m" in values:
-            own["lam"] = values["stiffness_kN_m"] * pier.half_width**2 / (weight * pier.size)
-        strength = values["yield_kN"] / weight if "yield_kN" in values else math.inf
-    return Tendon(strength=strength, **own)
+def _restraint(values: Mapping[str, Any], pier: Pier) -> Restraint:
+    own = {name: values[name] for name in ("kind", "at") if name in values}
+    own |= {field: values[key] / over for key, (field, over) in fields_of(pier).items() if key in values}
+    if "kind" not in values:
+        return Tendon(**own)
+    if values["kind"] == "hysteretic":
+        own.setdefault("yield_m", 0.001)  # missing, which is noted: a possible value lets the rest be checked
+    return Damper(**own)

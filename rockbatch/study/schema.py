@@ -30,6 +30,8 @@ def schema_of(sections: Sequence[Section], title: str) -> Schema:
             several = {"type": "array", "items": table}
             either = {"anyOf": [table, several]} if name in inner else several
             outer["properties"][name] = either if section.many else table
+            if section.numbered:
+                outer.setdefault("patternProperties", {})[f"^{name}_[1-9][0-9]*$"] = table
             if section.required:
                 outer["required"] = [*outer.get("required", []), name]
     return {"$schema": "http://json-schema.org/draft-07/schema#", "title": title, **tables[()]}

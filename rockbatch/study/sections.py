@@ -23,7 +23,15 @@ from rockbatch.study.motions import FEMA, MOTIONS, PULSE
 from rockbatch.study.piers import PART, PIER
 from rockbatch.study.plausible import CONFIRM
 from rockbatch.study.restraint_keys import DAMPER, RESTRAINTS, TENDON
-from rockbatch.study.sensitivity import CHOICE, LOG_UNIFORM, SENSITIVITY, UNIFORM, SensitivitySpec
+from rockbatch.study.sensitivity import (
+    CHOICE,
+    LOG_UNIFORM,
+    LOG_UNIFORM_OF,
+    SENSITIVITY,
+    UNIFORM,
+    UNIFORM_OF,
+    SensitivitySpec,
+)
 from rockbatch.study.spec import MotionSpec, Numerics, Output, Study
 from rockbatch.study.spectrum import MAP, SPECTRUM, MapSpec
 from rockbatch.study.suite_keys import _SELECT as SELECT
@@ -56,6 +64,8 @@ class Section:
         Tables within it of which there may be one or several, with the values of ``base`` for which they are read.
     free : str
         Pattern of further keys, numbers that :attr:`keys` cannot list because a study makes their names.
+    numbered : bool
+        Whether the same table may go with a number, too: damper_2.
     """
 
     at: tuple[str, ...]
@@ -68,6 +78,7 @@ class Section:
     only_for: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     inner: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     free: str = ""
+    numbered: bool = False
 
     @property
     def header(self) -> str:
@@ -128,6 +139,11 @@ STUDY = (
     Section(("sensitivity",), words.SENSITIVITY_ABOUT, SENSITIVITY, words.SENSITIVITY, defaults=(SensitivitySpec,)),
     Section(("sensitivity", "uniform"), words.UNIFORM_ABOUT, UNIFORM, words.RANGES),
     Section(("sensitivity", "log_uniform"), words.LOG_UNIFORM_ABOUT, LOG_UNIFORM, words.RANGES),
+    *(
+        Section(("sensitivity", spread, what), words.RANGES_WITHIN[what], keys, words.RANGES_OF[what], numbered=True)
+        for spread, within in (("uniform", UNIFORM_OF), ("log_uniform", LOG_UNIFORM_OF))
+        for what, keys in within.items()
+    ),
     Section(("sensitivity", "choice"), words.CHOICE_ABOUT, CHOICE, words.CHOICE),
 )
 """A study file."""

@@ -9,6 +9,18 @@ from rockbatch.checks.statistics import STATISTICS
 from rockbatch.errors import InputError
 from rockbatch.pier import ElasticBase, Kinematics, SpringLaw, beta_of, eta_of, in_kilonewtons, problems
 from rockbatch.study.ranges import range_of
+from rockbatch.study.restraint_inputs import (
+    TABLE,
+    is_of_restraint,
+    own_restraint_values,
+    parameters,
+    problem_in_words,
+    tied,
+    unclear,
+    why_none,
+    with_values,
+)
+from rockbatch.study.restraint_keys import DAMPER, RESTRAINTS, TENDON
 from rockbatch.study.spec import Case, Study
 from rockbatch.toml.kinds import KindError, boolean, choice, count, number, positive, shown
 from rockbatch.toml.reader import Key, Table, TomlFile
@@ -61,12 +73,39 @@ _RANGES = {
 }
 UNIFORM = _RANGES
 LOG_UNIFORM = {name: replace(key, kind=positive) for name, key in _RANGES.items()}
+_DAMPER_RANGES = {
+    name: replace(DAMPER[name], example=example)
+    for name, example in (
+        ("force_kN", "[300.0, 600.0]"),
+        ("f", "[0.01, 0.05]"),
+        ("yield_mm", "[3.0, 8.0]"),
+        ("coefficient_kN_s_m", "[500.0, 2000.0]"),
+        ("nu", "[0.2, 0.8]"),
+        ("exponent", "[0.3, 1.0]"),
+    )
+}
+_TENDON_RANGES = {
+    name: replace(TENDON[name], example=example)
+    for name, example in (
+        ("prestress_kN", "[3000.0, 6000.0]"),
+        ("psi", "[0.2, 0.8]"),
+        ("stiffness_kN_m", "[2.0e4, 8.0e4]"),
+        ("lambda", "[0.5, 2.0]"),
+        ("yield_kN", "[8000.0, 1.2e4]"),
+    )
+}
+UNIFORM_OF = {"damper": _DAMPER_RANGES, "tendon": _TENDON_RANGES}
+LOG_UNIFORM_OF = {
+    what: {name: replace(key, kind=positive) for name, key in keys.items()} for what, keys in UNIFORM_OF.items()
+}
+"""Keys of tables within, such as [sensitivity.uniform.damper], or damper.f = … in [sensitivity.uniform]."""
 CHOICE = {
     "kinematics": Key(choice(*get_args(Kinematics)), '["first-order", "finite"]', many=True),
     "spring": Key(choice(*get_args(SpringLaw)), '["bouc-wen", "epp"]', many=True),
     "vertical": Key(boolean, "[true, false]", many=True),
     "polarity": Key(choice("+", "-"), '["+", "-"]', many=True),
 }
+WITHIN: dict[str, dict[str, dict[str, Key]]] = {"uniform": UNIFORM_OF, "log_uniform": LOG_UNIFORM_OF, "choice": {}}
 SPREADS = {"uniform": UNIFORM, "log_uniform": LOG_UNIFORM, "choice": CHOICE}
 
 
@@ -77,7 +116,7 @@ class Input:
     Attributes
     ----------
     name : str
-        Key of the study file.
+        Key of the study file; of a damper or tendon "damper.f", "tendon_2.psi".
     spread : "uniform", "log_uniform" or "choice"
     levels : tuple of two
         Ends of the range, or the two choices.
@@ -86,6 +125,11 @@ class Input:
     name: str
     spread: str
     levels: tuple[Any, Any]
+
+    @property
+    def at(self) -> tuple[str, ...]:
+        """Where it stands under [sensitivity]."""
+        return self.spread, *self.name.split(".")
 
 
 @dataclass(frozen=True)
@@ -116,8 +160,14 @@ class SensitivitySpec:
 
 def applying(inputs: Iterable[Input], case: Case) -> tuple[Input, ...]:
     """The inputs that a case has."""
-    own = {each.name for each in fields(case.base)} | {*OF_PIER, *OF_MOTION, *_in_kilonewtons(case)}
+    own = {*_of_base(case), *OF_PIER, *OF_MOTION, *_in_kilonewtons(case), *parameters(case.pier, tied(case))}
     return tuple(each for each in inputs if each.name in own)
+
+
+def _of_base(case: Case) -> set[str]:
+    """Fields of the base that mean something to it: ε, or ζ where that is given in its place."""
+    zeta = getattr(case.base, "zeta", None)
+    return {each.name for each in fields(case.base)} - {"epsilon" if zeta is not None else "zeta"}
 
 
 def varied(case: Case, values: Mapping[str, Value]) -> Case:
@@ -127,6 +177,9 @@ def varied(case: Case, values: Mapping[str, Value]) -> Case:
     for name, ratio in IN_KILONEWTONS.items():
         if name in given:
             given[ratio] = (beta_of if ratio == "beta" else eta_of)(pier, given.pop(name))
+    of_restraints = {name: given.pop(name) for name in list(given) if is_of_restraint(name)}
+    if of_restraints:
+        given["restraints"] = with_values(pier, tied(case), of_restraints)
     return replace(case, pier=pier, base=replace(case.base, **given))
 
 
@@ -135,7 +188,7 @@ def own_values(study: Study, case: Case) -> dict[str, Any]:
     of_motion = {"vertical": study.motions.vertical, "polarity": study.motions.polarity[0]}
     pier = {name: getattr(case.pier, name) for name in OF_PIER}
     base = {each.name: getattr(case.base, each.name) for each in fields(case.base)}
-    return pier | base | _in_kilonewtons(case) | of_motion
+    return pier | base | _in_kilonewtons(case) | own_restraint_values(case.pier, tied(case)) | of_motion
 
 
 def _in_kilonewtons(case: Case) -> dict[str, float]:
@@ -169,7 +222,7 @@ def read_sensitivity(study: Study) -> SensitivitySpec:
         for name in {each.name for each in inputs}:
             places = [each.spread for each in inputs if each.name == name]
             if len(places) > 1:
-                table.complain(f"{name} is given under {' and '.join(places)}; keep one", places[1], name)
+                table.complain(f"{name} is given under {' and '.join(places)}; keep one", places[1], *name.split("."))
         if not table.data.keys() & SPREADS.keys():
             table.complain("nothing is varied; write [sensitivity.uniform] and under it alpha = [0.12, 0.16]")
         if not file.problems:
@@ -182,13 +235,26 @@ def _inputs(file: TomlFile, spread: str, keys: Mapping[str, Key]) -> list[Input]
     table = file.table("sensitivity", spread)
     if table is None:
         return []
-    found = []
     unfit = {
         name: f"belongs under [sensitivity.{other}]"
         for other, names in SPREADS.items()
         for name in names.keys() - keys.keys()
     }
-    for name, settings in table.read(keys, unfit=unfit).items():
+    within = [name for name in table.data if TABLE.fullmatch(name)]
+    if not WITHIN[spread]:
+        unfit |= dict.fromkeys(within, "belongs under [sensitivity.uniform]")
+    found = _read(table, spread, keys, unfit=unfit, other=(*within, *RESTRAINTS) if WITHIN[spread] else ())
+    for name in within if WITHIN[spread] else ():
+        inner = file.table("sensitivity", spread, name)
+        if inner is not None:
+            of = WITHIN[spread][name.partition("_")[0]]
+            found += [replace(each, name=f"{name}.{each.name}") for each in _read(inner, spread, of)]
+    return found
+
+
+def _read(table: Table, spread: str, keys: Mapping[str, Key], **more: Any) -> list[Input]:
+    found = []
+    for name, settings in table.read(keys, **more).items():
         if spread != "choice":
             levels = range_of(table, name, settings)
         elif len(settings) == 2:
@@ -204,10 +270,15 @@ def _inputs(file: TomlFile, spread: str, keys: Mapping[str, Key]) -> list[Input]
 def _check(table: Table, inputs: Sequence[Input], study: Study) -> None:
     """Every input belongs to some case, its range holds the study's value, and every corner is possible."""
     used: set[str] = set()
+    places = {each.name: each.at for each in inputs}
     for case in study.cases:
         own = own_values(study, case)
         mine = applying(inputs, case)
         used |= {each.name for each in mine}
+        wrong = unclear(places, case)
+        for name, told in wrong.items():
+            table.complain(told, *places[name])
+        used |= wrong.keys()
         for each in mine:
             low, high = each.levels
             value = own[each.name]
@@ -215,20 +286,30 @@ def _check(table: Table, inputs: Sequence[Input], study: Study) -> None:
                 table.complain(
                     f'{each.name} = {shown(list(each.levels))}: does not hold the {value:g} of case "{case.name}"; '
                     f"write {each.name} = {shown([min(low, value), max(high, value)])}",
-                    each.spread,
-                    each.name,
+                    *places[each.name],
                 )
-        _check_corners(table, mine, case)
-    for each in inputs:
-        if each.name not in used:
-            weighed = "a pier of known mass (mass_t) on " if each.name in IN_KILONEWTONS else ""
-            has = f"it goes with {weighed}springs" if weighed else "no case of the study has it"
-            table.complain(f"{each.name}: {has}; leave it out", each.spread, each.name)
+        if not wrong:
+            _check_corners(table, mine, case)
+    for name in places.keys() - used:
+        table.complain(f"{name}: {_why_none(name, study)}; leave it out", *places[name])
+
+
+def _why_none(name: str, study: Study) -> str:
+    """Why no case of the study has this input."""
+    if is_of_restraint(name):
+        return why_none(name, study.cases)
+    if name in IN_KILONEWTONS:
+        return "it goes with a pier of known mass (mass_t) on springs"
+    if any(name in {each.name for each in fields(case.base)} for case in study.cases):  # ε and ζ exclude each other
+        return (
+            "it goes with springs that have one; write zeta in the case" if name == "zeta" else "zeta takes its place"
+        )
+    return "no case of the study has it"
 
 
 def _check_corners(table: Table, inputs: Sequence[Input], case: Case) -> None:
     """What is possible at all corners is so between them: no limit turns back within a range."""
-    places = {each.name: each.spread for each in inputs}
+    places = {each.name: each.at for each in inputs}
     told: set[str] = set()
     for corner in product(*(each.levels for each in inputs)):
         values = dict(zip(places, corner, strict=True))
@@ -238,15 +319,21 @@ def _check_corners(table: Table, inputs: Sequence[Input], case: Case) -> None:
         except InputError as error:
             wrong = error.problems
         for problem in wrong:
-            name = problem.split(" = ")[0]
-            written = next((key for key, ratio in IN_KILONEWTONS.items() if ratio == name and key in places), name)
-            if written != name:
-                problem = f"{written} = {values[written]:g} means {problem}"
-                name = written
+            problem, name = _in_words(problem, values)
             if name in told:
                 continue
             told.add(name)
             at = name if name in places else next((other for other in OF_PIER if other in places), "")
             which = ", ".join(f"{key} = {shown(values[key])}" for key in OF_PIER if key in values)
             where = f" (at {which})" if which and name not in OF_PIER else ""
-            table.complain(f'case "{case.name}"{where}: {problem}', *((places[at], at) if at else ()))
+            table.complain(f'case "{case.name}"{where}: {problem}', *(places[at] if at else ()))
+
+
+def _in_words(problem: str, values: Mapping[str, Any]) -> tuple[str, str]:
+    """A problem of the structure, "eta = …", at a corner, in words of the input that it is about, and which that is."""
+    problem, name = problem_in_words(problem, values)
+    if name:
+        return problem, name
+    name = problem.split(" = ")[0]
+    written = next((key for key, ratio in IN_KILONEWTONS.items() if ratio == name and key in values), name)
+    return (problem if written == name else f"{written} = {values[written]:g} means {problem}"), written

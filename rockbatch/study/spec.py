@@ -116,11 +116,11 @@ class Output:
     histories_MB : float
         How large their file may become with "worst".
     ledger : bool
-        The energy ledger of every run (THEORY.md, 9).
+        The energy ledger of every run (THEORY.md, Energy ledger).
     forces : bool
-        What designers size, of every run: base shear, friction, supports, gaps, the deck, impacts (THEORY.md, 7).
+        What designers size, of every run: base shear, friction, supports, gaps, the deck, impacts (THEORY.md, Forces).
     both_laws : bool
-        The settlement of yielding springs by the other spring law too (THEORY.md, 7); a third run at the kept step.
+        The settlement of yielding springs by the other law too (THEORY.md, Results of a run); a third run at the kept step.
     intensity : bool
         Intensity measures beside the peaks, and which of them orders the peaks best; spectral accelerations are those at
         ``sa_periods_s`` [s].

@@ -304,6 +304,15 @@ LOG_UNIFORM_ABOUT = "Inputs that are as likely to be half as to be twice: the le
 RANGES = {name: PIER[name] for name in ("alpha", "p", "mu")} | {
     name: CASE[name] for name in ("restitution", "beta", "epsilon", "zeta", "eta", "n", "stiffness_kN_m", "yield_kN")
 }
+RANGES_OF = {
+    "damper": {name: told for name, told in DAMPER.items() if name not in ("kind", "at")},
+    "tendon": {name: told for name, told in TENDON.items() if name != "at"},
+}
+RANGES_WITHIN = {
+    what: f"Inputs of a {what}, the least and the largest value; or write {what}.{key} = {example} in the table above. Where "
+    f"several {what}s of a case have the key, {what}_1 is the first of them, {what}_2 the next."
+    for what, key, example in (("damper", "f", "[0.01, 0.05]"), ("tendon", "psi", "[0.2, 0.8]"))
+}
 CHOICE_ABOUT = "Inputs with two values, both as likely."
 CHOICE = {
     "kinematics": CASE["kinematics"],

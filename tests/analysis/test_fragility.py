@@ -25,10 +25,12 @@ from rockbatch.commands.fragility import table
 from rockbatch.errors import EditedTable, InputError
 from rockbatch.motions.measures import pga, pgv
 from rockbatch.motions.spectrum import spectral_acceleration
+from rockbatch.pier import Damper, ElasticBase, Pier, RigidBase
 from rockbatch.report import finished_analysis
 from rockbatch.report.contents import Contents
 from rockbatch.report.sections.fragility import section
 from rockbatch.results.columns import columns
+from rockbatch.simulation import run_to_tolerance
 from rockbatch.study import load_study
 from rockbatch.study.fragility import read_fragility
 from rockbatch.study.suite import ground_motions
@@ -511,3 +513,35 @@ def test_what_an_analysis_says_is_told_where_it_was_edited_or_damaged(tmp_path):
     found = finished_analysis.read(out, "fragility", study["sha256"])
     with pytest.warns(EditedTable, match=r"fragility\.csv: not as it was written"):
         assert found.table("fragility.csv", ()) is not None
+
+
+def test_lists_of_dampers_and_of_zeta_are_cases_with_curves_of_their_own(tmp_path):
+    """Their runs are those of the pier with the value, at the scale of the level."""
+    text = study_text(
+        pulses=[SINE | {"duration_s": 1.0}],
+        cases=(
+            RIGID | {"damper": [{"kind": "friction", "f": [0.02, 0.2]}]},
+            {"name": "damped", "base": "elastic", "beta": 30, "zeta": [0.02, 0.2]},
+        ),
+        fragility={"measure": "PGA", "levels_g": [0.6, 0.9]},
+        check=[check("an eighth", "theta_max_over_alpha", "margin", at_most=0.125)],
+    )
+    path = write_study(tmp_path, text)
+    found = rb.fragility(path)
+    (motion,) = ground_motions(load_study(path)).motions
+    for key, value, base in (
+        ("damper_1_f", 0.02, RigidBase(restraints=(Damper("friction", f=0.02),))),
+        ("damper_1_f", 0.2, RigidBase(restraints=(Damper("friction", f=0.2),))),
+        ("zeta", 0.2, ElasticBase(30.0, zeta=0.2)),
+    ):
+        rows = found.fragility_runs[found.fragility_runs[key] == value]
+        assert len(rows) == 2
+        for _, row in rows.iterrows():
+            scaled = replace(motion, horizontal=motion.horizontal * row["scale"])
+            outcome = run_to_tolerance(Pier(0.2, 1.0), base, scaled, 1e-4)
+            assert row["theta_max_over_alpha"] == pytest.approx(outcome.theta_max / 0.2, rel=1e-8)
+    eighth = found.fragility[found.fragility["limit_state"] == "an eighth"].set_index(["damper_1_f", "level"])[
+        "exceeded"
+    ]
+    assert eighth[0.02].to_list() == [0, 1]
+    assert eighth[0.2].to_list() == [0, 0]

@@ -123,7 +123,7 @@ def test_a_ricker_pulse_that_overturns_everywhere_is_not_shown_as_safe():
     ids=lambda spec: spec.shape,
 )  # fmt: skip
 def test_whole_maps_show_at_2000_random_points_what_their_simulation_says(spec):
-    """Which differ, and how far from a boundary, is in THEORY.md, 11."""
+    """Which differ, and how far from a boundary, is in THEORY.md, Rocking spectra, overturning maps, sensitivity."""
     shown = Shown(spec)
     differ, far = wrong(shown, scattered(spec, 2000))
     assert far == []

@@ -3,12 +3,14 @@
 import json
 import math
 import shutil
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
 import pytest
-from studies import PADS, RIGID, SINE, study_text, write_study
+from studies import PADS, PIER, RIGID, SINE, study_text, write_study
 
+import rockbatch as rb
 from rockbatch.analysis.sampled import Point, Points, Suite, low_base_high
 from rockbatch.analysis.sensitivity import answers, counted_as, tornado, values_of
 from rockbatch.analysis.sobol import design, indices
@@ -16,13 +18,14 @@ from rockbatch.batch.threads import Threads
 from rockbatch.cli import main
 from rockbatch.errors import InputError
 from rockbatch.motions import Motion
-from rockbatch.pier import Pier, RigidBase, YieldingBase
+from rockbatch.pier import Damper, ElasticBase, Pier, RigidBase, Tendon, YieldingBase
 from rockbatch.report.contents import Contents
 from rockbatch.report.sections.sensitivity import section
 from rockbatch.simulation import run_to_tolerance
 from rockbatch.study import load_study
-from rockbatch.study.sensitivity import Input, read_sensitivity
+from rockbatch.study.sensitivity import Input, own_values, read_sensitivity, varied
 from rockbatch.study.suite import ground_motions
+from rockbatch.units import GRAVITY
 
 STUDY = study_text(
     pulses=(
@@ -176,6 +179,173 @@ def test_a_restitution_that_is_not_given_starts_from_housners(tmp_path):
     case = study.cases[0]
     inputs = Points(study, read_sensitivity(study)).inputs[0]
     assert low_base_high(inputs, study, case)[0]["restitution"] == case.pier.restitution
+
+
+# Dampers and tendons
+
+TIED = {
+    "name": "tied",
+    "base": "rigid",
+    "damper": [{"kind": "friction", "f": 0.05}, {"kind": "viscous", "nu": 0.2, "at": "left"}],
+    "tendon": {"psi": 0.2, "lambda": 0.5},
+}
+DAMPED = {"name": "damped", "base": "elastic", "beta": 30, "zeta": 0.05}
+
+
+def varying(uniform, *, cases=(TIED,), pier=PIER, **more):
+    """A study of dampers and tendons that varies these inputs."""
+    asked = {"statistic": "max", "samples": 4, "uniform": uniform} | more
+    return study_text(pier=pier, pulses=[SINE | {"duration_s": 1.0}], cases=cases, sensitivity=asked)
+
+
+def test_parameters_of_dampers_tendons_and_damped_supports_answer_as_runs_of_their_own(tmp_path):
+    uniform = {
+        "zeta": [0.02, 0.1],
+        "damper": {"f": [0.01, 0.1]},
+        "damper_2": {"nu": [0.1, 0.5]},
+        "tendon": {"psi": [0.1, 0.4]},
+    }
+    path = written(tmp_path, varying(uniform, cases=(TIED, DAMPED)))
+    found = rb.sensitivity(path).sensitivity.set_index(["case", "parameter"])
+    assert set(found.index) == {
+        ("tied", "damper.f"), ("tied", "damper_2.nu"), ("tied", "tendon.psi"), ("damped", "zeta"),
+    }  # fmt: skip
+    (motion,) = ground_motions(load_study(path)).motions
+    friction, viscous, tendon = (
+        Damper("friction", f=0.05),
+        Damper("viscous", nu=0.2, at="left"),
+        Tendon(psi=0.2, lam=0.5),
+    )
+    for case, name, end, base in (
+        ("tied", "damper.f", "base", RigidBase(restraints=(friction, viscous, tendon))),
+        ("tied", "damper.f", "high", RigidBase(restraints=(replace(friction, f=0.1), viscous, tendon))),
+        ("tied", "damper_2.nu", "high", RigidBase(restraints=(friction, replace(viscous, nu=0.5), tendon))),
+        ("tied", "tendon.psi", "low", RigidBase(restraints=(friction, viscous, replace(tendon, psi=0.1)))),
+        ("damped", "zeta", "low", ElasticBase(30.0, zeta=0.02)),
+    ):
+        outcome = run_to_tolerance(Pier(0.2, 1.0), base, motion, 1e-4)
+        assert found.loc[(case, name), f"answer_{end}"] == pytest.approx(outcome.theta_max / 0.2, rel=1e-8), (name, end)
+    assert (found["swing"] > 1e-3).all()
+
+
+HEAVY = {"width_m": 2.0, "height_m": 10.0, "mass_t": 100.0}
+IN_KN = {
+    "name": "tied",
+    "base": "rigid",
+    "damper": [
+        {"kind": "hysteretic", "force_kN": 50.0, "yield_mm": 5.0},
+        {"kind": "viscous", "coefficient_kN_s_m": 40.0, "exponent": 0.5},
+    ],
+    "tendon": [{"prestress_kN": 100.0, "stiffness_kN_m": 4000.0, "yield_kN": 500.0}, {"lambda": 0.5, "at": "left"}],
+}
+
+
+@pytest.mark.parametrize(
+    ("name", "place", "value"),
+    [
+        ("damper.force_kN", ("damper", 0), 60.0),
+        ("damper_1.yield_mm", ("damper", 0), 3.0),
+        ("damper.coefficient_kN_s_m", ("damper", 1), 70.0),
+        ("damper_2.exponent", ("damper", 1), 0.8),
+        ("tendon_1.prestress_kN", ("tendon", 0), 150.0),
+        ("tendon_1.stiffness_kN_m", ("tendon", 0), 3000.0),
+        ("tendon.yield_kN", ("tendon", 0), 600.0),
+        ("tendon_2.lambda", ("tendon", 1), 0.7),
+    ],
+)
+def test_an_input_is_what_the_case_has_with_the_value_written_there(tmp_path, name, place, value):
+    """To the bit; and what the study says itself, in the key's own unit, is the base of the range."""
+    study = load_study(written(tmp_path, study_text(pier=HEAVY, cases=[IN_KN])))
+    key, (what, number) = name.partition(".")[2], place
+    tables = [dict(each) for each in IN_KN[what]]
+    tables[number][key] = value
+    other = load_study(written(tmp_path, study_text(pier=HEAVY, cases=[IN_KN | {what: tables}])))
+    assert varied(study.cases[0], {name: value}) == other.cases[0]
+    assert own_values(study, study.cases[0])[name] == IN_KN[what][number][key]
+    ratio = {"damper_1.force_kN": "damper.f", "tendon_1.prestress_kN": "tendon_1.psi"}
+    for absolute, over_weight in ratio.items():
+        own = own_values(study, study.cases[0])
+        assert own[absolute] == pytest.approx(own[over_weight] * 100.0 * GRAVITY, rel=1e-11)
+
+
+TWO = TIED | {"damper": [{"kind": "friction", "f": 0.05}, {"kind": "friction", "f": 0.1, "at": 0.2}]}
+
+
+@pytest.mark.parametrize(
+    ("uniform", "more", "line", "words"),
+    [
+        (
+            {"damper": {"f": [0.06, 0.1]}},
+            {},
+            "f = ",
+            'does not hold the 0.05 of case "tied"; write damper.f = [0.05, 0.1]',
+        ),
+        ({"damper": {"f": [0.02, 20.0]}}, {}, "f = ", "damper.f = 20: its force over the weight must be within 0..10"),
+        ({"damper": {"f": [0.1, 0.02]}}, {}, "f = ", "expected a range; write for example f = [0.02, 0.1]"),
+        ({"damper": {"force": [1.0, 2.0]}}, {}, "force = ", "force: unknown key; did you mean force_kN?"),
+        (
+            {"damper": {"force_kN": [1.0, 2.0]}},
+            {},
+            "force_kN",
+            "damper.force_kN: it goes with a pier of known mass (mass_t)",
+        ),
+        (
+            {"damper": {"yield_mm": [1.0, 2.0]}},
+            {},
+            "yield_mm",
+            'damper.yield_mm: it goes with kind = "hysteretic"; leave it',
+        ),
+        ({"damper_3": {"f": [0.01, 0.1]}}, {}, "f = ", "damper_3.f: no case of the study has a damper 3; leave it out"),
+        ({"damper_2": {"f": [0.01, 0.1]}}, {}, "f = ", "damper_2.f: no damper of that number has it; leave it out"),
+        ({"tendon": {"psi": [0.1, 0.4]}}, {"cases": (RIGID,)}, "psi", "tendon.psi: no case of the study has a tendon"),
+        (
+            {"tendon": {"yield_kN": [1.0, 4.0]}},
+            {"pier": HEAVY},
+            "yield_kN",
+            "tendon.yield_kN: it goes with a tendon that yields; give its yield_kN in the case",
+        ),
+        (
+            {"damper": {"f": [0.01, 0.1]}},
+            {"cases": (TWO,)},
+            "f = ",
+            'damper.f: case "tied" has 2 of them; write damper_1.f or damper_2.f',
+        ),
+        (
+            {"damper": {"f": [0.01, 0.1]}, "damper_1": {"f": [0.01, 0.1]}},
+            {},
+            "f = ",
+            "damper.f and damper_1.f are given, which fix the same; keep one",
+        ),
+        (
+            {"tendon": {"psi": [0.1, 0.4]}},
+            {"log_uniform": {"tendon": {"psi": [0.1, 0.4]}}},
+            "psi",
+            "tendon.psi is given under uniform and log_uniform; keep one",
+        ),
+        (
+            {"alpha": [0.1, 0.3]},
+            {"choice": {"damper": {"f": [0.1, 0.2]}}},
+            "damper",
+            "belongs under [sensitivity.uniform]",
+        ),
+        ({"zeta": [0.0, 0.1]}, {}, "zeta", "zeta: no case of the study has it"),
+        (
+            {"zeta": [0.0, 0.1]},
+            {"cases": (PADS,)},
+            "zeta",
+            "zeta: it goes with springs that have one; write zeta in the case; leave it out",
+        ),
+        ({"epsilon": [0.0, 0.1]}, {"cases": (DAMPED,)}, "epsilon", "epsilon: zeta takes its place; leave it out"),
+    ],
+)
+def test_inputs_of_dampers_and_tendons_that_cannot_be_are_told_at_their_line(tmp_path, uniform, more, line, words):
+    path = written(tmp_path, varying(uniform, **more))
+    with pytest.raises(InputError) as caught:
+        read_sensitivity(load_study(path))
+    (told,) = [problem for problem in caught.value.problems if words in problem] or [str(caught.value)]
+    assert words in told
+    number = int(told.partition("study.toml:")[2].partition(":")[0])
+    assert line in path.read_text(encoding="utf-8").splitlines()[number - 1]
 
 
 # How runs count

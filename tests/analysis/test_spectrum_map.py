@@ -72,7 +72,7 @@ def test_a_one_sine_has_both_modes_of_zhang_and_makris_at_the_closed_forms():
 
 
 def test_a_half_sine_overturns_a_slender_block_outright_at_the_closed_form_for_every_frequency():
-    """√(A² − 1) + A exp(−(π − asin 1/A)/W) = W, linearised (THEORY.md, 10)."""
+    """√(A² − 1) + A exp(−(π − asin 1/A)/W) = W, linearised (THEORY.md, Rocking spectra, overturning maps, sensitivity)."""
     spec = MapSpec("half-sine", "half-sine", (2.0, 6.0), (1.05, 6.0), 5, 12, TOLERANCE)
     by_frequency = found(spec, Pier(SLENDER, 1.0), RigidBase(E))
     assert heights(by_frequency[5.0])[0][2] == sampled(HALF_SINE)

@@ -30,6 +30,21 @@ def study(tmp_path):
     return write_study(tmp_path, STUDY)
 
 
+def test_kernels_of_damped_supports_and_of_dampers_are_made_ready_too(tmp_path, monkeypatch):
+    """One run of each kind, and not of each number."""
+    cases = (
+        RIGID,
+        {"name": "tied", "base": "rigid", "damper": [{"kind": "friction", "f": [0.1, 0.2]}]},
+        {"name": "elastic", "base": "elastic", "beta": 40},
+        {"name": "damped", "base": "elastic", "beta": 40, "zeta": [0.02, 0.05]},
+    )
+    loaded = load_study(write_study(tmp_path, study_text(cases=cases)))
+    ready = []
+    monkeypatch.setattr(rockbatch.batch.groups, "outcomes_of", lambda runs, *rest: ready.extend(runs))
+    rockbatch.batch.groups.compile_kernels(loaded)
+    assert [run.case.name for run in ready] == ["rigid", "tied", "elastic", "damped"]
+
+
 def test_rows_come_in_the_order_of_the_study(study):
     table = rb.run(study)
     assert list(table.columns) == [*names(STAYING), "beta", *names(MORE), "mirror_of", "settlement_other_law_m"]

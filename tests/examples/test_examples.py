@@ -1,6 +1,7 @@
 """The studies that come with rockbatch: found, copied with their records, and there in a wheel too."""
 
 import os
+import re
 import subprocess
 import sys
 import zipfile
@@ -62,13 +63,30 @@ def test_init_and_then_the_command_that_it_names_lead_to_a_report(tmp_path, monk
     monkeypatch.chdir(tmp_path)
     assert main(["init", "mine"]) == 0
     told = capsys.readouterr().out
-    assert "cd mine\n    rockbatch run pier.toml\n" in told
+    assert re.search(r"cd mine\n    \S*rockbatch run pier.toml\n", told)
     monkeypatch.chdir(tmp_path / "mine")
     main(["run", "pier.toml"])
     assert Path("reports", "pier", "report.html").stat().st_size > 10_000
     peaks = pd.read_csv(Path("reports", "pier", "peaks.csv"))
     assert len(peaks) == 30
     assert set(peaks["status"]) <= {"ok", "flight"}
+
+
+@pytest.mark.parametrize(
+    ("installed", "on_path", "called"),
+    [(True, True, "rockbatch"), (True, False, "PLACE/rockbatch"), (False, False, "rockbatch")],
+)
+def test_init_names_a_command_that_the_shell_finds(tmp_path, monkeypatch, capsys, installed, on_path, called):
+    """Without its environment activated rockbatch is called by its path, from any folder."""
+    place = tmp_path / "bin"
+    place.mkdir()
+    if installed:
+        (place / "rockbatch").touch(mode=0o755)
+    monkeypatch.setattr(sys, "executable", str(place / "python"))
+    monkeypatch.setenv("PATH", str(place) if on_path else str(tmp_path))
+    monkeypatch.chdir(tmp_path)
+    assert main(["init", "mine"]) == 0
+    assert f"    {called.replace('PLACE', str(place))} run pier.toml\n" in capsys.readouterr().out
 
 
 def test_examples_are_listed_with_what_they_need(capsys):

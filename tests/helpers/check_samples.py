@@ -7,6 +7,7 @@ from typing import Any
 
 import pandas as pd
 
+from rockbatch.checks import Verdict
 from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, YieldingBase
 from rockbatch.results.columns import MORE, STAYING, names
 from rockbatch.results.run_json import describe_case
@@ -62,3 +63,14 @@ def folder(path: Path, peaks: pd.DataFrame, cases: list[dict[str, Any]], checks:
     }  # fmt: skip
     (path / "run.json").write_text(json.dumps(told | info), encoding="utf-8")
     return path
+
+
+def verdict(case: str, decided: str, *, check: str = "margin", ratio: float = 0.5, **more: object) -> Verdict:
+    """What a check found in a case."""
+    values = {
+        "columns": {}, "scale": 1.0, "demand": "theta_max_over_alpha", "statistic": "mean",
+        "words": "mean of theta_max_over_alpha", "records": 6, "runs": 6, "value": 0.25, "low": 0.2, "high": 0.3,
+        "sense": "at most", "limit": 0.5, "margin": 0.25, "basis": "judgement", "reason": "half of α",
+        "counting": "overturned: infinite", "counted": "", "note": "",
+    }  # fmt: skip
+    return Verdict(**{**values, "check": check, "case": case, "verdict": decided, "ratio": ratio, **more})

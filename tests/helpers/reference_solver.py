@@ -3,7 +3,7 @@
 Between two events and two changes of slope of the ground the equations are smooth. Each such leg is integrated to
 rounding, its end is polished by repeating the last step, and the next leg starts from there. Slow and plain on purpose.
 
-Symbols: α, μ, p, b, h, o_i, z_i as in THEORY.md; everything is per unit mass, SI, radians.
+Symbols: α, μ, p, b, h, o_i, z_i as in THEORY.md, Symbols; everything is per unit mass, SI, radians.
 """
 
 import math

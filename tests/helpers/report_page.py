@@ -71,7 +71,7 @@ def figures(text: str) -> list[ET.Element]:
 
 def panels(text: str) -> list[ET.Element]:
     """The pictures of peak rotations, one for each ground motion, scale and pier."""
-    return [svg for svg in figures(text) if "marks" in svg.attrib["class"]]
+    return [svg for svg in figures(text) if {"marks", "strip"} & set(svg.attrib["class"].split()) == {"marks"}]
 
 
 def svg_texts(figure: ET.Element) -> list[str]:

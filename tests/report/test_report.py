@@ -80,9 +80,9 @@ def test_outcomes_other_than_ok_are_words_and_never_rotations(tmp_path):
 
 
 def test_the_axis_is_not_stretched_by_a_pier_that_overturned(tmp_path):
-    calm = figures(report(tmp_path))[0]
+    calm = panels(report(tmp_path))[0]
     violent = {("RRS228", "2"): {"status": "overturned", "theta_max_over_alpha": 1e3}}
-    with_overturned = figures(report(tmp_path, changes=violent))[0]
+    with_overturned = panels(report(tmp_path, changes=violent))[0]
     ticks = [{text for text in svg_texts(f) if re.fullmatch(r"0\.\d+", text)} for f in (calm, with_overturned)]
     assert ticks[0] == ticks[1] != set()
 
@@ -175,7 +175,7 @@ def test_colours_of_figures_come_from_the_page_so_that_dark_mode_reaches_them(tm
     responses, results = histories()
     text = report(tmp_path, *responses, **results)
     style = text[text.index("<style>") : text.index("</style>")]
-    defined = set(re.findall(r"(--\w+):", style)) | {"--w"}
+    defined = set(re.findall(r"(--\w+):", style)) | {"--w", "--n"}
     assert set(re.findall(r"var\((--\w+)[,)]", style)) <= defined
     for svg in re.findall(r"<svg.*?</svg>", text, flags=re.DOTALL):
         assert not re.findall(r"#[0-9a-fA-F]{6}\b|rgb", svg)

@@ -67,14 +67,14 @@ def test_more_groups_than_panels_are_told(tmp_path):
     assert "The first 12 of 14 groups are shown." in Page(found.content).text
 
 
-def test_more_foundations_than_can_be_told_apart_are_not_drawn(tmp_path):
+def test_of_more_foundations_than_can_be_told_apart_the_best_are_drawn(tmp_path):
     pier = Pier(alpha=0.13, p=0.38)
     etas = [2.0 + 0.1 * i for i in range(25)]
     cases = [case_entry("soil", {"eta": eta}, pier, YieldingBase(beta=40.0, eta=eta)) for eta in etas]
     write_results(tmp_path, cases=cases, varied=("eta",))
     content = distribution.section(read(tmp_path, ())).content
-    assert content.count('data-name="') == 21
-    assert "The first 21 of 25 foundations are shown." in content
+    assert content.count('data-name="') == 7
+    assert "The 7 best of 25 foundations are shown." in content
 
 
 # Intensity measures
@@ -173,7 +173,7 @@ def test_stations_without_a_pair_are_told_where_pairs_are_asked_for(asked, tmp_p
 
 def test_the_page_of_it_all_is_whole_and_spectra_are_drawn_once(asked):
     text = write_report(asked).read_text(encoding="utf-8")
-    assert text.count('class="plot spectra"') == 1
+    assert text.count('class="plot spectra alone"') == 1
     headings = Page(text).headings
     names = (
         "The suite in each case", "One record and the suite", "Intensity measures", "Code estimates, for comparison",

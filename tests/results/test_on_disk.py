@@ -347,8 +347,15 @@ def test_the_worst_runs_go_first_where_not_all_fit(tmp_path):
     assert least.numbers == by_rotation[:1]  # a report without any would show no history at all
 
 
-def test_the_size_of_histories_is_told_beforehand(tmp_path):
-    saved, study, runs = carried_out(tmp_path)
+TIED = RIGID | {"damper": [{"kind": "friction", "f": 0.05}], "tendon": {"psi": 0.1, "lambda": 0.5}}
+
+
+@pytest.mark.parametrize(
+    "text", [STUDY, study_text(cases=[TIED], output={"histories": "all"})], ids=["springs", "tied"]
+)
+def test_the_size_of_histories_is_told_beforehand(tmp_path, text):
+    """Of dampers and tendons the loops, too."""
+    saved, study, runs = carried_out(tmp_path, text)
     told = sum(
         history_bytes(runs[number], saved.peaks.iloc[number]) for number in kept(study, runs, saved.peaks).numbers
     )

@@ -10,7 +10,7 @@ from core_samples import FIG5, TOWER, broadband, hard_case, pulse
 from rockbatch import simulation
 from rockbatch.core.outcome import WINDOWS
 from rockbatch.motions.motion import Motion
-from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase
+from rockbatch.pier import ElasticBase, Pier, RigidBase, Tendon, YieldingBase
 from rockbatch.results.outcome import Outcome
 from rockbatch.simulation import (
     Run,
@@ -146,7 +146,7 @@ def test_no_error_below_rounding_is_ever_claimed(monkeypatch):
 
 
 def test_the_first_step_respects_the_highest_frequency_of_the_springs():
-    """ω_v of the tower is 30.4 rad/s at β = 80; a stocky pier rocks faster than it bounces (ω_r, THEORY.md, 13)."""
+    """ω_v of the tower is 30.4 rad/s at β = 80; a stocky pier rocks faster than it bounces (ω_r, THEORY.md, eq. 12)."""
     assert first_substeps(TOWER, ElasticBase(80.0), 0.01) == math.ceil(30.4 * 0.01 / 0.2)
     stocky = Pier(1.2, 1.0)
     squared = 3 * math.sin(1.2) ** 2 * 100.0**2 - 4 * math.cos(1.2)
@@ -172,14 +172,19 @@ def test_a_run_of_too_many_steps_is_not_begun():
         assert "steps" in outcome.reason
 
 
-@pytest.mark.parametrize("base", [RigidBase(), ElasticBase(20.0)], ids=["rigid", "elastic"])
+TIED = RigidBase(1.0, (Tendon(psi=0.1),))
+
+
+@pytest.mark.parametrize("base", [RigidBase(), ElasticBase(20.0), TIED], ids=["rigid", "elastic", "tendon"])
 def test_runs_that_are_stopped_have_no_outcome(base):
     stop = simulation.Stop()
     stop.set()
     assert run_all_to_tolerance([Run(FIG5, base, SINE)] * 3, 1e-4, 2.0, stop) == [None] * 3
 
 
-@pytest.mark.parametrize("base", [RigidBase(restitution=1.0), ElasticBase(20.0)], ids=["rigid", "elastic"])
+@pytest.mark.parametrize(
+    "base", [RigidBase(restitution=1.0), ElasticBase(20.0), TIED], ids=["rigid", "elastic", "tendon"]
+)
 def test_a_run_under_way_is_stopped_too(base):
     """The pulse lifts the block off rigid ground, and without losses it rocks on; on springs it does not lift, and
     bounces on. Half a million seconds of it would take several."""

@@ -98,5 +98,5 @@ def test_as_many_cases_as_there_may_be_are_told_to_the_end(tmp_path, monkeypatch
     assert sum(line.startswith('  {"case": ') for line in info.splitlines()) == 3000
     assert len(info) < 3000 * 500
     page = (tmp_path / "out/report.html").read_text(encoding="utf-8")
-    assert "Shown are the 2,000 worst of 3,000 runs." in page
+    assert "The first 300 of 3,000 foundations, in the order of the study" in page
     assert len(page) < 2_500_000

@@ -17,6 +17,7 @@ from rockbatch.errors import InputError
 from rockbatch.study import load_study
 from rockbatch.study.schema import main, schema_of
 from rockbatch.study.sections import CHECKS, FILES, MANIFEST, STUDY
+from rockbatch.study.sensitivity import read_sensitivity
 from rockbatch.toml import asking, kinds
 from rockbatch.toml.reader import Key
 
@@ -76,13 +77,17 @@ PAD = {"base": "yielding", "beta": 50, "eta": 2.5}
         ({"output": {"histories": "some"}}, "$.output.histories"),
         ({"check": [{"name": "a", "demand": "theta", "at_most": 1, "reason": "b"}]}, "$.check[0].demand"),
         ({"chekc": [{"name": "a"}]}, "$"),
+        ({"sensitivity": {"uniform": {"damper": {"force": [1, 2]}}}}, "$.sensitivity.uniform.damper"),
+        ({"sensitivity": {"log_uniform": {"tendon_2": {"psi": [0.0, 0.5]}}}}, "$.sensitivity.log_uniform.tendon_2.psi"),
+        ({"sensitivity": {"uniform": {"damper_0": {"f": [1, 2]}}}}, "$.sensitivity.uniform"),
     ],
 )
 def test_a_mistake_is_refused_by_the_schema_where_it_is_and_by_the_reader(tmp_path, tables, where):
     text = study_text(**tables)
     assert where in {place[: len(where)] for place in places(text)}
+    read = load_study if "sensitivity" not in tables else lambda path: read_sensitivity(load_study(path))
     with pytest.raises(InputError):
-        load_study(write_study(tmp_path, text))
+        read(write_study(tmp_path, text))
 
 
 def test_what_is_right_is_taken_whichever_form_it_has():
@@ -91,6 +96,7 @@ def test_what_is_right_is_taken_whichever_form_it_has():
         motions={"path": "records", "vertical": "required", "scale": 2, "select": {"pga_g": [0, 1]}},
         cases=[PAD | {"name": "a", "n": [2, 5]}, {"name": "b", "base": "rigid"}],
         reference=[{"record": "*", "case": "a", "theta_max_over_alpha": 0.1, "source": "me", "part_1_mass_t": 5}],
+        sensitivity={"uniform": {"damper": {"f": [0.0, 0.1]}, "tendon_2": {"lambda": [0.5, 1]}}},
     ).replace("[0, 1]", "[0, inf]")
     assert places(text) == set()
 

@@ -140,8 +140,8 @@ def test_full_contact_vertical_motion_oscillates_at_omega_v(kinematics):
     assert np.all(run.theta == 0.0)
 
 
-def test_first_separation_is_at_the_papers_eq_10():
-    """θ̄ = (1+μ)/(μ β² sin α) in first-order kinematics, where v stays static; 1e-10 rad: RK4's v stays put."""
+def test_first_separation_is_where_the_paper_has_it():
+    """θ = (1+μ)/(μ β² sin α) (THEORY.md, eq. 10) in first-order kinematics; 1e-10 rad: RK4's v stays static."""
     rows, kind = first_separation("first-order")
     s = FIG5.mu * 50.0**2 * math.sin(FIG5.alpha)
     assert kind == "left"  # θ < 0 lifts the right pivot, θ > 0 the left one
@@ -331,7 +331,7 @@ def test_finite_kinematics_keep_the_angular_momentum_of_an_impact_only_upright(a
     """The left pivot lands without restitution while the pier rocks about the right one, leaning by θ.
 
     About the landing pivot, L/M = I0/M θ̇ + y ẋ − x ẏ of the centre of mass, ẋ = H θ̇: H jumps by b sin θ with the
-    contact, and (8), which takes the H of both pivots in contact, does not know it (THEORY.md, 4).
+    contact, and the impulse, which takes the H of both pivots in contact, does not know it (THEORY.md, eq. 11).
     """
     pier = Pier(alpha, 1.0)
     m = springs(pier, ElasticBase(50.0, 0.0, "finite"))

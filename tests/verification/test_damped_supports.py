@@ -1,4 +1,4 @@
-"""Kelvin–Voigt supports (THEORY.md, 4) against closed forms, an independent solver's values, and the undamped model."""
+"""Kelvin–Voigt supports (THEORY.md, Damped supports) against closed forms, another solver's values, and the undamped model."""
 
 import math
 from dataclasses import replace

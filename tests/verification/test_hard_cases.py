@@ -26,7 +26,7 @@ from rockbatch.units import GRAVITY
 
 CONFIGS = Path(__file__).parents[2] / "configs"
 INERTIA = FIG5.inertia + FIG5.height**2  # I0/M + h²
-SEPARATION = (1 + FIG5.mu) / (FIG5.mu * 50.0**2 * math.sin(FIG5.alpha))  # paper, eq. 10, for β = 50
+SEPARATION = (1 + FIG5.mu) / (FIG5.mu * 50.0**2 * math.sin(FIG5.alpha))  # THEORY.md, eq. 10, for β = 50
 ROCKING = math.sqrt(((50.0 * FIG5.half_width) ** 2 - GRAVITY * FIG5.height) / INERTIA)  # ω_r [rad/s] for β = 50
 
 
@@ -61,7 +61,7 @@ CHAOTIC = {("10 minutes of shaking", "100,000 impacts"), ("10 minutes of shaking
 
 @pytest.mark.parametrize("minutes", [0, pytest.param(10, marks=pytest.mark.slow)])
 def test_every_run_of_the_study_ends_with_the_status_that_is_right(minutes):
-    """All 72 runs of configs/hard_cases.toml; those of ten minutes are slow. Why each is right: THEORY.md and below."""
+    """All 72 runs of configs/hard_cases.toml; those of ten minutes are slow. Why: docs/pages/verification.md and below."""
     study = load_study(CONFIGS / "hard_cases.toml")
     chosen = [each for each in study.motions.pulses if (each.duration_s > 100) == (minutes > 0)]
     table = rb.run(replace(study, motions=replace(study.motions, pulses=chosen)), jobs=2)
@@ -334,7 +334,7 @@ def test_a_block_that_lands_without_velocity_rests_there():
 
 @pytest.mark.parametrize("epsilon", [0.0, 0.5, 1.0])
 def test_a_pivot_that_is_lifted_by_a_hair_lands_without_changing_anything(epsilon):
-    """A steady push tilts the pier by 2 h a/(I ω_r²); at the paper's eq. 10 it lifts a pivot, without velocity.
+    """A steady push tilts the pier by 2 h a/(I ω_r²); at (1+μ)/(μ β² sin α) it lifts a pivot, without velocity.
 
     10⁻⁶ below that push nothing separates. 10⁻⁶ above it a pivot is lifted and lands at every cycle with next to no
     velocity, whatever ε: the peak is the closed form's to 10⁻⁶ and RK4's 10⁻⁸.

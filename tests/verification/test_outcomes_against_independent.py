@@ -171,7 +171,7 @@ class TestTheReference:
                 assert patient.theta_max <= fine.theta_max + 1e-7 * run.pier.alpha
 
     def test_topples_a_pier_whose_loading_springs_are_too_soft(self, reference):
-        """Loading Bouc–Wen springs are r = 1 − η⁻ⁿ times as stiff: unstable below β² = (9) (1 + r)/(2r), here 19.08."""
+        """r = 1 − η⁻ⁿ as stiff when loaded: unstable below √((1 + r)/(2r)) times the β of THEORY.md, eq. 13: 19.08."""
         push = pulse("half-sine", name="push", amplitude=1e-6 * G, period=0.5, dt=0.01, duration=0.25)
         assert reference(PIER, YieldingBase(18.5, 0.1, eta=1.05, n=1.0), push).status == "overturned"
         assert reference(PIER, YieldingBase(19.6, 0.1, eta=1.05, n=1.0), push).status == "stands"

@@ -1,4 +1,4 @@
-"""What ties a pier to the ground: dampers and tendons, by their elongation and its rate (THEORY.md, 5).
+"""What ties a pier to the ground: dampers and tendons, by their elongation and its rate (THEORY.md, Dampers and tendons).
 
 An element at the distance d from the corner about which the block turns by q has the elongation e = 2 d sin(q/2) and pulls
 with F, positive in tension, against ė = d cos(q/2) q̇. Forces are over the pier's mass [m/s²].

@@ -9,6 +9,12 @@ import math
 from rockbatch.core.kernel import kernel
 from rockbatch.core.restrained.elements import FRICTION, HYSTERETIC, STICKS, distance, force, loss_rate, state_rate
 
+TRAVEL = 0.5
+"""Of u_y: what a hysteretic damper may be drawn out by in one step of a sample's length, and less the more steps a sample has."""
+
+PLASTIC = 1e-14
+"""How near to 1 the |z| of a hysteretic damper is 1: 1 − z decays by exp(−5 e/u_y) and would take steps of u_y for ever."""
+
 
 @kernel
 def pull_back(elements, inertia, side, y, modes, goes):
@@ -34,7 +40,7 @@ def friction_bound(elements, inertia, side, tilt):
 
 @kernel
 def driven(m, side, tilt, horizontal, vertical):
-    """Acceleration of the tilt [rad/s²] by weight and ground (THEORY.md, 10)."""
+    """Acceleration of the tilt [rad/s²] by weight and ground (THEORY.md, eq. 14)."""
     lean = m.alpha - tilt
     return -m.p * m.p / m.gravity * ((m.gravity + vertical) * math.sin(lean) + side * horizontal * math.cos(lean))
 
@@ -87,8 +93,25 @@ def step(m, elements, inertia, side, y, modes, goes, ground, h, work, end):
     for i in range(len(y)):
         end[i] = y[i] + h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i])
     for j in range(len(elements)):
-        if elements[j].kind == HYSTERETIC:  # a step that resolves the law never gets beyond
-            end[2 + j] = min(max(end[2 + j], -1.0), 1.0)
+        if elements[j].kind == HYSTERETIC and abs(end[2 + j]) > 1.0 - PLASTIC:
+            end[2 + j] = math.copysign(1.0, end[2 + j])
+
+
+@kernel
+def longest(m, elements, inertia, side, y, modes, goes, ground, h, dt):
+    """The longest step [s], ``h`` at most, that resolves the law of hysteretic dampers that are not plastic all along it.
+
+    The shorter by one and the same factor for all ``h``, so that a run with half the step halves these steps too: what it
+    changes goes on telling the error.
+    """
+    turn = abs(acceleration(m, elements, inertia, side, y, modes, goes, ground.horizontal, ground.vertical))
+    share = 1.0
+    for j in range(len(elements)):
+        of, z = elements[j], y[2 + j]
+        if of.kind == HYSTERETIC and goes * z < 1.0:
+            way = distance(of, side) * (abs(y[1]) + turn * h) * dt * of.stiffness
+            share = min(share, TRAVEL / way) if way > 0.0 else share
+    return share * h
 
 
 @kernel

@@ -72,6 +72,10 @@ def piece(m, elements, inertia, side, y, modes, goes, ground, h, work, marks, en
     """
     early, early_slopes, late, late_slopes, now, now_slopes = marks[0], marks[1], marks[2], marks[3], marks[4], marks[5]
     _tried(m, elements, inertia, side, y, modes, goes, ground, 0.0, work, end, early, early_slopes)
+    if (
+        y[1] == 0.0
+    ):  # let go just now, by an acceleration that is 0 but for rounding: it goes, and does not turn at once
+        early_slopes[TURNS] = max(early_slopes[TURNS], STILL * m.p * m.p * m.alpha)
     _tried(m, elements, inertia, side, y, modes, goes, ground, h, work, end, late, late_slopes)
     a, b = 0.0, h
     which, at = _earliest(early, early_slopes, late, late_slopes, h)

@@ -1,4 +1,4 @@
-"""Runs of a block on a rigid base with dampers and tendons, one at a time (THEORY.md, 5).
+"""Runs of a block on a rigid base with dampers and tendons, one at a time (THEORY.md, Dampers and tendons).
 
 Simpler than the lanes, which know nothing of elements: every step is scalar, from event to event.
 """
@@ -23,7 +23,7 @@ from rockbatch.core.restrained.elements import (
     distance,
     force,
 )
-from rockbatch.core.restrained.equations import acceleration, copy, friction_bound
+from rockbatch.core.restrained.equations import acceleration, copy, friction_bound, longest
 from rockbatch.core.restrained.events import (
     LANDS,
     OF_TENDONS,
@@ -205,7 +205,7 @@ def _turn(m, elements, inertia, y, modes, log, ground):
 
 
 @kernel
-def _move(m, elements, inertia, y, end, modes, log, ground, t, left, dt, history, use, work, marks):
+def _move(m, elements, inertia, y, end, modes, log, ground, t, left, h, dt, history, use, work, marks):
     """The block off its rest for ``left`` [s], or until something happens: how long that is."""
     side = log.side[0]
     if log.goes[0] == STICKS:
@@ -215,7 +215,8 @@ def _move(m, elements, inertia, y, end, modes, log, ground, t, left, dt, history
         log.goes[0] = goes
         set_modes(elements, side, y, modes, goes)
         return at
-    used, which = piece(m, elements, inertia, side, y, modes, log.goes[0], ground, left, work, marks, end)
+    most = min(left, longest(m, elements, inertia, side, y, modes, log.goes[0], ground, h, dt))
+    used, which = piece(m, elements, inertia, side, y, modes, log.goes[0], ground, most, work, marks, end)
     _take_in(m, elements, inertia, y, end, modes, log, ground, used, t, use, work)
     copy(end, y)
     there = later(ground, used)
@@ -251,7 +252,23 @@ def _over(log, sample, rests, timing):
 
 @entry
 def _rock(
-    m, elements, inertia, theta, ground, timing, every_step, history, log, use, y, end, modes, work, marks, extremes
+    m,
+    elements,
+    inertia,
+    theta,
+    ground,
+    timing,
+    every_step,
+    stop,
+    history,
+    log,
+    use,
+    y,
+    end,
+    modes,
+    work,
+    marks,
+    extremes,
 ):
     """Status, end [s] and time of flight [s] of a run from rest at ``theta`` = y[0], or from there without velocity."""
     dt, h = timing.dt, timing.dt / timing.substeps
@@ -272,7 +289,7 @@ def _rock(
         _write(history, log, t_sample, y, SAMPLE)
         widen(extremes, sample, timing.samples, y[0])
         status = _over(log, sample, rests, timing)
-        if status != RUNNING:
+        if status != RUNNING or stop[0] != 0:
             return status, t_sample, math.nan
         until = carried_until(m, under, dt)
         log.events[0] = 0.0
@@ -284,7 +301,9 @@ def _rock(
                 if log.side[0] == NEITHER:
                     used = _rest(m, elements, inertia, y, modes, log, here, t, left, history)
                 else:
-                    used = _move(m, elements, inertia, y, end, modes, log, here, t, left, dt, history, use, work, marks)
+                    used = _move(
+                        m, elements, inertia, y, end, modes, log, here, t, left, h, dt, history, use, work, marks
+                    )
                 done = done + used if used < left else whole
             t = t_sample + start + done
             status = fallen(y[0])
@@ -313,7 +332,7 @@ class Restrained(NamedTuple):
 
 
 def rock_restrained(
-    m, elements, inertia, motion, substeps, quiet_samples, patience=0, theta=0.0, rows=0, every_step=False
+    m, elements, inertia, motion, substeps, quiet_samples, stop, patience=0, theta=0.0, rows=0, every_step=False
 ):
     """One run of the block ``m`` (Block) with ``elements``.
 
@@ -324,6 +343,8 @@ def rock_restrained(
         About a corner, over the mass: I0/M + R0² [m²].
     motion : (horizontal, vertical, dt)
         Ground accelerations [m/s²], shape (npts,), the vertical ones may be empty; sampling interval [s].
+    stop : ndarray of one uint8
+        Ends it within a sample when another thread sets it; the status is then RUNNING.
     theta : float
         At the start [rad]; without velocity.
     rows : int
@@ -346,7 +367,7 @@ def rock_restrained(
     history = np.zeros((rows, COLUMNS + size - 2))
     table = np.array([tuple(each) for each in elements], ELEMENT).view(np.recarray)
     status, t_end, t_flight = _rock(
-        m, table, float(inertia), float(theta), ground, timing, bool(every_step), history, log, use, y, np.zeros(size),
+        m, table, float(inertia), float(theta), ground, timing, bool(every_step), stop, history, log, use, y, np.zeros(size),
         np.zeros(n), np.zeros((6, size)), np.zeros((6, 2 + 2 * n)), extremes,
     )  # fmt: skip
     run = RigidRun(

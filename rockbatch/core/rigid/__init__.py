@@ -1,1 +1,1 @@
-"""The pier on a rigid base (Housner 1963): rocking about two corners, impacts, rest, and lift-off again (THEORY.md, 5)."""
+"""The pier on a rigid base (Housner 1963): rocking about two corners, impacts, rest, lift-off again (THEORY.md, Rigid base)."""

@@ -1,4 +1,4 @@
-"""What a lane does at a sample: it reads the ground, keeps the greatest |θ| of its window, and may be over (THEORY.md, 6)."""
+"""What a lane does at a sample: it reads the ground, keeps its window's peak, may be over (THEORY.md, When a run is over)."""
 
 import math
 

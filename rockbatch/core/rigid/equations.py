@@ -9,7 +9,7 @@ from rockbatch.core.types import LEFT, RIGHT, Ground, Rocking
 
 @inlined
 def acceleration(m, theta, side, horizontal, vertical):
-    """θ̈ [rad/s²] while rocking about the corner on ``side`` (LEFT or RIGHT) (THEORY.md, eq. 10)."""
+    """θ̈ [rad/s²] while rocking about the corner on ``side`` (LEFT or RIGHT) (THEORY.md, eq. 14)."""
     sine, cosine = sine_and_cosine(side * m.alpha - theta)
     return -m.p * m.p / m.gravity * ((m.gravity + vertical) * sine + horizontal * cosine)
 

@@ -110,7 +110,7 @@ def _rock(lanes, i, m, ground, t, left, locate, history, row):
 
 @kernel
 def _land(lanes, i, m, ground, t, history, row):
-    """Impact at ``t`` [s] (THEORY.md, eq. 12): the block goes on about its other corner, or rests; the next row."""
+    """Impact at ``t`` [s] (THEORY.md, eq. 16): the block goes on about its other corner, or rests; the next row."""
     came = motion_in(lanes, i)
     row = write(history, row, t, Rocking(0.0, came.omega, came.side), BEFORE_EVENT)
     omega = m.restitution * came.omega

@@ -19,7 +19,7 @@ def section(pair: Pair) -> Section:
     for name, study in zip(SIDES, pair.studies, strict=True):
         title = study.info["study"]["title"] or ""
         told = join(f"{name}: {title} ", tag("code", study.saved.directory))
-        parts += [tag("h3", told), tag("p", worst(study)), studied(study, level="h4")]
+        parts += [tag("h3", told), worst(study), studied(study, level="h4")]
     return Section("What is compared", "studied", join(*parts, paragraphs(_other_motions(*pair.studies))))
 
 

@@ -26,8 +26,8 @@ def draw(levels: Sequence[Level]) -> Markup:
     errors = [
         max(error, LEAST) for level in timed for error in (level.error_median, level.error_max) if error is not None
     ]
-    axes = Axes(44, 12, 560, 268, _decades(times), _decades(errors))
-    drawn = [axes.frame(axes.x.ticks(8), axes.y.ticks(8))]
+    axes = Axes(44, 20, 384, 260, _decades(times), _decades(errors))
+    drawn = [axes.frame(axes.x.ticks(6), axes.y.ticks(8))]
     for method, (shape, colour, _, side) in METHODS.items():
         at = [level for level in timed if level.method == method]
         drawn += _lines(axes, at, f"s{colour}")
@@ -38,8 +38,8 @@ def draw(levels: Sequence[Level]) -> Markup:
             y = float(axes.down(own.tolerance))
             drawn.append(line(axes.left, y, axes.left + axes.width, y, "flown", f"tolerance {own.tolerance:g}"))
         drawn.append(marker("star", *_at(axes, own), colour="ink large", title=_said(own)))
-    drawn.append(text(axes.left + axes.width / 2, 308, "time per run [ms]", class_="m q"))
-    drawn.append(text(axes.left + 4, 9, join("error of ", lowered("θ", "max", "/α")), class_="q"))
+    drawn.append(text(axes.left + axes.width / 2, 312, "time per run [ms]", class_="m q"))
+    drawn.append(text(axes.left - 40, 11, join("error of ", lowered("θ", "max", "/α")), class_="q"))
     present = {level.method for level in timed}
     entries = [
         (marker(shape, 11, 7, colour=f"s{colour}"), words)
@@ -51,7 +51,7 @@ def draw(levels: Sequence[Level]) -> Markup:
         entries.append((marker("star", 11, 7, colour="ink large"), f"this study: {setting}"))
     entries += [(line(0, 7, 22, 7, "level"), "largest error"), (line(0, 7, 22, 7, "level d2"), "median error")]
     said = "Error of θmax/α against time per run"
-    return join(svg(616, 312, *drawn, description=said, class_="plot marks accuracy"), key(entries))
+    return join(svg(440, 318, *drawn, description=said, class_="plot marks alone"), key(entries))
 
 
 def _decades(values: Sequence[float]) -> Scale:

@@ -77,10 +77,10 @@ class Axes:
         drawn += [tag("path", d=f"M{self.left:.1f} {self.top:.1f}V{foot:.1f}H{right:.1f}", class_="edge")]
         if y_numbers:
             places = self.down(np.array(y_ticks))
-            drawn += [text(self.left - 4, y + 3, s, class_="e") for y, s in zip(places, written(y_ticks), strict=True)]
+            drawn += [text(self.left - 4, y + 4, s, class_="e") for y, s in zip(places, written(y_ticks), strict=True)]
         if x_ticks and x_numbers:
             places = self.across(np.array(x_ticks))
-            drawn += [text(x, foot + 11, s, class_="m") for x, s in zip(places, written(x_ticks), strict=True)]
+            drawn += [text(x, foot + 13, s, class_="m") for x, s in zip(places, written(x_ticks), strict=True)]
         return join(*drawn)
 
     def readable(self, kind: str, *content: object) -> Markup:

@@ -38,7 +38,7 @@ def _panel(words: str, runs: "pd.DataFrame", series: Sequence[Series], count: st
     peaks = runs["theta_max_over_alpha"].where(runs["status"] == "ok").to_numpy(dtype=np.float64)
     top = 1.04 * float(np.nanmax(peaks, initial=0.0)) or 1.0
     right = 1.08 * top if eventful else top
-    axes = Axes(30, 20, WIDTH - 42, HEIGHT - 52, Scale(0.0, right), Scale(0.0, 1.0))
+    axes = Axes(32, 22, WIDTH - 44, HEIGHT - 60, Scale(0.0, right), Scale(0.0, 1.0))
     drawn: list[Markup] = []
     edge = float(axes.across(top))
     if eventful:
@@ -61,7 +61,7 @@ def _panel(words: str, runs: "pd.DataFrame", series: Sequence[Series], count: st
             drawn.append(line(at, float(axes.down(reached)), at, float(axes.down(1.0)), _style(one)))
             drawn.append(marker("overturned", at, float(axes.down(0.5 * (1.0 + reached))), colour="alarm", title=said))
     drawn.append(text(axes.left + axes.width / 2, HEIGHT - 6, lowered("θ", "max", "/α"), class_="m q"))
-    drawn.append(text(axes.left - 24, 9, "share of the records", class_="q"))
+    drawn.append(text(axes.left - 26, 11, "share of the records", class_="q"))
     return svg(WIDTH, HEIGHT, *drawn, description=f"Distribution of θmax/α{', ' + words if words else ''}")
 
 

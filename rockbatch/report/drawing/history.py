@@ -15,7 +15,7 @@ from rockbatch.results.response import Response
 PIXELS = 200  # of one history, across
 QUANTITIES = ("θ/α", "θ̇/(αp)", "E/M [J/kg]", "üg/g")
 SEPARATE = ("separation", "lift-off")
-LOOPS_HEIGHT = 118.0  # px
+LOOPS_HEIGHT = 128.0  # px
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,7 +33,7 @@ class History:
     end : tuple of float
         Time and θ/α at the end.
     band : float
-        |θ/α| up to which a weakly rocking pier keeps both supports: paper, eq. 10. Zero on the rigid base.
+        |θ/α| up to which a weakly rocking pier keeps both supports: THEORY.md, eq. 10. Zero on the rigid base.
     loops : Markup
         Force against deflection of both springs where they yield, or of dampers and tendons; else empty.
     """
@@ -109,13 +109,13 @@ def _loops(response: Response, left: float, width: float) -> Markup:
     each = (width - gap) / 2
     drawn = []
     for place, (v, z) in enumerate(springs):
-        axes = Axes(left + place * (each + gap), 14, each, LOOPS_HEIGHT - 40, across, down)
+        axes = Axes(left + place * (each + gap), 17, each, LOOPS_HEIGHT - 50, across, down)
         line = curve(axes.across(np.clip(v, across.low, across.high)), axes.down(z), "curve", "F/Fy")
         frame = axes.frame(across.ticks(2), [-1, -0.5, 0], y_numbers=place == 0)
         name = text(axes.left + 4, axes.top + axes.height - 5, "LR"[place], class_="q")
         drawn += [frame, axes.readable("plane", line), name]
         drawn.append(text(axes.left + each / 2, LOOPS_HEIGHT - 3, lowered("v/δ", "y"), class_="m q"))
-    drawn.append(text(left - 2, 10, lowered("F/F", "y"), class_="q"))
+    drawn.append(text(left - 2, 11, lowered("F/F", "y"), class_="q"))
     return join(*drawn)
 
 
@@ -130,10 +130,10 @@ def _restraints(response: Response, left: float, width: float) -> Markup:
         way = 1000.0 * table[f"{name} elongation"].to_numpy(dtype=np.float64)
         force = table[f"{name} force"].to_numpy(dtype=np.float64) / response.pier.gravity
         across, down = spanning(way), spanning(force)
-        axes = Axes(left + place * (each + gap), 14, each, LOOPS_HEIGHT - 40, across, down)
+        axes = Axes(left + place * (each + gap), 17, each, LOOPS_HEIGHT - 50, across, down)
         line = curve(axes.across(way), axes.down(force), "curve", "F/(M g)")
         drawn += [axes.frame(across.ticks(2), down.ticks(2)), axes.readable("plane", line)]
         drawn.append(text(axes.left + 4, axes.top + axes.height - 5, name, class_="q"))
         drawn.append(text(axes.left + each / 2, LOOPS_HEIGHT - 3, "e [mm]", class_="m q"))
-    drawn.append(text(left - 2, 10, "F/(M g)", class_="q"))
+    drawn.append(text(left - 2, 11, "F/(M g)", class_="q"))
     return join(*drawn)

@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rockbatch.report.drawing.axes import Axes, Scale
-from rockbatch.report.drawing.svg import Array, curve, key, line, lowered, rectangle, svg, text
-from rockbatch.report.markup import Markup, join
+from rockbatch.report.drawing.svg import Array, Entry, curve, line, lowered, rectangle, svg, text
+from rockbatch.report.markup import Markup
 
 if TYPE_CHECKING:
     import pandas as pd
 
-WIDTH, HEIGHT = 616, 350
+WIDTH, HEIGHT = 420.0, 320.0
 REGIONS = {
     "safe": ("", "stands"),
     "overturned with impact": ("s2", "overturns after an impact or more (mode 1)"),
@@ -122,23 +122,23 @@ def outcome_at(drawn: Sequence[Strip], frequency: float, amplitude: float) -> st
     return own.outcome(frequency, amplitude)
 
 
-def draw(own: "pd.DataFrame") -> Markup:
-    """The picture of one map, and its key."""
+def draw(own: "pd.DataFrame") -> tuple[Markup, list[Entry]]:
+    """The picture of one map, and its legend."""
     drawn = strips(own)
     across = Scale(float(drawn[0].frequencies[0]), float(drawn[-1].frequencies[-1]))
-    axes = Axes(36, 16, WIDTH - 48, HEIGHT - 50, across, Scale(float(own["low"].min()), float(own["high"].max())))
+    axes = Axes(32, 26, WIDTH - 44, HEIGHT - 64, across, Scale(float(own["low"].min()), float(own["high"].max())))
     present = [name for name in REGIONS if REGIONS[name][0] and any(name in strip.outcomes for strip in drawn)]
     picture = [
         # One path for each outcome, or a hair of background would shine through where two strips meet
         *(_path(axes, _areas(drawn, name), f"filled {REGIONS[name][0]}") for name in present),
-        axes.frame(axes.x.ticks(10), axes.y.ticks(8)),
+        axes.frame(axes.x.ticks(8), axes.y.ticks(8)),
         _path(axes, [*_inside(drawn), *_between(drawn)], "level"),
         text(axes.left + axes.width / 2, HEIGHT - 4, lowered("ω", "p", "/p"), class_="m q"),
-        text(axes.left - 2, 10, lowered("a", "p", "/(g tan α)"), class_="q"),
+        text(axes.left - 28, 12, lowered("a", "p", "/(g tan α)"), class_="q"),
     ]
     entries = [(rectangle(1, 1, 20, 12, f"filled {REGIONS[name][0]}"), REGIONS[name][1]) for name in present]
     entries.append((line(0, 7, 22, 7, "level"), "boundary; where there is no colour the pier stands"))
-    return join(svg(WIDTH, HEIGHT, *picture, description="Overturning map", class_="plot marks"), key(entries))
+    return svg(WIDTH, HEIGHT, *picture, description="Overturning map", class_="plot marks"), entries
 
 
 Line = tuple[Array, Array]

@@ -15,7 +15,7 @@ from rockbatch.results.suite_statistics import NO_PEAK
 if TYPE_CHECKING:
     import pandas as pd
 
-HEIGHT = 138.0  # px
+HEIGHT = 146.0  # px
 VISIBLE = 0.015  # of the axis: error bars that are shorter hide behind their marker
 RIGID_LINES = 4
 
@@ -27,7 +27,7 @@ def draw(
     runs = runs.assign(side=runs[side])
     present = [finished.series[place] for place in sorted(runs["series"].unique())]
     ticks = {series.index: series.tick for series in present if not series.rigid}
-    width = min(max(170.0, 52 + 13.0 * (max(ticks, default=0) + 1)), 900.0)
+    width = min(max(166.0, 56 + 13.0 * (max(ticks, default=0) + 1)), 900.0)
     sides = sorted(runs["side"].unique())
     panel = _Panel(finished.series, top, bool(runs["status"].isin(NO_PEAK).any()), ticks, width, sides)
     drawn = []
@@ -52,7 +52,7 @@ class _Panel:
         self.size = width, HEIGHT
         slots = max(ticks, default=0) + 1
         across, down = Scale(0.2, slots + 0.8), Scale(0, 1.18 * top if eventful else top)
-        self.axes = Axes(32, 13, width - 36, HEIGHT - 31, across, down)
+        self.axes = Axes(36, 17, width - 40, HEIGHT - 36, across, down)
 
     def draw(self, name: str, runs: "pd.DataFrame") -> Markup:
         axes = self.axes
@@ -61,8 +61,8 @@ class _Panel:
             y = float(axes.down(self.top))
             drawn.append(rectangle(axes.left, axes.top, axes.width, y - axes.top, "band"))
         drawn.append(axes.frame(None, [tick for tick in Scale(0, self.top).ticks(4) if tick <= self.top]))
-        foot = axes.top + axes.height + 11
-        every = math.ceil(14 * len(self.ticks) / axes.width)  # or names would overlap
+        foot = axes.top + axes.height + 13
+        every = math.ceil(20 * len(self.ticks) / axes.width)  # or names would overlap
         names = [(slot, tick) for slot, tick in self.ticks.items() if slot % every == 0]
         drawn += [text(float(axes.across(slot + 1)), foot, tick, class_="m") for slot, tick in names]
         drawn.append(text(axes.left - 2, axes.top - 4, lowered("θ", "max", "/α"), class_="q"))
@@ -88,14 +88,7 @@ class _Panel:
             )
             return join(over, marker(status, x, level, colour="alarm", title=said))
         if status == "failed" or math.isnan(theta):
-            low = axes.top + axes.height - 4
-            return tag(
-                "text",
-                "no result",
-                tag("title", said),
-                class_="none",
-                transform=f"translate({x:.1f} {low:.1f}) rotate(-90)",
-            )
+            return text(x, axes.top + axes.height - 4, "?", tag("title", said), class_="m none")
         y = float(axes.down(theta))
         bar = Markup("")
         if error > VISIBLE * self.top:
@@ -139,4 +132,6 @@ def _legend(present: Sequence[Series], sides: Sequence[str], runs: "pd.DataFrame
     for status, words in EVENTS.items():
         if (runs["status"] == status).any():
             entries.append((marker(status, 11, 7, colour="alarm"), words))
+    if (runs["status"] == "failed").any():
+        entries.append((text(11, 11, "?", class_="m none"), "no result: the run failed"))
     return key(entries)

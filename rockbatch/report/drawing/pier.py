@@ -10,8 +10,8 @@ from rockbatch.report.markup import Markup, number, tag
 HEIGHT = 190.0
 """Of the highest pier [px]."""
 
-SIDE, ABOVE, BELOW = 46.0, 14.0, 44.0
-"""Room beside, above and below a pier for what is written there [px]."""
+LEFT, RIGHT, ABOVE, BELOW = 30.0, 110.0, 14.0, 48.0
+"""Room around a pier for what is written there [px]."""
 
 SPRING = 20.0
 """Height of a support's spring [px]: not to scale, it has none."""
@@ -49,8 +49,8 @@ def _top(pier: Mapping[str, Any]) -> float:
 
 def _pier(pier: Mapping[str, Any], scale: float, springs: bool) -> Markup:
     b, h, top = (scale * length for length in (pier["half_width_m"], pier["height_m"], _top(pier)))
-    middle, ground = SIDE + max(b, 30.0), ABOVE + max(top, h)
-    width, height = 2.0 * middle, ground + BELOW
+    middle, ground = LEFT + max(b, 30.0), ABOVE + max(top, h)
+    width, height = middle + max(b, 30.0) + RIGHT, ground + BELOW
     left, right, centre = middle - b, middle + b, ground - h
     arc = 0.45 * math.hypot(b, h)
     end = right - arc * math.sin(pier["alpha"]), ground - arc * math.cos(pier["alpha"])
@@ -64,8 +64,8 @@ def _pier(pier: Mapping[str, Any], scale: float, springs: bool) -> Markup:
             d=f"M{right:.1f} {ground - arc:.1f}A{arc:.1f} {arc:.1f} 0 0 0 {end[0]:.1f} {end[1]:.1f}",
             class_="edge",
         ),
-        text(right + 4.0, ground - arc + 3.0, "α"),
-        text(middle - 5.0, 0.5 * (centre + ground), lowered("R", "0"), class_="e"),
+        text(right + 4.0, ground - arc + 4.0, "α", class_="q"),
+        text(left - 6.0, 0.5 * (centre + ground), lowered("R", "0"), class_="e q"),
         tag("circle", cx=f"{middle:.1f}", cy=f"{centre:.1f}", r=2.6, class_="peak"),
         *_length(right + 26.0, ground, right + 26.0, centre, f"h = {number(pier['height_m'], '.3g')} m"),
         *(mark for x in (left, right) for mark in _support(x, ground, springs)),
@@ -99,5 +99,5 @@ def _length(x1: float, y1: float, x2: float, y2: float, words: str) -> list[Mark
         line(x, y - 3.0, x, y + 3.0, "edge") if flat else line(x - 3.0, y, x + 3.0, y, "edge")
         for x, y in ((x1, y1), (x2, y2))
     ]
-    told = text(0.5 * (x1 + x2), y1 + 10.0, words, class_="m") if flat else text(x1 + 4.0, 0.5 * (y1 + y2), words)
+    told = text(0.5 * (x1 + x2), y1 + 14.0, words, class_="m") if flat else text(x1 + 4.0, 0.5 * (y1 + y2) + 4.0, words)
     return [line(x1, y1, x2, y2, "edge"), *ends, told]

@@ -40,7 +40,7 @@ def draw(spectra: dict[str, Any], names: Sequence[str], fitted: tuple[float, flo
     shown = np.concatenate((values[values > 0], target[target > 0]))
     top = float(shown.max(initial=1e-3))
     low = max(float(shown.min(initial=top)), 1e-4 * top)  # a record that is nearly nothing must not flatten the rest
-    axes = Axes(44, 12, 560, 268, Scale(periods[0], periods[-1], log=True), Scale(low / 1.2, 1.2 * top, log=True))
+    axes = Axes(44, 20, 384, 260, Scale(periods[0], periods[-1], log=True), Scale(low / 1.2, 1.2 * top, log=True))
     few = len(names) <= LABELLED
     drawn = [axes.frame(_ticks(axes.x), _ticks(axes.y))]
     if fitted is not None:
@@ -64,10 +64,10 @@ def draw(spectra: dict[str, Any], names: Sequence[str], fitted: tuple[float, flo
     if not few:
         for percent in (16, 84):
             add(np.percentile(values, percent, axis=0), "level ink d2", f"{percent} %")
-    drawn.append(text(axes.left + axes.width / 2, 308, "period [s]", class_="m q"))
-    drawn.append(text(axes.left + 4, 9, "SA [g]", class_="q"))
+    drawn.append(text(axes.left + axes.width / 2, 312, "period [s]", class_="m q"))
+    drawn.append(text(axes.left - 40, 11, "SA [g]", class_="q"))
     said = f"Response spectra of {len(names)} ground motions" + (" and their target" if len(target) else "")
-    return join(svg(616, 312, *drawn, description=said, class_="plot spectra"), key(entries))
+    return join(svg(440, 318, *drawn, description=said, class_="plot spectra alone"), key(entries))
 
 
 def _ticks(scale: Scale) -> list[float]:

@@ -1,7 +1,7 @@
 """Pictures as inline SVG: text stays text, colours come from the style sheet, and curves are drawn in tenths of a pixel."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -55,14 +55,14 @@ def markers() -> Markup:
     return tag("svg", tag("defs", *paths), width=0, height=0, class_="markers", aria_hidden="true")
 
 
-def marker(name: str, x: float, y: float, *, colour: str, title: str | None = None) -> Markup:
+def marker(name: str, x: float | str, y: float, *, colour: str, title: str | None = None) -> Markup:
     """A marker at (x, y); ``colour`` are classes of the style sheet, ``title`` what it says when pointed at."""
     said = tag("title", title) if title else Markup("")
     return tag("use", said, href=f"#m-{name}", x=_short(x), y=_short(y), class_=colour)
 
 
-def text(x: float, y: float, *content: object, class_: str = "") -> Markup:
-    """Text at (x, y)."""
+def text(x: float | str, y: float, *content: object, class_: str = "") -> Markup:
+    """Text at (x, y); ``x`` in pixels, or a share of the width: "50%"."""
     return tag("text", *content, x=_short(x), y=_short(y), class_=class_ or None)
 
 
@@ -88,8 +88,12 @@ def svg(width: float, height: float, *content: object, description: str, class_:
     return tag("svg", *content, class_=class_, role="img", aria_label=description, viewBox=f"0 0 {width:g} {height:g}")
 
 
-def key(entries: Sequence[tuple[Markup, str]]) -> Markup:
-    """A legend: each drawing, made for 22 × 14 px, with its words."""
+Entry = tuple[Markup, str]
+"""Of a legend: a drawing for 22 × 14 px, and its words."""
+
+
+def key(entries: Sequence[Entry]) -> Markup:
+    """A legend."""
     pictures = [
         tag("svg", drawn, class_="plot", viewBox="0 0 22 14", width=22, height=14, aria_hidden="true")
         for drawn, _ in entries
@@ -99,7 +103,20 @@ def key(entries: Sequence[tuple[Markup, str]]) -> Markup:
     )
 
 
-def _short(value: float) -> str:
+def side_by_side(drawn: Iterable[tuple[str, Markup, Sequence[Entry]]], width: float) -> Markup:
+    """Pictures with titles and legends, as many beside each other as there is room for; what the legends share, once."""
+    entries: dict[str, Markup] = {}
+    pictures = []
+    for title, picture, own in drawn:
+        pictures.append(tag("figure", tag("figcaption", title), picture))
+        entries |= {words: shown for shown, words in own if words not in entries}
+    grid = tag("div", *pictures, class_="panels", style=f"--w:{width:.0f}px")
+    return join(grid, key([(shown, words) for words, shown in entries.items()]))
+
+
+def _short(value: float | str) -> str:
+    if isinstance(value, str):
+        return value
     return f"{value:.1f}".removesuffix(".0")
 
 

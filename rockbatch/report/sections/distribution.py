@@ -6,11 +6,14 @@ from rockbatch.report.document import Section, figure, paragraphs
 from rockbatch.report.drawing import distribution
 from rockbatch.report.finished import Finished
 from rockbatch.report.markup import Markup, join, tag
+from rockbatch.report.overview import worst_first
 from rockbatch.report.sections.statistics import RECORDS
 
 MOST_PANELS = 12
 MOST_CURVES = 21
 """Of a panel: three times seven colours; more cannot be told apart."""
+BEST = 7
+"""Foundations that are drawn where there are more."""
 LEAST_RECORDS = 3
 """Fewer have no distribution."""
 
@@ -35,14 +38,14 @@ def _picture(finished: Finished) -> Markup:
         return tag("p", "There are too few records for a distribution.", class_="muted")
     groups = finished.groups()
     shown = groups[:MOST_PANELS]
-    places = sorted({int(place) for _, runs in shown for place in runs["series"].unique()})
+    places = worst_first(finished.runs, "series")[::-1]
     if len(places) > MOST_CURVES:
-        shown = [(words, runs[runs["series"].isin(places[:MOST_CURVES])]) for words, runs in shown]
+        shown = [(words, runs[runs["series"].isin(places[:BEST])]) for words, runs in shown]
     caption = (
         "Share of the records under which the largest rotation does not exceed a value; steps are single records. "
         f"{RECORDS[finished.count]} Those under which the pier overturned, or that were ended by flight, exceed every "
         "value: they stand at the right edge. Records with a failed run do not count."
     )
     caption += f" The first {len(shown)} of {len(groups)} groups are shown." if len(shown) < len(groups) else ""
-    caption += f" The first {MOST_CURVES} of {len(places)} foundations are shown." if len(places) > MOST_CURVES else ""
+    caption += f" The {BEST} best of {len(places)} foundations are shown." if len(places) > MOST_CURVES else ""
     return figure(distribution.draw(shown, finished.series, finished.count), caption)

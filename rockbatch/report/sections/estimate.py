@@ -105,7 +105,7 @@ def _table(finished: Finished, runs: list[dict[str, Any]]) -> Markup:
     for (record, place_of_pier, scale, sign), same in rows.items():
         one = next(iter(same.values()))
         found = [_computed(same.get(place)) for place in places] if each else _range(list(same.values()))
-        names = [record, finished.piers[place_of_pier] or None, scale if len(scales) > 1 else None]
+        names = [finished.shown(record), finished.piers[place_of_pier] or None, scale if len(scales) > 1 else None]
         estimates = (_estimate(one, method) for method in DAMPING)
         told = [*names, sign if len(signs) > 1 else None, one["pga_over_g_tan_alpha"], *estimates, *found]
         written.append(told)

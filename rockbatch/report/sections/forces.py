@@ -58,7 +58,11 @@ def _worst(column: Column, runs: "pd.DataFrame") -> float | None:
 def _every_run(finished: Finished, shown: list[Column]) -> Markup:
     runs = worst_first(finished.runs, MOST_ROWS)
     rows = [
-        [run["record"], finished.which(run), *(on_scale(column.name, run[column.name]) for column in shown)]
+        [
+            finished.shown(run["record"]),
+            finished.which(run),
+            *(on_scale(column.name, run[column.name]) for column in shown),
+        ]
         for _, run in runs.iterrows()
     ]
     heads = [Head("record"), Head("case"), *map(head, shown)]

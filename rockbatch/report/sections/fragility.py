@@ -106,14 +106,14 @@ def _stroke(colour: int) -> Markup:
 
 
 def _panel(info: Mapping[str, Any], curves: Sequence[Curve], styles: Mapping[str, tuple[str, int]]) -> Markup:
-    axes = Axes(28, 14, WIDTH - 36, HEIGHT - 46, Scale(0.0, 1.1 * info["levels"][-1]), Scale(0.0, 1.0))
+    axes = Axes(32, 20, WIDTH - 42, HEIGHT - 58, Scale(0.0, 1.1 * info["levels"][-1]), Scale(0.0, 1.0))
     drawn = [axes.frame(axes.x.ticks(6), axes.y.ticks(5))]
     for one in curves:
         drawn += _band(axes, one, styles[_label(one)][1])
     for one in curves:
         drawn += _drawn(axes, one, *styles[_label(one)])
     drawn.append(text(axes.left + axes.width / 2, HEIGHT - 6, f"{info['measure']} [{info['unit']}]", class_="m q"))
-    drawn.append(text(axes.left - 2, 9, "probability", class_="q"))
+    drawn.append(text(axes.left - 26, 11, "probability", class_="q"))
     said = f"Probability of {curves[0]['limit_state']} over {info['measure']}"
     return svg(WIDTH, HEIGHT, *drawn, description=said, class_="plot marks")
 

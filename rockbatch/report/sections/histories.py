@@ -16,9 +16,11 @@ from rockbatch.results.histories_file import Responses
 from rockbatch.results.response import Response
 
 MOST_COLUMNS = 40
-LEFT, WIDTH = 30.0, 214.0  # px
-TOPS, HEIGHTS = (14.0, 126.0, 204.0, 282.0), (94.0, 60.0, 60.0, 60.0)
-FOOT = 372.0
+LEFT, WIDTH = 42.0, 176.0  # px
+TOPS, HEIGHTS = (17.0, 134.0, 218.0, 302.0), (94.0, 60.0, 60.0, 60.0)
+FOOT = 398.0
+OVER = 1.5
+"""Rotation over α beyond which the picture of a pier that overturns ends."""
 LABELS = (QUANTITIES[0], QUANTITIES[1], QUANTITIES[2], lowered("ü", "g", "/g"))
 
 Row = dict[str, Any]
@@ -52,11 +54,11 @@ def _figures(finished: Finished, responses: Sequence[Response]) -> list[tuple[Ma
         for number in same:
             back = behind[number]
             title = _title(finished, kept[number])
-            picture = _column(
+            drawing = picture(
                 drawn[number], None if back is None else drawn[back], scales, finished.label(kept[number]["record"])
             )
-            cells.append(tag("figure", tag("figcaption", title), picture))
-        grid = tag("div", *cells, class_="histories")
+            cells.append(tag("figure", tag("figcaption", title), drawing))
+        grid = tag("div", *cells, class_="histories", style=f"--w:{LEFT + WIDTH + 6:.0f}px")
         lines = any(behind[number] is not None for number in same)
         found.append((grid, _caption(finished.piers[pier], [drawn[number] for number in same], lines)))
     return found
@@ -108,6 +110,14 @@ def _scale(shown: Sequence[History], row: int) -> Scale:
     return spanning(*(history.curves[row][1] for history in stood), *bands)
 
 
+def _standing(own: History, row: int) -> Array:
+    """A quantity until the pier is on its way over: what it does on the ground would hide how it rocked."""
+    t, theta = own.curves[0]
+    over = np.flatnonzero(np.abs(theta) > OVER)
+    times, values = own.curves[row]
+    return values[times <= t[over[0]]] if len(over) else values
+
+
 def _title(finished: Finished, run: Row) -> Markup:
     also = [f"scaled by {run['scale']:g}" if run["scale"] != 1 else "", "reversed" if run["polarity"] == "-" else ""]
     told = ", ".join(filter(None, also))
@@ -115,23 +125,23 @@ def _title(finished: Finished, run: Row) -> Markup:
     return join(tag("span", finished.series[run["series"]].label), " ", record)
 
 
-def _column(own: History, behind: History | None, scales: Sequence[Scale], record: str) -> Markup:
+def picture(own: History, behind: History | None, scales: Sequence[Scale], record: str) -> Markup:
     end = max(own.end[0], behind.end[0] if behind else 0.0) or 1.0
     drawn: list[Markup] = []
     for row, (top, height) in enumerate(zip(TOPS, HEIGHTS, strict=True)):
-        scale = scales[row] if own.status == "ok" else spanning(own.curves[row][1])
+        scale = scales[row] if own.status == "ok" else spanning(_standing(own, row))
         axes = Axes(LEFT, top, WIDTH, height, Scale(0, end), scale)
         if row == 0 and own.band:
             y = np.clip(axes.down(np.array([own.band, -own.band])), top, top + height)
             drawn.append(rectangle(LEFT, y[0], WIDTH, y[1] - y[0], "band"))
-        drawn.append(axes.frame(axes.x.ticks(5), scale.ticks(4 if row == 0 else 3), x_numbers=row == len(TOPS) - 1))
+        drawn.append(axes.frame(axes.x.ticks(4), scale.ticks(5 if row == 0 else 4), x_numbers=row == len(TOPS) - 1))
         curves = [_curve(axes, *own.curves[row], "curve rigid" if own.rigid else "curve", QUANTITIES[row])]
         if behind is not None and row < 3:
             curves.insert(0, _curve(axes, *behind.curves[row], "curve behind", f"{QUANTITIES[row]}, rigid base"))
         drawn.append(axes.readable("time", *curves))
         if row == 0:
             drawn.append(_events(axes, own))
-        drawn.append(text(LEFT - 2, top - 4, LABELS[row], class_="q"))
+        drawn.append(text(LEFT - 2, top - 5, LABELS[row], class_="q"))
     drawn.append(text(LEFT + WIDTH / 2, FOOT - 4, "t [s]", class_="m q"))
     height = FOOT
     if own.loops:
@@ -161,7 +171,7 @@ def _events(axes: Axes, own: History) -> Markup:
         )
         marks += [tag("circle", cx=f"{x:.1f}", cy=f"{y:.1f}", r="2.2", class_="peak"), value]
     if own.status in ("overturned", "flight"):
-        end = float(axes.across(own.end[0])), float(axes.down(own.end[1]))
+        end = float(axes.across(own.end[0])), float(axes.down(np.clip(own.end[1], axes.y.low, axes.y.high)))
         marks.append(marker(own.status, *end, colour="alarm"))
     return join(*marks)
 

@@ -9,6 +9,7 @@ from rockbatch.report.document import Section, figure
 from rockbatch.report.drawing.panels import draw
 from rockbatch.report.finished import Finished, worst_first
 from rockbatch.report.markup import Markup, join, tag
+from rockbatch.report.overview import by_foundation, ceiling
 from rockbatch.report.sections.peaks import at_a_glance
 from rockbatch.report.table import THETA
 from rockbatch.results.suite_statistics import NO_PEAK
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
     import pandas as pd
 
 MOST_RECORDS = 60
+MOST_SERIES = 24
+"""Foundations that stand beside each other in a panel; of more, each has a row of its own."""
 MOST_FIGURES = 12
 MOST_MARKS = 12_000  # on the page: a megabyte and a half
 MOST_OF_A_FIGURE = 2_000  # foundations under one record, each with its line in the legend
@@ -33,17 +36,12 @@ def section(contents: Contents) -> Section | None:
         "; lines: rigid base" if any(series.rigid for series in finished.series) else "",
         "; open markers and dashed lines: horizontal component reversed" if finished.both_directions else "", ".",
     ]  # fmt: skip
+    if max(group["series"].nunique() for _, group in finished.groups()) > MOST_SERIES:
+        return Section("Peak rotations", "figure", by_foundation(finished))
     drawn = figures(finished, caption)
     flew = ((runs["status"] == "ok") & runs["flight_s"].notna()).any()
     legend = tag("sup", "f"), " both pivots left the ground on the way; the pier was guided down."
     return Section("Peak rotations", "figure", join(drawn, tag("p", *legend, class_="legend") if flew else ""))
-
-
-def ceiling(runs: "pd.DataFrame") -> float:
-    """Top of the axis [θ_max/α] that holds all of ``runs`` that stood."""
-    stood = runs[runs["status"] == "ok"]
-    highest = (stood["theta_max_over_alpha"] + stood["theta_max_error"].fillna(0)).max()
-    return 1.1 * float(highest) if highest > 0 else 1.0
 
 
 def chosen(finished: Finished, runs: "pd.DataFrame", figures: int = 1) -> list[str]:

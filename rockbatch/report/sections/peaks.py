@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 MOST_COLUMNS = 24
+PRINTED = "On paper the table ends with its fifteenth column; all of them are on the screen."
 
 
 def section(contents: Contents) -> Section | None:
@@ -28,7 +29,11 @@ def section(contents: Contents) -> Section | None:
         "The worst first: overturned, ended by flight, then by rotation. All of it is in ", tag("code", "peaks.csv"), ". ",
         tag("span", "Click a heading to sort.", class_="scripted"),
     ]  # fmt: skip
-    return Section("Every run", "peaks", join(tag("p", *lead), _ratcheting(finished), _every_run(finished)))
+    return Section(
+        "Every run",
+        "peaks",
+        join(tag("p", *lead), tag("p", PRINTED, class_="printed"), _ratcheting(finished), _every_run(finished)),
+    )
 
 
 def at_a_glance(finished: Finished, runs: "pd.DataFrame", records: "Sequence[str]") -> Markup:

@@ -18,8 +18,8 @@ from rockbatch.report.table import Head, table
 if TYPE_CHECKING:
     import pandas as pd
 
-WIDTH, LEFT, TOP, ROW = 616, 64, 16, 22
-BAR = 8
+WIDTH, LEFT, TOP, ROW = 440, 84, 20, 30
+BAR = 12
 TORNADO = ("case", "parameter", "low", "base", "high", "answer_low", "answer_base", "answer_high")
 SOBOL = ("case", "parameter", "first", "first_error", "total", "total_error")
 
@@ -71,15 +71,15 @@ def _frame(inputs: Sequence[str], scale: Scale) -> tuple[Axes, list[Markup]]:
     """Axes with a row for each input, from the top, and their names."""
     axes = Axes(LEFT, TOP, WIDTH - LEFT - 52, ROW * len(inputs), scale, Scale(0.0, len(inputs)))
     names = [
-        text(LEFT - 6, TOP + ROW * (place + 0.5) + 3, _symbol(name), class_="e") for place, name in enumerate(inputs)
+        text(LEFT - 6, TOP + ROW * (place + 0.5) + 4, _symbol(name), class_="e") for place, name in enumerate(inputs)
     ]
-    return axes, [axes.frame(axes.x.ticks(8), []), *names]
+    return axes, [axes.frame(axes.x.ticks(5), []), *names]
 
 
 def _tornado(both: "pd.DataFrame") -> Markup:
     ends = both[["answer_low", "answer_base", "answer_high"]].to_numpy(float)
     low, high = float(ends.min()), float(ends.max())
-    room = 0.08 * (high - low) or 0.1 * abs(high) or 1.0
+    room = 0.12 * (high - low) or 0.1 * abs(high) or 1.0
     axes, drawn = _frame(both["parameter"].tolist(), Scale(max(0.0, low - room), high + room))
     base = float(axes.across(ends[0, 1]))
     for place, each in enumerate(both.to_dict("records")):
@@ -90,15 +90,15 @@ def _tornado(both: "pd.DataFrame") -> Markup:
             shift = -BAR if colour == "s1" else 0
             drawn.append(rectangle(left, middle + shift, right - left, BAR, f"filled {colour}"))
             side, anchor = (3, "") if at >= base else (-3, " e")
-            drawn.append(text(at + side, middle + shift + 7, _written(end), class_=colour + anchor))
+            drawn.append(text(at + side, middle + shift + BAR - 2, _written(end), class_=colour + anchor))
     drawn.append(line(base, TOP, base, TOP + axes.height, "edge", f"as in the study: {ends[0, 1]:.4f}"))
-    drawn.append(text(LEFT - 2, 9, lowered("θ", "max", "/α"), class_="q e"))
+    drawn.append(text(LEFT - 2, 12, lowered("θ", "max", "/α"), class_="q e"))
     entries = [
         (rectangle(1, 3, 20, BAR, "filled s1"), "at the low end of the range, or the first choice"),
         (rectangle(1, 3, 20, BAR, "filled s2"), "at the high end, or the second choice"),
         (line(11, 0, 11, 14, "edge"), "as in the study"),
     ]
-    drawing = svg(WIDTH, TOP + axes.height + 18, *drawn, description="One input at a time", class_="plot marks")
+    drawing = svg(WIDTH, TOP + axes.height + 20, *drawn, description="One input at a time", class_="plot marks alone")
     return join(drawing, key(entries))
 
 
@@ -122,7 +122,7 @@ def _bars(both: "pd.DataFrame") -> Markup:
         (rectangle(1, 3, 20, BAR, "filled s1"), "first-order index"),
         (rectangle(1, 3, 20, BAR, "filled s2"), "total index"),
     ]
-    drawing = svg(WIDTH, TOP + axes.height + 18, *drawn, description="Sobol indices", class_="plot marks")
+    drawing = svg(WIDTH, TOP + axes.height + 20, *drawn, description="Sobol indices", class_="plot marks alone")
     return join(drawing, key(entries))
 
 

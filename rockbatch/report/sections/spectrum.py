@@ -8,7 +8,18 @@ from rockbatch.report.contents import Contents
 from rockbatch.report.document import Section, figure
 from rockbatch.report.drawing import overturning_map
 from rockbatch.report.drawing.axes import Axes, Scale
-from rockbatch.report.drawing.svg import COLOURS, curve, key, line, lowered, marker, rectangle, svg, text
+from rockbatch.report.drawing.svg import (
+    COLOURS,
+    Entry,
+    curve,
+    line,
+    lowered,
+    marker,
+    rectangle,
+    side_by_side,
+    svg,
+    text,
+)
 from rockbatch.report.finished_analysis import FinishedAnalysis, named, of_files
 from rockbatch.report.labels import quantity, symbol
 from rockbatch.report.markup import Markup, join, tag
@@ -17,7 +28,10 @@ from rockbatch.report.table import sub
 if TYPE_CHECKING:
     import pandas as pd
 
-WIDTH, HEIGHT = 616, 268
+WIDTH, HEIGHT = 420.0, 250.0
+ROW = 10.0
+"""Height of a row of marks of what overturned [px]: one for each slenderness, or they would hide each other."""
+
 ACROSS = {"two_pi_over_p_s": "2π/p [s]"}
 QUANTILES = {"median": "", "p16": " d2", "p84": " d1"}
 
@@ -52,26 +66,32 @@ def _spectra(found: FinishedAnalysis, suite: "pd.DataFrame") -> list[Markup]:
             "Solid: median of the suite; dashed and dotted: 84 % and 16 % quantiles; every component counts by itself. "
         )
     lead += "Above the frame: overturned or ended by flight (∞), which counts as larger than any rotation."
+    drawn = [
+        (named(dict(zip(apart, names, strict=True)), told), *_curves(runs, axis, many))
+        for names, runs in suite.groupby(apart, sort=False, dropna=False)
+    ]
     return [
         tag("p", lead),
-        *(figure(_curves(runs, axis, many), named(dict(zip(apart, names, strict=True)), told)) for names, runs in
-          suite.groupby(apart, sort=False, dropna=False)),
-    ]  # fmt: skip
+        tag("figure", side_by_side(drawn, WIDTH), class_="whole"),
+    ]
 
 
-def _curves(points: "pd.DataFrame", axis: str, many: bool) -> Markup:
+def _curves(points: "pd.DataFrame", axis: str, many: bool) -> tuple[Markup, list[Entry]]:
+    """The spectra of a case, and their legend."""
     names = list(QUANTILES) if many else ["median"]
     finite = points[names].to_numpy(float)
     top = 1.08 * max(float(finite[np.isfinite(finite)].max(initial=0.0)), 1e-6)
     x = points[axis].to_numpy(float)
-    axes = Axes(44, 28, WIDTH - 56, HEIGHT - 62, Scale(x.min(), x.max()), Scale(0.0, top))
+    over = ROW * points["alpha"].nunique() + 4.0
+    axes = Axes(36, 20 + over, WIDTH - 48, HEIGHT - 58, Scale(x.min(), x.max()), Scale(0.0, top))
+    height = HEIGHT + over
     drawn = [
-        rectangle(axes.left, axes.top - 16, axes.width, 16, "band"),
-        axes.frame(axes.x.ticks(10), axes.y.ticks(6)),
-        text(axes.left + axes.width / 2, HEIGHT - 6, ACROSS.get(axis, symbol(axis)), class_="m q"),
-        text(axes.left - 2, 9, lowered("θ", "max", "/α"), class_="q"),
+        rectangle(axes.left, axes.top - over, axes.width, over, "band"),
+        axes.frame(axes.x.ticks(8), axes.y.ticks(6)),
+        text(axes.left + axes.width / 2, height - 6, ACROSS.get(axis, symbol(axis)), class_="m q"),
+        text(axes.left - 30, 12, lowered("θ", "max", "/α"), class_="q"),
     ]
-    entries = []
+    entries: list[Entry] = []
     for place, (alpha, own) in enumerate(points.groupby("alpha", sort=False)):
         colour = f"s{place % COLOURS + 1}"
         across = axes.across(own[axis].to_numpy(float))
@@ -81,7 +101,7 @@ def _curves(points: "pd.DataFrame", axis: str, many: bool) -> Markup:
                 curve(across, axes.down(np.where(np.isfinite(y), y, np.nan)), f"level {colour}{QUANTILES[name]}")
             )
         fell = np.isinf(own["median"].to_numpy(float))
-        high = axes.top - 8 + 3 * (place % 3 - 1)
+        high = axes.top - over + 2.0 + ROW * (place + 0.5)
         drawn += [
             marker("overturned", at, high, colour=colour, title=f"{quantity('alpha', float(str(alpha)))}: ∞")
             for at in across[fell]
@@ -89,7 +109,7 @@ def _curves(points: "pd.DataFrame", axis: str, many: bool) -> Markup:
         entries.append((line(0, 7, 22, 7, f"level {colour}"), quantity("alpha", float(str(alpha)))))
     if np.isinf(points["median"].to_numpy(float)).any():
         entries.append((marker("overturned", 11, 7, colour="ink"), "overturned or ended by flight" + ", median" * many))
-    return join(svg(WIDTH, HEIGHT, *drawn, description="Rocking spectrum", class_="plot marks"), key(entries))
+    return svg(WIDTH, height, *drawn, description="Rocking spectrum", class_="plot marks"), entries
 
 
 # Overturning maps
@@ -105,15 +125,16 @@ def _maps(found: FinishedAnalysis, regions: "pd.DataFrame") -> list[Markup]:
         )
     ]  # fmt: skip
     asked = {each["name"]: each for each in found.info["maps"]}
+    pictures: dict[str, list[tuple[str, Markup, list[Entry]]]] = {}
     for names, own in regions.groupby(apart, sort=False, dropna=False):
         values = dict(zip(apart, names, strict=True))
         spec = asked[values["map"]]
-        words = f"{values['map']} ({spec['shape']}), {named(values, apart[1:])}"
-        n = own["omega_p_over_p"].nunique()
+        title = f"{values['map']} ({spec['shape']}), {named(values, apart[1:])}; {own['omega_p_over_p'].nunique()} frequencies"
         caption = (
-            f"{words}. Computed at {n} frequencies: boundaries are located within {spec['tolerance']:g} along the ordinate, "
+            f"Boundaries are located within {spec['tolerance']:g} along the ordinate, "
             f"and where regions begin, end or change their order within {spec['width']:g} along the abscissa, "
             "where the picture has a step. Islands may be missed that are narrower than a step of the grid both ways."
         )
-        drawn.append(figure(overturning_map.draw(own), caption))
+        pictures.setdefault(caption, []).append((title, *overturning_map.draw(own)))
+    drawn += [figure(side_by_side(same, WIDTH), caption) for caption, same in pictures.items()]
     return drawn

@@ -106,7 +106,10 @@ def tables(
         keys = [key for key in names if any(key in suites for suites in found.values())]
         if keys:
             rows = [[*names[key], *_cells([suites.get(key) for suites in found.values()], form)] for key in keys]
-            drawn += [tag("h3", says), table([*heads, *_heads(list(sides), form)], rows, name=f"Suite: {says}")]
+            drawn += [
+                tag("h3", says),
+                table([*heads, *_heads(list(sides), form)], rows, name=f"Suite: {column.suite.heading}"),
+            ]
     return join(*drawn)
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from rockbatch.report.contents import Contents
 from rockbatch.report.document import Section, figure, paragraphs
 from rockbatch.report.drawing import response_spectra
+from rockbatch.report.finished import Finished
 from rockbatch.report.labels import counted
 from rockbatch.report.markup import Markup, join, tag
 from rockbatch.report.table import Head, alarm, table
@@ -45,7 +46,7 @@ def section(contents: Contents) -> Section | None:
     records = finished.info["records"]
     content = join(
         _fit(target, records),
-        _picture(finished.info.get("spectra"), target, records),
+        _picture(finished, target, records),
         _ratios(target),
         _near_source(records),
     )
@@ -92,12 +93,13 @@ def _over(target: Mapping[str, Any]) -> "np.ndarray[Any, np.dtype[np.float64]]":
     return np.array(target["mean_sa_g"], dtype=np.float64) / np.array(target["sa_g"], dtype=np.float64)
 
 
-def _picture(spectra: dict[str, Any] | None, target: Mapping[str, Any], records: Sequence[Mapping[str, Any]]) -> Markup:
+def _picture(finished: Finished, target: Mapping[str, Any], records: Sequence[Mapping[str, Any]]) -> Markup:
     """Target, records and mean; nothing where run.json has no spectra, as of very large suites."""
+    spectra = finished.info.get("spectra")
     if not spectra or len(spectra["sa_g"]) != len(records) or not response_spectra.drawable(spectra):
         return join()
     low, high = target["range_s"]
-    drawn = response_spectra.draw(spectra, [record["record"] for record in records], (low, high))
+    drawn = response_spectra.draw(spectra, [finished.label(record["record"]) for record in records], (low, high))
     caption = (
         f"Pseudo-spectral accelerations of the horizontal components, {100 * spectra['damping']:g} % damped, their "
         "mean, and the target; shaded: the range over which they are fitted."

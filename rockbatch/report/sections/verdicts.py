@@ -1,7 +1,7 @@
 """Whether the pier passes: the answer in a sentence, every check in every case at a glance, and what the checks ask."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from rockbatch.checks import Verdict, wording
 from rockbatch.checks.verdicts import CHECKS, DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS
@@ -15,6 +15,8 @@ BASIS = {"code": "code clause", "literature": "literature", "judgement": "engine
 SAID = {PASS: "passes:", FAIL: "fails:", NOT_DECIDED: "not decided:", DOES_NOT_APPLY: "does not apply"}
 CLASSES = {PASS: "pass", FAIL: "fail", NOT_DECIDED: "undecided", DOES_NOT_APPLY: "muted"}
 MOST_NAMES = 6
+MOST_WORST = 10
+"""Rows of the worst verdicts, where there are too many to tell all."""
 
 
 def section(contents: Contents) -> Section | None:
@@ -25,7 +27,7 @@ def section(contents: Contents) -> Section | None:
     parts: list[object] = [legend()]
     if len(verdicts) > wording.MOST:
         every = tag("summary", f"All {len(verdicts)} verdicts, a row for each case")
-        worst = wording.worst_first(verdicts)[: wording.MOST]
+        worst = wording.worst_first(verdicts)[:MOST_WORST]
         parts += [_counts(verdicts), tag("details", every, matrix(verdicts)), tag("h3", "The worst verdicts")]
         parts.append(_every(worst) if worst else tag("p", "Nothing fails or is left undecided."))
         parts.append(tag("p", "All of them, with what governs each, are in ", tag("code", CHECKS), "."))
@@ -61,7 +63,10 @@ def answer(verdicts: Sequence[Verdict]) -> Markup:
         (NOT_DECIDED, undecided, "cannot be decided"),
     ]
     parts = [
-        join(tag("strong", mark(verdict, f"{_among(len(some), len(cases))} {words}")), f": {_listed(some)}.")
+        join(
+            tag("strong", mark(verdict, f"{_among(len(some), len(cases))} {words}")),
+            f": {_which(verdict, some, cases)}.",
+        )
         for verdict, some, words in told
         if some
     ]
@@ -70,8 +75,27 @@ def answer(verdicts: Sequence[Verdict]) -> Markup:
 
 def _among(some: int, all_: int) -> str:
     if some == all_:
-        return "the only case" if all_ == 1 else f"all {all_} cases"
+        return {1: "the only case", 2: "both cases"}.get(all_, f"all {all_} cases")
     return f"{some} of {all_} cases"
+
+
+def _which(verdict: str, some: Sequence[str], cases: Mapping[str, Sequence[Verdict]]) -> str:
+    """The cases by name; of many that fail, which checks do, and which case is the nearest to passing."""
+    if verdict != FAIL or len(some) <= MOST_NAMES:
+        return _listed(some)
+    failing = {case: [one for one in cases[case] if one.verdict == FAIL] for case in some}
+    checks = dict.fromkeys(one.check for same in failing.values() for one in same)
+    told = [f"{name} in {sum(any(one.check == name for one in same) for same in failing.values())}" for name in checks]
+    worst = {case: max(_badness(one) for one in same) for case, same in failing.items()}
+    nearest = min(some, key=lambda case: worst[case])
+    if math.isinf(worst[nearest]):
+        return f"{', '.join(told)} of them"
+    return f"{', '.join(told)} of them; the nearest to passing is {nearest}, at {worst[nearest]:.2f} of a limit"
+
+
+def _badness(one: Verdict) -> float:
+    """How far beyond its limit a check is; nothing that is a number for events that may not be."""
+    return math.inf if one.is_ban or math.isnan(one.ratio) else one.ratio
 
 
 def _listed(cases: Sequence[str]) -> str:

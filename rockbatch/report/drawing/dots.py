@@ -1,0 +1,162 @@
+"""Peaks as dots on one axis, a row for each record or foundation: few pixels a row, and words as large at any width.
+
+Places along the axis are shares of the width, so that nothing but the axis stretches.
+"""
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from rockbatch.report.drawing.axes import Scale, written
+from rockbatch.report.drawing.svg import EVENTS, Entry, key, marker, style_of, text
+from rockbatch.report.finished import as_dicts
+from rockbatch.report.labels import Series
+from rockbatch.report.markup import Markup, join, number, tag
+from rockbatch.report.table import THETA, THETA_FORMAT
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+FIRST, LAST = 1.5, 97.0
+"""Where the axis begins and ends [% of the width]."""
+MOST_LETTERS = 20
+"""Of the names of foundations without a peak; where they are longer, their number stands for them."""
+MIDDLE = 10
+"""Of a row of 20 px."""
+FAILED = {"failed": "no result: the run failed"}
+
+Run = dict[str, Any]
+
+
+class Row(NamedTuple):
+    """A row: its words, of which the ``end`` is never cut off, more of them when pointed at, and its runs in each column."""
+
+    words: str
+    end: str
+    more: str
+    runs: "Sequence[pd.DataFrame]"
+
+
+class Marks(NamedTuple):
+    """How runs are drawn: by ``series`` if they are few enough to be told apart, or all alike; and what each says."""
+
+    series: Sequence[Series] | None
+    says: Callable[[Run], str]
+    kind: str
+    """What a mark stands for, if all are alike: "foundation"."""
+
+
+def draw(rows: Sequence[Row], columns: Sequence[str], top: float, marks: Marks) -> Markup:
+    """Every row in every column, the axis of all, which ends at ``top`` [θ_max/α], and the legend."""
+    ticks = [tick for tick in Scale(0.0, top).ticks(4) if tick <= top]
+    grid = [_line(_across(tick, top), "grid") for tick in ticks]
+    cells: list[Markup] = []
+    if any(columns):
+        cells.append(tag("span", class_="of"))
+        cells += [tag("span", words, class_="column") for words in columns]
+    for row in rows:
+        end = tag("span", row.end, class_="end") if row.end else ""
+        cells.append(tag("span", tag("span", row.words, class_="words"), end, class_="of", title=row.more))
+        for words, runs in zip(columns, row.runs, strict=True):
+            here = ", ".join(filter(None, (f"{row.words}{row.end}", words)))
+            cells += [_strip(runs, top, grid, marks, here), _without_peak(runs, marks)]
+    axis = [
+        text(f"{_across(tick, top)}%", 14, words, class_="m") for tick, words in zip(ticks, written(ticks), strict=True)
+    ]
+    cells.append(tag("span", tag("span", THETA), class_="of axis"))
+    for _ in columns:
+        cells += [tag("svg", *axis, class_="plot strip", aria_hidden="true"), tag("span")]
+    drawn = tag(
+        "div", *cells, class_="dots", style=f"--n:{len(columns)}", tabindex="0", role="group",
+        aria_label="Peaks, a row each; arrow keys go through the values",
+    )  # fmt: skip
+    return join(drawn, key(_legend([runs for row in rows for runs in row.runs], marks)))
+
+
+def _across(theta: float, top: float) -> float:
+    return round(FIRST + (LAST - FIRST) * theta / top, 1)
+
+
+def _line(at: float, class_: str, *content: object, low: int = 20, high: int = 0) -> Markup:
+    return tag("line", *content, x1=f"{at}%", x2=f"{at}%", y1=high, y2=low, class_=class_)
+
+
+def _strip(runs: "pd.DataFrame", top: float, grid: Sequence[Markup], marks: Marks, words: str) -> Markup:
+    """One row in one column."""
+    stood = runs[(runs["status"] == "ok") & runs["theta_max_over_alpha"].notna()]
+    seen: dict[tuple[object, float], Markup] = {}
+    for run in as_dicts(stood.sort_values("theta_max_over_alpha", ascending=False, kind="stable")):
+        at = _across(run["theta_max_over_alpha"], top)
+        which = run["series"] if marks.series else None
+        if (which, at) not in seen:  # others would lie under it
+            seen[which, at] = _mark(run, at, marks)
+    peaks = stood["theta_max_over_alpha"]
+    low, high = (number(float(each), THETA_FORMAT) for each in (peaks.min(), peaks.max()))
+    said = f"{words}: θmax/α {low} to {high}" if len(stood) > 1 else f"{words}: θmax/α {high}"
+    return tag(
+        "svg", *grid, *seen.values(), class_="plot strip marks", role="img", data_of=words,
+        aria_label=said if len(stood) else f"{words}: no peak",
+    )  # fmt: skip
+
+
+def _mark(run: Run, at: float, marks: Marks) -> Markup:
+    said = tag("title", marks.says(run))
+    if marks.series is None:
+        return tag("circle", said, cx=f"{at}%", cy=MIDDLE, r=3.5, class_="dot s1")
+    series = marks.series[run["series"]]
+    if series.rigid:
+        return _line(at, f"rigid d{series.index % 4}", said, low=MIDDLE + 7, high=MIDDLE - 7)
+    shape, colour = style_of(series.index)
+    return marker(shape, f"{at}%", MIDDLE, colour=f"s{colour}", title=marks.says(run))
+
+
+def _without_peak(runs: "pd.DataFrame", marks: Marks) -> Markup:
+    """What had no peak: by the foundations' letters, or how many."""
+    told = []
+    for status, words in (EVENTS | FAILED).items():
+        some = runs[runs["status"] == status]
+        if len(some):
+            series = [] if marks.series is None else [marks.series[place] for place in dict.fromkeys(some["series"])]
+            names = ", ".join(one.label if one.rigid else one.tick for one in series)
+            sign = tag(
+                "svg", _sign(status), class_="plot", viewBox="4 0 14 14", width=14, height=14, aria_hidden="true"
+            )
+            told.append(
+                tag(
+                    "span",
+                    sign,
+                    names if 0 < len(names) <= MOST_LETTERS else str(len(some)),
+                    title=f"{len(some)} × {words}",
+                    class_=_class(status),
+                )
+            )
+    return tag("span", *told, class_="ends")
+
+
+def _class(status: str) -> str:
+    return "undecided" if status in FAILED else "alarm"
+
+
+def _sign(status: str) -> Markup:
+    return text(11, 11, "?", class_="m none") if status in FAILED else marker(status, 11, 7, colour="alarm")
+
+
+def _legend(drawn: "Sequence[pd.DataFrame]", marks: Marks) -> list[Entry]:
+    present = {place for runs in drawn for place in runs["series"]}
+    entries: list[Entry] = []
+    if marks.series is None:
+        entries.append((tag("circle", cx=11, cy=7, r=3.5, class_="dot s1"), f"a {marks.kind}"))
+    else:
+        shown = sorted((marks.series[place] for place in present), key=lambda one: (not one.rigid, one.index))
+        entries += map(_named, shown)
+    ends = {status for runs in drawn for status in runs["status"]}
+    entries += [(_sign(status), words) for status, words in (EVENTS | FAILED).items() if status in ends]
+    return entries
+
+
+def _named(series: Series) -> Entry:
+    if series.rigid:
+        return tag("line", x1=11, x2=11, y1=0, y2=14, class_=f"rigid d{series.index % 4}"), series.label
+    shape, colour = style_of(series.index)
+    tick = series.tick
+    label = series.label if series.label.split(":")[0] == tick else f"{tick} – {series.label}"
+    return marker(shape, 11, 7, colour=f"s{colour}"), label

@@ -1,0 +1,133 @@
+"""Parameters of dampers and tendons as inputs of a sensitivity study: damper.f, or damper_2.f where several have one."""
+
+import re
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+from rockbatch.pier import Damper, Pier, Restraint
+from rockbatch.study.restraint_keys import IN_KN, KEYS_OF, fields_of
+from rockbatch.study.spec import Case
+from rockbatch.toml.kinds import shown
+
+_HEAVY = Pier(alpha=0.2, p=1.0, mass_t=1.0)
+
+TABLE = re.compile(r"(damper|tendon)(?:_([1-9][0-9]*))?")
+"""What a table of such inputs is called: that of the only one of its kind, or with its number in the study."""
+
+
+class Parameter(NamedTuple):
+    """Where a parameter is: of which of the base's dampers and tendons, in which field, and the key's value over the field's."""
+
+    place: int
+    field: str
+    divisor: float
+
+
+def tied(case: Case) -> tuple[Restraint, ...]:
+    """Dampers and tendons of a case."""
+    restraints: tuple[Restraint, ...] = getattr(case.base, "restraints", ())
+    return restraints
+
+
+def is_of_restraint(name: str) -> bool:
+    """Whether an input is one of a damper or tendon."""
+    return "." in name
+
+
+def numbered(pier: Pier, restraints: Sequence[Restraint]) -> dict[str, Parameter]:
+    """All parameters by names with numbers, "damper_1.f": those of which dampers and tendons of this kind have a value."""
+    found: dict[str, Parameter] = {}
+    counts: Counter[str] = Counter()
+    given_by = fields_of(pier)
+    for place, each in enumerate(restraints):
+        what, kind = ("damper", each.kind) if isinstance(each, Damper) else ("tendon", "tendon")
+        counts[what] += 1
+        for key in KEYS_OF[kind]:
+            endless = not isinstance(each, Damper) and key == "yield_kN" and each.strength == float("inf")
+            if key in given_by and not endless:
+                found[f"{what}_{counts[what]}.{key}"] = Parameter(place, *given_by[key])
+    return found
+
+
+def parameters(pier: Pier, restraints: Sequence[Restraint]) -> dict[str, Parameter]:
+    """As :func:`numbered`; those that only one damper or tendon has go without a number, too."""
+    found = numbered(pier, restraints)
+    plain = [_plain(name) for name in found]
+    return found | {_plain(name): each for name, each in found.items() if plain.count(_plain(name)) == 1}
+
+
+def _plain(name: str) -> str:
+    return re.sub(r"_[0-9]+\.", ".", name)
+
+
+def own_restraint_values(pier: Pier, restraints: Sequence[Restraint]) -> dict[str, float]:
+    """What the study itself says about each, to the digits in which studies are written."""
+    return {
+        name: float(f"{getattr(restraints[each.place], each.field) * each.divisor:.12g}")
+        for name, each in parameters(pier, restraints).items()
+    }
+
+
+def with_values(pier: Pier, restraints: Sequence[Restraint], values: Mapping[str, float]) -> tuple[Restraint, ...]:
+    """The dampers and tendons with other values of such parameters, under the pier as it is at that point."""
+    where, changed = parameters(pier, restraints), list(restraints)
+    for name, value in values.items():
+        place, field, divisor = where[name]
+        change: dict[str, Any] = {field: value / divisor}
+        changed[place] = replace(changed[place], **change)
+    return tuple(changed)
+
+
+def unclear(names: Iterable[str], case: Case) -> dict[str, str]:
+    """Which names of inputs do not say whose they are in this case, or say it twice, and what to write instead."""
+    own = numbered(case.pier, tied(case))
+    where = parameters(case.pier, tied(case))
+    told: dict[str, str] = {}
+    fixed: dict[tuple[int, str], str] = {}
+    for name in filter(is_of_restraint, names):
+        meant = [each for each in own if _plain(each) == name]
+        if len(meant) > 1:
+            told[name] = f"{name}: case {shown(case.name)} has {len(meant)} of them; write {' or '.join(meant)}"
+        if name in where:
+            other = fixed.setdefault(where[name][:2], name)
+            if other != name:
+                told[name] = f"{other} and {name} are given, which fix the same; keep one"
+    return told
+
+
+def why_none(name: str, cases: Iterable[Case]) -> str:
+    """Why no case has this parameter of a damper or tendon."""
+    table, key = name.split(".")
+    what, number = table.partition("_")[::2]
+    most, kinds, heavy = 0, set(), False
+    for case in cases:
+        mine = [each for each in tied(case) if isinstance(each, Damper) == (what == "damper")]
+        most, heavy = max(most, len(mine)), heavy or case.pier.mass_t is not None
+        kinds |= {each.kind if isinstance(each, Damper) else "tendon" for each in mine}
+    if not most:
+        return f"no case of the study has a {what}"
+    if number and int(number) > most:
+        return f"no case of the study has a {what} {number}"
+    if key in IN_KN and not heavy:
+        return "it goes with a pier of known mass (mass_t)"
+    if what == "damper" and not any(key in KEYS_OF[kind] for kind in kinds):
+        return "it goes with kind = " + " or ".join(shown(kind) for kind, keys in KEYS_OF.items() if key in keys)
+    if key == "yield_kN":
+        return "it goes with a tendon that yields; give its yield_kN in the case"
+    return f"no {what} of that number has it"
+
+
+def problem_in_words(problem: str, values: Mapping[str, Any]) -> tuple[str, str]:
+    """A problem of a damper or tendon, "damper: f = …", and the input that it is about, as that is called; "" if none is."""
+    what, _, told = problem.partition(": ")
+    mine = [name for name in values if is_of_restraint(name) and name.startswith(what)]
+    if not mine:
+        return problem, ""
+    key = told.partition(" = ")[0]
+    if same := next((name for name in mine if name.endswith(f".{key}")), ""):
+        return told.replace(key, same, 1), same
+    fields = {name: field for name, (field, _) in fields_of(_HEAVY).items()} | {"stiffness_kN_m": "lambda"}
+    name = next((name for name in mine if fields[name.partition(".")[2]] == key), mine[0])
+    return f"{name} = {values[name]:g} means {problem}", name

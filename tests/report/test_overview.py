@@ -1,0 +1,116 @@
+"""The first screen is the answer, however many cases and records there are: the rest is summed up, or folded."""
+
+import re
+
+import pytest
+from browser import CHROMIUM, browse
+from check_samples import verdict
+from report_page import Page
+from report_samples import FIG7, case_entry, write_results
+
+from rockbatch.checks import write_verdicts
+from rockbatch.pier import Pier, RigidBase, YieldingBase
+from rockbatch.report import write_report
+
+PIER = Pier(alpha=0.13, p=0.38)
+BETAS, ETAS = range(20, 120, 10), (1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0, 5.5, 6.0)
+GRID = [(float(beta), eta) for beta in BETAS for eta in ETAS]
+
+
+def hundred(directory, records=FIG7, **changes):
+    """A report of a hundred cases."""
+    cases = [case_entry("pads", {"beta": b, "eta": e}, PIER, YieldingBase(beta=b, eta=e)) for b, e in GRID]
+    write_results(directory, records=records, cases=cases, varied=("beta", "eta"), **changes)
+    return write_report(directory, [])
+
+
+def rows(text, section):
+    """Words of each row of the pictures in a section, but for what is folded."""
+    own = text[text.index(f'<section id="{section}">') :].split("</section>")[0]
+    own = re.sub(r"<details>.*?</details>", "", own, flags=re.DOTALL)
+    return [
+        Page(words).text.replace("\u00a0", " ")
+        for words in re.findall(r'<span class="words">.*?</span>', own, re.DOTALL)
+    ]
+
+
+def test_a_hundred_cases_put_no_table_and_a_row_for_each_record_before_the_answer(tmp_path):
+    text = hundred(tmp_path).read_text(encoding="utf-8")
+    assert sorted(rows(text, "answer")) == sorted(name for name, _ in FIG7)
+    assert "<tr" not in text[: text.index('<section id="figure">')]
+    best = rows(text, "figure")
+    assert len(best) == 14
+    assert best[-1] == "the other 87 foundations"
+    assert "All 100 foundations, in the order of the study" in text
+
+
+def test_of_hundreds_of_records_the_worst_have_a_row_and_the_others_share_one(tmp_path):
+    records = [(f"R{i}", 0.1 + 0.001 * i) for i in range(300)]
+    worst = {("R7", "rigid"): {"status": "overturned"}, ("R9", "2"): {"theta_max_over_alpha": 0.9}}
+    write_results(tmp_path, records=records, changes=worst)
+    path = write_report(tmp_path, [])
+    text = path.read_text(encoding="utf-8")
+    shown = rows(text, "answer")
+    assert shown[:2] == ["R7", "R9"]
+    assert len(shown) == 14
+    assert shown[-1] == "the other 287 records"
+    assert path.stat().st_size < 3e6
+
+
+def test_what_has_no_peak_is_told_by_foundation_or_by_number(tmp_path):
+    changes = {("RRS228", "2"): {"status": "overturned"}, ("RRS228", "rigid"): {"status": "overturned"},
+               ("RRS228", "3"): {"status": "failed", "theta_max_over_alpha": ""}}  # fmt: skip
+    write_results(tmp_path, changes=changes)
+    few = write_report(tmp_path, []).read_text(encoding="utf-8")
+    ends = [Page(end).text for end in re.findall(r'<span class="ends">(.*?)</span></span>', few, re.DOTALL)]
+    assert ends[0].replace("?", "") == "rigid, 23"
+    assert few.index("RRS228") < few.index("ERZ-NS")
+    (tmp_path / "many").mkdir()
+    many = hundred(tmp_path / "many", changes={("RRS228", "pads"): {"status": "overturned"}}).read_text(
+        encoding="utf-8"
+    )
+    assert "100 × overturned" in many
+
+
+def test_of_many_cases_that_fail_the_checks_and_the_nearest_case_are_named(tmp_path):
+    write_results(tmp_path)
+    some = [verdict(f"c{i}", "fail", ratio=1.1 + i / 10, check="drift") for i in range(40)]
+    write_verdicts(tmp_path, some)
+    told = Page(write_report(tmp_path, []).read_text(encoding="utf-8")).text
+    assert "all 40 cases fail: drift in 40 of them; the nearest to passing is c0, at 1.10 of a limit." in told
+
+
+def test_long_tables_are_folded_and_short_ones_stand_open(tmp_path):
+    text = hundred(tmp_path).read_text(encoding="utf-8")
+    assert re.search(r"<details><summary>Every run: 600 rows</summary><div [^>]*><table", text)
+    assert re.search(r"<details><summary>Foundations: 100 rows</summary>", text)
+    assert not re.search(r"<summary>Ground motions", text)
+
+
+@pytest.mark.skipif(CHROMIUM is None, reason="needs Chromium")
+@pytest.mark.parametrize("many", ["cases", "records"])
+def test_the_whole_answer_is_on_the_first_screen(tmp_path, many):
+    records = [(f"EVENT-{i}", 0.1 + 0.001 * i) for i in range(200)] if many == "records" else FIG7
+    changes = {(records[0][0], "pads"): {"status": "failed", "theta_max_over_alpha": "", "reason": "not settled: of many"},
+               (records[1][0], "pads"): {"status": "overturned"}}  # fmt: skip
+    if many == "cases":
+        hundred(tmp_path, changes=changes)
+    else:
+        write_results(tmp_path, records=records)
+    write_verdicts(tmp_path, [verdict(f"c{i}", "fail", ratio=1.1 + i / 10, check="drift") for i in range(40)])
+    page = write_report(tmp_path, [])
+    act = """
+    found.answer = document.querySelector("#answer .facts").getBoundingClientRect().bottom;
+    found.figure = document.querySelector("#answer .dots").getBoundingClientRect().bottom;
+    """
+    found = browse(tmp_path, page, act, size=(1400, 900))
+    assert 0 < found["answer"] < found["figure"] < 900
+
+
+def test_long_names_of_what_has_no_peak_leave_the_figure_its_room(tmp_path):
+    names = ["a foundation with a long name", "another one with a long name"]
+    cases = [case_entry(name, {}, PIER, RigidBase()) for name in names]
+    write_results(tmp_path, cases=cases, changes={("RRS228", name): {"status": "overturned"} for name in names})
+    text = write_report(tmp_path, []).read_text(encoding="utf-8")
+    worst = re.search(r'<span class="ends">(.*?)</span></span>', text, re.DOTALL)[1]
+    assert Page(worst).text == "2"

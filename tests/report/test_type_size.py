@@ -1,0 +1,131 @@
+"""The smallest words of every picture can be read, on a wide screen, on a narrow one and on paper."""
+
+import re
+import zlib
+
+import numpy as np
+import pytest
+from browser import CHROMIUM, browse, chromium
+from report_page import figures
+from studies import PADS, RIGID, SINE, study_text, write_study
+
+from rockbatch.cli import main
+from rockbatch.report import write_report
+from rockbatch.report.drawing.history import QUANTITIES, History
+from rockbatch.report.markup import Markup
+from rockbatch.report.sections.histories import picture
+
+STUDY = study_text(
+    title="Every picture",
+    pulses=(
+        SINE | {"name": "short", "amplitude_g": 0.5, "period_s": 0.6, "duration_s": 1.0},
+        SINE | {"name": "long", "amplitude_g": 0.35, "period_s": 1.0, "duration_s": 1.0},
+        SINE | {"name": "strong", "amplitude_g": 0.8, "period_s": 1.0, "duration_s": 1.0},
+    ),
+    cases=(RIGID, PADS | {"beta": 30, "eta": 3, "epsilon": 0.1}),
+    spectrum={
+        "alpha": [0.1, 0.2],
+        "two_pi_over_p_s": [2.0, 10.0],
+        "points": 3,
+        "map": [
+            {
+                "name": "sine", "shape": "sine", "frequency": [1.0, 4.0], "frequencies": 3, "amplitude": [1.0, 6.0],
+                "amplitudes": 4, "tolerance": 0.1, "width": 0.5,
+            }
+        ],
+    },
+    fragility={"measure": "PGA", "levels_g": [0.3, 0.6, 1.2]},
+    sensitivity={"samples": 4, "uniform": {"alpha": [0.18, 0.22]}, "choice": {"kinematics": ["first-order", "finite"]}},
+)  # fmt: skip
+PICTURES = {
+    "answer", "figure", "distribution", "fragility", "spectrum", "sensitivity", "histories", "studied", "records", "accuracy",
+}  # fmt: skip
+"""Sections of the report that have one."""
+
+MEASURE = """
+found.smallest = {};
+for (const svg of document.querySelectorAll("main svg.plot")) {
+  const section = svg.closest("section").id;
+  for (const node of svg.querySelectorAll("text, tspan")) {
+    if (![...node.childNodes].some((child) => child.nodeType === 3 && child.data.trim())) continue;
+    const size = parseFloat(getComputedStyle(node).fontSize) * svg.getScreenCTM().a;
+    found.smallest[section] = Math.min(found.smallest[section] ?? Infinity, size);
+  }
+}
+"""
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory):
+    """A report with every kind of picture."""
+    folder = tmp_path_factory.mktemp("pictures")
+    study, out = str(write_study(folder, STUDY)), str(folder / "out")
+    for command in ("run", "spectrum", "fragility", "sensitivity"):
+        main([command, study, "--out", out])
+    assert main(["accuracy", study, "--out", out, "--no-scipy", "--runs", "1"]) == 0
+    return write_report(folder / "out")
+
+
+def test_no_picture_is_made_for_more_room_than_it_has(report):
+    """Held without a browser: one that is drawn 440 px wide, in words of 11 px, is not shrunk where there are so many."""
+    text = report.read_text(encoding="utf-8")
+    widths = [float(svg.attrib["viewBox"].split()[2]) for svg in figures(text) if "viewBox" in svg.attrib]
+    assert len(widths) > 10
+    assert max(widths) <= 440
+    style = text[text.index("<style>") : text.index("</style>")]
+    base = float(re.search(r"svg\.plot \{[^}]*font-size: ([\d.]+)px", style)[1])
+    labels = float(re.search(r"\.plot \.q \{ font-size: ([\d.]+)px", style)[1])
+    lowered = float(re.search(r"\.plot \.sub \{ font-size: (\d+)%", style)[1]) / 100
+    assert min(base, lowered * labels) >= 11
+    assert not re.search(r"\.plot [^{]*\{[^}]*font-size: ([0-9]|10)(\.\d+)?px", style)
+
+
+@pytest.mark.skipif(CHROMIUM is None, reason="needs Chromium")
+@pytest.mark.parametrize("width", [1400, 500, 720], ids=["wide", "narrow", "paper"])
+def test_the_smallest_words_of_every_picture_can_be_read(tmp_path, report, width):
+    """On A4 with the margins of the page there are 688 px between them, as in a window of 720."""
+    found = browse(tmp_path, report, MEASURE, size=(width, 900))["smallest"]
+    assert set(found) == PICTURES
+    assert {name: size for name, size in found.items() if size < 11} == {}
+
+
+@pytest.mark.skipif(CHROMIUM is None, reason="needs Chromium")
+def test_no_page_is_printed_smaller_because_a_table_is_too_wide(tmp_path, report):
+    """Chromium shrinks every page until the widest thing on any fits. Skia draws 300 units to an inch: 3.125 to a pixel."""
+    text = report.read_text(encoding="utf-8")
+    for name in ("short", "long", "strong"):
+        text = text.replace(f">{name}<", f">{name} motion of a station with a name of its own, 5 km south-west<")
+    page = tmp_path / "report.html"
+    page.write_text(text, encoding="utf-8")
+    chromium(tmp_path, f"--print-to-pdf={tmp_path / 'report.pdf'}", "--no-pdf-header-footer", page.as_uri())
+    scales = set()
+    for stream in re.findall(rb"stream\r?\n(.*?)endstream", (tmp_path / "report.pdf").read_bytes(), re.DOTALL):
+        try:
+            drawn = zlib.decompress(stream)
+        except zlib.error:
+            continue
+        if found := re.match(rb"\s*\.2399\d* 0 0 -\.2399\d* 0 \d+ cm\s+q\s+([\d.]+) 0 0", drawn):
+            scales.add(float(found[1]))
+    assert scales == {3.125}
+
+
+def test_a_pier_that_overturns_leaves_the_picture_and_does_not_flatten_how_it_rocked():
+    t = np.linspace(0.0, 20.0, 2001)
+    theta = np.where(t < 10.0, 0.4 * np.sin(t), 0.4 * np.sin(10.0) - np.expm1(t - 10.0))
+    none = np.array([])
+    fell = History(
+        True,
+        "overturned",
+        [(t, theta)] * len(QUANTITIES),
+        none,
+        none,
+        none,
+        (20.0, 1e4),
+        (20.0, theta[-1]),
+        0.0,
+        Markup(""),
+    )
+    drawn = picture(fell, None, [], "record")
+    ranges = [[float(end) for end in found.split()] for found in re.findall(r'data-y="([^"]*)"', drawn)]
+    assert len(ranges) == len(QUANTITIES)
+    assert all(-2.0 < low < -0.4 < 0.4 < high < 2.0 for low, high in ranges)
