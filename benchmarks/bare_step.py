@@ -111,7 +111,7 @@ def measure(law: str, motion: Motion, substeps: int, runs: int, repeats: int) ->
 
     m = models[runs // 2]
     branch = 1.0 if m.law == BOUC_WEN else 0.0
-    alone = (m, static_state(m), Contact(1.0, 1.0, branch, branch, 0.0), ground, dt / substeps, BARE_STEPS)
+    alone = (m, static_state(m, m.gravity), Contact(1.0, 1.0, branch, branch, 0.0), ground, dt / substeps, BARE_STEPS)
     times = interleaved(
         {
             "whole": lambda: rock_side_by_side(PLAIN, lines, ground, stop),
@@ -158,7 +158,14 @@ def pass_alone(motion: Motion, repeats: int) -> str:
     ground, dt = ground_of(motion), float(motion.dt)
     models = [springs(TOWER, of_law("bouc-wen", base)) for base in foundations(LANES)]
     lines = np.array([run_line(m, dt, 100 * PASSES, 0, 0, len(ground)) for m in models], LINE)
-    alone = (models[0], static_state(models[0]), Contact(1.0, 1.0, 1.0, 1.0, 0.0), ground, dt, BARE_STEPS)
+    alone = (
+        models[0],
+        static_state(models[0], models[0].gravity),
+        Contact(1.0, 1.0, 1.0, 1.0, 0.0),
+        ground,
+        dt,
+        BARE_STEPS,
+    )
     tasks = {
         "pass": lambda: passes(table()[0], lines, ground, PASSES),
         "bare": lambda: bare(*alone),

@@ -116,7 +116,7 @@ def compiled(rocking: Rocking, tolerance: float, method: int) -> Callable[[], tu
     new = _typed(_library("nvecserial").N_VNew_Serial, pointer, pointer, pointer)
     y, absolute = new(6, context.value), new(6, context.value)
     numbers = _data(y)
-    numbers[:], _data(absolute)[:] = static_state(rocking.m), tolerance * rocking.scale
+    numbers[:], _data(absolute)[:] = static_state(rocking.m, rocking.m.gravity), tolerance * rocking.scale
     memory = _typed(cv.CVodeCreate, pointer, whole, pointer)(method, context.value)
     told = np.array([rocking.cells.ctypes.data, rocking.ground.ctypes.data, len(rocking.ground)], np.int64)
     directions = np.array([-1] * 5 + [0], np.int32)
@@ -145,7 +145,12 @@ def compiled(rocking: Rocking, tolerance: float, method: int) -> Callable[[], tu
     until = _typed(cv.CVodeSetStopTime, whole, pointer, number)
     crossed = _typed(cv.CVodeGetRootInfo, whole, pointer, pointer)
     m, rest, end, dt, alpha = rocking.m, rocking.rest, rocking.end, rocking.dt, rocking.alpha
-    cells, ground, start, guided = rocking.cells, rocking.ground, tuple(static_state(rocking.m)), bool(rocking.m.guided)
+    cells, ground, start, guided = (
+        rocking.cells,
+        rocking.ground,
+        tuple(static_state(rocking.m, rocking.m.gravity)),
+        bool(rocking.m.guided),
+    )
 
     @numba.njit(error_model="numpy")
     def to_event(t, time, info, numbers, theta_max):

@@ -81,7 +81,7 @@ class Rocking:
     def solve(self, stretch: Stretch) -> tuple[str, float]:
         """Status and θ_max [rad], each stretch between two events integrated by ``stretch``."""
         m, rest = self.m, self.rest
-        t, y, theta_max = 0.0, static_state(m), 0.0
+        t, y, theta_max = 0.0, static_state(m, m.gravity), 0.0
         branch = 1.0 if m.law == BOUC_WEN else 0.0
         contact, supports = Contact(1.0, 1.0, branch, branch, 0.0), Supports(math.nan, math.nan)
         for _ in range(MOST_EVENTS):

@@ -1,5 +1,6 @@
 """The runs whose histories are kept beside the peaks: run once more, and written down."""
 
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -10,7 +11,7 @@ import numpy as np
 from rockbatch.batch.plan import PlannedRun
 from rockbatch.checks.demands import FORCES
 from rockbatch.errors import InputError
-from rockbatch.pier import RigidBase, offsets
+from rockbatch.pier import Base, Pier, RigidBase, YieldingBase, offsets, vertical_frequency
 from rockbatch.results.columns import TERMS
 from rockbatch.results.histories_file import HISTORIES, OF_SPRINGS, UNITS, write
 from rockbatch.results.reading import Saved
@@ -27,6 +28,10 @@ LEDGER = "energy_input_J_kg"
 
 BYTES_OF_A_DATASET = 2500.0
 """What HDF5 takes for a dataset beside its numbers, with its share of the groups."""
+
+
+BYTES_OF_AN_EVENT = 56.0
+"""In the table of events: three numbers and two words."""
 
 
 def keep_histories(
@@ -107,7 +112,9 @@ def kept(study: Study, runs: Sequence[PlannedRun], table: "pd.DataFrame") -> Kep
 
 
 def history_bytes(run: PlannedRun, row: "Mapping[str, Any] | pd.Series") -> float:
-    """About what the history of a run takes on disk: eight bytes for each number of each sample and side of an event."""
+    """What the history of a run takes on disk, about, or up to a third more: eight bytes for each number of each sample and
+    side of an event.
+    """
     pier, base = run.case.pier, run.case.base
     columns = len(UNITS) - (len(OF_SPRINGS) if isinstance(base, RigidBase) else 0)
     columns += 2 * sum(len(offsets(pier, each)) for each in getattr(base, "restraints", ()))  # elongations and forces
@@ -115,8 +122,16 @@ def history_bytes(run: PlannedRun, row: "Mapping[str, Any] | pd.Series") -> floa
         columns += len(TERMS)
     if _has(row, FORCES):
         columns += len(FORCE_UNITS)
-    rows = row["t_end_s"] / run.motion.dt + 2.0 * (row["impacts"] + row["separations"])
-    return columns * (BYTES_OF_A_DATASET + 8.0 * rows)
+    events = row["impacts"] + row["separations"] + _reversals(pier, base) * row["t_end_s"]
+    rows = row["t_end_s"] / run.motion.dt + 2.0 * events
+    return columns * (BYTES_OF_A_DATASET + 8.0 * rows) + BYTES_OF_AN_EVENT * events
+
+
+def _reversals(pier: Pier, base: Base) -> float:
+    """How often a second the Bouc–Wen springs change their branch at most: both, twice a period of the vertical vibration."""
+    if not (isinstance(base, YieldingBase) and base.has_exponent):
+        return 0.0
+    return 2.0 * vertical_frequency(pier, base) / math.pi
 
 
 def _has(row: "Mapping[str, Any] | pd.Series", column: str) -> bool:

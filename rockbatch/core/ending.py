@@ -76,7 +76,10 @@ def _outlook(lanes, i, m):
     to_right, to_left = max(0.0, first, last), max(0.0, -first, -last)
     sinking = max(0.0, -(last_left + last_right), -(first_left + first_right))
     peak = lanes.extremes.peak[i]
-    return outlook_on_springs(m, state(lanes.now, i), contact, left, right, peak, calm, to_right, to_left, sinking)
+    return outlook_on_springs(
+        m, state(lanes.now, i), contact, waiting.load[i], waiting.stored[i], left, right, peak, calm,
+        to_right, to_left, sinking,
+    )  # fmt: skip
 
 
 @kernel
@@ -148,7 +151,7 @@ def _given_up(lanes, i, m, outlook):
     """How a run ends that nothing has decided for so long; one that is not waited for is cut off as it is."""
     if lanes.waiting.patience[i] == 0.0:
         return SURVIVED
-    if outlook == LEANS or abs(lanes.now.theta[i]) >= summit(m):
+    if outlook == LEANS or abs(lanes.now.theta[i]) >= summit(m, lanes.waiting.load[i]):
         return UNDECIDED
     least = GROWTH * lanes.motion.alpha[i]
     turned = lanes.extremes.peak[i] > lanes.waiting.midway[i] + least

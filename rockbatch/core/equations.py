@@ -4,7 +4,7 @@ from rockbatch.core.creep import acceleration_of_top, creep_rate, forces, share_
 from rockbatch.core.kernel import inlined, kernel
 from rockbatch.core.laws import within_yield, z_rate
 from rockbatch.core.trigonometry import sine_and_cosine
-from rockbatch.core.types import LEFT, Contact, Geometry, State
+from rockbatch.core.types import LEFT, Contact, Geometry, Pull, Springs, State
 
 
 @inlined
@@ -33,6 +33,23 @@ def geometry(m, theta):
     )  # fmt: skip
 
 
+@kernel
+def pulled(m, force, moment):
+    """The pier ``m`` under a force [m/s²] and a moment [m²/s²]."""
+    return Springs(
+        m.half_width, m.height, m.inertia, m.gravity, m.yield_deflection, m.stiffness, m.yield_force, m.epsilon,
+        m.damping, m.law, m.guided, m.exponent, m.finite, m.damped, Pull(force, moment),
+    )  # fmt: skip
+
+
+@inlined
+def _with_pull(pull, force, moment):
+    """Force and moment, upwards and to the right, with those of dampers and tendons."""
+    if pull is None:
+        return force, moment
+    return force - pull.force, moment - pull.moment
+
+
 @inlined
 def accelerations(m, y, contact, at, horizontal, vertical):
     """v̈ [m/s²] and θ̈ [rad/s²] of state ``y`` under ground accelerations [m/s²]; ``at`` is its geometry."""
@@ -44,7 +61,7 @@ def accelerations(m, y, contact, at, horizontal, vertical):
     if m.finite is not None:
         effective = lever
         moment -= lever * (at.lever_slope + side * at.swing_slope) * y.omega * y.omega
-    v_acceleration = -m.gravity - vertical - force_left - force_right
+    v_acceleration, moment = _with_pull(m.pull, -m.gravity - vertical - force_left - force_right, moment)
     if contact.held == 0.0:
         return v_acceleration, moment * (1.0 / (m.inertia + effective * effective))
     # A held pivot neither lifts nor presses: it goes with its support (Filippov's sliding mode).
@@ -85,7 +102,7 @@ def pivot_acceleration(m, y, contact, side, horizontal, vertical):
 
 
 @inlined
-def _along(y, k, h):
+def along(y, k, h):
     return State(
         y.v + h * k.v,
         y.theta + h * k.theta,
@@ -103,11 +120,11 @@ def step(m, y, k1, contact, ground, h):
     horizontal_middle = ground.horizontal + half * ground.horizontal_slope
     vertical_middle = ground.vertical + half * ground.vertical_slope
     share = share_left(m, half)
-    k2 = rates(m, with_creep(m, _along(y, k1, half), y, contact, share), contact, horizontal_middle, vertical_middle)
-    k3 = rates(m, with_creep(m, _along(y, k2, half), y, contact, share), contact, horizontal_middle, vertical_middle)
+    k2 = rates(m, with_creep(m, along(y, k1, half), y, contact, share), contact, horizontal_middle, vertical_middle)
+    k3 = rates(m, with_creep(m, along(y, k2, half), y, contact, share), contact, horizontal_middle, vertical_middle)
     k4 = rates(
         m,
-        with_creep(m, _along(y, k3, h), y, contact, share * share),
+        with_creep(m, along(y, k3, h), y, contact, share * share),
         contact,
         ground.horizontal + h * ground.horizontal_slope,
         ground.vertical + h * ground.vertical_slope,

@@ -25,7 +25,7 @@ def at_rest(m):
 
 
 @inlined
-def _velocity(velocity, acceleration, rest):
+def surely(velocity, acceleration, rest):
     """A velocity that is nothing but rounding says nothing: the acceleration decides where it goes."""
     if abs(velocity) > rest:
         return velocity
@@ -58,7 +58,7 @@ def _above(m, position, velocity, acceleration, support, z, rest):
     velocity -= velocity_of_top(m, z)
     acceleration -= acceleration_of_top(m, z)
     gap = _gap(position - top(m, support, z), velocity, acceleration, rest, NO_GAP * m.yield_deflection)
-    return gap, _velocity(velocity, acceleration, rest)
+    return gap, surely(velocity, acceleration, rest)
 
 
 @inlined
@@ -67,7 +67,7 @@ def _on_spring(m, z, z_rate, yields, velocity, acceleration, rest):
     if abs(velocity) <= rest:
         if abs(acceleration) <= NO_ACCELERATION * m.gravity:
             acceleration = 0.0
-        z_rate = _velocity(velocity, acceleration, rest) * m.stiffness
+        z_rate = surely(velocity, acceleration, rest) * m.stiffness
     contact, contact_slope = _compression(m, z, z_rate, velocity, acceleration)
     law, law_slope = kink(m.law, yields, z, z_rate, velocity, acceleration)
     return contact, contact_slope, law, law_slope

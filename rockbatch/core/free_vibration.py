@@ -1,7 +1,8 @@
 """What a pier that is left alone can still do: how far its energy carries it, and whether over the summit.
 
 The ground is at rest. Between impacts energy is kept, at impacts and by yielding it is lost, so the energy of this
-moment bounds every later rotation (THEORY.md, When a run is over). Energies are per unit mass [J/kg].
+moment bounds every later rotation (THEORY.md, When a run is over). Energies are per unit mass [J/kg]. ``load`` is
+what the supports carry at rest [m/s²]: g, and what tendons add to it without an arm h θ of their own.
 """
 
 import math
@@ -36,15 +37,15 @@ def reach_on_rigid_base(theta, omega, alpha, p):
 
 
 @kernel
-def _capacity(m):
-    """Greatest moment of the supports about the centre of the base, over g b: one carries all, or as much as it can."""
-    return 1.0 if m.law == ELASTIC else min(1.0, 2.0 * m.yield_force / m.gravity - 1.0)
+def _capacity(m, load):
+    """Greatest moment of the supports about the centre of the base, over load · b: one carries all, or as much as it can."""
+    return 1.0 if m.law == ELASTIC else min(1.0, 2.0 * m.yield_force / load - 1.0)
 
 
 @kernel
-def summit(m):
+def summit(m, load):
     """Rotation [rad] at which the weight's moment equals the greatest of the supports."""
-    tangent = _capacity(m) * m.half_width / m.height
+    tangent = _capacity(m, load) * (load / m.gravity) * m.half_width / m.height
     return math.atan(tangent) if m.finite is not None else tangent
 
 
@@ -73,29 +74,29 @@ def _weight_moment(m, travel):
 
 
 @kernel
-def _climb(m, lean, target):
+def _climb(m, lean, target, load):
     """Energy that it takes at least to turn from rest at ``lean`` to ``target`` [rad], or to the summit before it.
 
-    The pier turns towards the support on the right, which is loaded by x, the supports' moment over g b; the other one
+    The pier turns towards the support on the right, which is loaded by x, the supports' moment over load · b; the other one
     is unloaded, elastic. A Bouc–Wen spring takes 1/(1 − zⁿ) of the elastic deflection. From the capacity on, the moment
     stays and the pier turns about its far support. For the other direction reverse both angles. A pier that leans
     beyond ``target`` is there already: −inf.
     """
     if lean >= target:
         return -math.inf
-    b, g = m.half_width, m.gravity
-    static_force = 0.5 * g / m.yield_force
+    b, weight = m.half_width, m.gravity / load
+    static_force = 0.5 * load / m.yield_force
     deflection = static_force * m.yield_deflection
-    capacity = _capacity(m)
+    capacity = _capacity(m, load)
     travel, goal, work = _travel(m, lean), _travel(m, target), 0.0
-    x = _weight_moment(m, travel) / b
+    x = weight * _weight_moment(m, travel) / b
     dx = (capacity - x) / PARTS
     for i in range(PARTS):
         middle = x + (i + 0.5) * dx
         turn = 0.5 * deflection * dx * (1.0 + give(m, static_force * (1.0 + middle))) / b
         part = min(turn, goal - travel)
         middle = x + (i + 0.5 * part / turn) * dx
-        moment = g * (b * middle - _weight_moment(m, travel + 0.5 * part))
+        moment = load * (b * middle - weight * _weight_moment(m, travel + 0.5 * part))
         if moment <= 0.0:
             return work
         work += moment * part
@@ -103,14 +104,14 @@ def _climb(m, lean, target):
         if part < turn:
             return work
     theta = math.asin(travel) if m.finite is not None else travel
-    end = min(target, summit(m))
+    end = min(target, summit(m, load))
     if end <= theta:
         return work
     if m.finite is not None:
-        return work + g * (
-            capacity * b * (math.sin(end) - math.sin(theta)) + m.height * (math.cos(end) - math.cos(theta))
+        return work + load * (
+            capacity * b * (math.sin(end) - math.sin(theta)) + weight * m.height * (math.cos(end) - math.cos(theta))
         )
-    return work + g * (capacity * b * (end - theta) - 0.5 * m.height * (end * end - theta * theta))
+    return work + load * (capacity * b * (end - theta) - 0.5 * weight * m.height * (end * end - theta * theta))
 
 
 @kernel
@@ -141,11 +142,15 @@ def _swept(m, lean, drift, sinking, swollen):
 
 
 @kernel
-def outlook_on_springs(m, y, contact, base_left, base_right, peak, calm, drift_right, drift_left, sinking):
+def outlook_on_springs(
+    m, y, contact, load, in_tendons, base_left, base_right, peak, calm, drift_right, drift_left, sinking
+):
     """OPEN, DECIDED or LEANS, of state ``y`` whose supports are unstressed at ``base_left`` and ``base_right`` [m].
 
     Parameters
     ----------
+    in_tendons : float
+        What tendons may give back beyond the work of their share of the load [J/kg].
     peak : float
         Greatest |θ| so far [rad].
     calm : bool
@@ -159,24 +164,26 @@ def outlook_on_springs(m, y, contact, base_left, base_right, peak, calm, drift_r
     """
     b, h, g = m.half_width, m.height, m.gravity
     stiffness = rocking_stiffness(m)
-    softness = 0.5 * g / (m.yield_force * m.stiffness)  # static deflection
+    softness = 0.5 * load / (m.yield_force * m.stiffness)  # static deflection
     tilt = 0.5 * (base_left - base_right) / b
     swollen = (stiffness + g * h) / stiffness
     lean = tilt * swollen
     drift_right = _swept(m, lean, drift_right * swollen, sinking, swollen)
     drift_left = _swept(m, -lean, drift_left * swollen, sinking, swollen)
-    limit = min(peak, summit(m))
-    if abs(lean) >= summit(m):
+    limit = min(peak, summit(m, load))
+    if abs(lean) >= summit(m, load):
         return LEANS
-    if abs(y.theta) >= summit(m):
+    if abs(y.theta) >= summit(m, load):
         return OPEN
     middle = 0.5 * (base_left + base_right)
     if calm:
         mean = middle - softness  # of v
         if m.finite is not None:
             mean -= _drop(m, y.theta)
-        swing = math.sqrt((y.v - mean) * (y.v - mean) + y.v_rate * y.v_rate * softness / g) / softness  # vertical, of g
-        softened = stiffness - g * h * swing
+        swing = (
+            math.sqrt((y.v - mean) * (y.v - mean) + y.v_rate * y.v_rate * softness / load) / softness
+        )  # vertical, of the load
+        softened = stiffness - load * h * swing
         if softened <= 0.0:
             return OPEN
         rocking = (m.inertia + h * h) * y.omega * y.omega + stiffness * (y.theta - lean) * (y.theta - lean)
@@ -187,18 +194,18 @@ def outlook_on_springs(m, y, contact, base_left, base_right, peak, calm, drift_r
         furthest = max(max(sway, lean) + drift_right, max(-sway, -lean) + drift_left) + reach
         return DECIDED if furthest <= limit * (1.0 + SEEN) else OPEN
     at = geometry(m, y.theta)
-    uneven = h * lean / b
+    uneven = g / load * h * lean / b
     lever, gained, at_lean = h, -0.5 * g * h * y.theta * y.theta, -0.5 * g * h * lean * lean
     if m.finite is not None:
         lever = at.lever + (contact.right - contact.left) * at.swing
-        gained, at_lean = 0.0, -g * _drop(m, lean)
+        gained, at_lean = (load - g) * _drop(m, y.theta), -g * _drop(m, lean)
     kinetic = 0.5 * y.v_rate * y.v_rate + 0.5 * (m.inertia + lever * lever) * y.omega * y.omega
     spring = m.yield_force * m.yield_deflection
-    stored = g * y.v + gained + 0.5 * spring * (y.z_left * y.z_left + y.z_right * y.z_right)
-    at_lean += g * (middle - softness) + 0.5 * g * softness * (1.0 + uneven * uneven)
+    stored = load * y.v + gained + 0.5 * spring * (y.z_left * y.z_left + y.z_right * y.z_right) + in_tendons
+    at_lean += load * (middle - softness) + 0.5 * load * softness * (1.0 + uneven * uneven)
     energy = (1.0 + _returned(m, limit)) * (kinetic + stored - at_lean)
-    least = min(_climb(m, lean, limit - drift_right), _climb(m, -lean, limit - drift_left))
-    return DECIDED if energy <= least + 1e-12 * g * softness else OPEN
+    least = min(_climb(m, lean, limit - drift_right, load), _climb(m, -lean, limit - drift_left, load))
+    return DECIDED if energy <= least + 1e-12 * load * softness else OPEN
 
 
 @kernel

@@ -105,14 +105,14 @@ def write_turns(lanes, i, m, t, ground, history, row):
             contact = Contact(contact.left, contact.right, contact.left_yields, after.right_yields, 0.0)
             right = -1.0
         row = write(history, row, t + when, y, contact, SPRING_LEFT if of_left else SPRING_RIGHT)
-        ground = _later(ground, when - at)
+        ground = later(ground, when - at)
         k = rates(m, y, contact, ground.horizontal, ground.vertical)
         at = when
     return row
 
 
 @kernel
-def _later(ground, x):
+def later(ground, x):
     return Ground(
         ground.horizontal + x * ground.horizontal_slope, ground.horizontal_slope,
         ground.vertical + x * ground.vertical_slope, ground.vertical_slope,
@@ -148,7 +148,7 @@ def _strongest(lanes, i, ground):
 
 
 @kernel
-def _happen(lanes, i, m, y, contact, which, t, x, ground, history, row):
+def happen(lanes, i, m, y, contact, which, t, x, ground, history, row):
     """Event ``which`` at ``t`` [s], ``x`` [s] after the sample: status, new contacts and next row of the history."""
     under, counts = ground_of(lanes, i, x), lanes.counts
     row = write(history, row, t, y, contact, BEFORE_EVENT)
@@ -219,7 +219,7 @@ def look(lanes, i, traits, locate, ground, history, row):
     done += length
     if verdict != ACCEPT:
         whole = False
-        status, contact, row = _happen(lanes, i, m, end, contact, verdict, t, x + length, ground, history, row)
+        status, contact, row = happen(lanes, i, m, end, contact, verdict, t, x + length, ground, history, row)
         if status != SURVIVED:
             return status, t, row
     if not whole and done < h:

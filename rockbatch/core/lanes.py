@@ -111,6 +111,8 @@ class Waiting(NamedTuple):
     last_drift_right: float
     midway: float  # greatest |θ| when half of the waiting is over [rad]
     midway_tilt: float  # |tilt| of the base then [rad]
+    load: float  # what the supports carry at rest, the weight and what tendons add to it [m/s²]
+    stored: float  # energy that tendons may give back, beyond what they do at that load [J/kg]
 
 
 def _lanes(tuple_type, without=()):
@@ -121,7 +123,7 @@ def _lanes(tuple_type, without=()):
 _MOMENT = np.dtype([("at", "f8", LANES), ("values", _lanes(Signals)), ("slopes", _lanes(Signals))])
 
 LANE = np.dtype([
-    ("model", _lanes(Springs, without=("finite", "damped"))),
+    ("model", _lanes(Springs, without=("finite", "damped", "pull"))),
     ("motion", _lanes(Motion)),
     ("clock", _lanes(Clock)),
     ("now", _lanes(State)),
@@ -165,7 +167,7 @@ def model_of(lanes, i, traits):
     return Springs(
         m.half_width[i], m.height[i], m.inertia[i], m.gravity[i], m.yield_deflection[i], m.stiffness[i],
         m.yield_force[i], m.epsilon[i], m.damping[i], m.law[i], m.guided[i], _typed(traits.exponent, m.exponent[i]),
-        traits.finite, traits.damped,
+        traits.finite, traits.damped, None,
     )  # fmt: skip
 
 

@@ -9,7 +9,7 @@ import math
 from typing import NamedTuple
 
 from rockbatch.core.creep import forces
-from rockbatch.core.equations import accelerations, geometry, rates
+from rockbatch.core.equations import accelerations, geometry, pulled, rates
 from rockbatch.core.kernel import entry, kernel
 from rockbatch.core.observed import contact_of, ground_at, middle_of, state_of
 from rockbatch.core.records import record
@@ -92,8 +92,16 @@ def _impact_loss(m, before, kind):
     return lost * velocity * velocity / (1.0 + arm * arm / inertia)
 
 
+@kernel
+def _pulled(m, pulls, i):
+    """The pier at the start, in the middle and at the end of the step to row ``i``."""
+    first, last = pulls[i - 1], pulls[i]
+    middle = pulled(m, 0.5 * (first[0] + last[0]), 0.5 * (first[1] + last[1]))
+    return pulled(m, first[0], first[1]), middle, pulled(m, last[0], last[1])
+
+
 @entry
-def ledger_on_springs(m, rows, ground, dt, out):
+def ledger_on_springs(m, rows, pulls, ground, dt, out):
     """Ledger of a run on two springs.
 
     Parameters
@@ -101,6 +109,8 @@ def ledger_on_springs(m, rows, ground, dt, out):
     m : Springs
     rows : recarray of recording.Row, shape (n,)
         History as the run wrote it, every step.
+    pulls : ndarray, shape (n, 2)
+        Force [m/s²] and moment [m²/s²] of dampers and tendons at every row; what they take and store is not told here.
     ground : ndarray, shape (npts, 4)
         The motion of the run, of :func:`rockbatch.core.ground.ground_rows`.
     dt : float
@@ -130,13 +140,14 @@ def ledger_on_springs(m, rows, ground, dt, out):
             ah, av = ground_at(ground, dt, t_middle, t)
             ah_end, av_end = ground_at(ground, dt, t_middle, t_end)
             ah_middle, av_middle = 0.5 * (ah + ah_end), 0.5 * (av + av_end)
-            k = rates(m, y, contact, ah, av)
-            k_end = rates(m, y_end, contact, ah_end, av_end)
+            start, half_way, stop = _pulled(m, pulls, i)
+            k = rates(start, y, contact, ah, av)
+            k_end = rates(stop, y_end, contact, ah_end, av_end)
             middle = middle_of(y, k, y_end, k_end, h)
-            k_middle = rates(m, middle, contact, ah_middle, av_middle)
-            s0, w0, d0, c0, q0 = _powers(m, y, k, contact, ah, av)
-            s1, w1, d1, c1, q1 = _powers(m, middle, k_middle, contact, ah_middle, av_middle)
-            s2, w2, d2, c2, q2 = _powers(m, y_end, k_end, contact, ah_end, av_end)
+            k_middle = rates(half_way, middle, contact, ah_middle, av_middle)
+            s0, w0, d0, c0, q0 = _powers(start, y, k, contact, ah, av)
+            s1, w1, d1, c1, q1 = _powers(half_way, middle, k_middle, contact, ah_middle, av_middle)
+            s2, w2, d2, c2, q2 = _powers(stop, y_end, k_end, contact, ah_end, av_end)
             shaken += h / 6.0 * (s0 + 4.0 * s1 + s2)
             plastic += h / 6.0 * (w0 + 4.0 * w1 + w2)
             p_delta += h / 6.0 * (d0 + 4.0 * d1 + d2)

@@ -35,6 +35,7 @@ class Line(NamedTuple):
     )
     read_after: float = 0.0  # samples from the end of the record to the earliest moment at which residuals are read
     read_wait: float = 0.0  # from there to the second reading, which tells how they drift; 0: once the peak is decided
+    prestress: float = 0.0  # of tendons, over the mass [m/s²]
 
 
 class Row(NamedTuple):

@@ -47,14 +47,14 @@ NONE = np.int64(0)  # a literal 0 would have every function that it is handed to
 
 
 @kernel
-def static_state(m):
-    """Equilibrium under the weight alone: z = −1/η on the first loading of both springs."""
-    force = 0.5 * m.gravity / m.yield_force
+def static_state(m, load):
+    """Equilibrium under the ``load`` [m/s²], the weight and what tendons add to it: z = −(1 + ψ)/η on the first loading."""
+    force = 0.5 * load / m.yield_force
     return State(-m.yield_deflection * deflection(m, force), 0.0, 0.0, 0.0, -force, -force)
 
 
 @inlined
-def _put_ground(lanes, i, ground):
+def put_ground(lanes, i, ground):
     """The ground at the last sample; zero after the record."""
     at, sample = lanes.ground, lanes.clock.sample[i]
     if sample < lanes.motion.npts[i]:
@@ -100,15 +100,16 @@ def begin(lanes, i, number, runs, ground, traits, locate):
     run = runs[number]
     _put_model(lanes, i, run)
     m = model_of(lanes, i, traits)
-    y = static_state(m)
+    y = static_state(m, m.gravity + run.prestress)
     _put_start(lanes, i, number, run, m, y)
     expect(lanes, i, run.quiet_samples, run.patience, run.read_after, run.read_wait)
+    lanes.waiting.load[i], lanes.waiting.stored[i] = m.gravity + run.prestress, 0.0
     plastic = lanes.motion.plastic[i]
     put_loading(lanes, i, Loading(plastic, y.z_left, 0.0, plastic, y.z_right, 0.0))
     branch = branch_when_pressed(m.law)
     contact = Contact(1.0, 1.0, branch, branch, 0.0)
     put_contact(lanes, i, contact, Supports(0.0, 0.0))
-    _put_ground(lanes, i, ground)
+    put_ground(lanes, i, ground)
     under = ground_of(lanes, i, 0.0)
     put_state(lanes.now, i, y)
     put_state(lanes.rates, i, rates(m, y, contact, under.horizontal, under.vertical))
@@ -116,7 +117,7 @@ def begin(lanes, i, number, runs, ground, traits, locate):
 
 
 @kernel
-def _finish(lanes, i, traits, status, t, row, results):
+def finish(lanes, i, traits, status, t, row, results):
     """What the run in lane ``i`` comes to, into ``results``."""
     m = model_of(lanes, i, traits)
     y, contact = state(lanes.now, i), contact_of(lanes, i)
@@ -162,7 +163,7 @@ def _rock(traits, runs, ground, locate, every_step, history, stop, lanes_table, 
             if status == RUNNING:
                 count += 1
             else:
-                _finish(lanes, count, traits, status, 0.0, row, results)
+                finish(lanes, count, traits, status, 0.0, row, results)
         if count == 0 or stop[0] != 0:
             return
         while count == LANES or (count > 0 and waiting == len(runs)):
@@ -176,14 +177,14 @@ def _rock(traits, runs, ground, locate, every_step, history, stop, lanes_table, 
                     row = _stood(lanes, i, traits, history, row)
                 if status == SURVIVED:  # and the step is done
                     if lanes.clock.substep[i] == 0.0:
-                        _put_ground(lanes, i, ground)
+                        put_ground(lanes, i, ground)
                     status = RUNNING
                     if news >= DUE or recording:
                         status, t, row = _step_done(lanes, i, traits, every_step, history, row, results)
                 if status == RUNNING:
                     i += 1
                 else:
-                    _finish(lanes, i, traits, status, t, row, results)
+                    finish(lanes, i, traits, status, t, row, results)
                     count -= 1
                     move(cells, count, i)
             if stop[0] != 0:
@@ -232,14 +233,14 @@ def _step_done(lanes, i, traits, every_step, history, row, results):
         row = write(history, row, t, state(lanes.now, i), contact_of(lanes, i), kind)
     if not sampled or clock.sample[i] < clock.due[i]:
         return RUNNING, t, row
-    _turn_window(lanes, i, results)
+    turn_window(lanes, i, results)
     status = done(lanes, i, traits)
     clock.due[i] = min(lanes.extremes.next_window[i], next_due(lanes, i))
     return status, t, row
 
 
 @kernel
-def _turn_window(lanes, i, results):
+def turn_window(lanes, i, results):
     """At a sample at which something is due: keep the greatest |θ| of a window that is over, begin the next."""
     extremes, sample = lanes.extremes, lanes.clock.sample[i]
     if sample >= extremes.next_window[i]:
@@ -252,7 +253,7 @@ def _turn_window(lanes, i, results):
 def run_line(m, *timing):
     """Line of a run of the pier ``m`` (Springs); ``timing`` is what Line has from ``dt`` on."""
     exponent = 5.0 if m.exponent is None else float(m.exponent)
-    return Line(*m[:-3], exponent, *timing)
+    return Line(*m[:-4], exponent, *timing)
 
 
 def traits_of(m):

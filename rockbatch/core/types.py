@@ -44,10 +44,17 @@ RIGHT = 1.0
 NEITHER = 0.0  # of the corners about which a block could rock: it rests on both
 
 
+class Pull(NamedTuple):
+    """What dampers and tendons do to a pier at one moment, per unit mass."""
+
+    force: float  # Σ F/M, downwards [m/s²]
+    moment: float  # Σ F a/M about the centre of mass, to the left [m²/s²]
+
+
 class Springs(NamedTuple):
     """A pier on two springs, per unit mass (THEORY.md, Symbols).
 
-    The last three are told apart by their types, hence when kernels are compiled: a call of ``pow``, ``sin`` or ``cos``
+    The last four are told apart by their types, hence when kernels are compiled: a call of ``pow``, ``sin`` or ``cos``
     in an unused branch would cost the common model, n = 5, first-order and undamped, its vector instructions.
     """
 
@@ -65,6 +72,7 @@ class Springs(NamedTuple):
     exponent: float | int | None  # n of Bouc–Wen; None for the paper's 5, int for other whole numbers up to 10
     finite: bool | None  # True: finite kinematics; None: first-order
     damped: bool | None = None  # True: a dashpot beside each spring; None: none
+    pull: Pull | None = None  # of dampers and tendons; None: there are none
 
 
 class Traits(NamedTuple):

@@ -9,7 +9,7 @@ from typing import Any, Literal, Self, get_args
 
 from rockbatch.errors import InputError
 from rockbatch.pier.block import Pier, not_positive
-from rockbatch.pier.restraints import Restraint, wrong_restraints
+from rockbatch.pier.restraints import Restraint, prestress_over_weight, wrong_on_springs, wrong_restraints
 from rockbatch.units import MOST
 
 LEAST_ETA = 1.000001
@@ -76,6 +76,8 @@ class ElasticBase:
         takes the place of ε: a pivot that lands on a damped support is borne without an impulse.
     friction : float, optional
         Coefficient of the interface, if known: a run says where its forces ask for more, and goes on (THEORY.md, Forces).
+    restraints : tuple of Damper and Tendon
+        That tie the pier to the ground beside its springs (THEORY.md, Dampers and tendons).
 
     Examples
     --------
@@ -89,6 +91,7 @@ class ElasticBase:
     flight: Flight = "stop"
     zeta: float | None = field(default=None, kw_only=True)
     friction: float | None = field(default=None, kw_only=True)
+    restraints: tuple[Restraint, ...] = field(default=(), kw_only=True)
 
     name = "elastic"
 
@@ -179,11 +182,15 @@ def least_beta(pier: Pier, base: ElasticBase) -> float:
     """β below which the pier topples on its springs under its own weight, or at the least push (THEORY.md, eq. 13).
 
     A Bouc–Wen spring under the weight, z = −1/η, is softer where it is loaded than where it is unloaded, by the factor
-    r = 1 − η⁻ⁿ; both together have 2r/(1 + r) of the elastic springs' stiffness in rotation.
+    r = 1 − η⁻ⁿ, with tendons r = 1 − (η/(1 + ψ))⁻ⁿ; both together have 2r/(1 + r) of the elastic springs' stiffness in
+    rotation.
     """
     if not (isinstance(base, YieldingBase) and base.has_exponent and base.eta > 1 and base.n >= 1):
         return pier.least_beta
-    softer = -math.expm1(-base.n * math.log(base.eta))
+    carried = base.eta / (1.0 + prestress_over_weight(pier, base.restraints))
+    if carried <= 1:
+        return pier.least_beta
+    softer = -math.expm1(-base.n * math.log(carried))
     return pier.least_beta * math.sqrt((1.0 + softer) / (2.0 * softer))
 
 
@@ -274,6 +281,9 @@ def problems(pier: Pier, base: Base) -> list[str]:
         wrong.append(f"epsilon = {base.epsilon:g}: {EPSILON_AND_ZETA}")
     if not 0 <= base.epsilon <= 1:
         wrong.append(f"epsilon = {base.epsilon:g}: the landing pivot's restitution must be within 0..1")
+    wrong += wrong_restraints(pier, base.restraints)
+    if not wrong:
+        wrong += wrong_on_springs(pier, base.restraints)
     wrong += _unknown("kinematics", base.kinematics, get_args(Kinematics))
     wrong += _unknown("flight", base.flight, get_args(Flight))
     if isinstance(base, YieldingBase):
@@ -283,6 +293,11 @@ def problems(pier: Pier, base: Base) -> list[str]:
             wrong.append(
                 f"eta = {base.eta:.10g}: the springs cannot carry the weight; eta = yield force over static force must "
                 f"be above 1 (at least {LEAST_ETA:.6f})"
+            )
+        elif not base.eta >= (1.0 + prestress_over_weight(pier, base.restraints)) * LEAST_ETA:
+            wrong.append(
+                f"eta = {base.eta:g}: the springs cannot carry the weight and the prestress of the tendons, psi = "
+                f"{prestress_over_weight(pier, base.restraints):g} of it; eta must be above 1 + psi"
             )
         wrong += _unknown("spring", base.spring, get_args(SpringLaw))
         if not 1 <= base.n <= MOST_EXPONENT:

@@ -92,6 +92,29 @@ def offsets(pier: Pier, restraint: Restraint) -> tuple[float, ...]:
     return (float(restraint.at),)
 
 
+def prestress_over_weight(pier: Pier, restraints: tuple[Restraint, ...]) -> float:
+    """ψ of all tendons together."""
+    return sum(each.psi * len(offsets(pier, each)) for each in restraints if isinstance(each, Tendon))
+
+
+def wrong_on_springs(pier: Pier, restraints: tuple[Restraint, ...]) -> list[str]:
+    """What is impossible about dampers and tendons of a pier on springs: one sentence each; empty if nothing."""
+    wrong = []
+    tendons = tuple(each for each in restraints if isinstance(each, Tendon))
+    if not symmetric(pier, tendons):
+        wrong.append(
+            "tendon: on springs a tendon off the axis needs its like on the other side, or it leans the pier before any "
+            "earthquake; write a second one with the opposite at, or leave at out"
+        )
+    rubbing = [each for each in restraints if isinstance(each, Damper) and each.kind == "friction"]
+    if sum(len(offsets(pier, each)) for each in rubbing) > 2:
+        wrong.append(
+            "damper: on springs two places of friction at most can be solved, for example one damper at both pivots; join "
+            'their forces, or write kind = "hysteretic" with a small yield_mm, whose limit friction is'
+        )
+    return wrong
+
+
 def wrong_restraints(pier: Pier, restraints: tuple[Restraint, ...]) -> list[str]:
     """What is impossible about dampers and tendons under ``pier``: one sentence each; empty if nothing."""
     wrong = []

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from rockbatch.checks.suite import MIRROR_OF, OTHER_LAW
 from rockbatch.motions import Motion, MotionSet
-from rockbatch.pier import Damper, Pier, Restraint, RigidBase, Tendon
+from rockbatch.pier import Damper, Pier, Restraint, Tendon
 from rockbatch.results.outcome import Outcome
 from rockbatch.study import Case, Study
 
@@ -286,7 +286,7 @@ def _device(name: str, meaning: str, field: str, unit: str, page: OnPage, kind: 
 
     def has(study: Study) -> bool:
         bases = (case.base for case in study.cases)
-        return any(isinstance(each, kind) for base in bases if isinstance(base, RigidBase) for each in base.restraints)
+        return any(isinstance(each, kind) for base in bases for each in base.restraints)
 
     number: Literal["number", "count"] = "count" if field == "tendon_slack" else "number"
     return Column(name, meaning, field, unit, page, number, sometimes=True, asked=has)

@@ -118,8 +118,7 @@ def _write(group: "h5py.Group", response: Response) -> None:
     _set(group.create_group("varied"), response.columns)
     _set(group.create_group("pier"), asdict(response.pier))
     base = {"name": response.base.name} | asdict(response.base)
-    if isinstance(response.base, RigidBase):
-        base["restraints"] = json.dumps([asdict(each) for each in response.base.restraints])
+    base["restraints"] = json.dumps([asdict(each) for each in response.base.restraints])
     _set(group.create_group("base"), base)
     rigid = isinstance(response.base, RigidBase)
     for name, unit in UNITS.items():
@@ -236,7 +235,7 @@ def _read(group: "h5py.Group") -> Response:
 
     base = attributes_of(group_in(group, "base"))
     kind = _BASES[base.pop("name")]
-    if kind is RigidBase:
+    if "restraints" in base:
         told = json.loads(base["restraints"])
         base["restraints"] = tuple(_restraint(**each) for each in told)
     t = array_in(group, "t", "f")

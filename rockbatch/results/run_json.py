@@ -172,8 +172,8 @@ def _describe_base(pier: Pier, base: Base) -> dict[str, Any]:
     if isinstance(base, RigidBase):
         of_frame = None if pier.deck_over_columns is None else pier.restitution  # None stands for Housner's
         own: dict[str, Any] = {"restitution": of_frame if base.restitution is None else base.restitution, **interface}
-        return own | ({"restraints": [_described(each) for each in base.restraints]} if base.restraints else {})
-    told = _springs(pier, base) | interface
+        return own | _restraints(base)
+    told = _springs(pier, base) | interface | _restraints(base)
     if isinstance(base, YieldingBase):
         told |= {
             "eta": base.eta,
@@ -184,6 +184,10 @@ def _describe_base(pier: Pier, base: Base) -> dict[str, Any]:
         if not base.has_exponent:
             del told["n"]
     return told
+
+
+def _restraints(base: Base) -> dict[str, Any]:
+    return {"restraints": [_described(each) for each in base.restraints]} if base.restraints else {}
 
 
 def _described(restraint: Restraint) -> dict[str, Any]:

@@ -7,6 +7,7 @@ import numpy as np
 
 from rockbatch.core import types
 from rockbatch.core.ledger import LEDGER, ledger_on_rigid_base, ledger_on_springs
+from rockbatch.core.recording import ROW
 from rockbatch.core.records import numbers
 from rockbatch.errors import InputError
 from rockbatch.motions.motion import Motion, Samples
@@ -105,7 +106,7 @@ def simulate(
         wrong.append(f"substeps = {substeps}: must be a whole number")
     if substeps is not None and not wrong and substeps < (least := least_substeps(pier, foundation, motion.dt)):
         wrong.append(f"substeps = {substeps}: must be a whole number of at least {least} for this pier and motion")
-    if forces and isinstance(foundation, RigidBase) and foundation.restraints:
+    if forces and foundation.restraints:
         wrong.append("forces = True: they are not told of piers with dampers or tendons")
     if substeps is None and not wait:
         wrong.append("wait = False: the error of a run that is cut off cannot be told; give substeps")
@@ -149,13 +150,18 @@ def energies(run: Run, rows: np.recarray) -> Samples:
     pier, base = run.pier, run.base
     ground, dt = ground_of(run.motion), float(run.motion.dt)
     ledger = np.zeros(len(rows), LEDGER).view(np.recarray)
-    if isinstance(base, RigidBase) and base.restraints:
+    if base.restraints and isinstance(base, RigidBase):
         return restraints.energies(pier, base, rows)
     if isinstance(base, RigidBase):
         ledger_on_rigid_base(block(pier, base), rows, ground, dt, ledger)
         return pier.inertia_about_pivot * numbers(ledger)
-    ledger_on_springs(springs(pier, base), rows, ground, dt, ledger)
-    return numbers(ledger)
+    pulls, plain = np.zeros((len(rows), 2)), rows
+    if base.restraints:
+        pulls, plain = rows.pull.copy(), np.recarray(len(rows), ROW)
+        for name in ROW.names or ():
+            plain[name] = rows[name]
+    ledger_on_springs(springs(pier, base), plain, pulls, ground, dt, ledger)
+    return restraints.with_elements(pier, base, rows, numbers(ledger)) if base.restraints else numbers(ledger)
 
 
 def with_observed(run: Run, outcome: Outcome, rows: np.recarray, ledger: bool, forces: bool) -> Outcome:
@@ -203,7 +209,7 @@ def histories(
     if forces:
         moments = at_rows(run, rows)
         sized, landed = forces_table(rows.t, moments, pier.gravity), impacts_table(rows, moments)
-    devices = restraints.loops(pier, base, rows) if isinstance(base, RigidBase) and base.restraints else None
+    devices = restraints.loops(pier, base, rows) if base.restraints else None
     state = _rigid_state(pier, base, rows) if isinstance(base, RigidBase) else _springs_state(pier, base, rows)
     t = rows.t.copy()
     vertical = np.zeros(len(t)) if motion.vertical is None else _ground(motion.vertical, motion.dt, t)
@@ -264,6 +270,8 @@ def _springs_state(pier: Pier, base: ElasticBase, rows: np.recarray) -> dict[str
         + m.gravity * (v - v[0])
         + 0.5 * m.yield_force * m.yield_deflection * (elastic - elastic[0])
     )
+    if base.restraints:
+        energy = energy + restraints.stored(pier, base, rows)
     return {
         "theta": theta,
         "omega": rows.omega,

@@ -85,7 +85,7 @@ def block(pier: Pier, base: RigidBase) -> Block:
     return Block(float(pier.alpha), float(pier.p), float(pier.gravity), float(restitution))
 
 
-def elements(pier: Pier, base: RigidBase) -> list[Element]:
+def elements(pier: Pier, base: Base) -> list[Element]:
     """What the core takes for the dampers and tendons of ``base``: plain floats, per unit mass."""
     found = []
     b, g = pier.half_width, pier.gravity
@@ -97,19 +97,46 @@ def elements(pier: Pier, base: RigidBase) -> list[Element]:
             else:
                 soft = 1.0 / each.yield_m if each.kind == "hysteretic" else 0.0
                 law = (DAMPERS[each.kind], g * each.f, soft, each.nu * pier.p, each.exponent, 0.0)
-            kind, *numbers = law
-            found.append(Element(kind, abs(b + offset), abs(b - offset), *map(float, numbers)))
+            kind, strength, stiffness, coefficient, exponent, pretension = law
+            found.append(Element(
+                kind, abs(b + offset), abs(b - offset), float(strength), float(stiffness), float(coefficient),
+                float(exponent), float(pretension), float(offset),
+                _linear_below(pier, base, offset, coefficient, exponent),
+            ))  # fmt: skip
     return found
 
 
-def restrained_frequency(pier: Pier, base: RigidBase) -> float:
-    """Greatest rate [1/s] that dampers and tendons bring: of vibration against their stiffness, of decay by linear dampers."""
+def _linear_below(pier: Pier, base: Base, offset: float, coefficient: float, exponent: float) -> float:
+    """Speed [m/s] below which a viscous damper, a < 1, would damp faster than anything else in a pier on springs.
+
+    Its force then ends small vibrations at once, in steps that no method resolves.
+    """
+    if isinstance(base, RigidBase) or exponent >= 1.0 or coefficient == 0.0:
+        return 0.0
+    return float((coefficient * _lever(pier, base, offset) / fastest(pier, base)) ** (1.0 / (1.0 - exponent)))
+
+
+def _lever(pier: Pier, base: Base, offset: float) -> float:
+    """Acceleration at the place of an element by a force there that is one over the mass, in full contact or about a corner."""
+    if isinstance(base, RigidBase):
+        return (pier.half_width + abs(offset)) ** 2 / pier.inertia_about_pivot
+    return 1.0 + offset**2 / (pier.inertia + pier.height**2)
+
+
+def prestress(pier: Pier, base: Base) -> float:
+    """Σ P0/M of all tendons [m/s²]."""
+    return sum(each.prestress for each in elements(pier, base))
+
+
+def fastest_rate(pier: Pier, base: Base) -> float:
+    """Greatest rate [1/s] of a model: of the springs, of vibration against elements, of decay by linear dampers."""
     stiff, slows = 0.0, 0.0
     for each in elements(pier, base):
-        lever = max(each.from_left, each.from_right) ** 2 / pier.inertia_about_pivot
+        lever = _lever(pier, base, each.offset)
         stiff += lever * each.stiffness * (each.strength if each.kind == HYSTERETIC else each.kind == TENDON)
         slows += lever * each.coefficient
-    return max(math.sqrt(stiff), slows)
+    springs_alone = 0.0 if isinstance(base, RigidBase) else fastest(pier, base)
+    return max(math.hypot(springs_alone, math.sqrt(stiff)), 2.0 * slows if springs_alone else slows)
 
 
 def ground_of(motion: Motion) -> Samples:
@@ -129,9 +156,7 @@ def least_substeps(pier: Pier, base: Base, dt: float) -> int:
 
 
 def _substeps_for(largest: float, pier: Pier, base: Base, dt: float) -> int:
-    if isinstance(base, RigidBase):
-        return max(1, math.ceil(restrained_frequency(pier, base) * dt / largest - 1e-9))
-    return max(1, math.ceil(fastest(pier, base) * dt / largest - 1e-9))
+    return max(1, math.ceil(fastest_rate(pier, base) * dt / largest - 1e-9))
 
 
 def patience(pier: Pier, dt: float) -> int:

@@ -9,9 +9,10 @@ import numpy as np
 
 from rockbatch.core import two_springs
 from rockbatch.core.outcome import ON_ITS_SIDE
-from rockbatch.core.recording import ROW
+from rockbatch.core.recording import NO_HISTORY, ROW
 from rockbatch.core.restrained.elements import TENDON
 from rockbatch.core.restrained.runs import COLUMNS, Restrained, rock_restrained
+from rockbatch.core.restrained_springs.runs import RestrainedOnSprings, rock_restrained_on_springs
 from rockbatch.core.rigid import runs as rigid
 from rockbatch.core.types import (
     CHATTER,
@@ -47,9 +48,11 @@ from rockbatch.simulation.models import (
     ground_of,
     least_substeps,
     patience,
+    prestress,
     readings,
     springs,
 )
+from rockbatch.simulation.restraints import rests_at
 
 MOST_STEPS = 1e8
 """Steps that a run may take to settle, about a quarter of a minute of work."""
@@ -75,6 +78,9 @@ RESTRAINED: Final = "restrained"
 
 LEFT_ALONE = tuple(_STATUS[code][1] for code in (UNDECIDED, GROWING))
 """Reasons of runs that failed because nothing decided them for so long, which smaller steps do not change."""
+
+TOLD = 1e-4
+"""Of α: a residual rotation that dampers and tendons hold is told in a note beyond it."""
 
 _RESTLESS = "left alone after the record for {seconds:.0f} s, the pier has still the energy for a greater rotation"
 _LATE_FLIGHT = "flew at {t:.2f} s, when nothing could exceed the peak any more; the run ends there"
@@ -125,7 +131,8 @@ def _line(run: Run, substeps: int, quiet_s: float, first_row: int, wait: bool) -
     timing = (dt, substeps, _quiet_samples(quiet_s, dt), first_row, motion.npts, patience(pier, dt) if wait else 0)
     if isinstance(base, RigidBase):
         return rigid.run_line(block(pier, base), 0.0, 0.0, *timing)
-    return two_springs.run_line(springs(pier, base), *timing, *(readings(pier, base, dt) if wait else (0, 0)))
+    read = readings(pier, base, dt) if wait else (0, 0)
+    return two_springs.run_line(springs(pier, base), *timing, *read, prestress(pier, base))
 
 
 def written_run(
@@ -138,19 +145,25 @@ def written_run(
     wait: bool = True,
 ) -> tuple[SpringRun | RigidRun, np.recarray]:
     """One run, and its history of at most ``rows`` rows; with ``every_step`` also between samples."""
-    if isinstance(run.base, RigidBase) and run.base.restraints:
-        found = restrained(run, substeps, quiet_s, Stop(), wait, rows, every_step)
+    stop = Stop()
+    if run.base.restraints and isinstance(run.base, RigidBase):
+        found = restrained(run, substeps, quiet_s, stop, wait, rows, every_step)
         return found.run, rows_of(found)
-    lines, ground, stop = [_line(run, substeps, quiet_s, 0, wait)], ground_of(run.motion), Stop().flag
+    if run.base.restraints:
+        written = np.recarray(rows, ROW)
+        on_springs = restrained_on_springs(run, substeps, quiet_s, stop, wait, written, every_step)
+        assert on_springs.run is not None
+        return on_springs.run, with_notes(written, on_springs)
+    lines, ground = [_line(run, substeps, quiet_s, 0, wait)], ground_of(run.motion)
     if isinstance(run.base, RigidBase):
         written = np.recarray(rows, rigid.ROW)
-        result = rigid.rock_side_by_side(lines, ground, stop, locate, every_step, written)[0]
+        result = rigid.rock_side_by_side(lines, ground, stop.flag, locate, every_step, written)[0]
         return rigid.rigid_run(result), written
     m = springs(run.pier, run.base)
     written = np.recarray(rows, ROW)
-    result = two_springs.rock_side_by_side(two_springs.traits_of(m), lines, ground, stop, locate, every_step, written)[
-        0
-    ]
+    result = two_springs.rock_side_by_side(
+        two_springs.traits_of(m), lines, ground, stop.flag, locate, every_step, written
+    )[0]
     return two_springs.spring_run(result), written
 
 
@@ -174,6 +187,39 @@ def restrained(
         rows=rows,
         every_step=every_step,
     )
+
+
+def restrained_on_springs(
+    run: Run,
+    substeps: int,
+    quiet_s: float,
+    stop: Stop,
+    wait: bool,
+    history: np.recarray = NO_HISTORY,
+    every_step: bool = False,
+) -> RestrainedOnSprings:
+    """One run on springs with dampers and tendons."""
+    pier, base, motion = run.pier, run.base, run.motion
+    assert not isinstance(base, RigidBase)
+    vertical = () if motion.vertical is None else motion.vertical
+    line, ground = _line(run, substeps, quiet_s, 0, wait), (motion.horizontal, vertical, float(motion.dt))
+    return rock_restrained_on_springs(
+        springs(pier, base), line, elements(pier, base), ground, stop.flag, history, every_step
+    )
+
+
+def with_notes(rows: np.recarray, found: RestrainedOnSprings) -> np.recarray:
+    """The history of a run on springs with what its elements are: as :func:`rows_of`, and their force and moment on the pier."""
+    n = len(found.use)
+    kind = np.dtype([
+        *ROW.descr, ("state", "f8", (n,)), ("lost", "f8", (n,)), ("input", "f8"), ("p_delta", "f8"), ("pull", "f8", (2,)),
+    ])  # fmt: skip
+    noted = np.recarray(len(rows), kind)
+    for name in ROW.names or ():
+        noted[name] = rows[name]
+    noted.state, noted.lost = found.notes[:, :n], found.notes[:, n : 2 * n]
+    noted.input, noted.p_delta, noted.pull = found.notes[:, 2 * n], found.notes[:, 2 * n + 1], found.notes[:, -2:]
+    return noted
 
 
 def rows_of(found: Restrained) -> np.recarray:
@@ -266,6 +312,12 @@ def _rock(
 
 def _restrained_trial(run: Run, substeps: int, quiet_s: float, stop: Stop, wait: bool) -> Trial | None:
     """One run with dampers and tendons, with what they have been through; ``None`` if it was stopped."""
+    if not isinstance(run.base, RigidBase):
+        on_springs = restrained_on_springs(run, substeps, quiet_s, stop, wait)
+        if on_springs.run is None:
+            return None
+        outcome = _at_rest(run, on_springs, _outcome(run, substeps, on_springs.run))
+        return Trial(replace(outcome, **_use(run, on_springs.use)), on_springs.extremes)
     found = restrained(run, substeps, quiet_s, stop, wait)
     if found.run.status == RUNNING:
         return None
@@ -276,9 +328,22 @@ def _restrained_trial(run: Run, substeps: int, quiet_s: float, stop: Stop, wait:
     return Trial(replace(outcome, **_use(run, found.use)), found.extremes)
 
 
+def _at_rest(run: Run, found: RestrainedOnSprings, outcome: Outcome) -> Outcome:
+    """With the residual rotation at which dampers and tendons let the pier rest."""
+    assert not isinstance(run.base, RigidBase)
+    assert found.run is not None
+    if outcome.theta_res is None:
+        return outcome
+    rests = rests_at(run.pier, run.base, found, found.run.base_left, found.run.base_right)
+    note = outcome.note
+    if abs(rests - outcome.theta_res) > TOLD * run.pier.alpha:
+        told = f"dampers and tendons hold the pier at {rests:.3g} rad, its supports would at {outcome.theta_res:.3g}"
+        note = "; ".join(filter(None, (note, told)))
+    return replace(outcome, theta_res=rests, note=note)
+
+
 def _use(run: Run, use: np.recarray) -> dict[str, Any]:
     """What dampers and tendons have been through, by the fields of Outcome; None of what there is not."""
-    assert isinstance(run.base, RigidBase)
     kinds = np.array([each.kind for each in elements(run.pier, run.base)])
     dampers, tendons = use[kinds != TENDON].view(np.recarray), use[kinds == TENDON].view(np.recarray)
     found: dict[str, Any] = {}
@@ -296,8 +361,10 @@ def _use(run: Run, use: np.recarray) -> dict[str, Any]:
 
 def _kernel_of(run: Run) -> Traits | Literal["restrained"] | None:
     """What runs that share compiled code have in common: the types of springs; whether dampers and tendons restrain them."""
+    if run.base.restraints:
+        return RESTRAINED
     if isinstance(run.base, RigidBase):
-        return RESTRAINED if run.base.restraints else None
+        return None
     traits = two_springs.traits_of(springs(run.pier, run.base))
     if traits.exponent is None:
         return traits

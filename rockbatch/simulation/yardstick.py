@@ -66,7 +66,7 @@ def solve(
     scale = [m.yield_deflection, pier.alpha, m.yield_deflection * omega_v, pier.alpha * pier.p, 1.0, 1.0]
     tolerances = {"rtol": tolerance, "atol": tolerance * np.array(scale)}
 
-    t, y = 0.0, static_state(m)
+    t, y = 0.0, static_state(m, m.gravity)
     branch = branch_when_pressed(m.law)
     contact, supports = Contact(1.0, 1.0, branch, branch, 0.0), Supports(math.nan, math.nan)
 

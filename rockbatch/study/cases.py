@@ -23,7 +23,7 @@ from rockbatch.pier import (
 from rockbatch.study.lists import Chosen, combinations, how_many, listed, too_many
 from rockbatch.study.piers import Values, has_mass
 from rockbatch.study.plausible import CONFIRM, MASSES, complain_unless_usual, complain_unless_usual_support, confirmed
-from rockbatch.study.restraint_keys import ON_RIGID, RESTRAINTS, read_restraints, restraints_of
+from rockbatch.study.restraint_keys import RESTRAINTS, read_restraints, restraints_of
 from rockbatch.toml.kinds import choice, number, positive, shown, text
 from rockbatch.toml.reader import Key, Setting, Table, TomlFile
 
@@ -134,6 +134,7 @@ def _base(name: str, given: Mapping[str, Any], pier: Pier) -> Base:
         rigid = dict(given)
         return RigidBase(restraints=restraints_of(pier, rigid), **rigid)
     own: dict[str, Any] = {"beta": 2 * pier.least_beta, **given}
+    own["restraints"] = restraints_of(pier, own)
     stiffness, strength, _ = (own.pop(key, None) for key in ("stiffness_kN_m", "yield_kN", "mass_t"))
     if stiffness and pier.mass_t:
         own["beta"] = beta_of(pier, stiffness)
@@ -177,10 +178,7 @@ def _case(table: Table) -> tuple[dict[str, Any], dict[str, list[Setting]], Colle
     if has_mass(table.file) and "mass_t" in keys:
         keys = {name: key for name, key in keys.items() if name != "mass_t"}
         unfit["mass_t"] = "[pier] says already what the pier weighs; leave it out"
-    restrained = base == "rigid"
-    if not restrained:
-        unfit |= dict.fromkeys(RESTRAINTS, ON_RIGID)
-    read = table.read(CASE | keys | CONFIRM, unfit=unfit, other=RESTRAINTS if restrained else ())
+    read = table.read(CASE | keys | CONFIRM, unfit=unfit, other=RESTRAINTS)
     believed = confirmed(table, read, keys)
     complain_unless_usual(table, "mass_t", read.get("mass_t", ()), MASSES["mass_t"], believed)
     if "epsilon" in table.data and "zeta" in read:
@@ -192,11 +190,8 @@ def _case(table: Table) -> tuple[dict[str, Any], dict[str, list[Setting]], Colle
     if "mass_t" in table.data and "mass_t" in keys and not {"stiffness_kN_m", "yield_kN"} & table.data.keys():
         table.complain("mass_t is for use with stiffness_kN_m or yield_kN; leave it out", "mass_t")
     settings = {name: value for name, value in read.items() if name not in CASE}
-    of_restraints: Collection[str] = ()
-    if restrained:
-        more, of_restraints = read_restraints(table)
-        settings |= more
-    return read, settings, believed, of_restraints
+    of_each, of_restraints = read_restraints(table)
+    return read, settings | of_each, believed, of_restraints
 
 
 def _without_exponent(table: Table) -> str:

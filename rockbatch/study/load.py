@@ -12,7 +12,7 @@ from rockbatch.checks.plausible import implausible
 from rockbatch.checks.reading import CHECK, SUITE, read_count, read_rules
 from rockbatch.checks.rules import COUNTS, Rule
 from rockbatch.errors import InputError
-from rockbatch.pier import RigidBase, described, symmetric
+from rockbatch.pier import described, symmetric
 from rockbatch.study.cases import BASE_KEYS, CASE, Expanded, read_cases
 from rockbatch.study.motions import FEMA, MOTIONS, PULSE, SOURCES, read_motions_table
 from rockbatch.study.piers import PART, PIER, read_piers
@@ -120,7 +120,7 @@ def load_study(path: str | os.PathLike[str], *, motions: str | os.PathLike[str] 
     if len(motion_spec.polarity) > 1 and not all(_symmetric(each) for each in cases):
         told = "dampers or tendons on one side make another run of the reversed motion, not the mirror image; keep one polarity"
         file.complain(("motions", "polarity"), f"[motions]: {told}")
-    if output.forces and any(isinstance(each.base, RigidBase) and each.base.restraints for each in cases):
+    if output.forces and any(each.base.restraints for each in cases):
         told = "forces = true: they are not told of piers with dampers or tendons; leave it out, or the restraints"
         file.complain(("output", "forces"), f"[output]: {told}")
     counted = read_count(file)
@@ -145,7 +145,7 @@ def load_study(path: str | os.PathLike[str], *, motions: str | os.PathLike[str] 
 
 
 def _symmetric(case: Expanded) -> bool:
-    return not isinstance(case.base, RigidBase) or symmetric(case.pier, case.base.restraints)
+    return symmetric(case.pier, case.base.restraints)
 
 
 def given_study(study: str | os.PathLike[str] | Study, motions: str | os.PathLike[str] | None = None) -> Study:

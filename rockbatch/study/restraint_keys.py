@@ -37,7 +37,6 @@ TENDON = {
     "at": Key(_place, "0.0"),
 }
 RESTRAINTS = ("damper", "tendon")
-ON_RIGID = 'dampers and tendons are solved on a rigid base only; leave them out, or write base = "rigid"'
 
 IN_KN = ("force_kN", "coefficient_kN_s_m", "prestress_kN", "stiffness_kN_m", "yield_kN")
 _BELONG = {  # keys of a damper of each kind: those of which one is needed, then the others

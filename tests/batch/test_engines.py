@@ -208,7 +208,7 @@ def test_a_scheduler_that_goes_is_told_in_a_sentence(file, tmp_path):
         stderr=subprocess.PIPE, text=True,
     )  # fmt: skip
     try:
-        until = time.monotonic() + 120
+        until = time.monotonic() + 300
         while not (part.exists() and part.read_bytes().count(b"\n") > 1):
             assert time.monotonic() < until
             time.sleep(0.1)

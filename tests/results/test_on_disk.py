@@ -361,7 +361,10 @@ def test_the_size_of_histories_is_told_beforehand(tmp_path, text):
     )
     path = keep_histories(saved, study, runs)
     assert path is not None
-    assert told == pytest.approx(path.stat().st_size, rel=0.1)
+    size = (
+        path.stat().st_size
+    )  # Bouc–Wen springs are taken to change their branch with every half wave, which is the most
+    assert 0.97 * size < told < 1.3 * size
 
 
 def test_runs_that_were_refused_have_no_history(tmp_path):

@@ -700,10 +700,15 @@ def test_what_is_wrong_about_a_damper_is_told(tmp_path, keys, told):
     assert told in str(error.value)
 
 
-def test_dampers_on_springs_are_refused(tmp_path):
-    text = '[[case]]\nbase = "elastic"\nbeta = 40\n[[case.damper]]\nkind = "friction"\nf = 0.1\n'
-    with pytest.raises(InputError, match="on a rigid base only"):
-        study_of(tmp_path, PIER, PULSE, text)
+def test_dampers_and_tendons_on_springs_are_read(tmp_path):
+    text = '[[case]]\nbase = "yielding"\nbeta = 40\neta = 3.0\n[[case.damper]]\nkind = "friction"\nf = 0.1\n'
+    text += "[case.tendon]\npsi = [0.5, 1.0]\n"
+    study = study_of(tmp_path, PIER, PULSE, text)
+    assert [case.base.restraints for case in study.cases] == [
+        (Damper("friction", f=0.1), Tendon(psi=psi)) for psi in (0.5, 1.0)
+    ]
+    with pytest.raises(InputError, match="eta must be above 1 \\+ psi"):
+        study_of(tmp_path, PIER, PULSE, text.replace("[0.5, 1.0]", "[0.5, 2.0]"))
 
 
 def test_dampers_on_one_side_have_no_mirror_image(tmp_path):

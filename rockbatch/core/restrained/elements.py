@@ -40,6 +40,10 @@ class Element(NamedTuple):
     coefficient: float  # C of a viscous damper [m/s² over (m/s)^exponent]
     exponent: float
     prestress: float  # of a tendon [m/s²]
+    offset: float  # from the centre of the base, positive to the right [m]
+    linear_below: (
+        float  # speed [m/s] up to which a viscous damper is linear, whose force would rise without bound in slope
+    )
 
 
 class Use(NamedTuple):
@@ -75,6 +79,8 @@ def force(of, elongation, speed, state, mode, goes):
     """Force [m/s²] of an element; ``state`` is z of a hysteretic damper, the plastic elongation [m] of a tendon."""
     if of.kind == FRICTION:
         return of.strength * goes
+    if of.kind == VISCOUS and abs(speed) < of.linear_below:
+        return of.coefficient * of.linear_below ** (of.exponent - 1.0) * speed
     if of.kind == VISCOUS:
         return math.copysign(of.coefficient * abs(speed) ** of.exponent, speed) if speed != 0.0 else 0.0
     if of.kind == HYSTERETIC:

@@ -45,7 +45,7 @@ def signals(elements, side, y, k, modes, goes, values, slopes):
 
 
 @kernel
-def _earliest(f_a, d_a, f_b, d_b, h):
+def earliest(f_a, d_a, f_b, d_b, h):
     """Which signal falls through zero first within ``h`` [s], −1 for none; and when."""
     which, first = -1, h
     for i in range(len(f_a)):
@@ -78,13 +78,13 @@ def piece(m, elements, inertia, side, y, modes, goes, ground, h, work, marks, en
         early_slopes[TURNS] = max(early_slopes[TURNS], STILL * m.p * m.p * m.alpha)
     _tried(m, elements, inertia, side, y, modes, goes, ground, h, work, end, late, late_slopes)
     a, b = 0.0, h
-    which, at = _earliest(early, early_slopes, late, late_slopes, h)
+    which, at = earliest(early, early_slopes, late, late_slopes, h)
     if which < 0:
         return h, -1
     for trial in range(TRIALS):
         x = a + at if trial < BISECT_AFTER or trial % 2 == 0 else 0.5 * (a + b)
         _tried(m, elements, inertia, side, y, modes, goes, ground, x, work, end, now, now_slopes)
-        which, at = _earliest(early, early_slopes, now, now_slopes, x - a)
+        which, at = earliest(early, early_slopes, now, now_slopes, x - a)
         if which >= 0:
             b = x
             copy(now, late)
@@ -93,7 +93,7 @@ def piece(m, elements, inertia, side, y, modes, goes, ground, h, work, marks, en
             a = x
             copy(now, early)
             copy(now_slopes, early_slopes)
-            which, at = _earliest(early, early_slopes, late, late_slopes, b - a)
+            which, at = earliest(early, early_slopes, late, late_slopes, b - a)
         if which < 0:
             break
         if abs(a + at - x) <= CLOSE * h:

@@ -78,10 +78,15 @@ def reduced(response: Response, left: float, width: float) -> History:
 
 
 def _foot(response: Response, left: float, width: float) -> Markup:
-    """Loops of yielding springs, or of the first two dampers and tendons."""
-    if isinstance(response.base, YieldingBase):
-        return _loops(response, left, width)
-    return Markup("") if response.restraints is None else _restraints(response, left, width)
+    """Loops of yielding springs, of the first two dampers and tendons, or of both beside each other."""
+    yields = isinstance(response.base, YieldingBase)
+    if response.restraints is None:
+        return _loops(response, left, width) if yields else Markup("")
+    if not yields:
+        return _restraints(response, left, width)
+    gap = 40.0
+    each = (width - gap) / 2
+    return join(_loops(response, left, each), _restraints(response, left + each + gap, each))
 
 
 def _band(response: Response) -> float:

@@ -1,0 +1,283 @@
+"""What ends a smooth piece of the motion of a pier on springs with elements, and where in a step.
+
+Beside what can happen to a pivot (``rockbatch.core.events``): an element's gap turns, a friction damper lets go, a tendon goes
+slack or taut, or yields.
+"""
+
+import math
+
+from rockbatch.core.equations import accelerations, along, geometry
+from rockbatch.core.events import NO_ACCELERATION, NO_GAP, signals, surely
+from rockbatch.core.kernel import kernel
+from rockbatch.core.restrained.elements import (
+    CLOSES,
+    FRICTION,
+    OPENS,
+    SLACK,
+    STICKS,
+    TAUT,
+    TENDON,
+    YIELDING,
+    mode_of,
+    tension,
+)
+from rockbatch.core.restrained.events import change_tendon, earliest
+from rockbatch.core.restrained_springs.equations import (
+    NONE,
+    all_rates,
+    gap,
+    lifted,
+    step,
+    sticking,
+    under_elements,
+)
+from rockbatch.core.rigid.equations import later
+from rockbatch.core.roots import BISECT_AFTER, CLOSE, TRIALS
+from rockbatch.core.transitions import LAW_LEFT
+
+OF_ELEMENTS = 4
+"""Signals of the pivots; behind them three of each element: it turns, it goes slack or taut again, it yields or lets go."""
+
+TURNS, SLACKENS, GIVES = 0, 1, 2
+
+NEARBY = 1e-6
+"""Of a step: over which the rate of a friction damper's force is taken."""
+
+SURE = 1e-9
+"""Of a friction damper's strength: by how much rounding lets it hold more."""
+
+WAYS = (
+    (STICKS, STICKS), (OPENS, STICKS), (CLOSES, STICKS), (STICKS, OPENS), (STICKS, CLOSES),
+    (OPENS, OPENS), (OPENS, CLOSES), (CLOSES, OPENS), (CLOSES, CLOSES),
+)  # fmt: skip
+"""What two friction dampers can do that have no velocity."""
+
+
+@kernel
+def _copy(numbers, to):
+    for i in range(len(numbers)):
+        to[i] = numbers[i]
+
+
+@kernel
+def _of_element(of, at, state, mode, goes, acceleration, rest, rounding, signals_of, slopes_of):
+    """The three signals of an element, and their slopes, but for a friction damper that does not move."""
+    signals_of[:], slopes_of[:] = 1.0, 0.0
+    speed = surely(at.speed, acceleration, rest)
+    if of.kind != TENDON or mode == YIELDING:
+        way = OPENS if of.kind == TENDON else goes
+        signals_of[TURNS] = way * speed
+        slopes_of[TURNS] = way * acceleration
+        return
+    pull, rate = tension(of, at.elongation, state), of.stiffness * speed
+    sign = 1.0 if mode == TAUT else -1.0
+    signals_of[SLACKENS], slopes_of[SLACKENS] = sign * pull, sign * rate
+    if abs(at.speed) <= rest and abs(pull) <= of.stiffness * rounding:  # it hangs there, neither taut nor slack
+        signals_of[SLACKENS], slopes_of[SLACKENS] = of.stiffness * rounding, 0.0
+    if mode == TAUT and of.strength < math.inf:
+        signals_of[GIVES], slopes_of[GIVES] = of.strength - pull, -rate
+
+
+@kernel
+def _of_friction(m, elements, level, y, x, modes, goes, contact, k, kx, ground, h, forces, work, values, slopes):
+    """What friction dampers that do not move could hold more; its rate from a moment later."""
+    near, later_x = NEARBY * h, work[1]
+    for i in range(len(x)):
+        later_x[i] = x[i] + near * kx[i]
+    a, c = ground.horizontal + near * ground.horizontal_slope, ground.vertical + near * ground.vertical_slope
+    _, one, two = under_elements(m, elements, level, along(y, k, near), later_x, modes, goes, contact, a, c)
+    j, later_forces = NONE, (one, two)
+    for number in range(2):
+        j = sticking(elements, goes, j)
+        if j == NONE:
+            return
+        at, strength = OF_ELEMENTS + 3 * j + GIVES, elements[j].strength
+        values[at] = strength - abs(forces[number])
+        slopes[at] = (abs(forces[number]) - abs(later_forces[number])) / near
+
+
+@kernel
+def _seen(m, elements, level, y, x, modes, goes, contact, supports, rest, ground, h, work, values, slopes):
+    """Signals of a state and their slopes, at the start of ``ground``; the state's rates."""
+    kx, a, c = work[0], ground.horizontal, ground.vertical
+    k, under, one, two = all_rates(m, elements, level, y, x, modes, goes, contact, a, c, kx)
+    f, d = signals(under, y, k, contact, supports.left, supports.right, rest, a, c)
+    for i in range(OF_ELEMENTS):
+        values[i], slopes[i] = f[i], d[i]
+        if i >= LAW_LEFT and abs(f[i]) <= rest and abs(d[i]) <= NO_ACCELERATION * m.gravity:  # friction holds the pivot
+            values[i], slopes[i] = 1.0, 0.0
+    for j in range(len(elements)):
+        at, first = gap(m, elements[j], y, level), OF_ELEMENTS + 3 * j
+        acceleration = lifted(y, at, k.v_rate, k.omega)
+        if abs(acceleration) <= NO_ACCELERATION * m.gravity:
+            acceleration = 0.0
+        _of_element(
+            elements[j],
+            at,
+            x[j],
+            modes[j],
+            goes[j],
+            acceleration,
+            rest,
+            NO_GAP * m.yield_deflection,
+            values[first : first + 3],
+            slopes[first : first + 3],
+        )
+        if elements[j].kind == FRICTION and goes[j] == STICKS:
+            values[first], slopes[first] = 1.0, 0.0
+    if sticking(elements, goes, NONE) != NONE:
+        _of_friction(m, elements, level, y, x, modes, goes, contact, k, kx, ground, h, (one, two), work, values, slopes)
+    return k
+
+
+@kernel
+def piece(m, elements, level, y, x, modes, goes, contact, supports, rest, ground, h, work, marks, end_x):
+    """From ``y`` and ``x`` over ``h`` [s] or to the first event before.
+
+    ``marks``, shape (6, signals), keeps values and slopes of the signals at both ends of where the event is, and at the trial.
+
+    Returns
+    -------
+    The time that it took [s]; the signal that fell, NONE without one; the State at its end, which ``end_x`` goes with; rates
+    at its start and end.
+    """
+    early, early_slopes, late, late_slopes, now, now_slopes = marks[0], marks[1], marks[2], marks[3], marks[4], marks[5]
+    a, b, t, which, last = 0.0, h, 0.0, NONE, False
+    end, k, k_start = y, y, y
+    for trial in range(TRIALS + 3):
+        end = step(m, elements, level, y, x, modes, goes, contact, ground, t, work, end_x)
+        k = _seen(
+            m,
+            elements,
+            level,
+            end,
+            end_x,
+            modes,
+            goes,
+            contact,
+            supports,
+            rest,
+            later(ground, t),
+            h,
+            work,
+            now,
+            now_slopes,
+        )
+        if last:
+            break
+        if trial == 0:
+            _copy(now, early)
+            _copy(now_slopes, early_slopes)
+            k_start, t = k, h
+            continue
+        if trial == 1:
+            _copy(now, late)
+            _copy(now_slopes, late_slopes)
+            which, at = earliest(early, early_slopes, late, late_slopes, h)
+            if which == NONE:
+                break
+        else:
+            which, at = earliest(early, early_slopes, now, now_slopes, t - a)
+            if which != NONE:
+                b = t
+                _copy(now, late)
+                _copy(now_slopes, late_slopes)
+            else:
+                a = t
+                _copy(now, early)
+                _copy(now_slopes, early_slopes)
+                which, at = earliest(early, early_slopes, late, late_slopes, b - a)
+            if which != NONE and abs(a + at - t) <= CLOSE * h:
+                break
+        halve = trial > BISECT_AFTER and trial % 2 == 0
+        t = 0.5 * (a + b) if halve else a + at
+        if which == NONE or trial == TRIALS + 1:
+            t, last = b, True
+        elif t == a == 0.0:  # at once, and before all that comes no later
+            last = True
+    return t, which, end, k_start, k
+
+
+@kernel
+def _consistent(m, elements, level, y, x, modes, goes, contact, horizontal, vertical, first, second):
+    """Whether the friction dampers ``first`` and ``second``, without velocity, can do what ``goes`` says of them."""
+    under, one, two = under_elements(m, elements, level, y, x, modes, goes, contact, horizontal, vertical)
+    v_acceleration, theta_acceleration = accelerations(under, y, contact, geometry(m, y.theta), horizontal, vertical)
+    holding = sticking(elements, goes, NONE)
+    for j in (first, second):
+        if j == NONE:
+            continue
+        if goes[j] == STICKS:
+            if abs(one if j == holding else two) > (1.0 + SURE) * elements[j].strength:
+                return False
+        elif goes[j] * lifted(y, gap(m, elements[j], y, level), v_acceleration, theta_acceleration) <= 0.0:
+            return False
+    return True
+
+
+@kernel
+def settle_friction(m, elements, level, y, x, modes, goes, contact, horizontal, vertical):
+    """What friction dampers without velocity do from here on: hold where they can, else go where the others take them."""
+    first = sticking(elements, goes, NONE)
+    if first == NONE:
+        return
+    second = sticking(elements, goes, first)
+    for way in WAYS:
+        if second == NONE and way[1] != STICKS:
+            continue
+        goes[first] = way[0]
+        if second != NONE:
+            goes[second] = way[1]
+        if _consistent(m, elements, level, y, x, modes, goes, contact, horizontal, vertical, first, second):
+            return
+    goes[first] = STICKS  # what rounding leaves
+    if second != NONE:
+        goes[second] = STICKS
+
+
+@kernel
+def start_elements(m, elements, level, y, x, modes, goes):
+    """Modes and directions at rest."""
+    for j in range(len(elements)):
+        goes[j] = STICKS if elements[j].kind == FRICTION and elements[j].strength > 0.0 else OPENS
+        modes[j] = mode_of(elements[j], gap(m, elements[j], y, level).elongation, x[j], OPENS)
+
+
+@kernel
+def happen_to_element(m, elements, level, y, x, modes, goes, contact, horizontal, vertical, signal):
+    """What the fall of an element's ``signal`` makes of it; whether a tendon has gone slack."""
+    j, what = (signal - OF_ELEMENTS) // 3, (signal - OF_ELEMENTS) % 3
+    of = elements[j]
+    if of.kind == TENDON:
+        modes[j] = TAUT if what == TURNS else change_tendon(of, modes[j], what == GIVES)
+        return modes[j] == SLACK
+    if of.kind == FRICTION and what == GIVES:
+        _, one, two = under_elements(m, elements, level, y, x, modes, goes, contact, horizontal, vertical)
+        holds = one if sticking(elements, goes, NONE) == j else two
+        goes[j] = OPENS if holds > 0.0 else CLOSES
+    elif of.kind == FRICTION and of.strength > 0.0:
+        goes[j] = STICKS
+    else:
+        goes[j] = -goes[j]
+    settle_friction(m, elements, level, y, x, modes, goes, contact, horizontal, vertical)
+    return False
+
+
+@kernel
+def after_contact(m, elements, level, y, x, modes, goes, contact, rest, horizontal, vertical):
+    """Directions and modes once an event at a pivot may have made all velocities jump."""
+    for j in range(len(elements)):
+        speed = gap(m, elements[j], y, level).speed
+        if abs(speed) <= rest:
+            continue
+        if elements[j].kind != TENDON:
+            goes[j] = OPENS if speed > 0.0 else CLOSES
+        elif modes[j] == YIELDING and speed < 0.0:
+            modes[j] = TAUT
+        elif (
+            modes[j] == TAUT
+            and speed > 0.0
+            and tension(elements[j], gap(m, elements[j], y, level).elongation, x[j]) >= elements[j].strength
+        ):
+            modes[j] = YIELDING
+    settle_friction(m, elements, level, y, x, modes, goes, contact, horizontal, vertical)

@@ -1,0 +1,203 @@
+"""Dampers and tendons of a pier on two springs (THEORY.md, Dampers and tendons) against a solver of their own, and limits."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from core_samples import FIG5, TOWER, broadband, pulse, steady
+from restrained_reference import TiedTwoSprings
+from scipy.signal import lsim
+
+import rockbatch as rb
+from rockbatch.motions.motion import Motion
+from rockbatch.pier import Damper, ElasticBase, Tendon, YieldingBase, problems
+from rockbatch.simulation import Run, run_fixed, run_to_tolerance, written_run
+from rockbatch.units import GRAVITY
+
+ELASTIC = ElasticBase(50.0, zeta=0.05)
+BOUC_WEN = YieldingBase(50.0, epsilon=0.3, eta=3.0)
+FINITE = YieldingBase(60.0, eta=3.5, spring="epp", zeta=0.1, kinematics="finite", flight="guided")
+BASES = [
+    pytest.param(ELASTIC, id="elastic"),
+    pytest.param(BOUC_WEN, id="bouc-wen"),
+    pytest.param(FINITE, id="finite", marks=pytest.mark.slow),  # compiled by itself
+]
+RESTRAINTS = {
+    "viscous": (Damper("viscous", nu=1.0),),
+    "root": (Damper("viscous", nu=0.3, exponent=0.5),),
+    "hysteretic": (Damper("hysteretic", f=0.1, yield_m=0.005),),
+    "prestress": (Tendon(psi=0.3),),
+    "stiffness": (Tendon(psi=0.1, lam=1.0),),
+    "yields": (Tendon(psi=0.1, lam=1.0, strength=0.13),),
+    "pair": (Tendon(psi=0.1, lam=0.5, at=1.0), Tendon(psi=0.1, lam=0.5, at=-1.0)),
+    "slack": (Tendon(lam=0.5),),
+    "one side": (Damper("viscous", nu=0.5, at="left"), Damper("hysteretic", f=0.05, yield_m=0.002, at="right")),
+}
+FRICTION = {"both": (Damper("friction", f=0.1),), "middle": (Damper("friction", f=0.1, at=0.0),)}
+SHAKEN = pulse("sine", 0.5, 1.0, end=2.0)
+
+
+def tied(base, restraints):
+    return replace(base, restraints=restraints)
+
+
+@pytest.mark.parametrize("restraints", RESTRAINTS.values(), ids=RESTRAINTS)
+@pytest.mark.parametrize("base", BASES)
+def test_runs_agree_with_the_reference(base, restraints):
+    vertical = 0.4 * GRAVITY * np.sin(np.arange(SHAKEN.npts) * 0.11)
+    motion = Motion("both", SHAKEN.dt, SHAKEN.horizontal, vertical)
+    expected = TiedTwoSprings(FIG5, tied(base, restraints), motion, 0.0)
+    end = expected.run()
+    steps = 128 if restraints == RESTRAINTS["root"] else 16  # |ė|^a with a < 1 is not smooth at ė = 0
+    found, rows = written_run(Run(FIG5, tied(base, restraints), motion), steps, 0.0, 60_000, wait=False)
+    last = rows[found.rows - 1]
+    assert found.impacts == end.impacts
+    assert found.theta_max == pytest.approx(end.theta_max, rel=2e-8)
+    assert (last.t, last.theta) == pytest.approx((end.t_end, end.theta), abs=2e-8)
+    assert (last.v, last.omega) == pytest.approx((end.v, end.omega), abs=2e-7)
+
+
+SMOOTH = {name: each for name, each in (RESTRAINTS | FRICTION).items() if name != "root"}
+
+
+@pytest.mark.parametrize("restraints", SMOOTH.values(), ids=SMOOTH)
+@pytest.mark.parametrize("base", BASES)
+def test_the_order_across_events_is_four(base, restraints):
+    """The mean of two halvings, since single ones ripple. But for |ė|^a with a < 1, whose slope is infinite at ė = 0."""
+    peaks = [
+        written_run(Run(FIG5, tied(base, restraints), SHAKEN), steps, 0.0, 1, wait=False)[0].theta_max
+        for steps in (4, 8, 16, 64)
+    ]
+    first, _, third = (abs(each - peaks[-1]) for each in peaks[:-1])
+    assert third < 1e-11 or math.log2(first / third) / 2 > 3.4
+
+
+@pytest.mark.parametrize("restraints", (RESTRAINTS | FRICTION).values(), ids=RESTRAINTS | FRICTION)
+@pytest.mark.parametrize("base", BASES)
+def test_the_ledger_closes(base, restraints):
+    response = rb.simulate(FIG5, tied(base, restraints), SHAKEN, substeps=32, wait=False, quiet_s=0.0, ledger=True)
+    ledger = response.ledger
+    assert ledger.input.iloc[-1] > 0.1
+    assert ledger.remainder.abs().max() < 2e-7 * ledger.input.abs().max()
+    kinds = {type(each) for each in restraints}
+    assert (ledger.damping.iloc[-1] > 1e-3) or kinds == {Tendon}
+
+
+@pytest.mark.parametrize("base", BASES)
+@pytest.mark.parametrize(
+    "nothing", [Damper("viscous"), Damper("friction"), Tendon()], ids=["viscous", "friction", "tendon"]
+)
+def test_elements_of_no_strength_leave_the_run_as_it_is(base, nothing):
+    plain, found = (run_fixed(FIG5, each, SHAKEN, 8) for each in (base, tied(base, (nothing,))))
+    assert found.theta_max == pytest.approx(plain.theta_max, rel=1e-8)
+    assert (found.status, found.impacts, found.separations) == (plain.status, plain.impacts, plain.separations)
+
+
+@pytest.mark.parametrize(
+    ("restraint", "stiffness", "damping"),
+    [
+        (Damper("viscous", nu=2.0), 0.0, 2.0 * 2.0 * FIG5.p),
+        (Tendon(psi=2.0, lam=30.0), 30.0 * GRAVITY * FIG5.size / FIG5.half_width**2, 0.0),
+    ],
+    ids=["viscous", "tendon"],
+)
+def test_vertical_vibration_is_that_of_one_mass(restraint, stiffness, damping):
+    """v̈ + (2 ν p + 2 ζ ω_v) v̇ + (ω_v² + k_t) v = −v̈_g, whose solution is exact under a ground linear between samples."""
+    t = np.arange(400) * 0.005
+    vertical = 0.2 * GRAVITY * np.sin(9.0 * t) * np.sin(math.pi * t / t[-1])
+    base = ElasticBase(30.0, zeta=0.02, restraints=(restraint,))
+    found, rows = written_run(Run(FIG5, base, Motion("up", 0.005, 0.0 * t, vertical)), 16, 0.0, 5000, wait=False)
+    rows = rows[: found.rows]
+    omega = 30.0 * FIG5.p
+    c, k = damping + 2.0 * 0.02 * omega, omega**2 + stiffness
+    _, _, exact = lsim(([[0.0, 1.0], [-k, -c]], [[0.0], [-1.0]], [[1.0, 0.0]], [[0.0]]), vertical, t)
+    exact = np.ravel(exact if exact.ndim == 1 else exact[:, 0])
+    assert np.abs(rows.theta).max() == 0.0
+    np.testing.assert_allclose(rows.v - rows.v[0], exact, atol=1e-7 * np.abs(exact).max())
+
+
+def test_friction_holds_until_the_inertia_exceeds_it():
+    """Both dampers at the pivots hold the pier where it is as long as M h |ü_g| ≤ 2 b F_d, ü_g = 2 f g tan α."""
+    threshold = 2.0 * 0.1 * GRAVITY * math.tan(FIG5.alpha)
+    for share, moves in ((1.0 - 1e-6, False), (1.0 + 1e-6, True)):
+        motion = steady(share * threshold, 0.0, 0.01, 100)
+        found = run_fixed(FIG5, tied(ELASTIC, FRICTION["both"]), motion, 4, 0.0, wait=False)
+        assert (found.theta_max > 1e-12) == moves
+
+
+@pytest.mark.parametrize("base", [ELASTIC, BOUC_WEN], ids=["elastic", "bouc-wen"])
+@pytest.mark.parametrize("at", [None, 0.0, "left"])
+def test_hysteretic_dampers_tend_to_friction_as_their_yield_deflection_vanishes(base, at):
+    friction = run_fixed(FIG5, tied(base, (Damper("friction", f=0.1, at=at),)), SHAKEN, 16, 0.0, wait=False).theta_max
+    soft, hard = (
+        abs(run_fixed(FIG5, tied(base, (damper,)), SHAKEN, 128, 0.0, wait=False).theta_max - friction)
+        for damper in (Damper("hysteretic", f=0.1, yield_m=u, at=at) for u in (1e-3, 2e-6))
+    )
+    assert hard < 0.15 * soft
+    assert hard < 0.003 * friction
+
+
+def test_prestress_is_carried_from_the_start():
+    base = tied(YieldingBase(50.0, eta=2.5, epsilon=0.0), (Tendon(psi=1.0, lam=0.5),))
+    still = Motion("still", 0.01, np.zeros(100))
+    found, rows = written_run(Run(FIG5, base, still), 4, 0.0, 200, wait=False)
+    rows = rows[: found.rows]
+    assert rows.z_left[0] == pytest.approx(-2.0 / 2.5, rel=1e-15)
+    assert np.abs(rows.theta).max() == 0.0
+    assert np.ptp(rows.v) < 1e-14
+
+
+@pytest.mark.parametrize(
+    ("base", "told"),
+    [
+        (YieldingBase(50.0, eta=1.5, restraints=(Tendon(psi=0.5),)), "eta must be above 1 + psi"),
+        (ElasticBase(50.0, restraints=(Tendon(psi=0.5, at="left"),)), "its like on the other side"),
+        (ElasticBase(50.0, restraints=(Damper("friction", f=0.1),) * 2), "two places of friction"),
+    ],
+)
+def test_what_cannot_stand_is_said(base, told):
+    assert any(told in each for each in problems(FIG5, base))
+
+
+@pytest.mark.parametrize("restraints", (RESTRAINTS | FRICTION).values(), ids=RESTRAINTS | FRICTION)
+def test_the_reversed_motion_gives_the_mirror_image(restraints):
+    other = {"left": "right", "right": "left"}
+    mirrored = tuple(replace(each, at=other.get(each.at, each.at)) for each in restraints)
+    reversed_motion = Motion("reversed", SHAKEN.dt, -SHAKEN.horizontal)
+    for base in (ELASTIC, BOUC_WEN):
+        one = run_fixed(FIG5, tied(base, restraints), SHAKEN, 4)
+        two = run_fixed(FIG5, tied(base, mirrored), reversed_motion, 4)
+        assert one.theta_max == pytest.approx(two.theta_max, rel=1e-11)
+        assert (one.status, one.impacts) == (two.status, two.impacts)
+
+
+HARD = {
+    "undamped": tied(ElasticBase(80.0), (Damper("hysteretic", f=0.2, yield_m=0.002),)),
+    "critical": tied(ElasticBase(80.0, zeta=1.0), (Damper("friction", f=0.2),)),
+    "edge of recentring": tied(ElasticBase(80.0, zeta=0.05), (Damper("friction", f=0.5),)),
+    "slack at landing": tied(ElasticBase(80.0, zeta=0.05), (Tendon(lam=0.4),)),
+    "hardens": tied(ElasticBase(80.0, zeta=0.05, kinematics="finite"), (Tendon(psi=0.2, lam=math.cos(0.13)),)),
+    "prestress at eta": tied(YieldingBase(80.0, eta=1.55, zeta=0.05, spring="epp"), (Tendon(psi=0.5),)),
+    "all": tied(
+        YieldingBase(80.0, eta=3.0, zeta=0.05),
+        (
+            Damper("hysteretic", f=0.05, yield_m=0.01),
+            Damper("viscous", nu=0.2, exponent=0.3, at=0.0),
+            Tendon(psi=0.2, lam=0.2),
+        ),
+    ),
+}
+
+
+@pytest.mark.parametrize("name", HARD)
+def test_hard_cases_end_and_their_errors_are_within_those_reported(name):
+    base = HARD[name]
+    for seed in range(3):
+        rng = np.random.default_rng(seed)
+        motion = Motion("hard", 0.01, broadband(rng, 0.01, 800, 4.0), broadband(rng, 0.01, 800, 3.0))
+        found = run_to_tolerance(TOWER, base, motion, 1e-4)
+        assert found.status in ("ok", "overturned"), found.reason
+        if found.status == "ok":
+            fine = run_fixed(TOWER, base, motion, 8 * found.substeps)
+            assert abs(found.theta_max - fine.theta_max) <= found.theta_max_error + 1e-9 * TOWER.alpha
