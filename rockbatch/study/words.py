@@ -160,7 +160,7 @@ CASE = {
     "confirm": _CONFIRM,
 }
 
-DAMPER_ABOUT = "A damper between the pier and rigid ground. Write as many as there are."
+DAMPER_ABOUT = "A damper between the pier and the ground. Write as many as there are."
 DAMPER = {
     "kind": "What its force depends on: the direction of the motion, a yielding displacement, or the speed.",
     "force_kN": "Force of a friction or hysteretic damper, for a pier whose mass is known; or give `f`.",
@@ -171,7 +171,7 @@ DAMPER = {
     "exponent": "Exponent of the speed of a viscous damper.",
     "at": "Where it is: a pivot, or an offset [m] from the middle of the base; one at each pivot if it is not given.",
 }
-TENDON_ABOUT = "An unbonded tendon between the pier and rigid ground, which takes tension only."
+TENDON_ABOUT = "An unbonded tendon between the pier and the ground, which takes tension only."
 TENDON = {
     "prestress_kN": "Its prestress P0, for a pier whose mass is known; or give `psi`.",
     "psi": "Prestress over the weight.",
