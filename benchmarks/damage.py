@@ -32,6 +32,7 @@ from rockbatch.batch.finishing import cost_of_finished
 from rockbatch.batch.journal import Journal
 from rockbatch.batch.plan import Plan
 from rockbatch.cli import main
+from rockbatch.errors import EditedTable
 from rockbatch.results.columns import PART, columns
 from rockbatch.study.suite import ground_motions
 
@@ -274,6 +275,15 @@ def as_numbers(row: dict[str, str]) -> dict[str, float | str]:
     return found
 
 
+def changed(before: bytes, now: bytes) -> bool:
+    """Whether JSON says something else, and still has a digest that tells so."""
+    try:
+        said = json.loads(now)
+        return "sha256" in said and said != json.loads(before)
+    except (ValueError, RecursionError):
+        return True
+
+
 class Sample:
     """A study that was carried out, its folder, and its journal when all of it was finished."""
 
@@ -343,15 +353,20 @@ class Sample:
             else:
                 raise WrongError(f"a changed table counts as finished: {finished}")
         tasks = (lambda: rb.report(self.scratch), lambda: rb.check(self.scratch))
+        told = False
         for task in tasks:
             try:
-                with warnings.catch_warnings():
-                    warnings.simplefilter("ignore", UserWarning)
+                with warnings.catch_warnings(record=True) as warned:
+                    warnings.simplefilter("always", UserWarning)
                     task()
             except rb.InputError:
                 said.append("words")
             else:
-                said.append("read")
+                about = any(issubclass(one.category, EditedTable) for one in warned)
+                said.append("told and read" if about else "read")
+            told |= said[-1] != "read"
+        if path.name == "fragility.json" and not told and changed(before, path.read_bytes()):
+            raise WrongError("what an analysis says of itself was changed, and that is not told")
         return f"{path.name}: {' and '.join(dict.fromkeys(said))}"
 
     def clear(self) -> None:

@@ -1,10 +1,14 @@
 """``python -m rockbatch``, and the command ``rockbatch``."""
 
+import os
 import sys
 
 
 def main() -> int:
     """Run the command line; an interrupt while it is being loaded is told as any other."""
+    # Threads of OpenBLAS and numexpr would gain nothing here, and where they cannot start, these end the process as they are
+    # loaded.
+    os.environ.setdefault("OMP_NUM_THREADS", "1")
     try:
         from rockbatch.cli import main as command_line
 

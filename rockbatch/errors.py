@@ -1,5 +1,8 @@
 """Mistakes of the user, told all at once and without a traceback, and what they should know of results they open."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 
 class InputError(ValueError):
     """Input that cannot be used as it stands.
@@ -31,6 +34,20 @@ class UnstatedError(InputError):
         self.keys = keys
 
 
+@contextmanager
+def starting_threads(otherwise: str = "") -> Iterator[None]:
+    """Have it said in words, by ``InputError``, that no more threads can be started, and what else to do but allow them."""
+    try:
+        yield
+    except RuntimeError as error:
+        if "start new thread" not in str(error):
+            raise
+        raise InputError(
+            "no more threads can be started: the number of processes is limited here (ulimit -u, or a container's limit); "
+            f"allow more{otherwise}"
+        ) from error
+
+
 class AboutResults(UserWarning):
     """What there is to know of a folder of results that is opened."""
 
@@ -40,4 +57,4 @@ class MissingColumns(AboutResults):
 
 
 class EditedTable(AboutResults):
-    """A ``peaks.csv`` that is not as it was written."""
+    """A table, or what an analysis says of itself, that is not as it was written."""

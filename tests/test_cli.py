@@ -281,7 +281,7 @@ os.environ.pop("HOME", None)
 pwd.getpwuid = {}.__getitem__
 import rockbatch.core.kernel as kernel
 from pathlib import Path
-kernel._CORE = Path("/nowhere")
+kernel._CORE = Path(sys.argv[1])  # a file: there is no folder to be made below it
 print(kernel._usable_folder())
 from rockbatch.cli import main
 sys.exit(main(["run", sys.argv[1]]))
@@ -290,4 +290,5 @@ sys.exit(main(["run", sys.argv[1]]))
     done = subprocess.run([sys.executable, "-c", code, str(study)], capture_output=True, text=True)
     assert done.returncode == 2, done.stderr
     assert "kernels-" in done.stdout
+    assert not os.path.exists(done.stdout.strip())
     assert 'path = "~/records": there is no home folder here; write the whole path' in done.stderr

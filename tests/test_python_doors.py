@@ -90,7 +90,7 @@ ANALYSES = {
     "spectrum": ("spectrum", "spectrum_suite", "overturning_map", "overturning_runs"),
     "sensitivity": ("sensitivity_runs", "sensitivity", "sobol"),
 }
-OF_TIME = {"created", "wall_s", "command", "jobs"}
+OF_TIME = {"created", "wall_s", "sha256", "command", "jobs"}
 
 
 @pytest.fixture(scope="module")

@@ -17,6 +17,7 @@ from rockbatch.errors import InputError
 from rockbatch.files import csv_text, is_plain, only_writer, read_table, read_text, sha256_of, write_whole
 from rockbatch.motions import Unusable
 from rockbatch.report import write_analyses
+from rockbatch.report.finished_analysis import digest_of
 from rockbatch.showing import Shown, several
 from rockbatch.study import Study
 
@@ -88,8 +89,8 @@ class Analysis(Shown):
 class AnalysisFolder:
     """What an analysis leaves in a folder: its tables, and NAME.json, which says what they hold.
 
-    ``info`` is what NAME.json will say: what was done, in which ``files`` it is, and of which runs, by their digests. It
-    is written as soon as a table is, so that a command that was killed later takes it as it is. In a folder that is
+    ``info`` is what NAME.json will say: what was done, in which ``files`` it is, and of which runs, by their digests; its own
+    is added. It is written as soon as a table is, so that a command that was killed later takes it as it is. In a folder that is
     ``passing`` there is no report.
     """
 
@@ -139,8 +140,8 @@ class AnalysisFolder:
     def keep(self, file: str, digest: Mapping[str, str] | None = None) -> None:
         """Note that ``file`` is finished, and which runs it holds."""
         self.info["files"].append(file)
-        if digest is not None:
-            self.info["digests"][file] = {"runs": dict(digest), "sha256": sha256_of(self.directory / file)}
+        noted = self.info["digests"].get(file, {}) if digest is None else {"runs": dict(digest)}
+        self.info["digests"] = self.info["digests"] | {file: noted | {"sha256": sha256_of(self.directory / file)}}
         self._write_info()
 
     def keep_table(self, file: str, table: "pd.DataFrame") -> None:
@@ -168,7 +169,8 @@ class AnalysisFolder:
         return (*(self.directory / file for file in self.info["files"]), self.path, report)
 
     def _write_info(self) -> None:
-        write_whole(self.path, json.dumps(self.info, indent=1, ensure_ascii=False) + "\n")
+        told = self.info | {"sha256": digest_of(self.info)}
+        write_whole(self.path, json.dumps(told, indent=1, ensure_ascii=False) + "\n")
 
 
 @contextmanager

@@ -15,7 +15,7 @@ from rockbatch.batch.digests import program
 from rockbatch.batch.groups import NOTHING_MORE, groups, outcomes_of
 from rockbatch.batch.plan import PlannedRun, scaled
 from rockbatch.batch.threads import Outcomes, cores, finished
-from rockbatch.errors import InputError
+from rockbatch.errors import InputError, starting_threads
 from rockbatch.motions import Motion
 from rockbatch.results.outcome import Outcome
 from rockbatch.study import Case, Numerics, Output
@@ -83,6 +83,12 @@ class Dask:
                 f"scheduler {self.address or 'of this machine'}: no workers ({error or 'none came'}); start them with "
                 "`dask scheduler` and `dask worker ADDRESS`, and give the address"
             ) from error
+        except RuntimeError as error:  # of distributed's own processes
+            self.__exit__(None, None, None)
+            raise InputError(
+                f"dask could not start a cluster on this machine ({error}); where processes are limited (ulimit -u, or a "
+                "container's limit), use threads: leave --engine out"
+            ) from error
         self._check_workers(self._client)
         self._records = Records(self._client)
         return self
@@ -139,7 +145,8 @@ class Dask:
             while pending:
                 for future in self._finished_of(self._client, pending):
                     group = pending[future]
-                    found = future.result()
+                    with starting_threads():  # of a worker that lacks them; its error comes as it was there
+                        found = future.result()
                     del pending[future]
                     yield finished(group, found)
                     hand_out()

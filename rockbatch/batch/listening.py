@@ -115,6 +115,8 @@ def told_if_slow(listener: Listener, words: str) -> "Iterator[None]":
         yield
     finally:
         told.cancel()
+        if told.is_alive():
+            told.join()  # where few are allowed, the next thread may need its place
 
 
 def once(study: "Study") -> str:

@@ -5,11 +5,11 @@ from collections.abc import Generator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass
 from types import TracebackType
-from typing import Any, Protocol, Self
+from typing import Protocol, Self
 
 from rockbatch.batch.groups import NOTHING_MORE, groups, outcomes_of
 from rockbatch.batch.plan import PlannedRun
-from rockbatch.errors import InputError
+from rockbatch.errors import InputError, starting_threads
 from rockbatch.results.outcome import Outcome
 from rockbatch.simulation import Stop
 from rockbatch.study import Numerics, Output
@@ -89,7 +89,8 @@ class Threads:
             while True:
                 while len(pending) < AHEAD * self.jobs and (group := next(waiting, None)):
                     members = runs[group.start : group.stop]
-                    pending[_submitted(pool, outcomes_of, members, numerics, output, stop)] = group
+                    with starting_threads(", or write --jobs 1" * (self.jobs > 1)):
+                        pending[pool.submit(outcomes_of, members, numerics, output, stop)] = group
                 if not pending:
                     return
                 done, _ = wait(pending, return_when=FIRST_COMPLETED)
@@ -106,18 +107,6 @@ class Threads:
         finally:
             stop.set()
             pool.shutdown(wait=True, cancel_futures=True)
-
-
-def _submitted(pool: ThreadPoolExecutor, *task: Any) -> "Future[list[Outcome | None]]":
-    try:
-        return pool.submit(*task)
-    except RuntimeError as error:
-        if "start new thread" not in str(error):
-            raise
-        raise InputError(
-            "no more threads can be started: the number of processes is limited here (ulimit -u, or a container's limit); "
-            "allow more, or write --jobs 1"
-        ) from error
 
 
 def finished(group: range, found: Sequence[Outcome | None]) -> Outcomes:

@@ -1,6 +1,8 @@
 """How kernels are compiled: one decorator for every function of the core, and one for those that Python calls."""
 
+import atexit
 import hashlib
+import shutil
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
@@ -24,7 +26,7 @@ def core_digest(folder: Path = _CORE) -> str:
 
 
 def _usable_folder() -> str:
-    """First of: beside the sources, the user's cache, a temporary folder, that can be written to."""
+    """First of: beside the sources, the user's cache, a temporary folder for this process, that can be written to."""
     name = f"kernels-{core_digest()}"
     for parent in (lambda: _CORE / "__pycache__", lambda: Path.home() / ".cache" / "rockbatch"):
         try:
@@ -34,7 +36,9 @@ def _usable_folder() -> str:
         except (OSError, RuntimeError):  # the latter where nobody is at home
             continue
         return str(folder)
-    return tempfile.mkdtemp(prefix=name)
+    temporary = tempfile.mkdtemp(prefix=name)
+    atexit.register(shutil.rmtree, temporary, ignore_errors=True)
+    return temporary
 
 
 CACHE_FOLDER = _usable_folder()

@@ -3,8 +3,8 @@
 import difflib
 import os
 import re
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Container, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal
 
@@ -13,7 +13,7 @@ import numpy as np
 from rockbatch.errors import InputError, UnstatedError
 from rockbatch.motions import archives, fema_p695
 from rockbatch.motions.baseline import Offset, corrected
-from rockbatch.motions.bounded import TooLongError, bounded
+from rockbatch.motions.bounded import TooLongError, Watch
 from rockbatch.motions.component import Component, file_of
 from rockbatch.motions.doubles import without_doubles
 from rockbatch.motions.finding import MANIFESTS, Found, files_of
@@ -30,6 +30,18 @@ _RSN = re.compile(r"RSN[_ ]?0*(\d+)(?!\d)", re.IGNORECASE)
 
 Paths = str | os.PathLike[str] | Sequence[str | os.PathLike[str]]
 Reading = Component | Unusable | LeftOut
+
+
+@dataclass(frozen=True)
+class _Asked:
+    """What holds for all files that are read together."""
+
+    manifest: Manifest
+    options: ReadOptions
+    gravity: float
+    offset: Offset
+    numbered: Container[Path]
+    watch: Watch
 
 
 def read_motions(
@@ -136,14 +148,12 @@ def read_files(
     manifests = [file.path for file in found if not file.refusal and file.path.name in MANIFESTS]
     manifests = [path for path in [*manifests, *beside] if path.is_file() and is_manifest(path)]
     manifest = Manifest.read({Path(os.path.realpath(path)): path for path in manifests}.values())
-    numbered = _numbered(found)
     readings: list[Reading] = []
-    for file in found:
-        if file.path in manifests:
-            continue
-        readings += _readings(
-            file, manifest, options or ReadOptions(), gravity, offset or Offset(), file.path in numbered
-        )
+    with Watch() as watch:
+        asked = _Asked(manifest, options or ReadOptions(), gravity, offset or Offset(), _numbered(found), watch)
+        for file in found:
+            if file.path not in manifests:
+                readings += _readings(file, asked)
     manifest.finish()
     return _without_renamed(readings, found), {file.source: file.path for file in found}
 
@@ -195,9 +205,7 @@ def _numbered(found: Sequence[Found]) -> set[Path]:
     return {file.path for file in found if archives.bare(file.path).stem in numbers[file.path.parent]}
 
 
-def _readings(
-    file: Found, manifest: Manifest, options: ReadOptions, gravity: float, offset: Offset, numbered: bool
-) -> list[Reading]:
+def _readings(file: Found, asked: _Asked) -> list[Reading]:
     """What one file is: components, and what its manifest leaves out, or the one reason why there are none.
 
     Whatever a file does ends here: it costs no other file, and its texts go on as they can be shown anywhere.
@@ -206,7 +214,7 @@ def _readings(
     lacks: tuple[str, ...] = ()
     try:
         with np.errstate(over="ignore", invalid="ignore"):  # what becomes of absurd numbers is looked at
-            found = _used(file, manifest, options, gravity, offset, numbered)
+            found = _used(file, asked)
         return [with_legible_texts(reading) for reading in found]
     except InputError as error:
         reason = "; ".join(error.problems)
@@ -222,25 +230,25 @@ def _readings(
     return [with_legible_texts(Unusable(stem, file.source, reason, lacks=lacks))]
 
 
-def _used(
-    file: Found, manifest: Manifest, options: ReadOptions, gravity: float, offset: Offset, numbered: bool
-) -> list[Reading]:
+def _used(file: Found, asked: _Asked) -> list[Reading]:
     """What one file is, with what a manifest says about it; raises what comes up in its reading."""
     path = archives.bare(file.path)
-    entries = manifest.of(file.path)
+    entries = asked.manifest.of(file.path)
     if any(not entry.use and entry.component is None for entry in entries):
         return [LeftOut(path.stem, file.source, f"use = false in {entries[0].table.file.path.name}")]
     if file.companion:
         return [LeftOut(path.stem, file.source, f"no record: {file.companion}")]
     if file.refusal:
         return [Unusable(path.stem, file.source, file.refusal)]
-    read = _read(file, options_of(entries, options), gravity)
+    read = _read(file, options_of(entries, asked.options), asked)
     others = [reading for reading in read if isinstance(reading, Unusable)]
     readings: list[Reading] = [_left_out(reading, entries) or reading for reading in others]
-    components = [_placed(reading, path, numbered) for reading in read if isinstance(reading, Component)]
-    for component, used in described(components, entries, gravity, others):
+    components = [
+        _placed(reading, path, file.path in asked.numbered) for reading in read if isinstance(reading, Component)
+    ]
+    for component, used in described(components, entries, asked.gravity, others):
         if used:
-            readings.append(usable(_without_offset(_directed(component, options.role), offset)))
+            readings.append(usable(_without_offset(_directed(component, asked.options.role), asked.offset)))
         else:
             where = entries[0].table.file.path.name
             readings.append(LeftOut(component.name, component.source, f"use = false in {where}"))
@@ -257,14 +265,14 @@ def _left_out(unusable: Unusable, entries: Sequence[Entry]) -> LeftOut | None:
     return LeftOut(unusable.name, unusable.source, f"use = false in {told.table.file.path.name}")
 
 
-def _read(file: Found, options: ReadOptions, gravity: float) -> Sequence[Component | Unusable]:
+def _read(file: Found, options: ReadOptions, asked: _Asked) -> Sequence[Component | Unusable]:
     """Components of one file, read within a bound."""
     path = archives.bare(file.path)
     data = archives.content(file.path, HEAD)
     if format_of(path.suffix, data) is not None:  # else its first bytes are enough to say what it is not
         data = archives.content(file.path)
-    with bounded(len(data)):
-        return read_record(RecordFile(path, file.source, data, options, gravity, file.root))
+    with asked.watch.bounded(len(data)):
+        return read_record(RecordFile(path, file.source, data, options, asked.gravity, file.root))
 
 
 def _placed(component: Component, path: Path, numbered: bool) -> Component:

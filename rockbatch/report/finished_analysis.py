@@ -1,14 +1,16 @@
 """What a command other than ``rockbatch run`` left in a folder: NAME.json and its tables."""
 
+import hashlib
 import json
+import warnings
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
-from rockbatch.errors import InputError
-from rockbatch.files import read_table, read_text
+from rockbatch.errors import EditedTable, InputError
+from rockbatch.files import read_table, read_text, sha256_of
 from rockbatch.report.labels import quantity
 
 if TYPE_CHECKING:
@@ -30,11 +32,17 @@ class FinishedAnalysis:
     info: dict[str, Any]
 
     def table(self, name: str, columns: Collection[str]) -> "pd.DataFrame | None":
-        """One of its tables; None where NAME.json does not name it, or where it is damaged or lacks a column."""
+        """One of its tables; None where NAME.json does not name it, or where it is damaged or lacks a column.
+
+        Warns of an ``EditedTable``.
+        """
         if name not in self.info.get("files", []):
             return None
+        path, noted = self.directory / name, self.info.get("digests", {}).get(name, {}).get("sha256")
         try:
-            table = read_table(self.directory / name)
+            if noted and sha256_of(path) != noted:
+                _tell(path)
+            table = read_table(path)
         except (OSError, ValueError):
             return None
         return table if len(table) and set(columns) <= set(table.columns) else None
@@ -44,15 +52,32 @@ def read(directory: Path, name: str, sha256: str) -> FinishedAnalysis | None:
     """The analysis ``name`` in a folder.
 
     None where there is none, or where it is of another state of the study than the one with the digest ``sha256``: the
-    report does without.
+    report does without. Warns of an ``EditedTable`` where NAME.json is not as it was written.
     """
+    path = Path(directory) / f"{name}.json"
     try:
-        info = json.loads(read_text(Path(directory) / f"{name}.json"))
-        if info["study"]["sha256"] != sha256:
-            return None
-    except (OSError, ValueError, KeyError, TypeError, RecursionError):
+        info = json.loads(read_text(path))
+        of_study = info["study"]["sha256"]
+        intact = "sha256" not in info or info["sha256"] == digest_of(info)
+    except FileNotFoundError:
         return None
-    return FinishedAnalysis(Path(directory), info)
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
+        of_study, intact = None, False
+    if not intact:
+        _tell(path)
+    return FinishedAnalysis(Path(directory), info) if of_study == sha256 else None
+
+
+def digest_of(info: Mapping[str, Any]) -> str:
+    """Digest of all that NAME.json says, which it has in its own ``sha256``."""
+    said = {key: value for key, value in info.items() if key != "sha256"}
+    return hashlib.sha256(json.dumps(said).encode()).hexdigest()
+
+
+def _tell(path: Path) -> None:
+    """Warn of a file that is not as it was written."""
+    told = f"{path}: not as it was written: it was edited, or is damaged; what can be read of it is shown"
+    warnings.warn(told, EditedTable, stacklevel=3)
 
 
 def of_files(name: str) -> Callable[[Callable[P, T]], Callable[P, T]]:

@@ -22,10 +22,11 @@ from rockbatch.batch.threads import Threads
 from rockbatch.checks import Rule
 from rockbatch.cli import main
 from rockbatch.commands.fragility import table
-from rockbatch.errors import InputError
+from rockbatch.errors import EditedTable, InputError
 from rockbatch.motions.measures import pga, pgv
 from rockbatch.motions.spectrum import spectral_acceleration
 from rockbatch.pier import Damper, ElasticBase, Pier, RigidBase
+from rockbatch.report import finished_analysis
 from rockbatch.report.contents import Contents
 from rockbatch.report.sections.fragility import section
 from rockbatch.results.columns import columns
@@ -490,6 +491,28 @@ def test_the_report_leaves_out_curves_of_another_state_of_the_study(tmp_path):
     assert section(Contents(out, study | {"sha256": "another"})) is None
     assert section(Contents(tmp_path, study)) is None
     assert not (out / "fragility_capacities.csv").exists()
+
+
+def test_what_an_analysis_says_is_told_where_it_was_edited_or_damaged(tmp_path):
+    """Medians stand in fragility.json only: a digit that flipped would be a wrong curve."""
+    _, out = page_of(tmp_path, STRIPES)
+    path, points_csv = out / "fragility.json", out / "fragility.csv"
+    whole = path.read_text(encoding="utf-8")
+    study = json.loads(whole)["study"]
+    first = next(one for one in json.loads(whole)["curves"] if one["median"] is not None)
+    other = whole.replace(f'"median": {first["median"]}', f'"median": {2 * first["median"]}', 1)
+    assert other != whole
+    of_another = whole.replace('"sha256": "', '"sha256": "0')
+    for text, shown in ((other, True), (of_another, False), (whole[:-100], False), ("\xf4" + whole, False)):
+        path.write_text(text, encoding="latin-1")
+        with pytest.warns(EditedTable, match=r"fragility\.json: not as it was written"):
+            assert (section(Contents(out, study)) is not None) == shown
+    path.write_text(whole, encoding="utf-8")
+    assert section(Contents(out, study)) is not None
+    points_csv.write_text(points_csv.read_text(encoding="utf-8").replace("0", "1", 1), encoding="utf-8")
+    found = finished_analysis.read(out, "fragility", study["sha256"])
+    with pytest.warns(EditedTable, match=r"fragility\.csv: not as it was written"):
+        assert found.table("fragility.csv", ()) is not None
 
 
 def test_lists_of_dampers_and_of_zeta_are_cases_with_curves_of_their_own(tmp_path):
