@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -35,6 +36,7 @@ RESTRAINTS = {
     "one side": (Damper("viscous", nu=0.5, at="left"), Damper("hysteretic", f=0.05, yield_m=0.002, at="right")),
 }
 FRICTION = {"both": (Damper("friction", f=0.1),), "middle": (Damper("friction", f=0.1, at=0.0),)}
+NEAR_FAULT = Path(__file__).parents[2] / "motions" / "near_fault"
 SHAKEN = pulse("sine", 0.5, 1.0, end=2.0)
 
 
@@ -170,6 +172,15 @@ def test_the_reversed_motion_gives_the_mirror_image(restraints):
         two = run_fixed(FIG5, tied(base, mirrored), reversed_motion, 4)
         assert one.theta_max == pytest.approx(two.theta_max, rel=1e-11)
         assert (one.status, one.impacts) == (two.status, two.impacts)
+
+
+def test_friction_may_hold_a_pivot_that_its_spring_no_longer_bears():
+    """It lands with ε = 0, unloads to nothing, and stands still there: at any step, without an event that repeats itself."""
+    (motion,) = (m for m in rb.read_motions(NEAR_FAULT) if m.name.endswith("WTMC_20.S62W"))
+    base = tied(YieldingBase(60.0, eta=3.0, epsilon=0.0), (Damper("friction", f=0.03),))
+    coarse, fine = (run_fixed(TOWER, base, motion, steps) for steps in (24, 192))
+    assert (coarse.status, fine.status) == ("ok", "ok")
+    assert coarse.theta_max == pytest.approx(fine.theta_max, rel=1e-7)
 
 
 HARD = {

@@ -104,7 +104,8 @@ def _seen(m, elements, level, y, x, modes, goes, contact, supports, rest, ground
     f, d = signals(under, y, k, contact, supports.left, supports.right, rest, a, c)
     for i in range(OF_ELEMENTS):
         values[i], slopes[i] = f[i], d[i]
-        if i >= LAW_LEFT and abs(f[i]) <= rest and abs(d[i]) <= NO_ACCELERATION * m.gravity:  # friction holds the pivot
+        at_once = abs(f[i]) <= (rest if i >= LAW_LEFT else NO_GAP)
+        if at_once and abs(d[i]) <= NO_ACCELERATION * m.gravity:  # friction holds the pivot, on or just off its spring
             values[i], slopes[i] = 1.0, 0.0
     for j in range(len(elements)):
         at, first = gap(m, elements[j], y, level), OF_ELEMENTS + 3 * j
