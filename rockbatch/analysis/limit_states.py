@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from rockbatch.checks.choices import chooses
-from rockbatch.checks.demands import DEMANDS, Case
+from rockbatch.checks.demands import DEMANDS, Case, has_device
 from rockbatch.checks.rules import Rule
 from rockbatch.checks.suite import of_runs
 from rockbatch.study.fragility import OVERTURNING
@@ -24,7 +24,9 @@ overturned and the check counts that as unknown; it is left out where the check 
 
 def applies(rule: Rule, case: Case) -> bool:
     """Whether a case, as run.json has it, is asked about this limit."""
-    return chooses(rule, str(case["case"]), 1.0) and case["base"] in DEMANDS[rule.demand].bases
+    demand = DEMANDS[rule.demand]
+    tied = not demand.device or has_device(case, demand.device)
+    return chooses(rule, str(case["case"]), 1.0) and case["base"] in demand.bases and tied
 
 
 def threshold(rule: Rule) -> float:

@@ -63,6 +63,8 @@ class Demand:
         Whether it takes the columns that [output] forces = true brings.
     weighed : bool
         Whether it takes the mass of the pier.
+    device : "", "damper" or "tendon"
+        What the pier has to be tied with.
     """
 
     words: str
@@ -75,6 +77,7 @@ class Demand:
     verb: str = ""
     of_forces: bool = False
     weighed: bool = False
+    device: str = ""
 
     @property
     def unit(self) -> str:
@@ -154,6 +157,17 @@ def _toe(settlement: str) -> Callable[["pd.DataFrame", Case], Values]:
 
 def _ductility(runs: "pd.DataFrame", case: Case) -> Found:
     return _without_error(np.maximum(_numbers(runs, "ductility_left"), _numbers(runs, "ductility_right")))
+
+
+def _of_device(words: str, column: str, device: str, factor: float = 1.0) -> Demand:
+    return Demand(words, lambda runs, case: _without_error(factor * _numbers(runs, column)), device=device)
+
+
+def has_device(case: Case, device: str) -> bool:
+    """Whether the pier is tied with a damper, or a tendon; a damper has a kind."""
+    told = case["parameters"].get("restraints")
+    ties = [each for each in told if isinstance(each, Mapping)] if isinstance(told, list) else []
+    return any(("kind" in each) == (device == "damper") for each in ties)
 
 
 def _column(name: str) -> Callable[["pd.DataFrame", Case], Found]:
@@ -236,6 +250,23 @@ _OF_FORCES = {
     "omega_max_over_p": _forces("greatest angular velocity over p", "omega_max_over_p"),
 }
 
+_OF_DEVICES = {
+    "damper_force_over_weight": _of_device(
+        "greatest force of a damper over the pier's weight", "damper_force_over_weight", "damper"
+    ),
+    "damper_stroke_m": _of_device("greatest elongation of a damper [m]", "damper_stroke_m", "damper"),
+    "damper_stroke_mm": _of_device("greatest elongation of a damper [mm]", "damper_stroke_m", "damper", 1000.0),
+    "damper_speed_m_s": _of_device("greatest speed of a damper [m/s]", "damper_speed_m_s", "damper"),
+    "damper_energy_J_kg": _of_device(
+        "energy that all dampers take, over the pier's mass [J/kg]", "damper_energy_J_kg", "damper"
+    ),
+    "tendon_force_over_weight": _of_device(
+        "greatest force of a tendon over the pier's weight", "tendon_force_over_weight", "tendon"
+    ),
+    "tendon_yield_m": _of_device("by how much a tendon is longer for good [m]", "tendon_yield_m", "tendon"),
+    "tendon_slack": _of_device("how often tendons go slack", "tendon_slack", "tendon"),
+}
+
 DEMANDS = {
     "theta_max_over_alpha": _rotation("greatest rotation over α", "theta_max", lambda case: 1.0),
     "theta_max_rad": _rotation("greatest rotation [rad]", "theta_max", _alpha),
@@ -291,6 +322,7 @@ DEMANDS = {
         verb="has a run that is missing or not settled",
     ),
     **_OF_FORCES,
+    **_OF_DEVICES,
     "eta": Demand(
         "bearing capacity index, a support's yield force over its static one",
         _parameter("eta"),

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from rockbatch.checks.choices import chooses, unmet
-from rockbatch.checks.demands import DEMANDS, FORCES, Case
+from rockbatch.checks.demands import DEMANDS, FORCES, Case, has_device
 from rockbatch.checks.rules import Rule
 from rockbatch.checks.statistics import STATISTICS, Values
 from rockbatch.checks.suite import (
@@ -140,6 +140,8 @@ def _verdict(rule: Rule, suite: "pd.DataFrame", case: Case, scale: float, count:
     )
     if case["base"] not in demand.bases:
         return none
+    if demand.device and not has_device(case, demand.device):
+        return replace(none, note=f"the pier has no {demand.device}")
     if demand.weighed and "mass_t" not in case["pier"]:
         return replace(none, note=NOT_WEIGHED)
     if demand.of_the_case:

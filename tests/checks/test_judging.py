@@ -1,11 +1,12 @@
 """Design checks decide as an engineer would by hand, and nothing that went wrong passes unnoticed."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
 import pytest
-from check_samples import ELASTIC, PIER, RIGID, case, runs
+from check_samples import ELASTIC, PADS, PIER, RIGID, case, runs
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -13,7 +14,7 @@ from rockbatch.checks import Rule, judge
 from rockbatch.checks.demands import DEMANDS
 from rockbatch.checks.statistics import STATISTICS, quantile
 from rockbatch.errors import InputError
-from rockbatch.pier import YieldingBase
+from rockbatch.pier import Damper, Tendon, YieldingBase
 
 INF = math.inf
 
@@ -295,7 +296,12 @@ FORCES = {
     "flight_height_m": 0.002,
     "omega_max_over_p": 0.2,
 }
-ROW |= FORCES
+DEVICES = {
+    "damper_force_over_weight": 0.05, "damper_stroke_m": 0.12, "damper_speed_m_s": 0.4, "damper_energy_J_kg": 0.8,
+    "tendon_force_over_weight": 0.3, "tendon_yield_m": 0.004, "tendon_slack": 2,
+}  # fmt: skip
+ROW |= FORCES | DEVICES
+TIED = case(base=replace(PADS, restraints=(Damper("viscous", nu=0.1), Tendon(psi=0.1))))
 B, H = 7.3575 * math.sin(0.2), 7.3575 * math.cos(0.2)
 TILT_OVER_RESIDUAL = 1 - 9.81 * H / (50.0 * B) ** 2
 BY_HAND = {  # value and error for θ_max/α = 0.3, α = 0.2
@@ -329,17 +335,28 @@ BY_HAND = {  # value and error for θ_max/α = 0.3, α = 0.2
     "heel_speed_m_s": (0.7, 0.0),
     "deck_acceleration_g": (0.5, 0.0),
     "landing_velocity_m_s": (0.0, 0.0),
+    **{name: (value, 0.0) for name, value in DEVICES.items()},
+    "damper_stroke_mm": (120.0, 0.0),
 }
 
 
 @pytest.mark.parametrize("demand", DEMANDS)
 def test_every_demand_is_what_a_hand_computes_from_the_row(demand):
     value, error = BY_HAND[demand]
-    found = judged(runs([0.3], **ROW), demand=demand, at_most=100.0)
+    found = judged(runs([0.3], **ROW), one=TIED, demand=demand, at_most=1000.0)
     assert (found.low, found.value, found.high) == tuple(map(pytest.approx, (value - error, value, value + error)))
 
 
-@pytest.mark.parametrize("demand", DEMANDS)
+@pytest.mark.parametrize("demand", [name for name, demand in DEMANDS.items() if demand.device])
+def test_a_demand_on_dampers_or_tendons_does_not_apply_to_a_pier_without(demand):
+    only = {"damper": Tendon(psi=0.1), "tendon": Damper("viscous", nu=0.1)}[DEMANDS[demand].device]
+    for restraints in ((), (only,)):
+        one = case(base=replace(PADS, restraints=restraints))
+        found = judged(runs([0.3]), one=one, demand=demand, at_most=100.0)
+        assert (found.verdict, found.note) == ("does not apply", f"the pier has no {DEMANDS[demand].device}")
+
+
+@pytest.mark.parametrize("demand", [name for name, demand in DEMANDS.items() if not demand.device])
 def test_a_demand_that_a_base_does_not_have_does_not_apply(demand):
     table = pd.concat([runs([0.3], name, **ROW) for name in ("rigid", "elastic", "pads")])
     found = judge([Rule("check", demand, 100.0)], table, [RIGID, ELASTIC, case()])
