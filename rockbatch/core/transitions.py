@@ -24,6 +24,8 @@ from rockbatch.core.types import (
     SPRING_LEFT,
     SPRING_RIGHT,
     Contact,
+    Pull,
+    Springs,
     State,
 )
 
@@ -44,6 +46,21 @@ class Supports(NamedTuple):
 @kernel
 def _mirrored(y):
     return State(y.v, -y.theta, y.v_rate, -y.omega, y.z_right, y.z_left)
+
+
+@kernel
+def _mirrored_pull(pull):
+    if pull is None:
+        return None
+    return Pull(pull.force, -pull.moment)
+
+
+@kernel
+def _mirrored_pier(m):
+    return Springs(
+        m.half_width, m.height, m.inertia, m.gravity, m.yield_deflection, m.stiffness, m.yield_force, m.epsilon,
+        m.damping, m.law, m.guided, m.exponent, m.finite, m.damped, _mirrored_pull(m.pull),
+    )  # fmt: skip
 
 
 @kernel
@@ -89,7 +106,7 @@ def handle(m, y, contact, supports, which, rest, horizontal, vertical):
     if which in (CONTACT_LEFT, LAW_LEFT):
         return _at_left(m, y, contact, supports, which == LAW_LEFT, rest, horizontal, vertical)
     y, contact, supports, kind = _at_left(
-        m, _mirrored(y), _mirrored_contact(contact), Supports(supports.right, supports.left),
+        _mirrored_pier(m), _mirrored(y), _mirrored_contact(contact), Supports(supports.right, supports.left),
         which == LAW_RIGHT, rest, -horizontal, vertical,
     )  # fmt: skip
     return _mirrored(y), _mirrored_contact(contact), Supports(supports.right, supports.left), _mirrored_kind(kind)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from core_samples import FIG5, TOWER, broadband, pulse, steady
+from core_samples import FIG5, TOWER, broadband, hard_case, pulse, steady
 from restrained_reference import TiedTwoSprings
 from scipy.signal import lsim
 
@@ -14,6 +14,7 @@ import rockbatch as rb
 from rockbatch.motions.motion import Motion
 from rockbatch.pier import Damper, ElasticBase, Tendon, YieldingBase, problems
 from rockbatch.simulation import Run, run_fixed, run_to_tolerance, written_run
+from rockbatch.simulation.models import first_substeps
 from rockbatch.units import GRAVITY
 
 ELASTIC = ElasticBase(50.0, zeta=0.05)
@@ -181,6 +182,45 @@ def test_friction_may_hold_a_pivot_that_its_spring_no_longer_bears():
     coarse, fine = (run_fixed(TOWER, base, motion, steps) for steps in (24, 192))
     assert (coarse.status, fine.status) == ("ok", "ok")
     assert coarse.theta_max == pytest.approx(fine.theta_max, rel=1e-7)
+
+
+def drawn(seed, pier):
+    """One to three dampers and tendons at random."""
+    rng = np.random.default_rng(seed)
+    found = ()
+    for kind in rng.choice(["linear", "power", "hysteretic", "tendon", "pair"], rng.integers(1, 4)):
+        at = None if rng.random() < 0.5 else float(rng.uniform(-1.0, 1.0) * pier.half_width)
+        if kind == "linear":
+            found += (Damper("viscous", nu=float(rng.uniform(0.0, 2.0)), at=at),)
+        elif kind == "power":
+            nu, exponent = float(rng.uniform(0.0, 0.5)), float(rng.uniform(1.2, 2.0))
+            found += (Damper("viscous", nu=nu, exponent=exponent, at=at),)
+        elif kind == "hysteretic":
+            f, u = float(rng.uniform(0.0, 0.3)), float(10.0 ** rng.uniform(-3.0, -1.5))
+            found += (Damper("hysteretic", f=f, yield_m=u, at=at),)
+        else:
+            psi, lam = float(rng.uniform(0.0, 0.3)), float(rng.uniform(0.1, 1.5))
+            s = float(rng.uniform(0.1, 1.0) * pier.half_width) if kind == "pair" else 0.0
+            strength = psi + float(rng.uniform(0.01, 0.3)) if kind == "pair" else math.inf
+            found += tuple(Tendon(psi, lam, strength, at=place) for place in ((s, -s) if s else (0.0,)))
+    return found
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [4, 6, 8, 14, 33, 38, 47, 49, 52, 58])
+def test_random_hard_cases_agree_with_the_reference(seed):
+    """Within what half the step changes; of 60 seeds that were drawn so, those that have told most."""
+    pier, base, motion = hard_case(seed)
+    base = tied(base, drawn(seed, pier))
+    if problems(pier, base):
+        base = replace(base, restraints=tuple(each for each in base.restraints if isinstance(each, Damper)))
+    expected = TiedTwoSprings(pier, base, motion, 0.0).run()
+    steps = 4 * first_substeps(pier, base, motion.dt)
+    found, fine = (run_fixed(pier, base, motion, k, 0.0, wait=False) for k in (steps, 2 * steps))
+    assert found.status == expected.status
+    if found.status == "ok":
+        change = abs(found.theta_max - fine.theta_max)
+        assert abs(found.theta_max - expected.theta_max) <= 2.0 * change + 1e-10 * pier.alpha
 
 
 HARD = {

@@ -66,8 +66,8 @@ def _of_element(of, at, state, mode, goes, acceleration, rest, rounding, signals
     speed = surely(at.speed, acceleration, rest)
     if of.kind != TENDON or mode == YIELDING:
         way = OPENS if of.kind == TENDON else goes
-        signals_of[TURNS] = way * speed
-        slopes_of[TURNS] = way * acceleration
+        starts = abs(at.speed) <= rest and way * acceleration > 0.0  # it has just turned, to rounding
+        signals_of[TURNS], slopes_of[TURNS] = rest if starts else way * at.speed, way * acceleration
         return
     pull, rate = tension(of, at.elongation, state), of.stiffness * speed
     sign = 1.0 if mode == TAUT else -1.0
@@ -107,6 +107,8 @@ def _seen(m, elements, level, y, x, modes, goes, contact, supports, rest, ground
         at_once = abs(f[i]) <= (rest if i >= LAW_LEFT else NO_GAP)
         if at_once and abs(d[i]) <= NO_ACCELERATION * m.gravity:  # friction holds the pivot, on or just off its spring
             values[i], slopes[i] = 1.0, 0.0
+        elif i >= LAW_LEFT and abs(f[i]) <= rest and d[i] > 0.0:  # it has just turned, to rounding
+            values[i] = rest
     for j in range(len(elements)):
         at, first = gap(m, elements[j], y, level), OF_ELEMENTS + 3 * j
         acceleration = lifted(y, at, k.v_rate, k.omega)
