@@ -17,13 +17,15 @@ from rockbatch.simulation import Run, run_fixed, run_to_tolerance, written_run
 from rockbatch.simulation.models import first_substeps
 from rockbatch.units import GRAVITY
 
-ELASTIC = ElasticBase(50.0, zeta=0.05)
+ELASTIC = ElasticBase(50.0, epsilon=0.3)
+DAMPED = ElasticBase(50.0, zeta=0.05)
 BOUC_WEN = YieldingBase(50.0, epsilon=0.3, eta=3.0)
 FINITE = YieldingBase(60.0, eta=3.5, spring="epp", zeta=0.1, kinematics="finite", flight="guided")
 BASES = [
     pytest.param(ELASTIC, id="elastic"),
     pytest.param(BOUC_WEN, id="bouc-wen"),
-    pytest.param(FINITE, id="finite", marks=pytest.mark.slow),  # compiled by itself
+    pytest.param(DAMPED, id="damped", marks=pytest.mark.slow),  # these two are compiled by themselves
+    pytest.param(FINITE, id="finite", marks=pytest.mark.slow),
 ]
 RESTRAINTS = {
     "viscous": (Damper("viscous", nu=1.0),),
@@ -106,14 +108,14 @@ def test_elements_of_no_strength_leave_the_run_as_it_is(base, nothing):
     ids=["viscous", "tendon"],
 )
 def test_vertical_vibration_is_that_of_one_mass(restraint, stiffness, damping):
-    """v̈ + (2 ν p + 2 ζ ω_v) v̇ + (ω_v² + k_t) v = −v̈_g, whose solution is exact under a ground linear between samples."""
+    """v̈ + 2 ν p v̇ + (ω_v² + k_t) v = −v̈_g, whose solution is exact under a ground linear between samples."""
     t = np.arange(400) * 0.005
     vertical = 0.2 * GRAVITY * np.sin(9.0 * t) * np.sin(math.pi * t / t[-1])
-    base = ElasticBase(30.0, zeta=0.02, restraints=(restraint,))
+    base = ElasticBase(30.0, restraints=(restraint,))
     found, rows = written_run(Run(FIG5, base, Motion("up", 0.005, 0.0 * t, vertical)), 16, 0.0, 5000, wait=False)
     rows = rows[: found.rows]
     omega = 30.0 * FIG5.p
-    c, k = damping + 2.0 * 0.02 * omega, omega**2 + stiffness
+    c, k = damping, omega**2 + stiffness
     _, _, exact = lsim(([[0.0, 1.0], [-k, -c]], [[0.0], [-1.0]], [[1.0, 0.0]], [[0.0]]), vertical, t)
     exact = np.ravel(exact if exact.ndim == 1 else exact[:, 0])
     assert np.abs(rows.theta).max() == 0.0
@@ -207,7 +209,7 @@ def drawn(seed, pier):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", [4, 6, 8, 14, 33, 38, 47, 49, 52, 58])
+@pytest.mark.parametrize("seed", [33, 38, 47, 49, 52])
 def test_random_hard_cases_agree_with_the_reference(seed):
     """Within what half the step changes; of 60 seeds that were drawn so, those that have told most."""
     pier, base, motion = hard_case(seed)
@@ -241,6 +243,7 @@ HARD = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", HARD)
 def test_hard_cases_end_and_their_errors_are_within_those_reported(name):
     base = HARD[name]

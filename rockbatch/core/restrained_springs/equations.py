@@ -8,6 +8,8 @@ with them. What is integrated beside its State, x: the state of each element, th
 import math
 from typing import NamedTuple
 
+import numpy as np
+
 from rockbatch.core.creep import share_left, with_creep
 from rockbatch.core.equations import accelerations, along, geometry, pulled, rates
 from rockbatch.core.kernel import kernel
@@ -18,6 +20,15 @@ from rockbatch.core.trigonometry import sine_and_cosine
 from rockbatch.core.types import State
 
 NONE = -1
+
+
+class Ties(NamedTuple):
+    """The elements of a run, and what of them is constant between events."""
+
+    elements: np.recarray  # of Element
+    level: float  # v of the pier at rest [m]
+    modes: np.ndarray  # of tendons: TAUT, SLACK or YIELDING
+    goes: np.ndarray  # OPENS, CLOSES or, of friction, STICKS
 
 
 class Gap(NamedTuple):
@@ -49,26 +60,12 @@ def lifted(y, at, v_acceleration, theta_acceleration):
 
 
 @kernel
-def sticking(elements, goes, after):
+def sticking(ties, after):
     """Number of the next friction damper behind ``after`` that does not move, NONE without one."""
-    for j in range(after + 1, len(elements)):
-        if elements[j].kind == FRICTION and goes[j] == STICKS:
+    for j in range(after + 1, len(ties.elements)):
+        if ties.elements[j].kind == FRICTION and ties.goes[j] == STICKS:
             return j
     return NONE
-
-
-@kernel
-def moving_pull(m, elements, level, y, x, modes, goes):
-    """``m`` under all elements but the friction dampers that do not move."""
-    total, moment = 0.0, 0.0
-    for j in range(len(elements)):
-        if elements[j].kind == FRICTION and goes[j] == STICKS:
-            continue
-        at = gap(m, elements[j], y, level)
-        one = force(elements[j], at.elongation, at.speed, x[j], modes[j], goes[j])
-        total += one
-        moment += one * at.arm
-    return pulled(m, total, moment)
 
 
 @kernel
@@ -100,40 +97,40 @@ def _held_by_friction(m, first, second, y, contact, horizontal, vertical):
 
 
 @kernel
-def under_elements(m, elements, level, y, x, modes, goes, contact, horizontal, vertical):
+def under_elements(m, ties, y, x, contact, horizontal, vertical):
     """The pier ``m`` under all elements, and the forces [m/s²] of the first two friction dampers that do not move."""
     total, moment = 0.0, 0.0
-    for j in range(len(elements)):
-        if elements[j].kind == FRICTION and goes[j] == STICKS:
+    for j in range(len(ties.elements)):
+        if ties.elements[j].kind == FRICTION and ties.goes[j] == STICKS:
             continue
-        at = gap(m, elements[j], y, level)
-        one = force(elements[j], at.elongation, at.speed, x[j], modes[j], goes[j])
+        at = gap(m, ties.elements[j], y, ties.level)
+        one = force(ties.elements[j], at.elongation, at.speed, x[j], ties.modes[j], ties.goes[j])
         total += one
         moment += one * at.arm
-    first = sticking(elements, goes, NONE)
+    first = sticking(ties, NONE)
     if first == NONE:
         return pulled(m, total, moment), 0.0, 0.0
-    second = sticking(elements, goes, first)
-    here = gap(m, elements[first], y, level)
-    there = gap(m, elements[second], y, level) if second != NONE else here
+    second = sticking(ties, first)
+    here = gap(m, ties.elements[first], y, ties.level)
+    there = gap(m, ties.elements[second], y, ties.level) if second != NONE else here
     one, two = _held_by_friction(pulled(m, total, moment), here, there, y, contact, horizontal, vertical)
     return pulled(m, total + one + two, moment + one * here.arm + two * there.arm), one, two
 
 
 @kernel
-def all_rates(m, elements, level, y, x, modes, goes, contact, horizontal, vertical, k):
+def all_rates(m, ties, y, x, contact, horizontal, vertical, k):
     """Rates of the State ``y``, and of ``x`` into ``k``; then what :func:`under_elements` has."""
-    n = len(elements)
-    under, one, two = under_elements(m, elements, level, y, x, modes, goes, contact, horizontal, vertical)
+    n = len(ties.elements)
+    under, one, two = under_elements(m, ties, y, x, contact, horizontal, vertical)
     for j in range(n):
-        of = elements[j]
-        at = gap(m, of, y, level)
+        of = ties.elements[j]
+        at = gap(m, of, y, ties.level)
         k[j], k[n + j] = 0.0, 0.0
-        if of.kind == FRICTION and goes[j] == STICKS:
+        if of.kind == FRICTION and ties.goes[j] == STICKS:
             continue
-        pull = force(of, at.elongation, at.speed, x[j], modes[j], goes[j])
-        k[j] = state_rate(of, at.speed, x[j], modes[j], goes[j])
-        k[n + j] = loss_rate(of, at.speed, pull, modes[j])
+        pull = force(of, at.elongation, at.speed, x[j], ties.modes[j], ties.goes[j])
+        k[j] = state_rate(of, at.speed, x[j], ties.modes[j], ties.goes[j])
+        k[n + j] = loss_rate(of, at.speed, pull, ties.modes[j])
     at = geometry(m, y.theta)
     lever = at.lever + (contact.right - contact.left) * at.swing
     k[2 * n] = -horizontal * lever * y.omega - vertical * y.v_rate
@@ -142,27 +139,27 @@ def all_rates(m, elements, level, y, x, modes, goes, contact, horizontal, vertic
 
 
 @kernel
-def longest(m, elements, level, y, x, modes, goes, contact, ground, h, dt):
+def longest(m, ties, y, x, contact, ground, h, dt):
     """The longest step [s], ``h`` at most, that resolves hysteretic dampers, as ``restrained.equations.longest`` has it."""
     share, asked = 1.0, False
-    for j in range(len(elements)):
-        asked = asked or (elements[j].kind == HYSTERETIC and goes[j] * x[j] < 1.0)
+    for j in range(len(ties.elements)):
+        asked = asked or (ties.elements[j].kind == HYSTERETIC and ties.goes[j] * x[j] < 1.0)
     if not asked:
         return h
     a, c = ground.horizontal, ground.vertical
-    under, _, _ = under_elements(m, elements, level, y, x, modes, goes, contact, a, c)
+    under, _, _ = under_elements(m, ties, y, x, contact, a, c)
     v_acceleration, theta_acceleration = accelerations(under, y, contact, geometry(m, y.theta), a, c)
-    for j in range(len(elements)):
-        of = elements[j]
-        if of.kind == HYSTERETIC and goes[j] * x[j] < 1.0:
-            at = gap(m, of, y, level)
+    for j in range(len(ties.elements)):
+        of = ties.elements[j]
+        if of.kind == HYSTERETIC and ties.goes[j] * x[j] < 1.0:
+            at = gap(m, of, y, ties.level)
             way = (abs(at.speed) + abs(lifted(y, at, v_acceleration, theta_acceleration)) * h) * dt * of.stiffness
             share = min(share, TRAVEL / way) if way > 0.0 else share
     return share * h
 
 
 @kernel
-def step(m, elements, level, y, x, modes, goes, contact, ground, h, work, end_x):
+def step(m, ties, y, x, contact, ground, h, work, end_x):
     """One Runge–Kutta step of order 4 over ``h`` [s]: the State, and ``x`` into ``end_x``. ``work``: rates and a stage."""
     kx, stage = work[0], work[1]
     middle = share_left(m, 0.5 * h)
@@ -172,7 +169,7 @@ def step(m, elements, level, y, x, modes, goes, contact, ground, h, work, end_x)
     for part in range(4):
         t = 0.0 if part == 0 else (h if part == 3 else 0.5 * h)
         a, c = ground.horizontal + t * ground.horizontal_slope, ground.vertical + t * ground.vertical_slope
-        k, _, _, _ = all_rates(m, elements, level, now, stage, modes, goes, contact, a, c, kx)
+        k, _, _, _ = all_rates(m, ties, now, stage, contact, a, c, kx)
         weight = h / 6.0 if part in (0, 3) else h / 3.0
         total = along(total, k, weight)
         ahead = h if part == 2 else 0.5 * h
@@ -180,8 +177,8 @@ def step(m, elements, level, y, x, modes, goes, contact, ground, h, work, end_x)
         for i in range(len(x)):
             end_x[i] += weight * kx[i]
             stage[i] = x[i] + ahead * kx[i]
-    for j in range(len(elements)):
-        if elements[j].kind == HYSTERETIC and abs(end_x[j]) > 1.0 - PLASTIC:
+    for j in range(len(ties.elements)):
+        if ties.elements[j].kind == HYSTERETIC and abs(end_x[j]) > 1.0 - PLASTIC:
             end_x[j] = math.copysign(1.0, end_x[j])
     end = along(y, total, 1.0)
     left, right = within_yield(end.z_left, contact.left_yields), within_yield(end.z_right, contact.right_yields)

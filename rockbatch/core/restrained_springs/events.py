@@ -79,28 +79,28 @@ def _of_element(of, at, state, mode, goes, acceleration, rest, rounding, signals
 
 
 @kernel
-def _of_friction(m, elements, level, y, x, modes, goes, contact, k, kx, ground, h, forces, work, values, slopes):
+def _of_friction(m, ties, y, x, contact, k, kx, ground, h, forces, work, values, slopes):
     """What friction dampers that do not move could hold more; its rate from a moment later."""
     near, later_x = NEARBY * h, work[1]
     for i in range(len(x)):
         later_x[i] = x[i] + near * kx[i]
     a, c = ground.horizontal + near * ground.horizontal_slope, ground.vertical + near * ground.vertical_slope
-    _, one, two = under_elements(m, elements, level, along(y, k, near), later_x, modes, goes, contact, a, c)
+    _, one, two = under_elements(m, ties, along(y, k, near), later_x, contact, a, c)
     j, later_forces = NONE, (one, two)
     for number in range(2):
-        j = sticking(elements, goes, j)
+        j = sticking(ties, j)
         if j == NONE:
             return
-        at, strength = OF_ELEMENTS + 3 * j + GIVES, elements[j].strength
+        at, strength = OF_ELEMENTS + 3 * j + GIVES, ties.elements[j].strength
         values[at] = strength - abs(forces[number])
         slopes[at] = (abs(forces[number]) - abs(later_forces[number])) / near
 
 
 @kernel
-def _seen(m, elements, level, y, x, modes, goes, contact, supports, rest, ground, h, work, values, slopes):
+def _seen(m, ties, y, x, contact, supports, rest, ground, h, work, values, slopes):
     """Signals of a state and their slopes, at the start of ``ground``; the state's rates."""
     kx, a, c = work[0], ground.horizontal, ground.vertical
-    k, under, one, two = all_rates(m, elements, level, y, x, modes, goes, contact, a, c, kx)
+    k, under, one, two = all_rates(m, ties, y, x, contact, a, c, kx)
     f, d = signals(under, y, k, contact, supports.left, supports.right, rest, a, c)
     for i in range(OF_ELEMENTS):
         values[i], slopes[i] = f[i], d[i]
@@ -109,32 +109,24 @@ def _seen(m, elements, level, y, x, modes, goes, contact, supports, rest, ground
             values[i], slopes[i] = 1.0, 0.0
         elif i >= LAW_LEFT and abs(f[i]) <= rest and d[i] > 0.0:  # it has just turned, to rounding
             values[i] = rest
-    for j in range(len(elements)):
-        at, first = gap(m, elements[j], y, level), OF_ELEMENTS + 3 * j
+    for j in range(len(ties.elements)):
+        at, first = gap(m, ties.elements[j], y, ties.level), OF_ELEMENTS + 3 * j
         acceleration = lifted(y, at, k.v_rate, k.omega)
         if abs(acceleration) <= NO_ACCELERATION * m.gravity:
             acceleration = 0.0
         _of_element(
-            elements[j],
-            at,
-            x[j],
-            modes[j],
-            goes[j],
-            acceleration,
-            rest,
-            NO_GAP * m.yield_deflection,
-            values[first : first + 3],
-            slopes[first : first + 3],
-        )
-        if elements[j].kind == FRICTION and goes[j] == STICKS:
+            ties.elements[j], at, x[j], ties.modes[j], ties.goes[j], acceleration, rest, NO_GAP * m.yield_deflection,
+            values[first : first + 3], slopes[first : first + 3],
+        )  # fmt: skip
+        if ties.elements[j].kind == FRICTION and ties.goes[j] == STICKS:
             values[first], slopes[first] = 1.0, 0.0
-    if sticking(elements, goes, NONE) != NONE:
-        _of_friction(m, elements, level, y, x, modes, goes, contact, k, kx, ground, h, (one, two), work, values, slopes)
+    if sticking(ties, NONE) != NONE:
+        _of_friction(m, ties, y, x, contact, k, kx, ground, h, (one, two), work, values, slopes)
     return k
 
 
 @kernel
-def piece(m, elements, level, y, x, modes, goes, contact, supports, rest, ground, h, work, marks, end_x):
+def piece(m, ties, y, x, contact, supports, rest, ground, h, work, marks, end_x):
     """From ``y`` and ``x`` over ``h`` [s] or to the first event before.
 
     ``marks``, shape (6, signals), keeps values and slopes of the signals at both ends of where the event is, and at the trial.
@@ -148,24 +140,8 @@ def piece(m, elements, level, y, x, modes, goes, contact, supports, rest, ground
     a, b, t, which, last = 0.0, h, 0.0, NONE, False
     end, k, k_start = y, y, y
     for trial in range(TRIALS + 3):
-        end = step(m, elements, level, y, x, modes, goes, contact, ground, t, work, end_x)
-        k = _seen(
-            m,
-            elements,
-            level,
-            end,
-            end_x,
-            modes,
-            goes,
-            contact,
-            supports,
-            rest,
-            later(ground, t),
-            h,
-            work,
-            now,
-            now_slopes,
-        )
+        end = step(m, ties, y, x, contact, ground, t, work, end_x)
+        k = _seen(m, ties, end, end_x, contact, supports, rest, later(ground, t), h, work, now, now_slopes)
         if last:
             break
         if trial == 0:
@@ -202,85 +178,88 @@ def piece(m, elements, level, y, x, modes, goes, contact, supports, rest, ground
 
 
 @kernel
-def _consistent(m, elements, level, y, x, modes, goes, contact, horizontal, vertical, first, second):
+def _consistent(m, ties, y, x, contact, horizontal, vertical, first, second):
     """Whether the friction dampers ``first`` and ``second``, without velocity, can do what ``goes`` says of them."""
-    under, one, two = under_elements(m, elements, level, y, x, modes, goes, contact, horizontal, vertical)
+    under, one, two = under_elements(m, ties, y, x, contact, horizontal, vertical)
     v_acceleration, theta_acceleration = accelerations(under, y, contact, geometry(m, y.theta), horizontal, vertical)
-    holding = sticking(elements, goes, NONE)
+    holding = sticking(ties, NONE)
     for j in (first, second):
         if j == NONE:
             continue
-        if goes[j] == STICKS:
-            if abs(one if j == holding else two) > (1.0 + SURE) * elements[j].strength:
+        if ties.goes[j] == STICKS:
+            if abs(one if j == holding else two) > (1.0 + SURE) * ties.elements[j].strength:
                 return False
-        elif goes[j] * lifted(y, gap(m, elements[j], y, level), v_acceleration, theta_acceleration) <= 0.0:
+        elif (
+            ties.goes[j] * lifted(y, gap(m, ties.elements[j], y, ties.level), v_acceleration, theta_acceleration) <= 0.0
+        ):
             return False
     return True
 
 
 @kernel
-def settle_friction(m, elements, level, y, x, modes, goes, contact, horizontal, vertical):
+def settle_friction(m, ties, y, x, contact, horizontal, vertical):
     """What friction dampers without velocity do from here on: hold where they can, else go where the others take them."""
-    first = sticking(elements, goes, NONE)
+    first = sticking(ties, NONE)
     if first == NONE:
         return
-    second = sticking(elements, goes, first)
+    second = sticking(ties, first)
     for way in WAYS:
         if second == NONE and way[1] != STICKS:
             continue
-        goes[first] = way[0]
+        ties.goes[first] = way[0]
         if second != NONE:
-            goes[second] = way[1]
-        if _consistent(m, elements, level, y, x, modes, goes, contact, horizontal, vertical, first, second):
+            ties.goes[second] = way[1]
+        if _consistent(m, ties, y, x, contact, horizontal, vertical, first, second):
             return
-    goes[first] = STICKS  # what rounding leaves
+    ties.goes[first] = STICKS  # what rounding leaves
     if second != NONE:
-        goes[second] = STICKS
+        ties.goes[second] = STICKS
 
 
 @kernel
-def start_elements(m, elements, level, y, x, modes, goes):
+def start_elements(m, ties, y, x):
     """Modes and directions at rest."""
-    for j in range(len(elements)):
-        goes[j] = STICKS if elements[j].kind == FRICTION and elements[j].strength > 0.0 else OPENS
-        modes[j] = mode_of(elements[j], gap(m, elements[j], y, level).elongation, x[j], OPENS)
+    for j in range(len(ties.elements)):
+        ties.goes[j] = STICKS if ties.elements[j].kind == FRICTION and ties.elements[j].strength > 0.0 else OPENS
+        ties.modes[j] = mode_of(ties.elements[j], gap(m, ties.elements[j], y, ties.level).elongation, x[j], OPENS)
 
 
 @kernel
-def happen_to_element(m, elements, level, y, x, modes, goes, contact, horizontal, vertical, signal):
+def happen_to_element(m, ties, y, x, contact, horizontal, vertical, signal):
     """What the fall of an element's ``signal`` makes of it; whether a tendon has gone slack."""
     j, what = (signal - OF_ELEMENTS) // 3, (signal - OF_ELEMENTS) % 3
-    of = elements[j]
+    of = ties.elements[j]
     if of.kind == TENDON:
-        modes[j] = TAUT if what == TURNS else change_tendon(of, modes[j], what == GIVES)
-        return modes[j] == SLACK
+        ties.modes[j] = TAUT if what == TURNS else change_tendon(of, ties.modes[j], what == GIVES)
+        return ties.modes[j] == SLACK
     if of.kind == FRICTION and what == GIVES:
-        _, one, two = under_elements(m, elements, level, y, x, modes, goes, contact, horizontal, vertical)
-        holds = one if sticking(elements, goes, NONE) == j else two
-        goes[j] = OPENS if holds > 0.0 else CLOSES
+        _, one, two = under_elements(m, ties, y, x, contact, horizontal, vertical)
+        holds = one if sticking(ties, NONE) == j else two
+        ties.goes[j] = OPENS if holds > 0.0 else CLOSES
     elif of.kind == FRICTION and of.strength > 0.0:
-        goes[j] = STICKS
+        ties.goes[j] = STICKS
     else:
-        goes[j] = -goes[j]
-    settle_friction(m, elements, level, y, x, modes, goes, contact, horizontal, vertical)
+        ties.goes[j] = -ties.goes[j]
+    settle_friction(m, ties, y, x, contact, horizontal, vertical)
     return False
 
 
 @kernel
-def after_contact(m, elements, level, y, x, modes, goes, contact, rest, horizontal, vertical):
+def after_contact(m, ties, y, x, contact, rest, horizontal, vertical):
     """Directions and modes once an event at a pivot may have made all velocities jump."""
-    for j in range(len(elements)):
-        speed = gap(m, elements[j], y, level).speed
+    for j in range(len(ties.elements)):
+        speed = gap(m, ties.elements[j], y, ties.level).speed
         if abs(speed) <= rest:
             continue
-        if elements[j].kind != TENDON:
-            goes[j] = OPENS if speed > 0.0 else CLOSES
-        elif modes[j] == YIELDING and speed < 0.0:
-            modes[j] = TAUT
+        if ties.elements[j].kind != TENDON:
+            ties.goes[j] = OPENS if speed > 0.0 else CLOSES
+        elif ties.modes[j] == YIELDING and speed < 0.0:
+            ties.modes[j] = TAUT
         elif (
-            modes[j] == TAUT
+            ties.modes[j] == TAUT
             and speed > 0.0
-            and tension(elements[j], gap(m, elements[j], y, level).elongation, x[j]) >= elements[j].strength
+            and tension(ties.elements[j], gap(m, ties.elements[j], y, ties.level).elongation, x[j])
+            >= ties.elements[j].strength
         ):
-            modes[j] = YIELDING
-    settle_friction(m, elements, level, y, x, modes, goes, contact, horizontal, vertical)
+            ties.modes[j] = YIELDING
+    settle_friction(m, ties, y, x, contact, horizontal, vertical)

@@ -17,7 +17,7 @@ from rockbatch.core.lanes import contact_of, ground_of, model_of, put_state, sta
 from rockbatch.core.outcome import fallen
 from rockbatch.core.recording import LINE, RESULT, write
 from rockbatch.core.restrained.elements import ELEMENT, HYSTERETIC, STICKS, TENDON, USE, VISCOUS, force, stored
-from rockbatch.core.restrained_springs.equations import gap, lifted, longest, under_elements
+from rockbatch.core.restrained_springs.equations import Ties, gap, lifted, longest, under_elements
 from rockbatch.core.restrained_springs.events import (
     NONE,
     OF_ELEMENTS,
@@ -38,64 +38,67 @@ OF_A_ROW = 2
 """What a row of ``notes`` has beside x: force [m/s²] and moment [m²/s²] of all elements."""
 
 
-class Tie(NamedTuple):
-    """What the elements of a run are while it is under way."""
+class Course(NamedTuple):
+    """What the elements of a run go through while it is under way."""
 
-    elements: np.recarray  # of Element
+    ties: Ties
     use: np.recarray  # of Use
-    modes: np.ndarray
-    goes: np.ndarray
     x: np.ndarray  # states, energies taken, work of the ground, P–Δ of the elements
     end: np.ndarray  # the same at the end of a piece
     work: np.ndarray  # shape (2, len(x))
     marks: np.ndarray  # shape (6, signals)
     notes: np.ndarray  # shape (rows of the history, len(x) + 2)
-    level: np.ndarray  # shape (1,): v at rest at the start [m]
 
 
 @kernel
-def _note(m, tie, row, y, contact, ground):
+def _at_rest(course, level):
+    """``course`` of a pier that is at rest at v = ``level`` [m]."""
+    ties = course.ties
+    ties = Ties(ties.elements, level, ties.modes, ties.goes)
+    return Course(ties, course.use, course.x, course.end, course.work, course.marks, course.notes)
+
+
+@kernel
+def _note(m, course, row, y, contact, ground):
     """What the elements are at a row of the history."""
-    if not 0 <= row < len(tie.notes):
+    if not 0 <= row < len(course.notes):
         return
-    under, _, _ = under_elements(
-        m, tie.elements, tie.level[0], y, tie.x, tie.modes, tie.goes, contact, ground.horizontal, ground.vertical
-    )
-    line = tie.notes[row]
-    for i in range(len(tie.x)):
-        line[i] = tie.x[i]
-    line[len(tie.x)], line[len(tie.x) + 1] = under.pull.force, under.pull.moment
+    under, _, _ = under_elements(m, course.ties, y, course.x, contact, ground.horizontal, ground.vertical)
+    line = course.notes[row]
+    for i in range(len(course.x)):
+        line[i] = course.x[i]
+    line[len(course.x)], line[len(course.x) + 1] = under.pull.force, under.pull.moment
 
 
 @kernel
-def _write(lanes, m, tie, history, row, t, kind, ground):
+def _write(lanes, m, course, history, row, t, kind, ground):
     """A row of the history with its notes, of what stands in the lane; the next row."""
     y, contact = state(lanes.now, 0), contact_of(lanes, 0)
-    _note(m, tie, row, y, contact, ground)
+    _note(m, course, row, y, contact, ground)
     return write(history, row, t, y, contact, kind)
 
 
 @kernel
-def _take_in(m, tie, y, k, end, k_end, h):
+def _take_in(m, course, y, k, end, k_end, h):
     """What the elements have been through in a piece of ``h`` [s]."""
-    n = len(tie.elements)
+    n = len(course.ties.elements)
     for j in range(n):
-        of, line = tie.elements[j], tie.use[j]
-        was, now = gap(m, of, y, tie.level[0]), gap(m, of, end, tie.level[0])
+        of, line = course.ties.elements[j], course.use[j]
+        was, now = gap(m, of, y, course.ties.level), gap(m, of, end, course.ties.level)
         line.stroke = largest_within(was.elongation, was.speed, now.elongation, now.speed, h, line.stroke)[1]
         lift, lift_end = lifted(y, was, k.v_rate, k.omega), lifted(end, now, k_end.v_rate, k_end.omega)
         found, fastest = largest_within(was.speed, lift, now.speed, lift_end, h, line.speed)
         line.speed = fastest
-        pull = force(of, now.elongation, now.speed, tie.end[j], tie.modes[j], tie.goes[j])
+        pull = force(of, now.elongation, now.speed, course.end[j], course.ties.modes[j], course.ties.goes[j])
         if of.kind == VISCOUS and found >= 0.0:
-            pull = math.copysign(of.coefficient * fastest**of.exponent, tie.goes[j])
+            pull = math.copysign(of.coefficient * fastest**of.exponent, course.ties.goes[j])
         line.most, line.least = max(line.most, pull), min(line.least, pull)
-        line.lost = tie.end[n + j]
-        line.yielded = tie.end[j] if of.kind == TENDON else 0.0
+        line.lost = course.end[n + j]
+        line.yielded = course.end[j] if of.kind == TENDON else 0.0
 
 
 @kernel
-def _in_elements(lanes, m, tie, y):
+def _in_elements(lanes, m, course, y):
     """The load [m/s²] that supports carry at rest, and the energy [J/kg] that elements may give back beyond its work.
 
     A tendon's force falls with its elongation or stays: its energy lies above the tangent at any elongation, and that where
@@ -104,16 +107,16 @@ def _in_elements(lanes, m, tie, y):
     left, right = base_of(lanes, 0, m)
     sunk = 0.5 * (left + right) - lanes.motion.plastic[0]
     load, beyond, turning = m.gravity, 0.0, 0.0
-    for j in range(len(tie.elements)):
-        of, plastic = tie.elements[j], tie.x[j]
+    for j in range(len(course.ties.elements)):
+        of, plastic = course.ties.elements[j], course.x[j]
         if of.kind == HYSTERETIC:
             beyond += 0.5 * of.strength * plastic * plastic / of.stiffness
         if of.kind != TENDON:
             continue
-        resting = gap(m, of, State(tie.level[0] + sunk, 0.0, 0.0, 0.0, 0.0, 0.0), tie.level[0]).elongation
+        resting = gap(m, of, State(course.ties.level + sunk, 0.0, 0.0, 0.0, 0.0, 0.0), course.ties.level).elongation
         pull = force(of, resting, 0.0, plastic, 0.0, 0.0)
         pull = min(max(pull, 0.0), of.strength)
-        now = gap(m, of, y, tie.level[0]).elongation
+        now = gap(m, of, y, course.ties.level).elongation
         beyond += stored(of, now, plastic) - stored(of, resting, plastic) - pull * (now - resting)
         load += pull
         turning += pull * of.offset
@@ -121,51 +124,51 @@ def _in_elements(lanes, m, tie, y):
 
 
 @kernel
-def _event(lanes, m, tie, which, t, x, ground, every_step, history, row):
+def _event(lanes, m, course, which, t, x, ground, every_step, history, row):
     """Event ``which`` at ``t`` [s], ``x`` [s] after the sample, in the state that stands in the lane: status and next row."""
-    y, contact, rest, level = state(lanes.now, 0), contact_of(lanes, 0), lanes.motion.rest[0], tie.level[0]
+    y, contact, rest = state(lanes.now, 0), contact_of(lanes, 0), lanes.motion.rest[0]
     here = ground_of(lanes, 0, x)
     a, c = here.horizontal, here.vertical
     if which >= OF_ELEMENTS:
         if every_step:
-            row = _write(lanes, m, tie, history, row, t, STEP, here)
-        slack = happen_to_element(m, tie.elements, level, y, tie.x, tie.modes, tie.goes, contact, a, c, which)
-        tie.use[(which - OF_ELEMENTS) // 3].slack += 1.0 if slack else 0.0
+            row = _write(lanes, m, course, history, row, t, STEP, here)
+        slack = happen_to_element(m, course.ties, y, course.x, contact, a, c, which)
+        course.use[(which - OF_ELEMENTS) // 3].slack += 1.0 if slack else 0.0
         if every_step:
-            row = _write(lanes, m, tie, history, row, t, STEP, here)
+            row = _write(lanes, m, course, history, row, t, STEP, here)
         return SURVIVED, row
-    under, _, _ = under_elements(m, tie.elements, level, y, tie.x, tie.modes, tie.goes, contact, a, c)
-    _note(m, tie, row, y, contact, here)
+    under, _, _ = under_elements(m, course.ties, y, course.x, contact, a, c)
+    _note(m, course, row, y, contact, here)
     status, after, row = happen(lanes, 0, under, y, contact, which, t, x, ground, history, row)
     y = state(lanes.now, 0)
-    after_contact(m, tie.elements, level, y, tie.x, tie.modes, tie.goes, after, rest, a, c)
-    _note(m, tie, row - 1, y, after, here)
+    after_contact(m, course.ties, y, course.x, after, rest, a, c)
+    _note(m, course, row - 1, y, after, here)
     return status, row
 
 
 @kernel
-def _step(lanes, m, tie, ground, sub, every_step, history, row):
+def _step(lanes, m, course, ground, sub, every_step, history, row):
     """A step of the run, piece by piece: status (SURVIVED while it goes on), time [s] and next row of the history."""
-    h, t_sample, level = lanes.clock.step[0], lanes.clock.sample_time[0], tie.level[0]
+    h, t_sample = lanes.clock.step[0], lanes.clock.sample_time[0]
     start, done_so_far, events = sub * h, 0.0, 0
     while done_so_far < h:
         y, contact, supports = state(lanes.now, 0), contact_of(lanes, 0), supports_of(lanes, 0)
         x, left = start + done_so_far, h - done_so_far
         here, dt = ground_of(lanes, 0, x), lanes.clock.dt[0]
-        most = min(left, longest(m, tie.elements, level, y, tie.x, tie.modes, tie.goes, contact, here, h, dt))
+        most = min(left, longest(m, course.ties, y, course.x, contact, here, h, dt))
         used, which, end, k, k_end = piece(
-            m, tie.elements, level, y, tie.x, tie.modes, tie.goes, contact, supports, lanes.motion.rest[0], here, most,
-            tie.work, tie.marks, tie.end,
+            m, course.ties, y, course.x, contact, supports, lanes.motion.rest[0], here, most,
+            course.work, course.marks, course.end,
         )  # fmt: skip
         include(lanes, 0, m, y, end, contact, t_sample + x, used)
-        _take_in(m, tie, y, k, end, k_end, used)
-        for i in range(len(tie.x)):
-            tie.x[i] = tie.end[i]
+        _take_in(m, course, y, k, end, k_end, used)
+        for i in range(len(course.x)):
+            course.x[i] = course.end[i]
         put_state(lanes.now, 0, end)
         done_so_far = done_so_far + used if used < left else h
         if which != NONE:
             t = t_sample + start + done_so_far
-            status, row = _event(lanes, m, tie, which, t, start + done_so_far, ground, every_step, history, row)
+            status, row = _event(lanes, m, course, which, t, start + done_so_far, ground, every_step, history, row)
             events += 1
             if status == SURVIVED and events > MOST_EVENTS:
                 status = CHATTER
@@ -173,31 +176,30 @@ def _step(lanes, m, tie, ground, sub, every_step, history, row):
                 return status, t, row
         elif every_step and done_so_far < h:
             x = start + done_so_far
-            row = _write(lanes, m, tie, history, row, t_sample + x, STEP, ground_of(lanes, 0, x))
+            row = _write(lanes, m, course, history, row, t_sample + x, STEP, ground_of(lanes, 0, x))
     return fallen(lanes.now.theta[0]), t_sample + start + h, row
 
 
 @entry
-def _rock(traits, runs, tie, ground, stop, every_step, history, lanes_table, results):
+def _rock(traits, runs, course, ground, stop, every_step, history, lanes_table, results):
     """The run, as :func:`rock_restrained_on_springs` has it."""
     lanes = lanes_table[0]
     begin(lanes, 0, np.int64(0), runs, ground, traits, True)
     m = model_of(lanes, 0, traits)
     y, contact = state(lanes.now, 0), contact_of(lanes, 0)
-    tie.level[0] = y.v
-    under = ground_of(lanes, 0, 0.0)
-    start_elements(m, tie.elements, y.v, y, tie.x, tie.modes, tie.goes)
-    settle_friction(m, tie.elements, y.v, y, tie.x, tie.modes, tie.goes, contact, under.horizontal, under.vertical)
+    course, under = _at_rest(course, y.v), ground_of(lanes, 0, 0.0)
+    start_elements(m, course.ties, y, course.x)
+    settle_friction(m, course.ties, y, course.x, contact, under.horizontal, under.vertical)
     lanes.counts.moved[0] = math.inf  # what rocks and what vibrates are not told apart where elements couple them
-    row = _write(lanes, m, tie, history, np.int64(0), 0.0, SAMPLE, under)
+    row = _write(lanes, m, course, history, np.int64(0), 0.0, SAMPLE, under)
     status, t = done(lanes, 0, traits), 0.0
     while status == RUNNING and stop[0] == 0:
         substeps = int(lanes.clock.substeps[0])
         for sub in range(substeps):
-            status, t, row = _step(lanes, m, tie, ground, sub, every_step, history, row)
+            status, t, row = _step(lanes, m, course, ground, sub, every_step, history, row)
             if status != SURVIVED or (every_step and sub < substeps - 1):
                 here = ground_of(lanes, 0, (sub + 1) * lanes.clock.step[0])
-                row = _write(lanes, m, tie, history, row, t, STEP, here)
+                row = _write(lanes, m, course, history, row, t, STEP, here)
             if status != SURVIVED:
                 break
         if status == SURVIVED:
@@ -206,13 +208,11 @@ def _rock(traits, runs, tie, ground, stop, every_step, history, lanes_table, res
             put_ground(lanes, 0, ground)
             here = ground_of(lanes, 0, 0.0)
             y, contact = state(lanes.now, 0), contact_of(lanes, 0)
-            settle_friction(
-                m, tie.elements, tie.level[0], y, tie.x, tie.modes, tie.goes, contact, here.horizontal, here.vertical
-            )
-            row = _write(lanes, m, tie, history, row, t, SAMPLE, here)
+            settle_friction(m, course.ties, y, course.x, contact, here.horizontal, here.vertical)
+            row = _write(lanes, m, course, history, row, t, SAMPLE, here)
             turn_window(lanes, 0, results)
             lanes.counts.moved[0] = math.inf
-            lanes.waiting.load[0], lanes.waiting.stored[0] = _in_elements(lanes, m, tie, y)
+            lanes.waiting.load[0], lanes.waiting.stored[0] = _in_elements(lanes, m, course, y)
             status = done(lanes, 0, traits)
     if stop[0] == 0:
         finish(lanes, 0, traits, status, t, row, results)
@@ -255,31 +255,29 @@ def rock_restrained_on_springs(m, line, elements, motion, stop, history, every_s
     results = np.recarray(1, RESULT)
     results.status, results.extremes = RUNNING, np.nan
     lanes, _ = table()
-    tie = Tie(
-        elements=np.array([tuple(each) for each in elements], ELEMENT).view(np.recarray),
+    ties = Ties(np.array([tuple(each) for each in elements], ELEMENT).view(np.recarray), 0.0, np.zeros(n), np.zeros(n))
+    course = Course(
+        ties,
         use=np.zeros(n, USE).view(np.recarray),
-        modes=np.zeros(n),
-        goes=np.zeros(n),
         x=np.zeros(size),
         end=np.zeros(size),
         work=np.zeros((2, size)),
         marks=np.zeros((6, OF_ELEMENTS + 3 * n)),
         notes=np.zeros((len(history), size + OF_A_ROW)),
-        level=np.zeros(1),
     )
     lines = np.array([line], LINE).view(np.recarray)
     ground = ground_rows(horizontal, vertical, dt)
-    _rock(traits_of(m), lines, tie, ground, stop, every_step, history, lanes, results)
+    _rock(traits_of(m), lines, course, ground, stop, every_step, history, lanes, results)
     run = None if results[0].status == RUNNING else spring_run(results[0])
     now, contact = lanes[0].now, lanes[0].contact
     return RestrainedOnSprings(
         run,
         results[0].extremes,
-        tie.use,
-        tie.notes,
+        course.use,
+        course.notes,
         State(*(float(now[name][0]) for name in State._fields)),
         (float(contact.left[0]), float(contact.right[0])),
-        tie.x[:n].copy(),
-        tie.goes == STICKS,
-        float(tie.level[0]),
+        course.x[:n].copy(),
+        ties.goes == STICKS,
+        float(lanes[0].motion.plastic[0] - 0.5 * m.yield_deflection * (m.gravity + line.prestress) / m.yield_force),
     )
