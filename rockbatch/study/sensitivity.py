@@ -54,6 +54,13 @@ SENSITIVITY = {
     "confidence": Key(_share, "0.95"),
     "seed": Key(count, "1"),
 }
+
+
+def _with_examples(keys: Mapping[str, Key], **examples: str) -> dict[str, Key]:
+    """Some of ``keys``, with a range as their example."""
+    return {name: replace(keys[name], example=example) for name, example in examples.items()}
+
+
 _RANGES = {
     name: Key(positive if name in (*OF_PIER, *IN_KILONEWTONS) else number, example, many=True)
     for name, example in (
@@ -72,27 +79,23 @@ _RANGES = {
 }
 UNIFORM = _RANGES
 LOG_UNIFORM = {name: replace(key, kind=positive) for name, key in _RANGES.items()}
-_DAMPER_RANGES = {
-    name: replace(DAMPER[name], example=example)
-    for name, example in (
-        ("force_kN", "[300.0, 600.0]"),
-        ("f", "[0.01, 0.05]"),
-        ("yield_mm", "[3.0, 8.0]"),
-        ("coefficient_kN_s_m", "[500.0, 2000.0]"),
-        ("nu", "[0.2, 0.8]"),
-        ("exponent", "[0.3, 1.0]"),
-    )
-}
-_TENDON_RANGES = {
-    name: replace(TENDON[name], example=example)
-    for name, example in (
-        ("prestress_kN", "[3000.0, 6000.0]"),
-        ("psi", "[0.2, 0.8]"),
-        ("stiffness_kN_m", "[2.0e4, 8.0e4]"),
-        ("lambda", "[0.5, 2.0]"),
-        ("yield_kN", "[8000.0, 1.2e4]"),
-    )
-}
+_DAMPER_RANGES = _with_examples(
+    DAMPER,
+    force_kN="[300.0, 600.0]",
+    f="[0.01, 0.05]",
+    yield_mm="[3.0, 8.0]",
+    coefficient_kN_s_m="[500.0, 2000.0]",
+    nu="[0.2, 0.8]",
+    exponent="[0.3, 1.0]",
+)
+_TENDON_RANGES = _with_examples(
+    TENDON,
+    prestress_kN="[3000.0, 6000.0]",
+    psi="[0.2, 0.8]",
+    stiffness_kN_m="[2.0e4, 8.0e4]",
+    yield_kN="[8000.0, 1.2e4]",
+    **{"lambda": "[0.5, 2.0]"},
+)
 UNIFORM_OF = {"damper": _DAMPER_RANGES, "tendon": _TENDON_RANGES}
 LOG_UNIFORM_OF = {
     what: {name: replace(key, kind=positive) for name, key in keys.items()} for what, keys in UNIFORM_OF.items()

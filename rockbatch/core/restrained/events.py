@@ -65,6 +65,25 @@ def _tried(m, elements, inertia, side, y, modes, goes, ground, x, work, end, val
 
 
 @kernel
+def narrowed(marks, a, t, b):
+    """The interval [a, b] in which the first event is, narrowed by a trial at ``t``, whose signals ``marks`` has last.
+
+    ``marks``: values and slopes of the signals at a, at b, and at the trial. Returns a, b, which signal falls first, −1 for none,
+    and when after a.
+    """
+    early, early_slopes, late, late_slopes, now, now_slopes = marks[0], marks[1], marks[2], marks[3], marks[4], marks[5]
+    which, at = earliest(early, early_slopes, now, now_slopes, t - a)
+    if which >= 0:
+        copy(now, late)
+        copy(now_slopes, late_slopes)
+        return a, t, which, at
+    copy(now, early)
+    copy(now_slopes, early_slopes)
+    which, at = earliest(early, early_slopes, late, late_slopes, b - t)
+    return t, b, which, at
+
+
+@kernel
 def piece(m, elements, inertia, side, y, modes, goes, ground, h, work, marks, end):
     """From ``y`` over ``h`` [s] or to the first event before: the time that it took, and the signal that fell, −1 for none.
 
@@ -72,9 +91,7 @@ def piece(m, elements, inertia, side, y, modes, goes, ground, h, work, marks, en
     """
     early, early_slopes, late, late_slopes, now, now_slopes = marks[0], marks[1], marks[2], marks[3], marks[4], marks[5]
     _tried(m, elements, inertia, side, y, modes, goes, ground, 0.0, work, end, early, early_slopes)
-    if (
-        y[1] == 0.0
-    ):  # let go just now, by an acceleration that is 0 but for rounding: it goes, and does not turn at once
+    if y[1] == 0.0:  # let go by an acceleration that is 0 but for rounding: it goes, and does not turn at once
         early_slopes[TURNS] = max(early_slopes[TURNS], STILL * m.p * m.p * m.alpha)
     _tried(m, elements, inertia, side, y, modes, goes, ground, h, work, end, late, late_slopes)
     a, b = 0.0, h
@@ -84,16 +101,7 @@ def piece(m, elements, inertia, side, y, modes, goes, ground, h, work, marks, en
     for trial in range(TRIALS):
         x = a + at if trial < BISECT_AFTER or trial % 2 == 0 else 0.5 * (a + b)
         _tried(m, elements, inertia, side, y, modes, goes, ground, x, work, end, now, now_slopes)
-        which, at = earliest(early, early_slopes, now, now_slopes, x - a)
-        if which >= 0:
-            b = x
-            copy(now, late)
-            copy(now_slopes, late_slopes)
-        else:
-            a = x
-            copy(now, early)
-            copy(now_slopes, early_slopes)
-            which, at = earliest(early, early_slopes, late, late_slopes, b - a)
+        a, b, which, at = narrowed(marks, a, x, b)
         if which < 0:
             break
         if abs(a + at - x) <= CLOSE * h:

@@ -21,7 +21,8 @@ from rockbatch.core.restrained.elements import (
     mode_of,
     tension,
 )
-from rockbatch.core.restrained.events import change_tendon, earliest
+from rockbatch.core.restrained.equations import copy
+from rockbatch.core.restrained.events import change_tendon, earliest, narrowed
 from rockbatch.core.restrained_springs.equations import (
     NONE,
     all_rates,
@@ -51,12 +52,6 @@ WAYS = (
     (OPENS, OPENS), (OPENS, CLOSES), (CLOSES, OPENS), (CLOSES, CLOSES),
 )  # fmt: skip
 """What two friction dampers can do that have no velocity."""
-
-
-@kernel
-def _copy(numbers, to):
-    for i in range(len(numbers)):
-        to[i] = numbers[i]
 
 
 @kernel
@@ -145,27 +140,18 @@ def piece(m, ties, y, x, contact, supports, rest, ground, h, work, marks, end_x)
         if last:
             break
         if trial == 0:
-            _copy(now, early)
-            _copy(now_slopes, early_slopes)
+            copy(now, early)
+            copy(now_slopes, early_slopes)
             k_start, t = k, h
             continue
         if trial == 1:
-            _copy(now, late)
-            _copy(now_slopes, late_slopes)
+            copy(now, late)
+            copy(now_slopes, late_slopes)
             which, at = earliest(early, early_slopes, late, late_slopes, h)
             if which == NONE:
                 break
         else:
-            which, at = earliest(early, early_slopes, now, now_slopes, t - a)
-            if which != NONE:
-                b = t
-                _copy(now, late)
-                _copy(now_slopes, late_slopes)
-            else:
-                a = t
-                _copy(now, early)
-                _copy(now_slopes, early_slopes)
-                which, at = earliest(early, early_slopes, late, late_slopes, b - a)
+            a, b, which, at = narrowed(marks, a, t, b)
             if which != NONE and abs(a + at - t) <= CLOSE * h:
                 break
         halve = trial > BISECT_AFTER and trial % 2 == 0
