@@ -29,7 +29,6 @@ import numpy as np
 import rockbatch as rb
 from rockbatch.batch.digests import study_digests
 from rockbatch.batch.finishing import cost_of_finished
-from rockbatch.batch.groups import compile_kernels
 from rockbatch.batch.journal import Journal
 from rockbatch.batch.plan import Plan
 from rockbatch.cli import main
@@ -313,8 +312,6 @@ class Sample:
         if len(study.cases) > 8 or work > 2000:
             return "read"
         with quiet():
-            with unhurried():
-                compile_kernels(study)
             rb.run(study)
         return "run"
 
@@ -406,16 +403,6 @@ def bounded() -> Iterator[None]:
         faulthandler.cancel_dump_traceback_later()
         resource.setrlimit(resource.RLIMIT_AS, before)
         signal.signal(signal.SIGPROF, handler)
-
-
-@contextlib.contextmanager
-def unhurried() -> Iterator[None]:
-    """Within :func:`bounded`, for what an input is not to blame for: compiling the kernels of a kind takes about 8 s."""
-    left, _ = signal.setitimer(signal.ITIMER_PROF, 0)
-    try:
-        yield
-    finally:
-        signal.setitimer(signal.ITIMER_PROF, left)
 
 
 def _in_time(task: Task, seed: int, i: int) -> str:
