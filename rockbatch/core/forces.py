@@ -8,19 +8,20 @@ import math
 from typing import NamedTuple
 
 from rockbatch.core.creep import forces, top, velocity_of_top
-from rockbatch.core.equations import accelerations, geometry, rates
+from rockbatch.core.equations import accelerations, geometry, pulled, rates
 from rockbatch.core.kernel import entry, kernel
 from rockbatch.core.observed import contact_of, ground_at, middle_of, state_of
 from rockbatch.core.records import record
-from rockbatch.core.rigid.equations import acceleration, lift_off
+from rockbatch.core.restrained.elements import FRICTION, distance, force, mode_of, state_rate
+from rockbatch.core.rigid.equations import acceleration
 from rockbatch.core.trigonometry import sine_and_cosine
-from rockbatch.core.types import LEFT, NEITHER, RIGHT, Ground
+from rockbatch.core.types import LEFT, NEITHER, RIGHT
 
 
 class Forces(NamedTuple):
     """A moment of a run: forces on the pier per unit of its mass, and how it moves over the ground."""
 
-    shear: float  # V/M, horizontal, of the ground on the pier, to the right [m/s²]
+    shear: float  # V/M, horizontal, of the supports on the pier, to the right [m/s²]
     normal: float  # N/M, vertical, of all supports, up [m/s²]
     left: float  # of the left support [m/s²]
     right: float
@@ -54,6 +55,15 @@ class Outline(NamedTuple):
     width: float  # 2b between the corners [m]
     deck_share: float  # of the horizontal motion of the centre of mass that the deck makes too
     deck_above: float  # by how much the deck is higher, where it turns with the block [m]
+
+
+class Ties(NamedTuple):
+    """What dampers and tendons do to a block that rocks about a corner."""
+
+    down: float  # force that presses it on its supports [m/s²]
+    across: float  # and horizontal, towards where it came from
+    back: float  # angular deceleration [rad/s²]
+    aside: float  # moment about the centre of the base, of forces to the right of it [m²/s²]
 
 
 @kernel
@@ -124,7 +134,7 @@ def _waits(was, contact, side, waiting, position):
 
 
 @entry
-def forces_on_springs(m, deck, rows, ground, dt, has, out, greatest, firsts):
+def forces_on_springs(m, deck, rows, pulls, ground, dt, has, out, greatest, firsts):
     """Forces of a run on two springs: at every row, or the greatest of the whole run.
 
     Parameters
@@ -134,6 +144,8 @@ def forces_on_springs(m, deck, rows, ground, dt, has, out, greatest, firsts):
         Height of the deck above the pivots [m].
     rows : recarray of recording.Row, shape (n,)
         History as the run wrote it, with both sides of every event; for the greatest, with every step.
+    pulls : ndarray, shape (n, 2)
+        Force [m/s²] and moment [m²/s²] of dampers and tendons at every row.
     ground : ndarray, shape (npts, 4)
         The motion of the run, of :func:`rockbatch.core.ground.ground_rows`.
     dt : float
@@ -149,7 +161,8 @@ def forces_on_springs(m, deck, rows, ground, dt, has, out, greatest, firsts):
     """
     waiting_left, waiting_right = 0.0 * deck, 0.0 * deck
     was = contact_of(rows[0])
-    before = on_springs(m, deck, state_of(rows[0]), was, waiting_left, waiting_right, ground[0, 0], ground[0, 2])
+    under = pulled(m, pulls[0, 0], pulls[0, 1])
+    before = on_springs(under, deck, state_of(rows[0]), was, waiting_left, waiting_right, ground[0, 0], ground[0, 2])
     for i in range(len(rows)):
         y, contact, t = state_of(rows[i]), contact_of(rows[i]), rows[i].t
         at = geometry(m, y.theta)
@@ -162,53 +175,115 @@ def forces_on_springs(m, deck, rows, ground, dt, has, out, greatest, firsts):
         t_start = rows[i - 1].t if i > 0 else t
         t_middle = 0.5 * (t_start + t)
         ah, av = ground_at(ground, dt, t_middle, t)
-        found = on_springs(m, deck, y, contact, waiting_left, waiting_right, ah, av)
+        under = pulled(m, pulls[i, 0], pulls[i, 1])
+        found = on_springs(under, deck, y, contact, waiting_left, waiting_right, ah, av)
         if len(out) > 0:
             _put(out, i, found)
         if len(greatest) == 0:
             continue
         start, middle = found, found
-        if i > 0 and rows[i].kind <= 0.0:
+        if t > t_start and rows[i].kind <= 0.0:
             y_start, start = state_of(rows[i - 1]), before
             ah_start, av_start = ground_at(ground, dt, t_middle, t_start)
-            k_start, k_end = rates(m, y_start, contact, ah_start, av_start), rates(m, y, contact, ah, av)
-            y = middle_of(y_start, k_start, y, k_end, t - t_start)
+            k_start = rates(pulled(m, pulls[i - 1, 0], pulls[i - 1, 1]), y_start, contact, ah_start, av_start)
+            y = middle_of(y_start, k_start, y, rates(under, y, contact, ah, av), t - t_start)
             ah, av = 0.5 * (ah_start + ah), 0.5 * (av_start + av)
-            middle = on_springs(m, deck, y, contact, waiting_left, waiting_right, ah, av)
+            under = pulled(m, 0.5 * (pulls[i - 1, 0] + pulls[i, 0]), 0.5 * (pulls[i - 1, 1] + pulls[i, 1]))
+            middle = on_springs(under, deck, y, contact, waiting_left, waiting_right, ah, av)
         _include(greatest, firsts, start, middle, found, t, has, m.gravity)
         before = found
 
 
 @kernel
-def on_rigid_base(m, outline, theta, omega, side, horizontal, vertical):
+def _ties(elements, states, inertia, theta, omega, side):
+    """Ties of all ``elements`` but of friction dampers that do not move; ``states`` are theirs, shape (elements,)."""
+    down, across, back, aside = 0.0, 0.0, 0.0, 0.0
+    half_sine, half_cosine = sine_and_cosine(0.5 * abs(theta))
+    for j in range(len(elements)):
+        of = elements[j]
+        d = distance(of, side)
+        elongation, speed = 2.0 * d * half_sine, d * half_cosine * side * omega
+        goes = 0.0 if speed == 0.0 else math.copysign(1.0, speed)
+        one = force(of, elongation, speed, states[j], mode_of(of, elongation, states[j], goes), goes)
+        down, across = down + one * half_cosine, across + one * half_sine
+        back, aside = back + one * d * half_cosine / inertia, aside + one * of.offset
+    return Ties(down, across, back, aside)
+
+
+@kernel
+def _state_rate(of, state, theta, omega, side):
+    """Rate of an element's state [1/s or m/s]."""
+    half_sine, half_cosine = sine_and_cosine(0.5 * abs(theta))
+    d = distance(of, side)
+    speed = d * half_cosine * side * omega
+    goes = 0.0 if speed == 0.0 else math.copysign(1.0, speed)
+    return state_rate(of, speed, state, mode_of(of, 2.0 * d * half_sine, state, goes), goes)
+
+
+@kernel
+def _friction_ties(elements, inertia, theta, side):
+    """Ties of friction dampers that are about to give way; of one in the corner nothing is known, and nothing depends on it."""
+    down, across, back = 0.0, 0.0, 0.0
+    half_sine, half_cosine = sine_and_cosine(0.5 * abs(theta))
+    for j in range(len(elements)):
+        d = distance(elements[j], side)
+        if elements[j].kind == FRICTION and d != 0.0:
+            one = math.copysign(elements[j].strength, d)
+            down, across = down + one * half_cosine, across + one * half_sine
+            back += one * d * half_cosine / inertia
+    return Ties(down, across, back, 0.0 * back)
+
+
+@kernel
+def on_rigid_base(m, outline, elements, states, theta, omega, side, horizontal, vertical):
     """Forces on a block about its corner on ``side``, or NEITHER: at rest on both.
 
-    At rest both corners bear what moment and weight ask for. A block that the ground lifts at this moment is no longer at rest.
+    At rest both corners bear what moment and weight ask for; what would lift one of them friction dampers hold, as far as they
+    can. A block that the ground lifts at this moment is no longer at rest.
     """
-    if side == NEITHER:
-        side = lift_off(m, Ground(horizontal, 0.0 * horizontal, vertical, 0.0 * vertical), 0.0)[1]
+    inertia = m.gravity * outline.size / (m.p * m.p)  # I0/M + R0²
+    ties = _ties(elements, states, inertia, theta, omega, side)
     if side == NEITHER:
         sine, cosine = sine_and_cosine(m.alpha)
-        normal, more = m.gravity + vertical, horizontal * cosine / sine
-        still = 0.0 * outline.size * omega
-        gap = 0.0 * outline.width
-        return Forces(
-            horizontal, normal, 0.5 * (normal + more), 0.5 * (normal - more),
-            gap, gap, still, still, horizontal, still, still, omega, _friction(m.gravity, horizontal, normal), gap,
-        )  # fmt: skip
-    turning, squared = acceleration(m, theta, side, horizontal, vertical), omega * omega
+        b = 0.5 * outline.width
+        normal, more = m.gravity + vertical + ties.down, horizontal * cosine / sine - ties.aside / b
+        pressed = LEFT if more > 0.0 else RIGHT
+        hold = _friction_ties(elements, inertia, theta, pressed)
+        lacks = (abs(more) - normal) * b / inertia
+        if lacks <= hold.back:
+            share = lacks / hold.back if lacks > 0.0 else 0.0 * lacks
+            normal += share * hold.down
+            on_left, on_right = 0.5 * (normal + more), 0.5 * (normal - more)
+            if lacks > 0.0:
+                on_left, on_right = (normal, 0.0) if pressed == LEFT else (0.0, normal)
+            still = 0.0 * outline.size * omega
+            gap = 0.0 * outline.width
+            return Forces(
+                horizontal, normal, on_left, on_right,
+                gap, gap, still, still, horizontal, still, still, omega, _friction(m.gravity, horizontal, normal), gap,
+            )  # fmt: skip
+        side = pressed
+        ties = _ties(elements, states, inertia, theta, omega, side)
+    turning, squared = acceleration(m, theta, side, horizontal, vertical) - side * ties.back, omega * omega
+    share = 0.0 * omega
+    hold = _friction_ties(elements, inertia, theta, side)
+    if omega == 0.0 and hold.back > 0.0:
+        share = min(max(side * turning / hold.back, -1.0), 1.0)
+        turning -= side * share * hold.back
+    down, across = ties.down + share * hold.down, ties.across + share * hold.across
     sine, cosine = sine_and_cosine(side * m.alpha - theta)
     along = outline.size * (cosine * turning + sine * squared)
-    normal = m.gravity + vertical + outline.size * (sine * turning - cosine * squared)
+    normal = m.gravity + vertical + outline.size * (sine * turning - cosine * squared) + down
+    shear = horizontal + along + side * across
     tilt_sine, tilt_cosine = sine_and_cosine(theta)
     deck = outline.deck_share * along + outline.deck_above * (tilt_cosine * turning - tilt_sine * squared)
     on_left, on_right = (1.0, 0.0) if side == LEFT else (0.0, 1.0)
     gap, speed = side * outline.width * tilt_sine, side * outline.width * tilt_cosine * omega
     return Forces(
-        horizontal + along, normal, on_left * normal, on_right * normal,
+        shear, normal, on_left * normal, on_right * normal,
         on_right * gap, on_left * gap, on_right * speed, on_left * speed,
         horizontal + deck, outline.size * cosine * omega, outline.size * sine * omega, omega,
-        _friction(m.gravity, horizontal + along, normal), 0.0 * outline.width,
+        _friction(m.gravity, shear, normal), 0.0 * outline.width,
     )  # fmt: skip
 
 
@@ -226,32 +301,46 @@ def _corner(row):
 
 
 @entry
-def forces_on_rigid_base(m, outline, rows, ground, dt, has, out, greatest, firsts):
-    """Forces of a run on a rigid base: ``m`` is a Block, ``outline`` an Outline, ``rows`` (rigid.lane.Row) its history;
-    otherwise as :func:`forces_on_springs`."""
-    before = on_rigid_base(m, outline, rows[0].theta, rows[0].omega, _corner(rows[0]), ground[0, 0], ground[0, 2])
+def forces_on_rigid_base(m, outline, elements, rows, states, halfway, ground, dt, has, out, greatest, firsts):
+    """Forces of a run on a rigid base: ``m`` is a Block, ``outline`` an Outline, ``rows`` (rigid.lane.Row) its history,
+    ``elements`` a recarray of Element and ``states`` theirs at every row, shape (n, elements), with room for one more in
+    ``halfway``; otherwise as :func:`forces_on_springs`."""
+    side = _corner(rows[0])
+    theta, omega, ah, av = rows[0].theta, rows[0].omega, ground[0, 0], ground[0, 2]
+    before = on_rigid_base(m, outline, elements, states[0], theta, omega, side, ah, av)
+    inertia = m.gravity * outline.size / (m.p * m.p)
     for i in range(len(rows)):
         theta, omega, side, t = rows[i].theta, rows[i].omega, _corner(rows[i]), rows[i].t
         t_start = rows[i - 1].t if i > 0 else t
         t_middle = 0.5 * (t_start + t)
         ah, av = ground_at(ground, dt, t_middle, t)
-        found = on_rigid_base(m, outline, theta, omega, side, ah, av)
+        found = on_rigid_base(m, outline, elements, states[i], theta, omega, side, ah, av)
         if len(out) > 0:
             _put(out, i, found)
         if len(greatest) == 0:
             continue
         start, middle = found, found
-        if i > 0 and rows[i].kind <= 0.0:
+        if t > t_start and rows[i].kind <= 0.0:
             theta_start, omega_start, start = rows[i - 1].theta, rows[i - 1].omega, before
             ah_start, av_start = ground_at(ground, dt, t_middle, t_start)
             h = t - t_start
             leaning = 0.5 * (theta_start + theta) + 0.125 * h * (omega_start - omega)
             side = NEITHER if leaning == 0.0 else (RIGHT if leaning > 0.0 else LEFT)
+            for j in range(len(elements)):
+                halfway[j] = states[i, j]
             if side != NEITHER:
                 k_start = acceleration(m, theta_start, side, ah_start, av_start)
                 k_end = acceleration(m, theta, side, ah, av)
+                k_start -= side * _ties(elements, states[i - 1], inertia, theta_start, omega_start, side).back
+                k_end -= side * _ties(elements, states[i], inertia, theta, omega, side).back
+                for j in range(len(elements)):
+                    of, z_start, z = elements[j], states[i - 1, j], states[i, j]
+                    bend = _state_rate(of, z_start, theta_start, omega_start, side) - _state_rate(
+                        of, z, theta, omega, side
+                    )
+                    halfway[j] = 0.5 * (z_start + z) + 0.125 * h * bend
                 theta, omega = leaning, 0.5 * (omega_start + omega) + 0.125 * h * (k_start - k_end)
             ah, av = 0.5 * (ah_start + ah), 0.5 * (av_start + av)
-            middle = on_rigid_base(m, outline, theta, omega, side, ah, av)
+            middle = on_rigid_base(m, outline, elements, halfway, theta, omega, side, ah, av)
         _include(greatest, firsts, start, middle, found, t, has, m.gravity)
         before = found

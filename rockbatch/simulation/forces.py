@@ -8,11 +8,15 @@ import numpy as np
 
 from rockbatch.core import types
 from rockbatch.core.forces import FORCES, NEVER, Forces, Outline, forces_on_rigid_base, forces_on_springs
+from rockbatch.core.recording import ROW
+from rockbatch.core.restrained.elements import ELEMENT
+from rockbatch.core.rigid import lane as rigid
 from rockbatch.motions.motion import Samples
 from rockbatch.pier import Pier, RigidBase, YieldingBase
 from rockbatch.results.outcome import WOULD_SLIDE, Outcome, PeakForces
 from rockbatch.results.response import FORCE_UNITS, IMPACT_UNITS
-from rockbatch.simulation.models import block, ground_of, springs
+from rockbatch.simulation.models import block, elements, ground_of, springs
+from rockbatch.simulation.restraints import without_notes
 from rockbatch.simulation.runs import Run
 
 if TYPE_CHECKING:
@@ -61,11 +65,19 @@ def _observe(run: Run, rows: np.recarray, found: np.recarray, extremes: Samples,
         return
     pier, base = run.pier, run.base
     has = math.inf if base.friction is None else float(base.friction)
-    rest = (rows, ground_of(run.motion), float(run.motion.dt), has, found, extremes, firsts)
+    rest = (ground_of(run.motion), float(run.motion.dt), has, found, extremes, firsts)
     if isinstance(base, RigidBase):
-        forces_on_rigid_base(block(pier, base), _outline(pier), *rest)
-    else:
-        forces_on_springs(springs(pier, base), float(pier.deck), *rest)
+        tied = np.array([tuple(each) for each in elements(pier, base)], ELEMENT).view(np.recarray)
+        plain, states = rows, np.zeros((len(rows), 0))
+        if base.restraints:
+            plain, states = without_notes(rows, rigid.ROW), rows.state.copy()
+        halfway = np.zeros(len(tied))
+        forces_on_rigid_base(block(pier, base), _outline(pier), tied, plain, states, halfway, *rest)
+        return
+    plain, pulls = rows, np.zeros((len(rows), 2))
+    if base.restraints:
+        plain, pulls = without_notes(rows, ROW), rows.pull.copy()
+    forces_on_springs(springs(pier, base), float(pier.deck), plain, pulls, *rest)
 
 
 def _outline(pier: Pier) -> Outline:

@@ -106,8 +106,6 @@ def simulate(
         wrong.append(f"substeps = {substeps}: must be a whole number")
     if substeps is not None and not wrong and substeps < (least := least_substeps(pier, foundation, motion.dt)):
         wrong.append(f"substeps = {substeps}: must be a whole number of at least {least} for this pier and motion")
-    if forces and foundation.restraints:
-        wrong.append("forces = True: they are not told of piers with dampers or tendons")
     if substeps is None and not wait:
         wrong.append("wait = False: the error of a run that is cut off cannot be told; give substeps")
     if wrong:
@@ -157,9 +155,7 @@ def energies(run: Run, rows: np.recarray) -> Samples:
         return pier.inertia_about_pivot * numbers(ledger)
     pulls, plain = np.zeros((len(rows), 2)), rows
     if base.restraints:
-        pulls, plain = rows.pull.copy(), np.recarray(len(rows), ROW)
-        for name in ROW.names or ():
-            plain[name] = rows[name]
+        pulls, plain = rows.pull.copy(), restraints.without_notes(rows, ROW)
     ledger_on_springs(springs(pier, base), plain, pulls, ground, dt, ledger)
     return restraints.with_elements(pier, base, rows, numbers(ledger)) if base.restraints else numbers(ledger)
 

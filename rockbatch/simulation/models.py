@@ -99,7 +99,7 @@ def elements(pier: Pier, base: Base) -> list[Element]:
                 law = (DAMPERS[each.kind], g * each.f, soft, each.nu * pier.p, each.exponent, 0.0)
             kind, strength, stiffness, coefficient, exponent, pretension = law
             found.append(Element(
-                kind, abs(b + offset), abs(b - offset), float(strength), float(stiffness), float(coefficient),
+                kind, float(b + offset), float(b - offset), float(strength), float(stiffness), float(coefficient),
                 float(exponent), float(pretension), float(offset),
                 _linear_below(pier, base, offset, coefficient, exponent),
             ))  # fmt: skip

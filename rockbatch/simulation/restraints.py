@@ -29,6 +29,14 @@ def names(pier: Pier, base: Base) -> list[str]:
     return found
 
 
+def without_notes(rows: np.recarray, kind: np.dtype) -> np.recarray:
+    """Rows of a history as those of a pier without dampers and tendons, of this ``kind``."""
+    plain = np.recarray(len(rows), kind)
+    for name in kind.names or ():
+        plain[name] = rows[name]
+    return plain
+
+
 def _elongation(of: Element, pier: Pier, base: Base, rows: np.recarray) -> tuple[Samples, Samples]:
     """Elongation [m] and its rate [m/s]: 2 d sin(|θ|/2) from the corner about which the block has turned, or v − s θ."""
     theta, tilt = rows.theta, np.abs(rows.theta)

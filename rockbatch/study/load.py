@@ -120,9 +120,6 @@ def load_study(path: str | os.PathLike[str], *, motions: str | os.PathLike[str] 
     if len(motion_spec.polarity) > 1 and not all(_symmetric(each) for each in cases):
         told = "dampers or tendons on one side make another run of the reversed motion, not the mirror image; keep one polarity"
         file.complain(("motions", "polarity"), f"[motions]: {told}")
-    if output.forces and any(each.base.restraints for each in cases):
-        told = "forces = true: they are not told of piers with dampers or tendons; leave it out, or the restraints"
-        file.complain(("output", "forces"), f"[output]: {told}")
     counted = read_count(file)
     if not output.forces:
         _complain_about_friction(file)

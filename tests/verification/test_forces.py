@@ -5,6 +5,7 @@ from dataclasses import asdict, replace
 from itertools import pairwise
 
 import numpy as np
+import pandas as pd
 import pytest
 
 import rockbatch as rb
@@ -33,7 +34,18 @@ BASES = {
     "bouc-wen": rb.YieldingBase(50, 0.1, flight="guided", eta=2.2),
     "epp, finite": rb.YieldingBase(50, 0.1, flight="guided", eta=2.2, spring="epp", kinematics="finite"),
     "elastic, finite": rb.ElasticBase(50, 0.3, flight="guided", kinematics="finite"),
-}
+    "rigid, tied": rb.RigidBase(restraints=(rb.Damper("friction", f=0.03), rb.Tendon(psi=0.1, lam=0.3, at=0.4))),
+    "rigid, beyond": rb.RigidBase(
+        restraints=(rb.Damper("hysteretic", f=0.03, yield_m=0.01, at=-1.4 * PIER.half_width), rb.Damper("viscous", nu=0.2)),
+    ),
+    "bouc-wen, tied": rb.YieldingBase(
+        50, 0.1, flight="guided", eta=2.2,
+        restraints=(rb.Damper("hysteretic", f=0.05, yield_m=0.01), rb.Tendon(psi=0.1, lam=0.3)),
+    ),
+    "elastic, finite, tied": rb.ElasticBase(
+        50, 0.3, flight="guided", kinematics="finite", restraints=(rb.Damper("viscous", nu=0.2), rb.Tendon(psi=0.1, lam=0.3)),
+    ),
+}  # fmt: skip
 EVERY_BASE = pytest.mark.parametrize("name", BASES)
 
 
@@ -52,6 +64,19 @@ def responses():
     """A fine history on each base, with its forces; steps between the samples keep the integrator's error out of it."""
     motion = shaken(FINE)
     return {name: rb.simulate(PIER, base, motion, substeps=1, forces=True) for name, base in BASES.items()}
+
+
+def pulls(response):
+    """Sum of what dampers and tendons pull with at every row [m/s²], downwards and back across.
+
+    On a rigid base along the chord from where an element began; on springs straight down. Not of friction that holds.
+    """
+    down = across = np.zeros(len(response.t))
+    table = response.restraints
+    for name in [] if table is None else table.columns[2::2]:
+        lean = 0.5 * response.theta if isinstance(response.base, rb.RigidBase) else 0.0 * response.theta
+        down, across = down + table[name] * np.cos(lean), across + table[name] * np.sin(lean)
+    return np.asarray(down), np.asarray(across)
 
 
 # Positions and velocities of the centre of mass, and of the deck, as one would draw them
@@ -119,6 +144,38 @@ def test_friction_demand_at_the_onset_of_uplift_is_tan_alpha(alpha):
     assert forces.uplift_ground == pytest.approx(G * math.tan(alpha), rel=1e-12)
 
 
+def test_friction_dampers_hold_a_block_beyond_the_uplift_of_a_plain_one():
+    """Up to ü_g = g tan α (1 + 2f): what would lift one corner its damper holds, and the other bears that too."""
+    f, tangent = 0.1, math.tan(PIER.alpha)
+    base = rb.RigidBase(restraints=(rb.Damper("friction", f=f),))
+    for share in (0.5, 0.999):  # of what the damper can hold
+        push = G * tangent * (1.0 + 2.0 * f * share)
+        forces = sized(PIER, base, rb.Motion("push", 0.01, np.linspace(0.0, push, 200)))
+        assert (forces.first_uplift, forces.pivot_right) == (None, pytest.approx(1.0, rel=1e-12))
+        assert forces.normal_force == pytest.approx((1.0 + share * f) * G, rel=1e-12)
+        assert forces.pivot_left == pytest.approx(2.0 * (1.0 + share * f), rel=1e-12)
+        assert forces.friction_demand == pytest.approx(tangent * (1 + 2 * f * share) / (1 + f * share), rel=1e-12)
+    response = rb.simulate(PIER, base, replace(shaken(), vertical=None), forces=True)
+    lifts = response.events.loc[response.events["kind"] == "lift-off", "after"]
+    assert len(lifts) >= 1
+    expected = tangent * (1.0 + 2.0 * f) / (1.0 + f)
+    assert response.forces["friction"].to_numpy()[lifts] == pytest.approx(expected, rel=1e-12)
+
+
+def test_a_block_that_friction_holds_at_a_tilt_rests_on_its_corner():
+    """A friction damper at 2f > 1 leaves it leaning, and props it: N is the weight less what the damper bears, by moments."""
+    f = 0.8
+    base = rb.RigidBase(restraints=(rb.Damper("friction", f=f),))
+    response = rb.simulate(PIER, base, shaken(amplitude=2.0), forces=True)
+    theta, row = response.theta[-1], response.forces.iloc[-1]
+    assert abs(theta) > 0.01 * PIER.alpha
+    tilt = abs(theta)
+    prop = G * PIER.size * math.sin(PIER.alpha - tilt) / (2.0 * PIER.half_width * math.cos(0.5 * tilt))
+    assert prop < f * G
+    assert row["normal_force"] == pytest.approx(G - prop * math.cos(0.5 * tilt), rel=1e-9)
+    assert row["base_shear"] == pytest.approx(-math.copysign(prop * math.sin(0.5 * tilt), theta), rel=1e-9)
+
+
 @pytest.mark.parametrize(("alpha", "demand"), [(0.2, 0.150486602), (0.13, 0.097635785)])
 def test_friction_demand_at_an_impact_is_a_matter_of_alpha_alone(alpha, demand):
     """¾ sin α cos α/(1 − ¾ sin²α) for μ = 3."""
@@ -131,12 +188,16 @@ def test_friction_demand_at_an_impact_is_a_matter_of_alpha_alone(alpha, demand):
 
 
 def test_a_pier_at_rest_bears_its_weight_and_half_of_it_on_each_support():
+    """And so of the prestress, which a tendon off the axis puts on the nearer support."""
     still = rb.Motion("still", 0.01, np.zeros(100))
     for base in BASES.values():
+        tendons = [each for each in base.restraints if isinstance(each, rb.Tendon)]
+        more, aside = sum(each.psi for each in tendons), sum(each.psi * each.at for each in tendons) / PIER.half_width
         forces = sized(PIER, base, still)
         assert (forces.base_shear, forces.friction_demand) == (0.0, 0.0)
-        assert forces.normal_force == pytest.approx(G, rel=1e-12)
-        assert (forces.pivot_left, forces.pivot_right) == (pytest.approx(1.0, rel=1e-12), pytest.approx(1.0, rel=1e-12))
+        assert forces.normal_force == pytest.approx((1.0 + more) * G, rel=1e-12)
+        assert forces.pivot_left == pytest.approx(1.0 + more - aside, rel=1e-12)
+        assert forces.pivot_right == pytest.approx(1.0 + more + aside, rel=1e-12)
         assert (forces.heel_gap_left, forces.deck_acceleration, forces.omega_over_p) == (0.0, 0.0, 0.0)
         assert (forces.landing_velocity, forces.first_uplift, forces.flight_duration) == (None, None, None)
 
@@ -157,19 +218,22 @@ def test_a_block_at_rest_that_is_shaken_below_uplift_leans_on_one_corner():
 def test_normal_force_is_that_of_the_centre_of_mass_by_differences_of_its_height(name, responses):
     response = responses[name]
     rows = smooth_rows(response)
+    rows = rows[(response.omega[rows] != 0.0) | (name != "rigid, tied")]
     expected = G + response.history["ag_v"].to_numpy()[rows] + second_difference(centre(response)[1], rows)
+    expected += pulls(response)[0][rows]
     assert close(response.forces["normal_force"].to_numpy()[rows], expected)
 
 
-@pytest.mark.parametrize("name", ["rigid", "elastic", "bouc-wen"])
+@pytest.mark.parametrize("name", ["rigid", "elastic", "bouc-wen", "rigid, tied", "rigid, beyond", "bouc-wen, tied"])
 def test_base_shear_is_that_of_the_centre_of_mass_by_differences_of_its_place(name, responses):
     response = responses[name]
     rows = smooth_rows(response)
     expected = response.history["ag_h"].to_numpy()[rows] + second_difference(centre(response)[0], rows)
+    expected += pulls(response)[1][rows]
     assert close(response.forces["base_shear"].to_numpy()[rows], expected)
 
 
-@pytest.mark.parametrize("name", ["epp, finite", "elastic, finite"])
+@pytest.mark.parametrize("name", ["epp, finite", "elastic, finite", "elastic, finite, tied"])
 def test_base_shear_of_finite_springs_is_that_of_the_horizontal_velocity(name, responses):
     """H θ̇ with H = h cos θ + b sin θ (c_R − c_L), by central differences; contact is where a support presses."""
     response = responses[name]
@@ -207,13 +271,18 @@ def test_forces_and_impulses_together_change_the_momentum(name, responses):
     base, response = BASES[name], responses[name]
     history, forces, impacts = response.history, response.forces, response.impacts
     rigid = isinstance(base, rb.RigidBase)
-    gained = integral(response, forces["normal_force"] - G - history["ag_v"]) + impacts["impulse_vertical"].sum()
+    down, across = pulls(response)
+    moves = (response.omega != 0.0) | (name != "rigid, tied")
+    lifts = moves * (forces["normal_force"] - down - G - history["ag_v"])
+    gained = integral(response, lifts) + impacts["impulse_vertical"].sum()
     up = velocity(response)[1][-1] if rigid else (response.v[-1] - response.v[-2]) / (response.t[-1] - response.t[-2])
     passed = impacts["impulse_vertical"].sum()
     assert passed > 0.5
     assert gained == pytest.approx(up, abs=2e-4 * passed)
     if rigid or base.kinematics == "first-order":
-        gained = integral(response, forces["base_shear"] - history["ag_h"]) + impacts["impulse_horizontal"].sum()
+        gained = (
+            integral(response, forces["base_shear"] - across - history["ag_h"]) + impacts["impulse_horizontal"].sum()
+        )
         along = velocity(response)[0][-1] if rigid else PIER.height * response.omega[-1]
         assert gained == pytest.approx(along, abs=2e-4 * impacts["impulse_horizontal"].abs().sum())
 
@@ -264,6 +333,15 @@ def test_gaps_are_the_pivots_above_where_they_left_their_supports(name, response
 # Peaks
 
 
+def before_turnings(response):
+    """Forces just before the pier turns, where friction jumps between two samples: in a line through those before."""
+    omega, table = response.omega, response.forces.to_numpy()
+    last = np.flatnonzero((omega[1:-1] * omega[2:] < 0.0) & (omega[:-2] * omega[1:-1] > 0.0)) + 1
+    last = last[np.isin(last, smooth_rows(response))]
+    ahead = omega[last] / (omega[last] - omega[last + 1])
+    return pd.DataFrame(table[last] + ahead[:, None] * (table[last] - table[last - 1]), columns=response.forces.columns)
+
+
 @EVERY_BASE
 def test_peaks_are_those_of_a_history_that_is_many_times_finer(name, responses):
     """Those of an ordinary run; between rows the parabola through three points of a step finds them to 10⁻⁵ (ω_v h ≤ 0.1)."""
@@ -272,6 +350,8 @@ def test_peaks_are_those_of_a_history_that_is_many_times_finer(name, responses):
     assert outcome.substeps <= 6
     found = asdict(outcome.forces)
     fine = response.forces.abs().max()
+    if name == "rigid, tied":
+        fine = np.fmax(fine, before_turnings(response).abs().max())
     names = {"base_shear": "base_shear", "normal_force": "normal_force", "deck_acceleration": "deck_acceleration"}
     names |= {name: name for name in fine.index if name.startswith(("pivot_", "heel_"))}
     for column, of_history in names.items():
@@ -308,7 +388,9 @@ def test_the_reversed_motion_exchanges_left_and_right_and_keeps_the_rest(name, a
     base = BASES[name]
     motion = shaken(amplitude=amplitude)
     there = outcome_of(PIER, base, motion)
-    back = outcome_of(PIER, base, replace(motion, horizontal=-motion.horizontal))
+    other_side = tuple(replace(each, at=each.at and -each.at) for each in base.restraints)
+    reversed_motion = replace(motion, horizontal=-motion.horizontal)
+    back = outcome_of(PIER, replace(base, restraints=other_side), reversed_motion)
     mirrored, expected = asdict(there.mirrored().forces), asdict(back.forces)
     for field, value in expected.items():
         assert mirrored[field] == (value if value is None else pytest.approx(value, rel=1e-8, abs=1e-12)), field

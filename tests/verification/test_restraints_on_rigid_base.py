@@ -172,7 +172,7 @@ def moments(pier, tied, theta, omega):
     x0 = offset - corner  # from the corner, the ground's point; the pier's has turned by θ to the right
     point = np.array([x0 * c, -x0 * s])
     apart = point - np.array([x0, 0.0])
-    elongation = math.hypot(*apart)
+    elongation = math.copysign(math.hypot(*apart), apart[1])  # beyond the corner the pier's point goes down
     if elongation == 0.0:
         return 0.0
     direction = apart / elongation
@@ -233,7 +233,7 @@ def clipped(psi, stiffness, gravity):
     return lambda e, rate: max(psi * gravity + stiffness * e, 0.0)
 
 
-@pytest.mark.parametrize("at", ["left", 0.7, 0.0])
+@pytest.mark.parametrize("at", ["left", 0.7, 0.0, 1.4 * FIG5.half_width, -2.0 * FIG5.half_width])
 def test_elements_at_offsets_agree_with_the_reference(at):
     """A viscous damper with an exponent of 1.5 and a tendon, anywhere; to 1e-8 α."""
     restraints = (Damper("viscous", nu=0.4, exponent=1.5, at=at), Tendon(psi=0.1, lam=0.5, at=at))

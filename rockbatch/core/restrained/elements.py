@@ -1,7 +1,8 @@
 """What ties a pier to the ground: dampers and tendons, by their elongation and its rate (THEORY.md, Dampers and tendons).
 
 An element at the distance d from the corner about which the block turns by q has the elongation e = 2 d sin(q/2) and pulls
-with F, positive in tension, against ė = d cos(q/2) q̇. Forces are over the pier's mass [m/s²].
+with F, positive in tension, against ė = d cos(q/2) q̇; beyond that corner d and e are negative. Forces are over the pier's
+mass [m/s²].
 """
 
 import math
@@ -33,8 +34,8 @@ class Element(NamedTuple):
     """One damper or tendon, per unit mass of the pier."""
 
     kind: float
-    from_left: float  # distance from the left corner [m]
-    from_right: float
+    from_left: float  # distance from the left corner [m], positive to the right of it
+    from_right: float  # from the right corner, positive to the left of it
     strength: float  # F_d of friction and hysteretic dampers, yield force of a tendon, inf without [m/s²]
     stiffness: float  # 1/u_y of a hysteretic damper [1/m]; k of a tendon [1/s²]
     coefficient: float  # C of a viscous damper [m/s² over (m/s)^exponent]
@@ -64,8 +65,14 @@ USE = record(Use)
 
 @kernel
 def distance(of, side):
-    """From the corner on ``side`` [m]."""
+    """From the corner on ``side`` [m], negative beyond it."""
     return of.from_right if side == RIGHT else of.from_left
+
+
+@kernel
+def draws(of, side, goes):
+    """Whether a block that ``goes`` draws the element out (OPENS), as it does on its own side of the corner, or pushes it in."""
+    return goes if distance(of, side) >= 0.0 else -goes
 
 
 @kernel
@@ -76,7 +83,7 @@ def tension(of, elongation, slack):
 
 @kernel
 def force(of, elongation, speed, state, mode, goes):
-    """Force [m/s²] of an element; ``state`` is z of a hysteretic damper, the plastic elongation [m] of a tendon."""
+    """Force [m/s²] of an element that ``goes`` out or in; ``state``: z of a hysteretic damper, u_0 [m] of a tendon."""
     if of.kind == FRICTION:
         return of.strength * goes
     if of.kind == VISCOUS and abs(speed) < of.linear_below:
@@ -116,7 +123,7 @@ def stored(of, elongation, state):
 
 @kernel
 def mode_of(of, elongation, state, goes):
-    """Mode of a tendon at this elongation that goes on to open or close."""
+    """Mode of a tendon at this elongation that goes on out or in."""
     if of.kind != TENDON:
         return TAUT
     pull = tension(of, elongation, state)

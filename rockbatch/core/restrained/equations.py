@@ -13,6 +13,7 @@ from rockbatch.core.restrained.elements import (
     STICKS,
     VISCOUS,
     distance,
+    draws,
     force,
     loss_rate,
     state_rate,
@@ -42,7 +43,8 @@ def pull_back(elements, inertia, side, y, modes, goes):
         d = distance(elements[j], side)
         half = math.cos(0.5 * y[0])
         elongation, speed = 2.0 * d * math.sin(0.5 * y[0]), d * half * y[1]
-        total += force(elements[j], elongation, speed, y[2 + j], modes[j], goes) * d * half
+        way = draws(elements[j], side, goes)
+        total += force(elements[j], elongation, speed, y[2 + j], modes[j], way) * d * half
     return total / inertia
 
 
@@ -52,7 +54,7 @@ def friction_bound(elements, inertia, side, tilt):
     total = 0.0
     for j in range(len(elements)):
         if elements[j].kind == FRICTION:
-            total += elements[j].strength * distance(elements[j], side) * math.cos(0.5 * tilt)
+            total += elements[j].strength * abs(distance(elements[j], side)) * math.cos(0.5 * tilt)
     return total / inertia
 
 
@@ -79,9 +81,9 @@ def rates(m, elements, inertia, side, y, modes, goes, horizontal, vertical, k):
     for j in range(n):
         of = elements[j]
         d = distance(of, side)
-        speed = d * half * y[1]
-        pull = force(of, 2.0 * d * math.sin(0.5 * y[0]), speed, y[2 + j], modes[j], goes)
-        k[2 + j] = state_rate(of, speed, y[2 + j], modes[j], goes)
+        speed, way = d * half * y[1], draws(of, side, goes)
+        pull = force(of, 2.0 * d * math.sin(0.5 * y[0]), speed, y[2 + j], modes[j], way)
+        k[2 + j] = state_rate(of, speed, y[2 + j], modes[j], way)
         k[2 + n + j] = loss_rate(of, speed, pull, modes[j])
     push = driven(m, side, y[0], horizontal, vertical) - driven(m, side, y[0], 0.0, 0.0)
     k[2 + 2 * n] = inertia * push * y[1]
@@ -125,18 +127,19 @@ def longest(m, elements, inertia, side, y, modes, goes, ground, h, dt):
     """
     asked = False
     for j in range(len(elements)):
-        asked = asked or (elements[j].kind == HYSTERETIC and goes * y[2 + j] < 1.0) or _is_root(elements[j])
+        loads = draws(elements[j], side, goes) * y[2 + j]
+        asked = asked or (elements[j].kind == HYSTERETIC and loads < 1.0) or _is_root(elements[j])
     if not asked:
         return h
     turn = abs(acceleration(m, elements, inertia, side, y, modes, goes, ground.horizontal, ground.vertical))
     share = 1.0
     for j in range(len(elements)):
-        of, z = elements[j], y[2 + j]
-        if of.kind == HYSTERETIC and goes * z < 1.0:
-            way = distance(of, side) * (abs(y[1]) + turn * h) * dt * of.stiffness
+        of, loads = elements[j], draws(elements[j], side, goes) * y[2 + j]
+        if of.kind == HYSTERETIC and loads < 1.0:
+            way = abs(distance(of, side)) * (abs(y[1]) + turn * h) * dt * of.stiffness
             share = min(share, TRAVEL / way) if way > 0.0 else share
         if _is_root(of):
-            d = distance(of, side)
+            d = abs(distance(of, side))
             slope = of.coefficient * of.exponent * max(d * abs(y[1]), SLOWEST) ** (of.exponent - 1.0) * d * d / inertia
             grown = GROWTH * abs(y[1]) / (turn * h) if turn > 0.0 else 0.0
             share = min(share, max(min(grown, GROWTH / (slope * dt) if slope > 0.0 else 1.0), NEAREST))

@@ -12,6 +12,7 @@ from rockbatch.core.restrained.elements import (
     TENDON,
     YIELDING,
     distance,
+    draws,
     mode_of,
     tension,
 )
@@ -152,8 +153,8 @@ def released(m, elements, inertia, side, y, modes, ground, h):
 def set_modes(elements, side, y, modes, goes):
     """Modes of all tendons, for a block that goes on from ``y``."""
     for j in range(len(elements)):
-        d = distance(elements[j], side)
-        modes[j] = mode_of(elements[j], 2.0 * d * math.sin(0.5 * y[0]), y[2 + j], goes)
+        d, way = distance(elements[j], side), draws(elements[j], side, goes)
+        modes[j] = mode_of(elements[j], 2.0 * d * math.sin(0.5 * y[0]), y[2 + j], way)
 
 
 @kernel

@@ -21,6 +21,7 @@ from rockbatch.core.restrained.elements import (
     USE,
     VISCOUS,
     distance,
+    draws,
     force,
 )
 from rockbatch.core.restrained.equations import acceleration, copy, friction_bound, longest
@@ -59,6 +60,9 @@ from rockbatch.core.types import (
 
 EVENTS_IN_A_SAMPLE = 20_000
 NEGLIGIBLE = 1e-13  # of α: height of the bounces that are summed up instead of followed
+
+TRACE = 1e-300
+"""Of a velocity [rad/s], whose sign tells where a block went that is turning."""
 
 COLUMNS = 4
 """Of a history before the states of the elements: t [s], θ [rad], θ̇ [rad/s], kind of the row (``types``); then the states, what
@@ -120,12 +124,13 @@ def _take_in(m, elements, inertia, y, end, modes, log, ground, h, t, use, work):
         )
         line.speed = largest_within(speeds[0], bends[0], speeds[1], bends[1], h, max(line.speed, abs(speeds[0])))[1]
         elongation = 2.0 * d * math.sin(0.5 * end[0])
-        line.stroke = max(line.stroke, elongation)
-        pull = force(of, elongation, speeds[1], end[2 + j], modes[j], goes)
+        line.stroke = max(line.stroke, abs(elongation))
+        way = draws(of, side, goes)
+        pull = force(of, elongation, speeds[1], end[2 + j], modes[j], way)
         if of.kind == VISCOUS:
             fastest = of.coefficient * line.speed**of.exponent
-            line.most = max(line.most, fastest if goes == OPENS else 0.0)
-            line.least = min(line.least, -fastest if goes == CLOSES else 0.0)
+            line.most = max(line.most, fastest if way == OPENS else 0.0)
+            line.least = min(line.least, -fastest if way == CLOSES else 0.0)
         line.most, line.least = max(line.most, pull), min(line.least, pull)
         line.lost = end[2 + len(elements) + j]
         line.yielded = end[2 + j] if of.kind == TENDON else 0.0
@@ -205,8 +210,11 @@ def _turn(m, elements, inertia, y, modes, log, ground):
 
 
 @kernel
-def _move(m, elements, inertia, y, end, modes, log, ground, t, left, h, dt, history, use, work, marks):
-    """The block off its rest for ``left`` [s], or until something happens: how long that is."""
+def _move(m, elements, inertia, y, end, modes, log, ground, t, left, h, dt, every_step, history, use, work, marks):
+    """The block off its rest for ``left`` [s], or until something happens: how long that is.
+
+    With ``every_step`` both sides of what changes forces at once are written.
+    """
     side = log.side[0]
     if log.goes[0] == STICKS:
         at, goes = released(m, elements, inertia, side, y, modes, ground, left)
@@ -220,6 +228,10 @@ def _move(m, elements, inertia, y, end, modes, log, ground, t, left, h, dt, hist
     _take_in(m, elements, inertia, y, end, modes, log, ground, used, t, use, work)
     copy(end, y)
     there = later(ground, used)
+    if every_step and which >= TURNS:
+        if which == TURNS:
+            y[1] = log.goes[0] * TRACE
+        _write(history, log, t + used, y, STEP)
     if which == LANDS:
         _land(m, elements, inertia, y, modes, log, there, t + used, dt, history)
     elif which == TURNS:
@@ -228,6 +240,8 @@ def _move(m, elements, inertia, y, end, modes, log, ground, t, left, h, dt, hist
         j = (which - OF_TENDONS) // 2
         modes[j] = change_tendon(elements[j], modes[j], (which - OF_TENDONS) % 2 == 1)
         use[j].slack += 1.0 if modes[j] == SLACK else 0.0
+    if every_step and which >= TURNS:
+        _write(history, log, t + used, y, STEP)
     if which >= 0:
         log.events[0] += 1.0
     return used
@@ -302,7 +316,23 @@ def _rock(
                     used = _rest(m, elements, inertia, y, modes, log, here, t, left, history)
                 else:
                     used = _move(
-                        m, elements, inertia, y, end, modes, log, here, t, left, h, dt, history, use, work, marks
+                        m,
+                        elements,
+                        inertia,
+                        y,
+                        end,
+                        modes,
+                        log,
+                        here,
+                        t,
+                        left,
+                        h,
+                        dt,
+                        every_step,
+                        history,
+                        use,
+                        work,
+                        marks,
                     )
                 done = done + used if used < left else whole
             t = t_sample + start + done
