@@ -48,16 +48,17 @@ def assert_nothing_wrong(outcomes, rows):
 
 
 def test_outcomes_of_a_part_of_the_pool_are_those_of_the_reference(outcomes, tmp_path):
-    rows = judged(outcomes, tmp_path, 80)
-    assert len(rows) >= 80
+    rows = judged(outcomes, tmp_path, 40)
+    assert len(rows) >= 40
     assert sum(row.verdict in outcomes.LEFT_OUT for row in rows) <= 0.15 * len(rows)
     assert_nothing_wrong(outcomes, rows)
 
 
 @pytest.mark.slow
-def test_outcomes_of_the_whole_pool_are_those_of_the_reference(outcomes, tmp_path):
-    rows = judged(outcomes, tmp_path)
-    assert len(rows) >= 1200
+def test_outcomes_of_a_third_of_the_pool_are_those_of_the_reference(outcomes, tmp_path):
+    """The whole of it, and other seeds: ``python benchmarks/outcomes.py``."""
+    rows = judged(outcomes, tmp_path, 500)
+    assert len(rows) >= 500
     assert sum(row.verdict in outcomes.LEFT_OUT for row in rows) <= 0.1 * len(rows)
     assert_nothing_wrong(outcomes, rows)
 

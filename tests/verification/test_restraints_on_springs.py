@@ -131,6 +131,30 @@ def test_friction_holds_until_the_inertia_exceeds_it():
         assert (found.theta_max > 1e-12) == moves
 
 
+@pytest.mark.parametrize("base", BASES)
+def test_friction_at_both_pivots_lets_go_at_one_time(base):
+    """Without vertical motion both dampers reach their force at the same instant, time and again, and neither can go alone."""
+    for motion in rb.read_motions(NEAR_FAULT)[:3]:
+        alone = replace(motion, vertical=None)
+        coarse, fine = (run_fixed(TOWER, tied(base, FRICTION["both"]), alone, steps) for steps in (8, 64))
+        assert (coarse.status, fine.status) == ("ok", "ok")
+        assert coarse.theta_max == pytest.approx(fine.theta_max, abs=1e-6 * TOWER.alpha)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("f", [0.02, 0.2])
+def test_friction_at_a_pivot_that_is_held_bears_nothing(f):
+    """Finite kinematics and ε = 0 hold a pivot that has landed; a damper there has nothing left to hold."""
+    base = tied(ElasticBase(40.0, 0.0, "finite", "guided"), (Damper("friction", f=f, at="left"),))
+    for motion in rb.read_motions(NEAR_FAULT):
+        if motion.name.startswith("CHAN"):
+            for pier in (rb.Pier(0.2, 1.0), rb.Pier(0.25, 2.0)):
+                coarse, fine = (run_fixed(pier, base, motion, steps) for steps in (8, 64))
+                assert coarse.status == fine.status in ("ok", "overturned")
+                if fine.status == "ok":
+                    assert coarse.theta_max == pytest.approx(fine.theta_max, abs=1e-4 * pier.alpha)
+
+
 @pytest.mark.parametrize("base", [ELASTIC, BOUC_WEN], ids=["elastic", "bouc-wen"])
 @pytest.mark.parametrize("at", [None, 0.0, "left"])
 def test_hysteretic_dampers_tend_to_friction_as_their_yield_deflection_vanishes(base, at):

@@ -21,6 +21,9 @@ from rockbatch.core.types import State
 
 NONE = -1
 
+STAYS = 1e-9
+"""Acceleration of a place by a unit force there, below which it does not move: a pivot that is held, to rounding."""
+
 
 class Ties(NamedTuple):
     """The elements of a run, and what of them is constant between events."""
@@ -72,7 +75,7 @@ def sticking(ties, after):
 def _held_by_friction(m, first, second, y, contact, horizontal, vertical):
     """Forces [m/s²] at two places, whose Gaps are given, by which they do not move; the second is 0 where both are one.
 
-    ``m`` is the pier under all else. Accelerations are linear in the forces.
+    ``m`` is the pier under all else. Accelerations are linear in the forces. At a pivot that is held friction bears nothing.
     """
     geometric = geometry(m, y.theta)
     free, free_other, own, other_by_own, by_other, own_other = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
@@ -88,7 +91,9 @@ def _held_by_friction(m, first, second, y, contact, horizontal, vertical):
             own, other_by_own = here - free, there - free_other
         else:
             by_other, own_other = here - free, there - free_other
-    if first.slope == second.slope:
+    if abs(own) <= STAYS:
+        return 0.0, (0.0 if abs(own_other) <= STAYS else -free_other / own_other)
+    if abs(own_other) <= STAYS or first.slope == second.slope:
         return -free / own, 0.0
     determinant = own * own_other - by_other * other_by_own
     return (by_other * free_other - own_other * free) / determinant, (

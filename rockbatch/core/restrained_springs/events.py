@@ -44,6 +44,9 @@ TURNS, SLACKENS, GIVES = 0, 1, 2
 NEARBY = 1e-6
 """Of a step: over which the rate of a friction damper's force is taken."""
 
+SOON = 1e-3
+"""Of a step: how long after friction has let go it is looked at what goes where."""
+
 SURE = 1e-9
 """Of a friction damper's strength: by how much rounding lets it hold more."""
 
@@ -211,7 +214,25 @@ def start_elements(m, ties, y, x):
 
 
 @kernel
-def happen_to_element(m, ties, y, x, contact, horizontal, vertical, signal):
+def _let_go(m, ties, y, x, contact, ground, h, work, j):
+    """Friction damper ``j`` can no longer hold, and perhaps others with it: what they do a moment later is told by then.
+
+    Now each of them still holds to rounding, and where two reach their force at one time neither can go alone.
+    """
+    near, later_x = SOON * h, work[1]
+    k, _, one, two = all_rates(m, ties, y, x, contact, ground.horizontal, ground.vertical, work[0])
+    holds = one if sticking(ties, NONE) == j else two
+    for i in range(len(x)):
+        later_x[i] = x[i] + near * work[0][i]
+    there = later(ground, near)
+    settle_friction(m, ties, along(y, k, near), later_x, contact, there.horizontal, there.vertical)
+    if ties.goes[j] == STICKS:
+        ties.goes[j] = OPENS if holds > 0.0 else CLOSES
+        settle_friction(m, ties, y, x, contact, ground.horizontal, ground.vertical)
+
+
+@kernel
+def happen_to_element(m, ties, y, x, contact, ground, h, work, signal):
     """What the fall of an element's ``signal`` makes of it; whether a tendon has gone slack."""
     j, what = (signal - OF_ELEMENTS) // 3, (signal - OF_ELEMENTS) % 3
     of = ties.elements[j]
@@ -219,14 +240,13 @@ def happen_to_element(m, ties, y, x, contact, horizontal, vertical, signal):
         ties.modes[j] = TAUT if what == TURNS else change_tendon(of, ties.modes[j], what == GIVES)
         return ties.modes[j] == SLACK
     if of.kind == FRICTION and what == GIVES:
-        _, one, two = under_elements(m, ties, y, x, contact, horizontal, vertical)
-        holds = one if sticking(ties, NONE) == j else two
-        ties.goes[j] = OPENS if holds > 0.0 else CLOSES
-    elif of.kind == FRICTION and of.strength > 0.0:
+        _let_go(m, ties, y, x, contact, ground, h, work, j)
+        return False
+    if of.kind == FRICTION and of.strength > 0.0:
         ties.goes[j] = STICKS
     else:
         ties.goes[j] = -ties.goes[j]
-    settle_friction(m, ties, y, x, contact, horizontal, vertical)
+    settle_friction(m, ties, y, x, contact, ground.horizontal, ground.vertical)
     return False
 
 

@@ -132,7 +132,8 @@ def _event(lanes, m, course, which, t, x, ground, every_step, history, row):
     if which >= OF_ELEMENTS:
         if every_step:
             row = _write(lanes, m, course, history, row, t, STEP, here)
-        slack = happen_to_element(m, course.ties, y, course.x, contact, a, c, which)
+        h = lanes.clock.step[0]
+        slack = happen_to_element(m, course.ties, y, course.x, contact, here, h, course.work, which)
         course.use[(which - OF_ELEMENTS) // 3].slack += 1.0 if slack else 0.0
         if every_step:
             row = _write(lanes, m, course, history, row, t, STEP, here)
