@@ -141,6 +141,17 @@ def test_friction_at_both_pivots_lets_go_at_one_time(base):
         assert coarse.theta_max == pytest.approx(fine.theta_max, abs=1e-6 * TOWER.alpha)
 
 
+@pytest.mark.parametrize("base", [ELASTIC, BOUC_WEN], ids=["elastic", "bouc-wen"])
+@pytest.mark.parametrize("at", [None, 0.0])
+def test_friction_beside_a_viscous_damper_lets_go(base, at):
+    """Both are still until friction goes: to rounding, neither has turned then."""
+    restraints = (Damper("viscous", nu=0.1, exponent=0.5, at=at), Damper("friction", f=0.06, at=at))
+    (motion,) = (m for m in rb.read_motions(NEAR_FAULT) if m.name.endswith("PRPC_20.N00E"))
+    coarse, fine = (run_fixed(rb.Pier(0.25, 2.0), tied(base, restraints), motion, steps) for steps in (8, 32))
+    assert (coarse.status, fine.status) == ("ok", "ok")
+    assert coarse.theta_max == pytest.approx(fine.theta_max, abs=1e-3 * 0.25)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("f", [0.02, 0.2])
 def test_friction_at_a_pivot_that_is_held_bears_nothing(f):

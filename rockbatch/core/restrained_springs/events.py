@@ -64,7 +64,7 @@ def _of_element(of, at, state, mode, goes, acceleration, rest, rounding, signals
     speed = surely(at.speed, acceleration, rest)
     if of.kind != TENDON or mode == YIELDING:
         way = OPENS if of.kind == TENDON else goes
-        starts = abs(at.speed) <= rest and way * acceleration > 0.0  # it has just turned, to rounding
+        starts = abs(at.speed) <= rest and way * acceleration >= 0.0  # it has just turned, or is let go, to rounding
         signals_of[TURNS], slopes_of[TURNS] = rest if starts else way * at.speed, way * acceleration
         return
     pull, rate = tension(of, at.elongation, state), of.stiffness * speed
