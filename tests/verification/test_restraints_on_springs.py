@@ -221,17 +221,26 @@ def test_friction_may_hold_a_pivot_that_its_spring_no_longer_bears():
     assert coarse.theta_max == pytest.approx(fine.theta_max, rel=1e-7)
 
 
-def drawn(seed, pier):
+KINDS = ("linear", "power", "hysteretic", "tendon", "pair")
+"""Of elements that the reference knows."""
+
+
+def drawn(seed, pier, kinds=KINDS):
     """One to three dampers and tendons at random."""
     rng = np.random.default_rng(seed)
     found = ()
-    for kind in rng.choice(["linear", "power", "hysteretic", "tendon", "pair"], rng.integers(1, 4)):
+    for kind in rng.choice(kinds, rng.integers(1, 4)):
         at = None if rng.random() < 0.5 else float(rng.uniform(-1.0, 1.0) * pier.half_width)
         if kind == "linear":
             found += (Damper("viscous", nu=float(rng.uniform(0.0, 2.0)), at=at),)
         elif kind == "power":
             nu, exponent = float(rng.uniform(0.0, 0.5)), float(rng.uniform(1.2, 2.0))
             found += (Damper("viscous", nu=nu, exponent=exponent, at=at),)
+        elif kind == "root":
+            nu, exponent = float(rng.uniform(0.0, 0.3)), float(rng.uniform(0.3, 0.9))
+            found += (Damper("viscous", nu=nu, exponent=exponent, at=at),)
+        elif kind == "friction":
+            found += (Damper("friction", f=float(10.0 ** rng.uniform(-2.0, -0.7)), at=at),)
         elif kind == "hysteretic":
             f, u = float(rng.uniform(0.0, 0.3)), float(10.0 ** rng.uniform(-3.0, -1.5))
             found += (Damper("hysteretic", f=f, yield_m=u, at=at),)
@@ -241,6 +250,27 @@ def drawn(seed, pier):
             strength = psi + float(rng.uniform(0.01, 0.3)) if kind == "pair" else math.inf
             found += tuple(Tendon(psi, lam, strength, at=place) for place in ((s, -s) if s else (0.0,)))
     return found
+
+
+@pytest.mark.slow
+def test_random_elements_on_real_records_settle():
+    """With friction and roots too, with vertical motion and without: none fails, and none is wrong by more than it says."""
+    motions, bases, piers = rb.read_motions(NEAR_FAULT), (ELASTIC, BOUC_WEN), (TOWER, FIG5, rb.Pier(0.25, 2.0))
+    runs = 0
+    for seed in range(40):
+        rng = np.random.default_rng([7, seed])
+        pier, motion = piers[rng.integers(3)], motions[int(rng.integers(len(motions)))]
+        motion = motion if rng.random() < 0.5 else replace(motion, vertical=None)
+        base = tied(bases[rng.integers(2)], drawn([8, seed], pier, (*KINDS, "root", "friction", "friction")))
+        if problems(pier, base):
+            continue
+        outcome = run_to_tolerance(pier, base, motion, 1e-4)
+        assert outcome.status != "failed", (seed, outcome.reason)
+        runs += 1
+        if outcome.status == "ok":
+            finer = run_fixed(pier, base, motion, 4 * outcome.substeps)
+            assert abs(finer.theta_max - outcome.theta_max) <= outcome.theta_max_error, seed
+    assert runs > 20
 
 
 @pytest.mark.slow

@@ -14,8 +14,8 @@ from rockbatch.core.creep import share_left, with_creep
 from rockbatch.core.equations import accelerations, along, geometry, pulled, rates
 from rockbatch.core.kernel import kernel
 from rockbatch.core.laws import within_yield
-from rockbatch.core.restrained.elements import FRICTION, HYSTERETIC, STICKS, force, loss_rate, state_rate
-from rockbatch.core.restrained.equations import PLASTIC, TRAVEL
+from rockbatch.core.restrained.elements import FRICTION, HYSTERETIC, STICKS, VISCOUS, force, loss_rate, state_rate
+from rockbatch.core.restrained.equations import GROWTH, NEAREST, PLASTIC, TRAVEL
 from rockbatch.core.trigonometry import sine_and_cosine
 from rockbatch.core.types import State
 
@@ -144,11 +144,18 @@ def all_rates(m, ties, y, x, contact, horizontal, vertical, k):
 
 
 @kernel
+def _is_steep(of):
+    """Whether the force's slope knows no bound where the speed is 0, but for what ``linear_below`` sets."""
+    return of.kind == VISCOUS and of.exponent < 1.0
+
+
+@kernel
 def longest(m, ties, y, x, contact, ground, h, dt):
-    """The longest step [s], ``h`` at most, that resolves hysteretic dampers, as ``restrained.equations.longest`` has it."""
+    """The longest step [s], ``h`` at most, that resolves dampers, as ``restrained.equations.longest`` has it."""
     share, asked = 1.0, False
     for j in range(len(ties.elements)):
-        asked = asked or (ties.elements[j].kind == HYSTERETIC and ties.goes[j] * x[j] < 1.0)
+        of = ties.elements[j]
+        asked = asked or (of.kind == HYSTERETIC and ties.goes[j] * x[j] < 1.0) or _is_steep(of)
     if not asked:
         return h
     a, c = ground.horizontal, ground.vertical
@@ -160,6 +167,11 @@ def longest(m, ties, y, x, contact, ground, h, dt):
             at = gap(m, of, y, ties.level)
             way = (abs(at.speed) + abs(lifted(y, at, v_acceleration, theta_acceleration)) * h) * dt * of.stiffness
             share = min(share, TRAVEL / way) if way > 0.0 else share
+        if _is_steep(of):
+            at = gap(m, of, y, ties.level)
+            change = abs(lifted(y, at, v_acceleration, theta_acceleration)) * h
+            speed = max(abs(at.speed), of.linear_below)
+            share = min(share, max(GROWTH * speed / change, NEAREST)) if change > 0.0 else share
     return share * h
 
 
