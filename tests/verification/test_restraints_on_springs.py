@@ -152,6 +152,17 @@ def test_friction_beside_a_viscous_damper_lets_go(base, at):
     assert coarse.theta_max == pytest.approx(fine.theta_max, abs=1e-3 * 0.25)
 
 
+def test_tendons_that_change_at_one_time_let_each_other():
+    """Hopping, without horizontal motion: both of a pair go slack, taut again, and yield at the same instants."""
+    t = np.arange(1000) * 0.01
+    hops = Motion("hops", 0.01, np.zeros(1000), 14.0 * np.sin(2.0 * np.pi * 2.1 * t))
+    pair = (Tendon(0.05, 0.5, 0.1, at=0.5), Tendon(0.05, 0.5, 0.1, at=-0.5))
+    found = run_fixed(rb.Pier(0.2, 1.0), tied(ElasticBase(40.0, 0.3, flight="guided"), pair), hops, 4)
+    assert found.status == "ok"
+    assert found.tendon_slack > 10
+    assert found.tendon_yield > 0.001
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("f", [0.02, 0.2])
 def test_friction_at_a_pivot_that_is_held_bears_nothing(f):

@@ -68,12 +68,16 @@ def _of_element(of, at, state, mode, goes, acceleration, rest, rounding, signals
         signals_of[TURNS], slopes_of[TURNS] = rest if starts else way * at.speed, way * acceleration
         return
     pull, rate = tension(of, at.elongation, state), of.stiffness * speed
-    sign = 1.0 if mode == TAUT else -1.0
+    sign, least = 1.0 if mode == TAUT else -1.0, of.stiffness * rounding
     signals_of[SLACKENS], slopes_of[SLACKENS] = sign * pull, sign * rate
-    if abs(at.speed) <= rest and abs(pull) <= of.stiffness * rounding:  # it hangs there, neither taut nor slack
-        signals_of[SLACKENS], slopes_of[SLACKENS] = of.stiffness * rounding, 0.0
+    if abs(pull) <= least and sign * rate > 0.0:  # it has just changed, to rounding
+        signals_of[SLACKENS] = least
+    if abs(at.speed) <= rest and abs(pull) <= least:  # it hangs there, neither taut nor slack
+        signals_of[SLACKENS], slopes_of[SLACKENS] = least, 0.0
     if mode == TAUT and of.strength < math.inf:
         signals_of[GIVES], slopes_of[GIVES] = of.strength - pull, -rate
+        if abs(signals_of[GIVES]) <= least and rate < 0.0:
+            signals_of[GIVES] = least
 
 
 @kernel
