@@ -8,7 +8,7 @@ from enum import IntEnum
 import numpy as np
 
 from rockbatch.motions.motion import Motion
-from rockbatch.pier import Base, Pier
+from rockbatch.pier import Base, Damper, Pier
 from rockbatch.results.outcome import Outcome
 from rockbatch.simulation.models import first_substeps
 from rockbatch.simulation.runs import LEFT_ALONE, MOST_STEPS, Run, Stop, Trial, steps_of, try_all
@@ -18,6 +18,10 @@ HALVINGS = 8
 
 ROUNDING = 1e-12
 """Least error of θ/α that is ever claimed."""
+
+ROUGH = 3e-8
+"""Least error of θ/α that is claimed with a viscous damper whose force is a root of the speed: what a turning leaves over does
+not fall evenly with the step, so that two runs may agree better than either is right."""
 
 SAME_TIME = 0.01
 """Of 1/p: how well the time of overturning, of flight and of the peak is to be known."""
@@ -74,7 +78,8 @@ def run_all_to_tolerance(runs: Sequence[Run], tolerance: float, quiet_s: float, 
                 del levels[i]
                 continue
             pier, coarse = runs[i].pier, levels[i][-1]
-            fine = replace(fine, outcome=_with_errors(fine.outcome, coarse.outcome, pier.alpha))
+            least = _least_error(runs[i].base) * pier.alpha
+            fine = replace(fine, outcome=_with_errors(fine.outcome, coarse.outcome, least))
             levels[i].append(fine)
             agreements[i].append(agreement(fine, coarse, tolerance * pier.alpha, pier))
             if enough(agreements[i]):
@@ -89,11 +94,16 @@ def _steps_of_next(run: Run, levels: Sequence[Trial], quiet_s: float) -> float:
     return steps_of(run.motion, 2 * levels[-1].outcome.substeps, quiet_s)
 
 
-def _with_errors(fine: Outcome, coarse: Outcome, alpha: float) -> Outcome:
-    """``fine`` with what it changed against ``coarse``; rounding is the least that it can be wrong by."""
+def _least_error(base: Base) -> float:
+    """Of θ/α."""
+    rough = any(isinstance(each, Damper) and each.kind == "viscous" and each.exponent < 1.0 for each in base.restraints)
+    return ROUGH if rough else ROUNDING
+
+
+def _with_errors(fine: Outcome, coarse: Outcome, least: float) -> Outcome:
+    """``fine`` with what it changed against ``coarse``, ``least`` [rad] at least."""
     if fine.status != coarse.status or fine.status in ("overturned", "failed"):  # θ_max is where the run ended
         return fine
-    least = ROUNDING * alpha
     residual = None
     if fine.theta_res is not None and coarse.theta_res is not None:
         residual = max(abs(fine.theta_res - coarse.theta_res), least)
