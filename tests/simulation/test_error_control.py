@@ -10,7 +10,7 @@ from core_samples import FIG5, TOWER, broadband, hard_case, pulse
 from rockbatch import simulation
 from rockbatch.core.outcome import WINDOWS
 from rockbatch.motions.motion import Motion
-from rockbatch.pier import ElasticBase, Pier, RigidBase, Tendon, YieldingBase
+from rockbatch.pier import Damper, ElasticBase, Pier, RigidBase, Tendon, YieldingBase
 from rockbatch.results.outcome import Outcome
 from rockbatch.simulation import (
     Run,
@@ -143,6 +143,13 @@ def test_a_run_that_does_not_settle_fails_with_its_best_values_and_says_what_sti
 def test_no_error_below_rounding_is_ever_claimed(monkeypatch):
     scripted(monkeypatch, ok(0.1))
     assert run_to_tolerance(FIG5, RigidBase(), SINE, 1e-4).theta_max_error == settling.ROUNDING * FIG5.alpha
+
+
+def test_with_a_damper_whose_force_is_a_root_of_the_speed_less_is_claimed(monkeypatch):
+    scripted(monkeypatch, ok(0.1))
+    for exponent, least in ((0.5, settling.ROUGH), (1.0, settling.ROUNDING), (1.5, settling.ROUNDING)):
+        base = RigidBase(restraints=(Damper("viscous", nu=0.1, exponent=exponent), Tendon(psi=0.1)))
+        assert run_to_tolerance(FIG5, base, SINE, 1e-4).theta_max_error == least * FIG5.alpha
 
 
 def test_the_first_step_respects_the_highest_frequency_of_the_springs():
