@@ -12,7 +12,7 @@ from rockbatch.core.equations import accelerations, geometry, pulled, rates
 from rockbatch.core.kernel import entry, kernel
 from rockbatch.core.observed import contact_of, ground_at, middle_of, state_of
 from rockbatch.core.records import record
-from rockbatch.core.restrained.elements import FRICTION, distance, force, mode_of, state_rate
+from rockbatch.core.restrained.elements import CLOSES, FRICTION, OPENS, distance, force, mode_of, state_rate
 from rockbatch.core.rigid.equations import acceleration
 from rockbatch.core.trigonometry import sine_and_cosine
 from rockbatch.core.types import LEFT, NEITHER, RIGHT
@@ -195,15 +195,21 @@ def forces_on_springs(m, deck, rows, pulls, ground, dt, has, out, greatest, firs
 
 
 @kernel
-def _ties(elements, states, inertia, theta, omega, side):
+def _way(speed):
+    return 0.0 if speed == 0.0 else (OPENS if speed > 0.0 else CLOSES)
+
+
+@kernel
+def _ties(m, elements, states, inertia, theta, omega, side):
     """Ties of all ``elements`` but of friction dampers that do not move; ``states`` are theirs, shape (elements,)."""
-    down, across, back, aside = 0.0, 0.0, 0.0, 0.0
+    down, across = 0.0 * m.gravity, 0.0 * m.gravity
+    back, aside = 0.0 * m.p * m.p, 0.0 * m.p * m.p * inertia
     half_sine, half_cosine = sine_and_cosine(0.5 * abs(theta))
     for j in range(len(elements)):
         of = elements[j]
         d = distance(of, side)
         elongation, speed = 2.0 * d * half_sine, d * half_cosine * side * omega
-        goes = 0.0 if speed == 0.0 else math.copysign(1.0, speed)
+        goes = _way(speed)
         one = force(of, elongation, speed, states[j], mode_of(of, elongation, states[j], goes), goes)
         down, across = down + one * half_cosine, across + one * half_sine
         back, aside = back + one * d * half_cosine / inertia, aside + one * of.offset
@@ -216,22 +222,22 @@ def _state_rate(of, state, theta, omega, side):
     half_sine, half_cosine = sine_and_cosine(0.5 * abs(theta))
     d = distance(of, side)
     speed = d * half_cosine * side * omega
-    goes = 0.0 if speed == 0.0 else math.copysign(1.0, speed)
+    goes = _way(speed)
     return state_rate(of, speed, state, mode_of(of, 2.0 * d * half_sine, state, goes), goes)
 
 
 @kernel
-def _friction_ties(elements, inertia, theta, side):
+def _friction_ties(m, elements, inertia, theta, side):
     """Ties of friction dampers that are about to give way; of one in the corner nothing is known, and nothing depends on it."""
-    down, across, back = 0.0, 0.0, 0.0
+    down, across, back = 0.0 * m.gravity, 0.0 * m.gravity, 0.0 * m.p * m.p
     half_sine, half_cosine = sine_and_cosine(0.5 * abs(theta))
     for j in range(len(elements)):
         d = distance(elements[j], side)
         if elements[j].kind == FRICTION and d != 0.0:
-            one = math.copysign(elements[j].strength, d)
+            one = elements[j].strength if d > 0.0 else -elements[j].strength
             down, across = down + one * half_cosine, across + one * half_sine
             back += one * d * half_cosine / inertia
-    return Ties(down, across, back, 0.0 * back)
+    return Ties(down, across, back, 0.0 * back * inertia)
 
 
 @kernel
@@ -242,20 +248,20 @@ def on_rigid_base(m, outline, elements, states, theta, omega, side, horizontal, 
     can. A block that the ground lifts at this moment is no longer at rest.
     """
     inertia = m.gravity * outline.size / (m.p * m.p)  # I0/M + R0²
-    ties = _ties(elements, states, inertia, theta, omega, side)
+    ties = _ties(m, elements, states, inertia, theta, omega, side)
     if side == NEITHER:
         sine, cosine = sine_and_cosine(m.alpha)
         b = 0.5 * outline.width
         normal, more = m.gravity + vertical + ties.down, horizontal * cosine / sine - ties.aside / b
         pressed = LEFT if more > 0.0 else RIGHT
-        hold = _friction_ties(elements, inertia, theta, pressed)
+        hold = _friction_ties(m, elements, inertia, theta, pressed)
         lacks = (abs(more) - normal) * b / inertia
         if lacks <= hold.back:
-            share = lacks / hold.back if lacks > 0.0 else 0.0 * lacks
+            share = lacks / hold.back if lacks > 0.0 else 0.0
             normal += share * hold.down
             on_left, on_right = 0.5 * (normal + more), 0.5 * (normal - more)
             if lacks > 0.0:
-                on_left, on_right = (normal, 0.0) if pressed == LEFT else (0.0, normal)
+                on_left, on_right = (normal, 0.0 * normal) if pressed == LEFT else (0.0 * normal, normal)
             still = 0.0 * outline.size * omega
             gap = 0.0 * outline.width
             return Forces(
@@ -263,10 +269,10 @@ def on_rigid_base(m, outline, elements, states, theta, omega, side, horizontal, 
                 gap, gap, still, still, horizontal, still, still, omega, _friction(m.gravity, horizontal, normal), gap,
             )  # fmt: skip
         side = pressed
-        ties = _ties(elements, states, inertia, theta, omega, side)
+        ties = _ties(m, elements, states, inertia, theta, omega, side)
     turning, squared = acceleration(m, theta, side, horizontal, vertical) - side * ties.back, omega * omega
-    share = 0.0 * omega
-    hold = _friction_ties(elements, inertia, theta, side)
+    share = 0.0
+    hold = _friction_ties(m, elements, inertia, theta, side)
     if omega == 0.0 and hold.back > 0.0:
         share = min(max(side * turning / hold.back, -1.0), 1.0)
         turning -= side * share * hold.back
@@ -331,8 +337,8 @@ def forces_on_rigid_base(m, outline, elements, rows, states, halfway, ground, dt
             if side != NEITHER:
                 k_start = acceleration(m, theta_start, side, ah_start, av_start)
                 k_end = acceleration(m, theta, side, ah, av)
-                k_start -= side * _ties(elements, states[i - 1], inertia, theta_start, omega_start, side).back
-                k_end -= side * _ties(elements, states[i], inertia, theta, omega, side).back
+                k_start -= side * _ties(m, elements, states[i - 1], inertia, theta_start, omega_start, side).back
+                k_end -= side * _ties(m, elements, states[i], inertia, theta, omega, side).back
                 for j in range(len(elements)):
                     of, z_start, z = elements[j], states[i - 1, j], states[i, j]
                     bend = _state_rate(of, z_start, theta_start, omega_start, side) - _state_rate(

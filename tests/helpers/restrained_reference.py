@@ -1,8 +1,13 @@
-"""The reference solver with dampers and tendons: forces at points of the base, whose places come from its coordinates."""
+"""The reference solver with dampers and tendons: forces at points of the base, whose places come from its coordinates.
+
+What friction dampers without velocity do is a linear complementarity problem: each has a force within its bounds, and moves only
+against a force at its bound. Projected Gauss–Seidel steps solve it.
+"""
 
 import math
 from collections.abc import Sequence
 
+import numpy as np
 from reference_solver import OM, TH, VD, TwoSprings, V
 
 from rockbatch.motions.motion import Motion
@@ -23,7 +28,8 @@ class TiedTwoSprings(TwoSprings):
         share = load * 0.5 * self.g / self.fy
         self.v0, self.z0 = -self.dy * self._static_integral(share), -share
         self.y = [self.v0, 0.0, 0.0, 0.0, self.z0, self.z0] + [0.0] * (5 + len(self.elements))
-        self.way = [1.0] * len(self.elements)
+        self.way = [0.0 if self.rubs(j) else 1.0 for j in range(len(self.elements))]  # of friction that holds, 0
+        self.hold = [0.0] * len(self.elements)
         self.state = ["taut"] * len(self.elements)
         for j, (each, _) in enumerate(self.elements):
             if isinstance(each, Tendon) and each.psi == 0.0:
@@ -41,9 +47,43 @@ class TiedTwoSprings(TwoSprings):
         turn = self.h * math.sin(y[TH]) - s * math.cos(y[TH]) if self.finite else -s
         return y[VD] + turn * y[OM]
 
+    def rubs(self, j: int) -> bool:
+        each = self.elements[j][0]
+        return isinstance(each, Damper) and each.kind == "friction"
+
+    def lift(self, j: int, y: Sequence[float], accelerations: tuple[float, float]) -> float:
+        """Acceleration of the point (s, −h) upwards."""
+        s = self.elements[j][1]
+        if not self.finite:
+            return accelerations[0] - s * accelerations[1]
+        sine, cosine = math.sin(y[TH]), math.cos(y[TH])
+        return (
+            accelerations[0]
+            + (self.h * sine - s * cosine) * accelerations[1]
+            + (self.h * cosine + s * sine) * y[OM] ** 2
+        )
+
+    def still(self, modes, y, ah, av, which: Sequence[int]) -> tuple[np.ndarray, np.ndarray]:
+        """Accelerations at the dampers ``which`` without their forces, and what one of each adds to all of them."""
+
+        def lifts() -> np.ndarray:
+            found = self.under_pulls(modes, y, ah, av)
+            return np.array([self.lift(j, y, found) for j in which])
+
+        for j in which:
+            self.hold[j] = 0.0
+        free, by = lifts(), []
+        for j in which:
+            self.hold[j] = 1.0
+            by.append(lifts() - free)
+            self.hold[j] = 0.0
+        return free, np.array(by).T
+
     def pull(self, j: int, y: Sequence[float]) -> float:
         """Over the mass, downwards."""
         each, _ = self.elements[j]
+        if self.rubs(j):
+            return self.way[j] * each.f * self.g if self.way[j] else self.hold[j]
         speed = self.speed(j, y)
         if isinstance(each, Tendon):
             if self.state[j] == "slack":
@@ -68,6 +108,14 @@ class TiedTwoSprings(TwoSprings):
         return tendon.psi * self.g + stiffness * (self.rise(j, y) - y[FIRST + j])
 
     def accelerations(self, modes, y, ah, av):
+        holding = [j for j in range(len(self.elements)) if self.rubs(j) and not self.way[j]]
+        if holding:
+            free, by = self.still(modes, y, ah, av, holding)
+            for j, force in zip(holding, np.linalg.solve(by, -free), strict=True):
+                self.hold[j] = float(force)
+        return self.under_pulls(modes, y, ah, av)
+
+    def under_pulls(self, modes, y, ah, av):
         pulls = [self.pull(j, y) for j in range(len(self.elements))]
         vdd, thdd = super().accelerations(modes, y, ah, av + sum(pulls))
         if "held" in modes:
@@ -98,8 +146,16 @@ class TiedTwoSprings(TwoSprings):
     def surfaces(self, leg):
         found = super().surfaces(leg)
         still, slight = 1e-13 * self.omega_v * self.dy, 1e-13 * self.g
+        t0, _, h0, hs, v0, vs = leg
+
+        def bears(t, y, j):
+            self.accelerations(self.mode, y, h0 + hs * (t - t0), v0 + vs * (t - t0))
+            return self.elements[j][0].f * self.g - abs(self.hold[j])
+
         for j, (each, _) in enumerate(self.elements):
-            if isinstance(each, Damper):
+            if self.rubs(j) and not self.way[j]:
+                found.append((lambda t, y, j=j: bears(t, y, j), slight, j, "slips"))
+            elif isinstance(each, Damper):
                 found.append((lambda t, y, j=j: self.way[j] * self.speed(j, y), still, j, "turns"))
             elif self.state[j] == "yields":
                 found.append((lambda t, y, j=j: self.speed(j, y), still, j, "holds"))
@@ -114,13 +170,38 @@ class TiedTwoSprings(TwoSprings):
 
     def _fire(self, t, i, kind, ah, av):
         after = {"holds": "taut", "slackens": "slack", "yields": "yields"}
-        if kind == "turns":
+        if kind == "turns" and not self.rubs(i):
             self.way[i] = -self.way[i]
+        elif kind in ("turns", "slips"):
+            self.settle_friction(ah, av)
         elif kind in after:
             self.state[i] = after[kind]
         else:
             super()._fire(t, i, kind, ah, av)
             for j in range(len(self.elements)):  # velocities may have jumped
                 speed = self.speed(j, self.y)
-                if speed != 0.0:
+                if speed != 0.0 and not self.rubs(j):
                     self.way[j] = math.copysign(1.0, speed)
+            self.settle_friction(ah, av)
+
+    def settle_friction(self, ah: float, av: float) -> None:
+        """Who moves goes on; of the others, who bears all that it can is let go, and the rest hold."""
+        rubbing = [j for j in range(len(self.elements)) if self.rubs(j)]
+        which = []
+        for j in rubbing:
+            speed = self.speed(j, self.y)
+            self.way[j] = math.copysign(1.0, speed) if abs(speed) > 1e-12 * self.omega_v * self.dy else 0.0
+            which += [] if self.way[j] else [j]
+        if not which:
+            return
+        free, by = self.still(self.mode, self.y, ah, av, which)
+        limits = [self.elements[j][0].f * self.g for j in which]
+        forces = np.zeros(len(which))
+        for _ in range(10_000):
+            before = forces.copy()
+            for k, limit in enumerate(limits):
+                forces[k] = np.clip(forces[k] - (free[k] + by[k] @ forces) / by[k, k], -limit, limit)
+            if (forces == before).all():
+                break
+        for j, force, limit in zip(which, forces, limits, strict=True):
+            self.way[j] = math.copysign(1.0, force) if abs(force) >= (1.0 - 1e-10) * limit else 0.0

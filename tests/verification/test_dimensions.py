@@ -11,6 +11,8 @@ import pytest
 from numba.core.registry import CPUDispatcher
 
 from rockbatch.core import creep, equations, events, forces, impact, laws, trigonometry
+from rockbatch.core.restrained import elements
+from rockbatch.core.restrained.elements import FRICTION, TENDON, Element
 from rockbatch.core.rigid import equations as rigid
 from rockbatch.core.types import BOUC_WEN, ELASTIC, EPP, Block, Contact, Geometry, Ground, Rocking, Springs, State
 
@@ -24,6 +26,7 @@ UNITS = {  # of the fields, by the tuples' own comments
     Ground: (ACCELERATION, JERK, ACCELERATION, JERK),
     Geometry: (M,) * 12,
     Block: (RAD, 1 / S, ACCELERATION, ONE),
+    Element: (ONE, M, M, ACCELERATION, 1 / S**2, ACCELERATION / SPEED, ONE, ACCELERATION, M, SPEED),
 }
 RATES = (SPEED, RAD / S, ACCELERATION, RAD / S**2, 1 / S, 1 / S)
 
@@ -52,7 +55,7 @@ def plain_python(monkeypatch):
 
     A lever that is absent is written as 0.0; an exact zero has every dimension, so it gets that of its neighbours.
     """
-    modules: tuple[ModuleType, ...] = (laws, creep, equations, impact, events, trigonometry, rigid, forces)
+    modules: tuple[ModuleType, ...] = (laws, creep, equations, impact, events, trigonometry, rigid, forces, elements)
     compiled_geometry = equations.geometry
 
     def geometry(m, theta):
@@ -194,11 +197,15 @@ def test_forces_gaps_and_speeds_have_their_units_on_springs(finite, contact):
 
 
 @pytest.mark.parametrize("side", [-1.0, 0.0, 1.0])
-def test_forces_gaps_and_speeds_have_their_units_on_a_rigid_base(side):
+@pytest.mark.parametrize("kinds", [(), (FRICTION, TENDON)], ids=["plain", "tied"])
+@pytest.mark.parametrize("omega", [0.0, -0.1])
+def test_forces_gaps_and_speeds_have_their_units_on_a_rigid_base(side, kinds, omega):
     m, outline = Block(*quantities(Block, BLOCK)), forces.Outline(7.4 * M, 3.0 * M, 1.0, 24.0 * M)
+    tied = [Element(*quantities(Element, (kind, 2.0, 1.0, 3.0, 40.0, 0.1, 1.0, 0.5, 0.5, 0.0))) for kind in kinds]
     found = forces.on_rigid_base(
-        m, outline, 0.05 * side * RAD, -0.1 * RAD / S, side, 0.5 * ACCELERATION, -1.0 * ACCELERATION
-    )
+        m, outline, tied, [0.001 * M] * len(tied), 0.05 * side * RAD, omega * RAD / S, side, 0.5 * ACCELERATION,
+        -1.0 * ACCELERATION,
+    )  # fmt: skip
     assert_units(found, FORCES)
 
 
