@@ -3,7 +3,7 @@
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: run test lint slow docs screenshots clean
+.PHONY: run test lint slow thorough docs screenshots clean
 
 run: .venv/.run
 	$(BIN)/rockbatch run configs/near_fault.toml
@@ -13,7 +13,10 @@ test: .venv/.test
 	$(BIN)/python -m pytest -n auto --dist loadfile -m "not slow"
 
 slow: .venv/.test
-	$(BIN)/python -m pytest -n auto --dist loadfile -m slow
+	$(BIN)/python -m pytest -n auto --dist loadfile -m "slow and not thorough"
+
+thorough: .venv/.test
+	$(BIN)/python -m pytest -n auto --dist load -m thorough
 
 lint: .venv/.test
 	$(BIN)/ruff check .

@@ -57,7 +57,7 @@ class Outline(NamedTuple):
     deck_above: float  # by how much the deck is higher, where it turns with the block [m]
 
 
-class Ties(NamedTuple):
+class BlockPull(NamedTuple):
     """What dampers and tendons do to a block that rocks about a corner."""
 
     down: float  # force that presses it on its supports [m/s²]
@@ -200,8 +200,8 @@ def _way(speed):
 
 
 @kernel
-def _ties(m, elements, states, inertia, theta, omega, side):
-    """Ties of all ``elements`` but of friction dampers that do not move; ``states`` are theirs, shape (elements,)."""
+def _pull(m, elements, states, inertia, theta, omega, side):
+    """Pull of all ``elements`` but of friction dampers that do not move; ``states`` are theirs, shape (elements,)."""
     down, across = 0.0 * m.gravity, 0.0 * m.gravity
     back, aside = 0.0 * m.p * m.p, 0.0 * m.p * m.p * inertia
     half_sine, half_cosine = sine_and_cosine(0.5 * abs(theta))
@@ -213,7 +213,7 @@ def _ties(m, elements, states, inertia, theta, omega, side):
         one = force(of, elongation, speed, states[j], mode_of(of, elongation, states[j], goes), goes)
         down, across = down + one * half_cosine, across + one * half_sine
         back, aside = back + one * d * half_cosine / inertia, aside + one * of.offset
-    return Ties(down, across, back, aside)
+    return BlockPull(down, across, back, aside)
 
 
 @kernel
@@ -227,8 +227,8 @@ def _state_rate(of, state, theta, omega, side):
 
 
 @kernel
-def _friction_ties(m, elements, inertia, theta, side):
-    """Ties of friction dampers that are about to give way; of one in the corner nothing is known, and nothing depends on it."""
+def _friction_pull(m, elements, inertia, theta, side):
+    """Pull of friction dampers that are about to give way; of one in the corner nothing is known, and nothing depends on it."""
     down, across, back = 0.0 * m.gravity, 0.0 * m.gravity, 0.0 * m.p * m.p
     half_sine, half_cosine = sine_and_cosine(0.5 * abs(theta))
     for j in range(len(elements)):
@@ -237,7 +237,7 @@ def _friction_ties(m, elements, inertia, theta, side):
             one = elements[j].strength if d > 0.0 else -elements[j].strength
             down, across = down + one * half_cosine, across + one * half_sine
             back += one * d * half_cosine / inertia
-    return Ties(down, across, back, 0.0 * back * inertia)
+    return BlockPull(down, across, back, 0.0 * back * inertia)
 
 
 @kernel
@@ -248,13 +248,13 @@ def on_rigid_base(m, outline, elements, states, theta, omega, side, horizontal, 
     can. A block that the ground lifts at this moment is no longer at rest.
     """
     inertia = m.gravity * outline.size / (m.p * m.p)  # I0/M + R0²
-    ties = _ties(m, elements, states, inertia, theta, omega, side)
+    pull = _pull(m, elements, states, inertia, theta, omega, side)
     if side == NEITHER:
         sine, cosine = sine_and_cosine(m.alpha)
         b = 0.5 * outline.width
-        normal, more = m.gravity + vertical + ties.down, horizontal * cosine / sine - ties.aside / b
+        normal, more = m.gravity + vertical + pull.down, horizontal * cosine / sine - pull.aside / b
         pressed = LEFT if more > 0.0 else RIGHT
-        hold = _friction_ties(m, elements, inertia, theta, pressed)
+        hold = _friction_pull(m, elements, inertia, theta, pressed)
         lacks = (abs(more) - normal) * b / inertia
         if lacks <= hold.back:
             share = lacks / hold.back if lacks > 0.0 else 0.0
@@ -269,14 +269,14 @@ def on_rigid_base(m, outline, elements, states, theta, omega, side, horizontal, 
                 gap, gap, still, still, horizontal, still, still, omega, _friction(m.gravity, horizontal, normal), gap,
             )  # fmt: skip
         side = pressed
-        ties = _ties(m, elements, states, inertia, theta, omega, side)
-    turning, squared = acceleration(m, theta, side, horizontal, vertical) - side * ties.back, omega * omega
+        pull = _pull(m, elements, states, inertia, theta, omega, side)
+    turning, squared = acceleration(m, theta, side, horizontal, vertical) - side * pull.back, omega * omega
     share = 0.0
-    hold = _friction_ties(m, elements, inertia, theta, side)
+    hold = _friction_pull(m, elements, inertia, theta, side)
     if omega == 0.0 and hold.back > 0.0:
         share = min(max(side * turning / hold.back, -1.0), 1.0)
         turning -= side * share * hold.back
-    down, across = ties.down + share * hold.down, ties.across + share * hold.across
+    down, across = pull.down + share * hold.down, pull.across + share * hold.across
     sine, cosine = sine_and_cosine(side * m.alpha - theta)
     along = outline.size * (cosine * turning + sine * squared)
     normal = m.gravity + vertical + outline.size * (sine * turning - cosine * squared) + down
@@ -337,8 +337,8 @@ def forces_on_rigid_base(m, outline, elements, rows, states, halfway, ground, dt
             if side != NEITHER:
                 k_start = acceleration(m, theta_start, side, ah_start, av_start)
                 k_end = acceleration(m, theta, side, ah, av)
-                k_start -= side * _ties(m, elements, states[i - 1], inertia, theta_start, omega_start, side).back
-                k_end -= side * _ties(m, elements, states[i], inertia, theta, omega, side).back
+                k_start -= side * _pull(m, elements, states[i - 1], inertia, theta_start, omega_start, side).back
+                k_end -= side * _pull(m, elements, states[i], inertia, theta, omega, side).back
                 for j in range(len(elements)):
                     of, z_start, z = elements[j], states[i - 1, j], states[i, j]
                     bend = _state_rate(of, z_start, theta_start, omega_start, side) - _state_rate(

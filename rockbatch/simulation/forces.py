@@ -8,7 +8,6 @@ import numpy as np
 
 from rockbatch.core import types
 from rockbatch.core.forces import FORCES, NEVER, Forces, Outline, forces_on_rigid_base, forces_on_springs
-from rockbatch.core.recording import ROW
 from rockbatch.core.restrained.elements import ELEMENT
 from rockbatch.core.rigid import lane as rigid
 from rockbatch.motions.motion import Samples
@@ -16,7 +15,7 @@ from rockbatch.pier import Pier, RigidBase, YieldingBase
 from rockbatch.results.outcome import WOULD_SLIDE, Outcome, PeakForces
 from rockbatch.results.response import FORCE_UNITS, IMPACT_UNITS
 from rockbatch.simulation.models import block, elements, ground_of, springs
-from rockbatch.simulation.restraints import without_notes
+from rockbatch.simulation.restraints import apart, without_notes
 from rockbatch.simulation.runs import Run
 
 if TYPE_CHECKING:
@@ -74,9 +73,7 @@ def _observe(run: Run, rows: np.recarray, found: np.recarray, extremes: Samples,
         halfway = np.zeros(len(tied))
         forces_on_rigid_base(block(pier, base), _outline(pier), tied, plain, states, halfway, *rest)
         return
-    plain, pulls = rows, np.zeros((len(rows), 2))
-    if base.restraints:
-        plain, pulls = without_notes(rows, ROW), rows.pull.copy()
+    plain, pulls = apart(base, rows)
     forces_on_springs(springs(pier, base), float(pier.deck), plain, pulls, *rest)
 
 

@@ -7,7 +7,6 @@ import numpy as np
 
 from rockbatch.core import types
 from rockbatch.core.ledger import LEDGER, ledger_on_rigid_base, ledger_on_springs
-from rockbatch.core.recording import ROW
 from rockbatch.core.records import numbers
 from rockbatch.errors import InputError
 from rockbatch.motions.motion import Motion, Samples
@@ -153,9 +152,7 @@ def energies(run: Run, rows: np.recarray) -> Samples:
     if isinstance(base, RigidBase):
         ledger_on_rigid_base(block(pier, base), rows, ground, dt, ledger)
         return pier.inertia_about_pivot * numbers(ledger)
-    pulls, plain = np.zeros((len(rows), 2)), rows
-    if base.restraints:
-        pulls, plain = rows.pull.copy(), restraints.without_notes(rows, ROW)
+    plain, pulls = restraints.apart(base, rows)
     ledger_on_springs(springs(pier, base), plain, pulls, ground, dt, ledger)
     return restraints.with_elements(pier, base, rows, numbers(ledger)) if base.restraints else numbers(ledger)
 

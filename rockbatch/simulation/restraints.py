@@ -7,6 +7,7 @@ import numpy as np
 
 from rockbatch.core import types
 from rockbatch.core.ledger import LEDGER
+from rockbatch.core.recording import ROW
 from rockbatch.core.restrained.elements import FRICTION, HYSTERETIC, TENDON, Element
 from rockbatch.core.restrained_springs.runs import RestrainedOnSprings
 from rockbatch.motions.motion import Samples
@@ -35,6 +36,13 @@ def without_notes(rows: np.recarray, kind: np.dtype) -> np.recarray:
     for name in kind.names or ():
         plain[name] = rows[name]
     return plain
+
+
+def apart(base: Base, rows: np.recarray) -> tuple[np.recarray, Samples]:
+    """Rows of a history on springs as those of a plain pier, and force [m/s²] and moment [m²/s²] of all elements at each."""
+    if not base.restraints:
+        return rows, np.zeros((len(rows), 2))
+    return without_notes(rows, ROW), rows.pull.copy()
 
 
 def _elongation(of: Element, pier: Pier, base: Base, rows: np.recarray) -> tuple[Samples, Samples]:

@@ -7,7 +7,10 @@ import re
 import shutil
 import subprocess
 
+import pytest
+
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+needs_chromium = pytest.mark.skipif(CHROMIUM is None, reason="needs Chromium")
 # Runs before the page: what goes wrong is written down
 WATCH = """
 const wrong = [];

@@ -3,12 +3,12 @@
 import re
 
 import pytest
-from browser import CHROMIUM, browse, chromium
+from browser import browse, chromium, needs_chromium
 from report_samples import FIG7, FOUNDATIONS, response, write_results
 
 from rockbatch.report import write_comparison, write_report
 
-pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="needs Chromium")
+pytestmark = needs_chromium
 
 
 @pytest.fixture(scope="module")

@@ -3,7 +3,7 @@
 import re
 
 import pytest
-from browser import CHROMIUM, browse
+from browser import browse, needs_chromium
 from check_samples import verdict
 from report_page import Page
 from report_samples import FIG7, case_entry, write_results
@@ -87,7 +87,7 @@ def test_long_tables_are_folded_and_short_ones_stand_open(tmp_path):
     assert not re.search(r"<summary>Ground motions", text)
 
 
-@pytest.mark.skipif(CHROMIUM is None, reason="needs Chromium")
+@needs_chromium
 @pytest.mark.parametrize("many", ["cases", "records"])
 def test_the_whole_answer_is_on_the_first_screen(tmp_path, many):
     records = [(f"EVENT-{i}", 0.1 + 0.001 * i) for i in range(200)] if many == "records" else FIG7

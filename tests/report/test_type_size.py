@@ -5,7 +5,7 @@ import zlib
 
 import numpy as np
 import pytest
-from browser import CHROMIUM, browse, chromium
+from browser import browse, chromium, needs_chromium
 from report_page import figures
 from studies import PADS, RIGID, SINE, study_text, write_study
 
@@ -80,7 +80,7 @@ def test_no_picture_is_made_for_more_room_than_it_has(report):
     assert not re.search(r"\.plot [^{]*\{[^}]*font-size: ([0-9]|10)(\.\d+)?px", style)
 
 
-@pytest.mark.skipif(CHROMIUM is None, reason="needs Chromium")
+@needs_chromium
 @pytest.mark.parametrize("width", [1400, 500, 720], ids=["wide", "narrow", "paper"])
 def test_the_smallest_words_of_every_picture_can_be_read(tmp_path, report, width):
     """On A4 with the margins of the page there are 688 px between them, as in a window of 720."""
@@ -89,7 +89,7 @@ def test_the_smallest_words_of_every_picture_can_be_read(tmp_path, report, width
     assert {name: size for name, size in found.items() if size < 11} == {}
 
 
-@pytest.mark.skipif(CHROMIUM is None, reason="needs Chromium")
+@needs_chromium
 def test_no_page_is_printed_smaller_because_a_table_is_too_wide(tmp_path, report):
     """Chromium shrinks every page until the widest thing on any fits. Skia draws 300 units to an inch: 3.125 to a pixel."""
     text = report.read_text(encoding="utf-8")

@@ -157,11 +157,18 @@ def test_stocky_piers_on_critically_damped_supports_do_not_blow_up():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("block", range(1, 7))
-def test_random_hard_cases_on_damped_supports_agree_with_the_reference(block):
+@pytest.mark.parametrize(
+    "seeds",
+    [
+        *(range(first, first + 6) for first in range(6, 42, 6)),
+        *(pytest.param(range(first, first + 20), marks=pytest.mark.thorough) for first in range(0, 120, 20)),
+    ],
+    ids=lambda seeds: f"{seeds.start}-{seeds.stop}",
+)
+def test_random_hard_cases_on_damped_supports_agree_with_the_reference(seeds):
     """As the undamped ones (test_against_reference), with ζ from 10⁻⁴ to 1 in place of ε."""
     compared = 0
-    for seed in range(6 * block, 6 * block + 6):
+    for seed in seeds:
         pier, base, motion = hard_case(seed)
         zeta = float(np.random.default_rng(1000 + seed).choice([1e-4, 1e-3, 0.01, 0.05, 0.2, 1.0]))
         base = replace(base, epsilon=0.0, zeta=zeta)
@@ -175,7 +182,7 @@ def test_random_hard_cases_on_damped_supports_agree_with_the_reference(block):
         assert outcome.theta_max == pytest.approx(expected.theta_max, abs=1e-6 * pier.alpha), seed
         assert abs(outcome.impacts - expected.impacts) <= 1, seed
         compared += 1
-    assert compared >= 2
+    assert compared >= len(seeds) * 2 // 5
 
 
 @pytest.mark.parametrize("kinematics", ["first-order", "finite"])

@@ -196,21 +196,20 @@ def test_friction_demand_at_an_impact_is_a_matter_of_alpha_alone(alpha, demand):
     assert shares.to_numpy() == pytest.approx(demand, abs=1e-9)
 
 
-def test_a_pier_at_rest_bears_its_weight_and_half_of_it_on_each_support():
+@EVERY_BASE
+def test_a_pier_at_rest_bears_its_weight_and_half_of_it_on_each_support(name):
     """And so of the prestress, which a tendon off the axis puts on the nearer support."""
     still = rb.Motion("still", 0.01, np.zeros(100))
-    for name, base in BASES.items():
-        if name == "elastic, finite, tied":
-            continue
-        tendons = [each for each in base.restraints if isinstance(each, rb.Tendon)]
-        more, aside = sum(each.psi for each in tendons), sum(each.psi * each.at for each in tendons) / PIER.half_width
-        forces = sized(PIER, base, still)
-        assert (forces.base_shear, forces.friction_demand) == (0.0, 0.0)
-        assert forces.normal_force == pytest.approx((1.0 + more) * G, rel=1e-12)
-        assert forces.pivot_left == pytest.approx(1.0 + more - aside, rel=1e-12)
-        assert forces.pivot_right == pytest.approx(1.0 + more + aside, rel=1e-12)
-        assert (forces.heel_gap_left, forces.deck_acceleration, forces.omega_over_p) == (0.0, 0.0, 0.0)
-        assert (forces.landing_velocity, forces.first_uplift, forces.flight_duration) == (None, None, None)
+    base = BASES[name]
+    tendons = [each for each in base.restraints if isinstance(each, rb.Tendon)]
+    more, aside = sum(each.psi for each in tendons), sum(each.psi * each.at for each in tendons) / PIER.half_width
+    forces = sized(PIER, base, still)
+    assert (forces.base_shear, forces.friction_demand) == (0.0, 0.0)
+    assert forces.normal_force == pytest.approx((1.0 + more) * G, rel=1e-12)
+    assert forces.pivot_left == pytest.approx(1.0 + more - aside, rel=1e-12)
+    assert forces.pivot_right == pytest.approx(1.0 + more + aside, rel=1e-12)
+    assert (forces.heel_gap_left, forces.deck_acceleration, forces.omega_over_p) == (0.0, 0.0, 0.0)
+    assert (forces.landing_velocity, forces.first_uplift, forces.flight_duration) == (None, None, None)
 
 
 def test_a_block_at_rest_that_is_shaken_below_uplift_leans_on_one_corner():

@@ -55,10 +55,11 @@ def test_outcomes_of_a_part_of_the_pool_are_those_of_the_reference(outcomes, tmp
 
 
 @pytest.mark.slow
-def test_outcomes_of_more_of_the_pool_are_those_of_the_reference(outcomes, tmp_path):
-    """The whole of it, and other seeds: ``python benchmarks/outcomes.py``."""
-    rows = judged(outcomes, tmp_path, 200)
-    assert len(rows) >= 200
+@pytest.mark.parametrize(("count", "least"), [(200, 200), pytest.param(None, 1200, marks=pytest.mark.thorough)])
+def test_outcomes_of_the_pool_are_those_of_the_reference(outcomes, tmp_path, count, least):
+    """A part of it, and the whole; other seeds: ``python benchmarks/outcomes.py``."""
+    rows = judged(outcomes, tmp_path, count)
+    assert len(rows) >= least
     assert sum(row.verdict in outcomes.LEFT_OUT for row in rows) <= 0.1 * len(rows)
     assert_nothing_wrong(outcomes, rows)
 
