@@ -4,7 +4,8 @@ All compiled functions are in this file, because Numba's cache on disk sees chan
 base and one on two springs are the same problem to it: a smooth right-hand side as long as ``mode`` stays, and six
 signals, positive until something happens. Derived from the equations anew; nothing is taken from ``rockbatch.core``.
 
-State ``y`` = v, θ, v̇, θ̇, z_L, z_R, W, with W the work [J/kg] of all that is not stored (its check is the balance).
+State ``y`` = v, θ, v̇, θ̇, z_L, z_R, W, with W the work [J/kg] of all that is not stored (its check is the balance). On the
+rigid base v and v̇ are those of flight, 0 in contact, and W and the stored energy are over (I0 + R²)/M.
 """
 
 import math
@@ -19,15 +20,17 @@ E3, E5 = dop853.E3.copy(), dop853.E5.copy()
 SIGNALS = 6
 
 # Parameters
-RIGID, G, HALF_WIDTH, HEIGHT, INERTIA, ALPHA, P, E, FY, DY, N, LAW, FINITE, EPSILON, OMEGA, ETA = range(16)
+RIGID, G, HALF_WIDTH, HEIGHT, INERTIA, ALPHA, P, E, FY, DY, N, LAW, FINITE, EPSILON, OMEGA, ETA, STOPS = range(17)
 ELASTIC, BOUC_WEN, EPP = range(3)
-# Mode: contact of L, R; inelastic branch of L, R; side of a rigid block (0 at rest)
+# Mode: contact of L, R; inelastic branch of L, R; side of a rigid block: the pivot that bears, in flight the one that bore
+# last (-1 L, 1 R, 0 at rest). On the rigid base the fourth says that the lower pivot of a flying block rises.
 FREE, CONTACT, HELD = range(3)
-SIDE = 4
+RISES, SIDE = 3, 4
 # What is found out on the way
 (STATUS, THETA_MAX, T_MAX, T_END, IMPACTS, SEPARATIONS, T_FLIGHT, THETA_FLIGHT, PEAK_FLIGHT, T_PEAK_FLIGHT, UP_LEFT,
- UP_RIGHT, BALANCE, FORCED, STEPS, DECIDED, HALFWAY, JUMPS, WRITTEN) = range(19)  # fmt: skip
-FOUND = 19
+ UP_RIGHT, BALANCE, FORCED, STEPS, DECIDED, HALFWAY, JUMPS, WRITTEN, FLIGHTS, AIR_TIME, AIR_HEIGHT,
+ TAKE_OFF) = range(23)  # fmt: skip
+FOUND = 23
 STANDS, OVERTURNED, FLEW, EXHAUSTED = range(4)
 
 kernel = njit(cache=True, nogil=True, error_model="numpy")
@@ -80,6 +83,18 @@ def accelerations(y, left, right, horizontal, vertical, par):
 
 
 @kernel
+def flies(mode):
+    """Whether neither pivot is in contact."""
+    return mode[0] == FREE and mode[1] == FREE
+
+
+@kernel
+def keyed(y, mode, par):
+    """H and dH/dθ of a flying rigid block: the key at the pivot that bore last keeps its place."""
+    return lever(y[1], 1.0 if mode[SIDE] == -1 else 0.0, 1.0 if mode[SIDE] == 1 else 0.0, par)
+
+
+@kernel
 def touching(mode, pivot):
     return 1.0 if mode[pivot] == CONTACT else 0.0
 
@@ -97,6 +112,33 @@ def pivot_acceleration(y, up, turn, pivot, par):
 def pivot_velocity(y, pivot, par):
     left, right, _, _ = arms(y[1], par)
     return y[2] + (left if pivot == 0 else right) * y[3]
+
+
+@kernel
+def normal_force(y, side, ground, tau, par):
+    """N/M of a rigid block that rocks about the pivot on ``side``, and its rate.
+
+    N/M = g + v̈_g + v̈ with v = R cos φ − h, φ = α − |θ|, and θ̈ of rocking (flight.md, F1).
+    """
+    u, w = ground[0] + ground[1] * tau, ground[2] + ground[3] * tau
+    size = math.hypot(par[HALF_WIDTH], par[HEIGHT])
+    k = size**2 / (size**2 + par[INERTIA])
+    phi, speed = par[ALPHA] - side * y[1], side * y[3]
+    sine, cosine = math.sin(phi), math.cos(phi)
+    weight, across = par[G] + w, side * u
+    turn = -k / size * (weight * sine + across * cosine)  # of |θ|
+    force = weight * (1 - k * sine**2) - k * across * sine * cosine - size * cosine * speed**2
+    rate = ground[3] * (1 - k * sine**2) - k * side * ground[1] * sine * cosine
+    rate += k * speed * (2 * weight * sine * cosine + across * math.cos(2 * phi))
+    rate -= size * speed * (sine * speed**2 + 2 * cosine * turn)
+    return force, rate
+
+
+@kernel
+def lower_pivot(y):
+    """The lower pivot of a flying rigid block, at θ = 0 the one that will be."""
+    lean = y[1] if y[1] != 0.0 else y[3]
+    return 1 if lean > 0 else 0
 
 
 @kernel
@@ -118,6 +160,13 @@ def rhs(y, out, tau, ground, mode, par):
     u, w = ground[0] + ground[1] * tau, ground[2] + ground[3] * tau
     out[:] = 0.0
     if par[RIGID] == 1.0:
+        if flies(mode):
+            H, slope = keyed(y, mode, par)
+            inertia = par[INERTIA] + H * H
+            out[0], out[1], out[2] = y[2], y[3], -par[G] - w
+            out[3] = -H * (slope * y[3] ** 2 + u) / inertia
+            out[6] = -(u * H * y[3] + w * y[2]) * par[P] ** 2 / (par[G] * math.hypot(par[HALF_WIDTH], par[HEIGHT]))
+            return
         if mode[SIDE] == 0:
             return
         lean = par[ALPHA] * mode[SIDE] - y[1]
@@ -157,6 +206,10 @@ def rhs(y, out, tau, ground, mode, par):
 @kernel
 def stored(y, mode, par):
     """Kinetic, potential and elastic energy."""
+    if par[RIGID] == 1.0 and flies(mode):
+        H, _ = keyed(y, mode, par)
+        energy = 0.5 * y[2] ** 2 + 0.5 * (par[INERTIA] + H * H) * y[3] ** 2 + par[G] * y[0]
+        return energy * par[P] ** 2 / (par[G] * math.hypot(par[HALF_WIDTH], par[HEIGHT]))
     if par[RIGID] == 1.0:
         return 0.5 * y[3] ** 2 + par[P] ** 2 * (math.cos(par[ALPHA] - abs(y[1])) - math.cos(par[ALPHA]))
     H = par[HEIGHT]
@@ -211,24 +264,39 @@ def step(y, f, h, tau, ground, mode, par, stages, new, new_f, tolerance):
 
 
 @kernel
+def rigid_signals(y, f, tau, ground, mode, par, g, dg):
+    """Signals 0 to 3 of a rigid block, as :func:`signals` says."""
+    u, w = ground[0] + ground[1] * tau, ground[2] + ground[3] * tau
+    if flies(mode):
+        g[0], g[1] = pivots(y, par)
+        dg[0], dg[1] = pivot_velocity(y, 0, par), pivot_velocity(y, 1, par)
+        if mode[RISES] == 1:
+            lower = lower_pivot(y)
+            g[3], dg[3] = dg[lower], pivot_acceleration(y, f[2], f[3], lower, par)
+    elif mode[SIDE] == 0:
+        grip = (par[G] + w) * math.tan(par[ALPHA])
+        dgrip = ground[3] * math.tan(par[ALPHA])
+        g[0], dg[0] = grip - u, dgrip - ground[1]
+        g[1], dg[1] = grip + u, dgrip + ground[1]
+        g[2], dg[2] = par[G] + w, ground[3]
+    else:
+        g[0], dg[0] = mode[SIDE] * y[1], mode[SIDE] * y[3]
+        g[2], dg[2] = normal_force(y, mode[SIDE], ground, tau, par)
+
+
+@kernel
 def signals(y, f, tau, ground, mode, supports, peak_matters, par, g, dg):
     """Six signals, positive until something happens, and their rates.
 
     0, 1: pivot L, R leaves or lands (held: pressed down by contact). 2, 3: L, R turns or yields (held: lifted by the free
-    equations). 4: |θ| = π/2. 5: |θ| turns. Rigid: 0 lands or lifts to the left, 1 lifts to the right, 2 ground drops away.
+    equations). 4: |θ| = π/2. 5: |θ| turns. Rigid, at rest: 0, 1 lifts to the left, right, 2 ground drops away; rocking:
+    0 impact, 2 the normal force vanishes; in flight: 0, 1 pivot L, R lands, 3 the lower pivot rises no more.
     """
     g[:] = 1.0
     dg[:] = 0.0
     u, w = ground[0] + ground[1] * tau, ground[2] + ground[3] * tau
     if par[RIGID] == 1.0:
-        g[2], dg[2] = par[G] + w, ground[3]
-        if mode[SIDE] == 0:
-            grip = (par[G] + w) * math.tan(par[ALPHA])
-            dgrip = ground[3] * math.tan(par[ALPHA])
-            g[0], dg[0] = grip - u, dgrip - ground[1]
-            g[1], dg[1] = grip + u, dgrip + ground[1]
-        else:
-            g[0], dg[0] = mode[SIDE] * y[1], mode[SIDE] * y[3]
+        rigid_signals(y, f, tau, ground, mode, par, g, dg)
     else:
         for pivot in range(2):
             z = y[4 + pivot]
@@ -441,14 +509,86 @@ def take_off(y, mode, pivot, u, w, supports, found, par):
 
 
 @kernel
-def change_rigid(k, y, mode, u, w, left_s, found, par):
-    """Events of the rigid base; returns True when the ground drops away."""
-    if k == 2:
-        return True
-    if mode[SIDE] == 0:
-        mode[SIDE] = -1 if k == 0 else 1
-        found[SEPARATIONS] += 1
-        return False
+def leave_ground(y, mode, side):
+    """Take-off from rocking about the pivot on ``side``, or from rest: its height and velocity are those of contact."""
+    mode[0], mode[1], mode[RISES], mode[SIDE] = FREE, FREE, 1, side
+
+
+@kernel
+def take_off_rocking(y, mode, par):
+    """Take-off of a block whose pivot is pressed down no longer: v_i = v̇_i = 0 gives v and v̇."""
+    pivot = 0 if mode[SIDE] == -1 else 1
+    y[0] = y[2] = 0.0
+    y[0], y[2] = -pivots(y, par)[pivot], -pivot_velocity(y, pivot, par)
+    leave_ground(y, mode, mode[SIDE])
+
+
+@kernel
+def leave_rest(y, mode, ground, tau, found, par):
+    """Lift-off about one pivot, or, where nothing would press on it, take-off of both."""
+    side = -1 if ground[0] + ground[1] * tau > 0 else 1
+    found[SEPARATIONS] += 1
+    if normal_force(y, side, ground, tau, par)[0] > 1e-9 * par[G]:
+        mode[SIDE] = side
+    else:
+        leave_ground(y, mode, 0)
+
+
+@kernel
+def come_to_rest(y, mode, ground, tau, found, par):
+    """Rest, unless the ground lifts the block again at once."""
+    u, w = ground[0] + ground[1] * tau, ground[2] + ground[3] * tau
+    y[:4] = 0.0
+    mode[0], mode[1], mode[SIDE] = CONTACT, CONTACT, 0
+    if abs(u) > (par[G] + w) * math.tan(par[ALPHA]):
+        leave_rest(y, mode, ground, tau, found, par)
+
+
+@kernel
+def rebound(y, side, pivot, epsilon, par):
+    """θ̇ and v̇ after pivot i lands, with the pivot on ``side`` in its place until then (flight.md, F4).
+
+    The impulse acts at pivot i: angular momentum about it is kept, v̇_i is −ε times itself, and i keeps its place then.
+    """
+    arm = arms(y[1], par)[pivot]
+    before, _ = lever(y[1], 1.0 if side == -1 else 0.0, 1.0 if side == 1 else 0.0, par)
+    after, _ = lever(y[1], 1.0 - pivot, float(pivot), par)
+    momentum = (par[INERTIA] + after * before) * y[3] - arm * y[2]
+    upward = -epsilon * pivot_velocity(y, pivot, par)
+    turn = (momentum + arm * upward) / (par[INERTIA] + after * after + arm * arm)
+    return turn, upward - arm * turn
+
+
+@kernel
+def touch_down(y, mode, pivot, ground, tau, found, par):
+    """Landing of a flying rigid block on one pivot, or on both at one instant; N decides whether it stays."""
+    unit = math.sqrt(par[G] * par[HALF_WIDTH])
+    other, speed = 1 - pivot, -pivot_velocity(y, pivot, par)
+    gap = pivots(y, par)[other]
+    epsilon = par[EPSILON] if par[EPSILON] * speed > 1e-7 * unit else 0.0
+    noticed = 1 if speed > 1e-9 * unit else 0  # less is rounding at take-off
+    found[IMPACTS] += noticed
+    mode[RISES] = 1
+    if abs(gap) <= 1e-12 * par[HALF_WIDTH] and pivot_velocity(y, other, par) < 0:
+        found[IMPACTS] += noticed
+        if epsilon == 0.0:
+            come_to_rest(y, mode, ground, tau, found, par)
+        y[2] *= -epsilon
+        y[3] *= -epsilon
+    else:
+        y[3], y[2] = rebound(y, mode[SIDE], pivot, epsilon, par)
+        mode[SIDE] = 2 * pivot - 1
+        if epsilon == 0.0 and normal_force(y, mode[SIDE], ground, tau, par)[0] > 0:
+            mode[0], mode[1] = CONTACT, CONTACT
+            y[0] = y[2] = 0.0
+    if flies(mode):  # it is off again
+        found[FLIGHTS] += noticed
+
+
+@kernel
+def rock_over(y, mode, ground, tau, left_s, found, par):
+    """Impact of a rocking rigid block at θ = 0: it goes on about the other pivot, rests or takes off."""
+    u, w = ground[0] + ground[1] * tau, ground[2] + ground[3] * tau
     y[1] = 0.0
     found[IMPACTS] += 1
     mode[SIDE] = -mode[SIDE]
@@ -457,28 +597,44 @@ def change_rigid(k, y, mode, u, w, left_s, found, par):
     restoring = par[P] ** 2 * (weight - pull)
     speed = abs(y[3])
     if mode[SIDE] * y[3] < 0 or speed == 0.0:
-        y[3] = 0.0
-        mode[SIDE] = 0
-        if pull > weight:  # the ground lifts it again at once
-            mode[SIDE] = -1 if u > 0 else 1
-            found[SEPARATIONS] += 1
-    elif restoring > 0 and par[E] < 1:
+        come_to_rest(y, mode, ground, tau, found, par)
+        return
+    if restoring > 0 and par[E] < 1:
         low = speed**2 < 2 * restoring * 1e-15 * par[ALPHA]
         if low and 2 * speed / (restoring * (1 - par[E])) < 0.01 * left_s:
             y[3] = 0.0
             mode[SIDE] = 0
-    return False
+            return
+    if normal_force(y, mode[SIDE], ground, tau, par)[0] <= 0:
+        take_off_rocking(y, mode, par)
 
 
 @kernel
-def change(k, y, mode, u, w, left_s, supports, found, par):
-    """What event k does to the state; returns True when a rigid block's ground drops away."""
-    if k >= 4:
-        return False
-    if par[RIGID] == 1.0:
-        return change_rigid(k, y, mode, u, w, left_s, found, par)
+def change_rigid(k, y, mode, ground, tau, left_s, found, par):
+    """Events of the rigid base."""
+    if flies(mode):
+        if k == 3:
+            mode[RISES] = 0
+        else:
+            touch_down(y, mode, k, ground, tau, found, par)
+    elif mode[SIDE] == 0:
+        leave_rest(y, mode, ground, tau, found, par)
+    elif k == 2:
+        take_off_rocking(y, mode, par)
+    else:
+        rock_over(y, mode, ground, tau, left_s, found, par)
+
+
+@kernel
+def change(k, y, mode, ground, tau, left_s, supports, found, par):
+    """What event k does to the state."""
+    u, w = ground[0] + ground[1] * tau, ground[2] + ground[3] * tau
     pivot = k % 2
-    if k < 2 and mode[pivot] == FREE:
+    if k >= 4:
+        return
+    if par[RIGID] == 1.0:
+        change_rigid(k, y, mode, ground, tau, left_s, found, par)
+    elif k < 2 and mode[pivot] == FREE:
         land(y, mode, pivot, u, w, supports, found, par)
         choose_branches(y, mode, par)
     elif k < 2 and mode[pivot] == CONTACT:
@@ -494,7 +650,6 @@ def change(k, y, mode, u, w, left_s, supports, found, par):
         mode[2 + pivot] = 1 - mode[2 + pivot]
         if par[LAW] == EPP and mode[2 + pivot] == 1:
             y[4 + pivot] = -1.0
-    return False
 
 
 @kernel
@@ -517,6 +672,8 @@ def no_more(y, mode, supports, found, par):
     """Whether the energy left says that |θ| cannot exceed its greatest value any more (after the motion)."""
     peak = found[THETA_MAX]
     if par[RIGID] == 1.0:
+        if flies(mode):
+            return False
         if mode[SIDE] == 0:
             return True
         level = par[P] ** 2 * (math.cos(par[ALPHA] - min(peak, par[ALPHA])) - math.cos(par[ALPHA]))
@@ -551,6 +708,9 @@ def no_more(y, mode, supports, found, par):
 
 @kernel
 def unstressed(y, mode, supports, par):
+    """Unstressed positions of the supports, 0 on the rigid base."""
+    if par[RIGID] == 1.0:
+        return 0.0, 0.0
     left, right = pivots(y, par)
     return (
         supports[0] if mode[0] == FREE else left - par[DY] * y[4],
@@ -583,17 +743,20 @@ def outward(y, h, found):
 @kernel
 def happen(which, y, t, tau, span, ground, mode, supports, par, found):
     """Event ``which`` at t + τ: the state after it, and what it means for the outcome."""
-    before = stored(y, mode, par)
-    u, w = ground[0] + ground[1] * tau, ground[2] + ground[3] * tau
-    dropped = change(which, y, mode, u, w, span - tau, supports, found, par)
+    before, flew = stored(y, mode, par), flies(mode)
+    change(which, y, mode, ground, tau, span - tau, supports, found, par)
     found[JUMPS] += stored(y, mode, par) - before
-    flying = par[RIGID] == 0.0 and mode[0] == FREE and mode[1] == FREE
-    if (flying or dropped) and math.isnan(found[T_FLIGHT]):
-        found[T_FLIGHT], found[THETA_FLIGHT] = t + tau, math.copysign(abs(y[1]), y[1] * y[3])
-        found[PEAK_FLIGHT], found[T_PEAK_FLIGHT] = found[THETA_MAX], found[T_MAX]
-    if dropped:
-        found[STATUS] = FLEW
-    elif which == 4:
+    if flew and not flies(mode):
+        found[AIR_TIME] += t + tau - found[TAKE_OFF]
+    elif flies(mode) and not flew:
+        found[TAKE_OFF] = t + tau
+        found[FLIGHTS] += 1
+        if math.isnan(found[T_FLIGHT]):
+            found[T_FLIGHT], found[THETA_FLIGHT] = t + tau, math.copysign(abs(y[1]), y[1] * y[3])
+            found[PEAK_FLIGHT], found[T_PEAK_FLIGHT] = found[THETA_MAX], found[T_MAX]
+        if par[STOPS] == 1.0 and (abs(y[1]) < par[ALPHA] or y[1] * y[3] < 0):
+            found[STATUS] = FLEW
+    if which == 4:
         found[STATUS] = OVERTURNED
 
 
@@ -608,6 +771,8 @@ def run_piece(t, span, length, ground, mode, supports, par, tolerance, longest, 
         h = min(length, longest, span - tau)
         if span - tau - h < 1e-3 * h:
             h = span - tau
+        if par[RIGID] == 1.0 and flies(mode) and pivot_velocity(y, lower_pivot(y), par) > 0:
+            mode[RISES] = 1
         matters = outward(y, h, found)
         error = step(y, f, h, tau, ground, mode, par, stages, new, new_f, tolerance)
         found[STEPS] += 1
@@ -639,6 +804,8 @@ def run_piece(t, span, length, ground, mode, supports, par, tolerance, longest, 
             tau = span if when == h and h == span - tau else tau + when
         if abs(y[1]) > found[THETA_MAX]:
             found[THETA_MAX], found[T_MAX] = abs(y[1]), t + tau
+        if par[RIGID] == 1.0 and flies(mode):
+            found[AIR_HEIGHT] = max(found[AIR_HEIGHT], pivots(y, par)[lower_pivot(y)])
         if which >= 0:
             happen(which, y, t, tau, span, ground, mode, supports, par, found)
             rhs(y, f, tau, ground, mode, par)
@@ -690,6 +857,8 @@ def solve(par, start, dt, horizontal, vertical, horizon, tolerance, longest, mos
         length = run_piece(t, span, length, ground, mode, supports, par, tolerance, longest, most_steps, work, stages,
                            found, trace)  # fmt: skip
         piece += 1
+    if flies(mode):
+        found[AIR_TIME] += found[T_END] - found[TAKE_OFF]
     found[UP_LEFT], found[UP_RIGHT] = unstressed(y, mode, supports, par)
     found[BALANCE] = stored(y, mode, par) - begin - y[6] - found[JUMPS]
     return found

@@ -20,10 +20,12 @@ STATUS = ("stands", "overturned", "flew", "exhausted")
 class Reference:
     """Truth about a run; angles in rad, times in s.
 
-    ``status`` is "stands", "overturned" (|θ| = π/2, ever), "flew" (rigid base: v̈_g < −g) or "exhausted" (more than
-    ``most_steps``). On springs the run goes on in flight as if guided: ``t_flight`` is its first time (nan: none),
-    ``theta_flight`` the rotation then, positive on its way out, and ``peak_flight`` the peak until then, at
-    ``t_peak_flight``.
+    ``status`` is "stands", "overturned" (|θ| = π/2, ever), "flew" (a rigid base whose ``flight`` is "stop": the run ends
+    with its first flight, other than that of a pier that falls beyond α) or "exhausted" (more than ``most_steps``).
+    Everywhere else the run goes on in flight as if guided: ``t_flight`` is its first time (nan: none), ``theta_flight``
+    the rotation then, positive on its way out, and ``peak_flight`` the peak until then, at ``t_peak_flight``.
+    ``flights`` are as many as take-offs of both pivots, ``flight_duration`` is the time in all of them, ``flight_height``
+    the greatest height of the lower pivot [m] (rigid base; nan on springs).
     ``decided``: the energy left cannot exceed ``theta_max`` any more; otherwise ``halfway`` is the peak half-way to the
     horizon.
     """
@@ -45,6 +47,9 @@ class Reference:
     steps: int
     decided: bool
     halfway: float
+    flights: int
+    flight_duration: float
+    flight_height: float
 
 
 def start_depth(delta_y: float, eta: float, n: float) -> float:
@@ -56,7 +61,7 @@ def start_depth(delta_y: float, eta: float, n: float) -> float:
 
 def parameters(pier: Pier, base: Base) -> tuple[np.ndarray, np.ndarray]:
     """Parameters and start (v, θ, v̇, θ̇, z_L, z_R) of the compiled solver."""
-    par = np.zeros(16)
+    par = np.zeros(17)
     size = pier.mu / (1 + pier.mu) * pier.gravity / pier.p**2
     par[core.G], par[core.ALPHA], par[core.P] = pier.gravity, pier.alpha, pier.p
     par[core.HALF_WIDTH], par[core.HEIGHT] = size * math.sin(pier.alpha), size * math.cos(pier.alpha)
@@ -65,6 +70,8 @@ def parameters(pier: Pier, base: Base) -> tuple[np.ndarray, np.ndarray]:
     if isinstance(base, RigidBase):
         housner = 1 - 2 * pier.mu / (1 + pier.mu) * math.sin(pier.alpha) ** 2
         par[core.RIGID], par[core.E] = 1.0, max(housner, 0.0) if base.restitution is None else base.restitution
+        par[core.FINITE], par[core.STOPS] = 1.0, float(getattr(base, "flight", "guided") == "stop")
+        par[core.EPSILON] = getattr(base, "epsilon", 0.0)
         return par, start
     omega = base.beta * pier.p
     delta_s = pier.gravity / omega**2
@@ -132,6 +139,9 @@ def reference(
         steps=int(found[core.STEPS]),
         decided=bool(found[core.DECIDED]),
         halfway=float(found[core.HALFWAY]),
+        flights=int(found[core.FLIGHTS]),
+        flight_duration=float(found[core.AIR_TIME]),
+        flight_height=float(found[core.AIR_HEIGHT]) if isinstance(base, RigidBase) else math.nan,
     )
 
 
