@@ -10,11 +10,14 @@ one whose greatest rotation still grows in the second half of that time is undec
 verdicts:
 
   wrong outcome    ok although it overturns; overturned although it stands, or at another time; a flight where there is
-                   none, at another time, or missed. Where flight ends the run and the pier would fall after it, both count.
+                   none, at another time, or missed, or one that ends a run that flight does not end. Where flight ends
+                   the run and the pier would fall after it, both count.
   error            |θ_max − truth| beyond the tolerance
   beyond estimate  |θ_max − truth until the end of the run| beyond the error that the row reports
   failed, settled  a failed row whose best value is the truth, of a pier that nothing topples later either
   later, noted     the truth comes after the end of the run, whose note says that it still had the energy for it
+
+On the rigid base as on springs, θ_max is that of the whole run, through flights and landings, where flight is guided.
 
 A run on a base where flight ends it that is ok all the same says that it flew when nothing could exceed the peak any more. It
 is held against the whole truth, through the flight and after it: the pier must stand, with this peak.
@@ -58,7 +61,7 @@ GROWS = 1e-5  # of α: an undecided peak has grown by more in the second half of
 SAME_FLIGHT = 0.01  # over p [s]: two flights within it are one
 SAME_FALL = 0.5  # over p [s]
 WRONG = ("ok, overturns", "overturned, stands", "overturned at another time", "flight, none", "flight at another time",
-         "flight missed", "refused, stable")  # fmt: skip
+         "flight missed", "flight, guided", "refused, stable")  # fmt: skip
 FLIGHT = ("t_flight", "theta_flight", "peak_flight", "t_peak_flight")
 LEFT_OUT = ("no reference", "undecided")
 RIGHT = ("", "failed, rightly", "refused", "later, noted", RATCHETS)
@@ -182,6 +185,8 @@ def verdict(case: Case, found: Outcome, fine: Reference) -> tuple[str, float]:
             return "overturned, stands", math.nan
         at = (fine.t_end, fine.t_flight)
         return ("" if any(near(found.t_end, t, SAME_FALL / p) for t in at) else "overturned at another time"), math.nan
+    if found.status == "flight" and not case.flight_stops:
+        return "flight, guided", math.nan
     if found.status == "flight":
         if math.isnan(fine.t_flight):
             return "flight, none", math.nan

@@ -15,6 +15,7 @@ from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, YieldingBase
 
 from .reference import reference
 
+NEAR_FAULT = Path(__file__).parents[2] / "motions" / "near_fault"
 RECORDS = Path(os.environ.get("ROCKBATCH_RECORDS", "no-records"))
 Rng = np.random.Generator
 
@@ -33,7 +34,7 @@ class Case:
 
     @property
     def flight_stops(self) -> bool:
-        return not isinstance(self.base, RigidBase) and self.base.flight == "stop"
+        return getattr(self.base, "flight", "guided") == "stop"
 
 
 def log_uniform(rng: Rng, low: float, high: float) -> float:
@@ -107,10 +108,13 @@ def a_pulse(rng: Rng, pier: Pier, strength: float, fast: tuple[float, float] = (
     return made
 
 
-def noise(rng: Rng, npts: int, dt: float) -> np.ndarray:
-    """Noise of Kanai and Tajimi's spectrum in an envelope that rises, stays and decays; peak 1."""
+def noise(rng: Rng, npts: int, dt: float, grounds: tuple[float, float] = (1.0, 5.0)) -> np.ndarray:
+    """Noise of Kanai and Tajimi's spectrum in an envelope that rises, stays and decays; peak 1.
+
+    The ground's frequency [Hz] is within ``grounds``.
+    """
     frequency = np.fft.rfftfreq(npts, dt)
-    ground, damping = rng.uniform(1.0, 5.0), rng.uniform(0.3, 0.7)
+    ground, damping = rng.uniform(*grounds), rng.uniform(0.3, 0.7)
     ratio = frequency / ground
     spectrum = np.sqrt((1 + (2 * damping * ratio) ** 2) / ((1 - ratio**2) ** 2 + (2 * damping * ratio) ** 2))
     spectrum *= (frequency / 0.15) ** 2 / (1 + (frequency / 0.15) ** 2)
@@ -142,6 +146,12 @@ def real_records() -> tuple[Motion, ...]:
     return tuple(sorted(found, key=lambda motion: motion.name))
 
 
+@cache
+def near_fault_records() -> tuple[Motion, ...]:
+    """Records of this repository, all with their vertical component."""
+    return tuple(sorted(read_motions([NEAR_FAULT]).motions, key=lambda motion: motion.name))
+
+
 def recorded(rng: Rng, pier: Pier, strength: float) -> Motion:
     """A record scaled to a peak of ``strength``, without its silent end."""
     records = real_records()
@@ -150,6 +160,49 @@ def recorded(rng: Rng, pier: Pier, strength: float) -> Motion:
     most = round(60 / motion.dt)
     vertical = None if motion.vertical is None or rng.random() < 0.5 else motion.vertical[:most] * min(factor, 1.5)
     return Motion(motion.name, motion.dt, motion.horizontal[:most] * factor, vertical)
+
+
+def lifting_peak(rng: Rng, pier: Pier) -> float:
+    """Peak of a vertical motion [m/s²]: 0.8 to 2 g, the ground falling away or, in one of three, first pushing."""
+    return pier.gravity * log_uniform(rng, 0.8, 2.0) * (1 if rng.random() < 1 / 3 else -1)
+
+
+def lifting_pulse(rng: Rng, pier: Pier, strength: float) -> Motion:
+    """A pulse, and a vertical one of 0.05 to 0.4 s somewhere within it."""
+    motion = replace(a_pulse(rng, pier, strength), vertical=None)
+    period = log_uniform(rng, 0.05, 0.4)
+    dt = min(motion.dt, period / 20)
+    t = dt * np.arange(math.ceil((motion.duration + period) / dt) + 1)
+    start = rng.uniform(0, motion.duration)
+    cycles = float(one_of(rng, 0.5, 1.0, 2.0))  # type: ignore[arg-type]
+    phase = (t - start) / period
+    vertical = lifting_peak(rng, pier) * np.sin(2 * math.pi * phase) * ((phase > 0) & (phase < cycles))
+    horizontal = np.interp(t, motion.dt * np.arange(motion.npts), motion.horizontal, right=0.0)
+    return Motion(motion.name, dt, horizontal, vertical)
+
+
+def lifting_noise(rng: Rng, pier: Pier, strength: float) -> Motion:
+    """Made noise of 2 to 15 s, the vertical of higher frequency."""
+    dt = float(one_of(rng, 0.005, 0.01, 0.02))  # type: ignore[arg-type]
+    npts = int(log_uniform(rng, 2, 15) / dt)
+    vertical = lifting_peak(rng, pier) * noise(rng, npts, dt, (3.0, 12.0))
+    return Motion("noise", dt, strength * noise(rng, npts, dt), vertical)
+
+
+def lifting_record(rng: Rng, pier: Pier, strength: float) -> Motion:
+    """A near-fault record, its components scaled apart, from 5 s before its strongest vertical shaking to 15 s after it."""
+    records = near_fault_records()
+    motion = records[rng.integers(len(records))]
+    assert motion.vertical is not None
+    strongest, second = int(np.argmax(np.abs(motion.vertical))), round(1 / motion.dt)
+    part = slice(max(strongest - 5 * second, 0), strongest + 15 * second)
+    horizontal, vertical = motion.horizontal[part], motion.vertical[part]
+    return Motion(
+        motion.name,
+        motion.dt,
+        horizontal * strength / np.abs(horizontal).max(),
+        vertical * lifting_peak(rng, pier) / np.abs(vertical).max(),
+    )
 
 
 def case(rng: Rng, stratum: str, pier: Pier, base: Base, motion: Motion, hair: float | None = None) -> Case:
@@ -211,6 +264,9 @@ STRATA: dict[str, tuple[int, Callable[[Rng, str], Case]]] = {
     "springs by a hair": (150, by_a_hair(lambda rng: springs(rng, any_law(rng), (1.05, 4.0)))),
     "springs noise": (90, with_record(lambda rng: springs(rng, any_law(rng), (1.1, 6.0)), broadband, 0.3, 6.0)),
     "springs records": (60, with_record(lambda rng: springs(rng, any_law(rng), (1.1, 6.0)), recorded, 0.3, 6.0)),
+    "flight pulses": (120, with_record(rigid, lifting_pulse, 0.2, 4.0)),
+    "flight noise": (100, with_record(rigid, lifting_noise, 0.3, 4.0)),
+    "flight near fault": (80, with_record(rigid, lifting_record, 0.3, 4.0)),
 }
 """How many cases, and how one is made of random numbers."""
 
