@@ -5,11 +5,18 @@ Values are checked where they meet: :func:`problems` says what is impossible abo
 
 import math
 from dataclasses import dataclass, field, replace
-from typing import Any, Literal, Self, get_args
+from typing import Any, ClassVar, Literal, Self, get_args
 
 from rockbatch.errors import InputError
 from rockbatch.pier.block import Pier, not_positive
-from rockbatch.pier.restraints import Restraint, prestress_over_weight, wrong_on_springs, wrong_restraints
+from rockbatch.pier.restraints import (
+    Restraint,
+    described_restraints,
+    holds_a_tilt,
+    prestress_over_weight,
+    wrong_on_springs,
+    wrong_restraints,
+)
 from rockbatch.units import MOST
 
 LEAST_ETA = 1.000001
@@ -28,6 +35,9 @@ SpringLaw = Literal["bouc-wen", "epp"]
 WITH_EXPONENT: tuple[SpringLaw, ...] = ("bouc-wen",)
 """Laws that an exponent n belongs to; the others have a sharp corner."""
 
+RATCHETING: tuple[SpringLaw, ...] = ("bouc-wen",)
+"""Laws that creep under vibration: springs by them settle a little with every cycle below their yield force."""
+
 OTHER_LAW: dict[SpringLaw, SpringLaw] = {"bouc-wen": "epp", "epp": "bouc-wen"}
 """For each law the one that shows how much a settlement depends on it (THEORY.md, Results of a run)."""
 
@@ -35,8 +45,39 @@ EPSILON_AND_ZETA = "zeta is given too, and a damped support takes a landing with
 """What is said of both."""
 
 
+class _Traits:
+    """What a base is and can do, asked by name and not by its class; each class says what differs."""
+
+    on_springs: ClassVar[bool] = False
+    """Whether two springs carry the pier, and deflect."""
+
+    yields: ClassVar[bool] = False
+    """Whether these springs yield, so that the pier may settle."""
+
+    restraints: tuple[Restraint, ...]
+
+    @property
+    def has_exponent(self) -> bool:
+        """Whether the springs' law has an exponent n."""
+        return False
+
+    @property
+    def ratchets(self) -> bool:
+        """Whether the springs creep under vibration."""
+        return False
+
+    @property
+    def has_residual(self) -> bool:
+        """Whether the pier may rest at a tilt: on springs that yielded, or held by friction or hysteretic dampers."""
+        return self.yields or holds_a_tilt(self.restraints)
+
+    def by_other_law(self) -> Self:
+        """The same base with its springs by the other law (:data:`OTHER_LAW`); itself where it has none."""
+        return self
+
+
 @dataclass(frozen=True)
-class RigidBase:
+class RigidBase(_Traits):
     """Ground that neither gives nor yields (Housner 1963).
 
     ``restitution`` is the factor e on the angular velocity at an impact; ``None`` means :attr:`Pier.restitution`, Housner's
@@ -55,10 +96,18 @@ class RigidBase:
     friction: float | None = field(default=None, kw_only=True)
 
     name = "rigid"
+    beta: ClassVar[float] = math.inf
+    """β of ground that does not give: the limit of springs."""
+
+    def parameters(self, pier: Pier) -> dict[str, Any]:
+        """What run.json says about this base under ``pier``."""
+        of_frame = None if pier.deck_over_columns is None else pier.restitution  # None stands for Housner's
+        own: dict[str, Any] = {"restitution": of_frame if self.restitution is None else self.restitution}
+        return own | _interface(self.friction) | described_restraints(self.restraints)
 
 
 @dataclass(frozen=True)
-class ElasticBase:
+class ElasticBase(_Traits):
     """Two elastic springs that take no tension.
 
     Attributes
@@ -94,6 +143,15 @@ class ElasticBase:
     restraints: tuple[Restraint, ...] = field(default=(), kw_only=True)
 
     name = "elastic"
+    on_springs = True
+
+    def parameters(self, pier: Pier) -> dict[str, Any]:
+        """What run.json says about these springs under ``pier``."""
+        landing = {"epsilon": self.epsilon} if self.zeta is None else {"zeta": self.zeta}
+        own: dict[str, Any] = {"beta": self.beta, **landing, "kinematics": self.kinematics, "flight": self.flight}
+        own |= {"omega_v": vertical_frequency(pier, self), "delta_s_m": static_deflection(pier, self)}
+        own |= in_kilonewtons(pier, self)
+        return own | _interface(self.friction) | described_restraints(self.restraints)
 
     @classmethod
     def from_stiffness(cls, pier: Pier, stiffness_kN_m: float, **rest: Any) -> Self:
@@ -130,15 +188,28 @@ class YieldingBase(ElasticBase):
     n: float = 5.0
 
     name = "yielding"
+    yields = True
 
     @property
     def has_exponent(self) -> bool:
         """Whether ``n`` means anything to these springs."""
         return self.spring in WITH_EXPONENT
 
+    @property
+    def ratchets(self) -> bool:
+        """Whether these springs creep under vibration."""
+        return self.spring in RATCHETING
+
     def by_other_law(self) -> Self:
         """The same springs by the other law: Bouc–Wen for elastic–perfectly plastic, and the reverse."""
         return replace(self, spring=OTHER_LAW[self.spring])
+
+    def parameters(self, pier: Pier) -> dict[str, Any]:
+        """What run.json says about these springs under ``pier``."""
+        own = super().parameters(pier) | {"eta": self.eta, "spring": self.spring}
+        if self.has_exponent:
+            own["n"] = self.n
+        return own | {"delta_y_m": yield_deflection(pier, self)}
 
     @classmethod
     def from_stiffness(cls, pier: Pier, stiffness_kN_m: float, yield_kN: float | None = None, **rest: Any) -> Self:
@@ -146,6 +217,13 @@ class YieldingBase(ElasticBase):
         if yield_kN is not None:
             rest["eta"] = eta_of(pier, yield_kN)
         return super().from_stiffness(pier, stiffness_kN_m, **rest)
+
+
+Base = RigidBase | ElasticBase | YieldingBase
+
+
+def _interface(friction: float | None) -> dict[str, float]:
+    return {} if friction is None else {"friction": friction}
 
 
 def beta_of(pier: Pier, stiffness_kN_m: float) -> float:
@@ -168,9 +246,9 @@ def _mass(pier: Pier, **value: tuple[float | None, str]) -> float:
     return pier.mass_t
 
 
-def in_kilonewtons(pier: Pier, base: ElasticBase) -> dict[str, float]:
-    """K = β² p² M/2 [kN/m] and F_y = η M g/2 [kN] by the keys of a study; empty for a pier without mass."""
-    if pier.mass_t is None:
+def in_kilonewtons(pier: Pier, base: Base) -> dict[str, float]:
+    """K = β² p² M/2 [kN/m] and F_y = η M g/2 [kN] by the keys of a study; empty for a pier without mass or springs."""
+    if pier.mass_t is None or not base.on_springs:
         return {}
     found = {"stiffness_kN_m": 0.5 * pier.mass_t * vertical_frequency(pier, base) ** 2}
     if isinstance(base, YieldingBase):
@@ -178,7 +256,7 @@ def in_kilonewtons(pier: Pier, base: ElasticBase) -> dict[str, float]:
     return found
 
 
-def least_beta(pier: Pier, base: ElasticBase) -> float:
+def least_beta(pier: Pier, base: Base) -> float:
     """β below which the pier topples on its springs under its own weight, or at the least push (THEORY.md, eq. 13).
 
     A Bouc–Wen spring under the weight, z = −1/η, is softer where it is loaded than where it is unloaded, by the factor
@@ -194,13 +272,13 @@ def least_beta(pier: Pier, base: ElasticBase) -> float:
     return pier.least_beta * math.sqrt((1.0 + softer) / (2.0 * softer))
 
 
-def vertical_frequency(pier: Pier, base: ElasticBase) -> float:
-    """Circular frequency ω_v = β p [rad/s] of vertical vibration in full contact."""
+def vertical_frequency(pier: Pier, base: Base) -> float:
+    """Circular frequency ω_v = β p [rad/s] of vertical vibration in full contact; infinite on a rigid base."""
     return base.beta * pier.p
 
 
-def static_deflection(pier: Pier, base: ElasticBase) -> float:
-    """δ_s = g/ω_v² [m], of the springs under the weight at rest, while elastic."""
+def static_deflection(pier: Pier, base: Base) -> float:
+    """δ_s = g/ω_v² [m], of the springs under the weight at rest, while elastic; 0 on a rigid base."""
     return pier.gravity / vertical_frequency(pier, base) ** 2
 
 
@@ -241,9 +319,6 @@ def fastest(pier: Pier, base: ElasticBase) -> float:
         rate(vertical_frequency(pier, base), damping),
         rate(rocking_frequency(pier, base), damping * share),
     )
-
-
-Base = RigidBase | ElasticBase | YieldingBase
 
 
 def problems(pier: Pier, base: Base) -> list[str]:

@@ -1,8 +1,8 @@
 """What ties a pier to the ground beside its own weight: dampers and tendons (THEORY.md, Dampers and tendons)."""
 
 import math
-from dataclasses import dataclass, replace
-from typing import Literal, get_args
+from dataclasses import asdict, dataclass, replace
+from typing import Any, Literal, get_args
 
 from rockbatch.pier.block import Pier
 
@@ -80,6 +80,21 @@ class Tendon:
 
 
 Restraint = Damper | Tendon
+
+
+def holds_a_tilt(restraints: tuple[Restraint, ...]) -> bool:
+    """Whether a damper among them may hold the pier at a tilt: it keeps a force at rest, as friction does."""
+    return any(isinstance(each, Damper) and each.kind != "viscous" and each.f > 0 for each in restraints)
+
+
+def described_restraints(restraints: tuple[Restraint, ...]) -> dict[str, Any]:
+    """What run.json says about dampers and tendons; nothing without."""
+    return {"restraints": [_described(each) for each in restraints]} if restraints else {}
+
+
+def _described(restraint: Restraint) -> dict[str, Any]:
+    values = {name: value for name, value in asdict(restraint).items() if value is not None}
+    return {name: None if value == math.inf else value for name, value in values.items()}
 
 
 def offsets(pier: Pier, restraint: Restraint) -> tuple[float, ...]:

@@ -114,14 +114,14 @@ def _expand(case: _Read, chosen: Chosen, pier: Pier, pier_values: Values) -> Exp
             continue
         if not (any_pier and problem.startswith("beta")):
             _complain_where_due(case.table, chosen, problem, pier, base)
-    if isinstance(base, ElasticBase) and not wrong and pier.mass_t is not None:
+    if not wrong and pier.mass_t is not None:
         complain_unless_usual_support(case.table, chosen, pier, base, case.believed)
     applying = {key: value for key, value in asdict(base).items() if value is not None} | given
     applying.pop("restraints", None)  # their own keys say them
     if "zeta" in applying:
         applying.pop("epsilon", None)
-    if isinstance(base, YieldingBase) and not base.has_exponent:
-        del applying["n"]
+    if not base.has_exponent:
+        applying.pop("n", None)
     return Expanded(case.name, pier, base, pier_values | applying)
 
 
@@ -223,7 +223,7 @@ def _complain_where_due(table: Table, chosen: Chosen, problem: str, pier: Pier, 
     name = problem.split(" = ")[0]
     source = {"beta": "stiffness_kN_m", "eta": "yield_kN"}.get(name, "")
     mass = pier.mass_t
-    if isinstance(base, ElasticBase) and source in chosen and mass is not None:
+    if source in chosen and mass is not None:
         least_omega_v = least_beta(pier, base) * pier.p
         least = least_omega_v * least_omega_v * mass / 2 if name == "beta" else mass * pier.gravity / 2
         name = source
