@@ -12,6 +12,10 @@ MOST_FORCE = 10.0
 """Of the pier's weight, beyond which a wrong unit is likelier than the device."""
 
 
+LEAST_EXPONENT, MOST_EXPONENT = 0.1, 2.0
+"""Of a viscous damper: fluid dampers have 0.15 to 1, and one of 0 is friction."""
+
+
 @dataclass(frozen=True)
 class Damper:
     """A damper between the pier and the ground.
@@ -27,7 +31,7 @@ class Damper:
     yield_m : float
         u_y of a hysteretic damper [m].
     exponent : float
-        a of a viscous damper.
+        a of a viscous damper, 0.1 to 2.
     at : float, "left", "right" or None
         Offset from the centre of the base [m], positive to the right; None: one at each pivot.
 
@@ -154,8 +158,10 @@ def _wrong_damper(damper: Damper) -> list[str]:
     if damper.kind == "viscous":
         if not (math.isfinite(damper.nu) and damper.nu >= 0):
             wrong.append(f"damper: nu = {damper.nu:g}: must be 0 or above")
-        if not 0.2 <= damper.exponent <= 2:
-            wrong.append(f"damper: exponent = {damper.exponent:g}: must be within 0.2..2")
+        if not LEAST_EXPONENT <= damper.exponent <= MOST_EXPONENT:
+            wrong.append(
+                f"damper: exponent = {damper.exponent:g}: must be within {LEAST_EXPONENT:g}..{MOST_EXPONENT:g}"
+            )
         return wrong
     if not 0 <= damper.f <= MOST_FORCE:
         wrong.append(f"damper: f = {damper.f:g}: its force over the weight must be within 0..{MOST_FORCE:g}")
