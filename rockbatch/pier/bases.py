@@ -28,8 +28,11 @@ MOST_EXPONENT = 1000.0
 MOST_ETA = 100.0
 """Beyond it a wrong unit is likelier than the support: foundations bear 2 to 20 times what they carry."""
 
+FLIGHT_LIMIT_MM = 5.0
+"""Height of flight [mm] beyond which a run has a note, unless the base says another."""
+
 Kinematics = Literal["first-order", "finite"]
-Flight = Literal["stop", "guided"]
+Flight = Literal["guided", "stop"]
 SpringLaw = Literal["bouc-wen", "epp"]
 
 WITH_EXPONENT: tuple[SpringLaw, ...] = ("bouc-wen",)
@@ -54,7 +57,14 @@ class _Traits:
     yields: ClassVar[bool] = False
     """Whether these springs yield, so that the pier may settle."""
 
+    flight: Flight
+    flight_limit_mm: float
     restraints: tuple[Restraint, ...]
+
+    @property
+    def flies(self) -> bool:
+        """Whether a run goes on while both pivots are in the air."""
+        return self.flight == "guided"
 
     @property
     def has_exponent(self) -> bool:
@@ -84,6 +94,7 @@ class RigidBase(_Traits):
     e = 1 − 2μ/(1+μ) sin²α, which conserves the angular momentum about the new pivot, or 0 where that is negative.
     ``restraints`` are dampers and tendons that tie the pier to the ground.
     ``friction``, if known, is the coefficient of the interface: a run says where its forces ask for more (THEORY.md, Forces).
+    ``flight`` and ``flight_limit_mm`` are as on springs (:class:`ElasticBase`).
 
     Examples
     --------
@@ -94,6 +105,8 @@ class RigidBase(_Traits):
     restitution: float | None = None
     restraints: tuple[Restraint, ...] = ()
     friction: float | None = field(default=None, kw_only=True)
+    flight: Flight = field(default="guided", kw_only=True)
+    flight_limit_mm: float = field(default=FLIGHT_LIMIT_MM, kw_only=True)
 
     name = "rigid"
     beta: ClassVar[float] = math.inf
@@ -103,6 +116,7 @@ class RigidBase(_Traits):
         """What run.json says about this base under ``pier``."""
         of_frame = None if pier.deck_over_columns is None else pier.restitution  # None stands for Housner's
         own: dict[str, Any] = {"restitution": of_frame if self.restitution is None else self.restitution}
+        own |= {"flight": self.flight, "flight_limit_mm": self.flight_limit_mm}
         return own | _interface(self.friction) | described_restraints(self.restraints)
 
 
@@ -118,8 +132,10 @@ class ElasticBase(_Traits):
         Restitution ε of the landing pivot's velocity, 0..1.
     kinematics : "first-order" or "finite"
         The paper's equations, or those that hold for large rotations.
-    flight : "stop" or "guided"
-        What happens when both pivots are off the ground: the analysis ends, or shear keys guide the pier down.
+    flight : "guided" or "stop"
+        What happens when both pivots are off the ground: shear keys guide the pier down, or the run ends, as in the paper.
+    flight_limit_mm : float
+        Height of the lower pivot in flight [mm] beyond which a run has a note: do the keys reach so far?
     zeta : float or None
         ζ, 0..1: a dashpot beside each spring, C = ζ M ω_v, by its share of critical damping of the vertical vibration. It
         takes the place of ε: a pivot that lands on a damped support is borne without an impulse.
@@ -137,10 +153,11 @@ class ElasticBase(_Traits):
     beta: float
     epsilon: float = 0.0
     kinematics: Kinematics = "first-order"
-    flight: Flight = "stop"
+    flight: Flight = "guided"
     zeta: float | None = field(default=None, kw_only=True)
     friction: float | None = field(default=None, kw_only=True)
     restraints: tuple[Restraint, ...] = field(default=(), kw_only=True)
+    flight_limit_mm: float = field(default=FLIGHT_LIMIT_MM, kw_only=True)
 
     name = "elastic"
     on_springs = True
@@ -148,7 +165,8 @@ class ElasticBase(_Traits):
     def parameters(self, pier: Pier) -> dict[str, Any]:
         """What run.json says about these springs under ``pier``."""
         landing = {"epsilon": self.epsilon} if self.zeta is None else {"zeta": self.zeta}
-        own: dict[str, Any] = {"beta": self.beta, **landing, "kinematics": self.kinematics, "flight": self.flight}
+        own: dict[str, Any] = {"beta": self.beta, **landing, "kinematics": self.kinematics}
+        own |= {"flight": self.flight, "flight_limit_mm": self.flight_limit_mm}
         own |= {"omega_v": vertical_frequency(pier, self), "delta_s_m": static_deflection(pier, self)}
         own |= in_kilonewtons(pier, self)
         return own | _interface(self.friction) | described_restraints(self.restraints)
@@ -323,13 +341,16 @@ def fastest(pier: Pier, base: ElasticBase) -> float:
 
 def problems(pier: Pier, base: Base) -> list[str]:
     """What is impossible about ``pier`` on ``base``: one sentence each, with the limit; empty if nothing."""
-    wrong = not_positive(friction=(base.friction, ", the coefficient of the interface"))
+    wrong = not_positive(
+        friction=(base.friction, ", the coefficient of the interface"),
+        flight_limit_mm=(base.flight_limit_mm, " [mm], a height of flight"),
+    )
     if isinstance(base, RigidBase):
         e = base.restitution
         wrong += wrong_restraints(pier, base.restraints)
         if e is not None and not 0 <= e <= 1:
             wrong.append(f"restitution = {e:g}: must be within 0..1 (leave it out for Housner's value)")
-        return wrong
+        return wrong + _unknown("flight", base.flight, get_args(Flight))
     if pier.deck_over_columns is not None:
         return [
             f"columns: a rocking frame is solved on rigid ground only, and this base is {base.name}. On springs the columns "

@@ -262,7 +262,7 @@ def _read(group: "h5py.Group") -> Response:
         **_run(group),
         columns=attributes_of(group_in(group, "varied")),
         pier=Pier(**attributes_of(group_in(group, "pier"))),
-        base=kind(**base),
+        base=kind(**{"flight": "stop"} | base),  # as rigid ground was before it could be told
         history=pd.DataFrame(columns),
         events=_events(group_in(group, "events"), len(t)),
         ledger=ledger,

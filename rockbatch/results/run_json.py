@@ -27,7 +27,7 @@ _NUMBER = (float, None)
 _VALUES = {str: (float, str)}
 _NUMBERS_OF_BASE = (
     "beta", "eta", "epsilon", "n", "omega_v", "delta_s_m", "delta_y_m", "stiffness_kN_m", "yield_kN", "restitution", "zeta",
-    "friction",
+    "friction", "flight_limit_mm",
 )  # fmt: skip
 _OF_FILE = {"name": str, "source": str, "reason": str}
 _SPECTRA = {

@@ -27,8 +27,13 @@ from rockbatch.study.restraint_keys import RESTRAINTS, read_restraints, restrain
 from rockbatch.toml.kinds import choice, number, positive, shown, text
 from rockbatch.toml.reader import Key, Setting, Table, TomlFile
 
-_INTERFACE = {"friction": Key(positive, "0.5", many=True)}
-_RIGID = {"restitution": Key(number, "0.9", many=True), **_INTERFACE}
+_EVERY = {
+    "flight": Key(choice(*get_args(Flight)), '"stop"', many=True),
+    "flight_limit_mm": Key(positive, "20.0", many=True),
+    "friction": Key(positive, "0.5", many=True),
+}
+"""Keys that apply on every base."""
+_RIGID = {"restitution": Key(number, "0.9", many=True), **_EVERY}
 _ELASTIC = {
     "beta": Key(number, "40.0", many=True),
     "stiffness_kN_m": Key(positive, "2.0e6", many=True),
@@ -36,8 +41,7 @@ _ELASTIC = {
     "epsilon": Key(number, "0.05", many=True),
     "zeta": Key(number, "0.05", many=True),
     "kinematics": Key(choice(*get_args(Kinematics)), '"first-order"', many=True),
-    "flight": Key(choice(*get_args(Flight)), '"stop"', many=True),
-    **_INTERFACE,
+    **_EVERY,
 }
 _YIELDING = _ELASTIC | {
     "eta": Key(number, "2.5", many=True),

@@ -180,7 +180,7 @@ def test_flight_is_the_last_event_of_a_run_that_it_ends(tmp_path):
     """The ground drops away at 2 g: the springs relax, and both pivots leave them."""
     down = np.full(200, -2 * 9.81)
     motion = rb.Motion("drop", 0.01, np.zeros(200), vertical=down)
-    for base in (rb.ElasticBase(beta=50), rb.YieldingBase(beta=50, eta=2.5)):
+    for base in (rb.ElasticBase(beta=50, flight="stop"), rb.YieldingBase(beta=50, flight="stop", eta=2.5)):
         response = simulate(PIER, base, motion, quiet_s=0.0)
         last = response.events.iloc[-1]
         assert (response.status, last["kind"]) == ("flight", "flight")
