@@ -189,6 +189,15 @@ def test_flight_is_the_last_event_of_a_run_that_it_ends(tmp_path):
         assert same(stored(tmp_path, response)[0], response)
 
 
+def test_rigid_ground_of_an_earlier_version_which_did_not_say_so_ended_runs_at_their_flight(tmp_path):
+    responses = stored(tmp_path, at_rest())
+    assert responses[0].base == rb.RigidBase()
+    with h5py.File(tmp_path / "histories.h5", "r+") as file:
+        for name in ("flight", "flight_limit_mm"):
+            del file["runs/000000/base"].attrs[name]
+    assert responses[0].base == rb.RigidBase(flight="stop")
+
+
 # The file, as others read it
 
 
