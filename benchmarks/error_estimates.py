@@ -53,7 +53,10 @@ TIED_ON_SPRINGS: dict[str, Base] = {
     for name in ("elastic", "bouc-wen")
     for tie, element in TIES.items()
 }
-OF = {"plain": BASES, "tied": TIED, "damped": DAMPED, "tied-on-springs": TIED_ON_SPRINGS}
+OF = {
+    kind: {name: replace(base, flight="stop") for name, base in bases.items()}  # errors until the first flight
+    for kind, bases in (("plain", BASES), ("tied", TIED), ("damped", DAMPED), ("tied-on-springs", TIED_ON_SPRINGS))
+}
 UNCHANGED = 1e-9  # of α: two references that agree so well are the truth here
 FINEST = 4096  # substeps of a reference
 

@@ -26,7 +26,7 @@ from rockbatch.results.outcome import Outcome
 from rockbatch.simulation import Run, Stop, run_all_fixed, run_all_to_tolerance
 from rockbatch.study import Case
 
-BASE = YieldingBase(80.0, 0.05, eta=2.5)
+BASE = YieldingBase(80.0, 0.05, flight="stop", eta=2.5)
 ACCURACY = 1e-4  # of α
 LADDER = [10.0**-i for i in range(3, 13)]
 REFERENCES = 16  # of the runs side by side

@@ -17,4 +17,7 @@ def record(seconds: float | None = None) -> Motion:
 
 def foundations(runs: int) -> list[YieldingBase]:
     """Foundations that differ a little: β within 75 … 85, η within 2.3 … 2.7."""
-    return [YieldingBase(75.0 + 10.0 * i / runs, 0.05, eta=2.3 + 0.4 * (i * 7 % runs) / runs) for i in range(runs)]
+    return [
+        YieldingBase(75.0 + 10.0 * i / runs, 0.05, flight="stop", eta=2.3 + 0.4 * (i * 7 % runs) / runs)
+        for i in range(runs)
+    ]

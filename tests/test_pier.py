@@ -11,10 +11,12 @@ from rockbatch.errors import InputError
 from rockbatch.motions.motion import Motion
 from rockbatch.pier import (
     WITH_EXPONENT,
+    Damper,
     ElasticBase,
     Pier,
     RigidBase,
     SpringLaw,
+    Tendon,
     YieldingBase,
     problems,
     static_deflection,
@@ -80,6 +82,51 @@ def test_every_impossible_value_is_named_with_its_limit():
 )
 def test_possible_bases_have_no_problems(base):
     assert problems(FIG5, base) == []
+
+
+@pytest.mark.parametrize("make", [RigidBase, lambda **keys: ElasticBase(50.0, **keys)])
+def test_flight_is_followed_unless_a_base_says_stop_and_its_limit_is_a_height(make):
+    assert (make().flight, make().flies, make().flight_limit_mm) == ("guided", True, 5.0)
+    assert not make(flight="stop").flies
+    assert problems(FIG5, make(flight="stop", flight_limit_mm=20.0)) == []
+    assert problems(FIG5, make(flight="free"))[0].startswith('flight = "free": must be "guided" or "stop"')
+    for height in (0.0, -1.0, math.nan):
+        assert problems(FIG5, make(flight_limit_mm=height))[0].startswith("flight_limit_mm = ")
+
+
+def test_a_base_tells_what_it_can_do():
+    """Springs deflect, yielding ones settle, those of Bouc–Wen ratchet, and friction may hold a pier at a tilt."""
+    bouc_wen = YieldingBase(50.0, eta=3.0)
+    epp = bouc_wen.by_other_law()
+    told = [(base.on_springs, base.yields, base.ratchets, base.has_residual) for base in (
+        RigidBase(), ElasticBase(50.0), bouc_wen, epp,
+    )]  # fmt: skip
+    assert told == [
+        (False, False, False, False), (True, False, False, False), (True, True, True, True), (True, True, False, True),
+    ]  # fmt: skip
+    assert RigidBase().by_other_law() == RigidBase()
+    holds = {
+        Damper("friction", f=0.05): True,
+        Damper("hysteretic", f=0.05, yield_m=0.01): True,
+        Damper("viscous", nu=0.5): False,
+        Tendon(psi=0.1): False,
+    }
+    for restraint, held in holds.items():
+        assert RigidBase(restraints=(restraint,)).has_residual == held
+        assert ElasticBase(50.0, restraints=(restraint,)).has_residual == held
+
+
+@pytest.mark.parametrize(("exponent", "possible"), [(0.09, False), (0.1, True), (2.0, True), (2.1, False)])
+def test_viscous_dampers_have_exponents_from_a_tenth_to_two(exponent, possible):
+    for base in (RigidBase, lambda restraints: ElasticBase(50.0, restraints=restraints)):
+        found = problems(FIG5, base(restraints=(Damper("viscous", nu=0.1, exponent=exponent),)))
+        expected = [] if possible else [f"damper: exponent = {exponent:g}: must be within 0.1..2"]
+        assert found == expected
+
+
+def test_a_rigid_base_is_the_limit_of_stiff_springs():
+    assert vertical_frequency(FIG5, RigidBase()) == math.inf
+    assert static_deflection(FIG5, RigidBase()) == 0.0
 
 
 @pytest.mark.parametrize("restitution", [-0.1, 1.1, math.nan])

@@ -33,7 +33,6 @@ base = "yielding"
 beta = 80
 eta = 2.5
 epsilon = 0.05
-flight = "guided"
 """
 
 

@@ -28,7 +28,6 @@ base = "yielding"
 beta = 40
 eta = 2.5
 epsilon = 0.05
-flight = "guided"
 
 [spectrum]
 alpha = 0.15

@@ -17,7 +17,6 @@ from rockbatch.batch.plan import Plan, PlannedRun
 from rockbatch.batch.threads import cores
 from rockbatch.errors import InputError
 from rockbatch.motions import MotionSet
-from rockbatch.pier import RigidBase
 from rockbatch.results.outcome import Outcome
 from rockbatch.simulation import Stop, first_substeps, run_all_fixed, run_fixed
 from rockbatch.study import Study
@@ -228,7 +227,7 @@ def _yardstick(references: Sequence[Reference], listener: Listener, clock: Clock
     """SciPy's solvers, from the loosest tolerance on; one that takes half of what time is left is not asked for more."""
     from rockbatch.simulation.yardstick import OutOfTimeError, solve
 
-    chosen = [one for one in references if not isinstance(one.run.case.base, RigidBase) and one.outcome.status == "ok"]
+    chosen = [one for one in references if one.run.case.base.on_springs and one.outcome.status == "ok"]
     if len(chosen) > SCIPY_RUNS:  # from the middle of the study's halves
         chosen = [chosen[(2 * i + 1) * len(chosen) // (2 * SCIPY_RUNS)] for i in range(SCIPY_RUNS)]
     if not chosen:

@@ -13,7 +13,7 @@ from rockbatch.analysis.map_search import End, Point, Points, Region, Search, re
 from rockbatch.batch.plan import Made, PlannedRun, scaled
 from rockbatch.motions import Motion
 from rockbatch.motions.pulses import pulse, pulse_length
-from rockbatch.pier import Base, RigidBase
+from rockbatch.pier import Base
 from rockbatch.study import Case
 from rockbatch.study.spectrum import MapSpec
 
@@ -44,7 +44,7 @@ def ending(status: str, impacts: int, base: Base) -> End:
     impacts change with every amplitude, and tell nothing.
     """
     if status == "overturned":
-        return End(WITH_IMPACT if impacts else OUTRIGHT, impacts if isinstance(base, RigidBase) else 0)
+        return End(WITH_IMPACT if impacts else OUTRIGHT, 0 if base.on_springs else impacts)
     return End({"ok": SAFE, "flight": FLIGHT}.get(status, UNDECIDED))
 
 

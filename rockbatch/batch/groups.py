@@ -8,7 +8,7 @@ import numpy as np
 from rockbatch.batch.plan import PlannedRun
 from rockbatch.errors import InputError
 from rockbatch.motions import Motion
-from rockbatch.pier import Base, YieldingBase
+from rockbatch.pier import Base
 from rockbatch.results.outcome import Outcome
 from rockbatch.simulation import Run, Stop, first_substeps, run_all_fixed, run_all_to_tolerance, steps_of
 from rockbatch.simulation.histories import with_observed, written
@@ -76,7 +76,7 @@ def _with_other_law(
     yielding = {
         i: replace(run, base=run.base.by_other_law())
         for i, (run, outcome) in enumerate(zip(runs, outcomes, strict=True))
-        if isinstance(run.base, YieldingBase) and outcome is not None and outcome.was_run
+        if run.base.yields and outcome is not None and outcome.was_run
     }
     substeps = [outcomes[i].substeps for i in yielding]  # type: ignore[union-attr]
     others = run_all_fixed(list(yielding.values()), substeps, quiet_s, stop)

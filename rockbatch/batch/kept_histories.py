@@ -11,7 +11,7 @@ import numpy as np
 from rockbatch.batch.plan import PlannedRun
 from rockbatch.checks.demands import FORCES
 from rockbatch.errors import InputError
-from rockbatch.pier import Base, Pier, RigidBase, YieldingBase, offsets, vertical_frequency
+from rockbatch.pier import Base, Pier, offsets, vertical_frequency
 from rockbatch.results.columns import TERMS
 from rockbatch.results.histories_file import HISTORIES, OF_SPRINGS, UNITS, write
 from rockbatch.results.reading import Saved
@@ -116,7 +116,7 @@ def history_bytes(run: PlannedRun, row: "Mapping[str, Any] | pd.Series") -> floa
     side of an event.
     """
     pier, base = run.case.pier, run.case.base
-    columns = len(UNITS) - (len(OF_SPRINGS) if isinstance(base, RigidBase) else 0)
+    columns = len(UNITS) - (0 if base.on_springs else len(OF_SPRINGS))
     columns += 2 * sum(len(offsets(pier, each)) for each in base.restraints)  # elongations and forces
     if _has(row, LEDGER):
         columns += len(TERMS)
@@ -129,7 +129,7 @@ def history_bytes(run: PlannedRun, row: "Mapping[str, Any] | pd.Series") -> floa
 
 def _reversals(pier: Pier, base: Base) -> float:
     """How often a second the Bouc–Wen springs change their branch at most: both, twice a period of the vertical vibration."""
-    if not (isinstance(base, YieldingBase) and base.has_exponent):
+    if not base.has_exponent:
         return 0.0
     return 2.0 * vertical_frequency(pier, base) / math.pi
 

@@ -174,6 +174,17 @@ def _column(name: str) -> Callable[["pd.DataFrame", Case], Found]:
     return lambda runs, case: _without_error(_numbers(runs, name))
 
 
+def _in_flight(name: str) -> Callable[["pd.DataFrame", Case], Found]:
+    """A column of flights; 0 of a run that went through and has none."""
+
+    def found(runs: "pd.DataFrame", case: Case) -> Found:
+        value, went_through = _numbers(runs, name), runs["status"].isin(["ok", "overturned"])
+        none = np.isnan(value) & (went_through & runs["flight_s"].isna()).to_numpy()
+        return _without_error(np.where(none, 0.0, value))
+
+    return found
+
+
 def _event(happened: Callable[["pd.DataFrame"], "pd.Series[bool]"]) -> Callable[["pd.DataFrame", Case], Found]:
     return lambda runs, case: _without_error(happened(runs).to_numpy().astype(np.float64))
 
@@ -245,8 +256,6 @@ _OF_FORCES = {
     "landing_velocity_m_s": _forces("speed of the pivot at the hardest impact [m/s]", "landing_velocity_m_s"),
     "impulse_m_s": _forces("vertical impulse of the hardest impact over the mass [m/s]", "impulse_m_s"),
     "impulse_kN_s": _forces("vertical impulse of the hardest impact [kN s]", "impulse_kN_s"),
-    "flight_duration_s": _forces("time with both pivots in the air [s]", "flight_duration_s", bases=_SPRINGS),
-    "flight_height_m": _forces("height of the lower pivot in flight [m]", "flight_height_m", bases=_SPRINGS),
     "omega_max_over_p": _forces("greatest angular velocity over p", "omega_max_over_p"),
 }
 
@@ -306,6 +315,9 @@ DEMANDS = {
     ),
     "impacts": Demand("number of impacts", _column("impacts")),
     "separations": Demand("number of separations", _column("separations")),
+    "flights": Demand("number of flights", _in_flight("flights")),
+    "flight_duration_s": Demand("time with both pivots in the air [s]", _in_flight("flight_duration_s")),
+    "flight_height_m": Demand("height of the lower pivot in flight [m]", _in_flight("flight_height_m")),
     "flight": Demand(
         "both pivots off the ground",
         _event(lambda runs: runs["flight_s"].notna()),

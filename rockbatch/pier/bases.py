@@ -5,11 +5,18 @@ Values are checked where they meet: :func:`problems` says what is impossible abo
 
 import math
 from dataclasses import dataclass, field, replace
-from typing import Any, Literal, Self, get_args
+from typing import Any, ClassVar, Literal, Self, get_args
 
 from rockbatch.errors import InputError
 from rockbatch.pier.block import Pier, not_positive
-from rockbatch.pier.restraints import Restraint, prestress_over_weight, wrong_on_springs, wrong_restraints
+from rockbatch.pier.restraints import (
+    Restraint,
+    described_restraints,
+    holds_a_tilt,
+    prestress_over_weight,
+    wrong_on_springs,
+    wrong_restraints,
+)
 from rockbatch.units import MOST
 
 LEAST_ETA = 1.000001
@@ -21,12 +28,18 @@ MOST_EXPONENT = 1000.0
 MOST_ETA = 100.0
 """Beyond it a wrong unit is likelier than the support: foundations bear 2 to 20 times what they carry."""
 
+FLIGHT_LIMIT_MM = 5.0
+"""Height of flight [mm] beyond which a run has a note, unless the base says another."""
+
 Kinematics = Literal["first-order", "finite"]
-Flight = Literal["stop", "guided"]
+Flight = Literal["guided", "stop"]
 SpringLaw = Literal["bouc-wen", "epp"]
 
 WITH_EXPONENT: tuple[SpringLaw, ...] = ("bouc-wen",)
 """Laws that an exponent n belongs to; the others have a sharp corner."""
+
+RATCHETING: tuple[SpringLaw, ...] = ("bouc-wen",)
+"""Laws that creep under vibration: springs by them settle a little with every cycle below their yield force."""
 
 OTHER_LAW: dict[SpringLaw, SpringLaw] = {"bouc-wen": "epp", "epp": "bouc-wen"}
 """For each law the one that shows how much a settlement depends on it (THEORY.md, Results of a run)."""
@@ -35,14 +48,53 @@ EPSILON_AND_ZETA = "zeta is given too, and a damped support takes a landing with
 """What is said of both."""
 
 
+class _Traits:
+    """What a base is and can do, asked by name and not by its class; each class says what differs."""
+
+    on_springs: ClassVar[bool] = False
+    """Whether two springs carry the pier, and deflect."""
+
+    yields: ClassVar[bool] = False
+    """Whether these springs yield, so that the pier may settle."""
+
+    flight: Flight
+    flight_limit_mm: float
+    restraints: tuple[Restraint, ...]
+
+    @property
+    def flies(self) -> bool:
+        """Whether a run goes on while both pivots are in the air."""
+        return self.flight == "guided"
+
+    @property
+    def has_exponent(self) -> bool:
+        """Whether the springs' law has an exponent n."""
+        return False
+
+    @property
+    def ratchets(self) -> bool:
+        """Whether the springs creep under vibration."""
+        return False
+
+    @property
+    def has_residual(self) -> bool:
+        """Whether the pier may rest at a tilt: on springs that yielded, or held by friction or hysteretic dampers."""
+        return self.yields or holds_a_tilt(self.restraints)
+
+    def by_other_law(self) -> Self:
+        """The same base with its springs by the other law (:data:`OTHER_LAW`); itself where it has none."""
+        return self
+
+
 @dataclass(frozen=True)
-class RigidBase:
+class RigidBase(_Traits):
     """Ground that neither gives nor yields (Housner 1963).
 
     ``restitution`` is the factor e on the angular velocity at an impact; ``None`` means :attr:`Pier.restitution`, Housner's
     e = 1 − 2μ/(1+μ) sin²α, which conserves the angular momentum about the new pivot, or 0 where that is negative.
     ``restraints`` are dampers and tendons that tie the pier to the ground.
     ``friction``, if known, is the coefficient of the interface: a run says where its forces ask for more (THEORY.md, Forces).
+    ``flight`` and ``flight_limit_mm`` are as on springs (:class:`ElasticBase`).
 
     Examples
     --------
@@ -53,12 +105,23 @@ class RigidBase:
     restitution: float | None = None
     restraints: tuple[Restraint, ...] = ()
     friction: float | None = field(default=None, kw_only=True)
+    flight: Flight = field(default="guided", kw_only=True)
+    flight_limit_mm: float = field(default=FLIGHT_LIMIT_MM, kw_only=True)
 
     name = "rigid"
+    beta: ClassVar[float] = math.inf
+    """β of ground that does not give: the limit of springs."""
+
+    def parameters(self, pier: Pier) -> dict[str, Any]:
+        """What run.json says about this base under ``pier``."""
+        of_frame = None if pier.deck_over_columns is None else pier.restitution  # None stands for Housner's
+        own: dict[str, Any] = {"restitution": of_frame if self.restitution is None else self.restitution}
+        own |= {"flight": self.flight, "flight_limit_mm": self.flight_limit_mm}
+        return own | _interface(self.friction) | described_restraints(self.restraints)
 
 
 @dataclass(frozen=True)
-class ElasticBase:
+class ElasticBase(_Traits):
     """Two elastic springs that take no tension.
 
     Attributes
@@ -69,8 +132,10 @@ class ElasticBase:
         Restitution ε of the landing pivot's velocity, 0..1.
     kinematics : "first-order" or "finite"
         The paper's equations, or those that hold for large rotations.
-    flight : "stop" or "guided"
-        What happens when both pivots are off the ground: the analysis ends, or shear keys guide the pier down.
+    flight : "guided" or "stop"
+        What happens when both pivots are off the ground: shear keys guide the pier down, or the run ends, as in the paper.
+    flight_limit_mm : float
+        Height of the lower pivot in flight [mm] beyond which a run has a note: do the keys reach so far?
     zeta : float or None
         ζ, 0..1: a dashpot beside each spring, C = ζ M ω_v, by its share of critical damping of the vertical vibration. It
         takes the place of ε: a pivot that lands on a damped support is borne without an impulse.
@@ -88,12 +153,23 @@ class ElasticBase:
     beta: float
     epsilon: float = 0.0
     kinematics: Kinematics = "first-order"
-    flight: Flight = "stop"
+    flight: Flight = "guided"
     zeta: float | None = field(default=None, kw_only=True)
     friction: float | None = field(default=None, kw_only=True)
     restraints: tuple[Restraint, ...] = field(default=(), kw_only=True)
+    flight_limit_mm: float = field(default=FLIGHT_LIMIT_MM, kw_only=True)
 
     name = "elastic"
+    on_springs = True
+
+    def parameters(self, pier: Pier) -> dict[str, Any]:
+        """What run.json says about these springs under ``pier``."""
+        landing = {"epsilon": self.epsilon} if self.zeta is None else {"zeta": self.zeta}
+        own: dict[str, Any] = {"beta": self.beta, **landing, "kinematics": self.kinematics}
+        own |= {"flight": self.flight, "flight_limit_mm": self.flight_limit_mm}
+        own |= {"omega_v": vertical_frequency(pier, self), "delta_s_m": static_deflection(pier, self)}
+        own |= in_kilonewtons(pier, self)
+        return own | _interface(self.friction) | described_restraints(self.restraints)
 
     @classmethod
     def from_stiffness(cls, pier: Pier, stiffness_kN_m: float, **rest: Any) -> Self:
@@ -130,15 +206,28 @@ class YieldingBase(ElasticBase):
     n: float = 5.0
 
     name = "yielding"
+    yields = True
 
     @property
     def has_exponent(self) -> bool:
         """Whether ``n`` means anything to these springs."""
         return self.spring in WITH_EXPONENT
 
+    @property
+    def ratchets(self) -> bool:
+        """Whether these springs creep under vibration."""
+        return self.spring in RATCHETING
+
     def by_other_law(self) -> Self:
         """The same springs by the other law: Bouc–Wen for elastic–perfectly plastic, and the reverse."""
         return replace(self, spring=OTHER_LAW[self.spring])
+
+    def parameters(self, pier: Pier) -> dict[str, Any]:
+        """What run.json says about these springs under ``pier``."""
+        own = super().parameters(pier) | {"eta": self.eta, "spring": self.spring}
+        if self.has_exponent:
+            own["n"] = self.n
+        return own | {"delta_y_m": yield_deflection(pier, self)}
 
     @classmethod
     def from_stiffness(cls, pier: Pier, stiffness_kN_m: float, yield_kN: float | None = None, **rest: Any) -> Self:
@@ -146,6 +235,13 @@ class YieldingBase(ElasticBase):
         if yield_kN is not None:
             rest["eta"] = eta_of(pier, yield_kN)
         return super().from_stiffness(pier, stiffness_kN_m, **rest)
+
+
+Base = RigidBase | ElasticBase | YieldingBase
+
+
+def _interface(friction: float | None) -> dict[str, float]:
+    return {} if friction is None else {"friction": friction}
 
 
 def beta_of(pier: Pier, stiffness_kN_m: float) -> float:
@@ -168,9 +264,9 @@ def _mass(pier: Pier, **value: tuple[float | None, str]) -> float:
     return pier.mass_t
 
 
-def in_kilonewtons(pier: Pier, base: ElasticBase) -> dict[str, float]:
-    """K = β² p² M/2 [kN/m] and F_y = η M g/2 [kN] by the keys of a study; empty for a pier without mass."""
-    if pier.mass_t is None:
+def in_kilonewtons(pier: Pier, base: Base) -> dict[str, float]:
+    """K = β² p² M/2 [kN/m] and F_y = η M g/2 [kN] by the keys of a study; empty for a pier without mass or springs."""
+    if pier.mass_t is None or not base.on_springs:
         return {}
     found = {"stiffness_kN_m": 0.5 * pier.mass_t * vertical_frequency(pier, base) ** 2}
     if isinstance(base, YieldingBase):
@@ -178,7 +274,7 @@ def in_kilonewtons(pier: Pier, base: ElasticBase) -> dict[str, float]:
     return found
 
 
-def least_beta(pier: Pier, base: ElasticBase) -> float:
+def least_beta(pier: Pier, base: Base) -> float:
     """β below which the pier topples on its springs under its own weight, or at the least push (THEORY.md, eq. 13).
 
     A Bouc–Wen spring under the weight, z = −1/η, is softer where it is loaded than where it is unloaded, by the factor
@@ -194,13 +290,13 @@ def least_beta(pier: Pier, base: ElasticBase) -> float:
     return pier.least_beta * math.sqrt((1.0 + softer) / (2.0 * softer))
 
 
-def vertical_frequency(pier: Pier, base: ElasticBase) -> float:
-    """Circular frequency ω_v = β p [rad/s] of vertical vibration in full contact."""
+def vertical_frequency(pier: Pier, base: Base) -> float:
+    """Circular frequency ω_v = β p [rad/s] of vertical vibration in full contact; infinite on a rigid base."""
     return base.beta * pier.p
 
 
-def static_deflection(pier: Pier, base: ElasticBase) -> float:
-    """δ_s = g/ω_v² [m], of the springs under the weight at rest, while elastic."""
+def static_deflection(pier: Pier, base: Base) -> float:
+    """δ_s = g/ω_v² [m], of the springs under the weight at rest, while elastic; 0 on a rigid base."""
     return pier.gravity / vertical_frequency(pier, base) ** 2
 
 
@@ -243,18 +339,18 @@ def fastest(pier: Pier, base: ElasticBase) -> float:
     )
 
 
-Base = RigidBase | ElasticBase | YieldingBase
-
-
 def problems(pier: Pier, base: Base) -> list[str]:
     """What is impossible about ``pier`` on ``base``: one sentence each, with the limit; empty if nothing."""
-    wrong = not_positive(friction=(base.friction, ", the coefficient of the interface"))
+    wrong = not_positive(
+        friction=(base.friction, ", the coefficient of the interface"),
+        flight_limit_mm=(base.flight_limit_mm, " [mm], a height of flight"),
+    )
     if isinstance(base, RigidBase):
         e = base.restitution
         wrong += wrong_restraints(pier, base.restraints)
         if e is not None and not 0 <= e <= 1:
             wrong.append(f"restitution = {e:g}: must be within 0..1 (leave it out for Housner's value)")
-        return wrong
+        return wrong + _unknown("flight", base.flight, get_args(Flight))
     if pier.deck_over_columns is not None:
         return [
             f"columns: a rocking frame is solved on rigid ground only, and this base is {base.name}. On springs the columns "

@@ -1,8 +1,8 @@
 """What ties a pier to the ground beside its own weight: dampers and tendons (THEORY.md, Dampers and tendons)."""
 
 import math
-from dataclasses import dataclass, replace
-from typing import Literal, get_args
+from dataclasses import asdict, dataclass, replace
+from typing import Any, Literal, get_args
 
 from rockbatch.pier.block import Pier
 
@@ -10,6 +10,10 @@ DamperKind = Literal["friction", "viscous", "hysteretic"]
 
 MOST_FORCE = 10.0
 """Of the pier's weight, beyond which a wrong unit is likelier than the device."""
+
+
+LEAST_EXPONENT, MOST_EXPONENT = 0.1, 2.0
+"""Of a viscous damper: fluid dampers have 0.15 to 1, and one of 0 is friction."""
 
 
 @dataclass(frozen=True)
@@ -27,7 +31,7 @@ class Damper:
     yield_m : float
         u_y of a hysteretic damper [m].
     exponent : float
-        a of a viscous damper.
+        a of a viscous damper, 0.1 to 2.
     at : float, "left", "right" or None
         Offset from the centre of the base [m], positive to the right; None: one at each pivot.
 
@@ -80,6 +84,21 @@ class Tendon:
 
 
 Restraint = Damper | Tendon
+
+
+def holds_a_tilt(restraints: tuple[Restraint, ...]) -> bool:
+    """Whether a damper among them may hold the pier at a tilt: it keeps a force at rest, as friction does."""
+    return any(isinstance(each, Damper) and each.kind != "viscous" and each.f > 0 for each in restraints)
+
+
+def described_restraints(restraints: tuple[Restraint, ...]) -> dict[str, Any]:
+    """What run.json says about dampers and tendons; nothing without."""
+    return {"restraints": [_described(each) for each in restraints]} if restraints else {}
+
+
+def _described(restraint: Restraint) -> dict[str, Any]:
+    values = {name: value for name, value in asdict(restraint).items() if value is not None}
+    return {name: None if value == math.inf else value for name, value in values.items()}
 
 
 def offsets(pier: Pier, restraint: Restraint) -> tuple[float, ...]:
@@ -139,8 +158,10 @@ def _wrong_damper(damper: Damper) -> list[str]:
     if damper.kind == "viscous":
         if not (math.isfinite(damper.nu) and damper.nu >= 0):
             wrong.append(f"damper: nu = {damper.nu:g}: must be 0 or above")
-        if not 0.2 <= damper.exponent <= 2:
-            wrong.append(f"damper: exponent = {damper.exponent:g}: must be within 0.2..2")
+        if not LEAST_EXPONENT <= damper.exponent <= MOST_EXPONENT:
+            wrong.append(
+                f"damper: exponent = {damper.exponent:g}: must be within {LEAST_EXPONENT:g}..{MOST_EXPONENT:g}"
+            )
         return wrong
     if not 0 <= damper.f <= MOST_FORCE:
         wrong.append(f"damper: f = {damper.f:g}: its force over the weight must be within 0..{MOST_FORCE:g}")

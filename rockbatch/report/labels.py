@@ -26,6 +26,7 @@ SYMBOLS = {
     "restitution": ("e", ""),
     "stiffness_kN_m": ("K", "kN/m"),
     "yield_kN": ("F_y", "kN"),
+    "flight_limit_mm": ("flight limit", "mm"),
     "mass_t": ("M", "t"),
     "deck_mass_t": ("deck mass", "t"),
     "deck_height_m": ("deck height", "m"),
@@ -34,7 +35,7 @@ SYMBOLS = {
 }
 BASE_KEYS = (
     "beta", "stiffness_kN_m", "eta", "yield_kN", "epsilon", "zeta", "spring", "n", "kinematics", "flight", "restitution",
-    "friction",
+    "flight_limit_mm", "friction",
 )  # fmt: skip
 SAME = {"beta": "stiffness_kN_m", "eta": "yield_kN"}
 """Keys of a study that say the same, without units and with: a foundation is called by the one that its study gives."""

@@ -277,6 +277,20 @@ MORE = (
         "pga_g", "peak horizontal ground acceleration of the motion as it was run, over g",
         lambda ran: ran.motion.pga / ran.pier.gravity, "standard_gravity", OnPage("PGA [g]", ".3f", behind="heel_uplift_m"),
     ),
+    Column(
+        "flights", "how often both pivots left the ground at one time; a flight that ended the run counts", "flights",
+        kind="count", page=OnPage("flights", ".0f", behind="flight_s"),
+    ),
+    Column(
+        "flight_duration_s", "time with both pivots in the air, in all flights together that were followed",
+        lambda ran: ran.outcome.flight_duration or None, "s", OnPage("in flight [s]", ".3f", behind="flights"),
+        sometimes=True,
+    ),
+    Column(
+        "flight_height_m", "greatest height of the lower pivot above the ground, or above its support, in these flights",
+        lambda ran: ran.outcome.flight_height or None, "m",
+        OnPage("flight height [mm]", ".2f", 1000, "flight_duration_s"), sometimes=True,
+    ),
 )  # fmt: skip
 """Columns that follow those of the varied keys. A table of an earlier version may lack the last of them."""
 
@@ -373,14 +387,6 @@ _FORCES = (
     _force(
         "first_uplift_g", "magnitude of the horizontal ground acceleration then, over g", "uplift_ground",
         "standard_gravity", "ground then [g]", ".4f", per="g", sometimes=True,
-    ),
-    _force(
-        "flight_duration_s", "how long both pivots were in the air, all flights together", "flight_duration", "s",
-        "in flight [s]", ".3f", bases=SPRINGS, sometimes=True,
-    ),
-    _force(
-        "flight_height_m", "how high the lower pivot rose above its support in flight", "flight_height", "m",
-        "flight height [mm]", ".1f", 1000, bases=SPRINGS, sometimes=True,
     ),
     _force("omega_max_over_p", "greatest angular velocity over p", "omega_over_p", "1", "θ̇_max/p", ".4f"),
 )  # fmt: skip

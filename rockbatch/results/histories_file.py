@@ -120,7 +120,7 @@ def _write(group: "h5py.Group", response: Response) -> None:
     base = {"name": response.base.name} | asdict(response.base)
     base["restraints"] = json.dumps([asdict(each) for each in response.base.restraints])
     _set(group.create_group("base"), base)
-    rigid = isinstance(response.base, RigidBase)
+    rigid = not response.base.on_springs
     for name, unit in UNITS.items():
         if not (rigid and name in OF_SPRINGS):
             _put(group, name, response.history[name].to_numpy(), unit)
@@ -241,7 +241,7 @@ def _read(group: "h5py.Group") -> Response:
     t = array_in(group, "t", "f")
     if not len(t) or np.isnan(t).any() or (np.diff(t) < 0).any():
         raise ValueError("t is no rising time")
-    absent = OF_SPRINGS if kind is RigidBase else ()
+    absent = () if kind.on_springs else OF_SPRINGS
     columns = {
         name: np.full(len(t), np.nan) if name in absent else array_in(group, name, "f", len(t)) for name in UNITS
     }
@@ -262,7 +262,7 @@ def _read(group: "h5py.Group") -> Response:
         **_run(group),
         columns=attributes_of(group_in(group, "varied")),
         pier=Pier(**attributes_of(group_in(group, "pier"))),
-        base=kind(**base),
+        base=kind(**{"flight": "stop"} | base),  # as rigid ground was before it could be told
         history=pd.DataFrame(columns),
         events=_events(group_in(group, "events"), len(t)),
         ledger=ledger,

@@ -36,8 +36,6 @@ class PeakForces:
         Greatest horizontal over vertical impulse of an impact.
     first_uplift, uplift_ground : float or None
         When a pivot first lifts [s], and magnitude of the horizontal ground acceleration then [m/s²].
-    flight_duration, flight_height : float or None
-        How long both pivots were in the air, all flights together [s], and how high the lower one was [m].
     """
 
     base_shear: float
@@ -56,8 +54,6 @@ class PeakForces:
     impact_friction_demand: float | None = None
     first_uplift: float | None = None
     uplift_ground: float | None = None
-    flight_duration: float | None = None
-    flight_height: float | None = None
 
     def mirrored(self) -> "PeakForces":
         """Those of the mirror image."""
@@ -100,6 +96,11 @@ class Outcome:
         Counts; on the rigid base a separation is a lift-off from rest.
     t_flight : float or None
         First time at which neither pivot was in contact [s].
+    flights : int
+        How often both pivots left the ground; that which ended a run counts.
+    flight_duration, flight_height : float
+        Of the flights that were followed: how long both pivots were in the air, all together [s], and how high the lower one
+        was at most [m]; 0 without.
     t_end : float
         End of the run [s].
     ductility_left, ductility_right : float or None
@@ -152,6 +153,9 @@ class Outcome:
     energies: Mapping[str, float] | None = None
     forces: PeakForces | None = None
     note: str = ""
+    flights: int = 0
+    flight_duration: float = 0.0
+    flight_height: float = 0.0
 
     @property
     def was_run(self) -> bool:

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from rockbatch.checks.suite import counts_as, simulated
-from rockbatch.pier import Base, Pier, RigidBase
+from rockbatch.pier import Base, Pier
 from rockbatch.results.suite_statistics import NO_PEAK, distribution
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ def plot(history: "pd.DataFrame", events: "pd.DataFrame", pier: Pier, base: Base
     """See :meth:`rockbatch.Response.plot`, which hands over its tables ``history`` and ``events``."""
     from rockbatch.results.figure import ShownFigure
 
-    loops = not isinstance(base, RigidBase)
+    loops = base.on_springs
     figure = ShownFigure(figsize=(7.0, 9.0 if loops else 7.0), layout="constrained")
     names: list[Any] = [["rotation"] * 2, ["velocity"] * 2, ["energy"] * 2, ["ground"] * 2]
     axes = figure.subplot_mosaic([*names, ["left", "right"]] if loops else names)

@@ -16,19 +16,7 @@ from rockbatch.motions.motion import Motion
 from rockbatch.motions.spectrum import periods_over, suite_spectra
 from rockbatch.motions.spectrum_target import SpectrumTarget
 from rockbatch.motions.velocity_pulses import pulse_of
-from rockbatch.pier import (
-    Base,
-    ElasticBase,
-    Pier,
-    Restraint,
-    RigidBase,
-    YieldingBase,
-    described,
-    in_kilonewtons,
-    static_deflection,
-    vertical_frequency,
-    yield_deflection,
-)
+from rockbatch.pier import described
 from rockbatch.results.columns import units
 from rockbatch.results.shape import Maybe
 from rockbatch.study import Case, Study
@@ -39,7 +27,7 @@ _NUMBER = (float, None)
 _VALUES = {str: (float, str)}
 _NUMBERS_OF_BASE = (
     "beta", "eta", "epsilon", "n", "omega_v", "delta_s_m", "delta_y_m", "stiffness_kN_m", "yield_kN", "restitution", "zeta",
-    "friction",
+    "friction", "flight_limit_mm",
 )  # fmt: skip
 _OF_FILE = {"name": str, "source": str, "reason": str}
 _SPECTRA = {
@@ -163,47 +151,7 @@ def describe_case(case: Case) -> dict[str, Any]:
         "columns": case.columns,
         "pier": described(pier),
         "base": case.base.name,
-        "parameters": _describe_base(pier, case.base),
-    }
-
-
-def _describe_base(pier: Pier, base: Base) -> dict[str, Any]:
-    interface = {} if base.friction is None else {"friction": base.friction}
-    if isinstance(base, RigidBase):
-        of_frame = None if pier.deck_over_columns is None else pier.restitution  # None stands for Housner's
-        own: dict[str, Any] = {"restitution": of_frame if base.restitution is None else base.restitution, **interface}
-        return own | _restraints(base)
-    told = _springs(pier, base) | interface | _restraints(base)
-    if isinstance(base, YieldingBase):
-        told |= {
-            "eta": base.eta,
-            "spring": base.spring,
-            "n": base.n,
-            "delta_y_m": yield_deflection(pier, base),
-        }
-        if not base.has_exponent:
-            del told["n"]
-    return told
-
-
-def _restraints(base: Base) -> dict[str, Any]:
-    return {"restraints": [_described(each) for each in base.restraints]} if base.restraints else {}
-
-
-def _described(restraint: Restraint) -> dict[str, Any]:
-    values = {name: value for name, value in asdict(restraint).items() if value is not None}
-    return {name: None if value == math.inf else value for name, value in values.items()}
-
-
-def _springs(pier: Pier, base: ElasticBase) -> dict[str, Any]:
-    return {
-        "beta": base.beta,
-        **({"epsilon": base.epsilon} if base.zeta is None else {"zeta": base.zeta}),
-        "kinematics": base.kinematics,
-        "flight": base.flight,
-        "omega_v": vertical_frequency(pier, base),
-        "delta_s_m": static_deflection(pier, base),
-        **in_kilonewtons(pier, base),
+        "parameters": case.base.parameters(pier),
     }
 
 

@@ -153,7 +153,6 @@ def peak_forces(run: Run, outcome: Outcome, rows: np.recarray) -> tuple[PeakForc
         omega_over_p=most.omega / pier.p,
         **_hardest(landings),
         **_first_uplift(run, events),
-        **_flown(run, outcome, rows, most.clearance),
     )
     return peaks, _limits(run, whole, peaks)
 
@@ -179,15 +178,6 @@ def _first_uplift(run: Run, rows: np.recarray) -> dict[str, float]:
     t, samples = float(rows.t[lifted[0]]), np.append(run.motion.horizontal, 0.0)
     shaken = float(np.interp(t, np.arange(len(samples)) * run.motion.dt, samples))
     return {"first_uplift": t, "uplift_ground": abs(shaken)}
-
-
-def _flown(run: Run, outcome: Outcome, rows: np.recarray, clearance: float) -> dict[str, float]:
-    """How long both pivots were in the air, and how high the lower one; nothing without flight that was followed."""
-    if outcome.t_flight is None or isinstance(run.base, RigidBase):
-        return {}
-    flying = (rows.kind <= 0.0) & (rows.left == 0.0) & (rows.right == 0.0) & (rows.held == 0.0)
-    lasted = float(np.diff(rows.t, prepend=0.0)[flying].sum())
-    return {"flight_duration": lasted, "flight_height": clearance} if lasted > 0.0 else {}
 
 
 def _limits(run: Run, whole: Greatest, peaks: PeakForces) -> str:

@@ -27,8 +27,13 @@ from rockbatch.study.restraint_keys import RESTRAINTS, read_restraints, restrain
 from rockbatch.toml.kinds import choice, number, positive, shown, text
 from rockbatch.toml.reader import Key, Setting, Table, TomlFile
 
-_INTERFACE = {"friction": Key(positive, "0.5", many=True)}
-_RIGID = {"restitution": Key(number, "0.9", many=True), **_INTERFACE}
+_EVERY = {
+    "flight": Key(choice(*get_args(Flight)), '"stop"', many=True),
+    "flight_limit_mm": Key(positive, "20.0", many=True),
+    "friction": Key(positive, "0.5", many=True),
+}
+"""Keys that apply on every base."""
+_RIGID = {"restitution": Key(number, "0.9", many=True), **_EVERY}
 _ELASTIC = {
     "beta": Key(number, "40.0", many=True),
     "stiffness_kN_m": Key(positive, "2.0e6", many=True),
@@ -36,8 +41,7 @@ _ELASTIC = {
     "epsilon": Key(number, "0.05", many=True),
     "zeta": Key(number, "0.05", many=True),
     "kinematics": Key(choice(*get_args(Kinematics)), '"first-order"', many=True),
-    "flight": Key(choice(*get_args(Flight)), '"stop"', many=True),
-    **_INTERFACE,
+    **_EVERY,
 }
 _YIELDING = _ELASTIC | {
     "eta": Key(number, "2.5", many=True),
@@ -114,14 +118,14 @@ def _expand(case: _Read, chosen: Chosen, pier: Pier, pier_values: Values) -> Exp
             continue
         if not (any_pier and problem.startswith("beta")):
             _complain_where_due(case.table, chosen, problem, pier, base)
-    if isinstance(base, ElasticBase) and not wrong and pier.mass_t is not None:
+    if not wrong and pier.mass_t is not None:
         complain_unless_usual_support(case.table, chosen, pier, base, case.believed)
     applying = {key: value for key, value in asdict(base).items() if value is not None} | given
     applying.pop("restraints", None)  # their own keys say them
     if "zeta" in applying:
         applying.pop("epsilon", None)
-    if isinstance(base, YieldingBase) and not base.has_exponent:
-        del applying["n"]
+    if not base.has_exponent:
+        applying.pop("n", None)
     return Expanded(case.name, pier, base, pier_values | applying)
 
 
@@ -223,7 +227,7 @@ def _complain_where_due(table: Table, chosen: Chosen, problem: str, pier: Pier, 
     name = problem.split(" = ")[0]
     source = {"beta": "stiffness_kN_m", "eta": "yield_kN"}.get(name, "")
     mass = pier.mass_t
-    if isinstance(base, ElasticBase) and source in chosen and mass is not None:
+    if source in chosen and mass is not None:
         least_omega_v = least_beta(pier, base) * pier.p
         least = least_omega_v * least_omega_v * mass / 2 if name == "beta" else mass * pier.gravity / 2
         name = source

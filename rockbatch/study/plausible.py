@@ -7,7 +7,7 @@ their limits, too, are something to study.
 from collections.abc import Collection, Iterable, Mapping
 from typing import Any, NamedTuple
 
-from rockbatch.pier import MOST_ETA, ElasticBase, Pier, YieldingBase, static_deflection
+from rockbatch.pier import MOST_ETA, Base, Pier, eta_of, static_deflection
 from rockbatch.study.lists import Chosen
 from rockbatch.toml.kinds import shown, text
 from rockbatch.toml.reader import Key, Setting, Table
@@ -54,7 +54,7 @@ def complain_unless_usual(
 
 
 def complain_unless_usual_support(
-    table: Table, chosen: Chosen, pier: Pier, base: ElasticBase, believed: Collection[str]
+    table: Table, chosen: Chosen, pier: Pier, base: Base, believed: Collection[str]
 ) -> None:
     """Note a stiffness and a yield force that no support has under this pier, unless they are confirmed."""
     name = "stiffness_kN_m"
@@ -63,8 +63,8 @@ def complain_unless_usual_support(
         told = f"{name} = {chosen[name].value:g}: the pier's weight presses the supports in by {1000 * deflection:.2g} mm only"
         table.complain_about(chosen[name], f"{told}, where sound rock gives some 0.1 mm; {remedy(name)}")
     name = "yield_kN"
-    if name in chosen and name not in believed and isinstance(base, YieldingBase) and base.eta > MOST_ETA:
-        told = f"{name} = {chosen[name].value:g}: {base.eta:.3g} times what the support carries at rest"
+    if name in chosen and name not in believed and (eta := eta_of(pier, chosen[name].value)) > MOST_ETA:
+        told = f"{name} = {chosen[name].value:g}: {eta:.3g} times what the support carries at rest"
         table.complain_about(chosen[name], f"{told}, where 2 to 20 times is usual; {remedy(name)}")
 
 

@@ -7,7 +7,7 @@ from typing import Any, get_args
 
 from rockbatch.checks.statistics import STATISTICS
 from rockbatch.errors import InputError
-from rockbatch.pier import ElasticBase, Kinematics, SpringLaw, beta_of, eta_of, in_kilonewtons, problems
+from rockbatch.pier import Kinematics, SpringLaw, beta_of, eta_of, in_kilonewtons, problems
 from rockbatch.study.ranges import range_of
 from rockbatch.study.restraint_inputs import (
     TABLE,
@@ -195,8 +195,6 @@ def own_values(study: Study, case: Case) -> dict[str, Any]:
 
 def _in_kilonewtons(case: Case) -> dict[str, float]:
     """Stiffness [kN/m] and yield force [kN] of a case on springs, where the mass is known."""
-    if not isinstance(case.base, ElasticBase):
-        return {}
     # To the digits in which studies are written, so that a range may end at the study's own value
     return {name: float(f"{value:.12g}") for name, value in in_kilonewtons(case.pier, case.base).items()}
 

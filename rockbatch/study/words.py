@@ -149,8 +149,9 @@ CASE = {
     "epsilon": "Restitution ε of the pivot that lands, from 0 (it stays) to 1 (it bounces without loss).",
     "zeta": "Dashpot beside each spring, as a share ζ of the critical damping of the vertical vibration; instead of `epsilon`.",
     "kinematics": 'The paper\'s equations, "first-order", or those that hold for rotations of any size.',
-    "flight": 'What happens when both pivots are off the ground: "stop" ends the run, "guided" goes on, for a pier '
-    "held by shear keys.",
+    "flight": 'What happens when both pivots are off the ground: "guided" follows the pier, which shear keys hold sideways, '
+    'until it lands, and the run goes on; "stop" ends the run there, as in the paper.',
+    "flight_limit_mm": "Height of the lower pivot in flight beyond which a run carries a note: as far as shear keys reach, say.",
     "eta": "Strength as η = F_y/(static force of a support), above 1; or give `yield_kN`.",
     "yield_kN": "Yield force F_y of one support, for a pier whose mass is known; or give `eta`.",
     "spring": 'Law of the supports: "bouc-wen", smooth, as in the paper, or "epp", elastic and then perfectly plastic.',

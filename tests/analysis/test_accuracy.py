@@ -147,7 +147,7 @@ def test_the_yardstick_solves_the_same_equations(base):
 
 def test_the_yardstick_tells_flight():
     """Thrown up by 3 g of vertical acceleration, the pier leaves the ground; its rotation then is the largest."""
-    pier, base = Pier(alpha=0.15, p=1.0), ElasticBase(beta=30.0, epsilon=0.1)
+    pier, base = Pier(alpha=0.15, p=1.0), ElasticBase(beta=30.0, epsilon=0.1, flight="stop")
     sides = [
         pulse("sine", name="sine", amplitude=share * 9.81, period=0.8, dt=0.02, duration=3.0).horizontal
         for share in (0.5, 3.0)

@@ -292,15 +292,14 @@ FORCES = {
     "landing_velocity_m_s": math.nan,  # no impact
     "impulse_m_s": 0.4,
     "impulse_kN_s": 1200.0,
-    "flight_duration_s": 0.05,
-    "flight_height_m": 0.002,
     "omega_max_over_p": 0.2,
 }
 DEVICES = {
     "damper_force_over_weight": 0.05, "damper_stroke_m": 0.12, "damper_speed_m_s": 0.4, "damper_energy_J_kg": 0.8,
     "tendon_force_over_weight": 0.3, "tendon_yield_m": 0.004, "tendon_slack": 2,
 }  # fmt: skip
-ROW |= FORCES | DEVICES
+FLIGHTS = {"flights": 2, "flight_duration_s": 0.05, "flight_height_m": 0.002}
+ROW |= FORCES | DEVICES | FLIGHTS | {"flight_s": 1.2}
 TIED = case(base=replace(PADS, restraints=(Damper("viscous", nu=0.1), Tendon(psi=0.1))))
 B, H = 7.3575 * math.sin(0.2), 7.3575 * math.cos(0.2)
 TILT_OVER_RESIDUAL = 1 - 9.81 * H / (50.0 * B) ** 2
@@ -318,7 +317,8 @@ BY_HAND = {  # value and error for θ_max/α = 0.3, α = 0.2
     "ductility": (2.5, 0.0),
     "impacts": (12, 0.0),
     "separations": (13, 0.0),
-    "flight": (0, 0.0),
+    "flight": (1, 0.0),
+    **{name: (value, 0.0) for name, value in FLIGHTS.items()},
     "overturned": (0, 0.0),
     "failed": (0, 0.0),
     "eta": (2.5, 0.0),
@@ -361,7 +361,7 @@ def test_a_demand_that_a_base_does_not_have_does_not_apply(demand):
     table = pd.concat([runs([0.3], name, **ROW) for name in ("rigid", "elastic", "pads")])
     found = judge([Rule("check", demand, 100.0)], table, [RIGID, ELASTIC, case()])
     springs = {"theta_res_over_alpha", "theta_res_rad", "base_tilt_rad", "differential_settlement_m", "settlement_m",
-               "toe_settlement_m", "static_deflection_m", "stiffness_kN_m", "flight_duration_s", "flight_height_m"}  # fmt: skip
+               "toe_settlement_m", "static_deflection_m", "stiffness_kN_m"}  # fmt: skip
     expected = {"rigid": demand not in springs, "elastic": True, "pads": True}
     if demand in ("eta", "ductility", "yield_kN"):
         expected = {"rigid": False, "elastic": False, "pads": True}
@@ -410,6 +410,18 @@ def test_an_event_is_unknown_where_the_run_ended_before(demand, status, flight_s
     found = judged(runs([0.1], status=status, flight_s=flight_s), demand=demand, at_most=0)
     assert (found.low, found.high) == (low, high)
     assert found.verdict == {(0, 0): "pass", (0, 1): "not decided", (1, 1): "fail"}[low, high]
+
+
+@pytest.mark.parametrize("demand", FLIGHTS)
+@pytest.mark.parametrize(
+    ("status", "flight_s", "low", "high"),
+    [("ok", math.nan, 0, 0), ("flight", 1.2, 0, INF), ("failed", math.nan, 0, INF)],
+)
+def test_a_run_that_went_through_without_a_flight_has_none_and_one_that_was_cut_short_any(
+    demand, status, flight_s, low, high
+):
+    found = judged(runs([0.1], status=status, flight_s=flight_s), demand=demand, at_most=0.5)
+    assert (found.low, found.high) == (low, high)
 
 
 def test_events_are_counted_by_record():

@@ -230,7 +230,7 @@ def test_the_limit_is_where_a_small_push_begins_to_grow(n, eta):
 def test_flight_says_that_the_ground_fell_away():
     t = np.arange(101) * 0.01
     drop = Motion("drop", 0.01, np.zeros(101), np.where(t >= 0.2, -20.0, 0.0))
-    for base in (RigidBase(), ElasticBase(50.0)):
+    for base in (RigidBase(flight="stop"), ElasticBase(50.0, flight="stop")):
         outcome = run_to_tolerance(FIG5, base, drop, 1e-4)
         assert outcome.status == "flight"
         assert "the ground fell away under the pier" in outcome.reason
@@ -244,7 +244,7 @@ def test_a_rigid_base_is_followed_to_the_moment_at_which_the_ground_falls_away()
         t = np.arange(round(1.0 / dt) + 1) * dt
         vertical = -2.0 * 9.81 * np.clip((t - 0.4) / 0.1, 0.0, 1.0)
         motion = Motion("drop", dt, np.full(len(t), -0.5 * 9.81), vertical)
-        outcome = run_fixed(FIG5, RigidBase(), motion, 8)
+        outcome = run_fixed(FIG5, RigidBase(flight="stop"), motion, 8)
         assert (outcome.status, outcome.t_flight) == ("flight", pytest.approx(0.45, abs=1e-12))
         assert outcome.t_end == outcome.t_max == outcome.t_flight
         peaks.append(outcome.theta_max)
@@ -256,7 +256,7 @@ def test_flight_says_that_the_undamped_oscillator_made_it_of_a_small_vertical_mo
     omega_v = 20.0
     t = np.arange(801) * 0.005
     shake = Motion("resonance", 0.005, np.zeros(801), 0.2 * 9.81 * np.sin(omega_v * t))
-    outcome = run_to_tolerance(FIG5, ElasticBase(omega_v), shake, 1e-4)
+    outcome = run_to_tolerance(FIG5, ElasticBase(omega_v, flight="stop"), shake, 1e-4)
     assert outcome.status == "flight"
     assert (
         "vertical oscillator of 3.18 Hz, damping 0 %, reached 1 g, 5.0 times the ground's 0.20 g until then; see zeta"
@@ -277,7 +277,7 @@ def test_flight_says_that_an_impact_threw_the_pier_up():
 
 def test_a_flight_that_comes_when_nothing_can_exceed_the_peak_any_more_changes_no_outcome():
     """Undamped vibration goes on after the record and may lift the pier at last: the longer the run, the likelier."""
-    base, motion = ElasticBase(50.0, 0.2), half_sine(0.3, 1.0, 0.5)
+    base, motion = ElasticBase(50.0, 0.2, flight="stop"), half_sine(0.3, 1.0, 0.5)
     short, long = (run_to_tolerance(FIG5, base, motion, 1e-4, quiet_s) for quiet_s in (0.5, 60.0))
     assert (short.status, long.status) == ("ok", "ok")
     assert long.theta_max == short.theta_max

@@ -175,9 +175,9 @@ def test_both_pivots_landing_at_one_instant_keep_the_pier_upright(kinematics, ep
     assert rows[run.rows - 1].v == pytest.approx(expected.v, abs=1e-6)
 
 
-def test_flight_ends_the_run_unless_it_is_guided():
-    stopped = run_fixed(FIG5, YieldingBase(20.0, 0.3, eta=3.0), bounce(), 8, 0.0, wait=False)
-    guided = run_fixed(FIG5, YieldingBase(20.0, 0.3, eta=3.0, flight="guided"), bounce(), 8, 0.0, wait=False)
+def test_flight_ends_the_run_where_a_base_says_stop():
+    stopped = run_fixed(FIG5, YieldingBase(20.0, 0.3, eta=3.0, flight="stop"), bounce(), 8, 0.0, wait=False)
+    guided = run_fixed(FIG5, YieldingBase(20.0, 0.3, eta=3.0), bounce(), 8, 0.0, wait=False)
     assert (stopped.status, guided.status) == ("flight", "ok")
     assert stopped.t_flight == guided.t_flight == stopped.t_end
     assert guided.t_end == pytest.approx(2.0)

@@ -27,7 +27,7 @@ def crowd():
         dt, npts = (0.005, 0.01, 0.02)[i % 3], 80 + 37 * (i % 11)
         vertical = broadband(rng, dt, npts, 14.0 if i % 8 == 1 else 3.0) if i % 2 else None
         motion = Motion(f"noise {i}", dt, broadband(rng, dt, npts, rng.uniform(1.0, 9.0)), vertical)
-        base = RigidBase((0.5, 0.9, None, 0.0)[i % 4])
+        base = RigidBase((0.5, 0.9, None, 0.0)[i % 4], flight="stop" if i % 16 == 1 else "guided")
         scenes.append(Run(Pier(rng.uniform(0.08, 0.4), rng.uniform(0.4, 3.0)), base, motion))
     return scenes, [(1, 2, 3, 8)[i % 4] for i in range(3 * LANES)]
 

@@ -96,10 +96,13 @@ def test_the_answer_says_how_far_the_worst_pier_rotates_and_how_high_its_heel_ri
 
 
 def test_the_answer_counts_runs_that_flew_apart_from_those_that_ended_so(tmp_path):
-    guided = {("ERZ-NS", "1"): {"flight_s": 3.0}, ("RRS228", "3"): {"flight_s": 4.0}}
+    guided = {("ERZ-NS", "1"): {"flight_s": 3.0, "flight_height_m": 0.0021}, ("RRS228", "3"): {"flight_s": 4.0}}
     write_results(tmp_path, changes=guided | {("CPM000", "2"): {"status": "flight", "flight_s": 2.5}})
     told = Page(section_of(tmp_path, answer)).text
-    assert "In 2 runs both pivots left the ground, and the pier was guided down." in told
+    assert (
+        "In 2 runs both pivots left the ground, and the pier was guided down; the lower one rose by 2.1 mm at most."
+        in told
+    )
     assert "In one run both pivots leave the ground, and the analysis stops there: CPM000, case 2" in told
 
 

@@ -180,13 +180,22 @@ def test_flight_is_the_last_event_of_a_run_that_it_ends(tmp_path):
     """The ground drops away at 2 g: the springs relax, and both pivots leave them."""
     down = np.full(200, -2 * 9.81)
     motion = rb.Motion("drop", 0.01, np.zeros(200), vertical=down)
-    for base in (rb.ElasticBase(beta=50), rb.YieldingBase(beta=50, eta=2.5)):
+    for base in (rb.ElasticBase(beta=50, flight="stop"), rb.YieldingBase(beta=50, flight="stop", eta=2.5)):
         response = simulate(PIER, base, motion, quiet_s=0.0)
         last = response.events.iloc[-1]
         assert (response.status, last["kind"]) == ("flight", "flight")
         assert last["after"] == len(response.t) - 1
         assert last["t"] == response.t[-1]
         assert same(stored(tmp_path, response)[0], response)
+
+
+def test_rigid_ground_of_an_earlier_version_which_did_not_say_so_ended_runs_at_their_flight(tmp_path):
+    responses = stored(tmp_path, at_rest())
+    assert responses[0].base == rb.RigidBase()
+    with h5py.File(tmp_path / "histories.h5", "r+") as file:
+        for name in ("flight", "flight_limit_mm"):
+            del file["runs/000000/base"].attrs[name]
+    assert responses[0].base == rb.RigidBase(flight="stop")
 
 
 # The file, as others read it

@@ -182,14 +182,14 @@ def test_a_study_without_masses_tells_of_none(tmp_path):
     assert main(["run", str(study.path), "--out", str(tmp_path / "out")]) == 0
     (case,) = json.loads((tmp_path / "out" / "run.json").read_text())["cases"]
     assert list(case["pier"]) == ["alpha", "p", "mu", "gravity", "size_m", "half_width_m", "height_m"]
-    assert case["parameters"] == {"restitution": None}
+    assert case["parameters"] == {"restitution": None, "flight": "guided", "flight_limit_mm": 5.0}
 
 
 def test_the_restitution_of_a_frame_is_in_the_results(tmp_path):
     study = study_of(tmp_path, FRAME)
     assert main(["run", str(study.path), "--out", str(tmp_path / "out")]) == 0
     (case,) = json.loads((tmp_path / "out" / "run.json").read_text())["cases"]
-    assert case["parameters"] == {"restitution": study.cases[0].pier.restitution}
+    assert case["parameters"]["restitution"] == study.cases[0].pier.restitution
     assert case["pier"]["deck_over_columns"] == 3.0
 
 

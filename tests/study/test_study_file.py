@@ -97,7 +97,8 @@ eta = 2.5
 epsilon = 0.05
 spring = "epp"
 kinematics = "finite"
-flight = "guided"
+flight = "stop"
+flight_limit_mm = 20
 [[reference]]
 record = "*"
 case = "yielding"
@@ -115,7 +116,7 @@ source = "S"
     assert study.numerics == Numerics(tolerance=None, substeps=4, quiet_s=0.0)
     (only,) = study.cases
     assert only.pier == Pier(0.13, 0.38, 2.0, 9.8)
-    assert only.base == YieldingBase(40.0, 0.05, "finite", "guided", eta=2.5, spring="epp")
+    assert only.base == YieldingBase(40.0, 0.05, "finite", "stop", flight_limit_mm=20.0, eta=2.5, spring="epp")
     assert study.references == (Reference("*", "yielding", {}, 0.1, "S"),)
 
 
@@ -578,8 +579,9 @@ def test_every_study_that_comes_along_is_sound_and_explains_itself(path):
 def test_fig5_has_the_paper_s_parameters():
     study = load_study(CONFIGS / "fig5.toml")
     rigid, *yielding = study.cases
-    assert rigid.base == RigidBase()
-    assert [each.base for each in yielding] == [YieldingBase(50.0, 0.1, eta=eta) for eta in (5.0, 3.0, 2.5, 2.2)]
+    assert rigid.base == RigidBase(flight="stop")
+    bases = [YieldingBase(50.0, 0.1, flight="stop", eta=eta) for eta in (5.0, 3.0, 2.5, 2.2)]
+    assert [each.base for each in yielding] == bases
     assert {each.pier for each in study.cases} == {Pier(0.2, 1.0)}
     (pulse,) = study.motions.pulses
     assert (pulse.shape, pulse.amplitude_g, pulse.period_s) == ("sine", 1.0, 0.5)
@@ -589,8 +591,9 @@ def test_fig5_has_the_paper_s_parameters():
 def test_fig6_has_the_paper_s_parameters():
     study = load_study(CONFIGS / "fig6.toml")
     rigid, *yielding = study.cases
-    assert rigid.base == RigidBase()
-    assert [each.base for each in yielding] == [YieldingBase(beta, 0.1, eta=2.5) for beta in (20.0, 40.0, 60.0, 100.0)]
+    assert rigid.base == RigidBase(flight="stop")
+    bases = [YieldingBase(beta, 0.1, flight="stop", eta=2.5) for beta in (20.0, 40.0, 60.0, 100.0)]
+    assert [each.base for each in yielding] == bases
     assert {each.pier for each in study.cases} == {Pier(0.15, 1.0)}
     (pulse,) = study.motions.pulses
     assert (pulse.shape, pulse.amplitude_g, pulse.period_s) == ("cosine", 1.0, 1.0)
@@ -600,11 +603,11 @@ def test_fig6_has_the_paper_s_parameters():
 def test_fig7_has_the_paper_s_parameters_and_all_three_of_its_p():
     study = load_study(CONFIGS / "fig7.toml")
     foundations = {
-        "rigid": RigidBase(),
-        "1": YieldingBase(40.0, 0.05, eta=2.5),
-        "2": YieldingBase(40.0, 0.05, eta=3.5),
-        "3": YieldingBase(80.0, 0.05, eta=2.5),
-        "4": YieldingBase(80.0, 0.05, eta=3.5),
+        "rigid": RigidBase(flight="stop"),
+        "1": YieldingBase(40.0, 0.05, flight="stop", eta=2.5),
+        "2": YieldingBase(40.0, 0.05, flight="stop", eta=3.5),
+        "3": YieldingBase(80.0, 0.05, flight="stop", eta=2.5),
+        "4": YieldingBase(80.0, 0.05, flight="stop", eta=3.5),
     }
     assert [(each.name, each.base, each.pier) for each in study.cases] == [
         (name, base, Pier(0.13, p)) for p in (0.38, 0.36, 0.35) for name, base in foundations.items()

@@ -52,7 +52,7 @@ SPRINGS = [
         with_vertical(SHORT_SINE, 25.0),
         id="guided-flight-epp",
     ),
-    pytest.param(FIG5, ElasticBase(50, 0.1), with_vertical(SHORT_SINE, 25.0), id="stopped-by-flight"),
+    pytest.param(FIG5, ElasticBase(50, 0.1, flight="stop"), with_vertical(SHORT_SINE, 25.0), id="stopped-by-flight"),
     pytest.param(
         Pier(alpha=0.6, p=1.5, mu=1.2),
         YieldingBase(25, 0.2, "finite", eta=3.0),

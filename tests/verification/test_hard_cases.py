@@ -245,11 +245,11 @@ def test_a_flight_of_five_seconds_is_ballistic_and_ends_on_both_pivots_at_one_in
 
 def test_where_flight_ends_the_run_it_says_when():
     """Without guidance at the separation, cos ω_v t = ½; on a rigid base when v̈_g reaches −g, since it cannot pull."""
-    stopped = run_to_tolerance(FIG5, ElasticBase(50.0), dropping_ground(2.0, 1.5, 6.0), 1e-4)
+    stopped = run_to_tolerance(FIG5, ElasticBase(50.0, flight="stop"), dropping_ground(2.0, 1.5, 6.0), 1e-4)
     assert stopped.status == "flight"
     assert stopped.t_flight == pytest.approx(math.pi / 150.0, abs=1e-7)
     slope = Motion("slope", 0.1, np.zeros(31), -GRAVITY * np.linspace(0.0, 1.5, 31))
-    rigid = run_to_tolerance(FIG5, RigidBase(), slope, 1e-4)
+    rigid = run_to_tolerance(FIG5, RigidBase(flight="stop"), slope, 1e-4)
     assert (rigid.status, rigid.theta_max) == ("flight", 0.0)
     assert rigid.t_end == rigid.t_flight == pytest.approx(2.0, abs=1e-12)
 
@@ -263,7 +263,7 @@ def test_flight_by_a_hair_is_told_from_none(excess, status, steps):
     ω_v h = 0.02 errs by 1e-9 of the amplitude.
     """
     motion = steady(0.0, -(0.5 + excess) * GRAVITY, 4.0 * math.pi / 50.0 / steps, 121)
-    assert run_fixed(FIG5, ElasticBase(50.0), motion, 4, 0.0, wait=False).status == status
+    assert run_fixed(FIG5, ElasticBase(50.0, flight="stop"), motion, 4, 0.0, wait=False).status == status
     guided = run_fixed(FIG5, ElasticBase(50.0, 0.5, flight="guided"), motion, 4, 0.0, wait=False)
     assert (guided.status, guided.theta_max < 1e-25) == ("ok", True)
 

@@ -14,7 +14,8 @@ MOST = 6
 
 PIER = ("alpha", "p", "mu", "gravity", "size_m", "mass_t", "top_m")
 BASE = (
-    "beta", "stiffness_kN_m", "eta", "yield_kN", "epsilon", "spring", "n", "kinematics", "flight", "restitution",
+    "beta", "stiffness_kN_m", "eta", "yield_kN", "epsilon", "spring", "n", "kinematics", "flight", "flight_limit_mm",
+    "restitution",
 )  # fmt: skip
 NUMERICS = {"tolerance": "tolerance", "substeps": "steps per sample", "quiet_s": "time at rest after the record [s]"}
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from rockbatch.pier import ElasticBase, RigidBase, YieldingBase, yield_deflection
+from rockbatch.pier import yield_deflection
 from rockbatch.report.drawing.axes import Axes, Scale, spanning
 from rockbatch.report.drawing.svg import Array, curve, lowered, text, thin
 from rockbatch.report.markup import Markup, join
@@ -64,7 +64,7 @@ def reduced(response: Response, left: float, width: float) -> History:
         return np.unique(np.rint(at / grain)) * grain
 
     return History(
-        isinstance(response.base, RigidBase),
+        not response.base.on_springs,
         response.status,
         [thin(t, y, PIXELS) for y in ordinates],
         times("impact"),
@@ -79,7 +79,7 @@ def reduced(response: Response, left: float, width: float) -> History:
 
 def _foot(response: Response, left: float, width: float) -> Markup:
     """Loops of yielding springs, of the first two dampers and tendons, or of both beside each other."""
-    yields = isinstance(response.base, YieldingBase)
+    yields = response.base.yields
     if response.restraints is None:
         return _loops(response, left, width) if yields else Markup("")
     if not yields:
@@ -91,8 +91,6 @@ def _foot(response: Response, left: float, width: float) -> Markup:
 
 def _band(response: Response) -> float:
     base, pier = response.base, response.pier
-    if not isinstance(base, ElasticBase):
-        return 0.0
     sine = (1 + pier.mu) / (pier.mu * base.beta**2 * math.sin(pier.alpha))
     return math.asin(min(sine, 1)) / pier.alpha
 

@@ -80,7 +80,7 @@ def _flown(finished: Finished) -> Facts:
     """Runs in which both pivots leave the ground: ended there, or guided down."""
     runs = finished.runs
     flown = runs[runs["status"] == "flight"]
-    guided = int((runs["flight_s"].notna() & (runs["status"] == "ok")).sum())
+    guided = runs[runs["flight_s"].notna() & (runs["status"] == "ok")]
     told: list[object] = []
     if len(flown):
         first = flown.sort_values("flight_s", kind="stable").iloc[0]
@@ -88,8 +88,12 @@ def _flown(finished: Finished) -> Facts:
             alarm(f"In {counted(len(flown), 'run')} both pivots leave the ground, and the analysis stops there")
         )
         told.append(f"{': ' if len(flown) == 1 else ', soonest in '}{finished.where(first)}. ")
-    if guided:
-        told.append(f"In {counted(guided, 'run')} both pivots left the ground, and the pier was guided down.")
+    if len(guided):
+        height = float(guided["flight_height_m"].max())
+        rose = "" if math.isnan(height) else f"; the lower one rose by {1000 * height:.3g} mm at most"
+        told.append(
+            f"In {counted(len(guided), 'run')} both pivots left the ground, and the pier was guided down{rose}."
+        )
     return [("left the ground", join(*told) if told else join("none"))]
 
 
