@@ -19,7 +19,7 @@ def draw() -> Figure:
         for marker, (case, rows) in zip("osD", of_size.groupby("case", sort=False), strict=True):
             stood = rows["theta_max_over_alpha"].where(rows["status"] == "ok")
             axes.plot(stood, rows["record"], marker, label=case, mfc="none")
-        flew = of_size[of_size["status"] == "flight"]
+        flew = of_size[of_size["flight_s"].notna()]
         axes.plot(np.zeros(len(flew)), flew["record"], "^", color="0.3", label="flight on some foundation")
         axes.set(xlabel="θ_max/α", title=f"p = {p:g} rad/s")
         axes.grid(alpha=0.3)

@@ -161,6 +161,17 @@ def test_lists_run_pier_by_pier_case_by_case_and_the_last_key_fastest(tmp_path):
             assert each.base.beta == each.columns["beta"]
 
 
+@pytest.mark.parametrize("base", ["rigid", "elastic", "yielding"])
+def test_every_base_takes_what_flight_does_and_how_high_it_may_be(tmp_path, base):
+    own = {"rigid": [], "elastic": ["beta = 40"], "yielding": ["beta = 40", "eta = 3"]}[base]
+    study = study_of(tmp_path, PIER, PULSE, case(*own, 'flight = "stop"', "flight_limit_mm = [5, 20]", base=base))
+    assert [each.columns for each in study.cases] == [{"flight_limit_mm": 5.0}, {"flight_limit_mm": 20.0}]
+    assert [(each.base.flight, each.base.flight_limit_mm) for each in study.cases] == [("stop", 5.0), ("stop", 20.0)]
+    assert study_of(tmp_path, PIER, PULSE, case(*own, base=base)).cases[0].base.flies
+    told = problem_of(tmp_path, PIER, PULSE, case(*own, "flight_limit_mm = 0", base=base))
+    assert "flight_limit_mm = 0: expected a number above 0" in told
+
+
 def test_a_key_that_varies_somewhere_shows_its_default_elsewhere_but_only_where_it_applies(tmp_path):
     study = study_of(
         tmp_path,
