@@ -5,10 +5,18 @@
 Bare is one step of Runge–Kutta 4 and the rates at its end, of one run in full contact, in a compiled loop that does
 nothing else: no events, no extremes, one run at a time. Whole runs are those of a study: tests for events, their
 location, landings and separations, peaks and plastic work. On the rigid base bare is a step of a block about one corner.
+Runs with devices have two viscous dampers and a tendon, and go one by one: their step is held against that of one plain run.
+
+The first line says how wide the compiled vector instructions are. To run as a processor of 256 bits does:
+
+    NUMBA_CPU_NAME=znver3 NUMBA_CPU_FEATURES= python benchmarks/bare_step.py
+
+Features left empty are those of the named processor; otherwise Numba keeps those of the one it runs on.
 """
 
 import argparse
 import math
+import re
 from collections.abc import Mapping
 from dataclasses import replace
 
@@ -17,63 +25,72 @@ import numpy as np
 from interleaved import Times, interleaved, machine, ratio
 from tower import QUIET_S, TOWER, foundations, record
 
-from rockbatch.core.equations import rates, step
-from rockbatch.core.lanes import table
-from rockbatch.core.one_pass import one_pass
-from rockbatch.core.recording import LINE, ROW
-from rockbatch.core.records import LANES
-from rockbatch.core.rigid import runs as rigid
-from rockbatch.core.rigid.equations import acceleration, rocking_step
-from rockbatch.core.two_springs import (
-    begin,
-    rock_on_springs,
-    rock_side_by_side,
-    run_line,
-    spring_run,
-    static_state,
-)
-from rockbatch.core.types import BOUC_WEN, RIGHT, SURVIVED, Contact, Ground, Rocking, Traits
+from rockbatch.core.block.model import Rocker, Tilt
+from rockbatch.core.clock import read_ground, start_clock
+from rockbatch.core.devices.pull import devices_of
+from rockbatch.core.history import MOMENT
+from rockbatch.core.rk4 import rk4
+from rockbatch.core.run import Settings, march
+from rockbatch.core.springs.lanes import static_state
+from rockbatch.core.springs.model import BOUC_WEN, Contact
+from rockbatch.core.system import at_rest, begin, model, one_pass, rates
+from rockbatch.core.table import LANES, table
+from rockbatch.core.table import record as record_of
+from rockbatch.core.types import RIGHT, SURVIVED, Ground
 from rockbatch.motions import Motion
-from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase
+from rockbatch.pier import Base, Damper, ElasticBase, Pier, RigidBase, Tendon, YieldingBase
 from rockbatch.simulation import block, ground_of, springs
+from rockbatch.simulation.models import elements, kind_of, line_of
+from rockbatch.simulation.models import model as model_of
 
 BARE_STEPS = 200_000
+SETTINGS = Settings(1, True, False, False)
 BARE_ROCKING = 1e-6  # [s]: of a bare step on the rigid base, so that the block stays on its corner
 PASSES = 10_000
-PLAIN = Traits(None, None, None)  # n = 5, first-order kinematics, undamped
+DEVICES = (Damper("viscous", nu=1.0), Tendon(psi=0.1, lam=0.5))
 
 
 @numba.njit(error_model="numpy")
 def bare(m, y, contact, ground, h, steps):
-    """The rotation after ``steps`` steps of ``h`` [s] and nothing else."""
+    """Return the rotation after ``steps`` steps of ``h`` [s] and nothing else: on springs, or about a corner of a rigid base."""
     k = rates(m, y, contact, ground[0, 0], ground[0, 2])
     for i in range(steps):
         row = ground[i % len(ground)]
         under = Ground(row[0], row[1], row[2], row[3])
-        y = step(m, y, k, contact, under, h)
+        y = rk4(m, None, y, k, contact, under, h)
         k = rates(m, y, contact, row[0] + h * row[1], row[2] + h * row[3])
     return y.theta
 
 
-@numba.njit(error_model="numpy")
-def bare_rocking(m, y, ground, h, steps):
-    """The rotation after ``steps`` steps of ``h`` [s] about one corner of a rigid base and nothing else."""
-    k = acceleration(m, y.theta, y.side, ground[0, 0], ground[0, 2])
-    for i in range(steps):
-        row = ground[i % len(ground)]
-        y = rocking_step(m, y, k, Ground(row[0], row[1], row[2], row[3]), h)
-        k = acceleration(m, y.theta, y.side, row[0] + h * row[1], row[2] + h * row[3])
-    return y.theta
-
-
 @numba.njit(error_model="numpy", _nrt=False)
-def passes(lanes_table, lines, ground, count):
-    """All lanes from the start, ``count`` passes of tiny steps: no sample is reached, and nothing happens."""
+def passes(traits, lanes_table, runs, ground, count):
+    """Take all lanes from the start through ``count`` passes of tiny steps: no sample is reached, and nothing happens."""
     lanes = lanes_table[0]
-    for i in range(len(lines)):
-        begin(lanes, i, i, lines, ground, PLAIN, True)
-    for _ in range(count):
-        one_pass(lanes, len(lines), PLAIN)
+    for i in range(len(runs)):
+        begin(traits, lanes, i, runs[i])
+        m = model(traits, lanes, i)
+        start_clock(lanes, i, i, runs[i], at_rest(m), math.atan2(m.half_width, m.height), 0.0)
+        read_ground(lanes, i, ground)
+        lanes.news.watched[i] = 0.0
+    for k in range(count):
+        one_pass(traits, lanes, len(runs), k, SETTINGS)
+
+
+@numba.njit(error_model="numpy", fastmath=False)
+def _widened(a, b):
+    for i in range(len(a)):
+        a[i] += b[i] * b[i]
+
+
+def vector_width() -> str:
+    """Return how many bits Numba's vector instructions have here, read off a loop that it compiles."""
+    _widened(np.zeros(64), np.ones(64))
+    (code,) = _widened.inspect_asm().values()
+    bits = next(
+        (bits for name, bits in (("zmm", 512), ("ymm", 256), ("xmm|v[0-9]+\\.2d", 128)) if re.search(name, code)), 64
+    )
+    named = numba.config.CPU_NAME  # type: ignore[attr-defined]
+    return f"vector instructions of {bits} bits" + (f", as on {named}" if named else "")
 
 
 def of_law(law: str, base: YieldingBase) -> ElasticBase:
@@ -89,23 +106,26 @@ def with_vertical(motion: Motion) -> Motion:
     return Motion(motion.name, motion.dt, motion.horizontal, vertical)
 
 
+def timing(motion: Motion, substeps: int) -> tuple[float, ...]:
+    """Return what a line of the core has from the sampling interval to the number of samples."""
+    dt = float(motion.dt)
+    return dt, substeps, math.ceil(QUIET_S / dt - 1e-9), 0, motion.npts
+
+
 def measure(law: str, motion: Motion, substeps: int, runs: int, repeats: int) -> str:
     """Line of the table."""
     ground, dt = ground_of(motion), float(motion.dt)
-    quiet = math.ceil(QUIET_S / dt - 1e-9)
     models = [springs(TOWER, of_law(law, base)) for base in foundations(runs)]
-    lines = [run_line(m, dt, substeps, quiet, 0, len(ground)) for m in models]
+    kind, lines = kind_of(models[0]), [line_of(m, timing(motion, substeps), (0, 0), 0.0) for m in models]
     stop = np.zeros(1, np.uint8)
-    ends = [spring_run(line) for line in rock_side_by_side(PLAIN, lines, ground, stop)]
-    if any(end.status != SURVIVED for end in ends):
+    ends = march(kind, lines, ground, stop, substeps)
+    if (ends.status != SURVIVED).any():
         raise SystemExit(f"{law}: a run ended early; its steps are no measure")
-    steps = sum(round(end.t_end / dt * substeps) for end in ends)
+    steps = int(np.rint(ends.t_end / dt * substeps).sum())
 
     # An event is two rows of a history, a sample one
-    vertical = () if motion.vertical is None else motion.vertical
-    counted = rock_on_springs(
-        models[runs // 2], motion.horizontal, vertical, dt, substeps, quiet, np.recarray(1, ROW), True
-    )
+    history = np.zeros((1, len(MOMENT) + len(kind.columns)))
+    counted = march(kind, [lines[runs // 2]], ground, stop, substeps, history=history)[0]
     samples = round(counted.t_end / dt) + 1
     events = (counted.rows - samples) // 2
 
@@ -113,11 +133,7 @@ def measure(law: str, motion: Motion, substeps: int, runs: int, repeats: int) ->
     branch = 1.0 if m.law == BOUC_WEN else 0.0
     alone = (m, static_state(m, m.gravity), Contact(1.0, 1.0, branch, branch, 0.0), ground, dt / substeps, BARE_STEPS)
     times = interleaved(
-        {
-            "whole": lambda: rock_side_by_side(PLAIN, lines, ground, stop),
-            "bare": lambda: bare(*alone),
-        },
-        repeats,
+        {"whole": lambda: march(kind, lines, ground, stop, substeps), "bare": lambda: bare(*alone)}, repeats
     )
     return row(law, motion, substeps, times, steps, events / (samples - 1) / substeps)
 
@@ -133,52 +149,74 @@ def row(law: str, motion: Motion, substeps: int, times: Mapping[str, Times], ste
 def measure_rigid(motion: Motion, substeps: int, runs: int, repeats: int) -> str:
     """Line of the table for the rigid base: piers of p = 0.38 … 0.5 rad/s."""
     ground, dt = ground_of(motion), float(motion.dt)
-    quiet = math.ceil(QUIET_S / dt - 1e-9)
-    piers = [Pier(TOWER.alpha, TOWER.p + 0.12 * i / runs) for i in range(runs)]
-    models = [block(pier, RigidBase()) for pier in piers]
-    lines = [rigid.run_line(m, 0.0, 0.0, dt, substeps, quiet, 0, len(ground)) for m in models]
+    models = [block(Pier(TOWER.alpha, TOWER.p + 0.12 * i / runs), RigidBase()) for i in range(runs)]
+    kind, lines = kind_of(models[0]), [line_of(m, timing(motion, substeps), (0, 0), 0.0) for m in models]
     stop = np.zeros(1, np.uint8)
-    ends = rigid.rock_side_by_side(lines, ground, stop)
+    ends = march(kind, lines, ground, stop, substeps)
     if (ends.status != SURVIVED).any():
         raise SystemExit("rigid: a run ended early; its steps are no measure")
     steps = int(np.rint(ends.t_end / dt * substeps).sum())
-    alone = (models[0], Rocking(0.1 * TOWER.alpha, 0.0, RIGHT), ground, BARE_ROCKING, BARE_STEPS)
-    times = interleaved(
-        {
-            "whole": lambda: rigid.rock_side_by_side(lines, ground, stop),
-            "bare": lambda: bare_rocking(*alone),
-        },
-        repeats,
+    m = models[0]
+    alone = (
+        Rocker(m.half_width, m.height, m.gravity, m.quickness),
+        Tilt(0.1 * m.alpha, 0.0),
+        RIGHT,
+        ground,
+        BARE_ROCKING,
+        BARE_STEPS,
     )
-    return row("rigid", motion, substeps, times, steps, (ends.impacts + ends.lift_offs).sum() / steps)
+    times = interleaved(
+        {"whole": lambda: march(kind, lines, ground, stop, substeps), "bare": lambda: bare(*alone)}, repeats
+    )
+    return row("rigid", motion, substeps, times, steps, (ends.impacts + ends.uplifts).sum() / steps)
 
 
 def pass_alone(motion: Motion, repeats: int) -> str:
-    """What the lanes' pass takes without any event or sample, a lane, over the bare step."""
+    """Return what the lanes' pass takes without any event or sample, a lane, over the bare step."""
     ground, dt = ground_of(motion), float(motion.dt)
     models = [springs(TOWER, of_law("bouc-wen", base)) for base in foundations(LANES)]
-    lines = np.array([run_line(m, dt, 100 * PASSES, 0, 0, len(ground)) for m in models], LINE)
-    alone = (
-        models[0],
-        static_state(models[0], models[0].gravity),
-        Contact(1.0, 1.0, 1.0, 1.0, 0.0),
-        ground,
-        dt,
-        BARE_STEPS,
-    )
+    kind = kind_of(models[0])
+    lines = [line_of(m, (dt, 100 * PASSES, 0, 0, len(ground)), (0, 0), 0.0) for m in models]
+    runs = np.array(lines, record_of(kind.line)).view(np.recarray)
+    static, contact = static_state(models[0], models[0].gravity), Contact(1.0, 1.0, 1.0, 1.0, 0.0)
     tasks = {
-        "pass": lambda: passes(table()[0], lines, ground, PASSES),
-        "bare": lambda: bare(*alone),
+        "pass": lambda: passes(kind.traits, table(kind.lane)[0], runs, ground, PASSES),
+        "bare": lambda: bare(models[0], static, contact, ground, dt, BARE_STEPS),
     }
     times = interleaved(tasks, repeats)
     best, median = ratio(times["pass"], times["bare"], BARE_STEPS / (PASSES * LANES)).split(" | ")
     return f"The lanes' pass alone, bouc-wen, a lane / bare step: best {best}, median {median}"
 
 
+def with_devices(name: str, base: Base, motion: Motion, substeps: int, repeats: int) -> str:
+    """Return the line of one run with two viscous dampers and a tendon, over one without, step by step."""
+    ground, stop = ground_of(motion), np.zeros(1, np.uint8)
+    tied = replace(base, restraints=DEVICES)
+    laws = elements(TOWER, tied)
+    m = model_of(TOWER, base)
+    kind, load = kind_of(m), sum(each.prestress for each in laws)
+    plain, held = (line_of(m, timing(motion, substeps), (0, 0), each) for each in (0.0, load))
+
+    def run_plain() -> np.recarray:
+        return march(kind, [plain], ground, stop, substeps)
+
+    def run_held() -> np.recarray:
+        return march(kind, [held], ground, stop, substeps, devices=devices_of(laws))
+
+    ends = [run()[0] for run in (run_held, run_plain)]
+    if any(end.status != SURVIVED for end in ends):
+        raise SystemExit(f"{name}: a run ended early; its steps are no measure")
+    times = interleaved({"held": run_held, "plain": run_plain}, repeats)
+    over = ratio(times["held"], times["plain"], ends[1].t_end / ends[0].t_end)
+    return f"| {name} | {substeps} | {over} | {1e3 * min(times['held']):.3g} ms |"
+
+
 def main(repeats: int = 7, runs: int = 64, seconds: float | None = None) -> list[str]:
-    """Lines of the table; of the first ``seconds`` of the record only, if given."""
+    """Return the lines of the tables; of the first ``seconds`` of the record only, if given."""
     motion = record(seconds)
+    alone = {"rigid": RigidBase(), "bouc-wen": of_law("bouc-wen", foundations(1)[0])}
     return [
+        vector_width(),
         f"{runs} runs side by side under {motion.name}, {motion.npts} samples",
         "",
         "| law | vertical | steps per sample | step of whole runs / bare step: best | median | events per step | bare |",
@@ -196,6 +234,14 @@ def main(repeats: int = 7, runs: int = 64, seconds: float | None = None) -> list
         ),
         "",
         pass_alone(motion, repeats),
+        "",
+        "| base | steps per sample | run with devices / plain run, one each: best | median | with devices |",
+        "| --- | --- | --- | --- | --- |",
+        *(
+            with_devices(name, base, motion, substeps, repeats)
+            for name, base in alone.items()
+            for substeps in (1, 2, 4)
+        ),
     ]
 
 

@@ -19,13 +19,12 @@ from interleaved import interleaved, machine, ratio
 from numba import carray, cfunc, types
 from numba.core import cgutils
 from numba.extending import intrinsic
-from peers import FAILED, MOST_EVENTS, UPRIGHT, Rocking, _events, _rates
+from peers import FAILED, MOST_EVENTS, UPRIGHT, Rocking, _events, _rates, signals
 from tower import QUIET_S, TOWER, foundations, record
 
-from rockbatch.core.events import signals
-from rockbatch.core.transitions import Supports, handle
-from rockbatch.core.two_springs import static_state
-from rockbatch.core.types import Contact, State
+from rockbatch.core.springs.lanes import static_state
+from rockbatch.core.springs.model import Contact, State, Supports
+from rockbatch.core.springs.transitions import handle
 from rockbatch.pier import YieldingBase
 from rockbatch.simulation import Run, Stop, run_all_fixed, run_all_to_tolerance, run_fixed
 
@@ -180,7 +179,7 @@ def compiled(rocking: Rocking, tolerance: float, method: int) -> Callable[[], tu
             horizontal = ground[i, 0] + (t - i * dt) * ground[i, 1]
             vertical = ground[i, 2] + (t - i * dt) * ground[i, 3]
             contact = _on_its_branch(contact, now, cells[0])
-            values, _slopes = signals(m, now, now, contact, supports.left, supports.right, rest, horizontal, vertical)
+            values = signals(m, now, contact, supports, rest, horizontal, vertical)
             which = NONE
             for j in range(4 if contact.held != 0.0 else 2):
                 if values[j] < -rest and which == NONE:

@@ -13,11 +13,11 @@ from typing import Any
 import numba
 import numpy as np
 
-from rockbatch.core.equations import rates
-from rockbatch.core.events import at_rest, signals
-from rockbatch.core.transitions import Supports, handle
-from rockbatch.core.two_springs import static_state
-from rockbatch.core.types import BOUC_WEN, ELASTIC, Contact, Springs, State
+from rockbatch.core.springs.lanes import static_state
+from rockbatch.core.springs.model import BOUC_WEN, ELASTIC, Contact, Springs, State, Supports
+from rockbatch.core.springs.transitions import handle
+from rockbatch.core.system import at_rest, event_functions, rates
+from rockbatch.core.types import Ground
 from rockbatch.motions import Motion
 from rockbatch.pier import ElasticBase, Pier
 from rockbatch.simulation import ground_of, springs
@@ -33,7 +33,7 @@ Stretch = Callable[[float, State, Contact, Supports], tuple[float, State, int | 
 
 
 def watched(law: float, contact: Contact, supports: Supports, rest: float) -> tuple[float, ...]:
-    """The four signals of ``events.signals``, linear in z and in a pivot's position or velocity, for either pivot.
+    """The four event functions of springs, linear in z and in a pivot's position or velocity, for either pivot.
 
     Contact: on its spring −z, else the gap to the support: (of z, of position, constant). Law: the velocity up or down,
     or what is left until yield: (of z, of velocity, constant).
@@ -52,6 +52,13 @@ def watched(law: float, contact: Contact, supports: Supports, rest: float) -> tu
 
     left = pivot(contact.left, contact.left_yields, supports.left)
     return left + pivot(contact.right, contact.right_yields, supports.right)
+
+
+@numba.njit(error_model="numpy")
+def signals(m, y, contact, supports, rest, horizontal, vertical):
+    """Return the four event functions of a pier on springs; their slopes are not asked for."""
+    values, _ = event_functions(m, None, y, y, contact, supports, rest, Ground(horizontal, 0.0, vertical, 0.0))
+    return values
 
 
 class Rocking:
@@ -86,7 +93,7 @@ class Rocking:
         contact, supports = Contact(1.0, 1.0, branch, branch, 0.0), Supports(math.nan, math.nan)
         for _ in range(MOST_EVENTS):
             # An impact at one pivot may turn the other's velocity: that is an event before the next step
-            values, _ = signals(m, y, y, contact, *supports, rest, *self._ground_at(t))
+            values = signals(m, y, contact, supports, rest, *self._ground_at(t))
             which = next((i for i, value in enumerate(values) if value < -rest), None)
             if which is None:
                 t, y, which, reached = stretch(t, y, contact, supports)
@@ -136,7 +143,7 @@ def _rates(t, y, y_rates, cells, ground):
 def _events(t, y, values, cells, ground):
     m, state, contact, (horizontal, vertical) = _unpacked(t, y, cells, ground)
     rest = cells[18]
-    found, _ = signals(m, state, state, contact, cells[16], cells[17], rest, horizontal, vertical)
+    found = signals(m, state, contact, Supports(cells[16], cells[17]), rest, horizontal, vertical)
     for i in range(4):
         values[i] = found[i] if abs(found[i]) > rest else rest  # rounding does not cross
     values[4] = 0.5 * math.pi - abs(state.theta)
@@ -240,7 +247,7 @@ class Taylor:
         )
 
     def _model(self, hy: Any, m: Springs) -> tuple[list[Any], list[Any]]:
-        """Right-hand side (``equations.rates``) and signals (:func:`watched`) as expressions."""
+        """Right-hand side (``springs.equations``) and signals (:func:`watched`) as expressions."""
         v, theta, v_rate, omega, z_left, z_right = state = hy.make_vars("v", "theta", "v_rate", "omega", "zl", "zr")
         on_left, on_right, yields_left, yields_right = (hy.par[self.CONTACT + i] for i in range(4))
         x = hy.time - hy.par[self.GROUND + 4]

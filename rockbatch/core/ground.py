@@ -1,6 +1,9 @@
-"""The ground under a run: one row for each sample, as both integrators read it."""
+"""The ground under a run: a row for each sample, linear between them."""
 
 import numpy as np
+
+from rockbatch.core.kernel import inlined
+from rockbatch.core.types import Ground
 
 
 def ground_rows(horizontal, vertical, dt):
@@ -19,3 +22,12 @@ def ground_rows(horizontal, vertical, dt):
             with np.errstate(over="ignore"):  # a run through such a spike ends as not finite, and says so
                 rows[:, column + 1] = np.diff(samples, append=0.0) / dt
     return rows
+
+
+@inlined
+def later(ground, x):
+    """Return the ground ``x`` [s] later, as long as it is linear in time."""
+    return Ground(
+        ground.horizontal + x * ground.horizontal_slope, ground.horizontal_slope,
+        ground.vertical + x * ground.vertical_slope, ground.vertical_slope,
+    )  # fmt: skip

@@ -7,8 +7,19 @@ from rockbatch.core.kernel import inlined, kernel
 TRIALS = 60  # a handful is enough
 CLOSE = 1e-12  # of a step: how well the time of an event is known
 NEAR = 1e-4  # of a step: a trial that came so near to its event shows its time as well, by the cubic through it
-SHOWN = 1e-6  # of what a signal does in a step: a lower hump before a dip is no more than the cubic's own error
+SHOWN = 1e-12  # of what an event function does in a step: a lower hump before a dip is no more than rounding
 BISECT_AFTER = 8  # trials, from which every other one halves the interval
+
+NO_ACCELERATION = 1e-12
+"""Of g: what the balance of a pier at rest leaves as rounding; it must not decide which way a pivot goes."""
+
+
+@inlined
+def surely(velocity, acceleration, rest):
+    """Return a velocity whose sign is certain: where it is nothing but rounding, the acceleration decides where it goes."""
+    if abs(velocity) > rest:
+        return velocity
+    return rest if acceleration > 0.0 else (-rest if acceleration < 0.0 else 0.0)
 
 
 @kernel
@@ -25,7 +36,7 @@ def hermite(f0, d0, f1, d1, h, x):
 def turning_point(f0, d0, f1, d1, h):
     """Where, within the step, the Hermite cubic turns, when the slopes d0 and d1 differ in sign.
 
-    The slope is a quadratic with values d0 and d1 at the ends: exactly one root lies between.
+    The slope is a quadratic with values d0 and d1 at the ends: exactly one root lies between; one at most beside d0 = 0.
     """
     mean = (f1 - f0) / h
     curve = 3.0 * (d0 + d1 - 2.0 * mean)  # slope(s) = d0 + 2 c s + curve s²
@@ -33,7 +44,7 @@ def turning_point(f0, d0, f1, d1, h):
     discriminant = max(c * c - curve * d0, 0.0)
     q = -(c + math.copysign(math.sqrt(discriminant), c))
     s = d0 / q if q != 0.0 else 0.5
-    if not 0.0 <= s <= 1.0:
+    if d0 == 0.0 or not 0.0 <= s <= 1.0:  # a start without slope is not meant
         s = q / curve if curve != 0.0 else 0.5
     return h * min(max(s, 0.0), 1.0)
 
@@ -59,10 +70,12 @@ def _root(f0, d0, f1, d1, h, start, end):
             high = s
         slope = c1 + s * (2.0 * c2 + s * 3.0 * c3)
         s_next = s - f / slope
-        if not low <= s_next <= high:
+        newton = low <= s_next <= high
+        if not newton:
             s_next = 0.5 * (low + high)
         change = abs(s_next - s)
-        if change <= 0.01 * CLOSE or change * change * abs(c2 + 3.0 * c3 * s) <= 0.01 * CLOSE * abs(slope):
+        close = newton and change * change * abs(c2 + 3.0 * c3 * s) <= 0.01 * CLOSE * abs(slope)
+        if change <= 0.01 * CLOSE or close:
             return h * s_next
         s = s_next
     return h * s
@@ -112,9 +125,8 @@ def falls(f0, d0, f1, d1, h):
         return -1.0
     highest, lowest = _extremes(f0, d0, f1, d1, h)
     hump = hermite(f0, d0, f1, d1, h, highest) if highest > 0.0 else 0.0
-    if hump > 0.0:
-        shown = hump > SHOWN * (abs(f1) + h * abs(d1))
-        if shown and lowest > highest and hermite(f0, d0, f1, d1, h, lowest) <= 0.0:
+    if hump > SHOWN * (abs(f1) + h * abs(d1)):
+        if lowest > highest and hermite(f0, d0, f1, d1, h, lowest) <= 0.0:
             return _root(f0, d0, f1, d1, h, highest, lowest)
         if f1 <= 0.0:
             return _root(f0, d0, f1, d1, h, highest, h)
@@ -125,7 +137,7 @@ def falls(f0, d0, f1, d1, h):
 def largest_within(f0, d0, f1, d1, h, best):
     """Greatest |f| so far, and where in this step it is attained; −1 if ``best`` stands."""
     x_best = -1.0
-    if d0 * d1 < 0.0:
+    if d0 * d1 < 0.0 or (d0 == 0.0 and d1 != 0.0):
         x = turning_point(f0, d0, f1, d1, h)
         f = abs(hermite(f0, d0, f1, d1, h, x))
         if f > best:

@@ -1,172 +1,126 @@
-"""The search for events in a lane's piece of a step: whether it stands, and at what shorter one to look next.
+"""The first event in a sub-step: the earliest zero crossing of all event functions, by cubics and ever closer trials."""
 
-The pieces themselves, trials included, are taken by the lanes' pass.
-"""
+from typing import NamedTuple
 
-from rockbatch.core.equations import geometry
-from rockbatch.core.events import quiet, signals
-from rockbatch.core.kernel import kernel
-from rockbatch.core.lanes import (
-    ACCEPT,
-    SEARCH,
-    contact_of,
-    ground_of,
-    put_signals,
-    put_state,
-    signals_in,
-    state,
-)
-from rockbatch.core.laws import kept_sign
+import numpy as np
+
+from rockbatch.core.devices.events import PER_DEVICE, device_functions
+from rockbatch.core.devices.pull import stage_states
+from rockbatch.core.ground import later
+from rockbatch.core.kernel import inlined, inner
+from rockbatch.core.rk4 import END, START, rates_with, rk4
 from rockbatch.core.roots import BISECT_AFTER, CLOSE, NEAR, TRIALS, falls
-from rockbatch.core.transitions import LAW_LEFT, LAW_RIGHT
+from rockbatch.core.system import event_functions
+from rockbatch.core.types import NO_EVENT, OF_PIER
 
 
-@kernel
-def _signals_at(lanes, i, m, y, k, contact, x):
-    """Signals and slopes in state ``y`` with rates ``k``, ``x`` [s] after the sample."""
-    ground = ground_of(lanes, i, x)
-    return signals(
-        m, y, k, contact, lanes.supports.left[i], lanes.supports.right[i], lanes.motion.rest[i],
-        ground.horizontal, ground.vertical,
-    )  # fmt: skip
+class Marks(NamedTuple):
+    """Values and slopes of all event functions: at the latest moment before the event, at the earliest after it, at the trial."""
+
+    early: np.ndarray
+    early_slopes: np.ndarray
+    late: np.ndarray
+    late_slopes: np.ndarray
+    now: np.ndarray
+    now_slopes: np.ndarray
 
 
-@kernel
-def ready(lanes, i, m, contact, x, length, locate):
-    """The next piece: from ``now``, with ``rates``, at ``x`` [s] after the sample, over ``length`` [s]."""
-    f, d = _signals_at(lanes, i, m, state(lanes.now, i), state(lanes.rates, i), contact, x)
-    laws = (f.left_law > 0.0 or d.left_law > 0.0) and (f.right_law > 0.0 or d.right_law > 0.0)  # a turn leaves zero
-    free = f.left > 0.0 and f.right > 0.0 and laws and contact.held == 0.0 and locate
-    lanes.watched[i] = 0.0 if free else 1.0
-    next_piece(lanes, i, x, length)
+def marks_for(elements):
+    """Return Marks for the event functions of a pier with so many ``elements``."""
+    return Marks(*(np.zeros(OF_PIER + PER_DEVICE * elements) for _ in Marks._fields))
 
 
-@kernel
-def next_piece(lanes, i, x, length):
-    lanes.clock.start[i] = x
-    lanes.clock.length[i] = length
-    lanes.verdict[i] = SEARCH
-    lanes.trial[i] = 0
+@inner
+def _copy(numbers, to):
+    for i in range(len(numbers)):
+        to[i] = numbers[i]
 
 
-@kernel
-def again(lanes, i, length):
-    """The piece that was taken once more, over ``length`` [s]: without corrections, and looked at whatever comes."""
-    put_state(lanes.now, i, state(lanes.before, i))
-    put_state(lanes.rates, i, state(lanes.before_rates, i))
-    lanes.clock.length[i] = length
-    lanes.watched[i] = 1.0
-
-
-@kernel
+@inner
 def _earliest(early, early_slopes, late, late_slopes, h):
-    """Which signal falls through zero first within ``h`` [s], and when; −1 for none."""
-    which, first = -1, h
-    for j in range(4):
-        at = falls(early[j], early_slopes[j], late[j], late_slopes[j], h)
+    """Return which event function falls through zero first within ``h`` [s], NO_EVENT for none; and when."""
+    which, first = NO_EVENT, h
+    for i in range(len(early)):
+        at = falls(early[i], early_slopes[i], late[i], late_slopes[i], h)
         if at >= 0.0 and (which < 0 or at < first):
-            which, first = j, at
+            which, first = i, at
     return which, first
 
 
-@kernel
-def judge(lanes, i, m, y, end, k_end, contact, locate):
-    """Verdict on the piece from ``y`` to ``end``, where the rates are ``k_end``.
+@inlined
+def _evaluate(m, under, devices, y, k, contact, supports, rest, ground, h, place, values, slopes):
+    """Write all event functions of state ``y``, with rates ``k``, at one ``place`` of a step, into ``values`` and ``slopes``."""
+    f, d = event_functions(under, devices, y, k, contact, supports, rest, ground)
+    values[0], values[1], values[2], values[3] = f.left, f.right, f.left_law, f.right_law
+    slopes[0], slopes[1], slopes[2], slopes[3] = d.left, d.right, d.left_law, d.right_law
+    if devices is not None:
+        x = devices.x if place == START else devices.end
+        device_functions(m, devices, y, x, contact, k, devices.rates[place], rest, ground, h, values, slopes)
+
+
+@inner
+def _try(m, devices, marks, y, k, contact, supports, rest, ground, x, h):
+    """Take a step over ``x`` [s] and evaluate the event functions at its end: the state there, and its rates."""
+    end = rk4(m, devices, y, k, contact, ground, x)
+    there = later(ground, x)
+    k_end, under = rates_with(devices, m, end, contact, there.horizontal, there.vertical, END)
+    _evaluate(m, under, devices, end, k_end, contact, supports, rest, there, h, END, marks.now, marks.now_slopes)
+    return end, k_end
+
+
+@inner
+def _narrow(marks, a, t, b):
+    """Narrow the interval [a, b] of the first event by a trial at ``t``: a, b, which function falls first, and when after a."""
+    which, at = _earliest(marks.early, marks.early_slopes, marks.now, marks.now_slopes, t - a)
+    if which != NO_EVENT:
+        _copy(marks.now, marks.late)
+        _copy(marks.now_slopes, marks.late_slopes)
+        return a, t, which, at
+    _copy(marks.now, marks.early)
+    _copy(marks.now_slopes, marks.early_slopes)
+    which, at = _earliest(marks.early, marks.early_slopes, marks.late, marks.late_slopes, b - t)
+    return t, b, which, at
+
+
+@inlined
+def start_rates(m, devices, y, contact, ground):
+    """Return the rates at the start of a sub-step, and the pier under its devices, whose states' rates are written."""
+    stage_states(devices, START, 0.0)
+    return rates_with(devices, m, y, contact, ground.horizontal, ground.vertical, START)
+
+
+@inner
+def first_event(m, under, devices, marks, y, k, contact, supports, rest, ground, h, locate):
+    """Take a step of ``h`` [s] from ``y``, whose rates are ``k``, or to the first event before its end.
+
+    ``under`` is the pier under its devices at the start.
+
+    Without ``locate`` events take place at the end of the step: first order, for comparison only.
 
     Returns
     -------
-    verdict : int
-        ACCEPT, the number of the event at its end, or SEARCH: a shorter one is to be taken.
-    length : float
-        Of that one [s].
+    The time that it took [s]; the number of the event function that fell, NO_EVENT for none; the state then, and its rates.
     """
-    x, length = lanes.clock.start[i], lanes.clock.length[i]
-    f1, d1 = _signals_at(lanes, i, m, end, k_end, contact, x + length)
-    trial = lanes.trial[i]
-    if trial == 0:
-        f0, d0 = _signals_at(lanes, i, m, y, state(lanes.before_rates, i), contact, x)
-        if (
-            quiet(f0.left, d0.left, f1.left, d1.left, length)
-            and quiet(f0.right, d0.right, f1.right, d1.right, length)
-            and quiet(f0.left_law, d0.left_law, f1.left_law, d1.left_law, length)
-            and quiet(f0.right_law, d0.right_law, f1.right_law, d1.right_law, length)
-        ):
-            return ACCEPT, length
-        if not locate:
-            for j in range(4):
-                if f1[j] <= 0.0:
-                    return j, length
-            return ACCEPT, length
-        a, b = 0.0, length
-        which, at = _earliest(f0, d0, f1, d1, length)
-        f_a, d_a, f_b, d_b = f0, d0, f1, d1
-    else:
-        a, b = lanes.early.at[i], lanes.late.at[i]
-        f_a, d_a = signals_in(lanes.early, i)
-        f_b, d_b = signals_in(lanes.late, i)
-        which, at = _earliest(f_a, d_a, f1, d1, length - a)
-        if which >= 0:
-            b, f_b, d_b = length, f1, d1
-        else:
-            a, f_a, d_a = length, f1, d1
-            which, at = _earliest(f_a, d_a, f_b, d_b, b - a)
-    if which < 0:  # nothing falls after all
-        if length == b:
-            return ACCEPT, length
-        lanes.verdict[i] = ACCEPT
-        return SEARCH, b
-    at += a
-    step = lanes.clock.step[i]
-    if abs(at - length) <= CLOSE * step:
-        return which, length
-    if abs(at - length) <= NEAR * step or at - a <= CLOSE * step or trial > TRIALS:
-        lanes.verdict[i] = which
-    elif trial > BISECT_AFTER and trial % 2 == 0:
-        at = 0.5 * (a + b)
-    lanes.trial[i] = trial + 1
-    put_signals(lanes.early, i, a, f_a, d_a)
-    put_signals(lanes.late, i, b, f_b, d_b)
-    return SEARCH, at
-
-
-@kernel
-def _turns(sign, rest, f0, d0, f1, d1, h):
-    """When, in [0, h], a velocity turns whose sign is to be kept, by its values and accelerations; h if never."""
-    if sign == 0.0 or sign * f1 > rest:
-        return h
-    return falls(sign * f0, sign * d0, sign * f1, sign * d1, h) if sign * f0 > rest else -1.0
-
-
-@kernel
-def seek_turn(lanes, i, m):
-    """Shorten the piece to the moment when the velocity of a spring turns; False where the cubic does not know.
-
-    Both branches of the spring have the same rate then: an error δt of the time makes one of order δt² in z, and the
-    guess of the cubic, wrong by some 1e-4 of a step that resolves the springs, is as good as the time itself.
-    """
-    contact, rest, h = contact_of(lanes, i), lanes.motion.rest[i], lanes.clock.length[i]
-    y, k1 = state(lanes.before, i), state(lanes.before_rates, i)
-    end, k_end = state(lanes.now, i), state(lanes.rates, i)
-    at, at_end = geometry(m, y.theta), geometry(m, end.theta)
-    left = _turns(
-        kept_sign(m.law, contact.left, contact.left_yields), rest,
-        y.v_rate + at.arm_left * y.omega,
-        k1.v_rate + at.arm_left * k1.omega + at.bend_left * y.omega * y.omega,
-        end.v_rate + at_end.arm_left * end.omega,
-        k_end.v_rate + at_end.arm_left * k_end.omega + at_end.bend_left * end.omega * end.omega,
-        h,
-    )  # fmt: skip
-    right = _turns(
-        kept_sign(m.law, contact.right, contact.right_yields), rest,
-        y.v_rate + at.arm_right * y.omega,
-        k1.v_rate + at.arm_right * k1.omega + at.bend_right * y.omega * y.omega,
-        end.v_rate + at_end.arm_right * end.omega,
-        k_end.v_rate + at_end.arm_right * k_end.omega + at_end.bend_right * end.omega * end.omega,
-        h,
-    )  # fmt: skip
-    first = min(left, right)
-    if not 0.0 < first < h:
-        return False
-    again(lanes, i, first)
-    lanes.verdict[i] = LAW_LEFT if left <= right else LAW_RIGHT
-    return True
+    _evaluate(m, under, devices, y, k, contact, supports, rest, ground, h, START, marks.early, marks.early_slopes)
+    end, k_end = _try(m, devices, marks, y, k, contact, supports, rest, ground, h, h)
+    if not locate:
+        for i in range(len(marks.now)):
+            if marks.now[i] <= 0.0:
+                return h, i, end, k_end
+        return h, NO_EVENT, end, k_end
+    _copy(marks.now, marks.late)
+    _copy(marks.now_slopes, marks.late_slopes)
+    which, at = _earliest(marks.early, marks.early_slopes, marks.late, marks.late_slopes, h)
+    a, b, t, last = 0.0, h, h, False
+    for trial in range(TRIALS + 1):
+        if which == NO_EVENT and t == b:
+            return t, which, end, k_end
+        if last or (which != NO_EVENT and abs(a + at - t) <= CLOSE * h):
+            return t, which, end, k_end
+        halve = trial > BISECT_AFTER and trial % 2 == 0
+        last = which == NO_EVENT or abs(a + at - t) <= NEAR * h or at <= CLOSE * h or trial == TRIALS - 1
+        t = b if which == NO_EVENT else (0.5 * (a + b) if halve and not last else a + at)
+        end, k_end = _try(m, devices, marks, y, k, contact, supports, rest, ground, t, h)
+        if not last:
+            a, b, which, at = _narrow(marks, a, t, b)
+    return t, which, end, k_end

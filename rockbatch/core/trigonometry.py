@@ -50,6 +50,17 @@ def _polynomial(c, z):
     return c[0] + z * (c[1] + z * (c[2] + z * (c[3] + z * (c[4] + z * c[5]))))
 
 
+FLAT = 0.75
+"""Angle [rad], next to π/4, up to which :func:`flat_sine_and_cosine` is what :func:`sine_and_cosine` is, to the bit."""
+
+
+@inlined
+def flat_sine_and_cosine(angle):
+    """Return sine and cosine of an ``angle`` [rad] up to FLAT, at half the cost of :func:`sine_and_cosine`."""
+    z = angle * angle
+    return angle - angle * z * _polynomial(_SINE, z), 1.0 - (0.5 * z - z * z * _polynomial(_COSINE, z))
+
+
 @inlined
 def sine_and_cosine(angle):
     """Sine and cosine of ``angle`` [rad], wrong by 1.02 units in the last place at most where |angle| ≤ 3π/4.

@@ -1,17 +1,12 @@
-"""The tuples that the scalar functions pass to each other, and the codes they return."""
+"""Codes that all systems share, the ground under them, the pull of devices on them, and what a run comes to."""
 
 from typing import NamedTuple
 
 # Codes that lanes and histories hold, and those that select a pivot, are floats like all else there: an integer would
 # have kernels compiled once more for each type.
 
-# Spring laws
-ELASTIC = 0.0
-BOUC_WEN = 1.0
-EPP = 2.0
-
-# How a run ended
-RUNNING = -1  # not yet
+# Status of a run
+RUNNING = -1  # not yet over
 SURVIVED = 0
 OVERTURNED = 1
 FLIGHT = 2
@@ -37,97 +32,27 @@ HELD_LEFT = 8.0
 HELD_RIGHT = 9.0
 LIFT_OFF = 10.0
 REST = 11.0
+TAKE_OFF = 12.0
 
 # Pivots
 LEFT = -1.0
 RIGHT = 1.0
-NEITHER = 0.0  # of the corners about which a block could rock: it rests on both
+NEITHER = 0.0
+
+# Event functions, by their place among those of a pier; those of devices follow
+CONTACT_LEFT = 0
+CONTACT_RIGHT = 1
+LAW_LEFT = 2
+LAW_RIGHT = 3
+OF_PIER = 4
+NO_EVENT = -1
 
 
 class Pull(NamedTuple):
-    """What dampers and tendons do to a pier at one moment, per unit mass."""
+    """Force and moment of dampers and tendons on a pier at one moment, per unit mass."""
 
-    force: float  # Σ F/M, downwards [m/s²]
-    moment: float  # Σ F a/M about the centre of mass, to the left [m²/s²]
-
-
-class Springs(NamedTuple):
-    """A pier on two springs, per unit mass (THEORY.md, Symbols).
-
-    The last four are told apart by their types, hence when kernels are compiled: a call of ``pow``, ``sin`` or ``cos``
-    in an unused branch would cost the common model, n = 5, first-order and undamped, its vector instructions.
-    """
-
-    half_width: float  # b [m]
-    height: float  # h [m]
-    inertia: float  # I0/M [m²]
-    gravity: float  # g [m/s²]
-    yield_deflection: float  # δ_y [m]; the static deflection for elastic springs
-    stiffness: float  # K/F_y = 1/δ_y [1/m]
-    yield_force: float  # F_y/M [m/s²]
-    epsilon: float  # restitution of the landing pivot; 1 for damped supports, whose dashpots lose the energy
-    damping: float  # C/M = ζ ω_v of each support's dashpot [1/s]
-    law: float  # ELASTIC, BOUC_WEN or EPP
-    guided: float  # 1: flight goes on, 0: it ends the run
-    exponent: float | int | None  # n of Bouc–Wen; None for the paper's 5, int for other whole numbers up to 10
-    finite: bool | None  # True: finite kinematics; None: first-order
-    damped: bool | None = None  # True: a dashpot beside each spring; None: none
-    pull: Pull | None = None  # of dampers and tendons; None: there are none
-
-
-class Traits(NamedTuple):
-    """What kernels are compiled for: the types of these fields of Springs; their values do not matter."""
-
-    exponent: float | int | None
-    finite: bool | None
-    damped: bool | None
-
-
-class Block(NamedTuple):
-    """A pier on a rigid base."""
-
-    alpha: float  # α [rad]
-    p: float  # [rad/s]
-    gravity: float  # g [m/s²]
-    restitution: float  # e, factor on the angular velocity at an impact
-
-
-class State(NamedTuple):
-    """What the equations integrate; also its rates."""
-
-    v: float  # vertical displacement of the centre of mass from unstressed springs, up [m]
-    theta: float  # rotation, positive to the right [rad]
-    v_rate: float  # [m/s]
-    omega: float  # [rad/s]
-    z_left: float  # F_L/F_y, −1..0
-    z_right: float
-
-
-class Rocking(NamedTuple):
-    """A block on a rigid base."""
-
-    theta: float  # rotation, positive to the right [rad]
-    omega: float  # [rad/s]
-    side: float  # corner about which it rocks: LEFT or RIGHT, or NEITHER
-
-
-class Contact(NamedTuple):
-    """What is constant between events: factors of 0 or 1 in one right-hand side."""
-
-    left: float  # the pivot is on its spring
-    right: float
-    left_yields: float  # the spring is on its inelastic branch
-    right_yields: float
-    held: float  # pivot that is pressed down while free and lifted while in contact: −1 left, 1 right, 0 none
-
-
-class Signals(NamedTuple):
-    """Four numbers, positive until something happens to a pivot (see ``events``): contacts first, then spring laws."""
-
-    left: float
-    right: float
-    left_law: float
-    right_law: float
+    force: float  # Σ F ∂e/∂v /M, downwards [m/s²]
+    moment: float  # Σ F ∂e/∂θ /M, to the left [m²/s²]
 
 
 class Ground(NamedTuple):
@@ -139,33 +64,30 @@ class Ground(NamedTuple):
     vertical_slope: float
 
 
-class Geometry(NamedTuple):
-    """The pivots at a rotation θ. Index i is left or right; v_i is a pivot's vertical displacement."""
+class Signals(NamedTuple):
+    """Event functions of a pier, or their slopes: positive until something happens at a pivot."""
 
-    lift_left: float  # v_i − v [m]
-    lift_right: float
-    arm_left: float  # ∂v_i/∂θ [m]
-    arm_right: float
-    bend_left: float  # ∂²v_i/∂θ² [m]
-    bend_right: float
-    moment_left: float  # arm of the spring force about the centre of mass [m]
-    moment_right: float
-    lever: float  # H in full contact [m]
-    lever_slope: float  # dH/dθ [m]
-    swing: float  # what H gains when only the right pivot is in contact, and loses when only the left is [m]
-    swing_slope: float
+    left: float
+    right: float
+    left_law: float
+    right_law: float
 
 
-class SpringRun(NamedTuple):
-    """What a run on springs comes to; SI units, per unit mass."""
+class Result(NamedTuple):
+    """What a run comes to; SI units, per unit mass. NaN or 0 where a system does not have it."""
 
     status: int
     t_end: float
     theta_max: float
     t_max: float
     impacts: int
-    separations: int
+    uplifts: int  # separations of pivots, or lift-offs from rest
     t_flight: float  # first time of flight; NaN without one
+    flights: int
+    flight_duration: float  # of all flights [s]
+    flight_height: float  # greatest, of the lower pivot above its support [m]
+    t_impact: float  # of the last impact; NaN without one
+    t_rest: float  # when the pier last came to rest; NaN while it moves
     base_left: float  # unstressed position of each support when residuals are read
     base_right: float
     deepest_left: float  # lowest position of each support
@@ -175,19 +97,6 @@ class SpringRun(NamedTuple):
     t_read: float  # when residuals are read
     drift_left: float  # by how much each support has moved over the periods that follow, per second; NaN if unknown
     drift_right: float
-    t_impact: float  # the last one; NaN without one
+    v_end: float  # [m]
+    theta_end: float  # [rad]
     rows: int  # rows of history that were written or would have been
-
-
-class RigidRun(NamedTuple):
-    """What a run on a rigid base comes to."""
-
-    status: int
-    t_end: float
-    theta_max: float
-    t_max: float
-    impacts: int
-    lift_offs: int
-    t_flight: float
-    t_rest: float  # when it last came to rest; NaN while it rocks
-    rows: int

@@ -109,6 +109,7 @@ class RigidBase(_Traits):
     flight_limit_mm: float = field(default=FLIGHT_LIMIT_MM, kw_only=True)
 
     name = "rigid"
+    kinematics: ClassVar[Kinematics] = "finite"
     beta: ClassVar[float] = math.inf
     """β of ground that does not give: the limit of springs."""
 

@@ -125,12 +125,6 @@ def wrong_on_springs(pier: Pier, restraints: tuple[Restraint, ...]) -> list[str]
             "tendon: on springs a tendon off the axis needs its like on the other side, or it leans the pier before any "
             "earthquake; write a second one with the opposite at, or leave at out"
         )
-    rubbing = [each for each in restraints if isinstance(each, Damper) and each.kind == "friction"]
-    if sum(len(offsets(pier, each)) for each in rubbing) > 2:
-        wrong.append(
-            "damper: on springs two places of friction at most can be solved, for example one damper at both pivots; join "
-            'their forces, or write kind = "hysteretic" with a small yield_mm, whose limit friction is'
-        )
     return wrong
 
 
@@ -148,7 +142,17 @@ def wrong_restraints(pier: Pier, restraints: tuple[Restraint, ...]) -> list[str]
                 f"{name}: at = {each.at:g}: must be within the base's width either side, {2 * pier.half_width:.4g} m"
             )
         wrong += _wrong_tendon(each) if isinstance(each, Tendon) else _wrong_damper(each)
-    return wrong
+    return wrong + ([] if wrong else _wrong_friction(pier, restraints))
+
+
+def _wrong_friction(pier: Pier, restraints: tuple[Restraint, ...]) -> list[str]:
+    rubbing = [each for each in restraints if isinstance(each, Damper) and each.kind == "friction"]
+    if sum(len(offsets(pier, each)) for each in rubbing) <= 2:
+        return []
+    return [
+        "damper: two places of friction at most can be solved, for example one damper at both pivots; join their forces, or "
+        'write kind = "hysteretic" with a small yield_mm, whose limit friction is'
+    ]
 
 
 def _wrong_damper(damper: Damper) -> list[str]:

@@ -7,15 +7,14 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from rockbatch.core import types
-from rockbatch.core.forces import FORCES, NEVER, Forces, Outline, forces_on_rigid_base, forces_on_springs
-from rockbatch.core.restrained.elements import ELEMENT
-from rockbatch.core.rigid import lane as rigid
+from rockbatch.core.devices.laws import FRICTION
+from rockbatch.core.observe.forces import FORCES, NEVER, Forces, Hold, Outline, forces_on_rigid_base, forces_on_springs
 from rockbatch.motions.motion import Samples
 from rockbatch.pier import Pier, RigidBase, YieldingBase
 from rockbatch.results.outcome import WOULD_SLIDE, Outcome, PeakForces
 from rockbatch.results.response import FORCE_UNITS, IMPACT_UNITS
 from rockbatch.simulation.models import block, elements, ground_of, springs
-from rockbatch.simulation.restraints import apart, without_notes
+from rockbatch.simulation.restraints import apart
 from rockbatch.simulation.runs import Run
 
 if TYPE_CHECKING:
@@ -65,16 +64,21 @@ def _observe(run: Run, rows: np.recarray, found: np.recarray, extremes: Samples,
     pier, base = run.pier, run.base
     has = math.inf if base.friction is None else float(base.friction)
     rest = (ground_of(run.motion), float(run.motion.dt), has, found, extremes, firsts)
-    if isinstance(base, RigidBase):
-        tied = np.array([tuple(each) for each in elements(pier, base)], ELEMENT).view(np.recarray)
-        plain, states = rows, np.zeros((len(rows), 0))
-        if base.restraints:
-            plain, states = without_notes(rows, rigid.ROW), rows.state.copy()
-        halfway = np.zeros(len(tied))
-        forces_on_rigid_base(block(pier, base), _outline(pier), tied, plain, states, halfway, *rest)
-        return
     plain, pulls = apart(base, rows)
-    forces_on_springs(springs(pier, base), float(pier.deck), plain, pulls, *rest)
+    if isinstance(base, RigidBase):
+        forces_on_rigid_base(block(pier, base), _outline(pier), _hold(pier, base), plain, pulls, *rest)
+    else:
+        forces_on_springs(springs(pier, base), float(pier.deck), plain, pulls, *rest)
+
+
+def _hold(pier: Pier, base: RigidBase) -> Hold:
+    """Return what friction dampers can do against a pier at rest that begins to turn about its left or right pivot."""
+    found = []
+    for side in (-1.0, 1.0):
+        rubs = [(of.strength, pier.half_width - side * of.offset) for of in elements(pier, base) if of.kind == FRICTION]
+        found.append(sum(math.copysign(strength, d) for strength, d in rubs if d != 0.0))
+        found.append(sum(strength * abs(d) for strength, d in rubs) / pier.inertia_about_pivot)
+    return Hold(*map(float, found))
 
 
 def _outline(pier: Pier) -> Outline:
@@ -183,7 +187,7 @@ def _first_uplift(run: Run, rows: np.recarray) -> dict[str, float]:
 def _limits(run: Run, whole: Greatest, peaks: PeakForces) -> str:
     """What the forces say that the model does not follow: sliding, and a rigid base that would have to pull."""
     notes = []
-    if whole.pulls is not None and isinstance(run.base, RigidBase):
+    if whole.pulls is not None and not run.base.on_springs:
         notes.append(
             f"at {whole.pulls:.2f} s the ground would have to hold the pier down: it would leave it, which is not followed"
         )

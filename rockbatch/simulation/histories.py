@@ -6,8 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from rockbatch.core import types
-from rockbatch.core.ledger import LEDGER, ledger_on_rigid_base, ledger_on_springs
-from rockbatch.core.records import numbers
+from rockbatch.core.observe.ledger import LEDGER, ledger_on_rigid_base, ledger_on_springs
 from rockbatch.errors import InputError
 from rockbatch.motions.motion import Motion, Samples
 from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, problems
@@ -33,6 +32,7 @@ _EVENTS = {
     types.HELD_RIGHT: ("contact", "right"),
     types.LIFT_OFF: ("lift-off", ""),
     types.REST: ("rest", ""),
+    types.TAKE_OFF: ("take-off", ""),
 }
 
 
@@ -91,7 +91,7 @@ def simulate(
     >>> response = rb.simulate(rb.Pier(alpha=0.2, p=1.0), rb.RigidBase(), motion)
     >>> response
     <response one-sine × 1, rigid: ok>
-      θ_max/α  0.17801 ± 4e-11 at 1.30 s
+      θ_max/α  0.17801 ± 3e-12 at 1.30 s
       history  808 rows until 4.00 s
       events   1 × lift-off, 3 × impact
     >>> response.plot().savefig("one-sine.pdf")
@@ -124,7 +124,7 @@ def simulate(
 
 
 def written(run: Run, outcome: Outcome, quiet_s: float, every_step: bool, wait: bool = True) -> np.recarray:
-    """A run whose outcome is known, written down: a record for each moment, as ``recording.Row`` or ``rigid.lane.Row``.
+    """A run whose outcome is known, written down: a record for each moment (``core.history``).
 
     Raises ``InputError`` where they would be more than :data:`MOST_ROWS`.
     """
@@ -146,15 +146,14 @@ def energies(run: Run, rows: np.recarray) -> Samples:
     """Energy ledger [J/kg] at every row of a run: :data:`rockbatch.results.columns.TERMS`, shape (n, 10)."""
     pier, base = run.pier, run.base
     ground, dt = ground_of(run.motion), float(run.motion.dt)
-    ledger = np.zeros(len(rows), LEDGER).view(np.recarray)
-    if base.restraints and isinstance(base, RigidBase):
-        return restraints.energies(pier, base, rows)
-    if isinstance(base, RigidBase):
-        ledger_on_rigid_base(block(pier, base), rows, ground, dt, ledger)
-        return pier.inertia_about_pivot * numbers(ledger)
+    terms = np.zeros((len(rows), len(TERMS)))
+    balance = terms.view(LEDGER)[:, 0].view(np.recarray)  # the same memory, by names
     plain, pulls = restraints.apart(base, rows)
-    ledger_on_springs(springs(pier, base), plain, pulls, ground, dt, ledger)
-    return restraints.with_elements(pier, base, rows, numbers(ledger)) if base.restraints else numbers(ledger)
+    if isinstance(base, RigidBase):
+        ledger_on_rigid_base(block(pier, base), plain, pulls, ground, dt, balance)
+    else:
+        ledger_on_springs(springs(pier, base), plain, pulls, ground, dt, balance)
+    return restraints.with_devices(pier, base, rows, terms) if base.restraints else terms
 
 
 def with_observed(run: Run, outcome: Outcome, rows: np.recarray, ledger: bool, forces: bool) -> Outcome:
@@ -235,14 +234,17 @@ def _ground(acceleration: Samples, dt: float, t: Samples) -> Samples:
 
 
 def _rigid_state(pier: Pier, base: RigidBase, rows: np.recarray) -> dict[str, Samples]:
-    theta, omega = rows.theta, rows.omega
-    absent = np.full(len(rows), np.nan)
-    climbed = np.cos(pier.alpha - np.abs(theta)) - math.cos(pier.alpha)
-    energy = 0.5 * pier.inertia_about_pivot * omega**2 + pier.gravity * pier.size * climbed
+    """Return the rotation and its rate, and the energy stored since the start: kinetic, potential and of tendons."""
+    theta, v, b, h = rows.theta, rows.v, pier.half_width, pier.height
+    side = np.where(rows.left != rows.right, rows.right - rows.left, rows.bore)
+    lever = h * np.cos(theta) + side * b * np.sin(theta)
+    energy = 0.5 * rows.v_rate**2 + 0.5 * (pier.inertia + lever**2) * rows.omega**2 + pier.gravity * (v - v[0])
     if base.restraints:
         energy = energy + restraints.stored(pier, base, rows)
-    none = dict.fromkeys(("v", "z_left", "z_right", "v_left", "v_right", "force_left", "force_right"), absent)
-    return {"theta": theta, "omega": omega, **none, "energy": energy}
+    none = dict.fromkeys(
+        ("v", "z_left", "z_right", "v_left", "v_right", "force_left", "force_right"), np.full(len(rows), np.nan)
+    )
+    return {"theta": theta, "omega": rows.omega, **none, "energy": energy}
 
 
 def _springs_state(pier: Pier, base: ElasticBase, rows: np.recarray) -> dict[str, Samples]:

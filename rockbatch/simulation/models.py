@@ -3,10 +3,14 @@
 import math
 from functools import lru_cache
 
+from rockbatch.core.block import lanes as block_lanes
+from rockbatch.core.block.model import Block
+from rockbatch.core.devices.laws import FRICTION, HYSTERETIC, TENDON, VISCOUS, Element
 from rockbatch.core.ground import ground_rows
-from rockbatch.core.laws import LARGEST_WHOLE
-from rockbatch.core.restrained.elements import FRICTION, HYSTERETIC, TENDON, VISCOUS, Element
-from rockbatch.core.types import BOUC_WEN, ELASTIC, EPP, Block, Springs
+from rockbatch.core.powers import LARGEST_WHOLE
+from rockbatch.core.springs import lanes as spring_lanes
+from rockbatch.core.springs.model import BOUC_WEN, ELASTIC, EPP, Springs
+from rockbatch.core.system import Kind
 from rockbatch.motions.motion import Motion, Samples
 from rockbatch.pier import (
     Base,
@@ -27,12 +31,19 @@ from rockbatch.pier import (
 FREQUENCY_STEP = 0.2
 """Largest ω h of a first run; the second, with half the step, is then below 0.1, where outcomes were never wrong."""
 
+FIRST_ON_ROCK = 2
+"""Least steps per sample of a first run on a rigid base. With one, that run and the next may take the same sub-steps, since
+both begin anew at every impact, and agree by chance."""
+
 STABLE_STEP = 2.0
 """Largest ω h that is run at all: Runge–Kutta 4 blows up an oscillator beyond 2√2."""
 
 PATIENCE = 40.0
 """Of 1/p: how long after the record a pier is waited for that, by its energy, could still turn further or overturn. By
 then it has left any unstable equilibrium that rounding can hold."""
+
+STEEP = 100.0
+"""Of p: rate at which a viscous damper with an exponent below 1 slows a block on rigid ground that hardly moves."""
 
 READ_AFTER = 5.0
 """Periods 2π/ω_v of the vertical vibration from the end of the record to the moment at which residuals are read."""
@@ -79,10 +90,47 @@ def _exponent(n: float) -> float | int | None:
     return int(n) if n in range(1, LARGEST_WHOLE + 1) else float(n)
 
 
+@lru_cache(maxsize=4096)
 def block(pier: Pier, base: RigidBase) -> Block:
-    """What the core takes for ``pier`` on a rigid base: plain floats."""
+    """Return what the core takes for ``pier`` on a rigid base: plain floats, per unit mass."""
     restitution = pier.restitution if base.restitution is None else base.restitution
-    return Block(float(pier.alpha), float(pier.p), float(pier.gravity), float(restitution))
+    return Block(
+        half_width=float(pier.size * math.sin(pier.alpha)),  # not that of a frame's column
+        height=float(pier.size * math.cos(pier.alpha)),
+        inertia=float(pier.inertia),
+        gravity=float(pier.gravity),
+        alpha=float(pier.alpha),
+        p=float(pier.p),
+        restitution=float(restitution),
+        epsilon=0.0,
+        guided=float(base.flies and pier.deck_over_columns is None),  # the flight of a frame is not that of a block
+        quickness=float(1.0 / pier.inertia_about_pivot),
+    )
+
+
+def model(pier: Pier, base: Base) -> Block | Springs:
+    """Return what the core takes for ``pier`` on ``base``."""
+    return block(pier, base) if isinstance(base, RigidBase) else springs(pier, base)
+
+
+def kind_of(m: Block | Springs) -> Kind:
+    """Return the kind of a pier, whose runs share compiled code; kinds compare equal where they are the same."""
+    if isinstance(m, Block):
+        return block_lanes.kind_of(m)
+    kind = spring_lanes.kind_of(m)
+    if m.exponent is None:
+        return kind
+    alike = 1 if isinstance(m.exponent, int) else 0.5  # numbers that differ: 1 == 1.0
+    return kind._replace(traits=kind.traits._replace(exponent=alike))
+
+
+def line_of(
+    m: Block | Springs, timing: tuple[float, ...], readings: tuple[float, ...], prestress: float
+) -> tuple[float, ...]:
+    """Return a run as the core takes it: the model's numbers, then ``timing`` from ``dt`` to ``patience``."""
+    if isinstance(m, Block):
+        return block_lanes.line_of(m, 0.0, 0.0, *timing)
+    return spring_lanes.line_of(m, *timing, *readings, prestress)
 
 
 def elements(pier: Pier, base: Base) -> list[Element]:
@@ -99,7 +147,7 @@ def elements(pier: Pier, base: Base) -> list[Element]:
                 law = (DAMPERS[each.kind], g * each.f, soft, each.nu * pier.p, each.exponent, 0.0)
             kind, strength, stiffness, coefficient, exponent, pretension = law
             found.append(Element(
-                kind, float(b + offset), float(b - offset), float(strength), float(stiffness), float(coefficient),
+                kind, float(strength), float(stiffness), float(coefficient),
                 float(exponent), float(pretension), float(offset),
                 _linear_below(pier, base, offset, coefficient, exponent),
             ))  # fmt: skip
@@ -107,18 +155,23 @@ def elements(pier: Pier, base: Base) -> list[Element]:
 
 
 def _linear_below(pier: Pier, base: Base, offset: float, coefficient: float, exponent: float) -> float:
-    """Speed [m/s] below which a viscous damper, a < 1, would damp faster than anything else in a pier on springs.
+    """Return the speed [m/s] below which a viscous damper, a < 1, would damp faster than anything else in a pier.
 
-    Its force then ends small vibrations at once, in steps that no method resolves.
+    Its force then ends small motions at once, in steps that no method resolves.
     """
-    if isinstance(base, RigidBase) or exponent >= 1.0 or coefficient == 0.0:
+    if exponent >= 1.0 or coefficient == 0.0:
         return 0.0
-    return float((coefficient * _lever(pier, base, offset) / fastest(pier, base)) ** (1.0 / (1.0 - exponent)))
+    return float((coefficient * _lever(pier, base, offset) / _fastest(pier, base)) ** (1.0 / (1.0 - exponent)))
+
+
+def _fastest(pier: Pier, base: Base) -> float:
+    """Return the greatest rate [1/s] of a pier without devices; on rigid ground that at which a steep damper may slow it."""
+    return fastest(pier, base) if isinstance(base, ElasticBase) else STEEP * pier.p
 
 
 def _lever(pier: Pier, base: Base, offset: float) -> float:
     """Acceleration at the place of an element by a force there that is one over the mass, in full contact or about a corner."""
-    if isinstance(base, RigidBase):
+    if not base.on_springs:
         return (pier.half_width + abs(offset)) ** 2 / pier.inertia_about_pivot
     return 1.0 + offset**2 / (pier.inertia + pier.height**2)
 
@@ -130,13 +183,15 @@ def prestress(pier: Pier, base: Base) -> float:
 
 def fastest_rate(pier: Pier, base: Base) -> float:
     """Greatest rate [1/s] of a model: of the springs, of vibration against elements, of decay by linear dampers."""
-    stiff, slows = 0.0, 0.0
+    stiff, slows, steep = 0.0, 0.0, False
     for each in elements(pier, base):
         lever = _lever(pier, base, each.offset)
         stiff += lever * each.stiffness * (each.strength if each.kind == HYSTERETIC else each.kind == TENDON)
         slows += lever * each.coefficient
-    springs_alone = 0.0 if isinstance(base, RigidBase) else fastest(pier, base)
-    return max(math.hypot(springs_alone, math.sqrt(stiff)), 2.0 * slows if springs_alone else slows)
+        steep = steep or each.linear_below > 0.0
+    if base.on_springs:
+        return max(math.hypot(_fastest(pier, base), math.sqrt(stiff)), 2.0 * slows)
+    return max(math.sqrt(stiff), _fastest(pier, base) if steep else slows)
 
 
 def ground_of(motion: Motion) -> Samples:
@@ -146,8 +201,8 @@ def ground_of(motion: Motion) -> Samples:
 
 
 def first_substeps(pier: Pier, base: Base, dt: float) -> int:
-    """Steps per sample [of ``dt`` s] that the model's highest frequency asks for."""
-    return _substeps_for(FREQUENCY_STEP, pier, base, dt)
+    """Return the steps per sample [of ``dt`` s] that the model's highest frequency asks for, FIRST_ON_ROCK on a rigid base."""
+    return max(_substeps_for(FREQUENCY_STEP, pier, base, dt), 1 if base.on_springs else FIRST_ON_ROCK)
 
 
 def least_substeps(pier: Pier, base: Base, dt: float) -> int:
@@ -164,7 +219,7 @@ def patience(pier: Pier, dt: float) -> int:
     return int(PATIENCE / (pier.p * dt)) + 1
 
 
-def readings(pier: Pier, base: ElasticBase, dt: float) -> tuple[int, int]:
+def readings(pier: Pier, base: Base, dt: float) -> tuple[int, int]:
     """When residuals are read, in samples [of ``dt`` s]: after the record, and for a second time after the first.
 
     The second reading tells how they drift, over whole periods of full-contact rocking, the first of them not shorter

@@ -5,17 +5,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rockbatch.core import types
-from rockbatch.core.ledger import LEDGER
-from rockbatch.core.recording import ROW
-from rockbatch.core.restrained.elements import FRICTION, HYSTERETIC, TENDON, Element
-from rockbatch.core.restrained_springs.runs import RestrainedOnSprings
+from rockbatch.core.devices.laws import FRICTION, HYSTERETIC, TENDON, Element
+from rockbatch.core.observe.ledger import LEDGER
+from rockbatch.core.types import Result
 from rockbatch.motions.motion import Samples
 from rockbatch.pier import Base, Damper, ElasticBase, Pier, RigidBase, offsets
 from rockbatch.simulation.models import elements, prestress, springs
 
 if TYPE_CHECKING:
     import pandas as pd
+
+
+AT_REST = 1e-9
+"""Of R0 α p: velocity that counts as none in a history."""
 
 
 def names(pier: Pier, base: Base) -> list[str]:
@@ -30,32 +32,26 @@ def names(pier: Pier, base: Base) -> list[str]:
     return found
 
 
-def without_notes(rows: np.recarray, kind: np.dtype) -> np.recarray:
-    """Rows of a history as those of a pier without dampers and tendons, of this ``kind``."""
-    plain = np.recarray(len(rows), kind)
-    for name in kind.names or ():
-        plain[name] = rows[name]
-    return plain
-
-
 def apart(base: Base, rows: np.recarray) -> tuple[np.recarray, Samples]:
-    """Rows of a history on springs as those of a plain pier, and force [m/s²] and moment [m²/s²] of all elements at each."""
+    """Return rows of a history as those of a plain pier, and force [m/s²] and moment [m²/s²] of all devices at each."""
     if not base.restraints:
         return rows, np.zeros((len(rows), 2))
-    return without_notes(rows, ROW), rows.pull.copy()
+    names = rows.dtype.names or ()
+    plain = np.recarray(len(rows), np.dtype([(name, "f8") for name in names[: names.index("state")]]))
+    for name in plain.dtype.names or ():
+        plain[name] = rows[name]
+    return plain, rows.pull.copy()
 
 
 def _elongation(of: Element, pier: Pier, base: Base, rows: np.recarray) -> tuple[Samples, Samples]:
-    """Elongation [m] and its rate [m/s]: 2 d sin(|θ|/2) from the corner about which the block has turned, or v − s θ."""
-    theta, tilt = rows.theta, np.abs(rows.theta)
-    if not isinstance(base, RigidBase):
-        s, h, rise = of.offset, pier.height, rows.v - rows.v[0]
-        if base.kinematics == "finite":
-            arm = h * np.sin(theta) - s * np.cos(theta)
-            return rise - s * np.sin(theta) + h * (1.0 - np.cos(theta)), rows.v_rate + arm * rows.omega
+    """Return elongation [m] and its rate [m/s]: u/cos(θ/2), where u is the rise of the place; first-order u itself."""
+    theta, s, h, rise = rows.theta, of.offset, pier.height, rows.v - rows.v[0]
+    if base.kinematics != "finite":
         return rise - s * theta, rows.v_rate - s * rows.omega
-    d = np.where(theta > 0.0, of.from_right, of.from_left)
-    return 2.0 * d * np.sin(0.5 * tilt), d * np.cos(0.5 * tilt) * np.sign(theta) * rows.omega
+    up = rise - s * np.sin(theta) + h * (1.0 - np.cos(theta))
+    speed = rows.v_rate + (h * np.sin(theta) - s * np.cos(theta)) * rows.omega
+    cosine = np.cos(0.5 * theta)
+    return up / cosine, (speed + 0.5 * up * np.tan(0.5 * theta) * rows.omega) / cosine
 
 
 def _force(of: Element, pier: Pier, base: Base, rows: np.recarray, j: int) -> Samples:
@@ -63,7 +59,8 @@ def _force(of: Element, pier: Pier, base: Base, rows: np.recarray, j: int) -> Sa
     elongation, speed = _elongation(of, pier, base, rows)
     state = rows.state[:, j]
     if of.kind == FRICTION:
-        return of.strength * np.sign(speed)
+        moves = np.abs(speed) > AT_REST * pier.size * pier.alpha * pier.p
+        return np.where(moves, of.strength * np.sign(speed), 0.0)
     if of.kind == HYSTERETIC:
         return of.strength * state
     if of.kind == TENDON:
@@ -99,25 +96,8 @@ def stored(pier: Pier, base: Base, rows: np.recarray) -> Samples:
     return found - found[0]
 
 
-def energies(pier: Pier, base: RigidBase, rows: np.recarray) -> Samples:
-    """Energy ledger [J/kg] (THEORY.md, Energy ledger): ``elastic`` and ``plastic`` are of tendons, ``damping`` of dampers."""
-    inertia = pier.inertia_about_pivot
-    laws = elements(pier, base)
-    tendons = [j for j, of in enumerate(laws) if of.kind == TENDON]
-    dampers = [j for j, of in enumerate(laws) if of.kind != TENDON]
-    kinetic = 0.5 * inertia * rows.omega**2
-    potential = inertia * pier.p**2 * (np.cos(pier.alpha - np.abs(rows.theta)) - math.cos(pier.alpha))
-    plastic, damping = rows.lost[:, tendons].sum(axis=1), rows.lost[:, dampers].sum(axis=1)
-    landed = np.isin(rows.kind, (types.IMPACT_LEFT, types.IMPACT_RIGHT, types.REST))
-    drop = np.where(landed, np.append(0.0, kinetic[:-1] - kinetic[1:]), 0.0)
-    impact, zero = np.cumsum(drop), np.zeros(len(rows))
-    parts = [kinetic - kinetic[0], potential - potential[0], stored(pier, base, rows)]
-    remainder = sum(parts, zero) - rows.input + plastic + impact + damping
-    return np.column_stack([*parts, rows.input, plastic, impact, zero, zero, damping, remainder])
-
-
-def with_elements(pier: Pier, base: ElasticBase, rows: np.recarray, terms: Samples) -> Samples:
-    """Energy ledger [J/kg] of a run on springs, whose ``terms`` say nothing of its dampers and tendons, with these."""
+def with_devices(pier: Pier, base: Base, rows: np.recarray, terms: Samples) -> Samples:
+    """Return the energy balance [J/kg] of a run, whose ``terms`` say nothing of its dampers and tendons, with these."""
     table = terms.view(LEDGER)[:, 0].view(np.recarray)  # the same memory, by names
     kinds = np.array([of.kind == TENDON for of in elements(pier, base)])
     table.elastic += stored(pier, base, rows)
@@ -129,24 +109,64 @@ def with_elements(pier: Pier, base: ElasticBase, rows: np.recarray, terms: Sampl
     return terms
 
 
-def rests_at(pier: Pier, base: ElasticBase, found: RestrainedOnSprings, left: float, right: float) -> float:
-    """Rotation [rad] at which the pier comes to rest on supports that have sunk by −``left`` and −``right`` [m].
+def rests_at(pier: Pier, base: ElasticBase, found: Result, level: float, states: Samples, holds: np.ndarray) -> float:
+    """Return the rotation [rad] at which the pier comes to rest on its supports as the run has ``found`` them.
 
-    Static, small, both pivots on their springs; elements give way elastically from where the run has left them, and a friction
+    Static, small, both pivots on their springs; devices give way elastically from where the run has left them, and a friction
     damper that does not move stays where it is.
+
+    Parameters
+    ----------
+    level : float
+        v of the pier at rest at the start [m].
+    states, holds : ndarray, shape (devices,)
+        State of each device at the end, and whether it is a friction damper that does not move then.
     """
-    m, v, theta = springs(pier, base), found.end.v, found.end.theta
+    m, v, theta = springs(pier, base), found.v_end, found.theta_end
     k, b, h = m.yield_force * m.stiffness, m.half_width, m.height
-    unstressed = found.level + 0.5 * (m.gravity + prestress(pier, base)) / k  # at the start
+    unstressed = level + 0.5 * (m.gravity + prestress(pier, base)) / k  # at the start
     stiffness = np.array([[2.0 * k, 0.0], [0.0, 2.0 * k * b * b - m.gravity * h]])
+    left, right = found.base_left, found.base_right
     load = np.array([k * (2.0 * unstressed + left + right) - m.gravity, k * b * (left - right)])
-    for of, state, holds in zip(elements(pier, base), found.states, found.holds, strict=True):
-        now, soft = v - found.level - of.offset * theta, np.array([1.0, -of.offset])
-        force, gives = _at_rest(of, now, state, k if holds else 0.0)
+    for of, state, holding in zip(elements(pier, base), states, holds, strict=True):
+        now, soft = v - level - of.offset * theta, np.array([1.0, -of.offset])
+        force, gives = _at_rest(of, now, state, k if holding else 0.0)
         # F = force + gives (u − now), which pulls down by F and turns by −s F
         stiffness += gives * np.outer(soft, soft)
-        load -= (force - gives * (now + found.level)) * soft
+        load -= (force - gives * (now + level)) * soft
     return float(np.linalg.solve(stiffness, load)[1])
+
+
+def rests_on_rigid_base(pier: Pier, base: RigidBase, found: Result, states: Samples, holds: np.ndarray) -> float:
+    """Return the rotation [rad] at which devices hold a pier that has not come to rest upright, 0 if they do not.
+
+    Friction holds it where it is; other devices give way elastically until weight and devices balance.
+    """
+    theta, b = found.theta_end, pier.half_width
+    laws = elements(pier, base)
+    if any(
+        holding and abs(of.offset - math.copysign(b, theta)) > 1e-9 * b for of, holding in zip(laws, holds, strict=True)
+    ):
+        return theta
+    side = math.copysign(1.0, theta)
+
+    def excess(tilt: float) -> float:
+        """Return the moment [m²/s²] that rights the pier at rest at ``tilt``."""
+        righting = pier.gravity * pier.size * math.sin(pier.alpha - tilt)
+        for of, state in zip(laws, states, strict=True):
+            distance = b - side * of.offset
+            now, then = 2.0 * distance * math.sin(0.5 * tilt), 2.0 * distance * math.sin(0.5 * abs(theta))
+            force, gives = _at_rest(of, then, state, 0.0)
+            righting += (force + gives * (now - then)) * distance * math.cos(0.5 * tilt)
+        return righting
+
+    low, high = 0.0, abs(theta)
+    if excess(low) >= 0.0 or excess(high) < 0.0:
+        return 0.0 if excess(low) >= 0.0 else theta
+    for _ in range(80):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if excess(middle) < 0.0 else (low, middle)
+    return side * 0.5 * (low + high)
 
 
 def _at_rest(of: Element, elongation: float, state: float, support: float) -> tuple[float, float]:

@@ -1,19 +1,18 @@
 """Runs with given steps: piers on bases under motions, side by side, and what each comes to."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Final, Literal
+from typing import Any
 
 import numpy as np
 
-from rockbatch.core import two_springs
-from rockbatch.core.outcome import ON_ITS_SIDE
-from rockbatch.core.recording import NO_HISTORY, ROW
-from rockbatch.core.restrained.elements import TENDON
-from rockbatch.core.restrained.runs import COLUMNS, Restrained, rock_restrained
-from rockbatch.core.restrained_springs.runs import RestrainedOnSprings, rock_restrained_on_springs
-from rockbatch.core.rigid import runs as rigid
+from rockbatch.core.clock import ON_ITS_SIDE
+from rockbatch.core.devices.laws import STICKS, TENDON
+from rockbatch.core.devices.pull import Devices, devices_of
+from rockbatch.core.history import MOMENT
+from rockbatch.core.run import NO_HISTORY, march
+from rockbatch.core.system import Kind
 from rockbatch.core.types import (
     CHATTER,
     FLIGHT,
@@ -25,16 +24,13 @@ from rockbatch.core.types import (
     RUNNING,
     SURVIVED,
     UNDECIDED,
-    RigidRun,
-    SpringRun,
-    Traits,
+    Result,
 )
 from rockbatch.motions.motion import Motion, Samples
 from rockbatch.pier import (
     Base,
+    ElasticBase,
     Pier,
-    RigidBase,
-    YieldingBase,
     tilt_over_residual,
     vertical_frequency,
     yield_deflection,
@@ -42,17 +38,18 @@ from rockbatch.pier import (
 from rockbatch.results.outcome import Outcome
 from rockbatch.simulation.flight import cause_of_flight
 from rockbatch.simulation.models import (
-    block,
     elements,
     first_substeps,
     ground_of,
+    kind_of,
     least_substeps,
+    line_of,
+    model,
     patience,
     prestress,
     readings,
-    springs,
 )
-from rockbatch.simulation.restraints import rests_at
+from rockbatch.simulation.restraints import rests_at, rests_on_rigid_base
 
 MOST_STEPS = 1e8
 """Steps that a run may take to settle, about a quarter of a minute of work."""
@@ -63,7 +60,7 @@ _STATUS = {
     LATE_FLIGHT: ("ok", ""),
     OVERTURNED: ("overturned", ""),
     FLIGHT: ("flight", ""),
-    CHATTER: ("failed", "more than 20,000 contact events within one sample; use more substeps or another epsilon"),
+    CHATTER: ("failed", "more than 20,000 contact events within one sample; use more substeps"),
     NOT_FINITE: ("failed", "the integration blew up; use more substeps, or look for a spike in the record"),
     UNDECIDED: ("failed", "left alone after the record, the pier stays where it may yet overturn"),
     GROWING: (
@@ -73,9 +70,6 @@ _STATUS = {
     ),
 }
 
-RESTRAINED: Final = "restrained"
-"""Of runs on a rigid base with dampers and tendons, which go one by one."""
-
 LEFT_ALONE = tuple(_STATUS[code][1] for code in (UNDECIDED, GROWING))
 """Reasons of runs that failed because nothing decided them for so long, which smaller steps do not change."""
 
@@ -83,6 +77,7 @@ TOLD = 1e-4
 """Of α: a residual rotation that dampers and tendons hold is told in a note beyond it."""
 
 _RESTLESS = "left alone after the record for {seconds:.0f} s, the pier has still the energy for a greater rotation"
+_HIGH = "flew up to {height:.2g} mm, more than flight_limit_mm = {limit:g}"
 _LATE_FLIGHT = "flew at {t:.2f} s, when nothing could exceed the peak any more; the run ends there"
 
 
@@ -99,7 +94,7 @@ class Run:
 class Trial:
     """What a run with given steps came to.
 
-    ``extremes``, shape (:data:`rockbatch.core.outcome.WINDOWS`,), holds the greatest |θ| [rad] at a sample in equal
+    ``extremes``, shape (:data:`rockbatch.core.clock.WINDOWS`,), holds the greatest |θ| [rad] at a sample in equal
     parts of the run, NaN for those that it did not reach: its trajectory in short.
     """
 
@@ -120,19 +115,18 @@ class Stop:
         return bool(self.flag[0])
 
 
-def _quiet_samples(quiet_s: float, dt: float) -> int:
+def quiet_samples(quiet_s: float, dt: float) -> int:
+    """Return the samples of a free-vibration tail."""
     return math.ceil(quiet_s / dt - 1e-9)
 
 
 def _line(run: Run, substeps: int, quiet_s: float, first_row: int, wait: bool) -> tuple[float, ...]:
-    """A run as the core takes it: numbers only. Its motion begins at ``first_row`` of the ground."""
+    """Return a run as the core takes it: numbers only. Its motion begins at ``first_row`` of the ground."""
     pier, base, motion = run.pier, run.base, run.motion
     dt = float(motion.dt)
-    timing = (dt, substeps, _quiet_samples(quiet_s, dt), first_row, motion.npts, patience(pier, dt) if wait else 0)
-    if isinstance(base, RigidBase):
-        return rigid.run_line(block(pier, base), 0.0, 0.0, *timing)
+    timing = (dt, substeps, quiet_samples(quiet_s, dt), first_row, motion.npts, patience(pier, dt) if wait else 0)
     read = readings(pier, base, dt) if wait else (0, 0)
-    return two_springs.run_line(springs(pier, base), *timing, *read, prestress(pier, base))
+    return line_of(model(pier, base), timing, read, prestress(pier, base))
 
 
 def written_run(
@@ -143,94 +137,28 @@ def written_run(
     locate: bool = True,
     every_step: bool = False,
     wait: bool = True,
-) -> tuple[SpringRun | RigidRun, np.recarray]:
-    """One run, and its history of at most ``rows`` rows; with ``every_step`` also between samples."""
-    stop = Stop()
-    if run.base.restraints and isinstance(run.base, RigidBase):
-        found = restrained(run, substeps, quiet_s, stop, wait, rows, every_step)
-        return found.run, rows_of(found)
-    if run.base.restraints:
-        written = np.recarray(rows, ROW)
-        on_springs = restrained_on_springs(run, substeps, quiet_s, stop, wait, written, every_step)
-        assert on_springs.run is not None
-        return on_springs.run, with_notes(written, on_springs)
+) -> tuple[Result, np.recarray]:
+    """Return one run, and its history of at most ``rows`` rows; with ``every_step`` also between samples."""
+    kind, devices = kind_of(model(run.pier, run.base)), devices_of(elements(run.pier, run.base))
+    columns = _row_type(kind, 0 if devices is None else len(devices.elements))
+    written = np.zeros((rows, columns.itemsize // 8))
     lines, ground = [_line(run, substeps, quiet_s, 0, wait)], ground_of(run.motion)
-    if isinstance(run.base, RigidBase):
-        written = np.recarray(rows, rigid.ROW)
-        result = rigid.rock_side_by_side(lines, ground, stop.flag, locate, every_step, written)[0]
-        return rigid.rigid_run(result), written
-    m = springs(run.pier, run.base)
-    written = np.recarray(rows, ROW)
-    result = two_springs.rock_side_by_side(
-        two_springs.traits_of(m), lines, ground, stop.flag, locate, every_step, written
-    )[0]
-    return two_springs.spring_run(result), written
+    result = march(kind, lines, ground, Stop().flag, substeps, locate, every_step, written, devices)[0]
+    return _result(result), written.view(columns)[:, 0].view(np.recarray)
 
 
-def restrained(
-    run: Run, substeps: int, quiet_s: float, stop: Stop, wait: bool, rows: int = 0, every_step: bool = False
-) -> Restrained:
-    """One run on a rigid base with dampers and tendons; its status is RUNNING if it was stopped."""
-    pier, base, motion = run.pier, run.base, run.motion
-    assert isinstance(base, RigidBase)
-    dt = float(motion.dt)
-    vertical = () if motion.vertical is None else motion.vertical
-    return rock_restrained(
-        block(pier, base),
-        elements(pier, base),
-        pier.inertia_about_pivot,
-        (motion.horizontal, vertical, dt),
-        substeps,
-        _quiet_samples(quiet_s, dt),
-        stop.flag,
-        patience(pier, dt) if wait else 0,
-        rows=rows,
-        every_step=every_step,
-    )
-
-
-def restrained_on_springs(
-    run: Run,
-    substeps: int,
-    quiet_s: float,
-    stop: Stop,
-    wait: bool,
-    history: np.recarray = NO_HISTORY,
-    every_step: bool = False,
-) -> RestrainedOnSprings:
-    """One run on springs with dampers and tendons."""
-    pier, base, motion = run.pier, run.base, run.motion
-    assert not isinstance(base, RigidBase)
-    vertical = () if motion.vertical is None else motion.vertical
-    line, ground = _line(run, substeps, quiet_s, 0, wait), (motion.horizontal, vertical, float(motion.dt))
-    return rock_restrained_on_springs(
-        springs(pier, base), line, elements(pier, base), ground, stop.flag, history, every_step
-    )
-
-
-def with_notes(rows: np.recarray, found: RestrainedOnSprings) -> np.recarray:
-    """The history of a run on springs with what its elements are: as :func:`rows_of`, and their force and moment on the pier."""
-    n = len(found.use)
-    kind = np.dtype([
-        *ROW.descr, ("state", "f8", (n,)), ("lost", "f8", (n,)), ("input", "f8"), ("p_delta", "f8"), ("pull", "f8", (2,)),
+def _row_type(kind: Kind, devices: int) -> np.dtype:
+    """Return the dtype of a row of a history, as ``core.history`` writes it: with states and pull of ``devices``, if any."""
+    names = [(name, "f8") for name in (*MOMENT, *kind.columns)]
+    if not devices:
+        return np.dtype(names)
+    return np.dtype([
+        *names, ("state", "f8", (devices,)), ("lost", "f8", (devices,)), ("input", "f8"), ("p_delta", "f8"), ("pull", "f8", (2,)),
     ])  # fmt: skip
-    noted = np.recarray(len(rows), kind)
-    for name in ROW.names or ():
-        noted[name] = rows[name]
-    noted.state, noted.lost = found.notes[:, :n], found.notes[:, n : 2 * n]
-    noted.input, noted.p_delta, noted.pull = found.notes[:, 2 * n], found.notes[:, 2 * n + 1], found.notes[:, -2:]
-    return noted
 
 
-def rows_of(found: Restrained) -> np.recarray:
-    """The history of a restrained run by names: of each element its state and what it has lost, and the ground's work."""
-    n = len(found.use)
-    kind = np.dtype([*rigid.ROW.descr, ("state", "f8", (n,)), ("lost", "f8", (n,)), ("input", "f8")])
-    rows = np.recarray(len(found.history), kind)
-    rows.t, rows.theta, rows.omega, rows.kind = found.history[:, :COLUMNS].T
-    rows.state, rows.lost = found.history[:, COLUMNS : COLUMNS + n], found.history[:, COLUMNS + n : COLUMNS + 2 * n]
-    rows.input = found.history[:, -1]
-    return rows
+def _result(found: np.record) -> Result:
+    return Result(*found.tolist()[: len(Result._fields)])
 
 
 def run_fixed(
@@ -269,15 +197,15 @@ def try_all(
 ) -> list[Trial | None]:
     """As :func:`run_all_fixed`, with the trajectories in short."""
     trials: list[Trial | None] = [_refused(run, steps, quiet_s) for run, steps in zip(runs, substeps, strict=True)]
-    alike: dict[Traits | Literal["restrained"] | None, list[int]] = {}
+    alike: dict[tuple[Kind, int], list[int]] = {}
     for i, run in enumerate(runs):
-        if trials[i] is None:
-            alike.setdefault(_kernel_of(run), []).append(i)
-    for i in alike.pop(RESTRAINED, []):
-        if not stop:
-            trials[i] = _restrained_trial(runs[i], substeps[i], quiet_s, stop, wait)
-    for kernel, which in alike.items():
-        assert not isinstance(kernel, str)
+        if trials[i] is not None or stop:
+            continue
+        if run.base.restraints:
+            trials[i] = _with_devices(run, substeps[i], quiet_s, stop, locate, wait)
+        else:
+            alike.setdefault((kind_of(model(run.pier, run.base)), substeps[i]), []).append(i)
+    for (kind, steps), which in alike.items():
         first_rows: dict[int, int] = {}
         grounds: list[Samples] = []
         lines = []
@@ -286,60 +214,43 @@ def try_all(
             if id(motion) not in first_rows:
                 first_rows[id(motion)] = sum(map(len, grounds))
                 grounds.append(ground_of(motion))
-            lines.append(_line(runs[i], substeps[i], quiet_s, first_rows[id(motion)], wait))
+            lines.append(_line(runs[i], steps, quiet_s, first_rows[id(motion)], wait))
         ground = grounds[0] if len(grounds) == 1 else np.concatenate(grounds)
-        for i, (found, extremes) in zip(which, _rock(kernel, lines, ground, stop, locate), strict=True):
-            if found is not None:
-                trials[i] = Trial(_outcome(runs[i], substeps[i], found), extremes)
+        for i, found in zip(which, march(kind, lines, ground, stop.flag, steps, locate), strict=True):
+            if found.status != RUNNING:
+                trials[i] = Trial(_outcome(runs[i], steps, _result(found)), found.extremes)
     return trials
 
 
-def _rock(
-    kernel: Traits | None,
-    lines: Sequence[tuple[float, ...]],
-    ground: Samples,
-    stop: Stop,
-    locate: bool,
-) -> Iterator[tuple[SpringRun | RigidRun | None, Samples]]:
-    """What runs alike come to, ``None`` for those that were stopped, and the greatest |θ| in each of their windows."""
-    if kernel is None:
-        for result in rigid.rock_side_by_side(lines, ground, stop.flag, locate):
-            yield None if result.status == RUNNING else rigid.rigid_run(result), result.extremes
-        return
-    for result in two_springs.rock_side_by_side(kernel, lines, ground, stop.flag, locate):
-        yield None if result.status == RUNNING else two_springs.spring_run(result), result.extremes
-
-
-def _restrained_trial(run: Run, substeps: int, quiet_s: float, stop: Stop, wait: bool) -> Trial | None:
-    """One run with dampers and tendons, with what they have been through; ``None`` if it was stopped."""
-    if not isinstance(run.base, RigidBase):
-        on_springs = restrained_on_springs(run, substeps, quiet_s, stop, wait)
-        if on_springs.run is None:
-            return None
-        outcome = _at_rest(run, on_springs, _outcome(run, substeps, on_springs.run))
-        return Trial(replace(outcome, **_use(run, on_springs.use)), on_springs.extremes)
-    found = restrained(run, substeps, quiet_s, stop, wait)
-    if found.run.status == RUNNING:
+def _with_devices(run: Run, substeps: int, quiet_s: float, stop: Stop, locate: bool, wait: bool) -> Trial | None:
+    """Return one run with dampers and tendons, with what they have been through; ``None`` if it was stopped."""
+    devices = devices_of(elements(run.pier, run.base))
+    assert devices is not None
+    kind, lines = kind_of(model(run.pier, run.base)), [_line(run, substeps, quiet_s, 0, wait)]
+    found = march(kind, lines, ground_of(run.motion), stop.flag, substeps, locate, False, NO_HISTORY, devices)[0]
+    if found.status == RUNNING:
         return None
-    outcome = _outcome(run, substeps, found.run)
-    if outcome.status == "ok" and found.theta_end != 0.0 and math.isnan(found.run.t_rest) and found.sticks:
-        note = f"dampers hold the pier at a rotation of {found.theta_end:.3g} rad"
-        outcome = replace(outcome, note="; ".join(filter(None, (outcome.note, note))))
-    return Trial(replace(outcome, **_use(run, found.use)), found.extremes)
+    result = _result(found)
+    outcome = _held_at_rest(run, result, devices, _outcome(run, substeps, result))
+    return Trial(replace(outcome, **_use(run, devices.use)), found.extremes)
 
 
-def _at_rest(run: Run, found: RestrainedOnSprings, outcome: Outcome) -> Outcome:
-    """With the residual rotation at which dampers and tendons let the pier rest."""
-    assert not isinstance(run.base, RigidBase)
-    assert found.run is not None
-    if outcome.theta_res is None:
+def _held_at_rest(run: Run, found: Result, devices: Devices, outcome: Outcome) -> Outcome:
+    """Return ``outcome`` with the residual rotation at which dampers and tendons let the pier rest."""
+    pier, base = run.pier, run.base
+    if outcome.status != "ok" or not base.has_residual:
         return outcome
-    rests = rests_at(run.pier, run.base, found, found.run.base_left, found.run.base_right)
-    note = outcome.note
-    if abs(rests - outcome.theta_res) > TOLD * run.pier.alpha:
-        told = f"dampers and tendons hold the pier at {rests:.3g} rad, its supports would at {outcome.theta_res:.3g}"
-        note = "; ".join(filter(None, (note, told)))
-    return replace(outcome, theta_res=rests, note=note)
+    n, holds = len(devices.elements), devices.goes == STICKS
+    states = devices.x[:n]
+    if isinstance(base, ElasticBase):
+        rests = rests_at(pier, base, found, float(devices.level[0]), states, holds)
+        told = f"dampers and tendons hold the pier at {rests:.3g} rad, its supports would at {outcome.theta_res or 0.0:.3g}"
+    else:
+        rests = 0.0 if not math.isnan(found.t_rest) else rests_on_rigid_base(pier, base, found, states, holds)
+        told = f"dampers hold the pier at a rotation of {rests:.3g} rad"
+    if abs(rests - (outcome.theta_res or 0.0)) > TOLD * pier.alpha:
+        outcome = replace(outcome, note="; ".join(filter(None, (outcome.note, told))))
+    return replace(outcome, theta_res=rests)
 
 
 def _use(run: Run, use: np.recarray) -> dict[str, Any]:
@@ -357,18 +268,6 @@ def _use(run: Run, use: np.recarray) -> dict[str, Any]:
         found["tendon_yield"] = float(tendons.yielded.max())
         found["tendon_slack"] = int(tendons.slack.sum())
     return found
-
-
-def _kernel_of(run: Run) -> Traits | Literal["restrained"] | None:
-    """What runs that share compiled code have in common: the types of springs; whether dampers and tendons restrain them."""
-    if run.base.restraints:
-        return RESTRAINED
-    if isinstance(run.base, RigidBase):
-        return None
-    traits = two_springs.traits_of(springs(run.pier, run.base))
-    if traits.exponent is None:
-        return traits
-    return traits._replace(exponent=1 if isinstance(traits.exponent, int) else 0.5)  # numbers that differ: 1 == 1.0
 
 
 def _refused(run: Run, substeps: int, quiet_s: float) -> Trial | None:
@@ -389,41 +288,44 @@ def _refused(run: Run, substeps: int, quiet_s: float) -> Trial | None:
     return None
 
 
-def _outcome(run: Run, substeps: int, found: SpringRun | RigidRun) -> Outcome:
-    """Outcome of what a run came to, as it was found."""
-    pier, omega_v, t_impact, zeta = run.pier, None, math.nan, 0.0
+def _outcome(run: Run, substeps: int, found: Result) -> Outcome:
+    """Return the Outcome of what a run came to."""
+    pier, base = run.pier, run.base
     status, reason = _STATUS[found.status]
     more: dict[str, Any] = {}
-    if isinstance(found, SpringRun):
-        assert not isinstance(run.base, RigidBase)
-        more = _of_springs(run, found, survived=status == "ok")
-        omega_v, t_impact, zeta = vertical_frequency(pier, run.base), found.t_impact, run.base.zeta or 0.0
+    omega_v, zeta = None, 0.0
+    if isinstance(base, ElasticBase):
+        more = _of_springs(pier, base, found, survived=status == "ok")
+        omega_v, zeta = vertical_frequency(pier, base), base.zeta or 0.0
     if found.status == FLIGHT:
-        reason = cause_of_flight(run.motion, omega_v, pier.gravity, found.t_flight, t_impact, zeta)
-    note = ""
+        reason = cause_of_flight(run.motion, omega_v, pier.gravity, found.t_flight, found.t_impact, zeta)
+    notes = []
     if found.status == RESTLESS:
-        note = _RESTLESS.format(seconds=found.t_end - run.motion.duration)
+        notes.append(_RESTLESS.format(seconds=found.t_end - run.motion.duration))
     elif found.status == LATE_FLIGHT:
-        note = _LATE_FLIGHT.format(t=found.t_end)
+        notes.append(_LATE_FLIGHT.format(t=found.t_end))
+    if 1000.0 * found.flight_height > base.flight_limit_mm:
+        notes.append(_HIGH.format(height=1000.0 * found.flight_height, limit=base.flight_limit_mm))
     return Outcome(
         status=status,
         reason=reason,
         theta_max=min(found.theta_max, ON_ITS_SIDE),
         t_max=found.t_max,
         impacts=found.impacts,
-        separations=found.separations if isinstance(found, SpringRun) else found.lift_offs,
+        separations=found.uplifts,
         t_flight=None if math.isnan(found.t_flight) else found.t_flight,
+        flights=found.flights,
+        flight_duration=found.flight_duration,
+        flight_height=found.flight_height,
         t_end=found.t_end,
         substeps=substeps,
-        note=note,
+        note="; ".join(notes),
         **more,
     )
 
 
-def _of_springs(run: Run, found: SpringRun, survived: bool) -> dict[str, Any]:
-    """What only piers on springs have: residuals where the pier ``survived``, and what became of yielding springs."""
-    pier, base = run.pier, run.base
-    assert not isinstance(base, RigidBase)
+def _of_springs(pier: Pier, base: ElasticBase, found: Result, survived: bool) -> dict[str, Any]:
+    """Return what only piers on springs have: residuals if the pier ``survived``, and what became of yielding springs."""
     more: dict[str, Any] = {}
     if survived:
         # From the base's tilt to the rotation, static on the deformed base (THEORY.md, eq. 20)
@@ -431,12 +333,12 @@ def _of_springs(run: Run, found: SpringRun, survived: bool) -> dict[str, Any]:
         lean = 1.0 / tilt_over_residual(pier.gravity, pier.height, pier.half_width, omega_v)
         tilt = 0.5 * (found.base_left - found.base_right) / pier.half_width
         more |= {"settlement": -0.5 * (found.base_left + found.base_right), "base_tilt": tilt, "theta_res": lean * tilt}
-        if isinstance(base, YieldingBase):
+        if base.yields:
             more["t_read"] = found.t_read
             if not math.isnan(found.drift_left):
                 more["settlement_drift"] = -0.5 * (found.drift_left + found.drift_right)
                 more["theta_res_drift"] = 0.5 * lean * (found.drift_left - found.drift_right) / pier.half_width
-    if isinstance(base, YieldingBase):
+    if base.yields:
         deflection = yield_deflection(pier, base)
         more["ductility_left"] = -found.deepest_left / deflection
         more["ductility_right"] = -found.deepest_right / deflection

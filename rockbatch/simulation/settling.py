@@ -7,11 +7,12 @@ from enum import IntEnum
 
 import numpy as np
 
+from rockbatch.core.clock import window_of
 from rockbatch.motions.motion import Motion
 from rockbatch.pier import Base, Damper, Pier
 from rockbatch.results.outcome import Outcome
 from rockbatch.simulation.models import first_substeps
-from rockbatch.simulation.runs import LEFT_ALONE, MOST_STEPS, Run, Stop, Trial, steps_of, try_all
+from rockbatch.simulation.runs import LEFT_ALONE, MOST_STEPS, Run, Stop, Trial, quiet_samples, steps_of, try_all
 
 HALVINGS = 8
 """How often the step is halved before a run counts as not settled."""
@@ -83,7 +84,9 @@ def run_all_to_tolerance(runs: Sequence[Run], tolerance: float, quiet_s: float, 
             levels[i].append(fine)
             agreements[i].append(agreement(fine, coarse, tolerance * pier.alpha, pier))
             if enough(agreements[i]):
-                settled[i] = _noted(fine, coarse, agreements[i][-1], tolerance * pier.alpha)
+                samples = runs[i].motion.npts - 1 + quiet_samples(quiet_s, runs[i].motion.dt)
+                peak = int(window_of(fine.outcome.t_max / runs[i].motion.dt, float(samples))[0])
+                settled[i] = _noted(fine, coarse, agreements[i][-1], tolerance * pier.alpha, peak)
                 del levels[i]
             elif len(agreements[i]) == HALVINGS:
                 settled[i] = _not_settled(pier, levels.pop(i), tolerance, "")
@@ -152,15 +155,22 @@ def enough(agreements: Sequence[Agreement]) -> bool:
     return False
 
 
-def _noted(fine: Trial, coarse: Trial, how_far: Agreement, tolerance: float) -> Outcome:
-    """The outcome with a note on what has not settled beside it; ``tolerance`` in rad."""
+def _noted(fine: Trial, coarse: Trial, how_far: Agreement, tolerance: float, peak: int) -> Outcome:
+    """Return the outcome with a note on what has not settled beside it; ``tolerance`` in rad, ``peak`` the window of the peak.
+
+    Where rotations before the peak have not settled no error is claimed: the peak depends on digits that no record has, and
+    two runs that agree on it agree by chance.
+    """
     now, before = fine.outcome, coarse.outcome
     notes = [now.note] if now.note else []
     differs = np.abs(fine.extremes - coarse.extremes) > tolerance
     if how_far < Agreement.THROUGHOUT and differs.any():
         greatest = np.nanmax(np.fmax(fine.extremes, coarse.extremes)[differs])
         notes.append(f"lesser rotations, up to {greatest:.2g} rad, have not settled")
-    for name in ("impacts", "separations"):
+        if differs[: peak + 1].any() and now.status == "ok":
+            now = replace(now, theta_max_error=None)
+            notes.append("some of them before the peak, which is chaotic: no error of it is claimed")
+    for name in ("impacts", "separations", "flights"):
         one, other = sorted((getattr(before, name), getattr(now, name)))
         if one != other:
             notes.append(f"{name} not settled: {one} or {other}")

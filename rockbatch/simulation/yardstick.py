@@ -11,17 +11,31 @@ from typing import Any
 
 import numpy as np
 
-from rockbatch.core.equations import rates
-from rockbatch.core.events import at_rest, signals
-from rockbatch.core.laws import branch_when_pressed
-from rockbatch.core.transitions import Supports, handle
-from rockbatch.core.two_springs import static_state
-from rockbatch.core.types import Contact, State
+from rockbatch.core import system
+from rockbatch.core.kernel import kernel
+from rockbatch.core.springs.lanes import static_state
+from rockbatch.core.springs.laws import branch_when_pressed
+from rockbatch.core.springs.model import Contact, State, Supports
+from rockbatch.core.springs.transitions import handle
+from rockbatch.core.system import at_rest, event_functions
+from rockbatch.core.types import Ground
 from rockbatch.motions.motion import Motion
 from rockbatch.pier import ElasticBase, Pier, vertical_frequency
 from rockbatch.simulation.models import springs
 
 MOST_EVENTS = 100_000
+
+
+@kernel
+def rates(m, y, contact, horizontal, vertical):  # type: ignore[no-untyped-def]
+    """Return the right-hand side, compiled."""
+    return system.rates(m, y, contact, horizontal, vertical)
+
+
+@kernel
+def signals(m, y, contact, supports, rest, horizontal, vertical):  # type: ignore[no-untyped-def]
+    """Return the values of the event functions, compiled; rates matter to slopes only."""
+    return event_functions(m, None, y, y, contact, supports, rest, Ground(horizontal, 0.0, vertical, 0.0))[0]
 
 
 class OutOfTimeError(Exception):
@@ -77,8 +91,8 @@ def solve(
             raise OutOfTimeError
         return rates(m, State(*y.tolist()), contact, horizontal(s), vertical(s))
 
-    def values(s: float, state: State) -> Any:  # the rates, here the state itself, matter to slopes only
-        return signals(m, state, state, contact, *supports, rest, horizontal(s), vertical(s))[0]
+    def values(s: float, state: State) -> Any:
+        return signals(m, state, contact, supports, rest, horizontal(s), vertical(s))
 
     def signal(i: int) -> Any:
         def event(s: float, y: Any) -> float:

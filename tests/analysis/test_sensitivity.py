@@ -268,7 +268,7 @@ def test_an_input_is_what_the_case_has_with_the_value_written_there(tmp_path, na
         assert own[absolute] == pytest.approx(own[over_weight] * 100.0 * GRAVITY, rel=1e-11)
 
 
-TWO = TIED | {"damper": [{"kind": "friction", "f": 0.05}, {"kind": "friction", "f": 0.1, "at": 0.2}]}
+TWO = TIED | {"damper": [{"kind": "friction", "f": 0.05, "at": "left"}, {"kind": "friction", "f": 0.1, "at": 0.2}]}
 
 
 @pytest.mark.parametrize(

@@ -53,7 +53,7 @@ def starts():
 def test_every_module_that_can_change_a_row_takes_part():
     takes_part = reached(starts())
     for known in (
-        "core/equations.py",
+        "core/springs/equations.py",
         "simulation/settling.py",
         "pier/block.py",
         "motions/pulses.py",
@@ -71,7 +71,12 @@ def test_no_package_is_named_that_does_not_take_part(package):
 
 @pytest.mark.parametrize(
     ("module", "takes_part"),
-    [("core/equations.py", True), ("analysis/ida.py", True), ("pier/block.py", True), ("report/page.py", False)],
+    [
+        ("core/springs/equations.py", True),
+        ("analysis/ida.py", True),
+        ("pier/block.py", True),
+        ("report/page.py", False),
+    ],
 )
 def test_the_digest_is_another_where_a_module_that_takes_part_is(tmp_path, monkeypatch, module, takes_part):
     copy = tmp_path / "rockbatch"

@@ -76,10 +76,10 @@ PIER = Pier(0.2, 1.0)
     ("base", "amplitude"),
     [
         (ElasticBase(beta=40.0, epsilon=0.1), 6.0),
-        (ElasticBase(beta=40.0, epsilon=0.1, kinematics="finite"), 6.0),
+        (ElasticBase(beta=40.0, epsilon=0.1, kinematics="finite", flight="stop"), 6.0),  # flights let last bits grow
         (YieldingBase(beta=40.0, eta=2.0, epsilon=0.1), 6.0),
         (YieldingBase(beta=40.0, eta=2.0, epsilon=0.1, spring="epp"), 6.0),
-        (YieldingBase(beta=40.0, eta=1.5, epsilon=0.1, spring="epp", kinematics="finite"), 4.0),
+        (YieldingBase(beta=40.0, eta=1.5, epsilon=0.1, spring="epp", kinematics="finite", flight="stop"), 4.0),
         (YieldingBase(beta=40.0, eta=2.0, epsilon=0.1), 15.0),
         (YieldingBase(beta=40.0, eta=2.0, epsilon=0.1), 30.0),
     ],

@@ -10,10 +10,10 @@ from core_samples import FIG5, TOWER, hard_case, pulse, steady
 from motion_files import RECORDS, needs_records
 
 import rockbatch as rb
-from rockbatch.core.free_vibration import reach_on_rigid_base
+from rockbatch.core.block.ending import reach_of
 from rockbatch.core.roots import falls
-from rockbatch.core.transitions import Supports, handle
-from rockbatch.core.types import Contact, State
+from rockbatch.core.springs.model import Contact, State, Supports
+from rockbatch.core.springs.transitions import handle
 from rockbatch.motions.motion import Motion
 from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase, least_beta, problems, rocking_frequency
 from rockbatch.simulation import run_fixed, run_to_tolerance, springs
@@ -76,8 +76,8 @@ def test_free_rocking_reaches_the_amplitude_of_its_energy(theta):
     for share in (0.1, 0.5, 0.9):
         now = share * theta
         omega = math.sqrt(2.0 * (math.cos(0.2 - theta) - math.cos(0.2 - now)) * -1.0 * -1.0)
-        assert reach_on_rigid_base(now, omega, 0.2, 1.0) == pytest.approx(theta, rel=1e-9)
-    assert reach_on_rigid_base(0.19, 0.011, 0.2, 1.0) == math.inf
+        assert reach_of(now, omega, 0.2, 1.0) == pytest.approx(theta, rel=1e-9)
+    assert reach_of(0.19, 0.011, 0.2, 1.0) == math.inf
 
 
 # Residuals are read at a stated moment
@@ -237,18 +237,25 @@ def test_flight_says_that_the_ground_fell_away():
 
 
 def test_a_rigid_base_is_followed_to_the_moment_at_which_the_ground_falls_away():
-    """v̈_g falls from 0 to −2 g between 0.4 and 0.5 s: flight at 0.45 s, in the middle of a sampling interval of one motion
-    and on a sample of the other, with the rotation of then."""
-    peaks = []
+    """v̈_g falls from 0 to −2 g between 0.4 and 0.5 s: flight near 0.45 s, where (F1) has no normal force left, in the middle
+    of a sampling interval of one motion and close to a sample of the other, with the rotation of then."""
+    peaks, times = [], []
     for dt in (0.1, 0.0125):
         t = np.arange(round(1.0 / dt) + 1) * dt
         vertical = -2.0 * 9.81 * np.clip((t - 0.4) / 0.1, 0.0, 1.0)
         motion = Motion("drop", dt, np.full(len(t), -0.5 * 9.81), vertical)
         outcome = run_fixed(FIG5, RigidBase(flight="stop"), motion, 8)
-        assert (outcome.status, outcome.t_flight) == ("flight", pytest.approx(0.45, abs=1e-12))
-        assert outcome.t_end == outcome.t_max == outcome.t_flight
+        end = rb.simulate(FIG5, RigidBase(flight="stop"), motion, substeps=8).history.iloc[-1]
+        assert (outcome.status, outcome.t_flight) == ("flight", pytest.approx(0.45, abs=0.005))
+        assert outcome.t_end == outcome.t_max == outcome.t_flight == end["t"]
+        share, tilt, side = FIG5.mu / (1.0 + FIG5.mu), FIG5.alpha - abs(end["theta"]), math.copysign(1.0, end["theta"])
+        pressed = (9.81 + end["ag_v"]) * (1.0 - share * math.sin(tilt) ** 2)
+        pressed -= share * side * end["ag_h"] * math.sin(tilt) * math.cos(tilt)
+        assert pressed == pytest.approx(FIG5.size * math.cos(tilt) * end["omega"] ** 2, abs=1e-9 * 9.81)
         peaks.append(outcome.theta_max)
+        times.append(outcome.t_flight)
     assert peaks[0] == pytest.approx(peaks[1], rel=1e-6)
+    assert times[0] == pytest.approx(times[1], rel=1e-6)
 
 
 def test_flight_says_that_the_undamped_oscillator_made_it_of_a_small_vertical_motion():

@@ -34,10 +34,10 @@ def test_an_edit_in_a_called_kernel_changes_the_next_run(tmp_path):
     shutil.copytree(Path(rockbatch.__file__).parent, package, ignore=shutil.ignore_patterns("__pycache__"))
     before = run_copy(tmp_path)
     assert run_copy(tmp_path) == before  # from the cache
-    source = package / "core" / "rigid" / "equations.py"
+    source = package / "core" / "block" / "equations.py"
     text = source.read_text(encoding="utf-8")
-    assert text.count("tangent = sine / cosine\n") == 1
-    source.write_text(text.replace("tangent = sine / cosine\n", "tangent = 2.0 * sine / cosine\n"), encoding="utf-8")
+    assert text.count("+ horizontal * lever)\n") == 1
+    source.write_text(text.replace("+ horizontal * lever)\n", "+ 0.5 * horizontal * lever)\n"), encoding="utf-8")
     assert run_copy(tmp_path) == 0.0 < before
 
 

@@ -7,12 +7,15 @@ import numpy as np
 import pytest
 from core_samples import FIG5, hard_case
 
-from rockbatch.core.equations import rates, step
-from rockbatch.core.events import at_rest
-from rockbatch.core.laws import kept_sign
-from rockbatch.core.records import LANES
-from rockbatch.core.reversal import Pivot, corrected, pivot_accelerations, pivots, reversal
-from rockbatch.core.types import BOUC_WEN, EPP, Contact, Ground, State
+from rockbatch.core.ground import later
+from rockbatch.core.rk4 import rk4
+from rockbatch.core.springs.events import at_rest
+from rockbatch.core.springs.laws import kept_sign
+from rockbatch.core.springs.model import BOUC_WEN, EPP, Contact, State
+from rockbatch.core.springs.reversal import Pivot, corrected, pivot_accelerations, pivots, reversal
+from rockbatch.core.system import rates
+from rockbatch.core.table import LANES
+from rockbatch.core.types import Ground
 from rockbatch.pier import YieldingBase
 from rockbatch.simulation import Run, Stop, run_all_fixed, springs
 
@@ -44,16 +47,12 @@ LOADING = State(-0.02, 0.002, -0.01, -0.004, -0.75, -0.5), Contact(1.0, 1.0, 1.0
 UNLOADING = State(-0.02, 0.002, 0.01, 0.004, -0.75, -0.5), Contact(1.0, 1.0, 0.0, 0.0, 0.0)
 
 
-def later(ground, t):
-    a, a_slope, c, c_slope = ground
-    return Ground(a + t * a_slope, a_slope, c + t * c_slope, c_slope)
-
-
 def fine(y, contact, t, h, parts=200):
     """State after ``h`` [s] from ``t`` on one branch, as good as exact."""
     for i in range(parts):
         ground = later(GROUND, t + i * h / parts)
-        y = step(MODEL, y, rates(MODEL, y, contact, ground.horizontal, ground.vertical), contact, ground, h / parts)
+        k = rates(MODEL, y, contact, ground.horizontal, ground.vertical)
+        y = rk4(MODEL, None, y, k, contact, ground, h / parts)
     return y
 
 

@@ -5,7 +5,7 @@ import pytest
 from studies import PADS, RIGID, study_text, write_study
 
 import rockbatch as rb
-from rockbatch.core.ledger import Energies
+from rockbatch.core.observe.ledger import Energies
 from rockbatch.results.columns import TERMS
 
 PIER = rb.Pier(0.2, 1.0)

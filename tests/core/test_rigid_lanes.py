@@ -7,16 +7,23 @@ from dataclasses import replace
 import numba
 import numpy as np
 import pytest
+from core_runs import block_line, run_blocks
 from core_samples import broadband, pulse
 
-from rockbatch.core.records import LANES, table
-from rockbatch.core.rigid.lane import LANE, RUN
-from rockbatch.core.rigid.passing import one_pass
-from rockbatch.core.rigid.runs import rock_side_by_side, run_line
-from rockbatch.core.types import BEFORE_EVENT, RUNNING, SAMPLE, Block
+from rockbatch.core.block.lanes import LANE
+from rockbatch.core.block.model import BlockTraits
+from rockbatch.core.run import Settings
+from rockbatch.core.springs import lanes as spring_lanes
+from rockbatch.core.springs.model import SpringTraits
+from rockbatch.core.system import one_pass
+from rockbatch.core.table import LANES, move, table
+from rockbatch.core.types import BEFORE_EVENT, IMPACT_BOTH, IMPACT_LEFT, IMPACT_RIGHT, LIFT_OFF, REST, RUNNING, SAMPLE
 from rockbatch.motions.motion import Motion
-from rockbatch.pier import Pier, RigidBase
-from rockbatch.simulation import Run, Stop, ground_of, run_all_fixed, written_run
+from rockbatch.pier import Damper, Pier, RigidBase
+from rockbatch.simulation import Run, Stop, block, ground_of, run_all_fixed, run_fixed, written_run
+from rockbatch.simulation.runs import try_all
+
+LANDINGS = (IMPACT_LEFT, IMPACT_RIGHT, IMPACT_BOTH, REST)
 
 
 def crowd():
@@ -52,49 +59,71 @@ def test_a_run_that_is_written_down_is_the_run_that_is_not():
         assert run.rows <= len(rows)
         assert (run.impacts, run.t_end, run.t_max) == (outcome.impacts, outcome.t_end, outcome.t_max)
         assert np.abs(rows.theta[: run.rows]).max() <= run.theta_max * (1.0 + 1e-12)
-        assert np.count_nonzero(rows.kind[: run.rows] == BEFORE_EVENT) == run.impacts
+        kinds = rows.kind[: run.rows]
+        upright = np.abs(rows.theta[: run.rows]) < scene.pier.alpha  # what topples and lands on its way is no impact
+        assert (np.isin(kinds, LANDINGS) & upright).sum() + (kinds == IMPACT_BOTH).sum() == run.impacts
+        events = np.flatnonzero((kinds > 0.0) & (kinds != LIFT_OFF))  # at which nothing jumps
+        assert (kinds[events - 1] == BEFORE_EVENT).all()
         assert (np.diff(rows.t[: run.rows]) >= 0.0).all()
 
 
 def test_the_pass_steps_over_no_impact():
-    """Between the rows of a history the block keeps its side, but where an impact is written between them."""
+    """Between the rows of a history a block that rocks keeps its side, but where an impact is written between them.
+
+    1e-12 α: what is left of the rotation when an impact has been located.
+    """
     scenes, substeps = crowd()
     crossings = 0
     for scene, steps in zip(scenes, substeps, strict=True):
         run, rows = written_run(scene, steps, 1.0, 20_000, every_step=True)
-        theta, kind = rows.theta[: run.rows], rows.kind[: run.rows]
-        goes_over = theta[1:] * theta[:-1] < 0.0
-        crossings += np.count_nonzero(np.diff(np.sign(theta[theta != 0.0])))
-        assert not goes_over.any()
-        assert not theta[kind == BEFORE_EVENT].any()
+        rows = rows[: run.rows].view(np.recarray)
+        side = rows.right - rows.left
+        assert (side * rows.theta >= -1e-12 * scene.pier.alpha).all()
+        crossings += np.count_nonzero(np.diff(side[side != 0.0]))
     assert crossings > 300
+
+
+def test_the_pass_does_what_event_by_event_comes_to():
+    """A damper without force has every sub-step searched for events: the same counts, and the peak within RK4's error.
+
+    The damper's velocity reversals divide steps, of which the coarsest are p h = 0.05: 1e-6 of the peak.
+    """
+    scenes, substeps = crowd()
+    flights = 0
+    for scene, steps in zip(scenes, substeps, strict=True):
+        idle = replace(scene.base, restraints=(Damper("viscous", nu=0.0),))
+        passed, searched = (
+            run_fixed(scene.pier, base, scene.motion, steps, 1.0, wait=False) for base in (scene.base, idle)
+        )
+        for name in ("status", "impacts", "separations", "flights"):
+            assert getattr(passed, name) == getattr(searched, name), scene.motion.name
+        assert passed.theta_max == pytest.approx(searched.theta_max, rel=1e-6)
+        assert passed.t_end == pytest.approx(searched.t_end, rel=1e-6)
+        flights += passed.flights
+    assert flights > 3
 
 
 def test_extremes_of_windows_are_those_of_the_samples():
     scenes, substeps = crowd()
     for scene, steps in zip(scenes, substeps, strict=True):
-        m = Block(scene.pier.alpha, scene.pier.p, scene.pier.gravity, 0.9)
-        ground = ground_of(scene.motion)
-        line = run_line(m, 0.0, 0.0, scene.motion.dt, steps, 20, 0, len(ground))
-        result = rock_side_by_side([line], ground, Stop().flag)[0]
-        run, rows = written_run(replace(scene, base=RigidBase(0.9)), steps, 20 * scene.motion.dt, 20_000, wait=False)
+        quiet_s, npts = 20 * scene.motion.dt, scene.motion.npts
+        (trial,) = try_all([scene], [steps], quiet_s, Stop(), wait=False)
+        run, rows = written_run(scene, steps, quiet_s, 20_000, wait=False)
         rows = rows[: run.rows]
         samples = np.abs(rows.theta[rows.kind == SAMPLE])[1:]
-        windows = (np.arange(1, len(samples) + 1) * 32 // (len(ground) + 19)).clip(max=31)
+        windows = (np.arange(1, len(samples) + 1) * 32 // (npts + 19)).clip(max=31)
         for window in range(32):
             inside = samples[windows == window]
-            greatest = result.extremes[window]
+            greatest = trial.extremes[window]
             assert np.isnan(greatest) if not len(inside) else greatest == inside.max()
 
 
 def test_a_block_that_lies_down_or_rests_makes_room_for_the_next():
     """More runs than lanes, each with its own end: at rest all the time, or overturned by what tips it at the start."""
     motion = pulse("sine", 0.1, 0.1, dt=0.01, end=1.0)
-    lines = [
-        run_line(Block(0.2, 2.0, 9.81, 0.9), 1.3 if i % 3 == 0 else 0.0, 0.0, 0.01, 1 + i % 2, i, 0, motion.npts)
-        for i in range(5 * LANES)
-    ]
-    for i, result in enumerate(rock_side_by_side(lines, ground_of(motion), Stop().flag)):
+    m = block(Pier(0.2, 2.0), RigidBase(0.9))
+    lines = [block_line(m, 1.3 if i % 3 == 0 else 0.0, 0.0, 0.01, 2, motion.npts, i) for i in range(5 * LANES)]
+    for i, result in enumerate(run_blocks(lines, ground_of(motion), 2)):
         if i % 3 == 0:
             assert result.theta_max >= 0.5 * np.pi
         else:
@@ -106,29 +135,47 @@ def test_runs_that_were_stopped_say_that_they_are_not_over():
     stop = Stop()
     stop.set()
     motion = pulse("sine", 0.5, 1.0, dt=0.01, end=3.0)
-    line = run_line(Block(0.2, 2.0, 9.81, 0.9), 0.1, 0.0, 0.01, 4, 0, 0, motion.npts)
-    results = rock_side_by_side([line] * 40, ground_of(motion), stop.flag)
+    line = block_line(block(Pier(0.2, 2.0), RigidBase(0.9)), 0.1, 0.0, 0.01, 4, motion.npts)
+    results = run_blocks([line] * 40, ground_of(motion), 4, stop=1)
     assert (results.status == RUNNING).all()
     assert run_all_fixed([Run(Pier(0.2, 2.0), RigidBase(), motion)], [4], 1.0, stop) == [None]
 
 
-def test_the_numbers_of_one_run_and_of_all_lanes_are_in_the_same_order():
-    """They are copied by their order when a run enters a lane or leaves it."""
-    assert [(part, RUN[part].names) for part in RUN.names] == [(part, LANE[part].names) for part in LANE.names]
-    assert RUN.itemsize * LANES == LANE.itemsize
+KINDS = {"block": (BlockTraits(), LANE), "springs": (SpringTraits(None, None, None), spring_lanes.LANE)}
+
+
+@pytest.mark.parametrize("lane", [lane for _, lane in KINDS.values()], ids=list(KINDS))
+def test_a_run_moves_to_another_lane_with_all_its_numbers(lane):
+    lanes, cells = table(lane)
+    cells[:] = np.arange(cells.size).reshape(cells.shape)
+    before = cells.copy()
+    move(cells, LANES - 1, 2)
+    numbers = [lanes[0][part][name] for part in lane.names for name in lane[part].names]
+    assert all(number[2] == number[LANES - 1] for number in numbers)
+    assert len(numbers) == len(cells)
+    assert (np.delete(cells, 2, axis=1) == np.delete(before, 2, axis=1)).all()
+
+
+SETTINGS = Settings(1, True, False, False)
 
 
 @numba.njit(error_model="numpy", _nrt=False)
-def passes(lanes, count):
-    one_pass(lanes, count)
+def passes(traits, lanes, count):
+    one_pass(traits, lanes, count, 0, SETTINGS)
 
 
 @pytest.mark.skipif(platform.machine() not in ("x86_64", "AMD64"), reason="looks for the instructions of x86-64")
-def test_the_pass_is_vector_instructions():
-    """As many products of several numbers at once as of one, which the lanes that are left over take; and no calls."""
-    passes(table(LANE)[0], LANES)
-    (code,) = passes.inspect_asm().values()
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_pass_is_vector_instructions(kind):
+    """As many products of several numbers at once as of one, which the lanes that are left over take; and no calls.
+
+    0.95: in loops over springs a few products of one number are of all lanes.
+    """
+    traits, lane = KINDS[kind]
+    lanes = table(lane)[0][0]
+    passes(traits, lanes, LANES)
+    code = passes.inspect_asm(passes.signatures[-1])
     body = code[: code.index("_ZN7cpython")]
     packed, single = len(re.findall(r"\bv?mulpd\b", body)), len(re.findall(r"\bv?mulsd\b", body))
-    assert packed >= single > 60
+    assert packed >= 0.95 * single > 60
     assert not re.findall(r"\bcall\w*\b.*\b(sin|cos)\b", body)

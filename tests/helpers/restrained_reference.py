@@ -1,4 +1,4 @@
-"""The reference solver with dampers and tendons: forces at points of the base, whose places come from its coordinates.
+"""The reference solver with dampers and tendons: elongations and their derivatives from the coordinates of points of the base.
 
 What friction dampers without velocity do is a linear complementarity problem: each has a force within its bounds, and moves only
 against a force at its bound. Projected Gauss–Seidel steps solve it.
@@ -35,33 +35,37 @@ class TiedTwoSprings(TwoSprings):
             if isinstance(each, Tendon) and each.psi == 0.0:
                 self.state[j] = "slack"
 
-    def rise(self, j: int, y: Sequence[float]) -> float:
-        """Of the point (s, −h) of the block, as seen from its centre of mass."""
-        s = self.elements[j][1]
-        if self.finite:
-            return y[V] - self.v0 + (-self.h * math.cos(y[TH]) - s * math.sin(y[TH])) + self.h
-        return y[V] - self.v0 - s * y[TH]
+    def shape(self, j: int, y: Sequence[float]) -> tuple[float, ...]:
+        """Elongation e, ∂e/∂v, ∂e/∂θ, and what ë has beside v̈ ∂e/∂v + θ̈ ∂e/∂θ.
+
+        The point (s, −h) of the block, as seen from its centre of mass, has risen by u. With finite kinematics e = w u,
+        w² = 2/(1 + cos θ), so that w' = w q and q' = 1/(2 + 2 cos θ), where q = sin θ/(2 + 2 cos θ).
+        """
+        s, theta, turn = self.elements[j][1], y[TH], y[OM]
+        if not self.finite:
+            return y[V] - self.v0 - s * theta, 1.0, -s, 0.0
+        sine, cosine = math.sin(theta), math.cos(theta)
+        u = y[V] - self.v0 + (-self.h * cosine - s * sine) + self.h
+        by_theta, bend = self.h * sine - s * cosine, self.h * cosine + s * sine
+        w, q, q_slope = math.sqrt(2.0 / (1.0 + cosine)), sine / (2.0 + 2.0 * cosine), 0.5 / (1.0 + cosine)
+        twist = w * ((q * q + q_slope) * u + 2.0 * q * by_theta + bend)
+        return w * u, w, w * (q * u + by_theta), 2.0 * w * q * y[VD] * turn + twist * turn * turn
+
+    def elongation(self, j: int, y: Sequence[float]) -> float:
+        return self.shape(j, y)[0]
 
     def speed(self, j: int, y: Sequence[float]) -> float:
-        s = self.elements[j][1]
-        turn = self.h * math.sin(y[TH]) - s * math.cos(y[TH]) if self.finite else -s
-        return y[VD] + turn * y[OM]
+        _, by_v, by_theta, _ = self.shape(j, y)
+        return by_v * y[VD] + by_theta * y[OM]
 
     def rubs(self, j: int) -> bool:
         each = self.elements[j][0]
         return isinstance(each, Damper) and each.kind == "friction"
 
     def lift(self, j: int, y: Sequence[float], accelerations: tuple[float, float]) -> float:
-        """Acceleration of the point (s, −h) upwards."""
-        s = self.elements[j][1]
-        if not self.finite:
-            return accelerations[0] - s * accelerations[1]
-        sine, cosine = math.sin(y[TH]), math.cos(y[TH])
-        return (
-            accelerations[0]
-            + (self.h * sine - s * cosine) * accelerations[1]
-            + (self.h * cosine + s * sine) * y[OM] ** 2
-        )
+        """Second rate of the elongation."""
+        _, by_v, by_theta, bend = self.shape(j, y)
+        return by_v * accelerations[0] + by_theta * accelerations[1] + bend
 
     def still(self, modes, y, ah, av, which: Sequence[int]) -> tuple[np.ndarray, np.ndarray]:
         """Accelerations at the dampers ``which`` without their forces, and what one of each adds to all of them."""
@@ -80,7 +84,7 @@ class TiedTwoSprings(TwoSprings):
         return free, np.array(by).T
 
     def pull(self, j: int, y: Sequence[float]) -> float:
-        """Over the mass, downwards."""
+        """Over the mass, in tension."""
         each, _ = self.elements[j]
         if self.rubs(j):
             return self.way[j] * each.f * self.g if self.way[j] else self.hold[j]
@@ -105,7 +109,7 @@ class TiedTwoSprings(TwoSprings):
     def tension(self, j: int, y: Sequence[float]) -> float:
         tendon = self.elements[j][0]
         stiffness = tendon.lam * self.g * self.size / self.b**2
-        return tendon.psi * self.g + stiffness * (self.rise(j, y) - y[FIRST + j])
+        return tendon.psi * self.g + stiffness * (self.elongation(j, y) - y[FIRST + j])
 
     def accelerations(self, modes, y, ah, av):
         holding = [j for j in range(len(self.elements)) if self.rubs(j) and not self.way[j]]
@@ -117,11 +121,13 @@ class TiedTwoSprings(TwoSprings):
 
     def under_pulls(self, modes, y, ah, av):
         pulls = [self.pull(j, y) for j in range(len(self.elements))]
-        vdd, thdd = super().accelerations(modes, y, ah, av + sum(pulls))
+        shapes = [self.shape(j, y) for j in range(len(self.elements))]
+        down = sum(pull * by_v for pull, (_, by_v, _, _) in zip(pulls, shapes, strict=True))
+        vdd, thdd = super().accelerations(modes, y, ah, av + down)
         if "held" in modes:
             return vdd, thdd
-        for pull, (_, s) in zip(pulls, self.elements, strict=True):
-            arm = self.h * math.sin(y[TH]) - s * math.cos(y[TH]) if self.finite else self.h * y[TH] - s
+        for pull, (_, _, by_theta, _) in zip(pulls, shapes, strict=True):
+            arm = by_theta if self.finite else self.h * y[TH] + by_theta  # with P–Δ
             H = self.lever(modes, y)[0] if self.finite else self.h
             thdd -= pull * arm / (self.inertia + H * H)
         return vdd, thdd

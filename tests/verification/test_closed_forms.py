@@ -5,33 +5,30 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from core_runs import run_block
 from core_samples import FIG5, TOWER, broadband, pulse, steady
 from scipy.integrate import quad
 from scipy.special import hyp2f1
 
 import rockbatch as rb
-from rockbatch.core.equations import geometry, rates
-from rockbatch.core.impact import land
-from rockbatch.core.laws import power, static_deflection
-from rockbatch.core.rigid.lane import ROW
-from rockbatch.core.rigid.runs import rock_on_rigid_base
-from rockbatch.core.types import BEFORE_EVENT, BOUC_WEN, LEFT, Block, Contact, State
+from rockbatch.core.springs.equations import geometry
+from rockbatch.core.springs.impact import land
+from rockbatch.core.springs.laws import power, static_deflection
+from rockbatch.core.springs.model import BOUC_WEN, Contact, State
+from rockbatch.core.system import rates
+from rockbatch.core.types import BEFORE_EVENT, LEFT
 from rockbatch.motions.motion import Motion
 from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase
-from rockbatch.simulation import Run, run_fixed, springs, written_run
+from rockbatch.simulation import Run, block, run_fixed, springs, written_run
 
 SINE = pulse("sine", 0.5, dt=0.01, end=3.0)
 
 
 def free_rocking(pier: Pier, theta0: float, duration: float, restitution: float | None = None):
     """History and run of a block let go at ``theta0`` on a rigid base."""
-    dt = 0.01
-    e = pier.restitution if restitution is None else restitution
-    block = Block(pier.alpha, pier.p, pier.gravity, e)
-    history = np.recarray(400_000, ROW)
-    samples = np.zeros(round(duration / dt) + 1)
-    run = rock_on_rigid_base(block, theta0, 0.0, samples, np.empty(0), dt, 8, 0, history)
-    return history[: run.rows], run
+    still = np.zeros((round(duration / 0.01) + 1, 4))
+    run, rows = run_block(block(pier, RigidBase(restitution)), theta0, 0.0, still, 0.01, 8, 400_000)
+    return rows, run
 
 
 # Rigid base
@@ -84,8 +81,7 @@ def test_greatest_rotation_is_found_between_samples():
     """After one impact the peak lies inside a step; energy gives it exactly. 1e-9 α: Hermite at p h = 1e-3."""
     e = 0.9
     speed = 0.3 * FIG5.alpha * FIG5.p
-    block = Block(FIG5.alpha, FIG5.p, FIG5.gravity, e)
-    run = rock_on_rigid_base(block, 0.0, speed, np.zeros(101), np.empty(0), 0.01, 8, 0)
+    run, _ = run_block(block(FIG5, RigidBase(e)), 0.0, speed, np.zeros((101, 4)), 0.01, 8)
     exact = FIG5.alpha - math.acos(math.cos(FIG5.alpha) + 0.5 * (speed / FIG5.p) ** 2)
     assert run.theta_max == pytest.approx(exact, abs=1e-9 * FIG5.alpha)
 
@@ -198,11 +194,9 @@ def test_impact_scales_the_landing_velocity_loses_its_energy_and_keeps_the_angul
 
 def test_landing_impulse_of_the_rigid_limit_is_housners_restitution():
     """Rotating about the right pivot, landing on the left with ε = 0: θ̇⁺/θ̇⁻ = 1 − 2μ/(1+μ) sin²α. Algebra: 1e-14."""
-    from rockbatch.core.impact import land
-
     m = springs(FIG5, ElasticBase(50.0, 0.0, "finite", "guided"))
     before = State(0.0, 0.0, m.half_width * -0.3, -0.3, 0.0, 0.0)  # v̇_R = v̇ − b θ̇ = 0
-    after = land(m, before, -1)
+    after = land(m, before, LEFT)
     assert before.v_rate - m.half_width * before.omega == 0.0
     assert after.omega / before.omega == pytest.approx(FIG5.restitution, rel=1e-14)
 
@@ -212,7 +206,7 @@ def test_finite_kinematics_on_one_immovable_pivot_is_housners_equation(theta):
     """With z such that the pivot in contact does not accelerate, θ̈ = −p²[(1+v̈_g/g) sin(α sgn θ − θ) + ü_g/g cos(…)]."""
     m = springs(FIG5, YieldingBase(50.0, 0.0, "finite", "guided", eta=5.0))
     right = theta > 0.0
-    contact = Contact(0.0, 1.0, 0.0, 0.0, 0) if right else Contact(1.0, 0.0, 0.0, 0.0, 0)
+    contact = Contact(0.0, 1.0, 0.0, 0.0, 0.0) if right else Contact(1.0, 0.0, 0.0, 0.0, 0.0)
     at = geometry(m, theta)
     arm, bend = (at.arm_right, at.bend_right) if right else (at.arm_left, at.bend_left)
     omega, horizontal, vertical = 0.2, 2.0, -1.5

@@ -8,11 +8,11 @@ import math
 
 import numpy as np
 import pytest
+from core_runs import run_block
 
-from rockbatch.core.rigid.lane import ROW
-from rockbatch.core.rigid.runs import rock_on_rigid_base
-from rockbatch.core.types import BEFORE_EVENT, REST, Block
-from rockbatch.units import GRAVITY
+from rockbatch.core.types import BEFORE_EVENT, REST
+from rockbatch.pier import Pier, RigidBase
+from rockbatch.simulation import block
 
 P = 2.0
 DT = 0.005
@@ -20,10 +20,8 @@ DT = 0.005
 
 def let_go(alpha: float, start: float, e: float, duration: float):
     """Run and history rows of a block with p = 2 rad/s let go at ``start`` α, for ``duration``/p [s]."""
-    history = np.recarray(100_000, ROW)
-    still = np.zeros(round(duration / P / DT) + 1)
-    run = rock_on_rigid_base(Block(alpha, P, GRAVITY, e), start * alpha, 0.0, still, np.empty(0), DT, 4, 0, history)
-    return run, history[: run.rows]
+    still = np.zeros((round(duration / P / DT) + 1, 4))
+    return run_block(block(Pier(alpha, P), RigidBase(e)), start * alpha, 0.0, still, DT, 4, 100_000)
 
 
 def time_to_rest(start: float, e: float) -> float:

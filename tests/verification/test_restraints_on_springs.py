@@ -12,7 +12,7 @@ from scipy.signal import lsim
 
 import rockbatch as rb
 from rockbatch.motions.motion import Motion
-from rockbatch.pier import Damper, ElasticBase, Tendon, YieldingBase, problems
+from rockbatch.pier import Damper, ElasticBase, RigidBase, Tendon, YieldingBase, problems
 from rockbatch.simulation import Run, run_fixed, run_to_tolerance, written_run
 from rockbatch.simulation.models import first_substeps
 from rockbatch.units import GRAVITY
@@ -202,6 +202,18 @@ def test_hysteretic_dampers_tend_to_friction_as_their_yield_deflection_vanishes(
     )
     assert hard < 0.15 * soft
     assert hard < 0.003 * friction
+
+
+@pytest.mark.slow
+def test_a_tendon_on_stiff_springs_comes_to_what_it_does_on_the_rigid_base():
+    """Beyond a radian, where elongations of their own kind on either base would tell: 5.33 α and 4.98 α."""
+    tendon = (Tendon(psi=0.5, lam=3.0),)
+    motion = rb.pulse("sine", name="s", amplitude=40.0, period=1.5, dt=0.005, duration=6.0)
+    rigid = run_to_tolerance(FIG5, RigidBase(restraints=tendon), motion, 1e-4)
+    assert rigid.theta_max == pytest.approx(5.35 * FIG5.alpha, rel=0.01)
+    for beta in (200.0, 400.0, 800.0):
+        base = ElasticBase(beta, epsilon=0.0, kinematics="finite", flight="guided", restraints=tendon)
+        assert run_to_tolerance(FIG5, base, motion, 1e-4).theta_max == pytest.approx(rigid.theta_max, rel=0.01)
 
 
 def test_prestress_is_carried_from_the_start():

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from core_samples import FIG5, broadband, pulse
 
-from rockbatch.core.two_springs import static_state
+from rockbatch.core.springs.lanes import static_state
 from rockbatch.core.types import (
     IMPACT_LEFT,
     IMPACT_RIGHT,

@@ -1,0 +1,129 @@
+"""When a run on a rigid base is over (THEORY.md, When a run is over). Looked at once a sample, from the end of the tail on."""
+
+import math
+
+from rockbatch.core import system
+from rockbatch.core.block.equations import on_pivot, side_of
+from rockbatch.core.block.model import BlockTraits
+from rockbatch.core.clock import ground_rests
+from rockbatch.core.devices.laws import HYSTERETIC, TENDON, stored
+from rockbatch.core.devices.pull import gap, sticking
+from rockbatch.core.kernel import inlined, kernel
+from rockbatch.core.system import model, moment
+from rockbatch.core.types import NO_EVENT, RESTLESS, RUNNING, SURVIVED, UNDECIDED
+
+
+@kernel
+def reach_of(theta, omega, alpha, p):
+    """Return the greatest |θ| [rad] of free rocking from here on; infinite where the pier may overturn."""
+    tilt = abs(theta)
+    level = math.cos(alpha - tilt) + 0.5 * (omega / p) * (omega / p)
+    if tilt >= alpha or level >= 1.0:
+        return math.inf
+    return alpha - math.acos(level)
+
+
+@inlined
+def _stored(m, devices, y):
+    """Return the energy [J/kg] that tendons store in state ``y``, and what hysteretic dampers may give back."""
+    tendons, back = 0.0, 0.0
+    for j in range(len(devices.elements)):
+        of = devices.elements[j]
+        if of.kind == TENDON:
+            tendons += stored(of, gap(m, of, y, devices.level[0]).elongation, devices.x[j])
+        elif of.kind == HYSTERETIC:
+            back += 0.5 * of.strength * devices.x[j] * devices.x[j] / of.stiffness
+    return tendons, back
+
+
+@inlined
+def _at(m, y, theta):
+    """Return ``y`` at rest at rotation ``theta``."""
+    v, _ = on_pivot(m, theta, 1.0 if theta > 0.0 else -1.0)
+    return type(y)(v, theta, 0.0, 0.0)
+
+
+@kernel
+def _cannot_reach(m, devices, y, peak):
+    """Return whether the energy of this moment does not suffice to turn beyond ``peak`` [rad] to either side.
+
+    Weight and tendons have a potential; dampers only take, but for what a hysteretic one has stored.
+    """
+    limit, inertia = min(peak, m.alpha), 1.0 / m.quickness
+    level = inertia * m.p * m.p
+    tendons, back = _stored(m, devices, y)
+    energy = 0.5 * inertia * y.omega * y.omega + level * math.cos(m.alpha - abs(y.theta)) + tendons + back
+    least = math.inf
+    for side in (-1.0, 1.0):
+        there, _ = _stored(m, devices, _at(m, y, side * limit))
+        least = min(least, level * math.cos(m.alpha - limit) + there)
+    return abs(y.theta) < m.alpha and energy <= least
+
+
+@kernel
+def _decided(lanes, i, m, devices, y):
+    """Return whether nothing that comes later can exceed the peak: energy is only lost while the ground rests."""
+    if devices is None:
+        reach = reach_of(y.theta, y.omega, m.alpha, m.p)
+        return reach <= lanes.peak.theta[i] or (lanes.ending.turned[i] != 0.0 and reach < math.inf)
+    return _cannot_reach(m, devices, y, lanes.peak.theta[i])
+
+
+@kernel
+def held(m, devices, y, rest):
+    """Return whether friction holds the block at a tilt."""
+    if devices is None:
+        return False
+    return sticking(devices, NO_EVENT) != NO_EVENT and abs(y.omega) * m.height <= rest
+
+
+@system.expect.of(BlockTraits)
+def expect(traits, lanes, i, run):
+    """Set the sample at which a block is no longer waited for."""
+    lanes.ending.longest[i] = lanes.clock.samples[i] + run.patience
+    lanes.ending.omega[i] = lanes.ending.turned[i] = 0.0
+
+
+@system.peak_stands.of(BlockTraits)
+def peak_stands(traits, lanes, i):
+    """Return False: a block that flies under a moving ground may come to any rotation."""
+    return False
+
+
+@system.next_due.of(BlockTraits)
+def next_due(traits, lanes, i):
+    """Return the end of the record, and every sample from there on."""
+    return max(lanes.clock.npts[i] - 1.0, lanes.clock.sample[i] + 1.0)
+
+
+@kernel
+def _watch_reversals(lanes, i):
+    """Note a velocity reversal since the last sample while the ground rests; impacts keep the sign of the velocity."""
+    ending, omega = lanes.ending, lanes.now.omega[i]
+    if ground_rests(lanes, i):
+        ending.turned[i] = 1.0 if ending.omega[i] * omega < 0.0 else ending.turned[i]
+        ending.omega[i] = omega
+
+
+@system.over.of(BlockTraits)
+def over(traits, lanes, i, devices):
+    """Return the status at a sample."""
+    sample, samples, longest = lanes.clock.sample[i], lanes.clock.samples[i], lanes.ending.longest[i]
+    _watch_reversals(lanes, i)
+    if sample < samples:
+        return RUNNING
+    m = model(traits, lanes, i)
+    y, contact, _ = moment(traits, lanes, i)
+    if contact.left != 0.0 and contact.right != 0.0:
+        return SURVIVED
+    on_ground = side_of(contact) != 0.0
+    if on_ground and ground_rests(lanes, i):
+        if held(m, devices, y, lanes.clock.rest[i]):
+            return SURVIVED if abs(y.theta) < m.alpha else UNDECIDED
+        if _decided(lanes, i, m, devices, y):
+            return SURVIVED
+    if sample < longest:
+        return RUNNING
+    if longest == samples:  # nothing is waited for
+        return SURVIVED
+    return RESTLESS if reach_of(y.theta, y.omega, m.alpha, m.p) < math.inf else UNDECIDED

@@ -1,0 +1,181 @@
+"""Equations of a pier on a rigid base: rocking about a pivot, flight, rest (THEORY.md, Rigid base)."""
+
+import math
+
+from rockbatch.core import system
+from rockbatch.core.block.model import Block, Rocker, Rocking, Stance, Tilt
+from rockbatch.core.kernel import inlined
+from rockbatch.core.trigonometry import flat_sine_and_cosine, sine_and_cosine
+from rockbatch.core.types import Pull
+
+
+@inlined
+def arms_about(m, theta, side):
+    """Return ∂v/∂θ [m] of a block on its pivot on ``side``, and the height H [m] of its centre of mass above that pivot."""
+    sine, cosine = sine_and_cosine(theta)
+    b = side * m.half_width
+    return b * cosine - m.height * sine, m.height * cosine + b * sine
+
+
+@inlined
+def tilt_acceleration(m, slope, lever, horizontal, vertical):
+    """Return θ̈ [rad/s²] while rocking, by weight and ground alone, from the arms about the pivot (THEORY.md, eq. 14)."""
+    return -m.quickness * ((m.gravity + vertical) * slope + horizontal * lever)
+
+
+@system.rates.of(Rocker)
+def rocker_rates(m, y, side, horizontal, vertical):
+    """Return the rates of a block that rocks about the pivot on ``side`` and leans by FLAT at most, or rests on NEITHER."""
+    sine, cosine = flat_sine_and_cosine(y.theta)
+    b = side * m.half_width
+    slope, arm = b * cosine - m.height * sine, m.height * cosine + b * sine
+    return Tilt(y.omega, abs(side) * tilt_acceleration(m, slope, arm, horizontal, vertical))
+
+
+@system.share.of(Rocker)
+def rocker_share(m, h):
+    """Return 1: nothing decays."""
+    return 1.0
+
+
+@system.staged.of(Rocker)
+def rocker_staged(m, y, start, side, left):
+    """Return the stage as it is."""
+    return y
+
+
+@system.ended.of(Rocker)
+def rocker_ended(m, y, start, side, left):
+    """Return the end as it is."""
+    return y
+
+
+@system.pulled.of(Block)
+def pulled(m, force, moment):
+    """Return the pier ``m`` under a force [m/s²] and a moment [m²/s²]."""
+    return Block(
+        m.half_width, m.height, m.inertia, m.gravity, m.alpha, m.p, m.restitution, m.epsilon, m.guided, m.quickness,
+        Pull(force, moment), True,
+    )  # fmt: skip
+
+
+@inlined
+def side_of(contact):
+    """Return the pivot about which the block rocks, or NEITHER."""
+    return contact.right - contact.left
+
+
+@inlined
+def arms(m, theta):
+    """Return ∂v_i/∂θ − ∂v/∂θ [m] of the left pivot and of the right one at rotation ``theta``."""
+    sine, cosine = sine_and_cosine(theta)
+    return m.half_width * cosine + m.height * sine, -m.half_width * cosine + m.height * sine
+
+
+@inlined
+def on_pivot(m, theta, side):
+    """Return v and ∂v/∂θ [m] of a block on its pivot on ``side``."""
+    sine, cosine = sine_and_cosine(theta)
+    drop = m.height * sine * sine / (1.0 + cosine)  # h (1 − cos θ), without the loss of digits
+    b = side * m.half_width
+    return b * sine - drop, b * cosine - m.height * sine
+
+
+@inlined
+def _pull_down(pull):
+    """Return the devices' force [m/s²] and moment [m²/s²]."""
+    if pull is None:
+        return 0.0, 0.0
+    return pull.force, pull.moment
+
+
+@system.accelerations.of(Block)
+def accelerations(m, y, contact, horizontal, vertical):
+    """Return v̈ [m/s²] and θ̈ [rad/s²]: rocking (eq. 14), in flight with the key of the pivot that bore last, or at rest."""
+    side = side_of(contact)
+    down, back = _pull_down(m.pull)
+    if side != 0.0:
+        slope, arm = arms_about(m, y.theta, side)
+        turning = tilt_acceleration(m, slope, arm, horizontal, vertical) - m.quickness * (back + down * slope)
+        return slope * turning - arm * y.omega * y.omega, turning
+    if contact.left != 0.0:
+        return 0.0, 0.0
+    slope, arm = arms_about(m, y.theta, contact.bore)
+    turning = -(arm * slope * y.omega * y.omega + arm * horizontal + back) / (m.inertia + arm * arm)
+    return -m.gravity - vertical - down, turning
+
+
+@system.rates.of(Block)
+def rates(m, y, contact, horizontal, vertical):
+    """Return the right-hand side."""
+    v_acceleration, theta_acceleration = system.accelerations(m, y, contact, horizontal, vertical)
+    return Rocking(y.v_rate, y.omega, v_acceleration, theta_acceleration)
+
+
+@system.share.of(Block)
+def share(m, h):
+    """Return 1: nothing decays."""
+    return 1.0
+
+
+@system.staged.of(Block)
+def staged(m, y, start, contact, left):
+    """Return the stage as it is."""
+    return y
+
+
+@inlined
+def constrained(m, y, contact):
+    """Return ``y`` with v and v̇ as the pivot that is on the ground has them."""
+    side = side_of(contact)
+    if side == 0.0:
+        return y
+    v, slope = on_pivot(m, y.theta, side)
+    return Rocking(v, y.theta, slope * y.omega, y.omega)
+
+
+@system.ended.of(Block)
+def ended(m, y, start, contact, left):
+    """Return the end of a step, on the pivot that is on the ground."""
+    return constrained(m, y, contact)
+
+
+@system.lever.of(Block)
+def lever(m, y, contact):
+    """Return H [m]: the height of the centre of mass above the pivot that bears or bore last."""
+    side = side_of(contact)
+    return arms_about(m, y.theta, side if side != 0.0 else contact.bore)[1]
+
+
+@system.at_rest.of(Block)
+def at_rest(m):
+    """Return the velocity [m/s] below which a pivot counts as having none: rounding, next to R0 α p."""
+    return 1e-12 * m.alpha * m.p * math.sqrt(m.half_width * m.half_width + m.height * m.height)
+
+
+@inlined
+def normal_force(m, k, vertical):
+    """Return N/M [m/s²] of the ground on a block that rocks, with rates ``k`` (THEORY.md, Flight on the rigid base)."""
+    return m.gravity + vertical + k.v_rate + _pull_down(m.pull)[0]
+
+
+@system.airborne.of(Block)
+def airborne(m, contact):
+    """Return whether both pivots are in the air."""
+    return contact.left == 0.0 and contact.right == 0.0
+
+
+@system.clearances.of(Block)
+def clearances(m, y, supports):
+    """Return the height [m] of both pivots above the ground, and its rates [m/s]."""
+    sine, cosine = sine_and_cosine(y.theta)
+    drop = m.height * sine * sine / (1.0 + cosine)
+    arm_left, arm_right = arms(m, y.theta)
+    b = m.half_width * sine
+    return y.v + b + drop, y.v - b + drop, y.v_rate + arm_left * y.omega, y.v_rate + arm_right * y.omega
+
+
+@inlined
+def on_side(side):
+    """Return the Stance of a block that rocks about its pivot on ``side``."""
+    return Stance(0.5 * (1.0 - side), 0.5 * (1.0 + side), side)

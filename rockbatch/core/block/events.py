@@ -1,0 +1,242 @@
+"""Events of a pier on a rigid base: lift-off, impact, rest, take-off and landing (THEORY.md, Rigid base)."""
+
+import math
+
+from rockbatch.core import system
+from rockbatch.core.block.equations import (
+    airborne,
+    arms,
+    constrained,
+    normal_force,
+    on_side,
+    side_of,
+)
+from rockbatch.core.block.model import Block, Rocking, Stance
+from rockbatch.core.devices.events import leave_rest
+from rockbatch.core.devices.laws import CLOSES, OPENS
+from rockbatch.core.devices.pull import about_to_turn
+from rockbatch.core.ground import later
+from rockbatch.core.kernel import inlined, inner
+from rockbatch.core.roots import NO_ACCELERATION, surely
+from rockbatch.core.system import accelerations, clearances, lever, rates
+from rockbatch.core.table import along
+from rockbatch.core.types import (
+    CONTACT_LEFT,
+    IMPACT_BOTH,
+    IMPACT_LEFT,
+    IMPACT_RIGHT,
+    LEFT,
+    LIFT_OFF,
+    REST,
+    RIGHT,
+    TAKE_OFF,
+    Signals,
+)
+
+NEGLIGIBLE = 1e-13
+"""Of α: height of the bounces that are summed up instead of followed."""
+
+HOP = 1.25
+"""Of the time that a bounce would last by its acceleration at its start: the longest sub-step that shows its landing."""
+
+NEARBY = 1e-6
+"""Of the ground's own time 1/p: over which the rate of the normal force is taken."""
+
+NEAR_FLIGHT = 0.3
+"""Of g: normal force above which none is lost and regained within a sub-step."""
+
+RESTING = Stance(1.0, 1.0, 0.0)
+
+
+@inner
+def _lift(m, devices, y, side, ground):
+    """Return the tilt's acceleration [rad/s²] towards ``side`` of a block at rest that began to rock, and its rate [rad/s³]."""
+    under = about_to_turn(devices, m, y, side, OPENS)
+    _, turning = accelerations(under, y, on_side(side), ground.horizontal, ground.vertical)
+    change = -m.quickness * (ground.vertical_slope * side * m.half_width + ground.horizontal_slope * m.height)
+    return side * turning, side * change
+
+
+@inner
+def _change_of_normal(m, y, k, contact, ground):
+    """Return the rate of N/M [m/s³] of a block that rocks, from a moment later."""
+    near = NEARBY / m.p
+    soon, there = constrained(m, along(y, k, near), contact), later(ground, near)
+    k_soon = rates(m, soon, contact, there.horizontal, there.vertical)
+    return (normal_force(m, k_soon, there.vertical) - normal_force(m, k, ground.vertical)) / near
+
+
+@inlined
+def _height(m, height, velocity, acceleration, rest):
+    """Return the height [m] of a pivot in flight, and its rate; one that has just left the ground, to rounding, has left it."""
+    length = rest * rest / (NO_ACCELERATION * m.gravity)
+    if abs(velocity) <= rest and abs(height) <= length and acceleration >= -1e-9 * m.gravity:
+        return length, rest
+    return height, surely(velocity, acceleration, rest)
+
+
+@inlined
+def _at_once(value, slope, rounding):
+    """Return an event function of what holds the block down, and its slope: below zero, but for rounding, it happens at once."""
+    if abs(value) <= rounding:
+        return rounding, slope
+    return value, (slope if value > 0.0 else min(-abs(slope), value))
+
+
+@system.event_functions.of(Block)
+def event_functions(m, devices, y, k, contact, supports, rest, ground):
+    """Return Signals, and slopes: at rest what keeps each pivot down; rocking the tilt and the normal force; else heights."""
+    side = side_of(contact)
+    if side != 0.0:
+        omega, turning = side * y.omega, side * k.omega
+        if abs(omega) * m.height <= rest:
+            least = NO_ACCELERATION * m.p * m.p
+            turning = turning if abs(turning) > least else least  # it has just been lifted, to rounding
+            omega = surely(omega * m.height, turning, rest) / m.height
+        normal, normal_rate = normal_force(m, k, ground.vertical), 0.0
+        if normal < NEAR_FLIGHT * m.gravity:
+            normal_rate = _change_of_normal(m, y, k, contact, ground)
+        normal, normal_rate = _at_once(normal, normal_rate, NO_ACCELERATION * m.gravity)
+        if side > 0.0:
+            return Signals(side * y.theta, normal, 1.0, 1.0), Signals(omega, normal_rate, 0.0, 0.0)
+        return Signals(normal, side * y.theta, 1.0, 1.0), Signals(normal_rate, omega, 0.0, 0.0)
+    if contact.left != 0.0:
+        about_right, right_rate = _lift(m, devices, y, RIGHT, ground)
+        about_left, left_rate = _lift(m, devices, y, LEFT, ground)
+        left, left_slope = _at_once(-about_right, -right_rate, 0.0)
+        right, right_slope = _at_once(-about_left, -left_rate, 0.0)
+        return Signals(left, right, 1.0, 1.0), Signals(left_slope, right_slope, 0.0, 0.0)
+    left, right, left_velocity, right_velocity = clearances(m, y, supports)
+    arm_left, arm_right = arms(m, y.theta)
+    turned = y.omega * y.omega
+    bend = m.height * math.cos(y.theta)
+    across = m.half_width * math.sin(y.theta)
+    left, left_velocity = _height(
+        m, left, left_velocity, k.v_rate + arm_left * k.omega + (bend - across) * turned, rest
+    )
+    right, right_velocity = _height(
+        m, right, right_velocity, k.v_rate + arm_right * k.omega + (bend + across) * turned, rest
+    )
+    return Signals(left, right, 1.0, 1.0), Signals(left_velocity, right_velocity, 0.0, 0.0)
+
+
+@system.longest.of(Block)
+def longest(m, y, k, contact, h):
+    """Return no more than a bounce that has just begun will last: a cubic over a longer sub-step could hide it."""
+    side = side_of(contact)
+    if side == 0.0 or y.theta != 0.0:
+        return h
+    back = -side * k.omega
+    hop = 2.0 * HOP * side * y.omega / back if back > 0.0 else math.inf
+    return min(h, hop) if hop > 0.0 else h
+
+
+@system.uplifts.of(Block)
+def uplifts(m, before, after, landed):
+    """Return 1 for a lift-off from rest."""
+    return 1 if before.left != 0.0 and before.right != 0.0 else 0
+
+
+@system.transition.of(Block)
+def transition(m, devices, y, contact, supports, which, rest, ground, dt):
+    """Return state, contact and supports after event ``which``, its kind, and the time [s] that is left to rest."""
+    side = side_of(contact)
+    pivot = LEFT if which == CONTACT_LEFT else RIGHT
+    if side != 0.0:
+        if pivot == side:
+            return y, Stance(0.0, 0.0, side), supports, TAKE_OFF, 0.0
+        y, contact, kind, waits = _impact(m, devices, y, ground, dt)
+        return y, contact, supports, kind, waits
+    if airborne(m, contact):
+        y, contact, kind = _landing(m, y, contact, pivot, rest)
+        return y, contact, supports, kind, 0.0
+    y, contact, kind = _lift_off(m, devices, y, -pivot, ground)
+    return y, contact, supports, kind, 0.0
+
+
+@inner
+def _lift_off(m, devices, y, side, ground):
+    """Return state, stance and kind as the block leaves rest: about the pivot on ``side``, or with both (THEORY.md, eq. 15)."""
+    other, _ = _lift(m, devices, y, -side, ground)
+    if other >= -NO_ACCELERATION * m.p * m.p * m.alpha:
+        leave_rest(m, devices, y, 0.0)
+        return y, Stance(0.0, 0.0, 0.0), TAKE_OFF
+    leave_rest(m, devices, y, side)
+    return y, on_side(side), LIFT_OFF
+
+
+@inner
+def _impact(m, devices, y, ground, dt):
+    """Return state, stance, kind and the time [s] left to rest, as the block passes through θ = 0 (THEORY.md, eq. 16)."""
+    omega = m.restitution * y.omega
+    height, remaining = _bounces(m, devices, omega, ground)
+    if omega == 0.0 or (height < NEGLIGIBLE * m.alpha and remaining < dt):
+        return Rocking(0.0, 0.0, 0.0, 0.0), RESTING, REST, (remaining if omega != 0.0 else 0.0)
+    side = RIGHT if omega > 0.0 else LEFT
+    y = Rocking(0.0, 0.0, side * m.half_width * omega, omega)
+    return y, on_side(side), IMPACT_LEFT if side == LEFT else IMPACT_RIGHT, 0.0
+
+
+@inner
+def _bounces(m, devices, omega, ground):
+    """Return the height [rad] of the next bounce, and the time [s] of all that are left (Zeno), if the ground allows rest.
+
+    Small bounces see a constant acceleration towards rest, friction added while they open and taken off while they close.
+    Infinite if there is no rest.
+    """
+    here = RIGHT if omega > 0.0 else LEFT
+    still = Rocking(0.0, 0.0, 0.0, 0.0)
+    speed, times, ratio, height = abs(omega), 0.0, 1.0, 0.0
+    if m.restitution == 1.0 or speed == 0.0:
+        return math.inf, math.inf
+    for side in (here, -here):
+        slows = -_lift(m, devices, still, side, ground)[0]
+        speeds = -side * _closing(m, devices, still, side, ground)
+        if slows <= 0.0 or speeds <= 0.0:
+            return math.inf, math.inf
+        height = max(height, 0.5 * speed * speed / slows)
+        back = speed * math.sqrt(speeds / slows)
+        times += speed / slows + back / speeds
+        ratio *= m.restitution * back / speed
+        speed = m.restitution * back
+    return height, times / (1.0 - ratio)
+
+
+@inner
+def _closing(m, devices, y, side, ground):
+    """Return θ̈ [rad/s²] of a block about its pivot on ``side`` that closes at θ = 0, against what devices then hold."""
+    under = about_to_turn(devices, m, y, side, CLOSES)
+    return accelerations(under, y, on_side(side), ground.horizontal, ground.vertical)[1]
+
+
+@inner
+def _landing(m, y, contact, pivot, rest):
+    """Return state, stance and kind as ``pivot`` lands from flight; the other may land at the same instant.
+
+    THEORY.md, Flight on the rigid base.
+
+    The impulse at the pivot has a horizontal part: its key takes over from that of the pivot that bore last. Angular momentum
+    about it is kept, and its velocity is multiplied by −ε.
+    """
+    left, right, left_velocity, right_velocity = clearances(m, y, None)
+    arm_left, arm_right = arms(m, y.theta)
+    arm, velocity, other, other_velocity = arm_left, left_velocity, right, right_velocity
+    if pivot == RIGHT:
+        arm, velocity, other, other_velocity = arm_right, right_velocity, left, left_velocity
+    bounce = m.epsilon * velocity
+    rebounds = 0.5 * bounce * bounce / m.gravity > NEGLIGIBLE * m.alpha * m.half_width
+    bounce = bounce if rebounds else 0.0
+    if abs(other) <= rest * rest / (NO_ACCELERATION * m.gravity) and other_velocity < -rest:
+        if rebounds:
+            return Rocking(0.0, 0.0, -m.epsilon * y.v_rate, -m.epsilon * y.omega), Stance(0.0, 0.0, pivot), IMPACT_BOTH
+        return Rocking(0.0, 0.0, 0.0, 0.0), RESTING, IMPACT_BOTH
+    stance = on_side(pivot)
+    levers = lever(m, y, stance) * lever(m, y, contact)
+    omega = ((m.inertia + levers) * y.omega - arm * (y.v_rate + bounce)) * m.quickness
+    landed = Rocking(y.v, y.theta, -bounce - arm * omega, omega)
+    kind = IMPACT_LEFT if pivot == LEFT else IMPACT_RIGHT
+    if rebounds:
+        return landed, Stance(0.0, 0.0, pivot), kind
+    if pivot * y.theta < 0.0:  # both are down, to rounding
+        landed = Rocking(0.0, 0.0, landed.v_rate, omega)
+    return constrained(m, landed, stance), stance, kind

@@ -1,0 +1,167 @@
+"""Lanes of piers on a rigid base: what a table holds of them, how runs begin and end."""
+
+import math
+from typing import NamedTuple
+
+from rockbatch.core import system
+from rockbatch.core.block import ending, events, passing  # noqa: F401  answers of the block
+from rockbatch.core.block.equations import constrained, on_side
+from rockbatch.core.block.model import Block, BlockTraits, Numbers, Rocking, Stance, Tilt
+from rockbatch.core.clock import COMMON
+from rockbatch.core.kernel import inner
+from rockbatch.core.system import Kind
+from rockbatch.core.table import get, lanes_of, put
+from rockbatch.core.types import LEFT, RIGHT
+
+
+class News(NamedTuple):
+    """What the pass has to say."""
+
+    kind: float
+
+
+class Ending(NamedTuple):
+    """What decides when the run is over."""
+
+    longest: float  # sample at which a block is no longer waited for
+    omega: float  # at the last sample since the ground rests, 0 before it [rad/s]
+    turned: float  # 1 once the velocity has reversed since then
+
+
+class Bounds(NamedTuple):
+    """Numbers by which the pass bounds the normal force, and sees the ground lift a block at rest."""
+
+    tangent: float  # tan α
+    share: float  # μ/(1+μ)
+    sine_squared: float  # sin² α
+    radius: float  # R0 [m]
+
+
+LANE = lanes_of(COMMON | {
+    "model": Numbers, "now": Rocking, "end": Tilt, "contact": Stance, "news": News, "ending": Ending, "bounds": Bounds,
+})  # fmt: skip
+
+
+class Line(NamedTuple):
+    """A run as it is asked for: the model as Block has it, and the rest."""
+
+    half_width: float
+    height: float
+    inertia: float
+    gravity: float
+    alpha: float
+    p: float
+    restitution: float
+    epsilon: float
+    guided: float
+    quickness: float
+    theta: float  # at the start [rad], without velocity but for ``omega``
+    omega: float  # [rad/s]
+    dt: float  # sampling interval [s]
+    substeps: float  # steps to a sampling interval
+    quiet_samples: float  # of the free-vibration tail after the record
+    first_row: float  # where among the rows of the ground the motion begins
+    npts: float  # and how many it has
+    patience: float = (
+        0.0  # samples that the run goes on at most while, by its energy, the block could still turn further
+    )
+
+
+@system.model.of(BlockTraits)
+def model(traits, lanes, i):
+    """Return the Block of lane ``i``."""
+    m = lanes.model
+    return Block(
+        m.half_width[i], m.height[i], m.inertia[i], m.gravity[i], m.alpha[i], m.p[i], m.restitution[i], m.epsilon[i],
+        m.guided[i], m.quickness[i], None, True,
+    )  # fmt: skip
+
+
+@system.moment.of(BlockTraits)
+def moment(traits, lanes, i):
+    """Return state and stance of lane ``i``; the ground needs no support."""
+    contact = get(lanes.contact, i, Stance)
+    return constrained(system.model(traits, lanes, i), get(lanes.now, i, Rocking), contact), contact, None
+
+
+@system.put_moment.of(BlockTraits)
+def put_moment(traits, lanes, i, y, contact, supports):
+    """Write state and stance of lane ``i``."""
+    put(lanes.now, i, y)
+    put(lanes.contact, i, contact)
+
+
+@system.begin.of(BlockTraits)
+def begin(traits, lanes, i, run):
+    """Put the model and the start of ``run`` into lane ``i``."""
+    alpha, m, bounds = run.alpha, lanes.model, lanes.bounds
+    m.half_width[i], m.height[i], m.inertia[i], m.gravity[i] = run.half_width, run.height, run.inertia, run.gravity
+    m.alpha[i], m.p[i], m.restitution[i], m.epsilon[i], m.guided[i] = (
+        alpha,
+        run.p,
+        run.restitution,
+        run.epsilon,
+        run.guided,
+    )
+    m.quickness[i] = run.quickness
+    size = math.hypot(run.half_width, run.height)
+    bounds.tangent[i], bounds.share[i] = run.half_width / run.height, size * run.p * run.p / run.gravity
+    bounds.sine_squared[i], bounds.radius[i] = math.sin(alpha) * math.sin(alpha), size
+    at_rest = run.theta == 0.0 and run.omega == 0.0
+    leans = run.theta if run.theta != 0.0 else run.omega
+    side = RIGHT if leans > 0.0 else LEFT
+    contact = Stance(1.0, 1.0, 0.0) if at_rest else on_side(side)
+    y = constrained(model_of(lanes, i), Rocking(0.0, run.theta, 0.0, run.omega), contact)
+    put(lanes.now, i, y)
+    put(lanes.contact, i, contact)
+
+
+@inner
+def model_of(lanes, i):
+    """Return the Block of lane ``i``."""
+    return system.model(BlockTraits(0.0), lanes, i)
+
+
+@system.attend.of(BlockTraits)
+def attend(traits, lanes, i):
+    """Let the lane go on from the end of its sub-step; a new peak is the driver's."""
+    lanes.now.theta[i], lanes.now.omega[i] = lanes.end.theta[i], lanes.end.omega[i]
+
+
+@system.include.of(BlockTraits)
+def include(traits, lanes, i, m, y, k, end, k_end, contact, h):
+    """Keep nothing."""
+
+
+@system.after_event.of(BlockTraits)
+def after_event(traits, lanes, i, m, before, after, y):
+    """Take back the impact of a pier that topples: it takes off before it lies on its side, and lands beyond α."""
+    if system.airborne(m, before) and not system.airborne(m, after) and abs(y.theta) >= m.alpha:
+        lanes.tally.impacts[i] -= 1.0
+
+
+@system.after_step.of(BlockTraits)
+def after_step(traits, lanes, i, marks, contact, whole):
+    """Note nothing."""
+
+
+@system.finish.of(BlockTraits)
+def finish(traits, lanes, i, t, result):
+    """Write where the block is at the end."""
+    result.v_end, result.theta_end = lanes.now.v[i], lanes.now.theta[i]
+
+
+@system.write_reversals.of(BlockTraits)
+def write_reversals(traits, lanes, i, substep, history, row):
+    """Return the next row of the history: the ground has no branches."""
+    return row
+
+
+def kind_of(m):
+    """Return the Kind of the pier ``m`` (Block)."""
+    return Kind(BlockTraits(0.0), Line, LANE, Rocking._fields + Stance._fields)
+
+
+def line_of(m, theta, omega, *timing):
+    """Return the Line of a run of the pier ``m`` (Block); ``timing`` is what Line has from ``dt`` on."""
+    return Line(*m[:-2], theta, omega, *timing)

@@ -1,0 +1,76 @@
+"""A pier on a rigid base, its state and what it stands on (THEORY.md, Rigid base)."""
+
+from typing import NamedTuple
+
+from rockbatch.core.types import Pull
+
+
+class Block(NamedTuple):
+    """A pier on a rigid base, per unit mass. Its kinematics are finite always."""
+
+    half_width: float  # b [m]
+    height: float  # h [m]
+    inertia: float  # I0/M [m²]
+    gravity: float  # g [m/s²]
+    alpha: float  # α [rad]
+    p: float  # [rad/s]
+    restitution: float  # e, factor on the angular velocity when the block passes through θ = 0
+    epsilon: float  # restitution of a pivot that lands from flight
+    guided: float  # 1: flight goes on, 0: it ends the run
+    quickness: float  # 1/(I0/M + R0²) [1/m²]
+    pull: Pull | None = None  # of dampers and tendons; None: there are none
+    finite: bool = True
+
+
+class BlockTraits(NamedTuple):
+    """What kernels are compiled for: nothing that differs between blocks."""
+
+    alike: float = 0.0
+
+
+class Numbers(NamedTuple):
+    """The numbers of a Block, as lanes hold them."""
+
+    half_width: float
+    height: float
+    inertia: float
+    gravity: float
+    alpha: float
+    p: float
+    restitution: float
+    epsilon: float
+    guided: float
+    quickness: float
+
+
+class Rocker(NamedTuple):
+    """A block while it rocks about one pivot, for which two numbers suffice; it holds no pull."""
+
+    half_width: float
+    height: float
+    gravity: float
+    quickness: float  # p²/(g R0) = 1/(I0/M + R0²) [1/m²]
+
+
+class Tilt(NamedTuple):
+    """State of a Rocker; also its rates."""
+
+    theta: float  # [rad]
+    omega: float  # [rad/s]
+
+
+class Rocking(NamedTuple):
+    """State of a Block; also its rates. While it rocks, v follows from θ."""
+
+    v: float  # height of the centre of mass above that at rest [m]
+    theta: float  # rotation, positive to the right [rad]
+    v_rate: float  # [m/s]
+    omega: float  # [rad/s]
+
+
+class Stance(NamedTuple):
+    """What is constant between events."""
+
+    left: float  # 1 if the pivot is on the ground
+    right: float
+    bore: float  # pivot whose shear key holds its place: the one that bore last, LEFT or RIGHT, or NEITHER after rest

@@ -1,0 +1,76 @@
+"""One pass over all lanes of blocks: a sub-step each, where arithmetic proves that nothing happens on the way.
+
+The compiler makes vector instructions of the loops, because nothing in them branches and the numbers of a field lie next to
+each other. A lane's arithmetic does not see its neighbours, so a run comes to the same bits in any company.
+"""
+
+from rockbatch.core import system
+from rockbatch.core.block.equations import side_of
+from rockbatch.core.block.model import BlockTraits, Rocker, Stance, Tilt
+from rockbatch.core.clock import ATTEND, CALM, EVENTFUL, ground_at
+from rockbatch.core.kernel import inlined
+from rockbatch.core.rk4 import rk4
+from rockbatch.core.system import rates
+from rockbatch.core.table import get
+from rockbatch.core.trigonometry import FLAT
+
+
+@inlined
+def _inner_points(side, y, end, h):
+    """Return the tilt [rad] at the inner two of the four Bézier points of the cubic from ``y`` to ``end``, which bound it."""
+    third = h * (1.0 / 3.0)
+    return side * (y.theta + third * y.omega), side * (end.theta - third * end.omega)
+
+
+@inlined
+def _pass_over(lanes, i, substep, settings):
+    """Take lane ``i`` a sub-step further.
+
+    It is calm if the block surely stays on its pivot, by the Bézier points and a bound on the normal force; does not lean
+    far; and has no new peak but at the end. One at rest is calm if the ground, linear in time, does not lift it at either end.
+    """
+    model, clock, h = lanes.model, lanes.clock, lanes.clock.step[i]
+    m = Rocker(model.half_width[i], model.height[i], model.gravity[i], model.quickness[i])
+    stance = get(lanes.contact, i, Stance)
+    side = side_of(stance)
+    y = Tilt(lanes.now.theta[i], lanes.now.omega[i])
+    ground = ground_at(lanes, i, substep * h)
+    k1 = rates(m, y, side, ground.horizontal, ground.vertical)
+    end = rk4(m, None, y, k1, side, ground, h)
+    lanes.end.theta[i] = end.theta
+    lanes.end.omega[i] = end.omega
+
+    horizontal_end = ground.horizontal + h * ground.horizontal_slope
+    vertical_end = ground.vertical + h * ground.vertical_slope
+    down = m.gravity + min(ground.vertical, vertical_end)
+    strongest = max(abs(ground.horizontal), abs(horizontal_end))
+    early, late = _inner_points(side, y, end, h)
+    tilt_end = side * end.theta
+    stays = side * y.theta >= 0.0 and min(min(early, late), tilt_end) > 0.0 and max(side * y.theta, tilt_end) < FLAT
+    # (F1) of the normal force, with φ² for sin²φ beyond 2α, ½ or |φ| for sin φ cos φ, and 1 for cos φ
+    bounds, beyond = lanes.bounds, max(max(early, late), max(side * y.theta, tilt_end)) - model.alpha[i]
+    steep, fastest = max(model.alpha[i], beyond), abs(y.omega) + abs(end.omega)
+    bears = 1.0 - bounds.share[i] * max(bounds.sine_squared[i], max(beyond, 0.0) * max(beyond, 0.0))
+    throws = bounds.share[i] * min(0.5, steep) * strongest + bounds.radius[i] * fastest * fastest
+    pressed = down * bears > throws
+    peak = lanes.peak.theta[i]
+    new = y.omega * end.omega < 0.0 and max(early, late) > peak
+    rests = bounds.tangent[i] * (m.gravity + ground.vertical) > abs(ground.horizontal)
+    rests_at_end = bounds.tangent[i] * (m.gravity + vertical_end) > abs(horizontal_end)
+    moving = stays and pressed and settings.locate
+    resting = rests and rests_at_end and stance.left != 0.0 and settings.locate
+    stands = moving if side != 0.0 else resting
+    calm = stands and not new
+    higher = calm and tilt_end > peak
+    lanes.peak.theta[i] = tilt_end if higher else peak
+    lanes.peak.time[i] = clock.sample[i] * clock.dt[i] + (substep + 1.0) * h if higher else lanes.peak.time[i]
+    lanes.now.theta[i] = end.theta if calm else y.theta
+    lanes.now.omega[i] = end.omega if calm else y.omega
+    lanes.news.kind[i] = CALM if calm else (ATTEND if stands else EVENTFUL)
+
+
+@system.one_pass.of(BlockTraits)
+def one_pass(traits, lanes, count, substep, settings):
+    """Take the first ``count`` lanes a sub-step further."""
+    for i in range(count):
+        _pass_over(lanes, i, substep, settings)

@@ -1,0 +1,203 @@
+"""What every run keeps while it is under way, whatever its system: time, ground, peak, windows, counts, flights."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from rockbatch.core.kernel import inlined, inner, kernel
+from rockbatch.core.roots import hermite, largest_within, turning_point
+from rockbatch.core.system import clearances
+from rockbatch.core.types import NOT_FINITE, OVERTURNED, SURVIVED, Ground
+
+ON_ITS_SIDE = 0.5 * math.pi
+
+WINDOWS = 32
+"""Parts of a run, equal in time, in each of which its greatest |θ| at a sample is kept: its trajectory in short."""
+
+UNSET = -1.0
+"""Of a time or a number of a sample that is not known yet."""
+
+CALM, ATTEND, EVENTFUL = 0.0, 1.0, 2.0
+"""What is new in a lane after a pass: nothing; the sub-step stands, but an extreme or a branch that has ended is to be taken in;
+it may not stand, and has to be taken event by event."""
+
+
+class Clock(NamedTuple):
+    """Which run a lane holds, and where it is."""
+
+    number: float  # of the run
+    first_row: float  # of its motion among the ground's rows
+    npts: float
+    samples: float  # of record and free-vibration tail
+    dt: float  # sampling interval [s]
+    step: float  # dt/substeps [s]
+    sample: float  # number of the last sample
+    due: float  # number of the sample at which more is due than the next step
+    alpha: float  # slenderness [rad]
+    rest: float  # velocity that counts as none [m/s]
+
+
+class Peak(NamedTuple):
+    """Greatest |θ| so far, of the run and of its present window."""
+
+    theta: float  # [rad]
+    time: float  # [s]
+    window: float  # number of the present window
+    next_window: float  # sample with which the next one begins
+    in_window: float  # greatest |θ| at a sample of this one [rad]
+
+
+class Tally(NamedTuple):
+    """What has happened so far."""
+
+    impacts: float
+    uplifts: float
+    events: float  # in sample ``counted``
+    counted: float
+    flights: float
+    airborne: float  # when the present flight began [s], NaN on the ground
+    t_flight: float  # first time of flight [s]; NaN without one
+    flight_duration: float  # of all flights [s]
+    flight_height: float  # greatest, of the lower pivot [m]
+    t_impact: float  # of the last impact [s]; NaN without one
+    t_rest: float  # when the pier last came to rest [s]; NaN while it moves
+    moved: float  # time at which a pivot last left the ground or landed [s]
+
+
+COMMON = {"clock": Clock, "ground": Ground, "peak": Peak, "tally": Tally}
+"""Parts of every table of lanes; the ground is that at the last sample."""
+
+
+@inner
+def fallen(theta):
+    """Return OVERTURNED once the pier lies on its side, NOT_FINITE for what no pier turns within a step, else SURVIVED."""
+    if abs(theta) < ON_ITS_SIDE:
+        return SURVIVED
+    return OVERTURNED if abs(theta) < 2.0 * ON_ITS_SIDE else NOT_FINITE
+
+
+@inner
+def start_clock(lanes, i, number, run, rest, alpha, theta):
+    """Set clock, counts and peaks of run ``number`` at its start, at rotation ``theta`` [rad]."""
+    clock, peak, tally = lanes.clock, lanes.peak, lanes.tally
+    clock.number[i], clock.first_row[i], clock.npts[i] = number, run.first_row, run.npts
+    clock.samples[i] = run.npts - 1.0 + run.quiet_samples
+    clock.dt[i], clock.step[i] = run.dt, run.dt / run.substeps
+    clock.sample[i], clock.due[i], clock.rest[i], clock.alpha[i] = 0.0, 1.0, rest, alpha
+    peak.theta[i], peak.time[i] = abs(theta), 0.0
+    peak.window[i], peak.next_window[i], peak.in_window[i] = 0.0, 1.0, abs(theta)  # the first one is the first sample
+    tally.impacts[i] = tally.uplifts[i] = tally.events[i] = tally.counted[i] = tally.flights[i] = 0.0
+    tally.flight_duration[i] = tally.flight_height[i] = tally.moved[i] = 0.0
+    tally.airborne[i] = tally.t_flight[i] = tally.t_impact[i] = math.nan
+    tally.t_rest[i] = 0.0 if theta == 0.0 else math.nan
+
+
+@inlined
+def read_ground(lanes, i, ground):
+    """Read the ground at the last sample; zero after the record."""
+    at, sample = lanes.ground, lanes.clock.sample[i]
+    if sample < lanes.clock.npts[i]:
+        row = np.uintp(lanes.clock.first_row[i] + sample)  # unsigned: no index from the end is looked for
+        at.horizontal[i] = ground[row, 0]
+        at.horizontal_slope[i] = ground[row, 1]
+        at.vertical[i] = ground[row, 2]
+        at.vertical_slope[i] = ground[row, 3]
+    else:
+        at.horizontal[i] = at.horizontal_slope[i] = at.vertical[i] = at.vertical_slope[i] = 0.0
+
+
+@inlined
+def ground_at(lanes, i, x):
+    """Return the ground ``x`` [s] after the last sample."""
+    at = lanes.ground
+    a_slope, c_slope = at.horizontal_slope[i], at.vertical_slope[i]
+    return Ground(at.horizontal[i] + x * a_slope, a_slope, at.vertical[i] + x * c_slope, c_slope)
+
+
+@inner
+def ground_rests(lanes, i):
+    """Return whether the ground is at rest from the last sample on, for good."""
+    over = lanes.clock.sample[i] >= lanes.clock.npts[i] - 1.0
+    return over and lanes.ground.horizontal[i] == 0.0 and lanes.ground.vertical[i] == 0.0
+
+
+@kernel
+def window_of(sample, samples):
+    """Return the window of a run of ``samples`` in which ``sample`` lies, and the sample with which the next one begins.
+
+    The last window lasts to the end of the run, however long it is waited for.
+    """
+    window = min(int(sample * WINDOWS / max(samples, 1.0)), WINDOWS - 1)
+    begin_next = float(math.ceil((window + 1) * samples / WINDOWS)) if window < WINDOWS - 1 else math.inf
+    return float(window), begin_next
+
+
+@inner
+def close_window(lanes, i, results):
+    """Write the greatest |θ| of the present window."""
+    results[int(lanes.clock.number[i])].extremes[int(lanes.peak.window[i])] = lanes.peak.in_window[i]
+
+
+@inner
+def turn_window(lanes, i, theta, results):
+    """Begin the next window at a sample with which the present one is over."""
+    peak, sample = lanes.peak, lanes.clock.sample[i]
+    if sample >= peak.next_window[i]:
+        close_window(lanes, i, results)
+        peak.window[i], peak.next_window[i] = window_of(sample, lanes.clock.samples[i])
+        peak.in_window[i] = abs(theta)
+
+
+@inner
+def include_peak(lanes, i, y, end, start, done, h):
+    """Bring the peak up to that of a smooth part of ``h`` [s] from ``y`` to ``end``, ``done`` [s] after ``start``.
+
+    ``start`` [s] of the sub-step is since the last sample. Times are added up as those of events are.
+    """
+    at, peak = largest_within(y.theta, y.omega, end.theta, end.omega, h, lanes.peak.theta[i])
+    if at >= 0.0:
+        lanes.peak.theta[i] = peak
+        lanes.peak.time[i] = lanes.clock.sample[i] * lanes.clock.dt[i] + (start + (done + at))
+
+
+@inner
+def include_height(lanes, i, m, supports, y, end, h):
+    """Bring the height of flight up to that of the lower pivot in a smooth part of ``h`` [s] from ``y`` to ``end``.
+
+    The lower of two cubics is highest at an end, where the lower one turns, or where they meet.
+    """
+    left, right, left_rate, right_rate = clearances(m, y, supports)
+    left_end, right_end, left_end_rate, right_end_rate = clearances(m, end, supports)
+    highest = max(min(left, right), min(left_end, right_end))
+    gap, gap_end = left - right, left_end - right_end
+    meet = h * gap / (gap - gap_end) if gap * gap_end < 0.0 else 0.0
+    for _ in range(4):  # the way from chord to cubic, Newton's
+        value = hermite(gap, left_rate - right_rate, gap_end, left_end_rate - right_end_rate, h, meet)
+        meet = min(max(meet - value * h / (gap_end - gap), 0.0), h) if gap * gap_end < 0.0 else 0.0
+    for x in (
+        turning_point(left, left_rate, left_end, left_end_rate, h) if left_rate * left_end_rate < 0.0 else 0.0,
+        turning_point(right, right_rate, right_end, right_end_rate, h) if right_rate * right_end_rate < 0.0 else 0.0,
+        meet,
+    ):
+        lower = min(
+            hermite(left, left_rate, left_end, left_end_rate, h, x),
+            hermite(right, right_rate, right_end, right_end_rate, h, x),
+        )
+        highest = max(highest, lower)
+    lanes.tally.flight_height[i] = max(lanes.tally.flight_height[i], highest)
+
+
+@inner
+def note_flight(lanes, i, flies, t):
+    """Begin or end a flight at ``t`` [s], if the pier flies or no longer does."""
+    tally = lanes.tally
+    began = tally.airborne[i]
+    if flies and math.isnan(began):
+        tally.flights[i] += 1.0
+        tally.airborne[i] = t
+        if math.isnan(tally.t_flight[i]):
+            tally.t_flight[i] = t
+    elif not flies and not math.isnan(began):
+        tally.flight_duration[i] += t - began
+        tally.airborne[i] = math.nan

@@ -1,0 +1,334 @@
+"""What dampers and tendons do to a pier: their elongation, their force and moment, the rates of their states.
+
+A device at the offset s from the middle of the base has the elongation e = u/cos(θ/2), where u is the rise of its place
+above that at rest. While a block turns about a point of the ground at the distance d that is 2 d sin(θ/2), the chord of the
+place's way (THEORY.md, Dampers and tendons). In first-order kinematics e = u. Its force F acts on v and θ by ∂e/∂v and ∂e/∂θ.
+
+What is integrated beside the pier's state, x: the state of each device, the energy that each has taken and not given back
+[J/kg], the work of the ground [J/kg], and what the devices' P–Δ moments have put in [J/kg].
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from rockbatch.core.devices.laws import (
+    CLOSES,
+    ELEMENT,
+    FRICTION,
+    HYSTERETIC,
+    OPENS,
+    STICKS,
+    USE,
+    VISCOUS,
+    force,
+    loss_rate,
+    mode_of,
+    state_rate,
+)
+from rockbatch.core.kernel import inlined, inner, question
+from rockbatch.core.system import accelerations, lever, pulled
+from rockbatch.core.trigonometry import sine_and_cosine
+from rockbatch.core.types import NO_EVENT
+
+STAYS = 1e-9
+"""Acceleration of a place by a unit force there, below which it does not move: a pivot on rigid ground, to rounding."""
+
+LINKED = 1e-12
+"""Of the product of two such accelerations: a determinant below it means that two places can only move together."""
+
+PLASTIC = 1e-14
+"""How near to 1 the |z| of a hysteretic damper is 1: 1 − z decays by exp(−5 e/u_y) and would take steps of u_y for ever."""
+
+TRAVEL = 0.5
+"""Of u_y: what a hysteretic damper may be drawn out by in one step of a sample's length, and less the more steps a sample has."""
+
+GROWTH = 0.5
+"""By which share of itself the speed of a viscous damper may grow or fall in a step: |ė|^a has no Taylor series at 0."""
+
+NEAREST = 1e-3
+"""Of a step: the shortest that this asks for, from a velocity reversal or to it."""
+
+
+class Devices(NamedTuple):
+    """The devices of one run and their states, in arrays that the run writes."""
+
+    elements: np.recarray  # of Element
+    level: np.ndarray  # shape (1,), v of the pier at rest [m]
+    modes: np.ndarray  # of tendons: TAUT, SLACK or YIELDING
+    goes: np.ndarray  # OPENS, CLOSES or, of friction, STICKS
+    x: np.ndarray  # states, energies taken, work of the ground, P–Δ
+    stage: np.ndarray  # of a Runge–Kutta step
+    end: np.ndarray
+    rates: np.ndarray  # shape (5, len(x)): of the four stages and at the end
+    use: np.recarray  # of Use
+
+
+def devices_of(elements):
+    """Return Devices for a sequence of Element, at rest; None without any."""
+    n = len(elements)
+    if n == 0:
+        return None
+    size = 2 * n + 2
+    rows = np.array([tuple(each) for each in elements], ELEMENT).view(np.recarray)
+    x, stage, end = np.zeros(size), np.zeros(size), np.zeros(size)
+    use = np.zeros(n, USE).view(np.recarray)
+    return Devices(rows, np.zeros(1), np.zeros(n), np.zeros(n), x, stage, end, np.zeros((5, size)), use)
+
+
+class Gap(NamedTuple):
+    """Elongation e of a device at one moment, and its derivatives."""
+
+    elongation: float  # [m]
+    speed: float  # ė [m/s]
+    by_v: float  # ∂e/∂v
+    by_theta: float  # ∂e/∂θ [m]
+    bend: float  # what ë has beside v̈ ∂e/∂v + θ̈ ∂e/∂θ [m/s²]
+    arm: float  # of the force about the centre of mass [m], with first-order P–Δ
+
+
+@inner
+def gap(m, of, y, level):
+    """Return the Gap of a device in state ``y``; at rest the pier is at v = ``level`` [m]."""
+    return gap_at(m, of.offset, y, level)
+
+
+@inner
+def gap_at(m, s, y, level):
+    """Return the Gap of a device at the offset ``s`` [m]."""
+    h = m.height
+    if m.finite is None:
+        return Gap(y.v - level - s * y.theta, y.v_rate - s * y.omega, 1.0, -s, 0.0, h * y.theta - s)
+    sine, cosine = sine_and_cosine(y.theta)
+    half_sine, half_cosine = sine_and_cosine(0.5 * y.theta)
+    up = y.v - level - s * sine + 2.0 * h * half_sine * half_sine
+    arm, curve = h * sine - s * cosine, h * cosine + s * sine  # ∂u/∂θ and ∂²u/∂θ²
+    tangent = half_sine / half_cosine
+    by_v = 1.0 / half_cosine
+    by_theta = by_v * (arm + 0.5 * tangent * up)
+    twist = curve + tangent * arm + up * (0.25 + 0.5 * tangent * tangent)  # cos(θ/2) ∂²e/∂θ²
+    bend = by_v * y.omega * (tangent * y.v_rate + twist * y.omega)
+    return Gap(by_v * up, by_v * y.v_rate + by_theta * y.omega, by_v, by_theta, bend, by_theta)
+
+
+@inner
+def lifted(at, v_acceleration, theta_acceleration):
+    """Return ë [m/s²] of a device whose Gap is ``at``."""
+    return at.by_v * v_acceleration + at.by_theta * theta_acceleration + at.bend
+
+
+@inner
+def sticking(devices, after):
+    """Return the number of the next friction damper behind ``after`` that does not move, NO_EVENT without one."""
+    for j in range(after + 1, len(devices.elements)):
+        if devices.elements[j].kind == FRICTION and devices.goes[j] == STICKS:
+            return j
+    return NO_EVENT
+
+
+@inner
+def _held_by_friction(m, first, second, y, contact, horizontal, vertical, strengths):
+    """Return the forces [m/s²] at two places, whose Gaps are given, by which they do not move; the second is 0 if both are one.
+
+    ``m`` is the pier under all else. Accelerations are linear in the forces. At a pivot on the ground friction bears nothing.
+    Two places that can only move together share the force by their ``strengths``.
+    """
+    free, free_other, own, other_by_own, by_other, own_other = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    for unit in range(3):  # none, one at the first place, one at the second
+        arm = first.arm if unit == 1 else (second.arm if unit == 2 else 0.0)
+        down = first.by_v if unit == 1 else (second.by_v if unit == 2 else 0.0)
+        under = pulled(m, m.pull.force + down, m.pull.moment + arm)
+        v_acceleration, theta_acceleration = accelerations(under, y, contact, horizontal, vertical)
+        here, there = (
+            lifted(first, v_acceleration, theta_acceleration),
+            lifted(second, v_acceleration, theta_acceleration),
+        )
+        if unit == 0:
+            free, free_other = here, there
+        elif unit == 1:
+            own, other_by_own = here - free, there - free_other
+        else:
+            by_other, own_other = here - free, there - free_other
+    if abs(own) <= STAYS:
+        return 0.0, (0.0 if abs(own_other) <= STAYS else -free_other / own_other)
+    if abs(own_other) <= STAYS or first.by_theta == second.by_theta:
+        return -free / own, 0.0
+    determinant = own * own_other - by_other * other_by_own
+    if abs(determinant) <= LINKED * own * own_other:
+        with_first = math.copysign(strengths[1], by_other * own)
+        each = -free / (own * strengths[0] + by_other * with_first)
+        return each * strengths[0], each * with_first
+    return (by_other * free_other - own_other * free) / determinant, (
+        other_by_own * free - own * free_other
+    ) / determinant
+
+
+@inner
+def with_friction(m, devices, y, contact, horizontal, vertical):
+    """Return the pier ``m``, under all else, under friction that holds too; and forces [m/s²] of the first two such dampers."""
+    first = sticking(devices, NO_EVENT)
+    if first == NO_EVENT:
+        return m, 0.0, 0.0
+    second = sticking(devices, first)
+    level, elements = devices.level[0], devices.elements
+    here = gap(m, elements[first], y, level)
+    other = second if second != NO_EVENT else first
+    there = gap(m, elements[other], y, level)
+    strengths = elements[first].strength, elements[other].strength
+    one, two = _held_by_friction(m, here, there, y, contact, horizontal, vertical, strengths)
+    down = one * here.by_v + two * there.by_v
+    return pulled(m, m.pull.force + down, m.pull.moment + one * here.arm + two * there.arm), one, two
+
+
+@inner
+def under_devices(m, devices, y, x, contact, horizontal, vertical):
+    """Return the pier ``m`` under all devices, and the forces [m/s²] of the first two friction dampers that do not move."""
+    total, moment = 0.0, 0.0
+    for j in range(len(devices.elements)):
+        of = devices.elements[j]
+        if of.kind == FRICTION and devices.goes[j] == STICKS:
+            continue
+        at = gap(m, of, y, devices.level[0])
+        one = force(of, at.elongation, at.speed, x[j], devices.modes[j], devices.goes[j])
+        total += one * at.by_v
+        moment += one * at.arm
+    return with_friction(pulled(m, total, moment), devices, y, contact, horizontal, vertical)
+
+
+@inner
+def device_rates(m, devices, y, x, contact, horizontal, vertical, k):
+    """Return the pier ``m`` under all devices, and write the rates of ``x`` into ``k``."""
+    n = len(devices.elements)
+    total, moment = 0.0, 0.0
+    for j in range(n):
+        of = devices.elements[j]
+        k[j], k[n + j] = 0.0, 0.0
+        if of.kind == FRICTION and devices.goes[j] == STICKS:
+            continue
+        at = gap(m, of, y, devices.level[0])
+        one = force(of, at.elongation, at.speed, x[j], devices.modes[j], devices.goes[j])
+        total += one * at.by_v
+        moment += one * at.arm
+        k[j] = state_rate(of, at.speed, x[j], devices.modes[j], devices.goes[j])
+        k[n + j] = loss_rate(of, at.speed, one, devices.modes[j])
+    under, _, _ = with_friction(pulled(m, total, moment), devices, y, contact, horizontal, vertical)
+    k[2 * n] = -horizontal * lever(m, y, contact) * y.omega - vertical * y.v_rate
+    k[2 * n + 1] = 0.0 if m.finite is not None else -m.height * y.theta * under.pull.force * y.omega
+    return under
+
+
+@question
+def loaded(devices, m, y, contact, ground):
+    """Return the pier ``m`` under its devices in state ``y``."""
+
+
+@loaded.of(type(None))
+def _alone(devices, m, y, contact, ground):
+    return m
+
+
+@loaded.of(Devices)
+def _loaded(devices, m, y, contact, ground):
+    return under_devices(m, devices, y, devices.x, contact, ground.horizontal, ground.vertical)[0]
+
+
+@question
+def about_to_turn(devices, m, y, side, sense):
+    """Return the pier ``m`` at rest under its devices, were it to turn about its pivot on ``side``, or to rise on NEITHER.
+
+    ``sense`` is OPENS or, for a block that is about to land, CLOSES. Friction then resists with all that it has.
+    """
+
+
+@about_to_turn.of(type(None))
+def _nothing_holds(devices, m, y, side, sense):
+    return m
+
+
+@about_to_turn.of(Devices)
+def _devices_hold(devices, m, y, side, sense):
+    total, moment = 0.0, 0.0
+    for j in range(len(devices.elements)):
+        of = devices.elements[j]
+        at, way = gap(m, of, y, devices.level[0]), sense * way_of_opening(m, of, side)
+        one = force(of, at.elongation, 0.0, devices.x[j], mode_of(of, at.elongation, devices.x[j], way), way)
+        total += one * at.by_v
+        moment += one * at.arm
+    return pulled(m, total, moment)
+
+
+@inner
+def way_of_opening(m, of, side):
+    """Return where a device goes when the pier begins to turn about its pivot on ``side``, or to rise on NEITHER."""
+    if side == 0.0:
+        return OPENS
+    distance = m.half_width - side * of.offset
+    return OPENS if distance > 0.0 else (CLOSES if distance < 0.0 else STICKS)
+
+
+@inlined
+def stage_states(devices, place, h):
+    """Put the devices' states ``h`` [s] after the start, by the rates at ``place``, into their stage."""
+    if devices is None:
+        return
+    for i in range(len(devices.x)):
+        devices.stage[i] = devices.x[i] + h * devices.rates[place, i]
+
+
+@inlined
+def advance_states(devices, h):
+    """Put the devices' states at the end of a step of ``h`` [s] into ``end``, and into their stage."""
+    if devices is None:
+        return
+    k, n = devices.rates, len(devices.elements)
+    for i in range(len(devices.x)):
+        end = devices.x[i] + h * (1.0 / 6.0) * (k[0, i] + 2.0 * (k[1, i] + k[2, i]) + k[3, i])
+        if i < n and devices.elements[i].kind == HYSTERETIC and abs(end) > 1.0 - PLASTIC:
+            end = math.copysign(1.0, end)
+        devices.end[i] = devices.stage[i] = end
+
+
+@inner
+def resolved(m, devices, y, contact, ground, h, dt):
+    """Return the longest step [s], ``h`` at most, that resolves the laws of dampers: of a hysteretic one that is not plastic all
+    along it, and of a viscous one with an exponent below 1 near a velocity reversal.
+
+    It is shorter by one and the same factor for all ``h``, so that a run with half the step halves these steps too: what it
+    changes goes on telling the error.
+    """
+    if devices is None:
+        return h
+    share, asked = 1.0, False
+    for j in range(len(devices.elements)):
+        of = devices.elements[j]
+        asked = asked or (of.kind == HYSTERETIC and devices.goes[j] * devices.x[j] < 1.0) or _is_steep(of)
+    if not asked:
+        return h
+    a, c = ground.horizontal, ground.vertical
+    under, _, _ = under_devices(m, devices, y, devices.x, contact, a, c)
+    v_acceleration, theta_acceleration = accelerations(under, y, contact, a, c)
+    a_end, c_end = (
+        a + h * ground.horizontal_slope,
+        c + h * ground.vertical_slope,
+    )  # where a pier lifts off it has none yet
+    v_later, theta_later = accelerations(under, y, contact, a_end, c_end)
+    for j in range(len(devices.elements)):
+        of = devices.elements[j]
+        steep, soft = _is_steep(of), of.kind == HYSTERETIC and devices.goes[j] * devices.x[j] < 1.0
+        if not (steep or soft):
+            continue
+        at = gap(m, of, y, devices.level[0])
+        lift = max(abs(lifted(at, v_acceleration, theta_acceleration)), abs(lifted(at, v_later, theta_later)))
+        if soft:
+            way = (abs(at.speed) + lift * h) * dt * of.stiffness
+            share = min(share, TRAVEL / way) if way > 0.0 else share
+        elif lift > 0.0:
+            share = min(share, max(GROWTH * max(abs(at.speed), of.linear_below) / (lift * dt), NEAREST))
+    return share * h
+
+
+@inner
+def _is_steep(of):
+    """Return whether the force's slope is unbounded where the speed is 0, but for what ``linear_below`` sets."""
+    return of.kind == VISCOUS and of.exponent < 1.0

@@ -1,0 +1,204 @@
+"""The energy ledger of a run that was written down: where the input went, and what is left over (THEORY.md, Energy ledger).
+
+An observer: it takes the rows of a history, step by step, and integrates the power of each term by Simpson's rule, with
+the state in the middle of a step from the cubic Hermite polynomial through its ends. Runs that do not ask for it pay
+nothing. What is left over tests the equations, the events and the impacts at once.
+"""
+
+from typing import NamedTuple
+
+from rockbatch.core.kernel import entry, kernel
+from rockbatch.core.observe.rows import block_contact, block_state, ground_at, middle_of, spring_contact, spring_state
+from rockbatch.core.springs.creep import forces
+from rockbatch.core.springs.equations import accelerations_at, geometry
+from rockbatch.core.springs.model import Contact
+from rockbatch.core.system import lever, pulled, rates
+from rockbatch.core.table import record
+from rockbatch.core.types import IMPACT_BOTH, IMPACT_LEFT, IMPACT_RIGHT
+
+
+class Energies(NamedTuple):
+    """Terms of the ledger [J/kg]: what is stored, relative to the start; what went in and out since; what is left over."""
+
+    kinetic: float
+    potential: float
+    elastic: float
+    input: float
+    plastic: float
+    impact: float
+    p_delta: float
+    constraint: float
+    damping: float
+    remainder: float
+
+
+LEDGER = record(Energies)
+
+
+@kernel
+def _lever(at, contact):
+    return at.lever + (contact.right - contact.left) * at.swing
+
+
+@kernel
+def _stored(m, y, contact):
+    """Kinetic, potential and elastic energy per unit mass [J/kg]."""
+    lever = _lever(geometry(m, y.theta), contact) if m.finite is not None else m.height
+    kinetic = 0.5 * y.v_rate * y.v_rate + 0.5 * (m.inertia + lever * lever) * y.omega * y.omega
+    elastic = 0.5 * m.yield_force * m.yield_deflection * (y.z_left * y.z_left + y.z_right * y.z_right)
+    return kinetic, m.gravity * y.v, elastic
+
+
+@kernel
+def _powers(m, y, k, contact, horizontal, vertical):
+    """Power of input, plastic work, P–Δ, constraint and the dashpots under the pivots [W/kg]."""
+    at = geometry(m, y.theta)
+    left, right = y.v_rate + at.arm_left * y.omega, y.v_rate + at.arm_right * y.omega
+    shaken = -horizontal * _lever(at, contact) * y.omega - vertical * y.v_rate
+    plastic = contact.left * m.yield_force * y.z_left * (left - m.yield_deflection * k.z_left)
+    plastic += contact.right * m.yield_force * y.z_right * (right - m.yield_deflection * k.z_right)
+    damping = m.damping * (contact.left * left * left + contact.right * right * right)
+    p_delta = 0.0
+    if m.finite is None:
+        force_left, force_right = forces(m, y, contact, at)
+        p_delta = -m.height * y.theta * (force_left + force_right) * y.omega
+    constraint = 0.0
+    if contact.held != 0:
+        released = Contact(contact.left, contact.right, contact.left_yields, contact.right_yields, 0)
+        _, free = accelerations_at(m, y, released, at, horizontal, vertical)
+        lever = _lever(at, contact) if m.finite is not None else m.height
+        constraint = (m.inertia + lever * lever) * (k.omega - free) * y.omega
+    return shaken, plastic, p_delta, constraint, damping
+
+
+@kernel
+def _crept(m, contact, y, y_end):
+    """Energy [J/kg] that supports without their pivots have lost to their dashpots: all that their springs had stored."""
+    left = (1.0 - contact.left) * (y.z_left * y.z_left - y_end.z_left * y_end.z_left)
+    right = (1.0 - contact.right) * (y.z_right * y.z_right - y_end.z_right * y_end.z_right)
+    return 0.5 * m.yield_force * m.yield_deflection * (left + right)
+
+
+@kernel
+def _impact_loss(m, before, kind):
+    """½ (1 − ε²) v̇_i²/(1 + a²/I) of a landing; of both pivots at once, 1 − ε² of the kinetic energy."""
+    at = geometry(m, before.theta)
+    inertia = m.inertia + at.lever * at.lever
+    lost = 0.5 * (1.0 - m.epsilon * m.epsilon)
+    if kind == IMPACT_BOTH:
+        return lost * (before.v_rate * before.v_rate + inertia * before.omega * before.omega)
+    arm = at.arm_left if kind == IMPACT_LEFT else at.arm_right
+    velocity = before.v_rate + arm * before.omega
+    return lost * velocity * velocity / (1.0 + arm * arm / inertia)
+
+
+@kernel
+def _pulled(m, pulls, i):
+    """The pier at the start, in the middle and at the end of the step to row ``i``."""
+    first, last = pulls[i - 1], pulls[i]
+    middle = pulled(m, 0.5 * (first[0] + last[0]), 0.5 * (first[1] + last[1]))
+    return pulled(m, first[0], first[1]), middle, pulled(m, last[0], last[1])
+
+
+@entry
+def ledger_on_springs(m, rows, pulls, ground, dt, out):
+    """Ledger of a run on two springs.
+
+    Parameters
+    ----------
+    m : Springs
+    rows : recarray of recording.Row, shape (n,)
+        History as the run wrote it, every step.
+    pulls : ndarray, shape (n, 2)
+        Force [m/s²] and moment [m²/s²] of dampers and tendons at every row; what they take and store is not told here.
+    ground : ndarray, shape (npts, 4)
+        The motion of the run, of :func:`rockbatch.core.ground.ground_rows`.
+    dt : float
+        Its sampling interval [s].
+    out : recarray of Energies, zeros, shape (n,)
+        Filled at every row.
+    """
+    y = spring_state(rows[0])
+    kinetic0, potential0, elastic0 = _stored(m, y, spring_contact(rows[0]))
+    shaken, plastic, impact, p_delta, constraint, damping = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    for i in range(1, len(rows)):
+        y_end = spring_state(rows[i])
+        contact = spring_contact(rows[i])
+        kind = int(rows[i].kind)
+        if kind > 0:  # the other side of an event
+            at = geometry(m, y.theta)
+            if kind in (IMPACT_LEFT, IMPACT_RIGHT, IMPACT_BOTH):
+                impact += _impact_loss(m, y, kind)
+            if m.finite is not None:
+                was, now = _lever(at, spring_contact(rows[i - 1])), _lever(at, contact)
+                both = at.lever * at.lever * (y_end.omega * y_end.omega - y.omega * y.omega)
+                constraint += 0.5 * (now * now * y_end.omega * y_end.omega - was * was * y.omega * y.omega - both)
+        else:
+            t, t_end = rows[i - 1].t, rows[i].t
+            h = t_end - t
+            t_middle = 0.5 * (t + t_end)
+            ah, av = ground_at(ground, dt, t_middle, t)
+            ah_end, av_end = ground_at(ground, dt, t_middle, t_end)
+            ah_middle, av_middle = 0.5 * (ah + ah_end), 0.5 * (av + av_end)
+            start, half_way, stop = _pulled(m, pulls, i)
+            k = rates(start, y, contact, ah, av)
+            k_end = rates(stop, y_end, contact, ah_end, av_end)
+            middle = middle_of(y, k, y_end, k_end, h)
+            k_middle = rates(half_way, middle, contact, ah_middle, av_middle)
+            s0, w0, d0, c0, q0 = _powers(start, y, k, contact, ah, av)
+            s1, w1, d1, c1, q1 = _powers(half_way, middle, k_middle, contact, ah_middle, av_middle)
+            s2, w2, d2, c2, q2 = _powers(stop, y_end, k_end, contact, ah_end, av_end)
+            shaken += h / 6.0 * (s0 + 4.0 * s1 + s2)
+            plastic += h / 6.0 * (w0 + 4.0 * w1 + w2)
+            p_delta += h / 6.0 * (d0 + 4.0 * d1 + d2)
+            constraint += h / 6.0 * (c0 + 4.0 * c1 + c2)
+            damping += h / 6.0 * (q0 + 4.0 * q1 + q2) + _crept(m, contact, y, y_end)
+        kinetic, potential, elastic = _stored(m, y_end, contact)
+        line = out[i]
+        line.kinetic, line.potential, line.elastic = kinetic - kinetic0, potential - potential0, elastic - elastic0
+        line.input, line.plastic, line.impact = shaken, plastic, impact
+        line.p_delta, line.constraint, line.damping = p_delta, constraint, damping
+        stored = line.kinetic + line.potential + line.elastic
+        line.remainder = stored - shaken + plastic + impact - p_delta - constraint + damping
+        y = y_end
+
+
+@kernel
+def _of_block(m, y, contact):
+    """Return kinetic and potential energy per unit mass [J/kg]."""
+    arm = lever(m, y, contact)
+    return 0.5 * (y.v_rate * y.v_rate + (m.inertia + arm * arm) * y.omega * y.omega), m.gravity * y.v
+
+
+@kernel
+def _shaken(m, y, contact, horizontal, vertical):
+    """Return the power of the ground [W/kg]."""
+    return -horizontal * lever(m, y, contact) * y.omega - vertical * y.v_rate
+
+
+@entry
+def ledger_on_rigid_base(m, rows, pulls, ground, dt, out):
+    """Ledger of a run on a rigid base: ``m`` is a Block, ``rows`` its history; otherwise as :func:`ledger_on_springs`."""
+    y = block_state(rows[0])
+    kinetic, potential0 = _of_block(m, y, block_contact(rows[0]))
+    kinetic0, shaken, impact = kinetic, 0.0, 0.0
+    for i in range(1, len(rows)):
+        y_end, contact = block_state(rows[i]), block_contact(rows[i])
+        kinetic_end, potential = _of_block(m, y_end, contact)
+        if rows[i].kind > 0:  # the other side of an event
+            impact += kinetic - kinetic_end
+        else:
+            t, t_end = rows[i - 1].t, rows[i].t
+            h, t_middle = t_end - t, 0.5 * (t + t_end)
+            ah, av = ground_at(ground, dt, t_middle, t)
+            ah_end, av_end = ground_at(ground, dt, t_middle, t_end)
+            k = rates(pulled(m, pulls[i - 1, 0], pulls[i - 1, 1]), y, contact, ah, av)
+            k_end = rates(pulled(m, pulls[i, 0], pulls[i, 1]), y_end, contact, ah_end, av_end)
+            s0 = _shaken(m, y, contact, ah, av)
+            s1 = _shaken(m, middle_of(y, k, y_end, k_end, h), contact, 0.5 * (ah + ah_end), 0.5 * (av + av_end))
+            shaken += h / 6.0 * (s0 + 4.0 * s1 + _shaken(m, y_end, contact, ah_end, av_end))
+        line = out[i]
+        line.kinetic, line.potential = kinetic_end - kinetic0, potential - potential0
+        line.input, line.impact = shaken, impact
+        line.remainder = line.kinetic + line.potential - shaken + impact
+        y, kinetic = y_end, kinetic_end

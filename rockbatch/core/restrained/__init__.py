@@ -1,1 +1,0 @@
-"""A block on a rigid base that dampers and tendons tie to the ground: one run at a time."""

@@ -1,1 +1,0 @@
-"""A pier on two springs that dampers and tendons tie to the ground: one run at a time."""

@@ -1,0 +1,434 @@
+"""The driver of all runs: fixed steps of Runge–Kutta 4, side by side, with events located inside the step.
+
+It knows no pier by name (``system``). All lanes march in step: a vector pass takes each a sub-step further, and one in which
+something may happen takes that sub-step once more, event by event, in scalar code. Runs that end make room for others.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from rockbatch.core.clock import (
+    ATTEND,
+    CALM,
+    EVENTFUL,
+    WINDOWS,
+    close_window,
+    fallen,
+    ground_at,
+    ground_rests,
+    include_height,
+    include_peak,
+    note_flight,
+    read_ground,
+    start_clock,
+    turn_window,
+)
+from rockbatch.core.devices.events import after_contact, device_event, start_devices
+from rockbatch.core.devices.pull import loaded, resolved
+from rockbatch.core.devices.use import take_in
+from rockbatch.core.history import write
+from rockbatch.core.kernel import entry, inlined, inner
+from rockbatch.core.search import first_event, marks_for, start_rates
+from rockbatch.core.system import (
+    after_event,
+    after_step,
+    airborne,
+    at_rest,
+    attend,
+    begin,
+    expect,
+    finish,
+    include,
+    longest,
+    model,
+    moment,
+    next_due,
+    one_pass,
+    over,
+    peak_stands,
+    put_moment,
+    transition,
+    uplifts,
+    write_reversals,
+)
+from rockbatch.core.table import LANES, move, record, table
+from rockbatch.core.types import (
+    BEFORE_EVENT,
+    CHATTER,
+    FLIGHT,
+    IMPACT_BOTH,
+    IMPACT_LEFT,
+    IMPACT_RIGHT,
+    LATE_FLIGHT,
+    LIFT_OFF,
+    NO_EVENT,
+    OF_PIER,
+    OVERTURNED,
+    REST,
+    RUNNING,
+    SAMPLE,
+    STEP,
+    SURVIVED,
+    TAKE_OFF,
+    Result,
+)
+
+EVENTS_IN_A_SAMPLE = 20_000
+"""More than any decaying sequence of impacts needs."""
+
+NONE = np.int64(0)  # a literal 0 would have every function that it is handed to compiled twice
+NO_HISTORY = np.zeros((0, 1))
+
+RESULT = np.dtype([*record(Result).descr, ("extremes", "f8", WINDOWS)])
+"""As Result has it, and the greatest |θ| [rad] at a sample in each window of the run, NaN where it has none."""
+
+
+class Settings(NamedTuple):
+    """How all runs of a call are taken."""
+
+    substeps: int  # steps to a sampling interval
+    locate: bool  # events inside the step; without, they take place at its end: first order, for comparison only
+    recording: bool  # a history is written
+    every_step: bool  # it has the steps between samples, and both sides of all events of devices
+
+
+@inlined
+def _commit(devices):
+    """Let the devices' states go on from the end of a step."""
+    if devices is None:
+        return
+    for i in range(len(devices.x)):
+        devices.x[i] = devices.end[i]
+
+
+@inner
+def _strongest(lanes, i, ground):
+    """Return the strongest horizontal acceleration [m/s²] that the ground has or may still have."""
+    strongest = 0.0
+    if ground_rests(lanes, i):
+        return strongest
+    first = int(lanes.clock.first_row[i])
+    for row in range(first, first + int(lanes.clock.npts[i])):
+        strongest = max(strongest, abs(ground[row, 0]))
+    return strongest
+
+
+@inner
+def _in_flight(traits, lanes, i, m, y, ground):
+    """Return the status of a pier that has left the ground with both pivots."""
+    if m.guided != 0.0:
+        return SURVIVED
+    if peak_stands(traits, lanes, i):
+        return LATE_FLIGHT  # what flies is undamped vibration
+    beyond = abs(y.theta) - lanes.clock.alpha[i]
+    # else the ground may yet turn it back
+    falling = beyond >= 0.0 and y.theta * y.omega > 0.0 and m.gravity * math.tan(beyond) >= _strongest(lanes, i, ground)
+    return OVERTURNED if falling else FLIGHT
+
+
+@inner
+def _count(lanes, i, kind, landed, lifted, t, remaining):
+    """Count an event of this ``kind`` at ``t`` [s], after which bounces go on for ``remaining`` [s] until rest."""
+    tally = lanes.tally
+    tally.impacts[i] += landed
+    tally.uplifts[i] += lifted
+    if landed > 0:
+        tally.t_impact[i] = t
+    if landed > 0 or lifted > 0 or kind == TAKE_OFF:
+        tally.moved[i] = t
+    if kind == REST:
+        tally.t_rest[i] = t + remaining
+    elif kind in (LIFT_OFF, TAKE_OFF):
+        tally.t_rest[i] = math.nan
+
+
+@inner
+def _many(lanes, i):
+    """Return whether one event more is one too many in this sample."""
+    tally, sample = lanes.tally, lanes.clock.sample[i]
+    tally.events[i] = tally.events[i] + 1.0 if tally.counted[i] == sample else 1.0
+    tally.counted[i] = sample
+    return tally.events[i] > EVENTS_IN_A_SAMPLE
+
+
+@inlined
+def _after_contact(m, devices, y, contact, kind, rest, ground):
+    """Choose the devices' directions and modes after an event at a pivot; those of lift-off and take-off have theirs."""
+    if devices is not None and kind not in (LIFT_OFF, TAKE_OFF):
+        after_contact(m, devices, y, contact, rest, ground)
+
+
+@inlined
+def _device_event(m, devices, y, contact, ground, h, rest, which):
+    if devices is not None:
+        device_event(m, devices, y, contact, ground, h, rest, which)
+
+
+@inner
+def _happen(traits, lanes, i, m, devices, y, contact, supports, which, x, ground, every_step, history, row):
+    """Let event ``which`` happen ``x`` [s] after the sample: status, state, contact and supports after it, next row."""
+    here, rest, dt = ground_at(lanes, i, x), lanes.clock.rest[i], lanes.clock.dt[i]
+    t = lanes.clock.sample[i] * dt + x
+    if which >= OF_PIER:
+        if every_step:
+            row = write(history, row, t, STEP, m, devices, y, contact, here)
+        _device_event(m, devices, y, contact, here, lanes.clock.step[i], rest, which)
+        if every_step:
+            row = write(history, row, t, STEP, m, devices, y, contact, here)
+        return SURVIVED, y, contact, supports, row
+    before = row
+    row = write(history, row, t, BEFORE_EVENT, m, devices, y, contact, here)
+    under = loaded(devices, m, y, contact, here)
+    y, after, supports, kind, remaining = transition(under, devices, y, contact, supports, which, rest, here, dt)
+    _after_contact(m, devices, y, after, kind, rest, here)
+    row = before if kind == LIFT_OFF else row  # nothing jumps
+    row = write(history, row, t, kind, m, devices, y, after, here)
+    landed = 2 if kind == IMPACT_BOTH else (1 if kind in (IMPACT_LEFT, IMPACT_RIGHT, REST) else 0)
+    _count(lanes, i, kind, landed, uplifts(m, contact, after, landed), t, remaining)
+    after_event(traits, lanes, i, m, contact, after, y)
+    flies = airborne(m, after)
+    note_flight(lanes, i, flies, t)
+    return (_in_flight(traits, lanes, i, m, y, ground) if flies else SURVIVED), y, after, supports, row
+
+
+@inner
+def _through(traits, lanes, i, devices, marks, substep, settings, ground, history, row):
+    """Take lane ``i`` through a sub-step event by event: status (SURVIVED while it goes on), time [s] and next row."""
+    h, start, dt, rest = lanes.clock.step[i], substep * lanes.clock.step[i], lanes.clock.dt[i], lanes.clock.rest[i]
+    t_sample = lanes.clock.sample[i] * dt
+    m = model(traits, lanes, i)
+    y, contact, supports = moment(traits, lanes, i)
+    done, which, status = 0.0, NO_EVENT, SURVIVED
+    while done < h and status == SURVIVED:
+        here, left = ground_at(lanes, i, start + done), h - done
+        k, under = start_rates(m, devices, y, contact, here)
+        most = longest(under, y, k, contact, min(left, resolved(m, devices, y, contact, here, h, dt)))
+        used, which, end, k_end = first_event(
+            m, under, devices, marks, y, k, contact, supports, rest, here, most, settings.locate
+        )
+        include_peak(lanes, i, y, end, start, done, used)
+        include(traits, lanes, i, m, y, k, end, k_end, contact, used)
+        if airborne(m, contact):
+            include_height(lanes, i, m, supports, y, end, used)
+        take_in(m, devices, y, k, end, k_end, used)
+        _commit(devices)
+        y = end
+        done = done + used if used < left else h
+        if which != NO_EVENT:
+            status, y, contact, supports, row = _happen(
+                traits,
+                lanes,
+                i,
+                m,
+                devices,
+                y,
+                contact,
+                supports,
+                which,
+                start + done,
+                ground,
+                settings.every_step,
+                history,
+                row,
+            )
+            if status == SURVIVED and _many(lanes, i):
+                status = CHATTER
+        elif settings.every_step and done < h:
+            here = ground_at(lanes, i, start + done)
+            row = write(history, row, t_sample + (start + done), STEP, m, devices, y, contact, here)
+    put_moment(traits, lanes, i, y, contact, supports)
+    after_step(traits, lanes, i, marks, contact, which == NO_EVENT)
+    if status == SURVIVED:
+        status = fallen(y.theta)
+    if status not in (SURVIVED, FLIGHT, LATE_FLIGHT):
+        row = write(
+            history, row, t_sample + (start + done), STEP, m, devices, y, contact, ground_at(lanes, i, start + done)
+        )
+    return status, t_sample + (start + done), row
+
+
+@inner
+def _begin(traits, lanes, i, number, runs, devices, ground, history, row):
+    """Let run ``number`` begin in lane ``i``: its status, and the next row."""
+    run = runs[number]
+    begin(traits, lanes, i, run)
+    m = model(traits, lanes, i)
+    y, contact, _ = moment(traits, lanes, i)
+    start_clock(lanes, i, number, run, at_rest(m), math.atan2(m.half_width, m.height), y.theta)
+    read_ground(lanes, i, ground)
+    expect(traits, lanes, i, run)
+    here = ground_at(lanes, i, 0.0)
+    start_devices(m, devices, y, contact, lanes.clock.rest[i], here)
+    row = write(history, row, 0.0, SAMPLE, m, devices, y, contact, here)
+    return over(traits, lanes, i, devices), row
+
+
+@inner
+def _finish(traits, lanes, i, status, t, row, results):
+    """Write what the run in lane ``i`` has come to."""
+    close_window(lanes, i, results)
+    peak, tally = lanes.peak, lanes.tally
+    note_flight(lanes, i, False, t)
+    result = results[int(lanes.clock.number[i])]
+    result.status, result.t_end, result.rows = status, t, row
+    result.theta_max, result.t_max = peak.theta[i], peak.time[i]
+    result.impacts, result.uplifts, result.flights = int(tally.impacts[i]), int(tally.uplifts[i]), int(tally.flights[i])
+    result.t_flight, result.flight_duration = tally.t_flight[i], tally.flight_duration[i]
+    result.flight_height, result.t_impact, result.t_rest = tally.flight_height[i], tally.t_impact[i], tally.t_rest[i]
+    finish(traits, lanes, i, t, result)
+
+
+@inner
+def _attend(traits, lanes, i, devices, marks, substep, settings, ground, history, row):
+    """Do what the pass has left to do in lane ``i``: status, time [s] and next row."""
+    if lanes.news.kind[i] >= EVENTFUL:
+        return _through(traits, lanes, i, devices, marks, substep, settings, ground, history, row)
+    t = lanes.clock.sample[i] * lanes.clock.dt[i] + substep * lanes.clock.step[i]
+    if lanes.news.kind[i] == ATTEND:
+        row = write_reversals(traits, lanes, i, substep, history, row)
+        _include_peak_of_lane(lanes, i, substep)
+        attend(traits, lanes, i)
+    return SURVIVED, t, row
+
+
+@inlined
+def _include_peak_of_lane(lanes, i, substep):
+    """Bring the peak of lane ``i`` up to that inside its sub-step."""
+    now, end, h = lanes.now, lanes.end, lanes.clock.step[i]
+    y, y_end = Turn(now.theta[i], now.omega[i]), Turn(end.theta[i], end.omega[i])
+    include_peak(lanes, i, y, y_end, substep * h, 0.0, h)
+
+
+class Turn(NamedTuple):
+    """Rotation [rad] and its rate [rad/s]."""
+
+    theta: float
+    omega: float
+
+
+@inner
+def _at_sample(traits, lanes, i, devices, ground, results):
+    """Bring lane ``i`` to the next sample: its status, RUNNING while it goes on."""
+    clock, peak = lanes.clock, lanes.peak
+    clock.sample[i] += 1.0
+    read_ground(lanes, i, ground)
+    theta = lanes.now.theta[i]
+    if clock.sample[i] < clock.due[i]:
+        peak.in_window[i] = max(peak.in_window[i], abs(theta))
+        return RUNNING
+    turn_window(lanes, i, theta, results)
+    peak.in_window[i] = max(peak.in_window[i], abs(theta))
+    status = over(traits, lanes, i, devices)
+    clock.due[i] = min(peak.next_window[i], next_due(traits, lanes, i))
+    return status
+
+
+@inlined
+def _pass(traits, lanes, count, devices, substep, settings):
+    """Take all lanes a sub-step further; return how many are not calm. One with devices has to be taken event by event."""
+    if devices is None:
+        one_pass(traits, lanes, count, substep, settings)
+    else:
+        lanes.news.kind[0] = EVENTFUL
+    busy = 0
+    for i in range(count):
+        busy += 1 if lanes.news.kind[i] != CALM else 0
+    return busy
+
+
+@inner
+def _write_now(traits, lanes, devices, kind, t, x, history, row):
+    """Write a row of the only lane as it is now."""
+    if history.shape[0] == 0:
+        return row
+    y, contact, _ = moment(traits, lanes, 0)
+    return write(history, row, t, kind, model(traits, lanes, 0), devices, y, contact, ground_at(lanes, 0, x))
+
+
+@entry
+def _march(traits, runs, ground, settings, devices, marks, history, stop, lanes_table, cells, results):
+    """Take all ``runs`` to their ends; ``results`` of those that are stopped stay as they are."""
+    lanes, recording = lanes_table[0], settings.recording
+    waiting, count, row, substeps = NONE, NONE, NONE, settings.substeps
+    while True:
+        while count < LANES and waiting < len(runs):
+            status, row = _begin(traits, lanes, count, waiting, runs, devices, ground, history, row)
+            waiting += 1
+            if status == RUNNING:
+                count += 1
+            else:
+                _finish(traits, lanes, count, status, 0.0, row, results)
+        if count == 0 or stop[0] != 0:
+            return
+        for substep in range(substeps):
+            busy = _pass(traits, lanes, count, devices, substep, settings)
+            i = NONE if busy > 0 else count
+            while i < count:
+                status, t = SURVIVED, 0.0
+                if lanes.news.kind[i] != CALM:
+                    status, t, row = _attend(traits, lanes, i, devices, marks, substep, settings, ground, history, row)
+                if status == SURVIVED:
+                    i += 1
+                else:
+                    _finish(traits, lanes, i, status, t, row, results)
+                    count -= 1
+                    move(cells, count, i)
+            if recording and settings.every_step and count > 0 and substep < substeps - 1:
+                x = (substep + 1.0) * lanes.clock.step[0]
+                row = _write_now(
+                    traits, lanes, devices, STEP, lanes.clock.sample[0] * lanes.clock.dt[0] + x, x, history, row
+                )
+        i = NONE
+        while i < count:
+            status = _at_sample(traits, lanes, i, devices, ground, results)
+            t = lanes.clock.sample[i] * lanes.clock.dt[i]
+            if recording:
+                row = _write_now(traits, lanes, devices, SAMPLE, t, 0.0, history, row)
+            if status == RUNNING:
+                i += 1
+            else:
+                _finish(traits, lanes, i, status, t, row, results)
+                count -= 1
+                move(cells, count, i)
+
+
+def march(kind, lines, ground, stop, substeps, locate=True, every_step=False, history=NO_HISTORY, devices=None):
+    """Take runs of piers of one kind to their ends, as many at a time as there are lanes, or one with devices.
+
+    Parameters
+    ----------
+    kind : Kind
+        Of all their piers.
+    lines : sequence of kind.line
+    ground : ndarray, shape (rows, 4)
+        Of :func:`rockbatch.core.ground.ground_rows`, of all their motions.
+    stop : ndarray of one uint8
+        Ends them within a sample when another thread sets it.
+    substeps : int
+        Steps to a sampling interval, of all of them.
+    locate : bool
+        Locate events inside the step. Without, they take place at its end (first order; for comparison only).
+    every_step : bool
+        Also write the steps between samples, and both sides of all events of devices.
+    history : ndarray, shape (rows, columns)
+        For a single run: filled with samples and both sides of events, as far as it goes (``history``).
+    devices : Devices or None
+        Of a single run.
+
+    Returns
+    -------
+    recarray, shape (runs,)
+        Result's fields and ``extremes``. The status of those that were stopped is RUNNING.
+    """
+    # A compiled function hands out nothing: making a tuple runs Python code, where Ctrl-C may strike.
+    runs = np.array(lines, record(kind.line)).view(np.recarray)
+    results = np.recarray(len(runs), RESULT)
+    for name in RESULT.names:
+        results[name] = np.nan if RESULT[name].kind != "i" else 0
+    results.status = RUNNING
+    settings = Settings(int(substeps), bool(locate), len(history) > 0, bool(every_step))
+    marks = marks_for(0 if devices is None else len(devices.elements))
+    _march(kind.traits, runs, ground, settings, devices, marks, history, stop, *table(kind.lane), results)
+    return results

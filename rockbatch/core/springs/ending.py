@@ -1,0 +1,227 @@
+"""When a run on springs is over, and when its residuals are read (THEORY.md, When a run is over).
+
+Looked at once a sample, from the end of the record on.
+"""
+
+import math
+from typing import NamedTuple
+
+from rockbatch.core import system
+from rockbatch.core.clock import UNSET, ground_rests
+from rockbatch.core.devices.laws import HYSTERETIC, TENDON, force, stored
+from rockbatch.core.devices.pull import gap
+from rockbatch.core.kernel import inner
+from rockbatch.core.springs.equations import geometry
+from rockbatch.core.springs.free_vibration import (
+    DECIDED,
+    LEANS,
+    OPEN,
+    outlook_on_springs,
+    rocking_period,
+    summit,
+)
+from rockbatch.core.springs.model import BOUC_WEN, SpringTraits, State
+from rockbatch.core.system import model, moment
+from rockbatch.core.types import GROWING, RESTLESS, RUNNING, SURVIVED, UNDECIDED
+
+GROWTH = 1e-4
+"""Of α: by how much |θ| and the base's tilt may grow in the second half of the waiting without the pier counting as
+leaning further."""
+
+
+FORESEEN = 2.0
+"""How much faster than between its readings a base on springs that ratchet may drift on: its lean speeds it up, and vibration
+that has not decayed comes and goes (measured; a pier has overturned whose drift was taken as it was)."""
+
+
+class Waiting(NamedTuple):
+    """What decides when a run is over, and its residuals."""
+
+    earliest: float  # sample from which on residuals may be read
+    patience: float  # samples that a pier is waited for at most
+    longest: float  # sample at which waiting ends
+    read_wait: float  # samples between two readings; 0 where there is nothing to read twice
+    decided_at: float  # sample from which on nothing can exceed the peak, UNSET before it
+    read: float  # sample of the first reading, UNSET before it
+    read_left: float  # unstressed positions of both supports then [m]
+    read_right: float
+    last_read: float  # likewise, of the last one
+    last_left: float
+    last_right: float
+    drift_left: float  # of both supports from the first reading to the second [m/s], NaN before it
+    drift_right: float
+    last_drift_left: float  # likewise, between the last two, 0 before them
+    last_drift_right: float
+    midway: float  # greatest |θ| when half of the waiting is over [rad]
+    midway_tilt: float  # |tilt| of the base then [rad]
+    load: float  # what the supports carry at rest, the weight and what tendons add to it [m/s²]
+    stored: float  # energy that tendons may give back, beyond what they do at that load [J/kg]
+
+
+@system.expect.of(SpringTraits)
+def expect(traits, lanes, i, run):
+    """Set what lane ``i`` waits for after its record. Its motion is known."""
+    waiting, last, samples = lanes.waiting, lanes.clock.npts[i] - 1.0, lanes.clock.samples[i]
+    waiting.earliest[i] = last + run.read_after
+    waiting.patience[i] = run.patience
+    waiting.read_wait[i] = run.read_wait
+    waiting.longest[i] = max(samples, waiting.earliest[i] + run.read_wait) + run.patience
+    waiting.decided_at[i] = UNSET
+    waiting.read[i], waiting.read_left[i], waiting.read_right[i] = UNSET, math.nan, math.nan
+    waiting.drift_left[i], waiting.drift_right[i] = math.nan, math.nan
+    waiting.last_drift_left[i], waiting.last_drift_right[i] = 0.0, 0.0
+    waiting.midway[i] = waiting.midway_tilt[i] = math.inf
+    waiting.load[i], waiting.stored[i] = run.gravity + run.prestress, 0.0
+
+
+@system.peak_stands.of(SpringTraits)
+def peak_stands(traits, lanes, i):
+    """Return whether it has been decided that nothing can exceed the peak, and nothing has."""
+    decided_at = lanes.waiting.decided_at[i]
+    return decided_at >= 0.0 and lanes.peak.time[i] <= decided_at * lanes.clock.dt[i]
+
+
+@inner
+def _unstressed(m, position, z, on_spring, waiting):
+    return position - m.yield_deflection * z if on_spring != 0.0 else waiting
+
+
+@inner
+def base_of(m, y, contact, supports):
+    """Return the unstressed positions [m] of both supports."""
+    at = geometry(m, y.theta)
+    left = _unstressed(m, y.v + at.lift_left, y.z_left, contact.left, supports.left)
+    right = _unstressed(m, y.v + at.lift_right, y.z_right, contact.right, supports.right)
+    return left, right
+
+
+@inner
+def _tilt(m, y, contact, supports):
+    """Return the |tilt| of the base [rad]."""
+    left, right = base_of(m, y, contact, supports)
+    return 0.5 * abs(left - right) / m.half_width
+
+
+@inner
+def _outlook(lanes, i, m, y, contact, supports, devices):
+    """Return OPEN, DECIDED or LEANS (see ``free_vibration``); OPEN while the ground moves."""
+    if not ground_rests(lanes, i):
+        return OPEN
+    waiting, dt = lanes.waiting, lanes.clock.dt[i]
+    left, right = base_of(m, y, contact, supports)
+    alone = lanes.clock.sample[i] * dt - max(lanes.tally.moved[i], lanes.clock.npts[i] * dt)
+    calm = devices is None and contact.left != 0.0 and contact.right != 0.0 and alone >= rocking_period(m)
+    ahead = 0.5 * waiting.patience[i] * dt * (FORESEEN if m.law == BOUC_WEN else 1.0)
+    last_left, last_right = ahead * waiting.last_drift_left[i], ahead * waiting.last_drift_right[i]
+    first_left, first_right = last_left, last_right
+    if not math.isnan(waiting.drift_left[i]):
+        first_left, first_right = ahead * waiting.drift_left[i], ahead * waiting.drift_right[i]
+    last, first = (last_left - last_right) / m.half_width, (first_left - first_right) / m.half_width
+    to_right, to_left = max(0.0, first, last), max(0.0, -first, -last)
+    sinking = max(0.0, -(last_left + last_right), -(first_left + first_right))
+    peak = lanes.peak.theta[i]
+    return outlook_on_springs(
+        m, y, contact, waiting.load[i], waiting.stored[i], left, right, peak, calm,
+        to_right, to_left, sinking,
+    )  # fmt: skip
+
+
+@inner
+def _read_base(lanes, i, m, y, contact, supports):
+    """Read the residuals: the positions of the supports, and how they have drifted since the last reading."""
+    waiting, sample = lanes.waiting, lanes.clock.sample[i]
+    left, right = base_of(m, y, contact, supports)
+    if waiting.read[i] < 0.0:
+        waiting.read[i], waiting.read_left[i], waiting.read_right[i] = sample, left, right
+    else:
+        seconds = waiting.read_wait[i] * lanes.clock.dt[i]
+        drift_left = (left - waiting.last_left[i]) / seconds
+        drift_right = (right - waiting.last_right[i]) / seconds
+        waiting.last_drift_left[i], waiting.last_drift_right[i] = drift_left, drift_right
+        if waiting.last_read[i] == waiting.read[i]:
+            waiting.drift_left[i], waiting.drift_right[i] = drift_left, drift_right
+    waiting.last_read[i], waiting.last_left[i], waiting.last_right[i] = sample, left, right
+
+
+@inner
+def _in_devices(lanes, i, m, devices, y, contact, supports):
+    """Note the load [m/s²] that supports carry at rest, and the energy [J/kg] that devices may give back beyond its work.
+
+    A tendon's force falls with its elongation or stays: its energy lies above the tangent at any elongation, and that where
+    the base has come to is as good as any. Hysteretic dampers give back what they have stored elastically.
+    """
+    if devices is None:
+        return
+    left, right = base_of(m, y, contact, supports)
+    level = devices.level[0]
+    sunk = 0.5 * (left + right) - lanes.lowest.plastic[i]
+    load, beyond, turning = m.gravity, 0.0, 0.0
+    for j in range(len(devices.elements)):
+        of, plastic = devices.elements[j], devices.x[j]
+        if of.kind == HYSTERETIC:
+            beyond += 0.5 * of.strength * plastic * plastic / of.stiffness
+        if of.kind != TENDON:
+            continue
+        resting = gap(m, of, State(level + sunk, 0.0, 0.0, 0.0, 0.0, 0.0), level).elongation
+        pull = min(max(force(of, resting, 0.0, plastic, 0.0, 0.0), 0.0), of.strength)
+        now = gap(m, of, y, level).elongation
+        beyond += stored(of, now, plastic) - stored(of, resting, plastic) - pull * (now - resting)
+        load += pull
+        turning += pull * of.offset
+    lanes.waiting.load[i] = load
+    lanes.waiting.stored[i] = max(beyond, 0.0) + abs(turning) * (abs(y.theta) + lanes.peak.theta[i])
+
+
+@system.over.of(SpringTraits)
+def over(traits, lanes, i, devices):
+    """Return how the run in lane ``i`` ended if it is over at this sample, RUNNING if it goes on; residuals are read."""
+    waiting, sample = lanes.waiting, lanes.clock.sample[i]
+    samples, longest = lanes.clock.samples[i], waiting.longest[i]
+    if sample < waiting.earliest[i]:
+        return RUNNING
+    wait, decided = waiting.read_wait[i], waiting.decided_at[i] >= 0.0
+    if decided and wait == 0.0:  # nothing can change any more
+        return RUNNING if sample < samples else SURVIVED
+    m = model(traits, lanes, i)
+    y, contact, supports = moment(traits, lanes, i)
+    if decided:
+        if sample == waiting.last_read[i] + wait:
+            _read_base(lanes, i, m, y, contact, supports)
+        if sample < max(samples, waiting.read[i] + wait):
+            return RUNNING
+    _in_devices(lanes, i, m, devices, y, contact, supports)
+    outlook = _outlook(lanes, i, m, y, contact, supports, devices)
+    if outlook == DECIDED and not decided:
+        waiting.decided_at[i] = sample
+        _read_base(lanes, i, m, y, contact, supports)
+    if outlook == DECIDED and sample >= max(samples, waiting.read[i] + wait):
+        return SURVIVED
+    if sample == (samples + longest) // 2:
+        waiting.midway[i], waiting.midway_tilt[i] = lanes.peak.theta[i], _tilt(m, y, contact, supports)
+    return RUNNING if sample < longest else _given_up(lanes, i, m, outlook, y, contact, supports)
+
+
+@system.next_due.of(SpringTraits)
+def next_due(traits, lanes, i):
+    """Return the number of the next sample at which the run may be over, or something has to be read."""
+    waiting, sample = lanes.waiting, lanes.clock.sample[i]
+    if sample < waiting.earliest[i]:
+        return waiting.earliest[i]
+    if waiting.decided_at[i] < 0.0:
+        return sample + 1.0
+    if waiting.read_wait[i] == 0.0:
+        return max(lanes.clock.samples[i], sample + 1.0)
+    return sample + 1.0
+
+
+@inner
+def _given_up(lanes, i, m, outlook, y, contact, supports):
+    """Return how a run ends that nothing has decided for so long; one that is not waited for is cut off as it is."""
+    if lanes.waiting.patience[i] == 0.0:
+        return SURVIVED
+    if outlook == LEANS or abs(y.theta) >= summit(m, lanes.waiting.load[i]):
+        return UNDECIDED
+    least = GROWTH * lanes.clock.alpha[i]
+    turned = lanes.peak.theta[i] > lanes.waiting.midway[i] + least
+    tilted = _tilt(m, y, contact, supports) > lanes.waiting.midway_tilt[i] + least
+    return GROWING if m.law == BOUC_WEN and turned and tilted else RESTLESS

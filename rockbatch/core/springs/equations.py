@@ -1,0 +1,185 @@
+"""Equations of motion of the pier on two springs, once for all contacts and both kinematics (THEORY.md, eqs. 4 to 9)."""
+
+from rockbatch.core import system
+from rockbatch.core.kernel import inlined, kernel
+from rockbatch.core.springs.creep import acceleration_of_top, creep_rate, forces, share_left, top, with_creep
+from rockbatch.core.springs.laws import within_yield, z_rate
+from rockbatch.core.springs.model import Contact, Geometry, Springs, State
+from rockbatch.core.trigonometry import sine_and_cosine
+from rockbatch.core.types import LEFT, Pull
+
+
+@inlined
+def geometry(m, theta):
+    """Pivots and levers at rotation ``theta`` (THEORY.md, eqs. 5 and 6; finite: THEORY.md, eqs. 8 and 9)."""
+    b, h = m.half_width, m.height
+    if m.finite is not None:
+        s, c = sine_and_cosine(theta)
+        drop = h * s * s / (1.0 + c)  # h (1 − cos θ), without the loss of digits
+        arm_left, arm_right = b * c + h * s, -b * c + h * s
+        return Geometry(
+            b * s + drop, -b * s + drop,
+            arm_left, arm_right,
+            -b * s + h * c, b * s + h * c,
+            arm_left, arm_right,
+            h * c, -h * s,
+            b * s, b * c,
+        )  # fmt: skip
+    return Geometry(
+        b * theta, -b * theta,
+        b, -b,
+        0.0, 0.0,
+        b + h * theta, -b + h * theta,
+        h, 0.0,
+        b * theta, b,
+    )  # fmt: skip
+
+
+@system.pulled.of(Springs)
+def pulled(m, force, moment):
+    """Return the pier ``m`` under a force [m/s²] and a moment [m²/s²]."""
+    return Springs(
+        m.half_width, m.height, m.inertia, m.gravity, m.yield_deflection, m.stiffness, m.yield_force, m.epsilon,
+        m.damping, m.law, m.guided, m.exponent, m.finite, m.damped, Pull(force, moment),
+    )  # fmt: skip
+
+
+@inlined
+def _with_pull(pull, force, moment):
+    """Force and moment, upwards and to the right, with those of dampers and tendons."""
+    if pull is None:
+        return force, moment
+    return force - pull.force, moment - pull.moment
+
+
+@inlined
+def accelerations_at(m, y, contact, at, horizontal, vertical):
+    """Return v̈ [m/s²] and θ̈ [rad/s²] of state ``y`` under ground accelerations [m/s²]; ``at`` is its geometry."""
+    force_left, force_right = forces(m, y, contact, at)
+    side = contact.right - contact.left
+    lever = at.lever + side * at.swing
+    moment = -force_left * at.moment_left - force_right * at.moment_right - lever * horizontal
+    effective = m.height
+    if m.finite is not None:
+        effective = lever
+        moment -= lever * (at.lever_slope + side * at.swing_slope) * y.omega * y.omega
+    v_acceleration, moment = _with_pull(m.pull, -m.gravity - vertical - force_left - force_right, moment)
+    if contact.held == 0.0:
+        return v_acceleration, moment * (1.0 / (m.inertia + effective * effective))
+    # A held pivot neither lifts nor presses: it goes with its support (Filippov's sliding mode).
+    if contact.held < 0.0:
+        free = v_acceleration - acceleration_of_top(m, y.z_left)
+        return v_acceleration, -(free + at.bend_left * y.omega * y.omega) / at.arm_left
+    free = v_acceleration - acceleration_of_top(m, y.z_right)
+    return v_acceleration, -(free + at.bend_right * y.omega * y.omega) / at.arm_right
+
+
+@system.accelerations.of(Springs)
+def accelerations(m, y, contact, horizontal, vertical):
+    """Return v̈ [m/s²] and θ̈ [rad/s²] of state ``y`` under ground accelerations [m/s²]."""
+    return accelerations_at(m, y, contact, geometry(m, y.theta), horizontal, vertical)
+
+
+@system.rates.of(Springs)
+def rates(m, y, contact, horizontal, vertical):
+    """Return the right-hand side: the rates of all state variables."""
+    at = geometry(m, y.theta)
+    v_acceleration, theta_acceleration = accelerations_at(m, y, contact, at, horizontal, vertical)
+    left = contact.left * (y.v_rate + at.arm_left * y.omega)
+    right = contact.right * (y.v_rate + at.arm_right * y.omega)
+    return State(
+        y.v_rate,
+        y.omega,
+        v_acceleration,
+        theta_acceleration,
+        creep_rate(m, z_rate(m, y.z_left, left, contact.left_yields), y.z_left, contact.left),
+        creep_rate(m, z_rate(m, y.z_right, right, contact.right_yields), y.z_right, contact.right),
+    )
+
+
+@kernel
+def pivot_acceleration(m, y, contact, side, horizontal, vertical):
+    """Vertical acceleration [m/s²] of the pivot on ``side`` (LEFT or RIGHT), from its support if that were without it."""
+    at = geometry(m, y.theta)
+    v_acceleration, theta_acceleration = accelerations_at(m, y, contact, at, horizontal, vertical)
+    if side == LEFT:
+        away = v_acceleration - acceleration_of_top(m, y.z_left)
+        return away + at.arm_left * theta_acceleration + at.bend_left * y.omega * y.omega
+    away = v_acceleration - acceleration_of_top(m, y.z_right)
+    return away + at.arm_right * theta_acceleration + at.bend_right * y.omega * y.omega
+
+
+@system.share.of(Springs)
+def share(m, h):
+    """Return the share of z that is left after ``h`` [s] to supports without their pivots."""
+    return share_left(m, h)
+
+
+@system.staged.of(Springs)
+def staged(m, y, start, contact, left):
+    """Return a stage of a step, with what has recovered in closed form."""
+    return with_creep(m, y, start, contact, left)
+
+
+@system.ended.of(Springs)
+def ended(m, y, start, contact, left):
+    """Return the end of a step, with z no lower than −1 and what has recovered in closed form."""
+    z_left, z_right = within_yield(y.z_left, contact.left_yields), within_yield(y.z_right, contact.right_yields)
+    return with_creep(m, State(y.v, y.theta, y.v_rate, y.omega, z_left, z_right), start, contact, left)
+
+
+@system.lever.of(Springs)
+def lever(m, y, contact):
+    """Return H [m]."""
+    at = geometry(m, y.theta)
+    return at.lever + (contact.right - contact.left) * at.swing
+
+
+@system.airborne.of(Springs)
+def airborne(m, contact):
+    """Return whether both pivots are in the air."""
+    return contact.left == 0.0 and contact.right == 0.0 and contact.held == 0.0
+
+
+@system.clearances.of(Springs)
+def clearances(m, y, supports):
+    """Return the height [m] of both pivots above their waiting supports, and the rates [m/s] of the pivots."""
+    at = geometry(m, y.theta)
+    left, right = top(m, supports.left, y.z_left), top(m, supports.right, y.z_right)
+    return (
+        y.v + at.lift_left - left, y.v + at.lift_right - right,
+        y.v_rate + at.arm_left * y.omega, y.v_rate + at.arm_right * y.omega,
+    )  # fmt: skip
+
+
+@kernel
+def without(contact, side):
+    """Contacts once the pivot on ``side`` is free."""
+    held = 0.0 if contact.held == side else contact.held
+    if side == LEFT:
+        return Contact(0.0, contact.right, 0.0, contact.right_yields, held)
+    return Contact(contact.left, 0.0, contact.left_yields, 0.0, held)
+
+
+@kernel
+def touching(contact, side, yields):
+    """Contacts once the pivot on ``side`` is on its spring, on the branch that ``yields`` says."""
+    held = 0.0 if contact.held == side else contact.held
+    if side == LEFT:
+        return Contact(1.0, contact.right, yields, contact.right_yields, held)
+    return Contact(contact.left, 1.0, contact.left_yields, yields, held)
+
+
+@kernel
+def holding(contact, side, yields):
+    """Contacts once the pivot on ``side`` is held between contact and flight; only one can be."""
+    if contact.held == -side:
+        contact = touching(contact, -side, yields)
+    free = without(contact, side)
+    return Contact(free.left, free.right, free.left_yields, free.right_yields, side)
+
+
+@kernel
+def on_ground(contact):
+    """Number of pivots that are not in the air."""
+    return int(contact.left + contact.right + abs(contact.held))

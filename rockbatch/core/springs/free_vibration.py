@@ -1,0 +1,205 @@
+"""What a pier that is left alone can still do: how far its energy carries it, and whether over the summit.
+
+The ground is at rest. Between impacts energy is kept, at impacts and by yielding it is lost, so the energy of this
+moment bounds every later rotation (THEORY.md, When a run is over). Energies are per unit mass [J/kg]. ``load`` is
+what the supports carry at rest [m/s²]: g, and what tendons add to it without an arm h θ of their own.
+"""
+
+import math
+
+from rockbatch.core.kernel import kernel
+from rockbatch.core.springs.equations import geometry
+from rockbatch.core.springs.laws import give, number
+from rockbatch.core.springs.model import BOUC_WEN, ELASTIC
+
+PARTS = 24
+"""Parts of the way to the supports' capacity over which their work is summed."""
+
+SEEN = 1e-6
+"""Relative error of an extreme that has been seen, by which it may lie below the amplitude of its vibration."""
+
+OPEN = 0
+"""By its energy, the pier may still turn further than it has, or overturn."""
+DECIDED = 1
+"""Nothing that comes later can exceed what has been."""
+LEANS = 2
+"""The base leans so far that the pier cannot stand on it."""
+
+
+@kernel
+def _capacity(m, load):
+    """Greatest moment of the supports about the centre of the base, over load · b: one carries all, or as much as it can."""
+    return 1.0 if m.law == ELASTIC else min(1.0, 2.0 * m.yield_force / load - 1.0)
+
+
+@kernel
+def summit(m, load):
+    """Rotation [rad] at which the weight's moment equals the greatest of the supports."""
+    tangent = _capacity(m, load) * (load / m.gravity) * m.half_width / m.height
+    return math.atan(tangent) if m.finite is not None else tangent
+
+
+@kernel
+def rocking_stiffness(m):
+    """Restoring moment per rotation in full contact, on elastic springs [m²/s²]."""
+    return 2.0 * m.yield_force * m.stiffness * m.half_width * m.half_width - m.gravity * m.height
+
+
+@kernel
+def rocking_period(m):
+    """Of rocking in full contact [s]: 2π/ω_r (THEORY.md, eq. 12)."""
+    return 2.0 * math.pi * math.sqrt((m.inertia + m.height * m.height) / rocking_stiffness(m))
+
+
+@kernel
+def _travel(m, theta):
+    """Travel of a support over b: sin θ, or θ in first-order kinematics."""
+    return math.sin(theta) if m.finite is not None else theta
+
+
+@kernel
+def _weight_moment(m, travel):
+    """Moment of the weight about the centre of the base over g, per b cos θ of the supports' arm [m]."""
+    return m.height * (travel / math.sqrt(1.0 - travel * travel) if m.finite is not None else travel)
+
+
+@kernel
+def _climb(m, lean, target, load):
+    """Energy that it takes at least to turn from rest at ``lean`` to ``target`` [rad], or to the summit before it.
+
+    The pier turns towards the support on the right, which is loaded by x, the supports' moment over load · b; the other one
+    is unloaded, elastic. A Bouc–Wen spring takes 1/(1 − zⁿ) of the elastic deflection. From the capacity on, the moment
+    stays and the pier turns about its far support. For the other direction reverse both angles. A pier that leans
+    beyond ``target`` is there already: −inf.
+    """
+    if lean >= target:
+        return -math.inf
+    b, weight = m.half_width, m.gravity / load
+    static_force = 0.5 * load / m.yield_force
+    deflection = static_force * m.yield_deflection
+    capacity = _capacity(m, load)
+    travel, goal, work = _travel(m, lean), _travel(m, target), 0.0
+    x = weight * _weight_moment(m, travel) / b
+    dx = (capacity - x) / PARTS
+    for i in range(PARTS):
+        middle = x + (i + 0.5) * dx
+        turn = 0.5 * deflection * dx * (1.0 + give(m, static_force * (1.0 + middle))) / b
+        part = min(turn, goal - travel)
+        middle = x + (i + 0.5 * part / turn) * dx
+        moment = load * (b * middle - weight * _weight_moment(m, travel + 0.5 * part))
+        if moment <= 0.0:
+            return work
+        work += moment * part
+        travel += part
+        if part < turn:
+            return work
+    theta = math.asin(travel) if m.finite is not None else travel
+    end = min(target, summit(m, load))
+    if end <= theta:
+        return work
+    if m.finite is not None:
+        return work + load * (
+            capacity * b * (math.sin(end) - math.sin(theta)) + weight * m.height * (math.cos(end) - math.cos(theta))
+        )
+    return work + load * (capacity * b * (end - theta) - 0.5 * weight * m.height * (end * end - theta * theta))
+
+
+@kernel
+def _returned(m, theta):
+    """Share of the energy that may come back on the way to ``theta`` [rad]: 2 b h θ/(I0/M + h² + b²).
+
+    First-order P–Δ moments have no potential: what the vertical inertia v̈ does with the arm h θ is no energy of the
+    model. It integrates to v̇ h θ θ̇, of which v̇ ≤ b θ̇. In finite kinematics H jumps by as much with a contact.
+    """
+    b, h = m.half_width, m.height
+    return 2.0 * b * h * theta / (m.inertia + h * h + b * b)
+
+
+@kernel
+def _swept(m, lean, drift, sinking, swollen):
+    """How far [rad] a base that leans by ``lean`` to one side tilts on, ``drift`` if it were to go on as it has.
+
+    A Bouc–Wen support under a share 1 + h θ/b of its load sinks (1 + h θ/b)ⁿ times as fast: the lean grows by itself,
+    by the factor exp(n h swollen · sinking/b²) while both sink by ``sinking`` [m] on average.
+    """
+    if m.law != BOUC_WEN:
+        return max(drift, 0.0)
+    grows = number(m.exponent) * m.height * swollen * sinking / (m.half_width * m.half_width)
+    if grows <= 1e-6:
+        return max(drift, 0.0)
+    factor = math.expm1(min(grows, 50.0))
+    return max(drift, 0.0) * factor / grows + max(lean, 0.0) * factor
+
+
+@kernel
+def outlook_on_springs(
+    m, y, contact, load, in_tendons, base_left, base_right, peak, calm, drift_right, drift_left, sinking
+):
+    """OPEN, DECIDED or LEANS, of state ``y`` whose supports are unstressed at ``base_left`` and ``base_right`` [m].
+
+    Parameters
+    ----------
+    in_tendons : float
+        What tendons may give back beyond the work of their share of the load [J/kg].
+    peak : float
+        Greatest |θ| so far [rad].
+    calm : bool
+        Both pivots have stayed on the ground, and the ground at rest, for a period of rocking: what rocks then keeps
+        apart from what vibrates vertically, but for the P–Δ moment of the latter.
+    drift_right, drift_left : float
+        By how much the base will tilt further at most, to either side [rad], as far as can be foreseen: yielding
+        springs ratchet on vibration.
+    sinking : float
+        By how much both supports will sink on average in the same time [m].
+    """
+    b, h, g = m.half_width, m.height, m.gravity
+    stiffness = rocking_stiffness(m)
+    softness = 0.5 * load / (m.yield_force * m.stiffness)  # static deflection
+    tilt = 0.5 * (base_left - base_right) / b
+    swollen = (stiffness + g * h) / stiffness
+    lean = tilt * swollen
+    drift_right = _swept(m, lean, drift_right * swollen, sinking, swollen)
+    drift_left = _swept(m, -lean, drift_left * swollen, sinking, swollen)
+    limit = min(peak, summit(m, load))
+    if abs(lean) >= summit(m, load):
+        return LEANS
+    if abs(y.theta) >= summit(m, load):
+        return OPEN
+    middle = 0.5 * (base_left + base_right)
+    if calm:
+        mean = middle - softness  # of v
+        if m.finite is not None:
+            mean -= _drop(m, y.theta)
+        swing = (
+            math.sqrt((y.v - mean) * (y.v - mean) + y.v_rate * y.v_rate * softness / load) / softness
+        )  # vertical, of the load
+        softened = stiffness - load * h * swing
+        if softened <= 0.0:
+            return OPEN
+        rocking = (m.inertia + h * h) * y.omega * y.omega + stiffness * (y.theta - lean) * (y.theta - lean)
+        reach = math.sqrt(rocking / softened)
+        sway = lean * (stiffness / softened)  # the lean swells with the weight
+        if m.finite is not None:  # to second order, sin² θ stores less than θ²
+            reach *= 1.0 + swollen * limit * limit / 6.0
+        furthest = max(max(sway, lean) + drift_right, max(-sway, -lean) + drift_left) + reach
+        return DECIDED if furthest <= limit * (1.0 + SEEN) else OPEN
+    at = geometry(m, y.theta)
+    uneven = g / load * h * lean / b
+    lever, gained, at_lean = h, -0.5 * g * h * y.theta * y.theta, -0.5 * g * h * lean * lean
+    if m.finite is not None:
+        lever = at.lever + (contact.right - contact.left) * at.swing
+        gained, at_lean = (load - g) * _drop(m, y.theta), -g * _drop(m, lean)
+    kinetic = 0.5 * y.v_rate * y.v_rate + 0.5 * (m.inertia + lever * lever) * y.omega * y.omega
+    spring = m.yield_force * m.yield_deflection
+    stored = load * y.v + gained + 0.5 * spring * (y.z_left * y.z_left + y.z_right * y.z_right) + in_tendons
+    at_lean += load * (middle - softness) + 0.5 * load * softness * (1.0 + uneven * uneven)
+    energy = (1.0 + _returned(m, limit)) * (kinetic + stored - at_lean)
+    least = min(_climb(m, lean, limit - drift_right, load), _climb(m, -lean, limit - drift_left, load))
+    return DECIDED if energy <= least + 1e-12 * load * softness else OPEN
+
+
+@kernel
+def _drop(m, theta):
+    """h (1 − cos θ) [m]."""
+    half = math.sin(0.5 * theta)
+    return 2.0 * m.height * half * half

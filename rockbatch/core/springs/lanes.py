@@ -1,0 +1,245 @@
+"""Lanes of piers on springs: what a table holds of them, how runs begin and end."""
+
+from typing import NamedTuple
+
+from rockbatch.core import system
+from rockbatch.core.clock import COMMON, ground_at, include_height
+from rockbatch.core.ground import later
+from rockbatch.core.history import write
+from rockbatch.core.kernel import inlined, inner, kernel
+from rockbatch.core.rk4 import rk4
+from rockbatch.core.roots import lowest_within
+from rockbatch.core.springs import events, transitions  # noqa: F401  answers of the springs
+from rockbatch.core.springs.ending import Waiting, base_of
+from rockbatch.core.springs.laws import branch_when_pressed, deflection
+from rockbatch.core.springs.loading import Loading, branches, close_left, close_right
+from rockbatch.core.springs.model import Contact, Numbers, Springs, SpringTraits, State, Supports
+from rockbatch.core.springs.passing import News
+from rockbatch.core.springs.reversal import pivots
+from rockbatch.core.system import Kind, model, moment, rates
+from rockbatch.core.table import get, lanes_of, put
+from rockbatch.core.types import BEFORE_EVENT, SPRING_LEFT, SPRING_RIGHT
+
+
+class Lowest(NamedTuple):
+    """Lowest positions of the pivots on their springs."""
+
+    left: float  # [m]
+    right: float
+    plastic: float  # unstressed position of both supports at the start [m]
+
+
+LANE = lanes_of(COMMON | {
+    "model": Numbers, "now": State, "end": State, "rates": State, "contact": Contact, "supports": Supports,
+    "loading": Loading, "lowest": Lowest, "news": News, "waiting": Waiting,
+})  # fmt: skip
+
+
+class Line(NamedTuple):
+    """A run as it is asked for: the model as Springs has it, and the rest."""
+
+    half_width: float
+    height: float
+    inertia: float
+    gravity: float
+    yield_deflection: float
+    stiffness: float
+    yield_force: float
+    epsilon: float
+    damping: float
+    law: float
+    guided: float
+    exponent: float
+    dt: float  # sampling interval [s]
+    substeps: float  # steps to a sampling interval
+    quiet_samples: float  # of the free-vibration tail after the record
+    first_row: float  # where among the rows of the ground the motion begins
+    npts: float  # and how many it has
+    patience: float = (
+        0.0  # samples that the run goes on at most while, by its energy, the pier could still turn further
+    )
+    read_after: float = 0.0  # samples from the end of the record to the earliest moment at which residuals are read
+    read_wait: float = 0.0  # from there to the second reading, which tells how they drift; 0: once the peak is decided
+    prestress: float = 0.0  # of tendons, over the mass [m/s²]
+
+
+@inlined
+def _typed(exponent, value):
+    if isinstance(exponent, int):
+        return int(value)
+    if isinstance(exponent, float):
+        return value
+    return None
+
+
+@system.model.of(SpringTraits)
+def model_in(traits, lanes, i):
+    """Return the Springs of lane ``i``, of the types that ``traits`` have."""
+    m = lanes.model
+    return Springs(
+        m.half_width[i], m.height[i], m.inertia[i], m.gravity[i], m.yield_deflection[i], m.stiffness[i],
+        m.yield_force[i], m.epsilon[i], m.damping[i], m.law[i], m.guided[i], _typed(traits.exponent, m.exponent[i]),
+        traits.finite, traits.damped, None,
+    )  # fmt: skip
+
+
+@system.moment.of(SpringTraits)
+def moment_in(traits, lanes, i):
+    """Return state, contact and supports of lane ``i``."""
+    return get(lanes.now, i, State), get(lanes.contact, i, Contact), get(lanes.supports, i, Supports)
+
+
+@system.put_moment.of(SpringTraits)
+def put_moment(traits, lanes, i, y, contact, supports):
+    """Write state, contact and supports of lane ``i``."""
+    put(lanes.now, i, y)
+    put(lanes.contact, i, contact)
+    put(lanes.supports, i, supports)
+
+
+@kernel
+def static_state(m, load):
+    """Return the equilibrium under the ``load`` [m/s²], of the weight and of tendons: z = −(1 + ψ)/η on first loading."""
+    force = 0.5 * load / m.yield_force
+    return State(-m.yield_deflection * deflection(m, force), 0.0, 0.0, 0.0, -force, -force)
+
+
+@system.begin.of(SpringTraits)
+def begin(traits, lanes, i, run):
+    """Put the model of ``run`` into lane ``i``, in its static state."""
+    m = lanes.model
+    m.half_width[i], m.height[i], m.inertia[i], m.gravity[i] = run.half_width, run.height, run.inertia, run.gravity
+    m.yield_deflection[i], m.stiffness[i], m.yield_force[i] = run.yield_deflection, run.stiffness, run.yield_force
+    m.epsilon[i], m.damping[i], m.law[i], m.guided[i] = run.epsilon, run.damping, run.law, run.guided
+    m.exponent[i] = run.exponent
+    pier = model(traits, lanes, i)
+    y = static_state(pier, run.gravity + run.prestress)
+    plastic = y.v - run.yield_deflection * y.z_left
+    branch = branch_when_pressed(pier.law)
+    put(lanes.now, i, y)
+    put(lanes.contact, i, Contact(1.0, 1.0, branch, branch, 0.0))
+    put(lanes.supports, i, Supports(0.0, 0.0))
+    put(lanes.loading, i, Loading(plastic, y.z_left, 0.0, plastic, y.z_right, 0.0))
+    put(lanes.lowest, i, Lowest(y.v, y.v, plastic))
+    lanes.news.watched[i] = 1.0
+
+
+@system.include.of(SpringTraits)
+def include(traits, lanes, i, m, y, k, end, k_end, contact, h):
+    """Bring the lowest positions up to those of a smooth part of ``h`` [s]."""
+    left, right = pivots(m, y)
+    left_end, right_end = pivots(m, end)
+    lowest = lanes.lowest
+    if contact.left != 0.0:
+        lowest.left[i] = lowest_within(
+            left.position, left.velocity, left_end.position, left_end.velocity, h, lowest.left[i]
+        )
+    if contact.right != 0.0:
+        lowest.right[i] = lowest_within(
+            right.position, right.velocity, right_end.position, right_end.velocity, h, lowest.right[i]
+        )
+
+
+@system.after_event.of(SpringTraits)
+def after_event(traits, lanes, i, m, before, after, y):
+    """Keep where the branches of the springs began, and the plastic work of those that have ended."""
+    put(lanes.loading, i, branches(m, get(lanes.loading, i, Loading), before, after, y))
+
+
+@system.after_step.of(SpringTraits)
+def after_step(traits, lanes, i, marks, contact, whole):
+    """Let the pass take the next sub-step by itself, if all event functions are clear of zero at its start."""
+    clear = whole and contact.held == 0.0 and min(marks.now[0], marks.now[1]) > 0.0
+    for j in (2, 3):  # a velocity leaves zero
+        clear = clear and (marks.now[j] > 0.0 or marks.now_slopes[j] > 0.0)
+    lanes.news.watched[i] = 0.0 if clear else 1.0
+
+
+@system.attend.of(SpringTraits)
+def attend(traits, lanes, i):
+    """Take in extremes and plastic work of a sub-step of lane ``i`` that stands, and let the lane go on from its end."""
+    m, news, h = model(traits, lanes, i), lanes.news, lanes.clock.step[i]
+    y, end, contact = get(lanes.now, i, State), get(lanes.end, i, State), get(lanes.contact, i, Contact)
+    if system.airborne(m, contact):
+        include_height(lanes, i, m, get(lanes.supports, i, Supports), y, end, h)
+    include(traits, lanes, i, m, y, y, end, end, contact, h)
+    put(lanes.now, i, end)
+    if news.closes[i] == 0.0:
+        return
+    left, right = pivots(m, end)
+    loading = get(lanes.loading, i, Loading)
+    if news.left[i] >= 0.0 and contact.left_yields == 0.0:
+        loading = close_left(m, loading, left.position - m.yield_deflection * end.z_left, news.z_left[i])
+    if news.right[i] >= 0.0 and contact.right_yields == 0.0:
+        loading = close_right(m, loading, right.position - m.yield_deflection * end.z_right, news.z_right[i])
+    put(lanes.loading, i, loading)
+
+
+@system.finish.of(SpringTraits)
+def finish(traits, lanes, i, t, result):
+    """Write residuals, extremes and plastic work of the run in lane ``i``."""
+    m = model(traits, lanes, i)
+    y, contact, supports = moment(traits, lanes, i)
+    waiting, lowest = lanes.waiting, lanes.lowest
+    t_read, base_left, base_right = waiting.read[i] * lanes.clock.dt[i], waiting.read_left[i], waiting.read_right[i]
+    if waiting.read[i] < 0.0:
+        t_read = t
+        base_left, base_right = base_of(m, y, contact, supports)
+    loading = branches(m, get(lanes.loading, i, Loading), contact, Contact(0.0, 0.0, 0.0, 0.0, 0.0), y)
+    result.base_left = base_left - lowest.plastic[i]
+    result.base_right = base_right - lowest.plastic[i]
+    result.deepest_left = lowest.left[i]
+    result.deepest_right = lowest.right[i]
+    result.dissipated_left = m.yield_force * loading.work_left
+    result.dissipated_right = m.yield_force * loading.work_right
+    result.t_read = t_read
+    result.drift_left = waiting.drift_left[i]
+    result.drift_right = waiting.drift_right[i]
+    result.v_end, result.theta_end = y.v, y.theta
+
+
+@system.write_reversals.of(SpringTraits)
+def write_reversals(traits, lanes, i, substep, history, row):
+    """Write both sides of the reversals that the pass has corrected in a sub-step that stands: the next row."""
+    if history.shape[0] == 0:
+        return row
+    return _write_reversals(traits, lanes, i, substep, history, row)
+
+
+@inner
+def _write_reversals(traits, lanes, i, substep, history, row):
+    m, after, h = model(traits, lanes, i), get(lanes.contact, i, Contact), lanes.clock.step[i]
+    start = substep * h
+    t, ground = lanes.clock.sample[i] * lanes.clock.dt[i] + start, ground_at(lanes, i, start)
+    y, left, right = get(lanes.now, i, State), lanes.news.left[i], lanes.news.right[i]
+    was_left = after.left_yields if left < 0.0 else 1.0 - after.left_yields
+    was_right = after.right_yields if right < 0.0 else 1.0 - after.right_yields
+    contact, at = Contact(after.left, after.right, was_left, was_right, 0.0), 0.0
+    for _ in range(2):
+        of_left = left >= 0.0 and (right < 0.0 or left <= right)
+        when = left if of_left else right
+        if when < 0.0:
+            return row
+        k = rates(m, y, contact, ground.horizontal, ground.vertical)
+        y = rk4(m, None, y, k, contact, ground, when - at)
+        row = write(history, row, t + when, BEFORE_EVENT, m, None, y, contact, ground)
+        if of_left:
+            contact = Contact(contact.left, contact.right, after.left_yields, contact.right_yields, 0.0)
+            left = -1.0
+        else:
+            contact = Contact(contact.left, contact.right, contact.left_yields, after.right_yields, 0.0)
+            right = -1.0
+        row = write(history, row, t + when, SPRING_LEFT if of_left else SPRING_RIGHT, m, None, y, contact, ground)
+        ground, at = later(ground, when - at), when
+    return row
+
+
+def kind_of(m):
+    """Return the Kind of the pier ``m`` (Springs): what its runs are compiled for."""
+    return Kind(SpringTraits(m.exponent, m.finite, m.damped), Line, LANE, State._fields + Contact._fields)
+
+
+def line_of(m, *timing):
+    """Return the Line of a run of the pier ``m`` (Springs); ``timing`` is what Line has from ``dt`` on."""
+    exponent = 5.0 if m.exponent is None else float(m.exponent)
+    return Line(*m[:-4], exponent, *timing)

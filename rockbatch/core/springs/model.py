@@ -1,0 +1,106 @@
+"""A pier on two springs, its state and its contacts (THEORY.md, Symbols)."""
+
+from typing import NamedTuple
+
+from rockbatch.core.types import Pull
+
+# Constitutive models
+ELASTIC = 0.0
+BOUC_WEN = 1.0
+EPP = 2.0
+
+
+class Springs(NamedTuple):
+    """A pier on two springs, per unit mass.
+
+    The last four are told apart by their types, hence when kernels are compiled: a call of ``pow``, ``sin`` or ``cos``
+    in an unused branch would cost the common model, n = 5, first-order and undamped, its vector instructions.
+    """
+
+    half_width: float  # b [m]
+    height: float  # h [m]
+    inertia: float  # I0/M [m²]
+    gravity: float  # g [m/s²]
+    yield_deflection: float  # δ_y [m]; the static deflection for elastic springs
+    stiffness: float  # K/F_y = 1/δ_y [1/m]
+    yield_force: float  # F_y/M [m/s²]
+    epsilon: float  # restitution of the landing pivot; 1 for damped supports, whose dashpots lose the energy
+    damping: float  # C/M = ζ ω_v of each support's dashpot [1/s]
+    law: float  # ELASTIC, BOUC_WEN or EPP
+    guided: float  # 1: flight goes on, 0: it ends the run
+    exponent: float | int | None  # n of Bouc–Wen; None for the paper's 5, int for other whole numbers up to 10
+    finite: bool | None  # True: finite kinematics; None: first-order
+    damped: bool | None = None  # True: a dashpot beside each spring; None: none
+    pull: Pull | None = None  # of dampers and tendons; None: there are none
+
+
+class SpringTraits(NamedTuple):
+    """What kernels are compiled for: the types of these fields of Springs; their values do not matter."""
+
+    exponent: float | int | None
+    finite: bool | None
+    damped: bool | None
+
+
+class Numbers(NamedTuple):
+    """The numbers of Springs, as lanes hold them."""
+
+    half_width: float
+    height: float
+    inertia: float
+    gravity: float
+    yield_deflection: float
+    stiffness: float
+    yield_force: float
+    epsilon: float
+    damping: float
+    law: float
+    guided: float
+    exponent: float
+
+
+class State(NamedTuple):
+    """What the equations integrate; also its rates."""
+
+    v: float  # vertical displacement of the centre of mass from unstressed springs, up [m]
+    theta: float  # rotation, positive to the right [rad]
+    v_rate: float  # [m/s]
+    omega: float  # [rad/s]
+    z_left: float  # F_L/F_y, −1..0
+    z_right: float
+
+
+class Contact(NamedTuple):
+    """What is constant between events: factors of 0 or 1 in one right-hand side."""
+
+    left: float  # the pivot is on its spring
+    right: float
+    left_yields: float  # the spring is on its inelastic branch
+    right_yields: float
+    held: (
+        float  # pivot in grazing contact, pressed down while free and lifted while in contact: −1 left, 1 right, 0 none
+    )
+
+
+class Supports(NamedTuple):
+    """Positions [m] at which the supports of free pivots are unstressed; of others they mean nothing."""
+
+    left: float
+    right: float
+
+
+class Geometry(NamedTuple):
+    """The pivots at a rotation θ. Index i is left or right; v_i is a pivot's vertical displacement."""
+
+    lift_left: float  # v_i − v [m]
+    lift_right: float
+    arm_left: float  # ∂v_i/∂θ [m]
+    arm_right: float
+    bend_left: float  # ∂²v_i/∂θ² [m]
+    bend_right: float
+    moment_left: float  # arm of the spring force about the centre of mass [m]
+    moment_right: float
+    lever: float  # H in full contact [m]
+    lever_slope: float  # dH/dθ [m]
+    swing: float  # what H gains when only the right pivot is in contact, and loses when only the left is [m]
+    swing_slope: float

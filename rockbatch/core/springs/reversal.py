@@ -1,0 +1,121 @@
+"""Reversals without a search: what the other branch would have made of a step's rest (THEORY.md, Reversals of springs)."""
+
+from typing import NamedTuple
+
+from rockbatch.core.kernel import inlined
+from rockbatch.core.springs.equations import geometry
+from rockbatch.core.springs.laws import softening
+from rockbatch.core.springs.model import State
+
+SHARP = 1e-3
+"""z that a corrected reversal may add at most."""
+
+
+class Pivot(NamedTuple):
+    """One pivot at one time."""
+
+    position: float  # v_i [m]
+    velocity: float  # [m/s]
+
+
+class Reversal(NamedTuple):
+    """What one spring's reversal in a step comes to; without one its times and additions are 0."""
+
+    happened: bool
+    after: float  # time from the reversal to the end of the step [s]
+    z: float  # at the reversal
+    added: float  # z at the end of the step, that the other branch has added
+    softness: (
+        float  # δ_y dz per change of the pivot's position at the end of the step: 1 − |z|ⁿ on the inelastic branch
+    )
+    doubts: bool  # two reversals, or one that is too sharp for a correction
+
+
+@inlined
+def pivots(m, y):
+    """Both pivots in state ``y``."""
+    at = geometry(m, y.theta)
+    return (
+        Pivot(y.v + at.lift_left, y.v_rate + at.arm_left * y.omega),
+        Pivot(y.v + at.lift_right, y.v_rate + at.arm_right * y.omega),
+    )
+
+
+@inlined
+def pivot_accelerations(m, y, k):
+    """Of both pivots [m/s²] in state ``y`` with rates ``k``."""
+    at, turning = geometry(m, y.theta), y.omega * y.omega
+    left = k.v_rate + at.arm_left * k.omega + at.bend_left * turning
+    right = k.v_rate + at.arm_right * k.omega + at.bend_right * turning
+    return left, right
+
+
+@inlined
+def _size(z):
+    return min(max(-z, 0.0), 1.0)
+
+
+@inlined
+def reversal(m, sign, rest, start, acceleration, end, z_end, h):
+    """The reversal of a spring in a step of ``h`` [s] that was taken on one branch, from Pivot ``start`` to ``end``.
+
+    Parameters
+    ----------
+    sign : float
+        Of :func:`rockbatch.core.laws.kept_sign`.
+    rest : float
+        Velocity that counts as none [m/s].
+    acceleration : float
+        Of the pivot at the start [m/s²].
+    z_end : float
+        z at the end of the step, as the branch has it.
+    """
+    w0, w1 = sign * start.velocity, sign * end.velocity
+    happened = w1 < -rest
+    share = w1 / (w1 - max(w0, 0.0)) if happened else 0.0  # of the step after the reversal, by the chord
+    before = 1.0 - share
+    way = end.position - start.position
+    # The position turns at the reversal, so that an error of the time matters squared: a polynomial of order 4 gives it
+    cubic = share * (h * start.velocity - way) + before * (way - h * end.velocity)
+    quartic = h * (0.5 * h * acceleration + 2.0 * start.velocity + end.velocity) - 3.0 * way
+    unit = share * (way - before * (cubic + before * share * quartic)) * m.stiffness  # way after the reversal/δ_y
+    part = softening(m, _size(z_end))
+    middle = z_end - 0.5 * unit * (1.0 + sign * part)
+    added = softening(m, _size(middle)) * abs(unit)
+    unloads = (sign < 0.0) == happened
+    z = z_end - unit + (added if unloads else 0.0)
+    # Two reversals: the parabola through both velocities and the way between them may dip below zero
+    speed0, speed1 = h * w0, h * w1
+    sag = 1.5 * (speed0 + speed1) - 3.0 * sign * way
+    twice = not happened and min(speed0, speed1) + h * rest < 0.5 * sag
+    return Reversal(happened, share * h, z, added, 1.0 if unloads else 1.0 - part, twice or added > SHARP)
+
+
+@inlined
+def corrected(m, contact, y, left, right):
+    """The end of a step, ``y``, after the reversals ``left`` and ``right``.
+
+    What is added to z grows like the square of the time t since the reversal. Its force changes velocities like an
+    impulse F_y δz t/3, and positions like F_y δz t²/12, which both springs follow.
+    """
+    at = geometry(m, y.theta)
+    third = m.yield_force * (1.0 / 3.0)
+    push_left, push_right = third * left.added * left.after, third * right.added * right.after
+    way_left, way_right = 0.25 * left.after * push_left, 0.25 * right.after * push_right
+    lever = m.height
+    if m.finite is not None:
+        lever = at.lever + (contact.right - contact.left) * at.swing
+    turn = -1.0 / (m.inertia + lever * lever)
+    v = -(way_left + way_right)
+    theta = turn * (at.moment_left * way_left + at.moment_right * way_right)
+    if m.damped is not None:  # the dashpots' impulse on the way
+        push_left += m.damping * contact.left * (v + at.arm_left * theta)
+        push_right += m.damping * contact.right * (v + at.arm_right * theta)
+    return State(
+        y.v + v,
+        y.theta + theta,
+        y.v_rate - (push_left + push_right),
+        y.omega + turn * (at.moment_left * push_left + at.moment_right * push_right),
+        y.z_left + left.added + contact.left * m.stiffness * (v + at.arm_left * theta) * left.softness,
+        y.z_right + right.added + contact.right * m.stiffness * (v + at.arm_right * theta) * right.softness,
+    )

@@ -1,0 +1,179 @@
+"""What an event makes of the pier: separation, landing, a spring's new branch, a pivot held or let go.
+
+Written for the left pivot; at the right one, the mirror image is handled (θ → −θ, left ↔ right, ü_g → −ü_g).
+"""
+
+from rockbatch.core import system
+from rockbatch.core.kernel import kernel
+from rockbatch.core.springs.creep import lag, velocity_of_top
+from rockbatch.core.springs.equations import geometry, on_ground, touching, without
+from rockbatch.core.springs.events import settle
+from rockbatch.core.springs.impact import land, land_flat
+from rockbatch.core.springs.laws import after_kink, branch_after_jump, branch_of_landing, branch_when_pressed
+from rockbatch.core.springs.model import Contact, Springs, State, Supports
+from rockbatch.core.types import (
+    CONTACT_LEFT,
+    HELD_LEFT,
+    HELD_RIGHT,
+    IMPACT_BOTH,
+    IMPACT_LEFT,
+    IMPACT_RIGHT,
+    LAW_LEFT,
+    LAW_RIGHT,
+    LEFT,
+    RIGHT,
+    SEPARATION_LEFT,
+    SEPARATION_RIGHT,
+    SPRING_LEFT,
+    SPRING_RIGHT,
+    Pull,
+)
+
+
+@kernel
+def _mirrored(y):
+    return State(y.v, -y.theta, y.v_rate, -y.omega, y.z_right, y.z_left)
+
+
+@kernel
+def _mirrored_pull(pull):
+    if pull is None:
+        return None
+    return Pull(pull.force, -pull.moment)
+
+
+@kernel
+def _mirrored_pier(m):
+    return Springs(
+        m.half_width, m.height, m.inertia, m.gravity, m.yield_deflection, m.stiffness, m.yield_force, m.epsilon,
+        m.damping, m.law, m.guided, m.exponent, m.finite, m.damped, _mirrored_pull(m.pull),
+    )  # fmt: skip
+
+
+@kernel
+def _mirrored_contact(contact):
+    held = 0.0 - contact.held
+    return Contact(contact.right, contact.left, contact.right_yields, contact.left_yields, held)
+
+
+@kernel
+def _mirrored_kind(kind):
+    if kind == SEPARATION_LEFT:
+        return SEPARATION_RIGHT
+    if kind == IMPACT_LEFT:
+        return IMPACT_RIGHT
+    if kind == SPRING_LEFT:
+        return SPRING_RIGHT
+    return HELD_RIGHT if kind == HELD_LEFT else kind
+
+
+@system.uplifts.of(Springs)
+def uplifts(m, before, after, landed):
+    """Return the number of separations; a pivot may land and be lifted at once."""
+    return landed - on_ground(after) + on_ground(before)
+
+
+@system.transition.of(Springs)
+def transition(m, devices, y, contact, supports, which, rest, ground, dt):
+    """Return state, contact and supports after event ``which``, its kind, and 0: springs have no rest."""
+    horizontal, vertical = ground.horizontal, ground.vertical
+    y, contact, supports, kind = handle(m, y, contact, supports, which, rest, horizontal, vertical)
+    return y, contact, supports, kind, 0.0
+
+
+@kernel
+def handle(m, y, contact, supports, which, rest, horizontal, vertical):
+    """Return state, contact, supports and kind after event ``which``, of a pivot's contact or of its spring's law."""
+    if which in (CONTACT_LEFT, LAW_LEFT):
+        return _at_left(m, y, contact, supports, which == LAW_LEFT, rest, horizontal, vertical)
+    y, contact, supports, kind = _at_left(
+        _mirrored_pier(m), _mirrored(y), _mirrored_contact(contact), Supports(supports.right, supports.left),
+        which == LAW_RIGHT, rest, -horizontal, vertical,
+    )  # fmt: skip
+    return _mirrored(y), _mirrored_contact(contact), Supports(supports.right, supports.left), _mirrored_kind(kind)
+
+
+@kernel
+def _at_left(m, y, contact, supports, of_law, rest, horizontal, vertical):
+    """As :func:`handle`, for the left pivot, of its contact or of its spring's law."""
+    if contact.held == LEFT:
+        at = geometry(m, y.theta)
+        if not of_law:
+            yields = branch_of_landing(m, y.z_left, y.v_rate + at.arm_left * y.omega)
+            return y, touching(contact, LEFT, yields), supports, HELD_LEFT
+        waiting = Supports(y.v + at.lift_left - m.yield_deflection * y.z_left, supports.right)
+        return y, without(contact, LEFT), waiting, SEPARATION_LEFT
+    if of_law:  # the spring changes its branch
+        yields, z = after_kink(m.law, contact.left_yields, y.z_left)
+        changed = State(y.v, y.theta, y.v_rate, y.omega, z, y.z_right)
+        return changed, touching(contact, LEFT, yields), supports, SPRING_LEFT
+    if contact.left != 0.0:
+        return _separation(m, y, contact, supports, rest, horizontal, vertical)
+    return _landing(m, y, contact, supports, rest, horizontal, vertical)
+
+
+@kernel
+def _separation(m, y, contact, supports, rest, horizontal, vertical):
+    """The left pivot's support bears nothing: from here on it stays, or creeps back as fast as the pivot rises."""
+    at = geometry(m, y.theta)
+    velocity = y.v_rate + at.arm_left * y.omega
+    z = 0.0 if m.damped is None else -lag(m) * max(velocity, 0.0)
+    unborne = State(y.v, y.theta, y.v_rate, y.omega, z, y.z_right)
+    waiting = Supports(y.v + at.lift_left - m.yield_deflection * z, supports.right)
+    if m.damped is None and velocity > rest:
+        return unborne, without(contact, LEFT), waiting, SEPARATION_LEFT
+    after = settle(m, unborne, contact, LEFT, horizontal, vertical)
+    kind = HELD_LEFT if on_ground(after) == on_ground(contact) else SEPARATION_LEFT
+    return unborne, after, waiting, kind
+
+
+@kernel
+def _landing(m, y, contact, supports, rest, horizontal, vertical):
+    """The left pivot meets its support; the right one may land at the same instant."""
+    if m.damped is not None:
+        return _damped_landing(m, y, contact, supports, rest, horizontal, vertical)
+    at = geometry(m, y.theta)
+    velocity = y.v_rate + at.arm_left * y.omega
+    loaded = branch_when_pressed(m.law)
+    other_free = contact.left == 0.0 and contact.right == 0.0 and contact.held == 0.0
+    if other_free:
+        gap = y.v + (at.lift_right - supports.right)
+        if abs(gap) <= 1e-10 * m.yield_deflection and y.v_rate + at.arm_right * y.omega < -rest:
+            landed = land_flat(m, y)
+            both = Contact(1.0, 1.0, loaded, loaded, 0.0)
+            if abs(m.epsilon * velocity) <= rest:
+                both = settle(m, landed, both, LEFT, horizontal, vertical)
+                both = settle(m, landed, both, RIGHT, horizontal, vertical)
+            return landed, both, supports, IMPACT_BOTH
+    landed = land(m, y, LEFT)
+    contact, supports = _right_after_impulse(m, landed, contact, supports, at, rest)
+    if abs(m.epsilon * velocity) > rest:
+        return landed, touching(contact, LEFT, loaded), supports, IMPACT_LEFT
+    after = settle(m, landed, contact, LEFT, horizontal, vertical)
+    return landed, after, Supports(y.v + at.lift_left, supports.right), IMPACT_LEFT
+
+
+@kernel
+def _damped_landing(m, y, contact, supports, rest, horizontal, vertical):
+    """The left pivot meets the top of its damped support: its dashpot bears it at once, without an impulse."""
+    velocity = y.v_rate + geometry(m, y.theta).arm_left * y.omega
+    if abs(velocity - velocity_of_top(m, y.z_left)) <= rest:
+        return y, settle(m, y, contact, LEFT, horizontal, vertical), supports, IMPACT_LEFT
+    return y, touching(contact, LEFT, branch_of_landing(m, y.z_left, velocity)), supports, IMPACT_LEFT
+
+
+@kernel
+def _right_after_impulse(m, y, contact, supports, at, rest):
+    """Contacts and supports once an impulse at the left pivot has made the velocity of the right one jump too.
+
+    Its spring may have to change its branch, and a pivot that was held moves.
+    """
+    velocity = y.v_rate + at.arm_right * y.omega
+    if contact.held == RIGHT and abs(velocity) > rest:
+        if velocity < 0.0:
+            return touching(contact, RIGHT, branch_when_pressed(m.law)), supports
+        return without(contact, RIGHT), Supports(supports.left, y.v + at.lift_right)
+    if contact.right == 0.0:
+        return contact, supports
+    yields = branch_after_jump(m.law, contact.right_yields, y.z_right, velocity, rest)
+    return touching(contact, RIGHT, yields), supports

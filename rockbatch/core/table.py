@@ -1,0 +1,133 @@
+"""Named tuples of numbers, in records and side by side in lanes: get, put, move, and sums of them.
+
+A table of lanes is one record. Each of its fields holds one number for each lane, so that what a loop over lanes touches lies
+side by side and at constant distances: the compiler can take several lanes with one instruction.
+"""
+
+from collections.abc import Mapping
+from typing import NamedTuple, get_type_hints
+
+import numba
+import numpy as np
+from llvmlite import ir
+from numba.core import types
+from numba.extending import intrinsic
+
+from rockbatch.core.kernel import kernel
+
+LANES = 16
+"""Runs that a table holds side by side."""
+
+_CODES = {float: "f8", int: "i8"}
+_DOUBLE = ir.DoubleType()
+
+
+def record(kind: type[NamedTuple]) -> np.dtype:
+    """Return the dtype of one ``kind``: a field for each of its own."""
+    return np.dtype([(name, _CODES[hint]) for name, hint in get_type_hints(kind).items()])
+
+
+def lanes_of(parts: Mapping[str, type[NamedTuple]]) -> np.dtype:
+    """Return the dtype of a table: each of ``parts`` a record with LANES numbers for each field of its named tuple."""
+    return np.dtype([(part, [(name, "f8", LANES) for name in kind._fields]) for part, kind in parts.items()])
+
+
+def table(lanes: np.dtype) -> tuple[np.recarray, np.ndarray]:
+    """Return one empty record of ``lanes`` in an array, and its numbers as rows with a column for each lane."""
+    memory = np.zeros(1, lanes)
+    return memory.view(np.recarray), memory.view("f8").reshape(-1, LANES)
+
+
+@kernel
+def move(cells, i, j):
+    """Copy what is in lane ``i`` to lane ``j``."""
+    for k in range(len(cells)):
+        cells[k, j] = cells[k, i]
+
+
+def _interpreted_get(part, i, kind):
+    return kind(*(float(part[name][i]) for name in kind._fields))
+
+
+def _interpreted_put(part, i, value):
+    for name, number in zip(value._fields, value, strict=True):
+        part[name][i] = number
+
+
+def _interpreted_along(y, k, h):
+    return type(y)(*(a + h * b for a, b in zip(y, k, strict=True)))
+
+
+def _interpreted_weighted(k1, k2, k3, k4):
+    return type(k1)(*(a + 2.0 * (b + c) + d for a, b, c, d in zip(k1, k2, k3, k4, strict=True)))
+
+
+def _addresses(builder, part, pointer, lane, names):
+    base = builder.bitcast(pointer, ir.IntType(8).as_pointer())
+    for name in names:
+        field = builder.gep(base, [ir.Constant(ir.IntType(64), part.offset(name))], inbounds=True)
+        yield builder.gep(builder.bitcast(field, _DOUBLE.as_pointer()), [lane], inbounds=True)
+
+
+@intrinsic
+def _get(typing_context, part, i, kind):
+    """Return the named tuple ``kind`` in lane ``i`` of a part of the table."""
+    fields = kind.instance_class._fields
+    found = types.NamedUniTuple(types.float64, len(fields), kind.instance_class)
+
+    def generate(context, builder, signature, arguments):
+        places = _addresses(builder, part, arguments[0], arguments[1], fields)
+        return context.make_tuple(builder, found, [builder.load(place) for place in places])
+
+    return found(part, i, kind), generate
+
+
+@intrinsic
+def _put(typing_context, part, i, value):
+    """Write a named tuple into lane ``i`` of a part of the table."""
+
+    def generate(context, builder, signature, arguments):
+        places = _addresses(builder, part, arguments[0], arguments[1], value.instance_class._fields)
+        for j, place in enumerate(places):
+            builder.store(builder.extract_value(arguments[2], j), place)
+        return context.get_dummy_value()
+
+    return types.void(part, i, value), generate
+
+
+@intrinsic
+def _along(typing_context, y, k, h):
+    """Return ``y + h k`` of two named tuples of one kind."""
+
+    def generate(context, builder, signature, arguments):
+        start, rates, length = arguments
+        end = start
+        for j in range(len(y)):
+            way = builder.fmul(length, builder.extract_value(rates, j))
+            end = builder.insert_value(end, builder.fadd(builder.extract_value(start, j), way), j)
+        return end
+
+    return y(y, k, types.float64), generate
+
+
+@intrinsic
+def _weighted(typing_context, k1, k2, k3, k4):
+    """Return ``k1 + 2 (k2 + k3) + k4`` of four named tuples of one kind."""
+
+    def generate(context, builder, signature, arguments):
+        two = ir.Constant(_DOUBLE, 2.0)
+        total = arguments[0]
+        for j in range(len(k1)):
+            first, second, third, fourth = (builder.extract_value(k, j) for k in arguments)
+            inner = builder.fmul(two, builder.fadd(second, third))
+            total = builder.insert_value(total, builder.fadd(builder.fadd(first, inner), fourth), j)
+        return total
+
+    return k1(k1, k2, k3, k4), generate
+
+
+_COMPILES = not numba.config.DISABLE_JIT  # type: ignore[attr-defined]
+get = _get if _COMPILES else _interpreted_get
+put = _put if _COMPILES else _interpreted_put
+along = _along if _COMPILES else _interpreted_along
+weighted = _weighted if _COMPILES else _interpreted_weighted

@@ -1,0 +1,32 @@
+"""Runs by the core itself, of blocks that start in motion, which the public interface does not have."""
+
+import numpy as np
+
+from rockbatch.core.block.lanes import kind_of, line_of
+from rockbatch.core.block.model import Block
+from rockbatch.core.history import MOMENT
+from rockbatch.core.run import march
+from rockbatch.motions.motion import Samples
+
+KIND = kind_of(None)
+
+
+def block_line(m: Block, theta: float, omega: float, dt: float, substeps: int, npts: int, quiet_samples: int = 0):
+    """Line of a run from ``theta`` [rad] and ``omega`` [rad/s] on, over the first ``npts`` rows of the ground."""
+    return line_of(m, theta, omega, dt, substeps, quiet_samples, 0, npts)
+
+
+def run_blocks(lines, ground: Samples, substeps: int, history: Samples | None = None, stop: int = 0) -> np.recarray:
+    """Results of runs whose lines they are, which have ``substeps`` in common; they are stopped at once by a ``stop`` of 1."""
+    more = {} if history is None else {"history": history}
+    return march(KIND, lines, ground, np.full(1, stop, np.uint8), substeps, **more)
+
+
+def run_block(
+    m: Block, theta: float, omega: float, ground: Samples, dt: float, substeps: int, rows: int = 0
+) -> tuple[np.record, np.recarray]:
+    """Result of one run, and its history of at most ``rows`` rows."""
+    row = np.dtype([(name, "f8") for name in (*MOMENT, *KIND.columns)])
+    history = np.zeros((rows, len(row)))
+    found = run_blocks([block_line(m, theta, omega, dt, substeps, len(ground))], ground, substeps, history)[0]
+    return found, history.view(row)[: found.rows, 0].view(np.recarray)

@@ -1,0 +1,306 @@
+"""Flight above the rigid base (THEORY.md, Rigid base): known motions and landings, order, energy, symmetry, a second solver.
+
+Values of motions and landings for α = 0.2, p = 1, μ = 3, g = 9.81 come from another event-driven solver; it printed heights
+of the highest of many samples, too low by 1e-8 m, which are replaced by those of its maxima (S1: in closed form).
+"""
+
+import importlib
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import rockbatch as rb
+from rockbatch.core.block.equations import on_pivot
+from rockbatch.core.block.model import Rocking, Stance
+from rockbatch.core.system import at_rest, clearances, lever, transition
+from rockbatch.core.types import (
+    CONTACT_LEFT,
+    CONTACT_RIGHT,
+    IMPACT_BOTH,
+    IMPACT_LEFT,
+    IMPACT_RIGHT,
+    LEFT,
+    NEITHER,
+    RIGHT,
+    TAKE_OFF,
+    Ground,
+)
+from rockbatch.motions.motion import Motion
+from rockbatch.pier import ElasticBase, Pier, RigidBase, Tendon
+from rockbatch.simulation import Run, block, run_fixed, run_to_tolerance, written_run
+from rockbatch.units import GRAVITY
+
+PIER = Pier(alpha=0.2, p=1.0)
+MODEL = block(PIER, RigidBase())
+STILL = Ground(0.0, 0.0, 0.0, 0.0)
+LANDINGS = (IMPACT_LEFT, IMPACT_RIGHT, IMPACT_BOTH)
+
+
+def given(horizontal, vertical) -> Motion:
+    """Samples in g every 0.05 s, zeros after them, 3 s in all."""
+    ground = (np.pad(np.array(values, float) * GRAVITY, (0, 61 - len(values))) for values in (horizontal, vertical))
+    return Motion("given", 0.05, *ground)
+
+
+MOTIONS = {
+    "S1": given([0], [0, -1.5, -1.5, -1.5, 0]),
+    "S2": given([0, 0.3, 0.3, 0.3, -0.1, 0], [0, -0.5, -1.3, -1.3, -0.4, 0.3, 0]),
+    "S3": given([0, 0.4, 0.8, 0.4, 0, -0.3, -0.3, 0], [0, 0, 0, -1.6, -1.6, 0, 0.5, 0]),
+}
+
+
+def rows_of(motion: Motion, substeps: int, base: RigidBase | None = None):
+    """Result and history of a run until the end of its record."""
+    found, rows = written_run(Run(PIER, base or RigidBase(), motion), substeps, 0.0, 20_000, wait=False)
+    return found, rows[: found.rows].view(np.recarray)
+
+
+# Known motions
+
+
+@pytest.fixture(scope="module")
+def outcomes():
+    """The benchmark, imported as a script beside it would be."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(str(Path(__file__).parents[2] / "benchmarks"))
+        yield importlib.import_module("outcomes")
+
+
+@pytest.mark.parametrize(
+    ("name", "off", "on"),
+    [
+        ("S1", (0.033333333, 0.0, 0.0), (0.355826237, 0.0, 0.0)),
+        ("S2", (0.0840627, -2.35821e-4, -0.0108852), (0.2595392, -5.39385e-3, -0.0231916)),
+        ("S3", (0.1336854, -1.60352e-3, -0.0407583), (0.3401056, -0.01131013, -0.0121420)),
+    ],
+)
+def test_known_flights_take_off_and_land(name, off, on):
+    """Time, θ and θ̇ as printed, to six to nine digits; after the landing for θ̇."""
+    found, rows = rows_of(MOTIONS[name], 16)
+    (left,) = np.flatnonzero(rows.kind == TAKE_OFF)
+    landed = left + np.flatnonzero(np.isin(rows.kind[left:], LANDINGS))[0]
+    for row, expected in ((rows[left], off), (rows[landed], on)):
+        assert row.t == pytest.approx(expected[0], abs=6e-8)
+        assert row.theta == pytest.approx(expected[1], rel=3e-6, abs=1e-15)
+        assert row.omega == pytest.approx(expected[2], rel=5e-6, abs=1e-15)
+    assert (found.flights, found.t_flight) == (1, rows[left].t)
+    assert found.flight_duration == pytest.approx(rows[landed].t - found.t_flight, abs=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("name", "height", "theta_max", "t_max"),
+    [
+        ("S1", 0.06392395833, 0.0, 0.0),
+        ("S2", 0.01154272190, 0.033450660, 0.375071),
+        ("S3", 0.02934591372, 0.058402522, 0.402892),
+    ],
+)
+def test_known_flights_reach_their_height_and_rotation(name, height, theta_max, t_max):
+    """Half a unit of the last digit, and 1e-10: RK4 at p h = 3e-3, whose rotations and heights are right to 1e-11."""
+    found, _ = rows_of(MOTIONS[name], 16)
+    assert found.flight_height == pytest.approx(height, abs=1e-10)
+    assert found.theta_max / PIER.alpha == pytest.approx(theta_max, abs=6e-10)
+    assert found.t_max == pytest.approx(t_max, abs=6e-7)
+
+
+def test_a_block_rests_after_both_pivots_have_landed_at_one_instant():
+    found, rows = rows_of(MOTIONS["S1"], 4)
+    assert rows.kind[rows.kind > 0.0].tolist() == [TAKE_OFF, IMPACT_BOTH]
+    assert (found.impacts, found.theta_max) == (2, 0.0)
+    after = rows[rows.t > 0.36]
+    assert not after.v.any()
+    assert not after.v_rate.any()
+
+
+@pytest.mark.parametrize("name", ["S2", "S3"])
+def test_order_is_four_through_flights(outcomes, name):
+    """Over three halvings, from 2 to 16 steps per 0.05 s: the time in flight and the peak after it within 4 ± 0.2."""
+    exact = outcomes.reference(PIER, RigidBase(), MOTIONS[name])
+    coarse, fine = (rows_of(MOTIONS[name], substeps)[0] for substeps in (2, 16))
+    for field in ("flight_duration", "theta_max"):
+        errors = [abs(getattr(found, field) - getattr(exact, field)) for found in (coarse, fine)]
+        assert math.log2(errors[0] / errors[1]) / 3 == pytest.approx(4.0, abs=0.2)
+
+
+@pytest.mark.parametrize("name", ["S2", "S3"])
+def test_no_step_makes_more_of_one_flight(name):
+    """A take-off that is located too early would land where it stands and take off again."""
+    for substeps in (1, 2, 3, 5, 8, 12, 16, 24, 48):
+        found, rows = rows_of(MOTIONS[name], substeps)
+        assert (found.flights, np.count_nonzero(rows.kind == TAKE_OFF)) == (1, 1), substeps
+        assert found.t_flight == pytest.approx({"S2": 0.0840626666, "S3": 0.1336854198}[name], abs=2e-10)
+
+
+@pytest.mark.parametrize("name", list(MOTIONS))
+def test_flight_ends_the_run_where_a_base_says_stop(name):
+    guided = run_fixed(PIER, RigidBase(), MOTIONS[name], 8)
+    stopped = run_fixed(PIER, RigidBase(flight="stop"), MOTIONS[name], 8)
+    assert (guided.status, stopped.status, stopped.flights) == ("ok", "flight", 1)
+    assert stopped.t_end == stopped.t_flight == guided.t_flight
+
+
+# Landings
+
+
+def in_flight(theta, omega, v_rate, pivot):
+    """State of a block in flight whose ``pivot`` is on the ground."""
+    v, _ = on_pivot(MODEL, theta, pivot)
+    return Rocking(v, theta, v_rate, omega)
+
+
+def land(m, y, bore, pivot):
+    """State, stance and kind after ``pivot`` has landed from a flight for which the pivot ``bore`` has borne last."""
+    which = CONTACT_LEFT if pivot == LEFT else CONTACT_RIGHT
+    after, stance, _, kind, _ = transition(m, None, y, Stance(0.0, 0.0, bore), None, which, at_rest(m), STILL, 0.01)
+    return after, stance, kind
+
+
+def pivot_velocity(m, y, pivot):
+    return clearances(m, y, None)[2 if pivot == LEFT else 3]
+
+
+@pytest.mark.parametrize(
+    ("pivot", "theta", "omega", "v_rate", "speed", "after"),
+    [
+        (RIGHT, 0.02, 0.1, -0.5, -0.631721009, {RIGHT: 0.088471280, LEFT: 0.087884940, NEITHER: 0.088178110}),
+        (RIGHT, 0.02, -0.1, -0.5, -0.368278991, {RIGHT: -0.106720982, LEFT: -0.106134642, NEITHER: -0.106427812}),
+        (LEFT, -0.03, 0.05, -0.8, -0.737762043, {RIGHT: 0.062282879, LEFT: 0.062723376, NEITHER: 0.062503128}),
+    ],
+)
+def test_known_landings(pivot, theta, omega, v_rate, speed, after):
+    """Printed to nine decimals."""
+    y = in_flight(theta, omega, v_rate, pivot)
+    assert pivot_velocity(MODEL, y, pivot) == pytest.approx(speed, abs=1e-9)
+    for bore, expected in after.items():
+        landed, stance, kind = land(MODEL, y, bore, pivot)
+        assert landed.omega == pytest.approx(expected, abs=1e-9)
+        assert pivot_velocity(MODEL, landed, pivot) == pytest.approx(0.0, abs=1e-15)
+        assert stance == (Stance(1.0, 0.0, LEFT) if pivot == LEFT else Stance(0.0, 1.0, RIGHT))
+        assert kind == (IMPACT_LEFT if pivot == LEFT else IMPACT_RIGHT)
+
+
+def random_landings(count=300):
+    """Random states in which a pivot lands: state, pivot, and the pivot that bore last."""
+    rng = np.random.default_rng(7)
+    while count:
+        pivot = float(rng.choice([LEFT, RIGHT]))
+        y = in_flight(pivot * rng.uniform(0.0, 1.2), rng.normal(), rng.normal(), pivot)
+        if pivot_velocity(MODEL, y, pivot) < 0.0:
+            count -= 1
+            yield y, pivot, float(rng.integers(-1, 2))
+
+
+def kinetic(m, y, contact):
+    arm = lever(m, y, contact)
+    return 0.5 * (y.v_rate**2 + (m.inertia + arm**2) * y.omega**2)
+
+
+def test_no_plastic_landing_gains_energy():
+    for y, pivot, bore in random_landings():
+        landed, stance, _ = land(MODEL, y, bore, pivot)
+        assert kinetic(MODEL, landed, stance) <= kinetic(MODEL, y, Stance(0.0, 0.0, bore)) * (1.0 + 1e-12)
+
+
+@pytest.mark.parametrize("epsilon", [0.0, 0.3, 1.0])
+def test_a_landing_keeps_the_angular_momentum_about_its_pivot_and_returns_a_share_of_its_velocity(epsilon):
+    """I0/M θ̇ + z ẋ − x ż of the centre of mass: ẋ = H θ̇ with the key of the pivot that bears, before and after."""
+    m = MODEL._replace(epsilon=epsilon)
+    for y, pivot, bore in random_landings(100):
+        landed, stance, _ = land(m, y, bore, pivot)
+        z = lever(m, y, Stance(0.0, 0.0, pivot))
+        x = m.height * math.sin(y.theta) - pivot * m.half_width * math.cos(y.theta)
+        momenta = [
+            m.inertia * each.omega + z * lever(m, each, Stance(0.0, 0.0, key)) * each.omega - x * each.v_rate
+            for each, key in ((y, bore), (landed, pivot))
+        ]
+        assert momenta[1] == pytest.approx(momenta[0], rel=1e-12, abs=1e-12)
+        back = -epsilon * pivot_velocity(m, y, pivot)
+        assert pivot_velocity(m, landed, pivot) == pytest.approx(back, abs=1e-13)
+        assert stance.left + stance.right == (1.0 if epsilon == 0.0 else 0.0)
+
+
+def test_a_landing_upright_is_housners_impact():
+    y = in_flight(0.0, -0.3, -0.3 * PIER.half_width, RIGHT)
+    landed, _, _ = land(MODEL, y, RIGHT, LEFT)
+    assert landed.omega == pytest.approx(-0.3 * PIER.restitution, rel=1e-14)
+
+
+# Energy and symmetry
+
+
+@pytest.mark.parametrize("name", ["S2", "S3"])
+def test_the_energy_balance_closes_through_flights(name):
+    """To the error of RK4 and Simpson's rule, which falls by 2⁴ a halving."""
+    coarse, fine = (
+        rb.simulate(PIER, RigidBase(), MOTIONS[name], substeps=substeps, ledger=True).ledger for substeps in (2, 8)
+    )
+    assert fine.remainder.abs().max() < 1e-9 * fine.input.abs().max()
+    assert coarse.remainder.abs().max() > 12.0**2 * fine.remainder.abs().max()
+    assert np.diff(fine.impact).min() > -1e-12
+
+
+def test_a_stone_keeps_its_energy_in_the_air():
+    """S1 from 0.2 s on, when the ground rests: what is stored is constant until the landing, which takes all that moves."""
+    rows = rb.simulate(PIER, RigidBase(), MOTIONS["S1"], substeps=4, ledger=True).ledger
+    stored = (rows.kinetic + rows.potential)[(rows.t > 0.2) & (rows.t < 0.3558)]
+    assert np.ptp(stored) < 1e-14 * stored.max()
+    assert rows.impact.iloc[-1] == pytest.approx(stored.iloc[0], rel=1e-12)
+
+
+@pytest.mark.parametrize("name", ["S2", "S3"])
+@pytest.mark.parametrize("substeps", [1, 3])
+def test_the_mirror_image_flies_alike_to_the_bit(name, substeps):
+    motion = MOTIONS[name]
+    found, rows = rows_of(motion, substeps)
+    other, mirrored = rows_of(replace(motion, horizontal=-motion.horizontal), substeps)
+    for field in ("theta_max", "t_max", "flights", "t_flight", "flight_duration", "flight_height", "impacts", "rows"):
+        assert getattr(other, field) == getattr(found, field)
+    for field, sign in (("t", 1.0), ("v", 1.0), ("v_rate", 1.0), ("theta", -1.0), ("omega", -1.0), ("bore", -1.0)):
+        assert (mirrored[field] == sign * rows[field]).all()
+    assert (mirrored.left == rows.right).all()
+
+
+# A second solver
+
+
+def test_random_flights_are_those_of_the_independent_reference(outcomes):
+    """Counts, times, heights and peaks of cases that stand, with the steps that a tolerance of 1e-6 α takes."""
+    compared = 0
+    for case in outcomes.cases(30, only="flight"):
+        expected = outcomes.reference(case.pier, case.base, case.motion)
+        if expected.status != "stands" or expected.flights == 0:
+            continue
+        found = run_to_tolerance(case.pier, case.base, case.motion, 1e-6)
+        assert found.status == "ok"
+        assert found.flights == expected.flights
+        assert found.flight_duration == pytest.approx(expected.flight_duration, abs=1e-6 / case.pier.p)
+        assert found.flight_height == pytest.approx(expected.flight_height, abs=1e-6 * case.pier.half_width)
+        assert found.theta_max == pytest.approx(expected.theta_max, abs=1e-6 * case.pier.alpha)
+        compared += 1
+    assert compared >= 12
+
+
+# Tendons
+
+
+@pytest.mark.parametrize("base", [RigidBase(), ElasticBase(400.0, zeta=0.1, kinematics="finite")], ids=lambda b: b.name)
+def test_a_tendon_of_twice_the_weight_keeps_a_pier_on_ground_that_falls_away(base):
+    """−1.05 g for 0.2 s: it presses with 1.95 times the weight, and tendons are shorter on springs that unload."""
+    motion = rb.pulse("sine", name="sine", amplitude=4.0, period=1.0, dt=0.005, duration=6.0)
+    vertical = np.zeros(motion.npts)
+    vertical[100:140] = -1.05 * GRAVITY
+    motion = replace(motion, vertical=vertical)
+    tied = replace(base, restraints=(Tendon(psi=2.0, lam=0.5),))
+    free, held = (run_to_tolerance(PIER, each, motion, 1e-4) for each in (base, tied))
+    assert free.flights > 0
+    assert (held.status, held.flights, held.t_flight) == ("ok", 0, None)
+
+
+def test_a_tendon_less_strong_than_the_fall_lets_the_pier_fly():
+    """ψ = 0.2 without stiffness: flight where v̈_g = −1.2 g, 0.08 s into a ramp of −1.5 g in 0.1 s."""
+    ramp = Motion("ramp", 0.1, np.zeros(21), -1.5 * GRAVITY * np.minimum(np.arange(21), 1.0))
+    outcome = run_fixed(PIER, RigidBase(flight="stop", restraints=(Tendon(psi=0.2),)), ramp, 4)
+    assert (outcome.status, outcome.t_flight) == ("flight", pytest.approx(0.08, abs=1e-12))
