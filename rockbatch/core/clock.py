@@ -1,4 +1,4 @@
-"""What every run keeps while it is under way, whatever its system: time, ground, peak, windows, counts, flights."""
+"""Numbers that every run keeps while it is under way, whatever its system: time, ground, peak, windows, counts, flights."""
 
 import math
 from typing import NamedTuple
@@ -49,7 +49,7 @@ class Peak(NamedTuple):
 
 
 class Tally(NamedTuple):
-    """What has happened so far."""
+    """Counts and times of events so far."""
 
     impacts: float
     uplifts: float

@@ -15,13 +15,13 @@ from rockbatch.core.types import LEFT, RIGHT
 
 
 class News(NamedTuple):
-    """What the pass has to say."""
+    """News of the pass."""
 
     kind: float
 
 
 class Ending(NamedTuple):
-    """What decides when the run is over."""
+    """Numbers that decide when the run is over."""
 
     longest: float  # sample at which a block is no longer waited for
     omega: float  # at the last sample since the ground rests, 0 before it [rad/s]

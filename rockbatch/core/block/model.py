@@ -23,7 +23,7 @@ class Block(NamedTuple):
 
 
 class BlockTraits(NamedTuple):
-    """What kernels are compiled for: nothing that differs between blocks."""
+    """Traits that kernels are compiled for: none, for blocks differ in numbers only."""
 
     alike: float = 0.0
 
@@ -69,7 +69,7 @@ class Rocking(NamedTuple):
 
 
 class Stance(NamedTuple):
-    """What is constant between events."""
+    """Contacts, constant between events."""
 
     left: float  # 1 if the pivot is on the ground
     right: float

@@ -1,4 +1,4 @@
-"""What dampers and tendons do to a pier: their elongation, their force and moment, the rates of their states.
+"""Dampers and tendons on a pier: their elongation, their force and moment, the rates of their states.
 
 A device at the offset s from the middle of the base has the elongation e = u/cos(θ/2), where u is the rise of its place
 above that at rest. While a block turns about a point of the ground at the distance d that is 2 d sin(θ/2), the chord of the

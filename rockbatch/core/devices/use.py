@@ -1,4 +1,4 @@
-"""What devices go through in a run: greatest forces, strokes and speeds, energies."""
+"""Use of devices in a run: greatest forces, strokes and speeds, energies."""
 
 import math
 

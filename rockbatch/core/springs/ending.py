@@ -35,7 +35,7 @@ that has not decayed comes and goes (measured; a pier has overturned whose drift
 
 
 class Waiting(NamedTuple):
-    """What decides when a run is over, and its residuals."""
+    """Numbers that decide when a run is over, and its residuals."""
 
     earliest: float  # sample from which on residuals may be read
     patience: float  # samples that a pier is waited for at most

@@ -35,7 +35,7 @@ class Springs(NamedTuple):
 
 
 class SpringTraits(NamedTuple):
-    """What kernels are compiled for: the types of these fields of Springs; their values do not matter."""
+    """Traits that kernels are compiled for: the types of these fields of Springs; their values do not matter."""
 
     exponent: float | int | None
     finite: bool | None

@@ -21,7 +21,7 @@ from rockbatch.core.table import get, put
 
 
 class News(NamedTuple):
-    """What the pass has to say, and the velocity reversals that it has corrected: when [s], UNSET without one, and z then."""
+    """News of the pass, and the velocity reversals that it has corrected: when [s], UNSET without one, and z then."""
 
     kind: float
     left: float
