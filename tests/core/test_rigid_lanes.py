@@ -169,7 +169,7 @@ def passes(traits, lanes, count):
 def test_the_pass_is_vector_instructions(kind):
     """As many products of several numbers at once as of one, which the lanes that are left over take; and no calls.
 
-    0.95: in loops over springs a few products of one number are of all lanes.
+    0.95 of springs: in their loops a few products of one number are of all lanes.
     """
     traits, lane = KINDS[kind]
     lanes = table(lane)[0][0]
@@ -177,5 +177,5 @@ def test_the_pass_is_vector_instructions(kind):
     code = passes.inspect_asm(passes.signatures[-1])
     body = code[: code.index("_ZN7cpython")]
     packed, single = len(re.findall(r"\bv?mulpd\b", body)), len(re.findall(r"\bv?mulsd\b", body))
-    assert packed >= 0.95 * single > 60
+    assert packed >= {"block": 1.0, "springs": 0.95}[kind] * single > 60
     assert not re.findall(r"\bcall\w*\b.*\b(sin|cos)\b", body)

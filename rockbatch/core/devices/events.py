@@ -51,7 +51,7 @@ WAYS = (
     (STICKS, STICKS), (OPENS, STICKS), (CLOSES, STICKS), (STICKS, OPENS), (STICKS, CLOSES),
     (OPENS, OPENS), (OPENS, CLOSES), (CLOSES, OPENS), (CLOSES, CLOSES),
 )  # fmt: skip
-"""What two friction dampers can do that have no velocity."""
+"""Directions that two friction dampers without velocity can take."""
 
 
 @inner

@@ -58,7 +58,7 @@ class Outline(NamedTuple):
 
 
 class Hold(NamedTuple):
-    """What friction can do against a block at rest that begins to turn about either pivot."""
+    """Friction against a block at rest that begins to turn about either pivot."""
 
     left_down: float  # force on the pier [m/s²]
     left_back: float  # angular deceleration [rad/s²]
