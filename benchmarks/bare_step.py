@@ -44,7 +44,7 @@ from rockbatch.simulation.models import elements, kind_of, line_of
 from rockbatch.simulation.models import model as model_of
 
 BARE_STEPS = 200_000
-SETTINGS = Settings(1, True, False, False)
+SETTINGS = Settings(1, True, False)
 BARE_ROCKING = 1e-6  # [s]: of a bare step on the rigid base, so that the block stays on its corner
 PASSES = 10_000
 DEVICES = (Damper("viscous", nu=1.0), Tendon(psi=0.1, lam=0.5))
@@ -107,9 +107,9 @@ def with_vertical(motion: Motion) -> Motion:
 
 
 def timing(motion: Motion, substeps: int) -> tuple[float, ...]:
-    """Return what a line of the core has from the sampling interval to the number of samples."""
+    """Return what a line of the core has of Timing; nothing is waited for."""
     dt = float(motion.dt)
-    return dt, substeps, math.ceil(QUIET_S / dt - 1e-9), 0, motion.npts
+    return dt, substeps, math.ceil(QUIET_S / dt - 1e-9), 0, motion.npts, 0
 
 
 def measure(law: str, motion: Motion, substeps: int, runs: int, repeats: int) -> str:
@@ -176,7 +176,7 @@ def pass_alone(motion: Motion, repeats: int) -> str:
     ground, dt = ground_of(motion), float(motion.dt)
     models = [springs(TOWER, of_law("bouc-wen", base)) for base in foundations(LANES)]
     kind = kind_of(models[0])
-    lines = [line_of(m, (dt, 100 * PASSES, 0, 0, len(ground)), (0, 0), 0.0) for m in models]
+    lines = [line_of(m, (dt, 100 * PASSES, 0, 0, len(ground), 0), (0, 0), 0.0) for m in models]
     runs = np.array(lines, record_of(kind.line)).view(np.recarray)
     static, contact = static_state(models[0], models[0].gravity), Contact(1.0, 1.0, 1.0, 1.0, 0.0)
     tasks = {

@@ -23,6 +23,20 @@ CALM, ATTEND, EVENTFUL = 0.0, 1.0, 2.0
 it may not stand, and has to be taken event by event."""
 
 
+class Timing(NamedTuple):
+    """Of a run as it is asked for: its motion, its steps, and for how long it goes on."""
+
+    dt: float  # sampling interval [s]
+    substeps: float  # steps to a sampling interval
+    quiet_samples: float  # of the free-vibration tail after the record
+    first_row: float  # where among the rows of the ground the motion begins
+    npts: float  # and how many it has
+    patience: float  # samples that the run goes on at most while, by its energy, the pier could still turn further
+
+
+TIMING = tuple((name, float) for name in Timing._fields)
+
+
 class Clock(NamedTuple):
     """Which run a lane holds, and where it is."""
 

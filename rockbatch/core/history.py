@@ -1,5 +1,9 @@
 """Rows of a history: time, kind, state and contacts, and what devices are at that moment."""
 
+from typing import NamedTuple
+
+import numpy as np
+
 from rockbatch.core.devices.pull import under_devices
 from rockbatch.core.kernel import inlined, inner
 
@@ -7,30 +11,50 @@ MOMENT = ("t", "kind")
 """Columns before those of state and contact; behind them, of devices: their states x, and the force and moment of all."""
 
 
+class History(NamedTuple):
+    """Rows that a single run writes."""
+
+    rows: np.ndarray  # shape (rows, columns); without any nothing is written, nor counted
+    written: np.ndarray  # shape (1,): how many, also of those that found no room
+    every_step: bool  # steps between samples, too, and both sides of all events of devices
+
+
+def history_of(rows, every_step=False):
+    """Return the History that writes into ``rows``."""
+    return History(rows, np.zeros(1, np.int64), bool(every_step))
+
+
 @inlined
 def _write_devices(line, at, m, devices, y, contact, ground):
     if devices is None:
         return
-    under, _, _ = under_devices(m, devices, y, devices.x, contact, ground.horizontal, ground.vertical)
+    under, _, _ = under_devices(m, devices, y, devices.x, contact, ground)
     for j in range(len(devices.x)):
         line[at + j] = devices.x[j]
     line[at + len(devices.x)], line[at + len(devices.x) + 1] = under.pull.force, under.pull.moment
 
 
 @inner
-def write(history, row, t, kind, m, devices, y, contact, ground):
-    """Write a row of a history, if there is room for it, and return the next; without a history rows are not counted."""
-    if history.shape[0] == 0:
-        return row
-    if row < history.shape[0]:
-        line = history[row]
-        line[0] = max(t, history[row - 1, 0]) if row > 0 else t  # sums of parts are rounded, time does not go back
-        line[1] = kind
-        at = len(MOMENT)
-        for j in range(len(y)):
-            line[at + j] = y[j]
-        at += len(y)
-        for j in range(len(contact)):
-            line[at + j] = contact[j]
-        _write_devices(line, at + len(contact), m, devices, y, contact, ground)
-    return row + 1
+def write(history, t, kind, m, devices, y, contact, ground):
+    """Write a row at time ``t`` [s], if there is room for it."""
+    rows, row = history.rows, history.written[0]
+    if rows.shape[0] == 0:
+        return
+    history.written[0] = row + 1
+    if row >= rows.shape[0]:
+        return
+    line, at = rows[row], len(MOMENT)
+    line[0] = max(t, rows[row - 1, 0]) if row > 0 else t  # sums of parts are rounded, time does not go back
+    line[1] = kind
+    for j in range(len(y)):
+        line[at + j] = y[j]
+    at += len(y)
+    for j in range(len(contact)):
+        line[at + j] = contact[j]
+    _write_devices(line, at + len(contact), m, devices, y, contact, ground)
+
+
+@inlined
+def take_back(history):
+    """Take the last row back."""
+    history.written[0] = max(history.written[0] - 1, 0)

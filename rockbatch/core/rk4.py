@@ -5,9 +5,6 @@ from rockbatch.core.kernel import inlined, question
 from rockbatch.core.system import ended, rates, share, staged
 from rockbatch.core.table import along, weighted
 
-START, END = 0, 4
-"""Places of the devices' rates at both ends of a step; between them are those of its stages."""
-
 
 @question
 def rates_with(devices, m, y, contact, horizontal, vertical, place):
@@ -21,7 +18,7 @@ def _rates_alone(devices, m, y, contact, horizontal, vertical, place):
 
 @rates_with.of(Devices)
 def _rates_under_devices(devices, m, y, contact, horizontal, vertical, place):
-    under = device_rates(m, devices, y, devices.stage, contact, horizontal, vertical, devices.rates[place])
+    under, _, _ = device_rates(m, devices, y, devices.stage, contact, horizontal, vertical, place)
     return rates(under, y, contact, horizontal, vertical), under
 
 

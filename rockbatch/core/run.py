@@ -26,9 +26,9 @@ from rockbatch.core.clock import (
     turn_window,
 )
 from rockbatch.core.devices.events import after_contact, device_event, start_devices
-from rockbatch.core.devices.pull import loaded, resolved
+from rockbatch.core.devices.pull import loaded, resolved, with_pull
 from rockbatch.core.devices.use import take_in
-from rockbatch.core.history import write
+from rockbatch.core.history import history_of, take_back, write
 from rockbatch.core.kernel import entry, inlined, inner
 from rockbatch.core.search import first_event, marks_for, start_rates
 from rockbatch.core.system import (
@@ -72,6 +72,7 @@ from rockbatch.core.types import (
     STEP,
     SURVIVED,
     TAKE_OFF,
+    Moment,
     Result,
 )
 
@@ -79,7 +80,7 @@ EVENTS_IN_A_SAMPLE = 20_000
 """More than any decaying sequence of impacts needs."""
 
 NONE = np.int64(0)  # a literal 0 would have every function that it is handed to compiled twice
-NO_HISTORY = np.zeros((0, 1))
+NO_ROWS = np.zeros((0, 1))
 
 RESULT = np.dtype([*record(Result).descr, ("extremes", "f8", WINDOWS)])
 """As Result has it, and the greatest |θ| [rad] at a sample in each window of the run, NaN where it has none."""
@@ -91,7 +92,6 @@ class Settings(NamedTuple):
     substeps: int  # steps to a sampling interval
     locate: bool  # events inside the step; without, they take place at its end: first order, for comparison only
     recording: bool  # a history is written
-    every_step: bool  # it has the steps between samples, and both sides of all events of devices
 
 
 @inlined
@@ -167,112 +167,95 @@ def _device_event(m, devices, y, contact, ground, h, rest, which):
 
 
 @inner
-def _happen(traits, lanes, i, m, devices, y, contact, supports, which, x, ground, every_step, history, row):
-    """Let event ``which`` happen ``x`` [s] after the sample: status, state, contact and supports after it, next row."""
+def _happen(traits, lanes, i, m, devices, now, which, x, ground, history):
+    """Let event ``which`` happen ``x`` [s] after the sample: status, and the Moment after it."""
     here, rest, dt = ground_at(lanes, i, x), lanes.clock.rest[i], lanes.clock.dt[i]
-    t = lanes.clock.sample[i] * dt + x
+    t, y, contact = lanes.clock.sample[i] * dt + x, now.y, now.contact
     if which >= OF_PIER:
-        if every_step:
-            row = write(history, row, t, STEP, m, devices, y, contact, here)
+        if history.every_step:
+            write(history, t, STEP, m, devices, y, contact, here)
         _device_event(m, devices, y, contact, here, lanes.clock.step[i], rest, which)
-        if every_step:
-            row = write(history, row, t, STEP, m, devices, y, contact, here)
-        return SURVIVED, y, contact, supports, row
-    before = row
-    row = write(history, row, t, BEFORE_EVENT, m, devices, y, contact, here)
+        if history.every_step:
+            write(history, t, STEP, m, devices, y, contact, here)
+        return SURVIVED, now
+    write(history, t, BEFORE_EVENT, m, devices, y, contact, here)
     under = loaded(devices, m, y, contact, here)
-    y, after, supports, kind, remaining = transition(under, devices, y, contact, supports, which, rest, here, dt)
+    y, after, supports, kind, remaining = transition(under, devices, y, contact, now.supports, which, rest, here, dt)
     _after_contact(m, devices, y, after, kind, rest, here)
-    row = before if kind == LIFT_OFF else row  # nothing jumps
-    row = write(history, row, t, kind, m, devices, y, after, here)
+    if kind == LIFT_OFF:  # nothing jumps
+        take_back(history)
+    write(history, t, kind, m, devices, y, after, here)
     landed = 2 if kind == IMPACT_BOTH else (1 if kind in (IMPACT_LEFT, IMPACT_RIGHT, REST) else 0)
     _count(lanes, i, kind, landed, uplifts(m, contact, after, landed), t, remaining)
     after_event(traits, lanes, i, m, contact, after, y)
     flies = airborne(m, after)
     note_flight(lanes, i, flies, t)
-    return (_in_flight(traits, lanes, i, m, y, ground) if flies else SURVIVED), y, after, supports, row
+    return (_in_flight(traits, lanes, i, m, y, ground) if flies else SURVIVED), Moment(y, after, supports)
 
 
 @inner
-def _through(traits, lanes, i, devices, marks, substep, settings, ground, history, row):
-    """Take lane ``i`` through a sub-step event by event: status (SURVIVED while it goes on), time [s] and next row."""
+def _through(traits, lanes, i, devices, marks, substep, settings, ground, history):
+    """Take lane ``i`` through a sub-step event by event: status (SURVIVED while it goes on), and time [s]."""
     h, start, dt, rest = lanes.clock.step[i], substep * lanes.clock.step[i], lanes.clock.dt[i], lanes.clock.rest[i]
     t_sample = lanes.clock.sample[i] * dt
-    m = model(traits, lanes, i)
+    m = with_pull(devices, model(traits, lanes, i))
     y, contact, supports = moment(traits, lanes, i)
+    now = Moment(y, contact, supports)
     done, which, status = 0.0, NO_EVENT, SURVIVED
     while done < h and status == SURVIVED:
         here, left = ground_at(lanes, i, start + done), h - done
-        k, under = start_rates(m, devices, y, contact, here)
-        most = longest(under, y, k, contact, min(left, resolved(m, devices, y, contact, here, h, dt)))
-        used, which, end, k_end = first_event(
-            m, under, devices, marks, y, k, contact, supports, rest, here, most, settings.locate
-        )
-        include_peak(lanes, i, y, end, start, done, used)
-        include(traits, lanes, i, m, y, k, end, k_end, contact, used)
-        if airborne(m, contact):
-            include_height(lanes, i, m, supports, y, end, used)
-        take_in(m, devices, y, k, end, k_end, used)
+        k, under = start_rates(m, devices, now.y, now.contact, here)
+        most = longest(under, now.y, k, now.contact, min(left, resolved(m, devices, now.y, now.contact, here, h, dt)))
+        used, which, end, k_end = first_event(under, devices, marks, now, k, rest, here, most, settings.locate)
+        include_peak(lanes, i, now.y, end, start, done, used)
+        include(traits, lanes, i, m, now.y, k, end, k_end, now.contact, used)
+        if airborne(m, now.contact):
+            include_height(lanes, i, m, now.supports, now.y, end, used)
+        take_in(devices, k, k_end, used)
         _commit(devices)
-        y = end
+        now = Moment(end, now.contact, now.supports)
         done = done + used if used < left else h
         if which != NO_EVENT:
-            status, y, contact, supports, row = _happen(
-                traits,
-                lanes,
-                i,
-                m,
-                devices,
-                y,
-                contact,
-                supports,
-                which,
-                start + done,
-                ground,
-                settings.every_step,
-                history,
-                row,
-            )
+            status, now = _happen(traits, lanes, i, m, devices, now, which, start + done, ground, history)
             if status == SURVIVED and _many(lanes, i):
                 status = CHATTER
-        elif settings.every_step and done < h:
+        elif history.every_step and done < h:
             here = ground_at(lanes, i, start + done)
-            row = write(history, row, t_sample + (start + done), STEP, m, devices, y, contact, here)
-    put_moment(traits, lanes, i, y, contact, supports)
-    after_step(traits, lanes, i, marks, contact, which == NO_EVENT)
+            write(history, t_sample + (start + done), STEP, m, devices, now.y, now.contact, here)
+    put_moment(traits, lanes, i, now.y, now.contact, now.supports)
+    after_step(traits, lanes, i, marks, now.contact, which == NO_EVENT)
+    t, here = t_sample + (start + done), ground_at(lanes, i, start + done)
     if status == SURVIVED:
-        status = fallen(y.theta)
+        status = fallen(now.y.theta)
     if status not in (SURVIVED, FLIGHT, LATE_FLIGHT):
-        row = write(
-            history, row, t_sample + (start + done), STEP, m, devices, y, contact, ground_at(lanes, i, start + done)
-        )
-    return status, t_sample + (start + done), row
+        write(history, t, STEP, m, devices, now.y, now.contact, here)
+    return status, t
 
 
 @inner
-def _begin(traits, lanes, i, number, runs, devices, ground, history, row):
-    """Let run ``number`` begin in lane ``i``: its status, and the next row."""
+def _begin(traits, lanes, i, number, runs, devices, ground, history):
+    """Let run ``number`` begin in lane ``i``: its status."""
     run = runs[number]
     begin(traits, lanes, i, run)
-    m = model(traits, lanes, i)
+    m = with_pull(devices, model(traits, lanes, i))
     y, contact, _ = moment(traits, lanes, i)
     start_clock(lanes, i, number, run, at_rest(m), math.atan2(m.half_width, m.height), y.theta)
     read_ground(lanes, i, ground)
     expect(traits, lanes, i, run)
     here = ground_at(lanes, i, 0.0)
     start_devices(m, devices, y, contact, lanes.clock.rest[i], here)
-    row = write(history, row, 0.0, SAMPLE, m, devices, y, contact, here)
-    return over(traits, lanes, i, devices), row
+    write(history, 0.0, SAMPLE, m, devices, y, contact, here)
+    return over(traits, lanes, i, devices)
 
 
 @inner
-def _finish(traits, lanes, i, status, t, row, results):
+def _finish(traits, lanes, i, status, t, history, results):
     """Write what the run in lane ``i`` has come to."""
     close_window(lanes, i, results)
     peak, tally = lanes.peak, lanes.tally
     note_flight(lanes, i, False, t)
     result = results[int(lanes.clock.number[i])]
-    result.status, result.t_end, result.rows = status, t, row
+    result.status, result.t_end, result.rows = status, t, history.written[0]
     result.theta_max, result.t_max = peak.theta[i], peak.time[i]
     result.impacts, result.uplifts, result.flights = int(tally.impacts[i]), int(tally.uplifts[i]), int(tally.flights[i])
     result.t_flight, result.flight_duration = tally.t_flight[i], tally.flight_duration[i]
@@ -281,16 +264,15 @@ def _finish(traits, lanes, i, status, t, row, results):
 
 
 @inner
-def _attend(traits, lanes, i, devices, marks, substep, settings, ground, history, row):
-    """Do what the pass has left to do in lane ``i``: status, time [s] and next row."""
+def _attend(traits, lanes, i, devices, marks, substep, settings, ground, history):
+    """Do what the pass has left to do in lane ``i``: status and time [s]."""
     if lanes.news.kind[i] >= EVENTFUL:
-        return _through(traits, lanes, i, devices, marks, substep, settings, ground, history, row)
-    t = lanes.clock.sample[i] * lanes.clock.dt[i] + substep * lanes.clock.step[i]
+        return _through(traits, lanes, i, devices, marks, substep, settings, ground, history)
     if lanes.news.kind[i] == ATTEND:
-        row = write_reversals(traits, lanes, i, substep, history, row)
+        write_reversals(traits, lanes, i, substep, history)
         _include_peak_of_lane(lanes, i, substep)
         attend(traits, lanes, i)
-    return SURVIVED, t, row
+    return SURVIVED, lanes.clock.sample[i] * lanes.clock.dt[i] + substep * lanes.clock.step[i]
 
 
 @inlined
@@ -339,62 +321,57 @@ def _pass(traits, lanes, count, devices, substep, settings):
 
 
 @inner
-def _write_now(traits, lanes, devices, kind, t, x, history, row):
-    """Write a row of the only lane as it is now."""
-    if history.shape[0] == 0:
-        return row
-    y, contact, _ = moment(traits, lanes, 0)
-    return write(history, row, t, kind, model(traits, lanes, 0), devices, y, contact, ground_at(lanes, 0, x))
+def _write_now(traits, lanes, devices, kind, x, history):
+    """Write a row of the only lane as it is now, ``x`` [s] after its sample."""
+    if history.rows.shape[0] > 0:
+        y, contact, _ = moment(traits, lanes, 0)
+        t, m = lanes.clock.sample[0] * lanes.clock.dt[0] + x, with_pull(devices, model(traits, lanes, 0))
+        write(history, t, kind, m, devices, y, contact, ground_at(lanes, 0, x))
 
 
 @entry
-def _march(traits, runs, ground, settings, devices, marks, history, stop, lanes_table, cells, results):
+def _march(traits, runs, ground, settings, devices, marks, history, stop, memory, results):
     """Take all ``runs`` to their ends; ``results`` of those that are stopped stay as they are."""
-    lanes, recording = lanes_table[0], settings.recording
-    waiting, count, row, substeps = NONE, NONE, NONE, settings.substeps
+    lanes, cells = memory[0][0], memory[1]
+    waiting, count = NONE, NONE
     while True:
         while count < LANES and waiting < len(runs):
-            status, row = _begin(traits, lanes, count, waiting, runs, devices, ground, history, row)
+            status = _begin(traits, lanes, count, waiting, runs, devices, ground, history)
             waiting += 1
             if status == RUNNING:
                 count += 1
             else:
-                _finish(traits, lanes, count, status, 0.0, row, results)
+                _finish(traits, lanes, count, status, 0.0, history, results)
         if count == 0 or stop[0] != 0:
             return
-        for substep in range(substeps):
+        for substep in range(settings.substeps):
             busy = _pass(traits, lanes, count, devices, substep, settings)
             i = NONE if busy > 0 else count
             while i < count:
                 status, t = SURVIVED, 0.0
                 if lanes.news.kind[i] != CALM:
-                    status, t, row = _attend(traits, lanes, i, devices, marks, substep, settings, ground, history, row)
+                    status, t = _attend(traits, lanes, i, devices, marks, substep, settings, ground, history)
                 if status == SURVIVED:
                     i += 1
                 else:
-                    _finish(traits, lanes, i, status, t, row, results)
+                    _finish(traits, lanes, i, status, t, history, results)
                     count -= 1
                     move(cells, count, i)
-            if recording and settings.every_step and count > 0 and substep < substeps - 1:
-                x = (substep + 1.0) * lanes.clock.step[0]
-                row = _write_now(
-                    traits, lanes, devices, STEP, lanes.clock.sample[0] * lanes.clock.dt[0] + x, x, history, row
-                )
+            if history.every_step and count > 0 and substep < settings.substeps - 1:
+                _write_now(traits, lanes, devices, STEP, (substep + 1.0) * lanes.clock.step[0], history)
         i = NONE
         while i < count:
             status = _at_sample(traits, lanes, i, devices, ground, results)
-            t = lanes.clock.sample[i] * lanes.clock.dt[i]
-            if recording:
-                row = _write_now(traits, lanes, devices, SAMPLE, t, 0.0, history, row)
+            _write_now(traits, lanes, devices, SAMPLE, 0.0, history)
             if status == RUNNING:
                 i += 1
             else:
-                _finish(traits, lanes, i, status, t, row, results)
+                _finish(traits, lanes, i, status, lanes.clock.sample[i] * lanes.clock.dt[i], history, results)
                 count -= 1
                 move(cells, count, i)
 
 
-def march(kind, lines, ground, stop, substeps, locate=True, every_step=False, history=NO_HISTORY, devices=None):
+def march(kind, lines, ground, stop, substeps, locate=True, every_step=False, history=NO_ROWS, devices=None):
     """Take runs of piers of one kind to their ends, as many at a time as there are lanes, or one with devices.
 
     Parameters
@@ -428,7 +405,18 @@ def march(kind, lines, ground, stop, substeps, locate=True, every_step=False, hi
     for name in RESULT.names:
         results[name] = np.nan if RESULT[name].kind != "i" else 0
     results.status = RUNNING
-    settings = Settings(int(substeps), bool(locate), len(history) > 0, bool(every_step))
+    settings = Settings(int(substeps), bool(locate), len(history) > 0)
     marks = marks_for(0 if devices is None else len(devices.elements))
-    _march(kind.traits, runs, ground, settings, devices, marks, history, stop, *table(kind.lane), results)
+    _march(
+        kind.traits,
+        runs,
+        ground,
+        settings,
+        devices,
+        marks,
+        history_of(history, every_step),
+        stop,
+        table(kind.lane),
+        results,
+    )
     return results

@@ -5,13 +5,13 @@ from typing import NamedTuple
 import numpy as np
 
 from rockbatch.core.devices.events import PER_DEVICE, device_functions
-from rockbatch.core.devices.pull import stage_states
+from rockbatch.core.devices.pull import END, START, stage_states
 from rockbatch.core.ground import later
 from rockbatch.core.kernel import inlined, inner
-from rockbatch.core.rk4 import END, START, rates_with, rk4
+from rockbatch.core.rk4 import rates_with, rk4
 from rockbatch.core.roots import BISECT_AFTER, CLOSE, NEAR, TRIALS, falls
 from rockbatch.core.system import event_functions
-from rockbatch.core.types import NO_EVENT, OF_PIER
+from rockbatch.core.types import NO_EVENT, OF_PIER, Moment
 
 
 class Marks(NamedTuple):
@@ -48,23 +48,23 @@ def _earliest(early, early_slopes, late, late_slopes, h):
 
 
 @inlined
-def _evaluate(m, under, devices, y, k, contact, supports, rest, ground, h, place, values, slopes):
-    """Write all event functions of state ``y``, with rates ``k``, at one ``place`` of a step, into ``values`` and ``slopes``."""
-    f, d = event_functions(under, devices, y, k, contact, supports, rest, ground)
+def _evaluate(m, devices, now, k, rest, ground, h, place, values, slopes):
+    """Write all event functions of the Moment ``now`` at one ``place`` of a step; ``m`` is the pier under its devices."""
+    f, d = event_functions(m, devices, now.y, k, now.contact, now.supports, rest, ground)
     values[0], values[1], values[2], values[3] = f.left, f.right, f.left_law, f.right_law
     slopes[0], slopes[1], slopes[2], slopes[3] = d.left, d.right, d.left_law, d.right_law
     if devices is not None:
-        x = devices.x if place == START else devices.end
-        device_functions(m, devices, y, x, contact, k, devices.rates[place], rest, ground, h, values, slopes)
+        device_functions(m, devices, now, k, place, rest, ground, h, values, slopes)
 
 
 @inner
-def _try(m, devices, marks, y, k, contact, supports, rest, ground, x, h):
+def _try(m, devices, marks, start, k, rest, ground, x, h):
     """Take a step over ``x`` [s] and evaluate the event functions at its end: the state there, and its rates."""
-    end = rk4(m, devices, y, k, contact, ground, x)
+    end = rk4(m, devices, start.y, k, start.contact, ground, x)
     there = later(ground, x)
-    k_end, under = rates_with(devices, m, end, contact, there.horizontal, there.vertical, END)
-    _evaluate(m, under, devices, end, k_end, contact, supports, rest, there, h, END, marks.now, marks.now_slopes)
+    k_end, under = rates_with(devices, m, end, start.contact, there.horizontal, there.vertical, END)
+    now = Moment(end, start.contact, start.supports)
+    _evaluate(under, devices, now, k_end, rest, there, h, END, marks.now, marks.now_slopes)
     return end, k_end
 
 
@@ -90,19 +90,18 @@ def start_rates(m, devices, y, contact, ground):
 
 
 @inner
-def first_event(m, under, devices, marks, y, k, contact, supports, rest, ground, h, locate):
-    """Take a step of ``h`` [s] from ``y``, whose rates are ``k``, or to the first event before its end.
+def first_event(m, devices, marks, start, k, rest, ground, h, locate):
+    """Take a step of ``h`` [s] from the Moment ``start``, whose rates are ``k``, or to the first event before its end.
 
-    ``under`` is the pier under its devices at the start.
-
+    ``m`` is the pier under its devices at the start.
     Without ``locate`` events take place at the end of the step: first order, for comparison only.
 
     Returns
     -------
     The time that it took [s]; the number of the event function that fell, NO_EVENT for none; the state then, and its rates.
     """
-    _evaluate(m, under, devices, y, k, contact, supports, rest, ground, h, START, marks.early, marks.early_slopes)
-    end, k_end = _try(m, devices, marks, y, k, contact, supports, rest, ground, h, h)
+    _evaluate(m, devices, start, k, rest, ground, h, START, marks.early, marks.early_slopes)
+    end, k_end = _try(m, devices, marks, start, k, rest, ground, h, h)
     if not locate:
         for i in range(len(marks.now)):
             if marks.now[i] <= 0.0:
@@ -120,7 +119,7 @@ def first_event(m, under, devices, marks, y, k, contact, supports, rest, ground,
         halve = trial > BISECT_AFTER and trial % 2 == 0
         last = which == NO_EVENT or abs(a + at - t) <= NEAR * h or at <= CLOSE * h or trial == TRIALS - 1
         t = b if which == NO_EVENT else (0.5 * (a + b) if halve and not last else a + at)
-        end, k_end = _try(m, devices, marks, y, k, contact, supports, rest, ground, t, h)
+        end, k_end = _try(m, devices, marks, start, k, rest, ground, t, h)
         if not last:
             a, b, which, at = _narrow(marks, a, t, b)
     return t, which, end, k_end

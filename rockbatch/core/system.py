@@ -129,8 +129,8 @@ def attend(traits, lanes, i):
 
 
 @question
-def write_reversals(traits, lanes, i, substep, history, row):
-    """Write both sides of what the pass has corrected in a sub-step of lane ``i`` that stands; return the next row."""
+def write_reversals(traits, lanes, i, substep, history):
+    """Write both sides of what the pass has corrected in a sub-step of lane ``i`` that stands."""
 
 
 @question

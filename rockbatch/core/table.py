@@ -49,6 +49,10 @@ def _interpreted_get(part, i, kind):
     return kind(*(float(part[name][i]) for name in kind._fields))
 
 
+def _interpreted_taken(line, kind):
+    return kind(*(float(line[name]) for name in kind._fields))
+
+
 def _interpreted_put(part, i, value):
     for name, number in zip(value._fields, value, strict=True):
         part[name][i] = number
@@ -80,6 +84,20 @@ def _get(typing_context, part, i, kind):
         return context.make_tuple(builder, found, [builder.load(place) for place in places])
 
     return found(part, i, kind), generate
+
+
+@intrinsic
+def _taken(typing_context, line, kind):
+    """Return the named tuple ``kind`` of fields that a record has."""
+    fields = kind.instance_class._fields
+    result = types.NamedUniTuple(types.float64, len(fields), kind.instance_class)
+
+    def generate(context, builder, signature, arguments):
+        start = context.get_constant(types.intp, 0)
+        places = _addresses(builder, line, arguments[0], start, fields)
+        return context.make_tuple(builder, result, [builder.load(place) for place in places])
+
+    return result(line, kind), generate
 
 
 @intrinsic
@@ -128,6 +146,7 @@ def _weighted(typing_context, k1, k2, k3, k4):
 
 _COMPILES = not numba.config.DISABLE_JIT  # type: ignore[attr-defined]
 get = _get if _COMPILES else _interpreted_get
+taken = _taken if _COMPILES else _interpreted_taken
 put = _put if _COMPILES else _interpreted_put
 along = _along if _COMPILES else _interpreted_along
 weighted = _weighted if _COMPILES else _interpreted_weighted

@@ -64,6 +64,14 @@ class Ground(NamedTuple):
     vertical_slope: float
 
 
+class Moment(NamedTuple):
+    """A pier at one moment: what changes in a step, and what is constant between events."""
+
+    y: tuple  # state
+    contact: tuple
+    supports: tuple | None  # where supports without their pivots wait; None on rigid ground
+
+
 class Signals(NamedTuple):
     """Event functions of a pier, or their slopes: positive until something happens at a pivot."""
 

@@ -149,19 +149,23 @@ def elements(pier: Pier, base: Base) -> list[Element]:
             found.append(Element(
                 kind, float(strength), float(stiffness), float(coefficient),
                 float(exponent), float(pretension), float(offset),
-                _linear_below(pier, base, offset, coefficient, exponent),
+                *_linear_part(pier, base, offset, float(coefficient), float(exponent)),
             ))  # fmt: skip
     return found
 
 
-def _linear_below(pier: Pier, base: Base, offset: float, coefficient: float, exponent: float) -> float:
-    """Return the speed [m/s] below which a viscous damper, a < 1, would damp faster than anything else in a pier.
+def _linear_part(pier: Pier, base: Base, offset: float, coefficient: float, exponent: float) -> tuple[float, float]:
+    """Return the speed [m/s] below which a viscous damper is linear, and the slope [1/s] of its force there.
 
-    Its force then ends small motions at once, in steps that no method resolves.
+    For a < 1 it would damp faster there than anything else in a pier, and end small motions at once, in steps that no
+    method resolves.
     """
-    if exponent >= 1.0 or coefficient == 0.0:
-        return 0.0
-    return float((coefficient * _lever(pier, base, offset) / _fastest(pier, base)) ** (1.0 / (1.0 - exponent)))
+    if exponent > 1.0 or coefficient == 0.0:
+        return 0.0, 0.0
+    if exponent == 1.0:
+        return math.inf, coefficient
+    speed = (coefficient * _lever(pier, base, offset) / _fastest(pier, base)) ** (1.0 / (1.0 - exponent))
+    return speed, coefficient * speed ** (exponent - 1.0)
 
 
 def _fastest(pier: Pier, base: Base) -> float:
@@ -188,7 +192,7 @@ def fastest_rate(pier: Pier, base: Base) -> float:
         lever = _lever(pier, base, each.offset)
         stiff += lever * each.stiffness * (each.strength if each.kind == HYSTERETIC else each.kind == TENDON)
         slows += lever * each.coefficient
-        steep = steep or each.linear_below > 0.0
+        steep = steep or each.exponent < 1.0
     if base.on_springs:
         return max(math.hypot(_fastest(pier, base), math.sqrt(stiff)), 2.0 * slows)
     return max(math.sqrt(stiff), _fastest(pier, base) if steep else slows)

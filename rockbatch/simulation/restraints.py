@@ -65,7 +65,8 @@ def _force(of: Element, pier: Pier, base: Base, rows: np.recarray, j: int) -> Sa
         return of.strength * state
     if of.kind == TENDON:
         return np.clip(of.prestress + of.stiffness * (elongation - state), 0.0, of.strength)
-    return of.coefficient * np.sign(speed) * np.abs(speed) ** of.exponent
+    size = np.abs(speed)
+    return np.where(size < of.linear_below, of.slope * speed, of.coefficient * np.sign(speed) * size**of.exponent)
 
 
 def loops(pier: Pier, base: Base, rows: np.recarray) -> "pd.DataFrame":

@@ -11,7 +11,7 @@ from rockbatch.core.clock import ON_ITS_SIDE
 from rockbatch.core.devices.laws import STICKS, TENDON
 from rockbatch.core.devices.pull import Devices, devices_of
 from rockbatch.core.history import MOMENT
-from rockbatch.core.run import NO_HISTORY, march
+from rockbatch.core.run import NO_ROWS, march
 from rockbatch.core.system import Kind
 from rockbatch.core.types import (
     CHATTER,
@@ -227,7 +227,7 @@ def _with_devices(run: Run, substeps: int, quiet_s: float, stop: Stop, locate: b
     devices = devices_of(elements(run.pier, run.base))
     assert devices is not None
     kind, lines = kind_of(model(run.pier, run.base)), [_line(run, substeps, quiet_s, 0, wait)]
-    found = march(kind, lines, ground_of(run.motion), stop.flag, substeps, locate, False, NO_HISTORY, devices)[0]
+    found = march(kind, lines, ground_of(run.motion), stop.flag, substeps, locate, False, NO_ROWS, devices)[0]
     if found.status == RUNNING:
         return None
     result = _result(found)

@@ -156,7 +156,7 @@ def test_a_run_moves_to_another_lane_with_all_its_numbers(lane):
     assert (np.delete(cells, 2, axis=1) == np.delete(before, 2, axis=1)).all()
 
 
-SETTINGS = Settings(1, True, False, False)
+SETTINGS = Settings(1, True, False)
 
 
 @numba.njit(error_model="numpy", _nrt=False)

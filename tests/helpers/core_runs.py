@@ -13,7 +13,7 @@ KIND = kind_of(None)
 
 def block_line(m: Block, theta: float, omega: float, dt: float, substeps: int, npts: int, quiet_samples: int = 0):
     """Line of a run from ``theta`` [rad] and ``omega`` [rad/s] on, over the first ``npts`` rows of the ground."""
-    return line_of(m, theta, omega, dt, substeps, quiet_samples, 0, npts)
+    return line_of(m, theta, omega, dt, substeps, quiet_samples, 0, npts, 0)
 
 
 def run_blocks(lines, ground: Samples, substeps: int, history: Samples | None = None, stop: int = 0) -> np.recarray:

@@ -15,8 +15,8 @@ from rockbatch.core import rk4, system, table, trigonometry
 from rockbatch.core.block import equations as block
 from rockbatch.core.block import events as block_events
 from rockbatch.core.block.model import Block, Rocker, Rocking, Stance, Tilt
+from rockbatch.core.devices import elongation, pull
 from rockbatch.core.devices import laws as device_laws
-from rockbatch.core.devices import pull
 from rockbatch.core.devices.laws import FRICTION, HYSTERETIC, TENDON, VISCOUS, Element
 from rockbatch.core.observe import forces
 from rockbatch.core.springs import creep, equations, events, impact, laws
@@ -37,9 +37,9 @@ UNITS = {  # of the fields, by the tuples' own comments
     Rocker: (M, M, ACCELERATION, 1 / M**2),
     Tilt: (RAD, RAD / S),
     Pull: (ACCELERATION, M * ACCELERATION),
-    pull.Gap: (M, SPEED, ONE, M, ACCELERATION, M),
+    elongation.Gap: (M, SPEED, ONE, M, ACCELERATION, M),
     Supports: (M, M),
-    Element: (ONE, ACCELERATION, 1 / S**2, ACCELERATION / SPEED, ONE, ACCELERATION, M, SPEED),  # of a tendon
+    Element: (ONE, ACCELERATION, 1 / S**2, ACCELERATION / SPEED, ONE, ACCELERATION, M, SPEED, 1 / S),  # of a tendon
 }
 RATES = (SPEED, RAD / S, ACCELERATION, RAD / S**2, 1 / S, 1 / S)
 
@@ -48,7 +48,7 @@ MOVING = (-0.004, 0.02, -0.01, 0.15, -0.3, -0.6)
 SHAKING = (2.0, -30.0, -1.0, 12.0)
 BLOCK = (1.5, 7.2, 18.0, 9.81, 0.2, 1.0, 0.9, 0.3, 1.0, 0.0138)
 ROCKS = (0.07, 0.05, -0.15, -0.1)
-DEVICE = (2.0, 3.0, 40.0, 1.0, 0.5, 0.5, 0.01)  # an Element after its kind
+DEVICE = (2.0, 3.0, 40.0, 1.0, 0.5, 0.5, 0.01, 400.0)  # an Element after its kind
 
 BOTH = Contact(1.0, 1.0, 1.0, 0.0, 0)
 ON_RIGHT, IN_AIR = Stance(0.0, 1.0, 1.0), Stance(0.0, 0.0, 1.0)
@@ -88,7 +88,7 @@ def plain_python(monkeypatch):
     the right one.
     """
     modules: tuple[ModuleType, ...] = (
-        laws, creep, equations, impact, events, trigonometry, block, block_events, forces, device_laws, pull, rk4,
+        laws, creep, equations, impact, events, trigonometry, block, block_events, forces, device_laws, elongation, pull, rk4,
     )  # fmt: skip
     compiled_geometry = equations.geometry
 
@@ -104,7 +104,7 @@ def plain_python(monkeypatch):
                 monkeypatch.setattr(module, name, kernel.py_func)
             elif kernel is table.along or kernel is table.weighted:
                 monkeypatch.setattr(module, name, getattr(table, f"_interpreted_{name}"))
-    for module in (block, block_events, device_laws):
+    for module in (block, block_events, device_laws, elongation):
         monkeypatch.setattr(module, "math", MATH)
     without = block._pull_down
     monkeypatch.setattr(block, "_pull_down", lambda pull: without(pull or Pull(*quantities(Pull, (0.0, 0.0)))))
@@ -253,10 +253,11 @@ def test_what_lifts_a_block_off_and_the_bounces_that_are_left():
 
 @KINEMATICS
 def test_a_device_has_an_elongation_in_metres(finite):
-    found = pull.gap(pier(finite), Element(*quantities(Element, (TENDON, *DEVICE))), state(), 0.001 * M)
+    m = pier(finite)
+    found = elongation.gap(m, 0.5 * M, elongation.attitude(m, state(), 0.001 * M), state())
     assert finite or found.bend == 0.0
-    assert_units(found._replace(bend=found.bend or 0.0 * ACCELERATION), UNITS[pull.Gap])
-    assert_units([pull.lifted(found, 0.3 * ACCELERATION, 0.2 * RAD / S**2)], [ACCELERATION])
+    assert_units(found._replace(bend=found.bend or 0.0 * ACCELERATION), UNITS[elongation.Gap])
+    assert_units([elongation.lifted(found, 0.3 * ACCELERATION, 0.2 * RAD / S**2)], [ACCELERATION])
 
 
 @pytest.mark.parametrize(("kind", "unit"), [(FRICTION, ONE), (VISCOUS, ONE), (HYSTERETIC, 1 / S), (TENDON, SPEED)])

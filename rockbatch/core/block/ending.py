@@ -6,8 +6,9 @@ from rockbatch.core import system
 from rockbatch.core.block.equations import on_pivot, side_of
 from rockbatch.core.block.model import BlockTraits
 from rockbatch.core.clock import ground_rests
+from rockbatch.core.devices.elongation import attitude, gap
 from rockbatch.core.devices.laws import HYSTERETIC, TENDON, stored
-from rockbatch.core.devices.pull import gap, sticking
+from rockbatch.core.devices.pull import sticking
 from rockbatch.core.kernel import inlined, kernel
 from rockbatch.core.system import model, moment
 from rockbatch.core.types import NO_EVENT, RESTLESS, RUNNING, SURVIVED, UNDECIDED
@@ -26,11 +27,11 @@ def reach_of(theta, omega, alpha, p):
 @inlined
 def _stored(m, devices, y):
     """Return the energy [J/kg] that tendons store in state ``y``, and what hysteretic dampers may give back."""
-    tendons, back = 0.0, 0.0
+    tendons, back, at = 0.0, 0.0, attitude(m, y, devices.level[0])
     for j in range(len(devices.elements)):
         of = devices.elements[j]
         if of.kind == TENDON:
-            tendons += stored(of, gap(m, of, y, devices.level[0]).elongation, devices.x[j])
+            tendons += stored(of, gap(m, of.offset, at, y).elongation, devices.x[j])
         elif of.kind == HYSTERETIC:
             back += 0.5 * of.strength * devices.x[j] * devices.x[j] / of.stiffness
     return tendons, back

@@ -6,11 +6,11 @@ from typing import NamedTuple
 from rockbatch.core import system
 from rockbatch.core.block import ending, events, passing  # noqa: F401  answers of the block
 from rockbatch.core.block.equations import constrained, on_side
-from rockbatch.core.block.model import Block, BlockTraits, Numbers, Rocking, Stance, Tilt
-from rockbatch.core.clock import COMMON
+from rockbatch.core.block.model import NUMBERS, Block, BlockTraits, Numbers, Rocking, Stance, Tilt
+from rockbatch.core.clock import COMMON, TIMING
 from rockbatch.core.kernel import inner
 from rockbatch.core.system import Kind
-from rockbatch.core.table import get, lanes_of, put
+from rockbatch.core.table import get, lanes_of, put, taken
 from rockbatch.core.types import LEFT, RIGHT
 
 
@@ -42,38 +42,24 @@ LANE = lanes_of(COMMON | {
 })  # fmt: skip
 
 
-class Line(NamedTuple):
-    """A run as it is asked for: the model as Block has it, and the rest."""
+LINE = (
+    *NUMBERS,
+    ("theta", float),  # at the start [rad]
+    ("omega", float),  # [rad/s]
+    *TIMING,
+)  # fmt: skip
+"""Fields of a run as it is asked for."""
 
-    half_width: float
-    height: float
-    inertia: float
-    gravity: float
-    alpha: float
-    p: float
-    restitution: float
-    epsilon: float
-    guided: float
-    quickness: float
-    theta: float  # at the start [rad], without velocity but for ``omega``
-    omega: float  # [rad/s]
-    dt: float  # sampling interval [s]
-    substeps: float  # steps to a sampling interval
-    quiet_samples: float  # of the free-vibration tail after the record
-    first_row: float  # where among the rows of the ground the motion begins
-    npts: float  # and how many it has
-    patience: float = (
-        0.0  # samples that the run goes on at most while, by its energy, the block could still turn further
-    )
+Line = NamedTuple("Line", LINE)  # type: ignore[misc]
 
 
 @system.model.of(BlockTraits)
 def model(traits, lanes, i):
     """Return the Block of lane ``i``."""
-    m = lanes.model
+    m = get(lanes.model, i, Numbers)
     return Block(
-        m.half_width[i], m.height[i], m.inertia[i], m.gravity[i], m.alpha[i], m.p[i], m.restitution[i], m.epsilon[i],
-        m.guided[i], m.quickness[i], None, True,
+        m.half_width, m.height, m.inertia, m.gravity, m.alpha, m.p, m.restitution, m.epsilon, m.guided, m.quickness,
+        None, True,
     )  # fmt: skip
 
 
@@ -94,16 +80,8 @@ def put_moment(traits, lanes, i, y, contact, supports):
 @system.begin.of(BlockTraits)
 def begin(traits, lanes, i, run):
     """Put the model and the start of ``run`` into lane ``i``."""
-    alpha, m, bounds = run.alpha, lanes.model, lanes.bounds
-    m.half_width[i], m.height[i], m.inertia[i], m.gravity[i] = run.half_width, run.height, run.inertia, run.gravity
-    m.alpha[i], m.p[i], m.restitution[i], m.epsilon[i], m.guided[i] = (
-        alpha,
-        run.p,
-        run.restitution,
-        run.epsilon,
-        run.guided,
-    )
-    m.quickness[i] = run.quickness
+    alpha, bounds = run.alpha, lanes.bounds
+    put(lanes.model, i, taken(run, Numbers))
     size = math.hypot(run.half_width, run.height)
     bounds.tangent[i], bounds.share[i] = run.half_width / run.height, size * run.p * run.p / run.gravity
     bounds.sine_squared[i], bounds.radius[i] = math.sin(alpha) * math.sin(alpha), size
@@ -152,9 +130,8 @@ def finish(traits, lanes, i, t, result):
 
 
 @system.write_reversals.of(BlockTraits)
-def write_reversals(traits, lanes, i, substep, history, row):
-    """Return the next row of the history: the ground has no branches."""
-    return row
+def write_reversals(traits, lanes, i, substep, history):
+    """Write nothing: the ground has no branches."""
 
 
 def kind_of(m):

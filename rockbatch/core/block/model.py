@@ -28,19 +28,10 @@ class BlockTraits(NamedTuple):
     alike: float = 0.0
 
 
-class Numbers(NamedTuple):
-    """The numbers of a Block, as lanes hold them."""
+NUMBERS = tuple((name, float) for name in Block._fields[: Block._fields.index("pull")])
+"""Fields of a Block that lanes hold."""
 
-    half_width: float
-    height: float
-    inertia: float
-    gravity: float
-    alpha: float
-    p: float
-    restitution: float
-    epsilon: float
-    guided: float
-    quickness: float
+Numbers = NamedTuple("Numbers", NUMBERS)  # type: ignore[misc]
 
 
 class Rocker(NamedTuple):

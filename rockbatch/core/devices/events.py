@@ -6,6 +6,7 @@ lets go.
 
 import math
 
+from rockbatch.core.devices.elongation import attitude, gap, lifted
 from rockbatch.core.devices.laws import (
     CLOSES,
     FRICTION,
@@ -18,24 +19,15 @@ from rockbatch.core.devices.laws import (
     mode_of,
     tension,
 )
-from rockbatch.core.devices.pull import (
-    device_rates,
-    gap,
-    gap_at,
-    lifted,
-    sticking,
-    under_devices,
-    way_of_opening,
-)
+from rockbatch.core.devices.pull import BESIDE, START, device_rates, sticking, under_devices, way_of_opening
 from rockbatch.core.ground import later
 from rockbatch.core.kernel import inlined, inner
 from rockbatch.core.roots import NO_ACCELERATION, surely
 from rockbatch.core.system import accelerations, rates
 from rockbatch.core.table import along
-from rockbatch.core.trigonometry import sine_and_cosine
 from rockbatch.core.types import LAW_LEFT, NO_EVENT, OF_PIER
 
-TURNS, SLACKENS, GIVES = 0, 1, 2
+TURNS, SLACKENS, GIVES = 0, 1, 2  # behind the first of a device's
 PER_DEVICE = 3
 
 NEARBY = 1e-6
@@ -55,18 +47,21 @@ WAYS = (
 
 
 @inner
-def _of_device(of, at, state, mode, goes, acceleration, rest, rounding, values, slopes, first):
-    """Write the three event functions of a device, and their slopes, but for a friction damper that does not move."""
-    for i in range(first, first + PER_DEVICE):
-        values[i], slopes[i] = 1.0, 0.0
-    turns, slackens, gives = first + TURNS, first + SLACKENS, first + GIVES
-    speed = surely(at.speed, acceleration, rest)
+def _of_device(devices, j, at, state, acceleration, rest, rounding, values, slopes):
+    """Write the three event functions of device ``j``, and their slopes, but for a friction damper that does not move."""
+    of, mode, goes = devices.elements[j], devices.modes[j], devices.goes[j]
+    turns = OF_PIER + PER_DEVICE * j + TURNS
+    slackens, gives = turns + SLACKENS, turns + GIVES
+    values[turns] = values[slackens] = values[gives] = 1.0
+    slopes[turns] = slopes[slackens] = slopes[gives] = 0.0
+    if of.linear_below == math.inf or (of.kind == FRICTION and goes == STICKS):
+        return
     if of.kind != TENDON or mode == YIELDING:
         way = OPENS if of.kind == TENDON else goes
         starts = abs(at.speed) <= rest and way * acceleration >= 0.0  # it has just turned, or is let go, to rounding
         values[turns], slopes[turns] = rest if starts else way * at.speed, way * acceleration
         return
-    pull, rate = tension(of, at.elongation, state), of.stiffness * speed
+    pull, rate = tension(of, at.elongation, state), of.stiffness * surely(at.speed, acceleration, rest)
     sign, least = 1.0 if mode == TAUT else -1.0, of.stiffness * rounding
     values[slackens], slopes[slackens] = sign * pull, sign * rate
     if abs(pull) <= least and sign * rate > 0.0:  # it has just changed, to rounding
@@ -80,15 +75,14 @@ def _of_device(of, at, state, mode, goes, acceleration, rest, rounding, values, 
 
 
 @inner
-def _of_friction(m, devices, y, x, contact, k, kx, ground, h, one, two, values, slopes):
+def _of_friction(m, devices, now, x, k, kx, ground, h, values, slopes):
     """Write what friction dampers that do not move could hold more; its rate from a moment later."""
     near = NEARBY * h
+    _, one, two = under_devices(m, devices, now.y, x, now.contact, ground)
     for i in range(len(x)):
         devices.stage[i] = x[i] + near * kx[i]
-    there = later(ground, near)
-    _, one_later, two_later = under_devices(
-        m, devices, along(y, k, near), devices.stage, contact, there.horizontal, there.vertical
-    )
+    soon = along(now.y, k, near)
+    _, one_later, two_later = under_devices(m, devices, soon, devices.stage, now.contact, later(ground, near))
     j, forces, forces_later = NO_EVENT, (one, two), (one_later, two_later)
     for number in range(2):
         j = sticking(devices, j)
@@ -100,45 +94,42 @@ def _of_friction(m, devices, y, x, contact, k, kx, ground, h, one, two, values, 
 
 
 @inner
-def device_functions(m, devices, y, x, contact, k, kx, rest, ground, h, values, slopes):
-    """Write the event functions of all devices and their slopes behind those of the pier, in state ``y`` with rates ``k``.
+def _is_held(m, devices, y, k, slope, i):
+    """Return whether friction holds the pivot of event function ``i`` where it is, on or just off its support."""
+    least, at = NO_ACCELERATION * m.gravity, attitude(m, y, devices.level[0])
+    lift = lifted(gap(m, -m.half_width if i % 2 == 0 else m.half_width, at, y), k.v_rate, k.omega)
+    return abs(slope) <= least and abs(lift) <= least
 
-    ``x`` are the devices' states and ``kx`` their rates. What friction holds at a pivot, to rounding, is no event of it.
+
+@inner
+def device_functions(m, devices, now, k, place, rest, ground, h, values, slopes):
+    """Write the event functions of all devices and their slopes behind those of the pier, of the Moment ``now`` with rates ``k``.
+
+    Rates and gaps of the devices are in their ``place``. What friction holds at a pivot, to rounding, is no event of it.
     """
-    length = rest * rest / (NO_ACCELERATION * m.gravity)
-    holds = sticking(devices, NO_EVENT) != NO_EVENT
+    x, kx, least = devices.x if place == START else devices.end, devices.rates[place], NO_ACCELERATION * m.gravity
+    length, holds = rest * rest / least, sticking(devices, NO_EVENT) != NO_EVENT
     for i in range(OF_PIER):
-        offset = -m.half_width if i % 2 == 0 else m.half_width
-        lift = lifted(gap_at(m, offset, y, devices.level[0]), k.v_rate, k.omega)
-        at_once = (
-            holds and abs(lift) <= NO_ACCELERATION * m.gravity and abs(values[i]) <= (rest if i >= LAW_LEFT else length)
-        )
-        if (
-            at_once and abs(slopes[i]) <= NO_ACCELERATION * m.gravity
-        ):  # friction holds the pivot, on or just off its support
+        rounding = rest if i >= LAW_LEFT else length
+        if holds and abs(values[i]) <= rounding and _is_held(m, devices, now.y, k, slopes[i], i):
             values[i], slopes[i] = 1.0, 0.0
         elif i >= LAW_LEFT and abs(values[i]) <= rest and slopes[i] > 0.0:  # it has just turned, to rounding
             values[i] = rest
     for j in range(len(devices.elements)):
-        of, first = devices.elements[j], OF_PIER + PER_DEVICE * j
-        at = gap(m, of, y, devices.level[0])
-        acceleration = lifted(at, k.v_rate, k.omega)
-        if abs(acceleration) <= NO_ACCELERATION * m.gravity:
+        here = devices.gaps[place, j]
+        acceleration = lifted(here, k.v_rate, k.omega)
+        if abs(acceleration) <= least:
             acceleration = 0.0
-        _of_device(of, at, x[j], devices.modes[j], devices.goes[j], acceleration, rest, length, values, slopes, first)
-        if of.kind == FRICTION and devices.goes[j] == STICKS:
-            values[first + TURNS], slopes[first + TURNS] = 1.0, 0.0
-    if sticking(devices, NO_EVENT) != NO_EVENT:
-        a, c = ground.horizontal, ground.vertical
-        _, one, two = under_devices(m, devices, y, x, contact, a, c)
-        _of_friction(m, devices, y, x, contact, k, kx, ground, h, one, two, values, slopes)
+        _of_device(devices, j, here, x[j], acceleration, rest, length, values, slopes)
+    if holds:
+        _of_friction(m, devices, now, x, k, kx, ground, h, values, slopes)
 
 
 @inner
-def _consistent(m, devices, y, x, contact, horizontal, vertical, first, second):
+def _consistent(m, devices, y, x, contact, ground, first, second):
     """Return whether friction dampers ``first`` and ``second``, without velocity, can do what ``goes`` says of them."""
-    under, one, two = under_devices(m, devices, y, x, contact, horizontal, vertical)
-    v_acceleration, theta_acceleration = accelerations(under, y, contact, horizontal, vertical)
+    under, one, two = under_devices(m, devices, y, x, contact, ground)
+    v_acceleration, theta_acceleration = accelerations(under, y, contact, ground.horizontal, ground.vertical)
     holding = sticking(devices, NO_EVENT)
     for j in (first, second):
         if j == NO_EVENT:
@@ -147,13 +138,13 @@ def _consistent(m, devices, y, x, contact, horizontal, vertical, first, second):
         if devices.goes[j] == STICKS:
             if abs(one if j == holding else two) > (1.0 + SURE) * of.strength:
                 return False
-        elif devices.goes[j] * lifted(gap(m, of, y, devices.level[0]), v_acceleration, theta_acceleration) <= 0.0:
+        elif devices.goes[j] * lifted(devices.gaps[BESIDE, j], v_acceleration, theta_acceleration) <= 0.0:
             return False
     return True
 
 
 @inner
-def settle_friction(m, devices, y, x, contact, horizontal, vertical):
+def settle_friction(m, devices, y, x, contact, ground):
     """Decide what friction dampers without velocity do from here on: hold if they can, else go where the others take them."""
     first = sticking(devices, NO_EVENT)
     if first == NO_EVENT:
@@ -165,7 +156,7 @@ def settle_friction(m, devices, y, x, contact, horizontal, vertical):
         devices.goes[first] = way[0]
         if second != NO_EVENT:
             devices.goes[second] = way[1]
-        if _consistent(m, devices, y, x, contact, horizontal, vertical, first, second):
+        if _consistent(m, devices, y, x, contact, ground, first, second):
             return
     devices.goes[first] = STICKS  # what rounding leaves
     if second != NO_EVENT:
@@ -186,18 +177,16 @@ def _let_go(m, devices, y, contact, ground, h, j):
 
     Now each of them still holds to rounding, and where two reach their force at one time neither can go alone.
     """
-    near, a, c = SOON * h, ground.horizontal, ground.vertical
-    under = device_rates(m, devices, y, devices.x, contact, a, c, devices.rates[0])
-    _, one, two = under_devices(m, devices, y, devices.x, contact, a, c)
+    near = SOON * h
+    under, one, two = device_rates(m, devices, y, devices.x, contact, ground.horizontal, ground.vertical, START)
     holds = one if sticking(devices, NO_EVENT) == j else two
-    k = rates(under, y, contact, a, c)
+    k = rates(under, y, contact, ground.horizontal, ground.vertical)
     for i in range(len(devices.x)):
-        devices.stage[i] = devices.x[i] + near * devices.rates[0, i]
-    there = later(ground, near)
-    settle_friction(m, devices, along(y, k, near), devices.stage, contact, there.horizontal, there.vertical)
+        devices.stage[i] = devices.x[i] + near * devices.rates[START, i]
+    settle_friction(m, devices, along(y, k, near), devices.stage, contact, later(ground, near))
     if devices.goes[j] == STICKS:
         devices.goes[j] = OPENS if holds > 0.0 else CLOSES
-        settle_friction(m, devices, y, devices.x, contact, a, c)
+        settle_friction(m, devices, y, devices.x, contact, ground)
 
 
 @inner
@@ -215,32 +204,36 @@ def device_event(m, devices, y, contact, ground, h, rest, which):
         return
     if of.kind != FRICTION or of.strength == 0.0:
         devices.goes[j] = -devices.goes[j]
-    under, _, _ = under_devices(m, devices, y, devices.x, contact, ground.horizontal, ground.vertical)
+    under, _, _ = under_devices(m, devices, y, devices.x, contact, ground)
     v_acceleration, theta_acceleration = accelerations(under, y, contact, ground.horizontal, ground.vertical)
     for i in range(len(devices.elements)):  # friction that comes to rest at the same time may hold, too
-        other, at = devices.elements[i], gap(m, devices.elements[i], y, devices.level[0])
-        stops = abs(at.speed) <= rest and devices.goes[i] * lifted(at, v_acceleration, theta_acceleration) < 0.0
+        other, here = devices.elements[i], devices.gaps[BESIDE, i]
+        stops = abs(here.speed) <= rest and devices.goes[i] * lifted(here, v_acceleration, theta_acceleration) < 0.0
         if other.kind == FRICTION and other.strength > 0.0 and (i == j or stops):
             devices.goes[i] = STICKS
-    settle_friction(m, devices, y, devices.x, contact, ground.horizontal, ground.vertical)
+    settle_friction(m, devices, y, devices.x, contact, ground)
 
 
 @inner
 def after_contact(m, devices, y, contact, rest, ground):
     """Choose directions and modes once an event at a pivot may have made all velocities jump."""
+    at = attitude(m, y, devices.level[0])
     for j in range(len(devices.elements)):
-        of, at = devices.elements[j], gap(m, devices.elements[j], y, devices.level[0])
-        if abs(at.speed) <= rest:
+        of = devices.elements[j]
+        here = gap(m, of.offset, at, y)
+        if abs(here.speed) <= rest:
             if of.kind == FRICTION and of.strength > 0.0:
                 devices.goes[j] = STICKS
             continue
         if of.kind != TENDON:
-            devices.goes[j] = OPENS if at.speed > 0.0 else CLOSES
-        elif devices.modes[j] == YIELDING and at.speed < 0.0:
+            devices.goes[j] = OPENS if here.speed > 0.0 else CLOSES
+        elif devices.modes[j] == YIELDING and here.speed < 0.0:
             devices.modes[j] = TAUT
-        elif devices.modes[j] == TAUT and at.speed > 0.0 and tension(of, at.elongation, devices.x[j]) >= of.strength:
+        elif (
+            devices.modes[j] == TAUT and here.speed > 0.0 and tension(of, here.elongation, devices.x[j]) >= of.strength
+        ):
             devices.modes[j] = YIELDING
-    settle_friction(m, devices, y, devices.x, contact, ground.horizontal, ground.vertical)
+    settle_friction(m, devices, y, devices.x, contact, ground)
 
 
 @inlined
@@ -248,13 +241,13 @@ def start_devices(m, devices, y, contact, rest, ground):
     """Put devices without permanent elongation in state ``y``, its lower pivot where it rests: level, directions and modes."""
     if devices is None:
         return
-    sine, cosine = sine_and_cosine(y.theta)
-    drop = m.height * sine * sine / (1.0 + cosine) if m.finite is not None else 0.0
-    devices.level[0] = y.v - m.half_width * abs(sine) + drop
+    lies = attitude(m, y, 0.0)
+    devices.level[0] = lies.rise - m.half_width * abs(lies.sine)
+    at = attitude(m, y, devices.level[0])
     for j in range(len(devices.elements)):
-        of, at = devices.elements[j], gap(m, devices.elements[j], y, devices.level[0])
+        of = devices.elements[j]
         devices.goes[j] = STICKS if of.kind == FRICTION and of.strength > 0.0 else OPENS
-        devices.modes[j] = mode_of(of, at.elongation, devices.x[j], OPENS)
+        devices.modes[j] = mode_of(of, gap(m, of.offset, at, y).elongation, devices.x[j], OPENS)
     after_contact(m, devices, y, contact, rest, ground)
 
 
@@ -263,7 +256,8 @@ def leave_rest(m, devices, y, side):
     """Let devices go as the pier at rest begins to turn about its pivot on ``side``, or to rise on NEITHER."""
     if devices is None:
         return
+    at = attitude(m, y, devices.level[0])
     for j in range(len(devices.elements)):
         of, way = devices.elements[j], way_of_opening(m, devices.elements[j], side)
         devices.goes[j] = way if way != STICKS or of.kind == FRICTION else OPENS
-        devices.modes[j] = mode_of(of, gap(m, of, y, devices.level[0]).elongation, devices.x[j], way)
+        devices.modes[j] = mode_of(of, gap(m, of.offset, at, y).elongation, devices.x[j], way)

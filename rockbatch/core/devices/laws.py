@@ -37,9 +37,8 @@ class Element(NamedTuple):
     exponent: float
     prestress: float  # of a tendon [m/s²]
     offset: float  # from the centre of the base, positive to the right [m]
-    linear_below: (
-        float  # speed [m/s] up to which a viscous damper is linear, whose force would rise without bound in slope
-    )
+    linear_below: float  # speed [m/s] up to which a viscous damper is linear: |ė|^a would rise without bound in slope
+    slope: float  # of its force there [1/s]
 
 
 class Use(NamedTuple):
@@ -70,7 +69,7 @@ def force(of, elongation, speed, state, mode, goes):
     if of.kind == FRICTION:
         return of.strength * goes
     if of.kind == VISCOUS and abs(speed) < of.linear_below:
-        return of.coefficient * of.linear_below ** (of.exponent - 1.0) * speed
+        return of.slope * speed
     if of.kind == VISCOUS:
         return math.copysign(of.coefficient * abs(speed) ** of.exponent, speed) if speed != 0.0 else 0.0
     if of.kind == HYSTERETIC:

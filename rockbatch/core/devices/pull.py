@@ -1,8 +1,6 @@
-"""Dampers and tendons on a pier: their elongation, their force and moment, the rates of their states.
+"""Dampers and tendons on a pier: their force and moment, the rates of their states (THEORY.md, Dampers and tendons).
 
-A device at the offset s from the middle of the base has the elongation e = u/cos(θ/2), where u is the rise of its place
-above that at rest. While a block turns about a point of the ground at the distance d that is 2 d sin(θ/2), the chord of the
-place's way (THEORY.md, Dampers and tendons). In first-order kinematics e = u. Its force F acts on v and θ by ∂e/∂v and ∂e/∂θ.
+The force F of a device with the elongation e acts on v and θ by ∂e/∂v and ∂e/∂θ.
 
 What is integrated beside the pier's state, x: the state of each device, the energy that each has taken and not given back
 [J/kg], the work of the ground [J/kg], and what the devices' P–Δ moments have put in [J/kg].
@@ -13,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from rockbatch.core.devices.elongation import GAP, attitude, gap, lifted, put_gap
 from rockbatch.core.devices.laws import (
     CLOSES,
     ELEMENT,
@@ -27,9 +26,9 @@ from rockbatch.core.devices.laws import (
     mode_of,
     state_rate,
 )
+from rockbatch.core.ground import later
 from rockbatch.core.kernel import inlined, inner, question
 from rockbatch.core.system import accelerations, lever, pulled
-from rockbatch.core.trigonometry import sine_and_cosine
 from rockbatch.core.types import NO_EVENT
 
 STAYS = 1e-9
@@ -51,6 +50,10 @@ NEAREST = 1e-3
 """Of a step: the shortest that this asks for, from a velocity reversal or to it."""
 
 
+START, END, BESIDE = 0, 4, 5
+"""Places of rates and gaps at both ends of a step, between them those of its stages, and of a state beside it."""
+
+
 class Devices(NamedTuple):
     """The devices of one run and their states, in arrays that the run writes."""
 
@@ -61,7 +64,8 @@ class Devices(NamedTuple):
     x: np.ndarray  # states, energies taken, work of the ground, P–Δ
     stage: np.ndarray  # of a Runge–Kutta step
     end: np.ndarray
-    rates: np.ndarray  # shape (5, len(x)): of the four stages and at the end
+    rates: np.ndarray  # shape (6, len(x)): of the four stages, at the end, and of a state looked at beside them
+    gaps: np.recarray  # of Gap, shape (6, devices), likewise
     use: np.recarray  # of Use
 
 
@@ -74,48 +78,8 @@ def devices_of(elements):
     rows = np.array([tuple(each) for each in elements], ELEMENT).view(np.recarray)
     x, stage, end = np.zeros(size), np.zeros(size), np.zeros(size)
     use = np.zeros(n, USE).view(np.recarray)
-    return Devices(rows, np.zeros(1), np.zeros(n), np.zeros(n), x, stage, end, np.zeros((5, size)), use)
-
-
-class Gap(NamedTuple):
-    """Elongation e of a device at one moment, and its derivatives."""
-
-    elongation: float  # [m]
-    speed: float  # ė [m/s]
-    by_v: float  # ∂e/∂v
-    by_theta: float  # ∂e/∂θ [m]
-    bend: float  # what ë has beside v̈ ∂e/∂v + θ̈ ∂e/∂θ [m/s²]
-    arm: float  # of the force about the centre of mass [m], with first-order P–Δ
-
-
-@inner
-def gap(m, of, y, level):
-    """Return the Gap of a device in state ``y``; at rest the pier is at v = ``level`` [m]."""
-    return gap_at(m, of.offset, y, level)
-
-
-@inner
-def gap_at(m, s, y, level):
-    """Return the Gap of a device at the offset ``s`` [m]."""
-    h = m.height
-    if m.finite is None:
-        return Gap(y.v - level - s * y.theta, y.v_rate - s * y.omega, 1.0, -s, 0.0, h * y.theta - s)
-    sine, cosine = sine_and_cosine(y.theta)
-    half_sine, half_cosine = sine_and_cosine(0.5 * y.theta)
-    up = y.v - level - s * sine + 2.0 * h * half_sine * half_sine
-    arm, curve = h * sine - s * cosine, h * cosine + s * sine  # ∂u/∂θ and ∂²u/∂θ²
-    tangent = half_sine / half_cosine
-    by_v = 1.0 / half_cosine
-    by_theta = by_v * (arm + 0.5 * tangent * up)
-    twist = curve + tangent * arm + up * (0.25 + 0.5 * tangent * tangent)  # cos(θ/2) ∂²e/∂θ²
-    bend = by_v * y.omega * (tangent * y.v_rate + twist * y.omega)
-    return Gap(by_v * up, by_v * y.v_rate + by_theta * y.omega, by_v, by_theta, bend, by_theta)
-
-
-@inner
-def lifted(at, v_acceleration, theta_acceleration):
-    """Return ë [m/s²] of a device whose Gap is ``at``."""
-    return at.by_v * v_acceleration + at.by_theta * theta_acceleration + at.bend
+    gaps = np.zeros((6, n), GAP).view(np.recarray)
+    return Devices(rows, np.zeros(1), np.zeros(n), np.zeros(n), x, stage, end, np.zeros((6, size)), gaps, use)
 
 
 @inner
@@ -165,16 +129,14 @@ def _held_by_friction(m, first, second, y, contact, horizontal, vertical, streng
 
 
 @inner
-def with_friction(m, devices, y, contact, horizontal, vertical):
+def _with_friction(m, devices, gaps, y, contact, horizontal, vertical):
     """Return the pier ``m``, under all else, under friction that holds too; and forces [m/s²] of the first two such dampers."""
     first = sticking(devices, NO_EVENT)
     if first == NO_EVENT:
         return m, 0.0, 0.0
-    second = sticking(devices, first)
-    level, elements = devices.level[0], devices.elements
-    here = gap(m, elements[first], y, level)
+    second, elements = sticking(devices, first), devices.elements
     other = second if second != NO_EVENT else first
-    there = gap(m, elements[other], y, level)
+    here, there = gaps[first], gaps[other]
     strengths = elements[first].strength, elements[other].strength
     one, two = _held_by_friction(m, here, there, y, contact, horizontal, vertical, strengths)
     down = one * here.by_v + two * there.by_v
@@ -182,40 +144,37 @@ def with_friction(m, devices, y, contact, horizontal, vertical):
 
 
 @inner
-def under_devices(m, devices, y, x, contact, horizontal, vertical):
-    """Return the pier ``m`` under all devices, and the forces [m/s²] of the first two friction dampers that do not move."""
-    total, moment = 0.0, 0.0
-    for j in range(len(devices.elements)):
-        of = devices.elements[j]
-        if of.kind == FRICTION and devices.goes[j] == STICKS:
-            continue
-        at = gap(m, of, y, devices.level[0])
-        one = force(of, at.elongation, at.speed, x[j], devices.modes[j], devices.goes[j])
-        total += one * at.by_v
-        moment += one * at.arm
-    return with_friction(pulled(m, total, moment), devices, y, contact, horizontal, vertical)
+def device_rates(m, devices, y, x, contact, horizontal, vertical, place):
+    """Write the rates of the devices' states ``x``, and their gaps, to their ``place``.
 
-
-@inner
-def device_rates(m, devices, y, x, contact, horizontal, vertical, k):
-    """Return the pier ``m`` under all devices, and write the rates of ``x`` into ``k``."""
-    n = len(devices.elements)
+    Return the pier ``m`` under all devices, and the forces [m/s²] of the first two friction dampers that do not move.
+    """
+    n, k, at = len(devices.elements), devices.rates[place], attitude(m, y, devices.level[0])
     total, moment = 0.0, 0.0
     for j in range(n):
         of = devices.elements[j]
+        here = gap(m, of.offset, at, y)
+        put_gap(devices.gaps[place, j], here)
         k[j], k[n + j] = 0.0, 0.0
         if of.kind == FRICTION and devices.goes[j] == STICKS:
             continue
-        at = gap(m, of, y, devices.level[0])
-        one = force(of, at.elongation, at.speed, x[j], devices.modes[j], devices.goes[j])
-        total += one * at.by_v
-        moment += one * at.arm
-        k[j] = state_rate(of, at.speed, x[j], devices.modes[j], devices.goes[j])
-        k[n + j] = loss_rate(of, at.speed, one, devices.modes[j])
-    under, _, _ = with_friction(pulled(m, total, moment), devices, y, contact, horizontal, vertical)
+        pull = force(of, here.elongation, here.speed, x[j], devices.modes[j], devices.goes[j])
+        total += pull * here.by_v
+        moment += pull * here.arm
+        k[j] = state_rate(of, here.speed, x[j], devices.modes[j], devices.goes[j])
+        k[n + j] = loss_rate(of, here.speed, pull, devices.modes[j])
+    under, one, two = _with_friction(
+        pulled(m, total, moment), devices, devices.gaps[place], y, contact, horizontal, vertical
+    )
     k[2 * n] = -horizontal * lever(m, y, contact) * y.omega - vertical * y.v_rate
     k[2 * n + 1] = 0.0 if m.finite is not None else -m.height * y.theta * under.pull.force * y.omega
-    return under
+    return under, one, two
+
+
+@inner
+def under_devices(m, devices, y, x, contact, ground):
+    """Return what :func:`device_rates` does, of a state that is looked at beside a step."""
+    return device_rates(m, devices, y, x, contact, ground.horizontal, ground.vertical, BESIDE)
 
 
 @question
@@ -230,7 +189,22 @@ def _alone(devices, m, y, contact, ground):
 
 @loaded.of(Devices)
 def _loaded(devices, m, y, contact, ground):
-    return under_devices(m, devices, y, devices.x, contact, ground.horizontal, ground.vertical)[0]
+    return under_devices(m, devices, y, devices.x, contact, ground)[0]
+
+
+@question
+def with_pull(devices, m):
+    """Return the pier ``m`` under a pull of 0 if it has ``devices``, so that kernels see piers of one type."""
+
+
+@with_pull.of(type(None))
+def _without_pull(devices, m):
+    return m
+
+
+@with_pull.of(Devices)
+def _with_pull(devices, m):
+    return pulled(m, 0.0, 0.0)
 
 
 @question
@@ -248,13 +222,13 @@ def _nothing_holds(devices, m, y, side, sense):
 
 @about_to_turn.of(Devices)
 def _devices_hold(devices, m, y, side, sense):
-    total, moment = 0.0, 0.0
+    total, moment, at = 0.0, 0.0, attitude(m, y, devices.level[0])
     for j in range(len(devices.elements)):
         of = devices.elements[j]
-        at, way = gap(m, of, y, devices.level[0]), sense * way_of_opening(m, of, side)
-        one = force(of, at.elongation, 0.0, devices.x[j], mode_of(of, at.elongation, devices.x[j], way), way)
-        total += one * at.by_v
-        moment += one * at.arm
+        here, way = gap(m, of.offset, at, y), sense * way_of_opening(m, of, side)
+        pull = force(of, here.elongation, 0.0, devices.x[j], mode_of(of, here.elongation, devices.x[j], way), way)
+        total += pull * here.by_v
+        moment += pull * here.arm
     return pulled(m, total, moment)
 
 
@@ -305,26 +279,21 @@ def resolved(m, devices, y, contact, ground, h, dt):
         asked = asked or (of.kind == HYSTERETIC and devices.goes[j] * devices.x[j] < 1.0) or _is_steep(of)
     if not asked:
         return h
-    a, c = ground.horizontal, ground.vertical
-    under, _, _ = under_devices(m, devices, y, devices.x, contact, a, c)
-    v_acceleration, theta_acceleration = accelerations(under, y, contact, a, c)
-    a_end, c_end = (
-        a + h * ground.horizontal_slope,
-        c + h * ground.vertical_slope,
-    )  # where a pier lifts off it has none yet
-    v_later, theta_later = accelerations(under, y, contact, a_end, c_end)
+    under, _, _ = under_devices(m, devices, y, devices.x, contact, ground)
+    end = later(ground, h)  # where a pier lifts off it has no acceleration yet
+    v_now, theta_now = accelerations(under, y, contact, ground.horizontal, ground.vertical)
+    v_end, theta_end = accelerations(under, y, contact, end.horizontal, end.vertical)
     for j in range(len(devices.elements)):
-        of = devices.elements[j]
-        steep, soft = _is_steep(of), of.kind == HYSTERETIC and devices.goes[j] * devices.x[j] < 1.0
-        if not (steep or soft):
+        of, here = devices.elements[j], devices.gaps[BESIDE, j]
+        soft = of.kind == HYSTERETIC and devices.goes[j] * devices.x[j] < 1.0
+        if not (_is_steep(of) or soft):
             continue
-        at = gap(m, of, y, devices.level[0])
-        lift = max(abs(lifted(at, v_acceleration, theta_acceleration)), abs(lifted(at, v_later, theta_later)))
+        lift = max(abs(lifted(here, v_now, theta_now)), abs(lifted(here, v_end, theta_end)))
         if soft:
-            way = (abs(at.speed) + lift * h) * dt * of.stiffness
+            way = (abs(here.speed) + lift * h) * dt * of.stiffness
             share = min(share, TRAVEL / way) if way > 0.0 else share
         elif lift > 0.0:
-            share = min(share, max(GROWTH * max(abs(at.speed), of.linear_below) / (lift * dt), NEAREST))
+            share = min(share, max(GROWTH * max(abs(here.speed), of.linear_below) / (lift * dt), NEAREST))
     return share * h
 
 

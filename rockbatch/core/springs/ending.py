@@ -8,19 +8,21 @@ from typing import NamedTuple
 
 from rockbatch.core import system
 from rockbatch.core.clock import UNSET, ground_rests
+from rockbatch.core.devices.elongation import attitude, gap
 from rockbatch.core.devices.laws import HYSTERETIC, TENDON, force, stored
-from rockbatch.core.devices.pull import gap
 from rockbatch.core.kernel import inner
 from rockbatch.core.springs.equations import geometry
 from rockbatch.core.springs.free_vibration import (
     DECIDED,
     LEANS,
     OPEN,
+    Drift,
     outlook_on_springs,
     rocking_period,
     summit,
 )
-from rockbatch.core.springs.model import BOUC_WEN, SpringTraits, State
+from rockbatch.core.springs.laws import ratchets
+from rockbatch.core.springs.model import SpringTraits, Supports
 from rockbatch.core.system import model, moment
 from rockbatch.core.types import GROWING, RESTLESS, RUNNING, SURVIVED, UNDECIDED
 
@@ -111,7 +113,7 @@ def _outlook(lanes, i, m, y, contact, supports, devices):
     left, right = base_of(m, y, contact, supports)
     alone = lanes.clock.sample[i] * dt - max(lanes.tally.moved[i], lanes.clock.npts[i] * dt)
     calm = devices is None and contact.left != 0.0 and contact.right != 0.0 and alone >= rocking_period(m)
-    ahead = 0.5 * waiting.patience[i] * dt * (FORESEEN if m.law == BOUC_WEN else 1.0)
+    ahead = 0.5 * waiting.patience[i] * dt * (FORESEEN if ratchets(m.law) else 1.0)
     last_left, last_right = ahead * waiting.last_drift_left[i], ahead * waiting.last_drift_right[i]
     first_left, first_right = last_left, last_right
     if not math.isnan(waiting.drift_left[i]):
@@ -119,11 +121,8 @@ def _outlook(lanes, i, m, y, contact, supports, devices):
     last, first = (last_left - last_right) / m.half_width, (first_left - first_right) / m.half_width
     to_right, to_left = max(0.0, first, last), max(0.0, -first, -last)
     sinking = max(0.0, -(last_left + last_right), -(first_left + first_right))
-    peak = lanes.peak.theta[i]
-    return outlook_on_springs(
-        m, y, contact, waiting.load[i], waiting.stored[i], left, right, peak, calm,
-        to_right, to_left, sinking,
-    )  # fmt: skip
+    base, drift = Supports(left, right), Drift(to_right, to_left, sinking)
+    return outlook_on_springs(m, y, contact, waiting.load[i], waiting.stored[i], base, lanes.peak.theta[i], calm, drift)
 
 
 @inner
@@ -153,7 +152,7 @@ def _in_devices(lanes, i, m, devices, y, contact, supports):
     if devices is None:
         return
     left, right = base_of(m, y, contact, supports)
-    level = devices.level[0]
+    at = attitude(m, y, devices.level[0])
     sunk = 0.5 * (left + right) - lanes.lowest.plastic[i]
     load, beyond, turning = m.gravity, 0.0, 0.0
     for j in range(len(devices.elements)):
@@ -162,10 +161,9 @@ def _in_devices(lanes, i, m, devices, y, contact, supports):
             beyond += 0.5 * of.strength * plastic * plastic / of.stiffness
         if of.kind != TENDON:
             continue
-        resting = gap(m, of, State(level + sunk, 0.0, 0.0, 0.0, 0.0, 0.0), level).elongation
-        pull = min(max(force(of, resting, 0.0, plastic, 0.0, 0.0), 0.0), of.strength)
-        now = gap(m, of, y, level).elongation
-        beyond += stored(of, now, plastic) - stored(of, resting, plastic) - pull * (now - resting)
+        pull = min(max(force(of, sunk, 0.0, plastic, 0.0, 0.0), 0.0), of.strength)
+        now = gap(m, of.offset, at, y).elongation
+        beyond += stored(of, now, plastic) - stored(of, sunk, plastic) - pull * (now - sunk)
         load += pull
         turning += pull * of.offset
     lanes.waiting.load[i] = load
@@ -224,4 +222,4 @@ def _given_up(lanes, i, m, outlook, y, contact, supports):
     least = GROWTH * lanes.clock.alpha[i]
     turned = lanes.peak.theta[i] > lanes.waiting.midway[i] + least
     tilted = _tilt(m, y, contact, supports) > lanes.waiting.midway_tilt[i] + least
-    return GROWING if m.law == BOUC_WEN and turned and tilted else RESTLESS
+    return GROWING if ratchets(m.law) and turned and tilted else RESTLESS

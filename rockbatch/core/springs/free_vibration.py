@@ -6,11 +6,12 @@ what the supports carry at rest [m/s²]: g, and what tendons add to it without a
 """
 
 import math
+from typing import NamedTuple
 
 from rockbatch.core.kernel import kernel
 from rockbatch.core.springs.equations import geometry
-from rockbatch.core.springs.laws import give, number
-from rockbatch.core.springs.model import BOUC_WEN, ELASTIC
+from rockbatch.core.springs.laws import give, number, ratchets
+from rockbatch.core.springs.model import ELASTIC
 
 PARTS = 24
 """Parts of the way to the supports' capacity over which their work is summed."""
@@ -122,7 +123,7 @@ def _swept(m, lean, drift, sinking, swollen):
     A Bouc–Wen support under a share 1 + h θ/b of its load sinks (1 + h θ/b)ⁿ times as fast: the lean grows by itself,
     by the factor exp(n h swollen · sinking/b²) while both sink by ``sinking`` [m] on average.
     """
-    if m.law != BOUC_WEN:
+    if not ratchets(m.law):
         return max(drift, 0.0)
     grows = number(m.exponent) * m.height * swollen * sinking / (m.half_width * m.half_width)
     if grows <= 1e-6:
@@ -131,14 +132,22 @@ def _swept(m, lean, drift, sinking, swollen):
     return max(drift, 0.0) * factor / grows + max(lean, 0.0) * factor
 
 
+class Drift(NamedTuple):
+    """By how much the base will move further at most, as far as can be foreseen: yielding springs ratchet on vibration."""
+
+    right: float  # tilt to the right [rad]
+    left: float
+    sinking: float  # of both supports on average [m]
+
+
 @kernel
-def outlook_on_springs(
-    m, y, contact, load, in_tendons, base_left, base_right, peak, calm, drift_right, drift_left, sinking
-):
-    """OPEN, DECIDED or LEANS, of state ``y`` whose supports are unstressed at ``base_left`` and ``base_right`` [m].
+def outlook_on_springs(m, y, contact, load, in_tendons, base, peak, calm, drift):
+    """OPEN, DECIDED or LEANS, of state ``y``.
 
     Parameters
     ----------
+    base : Supports
+        Where both supports are unstressed [m].
     in_tendons : float
         What tendons may give back beyond the work of their share of the load [J/kg].
     peak : float
@@ -146,26 +155,22 @@ def outlook_on_springs(
     calm : bool
         Both pivots have stayed on the ground, and the ground at rest, for a period of rocking: what rocks then keeps
         apart from what vibrates vertically, but for the P–Δ moment of the latter.
-    drift_right, drift_left : float
-        By how much the base will tilt further at most, to either side [rad], as far as can be foreseen: yielding
-        springs ratchet on vibration.
-    sinking : float
-        By how much both supports will sink on average in the same time [m].
+    drift : Drift
     """
     b, h, g = m.half_width, m.height, m.gravity
     stiffness = rocking_stiffness(m)
     softness = 0.5 * load / (m.yield_force * m.stiffness)  # static deflection
-    tilt = 0.5 * (base_left - base_right) / b
+    tilt = 0.5 * (base.left - base.right) / b
     swollen = (stiffness + g * h) / stiffness
     lean = tilt * swollen
-    drift_right = _swept(m, lean, drift_right * swollen, sinking, swollen)
-    drift_left = _swept(m, -lean, drift_left * swollen, sinking, swollen)
+    drift_right = _swept(m, lean, drift.right * swollen, drift.sinking, swollen)
+    drift_left = _swept(m, -lean, drift.left * swollen, drift.sinking, swollen)
     limit = min(peak, summit(m, load))
     if abs(lean) >= summit(m, load):
         return LEANS
     if abs(y.theta) >= summit(m, load):
         return OPEN
-    middle = 0.5 * (base_left + base_right)
+    middle = 0.5 * (base.left + base.right)
     if calm:
         mean = middle - softness  # of v
         if m.finite is not None:

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from rockbatch.core import system
-from rockbatch.core.clock import COMMON, ground_at, include_height
+from rockbatch.core.clock import COMMON, TIMING, ground_at, include_height
 from rockbatch.core.ground import later
 from rockbatch.core.history import write
 from rockbatch.core.kernel import inlined, inner, kernel
@@ -13,11 +13,11 @@ from rockbatch.core.springs import events, transitions  # noqa: F401  answers of
 from rockbatch.core.springs.ending import Waiting, base_of
 from rockbatch.core.springs.laws import branch_when_pressed, deflection
 from rockbatch.core.springs.loading import Loading, branches, close_left, close_right
-from rockbatch.core.springs.model import Contact, Numbers, Springs, SpringTraits, State, Supports
+from rockbatch.core.springs.model import NUMBERS, Contact, Numbers, Springs, SpringTraits, State, Supports
 from rockbatch.core.springs.passing import News
 from rockbatch.core.springs.reversal import pivots
 from rockbatch.core.system import Kind, model, moment, rates
-from rockbatch.core.table import get, lanes_of, put
+from rockbatch.core.table import get, lanes_of, put, taken
 from rockbatch.core.types import BEFORE_EVENT, SPRING_LEFT, SPRING_RIGHT
 
 
@@ -35,32 +35,15 @@ LANE = lanes_of(COMMON | {
 })  # fmt: skip
 
 
-class Line(NamedTuple):
-    """A run as it is asked for: the model as Springs has it, and the rest."""
+LINE = (
+    *NUMBERS, *TIMING,
+    ("read_after", float),  # samples from the end of the record to the earliest moment at which residuals are read
+    ("read_wait", float),  # from there to the second reading, which tells how they drift; 0: once the peak is decided
+    ("prestress", float),  # of tendons, over the mass [m/s²]
+)  # fmt: skip
+"""Fields of a run as it is asked for."""
 
-    half_width: float
-    height: float
-    inertia: float
-    gravity: float
-    yield_deflection: float
-    stiffness: float
-    yield_force: float
-    epsilon: float
-    damping: float
-    law: float
-    guided: float
-    exponent: float
-    dt: float  # sampling interval [s]
-    substeps: float  # steps to a sampling interval
-    quiet_samples: float  # of the free-vibration tail after the record
-    first_row: float  # where among the rows of the ground the motion begins
-    npts: float  # and how many it has
-    patience: float = (
-        0.0  # samples that the run goes on at most while, by its energy, the pier could still turn further
-    )
-    read_after: float = 0.0  # samples from the end of the record to the earliest moment at which residuals are read
-    read_wait: float = 0.0  # from there to the second reading, which tells how they drift; 0: once the peak is decided
-    prestress: float = 0.0  # of tendons, over the mass [m/s²]
+Line = NamedTuple("Line", LINE)  # type: ignore[misc]
 
 
 @inlined
@@ -75,11 +58,10 @@ def _typed(exponent, value):
 @system.model.of(SpringTraits)
 def model_in(traits, lanes, i):
     """Return the Springs of lane ``i``, of the types that ``traits`` have."""
-    m = lanes.model
+    m = get(lanes.model, i, Numbers)
     return Springs(
-        m.half_width[i], m.height[i], m.inertia[i], m.gravity[i], m.yield_deflection[i], m.stiffness[i],
-        m.yield_force[i], m.epsilon[i], m.damping[i], m.law[i], m.guided[i], _typed(traits.exponent, m.exponent[i]),
-        traits.finite, traits.damped, None,
+        m.half_width, m.height, m.inertia, m.gravity, m.yield_deflection, m.stiffness, m.yield_force, m.epsilon,
+        m.damping, m.law, m.guided, _typed(traits.exponent, m.exponent), traits.finite, traits.damped, None,
     )  # fmt: skip
 
 
@@ -107,11 +89,7 @@ def static_state(m, load):
 @system.begin.of(SpringTraits)
 def begin(traits, lanes, i, run):
     """Put the model of ``run`` into lane ``i``, in its static state."""
-    m = lanes.model
-    m.half_width[i], m.height[i], m.inertia[i], m.gravity[i] = run.half_width, run.height, run.inertia, run.gravity
-    m.yield_deflection[i], m.stiffness[i], m.yield_force[i] = run.yield_deflection, run.stiffness, run.yield_force
-    m.epsilon[i], m.damping[i], m.law[i], m.guided[i] = run.epsilon, run.damping, run.law, run.guided
-    m.exponent[i] = run.exponent
+    put(lanes.model, i, taken(run, Numbers))
     pier = model(traits, lanes, i)
     y = static_state(pier, run.gravity + run.prestress)
     plastic = y.v - run.yield_deflection * y.z_left
@@ -199,15 +177,14 @@ def finish(traits, lanes, i, t, result):
 
 
 @system.write_reversals.of(SpringTraits)
-def write_reversals(traits, lanes, i, substep, history, row):
-    """Write both sides of the reversals that the pass has corrected in a sub-step that stands: the next row."""
-    if history.shape[0] == 0:
-        return row
-    return _write_reversals(traits, lanes, i, substep, history, row)
+def write_reversals(traits, lanes, i, substep, history):
+    """Write both sides of the reversals that the pass has corrected in a sub-step that stands."""
+    if history.rows.shape[0] > 0:
+        _write_reversals(traits, lanes, i, substep, history)
 
 
 @inner
-def _write_reversals(traits, lanes, i, substep, history, row):
+def _write_reversals(traits, lanes, i, substep, history):
     m, after, h = model(traits, lanes, i), get(lanes.contact, i, Contact), lanes.clock.step[i]
     start = substep * h
     t, ground = lanes.clock.sample[i] * lanes.clock.dt[i] + start, ground_at(lanes, i, start)
@@ -219,19 +196,18 @@ def _write_reversals(traits, lanes, i, substep, history, row):
         of_left = left >= 0.0 and (right < 0.0 or left <= right)
         when = left if of_left else right
         if when < 0.0:
-            return row
+            return
         k = rates(m, y, contact, ground.horizontal, ground.vertical)
         y = rk4(m, None, y, k, contact, ground, when - at)
-        row = write(history, row, t + when, BEFORE_EVENT, m, None, y, contact, ground)
+        write(history, t + when, BEFORE_EVENT, m, None, y, contact, ground)
         if of_left:
             contact = Contact(contact.left, contact.right, after.left_yields, contact.right_yields, 0.0)
             left = -1.0
         else:
             contact = Contact(contact.left, contact.right, contact.left_yields, after.right_yields, 0.0)
             right = -1.0
-        row = write(history, row, t + when, SPRING_LEFT if of_left else SPRING_RIGHT, m, None, y, contact, ground)
+        write(history, t + when, SPRING_LEFT if of_left else SPRING_RIGHT, m, None, y, contact, ground)
         ground, at = later(ground, when - at), when
-    return row
 
 
 def kind_of(m):

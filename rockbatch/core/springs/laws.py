@@ -51,6 +51,12 @@ def branch_when_pressed(law):
 
 
 @inlined
+def ratchets(law):
+    """Whether a spring sinks with every small cycle of its load, be it below any that it has borne."""
+    return law == BOUC_WEN
+
+
+@inlined
 def kept_sign(law, on_spring, yields):
     """Sign that a spring's velocity keeps while it stays on its branch; 0 where the branch does not depend on it."""
     reloads = branch_when_pressed(law)

@@ -42,21 +42,10 @@ class SpringTraits(NamedTuple):
     damped: bool | None
 
 
-class Numbers(NamedTuple):
-    """The numbers of Springs, as lanes hold them."""
+NUMBERS = tuple((name, float) for name in Springs._fields[: Springs._fields.index("finite")])
+"""Fields of Springs that lanes hold."""
 
-    half_width: float
-    height: float
-    inertia: float
-    gravity: float
-    yield_deflection: float
-    stiffness: float
-    yield_force: float
-    epsilon: float
-    damping: float
-    law: float
-    guided: float
-    exponent: float
+Numbers = NamedTuple("Numbers", NUMBERS)  # type: ignore[misc]
 
 
 class State(NamedTuple):

@@ -1,0 +1,74 @@
+"""How far a place on the base has risen: elongations of dampers and tendons (THEORY.md, Dampers and tendons).
+
+A device at the offset s from the middle of the base has the elongation e = u/cos(θ/2), where u is the rise of its place
+above that at rest. While a block turns about a point of the ground at the distance d that is 2 d sin(θ/2), the chord of the
+place's way. In first-order kinematics e = u.
+"""
+
+import math
+from typing import NamedTuple
+
+from rockbatch.core.kernel import inlined
+from rockbatch.core.table import record
+from rockbatch.core.trigonometry import sine_and_cosine
+
+
+class Attitude(NamedTuple):
+    """Where the base is at one moment, and how it lies."""
+
+    sine: float  # of θ; in first-order kinematics θ
+    cosine: float
+    tangent: float  # of θ/2
+    by_rise: float  # 1/cos(θ/2)
+    rise: float  # of the middle of the base above that at rest [m]
+
+
+class Gap(NamedTuple):
+    """Elongation e of a device at one moment, and its derivatives."""
+
+    elongation: float  # [m]
+    speed: float  # ė [m/s]
+    by_v: float  # ∂e/∂v
+    by_theta: float  # ∂e/∂θ [m]
+    bend: float  # what ë has beside v̈ ∂e/∂v + θ̈ ∂e/∂θ [m/s²]
+    arm: float  # of the force about the centre of mass [m], with first-order P–Δ
+
+
+GAP = record(Gap)
+
+
+@inlined
+def put_gap(line, at):
+    """Write the Gap ``at`` into a ``line`` of a table."""
+    line.elongation, line.speed, line.by_v = at.elongation, at.speed, at.by_v
+    line.by_theta, line.bend, line.arm = at.by_theta, at.bend, at.arm
+
+
+@inlined
+def attitude(m, y, level):
+    """Return the Attitude in state ``y``; at rest the pier is at v = ``level`` [m]."""
+    if m.finite is None:
+        return Attitude(y.theta, 1.0, 0.0, 1.0, y.v - level)
+    sine, cosine = sine_and_cosine(y.theta)
+    tangent = sine / (1.0 + cosine)
+    return Attitude(sine, cosine, tangent, math.sqrt(1.0 + tangent * tangent), y.v - level + m.height * sine * tangent)
+
+
+@inlined
+def gap(m, s, at, y):
+    """Return the Gap of a device at the offset ``s`` [m] in state ``y``, whose Attitude is ``at``."""
+    up, arm = at.rise - s * at.sine, m.height * at.sine - s * at.cosine  # u and ∂u/∂θ
+    if m.finite is None:
+        return Gap(up, y.v_rate - s * y.omega, 1.0, -s, 0.0, arm)
+    by_v, tangent = at.by_rise, at.tangent
+    curve = m.height * at.cosine + s * at.sine  # ∂²u/∂θ²
+    by_theta = by_v * (arm + 0.5 * tangent * up)
+    twist = curve + tangent * arm + up * (0.25 + 0.5 * tangent * tangent)  # cos(θ/2) ∂²e/∂θ²
+    bend = by_v * y.omega * (tangent * y.v_rate + twist * y.omega)
+    return Gap(by_v * up, by_v * y.v_rate + by_theta * y.omega, by_v, by_theta, bend, by_theta)
+
+
+@inlined
+def lifted(at, v_acceleration, theta_acceleration):
+    """Return ë [m/s²] of a device whose Gap is ``at``."""
+    return at.by_v * v_acceleration + at.by_theta * theta_acceleration + at.bend
