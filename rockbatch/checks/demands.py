@@ -165,9 +165,7 @@ def _of_device(words: str, column: str, device: str, factor: float = 1.0) -> Dem
 
 def has_device(case: Case, device: str) -> bool:
     """Whether the pier is tied with a damper, or a tendon; a damper has a kind."""
-    told = case["parameters"].get("restraints")
-    ties = [each for each in told if isinstance(each, Mapping)] if isinstance(told, list) else []
-    return any(("kind" in each) == (device == "damper") for each in ties)
+    return any(("kind" in each) == (device == "damper") for each in case["parameters"].get("restraints", ()))
 
 
 def _column(name: str) -> Callable[["pd.DataFrame", Case], Found]:

@@ -72,7 +72,7 @@ def read_rules(
             table.complain(f"name = {shown(name)}: given twice; give each check its own name", "name")
         if name is not None:
             names.add(name)
-        if len(file.problems) == before and not file.is_full:  # which notes no more mistakes
+        if file.is_sound_since(before):
             values = {key: _plain(value) for key, value in read.items()}
             if counted and "demand" in values and not DEMANDS[values["demand"]].of_the_case:
                 values.setdefault("count", counted)

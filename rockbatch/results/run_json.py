@@ -29,6 +29,9 @@ _NUMBERS_OF_BASE = (
     "beta", "eta", "epsilon", "n", "omega_v", "delta_s_m", "delta_y_m", "stiffness_kN_m", "yield_kN", "restitution", "zeta",
     "friction", "flight_limit_mm",
 )  # fmt: skip
+_RESTRAINT = {"kind": Maybe(str), "at": Maybe((float, str))} | {
+    name: Maybe(_NUMBER) for name in ("f", "nu", "yield_m", "exponent", "psi", "lam", "strength")
+}
 _OF_FILE = {"name": str, "source": str, "reason": str}
 _SPECTRA = {
     "damping": float, "period_s": [float], "sa_g": [[float]], "mean_sa_g": Maybe([_NUMBER]),
@@ -56,7 +59,8 @@ SHAPE = {
             | {name: Maybe(_NUMBER) for name in ("mass_t", "top_m", "deck_height_m", "deck_over_columns")},
             "base": ("rigid", "elastic", "yielding"),
             "parameters": {name: Maybe(_NUMBER) for name in _NUMBERS_OF_BASE}
-            | {name: Maybe((str, None)) for name in ("spring", "kinematics", "flight")},
+            | {name: Maybe((str, None)) for name in ("spring", "kinematics", "flight")}
+            | {"restraints": Maybe([_RESTRAINT])},
         }
     ],
     "records": [

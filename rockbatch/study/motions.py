@@ -122,7 +122,7 @@ def _check_pulse(table: Table, read: dict[str, Any]) -> None:
     check_shape(table, read)
     if read.get("duration_s", 0.0) / read.get("dt_s", math.inf) > _MOST_SAMPLES:
         table.complain(f"dt_s = {read['dt_s']:g}: more than {_MOST_SAMPLES:,} samples; write a larger dt_s", "dt_s")
-    if len(table.file.problems) > before or not read.keys() >= REQUIRED_OF_PULSE:
+    if not table.file.is_sound_since(before) or not read.keys() >= REQUIRED_OF_PULSE:
         return
     try:
         pulse(

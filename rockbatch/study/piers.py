@@ -72,7 +72,7 @@ def read_piers(file: TomlFile) -> tuple[list[tuple[Pier, Values]], tuple[str, ..
         varied += names
     if told := too_many(how_many(read), "piers"):
         table.complain(told)
-    if len(file.problems) > before:
+    if not file.is_sound_since(before):
         return [], ()
     piers = []
     for chosen in combinations(read):

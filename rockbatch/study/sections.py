@@ -117,7 +117,7 @@ STUDY = (
         required=True,
         defaults=(YieldingBase, ElasticBase),
         only_for={name: _bases(name) for name in BASE_KEYS if len(_bases(name)) < len(BASES)},
-        inner=dict.fromkeys(RESTRAINTS, ("rigid",)),
+        inner=dict.fromkeys(RESTRAINTS, tuple(BASES)),
     ),
     Section(("case", "damper"), words.DAMPER_ABOUT, DAMPER, words.DAMPER, many=True),
     Section(("case", "tendon"), words.TENDON_ABOUT, TENDON, words.TENDON, many=True),

@@ -215,7 +215,7 @@ def _maps(file: TomlFile) -> list[MapSpec]:
         if read.get("name") in names:
             table.complain(f'name = "{read["name"]}": given twice; give each map its own name', "name")
         names.add(read.get("name", ""))
-        if len(file.problems) == before:
+        if file.is_sound_since(before):
             maps.append(MapSpec(**read))
     return maps
 

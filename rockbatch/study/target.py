@@ -102,7 +102,7 @@ def _read_measure(table: Table) -> Target | None:
         for name in ("period_s", "damping"):
             if name in table.data:
                 table.complain(f"{name}: is for sa_g only; leave it out", name)
-    return Target(**read) if len(table.file.problems) == before else None
+    return Target(**read) if table.file.is_sound_since(before) else None
 
 
 def _read_spectrum(table: Table) -> SpectrumTarget | None:
@@ -118,7 +118,7 @@ def _read_spectrum(table: Table) -> SpectrumTarget | None:
     read = table.read(_SPECTRUM | own, unfit=unfit | _UNFIT_FOR_SPECTRUM)
     limits = range_of(table, "period_range_s", read.get("period_range_s"))
     spectrum = _spectrum(table, code, read) if "spectrum" in read else None
-    if len(table.file.problems) > before or spectrum is None or limits is None:
+    if not table.file.is_sound_since(before) or spectrum is None or limits is None:
         return None
     own_keys = {name: read[name] for name in ("factors", "pairs", "at_least") if name in read}
     try:

@@ -114,6 +114,10 @@ class TomlFile:
         """Whether there are as many mistakes as are told at once, so that nobody need look for more."""
         return len(self.problems) >= MOST_TOLD
 
+    def is_sound_since(self, before: int) -> bool:
+        """Whether no mistake was noted after the first ``before``; never of a file that notes no more."""
+        return len(self.problems) == before and not self.is_full
+
     def finish(self) -> None:
         """Raise :class:`InputError` with all mistakes, in the order of the file, if there are any."""
         in_order = [message for _, message in sorted(self.problems, key=lambda problem: problem[0])]

@@ -240,6 +240,25 @@ def test_whatever_stands_in_the_place_of_a_value_of_run_json_there_are_words(for
 
 
 @pytest.mark.parametrize(
+    ("devices", "place"),
+    [
+        (3, ""),
+        ("x", ""),
+        ({"kind": "friction"}, ""),
+        ([3], "[0]"),
+        ([{"kind": 5}], "[0].kind"),
+        ([{"psi": "x"}], "[0].psi"),
+    ],
+)
+def test_devices_that_are_none_are_told(foreign, devices, place):
+    """Which checks a case can have hangs on its dampers and tendons."""
+    info = json.loads((foreign / "run.json").read_text(encoding="utf-8"))
+    info["cases"][0]["parameters"]["restraints"] = devices
+    (foreign / "run.json").write_text(json.dumps(info), encoding="utf-8")
+    assert f"cases[0].parameters.restraints{place}: expected" in told(foreign, "check")
+
+
+@pytest.mark.parametrize(
     ("text", "words"),
     [
         ("[" * 100_000, "not JSON"), ("[]", "the whole: expected an object"), ("{}", "has no rockbatch, created, command"),

@@ -94,7 +94,11 @@ def test_what_is_right_is_taken_whichever_form_it_has():
     text = study_text(
         pier={"width_m": 4, "height_m": [30, 40.0], "mass_t": 500, "confirm": ["mass_t"]},
         motions={"path": "records", "vertical": "required", "scale": 2, "select": {"pga_g": [0, 1]}},
-        cases=[PAD | {"name": "a", "n": [2, 5]}, {"name": "b", "base": "rigid"}],
+        cases=[
+            PAD | {"name": "a", "n": [2, 5], "damper": [{"kind": "friction", "f": 0.1}]},
+            {"name": "b", "base": "rigid", "tendon": {"psi": 0.5}},
+            {"name": "c", "base": "elastic", "beta": 50, "tendon": [{"psi": 0.5, "at": "left"}]},
+        ],
         reference=[{"record": "*", "case": "a", "theta_max_over_alpha": 0.1, "source": "me", "part_1_mass_t": 5}],
         sensitivity={"uniform": {"damper": {"f": [0.0, 0.1]}, "tendon_2": {"lambda": [0.5, 1]}}},
     ).replace("[0, 1]", "[0, inf]")

@@ -20,6 +20,7 @@ from rockbatch.study.load import NUMERICS, REFERENCE, TOP
 from rockbatch.study.motions import FEMA, MOTIONS
 from rockbatch.study.motions import PULSE as PULSE_KEYS
 from rockbatch.study.piers import PIER as PIER_KEYS
+from rockbatch.toml.reader import MOST_TOLD
 
 CONFIGS = Path(__file__).parents[2] / "configs"
 PIER = "[pier]\nalpha = 0.13\np = 0.38\n"
@@ -312,6 +313,16 @@ theta_max_over_alpha = 0.1
     lines = [int(problem.split(":")[0]) for problem in problems]
     assert lines == sorted(lines)
     assert len(problems) == len(expected) + 4
+
+
+@pytest.mark.parametrize("path", sorted(CONFIGS.glob("*.toml")), ids=lambda path: path.stem)
+def test_a_hundred_mistakes_ahead_of_all_else_are_told_and_nothing_is_made_of_the_rest(tmp_path, path):
+    """No more than a hundred are noted: a pier without its keys is then no sound one."""
+    for number in (MOST_TOLD - 1, MOST_TOLD, MOST_TOLD + 1):
+        many = "".join(f"k{n} = 1\n" for n in range(number))
+        *told, last = problems_of(tmp_path, many, path.read_text(encoding="utf-8"))
+        assert sum("unknown key" in each for each in (*told, last)) == min(number, MOST_TOLD)
+        assert ("there may be more" in last) == (len(told) >= MOST_TOLD)
 
 
 def test_an_empty_file_is_told_what_it_lacks(tmp_path):
