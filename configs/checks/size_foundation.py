@@ -17,7 +17,7 @@ stiff foundations (eta = 1.5) ratchet on after the record, so that nothing can b
     80.0  abcdefghi    g    g     g  pass  pass  pass  pass
         a: every run settled
         b: no overturning
-        c: no flight
+        c: flight within the keys
         d: overturning margin
         e: uplift of the heel
         f: residual tilt

@@ -7,8 +7,8 @@ compiler.
 """
 
 from rockbatch.checks.judging import judge
-from rockbatch.checks.reading import load_rules, read_rules
+from rockbatch.checks.reading import load_rules, read_checks
 from rockbatch.checks.rules import Rule
 from rockbatch.checks.verdicts import Verdict, as_table, read_verdicts, write_verdicts
 
-__all__ = ["Rule", "Verdict", "as_table", "judge", "load_rules", "read_rules", "read_verdicts", "write_verdicts"]
+__all__ = ["Rule", "Verdict", "as_table", "judge", "load_rules", "read_checks", "read_verdicts", "write_verdicts"]

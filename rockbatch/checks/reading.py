@@ -3,7 +3,7 @@
 import os
 from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from rockbatch.checks.demands import DEMANDS
 from rockbatch.checks.rules import BASES, CONFIRMED, COUNTING, COUNTS, Rule
@@ -34,8 +34,8 @@ CHECK = {
 }
 """Keys of a [[check]]; :class:`Rule` says what they mean."""
 
-SUITE = {"count": Key(choice(*COUNTS), '"component"')}
-"""Keys of [suite]: what holds for every [[check]] that does not say otherwise."""
+SUITE = {"count": Key(choice(*COUNTS), '"component"'), "checks": Key(text, '"checks.toml"')}
+"""Keys of [suite]: what holds for every [[check]] that does not say otherwise, and a file that has more of them."""
 
 TOP = {"title": Key(text, '"Checks of a stepping pier"'), "notes": Key(text, '"Limits as agreed."')}
 
@@ -48,22 +48,62 @@ def load_rules(path: str | os.PathLike[str]) -> tuple[Rule, ...]:
     file = TomlFile.read(Path(path))
     if "pier" not in file.data:
         Table(file, (), "", file.data).read(TOP, other=("check", "suite"))
-    rules = read_rules(file, counted=read_count(file))
-    if not file.data.get("check"):
+    checks = read_checks(file)
+    if not (file.data.get("check") or checks.file):
         file.complain((), "no checks; write at least one [[check]] with name, demand, at_most and reason")
     file.finish()
-    return rules
+    return checks.rules
 
 
-def read_rules(
-    file: TomlFile, unmet: Callable[[Rule], Iterable[str]] | None = None, counted: str | None = None
-) -> tuple[Rule, ...]:
-    """The usable [[check]] tables of ``file``; mistakes are noted there. Those that do not say how they count do as ``counted``.
+class Checks(NamedTuple):
+    """The rules of a file with those of the file that its [suite] names, what counts as one record, and that file."""
 
-    ``unmet`` tells what a rule chooses and the study does not have, as :func:`rockbatch.checks.choices.unmet` does.
+    rules: tuple[Rule, ...]
+    counted: str
+    file: TomlFile | None
+
+
+def read_checks(
+    file: TomlFile,
+    unmet: Callable[[Rule], Iterable[str]] | None = None,
+    opened: Callable[[Path], TomlFile] = TomlFile.read,
+) -> Checks:
+    """Read [suite] and [[check]] of ``file``, and [[check]] of the file that [suite] names; mistakes are noted in ``file``.
+
+    Parameters
+    ----------
+    file : TomlFile
+    unmet : function, optional
+        Says what a rule chooses and the study does not have, as :func:`rockbatch.checks.choices.unmet` does.
+    opened : function, optional
+        Opens the file that [suite] names, or raises ``InputError``.
     """
-    rules: list[Rule] = []
+    suite = file.table("suite")
+    read = {} if suite is None else suite.read(SUITE)
+    count = read.get("count")
     names: set[str] = set()
+    rules = _rules(file, unmet, count, names)
+    beside = None
+    if suite is not None and "checks" in read:
+        try:
+            beside = opened(file.path.parent / read["checks"])
+        except InputError as error:
+            for problem in error.problems:
+                suite.complain(f"checks = {shown(read['checks'])}: {problem}", "checks")
+        else:
+            Table(beside, (), "", beside.data).read(TOP, other=("check", "suite"))
+            its = beside.table("suite")
+            its_count = None if its is None else its.read({"count": SUITE["count"]}).get("count")
+            rules += _rules(beside, unmet, its_count or count, names)
+            file.adopt(beside, (*suite.at, "checks"))
+    return Checks(tuple(rules), count or COUNTS[0], beside)
+
+
+def _rules(
+    file: TomlFile, unmet: Callable[[Rule], Iterable[str]] | None, counted: str | None, names: set[str]
+) -> list[Rule]:
+    """The usable [[check]] tables; their names join ``names``, and those that do not say how they count do as ``counted``."""
+    rules: list[Rule] = []
     for table in file.tables("check", title="name"):
         before = len(file.problems)
         read = table.read(CHECK)
@@ -85,13 +125,7 @@ def read_rules(
                 wrong = unmet(rule) if unmet else ()
             for problem in wrong:
                 _complain(table, problem)
-    return tuple(rules)
-
-
-def read_count(file: TomlFile) -> str | None:
-    """What [suite] of ``file`` says that counts as one record, one of ``COUNTS``; None where it says nothing."""
-    table = file.table("suite")
-    return None if table is None else table.read(SUITE).get("count")
+    return rules
 
 
 def _plain(value: Any) -> Any:

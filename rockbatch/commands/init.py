@@ -27,11 +27,12 @@ def main(arguments: argparse.Namespace) -> int:
     for path in written:
         show(str(path))
     there = "" if arguments.folder == Path() else f"cd {arguments.folder}\n    "
+    limits = f"in {CHECKS}" if arguments.example == FIRST else f"({CHECKS} has many to choose from)"
     show(f"\nNext:\n\n    {there}{_called()} run {study}\n")
     show(
         f"It leaves a report in {Path('reports', Path(study).stem, 'report.html')}. Then put the numbers of your pier and the"
     )
-    show(f"folder of your records (path) into {study}, and agree on limits ({CHECKS} has many to choose from).")
+    show(f"folder of your records (path) into {study}, and agree on limits {limits}.")
     return 0
 
 

@@ -101,6 +101,7 @@ def copy(name: str, to: Path, study: str) -> list[Path]:
         shutil.copytree(records, to / RECORDS)
     shutil.copyfile(chosen.path.parent / _CHECKED_IN, to / CHECKS)
     text = _PATH.sub(f'"{RECORDS}"', text)
+    text = text.replace(f"configs/{_CHECKED_IN.as_posix()}", CHECKS).replace(_CHECKED_IN.as_posix(), CHECKS)
     if found:
         text = text.replace(f"motions/{found[1]}", RECORDS)
     for called in (f"configs/{name}.toml", f"{name}.toml"):

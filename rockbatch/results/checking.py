@@ -3,15 +3,14 @@
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from rockbatch.checks import Rule, Verdict, as_table, judge, load_rules, read_rules
+from rockbatch.checks import Rule, Verdict, as_table, judge, load_rules, read_checks
 from rockbatch.checks.plausible import implausible
-from rockbatch.checks.reading import read_count
-from rockbatch.checks.rules import COUNTS
+from rockbatch.checks.reading import Checks
 from rockbatch.errors import InputError
 from rockbatch.results.reading import Saved, read_saved
-from rockbatch.results.run_json import describe_case
+from rockbatch.results.run_json import INFO, describe_case
 from rockbatch.study import Study, load_study
 from rockbatch.toml.kinds import shown
 from rockbatch.toml.reader import TomlFile
@@ -72,9 +71,7 @@ def verdicts(
     records: Mapping[str, str] | None = None
     if isinstance(results, Saved | str | os.PathLike):
         saved = results if isinstance(results, Saved) else read_saved(Path(results))
-        file = TomlFile.parse(Path(saved.info["study"]["path"]), saved.info["study"]["text"])
-        count = read_count(file) or COUNTS[0]
-        own = _own_rules(file, count) if given is None else ()
+        own, count, _ = _own_checks(saved.info["study"], judged=given is None)
         table, cases = saved.peaks, saved.info["cases"]
         records = {record["record"]: record.get("station", "") for record in saved.info["records"]}
     else:
@@ -101,8 +98,16 @@ def _given(rules: PathLike | Iterable[Rule] | None) -> Sequence[Rule] | None:
     return load_rules(rules) if isinstance(rules, str | os.PathLike) else tuple(rules)
 
 
-def _own_rules(file: TomlFile, count: str) -> tuple[Rule, ...]:
-    """The rules in the text of a study, as run.json keeps it."""
-    rules = read_rules(file, counted=count)
-    file.finish()
-    return rules
+def _own_checks(study: Mapping[str, Any], *, judged: bool) -> Checks:
+    """The checks of a study by its text and that of its file of checks, as run.json keeps them; sound ones if ``judged``."""
+
+    def opened(path: Path) -> TomlFile:
+        for kept in study.get("checks", ()):
+            return TomlFile.parse(Path(kept["path"]), kept["text"])
+        raise InputError(f"{INFO} does not keep {path}; run the study again, or give the file of rules")
+
+    file = TomlFile.parse(Path(study["path"]), study["text"])
+    checks = read_checks(file, opened=opened)
+    if judged:
+        file.finish()
+    return checks

@@ -46,7 +46,8 @@ SHAPE = {
     "rockbatch": str,
     "created": str,
     "command": [str],
-    "study": {"path": str, "title": str, "notes": str, "text": str, "sha256": str},
+    "study": {"path": str, "title": str, "notes": str, "text": str, "sha256": str}
+    | {"checks": Maybe([{"path": str, "text": str}])},
     "versions": {str: str},
     "machine": str,
     "numerics": {"tolerance": _NUMBER, "substeps": (int, None), "quiet_s": float},
@@ -103,6 +104,7 @@ def describe(study: Study, motions: MotionSet) -> dict[str, Any]:
             "notes": study.notes,
             "text": study.text,
             "sha256": hashlib.sha256(study.text.encode()).hexdigest(),
+            "checks": [{"path": str(path), "text": text} for path, text in study.check_files],
         },
         "numerics": {
             "tolerance": study.numerics.tolerance,

@@ -9,8 +9,8 @@ from typing import Any
 
 from rockbatch.checks.choices import unmet
 from rockbatch.checks.plausible import implausible
-from rockbatch.checks.reading import CHECK, SUITE, read_count, read_rules
-from rockbatch.checks.rules import COUNTS, Rule
+from rockbatch.checks.reading import CHECK, SUITE, read_checks
+from rockbatch.checks.rules import Rule
 from rockbatch.errors import InputError
 from rockbatch.pier import described, symmetric
 from rockbatch.study.cases import BASE_KEYS, CASE, Expanded, read_cases
@@ -120,10 +120,9 @@ def load_study(path: str | os.PathLike[str], *, motions: str | os.PathLike[str] 
     if len(motion_spec.polarity) > 1 and not all(_symmetric(each) for each in cases):
         told = "dampers or tendons on one side make another run of the reversed motion, not the mirror image; keep one polarity"
         file.complain(("motions", "polarity"), f"[motions]: {told}")
-    counted = read_count(file)
     if not output.forces:
         _complain_about_friction(file)
-    checks = read_rules(file, partial(_unfit, cases, motion_spec, output) if cases else None, counted)
+    checks = read_checks(file, partial(_unfit, cases, motion_spec, output) if cases else None)
     file.finish()
     return Study(
         title=top.get("title", file.path.stem),
@@ -136,8 +135,9 @@ def load_study(path: str | os.PathLike[str], *, motions: str | os.PathLike[str] 
         references=references,
         varied=varied,
         output=output,
-        checks=checks,
-        count=counted or COUNTS[0],
+        checks=checks.rules,
+        count=checks.counted,
+        check_files=() if checks.file is None else ((checks.file.path, checks.file.text),),
     )
 
 

@@ -165,7 +165,7 @@ class Study:
 
     ``path`` and ``text`` are the file and its text, ``varied`` the names of the keys that were lists, ``checks`` the
     rules that its results are held against, ``count`` what counts as one record of its suite, one of
-    :data:`rockbatch.checks.rules.COUNTS`.
+    :data:`rockbatch.checks.rules.COUNTS`, ``check_files`` the paths and texts of the files that its [suite] names for checks.
     """
 
     title: str
@@ -180,3 +180,4 @@ class Study:
     output: Output = Output()
     checks: tuple[Rule, ...] = ()
     count: str = "station"
+    check_files: tuple[tuple[Path, str], ...] = ()

@@ -202,12 +202,15 @@ OUTPUT = {
     "both_laws": "Whether the settlement by the other spring law is found too, which takes one more run.",
 }
 
-SUITE_ABOUT = "What holds for every check that does not say otherwise."
+SUITE_ABOUT = "What holds for every check that does not say otherwise, and where more of them are."
 _COUNT = (
     'What counts as one record: a "station" in one earthquake, with the worst of its components and polarities, '
     'or each "component".'
 )
-SUITE = {"count": _COUNT}
+SUITE = {
+    "count": _COUNT,
+    "checks": "A file of checks, relative to this one, that hold beside those written here; its text is kept in run.json.",
+}
 
 CHECK_ABOUT = (
     "A design check: a demand, how it is summed up over the records, and a limit. "

@@ -109,6 +109,11 @@ class TomlFile:
         if problem not in self.problems:
             self.problems.append(problem)
 
+    def adopt(self, other: "TomlFile", at: At) -> None:
+        """Note the mistakes of another file, whose name stands at ``at``."""
+        line = self.lines.get(at, 0)
+        self.problems += [(line, message) for _, message in sorted(other.problems)][: MOST_TOLD - len(self.problems)]
+
     @property
     def is_full(self) -> bool:
         """Whether there are as many mistakes as are told at once, so that nobody need look for more."""

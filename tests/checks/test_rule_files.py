@@ -1,5 +1,6 @@
 """Checks as users meet them: rules in TOML, ``rockbatch check``, ``rb.check`` and checks.csv."""
 
+import json
 import math
 import os
 import re
@@ -11,7 +12,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 from check_samples import RECORD, RIGID, case, folder, runs
-from studies import PADS, SINE, study_text
+from studies import PADS, SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.checks import load_rules, read_verdicts, write_verdicts
@@ -413,7 +414,7 @@ def test_new_results_leave_no_verdicts_of_the_old_ones(tmp_path):
 def test_every_limit_of_the_set_for_stepping_piers_says_where_it_comes_from():
     rules = load_rules(CONFIGS / "checks/stepping_pier.toml")
     assert {rule.demand for rule in rules} >= {
-        "theta_max_over_alpha", "heel_uplift_m", "theta_res_rad", "toe_settlement_m", "ductility", "flight", "eta",
+        "theta_max_over_alpha", "heel_uplift_m", "theta_res_rad", "toe_settlement_m", "ductility", "flight_height_m", "eta",
     }  # fmt: skip
     text = (CONFIGS / "checks/stepping_pier.toml").read_text(encoding="utf-8")
     assert {rule.basis for rule in rules} == {"code", "literature", "judgement"}
@@ -435,3 +436,69 @@ def test_checks_after_the_last_mistake_that_is_told_are_not_made(tmp_path):
     with pytest.raises(InputError) as error:
         load_rules(path)
     assert len(error.value.problems) < 300
+
+
+# A file of checks that [suite] of a study names
+
+
+def with_file(folder, rules, own=""):
+    """A study beside its file of rules."""
+    (folder / "limits.toml").write_text(rules, encoding="utf-8")
+    text = (
+        study_text(pulses=({**SINE, "duration_s": 1.0},), cases=({"name": "rigid", "base": "rigid"},))
+        + '\n[suite]\nchecks = "limits.toml"\n'
+    )
+    return write_study(folder, text + own)
+
+
+UPRIGHT = '[[check]]\nname = "upright"\ndemand = "theta_max_over_alpha"\nat_most = 0.5\nreason = "agreed"\n'
+STANDS = '[[check]]\nname = "stands"\ndemand = "overturned"\nat_most = 0\nreason = "agreed"\n'
+
+
+def test_a_study_has_its_own_checks_and_those_of_the_file_that_it_names(tmp_path):
+    counted = '[suite]\ncount = "component"\n' + UPRIGHT
+    study = rb.load_study(with_file(tmp_path, counted, STANDS))
+    assert [(rule.name, rule.count) for rule in study.checks] == [("stands", None), ("upright", "component")]
+    assert load_rules(study.path) == study.checks
+
+
+def test_results_keep_the_checks_that_they_were_held_against(tmp_path):
+    """Folders are moved, and files beside them change: the verdicts of a folder are those of its own run."""
+    study = with_file(tmp_path, UPRIGHT)
+    assert main(["run", str(study), "--out", str(tmp_path / "out")]) == 0
+    first = rb.check(tmp_path / "out")
+    (tmp_path / "limits.toml").write_text(UPRIGHT.replace("0.5", "1e-6"), encoding="utf-8")
+    pd.testing.assert_frame_equal(rb.check(tmp_path / "out"), first)
+    (tmp_path / "limits.toml").unlink()
+    pd.testing.assert_frame_equal(rb.check(tmp_path / "out"), first)
+
+
+def test_results_of_others_open_no_file_that_they_name(tmp_path):
+    study = with_file(tmp_path, UPRIGHT)
+    assert main(["run", str(study), "--out", str(tmp_path / "out")]) == 0
+    file = tmp_path / "out" / "run.json"
+    info = json.loads(file.read_text(encoding="utf-8"))
+    del info["study"]["checks"]
+    file.write_text(json.dumps(info), encoding="utf-8")
+    with pytest.raises(InputError, match=r"run\.json does not keep .*limits\.toml; run the study again"):
+        rb.check(tmp_path / "out")
+
+
+@pytest.mark.parametrize(
+    ("rules", "own", "said"),
+    [
+        ("[[check]]\n", "", "limits.toml:1: [[check]] no. 1: name is missing"),
+        (UPRIGHT, UPRIGHT, 'limits.toml:2: [[check]] "upright": name = "upright": given twice'),
+        ("[suite]\nchecks = 'more.toml'\n", "", "limits.toml:2: [suite]: checks: unknown key"),
+        ("[[chek]]\n", "", "limits.toml:1: chek: unknown section; did you mean check?"),
+        (UPRIGHT.replace("0.5", "50"), "", "limits.toml:4: [[check]] \"upright\": at_most = 50: theta_max_over_alpha above 1"),
+        ("name =", "", "[suite]: checks = \"limits.toml\": "),
+    ],
+)  # fmt: skip
+def test_mistakes_of_the_file_of_checks_are_told_with_those_of_the_study(tmp_path, rules, own, said):
+    study = with_file(tmp_path, rules, own)
+    study.write_text("titel = 'x'\n" + study.read_text(encoding="utf-8"), encoding="utf-8")
+    with pytest.raises(InputError) as error:
+        rb.load_study(study)
+    assert any("titel: unknown key" in problem for problem in error.value.problems)
+    assert any(said in problem for problem in error.value.problems), error.value.problems

@@ -10,6 +10,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
+from rockbatch.checks import load_rules
 from rockbatch.cli import main
 from rockbatch.errors import InputError
 from rockbatch.examples import FIRST, copy, examples
@@ -35,6 +36,21 @@ def test_a_copy_is_the_same_study_on_its_own_records(name, tmp_path):
     for path in own.motions.paths:
         assert path.is_relative_to(tmp_path)
         assert path.is_dir()
+
+
+def test_the_first_study_is_held_against_the_limits_beside_it(tmp_path):
+    written = copy(FIRST, tmp_path, "pier.toml")
+    rules = load_study(written[0]).checks
+    assert rules == load_rules(tmp_path / "checks.toml")
+    text = (tmp_path / "checks.toml").read_text(encoding="utf-8")
+    (tmp_path / "checks.toml").write_text(text.replace("at_most = 0.15", "at_most = 0.4"), encoding="utf-8")
+    assert [rule.name for rule in load_study(written[0]).checks if rule not in rules] == ["uplift of the heel"]
+
+
+def test_no_copy_names_a_file_of_checks_that_is_not_there(tmp_path):
+    for name in NAMES:
+        text = copy(name, tmp_path / name, "pier.toml")[0].read_text(encoding="utf-8")
+        assert "stepping_pier" not in text
 
 
 def test_the_first_study_has_the_stations_that_come_with_rockbatch(tmp_path):
@@ -70,6 +86,12 @@ def test_init_and_then_the_command_that_it_names_lead_to_a_report(tmp_path, monk
     peaks = pd.read_csv(Path("reports", "pier", "peaks.csv"))
     assert len(peaks) == 30
     assert set(peaks["status"]) <= {"ok", "flight"}
+    verdicts = pd.read_csv(Path("reports", "pier", "checks.csv"))
+    limits = {rule.name: rule.limit for rule in load_rules("checks.toml")}
+    assert dict(zip(verdicts["check"], verdicts["limit"], strict=True)) == limits
+    passed = verdicts.groupby("yield_kN")["verdict"].agg(lambda each: set(each) == {"pass"})
+    settled = peaks.groupby("yield_kN")["settlement_m"].max()
+    assert not (passed & (settled > limits["settlement of the toe"])).any()
 
 
 @pytest.mark.parametrize(
