@@ -10,8 +10,8 @@ RECORDS = Path(__file__).parents[2] / "motions" / "near_fault" / "imperialvalley
 PIER = rb.Pier(alpha=0.13, p=0.76)
 FOUNDATIONS = {
     "rigid": rb.RigidBase(),
-    "stiff, strong (β = 80, η = 3.5)": rb.YieldingBase(beta=80, eta=3.5, epsilon=0.05),
-    "soft, weak (β = 40, η = 2.5)": rb.YieldingBase(beta=40, eta=2.5, epsilon=0.05),
+    "stiff, strong (β = 80, η = 3.5)": rb.YieldingBase(beta=80, eta=3.5, spring="epp", zeta=0.05),
+    "soft, weak (β = 40, η = 2.5)": rb.YieldingBase(beta=40, eta=2.5, spring="epp", zeta=0.05),
 }
 
 
