@@ -65,6 +65,17 @@ def other_law(table: "pd.DataFrame", varied: Sequence[str]) -> str:
     )
 
 
+def linearised(table: "pd.DataFrame") -> str:
+    """A warning of rotations too large for first-order kinematics; empty if there are none."""
+    from rockbatch.results.outcome import LINEARISED
+
+    runs = int(table["note"].str.contains(LINEARISED).sum())
+    rotate = "1 run rotates" if runs == 1 else f"{runs} runs rotate"
+    return (
+        f'{rotate} further than {LINEARISED} holds; see the column note, and run kinematics = "finite"' if runs else ""
+    )
+
+
 def sliding(table: "pd.DataFrame") -> str:
     """A warning where the friction demand is greater than what the interface has; empty elsewhere."""
     from rockbatch.results.outcome import WOULD_SLIDE

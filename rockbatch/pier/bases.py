@@ -28,6 +28,9 @@ MOST_EXPONENT = 1000.0
 MOST_ETA = 100.0
 """Beyond it a wrong unit is likelier than the support: foundations bear 2 to 20 times what they carry."""
 
+MOST_NEGLECTED = 0.05
+"""Share of inertia and righting moment beyond which first-order kinematics is told in a note: 0.20 rad of a pier of α = 0.2."""
+
 FLIGHT_LIMIT_MM = 5.0
 """Height of flight [mm] beyond which a run has a note, unless the base says another."""
 
@@ -313,6 +316,15 @@ def tilt_over_residual(gravity: float, height: float, half_width: float, omega_v
     ``gravity`` g [m/s²]; ``height`` h and ``half_width`` b [m], of the centre of mass from the pivots; ``omega_v`` [rad/s].
     """
     return 1.0 - gravity * height / (omega_v * half_width) ** 2
+
+
+def neglected(pier: Pier, theta: float) -> float:
+    """Share of inertia and righting moment that first-order kinematics neglects at the rotation ``theta`` [rad].
+
+    μ/(1+μ) sin α cos α |θ| of the inertia about a pivot and θ²/2 of the moment M g b (THEORY.md, Two springs, finite kinematics).
+    """
+    inertia = pier.mu / (1 + pier.mu) * math.sin(pier.alpha) * math.cos(pier.alpha) * abs(theta)
+    return inertia + 0.5 * theta**2
 
 
 def rocking_frequency(pier: Pier, base: ElasticBase) -> float:

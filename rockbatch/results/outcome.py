@@ -7,6 +7,9 @@ from dataclasses import dataclass, replace
 WOULD_SLIDE = "would slide"
 """Words of a note on a run whose friction demand is greater than what the interface has."""
 
+LINEARISED = "linearised kinematics"
+"""Words of a note on a run whose rotations are too large for them."""
+
 
 @dataclass(frozen=True)
 class PeakForces:

@@ -28,14 +28,16 @@ from rockbatch.core.types import (
 )
 from rockbatch.motions.motion import Motion, Samples
 from rockbatch.pier import (
+    MOST_NEGLECTED,
     Base,
     ElasticBase,
     Pier,
+    neglected,
     tilt_over_residual,
     vertical_frequency,
     yield_deflection,
 )
-from rockbatch.results.outcome import Outcome
+from rockbatch.results.outcome import LINEARISED, Outcome
 from rockbatch.simulation.flight import cause_of_flight
 from rockbatch.simulation.models import (
     elements,
@@ -78,6 +80,10 @@ TOLD = 1e-4
 
 _RESTLESS = "left alone after the record for {seconds:.0f} s, the pier has still the energy for a greater rotation"
 _HIGH = "flew up to {height:.2g} mm, more than flight_limit_mm = {limit:g}"
+_LARGE = (
+    "a peak of {theta:.2g} rad by {words}, which neglect {share:.0%} of inertia and righting moment there; "
+    'kinematics = "finite" does not'
+)
 _LATE_FLIGHT = "flew at {t:.2f} s, when nothing could exceed the peak any more; the run ends there"
 
 
@@ -304,6 +310,9 @@ def _outcome(run: Run, substeps: int, found: Result) -> Outcome:
         notes.append(_RESTLESS.format(seconds=found.t_end - run.motion.duration))
     elif found.status == LATE_FLIGHT:
         notes.append(_LATE_FLIGHT.format(t=found.t_end))
+    share = neglected(pier, found.theta_max) if base.kinematics == "first-order" else 0.0
+    if share > MOST_NEGLECTED and status != "overturned":
+        notes.append(_LARGE.format(theta=found.theta_max, words=LINEARISED, share=share))
     if 1000.0 * found.flight_height > base.flight_limit_mm:
         notes.append(_HIGH.format(height=1000.0 * found.flight_height, limit=base.flight_limit_mm))
     return Outcome(

@@ -6,10 +6,11 @@ from typing import TYPE_CHECKING, Any
 from rockbatch.report.contents import Contents
 from rockbatch.report.document import Section
 from rockbatch.report.finished import Finished, as_dicts, worst_first
-from rockbatch.report.labels import head, symbol
+from rockbatch.report.labels import counted, head, symbol
 from rockbatch.report.markup import Markup, join, number, tag
 from rockbatch.report.table import MOST_ROWS, THETA_FORMAT, Head, alarm, table, told_apart
 from rockbatch.results.columns import COLUMNS, PEAKS, on_page
+from rockbatch.results.outcome import LINEARISED
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -29,11 +30,8 @@ def section(contents: Contents) -> Section | None:
         "The worst first: overturned, ended by flight, then by rotation. All of it is in ", tag("code", "peaks.csv"), ". ",
         tag("span", "Click a heading to sort.", class_="scripted"),
     ]  # fmt: skip
-    return Section(
-        "Every run",
-        "peaks",
-        join(tag("p", *lead), tag("p", PRINTED, class_="printed"), _ratcheting(finished), _every_run(finished)),
-    )
+    above = (tag("p", *lead), tag("p", PRINTED, class_="printed"), _linearised(finished), _ratcheting(finished))
+    return Section("Every run", "peaks", join(*above, _every_run(finished)))
 
 
 def at_a_glance(finished: Finished, runs: "pd.DataFrame", records: "Sequence[str]") -> Markup:
@@ -119,6 +117,21 @@ def on_scale(name: str, value: float | None) -> float | None:
     column = COLUMNS.get(name)
     factor = column.page.factor if column and column.page else 1
     return None if value is None or value != value else factor * float(value)
+
+
+def _linearised(finished: Finished) -> Markup:
+    """How many runs rotate further than first-order kinematics holds."""
+    far = int(finished.runs["note"].str.contains(LINEARISED).sum())
+    if not far:
+        return Markup("")
+    told = f"{counted(far, 'run')} of {len(finished.runs)}: rotations too large for {LINEARISED}. "
+    return tag(
+        "p",
+        alarm(told),
+        "What they neglect is in the notes of the runs; kinematics = ",
+        tag("code", '"finite"'),
+        " keeps it.",
+    )
 
 
 def _ratcheting(finished: Finished) -> Markup:

@@ -1,0 +1,67 @@
+"""First-order kinematics where rotations are large: what it neglects, how far that moves the peak, and that the run says so."""
+
+import math
+
+import pytest
+from report_page import Page
+from studies import SINE, study_text, write_study
+
+import rockbatch as rb
+from rockbatch.cli import main
+from rockbatch.pier import MOST_NEGLECTED, neglected
+from rockbatch.results.outcome import LINEARISED
+
+TENDON = (rb.Tendon(psi=0.5, lam=2.0),)
+
+
+@pytest.mark.parametrize("alpha", [0.1, 0.2, 0.4])
+@pytest.mark.parametrize("mu", [3.0, 4.5])
+def test_the_share_is_that_of_the_terms_dropped_between_the_two_equations(alpha, mu):
+    """THEORY (5) and (8) about a pivot that stands still, in numbers: R0 = 1, g = 1."""
+    b, h, theta = math.sin(alpha), math.cos(alpha), 0.9 * alpha
+    of_block = 1.0 / mu + 1.0  # I0/M + R0²
+    inertia = 1.0 - (1.0 / mu + h * h + b * (b - h * theta)) / of_block  # v'' = b θ'' on a pivot that stands
+    moment = ((b - h * theta) - (b * math.cos(theta) - h * math.sin(theta))) / b
+    pier = rb.Pier(alpha, 1.0, mu)
+    assert neglected(pier, theta) == pytest.approx(inertia + 0.5 * theta**2, rel=1e-12)
+    assert 0.6 * 0.5 * theta**2 < moment < 0.5 * theta**2  # its next term is −h θ³/(6 b)
+    assert neglected(pier, -theta) == neglected(pier, theta)
+
+
+@pytest.mark.parametrize(
+    ("alpha", "amplitude", "restraints"),
+    [(0.2, 2.0, ()), (0.2, 8.0, TENDON), (0.3, 3.0, ()), (0.3, 6.0, TENDON), (0.4, 3.0, TENDON), (0.4, 6.0, ())],
+)
+def test_peaks_differ_by_about_the_share_and_have_a_note_beyond_five_percent(alpha, amplitude, restraints):
+    pier = rb.Pier(alpha, 1.0)
+    pulse = rb.pulse(
+        "sine", name="s", amplitude=amplitude * pier.gravity * math.tan(alpha), period=1.0, dt=0.005, duration=4.0
+    )
+    rows = {}
+    for kinematics in ("first-order", "finite"):
+        base = rb.ElasticBase(max(30, 6 * pier.least_beta), zeta=0.1, kinematics=kinematics, restraints=restraints)
+        rows[kinematics] = rb.simulate(pier, base, pulse).row
+    first, finite = (row["theta_max_over_alpha"] * alpha for row in rows.values())
+    share = neglected(pier, first)
+    assert abs(first / finite - 1.0) < (1.1 if share < MOST_NEGLECTED else 2.0) * share
+    note = rows["first-order"]["note"]
+    assert (LINEARISED in note) == (share > MOST_NEGLECTED)
+    assert (f"a peak of {first:.2g} rad" in note and f"{share:.0%} of inertia" in note) == (share > MOST_NEGLECTED)
+    assert LINEARISED not in rows["finite"]["note"]
+
+
+def test_the_terminal_and_the_report_say_so(tmp_path, capsys):
+    base = {
+        "base": "elastic",
+        "beta": 60,
+        "zeta": 0.1,
+        "kinematics": ["first-order", "finite"],
+        "tendon": [{"psi": 0.5, "lambda": 2}],
+    }
+    strong = SINE | {"amplitude_g": 1.6, "period_s": 1.0}
+    study = write_study(tmp_path, study_text(pulses=(strong,), cases=({"name": "springs"} | base,)))
+    assert main(["run", str(study), "--out", str(tmp_path / "out")]) == 0
+    assert f"1 run rotates further than {LINEARISED} holds" in capsys.readouterr().err
+    page = Page((tmp_path / "out" / "report.html").read_text(encoding="utf-8"))
+    assert f"one run of 2: rotations too large for {LINEARISED}" in page.text.replace("\u00a0", " ")
+    assert any(LINEARISED in cell for row in page.tables["peaks"] for cell in row)
