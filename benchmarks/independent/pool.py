@@ -101,7 +101,7 @@ def a_pulse(rng: Rng, pier: Pier, strength: float, fast: tuple[float, float] = (
     sign = float(one_of(rng, 1.0, -1.0))  # type: ignore[arg-type]
     made = pulse(
         shape, name=shape, amplitude=sign * strength, period=period, dt=dt, gamma=gamma, nu=nu,
-        duration=dt * math.ceil(length * float(one_of(rng, 1.0, 1.0, 1.5)) / dt),  # type: ignore[arg-type]
+        duration=dt * math.ceil(length * float(one_of(rng, 1.0, 1.0, 1.5)) / dt), confirm=("amplitude",),  # type: ignore[arg-type]
     )  # fmt: skip
     if rng.random() < 0.25:
         made = replace(made, vertical=rng.uniform(-0.6, 0.6) * made.horizontal[::-1] / strength * 0.5 * pier.gravity)

@@ -16,7 +16,14 @@ def implausible(rule: Rule, cases: Sequence[Case]) -> Iterator[str]:
     """
     key = "above" if rule.statistic == "count" else rule.sense.replace(" ", "_")
     demand, value = DEMANDS[rule.demand], rule.above if rule.statistic == "count" else rule.limit
-    if value is None or demand.most is None or key in rule.confirm:
+    if value is None or key in rule.confirm:
+        return
+    if value < 0:
+        yield (
+            f"{key} = {value:g}: {rule.demand} is counted without its sign, so that {'nothing' if key == 'at_most' else 'all'} "
+            f'passes; check the sign; if it is right, write confirm = ["{key}"] in this table'
+        )
+    if demand.most is None:
         return
     mine = [case for case in cases if case["base"] in demand.bases and is_about(rule, str(case["case"]))]
     most = max((demand.most.of(case) for case in mine), default=math.inf)

@@ -1,6 +1,7 @@
 """What a ground motion is: one horizontal component, perhaps with its station's vertical one."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -86,6 +87,8 @@ class Motion(Shown):
         Whether a vertical component was asked for, and there is none.
     station : str
         What the components of one station in one earthquake share, which count as one record; empty for a record of its own.
+    confirm : sequence of str
+        "pga", if it is right though no earthquake has had such a one; else :func:`rockbatch.simulate` refuses it.
 
     Raises ``InputError`` for samples that are no numbers and components of different lengths.
 
@@ -118,6 +121,7 @@ class Motion(Shown):
     origin: Origin = NOBODY_KNOWS
     lacks_vertical: bool = False
     station: str = ""
+    confirm: Sequence[str] = ()
 
     def __post_init__(self) -> None:
         wrong = []

@@ -76,6 +76,18 @@ def unlikely_peak(judged: Judged) -> Finding | None:
     return Finding("PGA", f"{peak} outside {LOWEST:g}–{HIGHEST:g} g: check the unit", gross=True, key="confirm_pga")
 
 
+def unlikely_samples(motion: Motion, gravity: float) -> list[str]:
+    """Return what is odd about the unit of a motion that was read from no file; empty if nothing, or it is confirmed."""
+    peak = max(motion.pga, motion.pga_vertical or 0.0)
+    judged = motion.source == "pulse" or any(finding.what == "PGA" for finding in motion.findings)
+    if judged or "pga" in motion.confirm or peak <= HIGHEST * gravity:
+        return []
+    return [
+        f'motion "{motion.name}": PGA {peak / gravity:.3g} g, where the strongest earthquakes had 2 to 4 g: samples are in m/s², '
+        'and gal are 0.01 of it; if it is right, write confirm = ["pga"]'
+    ]
+
+
 def no_zero_line(judged: Judged) -> Finding | None:
     """A series that does not swing about zero: a spectrum, an envelope, an offset."""
     text = never_changes_sign(judged.motion) or mean_far_from_zero(judged.motion)

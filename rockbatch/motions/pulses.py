@@ -20,14 +20,22 @@ Sine and cosine: Palmeri & Makris (2007), Figs. 5 and 6. Mavroeidis & Papageorgi
 
 import difflib
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 
 import numpy as np
 
 from rockbatch.errors import InputError
 from rockbatch.motions.motion import Initial, Motion, Samples
+from rockbatch.pier.plausible import remedy
+from rockbatch.units import GRAVITY
 
 SHAPES = ("sine", "cosine", "half-sine", "ricker", "mavroeidis-papageorgiou")
+
+MOST_PULSE = 3.0
+"""Amplitude [g] beyond which a wrong unit is likelier than a pulse; those of near-fault records have 0.1 to 1 g."""
+
+LEAST_SAMPLES = 5.0
+"""Samples in a period; with fewer a sine loses a fifth of its peak and more."""
 
 _ON_A_SAMPLE = 1e-9  # of dt: a pulse whose end falls on a sample includes it, whatever the rounding
 
@@ -42,6 +50,7 @@ def pulse(
     duration: float,
     gamma: float | None = None,
     nu: float | None = None,
+    confirm: Collection[str] = (),
 ) -> Motion:
     """A pulse, sampled: its formula at t_i = i·dt up to its end, then zeros up to ``duration``.
 
@@ -59,11 +68,13 @@ def pulse(
         Sampling interval and length of the motion [s]; it has round(duration/dt) + 1 samples.
     gamma, nu : float
         Number of oscillations γ > 1 and phase ν [rad], for "mavroeidis-papageorgiou" only.
+    confirm : collection of str
+        "amplitude" and "dt", if they are right though they are far from usual.
 
     Raises
     ------
     InputError
-        With every value that cannot be.
+        With every value that cannot be, or is far from usual and not confirmed.
 
     Examples
     --------
@@ -77,6 +88,9 @@ def pulse(
     problems = _problems(shape, amplitude, period, dt, duration, gamma, nu)
     if not name.strip():
         problems.append("name is empty: write the name that the pulse shall have in tables")
+    if not problems:
+        odd = unlikely(abs(amplitude) / GRAVITY, period, dt)
+        problems = [f"{key} = {text}; {remedy(key)}" for key, text in odd.items() if key not in confirm]
     if problems:
         raise InputError(*problems)
     formula, length = _formula(shape, amplitude, period, gamma, nu)
@@ -88,6 +102,20 @@ def pulse(
     if gamma is not None and nu is not None:
         note += f", gamma = {gamma:g}, nu = {nu:g} rad"
     return Motion(name, dt, acceleration, source="pulse", notes=(note,), initial=Initial())
+
+
+def unlikely(amplitude_g: float, period: float, dt: float) -> dict[str, str]:
+    """Return what is odd about the "amplitude" [g] of a pulse, and about its "dt" [s] for its period [s], by these names."""
+    odd = {}
+    if amplitude_g > MOST_PULSE:
+        odd["amplitude"] = (
+            f"{amplitude_g:.3g} g: more than {MOST_PULSE:g} g, where pulses of near-fault records have 0.1 to 1 g"
+        )
+    if dt * LEAST_SAMPLES > period * (1.0 + _ON_A_SAMPLE):
+        odd["dt"] = (
+            f"{dt:g} s: {period / dt:.2g} samples in a period of {period:g} s, which miss the pulse's peak; 50 do well"
+        )
+    return odd
 
 
 def pulse_length(shape: str, period: float, gamma: float | None = None) -> float:

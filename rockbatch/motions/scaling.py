@@ -8,6 +8,7 @@ from rockbatch.errors import InputError
 from rockbatch.motions import measures
 from rockbatch.motions.motion import Motion, Unusable
 from rockbatch.motions.motion_set import MotionSet
+from rockbatch.motions.plausible import fits
 from rockbatch.motions.spectrum import spectral_acceleration
 from rockbatch.motions.spectrum_target import SpectrumTarget
 
@@ -57,18 +58,38 @@ class Target:
         return wanted / found if found > 0 else math.inf
 
 
-def at_target(found: MotionSet, target: Target | SpectrumTarget, gravity: float) -> MotionSet:
-    """All motions scaled to ``target``, with the factor noted; one without motion is unusable."""
+MOST_FACTOR = 4.0
+"""By which a record is brought to a spectrum; a weak record made strong has not the shape of a strong one."""
+
+
+def at_target(
+    found: MotionSet, target: Target | SpectrumTarget, gravity: float, confirmed: Sequence[str] = ()
+) -> MotionSet:
+    """All motions scaled to ``target``, with the factor noted; one without motion is unusable.
+
+    So is one that takes more than :data:`MOST_FACTOR` to meet a spectrum, unless its name fits a pattern in ``confirmed``.
+    """
     motions: list[Motion] = []
     unusable: list[Unusable] = []
     for motion, factor in zip(found.motions, target.factors_of(found.motions, gravity), strict=True):
         if math.isinf(factor):
             unusable.append(Unusable(motion.name, motion.files, f"has no motion that can be scaled to {target}"))
+        elif isinstance(target, SpectrumTarget) and factor > MOST_FACTOR and not fits(motion.name, confirmed):
+            unusable.append(Unusable(motion.name, motion.files, _too_weak(motion, factor, target, gravity)))
         elif factor == 1.0:
             motions.append(motion)
         else:
             motions.append(_scaled(motion, factor, f"scaled by {factor:.4g} to {target}"))
     return replace(found, motions=motions, unusable=[*found.unusable, *unusable])
+
+
+def _too_weak(motion: Motion, factor: float, target: SpectrumTarget, gravity: float) -> str:
+    vertical = "" if motion.pga_vertical is None else f", vertical {factor * motion.pga_vertical / gravity:.2g} g"
+    return (
+        f"takes {factor:.3g} times its motion, PGA {factor * motion.pga / gravity:.2g} g{vertical}, to meet {target}; beyond "
+        f"{MOST_FACTOR:g} times a weak record is not what a strong one would be; choose others, or, if it is right, write "
+        f'confirm = ["{motion.name}"] under [motions] in the study'
+    )
 
 
 def _scaled(motion: Motion, factor: float, note: str) -> Motion:

@@ -27,6 +27,8 @@ from rockbatch.pier.bases import (
     yield_deflection,
 )
 from rockbatch.pier.block import Part, Pier, described
+from rockbatch.pier.plausible import remedy
+from rockbatch.pier.plausible_devices import doubt, unlikely_devices
 from rockbatch.pier.restraints import Damper, DamperKind, Restraint, Tendon, offsets, recentres, symmetric
 
 __all__ = [
@@ -50,6 +52,7 @@ __all__ = [
     "YieldingBase",
     "beta_of",
     "described",
+    "doubt",
     "eta_of",
     "fastest",
     "in_kilonewtons",
@@ -58,10 +61,12 @@ __all__ = [
     "offsets",
     "problems",
     "recentres",
+    "remedy",
     "rocking_frequency",
     "static_deflection",
     "symmetric",
     "tilt_over_residual",
+    "unlikely_devices",
     "vertical_frequency",
     "yield_deflection",
 ]

@@ -1,11 +1,12 @@
 """The pier: a rigid block, with what it carries, and the rocking frame as its equivalent block."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from rockbatch.errors import InputError
+from rockbatch.pier.plausible import unlikely_sizes
 from rockbatch.units import GRAVITY, LEAST, MOST
 
 POSSIBLE = {"alpha": (1e-4, math.pi / 2), "p": (1e-3, 1e3), "mu": (1e-3, 1e12), "gravity": (1e-3, 1e3)}
@@ -109,9 +110,16 @@ class Pier:
         *,
         mass_t: float | None = None,
         top_m: float | None = None,
+        confirm: Collection[str] = (),
     ) -> "Pier":
-        """Pier from its size R0 [m], the distance from a pivot to the centre of mass."""
+        """Pier from its size R0 [m], the distance from a pivot to the centre of mass.
+
+        Here and in the other ways to make a pier of lengths, ``confirm`` names those that are right though they are far from
+        usual: "width_m", "top_m", "deck_height_m". Raises ``InputError`` for what is impossible or not confirmed.
+        """
         wrong = not_positive(size_m=(size_m, " [m]"), mu=(mu, " (3 for a rectangle)"))
+        if not wrong:
+            wrong = unlikely_sizes(0.0, 2 * size_m * math.cos(alpha), confirm, top_m=top_m)
         if wrong:
             raise InputError(*wrong)
         return cls(alpha, math.sqrt(mu / (1 + mu) * gravity / size_m), mu, gravity, mass_t, top_m)
@@ -125,13 +133,15 @@ class Pier:
         *,
         mass_t: float | None = None,
         top_m: float | None = None,
+        confirm: Collection[str] = (),
     ) -> "Pier":
-        """Solid rectangular block; its width and height [m] give α, R0 and μ = 3."""
+        """Solid rectangular block; its width and height [m] give α, R0 and μ = 3. ``confirm``: see :meth:`from_size`."""
         wrong = not_positive(width_m=(width_m, " [m]"), height_m=(height_m, " [m]"))
+        wrong = wrong or unlikely_sizes(width_m, height_m, confirm, top_m=top_m)
         if wrong:
             raise InputError(*wrong)
         alpha, size = math.atan2(width_m, height_m), math.hypot(width_m, height_m) / 2
-        return cls.from_size(alpha, size, 3.0, gravity, mass_t=mass_t, top_m=top_m)
+        return cls.from_size(alpha, size, 3.0, gravity, mass_t=mass_t, top_m=top_m, confirm=("top_m",))
 
     @classmethod
     def of_parts(
@@ -142,6 +152,7 @@ class Pier:
         top_m: float | None = None,
         deck_height_m: float | None = None,
         gravity: float = GRAVITY,
+        confirm: Collection[str] = (),
     ) -> "Pier":
         """Pier of any shape, with what it carries (THEORY.md, The pier).
 
@@ -155,6 +166,8 @@ class Pier:
             Where drift is read [m]; at the highest part's centre by default.
         deck_height_m : float, optional
             Where the deck's acceleration is told [m]; at the top by default.
+        confirm : collection of str
+            See :meth:`from_size`.
 
         Returns
         -------
@@ -183,10 +196,12 @@ class Pier:
         if height == 0 or inertia == 0:
             what = "no height" if height == 0 else "no rotary inertia about their common centre"
             raise InputError(f"parts: they have {what}; a shaft has m (width² + height²)/12 at half its height")
+        if wrong := unlikely_sizes(width_m, 2 * height, confirm, top_m=top_m, deck_height_m=deck_height_m):
+            raise InputError(*wrong)
         size = math.hypot(0.5 * width_m, height)
         top = max(part.height_m for part in parts) if top_m is None else top_m
         alpha = math.atan2(0.5 * width_m, height)
-        pier = cls.from_size(alpha, size, mass * size**2 / inertia, gravity, mass_t=mass, top_m=top)
+        pier = cls.from_size(alpha, size, mass * size**2 / inertia, gravity, mass_t=mass, top_m=top, confirm=("top_m",))
         return pier if deck_height_m in (None, top) else replace(pier, deck_height_m=deck_height_m)
 
     @classmethod
@@ -201,23 +216,25 @@ class Pier:
         deck_inertia_t_m2: float = 0.0,
         top_m: float | None = None,
         gravity: float = GRAVITY,
+        confirm: Collection[str] = (),
     ) -> "Pier":
         """Uniform shaft of ``width_m`` × ``height_m`` and ``mass_t``, and a deck on it.
 
         ``deck_height_m`` is that of the deck's centre, at the top of the shaft by default; ``deck_inertia_t_m2`` its rotary
         inertia about it, 0 for a deck on bearings that does not turn with the pier. Drift is read at ``top_m``, by default the
-        higher of shaft and deck. See :meth:`of_parts`.
+        higher of shaft and deck. See :meth:`of_parts`, and :meth:`from_size` for ``confirm``.
         """
         wrong = not_positive(
             width_m=(width_m, " [m]"), height_m=(height_m, " [m]"), mass_t=(mass_t, " [t]"),
             deck_mass_t=(deck_mass_t, " [t]"),
-        )  # fmt: skip
+        ) or unlikely_sizes(width_m, height_m, confirm, deck_height_m=deck_height_m, top_m=top_m)  # fmt: skip
         if wrong:
             raise InputError(*wrong)
         deck = Part(deck_mass_t, height_m if deck_height_m is None else deck_height_m, deck_inertia_t_m2)
         top = max(height_m, deck.height_m) if top_m is None else top_m
         parts = [Part.shaft(width_m, height_m, mass_t), deck]
-        return cls.of_parts(width_m, parts, top_m=top, deck_height_m=deck.height_m, gravity=gravity)
+        judged = ("width_m", "top_m", "deck_height_m")
+        return cls.of_parts(width_m, parts, top_m=top, deck_height_m=deck.height_m, gravity=gravity, confirm=judged)
 
     @classmethod
     def frame(cls, column: "Pier", columns: int, deck_mass_t: float) -> "Pier":

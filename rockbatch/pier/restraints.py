@@ -1,7 +1,8 @@
 """What ties a pier to the ground beside its own weight: dampers and tendons (THEORY.md, Dampers and tendons)."""
 
 import math
-from dataclasses import asdict, dataclass, replace
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, field, replace
 from typing import Any, Literal, get_args
 
 from rockbatch.pier.block import Pier
@@ -34,6 +35,8 @@ class Damper:
         a of a viscous damper, 0.1 to 2.
     at : float, "left", "right" or None
         Offset from the centre of the base [m], positive to the right; None: one at each pivot.
+    confirm : sequence of str
+        "nu" or "yield_m", if it is right though it is far from usual.
 
     Examples
     --------
@@ -51,6 +54,7 @@ class Damper:
     yield_m: float = 0.0
     exponent: float = 1.0
     at: float | str | None = None
+    confirm: Sequence[str] = field(default=(), kw_only=True, compare=False, repr=False)
 
 
 @dataclass(frozen=True)
@@ -67,6 +71,8 @@ class Tendon:
         T_y/(M g) at which it yields, and is longer from then on; infinite where it does not.
     at : float, "left" or "right"
         Offset from the centre of the base [m], positive to the right.
+    confirm : sequence of str
+        "lam", or "psi" of one that has neither prestress nor stiffness, if it is right though it is far from usual.
 
     Examples
     --------
@@ -81,6 +87,7 @@ class Tendon:
     lam: float = 0.0
     strength: float = math.inf
     at: float | str = 0.0
+    confirm: Sequence[str] = field(default=(), kw_only=True, compare=False, repr=False)
 
 
 Restraint = Damper | Tendon
@@ -97,7 +104,7 @@ def described_restraints(restraints: tuple[Restraint, ...]) -> dict[str, Any]:
 
 
 def _described(restraint: Restraint) -> dict[str, Any]:
-    values = {name: value for name, value in asdict(restraint).items() if value is not None}
+    values = {name: value for name, value in asdict(restraint).items() if value is not None and name != "confirm"}
     return {name: None if value == math.inf else value for name, value in values.items()}
 
 

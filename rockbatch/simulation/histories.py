@@ -9,7 +9,8 @@ from rockbatch.core import types
 from rockbatch.core.observe.ledger import LEDGER, ledger_on_rigid_base, ledger_on_springs
 from rockbatch.errors import InputError
 from rockbatch.motions.motion import Motion, Samples
-from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, problems
+from rockbatch.motions.plausible import unlikely_samples
+from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, problems, unlikely_devices
 from rockbatch.results.columns import TERMS, as_series, row
 from rockbatch.results.outcome import Outcome
 from rockbatch.results.response import EVENT_TYPES, Response
@@ -83,7 +84,8 @@ def simulate(
     Raises
     ------
     InputError
-        If the pier cannot stand on the foundation, with the limits; if the run would take too many steps.
+        If the pier cannot stand on the foundation, with the limits; if a device or the motion is far from usual and its
+        ``confirm`` does not name what; if the run would take too many steps.
 
     Examples
     --------
@@ -96,7 +98,8 @@ def simulate(
       events   1 × lift-off, 3 × impact
     >>> response.plot().savefig("one-sine.pdf")
     """
-    wrong = problems(pier, foundation)
+    wrong = problems(pier, foundation) or unlikely_devices(pier, foundation.restraints)
+    wrong += unlikely_samples(motion, pier.gravity)
     if not tolerance >= LEAST_TOLERANCE:
         wrong.append(f"tolerance = {tolerance:g}: must be {LEAST_TOLERANCE:g} or above (on theta_max/alpha)")
     if not (math.isfinite(quiet_s) and quiet_s >= 0):

@@ -23,7 +23,7 @@ from rockbatch.pier import (
 from rockbatch.study.lists import Chosen, combinations, how_many, listed, too_many
 from rockbatch.study.piers import Values, has_mass
 from rockbatch.study.plausible import CONFIRM, MASSES, complain_unless_usual, complain_unless_usual_support, confirmed
-from rockbatch.study.restraint_keys import RESTRAINTS, read_restraints, restraints_of
+from rockbatch.study.restraint_keys import RESTRAINTS, complain_of_unlikely, read_restraints, restraints_of
 from rockbatch.toml.kinds import choice, number, positive, shown, text
 from rockbatch.toml.reader import Key, Setting, Table, TomlFile
 
@@ -118,6 +118,8 @@ def _expand(case: _Read, chosen: Chosen, pier: Pier, pier_values: Values) -> Exp
             continue
         if not (any_pier and problem.startswith("beta")):
             _complain_where_due(case.table, chosen, problem, pier, base)
+    if not (wrong or any_pier):
+        complain_of_unlikely(case.table, chosen, pier, base.restraints)
     if not wrong and pier.mass_t is not None:
         complain_unless_usual_support(case.table, chosen, pier, base, case.believed)
     applying = {key: value for key, value in asdict(base).items() if value is not None} | given

@@ -1,13 +1,15 @@
 """The ground motions of a study file: [motions], [[motions.fema_p695]] and [[motions.pulse]]."""
 
 import math
+from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
 from rockbatch.errors import InputError
 from rockbatch.motions import kinds
 from rockbatch.motions.formats import ROLES, ReadOptions
-from rockbatch.motions.pulses import SHAPES, pulse
+from rockbatch.motions.pulses import SHAPES, pulse, unlikely
+from rockbatch.study.plausible import CONFIRM, SCALE, complain_unless_usual, confirmed, remedy
 from rockbatch.study.spec import FemaSpec, MotionSpec, PulseSpec
 from rockbatch.study.suite_keys import SUITE, read_suite
 from rockbatch.toml.kinds import choice, nonzero, number, positive, shown, text
@@ -47,6 +49,9 @@ def read_motions_table(file: TomlFile, replaced_by: Path | None = None) -> Motio
     table = file.table("motions")
     read = table.read(MOTIONS, other=SOURCES) if table else {}
     entries = read.pop("path", [])
+    if table:
+        names = {setting.value for setting in read.get("confirm", ())}
+        complain_unless_usual(table, "scale", read.get("scale", ()), SCALE, names)
     for name in ("polarity", "scale", "columns"):
         if name in read:
             read[name] = tuple(setting.value for setting in read[name])
@@ -105,8 +110,8 @@ def _pulses(file: TomlFile) -> tuple[PulseSpec, ...]:
     pulses: list[PulseSpec] = []
     names: list[str] = []
     for table in file.tables("motions", "pulse", title="name"):
-        read = table.read(PULSE)
-        _check_pulse(table, read)
+        read = table.read(PULSE | CONFIRM)
+        _check_pulse(table, read, confirmed(table, read, PULSE))
         if "name" in read:
             if read["name"] in names:
                 table.complain(f"name = {shown(read['name'])}: given twice; give each pulse its own name", "name")
@@ -116,7 +121,7 @@ def _pulses(file: TomlFile) -> tuple[PulseSpec, ...]:
     return tuple(pulses)
 
 
-def _check_pulse(table: Table, read: dict[str, Any]) -> None:
+def _check_pulse(table: Table, read: dict[str, Any], believed: Collection[str]) -> None:
     """What the keys of one pulse say about each other; the pulse itself knows most of it."""
     before = len(table.file.problems)
     check_shape(table, read)
@@ -134,12 +139,18 @@ def _check_pulse(table: Table, read: dict[str, Any]) -> None:
             duration=read["duration_s"],
             gamma=read.get("gamma"),
             nu=read.get("nu"),
+            confirm=("amplitude", "dt"),  # below, by their keys
         )
     except InputError as error:
         for problem in error.problems:
             symbol, rest = problem.split(" ", 1)
             name = next((key for key in (symbol, f"{symbol}_s", f"{symbol}_g") if key in read), "name")
             table.complain(f"{name} {rest}", name)
+    else:
+        odd = unlikely(abs(read["amplitude_g"]), read["period_s"], read["dt_s"])
+        for name, key in (("amplitude", "amplitude_g"), ("dt", "dt_s")):
+            if name in odd and key not in believed:
+                table.complain(f"{key} = {odd[name]}; {remedy(key)}", key)
 
 
 def check_shape(table: Table, read: dict[str, Any]) -> None:

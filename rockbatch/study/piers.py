@@ -1,6 +1,6 @@
 """The piers of a study file, with every combination of listed values: [pier] and [[pier.part]]."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import asdict
 from typing import Any
 
@@ -78,7 +78,7 @@ def read_piers(file: TomlFile) -> tuple[list[tuple[Pier, Values]], tuple[str, ..
     for chosen in combinations(read):
         values = {name: setting.value for name, setting in chosen.items()} | gravity
         try:
-            pier = _pier(values, len(parts))
+            pier = _pier(values, len(parts), believed)
         except InputError as error:
             for problem in error.problems:
                 _complain_where_due(table, chosen, problem)
@@ -102,9 +102,10 @@ def _part(table: Table, n: int) -> tuple[dict[str, Sequence[Setting]], tuple[str
     return {f"part_{n}_{name}": its for name, its in read.items()}, tuple(f"part_{n}_{x}" for x in listed(table, PART))
 
 
-def _pier(values: dict[str, Any], parts: int) -> Pier:
+def _pier(values: dict[str, Any], parts: int, believed: Collection[str]) -> Pier:
     """The pier that these keys say; which of them go together is checked already."""
     rest: dict[str, Any] = {name: values[name] for name in ("gravity", "top_m") if name in values}
+    rest["confirm"] = believed
     if parts:
         return _of_parts(values, parts, rest)
     if "deck_mass_t" in values and "columns" not in values:
@@ -118,7 +119,10 @@ def _pier(values: dict[str, Any], parts: int) -> Pier:
     elif "size_m" in values:
         pier = Pier.from_size(**rest)
     else:
+        del rest["confirm"]
         pier = Pier(**rest)
+        if "top_m" in rest:
+            Pier.from_size(pier.alpha, pier.size, pier.mu, pier.gravity, top_m=pier.top_m, confirm=believed)
     return Pier.frame(pier, values["columns"], values["deck_mass_t"]) if "columns" in values else pier
 
 
@@ -138,6 +142,8 @@ def _of_parts(values: dict[str, Any], parts: int, rest: dict[str, Any]) -> Pier:
 
 def _complain_where_due(table: Table, chosen: Chosen, problem: str) -> None:
     """Place a problem of the pier, "key = …", at that key."""
+    if "write confirm" in problem:
+        problem += " in this table"
     name = problem.split(" = ")[0]
     if name in chosen:
         table.complain_about(chosen[name], problem)

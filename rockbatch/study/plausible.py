@@ -7,6 +7,7 @@ their limits, too, are something to study.
 from collections.abc import Collection, Iterable, Mapping
 from typing import Any, NamedTuple
 
+from rockbatch import pier as piers
 from rockbatch.pier import MOST_ETA, Base, Pier, eta_of, static_deflection
 from rockbatch.study.lists import Chosen
 from rockbatch.toml.kinds import shown, text
@@ -27,6 +28,16 @@ _MASS = Usual(1e6, "t: the heaviest bridge piers weigh some 200 000 t")
 LENGTHS = dict.fromkeys(("width_m", "height_m", "size_m", "deck_height_m", "top_m"), _LENGTH)
 MASSES = dict.fromkeys(("mass_t", "deck_mass_t"), _MASS)
 TOLERANCE = Usual(0.1, "of theta_max/alpha, in which 1 is the edge of overturning: 1e-6 to 1e-2 is usual")
+
+SCALE = Usual(10.0, "times as recorded; 150 % are 1.5")
+TARGETS = {
+    "pga_g": Usual(5.0, "g: the strongest earthquakes had 2 to 4 g"),
+    "pgv_m_s": Usual(5.0, "m/s: the strongest earthquakes had some 3 m/s"),
+    "sa_g": Usual(10.0, "g: the strongest earthquakes had 5 to 8 g"),
+    "ag_g": Usual(2.0, "g: codes have 0.05 to 0.6 g"),
+    "sds_g": Usual(5.0, "g: codes have 0.1 to 3 g"),
+    "sd1_g": Usual(5.0, "g: codes have 0.05 to 2 g"),
+}
 
 LEAST_DEFLECTION = 2e-5
 """Static deflection [m] of supports below which a wrong unit is likelier than the ground: on sound rock it is some 0.1 mm."""
@@ -69,5 +80,5 @@ def complain_unless_usual_support(
 
 
 def remedy(name: str) -> str:
-    """What to do about a value that is not usual."""
-    return f'check the unit; if it is right, write confirm = ["{name}"] in this table'
+    """Say what to do about a value that is not usual."""
+    return f"{piers.remedy(name)} in this table"

@@ -3,9 +3,10 @@
 from collections.abc import Mapping, Sequence
 from typing import Any, get_args
 
-from rockbatch.pier import Damper, DamperKind, Pier, Restraint, Tendon
-from rockbatch.study.lists import listed
+from rockbatch.pier import Damper, DamperKind, Pier, Restraint, Tendon, doubt, remedy
+from rockbatch.study.lists import Chosen, listed
 from rockbatch.study.piers import has_mass
+from rockbatch.study.plausible import CONFIRM, confirmed
 from rockbatch.toml.kinds import KindError, choice, not_negative, number, positive, shown
 from rockbatch.toml.reader import Key, Setting, Table
 
@@ -39,6 +40,10 @@ TENDON = {
 RESTRAINTS = ("damper", "tendon")
 
 IN_KN = ("force_kN", "coefficient_kN_s_m", "prestress_kN", "stiffness_kN_m", "yield_kN")
+_PULLS = (("prestress_kN", "psi"), ("stiffness_kN_m", "lambda"))
+_FIELDS = {
+    "coefficient_kN_s_m": "nu", "yield_mm": "yield_m", "prestress_kN": "psi", "stiffness_kN_m": "lam", "lambda": "lam",
+}  # fmt: skip
 _BELONG = {  # keys of a damper of each kind: those of which one is needed, then the others
     "friction": (("force_kN", "f"), ()),
     "hysteretic": (("force_kN", "f"), ("yield_mm",)),
@@ -72,14 +77,22 @@ def read_restraints(case: Table) -> tuple[dict[str, Sequence[Setting]], tuple[st
     varied: tuple[str, ...] = ()
     for what, keys in (("damper", DAMPER), ("tendon", TENDON)):
         for n, table in enumerate(_tables(case, what), 1):
-            found = table.read(keys)
+            found = table.read(keys | CONFIRM)
+            believed = confirmed(table, found, keys)
+            if believed:
+                read[f"{what}_{n}_confirm"] = [Setting(tuple(_FIELDS.get(name, name) for name in believed), table.at)]
             for name, value in found.items():
                 read[f"{what}_{n}_{name}"] = value if isinstance(value, list) else [Setting(value, (*table.at, name))]
             varied += tuple(f"{what}_{n}_{name}" for name in listed(table, keys))
             if what == "damper":
                 _check_damper(table, found.get("kind"))
             else:
-                _check_pairs(table, (("prestress_kN", "psi"), ("stiffness_kN_m", "lambda")))
+                _check_pairs(table, _PULLS)
+                if not table.data.keys() & {name for pair in _PULLS for name in pair}:
+                    table.complain(
+                        "it has neither prestress nor stiffness, so that it is not there; write for example prestress_kN = "
+                        f"{TENDON['prestress_kN'].example}, or leave the table out"
+                    )
             _check_mass(table)
     return read, varied
 
@@ -120,17 +133,38 @@ def _check_mass(table: Table) -> None:
 
 def restraints_of(pier: Pier, given: dict[str, Any]) -> tuple[Restraint, ...]:
     """Dampers and tendons by the settings of :func:`read_restraints`, which are taken out of ``given``."""
-    taken: dict[str, dict[str, Any]] = {}
+    taken = _taken(given)
     for name in [name for name in given if name.startswith(tuple(f"{what}_" for what in RESTRAINTS))]:
-        what, n, key = name.split("_", 2)
-        taken.setdefault(f"{what}_{n}", {})[key] = given.pop(name)
-    return tuple(
-        _restraint(values, pier) for name, values in taken.items() if name.startswith("tendon") or "kind" in values
-    )
+        del given[name]
+    return tuple(_restraint(values, pier) for values in taken.values())
+
+
+def _taken(given: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
+    """The settings of each damper and tendon: those of the first damper under "damper_1"."""
+    taken: dict[str, dict[str, Any]] = {}
+    for name, value in given.items():
+        if name.startswith(tuple(f"{what}_" for what in RESTRAINTS)):
+            what, n, key = name.split("_", 2)
+            taken.setdefault(f"{what}_{n}", {})[key] = value
+    return {name: values for name, values in taken.items() if name.startswith("tendon") or "kind" in values}
+
+
+def complain_of_unlikely(case: Table, chosen: Chosen, pier: Pier, restraints: Sequence[Restraint]) -> None:
+    """Note every value of a damper or tendon that is far from usual and not confirmed, at its key."""
+    for (name, values), each in zip(_taken(chosen).items(), restraints, strict=True):
+        odd = doubt(pier, each)
+        if odd is None:
+            continue
+        key = next((key for key in values if _FIELDS.get(key, key) == odd.name), "")
+        if key:
+            what, value = name.partition("_")[0], values[key]
+            case.complain_about(
+                value, f"{what}: {key} = {value.value:g}: {odd.meaning}; {remedy(key)} in [[case.{what}]]"
+            )
 
 
 def _restraint(values: Mapping[str, Any], pier: Pier) -> Restraint:
-    own = {name: values[name] for name in ("kind", "at") if name in values}
+    own = {name: values[name] for name in ("kind", "at", "confirm") if name in values}
     own |= {field: values[key] / over for key, (field, over) in fields_of(pier).items() if key in values}
     if "kind" not in values:
         return Tendon(**own)

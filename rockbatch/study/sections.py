@@ -105,8 +105,10 @@ STUDY = (
     Section(("pier", "part"), words.PART_ABOUT, PART | CONFIRM, words.PART, many=True),
     Section(("motions",), words.MOTIONS_ABOUT, MOTIONS, words.MOTIONS, defaults=(MotionSpec,)),
     Section(("motions", "select"), words.SELECT_ABOUT, SELECT, words.SELECT),
-    Section(("motions", "target"), words.TARGET_ABOUT, TARGET, words.TARGET, defaults=(Target, SpectrumTarget)),
-    Section(("motions", "pulse"), words.PULSE_ABOUT, PULSE, words.PULSE, many=True),
+    Section(
+        ("motions", "target"), words.TARGET_ABOUT, TARGET | CONFIRM, words.TARGET, defaults=(Target, SpectrumTarget)
+    ),
+    Section(("motions", "pulse"), words.PULSE_ABOUT, PULSE | CONFIRM, words.PULSE, many=True),
     Section(("motions", "fema_p695"), words.FEMA_ABOUT, FEMA, words.FEMA, many=True),
     Section(
         ("case",),
@@ -119,8 +121,8 @@ STUDY = (
         only_for={name: _bases(name) for name in BASE_KEYS if len(_bases(name)) < len(BASES)},
         inner=dict.fromkeys(RESTRAINTS, tuple(BASES)),
     ),
-    Section(("case", "damper"), words.DAMPER_ABOUT, DAMPER, words.DAMPER, many=True),
-    Section(("case", "tendon"), words.TENDON_ABOUT, TENDON, words.TENDON, many=True),
+    Section(("case", "damper"), words.DAMPER_ABOUT, DAMPER | CONFIRM, words.DAMPER, many=True),
+    Section(("case", "tendon"), words.TENDON_ABOUT, TENDON | CONFIRM, words.TENDON, many=True),
     Section(("numerics",), words.NUMERICS_ABOUT, NUMERICS | CONFIRM, words.NUMERICS, defaults=(Numerics,)),
     Section(("output",), words.OUTPUT_ABOUT, OUTPUT, words.OUTPUT, defaults=(Output,)),
     Section(("suite",), words.SUITE_ABOUT, SUITE, words.SUITE, defaults=(Study,)),

@@ -31,7 +31,7 @@ def ground_motions(study: Study) -> MotionSet:
     )
     found = selected(found, spec.select, gravity)
     if spec.target is not None:
-        found = at_target(found, spec.target, gravity)
+        found = at_target(found, spec.target, gravity, spec.confirm)
     reasons = [f"{file.source}: {file.reason}" for file in found.unusable]
     if spec.strict and reasons:
         raise InputError(*reasons, f"{len(reasons)} of the records cannot be used, and the study is strict")
@@ -45,6 +45,7 @@ def ground_motions(study: Study) -> MotionSet:
             duration=shape.duration_s,
             gamma=shape.gamma,
             nu=shape.nu,
+            confirm=("amplitude", "dt"),  # by the study
         )
         for shape in spec.pulses
     ]

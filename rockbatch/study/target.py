@@ -1,5 +1,6 @@
 """What records are scaled to: ``target`` in [motions], one measure or a whole spectrum."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -14,9 +15,10 @@ from rockbatch.motions.design_spectra import (
 )
 from rockbatch.motions.scaling import Target
 from rockbatch.motions.spectrum_target import FACTORS, PAIRS, SpectrumTarget
+from rockbatch.study.plausible import CONFIRM, TARGETS, complain_unless_usual, confirmed
 from rockbatch.study.ranges import range_of
 from rockbatch.toml.kinds import KindError, choice, closest, number, positive, shown, text
-from rockbatch.toml.reader import Key, Table
+from rockbatch.toml.reader import Key, Setting, Table
 
 CODES = ("EN 1998-1", "ASCE 7")
 
@@ -90,8 +92,10 @@ def read_target(table: Table) -> Target | SpectrumTarget | None:
 def _read_measure(table: Table) -> Target | None:
     before = len(table.file.problems)
     read = table.read(
-        _MEASURE, unfit=dict.fromkeys((*_SPECTRUM, *_EUROCODE, *_ASCE), "is for a target with spectrum = …")
+        _MEASURE | CONFIRM,
+        unfit=dict.fromkeys((*_SPECTRUM, *_EUROCODE, *_ASCE), "is for a target with spectrum = …"),
     )
+    _check_usual(table, read, _MEASURE)
     measures = [name for name in ("pga_g", "pgv_m_s", "sa_g") if name in table.data]
     if len(measures) != 1:
         found = " and ".join(measures) + " are given" if measures else "it is missing what to scale to"
@@ -115,7 +119,8 @@ def _read_spectrum(table: Table) -> SpectrumTarget | None:
         if other != code
         for name in keys
     }
-    read = table.read(_SPECTRUM | own, unfit=unfit | _UNFIT_FOR_SPECTRUM)
+    read = table.read(_SPECTRUM | own | CONFIRM, unfit=unfit | _UNFIT_FOR_SPECTRUM)
+    _check_usual(table, read, _SPECTRUM | own)
     limits = range_of(table, "period_range_s", read.get("period_range_s"))
     spectrum = _spectrum(table, code, read) if "spectrum" in read else None
     if not table.file.is_sound_since(before) or spectrum is None or limits is None:
@@ -127,6 +132,12 @@ def _read_spectrum(table: Table) -> SpectrumTarget | None:
         for problem in error.problems:
             table.complain(problem, "period_range_s")
         return None
+
+
+def _check_usual(table: Table, read: dict[str, Any], keys: Mapping[str, Key]) -> None:
+    believed = confirmed(table, read, keys)
+    for name in TARGETS.keys() & read.keys():
+        complain_unless_usual(table, name, [Setting(read[name], (*table.at, name))], TARGETS[name], believed)
 
 
 def _code(value: Any) -> str:

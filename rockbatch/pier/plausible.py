@@ -1,0 +1,25 @@
+"""Sizes that a wrong unit, or two exchanged, explain better than a pier: refused until ``confirm`` names them."""
+
+from collections.abc import Collection
+
+LOWEST, HIGHEST = 0.25, 2.5
+"""Of a pier's height: where its deck is, and where its drift is read."""
+
+
+def remedy(name: str) -> str:
+    """Say what to do about a value that is not usual."""
+    return f'check the unit; if it is right, write confirm = ["{name}"]'
+
+
+def unlikely_sizes(width_m: float, height_m: float, confirm: Collection[str], **heights: float | None) -> list[str]:
+    """Return what is odd about a pier's width and height [m] and its other ``heights``, but for those in ``confirm``."""
+    odd = {}
+    if width_m > height_m:
+        odd["width_m"] = (
+            f"width_m = {width_m:g}: more than the height, {height_m:g} m: such a block lifts off at {width_m / height_m:.2g} g "
+            "only, and slides before; width and height may be exchanged"
+        )
+    for name, value in heights.items():
+        if value is not None and not LOWEST * height_m <= value <= HIGHEST * height_m:
+            odd[name] = f"{name} = {value:g}: {value / height_m:.2g} times the height of the pier, {height_m:g} m"
+    return [f"{text}; {remedy(name)}" for name, text in odd.items() if name not in confirm]
