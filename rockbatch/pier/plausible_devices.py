@@ -9,7 +9,7 @@ from rockbatch.pier.restraints import Damper, Restraint, Tendon
 SPEED = 0.1
 """Speed of a viscous damper [m/s] at which it has less than the pier's weight; heels of piers that step reach 0.1 to 1 m/s."""
 
-THINNEST, WIDEST = 1e-4, 0.5
+THINNEST, WIDEST = 2.5e-5, 0.5
 """Yield deflection of a hysteretic damper [m]; steel ones have 1 to 20 mm."""
 
 MOST_LAMBDA = 100.0
@@ -31,11 +31,11 @@ def doubt(pier: Pier, device: Restraint) -> Doubt | None:
 
 def unlikely_devices(pier: Pier, devices: tuple[Restraint, ...]) -> list[str]:
     """Return what is odd about dampers and tendons of ``pier``, a sentence each, but for what they confirm."""
-    found = [(each, doubt(pier, each)) for each in devices]
+    judged = [(each, doubt(pier, each)) for each in devices]
     return [
         f"{'tendon' if isinstance(each, Tendon) else 'damper'}: {odd.name} = {getattr(each, odd.name):g}: {odd.meaning}; "
         f"{remedy(odd.name)}"
-        for each, odd in found
+        for each, odd in judged
         if odd is not None
     ]
 

@@ -124,10 +124,10 @@ def _linearised(finished: Finished) -> Markup:
     far = int(finished.runs["note"].str.contains(LINEARISED).sum())
     if not far:
         return Markup("")
-    told = f"{counted(far, 'run')} of {len(finished.runs)}: rotations too large for {LINEARISED}. "
+    warning = f"{counted(far, 'run')} of {len(finished.runs)}: rotations too large for {LINEARISED}. "
     return tag(
         "p",
-        alarm(told),
+        alarm(warning),
         "What they neglect is in the notes of the runs; kinematics = ",
         tag("code", '"finite"'),
         " keeps it.",
