@@ -110,3 +110,14 @@ def test_the_small_pier_of_the_mixed_runs_overturns_early_and_the_tower_does_not
     motion = module.record()
     assert set(module.one_group(module.many(4, motion, module.SMALL))) == {"overturned"}
     assert set(module.one_group(module.many(4, motion))) == {"ok"}
+
+
+def test_a_survey_of_the_rigid_base_has_no_wrong_outcome(benchmark):
+    survey = benchmark("rigid_survey")
+    rows = list(survey.survey(survey.cases(100, seed=1)))
+    assert len(rows) >= 100
+    counts = survey.counts(rows)
+    assert counts["wrong outcome"] == counts["beyond tolerance, unmarked"] == 0
+    assert counts["with flights"] > 0
+    assert counts["overturned"] > 0
+    assert cells(survey.table(rows))[-1][:2] == ["all", str(len(rows))]

@@ -1,0 +1,87 @@
+"""The Taylor series that the survey of the rigid base leans on: zeros of polynomials, known motions, another reference.
+
+Values of motions for α = 0.2, p = 1, μ = 3, g = 9.81 come from another event-driven solver.
+"""
+
+import importlib
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rockbatch.motions import Motion
+from rockbatch.pier import Pier, RigidBase
+
+BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
+
+
+@pytest.fixture(scope="module")
+def independent():
+    """Imports a module of the references, as a script beside them would."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(str(BENCHMARKS))
+        yield lambda name: importlib.import_module(f"independent.{name}")
+
+
+@pytest.fixture(scope="module")
+def taylor(independent):
+    return independent("taylor")
+
+
+@pytest.mark.parametrize("c", [1e-3, 1e-6, 1e-12])
+def test_a_hop_is_seen_however_short_it_is(taylor, c):
+    """x (c − x) (½ − x) falls at x = c and rises at ½."""
+    poly = np.zeros(taylor.COLUMNS)
+    poly[1:4] = 0.5 * c, -(0.5 + c), 1.0
+    assert taylor.first_fall(poly, 1.0, taylor.room()) == pytest.approx(c, rel=1e-12)
+
+
+def test_a_dip_that_stays_above_zero_is_no_fall(taylor):
+    poly = np.zeros(taylor.COLUMNS)
+    poly[:3] = 0.25 + 1e-12, -1.0, 1.0  # (½ − x)² + 1e-12
+    assert taylor.first_fall(poly, 1.0, taylor.room()) == -1.0
+
+
+@pytest.mark.parametrize(
+    ("horizontal", "vertical", "theta_max", "t_max"),
+    [
+        ((0.0, 0.3, 0.3, 0.3, -0.1, 0.0, 0.0), (0.0, -0.5, -1.3, -1.3, -0.4, 0.3, 0.0), 0.033450660, 0.375071),
+        ((0.0, 0.4, 0.8, 0.4, 0.0, -0.3, -0.3), (0.0, 0.0, 0.0, -1.6, -1.6, 0.0, 0.5), 0.058402522, 0.402892),
+    ],
+)
+def test_known_flights_reach_their_rotation(taylor, horizontal, vertical, theta_max, t_max):
+    across, up = (9.81 * np.pad(np.array(samples), (0, 54)) for samples in (horizontal, vertical))
+    truth = taylor.truth(Pier(0.2, 1.0), RigidBase(), Motion("known", 0.05, across, up))
+    assert (truth.status, truth.flights, truth.decided) == ("stands", 1, True)
+    assert truth.theta_max / 0.2 == pytest.approx(theta_max, abs=6e-10)
+    assert truth.t_max == pytest.approx(t_max, abs=6e-7)
+
+
+def test_a_lift_off_by_a_hair_is_an_arc_of_cubics(taylor):
+    """The ground passes g tan α by 10⁻⁶ of it: weight does not change over so small a tilt."""
+    pier, dt, excess = Pier(0.25, 0.5), 0.01, 1e-6
+    motion = Motion("hair", dt, pier.gravity * np.tan(pier.alpha) * np.array([0.6, 1.0 + excess, 0.9, 0.5]))
+    most = pier.p**2 * np.sin(pier.alpha) * excess  # θ̈ at the sample; from there on it falls
+    before, fall = excess / (0.4 + excess) * dt, most / excess * (0.1 + excess) / dt
+    omega, theta = 0.5 * most * before, most * before**2 / 6
+    t = (most + np.sqrt(most**2 + 2 * fall * omega)) / fall
+    peak = theta + omega * t + most * t**2 / 2 - fall * t**3 / 6
+    truth = taylor.truth(pier, RigidBase(), motion)
+    assert truth.theta_max == pytest.approx(peak, rel=1e-7)
+
+
+@pytest.mark.slow
+def test_two_references_that_share_no_code_agree(independent, taylor):
+    """To 10⁻⁹ α, but where a motion 10⁻¹² stronger moves the peak by more: that is chaos."""
+    cases, reference, compared = independent("pool").cases, independent("reference").reference, 0
+    for stratum in ("rigid pulses", "rigid noise", "rigid slender noise", "flight pulses", "flight noise"):
+        for case in cases(None, 3, stratum)[:10]:
+            base, within = replace(case.base, flight="guided"), 1e-9 * case.pier.alpha
+            one, near = (taylor.truth(case.pier, base, case.motion, factor) for factor in (1.0, 1.0 + 1e-12))
+            if abs(near.theta_max - one.theta_max) <= within:
+                other = reference(case.pier, base, case.motion)
+                assert one.status == other.status
+                assert one.status == "overturned" or abs(one.theta_max - other.theta_max) <= within
+                compared += 1
+    assert compared > 40
