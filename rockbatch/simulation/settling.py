@@ -30,6 +30,11 @@ SAME_TIME = 0.01
 SAME_FALL = 0.02
 """Of α: how well the rotations before a pier overturned are to be known."""
 
+CHANGE = 1e-8
+"""Of a motion: less than any record knows of it. Where it changes the peak beyond the tolerance, no error is claimed."""
+
+COUNTS = ("impacts", "separations", "flights")
+
 FAR_BELOW = 3.0
 """Changes of an extreme, by which it has to stay below the peak for not having settled to be harmless."""
 
@@ -72,7 +77,7 @@ def run_all_to_tolerance(runs: Sequence[Run], tolerance: float, quiet_s: float, 
         for i in [i for i in levels if _steps_of_next(runs[i], levels[i], quiet_s) > MOST_STEPS]:
             more = f"; the next try would take {_steps_of_next(runs[i], levels[i], quiet_s):.0e} steps"
             settled[i] = _not_settled(runs[i].pier, levels.pop(i), tolerance, more)
-        going = list(levels)
+        going, doubtful = list(levels), []
         substeps = [2 * levels[i][-1].outcome.substeps for i in going]
         for i, fine in zip(going, try_all([runs[i] for i in going], substeps, quiet_s, stop), strict=True):
             if fine is None:
@@ -87,10 +92,46 @@ def run_all_to_tolerance(runs: Sequence[Run], tolerance: float, quiet_s: float, 
                 samples = runs[i].motion.npts - 1 + quiet_samples(quiet_s, runs[i].motion.dt)
                 peak = int(window_of(fine.outcome.t_max / runs[i].motion.dt, float(samples))[0])
                 settled[i] = _noted(fine, coarse, agreements[i][-1], tolerance * pier.alpha, peak)
+                if len(agreements[i]) > 1 or not _same_counts(fine.outcome, coarse.outcome):
+                    doubtful.append(i)
                 del levels[i]
             elif len(agreements[i]) == HALVINGS:
                 settled[i] = _not_settled(pier, levels.pop(i), tolerance, "")
+        _look_for_chaos(runs, settled, doubtful, tolerance, quiet_s, stop)
     return settled
+
+
+def _same_counts(one: Outcome, other: Outcome) -> bool:
+    """Return whether two outcomes have the same counts of events."""
+    return all(getattr(one, name) == getattr(other, name) for name in COUNTS)
+
+
+def _look_for_chaos(
+    runs: Sequence[Run],
+    settled: list[Outcome | None],
+    doubtful: Sequence[int],
+    tolerance: float,
+    quiet_s: float,
+    stop: Stop,
+) -> None:
+    """Claim no error of ``doubtful`` runs whose θ_max depends on digits that no record has: two of them agree by chance."""
+    which = [(i, now) for i in doubtful if (now := settled[i]) is not None and now.theta_max_error is not None]
+    if not which:
+        return
+    changed = [replace(runs[i], motion=runs[i].motion.times(1.0 + CHANGE)) for i, _ in which]
+    others = try_all(changed, [now.substeps for _, now in which], quiet_s, stop)
+    for (i, now), other in zip(which, others, strict=True):
+        if other is None:
+            settled[i] = None
+        elif not abs(other.outcome.theta_max - now.theta_max) <= tolerance * runs[i].pier.alpha:
+            becomes = (
+                "overturns" if other.outcome.status == "overturned" else f"comes to {other.outcome.theta_max:.3g} rad"
+            )
+            chaos = (
+                f"the peak is chaotic, under a motion {CHANGE:g} stronger the pier {becomes}: no error of it is claimed"
+            )
+            note = "; ".join(filter(None, (now.note, chaos)))
+            settled[i] = replace(now, theta_max_error=None, note=note)
 
 
 def _steps_of_next(run: Run, levels: Sequence[Trial], quiet_s: float) -> float:
@@ -170,7 +211,7 @@ def _noted(fine: Trial, coarse: Trial, how_far: Agreement, tolerance: float, pea
         if differs[: peak + 1].any() and now.status == "ok":
             now = replace(now, theta_max_error=None)
             notes.append("some of them before the peak, which is chaotic: no error of it is claimed")
-    for name in ("impacts", "separations", "flights"):
+    for name in COUNTS:
         one, other = sorted((getattr(before, name), getattr(now, name)))
         if one != other:
             notes.append(f"{name} not settled: {one} or {other}")

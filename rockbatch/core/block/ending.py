@@ -99,9 +99,14 @@ def next_due(traits, lanes, i):
 
 @kernel
 def _watch_reversals(lanes, i):
-    """Note a velocity reversal since the last sample while the ground rests; impacts keep the sign of the velocity."""
-    ending, omega = lanes.ending, lanes.now.omega[i]
-    if ground_rests(lanes, i):
+    """Note a velocity reversal since the last sample while the ground rests; impacts keep the sign of the velocity.
+
+    Landings do not: none is noted before the last of them.
+    """
+    ending, contact, omega = lanes.ending, lanes.contact, lanes.now.omega[i]
+    if contact.left[i] == 0.0 and contact.right[i] == 0.0:
+        ending.omega[i] = ending.turned[i] = 0.0
+    elif ground_rests(lanes, i):
         ending.turned[i] = 1.0 if ending.omega[i] * omega < 0.0 else ending.turned[i]
         ending.omega[i] = omega
 

@@ -42,6 +42,9 @@ HOP = 1.25
 NEARBY = 1e-6
 """Of the ground's own time 1/p: over which the rate of the normal force is taken."""
 
+HARDLY = 1e-300
+"""A velocity [rad/s] that has a sign and nothing else."""
+
 NEAR_FLIGHT = 0.3
 """Of g: normal force above which none is lost and regained within a sub-step."""
 
@@ -92,7 +95,8 @@ def event_functions(m, devices, y, k, contact, supports, rest, ground):
         if abs(omega) * m.height <= rest:
             least = NO_ACCELERATION * m.p * m.p
             turning = turning if abs(turning) > least else least  # it has just been lifted, to rounding
-            omega = surely(omega * m.height, turning, rest) / m.height
+            # no more than it has: a slope of ``rest`` would dwarf the tilt of a block that left the ground a moment ago
+            omega = math.copysign(max(abs(omega), HARDLY) if omega * turning > 0.0 else HARDLY, turning)
         normal, normal_rate = normal_force(m, k, ground.vertical), 0.0
         if normal < NEAR_FLIGHT * m.gravity:
             normal_rate = _change_of_normal(m, y, k, contact, ground)
@@ -158,7 +162,10 @@ def transition(m, devices, y, contact, supports, which, rest, ground, dt):
 def _lift_off(m, devices, y, side, ground):
     """Return state, stance and kind as the block leaves rest: about the pivot on ``side``, or with both (THEORY.md, eq. 15)."""
     other, _ = _lift(m, devices, y, -side, ground)
-    if other >= -NO_ACCELERATION * m.p * m.p * m.alpha:
+    under = about_to_turn(devices, m, y, side, OPENS)
+    k = rates(under, y, on_side(side), ground.horizontal, ground.vertical)
+    lifts_both = normal_force(under, k, ground.vertical) <= NO_ACCELERATION * m.gravity
+    if lifts_both or other >= -NO_ACCELERATION * m.p * m.p * m.alpha:
         leave_rest(m, devices, y, 0.0)
         return y, Stance(0.0, 0.0, 0.0), TAKE_OFF
     leave_rest(m, devices, y, side)
