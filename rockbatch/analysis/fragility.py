@@ -147,4 +147,4 @@ def _what(spec: FragilitySpec, study: Study, records: int) -> str:
 
 
 def _then(spec: FragilitySpec) -> str:
-    return f"; then first exceedances are bisected to {spec.tolerance:g}" if spec.method == "ida" else ""
+    return f"; then first exceedances are hunted for and bisected to {spec.tolerance:g}" if spec.method == "ida" else ""

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from rockbatch.analysis.ida import Bracket, Capacity, Looks, bisect, capacity
+from rockbatch.analysis.ida import Bracket, Capacity, Looks, bisect, capacity, hunt
 from rockbatch.analysis.limit_states import EXCEEDED, LEFT_OUT, UNDECIDED, WITHSTOOD, applies, states
 from rockbatch.analysis.lognormal import Capacities, Lognormal, Values, fit
 from rockbatch.batch.plan import PlannedRun, Runs, scaled
@@ -198,8 +198,8 @@ def intensities(motions: Iterable[Motion], spec: FragilitySpec, gravity: float) 
 def assess(study: Study, spec: FragilitySpec, motions: Sequence[Motion], simulate: Simulate) -> list[Curve]:
     """Fragility curves of every case and every limit that it is asked about.
 
-    Every record is scaled to every level; with method "ida" the first exceedance of every record is then bisected, in
-    waves.
+    Every record is scaled to every level; with method "ida" the first exceedance of every record is then hunted below that on
+    the levels, in one wave, and bisected, in more of them.
 
     ``simulate`` is called once for the levels and once for every wave, each depending on the rows before.
     """
@@ -217,6 +217,7 @@ def assess(study: Study, spec: FragilitySpec, motions: Sequence[Motion], simulat
     on_levels = iter(runs.states([(rule, Point(m, x, c)) for c, rule, m in keys for x in spec.levels]))
     looks = {key: {x: next(on_levels) for x in spec.levels} for key in keys}
     if spec.method == "ida":
+        looks = hunt(looks, spec.levels, lambda key: spec.step_on(study.cases[key[0]].base), look)
         looks = bisect(looks, spec.levels, spec.tolerance, look)
     return [_curve(runs, spec, c, rule, [looks[c, rule, m] for m in range(len(motions))]) for c, rule in asked]
 

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -53,7 +54,8 @@ def capacities(
 
     A capacity is above ``above`` and at most ``at_most`` by the runs that are decided, in the unit of the levels; the same as
     scales of the record. Below it ``undecided`` runs are not: it is at most ``if_exceeded`` if they exceed the limit, and above
-    ``if_withstood`` if they withstand it.
+    ``if_withstood`` if they withstand it. ``widest_step`` is the greatest relative step between looks below it: an exceedance
+    in a narrower window may have been missed.
     ``names`` and ``unscaled`` are those of the motions, and their intensities as they are.
     """
     import pandas as pd
@@ -70,7 +72,7 @@ def capacities(
                 {"record": names[motion], **_which(curve, varied), "measure": spec.label, "unit": spec.unit}
                 | {"found": _found(one), **bounds}
                 | {f"scale_{name}": bound / unscaled[motion] for name, bound in bounds.items()}
-                | {"undecided": one.undecided, **otherwise, "returns": one.returns}
+                | {"undecided": one.undecided, **otherwise, "returns": one.returns, "widest_step": one.widest_step}
             )
     return pd.DataFrame(rows)
 
@@ -103,8 +105,35 @@ def described(curves: Sequence[Curve], spec: FragilitySpec, study: Study, record
         "confidence": spec.confidence,
         "records": records,
         "polarities": study.motions.polarity,
+        "looked_at": looked_at(curves, spec),
         "curves": [_described(curve, spec) for curve in curves],
     }
+
+
+def looked_at(curves: Sequence[Curve], spec: FragilitySpec) -> str:
+    """Where first exceedances were looked for, case by case, in words; empty for stripes."""
+    if spec.method != "ida":
+        return ""
+    hunted = {curve.case.name: step for curve in curves if (step := spec.step_on(curve.case.base)) is not None}
+    others = list(dict.fromkeys(curve.case.name for curve in curves if curve.case.name not in hunted))
+    told = []
+    if hunted:
+        width = f"{100 * next(iter(hunted.values())):g} %"
+        told.append(f"in steps of {width} from the lowest level up ({', '.join(hunted)}), which miss narrower windows")
+    if others:
+        apart = max(high / low - 1.0 for low, high in pairwise(spec.levels))
+        told.append(
+            f"at the levels alone, up to {100 * apart:.0f} % apart ({', '.join(others)}): an exceedance between two of them, "
+            "below the first on the levels, is missed, and the median may be too high; hunt_step in [fragility] looks there too"
+        )
+    return "first exceedances were looked for " + "; ".join(told)
+
+
+def _looked(curve: Curve, spec: FragilitySpec) -> list[tuple[float, float]]:
+    """Where all records were looked at up to their first exceedance: intervals, of no width at a level."""
+    if spec.step_on(curve.case.base) is None:
+        return [(level, level) for level in spec.levels]
+    return [(spec.levels[0], min(spec.levels[-1], max((one.decided.high for _, one in curve.capacities), default=0.0)))]
 
 
 def _described(curve: Curve, spec: FragilitySpec) -> dict[str, Any]:
@@ -124,6 +153,7 @@ def _described(curve: Curve, spec: FragilitySpec) -> dict[str, Any]:
         "median_undecided": _finite(readings.medians) if readings else None,
         "points": [stripe._asdict() for stripe in curve.stripes],
         "capacities": [_finite(one.decided) for _, one in curve.capacities],
+        "looked": _looked(curve, spec) if spec.method == "ida" else [],
     }
     x = np.linspace(0.0, 1.1 * spec.levels[-1], SAMPLES + 1)[1:]
     if readings:

@@ -1,9 +1,10 @@
 """Incremental dynamic analysis: the least intensity at which a limit is exceeded (Vamvatsikos & Cornell 2002).
 
-The levels of the study are the hunt: the capacity lies between the first level, from below, at which the limit is exceeded
-and the one before, and is bisected there, geometrically. A rocking pier may overturn at one level and stand at a higher one
-(Zhang & Makris 2001): a window of overturning that is narrower than the levels can be missed, and what is found is the first
-exceedance on the stated levels. ``returns`` counts the levels above it that were withstood.
+The hunt goes from the lowest level up: the capacity lies between the first look at which the limit is exceeded and the one
+before, and is bisected there, geometrically. A rocking pier may overturn at one level and stand at a higher one (Zhang & Makris
+2001), in windows of a percent and less. Where runs are cheap the hunt therefore goes on between the levels, in small steps;
+elsewhere it is the levels alone, and a window between two of them is missed. ``widest_step`` says how far apart two neighbouring
+looks are at most, ``returns`` how many levels above the first exceedance were withstood.
 
 An undecided run ends no hunt, and says nothing: the capacity is the first exceedance of those that are decided. As it may be
 the first exceedance itself, or none, both are followed up too, each to its own bracket.
@@ -12,6 +13,7 @@ the first exceedance itself, or none, both are followed up too, each to its own 
 import math
 from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import NamedTuple, TypeVar
 
 from rockbatch.analysis.limit_states import EXCEEDED, LEFT_OUT, UNDECIDED, WITHSTOOD
@@ -45,6 +47,7 @@ class Capacity:
     ``decided`` leaves the undecided looks out, and stays open where one is in between; the others hold if all of them
     exceeded the limit, and if all withstood it. The three are the same where none is undecided below the first
     exceedance. ``undecided`` is the number of those below it, ``returns`` of the levels above it that were withstood.
+    ``widest_step`` is the greatest relative step from one look to the next, from the lowest to the first exceedance.
     """
 
     decided: Bracket
@@ -52,6 +55,7 @@ class Capacity:
     if_withstood: Bracket
     undecided: int
     returns: int
+    widest_step: float
 
 
 def capacity(looks: Looks, levels: Sequence[float]) -> Capacity | None:
@@ -68,24 +72,59 @@ def capacity(looks: Looks, levels: Sequence[float]) -> Capacity | None:
     if_exceeded = Bracket(max((x for x in withstood if x < first), default=0.0), first)
     if_withstood = Bracket(max((x for x, _ in below), default=0.0), high)
     returns = sum(state == WITHSTOOD and x > high and x in levels for x, state in seen)
-    return Capacity(decided, if_exceeded, if_withstood, len(doubtful), returns)
+    widest = max((above / x - 1.0 for x, above in pairwise(x for x, _ in seen if x <= high)), default=0.0)
+    return Capacity(decided, if_exceeded, if_withstood, len(doubtful), returns, widest)
+
+
+Look = Callable[[list[tuple[K, float]]], Sequence[int]]
+"""The states of records at the intensities that are asked for."""
+
+
+def hunt(
+    on_levels: Mapping[K, Looks], levels: Sequence[float], step_of: Callable[[K], float | None], look: Look[K]
+) -> dict[K, dict[float, int]]:
+    """More looks at each record below its first exceedance on the levels, in relative steps of ``step_of`` at most.
+
+    They come in one wave; records whose step is None keep the levels alone.
+    """
+    found = {key: dict(looks) for key, looks in on_levels.items()}
+    wanted = []
+    for key, looks in found.items():
+        step, first = step_of(key), capacity(looks, levels)
+        if step is not None and first is not None:
+            wanted += [(key, x) for x in _between(levels, step) if x < first.decided.high]
+    _take(found, wanted, look)
+    return found
+
+
+def _between(levels: Sequence[float], step: float) -> list[float]:
+    """Intensities between neighbouring levels, in even relative steps of ``step`` at most."""
+    found = []
+    for low, high in pairwise(levels):
+        parts = math.ceil(math.log(high / low) / math.log1p(step) - 1e-9)
+        found += [low * (high / low) ** (i / parts) for i in range(1, parts)]
+    return found
+
+
+def _take(found: Mapping[K, dict[float, int]], wanted: list[tuple[K, float]], look: Look[K]) -> None:
+    """Add to ``found`` the looks that are wanted; nothing is left out there, a run that would be is undecided."""
+    for (key, x), state in zip(wanted, look(wanted) if wanted else (), strict=True):
+        found[key][x] = UNDECIDED if state == LEFT_OUT else state
 
 
 def bisect(
     on_levels: Mapping[K, Looks],
     levels: Sequence[float],
     tolerance: float,
-    look: Callable[[list[tuple[K, float]]], Sequence[int]],
+    look: Look[K],
 ) -> dict[K, dict[float, int]]:
     """More looks at each record, until its brackets are narrowed to a relative width of ``tolerance``.
 
-    They come in waves, one look for every bracket that is wider. ``look`` gives the states at what it is asked about; there
-    nothing is left out, a run that would be is undecided.
+    They come in waves, one look for every bracket that is wider.
     """
     found = {key: dict(looks) for key, looks in on_levels.items()}
     while wanted := [(key, x) for key, looks in found.items() for x in _middles(capacity(looks, levels), tolerance)]:
-        for (key, x), state in zip(wanted, look(wanted), strict=True):
-            found[key][x] = UNDECIDED if state == LEFT_OUT else state
+        _take(found, wanted, look)
     return found
 
 

@@ -43,7 +43,7 @@ def table(curves: Sequence["Curve"], spec: "FragilitySpec") -> str:
     """Medians and dispersions with their intervals, a line for each limit and case, and what to know about them."""
     import pandas as pd
 
-    from rockbatch.analysis.fragility_tables import note
+    from rockbatch.analysis.fragility_tables import looked_at, note
     from rockbatch.analysis.limit_states import words
     from rockbatch.analysis.lognormal import Lognormal
     from rockbatch.commands.summary import named
@@ -84,7 +84,7 @@ def table(curves: Sequence["Curve"], spec: "FragilitySpec") -> str:
     if little := sum(curve.says_little for curve in curves):
         some = f"{little} of {count(len(curves), 'curve')} {'says' if little == 1 else 'say'} little"
         title += f"; {some}: too many runs are undecided"
-    return "\n".join([title, in_width(found, index=False), *limits, *notes])
+    return "\n".join(filter(None, [title, in_width(found, index=False), *limits, looked_at(curves, spec), *notes]))
 
 
 def _interval(bounds: tuple[float, float]) -> str:

@@ -6,6 +6,7 @@ from typing import Any
 
 from rockbatch.checks.demands import DEMANDS
 from rockbatch.checks.rules import Rule
+from rockbatch.pier import Base
 from rockbatch.study.spec import Study
 from rockbatch.toml.kinds import KindError, choice, closest, number, positive, shown, text
 from rockbatch.toml.reader import Key, Table, TomlFile
@@ -27,6 +28,16 @@ def _tolerance(value: Any) -> float:
     return float(value)
 
 
+HUNT_STEP = 0.01
+"""Relative steps of the hunt on rigid ground, unless the study gives others."""
+
+
+def _step(value: Any) -> float:
+    if not 1e-3 <= number(value) <= 1:
+        raise KindError("a number from 0.001 to 1")
+    return float(value)
+
+
 LEVELS = {"PGA": "levels_g", "Sa": "levels_g", "PGV": "levels_m_s"}
 FRAGILITY = {
     "method": Key(choice("stripes", "ida"), '"ida"'),
@@ -36,6 +47,7 @@ FRAGILITY = {
     "levels_g": Key(positive, "[0.2, 0.4, 0.6, 0.8]", many=True),
     "levels_m_s": Key(positive, "[0.25, 0.5, 1.0, 1.5]", many=True),
     "tolerance": Key(_tolerance, "0.01"),
+    "hunt_step": Key(_step, "0.02"),
     "checks": Key(text, '["no overturning", "uplift*"]', many=True),
     "confidence": Key(_below_one, "0.95"),
 }
@@ -58,6 +70,9 @@ class FragilitySpec:
         Rising levels of the measure [g, or m/s for PGV].
     tolerance : float
         Relative width to which the bisection brackets the least scale that exceeds a limit.
+    hunt_step : float or None
+        Relative steps in which the first exceedance is hunted between the levels, on every base; None: in steps of
+        :data:`HUNT_STEP` on rigid ground, where a run takes milliseconds, and on the levels alone elsewhere.
     limits : tuple of Rule
         Overturning, then the checks; each is held against every record by itself, and runs that flew or failed are
         undecided unless the check leaves them out.
@@ -73,6 +88,11 @@ class FragilitySpec:
     damping: float = 0.05
     tolerance: float = 0.01
     confidence: float = 0.95
+    hunt_step: float | None = None
+
+    def step_on(self, base: Base) -> float | None:
+        """Relative steps of the hunt between the levels on ``base``; None where it is the levels alone."""
+        return HUNT_STEP if self.hunt_step is None and not base.on_springs else self.hunt_step
 
     @property
     def unit(self) -> str:
@@ -115,8 +135,9 @@ def _levels(table: Table, read: dict[str, Any]) -> tuple[float, ...]:
     for name in ("period_s", "damping"):
         if measure != "Sa" and name in read:
             table.complain(f'{name}: is for measure = "Sa"; leave it out', name)
-    if "tolerance" in read and read.get("method", "stripes") == "stripes":
-        table.complain('tolerance: is for method = "ida"; leave it out, or write method = "ida"', "tolerance")
+    for name in ("tolerance", "hunt_step"):
+        if name in read and read.get("method", "stripes") == "stripes":
+            table.complain(f'{name}: is for method = "ida"; leave it out, or write method = "ida"', name)
     levels = [setting.value for setting in given.get(own, [])]
     for setting, before in zip(given.get(own, [])[1:], levels, strict=False):
         if setting.value < before:

@@ -266,6 +266,8 @@ FRAGILITY = {
     "levels_g": "Levels of PGA or Sa.",
     "levels_m_s": "Levels of PGV.",
     "tolerance": "Relative width to which the least intensity is narrowed down.",
+    "hunt_step": "Relative steps in which the first exceedance is hunted between the levels, on every base; if it is not given, "
+    "0.01 on rigid ground and the levels alone elsewhere.",
     "checks": "Which of the checks are limits, by name or pattern, beside overturning; all that are about records if it is not "
     "given.",
     "confidence": "Level of the confidence bands.",

@@ -170,16 +170,24 @@ def test_whether_a_run_that_was_cut_short_would_have_overturned_is_undecided():
 # Bisection
 
 
-@pytest.mark.parametrize(("shape", "first", "last"), [("half-sine", 3.289147, math.inf), ("sine", 3.018600, 6.318071)])
-def test_the_amplitude_of_overturning_is_that_of_the_closed_form(tmp_path, shape, first, last):
+@pytest.mark.parametrize(
+    ("shape", "first", "last", "amplitudes"),
+    [
+        ("half-sine", 3.289147, math.inf, [2.5, 4.5, 6.8, 7.5]),
+        ("sine", 3.018600, 6.318071, [2.5, 4.5, 6.8, 7.5]),
+        ("sine", 3.018600, 6.318071, [2.5, 6.8, 7.5]),
+    ],
+)
+def test_the_amplitude_of_overturning_is_that_of_the_closed_form(tmp_path, shape, first, last, amplitudes):
     """Slender block, e = 0.9, ω_p/p = 5 (test_overturning): the one-sine's second safe window is 6.318–7.168.
 
-    The level 6.8 is inside it: the first exceedance is found all the same, and that the block stands there is counted.
-    Tolerance 1e-4, and as much for the pulse that is linear between 400 samples a period.
+    The level 6.8 is inside it: the first exceedance is found all the same, also where no level is in the window of overturning
+    below, and that the block stands there is counted. Tolerance 1e-4, and as much for the pulse that is linear between 400
+    samples a period.
     """
     alpha, period = 1e-4, 2 * math.pi / 5
     unit = math.tan(alpha)
-    levels = [2.5 * unit, 4.5 * unit, 6.8 * unit, 7.5 * unit]
+    levels = [amplitude * unit for amplitude in amplitudes]
     text = study_text(
         pier={"alpha": alpha, "p": 1.0},
         pulses=[
@@ -419,6 +427,8 @@ def test_components_of_one_station_make_bands_that_are_too_narrow_and_it_is_said
         ),
         ('measure = "PGA"\nlevels_g = [0.4, 0.2]', ["levels_g = 0.2: after 0.4; write them in rising order"]),
         (f"{STRIPES}\ntolerance = 0.1", ['tolerance: is for method = "ida"']),
+        (f"{STRIPES}\nhunt_step = 0.1", ['hunt_step: is for method = "ida"']),
+        (f"{IDA}\nhunt_step = 1e-4", ["hunt_step = 0.0001: expected a number from 0.001 to 1"]),
         (f'{STRIPES}\nmethod = "IDA"', ['did you mean "ida"?']),
         (
             f'{STRIPES}\nchecks = ["half-way"]',
@@ -482,6 +492,31 @@ def test_bands_of_the_report_hold_their_curves_and_rise_with_the_intensity(tmp_p
             assert (low <= p).all()
             assert (p <= high).all()
             assert (np.diff(p) >= 0).all()
+
+
+def test_where_first_exceedances_were_looked_for_is_said_once_and_drawn(tmp_path, capsys):
+    """On rigid ground in steps of 1 % up to the greatest capacity, a single dash; on pads at the four levels, a dash each."""
+    page, out = page_of(tmp_path, IDA)
+    told = json.loads((out / "fragility.json").read_text(encoding="utf-8"))
+    words = "in steps of 1 % from the lowest level up (rigid)", "at the levels alone, up to 100 % apart (pads)"
+    for text in (page.text, capsys.readouterr().out):
+        assert [text.count(each) for each in words] == [1, 1]
+    by_case = {one["case"]: one["looked"] for one in told["curves"] if one["limit_state"] == "overturning"}
+    assert by_case["pads"] == [[x, x] for x in (0.2, 0.4, 0.6, 0.8)]
+    ((low, high),) = by_case["rigid"]
+    capacities = [row for row in read(out / "fragility_capacities.csv") if row["limit_state"] == "overturning"]
+    bounds = [float(row["at_most"] or "inf") for row in capacities if row["case"] == "rigid"]
+    assert (low, high) == (0.2, pytest.approx(min(max(bounds), 0.8)))
+    steps = {case: [float(row["widest_step"]) for row in capacities if row["case"] == case] for case in by_case}
+    assert max(steps["rigid"]) <= 0.01 + 1e-9
+    assert max(steps["pads"]) >= 0.3
+
+
+def test_hunt_step_looks_between_the_levels_on_every_base(tmp_path):
+    spec = read_fragility(load_study(written(tmp_path, f"{IDA}\nhunt_step = 0.05")))
+    assert [spec.step_on(base) for base in (RigidBase(), ElasticBase(30.0))] == [0.05, 0.05]
+    spec = read_fragility(load_study(written(tmp_path, IDA)))
+    assert [spec.step_on(base) for base in (RigidBase(), ElasticBase(30.0))] == [0.01, None]
 
 
 def test_the_report_leaves_out_curves_of_another_state_of_the_study(tmp_path):

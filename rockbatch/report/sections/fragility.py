@@ -16,6 +16,7 @@ from rockbatch.report.markup import Markup, join, tag
 from rockbatch.report.table import Head, table
 
 WIDTH, HEIGHT = 300.0, 190.0
+STRIP = 4.0
 CASES_OF_A_PANEL = 4
 """More curves with their bands would hide each other."""
 
@@ -44,10 +45,11 @@ def _lead(info: Mapping[str, Any]) -> Markup:
         )
     if info["method"] == "ida":
         told += (
-            f". Incremental dynamic analysis: of each record the least intensity that exceeds the limit, from its first "
-            f"exceedance on the levels on, bisected to {100 * info['tolerance']:g} %; records that never exceed it are censored. "
-            "A rocking pier can overturn at one level and stand at a higher one: the first exceedance counts."
+            f". Incremental dynamic analysis: of each record the least intensity that exceeds the limit, bisected to "
+            f"{100 * info['tolerance']:g} %; records that never exceed it are censored. A rocking pier can overturn at one level "
+            "and stand at a higher one: the first exceedance counts"
         )
+        told += f"; {info['looked_at']}." if info.get("looked_at") else "."
     else:
         told += (
             ", all of them scaled to every level; the bands allow for that these are the same records at every level."
@@ -73,6 +75,8 @@ def _caption(info: Mapping[str, Any]) -> str:
         if info["method"] == "ida"
         else ""
     )
+    if any(one.get("looked") for one in info["curves"]):
+        steps += "Strips above the axes: intensities at which records were looked at; gaps were not. "
     return (
         f"{points}{steps}Curves: lognormal, by maximum likelihood (Baker 2015); shaded: {share} profile-likelihood "
         "band, pointwise. Where no curve is drawn, the table says why."
@@ -106,8 +110,11 @@ def _stroke(colour: int) -> Markup:
 
 
 def _panel(info: Mapping[str, Any], curves: Sequence[Curve], styles: Mapping[str, tuple[str, int]]) -> Markup:
-    axes = Axes(32, 20, WIDTH - 42, HEIGHT - 58, Scale(0.0, 1.1 * info["levels"][-1]), Scale(0.0, 1.0))
-    drawn = [axes.frame(axes.x.ticks(6), axes.y.ticks(5))]
+    strips = STRIP * sum(bool(one.get("looked")) for one in curves)
+    axes = Axes(
+        32, 20 + strips, WIDTH - 42, HEIGHT - 58 - strips, Scale(0.0, 1.1 * info["levels"][-1]), Scale(0.0, 1.0)
+    )
+    drawn = [axes.frame(axes.x.ticks(6), axes.y.ticks(5)), *_strips(axes, curves, styles)]
     for one in curves:
         drawn += _band(axes, one, styles[_label(one)][1])
     for one in curves:
@@ -116,6 +123,16 @@ def _panel(info: Mapping[str, Any], curves: Sequence[Curve], styles: Mapping[str
     drawn.append(text(axes.left - 26, 11, "probability", class_="q"))
     said = f"Probability of {curves[0]['limit_state']} over {info['measure']}"
     return svg(WIDTH, HEIGHT, *drawn, description=said, class_="plot marks")
+
+
+def _strips(axes: Axes, curves: Sequence[Curve], styles: Mapping[str, tuple[str, int]]) -> Iterator[Markup]:
+    """Where first exceedances were looked for, a strip for each curve above the axes; a level is a dash of 2 px."""
+    looked = [one for one in curves if one.get("looked")]
+    for place, one in enumerate(looked):
+        y = axes.top - STRIP * (len(looked) - place)
+        for low, high in one["looked"]:
+            first, last = float(axes.across(low)), float(axes.across(high))
+            yield line(first - 1, y, last + 1, y, f"level s{styles[_label(one)][1]}")
 
 
 def _band(axes: Axes, one: Curve, colour: int) -> Iterator[Markup]:
