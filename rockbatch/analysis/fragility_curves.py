@@ -167,10 +167,12 @@ def _ratio(bounds: tuple[float, float]) -> float:
 
 def output(spec: FragilitySpec) -> Output:
     """What the runs have to bring beyond their peaks."""
+    needs = {DEMANDS[rule.demand].needs for rule in spec.limits}
     return Output(
         histories="none",
         both_laws=any(rule.other_law for rule in spec.limits),
-        forces=any(DEMANDS[rule.demand].of_forces for rule in spec.limits),
+        forces="forces" in needs,
+        rocking="rocking" in needs,
     )
 
 

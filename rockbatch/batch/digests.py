@@ -35,7 +35,10 @@ def study_digests(study: Study, motions: MotionSet) -> dict[str, str]:
         motions.motions,
         cases=study.cases,
         scales=(study.motions.polarity, study.motions.scale),
-        numerics=(study.numerics, study.output.both_laws, study.output.ledger, study.output.forces),
+        numerics=(
+            study.numerics,
+            *(getattr(study.output, key) for key in ("both_laws", "ledger", "forces", "rocking")),
+        ),
     )
 
 

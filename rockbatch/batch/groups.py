@@ -11,7 +11,7 @@ from rockbatch.motions import Motion
 from rockbatch.pier import Base
 from rockbatch.results.outcome import Outcome
 from rockbatch.simulation import Run, Stop, first_substeps, run_all_fixed, run_all_to_tolerance, steps_of
-from rockbatch.simulation.histories import with_observed, written
+from rockbatch.simulation.histories import told_apart, with_observed, written
 from rockbatch.study import Numerics, Output, Study
 
 MOST_STEPS_OF_A_LEDGER = 1_000_000
@@ -61,12 +61,10 @@ def outcomes_of(
         outcomes = run_all_to_tolerance(simulated, numerics.tolerance, quiet_s, stop)
     if output.both_laws:
         outcomes = _with_other_law(simulated, outcomes, quiet_s, stop)
-    if output.ledger or output.forces:
-        outcomes = [
-            outcome and _observed(run, outcome, quiet_s, output, stop)
-            for run, outcome in zip(simulated, outcomes, strict=True)
-        ]
-    return outcomes
+    return [
+        outcome and _observed(run, outcome, quiet_s, output, stop)
+        for run, outcome in zip(simulated, outcomes, strict=True)
+    ]
 
 
 def _with_other_law(
@@ -88,15 +86,16 @@ def _with_other_law(
 
 
 def _observed(run: Run, outcome: Outcome, quiet_s: float, output: Output, stop: Stop) -> Outcome | None:
-    """With what observers make of the run, written down: energy ledger and forces; unless it is very long or was refused."""
+    """With what observers make of the run, written down: lean, ledger and forces; unless it is very long or was refused."""
     if stop:
         return None
     steps = steps_of(run.motion, outcome.substeps, quiet_s)
     ledger = output.ledger and steps <= MOST_STEPS_OF_A_LEDGER
     sized = output.forces and steps <= MOST_STEPS_OF_FORCES
-    if not outcome.was_run or not (ledger or sized):
-        return outcome
     try:
+        outcome = told_apart(run, outcome, quiet_s, output.rocking)
+        if not outcome.was_run or not (ledger or sized):
+            return outcome
         rows = written(run, outcome, quiet_s, every_step=True)
     except InputError:  # too many impacts to be written down
         return outcome

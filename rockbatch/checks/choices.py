@@ -26,9 +26,12 @@ def unmet(
     scales: Collection[float],
     polarities: Collection[str],
     other_law: bool,
-    forces: bool,
+    output: Collection[str],
 ) -> Iterator[str]:
-    """What the rule chooses and is not there, each told in a message that starts with the name of its key."""
+    """What the rule chooses and is not there, each told in a message that starts with the name of its key.
+
+    ``output`` are the keys of [output] whose columns are there.
+    """
     for pattern in rule.case:
         if not any(_fits(name, pattern) for name in cases):
             meant = closest(pattern, cases)
@@ -44,8 +47,10 @@ def unmet(
             "other_law: there is no settlement by the other law; write both_laws = true under [output] of the study "
             "and run it, or leave other_law out"
         )
-    if DEMANDS[rule.demand].of_forces and not forces:
-        yield f"demand = {shown(rule.demand)}: there are no forces; write forces = true under [output] of the study and run it"
+    needs = DEMANDS[rule.demand].needs
+    if needs and needs not in output:
+        missing = f"there is no column of {needs}; write {needs} = true under [output] of the study and run it"
+        yield f"demand = {shown(rule.demand)}: {missing}"
 
 
 def _fits(name: str, pattern: str) -> bool:

@@ -59,8 +59,8 @@ class Demand:
         Beyond which a limit says nothing.
     verb : str
         Of an event: what a record then does.
-    of_forces : bool
-        Whether it takes the columns that [output] forces = true brings.
+    needs : "", "forces" or "rocking"
+        Key of [output] that brings the columns it takes.
     weighed : bool
         Whether it takes the mass of the pier.
     device : "", "damper" or "tendon"
@@ -75,7 +75,7 @@ class Demand:
     other_law: Callable[["pd.DataFrame", Case], Values] | None = None
     most: Most | None = None
     verb: str = ""
-    of_forces: bool = False
+    needs: str = ""
     weighed: bool = False
     device: str = ""
 
@@ -200,7 +200,7 @@ def _forces(words: str, *columns: str, factor: Callable[[Case], float] = lambda 
         none = np.isnan(value) & ~np.isnan(_numbers(runs, FORCES))
         return _without_error(factor(case) * np.where(none, 0.0, value))
 
-    return Demand(words, found, of_forces=True, weighed=columns[0].endswith(("_kN", "_kN_s")), **more)
+    return Demand(words, found, needs="forces", weighed=columns[0].endswith(("_kN", "_kN_s")), **more)
 
 
 def _thousand(case: Case) -> float:
@@ -216,6 +216,12 @@ _DECK = "greatest absolute horizontal acceleration of the deck"
 
 FORCES = "base_shear_m_s2"
 """A column that every run with forces has."""
+
+ROCKING = "theta_rocking_over_alpha"
+"""Likewise with rocking."""
+
+BROUGHT = {"forces": FORCES, "rocking": ROCKING}
+"""By keys of [output], a column that each brings."""
 
 MOST_FRICTION = 2.0
 """Coefficient of friction: concrete on concrete has 0.4 to 1."""
@@ -286,6 +292,12 @@ DEMANDS = {
     ),
     "heel_uplift_mm": _rotation(
         "greatest rise of the heel above the toe [mm]", "theta_max", lambda case: 1000.0 * _width(case) * _alpha(case)
+    ),
+    ROCKING: Demand(
+        "greatest rotation over α about where the pier would rest on its base as it then is",
+        _column(ROCKING),
+        most=Most(lambda case: 1.0, _OVERTURNS),
+        needs="rocking",
     ),
     "theta_res_over_alpha": _rotation("residual rotation over α", "theta_res", lambda case: 1.0, _SPRINGS),
     "theta_res_rad": _rotation("residual rotation [rad]", "theta_res", _alpha, _SPRINGS),

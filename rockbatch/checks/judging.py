@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from rockbatch.checks.choices import chooses, unmet
-from rockbatch.checks.demands import DEMANDS, FORCES, Case, has_device
+from rockbatch.checks.demands import BROUGHT, DEMANDS, Case, has_device
 from rockbatch.checks.rules import Rule
 from rockbatch.checks.statistics import STATISTICS, Values
 from rockbatch.checks.suite import (
@@ -71,7 +71,7 @@ def judge(
     stations = dict(records or _stations(runs))
     polarities, scales = list(runs["polarity"].unique()), [float(scale) for scale in runs["scale"].unique()]
     there: dict[str, Any] = {"scales": scales, "polarities": polarities, "other_law": OTHER_LAW in runs}
-    there["forces"] = FORCES in runs
+    there["output"] = [key for key, column in BROUGHT.items() if column in runs]
     there["cases"] = list(dict.fromkeys(str(case["case"]) for case in cases))
     wrong = [f"check {shown(rule.name)}: {problem}" for rule in rules for problem in unmet(rule, **there)]
     if wrong:

@@ -15,7 +15,7 @@ def tell(finished: "FinishedBatch", study: "Study") -> int:
     from rockbatch.checks.suite import simulated
     from rockbatch.checks.verdicts import CHECKS
     from rockbatch.commands import check
-    from rockbatch.commands.summary import linearised, other_law, sliding, summary
+    from rockbatch.commands.summary import leaning, linearised, other_law, sliding, summary
 
     code = 0
     if finished.without:
@@ -26,7 +26,7 @@ def tell(finished: "FinishedBatch", study: "Study") -> int:
     named = {motion.name: motion.short for motion in by_pga}
     show(summary(peaks, study.varied, named))
     told = peaks.assign(record=peaks["record"].map(named))
-    for warning in filter(None, (other_law(told, study.varied), linearised(told), sliding(told))):
+    for warning in filter(None, (other_law(told, study.varied), linearised(told), leaning(told), sliding(told))):
         say(warning)
     if study.checks:
         code = max(code, check.tell(finished.verdicts, finished.saved.directory / CHECKS))

@@ -4,6 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from rockbatch.commands.messages import in_width
+from rockbatch.results.outcome import LEANS
 from rockbatch.study import PIER_KEYS
 
 if TYPE_CHECKING:
@@ -89,6 +90,18 @@ def sliding(table: "pd.DataFrame") -> str:
     )
 
 
+def leaning(table: "pd.DataFrame") -> str:
+    """A warning where the greatest rotation is lean and not rocking; empty elsewhere."""
+    leans = int((table["theta_max_is"] == LEANS).sum())
+    if not leans:
+        return ""
+    runs = "of 1 run, marked lean, is" if leans == 1 else f"of {leans} runs, marked lean, is"
+    return (
+        f"theta_max/alpha {runs} mostly the lean of a base that has yielded; the column note has the rocking about it, and "
+        "with rocking = true under [output] so has a column, for all runs"
+    )
+
+
 def _block(runs: "pd.DataFrame", rows: list[str], case_keys: list[str]) -> str:
     import pandas as pd
 
@@ -99,6 +112,8 @@ def _block(runs: "pd.DataFrame", rows: list[str], case_keys: list[str]) -> str:
         cell = f"{run['theta_max_over_alpha']:.4f}"
         if run["status"] != "ok":
             cell = f"{run['status']} {cell}"
+        elif run["theta_max_is"]:
+            cell = f"{run['theta_max_is']} {cell}"
         cells.setdefault(line, {})[f"{run['case']} {varied}".strip()] = cell
     return in_width(pd.DataFrame.from_dict(cells, orient="index").fillna(""))
 

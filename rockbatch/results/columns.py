@@ -10,6 +10,7 @@ from itertools import groupby
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
+from rockbatch.checks.demands import ROCKING
 from rockbatch.checks.suite import MIRROR_OF, OTHER_LAW
 from rockbatch.motions import Motion, MotionSet
 from rockbatch.pier import Damper, Pier, Restraint, Tendon
@@ -291,6 +292,12 @@ MORE = (
         lambda ran: ran.outcome.flight_height or None, "m",
         OnPage("flight height [mm]", ".2f", 1000, "flight_duration_s"), sometimes=True,
     ),
+    Column(
+        "theta_max_is",
+        '"lean" where the greatest rotation is mostly that of a base that has yielded, about which the pier has rocked twice as '
+        "far before; empty where it rocks",
+        "theta_max_is", kind="text", page=OnPage("θ_max is", behind="theta_max_error"), bases=YIELDING, sometimes=True,
+    ),
 )  # fmt: skip
 """Columns that follow those of the varied keys. A table of an earlier version may lack the last of them."""
 
@@ -402,6 +409,18 @@ ASKED = (
         "settlement by the other spring law, Bouc–Wen or elastic–perfectly plastic; unless [output] both_laws = false",
         "settlement_other_law", "m", OnPage("by the other law [mm]", ".2f", 1000, "settlement_m"), bases=YIELDING,
         stood=True, asked=lambda study: study.output.both_laws,
+    ),
+    Column(
+        ROCKING,
+        "greatest rotation over α about where the pier would rest on its base as it then is; with [output] rocking = true",
+        "theta_rocking", page=OnPage("rocking/α", ".5f", behind="theta_max_is"), over_alpha=True,
+        asked=lambda study: study.output.rocking,
+    ),
+    Column(
+        "theta_lean_over_alpha", "rotation over α at which it would rest at the time of the greatest rotation, to its side; with "
+        "[output] rocking = true",
+        "theta_lean", page=OnPage("lean/α", ".5f", behind=ROCKING), over_alpha=True, bases=YIELDING, stood=True,
+        asked=lambda study: study.output.rocking,
     ),
     *DEVICES,
     *map(_energy, TERMS),

@@ -10,6 +10,9 @@ WOULD_SLIDE = "would slide"
 LINEARISED = "linearised kinematics"
 """Words of a note on a run whose rotations are too large for them."""
 
+LEANS = "lean"
+"""What the greatest rotation is where the pier hardly rocks then, on a base that has yielded."""
+
 
 @dataclass(frozen=True)
 class PeakForces:
@@ -85,6 +88,11 @@ class Outcome:
         What else there is to know of a run that is right: counts that have not settled, say; empty otherwise.
     theta_max, t_max : float
         Greatest rotation |θ| [rad] until the end of the run, and its time [s].
+    theta_max_is : str
+        "lean" where ``theta_max`` is mostly the lean of a base that has yielded; empty where the pier rocks.
+    theta_rocking, theta_lean : float or None
+        Greatest rotation about where the pier would rest on its base as it then was, and where it would at ``t_max`` [rad, to
+        the side of the peak]; where it was asked for.
     theta_max_error, theta_res_error : float or None
         Estimated errors of ``theta_max`` and ``theta_res`` [rad]; ``None`` with a fixed step.
     theta_res, base_tilt : float or None
@@ -159,6 +167,9 @@ class Outcome:
     flights: int = 0
     flight_duration: float = 0.0
     flight_height: float = 0.0
+    theta_max_is: str = ""
+    theta_rocking: float | None = None
+    theta_lean: float | None = None
 
     @property
     def was_run(self) -> bool:

@@ -10,12 +10,13 @@ from rockbatch.core.observe.ledger import LEDGER, ledger_on_rigid_base, ledger_o
 from rockbatch.errors import InputError
 from rockbatch.motions.motion import Motion, Samples
 from rockbatch.motions.plausible import unlikely_samples
-from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, problems, unlikely_devices
+from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, YieldingBase, problems, unlikely_devices
 from rockbatch.results.columns import TERMS, as_series, row
 from rockbatch.results.outcome import Outcome
 from rockbatch.results.response import EVENT_TYPES, Response
 from rockbatch.simulation import restraints
 from rockbatch.simulation.forces import at_rows, forces_table, impacts_table, peak_forces
+from rockbatch.simulation.leaning import apart, may_lean, with_rocking
 from rockbatch.simulation.models import block, ground_of, least_substeps, springs
 from rockbatch.simulation.runs import Run, run_fixed, steps_of, written_run
 from rockbatch.simulation.settling import run_to_tolerance
@@ -119,6 +120,7 @@ def simulate(
     if not outcome.was_run:
         raise InputError(f"{motion.name}: {outcome.reason}")
     run, name = Run(pier, foundation, motion), case or foundation.name
+    outcome = told_apart(run, outcome, quiet_s, wait=wait)
     found = histories(run, outcome, quiet_s, name, {}, ledger=ledger, forces=forces, wait=wait)
     if ledger or forces:
         rows = written(run, outcome, quiet_s, every_step=True, wait=wait)
@@ -157,6 +159,16 @@ def energies(run: Run, rows: np.recarray) -> Samples:
     else:
         ledger_on_springs(springs(pier, base), plain, pulls, ground, dt, balance)
     return restraints.with_devices(pier, base, rows, terms) if base.restraints else terms
+
+
+def told_apart(run: Run, outcome: Outcome, quiet_s: float, wanted: bool = False, wait: bool = True) -> Outcome:
+    """With rocking and lean apart if that is ``wanted``, or if the peak may be lean; by one more run on yielding springs."""
+    if not outcome.was_run or not (wanted or may_lean(outcome)):
+        return outcome
+    if not isinstance(run.base, YieldingBase) or outcome.status == "overturned":
+        return replace(outcome, theta_rocking=outcome.theta_max) if wanted else outcome
+    rows = written(run, outcome, quiet_s, every_step=False, wait=wait)
+    return with_rocking(outcome, apart(run.pier, run.base, rows), run.pier.alpha)
 
 
 def with_observed(run: Run, outcome: Outcome, rows: np.recarray, ledger: bool, forces: bool) -> Outcome:

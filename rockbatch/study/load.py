@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from rockbatch.checks.choices import unmet
+from rockbatch.checks.demands import BROUGHT
 from rockbatch.checks.plausible import implausible
 from rockbatch.checks.reading import CHECK, SUITE, read_checks
 from rockbatch.checks.rules import Rule
@@ -45,6 +46,7 @@ OUTPUT = {
     "histories_MB": Key(positive, "50"),
     "ledger": Key(boolean, "true"),
     "forces": Key(boolean, "true"),
+    "rocking": Key(boolean, "true"),
     "both_laws": Key(boolean, "true"),
     "intensity": Key(boolean, "true"),
     "sa_periods_s": Key(positive, "[0.5, 1.0, 2.0]", many=True),
@@ -164,7 +166,7 @@ def _unfit(cases: Sequence[Expanded], motions: MotionSpec, output: Output, rule:
         scales=motions.scale,
         polarities=motions.polarity,
         other_law=output.both_laws,
-        forces=output.forces,
+        output=[key for key in BROUGHT if getattr(output, key)],
     )
     told = [{"case": each.name, "base": each.base.name, "pier": described(each.pier)} for each in cases]
     yield from implausible(rule, told)

@@ -119,6 +119,8 @@ class Output:
         The energy ledger of every run (THEORY.md, Energy ledger).
     forces : bool
         What designers size, of every run: base shear, friction, supports, gaps, the deck, impacts (THEORY.md, Forces).
+    rocking : bool
+        Rocking about the lean of a base that has yielded, apart from it (THEORY.md, Results of a run).
     both_laws : bool
         The settlement of yielding springs by the other law too (THEORY.md, Results of a run); a third run at the kept step.
     intensity : bool
@@ -132,6 +134,7 @@ class Output:
     histories_MB: float = 20.0  # noqa: N815 (the study's key)
     ledger: bool = False
     forces: bool = False
+    rocking: bool = False
     both_laws: bool = True
     intensity: bool = False
     sa_periods_s: tuple[float, ...] = (0.5, 1.0, 2.0, 4.0)

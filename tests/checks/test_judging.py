@@ -299,7 +299,7 @@ DEVICES = {
     "tendon_force_over_weight": 0.3, "tendon_yield_m": 0.004, "tendon_slack": 2,
 }  # fmt: skip
 FLIGHTS = {"flights": 2, "flight_duration_s": 0.05, "flight_height_m": 0.002}
-ROW |= FORCES | DEVICES | FLIGHTS | {"flight_s": 1.2}
+ROW |= FORCES | DEVICES | FLIGHTS | {"flight_s": 1.2, "theta_rocking_over_alpha": 0.25}
 TIED = case(base=replace(PADS, restraints=(Damper("viscous", nu=0.1), Tendon(psi=0.1))))
 B, H = 7.3575 * math.sin(0.2), 7.3575 * math.cos(0.2)
 TILT_OVER_RESIDUAL = 1 - 9.81 * H / (50.0 * B) ** 2
@@ -327,6 +327,7 @@ BY_HAND = {  # value and error for θ_max/α = 0.3, α = 0.2
     "stiffness_kN_m": (50.0**2 * 3000 / 2, 0.0),
     "top_drift_mm": (2000 * H * 0.06, 2000 * H * 0.0002),
     "heel_uplift_mm": (2000 * B * 0.06, 2000 * B * 0.0002),
+    "theta_rocking_over_alpha": (0.25, 0.0),
     **{name: (value, 0.0) for name, value in FORCES.items() if "left" not in name and "right" not in name},
     "pivot_force": (2.2, 0.0),
     "pivot_force_kN": (32373.0, 0.0),
@@ -368,9 +369,11 @@ def test_a_demand_that_a_base_does_not_have_does_not_apply(demand):
     assert {each.case: each.verdict != "does not apply" for each in found} == expected
 
 
-@pytest.mark.parametrize("demand", [name for name, demand in DEMANDS.items() if demand.of_forces])
+@pytest.mark.parametrize("demand", [name for name, demand in DEMANDS.items() if demand.needs == "forces"])
 def test_a_demand_of_forces_is_refused_where_nobody_asked_for_them(demand):
-    with pytest.raises(InputError, match=rf'demand = "{demand}": there are no forces; write forces = true under'):
+    with pytest.raises(
+        InputError, match=rf'demand = "{demand}": there is no column of forces; write forces = true under'
+    ):
         judged(runs([0.3]), demand=demand, at_most=100.0)
 
 

@@ -57,6 +57,7 @@ duration_s = 2.0
 [output]
 ledger = true
 forces = true
+rocking = true
 
 [[case]]
 name = "rigid"

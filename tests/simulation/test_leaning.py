@@ -1,0 +1,108 @@
+"""Rocking apart from the lean of a base that has yielded: what the greatest rotation is, in rows, notes, columns and checks."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from studies import study_text, write_study
+
+import rockbatch as rb
+from rockbatch.batch.groups import outcomes_of
+from rockbatch.batch.plan import PlannedRun
+from rockbatch.checks.judging import judge
+from rockbatch.commands.summary import leaning, summary
+from rockbatch.errors import InputError
+from rockbatch.motions import Motion
+from rockbatch.pier import ElasticBase, Pier, YieldingBase
+from rockbatch.report.sections.peaks import outcome
+from rockbatch.results.columns import as_table, row
+from rockbatch.results.run_json import describe_case
+from rockbatch.simulation import Run, run_to_tolerance
+from rockbatch.simulation.histories import written
+from rockbatch.simulation.leaning import lean_of
+from rockbatch.study import Case, Numerics, Output, load_study
+
+PIER = Pier(alpha=0.2, p=1.0)
+PADS = YieldingBase(beta=40, eta=2.0, zeta=0.02)
+ON_PADS = {"name": "pads", "base": "yielding", "beta": 40, "eta": 2.0, "zeta": 0.02}
+
+
+def pulse_and_vibration(vertical):
+    """A horizontal one-sine of 0.25 g over the first second, and from 4 to 20 s a vertical vibration at 4 Hz."""
+    t = np.arange(0.0, 20.0, 0.01)
+    horizontal = np.where(t < 1.0, 0.25 * 9.81 * np.sin(2 * np.pi * t), 0.0)
+    return Motion("shaken", 0.01, horizontal, np.where(t > 4.0, vertical * 9.81 * np.sin(8 * np.pi * t), 0.0))
+
+
+def outcome_of(base, motion, **output):
+    planned = PlannedRun(motion, "+", 1.0, Case("case", PIER, base, {}))
+    (outcome,) = outcomes_of([planned], Numerics(tolerance=1e-4), Output(both_laws=False, **output))
+    return outcome
+
+
+@pytest.mark.parametrize("base", [PADS, replace(PADS, kinematics="finite"), replace(PADS, spring="epp")])
+def test_where_a_pier_would_rest_at_the_end_is_the_residual_rotation_of_its_row(base):
+    """The core reads that by itself, from the supports' positions, some time after the record."""
+    motion = pulse_and_vibration(0.3)
+    outcome = run_to_tolerance(PIER, base, motion, 1e-4)
+    rows = written(Run(PIER, base, motion), outcome, 2.0, every_step=False)
+    at = int(np.argmin(np.abs(rows.t - outcome.t_read)))
+    assert lean_of(PIER, base, rows)[at] == pytest.approx(outcome.theta_res, rel=1e-9)
+    assert abs(outcome.theta_res) > 0.01 * PIER.alpha
+
+
+def test_a_peak_that_is_lean_is_said_to_be_with_the_rocking_before_it():
+    """The pulse rocks the pier as far as it does without the vibration after it, which then tilts the base: the peak grows, the
+    rocking does not."""
+    rocked, leaned = (outcome_of(PADS, pulse_and_vibration(vertical), rocking=True) for vertical in (0.0, 0.5))
+    assert rocked.theta_max_is == ""
+    assert "lean" not in rocked.note
+    assert leaned.theta_max_is == "lean"
+    assert leaned.theta_max > 1.4 * rocked.theta_max
+    assert leaned.t_max > 4.0
+    assert leaned.theta_rocking == pytest.approx(rocked.theta_rocking, rel=1e-3)
+    assert leaned.theta_lean == pytest.approx(abs(leaned.theta_res), rel=0.05)
+    told = f"the base leaned by {leaned.theta_lean / PIER.alpha:.4f} alpha"
+    assert told in leaned.note
+    assert f"by {leaned.theta_rocking / PIER.alpha:.4f} alpha at most, at 1." in leaned.note
+
+
+def test_who_does_not_ask_has_the_note_all_the_same_and_pays_for_it_where_the_peak_may_be_lean_only():
+    leaned = outcome_of(PADS, pulse_and_vibration(0.5))
+    assert (leaned.theta_max_is, "mostly lean" in leaned.note) == ("lean", True)
+    assert rb.simulate(PIER, PADS, pulse_and_vibration(0.5)).row["theta_max_is"] == "lean"
+    assert outcome_of(PADS, pulse_and_vibration(0.0)).theta_rocking is None
+
+
+@pytest.mark.parametrize(
+    "base", [rb.RigidBase(), ElasticBase(40), replace(PADS, eta=50.0, spring="epp")], ids=["rigid", "elastic", "strong"]
+)
+def test_where_nothing_yields_all_of_the_rotation_is_rocking(base):
+    outcome = outcome_of(base, pulse_and_vibration(0.0), rocking=True)
+    assert outcome.theta_rocking == pytest.approx(outcome.theta_max, rel=1e-4)
+    assert abs(outcome.theta_lean or 0.0) < 1e-12
+
+
+def test_a_check_may_ask_for_the_rocking_and_the_tables_mark_the_lean(tmp_path):
+    """The rocking is within a limit that the peak, mostly lean, exceeds."""
+    checks = [
+        {"name": name, "demand": f"theta_{name}_over_alpha", "at_most": 0.1, "reason": "a limit"} for name in ("max", "rocking")
+    ]  # fmt: skip
+    text = study_text(cases=(ON_PADS,), check=checks, output={"rocking": True})
+    study = load_study(write_study(tmp_path, text))
+    (one,) = study.cases
+    motion = pulse_and_vibration(0.5)
+    runs = as_table([row(motion, "+", 1.0, one, outcome_of(one.base, motion, rocking=True))], study)
+    verdicts = judge(study.checks, runs, [describe_case(one)])
+    assert [verdict.verdict for verdict in verdicts] == ["fail", "pass"]
+    assert verdicts[1].value == runs["theta_rocking_over_alpha"][0]
+    shown = summary(runs, (), {"shaken": "shaken"})
+    assert f"lean {runs['theta_max_over_alpha'][0]:.4f}" in shown
+    assert "of 1 run, marked lean, is mostly the lean" in leaning(runs)
+    assert ">lean</sup>" in outcome(runs.iloc[0].to_dict())
+
+
+def test_a_check_of_rocking_is_refused_where_nobody_asked_for_it(tmp_path):
+    check = {"name": "rocking", "demand": "theta_rocking_over_alpha", "at_most": 0.1, "reason": "a limit"}
+    with pytest.raises(InputError, match="there is no column of rocking; write rocking = true under"):
+        load_study(write_study(tmp_path, study_text(check=[check])))
