@@ -165,12 +165,12 @@ def _ratio(bounds: tuple[float, float]) -> float:
     return high / low if low > 0 else math.inf
 
 
-def output(spec: FragilitySpec) -> Output:
-    """What the runs have to bring beyond their peaks."""
+def output(spec: FragilitySpec, both_laws: bool) -> Output:
+    """What the runs have to bring beyond their peaks; ``both_laws`` where the study does not do without."""
     needs = {DEMANDS[rule.demand].needs for rule in spec.limits}
     return Output(
         histories="none",
-        both_laws=any(rule.other_law for rule in spec.limits),
+        both_laws=both_laws and any(DEMANDS[rule.demand].other_law for rule in spec.limits),
         forces="forces" in needs,
         rocking="rocking" in needs,
     )

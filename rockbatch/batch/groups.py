@@ -70,15 +70,15 @@ def outcomes_of(
 def _with_other_law(
     runs: list[Run], outcomes: list[Outcome | None], quiet_s: float, stop: Stop
 ) -> list[Outcome | None]:
-    """With the settlement of yielding springs by the other spring law, at the steps that were kept."""
-    yielding = {
+    """With the settlement of springs that creep by the other law too, at the steps that were kept."""
+    creeping = {
         i: replace(run, base=run.base.by_other_law())
         for i, (run, outcome) in enumerate(zip(runs, outcomes, strict=True))
-        if run.base.yields and outcome is not None and outcome.was_run
+        if run.base.ratchets and outcome is not None and outcome.was_run
     }
-    substeps = [outcomes[i].substeps for i in yielding]  # type: ignore[union-attr]
-    others = run_all_fixed(list(yielding.values()), substeps, quiet_s, stop)
-    for i, other in zip(yielding, others, strict=True):
+    substeps = [outcomes[i].substeps for i in creeping]  # type: ignore[union-attr]
+    others = run_all_fixed(list(creeping.values()), substeps, quiet_s, stop)
+    for i, other in zip(creeping, others, strict=True):
         outcome = outcomes[i]
         assert outcome is not None
         outcomes[i] = other and replace(outcome, settlement_other_law=other.settlement)

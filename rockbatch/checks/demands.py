@@ -54,7 +54,7 @@ class Demand:
     of_the_case : bool
         Whether it is the same for all records.
     other_law : function or None
-        Values by the other spring law, shape (n,).
+        Values by the other spring law, shape (n,); the worse counts.
     most : Most or None
         Beyond which a limit says nothing.
     verb : str

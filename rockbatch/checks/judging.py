@@ -14,15 +14,16 @@ from rockbatch.checks.rules import Rule
 from rockbatch.checks.statistics import STATISTICS, Values
 from rockbatch.checks.suite import (
     OTHER_LAW,
+    by_other_law,
     by_record,
     complete,
     counted,
     counts_as,
+    creeps,
     governing,
     lacking,
     of_runs,
     simulated,
-    without_other_law,
 )
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, Verdict
 from rockbatch.errors import InputError
@@ -70,7 +71,8 @@ def judge(
         raise InputError("there is no run to check")
     stations = dict(records or _stations(runs))
     polarities, scales = list(runs["polarity"].unique()), [float(scale) for scale in runs["scale"].unique()]
-    there: dict[str, Any] = {"scales": scales, "polarities": polarities, "other_law": OTHER_LAW in runs}
+    there: dict[str, Any] = {"scales": scales, "polarities": polarities}
+    there["other_law"] = OTHER_LAW in runs or not any(map(creeps, cases))
     there["output"] = [key for key, column in BROUGHT.items() if column in runs]
     there["cases"] = list(dict.fromkeys(str(case["case"]) for case in cases))
     wrong = [f"check {shown(rule.name)}: {problem}" for rule in rules for problem in unmet(rule, **there)]
@@ -165,13 +167,13 @@ def _of_suite(rule: Rule, suite: "pd.DataFrame", case: Case, none: Verdict) -> V
         high = math.inf  # a response that is not known is not one of the unacceptable
     verdict, why = _decide(rule, low, high, "component" if unknown else none.count, n)
     remark = STATISTICS[rule.statistic or "max"].remark
-    missing = without_other_law(rule, suite, case)
+    at = governing(runs, kept, by_bound=verdict == NOT_DECIDED and low <= rule.limit < high)
     notes = [
         why,
         remark(bounds.high) if remark and n else "",
         unknown,
         "" if none.count == "component" else _told_lacking(lacking(kept, counted_as)),
-        f"by the other spring law {missing} of the runs did not go through" if missing else "",
+        _told_laws(rule, suite, case, at),
         "" if bounds.estimated or DEMANDS[rule.demand].event else "no error estimate",
     ]
     ratio, margin = _against(rule, value)
@@ -187,12 +189,24 @@ def _of_suite(rule: Rule, suite: "pd.DataFrame", case: Case, none: Verdict) -> V
         count="component" if unknown else none.count,
         note="; ".join(filter(None, notes)),
     )
-    at = governing(runs, kept, by_bound=verdict == NOT_DECIDED and low <= rule.limit < high)
     if at is None:
         return found
     run = suite.iloc[at]
     station, record, polarity = (str(run[name]) for name in ("station", "record", "polarity"))
     return replace(found, station=station, record=record, polarity=polarity, governing=float(runs.value[at]))
+
+
+def _told_laws(rule: Rule, suite: "pd.DataFrame", case: Case, at: int | None) -> str:
+    """That the worse of two spring laws counts, what the run ``at`` comes to by both, and how many did not go through."""
+    other = by_other_law(rule, suite, case)
+    if other is None:
+        return ""
+    told = "the worse of two spring laws counts"
+    if at is not None and np.isfinite(other[at]):
+        own = float(DEMANDS[rule.demand].of(suite, case).value[at])
+        told += f": {own:.4g} by that of the case, {other[at]:.4g} by the other"
+    missing = int((np.isnan(other) & (suite["status"] == "ok").to_numpy()).sum())
+    return told + (f"; by the other {missing} of the runs did not go through" if missing else "")
 
 
 def _told_lacking(records: Mapping[str, tuple[int, int]]) -> str:

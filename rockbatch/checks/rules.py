@@ -71,7 +71,8 @@ class Rule:
         How such runs count, one of :data:`COUNTING`; a run that has not settled, or was not run, is failed. ``None`` takes
         the usual: overturned is infinite, the others are unknown; under "asce7-16" all are unacceptable, hence infinite.
     other_law : bool
-        Whether the settlement by the other spring law bounds it too, as the model's uncertainty.
+        Whether the settlement by the other spring law has to be there: where both were run the worse counts in any case, and with
+        this a run that did not go through by the other one is unknown.
     confirm : tuple of str
         Those of at_most, at_least and above that are right though nothing exceeds them (:mod:`rockbatch.checks.plausible`).
 

@@ -10,6 +10,7 @@ import numpy.typing as npt
 from rockbatch.checks.demands import DEMANDS, Case
 from rockbatch.checks.rules import USUAL, Rule
 from rockbatch.checks.statistics import Values
+from rockbatch.pier.bases import RATCHETING
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -19,6 +20,11 @@ MIRROR_OF = "mirror_of"
 """Column of the polarity of the run whose mirror image a row is; only where a study has both polarities."""
 
 NOT_RUN = "not run"
+
+
+def creeps(case: Case) -> bool:
+    """Whether the springs of a case creep under vibration, so that another law gives its settlement a range."""
+    return case["parameters"].get("spring") in RATCHETING
 
 
 class Bounds(NamedTuple):
@@ -114,11 +120,10 @@ def of_runs(rule: Rule, runs: "pd.DataFrame", case: Case) -> tuple[Bounds, npt.N
             high = np.where((status == "failed") | (status == "flight"), 1.0, high)
         return Bounds(value, low, high, False), kept
 
-    own_low = low
-    if rule.other_law and demand.other_law:
-        other = demand.other_law(runs, case)
-        other = np.where(np.isnan(other) & (case["base"] == "yielding"), np.inf, other)
-        low, high = np.fmin(low, other), np.fmax(high, other)
+    other = by_other_law(rule, runs, case)
+    if other is not None:  # the worse counts
+        high = np.where(np.isnan(other) & rule.other_law, np.inf, np.fmax(high, other))
+        value, low = (np.where(np.isnan(value), np.nan, np.fmax(each, other)) for each in (value, low))
     unknown = np.zeros(len(runs), dtype=bool)
     for name in USUAL:
         has, way = status == name, rule.counts(name)
@@ -132,16 +137,14 @@ def of_runs(rule: Rule, runs: "pd.DataFrame", case: Case) -> tuple[Bounds, npt.N
     unknown |= missing
     # A peak or a count is at least what it was when the run was cut short; what has not settled is nothing
     nothing = missing | (unknown & (status == "failed"))
-    low, own_low = np.where(nothing, 0.0, low), np.where(nothing, 0.0, own_low)
-    return Bounds(np.where(unknown, own_low, value), low, np.where(unknown, np.inf, high), estimated), kept
+    low = np.where(nothing, 0.0, low)
+    return Bounds(np.where(unknown, low, value), low, np.where(unknown, np.inf, high), estimated), kept
 
 
-def without_other_law(rule: Rule, runs: "pd.DataFrame", case: Case) -> int:
-    """How many runs that went through have no value by the other spring law, though the rule asks for it."""
+def by_other_law(rule: Rule, runs: "pd.DataFrame", case: Case) -> Values | None:
+    """Values by the other spring law, shape (n,), NaN where it did not go through; None where it was not run."""
     other_law = DEMANDS[rule.demand].other_law
-    if not (rule.other_law and other_law) or case["base"] != "yielding":
-        return 0
-    return int((np.isnan(other_law(runs, case)) & (runs["status"] == "ok").to_numpy()).sum())
+    return other_law(runs, case) if other_law and OTHER_LAW in runs and creeps(case) else None
 
 
 def counted(rule: Rule, runs: "pd.DataFrame") -> str:

@@ -47,7 +47,7 @@ def _worst(runs: "pd.DataFrame", varied: tuple[str, ...]) -> str:
 
 
 def other_law(table: "pd.DataFrame", varied: Sequence[str]) -> str:
-    """A warning where the settlement depends on the spring law, by a tenth and a millimetre or more; empty elsewhere."""
+    """A warning where the settlement is a range by the spring law, of a tenth and a millimetre or more; empty elsewhere."""
     import numpy as np
 
     if "settlement_other_law_m" not in table:
@@ -60,9 +60,12 @@ def other_law(table: "pd.DataFrame", varied: Sequence[str]) -> str:
     worst = table.iloc[int(np.nanargmax(gap.to_numpy()))]
     told = ["scale", *varied] if table["scale"].nunique() > 1 else varied
     which = f"{worst['record']}, {worst['case']} {named(told, [worst[name] for name in told])}".rstrip()
+    mm = [1000 * worst[name] for name in ("settlement_m", "settlement_other_law_m")]
+    law = "Bouc–Wen" if mm[0] > mm[1] else "elastic–perfectly plastic"
+    runs = "1 run" if differ.sum() == 1 else f"{int(differ.sum())} runs"
     return (
-        f"the settlement depends on the spring law in {int(differ.sum())} runs, most in {which}: "
-        f"{1000 * worst['settlement_m']:z.1f} mm, by the other law {1000 * worst['settlement_other_law_m']:z.1f} mm"
+        f"settlement is no number but a range in {runs}, by the law of the springs, the widest in {which}: "
+        f"{min(mm):z.1f} to {max(mm):z.1f} mm, the larger by the {law} law; checks take the worse"
     )
 
 

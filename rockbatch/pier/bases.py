@@ -44,8 +44,8 @@ WITH_EXPONENT: tuple[SpringLaw, ...] = ("bouc-wen",)
 RATCHETING: tuple[SpringLaw, ...] = ("bouc-wen",)
 """Laws that creep under vibration: springs by them settle a little with every cycle below their yield force."""
 
-OTHER_LAW: dict[SpringLaw, SpringLaw] = {"bouc-wen": "epp", "epp": "bouc-wen"}
-"""For each law the one that shows how much a settlement depends on it (THEORY.md, Results of a run)."""
+OTHER_LAW: dict[str, SpringLaw] = {"bouc-wen": "epp"}
+"""For laws that creep under vibration one that does not: between both the settlement lies (THEORY.md, Results of a run)."""
 
 EPSILON_AND_ZETA = "zeta is given too, and a damped support takes a landing without an impulse; keep one"
 """What is said of both."""
@@ -223,8 +223,8 @@ class YieldingBase(ElasticBase):
         return self.spring in RATCHETING
 
     def by_other_law(self) -> Self:
-        """The same springs by the other law: Bouc–Wen for elastic–perfectly plastic, and the reverse."""
-        return replace(self, spring=OTHER_LAW[self.spring])
+        """The same springs by the other law, elastic–perfectly plastic for Bouc–Wen; themselves where they do not creep."""
+        return replace(self, spring=OTHER_LAW.get(self.spring, self.spring))
 
     def parameters(self, pier: Pier) -> dict[str, Any]:
         """What run.json says about these springs under ``pier``."""

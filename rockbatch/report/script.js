@@ -7,8 +7,8 @@ for (const table of document.querySelectorAll("table.sortable")) {
   const rows = [...body.rows];
   const heads = [...table.tHead.rows[table.tHead.rows.length - 1].cells];
 
-  // Numbers by value, words by alphabet, nothing last; rows that tie stay in their order
-  const number = (text) => Number(text.replace("∞", "Infinity").split(" of ")[0]);
+  // Numbers by value, ranges by their end, words by alphabet, nothing last; rows that tie stay in their order
+  const number = (text) => Number(text.replace("∞", "Infinity").split(" of ")[0].split("\u00a0–\u00a0").pop());
   const compare = (a, b) => {
     if (a === b) return 0;
     if (a === "" || b === "") return a === "" ? 2 : -2;

@@ -406,9 +406,11 @@ ASKED = (
     ),
     Column(
         OTHER_LAW,
-        "settlement by the other spring law, Bouc–Wen or elastic–perfectly plastic; unless [output] both_laws = false",
+        "settlement of Bouc–Wen springs by the elastic–perfectly plastic law: the other end of its range; unless [output] "
+        "both_laws = false",
         "settlement_other_law", "m", OnPage("by the other law [mm]", ".2f", 1000, "settlement_m"), bases=YIELDING,
-        stood=True, asked=lambda study: study.output.both_laws,
+        stood=True, sometimes=True, suite=OfSuite("Settlement by the other law [mm]", ".2f"),
+        asked=lambda study: study.output.both_laws and any(case.base.ratchets for case in study.cases),
     ),
     Column(
         ROCKING,

@@ -121,7 +121,7 @@ class Outcome:
     substeps : int
         Steps per sample.
     settlement_other_law : float or None
-        Settlement [m] by the other law of yielding springs, where it was asked for.
+        Settlement [m] of Bouc–Wen springs by the elastic–perfectly plastic law, where it was asked for.
     damper_force, damper_stroke, damper_speed, damper_energy : float or None
         Of dampers: greatest force over M g, elongation [m] and speed [m/s] of any; energy of all [J/kg].
     tendon_force, tendon_yield, tendon_slack : float or None

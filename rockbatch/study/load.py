@@ -165,7 +165,7 @@ def _unfit(cases: Sequence[Expanded], motions: MotionSpec, output: Output, rule:
         cases=list(dict.fromkeys(each.name for each in cases)),
         scales=motions.scale,
         polarities=motions.polarity,
-        other_law=output.both_laws,
+        other_law=output.both_laws or not any(each.base.ratchets for each in cases),
         output=[key for key in BROUGHT if getattr(output, key)],
     )
     told = [{"case": each.name, "base": each.base.name, "pier": described(each.pier)} for each in cases]

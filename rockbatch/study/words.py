@@ -205,7 +205,8 @@ OUTPUT = {
     "estimate": "Whether what the equivalent oscillators of design practice give is written beside the peaks.",
     "ledger": "Whether the energy ledger of every run is added to the table.",
     "rocking": "Whether rocking about a base that has yielded is told from its lean in every run, which takes one more.",
-    "both_laws": "Whether the settlement by the other spring law is found too, which takes one more run.",
+    "both_laws": "Whether the settlement of Bouc–Wen springs is found by the elastic–perfectly plastic law too, which takes one "
+    "more run; of others it is not a range.",
 }
 
 SUITE_ABOUT = "What holds for every check that does not say otherwise, and where more of them are."
@@ -240,7 +241,7 @@ CHECK = {
     'upwards; "value", as the table has it; "left out". "infinite" if it is not given.',
     "flight": 'How a run counts that was ended by flight; "unknown" if it is not given.',
     "failed": 'How a run counts that has not settled, or was not run; "unknown" if it is not given.',
-    "other_law": "Whether the settlement by the other spring law counts too, as a second bound.",
+    "other_law": "Whether nothing passes without the settlement by the other spring law; where both were run the worse counts.",
     "confirm": "Keys of this check that are right though nothing could exceed such a limit.",
 }
 

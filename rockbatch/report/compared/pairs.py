@@ -28,7 +28,11 @@ def section(pair: Pair) -> Section | None:
         Head("B", THETA_FORMAT, over=THETA),
         Head("B / A", ".3f", over=THETA),
     ]
-    more = [column for column in COLUMNS.values() if column.suite and column.name != "theta_max_over_alpha"]
+    more = [
+        column
+        for column in COLUMNS.values()
+        if column.suite and column.name != "theta_max_over_alpha" and column.name in a and column.name in b
+    ]
     heads += [Head(side, over=head(column).says, form=head(column).form) for column in more for side in SIDES]
     pairs = as_dicts(a.iloc[order]), as_dicts(b.iloc[order])
     rows = []

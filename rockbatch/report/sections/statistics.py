@@ -88,7 +88,8 @@ def tables(
     """
     drawn = [tag("p", RECORDS[count] + WORDS)]
     for column in COLUMNS.values():
-        if column.suite is None or column.page is None:
+        there = all(column.name in runs for side in sides.values() for runs in side.values())
+        if column.suite is None or column.page is None or not there:
             continue
         says, form = heading(column.suite.heading), column.suite.form
         found = {
