@@ -60,6 +60,7 @@ def _peak(finished: Finished) -> Facts:
     when = f", at t = {number(float(run['t_max_s']))} s" if run["t_max_s"] == run["t_max_s"] else ""
     told = join(
         tag("strong", "θ", tag("sub", "max"), f" = {number(theta)} α, {number(math.degrees(theta * alpha), '.3g')}°"),
+        " (mostly the lean of a base that has yielded)" if run["theta_max_is"] else "",
         f" ({number(theta * alpha, '.3g')} rad), and the heel rises by ",
         tag("strong", f"{number(1000 * _uplift(finished, run), '.3g')}\u00a0mm"), f": {finished.where(run)}{when}",
         ", of the runs that end standing." if runs["status"].isin(NO_PEAK).any() else ".",

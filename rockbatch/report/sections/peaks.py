@@ -69,7 +69,7 @@ def outcome(run: "dict[str, Any] | None", worst: float = math.nan) -> object:
     value = number(theta, THETA_FORMAT)
     shown = tag("strong", value) if theta == worst else value
     if run["theta_max_is"]:
-        title = "lean of a base that has yielded, not rocking: see the note of this run"
+        title = "mostly the lean of a base that has yielded: see the note of this run"
         shown = join(shown if isinstance(shown, Markup) else value, tag("sup", run["theta_max_is"], title=title))
     if flight == flight:
         return join(shown, tag("sup", "f", title=f"both pivots in the air first at {number(flight)} s"))
