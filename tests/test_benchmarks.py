@@ -4,9 +4,10 @@ import importlib
 from importlib.util import find_spec
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from rockbatch.motions import pulse
+from rockbatch.motions import Motion, pulse
 from rockbatch.pier import Pier, YieldingBase
 from rockbatch.simulation import run_to_tolerance
 
@@ -49,6 +50,32 @@ def test_every_solver_is_as_accurate_as_asked(benchmark):
     for row in rows:
         if row not in absent:
             assert float(row[3]) <= module.ACCURACY
+
+
+@pytest.mark.slow
+def test_loops_of_spring_laws_are_closed_but_for_bouc_wen(benchmark):
+    """A cycle of ±30 % about the weight, over δ_s: ∫ zⁿ/(1 − zⁿ) dz for Bouc–Wen (test_ratchet), nothing for the others."""
+    module = benchmark("spring_laws")
+    z = np.linspace(0.7 / 2.5, 1.3 / 2.5, 2001)
+    expected = 2.5 * np.trapezoid(z**5 / (1.0 - z**5), z)
+    assert [module.per_cycle(law) for law in range(4)] == [pytest.approx(expected, rel=1e-3)] + 3 * [
+        pytest.approx(0.0, abs=1e-9)
+    ]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("law", ["bouc-wen", "epp"])
+def test_settlements_agree_with_a_solver_that_knows_other_laws_too(benchmark, law):
+    """A one-sine and vertical vibration; the other solver is of first order, with steps of 20 µs."""
+    module = benchmark("spring_laws")
+    t = np.arange(0.0, 6.0, 0.01)
+    horizontal, vertical = 2.5 * np.sin(2 * np.pi * t) * (t < 1.0), 3.0 * np.sin(8 * np.pi * t) * (t > 2.0)
+    base = YieldingBase.from_stiffness(module.PIER, **module.PADS, spring=law)
+    here = run_to_tolerance(module.PIER, base, Motion("shaken", 0.01, horizontal, vertical), 1e-4)
+    ground = [np.append(a, np.zeros(200)) for a in (horizontal, vertical)]
+    settlement, theta = module.settled(module.model(base, module.LAWS.index(law)), *ground, 0.01, 500)
+    assert settlement == pytest.approx(here.settlement, rel=2e-3)
+    assert theta == pytest.approx(here.theta_max, rel=2e-3)
 
 
 def test_errors_are_held_against_the_reported_ones_with_dampers_too(benchmark):

@@ -99,7 +99,7 @@ def test_a_check_may_ask_for_the_rocking_and_the_tables_mark_the_lean(tmp_path):
     shown = summary(runs, (), {"shaken": "shaken"})
     assert f"lean {runs['theta_max_over_alpha'][0]:.4f}" in shown
     assert "of 1 run, marked lean, is mostly the lean" in leaning(runs)
-    assert ">lean</sup>" in outcome(runs.iloc[0].to_dict())
+    assert "lean</sup>" in outcome(runs.iloc[0].to_dict())
 
 
 def test_a_check_of_rocking_is_refused_where_nobody_asked_for_it(tmp_path):

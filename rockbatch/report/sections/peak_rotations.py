@@ -12,6 +12,7 @@ from rockbatch.report.markup import Markup, join, tag
 from rockbatch.report.overview import by_foundation, ceiling
 from rockbatch.report.sections.peaks import at_a_glance
 from rockbatch.report.table import THETA
+from rockbatch.results.outcome import LEANS
 from rockbatch.results.suite_statistics import NO_PEAK
 
 if TYPE_CHECKING:
@@ -39,9 +40,18 @@ def section(contents: Contents) -> Section | None:
     if max(group["series"].nunique() for _, group in finished.groups()) > MOST_SERIES:
         return Section("Peak rotations", "figure", by_foundation(finished))
     drawn = figures(finished, caption)
-    flew = ((runs["status"] == "ok") & runs["flight_s"].notna()).any()
-    legend = tag("sup", "f"), " both pivots left the ground on the way; the pier was guided down."
-    return Section("Peak rotations", "figure", join(drawn, tag("p", *legend, class_="legend") if flew else ""))
+    stood = runs[runs["status"] == "ok"]
+    marks = {
+        "f": ("both pivots left the ground on the way; the pier was guided down.", stood["flight_s"].notna()),
+        LEANS: (
+            "mostly the lean of a base that has yielded, not rocking; see the note of the run.",
+            stood["theta_max_is"] == LEANS,
+        ),
+    }
+    legend = [
+        tag("p", tag("sup", mark), " ", words, class_="legend") for mark, (words, has) in marks.items() if has.any()
+    ]
+    return Section("Peak rotations", "figure", join(drawn, *legend))
 
 
 def chosen(finished: Finished, runs: "pd.DataFrame", figures: int = 1) -> list[str]:

@@ -68,12 +68,12 @@ def outcome(run: "dict[str, Any] | None", worst: float = math.nan) -> object:
         return alarm(status)
     value = number(theta, THETA_FORMAT)
     shown = tag("strong", value) if theta == worst else value
-    if run["theta_max_is"]:
-        title = "mostly the lean of a base that has yielded: see the note of this run"
-        shown = join(shown if isinstance(shown, Markup) else value, tag("sup", run["theta_max_is"], title=title))
+    marks = []
     if flight == flight:
-        return join(shown, tag("sup", "f", title=f"both pivots in the air first at {number(flight)} s"))
-    return shown if isinstance(shown, Markup) else theta
+        marks.append(tag("sup", "f", title=f"both pivots in the air first at {number(flight)} s"))
+    if leans := run["theta_max_is"]:
+        marks.append(tag("sup", "\u2009", leans, title="mostly the lean of a base that has yielded; see its note"))
+    return join(shown, *marks) if marks or isinstance(shown, Markup) else theta
 
 
 def _every_run(finished: Finished) -> Markup:
