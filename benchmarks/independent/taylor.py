@@ -1,6 +1,6 @@
 """A block on rigid ground by Taylor series, whose zero crossings are certain: thousands of records in a minute.
 
-The equations are those of THEORY.md, section 5, written anew. Where the ground is linear in time, the solution is expanded
+The equations are those of THEORY.md (Rigid base), written anew. Where the ground is linear in time, the solution is expanded
 to order 20 about the start of a sub-step. What may happen (impact, take-off, landing, reversal) is the first zero of a
 polynomial, and its Bernstein coefficients prove where it has none: nothing happens unseen, however briefly. Zeros at the start
 of a sub-step, where an event has just been, are divided out.
