@@ -6,7 +6,6 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
 
 from rockbatch.checks.choices import chooses, unmet
 from rockbatch.checks.demands import BROUGHT, DEMANDS, Case, has_device
@@ -24,6 +23,7 @@ from rockbatch.checks.suite import (
     lacking,
     of_runs,
     simulated,
+    suites,
 )
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, Verdict
 from rockbatch.errors import InputError
@@ -80,11 +80,8 @@ def judge(
         raise InputError(*wrong)
     runs = simulated(runs)
     polarities = list(runs["polarity"].unique())
-    by_name = dict(iter(runs.groupby("case", sort=False)))
     verdicts = []
-    for case in cases:
-        mine = by_name.get(case["case"], runs[:0])
-        mine = mine[_has(mine, case["columns"])]
+    for case, mine in suites(runs, cases):
         for scale in scales:
             suite = complete(mine[mine["scale"] == scale], stations, polarities)
             for rule in rules:
@@ -99,17 +96,6 @@ def _stations(runs: "pd.DataFrame") -> dict[str, str]:
     """The station of every record in a table; empty where it does not say."""
     known = runs["station"].fillna("").astype(str) if "station" in runs else [""] * len(runs)
     return dict(zip(runs["record"], known, strict=True))
-
-
-def _has(runs: "pd.DataFrame", columns: Mapping[str, float | str]) -> npt.NDArray[np.bool_]:
-    """Which runs have these values of the varied keys, shape (n,)."""
-    found = np.ones(len(runs), dtype=bool)
-    for name, value in columns.items():
-        if isinstance(value, str):
-            found &= (runs[name] == value).to_numpy()
-        else:  # peaks.csv has ten digits of it
-            found &= np.isclose(runs[name].to_numpy(np.float64, na_value=np.nan), value, rtol=1e-9, atol=0.0)
-    return found
 
 
 def _verdict(rule: Rule, suite: "pd.DataFrame", case: Case, scale: float, count: str) -> Verdict:

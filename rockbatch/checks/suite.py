@@ -1,7 +1,7 @@
 """The runs of one case at one scale: what each record demands, and between which bounds."""
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -44,6 +44,25 @@ class Bounds(NamedTuple):
 def simulated(runs: "pd.DataFrame") -> "pd.DataFrame":
     """Rows of peaks.csv without mirror images, which say nothing more: each run counts once."""
     return runs[runs[MIRROR_OF] == ""] if MIRROR_OF in runs else runs
+
+
+def suites(runs: "pd.DataFrame", cases: Iterable[Case]) -> "Iterator[tuple[Case, pd.DataFrame]]":
+    """Yield every case with its rows of peaks.csv."""
+    by_name = dict(iter(runs.groupby("case", sort=False)))
+    for case in cases:
+        own = by_name.get(case["case"], runs[:0])
+        yield case, own[_has(own, case["columns"])]
+
+
+def _has(runs: "pd.DataFrame", columns: Mapping[str, float | str]) -> npt.NDArray[np.bool_]:
+    """Which runs have these values of the varied keys, shape (n,)."""
+    found = np.ones(len(runs), dtype=bool)
+    for name, value in columns.items():
+        if isinstance(value, str):
+            found &= (runs[name] == value).to_numpy()
+        else:  # peaks.csv has ten digits of it
+            found &= np.isclose(runs[name].to_numpy(np.float64, na_value=np.nan), value, rtol=1e-9, atol=0.0)
+    return found
 
 
 def complete(runs: "pd.DataFrame", stations: Mapping[str, str], polarities: Sequence[str]) -> "pd.DataFrame":

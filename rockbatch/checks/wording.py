@@ -31,13 +31,31 @@ def _is_open(one: Verdict) -> bool:
     return math.isinf(one.high) and math.isfinite(one.value)
 
 
+def number(value: float, beside: float = math.nan) -> str:
+    """A value in four significant digits, in more of them where it would look the same as a limit that it is not."""
+    if not math.isfinite(value):
+        return "∞" if value > 0 else "-∞"
+    digits = next((n for n in range(4, 10) if value == beside or f"{value:.{n}g}" != f"{beside:.{n}g}"), 10)
+    rounded = float(f"{value:.{digits}g}")
+    return f"{rounded:,.10g}" if rounded == 0 or 1e-4 <= abs(rounded) < 1e7 else f"{rounded:.{digits}g}"
+
+
+def against(one: Verdict) -> str:
+    """Demand and limit with their sign and unit: "1.486 m > 0.5 m"."""
+    sign = (
+        ("≤" if one.value <= one.limit else ">") if one.sense == "at most" else "≥" if one.value >= one.limit else "<"
+    )
+    words = f"{demanded(one)} {one.unit}".strip(), f"{number(one.limit)} {one.unit}".strip()
+    return f" {sign} ".join(words).replace(" ", "\u00a0")
+
+
 def demanded(one: Verdict) -> str:
     """The demand as a number without its unit; of an event that no record may do, whether one does."""
     value = one.value
     if math.isnan(value):
         return ""
     if not one.is_ban:
-        return "∞" if math.isinf(value) else f"≥\u00a0{value:.4g}" if _is_open(one) else f"{value:.4g}"
+        return f"≥\u00a0{number(value)}" if _is_open(one) else number(value, one.limit)
     if value > 0:
         return "some"
     return "none" if one.high <= 0 else "not known"
@@ -47,7 +65,7 @@ def limit(one: Verdict, signs: Sequence[str] = ("≤", "≥")) -> str:
     """The limit with its sign, without its unit."""
     if one.is_ban:
         return "none"
-    return f"{signs[one.sense != 'at most']}\u00a0{one.limit:.4g}"
+    return f"{signs[one.sense != 'at most']}\u00a0{number(one.limit)}"
 
 
 def ratio(one: Verdict) -> str:
@@ -93,7 +111,7 @@ def governing(one: Verdict) -> str:
         return told
     if math.isinf(one.governing):
         return f"{told}, beyond any limit"
-    return f"{told}, {one.governing:.4g} {_unit_of_demand(one)}".rstrip()
+    return f"{told}, {number(one.governing)} {_unit_of_demand(one)}".rstrip()
 
 
 def _unit_of_demand(one: Verdict) -> str:

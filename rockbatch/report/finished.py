@@ -8,6 +8,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from rockbatch.checks.responses import Worst, worst_of_cases
 from rockbatch.checks.suite import counts_as, simulated
 from rockbatch.errors import InputError
 from rockbatch.report.labels import Key, Series, digits_that_tell, named, quantity
@@ -64,6 +65,13 @@ class Finished:
         """What counts as one record: "station", or "component"; the latter too where the stations are not known."""
         count = str(self.info.get("count", "station"))
         return "component" if counts_as(self.runs, count)[1] else count
+
+    @cached_property
+    def worst(self) -> list[Worst]:
+        """The worst responses of every case."""
+        by_case = [runs for _, runs in self.runs.groupby(["series", "pier"])]
+        places = ((int(runs["series"].iloc[0]), int(runs["pier"].iloc[0])) for runs in by_case)
+        return worst_of_cases(zip(map(self.cases.__getitem__, places), by_case, strict=True))
 
     @cached_property
     def both_directions(self) -> bool:

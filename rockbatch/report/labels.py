@@ -25,7 +25,7 @@ SYMBOLS = {
     "n": ("n", ""),
     "restitution": ("e", ""),
     "stiffness_kN_m": ("K", "kN/m"),
-    "yield_kN": ("F_y", "kN"),
+    "yield_kN": ("Fy", "kN"),
     "flight_limit_mm": ("flight limit", "mm"),
     "mass_t": ("M", "t"),
     "deck_mass_t": ("deck mass", "t"),
@@ -40,13 +40,15 @@ BASE_KEYS = (
 SAME = {"beta": "stiffness_kN_m", "eta": "yield_kN"}
 """Keys of a study that say the same, without units and with: a foundation is called by the one that its study gives."""
 
+_RAISED = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
+
 Key = tuple[object, ...]
 """What tells one foundation from another: the case, and its varied values in the order of the study."""
 
 
 @dataclass(frozen=True)
 class Series:
-    """One foundation: a marker in the figures, a column in the tables."""
+    """One foundation: a marker in the figures, or a line where it is rigid ground alone; a column in the tables."""
 
     label: str
     tick: str
@@ -55,14 +57,21 @@ class Series:
 
 
 def quantity(key: str, value: object, digits: int = 10) -> str:
-    """A value in words that stay on one line: "β = 40", "p = 0.38 rad/s", "K = 2.5 GN/m", "kinematics finite"."""
+    """A value in words that stay on one line: "β = 40", "Fy = 45,000 kN", "kinematics finite"."""
     symbol, unit = SYMBOLS.get(key, (key, ""))
     if not isinstance(value, float | int):
         return f"{symbol} {value}"
-    if unit.startswith("kN"):
-        power = next((power for power in (2, 1) if abs(value) >= 1000.0**power), 0)
-        value, unit = value / 1000.0**power, "kMG"[power] + unit[1:]
-    return f"{symbol} = {value:.{digits}g} {unit}".strip().replace(" ", "\u00a0")
+    return f"{symbol} = {_plain(value, digits)} {unit}".strip().replace(" ", "\u00a0")
+
+
+def _plain(value: float, digits: int) -> str:
+    """A number in the unit in which it was given, without an "e": "45,000", "2.5 × 10⁶"."""
+    whole = len(str(int(abs(value))))
+    if whole <= 6:
+        written = f"{value:.{max(digits, whole)}g}"
+        return f"{float(written):,.10g}" if whole > 4 else written
+    mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
+    return f"{float(mantissa):.10g} × 10{str(int(exponent)).translate(_RAISED)}"
 
 
 def digits_that_tell(values: Iterable[object], least: int = 3) -> int:
@@ -103,7 +112,7 @@ def named(
     study gives for each case, by its name.
     """
     constants = {key: _as_given(_constants(same), given.get(str(key[0]), ())) for key, same in cases.items()}
-    rigid = {key for key, same in cases.items() if same[0]["base"] == "rigid"}
+    rigid = {key for key, same in cases.items() if _is_reference(same[0])}
     differing = {
         kind: _differing([constants[key] for key in cases if (key in rigid) is kind], varied) for kind in (True, False)
     }
@@ -124,6 +133,11 @@ def named(
         tick = case if short else chr(ord("a") + index) if index < 26 else str(index + 1)
         series[key] = Series(label, tick, kind, index)
     return series
+
+
+def _is_reference(case: Mapping[str, Any]) -> bool:
+    """Whether a case is the rocking block itself, which figures have as a line: rigid ground, and nothing that ties the pier."""
+    return case["base"] == "rigid" and not case["parameters"].get("restraints")
 
 
 def _differing(constants: Sequence[dict[str, object]], varied: Sequence[str]) -> list[str]:

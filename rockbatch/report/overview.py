@@ -3,6 +3,9 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+from rockbatch.checks import Verdict, wording
+from rockbatch.checks.demands import DEMANDS
+from rockbatch.checks.responses import PEAKS
 from rockbatch.report.document import figure
 from rockbatch.report.drawing import dots
 from rockbatch.report.drawing.panels import said_of
@@ -19,10 +22,12 @@ MOST_COLUMNS = 3
 MOST_NAMED = 12
 """Foundations with a mark of their own."""
 MOST_FOUNDATIONS = 300
+MOST_STRETCH = 2.0
+"""Of the axis, so that a limit far above all peaks does not crowd them at one end."""
 
 
-def by_record(finished: Finished) -> Markup:
-    """A row for each of the records with the worst runs, and the other records in a last row."""
+def by_record(finished: Finished, verdicts: Sequence[Verdict] = ()) -> Markup:
+    """A row for each of the records with the worst runs, and the other records in a last row; with the limits of checks."""
     runs = finished.runs
     if runs.empty:
         return Markup("")
@@ -43,7 +48,31 @@ def by_record(finished: Finished) -> Markup:
     caption = join(
         "Largest rotation over slenderness, ", THETA, ", a row for each record, the worst first", _all(finished)
     )
-    return figure(dots.draw(rows, [words for words, _ in columns], ceiling(runs), marks), caption)
+    limits = [_limits(finished, own, verdicts) for _, own in columns]
+    top = ceiling(runs)
+    within = [one.theta for own in limits for one in own if one.theta < MOST_STRETCH * top]
+    top = max([top, *(1.03 * theta for theta in within)])
+    return figure(dots.draw(rows, [words for words, _ in columns], top, marks, limits), caption)
+
+
+def _limits(finished: Finished, runs: "pd.DataFrame", verdicts: Sequence[Verdict]) -> list[dots.Limit]:
+    """Limits of the checks of a rotation, as θ/α; none where piers of a column differ, since each has its own."""
+    if runs["pier"].nunique() != 1:
+        return []
+    cases = [finished.cases[places] for places in set(zip(runs["series"], runs["pier"], strict=True))]
+    names = {str(case["case"]) for case in cases}
+    scales = set(runs["scale"])
+    of: dict[dots.Limit, set[str]] = {}
+    for one in verdicts:
+        most = DEMANDS[one.demand].most if one.demand in PEAKS else None
+        if most is None or one.case not in names or one.scale not in scales or one.statistic == "count":
+            continue
+        words = f"limit of {one.check}, {wording.number(one.limit)} {one.unit}".rstrip()
+        of.setdefault(dots.Limit(words, one.limit / most.of(cases[0])), set()).add(one.case)
+    return [
+        limit if own == names else limit._replace(words=f"{limit.words} ({', '.join(sorted(own))})")
+        for limit, own in sorted(of.items(), key=lambda item: item[0].theta)
+    ]
 
 
 def by_foundation(finished: Finished) -> Markup:

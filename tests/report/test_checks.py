@@ -10,6 +10,9 @@ from report_samples import FOUNDATIONS, write_results
 from rockbatch.checks import Verdict, write_verdicts
 from rockbatch.report import write_report
 
+GOVERNING = ("theta_max_over_alpha", "toe_settlement_m", "ductility")
+"""Demands whose limits bound all that governs a pier on yielding springs: the settlement of the toe has the tilt in it."""
+
 
 def page(directory, *verdicts: Verdict) -> Page:
     write_results(directory)
@@ -21,13 +24,13 @@ def test_cases_that_pass_fail_and_are_not_decided_are_named(tmp_path):
     found = page(
         tmp_path,
         verdict("1", "pass"),
-        verdict("2", "fail", ratio=1.25),
-        verdict("3", "not decided", ratio=0.99),
+        verdict("2", "fail", ratio=1.25, value=0.625, low=0.62, high=0.63),
+        verdict("3", "not decided", ratio=0.99, note="between 0.2 and 0.6"),
         verdict("3", "pass", check="tilt"),
     )
-    assert "✓ 1 of 3 cases passes every check: 1." in found.text
-    assert "✗ 1 of 3 cases fails: 2." in found.text
-    assert "? 1 of 3 cases cannot be decided: 3." in found.text
+    assert "? 1 of 3 cases meets the limits, but none is set on settlement, tilt, ductility: 1." in found.text
+    assert "✗ 1 of 3 cases fails: 2.margin: 0.625 > 0.5, in 2." in found.text
+    assert "? 1 of 3 cases cannot be decided: 3.margin in 3: between 0.2 and 0.6, limit 0.5." in found.text
     rows = [[cell.replace("\u00a0", " ") for cell in row] for row in found.tables["checks"]]
     assert rows[:4] == [
         ["case", "margin", "tilt"], ["1", "✓ 0.50", ""], ["2", "✗ 1.25", ""], ["3", "? 0.99", "✓ 0.50"],
@@ -35,8 +38,9 @@ def test_cases_that_pass_fail_and_are_not_decided_are_named(tmp_path):
 
 
 def test_all_passing_is_said_in_so_many_words_and_nothing_is_listed_as_failing(tmp_path):
-    found = page(tmp_path, verdict("1", "pass"), verdict("2", "does not apply", ratio=math.nan))
-    assert "✓ Every check passes in both cases." in found.text
+    found = page(tmp_path, *(verdict("1", "pass", demand=demand, check=demand) for demand in GOVERNING))
+    assert "✓ Every check passes in the only case." in found.text
+    assert "Closest to its limit: theta_max_over_alpha, 0.25 ≤ 0.5." in found.text
     assert "What does not pass" not in found.text
 
 
@@ -123,6 +127,6 @@ def test_the_verdict_comes_before_the_figure_and_the_table_of_checks_after_it(tm
     text = write_report(tmp_path, []).read_text(encoding="utf-8")
     places = [text.index(f'<section id="{anchor}">') for anchor in ("answer", "figure", "checks", "studied")]
     assert places == sorted(places)
-    assert places[0] < text.index("all 5 cases fail") < places[1]
+    assert places[0] < text.index("All 5 cases fail") < places[1]
     assert "answer" not in Page(text).tables
     assert len(Page(text).tables["checks"]) > len(FOUNDATIONS)

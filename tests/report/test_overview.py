@@ -74,10 +74,13 @@ def test_what_has_no_peak_is_told_by_foundation_or_by_number(tmp_path):
 
 def test_of_many_cases_that_fail_the_checks_and_the_nearest_case_are_named(tmp_path):
     write_results(tmp_path)
-    some = [verdict(f"c{i}", "fail", ratio=1.1 + i / 10, check="drift") for i in range(40)]
+    ratios = [1.1 + i / 10 for i in range(40)]
+    some = [verdict(f"c{i}", "fail", ratio=r, value=0.5 * r, check="drift") for i, r in enumerate(ratios)]
     write_verdicts(tmp_path, some)
     told = Page(write_report(tmp_path, []).read_text(encoding="utf-8")).text
-    assert "all 40 cases fail: drift in 40 of them; the nearest to passing is c0, at 1.10 of a limit." in told
+    assert "✗ All 40 cases fail: c0; c1; c2; c3; c4; c5; and 34 more." in told
+    assert "drift: 2.5 > 0.5, in c39 and 39 more cases." in told
+    assert "Nearest to passing: c0, drift at 1.10 × its limit." in told
 
 
 def test_long_tables_are_folded_and_short_ones_stand_open(tmp_path):
@@ -114,3 +117,61 @@ def test_long_names_of_what_has_no_peak_leave_the_figure_its_room(tmp_path):
     text = write_report(tmp_path, []).read_text(encoding="utf-8")
     worst = re.search(r'<span class="ends">(.*?)</span></span>', text, re.DOTALL)[1]
     assert Page(worst).text == "2"
+
+
+def drift(limit, case="rigid"):
+    return verdict(case, "pass", check="bearings", demand="top_drift_m", unit="m", limit=limit)
+
+
+def of_the_answer(path):
+    return path.read_text(encoding="utf-8").split('<section id="answer">')[1].split("</section>")[0]
+
+
+def test_limits_of_rotations_are_drawn_where_they_are_and_named_in_the_legend(tmp_path):
+    """A drift of the top d allows θ/α = d/(2 h α) on a uniform block; the dots of known θ/α give the axis."""
+    write_results(tmp_path, changes={("ERZ-NS", "rigid"): {"theta_max_over_alpha": 0.1}})
+    theta = 0.05
+    write_verdicts(tmp_path, [drift(theta * PIER.alpha * 2.0 * PIER.height)])
+    text = of_the_answer(write_report(tmp_path, []))
+    limits = {float(x) for x in re.findall(r'<line x1="([\d.]+)%"[^>]*class="limit"', text)}
+    (row,) = (strip for strip in re.findall(r"<svg.*?</svg>", text, re.DOTALL) if 'data-of="ERZ-NS"' in strip)
+    dot = float(re.search(r'<line x1="([\d.]+)%"[^>]*class="rigid d0"', row)[1])
+    assert limits == {pytest.approx(1.5 + (dot - 1.5) * theta / 0.1, abs=0.2)}
+    assert f"limit of bearings, {theta * PIER.alpha * 2 * PIER.height:.4g} m (rigid)" in Page(text).text
+
+
+def test_a_limit_far_above_all_peaks_does_not_crowd_them(tmp_path):
+    write_results(tmp_path)
+    before = of_the_answer(write_report(tmp_path, []))
+    write_verdicts(tmp_path, [drift(100.0)])
+    after = of_the_answer(write_report(tmp_path, []))
+    dots = [re.findall(r'<use [^>]*x="([\d.]+)%"', text) for text in (before, after)]
+    assert dots[0] == dots[1] != []
+    assert "beyond the axis, at θ/α = " in Page(after).text
+
+
+def test_cases_that_differ_by_dampers_differ_in_mark_and_colour(tmp_path):
+    """On rigid ground, too, where the pier without any is the line that the others are held against."""
+    names = ["bare", "steel", "oil"]
+    cases = [case_entry(name, {}, PIER, RigidBase()) for name in names]
+    for damped, kind in zip(cases[1:], ("hysteretic", "viscous"), strict=True):
+        damped["parameters"]["restraints"] = [{"kind": kind, "f": 0.02, "nu": 0.1, "yield_m": 0.005, "exponent": 1.0}]
+    write_results(tmp_path, cases=cases)
+    legend = re.findall(r"<li>(.*?)</li>", of_the_answer(write_report(tmp_path, [])).split('class="key">')[1])
+    drawn = [re.search(r'class="(rigid d0|s\d)"', entry)[1] for entry in legend]
+    shapes = [re.search(r"#m-(\w+)|<line", entry)[0] for entry in legend]
+    assert len(set(drawn)) == len(set(shapes)) == 3
+    assert (drawn[0], shapes[0]) == ("rigid d0", "<line")
+
+
+@needs_chromium
+def test_the_legend_stands_above_the_fold(tmp_path):
+    write_results(tmp_path, changes={("ERZ-NS", "1"): {"flight_s": 3.0, "flight_height_m": 0.0021}})
+    failing = [
+        verdict(case, "fail", check=f"check {i}", value=0.6, ratio=1.2, record="ERZ-NS")
+        for case in "123"
+        for i in range(5)
+    ]
+    write_verdicts(tmp_path, [*failing, verdict("4", "not decided", note="2 stations count; the check asks for 3")])
+    act = 'found.legend = document.querySelector("#answer ul.key").getBoundingClientRect().bottom;'
+    assert 0 < browse(tmp_path, write_report(tmp_path, []), act, size=(1280, 800))["legend"] < 800

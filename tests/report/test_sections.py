@@ -91,7 +91,11 @@ def test_the_answer_says_how_far_the_worst_pier_rotates_and_how_high_its_heel_ri
     peaks[peaks["p"].isin(run)].to_csv(tmp_path / "peaks.csv", index=False)
     told = Page(section_of(tmp_path, answer)).text
     uplift_mm = 1000 * 2 * Pier(alpha=0.13, p=0.35).half_width * 0.1 * 0.13
-    assert f"θmax = 0.1 α, 0.745° (0.013 rad), and the heel rises by {uplift_mm:.3g} mm: SYL360, case rigid" in told
+    assert "rotation0.1 α = 0.745° (0.013 rad): SYL360, case rigid" in told
+    drift = 2 * Pier(alpha=0.13, p=0.35).height * 0.1 * 0.13  # without top_m, of the top of a uniform block
+    assert f"drift of the top{drift:.3g} m ({1000 * drift:,.0f} mm), in the run of the greatest rotation" in told
+    assert f"uplift of the heel{uplift_mm:.0f} mm, in the run of the greatest rotation" in told
+    assert "settlement, tiltnone: the ground is rigid" in told
     assert "p = 0.35 rad/s" in told
 
 

@@ -9,8 +9,8 @@ from rockbatch.report.sections import verdicts
 def section(pair: Pair) -> Section:
     """The answer of each study, and every check in every case."""
     parts: list[object] = []
-    for name, judged in zip(SIDES, pair.verdicts, strict=True):
-        parts += [tag("h3", name), tag("div", verdicts.answer(judged))]
+    for name, study, judged in zip(SIDES, pair.studies, pair.verdicts, strict=True):
+        parts += [tag("h3", name), tag("div", verdicts.answer(judged, study))]
         if judged:
             parts += [verdicts.legend(), verdicts.matrix(judged)]
     return Section("Does it pass", "checks", join(*parts))

@@ -36,6 +36,13 @@ class Row(NamedTuple):
     runs: "Sequence[pd.DataFrame]"
 
 
+class Limit(NamedTuple):
+    """A limit that a check sets: what it says, and the rotation θ/α that it allows."""
+
+    words: str
+    theta: float
+
+
 class Marks(NamedTuple):
     """How runs are drawn: by ``series`` if they are few enough to be told apart, or all alike; and what each says."""
 
@@ -45,10 +52,20 @@ class Marks(NamedTuple):
     """What a mark stands for, if all are alike: "foundation"."""
 
 
-def draw(rows: Sequence[Row], columns: Sequence[str], top: float, marks: Marks) -> Markup:
-    """Every row in every column, the axis of all, which ends at ``top`` [θ_max/α], and the legend."""
+def draw(
+    rows: Sequence[Row], columns: Sequence[str], top: float, marks: Marks, limits: Sequence[Sequence[Limit]] = ()
+) -> Markup:
+    """The legend, every row in every column, and the axis of all, which ends at ``top`` [θ_max/α].
+
+    ``limits`` are those of each column.
+    """
+    limits = limits or [[] for _ in columns]
     ticks = [tick for tick in Scale(0.0, top).ticks(4) if tick <= top]
-    grid = [_line(_across(tick, top), "grid") for tick in ticks]
+    grids = [
+        [_line(_across(tick, top), "grid") for tick in ticks]
+        + [_line(_across(one.theta, top), "limit", tag("title", one.words)) for one in own if one.theta <= top]
+        for own in limits
+    ]
     cells: list[Markup] = []
     if any(columns):
         cells.append(tag("span", class_="of"))
@@ -56,7 +73,7 @@ def draw(rows: Sequence[Row], columns: Sequence[str], top: float, marks: Marks) 
     for row in rows:
         end = tag("span", row.end, class_="end") if row.end else ""
         cells.append(tag("span", tag("span", row.words, class_="words"), end, class_="of", title=row.more))
-        for words, runs in zip(columns, row.runs, strict=True):
+        for words, runs, grid in zip(columns, row.runs, grids, strict=True):
             here = ", ".join(filter(None, (f"{row.words}{row.end}", words)))
             cells += [_strip(runs, top, grid, marks, here), _without_peak(runs, marks)]
     axis = [
@@ -69,7 +86,19 @@ def draw(rows: Sequence[Row], columns: Sequence[str], top: float, marks: Marks) 
         "div", *cells, class_="dots", style=f"--n:{len(columns)}", tabindex="0", role="group",
         aria_label="Peaks, a row each; arrow keys go through the values",
     )  # fmt: skip
-    return join(drawn, key(_legend([runs for row in rows for runs in row.runs], marks)))
+    entries = _legend([runs for row in rows for runs in row.runs], marks)
+    return join(key([*entries, *_of_limits(limits, top)]), drawn)
+
+
+def _of_limits(limits: Sequence[Sequence[Limit]], top: float) -> list[Entry]:
+    """Each limit once, with its side where the axis ends before it."""
+    drawn = tag("line", x1=11, x2=11, y1=0, y2=14, class_="limit")
+    words = dict.fromkeys(
+        one.words if one.theta <= top else f"{one.words}: beyond the axis, at θ/α = {one.theta:.3g}"
+        for own in limits
+        for one in own
+    )
+    return [(drawn, each) for each in words]
 
 
 def _across(theta: float, top: float) -> float:

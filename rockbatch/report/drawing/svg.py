@@ -99,7 +99,9 @@ def key(entries: Sequence[Entry]) -> Markup:
         for drawn, _ in entries
     ]
     return tag(
-        "ul", *(tag("li", *pair) for pair in zip(pictures, (says for _, says in entries), strict=True)), class_="key"
+        "ul",
+        *(tag("li", shown, tag("span", says)) for shown, (_, says) in zip(pictures, entries, strict=True)),
+        class_="key",
     )
 
 

@@ -1,12 +1,15 @@
 """Whether the pier passes: the answer in a sentence, every check in every case at a glance, and what the checks ask."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 from rockbatch.checks import Verdict, wording
+from rockbatch.checks.answer import Line
+from rockbatch.checks.answer import answer as answered
 from rockbatch.checks.verdicts import CHECKS, DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS
 from rockbatch.report.contents import Contents
 from rockbatch.report.document import Section
+from rockbatch.report.finished import Finished
 from rockbatch.report.labels import quantity
 from rockbatch.report.markup import Markup, join, number, tag
 from rockbatch.report.table import Head, table
@@ -14,7 +17,6 @@ from rockbatch.report.table import Head, table
 BASIS = {"code": "code clause", "literature": "literature", "judgement": "engineering judgement"}
 SAID = {PASS: "passes:", FAIL: "fails:", NOT_DECIDED: "not decided:", DOES_NOT_APPLY: "does not apply"}
 CLASSES = {PASS: "pass", FAIL: "fail", NOT_DECIDED: "undecided", DOES_NOT_APPLY: "muted"}
-MOST_NAMES = 6
 MOST_WORST = 10
 """Rows of the worst verdicts, where there are too many to tell all."""
 
@@ -43,64 +45,22 @@ def mark(verdict: str, words: str) -> Markup:
     return tag("span", sign, f"\u00a0{words}" if words else "", class_=CLASSES[verdict])
 
 
-def answer(verdicts: Sequence[Verdict]) -> Markup:
-    """Which cases meet all checks, in a sentence."""
+def answer(verdicts: Sequence[Verdict], finished: Finished) -> Markup:
+    """Which cases pass, what fails and by how much, and what is not decided."""
     if not verdicts:
         return join(
             "No limits were set: nothing here passes or fails. ", tag("code", "rockbatch check"),
             " judges finished results by rules.",
         )  # fmt: skip
-    cases = _by_case(verdicts)
-    kinds = {case: {one.verdict for one in same} for case, same in cases.items()}
-    failing = [case for case, found in kinds.items() if "fail" in found]
-    undecided = [case for case, found in kinds.items() if "not decided" in found and "fail" not in found]
-    passing = [case for case in kinds if case not in failing and case not in undecided]
-    if len(passing) == len(cases):
-        return join(tag("strong", mark(PASS, "Every check passes")), f" in {_among(len(cases), len(cases))}.")
-    told = [
-        (PASS, passing, f"pass{'es' * (len(passing) == 1)} every check"),
-        (FAIL, failing, f"fail{'s' * (len(failing) == 1)}"),
-        (NOT_DECIDED, undecided, "cannot be decided"),
-    ]
-    parts = [
-        join(
-            tag("strong", mark(verdict, f"{_among(len(some), len(cases))} {words}")),
-            f": {_which(verdict, some, cases)}.",
-        )
-        for verdict, some, words in told
-        if some
-    ]
-    return tag("ul", *(tag("li", part) for part in parts), class_="answer")
+    scaled = len({one.scale for one in verdicts}) > 1
+    lines = answered(verdicts, finished.worst, lambda one: _case(one, scaled), lambda one: finished.label(one.record))
+    return tag("ul", *map(_line, lines), class_="answer")
 
 
-def _among(some: int, all_: int) -> str:
-    if some == all_:
-        return {1: "the only case", 2: "both cases"}.get(all_, f"all {all_} cases")
-    return f"{some} of {all_} cases"
-
-
-def _which(verdict: str, some: Sequence[str], cases: Mapping[str, Sequence[Verdict]]) -> str:
-    """The cases by name; of many that fail, which checks do, and which case is the nearest to passing."""
-    if verdict != FAIL or len(some) <= MOST_NAMES:
-        return _listed(some)
-    failing = {case: [one for one in cases[case] if one.verdict == FAIL] for case in some}
-    checks = dict.fromkeys(one.check for same in failing.values() for one in same)
-    told = [f"{name} in {sum(any(one.check == name for one in same) for same in failing.values())}" for name in checks]
-    worst = {case: max(_badness(one) for one in same) for case, same in failing.items()}
-    nearest = min(some, key=lambda case: worst[case])
-    if math.isinf(worst[nearest]):
-        return f"{', '.join(told)} of them"
-    return f"{', '.join(told)} of them; the nearest to passing is {nearest}, at {worst[nearest]:.2f} of a limit"
-
-
-def _badness(one: Verdict) -> float:
-    """How far beyond its limit a check is; nothing that is a number for events that may not be."""
-    return math.inf if one.is_ban or math.isnan(one.ratio) else one.ratio
-
-
-def _listed(cases: Sequence[str]) -> str:
-    more = len(cases) - MOST_NAMES
-    return "; ".join(cases[:MOST_NAMES]) + (f"; and {more} more" if more > 0 else "")
+def _line(line: Line) -> Markup:
+    which = f": {line.which}." if line.which else "."
+    details = tag("ul", *(tag("li", words) for words in line.details)) if line.details else ""
+    return tag("li", tag("strong", mark(line.verdict, line.says)), which, details)
 
 
 def _by_case(verdicts: Sequence[Verdict]) -> dict[str, list[Verdict]]:

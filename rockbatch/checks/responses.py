@@ -1,0 +1,106 @@
+"""The responses that a designer asks for first, whatever is checked, and whether a check limits them."""
+
+import math
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from rockbatch.checks.demands import DEMANDS, Case
+from rockbatch.checks.verdicts import DOES_NOT_APPLY, Verdict
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+PEAKS = frozenset(
+    ("theta_max_over_alpha", "theta_max_rad", "top_drift_m", "top_drift_mm", "heel_uplift_m", "heel_uplift_mm")
+)
+"""Demands that are the greatest rotation times a length of the case."""
+_RESIDUAL = frozenset(("theta_res_over_alpha", "theta_res_rad", "base_tilt_rad", "differential_settlement_m"))
+_SETTLED = frozenset(("settlement_m", "toe_settlement_m"))
+
+
+class Response(NamedTuple):
+    """What a response is called, and the demands whose limits bound it, too."""
+
+    words: str
+    bounded_by: frozenset[str]
+
+
+RESPONSES = {
+    "theta_max_over_alpha": Response("rotation", PEAKS),
+    "top_drift_m": Response("drift of the top", PEAKS),
+    "settlement_m": Response("settlement", _SETTLED),
+    "base_tilt_rad": Response("tilt", _RESIDUAL | {"toe_settlement_m"}),
+    "heel_uplift_m": Response("uplift of the heel", PEAKS),
+    "ductility": Response("ductility", frozenset(("ductility",))),
+}
+"""By their demands, in the order of the answer. The settlement of the toe is that of the pier and its tilt."""
+
+
+class Worst(NamedTuple):
+    """The greatest value of a demand among the runs of a case that end standing."""
+
+    demand: str
+    value: float
+    case: Case
+    run: "pd.Series[Any]"
+
+
+def worst_of_cases(suites: "Iterable[tuple[Case, pd.DataFrame]]") -> list[Worst]:
+    """Return the worst response of every case for each of :data:`RESPONSES` that it has.
+
+    Parameters
+    ----------
+    suites : iterable of (case, DataFrame)
+        Cases as run.json has them, with their rows of peaks.csv.
+    """
+    worst = []
+    for case, runs in suites:
+        stood = runs[(runs["status"] == "ok") & runs["theta_max_over_alpha"].notna()]
+        for name in RESPONSES:
+            if case["base"] not in DEMANDS[name].bases:
+                continue
+            values = DEMANDS[name].of(stood, case).value
+            if np.isfinite(values).any():
+                place = int(np.nanargmax(values))
+                worst.append(Worst(name, float(values[place]), case, stood.iloc[place]))
+    return worst
+
+
+def worst_of_all(worst: Iterable[Worst]) -> dict[str, Worst]:
+    """Return the worst of all cases for each demand, in the order of :data:`RESPONSES`."""
+    found: dict[str, Worst] = {}
+    for one in worst:
+        if one.demand not in found or one.value > found[one.demand].value:
+            found[one.demand] = one
+    return {name: found[name] for name in RESPONSES if name in found}
+
+
+def unlimited(worst: Sequence[Worst], verdicts: Sequence[Verdict]) -> list[Worst]:
+    """Return the responses of a case that govern its design, and that no check bounds.
+
+    Rotation always governs, and stands for drift and uplift; settlement, tilt and ductility do where a support yields.
+    ``worst`` and ``verdicts`` are those of the case.
+    """
+    checked = {one.demand for one in verdicts if one.verdict != DOES_NOT_APPLY}
+    yielded = any(one.demand == "ductility" and one.value > 1.0 for one in worst)
+    governing = ("theta_max_over_alpha", *(("settlement_m", "base_tilt_rad", "ductility") if yielded else ()))
+    return [one for one in worst if one.demand in governing and not checked & RESPONSES[one.demand].bounded_by]
+
+
+def in_words(worst: Worst) -> str:
+    """Return the value with its units: "1.49 m (1486 mm)"."""
+    value, pier = worst.value, worst.case["pier"]
+    if worst.demand == "theta_max_over_alpha":
+        theta = value * float(pier["alpha"])
+        return f"{value:.4g} α = {math.degrees(theta):.3g}° ({theta:.3g} rad)"
+    if worst.demand == "base_tilt_rad":
+        return f"{1000 * value:.3g} mrad ({math.degrees(value):.2g}°)"
+    if worst.demand == "top_drift_m":
+        return f"{value:.3g} m ({_millimetres(value)} mm)"
+    return f"{_millimetres(value)} mm" if DEMANDS[worst.demand].unit == "m" else f"{value:.3g}"
+
+
+def _millimetres(metres: float) -> str:
+    return f"{1000 * metres:,.0f}" if metres >= 0.1 else f"{1000 * metres:.3g}"

@@ -1,0 +1,117 @@
+"""The answer to a set of checks: in order, in numbers, and never green where nothing limits what governs."""
+
+import math
+
+import pytest
+from check_samples import PIER, RIGID, case, runs, verdict
+
+from rockbatch.checks import wording
+from rockbatch.checks.answer import answer
+from rockbatch.checks.responses import in_words, worst_of_all, worst_of_cases
+from rockbatch.checks.verdicts import FAIL, NOT_DECIDED, PASS
+
+SETTLED = {"settlement_m": [0.1, 0.381, 0.0, 0.2], "base_tilt_rad": [1e-3, -4e-3, 0.0, 0.0]}
+YIELDED = SETTLED | {"ductility_left": 2.0, "ductility_right": [1.0, 33.0, 1.0, 1.0]}
+LIMITS = {"rotation": "theta_max_over_alpha", "shims": "settlement_m", "soil": "ductility", "tilt": "base_tilt_rad"}
+
+
+def lines(verdicts, worst=()):
+    return answer(verdicts, worst, lambda one: one.case, lambda one: f"record {one.record}")
+
+
+def worst(name="pads", **cells):
+    return worst_of_cases([(case(name), runs(name=name, **cells))])
+
+
+def test_the_worst_of_every_response_is_found_whatever_is_checked():
+    """Drift and uplift in closed form: |θ| times the height of the top, here of a uniform block, and the width."""
+    found = worst_of_all(worst(**YIELDED))
+    assert list(found) == [
+        "theta_max_over_alpha", "top_drift_m", "settlement_m", "base_tilt_rad", "heel_uplift_m", "ductility",
+    ]  # fmt: skip
+    assert found["top_drift_m"].value == pytest.approx(0.6 * PIER.alpha * 2.0 * PIER.height)
+    assert found["heel_uplift_m"].value == pytest.approx(0.6 * PIER.alpha * 2.0 * PIER.half_width)
+    assert [found[name].run["record"] for name in ("theta_max_over_alpha", "settlement_m")] == ["r2", "r1"]
+    assert (found["base_tilt_rad"].value, found["ductility"].value) == (4e-3, 33.0)
+    assert in_words(found["settlement_m"]) == "381 mm"
+    assert in_words(found["base_tilt_rad"]) == "4 mrad (0.23°)"
+    assert in_words(found["top_drift_m"]) == "1.73 m (1,731 mm)"
+
+
+def test_a_run_that_overturned_has_no_worst_response():
+    fell = worst_of_cases([(RIGID, runs((0.1, 40.0), name="rigid", status=["ok", "overturned"]))])
+    assert worst_of_all(fell)["theta_max_over_alpha"].value == 0.1
+
+
+def test_nothing_is_green_where_settlement_tilt_and_ductility_have_no_limit():
+    (line,) = lines([verdict("pads", "pass")], worst(**YIELDED))
+    assert (line.verdict, line.which) == (NOT_DECIDED, "pads")
+    assert line.says == "The only case meets the limits, but none is set on settlement, tilt, ductility"
+    assert line.details == ("Without a limit, at most: settlement 381 mm, tilt 4 mrad (0.23°), ductility 33.",)
+
+
+@pytest.mark.parametrize("left_out", LIMITS)
+def test_each_of_what_governs_needs_a_limit(left_out):
+    verdicts = [verdict("pads", "pass", check=name, demand=demand) for name, demand in LIMITS.items()]
+    assert [line.verdict for line in lines(verdicts, worst(**YIELDED))] == [PASS]
+    rest = [one for one in verdicts if one.check != left_out]
+    assert [line.verdict for line in lines(rest, worst(**YIELDED))] == [NOT_DECIDED]
+
+
+def test_a_support_that_does_not_yield_needs_no_limit_of_its_settlement():
+    elastic = worst(**SETTLED, ductility_left=0.9, ductility_right=0.8)
+    assert [line.verdict for line in lines([verdict("pads", "pass")], elastic)] == [PASS]
+
+
+def test_a_ban_on_overturning_alone_limits_no_rotation():
+    ban = verdict("rigid", "pass", demand="overturned", statistic="max", limit=0.0)
+    rocking = worst_of_cases([(RIGID, runs(name="rigid"))])
+    assert [line.verdict for line in lines([ban], rocking)] == [NOT_DECIDED]
+
+
+def test_the_failing_checks_come_with_demand_limit_record_and_the_nearest_case():
+    drift = {"check": "drift", "demand": "top_drift_m", "unit": "m", "limit": 0.5}
+    failing = [
+        verdict("pads", "fail", **drift, value=1.24, ratio=2.48, record="TAK000"),
+        verdict("rock", "fail", **drift, value=1.0, ratio=2.0, record="CPM000"),
+        verdict("rock", "fail", check="soil", value=5.0, limit=4.0, ratio=1.25, record="ERZ"),
+    ]
+    (line,) = lines(failing)
+    assert (line.verdict, line.says, line.which) == (FAIL, "Both cases fail", "pads; rock")
+    assert [words.replace("\u00a0", " ") for words in line.details] == [
+        "drift: 1.24 m > 0.5 m, record TAK000, in pads and 1 more case.",
+        "soil: 5 > 4, record ERZ, in rock.",
+        "Nearest to passing: rock, drift at 2.00 × its limit.",
+    ]
+
+
+def test_a_ban_that_fails_names_who_breaks_it():
+    ban = verdict(
+        "pads", "fail", check="stands", demand="overturned", statistic="max", limit=0.0, value=1.0, record="TAK"
+    )
+    assert lines([ban])[0].details == ("stands: record TAK overturns the pier.",)
+
+
+def test_what_passes_comes_first_then_what_fails_then_what_is_open():
+    some = [
+        verdict("a", "not decided", note="2 stations count"),
+        verdict("b", "fail", value=0.6, ratio=1.2),
+        verdict("c", "pass"),
+    ]
+    assert [(line.verdict, line.which) for line in lines(some)] == [(PASS, "c"), (FAIL, "b"), (NOT_DECIDED, "a")]
+
+
+def test_what_is_open_says_why_and_that_it_does_not_matter_where_a_case_fails():
+    open_ = verdict("a", "not decided", check="tilt", note="between 0.2 and 0.6", record="ERZ")
+    assert lines([open_])[0].details == ("tilt: between 0.2 and 0.6, limit 0.5, left open by record ERZ.",)
+    failed = verdict("a", "fail", value=0.6, ratio=1.2)
+    assert lines([open_, failed])[-1].details == ("tilt: not decided in cases that fail anyway.",)
+
+
+@pytest.mark.parametrize(
+    ("value", "limit", "words"),
+    [(48123.4, 50000.0, "48,120"), (50003.0, 50000.0, "50,003"), (50000.0, 50000.0, "50,000"), (3e-6, 1.0, "3e-06"),
+     (math.inf, 1.0, "∞"), (0.0, 0.5, "0")],
+)  # fmt: skip
+def test_a_demand_is_written_without_an_exponent_and_told_apart_from_its_limit(value, limit, words):
+    assert wording.number(value, limit) == words
