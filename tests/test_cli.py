@@ -71,7 +71,11 @@ def test_motions_replace_those_of_the_study_and_a_bad_file_is_a_row_with_its_rea
     assert bad["status"] == "failed"
     assert "201" in bad["reason"]
     assert "200" in bad["reason"]
-    assert "BAD090" in capsys.readouterr().err
+    told = capsys.readouterr()
+    assert "BAD090" in told.err
+    assert "1 file not used: the column reason of peaks.csv says why" in told.err
+    assert "failed" not in told.err
+    assert "No limits were set: nothing here passes or fails.\n  rotation " in told.out
     assert "BAD090" in (tmp_path / "out/report.html").read_text(encoding="utf-8")
 
 

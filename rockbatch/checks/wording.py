@@ -1,6 +1,7 @@
 """What a verdict says, in words and numbers with their units, for the terminal and the report."""
 
 import math
+from collections import Counter
 from collections.abc import Iterable, Sequence
 
 from rockbatch.checks.demands import DEMANDS
@@ -9,6 +10,7 @@ from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, V
 
 WAYS = (PASS, FAIL, NOT_DECIDED, DOES_NOT_APPLY)
 SIGNS = {PASS: "✓", FAIL: "✗", NOT_DECIDED: "?", DOES_NOT_APPLY: "–"}
+REPEATED = 3
 MOST = 30
 """Verdicts that are all told; more are summed up, and the worst of them told."""
 
@@ -86,6 +88,40 @@ def margin(one: Verdict) -> str:
     if math.isinf(one.margin):
         return "-∞" if one.margin < 0 else "∞"
     return f"≤\u00a0{one.margin:.3g}" if _is_open(one) else f"{one.margin:.3g}"
+
+
+class Notes:
+    """What there is to know beside verdicts, so that a sentence that holds for several is said once.
+
+    A part of a note is common if it holds for every verdict of some checks, and for :data:`REPEATED` verdicts or more.
+    """
+
+    def __init__(self, verdicts: Iterable[Verdict]) -> None:
+        applied = [one for one in verdicts if one.verdict != DOES_NOT_APPLY]
+        has: dict[str, Counter[str]] = {}
+        for one in applied:
+            for part in one.note.split("; ") if one.note else ():
+                has.setdefault(part, Counter())[one.check] += 1
+        every = Counter(one.check for one in applied)
+        whole = {part: [check for check in own if own[check] == every[check]] for part, own in has.items()}
+        self._common = {
+            part: checks for part, checks in whole.items() if sum(every[check] for check in checks) >= REPEATED
+        }
+        self._counting: dict[str, dict[str, None]] = {}
+        for one in applied:
+            if one.counting:
+                self._counting.setdefault(one.counting, {})[one.check] = None
+
+    def of(self, one: Verdict) -> str:
+        """What is to be said of this verdict alone."""
+        parts = one.note.split("; ") if one.note else []
+        return "; ".join(part for part in parts if one.check not in self._common.get(part, ()))
+
+    def common(self) -> list[str]:
+        """What holds for all verdicts of some checks, and how runs count that did not go through: a sentence each."""
+        told = [f"{', '.join(checks)}: {part}." for part, checks in self._common.items()]
+        ways = [f"{', '.join(checks)}: runs that do not end standing count so: {way}." for way, checks in self._counting.items()]
+        return told + ways
 
 
 def records_of(verdicts: Iterable[Verdict]) -> str:

@@ -11,6 +11,8 @@ from rockbatch.commands.messages import say, show
 
 if TYPE_CHECKING:
     from rockbatch.checks import Verdict
+    from rockbatch.checks.wording import Notes
+    from rockbatch.results.reading import Saved
 
 HELP = "hold finished results against design checks"
 EXAMPLE = "rockbatch check reports/pier"
@@ -35,7 +37,7 @@ def main(arguments: argparse.Namespace) -> int:
     found = verdicts(saved, arguments.rules)
     if unusable := len(saved.info["unusable"]):
         say(f"files that are no usable records, and in no suite: {unusable}")
-    code = tell(found, write_verdicts(arguments.directory, found))
+    code = tell(found, write_verdicts(arguments.directory, found), saved)
     from rockbatch.files import is_plain
 
     if is_plain(arguments.directory / "report.html"):
@@ -45,12 +47,13 @@ def main(arguments: argparse.Namespace) -> int:
     return code
 
 
-def tell(verdicts: Sequence["Verdict"], path: Path) -> int:
-    """Print the verdicts, which are in ``path``; returns 1 if a check fails or is not decided, else 0."""
+def tell(verdicts: Sequence["Verdict"], path: Path, saved: "Saved") -> int:
+    """Print the verdicts, which are in ``path``, and the answer; returns 1 if a check fails or is not decided, else 0."""
     from rockbatch.checks import wording
 
     many = len(verdicts) > wording.MOST
     show(summed_up(verdicts) if many else table(verdicts))
+    show("\n" + answered(verdicts, saved))
     count = wording.count_of(verdicts)
     say(", ".join(f"{n} {way}" for way, n in count.items() if n))
     say(f"{path}{': all of them' if many else ''}")
@@ -59,9 +62,47 @@ def tell(verdicts: Sequence["Verdict"], path: Path) -> int:
     return 0 if count["pass"] and not (count["fail"] or count["not decided"]) else 1
 
 
+def answered(verdicts: Sequence["Verdict"], saved: "Saved") -> str:
+    """The answer as the report begins with it, and the worst responses, whatever is checked."""
+    from rockbatch.checks.answer import answer
+    from rockbatch.checks.responses import RESPONSES, in_words, worst_of_all, worst_of_cases
+    from rockbatch.checks.suite import simulated, suites
+    from rockbatch.commands.marks import coloured, mark
+    from rockbatch.commands.summary import named
+
+    labels = {record["record"]: record.get("label") or record["record"] for record in saved.info["records"]}
+    scaled = len({one.scale for one in verdicts}) > 1
+
+    def case_of(one: "Verdict") -> str:
+        values = one.columns | ({"scale": one.scale} if scaled else {})
+        return f"{one.case} {named(values, values.values())}".rstrip()
+
+    runs = simulated(saved.peaks[saved.peaks["case"] != ""])
+    worst = worst_of_cases(suites(runs, saved.info["cases"]))
+    lines = []
+    for line in answer(verdicts, worst, case_of, lambda one: labels.get(one.record, one.record)):
+        words = f"{line.says}: {line.which}." if line.which else f"{line.says}."
+        lines.append(coloured(f"{mark(line.verdict).split()[0]} {_filled(words, 0, 2)}", line.verdict))
+        lines += [_filled(_plain(detail), 4, 6) for detail in line.details]
+    if not verdicts:
+        lines.append("No limits were set: nothing here passes or fails.")
+    responses = {RESPONSES[name].words: one for name, one in worst_of_all(worst).items()}
+    width = max(map(len, responses), default=0)
+    for words, one in responses.items():
+        columns = one.case["columns"]
+        where = (
+            f"{labels.get(one.run['record'], one.run['record'])}, {one.case['case']} {named(columns, columns.values())}"
+        )
+        lines.append(_filled(f"{words:<{width}}  {in_words(one)}: {where.rstrip()}", 2, width + 6))
+    return "\n".join(lines)
+
+
 def table(verdicts: Sequence["Verdict"]) -> str:
     """A block of lines for each case and scale, then what each check asks."""
-    return "\n\n".join([*_blocks(verdicts), _checks(verdicts)])
+    from rockbatch.checks.wording import Notes
+
+    notes = Notes(verdicts)
+    return "\n\n".join([*_blocks(verdicts, notes), _checks(verdicts, notes)])
 
 
 def summed_up(verdicts: Sequence["Verdict"]) -> str:
@@ -79,12 +120,13 @@ def summed_up(verdicts: Sequence["Verdict"]) -> str:
         for row in (head, *rows)
     )
     parts = [f"{len(verdicts)} verdicts\n{counts}"]
+    notes = wording.Notes(verdicts)
     if worst := wording.worst_first(verdicts)[:WORST]:
-        parts += ["The worst", *_blocks(worst)]
-    return "\n\n".join([*parts, _checks(verdicts)])
+        parts += ["The worst", *_blocks(worst, notes)]
+    return "\n\n".join([*parts, _checks(verdicts, notes)])
 
 
-def _blocks(verdicts: Sequence["Verdict"]) -> list[str]:
+def _blocks(verdicts: Sequence["Verdict"], notes: "Notes") -> list[str]:
     """A block of lines for verdicts beside each other of one case and scale."""
     from rockbatch.checks import wording
     from rockbatch.commands.summary import named
@@ -97,12 +139,12 @@ def _blocks(verdicts: Sequence["Verdict"]) -> list[str]:
         values = columns | ({"scale": scale} if many_scales else {})
         lines = [f"{case}  {named(values, values.values())}".rstrip(), _line(head, widths)]
         for verdict in block:
-            lines += _lines(verdict, widths)
+            lines += _lines(verdict, widths, notes)
         blocks.append("\n".join(lines))
     return blocks
 
 
-def _lines(verdict: "Verdict", widths: list[int]) -> list[str]:
+def _lines(verdict: "Verdict", widths: list[int], notes: "Notes") -> list[str]:
     """The numbers of a verdict, then what there is to know beside them: the run that governs first."""
     from rockbatch.checks import wording
     from rockbatch.commands.marks import coloured
@@ -110,7 +152,7 @@ def _lines(verdict: "Verdict", widths: list[int]) -> list[str]:
     lines = [coloured(_line(_cells(verdict), widths), verdict.verdict)]
     if verdict.verdict == "does not apply":
         return lines
-    told = (wording.governing(verdict), verdict.counted, verdict.note)
+    told = (wording.governing(verdict), verdict.counted, notes.of(verdict))
     if any(told):
         lines.append(_filled("; ".join(filter(None, told)), 6, 6))
     return lines
@@ -143,7 +185,7 @@ def _plain(text: str) -> str:
     return text
 
 
-def _checks(verdicts: Sequence["Verdict"]) -> str:
+def _checks(verdicts: Sequence["Verdict"], notes: "Notes") -> str:
     """What each check asks, and why; what a record is, and what the statistics of codes rest on."""
     from rockbatch.checks import wording
 
@@ -151,7 +193,7 @@ def _checks(verdicts: Sequence["Verdict"]) -> str:
     names = dict.fromkeys(verdict.check for verdict in verdicts)
     rests = {one.statistic: one for one in reversed(verdicts) if wording.unchecked(one)}
     lines = [_asked(first[name]) for name in names]
-    lines += [_filled(told, 2, 6) for told in wording.counting(verdicts)]
+    lines += [_filled(told, 2, 6) for told in (*notes.common(), *wording.counting(verdicts))]
     lines += [_filled(f"{name}: {wording.unchecked(one)}.", 2, 6) for name, one in rests.items()]
     return "\n".join(["Checks", *lines])
 
@@ -161,8 +203,7 @@ def _asked(verdict: "Verdict") -> str:
     from rockbatch.checks import wording
 
     asked = f"{verdict.check}: {wording.asked(verdict)} [{verdict.basis}] {verdict.reason}"
-    counting = f" ({verdict.counting})" if verdict.counting else ""
-    return _filled(asked.rstrip() + counting, 2, 6)
+    return _filled(asked.rstrip(), 2, 6)
 
 
 def _filled(text: str, first: int, rest: int) -> str:

@@ -29,11 +29,18 @@ def tell(finished: "FinishedBatch", study: "Study") -> int:
     for warning in filter(None, (other_law(told, study.varied), linearised(told), leaning(told), sliding(told))):
         say(warning)
     if study.checks:
-        code = max(code, check.tell(finished.verdicts, finished.saved.directory / CHECKS))
+        code = max(code, check.tell(finished.verdicts, finished.saved.directory / CHECKS, finished.saved))
+    else:
+        show(check.answered((), finished.saved))
     for path in finished.files:
         if path.name != CHECKS:  # told with the verdicts
             say(str(path))
-    if failed := int((peaks["status"] == "failed").sum()):
-        say(f"{count(failed, 'row')} with status failed; the column reason says why")
+    unusable = len(finished.saved.info["unusable"])
+    failed = int(((peaks["status"] == "failed") & (peaks["case"] != "")).sum())
+    lost = [
+        f"{count(n, what)} {how}" for n, what, how in ((failed, "run", "failed"), (unusable, "file", "not used")) if n
+    ]
+    if lost:
+        say(f"{' and '.join(lost)}: the column reason of peaks.csv says why")
         code = 1
     return code

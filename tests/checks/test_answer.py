@@ -115,3 +115,16 @@ def test_what_is_open_says_why_and_that_it_does_not_matter_where_a_case_fails():
 )  # fmt: skip
 def test_a_demand_is_written_without_an_exponent_and_told_apart_from_its_limit(value, limit, words):
     assert wording.number(value, limit) == words
+
+
+def test_a_sentence_that_holds_for_several_verdicts_is_said_once():
+    few, open_ = "the most unfavourable of fewer than 7 records", "no error estimate"
+    some = [verdict(name, "pass", check=check, note=few) for name in "abc" for check in ("drift", "uplift")]
+    some += [verdict("a", "pass", check="soil", note=open_), verdict("b", "pass", check="soil")]
+    some.append(verdict("c", "does not apply", check="drift", note="the pier has no damper"))
+    notes = wording.Notes(some)
+    assert [notes.of(one) for one in some] == [*[""] * 6, open_, "", "the pier has no damper"]
+    assert notes.common() == [
+        f"drift, uplift: {few}.",
+        "drift, uplift, soil: runs that do not end standing count so: overturned: infinite.",
+    ]

@@ -136,7 +136,8 @@ def test_limits_of_rotations_are_drawn_where_they_are_and_named_in_the_legend(tm
     limits = {float(x) for x in re.findall(r'<line x1="([\d.]+)%"[^>]*class="limit"', text)}
     (row,) = (strip for strip in re.findall(r"<svg.*?</svg>", text, re.DOTALL) if 'data-of="ERZ-NS"' in strip)
     dot = float(re.search(r'<line x1="([\d.]+)%"[^>]*class="rigid d0"', row)[1])
-    assert limits == {pytest.approx(1.5 + (dot - 1.5) * theta / 0.1, abs=0.2)}
+    (limit,) = limits
+    assert limit == pytest.approx(1.5 + (dot - 1.5) * theta / 0.1, abs=0.2)
     assert f"limit of bearings, {theta * PIER.alpha * 2 * PIER.height:.4g} m (rigid)" in Page(text).text
 
 

@@ -50,13 +50,10 @@ def _responses(finished: Finished) -> Facts:
         where = f": {finished.label(run['record'])}, case {finished.which(run)}{when}"
         if first.setdefault(run.name, words) != words:
             where = f", in the run of the greatest {first[run.name]}"
-        lean = (
-            " (mostly the lean of a base that has yielded)"
-            if name == "theta_max_over_alpha" and run["theta_max_is"]
-            else ""
-        )
+        leans = name == "theta_max_over_alpha" and run["theta_max_is"]
+        lean = " (mostly the lean of a base that has yielded)" if leans else ""
         facts.append((words, join(tag("strong", in_words(one)), lean, where)))
-    if largest and "settlement_m" not in largest:
+    if all(one.case["base"] == "rigid" for one in finished.worst):
         facts.append(("settlement, tilt", join("none: the ground is rigid")))
     return facts
 

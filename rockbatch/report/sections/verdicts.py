@@ -27,15 +27,16 @@ def section(contents: Contents) -> Section | None:
     if not verdicts:
         return None
     parts: list[object] = [legend()]
+    notes = wording.Notes(verdicts)
     if len(verdicts) > wording.MOST:
         every = tag("summary", f"All {len(verdicts)} verdicts, a row for each case")
         worst = wording.worst_first(verdicts)[:MOST_WORST]
         parts += [_counts(verdicts), tag("details", every, matrix(verdicts)), tag("h3", "The worst verdicts")]
-        parts.append(_every(worst) if worst else tag("p", "Nothing fails or is left undecided."))
+        parts.append(_every(worst, notes) if worst else tag("p", "Nothing fails or is left undecided."))
         parts.append(tag("p", "All of them, with what governs each, are in ", tag("code", CHECKS), "."))
     else:
         rest = [one for one in verdicts if one.verdict not in (FAIL, NOT_DECIDED)]
-        parts += [matrix(verdicts), tag("h3", "Every verdict"), _every([*wording.worst_first(verdicts), *rest])]
+        parts += [matrix(verdicts), tag("h3", "Every verdict"), _every([*wording.worst_first(verdicts), *rest], notes)]
     return Section("Every check", "checks", join(*parts, tag("h3", "What the checks ask"), _asked(verdicts)))
 
 
@@ -118,17 +119,20 @@ def _asked(verdicts: Sequence[Verdict]) -> Markup:
         Head("asks"),
         Head("limit from"),
         Head("reason"),
-        Head("how runs count that did not go through"),
     ]
     first = {one.check: one for one in reversed(verdicts)}
     asked = [first[name] for name in dict.fromkeys(one.check for one in verdicts)]
-    rows = [[one.check, wording.asked(one), BASIS.get(one.basis, one.basis), one.reason, one.counting] for one in asked]
+    rows = [[one.check, wording.asked(one), BASIS.get(one.basis, one.basis), one.reason] for one in asked]
     rests = {one.statistic: wording.unchecked(one) for one in asked}
-    told = [*wording.counting(verdicts), *(f"{name}: {words}." for name, words in rests.items() if words)]
+    told = [
+        *wording.Notes(verdicts).common(),
+        *wording.counting(verdicts),
+        *(f"{name}: {words}." for name, words in rests.items() if words),
+    ]
     return join(table(heads, rows, prose=True, name="What the checks ask"), *(tag("p", words) for words in told))
 
 
-def _every(verdicts: Sequence[Verdict]) -> Markup:
+def _every(verdicts: Sequence[Verdict], notes: wording.Notes) -> Markup:
     """A row for each verdict: its numbers with their unit, the run that governs, and what else there is to know."""
     bounds = "bounds left by errors, by the other spring law and by runs without an outcome"
     heads = [
@@ -151,7 +155,7 @@ def _every(verdicts: Sequence[Verdict]) -> Markup:
         [
             one.check, _case(one, scaled), mark(one.verdict, one.verdict), wording.demanded(one), _between(one),
             "" if math.isnan(one.value) else wording.limit(one), wording.margin(one), one.unit, one.records or None,
-            wording.governing(one), "; ".join(filter(None, (one.counted, one.note))),
+            wording.governing(one), "; ".join(filter(None, (one.counted, notes.of(one)))),
         ]
         for one in verdicts
     ]  # fmt: skip
