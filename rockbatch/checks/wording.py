@@ -120,7 +120,10 @@ class Notes:
     def common(self) -> list[str]:
         """What holds for all verdicts of some checks, and how runs count that did not go through: a sentence each."""
         told = [f"{', '.join(checks)}: {part}." for part, checks in self._common.items()]
-        ways = [f"{', '.join(checks)}: runs that do not end standing count so: {way}." for way, checks in self._counting.items()]
+        ways = [
+            f"{', '.join(checks)}: runs that do not end standing count so: {way}."
+            for way, checks in self._counting.items()
+        ]
         return told + ways
 
 

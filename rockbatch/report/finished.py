@@ -60,6 +60,15 @@ class Finished:
         """What ``run.json`` knows about each ground motion."""
         return {record["record"]: record for record in self.info["records"]}
 
+    @cached_property
+    def pier_as_given(self) -> dict[str, Any]:
+        """The table [pier] of the study file; empty where the text is none."""
+        try:
+            pier = tomllib.loads(self.info["study"]["text"]).get("pier", {})
+        except tomllib.TOMLDecodeError:
+            return {}
+        return pier if isinstance(pier, dict) else {}
+
     @property
     def count(self) -> str:
         """What counts as one record: "station", or "component"; the latter too where the stations are not known."""

@@ -61,10 +61,10 @@ def quantity(key: str, value: object, digits: int = 10) -> str:
     symbol, unit = SYMBOLS.get(key, (key, ""))
     if not isinstance(value, float | int):
         return f"{symbol} {value}"
-    return f"{symbol} = {_plain(value, digits)} {unit}".strip().replace(" ", "\u00a0")
+    return f"{symbol} = {plain(value, digits)} {unit}".strip().replace(" ", "\u00a0")
 
 
-def _plain(value: float, digits: int) -> str:
+def plain(value: float, digits: int) -> str:
     """A number in the unit in which it was given, without an "e": "45,000", "2.5 × 10⁶"."""
     whole = len(str(int(abs(value))))
     if whole <= 6:

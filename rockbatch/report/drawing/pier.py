@@ -4,6 +4,7 @@ import math
 from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
+from rockbatch.pier import Damper, Pier, Restraint, offsets
 from rockbatch.report.drawing.svg import line, lowered, rectangle, svg, text
 from rockbatch.report.markup import Markup, number, tag
 
@@ -15,6 +16,9 @@ LEFT, RIGHT, ABOVE, BELOW = 30.0, 110.0, 14.0, 48.0
 
 SPRING = 20.0
 """Height of a support's spring [px]: not to scale, it has none."""
+
+ASIDE = 9.0
+"""By how much a damper is drawn outside the pivot at which it is [px]."""
 
 MOST = 4
 """Piers that are drawn; more would say nothing new."""
@@ -28,8 +32,17 @@ def piers(all_of_them: Sequence[Mapping[str, Any]], bases: Collection[str]) -> l
     shown = [pier for pier in all_of_them if _can_be(pier)][:MOST]
     if not shown:
         return []
-    scale = HEIGHT / max(_top(pier) for pier in shown)
+    scale = HEIGHT / max(_highest(pier) for pier in shown)
     return [_pier(pier, scale, any(base != "rigid" for base in bases)) for pier in shown]
+
+
+def devices(pier: Pier, restraints: Sequence[Restraint]) -> tuple[tuple[str, float], ...]:
+    """Kinds and places of dampers and tendons, as offsets from the axis [m]."""
+    return tuple(
+        (each.kind if isinstance(each, Damper) else "tendon", offset)
+        for each in restraints
+        for offset in offsets(pier, each)
+    )
 
 
 def _can_be(pier: Mapping[str, Any]) -> bool:
@@ -43,13 +56,17 @@ def _can_be(pier: Mapping[str, Any]) -> bool:
 
 
 def _top(pier: Mapping[str, Any]) -> float:
-    """Height of the highest point [m]; of a uniform block unless it is known."""
+    """Height of the highest point of the shaft [m]; of a uniform block unless it is known."""
     return float(pier.get("top_m") or 2.0 * pier["height_m"])
+
+
+def _highest(pier: Mapping[str, Any]) -> float:
+    return max(_top(pier), float(pier.get("deck_m") or 0.0))
 
 
 def _pier(pier: Mapping[str, Any], scale: float, springs: bool) -> Markup:
     b, h, top = (scale * length for length in (pier["half_width_m"], pier["height_m"], _top(pier)))
-    middle, ground = LEFT + max(b, 30.0), ABOVE + max(top, h)
+    middle, ground = LEFT + max(b, 30.0), ABOVE + max(scale * _highest(pier), h)
     width, height = middle + max(b, 30.0) + RIGHT, ground + BELOW
     left, right, centre = middle - b, middle + b, ground - h
     arc = 0.45 * math.hypot(b, h)
@@ -69,6 +86,8 @@ def _pier(pier: Mapping[str, Any], scale: float, springs: bool) -> Markup:
         tag("circle", cx=f"{middle:.1f}", cy=f"{centre:.1f}", r=2.6, class_="peak"),
         *_length(right + 26.0, ground, right + 26.0, centre, f"h = {number(pier['height_m'], '.3g')} m"),
         *(mark for x in (left, right) for mark in _support(x, ground, springs)),
+        *_deck(pier, middle, b, ground, scale),
+        *(mark for kind, at in pier.get("devices", ()) for mark in _device(kind, middle, scale * at, ground, top)),
         *_length(left, ground + 32.0, right, ground + 32.0, f"2b = {number(2.0 * pier['half_width_m'], '.3g')} m"),
     ]
     what = "two springs" if springs else "rigid ground"
@@ -76,7 +95,36 @@ def _pier(pier: Mapping[str, Any], scale: float, springs: bool) -> Markup:
         f"The pier to scale on {what}: {2.0 * pier['half_width_m']:.3g} m between its pivots, centre of mass "
         f"{pier['height_m']:.3g} m above them, slenderness {pier['alpha']:.3g} rad"
     )
-    return tag("figure", svg(width, height, *drawn, description=said), style=f"width:{width:.0f}px")
+    kinds = dict.fromkeys(kind if kind == "tendon" else f"{kind} damper" for kind, _ in pier.get("devices", ()))
+    if kinds:
+        said += f", with {' and '.join(kinds)}"
+    named = tag("figcaption", pier["name"]) if pier.get("name") else ""
+    return tag("figure", named, svg(width, height, *drawn, description=said), style=f"width:{width:.0f}px")
+
+
+def _deck(pier: Mapping[str, Any], middle: float, b: float, ground: float, scale: float) -> list[Markup]:
+    """The deck at its height: a slab, whose own size nobody has given."""
+    if not pier.get("deck_m"):
+        return []
+    y = ground - scale * float(pier["deck_m"])
+    half = max(b, 24.0) + 6.0
+    return [
+        rectangle(middle - half, y - 3.0, 2.0 * half, 6.0, "deck"),
+        text(middle + half + 4.0, y + 4.0, f"deck, {number(float(pier['deck_m']), '.3g')} m"),
+    ]
+
+
+def _device(kind: str, middle: float, at: float, ground: float, top: float) -> list[Markup]:
+    """A tendon up to the top at its place, or a damper between the base and the ground, outside the support there."""
+    if kind == "tendon":
+        return [line(middle + at, ground + SPRING, middle + at, ground - top, "tendon s2", kind)]
+    x = middle + at + math.copysign(ASIDE, at)
+    body = rectangle(x - 3.0, ground + 5.0, 6.0, 9.0, "damper s3")
+    return [
+        line(middle + at, ground, x, ground, "tendon s3"),
+        line(x, ground, x, ground + SPRING, "tendon s3", f"{kind} damper"),
+        body,
+    ]
 
 
 def _support(x: float, ground: float, spring: bool) -> list[Markup]:

@@ -1,15 +1,37 @@
 """What was studied: the pier, its foundations and the ground motions, in words and units."""
 
 import math
+from collections.abc import Mapping
+from typing import Any
 
+from rockbatch.pier.statics import lift_off_acceleration, lift_off_rotation, unstable_equilibrium
 from rockbatch.report.contents import Contents
 from rockbatch.report.document import Section
 from rockbatch.report.drawing import pier as drawing
 from rockbatch.report.finished import Finished
-from rockbatch.report.labels import counted, symbol
+from rockbatch.report.labels import counted, plain, quantity, symbol
 from rockbatch.report.markup import Markup, join, number, tag
-from rockbatch.report.table import Head, sub, table
+from rockbatch.report.structure import in_words, pier_of, restraints_of
+from rockbatch.report.table import THETA_FORMAT, Head, sub, table
 from rockbatch.study import PIER_KEYS
+
+GIVEN = {
+    "width_m": ("between the pivots", "m"),
+    "height_m": ("height", "m"),
+    "mass_t": ("mass", "t"),
+    "columns": ("columns", ""),
+    "deck_mass_t": ("deck", "t"),
+    "deck_height_m": ("centre of the deck at", "m"),
+    "deck_inertia_t_m2": ("its rotary inertia", "t m²"),
+    "top_m": ("drift read at", "m"),
+}
+"""Keys of [pier] that are quoted, with their words and units."""
+
+BALANCE = (
+    "All quasi-static: lift-off under a steady horizontal ground acceleration without a vertical one, from elastic supports; "
+    "weight, tendons and friction hold the pier, viscous and hysteretic dampers bear nothing at rest. On springs a pier in "
+    "first-order kinematics comes back from up to tan α."
+)
 
 
 def section(contents: Contents) -> Section | None:
@@ -35,13 +57,80 @@ def studied(finished: Finished, level: str = "h3") -> Markup:
         + f": {counted(len(runs), 'run')}."
         + (" Polarity: mirror images, counted once." if finished.mirrored else "")
     )
-    described = tag("ul", *(tag("li", _pier(pier)) for pier in piers.values()))
-    bases = {case["base"] for case in info["cases"]}
-    drawn = tag("div", *drawing.piers(list(piers.values()), bases), class_="piers") if piers else ""
+    described = tag("ul", *(tag("li", _pier(pier)) for pier in piers.values()), *_masses(finished.pier_as_given))
     return join(
-        tag("p", extent[0].upper() + extent[1:]), described, drawn, tag("p", _motions(finished)),
-        tag(level, "Foundations"), foundations(finished),
+        tag("p", extent[0].upper() + extent[1:]), described, _drawn(finished), tag("p", _motions(finished)),
+        tag(level, "Foundations"), foundations(finished), tag(level, "Lift-off, balance and devices"), balance(finished),
     )  # fmt: skip
+
+
+def _drawn(finished: Finished) -> Markup:
+    """A picture of each pier with the devices that tie it."""
+    bases = {case["base"] for case in finished.info["cases"]}
+    has_deck = "deck_mass_t" in finished.pier_as_given
+    shown: dict[tuple[object, ...], tuple[dict[str, Any], list[str]]] = {}
+    for case in finished.info["cases"]:
+        pier = pier_of(case)
+        places = drawing.devices(pier, restraints_of(case)) if pier else ()
+        key = case["pier"]["alpha"], case["pier"]["p"], places
+        deck = {"deck_m": pier.deck} if has_deck and pier else {}
+        names = shown.setdefault(key, (case["pier"] | deck | {"devices": places}, []))[1]
+        if case["case"] not in names:
+            names.append(str(case["case"]))
+    piers = [pier | {"name": ", ".join(names) if len(shown) > 1 else ""} for pier, names in shown.values()]
+    return tag("div", *drawing.piers(piers, bases), class_="piers") if piers else Markup("")
+
+
+def _masses(given: Mapping[str, Any]) -> list[Markup]:
+    """What the study file gives of the pier, in its own units; what varies is in the tables."""
+    parts = given.get("part", ())
+    words = GIVEN | ({"mass_t": ("shaft", "t")} if "deck_mass_t" in given else {})
+    told = [
+        f"{words[key][0]} {plain(value, 6)} {words[key][1]}".strip()
+        for key, value in given.items()
+        if key in words and isinstance(value, int | float)
+    ]
+    told += [
+        f"a part of {part['mass_t']:g} t at {part['height_m']:g} m"
+        for part in (parts if isinstance(parts, list) else ())
+        if isinstance(part, dict) and all(isinstance(part.get(key), int | float) for key in ("mass_t", "height_m"))
+    ]
+    return [tag("li", f"As given: {', '.join(told)}.")] if told else []
+
+
+def balance(finished: Finished) -> Markup:
+    """At which acceleration and rotation each case lifts off, beyond which it does not come back, and what ties it."""
+    varied_pier = [key for key in finished.info["varied"] if key in PIER_KEYS]
+    heads = [
+        Head("case"),
+        *(Head(symbol(key)) for key in varied_pier),
+        Head("lifts off at [g]", ".3f", "steady horizontal ground acceleration"),
+        Head("lifts off at θ/α", THETA_FORMAT),
+        Head("does not come back beyond θ/α", ".3g", "unstable equilibrium of a pier on rigid ground"),
+        Head("e", ".4f", "factor on the angular velocity at an impact on rigid ground"),
+        Head("dampers and tendons"),
+    ]
+    rows = []
+    for case in finished.info["cases"]:
+        pier = pier_of(case)
+        if pier is None:
+            continue
+        ties, rigid, given = restraints_of(case), case["base"] == "rigid", case["parameters"]
+        deflection = 0.0 if rigid else float(given.get("delta_s_m") or 0.0)
+        edge = unstable_equilibrium(pier, ties)
+        given_e = given.get("restitution")
+        rows.append([
+            " ".join([str(case["case"]), *(quantity(key, value) for key, value in case["columns"].items())]),
+            *(case["columns"].get(key) for key in varied_pier),
+            lift_off_acceleration(pier, ties, deflection),
+            lift_off_rotation(pier, ties, deflection) / pier.alpha,
+            "never: the tendons hold it" if edge is None else edge / pier.alpha,
+            (pier.restitution if given_e is None else float(given_e)) if rigid else None,
+            "; ".join(in_words(pier, each) for each in ties) or "none",
+        ])  # fmt: skip
+    return join(
+        table(heads, rows, prose=True, name="Lift-off, balance and devices"), tag("p", BALANCE, class_="legend")
+    )
 
 
 def _vertical(finished: Finished) -> str:
@@ -55,11 +144,12 @@ def _vertical(finished: Finished) -> str:
 
 
 def _pier(pier: dict[str, float]) -> str:
+    weighs = f"; mass {plain(pier['mass_t'], 6)} t" if pier.get("mass_t") else ""
     return (
         f"Pier of slenderness α = {number(pier['alpha'])} rad ({math.degrees(pier['alpha']):.1f}°), "
         f"frequency parameter p = {number(pier['p'])} rad/s, shape factor μ = {number(pier['mu'])}; "
         f"size R0 = {number(pier['size_m'], '.3g')} m, half-width {number(pier['half_width_m'], '.3g')} m, "
-        f"centre of mass {number(pier['height_m'], '.3g')} m above the base; "
+        f"centre of mass {number(pier['height_m'], '.3g')} m above the base{weighs}; "
         f"g = {number(pier['gravity'])} m/s²."
     )
 

@@ -1,0 +1,74 @@
+"""The structure of a case: its pier, dampers and tendons as run.json has them, and their numbers in words."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from rockbatch.errors import InputError
+from rockbatch.pier import Damper, Pier, Restraint, Tendon
+from rockbatch.report.labels import plain
+from rockbatch.study.restraint_keys import KEYS_OF, fields_of
+
+_PIER = ("alpha", "p", "mu", "gravity", "mass_t", "top_m", "deck_over_columns", "deck_height_m")
+_DAMPER = ("kind", "f", "nu", "yield_m", "exponent", "at")
+_TENDON = ("psi", "lam", "strength", "at")
+_PREFERRED = {"f": "force_kN", "nu": "coefficient_kN_s_m", "psi": "prestress_kN", "lambda": "stiffness_kN_m"}
+"""Keys without units, and those that say the same of a pier whose mass is known."""
+_WORDS = {
+    "f": ("f", ""), "force_kN": ("F", "kN"), "yield_mm": ("uy", "mm"), "nu": ("ν", ""), "coefficient_kN_s_m": ("C", ""),
+    "exponent": ("a", ""), "psi": ("ψ", ""), "prestress_kN": ("P0", "kN"), "lambda": ("λ", ""),
+    "stiffness_kN_m": ("kt", "kN/m"), "yield_kN": ("Ty", "kN"),
+}  # fmt: skip
+
+
+def pier_of(case: Mapping[str, Any]) -> Pier | None:
+    """The pier of a case; None of one that cannot be, for a run.json of somebody else's may say anything."""
+    try:
+        return Pier(**{name: case["pier"][name] for name in _PIER if case["pier"].get(name) is not None})
+    except (InputError, TypeError, ValueError):
+        return None
+
+
+def restraints_of(case: Mapping[str, Any]) -> tuple[Restraint, ...]:
+    """Dampers and tendons of a case."""
+    described = case["parameters"].get("restraints")
+    return tuple(map(_restraint, described)) if isinstance(described, list) else ()
+
+
+def _restraint(values: Mapping[str, Any]) -> Restraint:
+    if "kind" in values:
+        return Damper(**{name: values[name] for name in _DAMPER if name in values})
+    return Tendon(**{name: values[name] for name in _TENDON if values.get(name) is not None})
+
+
+def in_words(pier: Pier, restraint: Restraint) -> str:
+    """A damper or tendon with its numbers, in kN where the mass is known: "friction damper at each pivot, F = 450 kN"."""
+    kind = restraint.kind if isinstance(restraint, Damper) else "tendon"
+    fields = fields_of(pier)
+    values = {}
+    for key in KEYS_OF[kind]:
+        if key in fields and _PREFERRED.get(key) not in fields:
+            field, divisor = fields[key]
+            values[key] = getattr(restraint, field) * divisor
+    power = values.pop("exponent", 1.0) if "coefficient_kN_s_m" in values else 1.0
+    words = f"{kind} damper" if isinstance(restraint, Damper) else kind
+    told = [_number(key, value, power) for key, value in values.items() if value < float("inf")]
+    return ", ".join([f"{words} {_where(restraint)}", *told])
+
+
+def _number(key: str, value: float, power: float) -> str:
+    symbol, unit = _WORDS[key]
+    if key == "coefficient_kN_s_m":
+        unit = "kN s/m" if power == 1.0 else f"kN (s/m)^{power:g}"
+    return f"{symbol} = {plain(value, 4)} {unit}".strip().replace(" ", "\u00a0")
+
+
+def _where(restraint: Restraint) -> str:
+    if restraint.at is None:
+        return "at each pivot"
+    if isinstance(restraint.at, str):
+        return f"at the {restraint.at} pivot"
+    return (
+        "on the axis"
+        if restraint.at == 0
+        else f"{abs(restraint.at):g} m {'right' if restraint.at > 0 else 'left'} of the axis"
+    )

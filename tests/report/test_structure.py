@@ -1,0 +1,73 @@
+"""What was studied shows the structure: masses, deck, devices with their numbers, lift-off and balance; drawn to scale."""
+
+import re
+import xml.etree.ElementTree as ET
+
+import pytest
+from report_page import Page
+from studies import study_text, write_study
+
+import rockbatch as rb
+from rockbatch.report.drawing import pier as drawing
+
+BRIDGE = {
+    "width_m": 7.0, "height_m": 30.0, "mass_t": 1800.0, "deck_mass_t": 1200.0, "deck_height_m": 31.5, "top_m": 30.0,
+}  # fmt: skip
+CASES = (
+    {"name": "bare", "base": "rigid"},
+    {"name": "oil", "base": "rigid", "damper": [{"kind": "viscous", "coefficient_kN_s_m": 2000.0, "exponent": 0.3}]},
+    {
+        "name": "tied", "base": "rigid", "restitution": 0.9,
+        "damper": [{"kind": "hysteretic", "force_kN": 2000.0, "yield_mm": 5.0, "at": "left"}],
+        "tendon": [{"prestress_kN": 5000.0, "stiffness_kN_m": 20000.0}],
+    },
+)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def studied(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("bridge")
+    text = study_text(pier=BRIDGE, cases=CASES, output={"histories": "none"})
+    rb.run(write_study(folder, text), out=folder / "out")
+    page = (folder / "out/report.html").read_text(encoding="utf-8")
+    return '<section id="studied">' + page.split('<section id="studied">')[1].split("</section>")[0] + "</section>"
+
+
+def test_masses_deck_and_heights_stand_in_the_units_of_the_study(studied):
+    told = Page(studied).text
+    assert "mass 3000 t" in told
+    given = "between the pivots 7 m, height 30 m, shaft 1800 t, deck 1200 t, centre of the deck at 31.5 m, drift read at 30 m"
+    assert f"As given: {given}." in told
+
+
+def test_devices_stand_with_their_numbers_beside_lift_off_and_balance(studied):
+    rows = [[cell.replace("\u00a0", " ") for cell in row] for row in Page(studied).tables["studied"]]
+    bare, oil, tied = rows[-3:]
+    pier = rb.Pier.with_deck(**{key: value for key, value in BRIDGE.items()})
+    assert bare[-1] == "none"
+    assert oil[-1] == "viscous damper at each pivot, C = 2000 kN (s/m)^0.3"
+    assert tied[-1] == (
+        "hysteretic damper at the left pivot, F = 2000 kN, uy = 5 mm; tendon on the axis, P0 = 5000 kN, kt = 20,000 kN/m"
+    )
+    tan = pier.half_width / pier.height
+    assert [row[1] for row in (bare, tied)] == [f"{tan:.3f}", f"{tan * (1 + 5000 / (3000 * 9.81)):.3f}"]
+    assert [row[3] for row in (bare, oil)] == ["1", "1"]
+    assert float(tied[3]) > 1.0
+    assert [row[4] for row in (bare, tied)] == [f"{pier.restitution:.4f}", "0.9000"]
+
+
+def test_the_deck_and_the_devices_are_drawn_to_scale():
+    """Heights and places, read back from the picture, are in the ratio of the pier's."""
+    pier = {"alpha": 0.2, "half_width_m": 4.0, "height_m": 20.0, "top_m": 30.0, "deck_m": 33.0}
+    (drawn,) = drawing.piers([pier | {"devices": (("tendon", -2.0), ("viscous", 4.0))}], {"rigid"})
+    svg = ET.fromstring(re.search("<svg.*</svg>", str(drawn))[0])
+    left, ground, top, right = map(float, re.search(r'd="M([\d.]+) ([\d.]+)V([\d.]+)H([\d.]+)', str(drawn)).groups())
+    scale = (ground - top) / 30.0
+    deck = next(node for node in svg if node.get("class") == "deck")
+    assert float(deck.get("y")) + float(deck.get("height")) / 2 == pytest.approx(ground - 33.0 * scale, abs=0.2)
+    tendon = next(node for node in svg if node.get("class") == "tendon s2")
+    middle = (left + right) / 2
+    assert float(tendon.get("x1")) == pytest.approx(middle - 2.0 * scale, abs=0.2)
+    assert float(tendon.get("y2")) == pytest.approx(top, abs=0.2)
+    damper = next(node for node in svg if node.get("class") == "damper s3")
+    assert float(damper.get("x")) + 3.0 == pytest.approx(right + drawing.ASIDE, abs=0.2)
