@@ -15,9 +15,10 @@ from rockbatch.batch.journal import Journal
 from rockbatch.batch.listening import Listener, count
 from rockbatch.errors import InputError
 from rockbatch.files import csv_text, is_plain, only_writer, read_table, read_text, sha256_of, write_whole
-from rockbatch.motions import Unusable
+from rockbatch.motions import Motion, Unusable
 from rockbatch.report import write_analyses
 from rockbatch.report.finished_analysis import digest_of
+from rockbatch.results.run_json import versions
 from rockbatch.showing import Shown, several
 from rockbatch.study import Study
 
@@ -109,8 +110,15 @@ class AnalysisFolder:
             "text": study.text,
             "sha256": sha256,
         }
-        self.info: dict[str, Any] = {"rockbatch": __version__, "study": of_study, "files": [], "digests": {}}
+        self.info: dict[str, Any] = {"rockbatch": __version__, "versions": versions(), "study": of_study}
+        self.info |= {"files": [], "digests": {}}
         self._earlier = {} if fresh else _earlier(self.path)
+
+    def under(self, motions: Sequence[Motion]) -> None:
+        """Note the ground motions, for the report to name them."""
+        self.info["under"] = [
+            {"record": one.name, "label": one.label, "vertical": one.pga_vertical is not None} for one in motions
+        ]
 
     def has(self, file: str, digest: Mapping[str, str]) -> bool:
         """Whether ``file`` holds the runs with that digest already; ``InputError`` where it is not as it was written."""

@@ -114,6 +114,7 @@ def fragility(
         results.journal(RUNS, columns(asked), digest) as journal,
         carrier,
     ):
+        results.under(records)
         listener.say(f"{_what(spec, asked, len(records))} on {carrier}{_then(spec)}")
         make_ready(asked, listener)
         waves = Waves(asked, journal, carrier, listener.progress)

@@ -113,6 +113,7 @@ def sensitivity(
     listener.motions(found)
     points = Points(asked, spec)
     with analysis_folder(out, Sensitivity.NAME, asked, fresh, listener) as results:
+        results.under(found.motions)
         results.info |= {
             "varied": list(asked.varied),
             **{name: value for name, value in asdict(spec).items() if name != "inputs"},

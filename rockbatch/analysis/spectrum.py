@@ -106,6 +106,7 @@ def spectrum(
         if spectra is not None:
             found = ground_motions(asked)
             listener.motions(found)
+            results.under(found.motions)
             _carry_out_spectra(results, spectra, found, carrier)
         if maps:
             _carry_out_maps(results, maps, carrier)

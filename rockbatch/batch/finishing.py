@@ -6,7 +6,6 @@ import math
 import platform
 from collections.abc import Sequence
 from dataclasses import dataclass
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -29,11 +28,8 @@ from rockbatch.results.estimate import ESTIMATE, write_estimate
 from rockbatch.results.histories_file import HISTORIES
 from rockbatch.results.intensity import INTENSITY, write_intensity
 from rockbatch.results.reading import Saved, edited, read_saved
-from rockbatch.results.run_json import INFO, describe, write_info
+from rockbatch.results.run_json import INFO, describe, versions, write_info
 from rockbatch.study import Study
-
-VERSIONS_OF = ("numba", "numpy", "pandas", "obspy", "h5py")
-"""Packages whose versions run.json names."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,7 +66,7 @@ def what_was_run(
         "created": datetime.datetime.now().astimezone().isoformat(timespec="seconds"),
         "command": ["rockbatch", *command],
         **describe(study, motions),
-        "versions": _versions(),
+        "versions": versions(),
         "machine": f"{platform.system()} {platform.machine()}, {cores()} processors",
         "runs": len(to_simulate(runs, range(len(runs)))),
         "digest": digest,
@@ -182,7 +178,3 @@ def _keep_histories(
     if path is None:
         (saved.directory / HISTORIES).unlink(missing_ok=True)
     return path, None
-
-
-def _versions() -> dict[str, str]:
-    return {"python": platform.python_version(), **{name: version(name) for name in VERSIONS_OF}}

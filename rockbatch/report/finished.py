@@ -84,7 +84,7 @@ class Finished:
 
     @cached_property
     def both_directions(self) -> bool:
-        """Whether motions were run as recorded and reversed."""
+        """Whether motions were run in both polarities."""
         return bool(self.runs["polarity"].nunique() > 1)
 
     @cached_property

@@ -11,11 +11,14 @@ from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
 from rockbatch.errors import EditedTable, InputError
 from rockbatch.files import read_table, read_text, sha256_of
-from rockbatch.report.labels import quantity
+from rockbatch.report.labels import counted, quantity
+from rockbatch.report.markup import Markup, tag
 
 if TYPE_CHECKING:
     import pandas as pd
 
+
+MOST_NAMES = 60
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -30,6 +33,27 @@ class FinishedAnalysis:
 
     directory: Path
     info: dict[str, Any]
+
+    def provenance(self) -> Markup:
+        """Under which ground motions it was made, and with which versions; empty where an earlier version has not noted them."""
+        motions = [str(one["label"]) for one in self.info.get("under", ())]
+        versions = {"rockbatch": self.info["rockbatch"], **self.info["versions"]} if "versions" in self.info else {}
+        told = (
+            [
+                f"{counted(len(motions), 'ground motion')}: {'; '.join(motions[:MOST_NAMES])}"
+                + (f"; and {len(motions) - MOST_NAMES} more" if len(motions) > MOST_NAMES else "")
+            ]
+            if motions
+            else []
+        )
+        told += (
+            [f"made with {', '.join(f'{name} {version}' for name, version in versions.items())}"] if versions else []
+        )
+        return (
+            tag("p", ". ".join(part[0].upper() + part[1:] for part in told), ".", class_="legend")
+            if told
+            else Markup("")
+        )
 
     def table(self, name: str, columns: Collection[str]) -> "pd.DataFrame | None":
         """One of its tables; None where NAME.json does not name it, or where it is damaged or lacks a column.

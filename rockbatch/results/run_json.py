@@ -3,8 +3,10 @@
 import hashlib
 import json
 import math
+import platform
 from collections.abc import Mapping
 from dataclasses import asdict
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -90,6 +92,14 @@ SHAPE = {
 
 MOST_SPECTRA = 200
 """Motions whose spectra go into run.json; each takes about 10 ms."""
+
+VERSIONS_OF = ("numba", "numpy", "pandas", "obspy", "h5py")
+"""Packages whose versions are kept with results."""
+
+
+def versions() -> dict[str, str]:
+    """Return the versions of Python and of the packages that numbers depend on."""
+    return {"python": platform.python_version(), **{name: version(name) for name in VERSIONS_OF}}
 
 
 def describe(study: Study, motions: MotionSet) -> dict[str, Any]:

@@ -4,6 +4,7 @@ import json
 import math
 import shutil
 from dataclasses import replace
+from importlib.metadata import version
 
 import numpy as np
 import pandas as pd
@@ -491,3 +492,16 @@ def test_a_damaged_table_does_not_keep_the_report_from_being_written(folder, tmp
     with pytest.warns(EditedTable, match=r"sobol\.csv: not as it was written"):
         assert section(Contents(out, study)) is None
     assert section(Contents(folder, study)) is not None
+
+
+def test_an_input_vertical_without_any_vertical_component_is_said_to_have_nothing_to_change(folder):
+    info = json.loads((folder / "sensitivity.json").read_text(encoding="utf-8"))
+    told = section(Contents(folder, info["study"])).content
+    assert "No record has a vertical component" in told
+
+
+def test_the_page_names_its_records_and_versions(folder):
+    info = json.loads((folder / "sensitivity.json").read_text(encoding="utf-8"))
+    told = section(Contents(folder, info["study"])).content
+    assert "2 ground motions: short; long." in told
+    assert f"numba {version('numba')}" in told

@@ -322,7 +322,7 @@ def test_both_directions_and_scales_are_told_apart(tmp_path):
     page = Page(text)
     assert len(panels(text)) == 2 * len(FIG7)
     assert page.tables["figure"][0][2:4] == ["rigid (+)", "rigid (-)"]
-    assert "as recorded and reversed, scaled by 1, 2: 120 runs." in page.text
+    assert "in both polarities, scaled by 1, 2: 120 runs." in page.text
     # PGA is that of the scaled motion
     doubled = page.tables["figure"][1 + len(FIG7) + 1]
     assert doubled[:2] == ["ERZ-NS", "1.030"]

@@ -3,16 +3,17 @@
 import json
 import math
 
+import pandas as pd
 import pytest
 from report_page import Page
 from report_samples import case_entry, write_results
-from studies import COSINE, SINE, study_text, write_study
+from studies import COSINE, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.pier import Pier, YieldingBase
 from rockbatch.report import write_report
 from rockbatch.report.contents import read
-from rockbatch.report.sections import distribution, estimate, intensity, target
+from rockbatch.report.sections import distribution, estimate, forces, intensity, studied, target
 
 PULSES = tuple(
     {**shape, "name": f"{shape['shape']} {size}", "amplitude_g": size}
@@ -110,23 +111,42 @@ def test_estimates_are_labelled_as_a_comparison_that_need_not_converge(asked):
     ):
         assert words in page.text
     table = rb.open_results(asked).estimate
-    outcomes = table["priestley_outcome"].value_counts()
+    outcomes = table.drop_duplicates(["record", "alpha"])["priestley_outcome"].value_counts()
     assert f"below the threshold {outcomes['stays']}" in page.text
     found = table[table["priestley_outcome"] == "rocks"]["priestley_theta_over_alpha"]
     assert all(f"{value:.4f}" in page.text for value in found)
 
 
-def test_of_many_foundations_the_least_and_the_largest_rotation_stand_beside_the_estimates(tmp_path):
-    pads = {"name": "pads", "base": "elastic", "beta": [20 + i for i in range(9)], "epsilon": 0.05}
+def test_estimates_count_each_motion_once_and_are_compared_with_rigid_ground_alone(tmp_path):
+    """However many cases share them: the formulas are of a block on rigid ground, not of one on pads or with dampers."""
+    pads = {"name": "pads", "base": "elastic", "beta": [20, 30], "epsilon": 0.05}
+    damped = {"name": "damped", "base": "rigid", "damper": [{"kind": "friction", "f": 0.02}]}
     output = {"estimate": True, "histories": "none"}
-    text = study_text(pulses=PULSES[:3], cases=(pads,), output=output, numerics={"substeps": 2})
+    text = study_text(pulses=PULSES[:3], cases=(RIGID, pads, damped), output=output, numerics={"substeps": 2})
     table = rb.run(write_study(tmp_path, text), out=tmp_path / "out")
-    rows = page_of(tmp_path / "out", estimate).tables[""]
-    assert rows[1][-2:] == ["least", "largest"]
-    for row in rows[2:]:
-        theta = table[table["record"] == row[0]]["theta_max_over_alpha"]
-        assert row[-2:] == [f"{theta.min():.4f}", f"{theta.max():.4f}"]
-    assert len(rows) == 2 + 3
+    page = page_of(tmp_path / "out", estimate)
+    assert page.text.count("of 3 motions: ") == 2
+    rows = page.tables[""]
+    assert rows[1][-1] == "rigid"
+    bare = table[table["case"] == "rigid"].set_index("record")["theta_max_over_alpha"]
+    assert [row[-1] for row in rows[2:]] == [f"{bare[row[0]]:.4f}" for row in rows[2:]]
+    estimates = rb.open_results(tmp_path / "out").estimate
+    rocks = estimates[(estimates["case"] == "rigid") & (estimates["fema_356_outcome"] == "rocks")]
+    rocks = rocks[rocks["theta_max_over_alpha"] > 0]
+    ratios = rocks["fema_356_theta_over_alpha"] / rocks["theta_max_over_alpha"]
+    assert (
+        f"{ratios.median():.2f} in the median of {'one run' if len(ratios) == 1 else f'{len(ratios)} runs'}"
+        in page.text
+    )
+
+
+def test_without_a_block_on_rigid_ground_there_is_nothing_to_compare_estimates_with(tmp_path):
+    pads = {"name": "pads", "base": "elastic", "beta": 30, "epsilon": 0.05}
+    text = study_text(pulses=PULSES[:2], cases=(pads,), output={"estimate": True}, numerics={"substeps": 2})
+    rb.run(write_study(tmp_path, text), out=tmp_path / "out")
+    page = page_of(tmp_path / "out", estimate)
+    assert "nothing computed compares with them" in page.text
+    assert "times the computed one" not in page.text
 
 
 # The target spectrum
@@ -182,3 +202,27 @@ def test_the_page_of_it_all_is_whole_and_spectra_are_drawn_once(asked):
     places = [headings.index(name) for name in names]
     assert places == sorted(places)
     assert math.isfinite(rb.open_results(asked).intensity["cav_m_s"].sum())
+
+
+def test_measures_of_scaled_motions_are_not_called_as_recorded(tmp_path):
+    """Under a target PGA and the like are those of the motions as they were run."""
+    write_results(tmp_path)
+    told = json.loads((tmp_path / "run.json").read_text(encoding="utf-8"))
+    told["records"] = [one | {"factor": 1.274} for one in told["records"]]
+    (tmp_path / "run.json").write_text(json.dumps(told), encoding="utf-8")
+    told = page_of(tmp_path, studied).text
+    assert "scaled to the target by 1.274;" in told
+    assert "as recorded" not in told
+
+
+def test_forces_of_a_case_with_runs_that_did_not_go_through_are_marked_as_bounds(tmp_path):
+    write_results(tmp_path, changes={("ERZ-NS", "1"): {"status": "failed", "reason": "not settled"}})
+    peaks = pd.read_csv(tmp_path / "peaks.csv")
+    peaks["base_shear_m_s2"] = peaks["status"].map({"ok": 2.5})
+    peaks.to_csv(tmp_path / "peaks.csv", index=False)
+    rows = page_of(tmp_path, forces).tables[""]
+    place = next(i for i, head in enumerate(rows[0]) if "V/M" in head)
+    by_case = {row[0]: [cell.replace("\u00a0", " ") for cell in row] for row in rows[1:6]}
+    cut, whole = (next(row for name, row in by_case.items() if name.startswith(case)) for case in ("1", "2"))
+    assert (cut[1], cut[place]) == ("5 of 6", "≥ 2.500")
+    assert (whole[1], whole[place]) == ("6 of 6", "2.500")

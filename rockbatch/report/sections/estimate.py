@@ -9,14 +9,10 @@ from rockbatch.files import read_table
 from rockbatch.report.contents import Contents
 from rockbatch.report.document import Section, paragraphs
 from rockbatch.report.finished import Finished, as_dicts
-from rockbatch.report.labels import heading
+from rockbatch.report.labels import counted, heading
 from rockbatch.report.markup import Markup, join, tag
 from rockbatch.report.table import THETA_FORMAT, Head, alarm, table
 from rockbatch.results.estimate import DAMPING, ESTIMATE, START
-from rockbatch.results.suite_statistics import NO_PEAK
-
-MOST_FOUNDATIONS = 8
-"""With a column of their own; of more the least and the largest rotation are shown."""
 
 METHODS = {"priestley": "Priestley et al. (1978)", "fema_356": "FEMA 356"}
 
@@ -52,28 +48,37 @@ def section(contents: Contents) -> Section | None:
     runs = as_dicts(read_table(path))
     if not runs:
         return None
-    content = join(paragraphs(*map(heading, WORDS)), _summary(runs), _table(finished, runs))
+    content = join(paragraphs(*map(heading, WORDS)), _summary(finished, runs), _table(finished, runs))
     return Section("Code estimates, for comparison", "estimate", content)
 
 
-def _summary(runs: list[dict[str, Any]]) -> Markup:
-    """How often each method has an answer, and how far it is off on rigid ground or springs alike."""
+def _summary(finished: Finished, runs: list[dict[str, Any]]) -> Markup:
+    """How often each method has an answer, each motion counted once, and how far it is off on rigid ground alone."""
+    bare = [run for run in runs if _is_bare(finished, run)]
+    once = list({(run["record"], finished.place(run["case"], run)[1], run["scale"]): run for run in runs}.values())
     sentences = []
     for method, name in METHODS.items():
-        outcomes = [run[f"{method}_outcome"] for run in runs]
+        outcomes = [run[f"{method}_outcome"] for run in once]
         ratios = [
             run[f"{method}_theta_over_alpha"] / run["theta_max_over_alpha"]
-            for run in runs
+            for run in bare
             if run[f"{method}_outcome"] == "rocks" and run["status"] == "ok" and run["theta_max_over_alpha"] > 0
         ]
         counts = ", ".join(f"{words} {outcomes.count(kind)}" for kind, words in OUTCOMES.items() if kind in outcomes)
-        sentence = f"{name} (ζ = {_dampings(runs, method)}), of {len(runs)} runs: {counts}"
+        sentence = f"{name} (ζ = {_dampings(runs, method)}), of {counted(len(once), 'motion')}: {counts}"
         if ratios:
             low, middle, high = np.percentile(ratios, [0, 50, 100])
             sentence += f"; where it gives a rotation, that is {low:.2f} to {high:.2f} times the computed one"
-            sentence += f", {middle:.2f} in the median, over all foundations"
+            sentence += f" on rigid ground, {middle:.2f} in the median of {counted(len(ratios), 'run')}"
         sentences.append(f"{sentence}.")
+    if not bare:
+        sentences.append("No case stands on rigid ground without devices, so that nothing computed compares with them.")
     return paragraphs(*sentences)
+
+
+def _is_bare(finished: Finished, run: Mapping[str, Any]) -> bool:
+    """Whether a run is of what the estimates are of: a block on rigid ground alone."""
+    return finished.series[finished.place(run["case"], run)[0]].rigid
 
 
 def _dampings(runs: list[dict[str, Any]], method: str) -> str:
@@ -83,15 +88,14 @@ def _dampings(runs: list[dict[str, Any]], method: str) -> str:
 
 
 def _table(finished: Finished, runs: list[dict[str, Any]]) -> Markup:
-    """A row for each motion and pier: the estimates for rigid ground, and what was computed on each foundation."""
+    """A row for each motion and pier: the estimates, and what was computed on rigid ground alone."""
     rows: dict[tuple[str, int, float, str], dict[int, dict[str, Any]]] = {}
     for run in runs:
         series, pier = finished.place(run["case"], run)
         rows.setdefault((run["record"], pier, run["scale"], run["polarity"]), {})[series] = run
     signs, scales = {key[3] for key in rows}, {key[2] for key in rows}
-    places = sorted({place for same in rows.values() for place in same})
-    each = len(places) <= MOST_FOUNDATIONS
-    computed = [finished.series[place].label for place in places] if each else ["least", "largest"]
+    places = sorted({place for same in rows.values() for place in same if finished.series[place].rigid})
+    computed = [finished.series[place].label for place in places]
     heads = [
         Head("record"),
         Head("pier"),
@@ -104,7 +108,7 @@ def _table(finished: Finished, runs: list[dict[str, Any]]) -> Markup:
     written = []
     for (record, place_of_pier, scale, sign), same in rows.items():
         one = next(iter(same.values()))
-        found = [_computed(same.get(place)) for place in places] if each else _range(list(same.values()))
+        found = [_computed(same.get(place)) for place in places]
         names = [finished.shown(record), finished.piers[place_of_pier] or None, scale if len(scales) > 1 else None]
         estimates = (_estimate(one, method) for method in DAMPING)
         told = [*names, sign if len(signs) > 1 else None, one["pga_over_g_tan_alpha"], *estimates, *found]
@@ -122,10 +126,3 @@ def _computed(run: Mapping[str, Any] | None) -> object:
     if run is None:
         return None
     return run["theta_max_over_alpha"] if run["status"] == "ok" else alarm(run["status"])
-
-
-def _range(runs: list[dict[str, Any]]) -> list[object]:
-    """The least and the largest rotation; where the pier overturned or flew, that is the largest."""
-    stood = [run["theta_max_over_alpha"] for run in runs if run["status"] == "ok"]
-    gone = next((run for run in runs if run["status"] in NO_PEAK), None)
-    return [min(stood, default=None), max(stood, default=None) if gone is None else _computed(gone)]

@@ -8,7 +8,7 @@ from rockbatch.report.contents import Contents
 from rockbatch.report.document import Section
 from rockbatch.report.finished import Finished, worst_first
 from rockbatch.report.labels import counted, head
-from rockbatch.report.markup import Markup, join, tag
+from rockbatch.report.markup import Markup, join, number, tag
 from rockbatch.report.sections.peaks import on_scale
 from rockbatch.report.table import MOST_ROWS, Head, alarm, table, told_apart
 from rockbatch.results.columns import Column, on_page
@@ -18,6 +18,9 @@ if TYPE_CHECKING:
 
 _LEAST = ("first_uplift_s", "first_uplift_g")
 """Of these less is worse."""
+
+_CUT_SHORT = ("flight", "failed")
+"""Of a run that ended so, what it would have come to is not known."""
 
 
 def section(contents: Contents) -> Section | None:
@@ -44,15 +47,27 @@ def _of_cases(finished: Finished, shown: list[Column]) -> Markup:
     for words, group in finished.groups():
         for place in group["series"].unique():
             runs, label = group[group["series"] == place], finished.series[int(place)].label
-            rows.append([f"{label} ({words})" if words else label, *(_worst(column, runs) for column in shown)])
-    return table([Head("case"), *map(head, shown)], rows, sortable=True, name="Forces of every case")
+            ended = int(runs["status"].isin(_CUT_SHORT).sum())
+            counts = f"{len(runs) - ended} of {len(runs)}"
+            cells = (_worst(column, runs, bool(ended)) for column in shown)
+            rows.append([f"{label} ({words})" if words else label, alarm(counts) if ended else counts, *cells])
+    runs_head = Head(
+        "runs", note="that went through, of all; where some did not, the others bound the values from one side"
+    )
+    drawn = table([Head("case"), runs_head, *map(head, shown)], rows, sortable=True, name="Forces of every case")
+    bounds = "≥, ≤: some runs of the case did not go through, and theirs may be worse."
+    return join(drawn, tag("p", bounds, class_="legend") if finished.runs["status"].isin(_CUT_SHORT).any() else "")
 
 
-def _worst(column: Column, runs: "pd.DataFrame") -> float | None:
+def _worst(column: Column, runs: "pd.DataFrame", cut_short: bool) -> object:
+    """The worst of the runs, with a sign where it is a bound only."""
     values = runs[column.name].dropna()
     if values.empty:
         return None
-    return on_scale(column.name, float(values.min() if column.name in _LEAST else values.max()))
+    least = column.name in _LEAST
+    value = on_scale(column.name, float(values.min() if least else values.max()))
+    shown = number(value, head(column).form)
+    return join(f"{'≤' if least else '≥'}\u00a0", shown) if cut_short else value
 
 
 def _every_run(finished: Finished, shown: list[Column]) -> Markup:

@@ -32,7 +32,7 @@ def section(contents: Contents) -> Section | None:
         return None
     info = found.info
     drawn = figure(_panels(info), _caption(info))
-    return Section("Fragility", "fragility", join(_lead(info), drawn, _table(info)))
+    return Section("Fragility", "fragility", join(_lead(info), drawn, _table(info), found.provenance()))
 
 
 def _lead(info: Mapping[str, Any]) -> Markup:

@@ -13,7 +13,7 @@ from rockbatch.report.drawing.svg import key, line, lowered, rectangle, svg, tex
 from rockbatch.report.finished_analysis import named, of_files
 from rockbatch.report.labels import SYMBOLS
 from rockbatch.report.markup import Markup, join, number, tag
-from rockbatch.report.table import Head, table
+from rockbatch.report.table import Head, alarm, table
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -34,7 +34,7 @@ def section(contents: Contents) -> Section | None:
     if swings is None or shares is None:
         return None
     keys = ["case", *found.info["varied"]]
-    parts = [_lead(found.info)]
+    parts = [_lead(found.info), _without_vertical(found.info)]
     for names, own in swings.groupby(keys, sort=False, dropna=False):
         both = own.merge(shares, on=[*keys, "parameter"])
         values = dict(zip(keys, names, strict=True))
@@ -43,6 +43,7 @@ def section(contents: Contents) -> Section | None:
         parts.append(figure(_tornado(both), f"{words}: one input at a time, all others as in the study."))
         parts.append(figure(_bars(both), f"{words}: all inputs at once over their ranges."))
         parts.append(_numbers(both))
+    parts.append(found.provenance())
     return Section("What the answer depends on", "sensitivity", join(*parts))
 
 
@@ -57,6 +58,19 @@ def _lead(info: dict[str, Any]) -> Markup:
         "left if only it were unknown; the difference is its part in interactions. "
         f"Whiskers: {100 * info['confidence']:g} % intervals.",
     )  # fmt: skip
+
+
+def _without_vertical(info: dict[str, Any]) -> Markup:
+    """That the input "vertical" changes nothing where no record has a vertical component."""
+    motions = info.get("under", [])
+    studied = any(each.get("name") == "vertical" for each in info["inputs"])
+    if not studied or not motions or any(one["vertical"] for one in motions):
+        return Markup("")
+    return tag(
+        "p",
+        alarm("No record has a vertical component"),
+        ": the input vertical is without effect here, whatever it would do.",
+    )
 
 
 def _peak() -> Markup:

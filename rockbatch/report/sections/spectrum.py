@@ -49,7 +49,8 @@ def section(contents: Contents) -> Section | None:
     regions = found.table("overturning_map.csv", ("map", "case", "omega_p_over_p", "outcome", "low", "high"))
     if regions is not None:
         parts += _maps(found, regions)
-    return Section("Rocking spectra and overturning", "spectrum", join(*parts)) if parts else None
+    content = join(*parts, found.provenance())
+    return Section("Rocking spectra and overturning", "spectrum", content) if parts else None
 
 
 # Rocking spectra

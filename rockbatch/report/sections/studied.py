@@ -28,7 +28,8 @@ GIVEN = {
 """Keys of [pier] that are quoted, with their words and units."""
 
 BALANCE = (
-    "All quasi-static: lift-off under a steady horizontal ground acceleration without a vertical one, from elastic supports; "
+    "Balance: the unstable equilibrium, beyond which the pier does not come back. All quasi-static: "
+    "lift-off under a steady horizontal ground acceleration without a vertical one, from elastic supports; "
     "weight, tendons and friction hold the pier, viscous and hysteretic dampers bear nothing at rest. On springs a pier in "
     "first-order kinematics comes back from up to tan α."
 )
@@ -52,7 +53,7 @@ def studied(finished: Finished, level: str = "h3") -> Markup:
     extent = (
         f"{counted(len(piers), 'pier')} on {counted(len(finished.series), 'foundation')} under "
         f"{counted(len(info['records']), 'ground motion')} ({_vertical(finished)})"
-        + (", as recorded and reversed" if finished.both_directions else "")
+        + (", in both polarities" if finished.both_directions else "")
         + (f", scaled by {', '.join(number(float(scale)) for scale in scales)}" if scales not in ([], [1.0]) else "")
         + f": {counted(len(runs), 'run')}."
         + (" Polarity: mirror images, counted once." if finished.mirrored else "")
@@ -104,9 +105,11 @@ def balance(finished: Finished) -> Markup:
     heads = [
         Head("case"),
         *(Head(symbol(key)) for key in varied_pier),
-        Head("lifts off at [g]", ".3f", "steady horizontal ground acceleration"),
-        Head("lifts off at θ/α", THETA_FORMAT),
-        Head("does not come back beyond θ/α", ".3g", "unstable equilibrium of a pier on rigid ground"),
+        Head("lift-off [g]", ".3f", "steady horizontal ground acceleration"),
+        Head("lift-off, θ/α", THETA_FORMAT),
+        Head(
+            "balance, θ/α", ".3g", "unstable equilibrium of a pier on rigid ground, beyond which it does not come back"
+        ),
         Head("e", ".4f", "factor on the angular velocity at an impact on rigid ground"),
         Head("dampers and tendons"),
     ]
@@ -119,8 +122,9 @@ def balance(finished: Finished) -> Markup:
         deflection = 0.0 if rigid else float(given.get("delta_s_m") or 0.0)
         edge = unstable_equilibrium(pier, ties)
         given_e = given.get("restitution")
+        own = [quantity(key, value) for key, value in case["columns"].items() if key not in PIER_KEYS]
         rows.append([
-            " ".join([str(case["case"]), *(quantity(key, value) for key, value in case["columns"].items())]),
+            " ".join([str(case["case"]), *own]),
             *(case["columns"].get(key) for key in varied_pier),
             lift_off_acceleration(pier, ties, deflection),
             lift_off_rotation(pier, ties, deflection) / pier.alpha,
@@ -166,9 +170,14 @@ def _motions(finished: Finished) -> str:
         first, last = format(min(values), form), format(max(values), form)
         return f"{first} {unit}" if first == last else f"{first} to {last} {unit}"
 
+    factors = [float(record.get("factor", 1.0)) for record in records]
+    scaled = "as recorded"
+    if any(factor != 1.0 for factor in factors):
+        ends = f"{min(factors):.4g}", f"{max(factors):.4g}"
+        scaled = f"scaled to the target by {ends[0] if ends[0] == ends[1] else ' to '.join(ends)}"
     return (
         f"Peak ground acceleration {span('pga_g', '.3f', 'g')}, velocity {span('pgv_m_s', '.2f', 'm/s')}, displacement "
-        f"{span('pgd_m', '.2f', 'm')}, as recorded; length {span('duration_s', '.3g', 's')}."
+        f"{span('pgd_m', '.2f', 'm')}, {scaled}; length {span('duration_s', '.3g', 's')}."
     )
 
 
