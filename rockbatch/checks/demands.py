@@ -163,6 +163,16 @@ def _of_device(words: str, column: str, device: str, factor: float = 1.0) -> Dem
     return Demand(words, lambda runs, case: _without_error(factor * _numbers(runs, column)), device=device)
 
 
+def _device_force(device: str) -> Demand:
+    """The greatest force of a device in kN, from that over the weight: earlier results have no other."""
+
+    def found(runs: "pd.DataFrame", case: Case) -> Found:
+        weight = float(case["pier"]["mass_t"]) * float(case["pier"]["gravity"])
+        return _without_error(weight * _numbers(runs, f"{device}_force_over_weight"))
+
+    return Demand(f"greatest force of a {device} [kN]", found, device=device, weighed=True)
+
+
 def has_device(case: Case, device: str) -> bool:
     """Whether the pier is tied with a damper, or a tendon; a damper has a kind."""
     return any(("kind" in each) == (device == "damper") for each in case["parameters"].get("restraints", ()))
@@ -267,6 +277,7 @@ _OF_DEVICES = {
     "damper_force_over_weight": _of_device(
         "greatest force of a damper over the pier's weight", "damper_force_over_weight", "damper"
     ),
+    "damper_force_kN": _device_force("damper"),
     "damper_stroke_m": _of_device("greatest elongation of a damper [m]", "damper_stroke_m", "damper"),
     "damper_stroke_mm": _of_device("greatest elongation of a damper [mm]", "damper_stroke_m", "damper", 1000.0),
     "damper_speed_m_s": _of_device("greatest speed of a damper [m/s]", "damper_speed_m_s", "damper"),
@@ -276,6 +287,7 @@ _OF_DEVICES = {
     "tendon_force_over_weight": _of_device(
         "greatest force of a tendon over the pier's weight", "tendon_force_over_weight", "tendon"
     ),
+    "tendon_force_kN": _device_force("tendon"),
     "tendon_yield_m": _of_device("by how much a tendon is longer for good [m]", "tendon_yield_m", "tendon"),
     "tendon_slack": _of_device("how often tendons go slack", "tendon_slack", "tendon"),
 }

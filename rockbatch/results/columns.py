@@ -302,7 +302,19 @@ MORE = (
 """Columns that follow those of the varied keys. A table of an earlier version may lack the last of them."""
 
 
-def _device(name: str, meaning: str, field: str, unit: str, page: OnPage, kind: type[Restraint]) -> Column:
+def _in_kilonewtons(field: str) -> Callable[[Ran], float | None]:
+    """A force of :class:`Outcome` over the weight in kN, where the pier's mass is known."""
+
+    def of(ran: Ran) -> float | None:
+        force, mass = getattr(ran.outcome, field), ran.pier.mass_t
+        return None if force is None or mass is None else force * mass * ran.pier.gravity
+
+    return of
+
+
+def _device(
+    name: str, meaning: str, field: str | Callable[[Ran], Any], unit: str, page: OnPage, kind: type[Restraint]
+) -> Column:
     """A column of studies that have dampers, or tendons."""
 
     def has(study: Study) -> bool:
@@ -340,6 +352,14 @@ DEVICES = (
     ),
     _device(
         "tendon_slack", "how often tendons went slack", "tendon_slack", "1", OnPage("slack", ".0f"), Tendon,
+    ),
+    _device(
+        "damper_force_kN", "greatest force of a damper, where the mass is known", _in_kilonewtons("damper_force"), "kN",
+        OnPage("damper F [kN]", ".0f", behind="damper_force_over_weight"), Damper,
+    ),
+    _device(
+        "tendon_force_kN", "greatest force of a tendon, where the mass is known", _in_kilonewtons("tendon_force"), "kN",
+        OnPage("tendon T [kN]", ".0f", behind="tendon_force_over_weight"), Tendon,
     ),
 )  # fmt: skip
 """Of dampers and tendons."""

@@ -356,6 +356,8 @@ BY_HAND = {  # value and error for θ_max/α = 0.3, α = 0.2
     "deck_acceleration_g": (0.5, 0.0),
     "landing_velocity_m_s": (0.0, 0.0),
     **{name: (value, 0.0) for name, value in DEVICES.items()},
+    "damper_force_kN": (0.05 * 3000 * 9.81, 0.0),
+    "tendon_force_kN": (0.3 * 3000 * 9.81, 0.0),
     "damper_stroke_mm": (120.0, 0.0),
 }
 
@@ -398,8 +400,7 @@ def test_a_demand_of_forces_is_refused_where_nobody_asked_for_them(demand):
 
 @pytest.mark.parametrize("demand", [name for name, demand in DEMANDS.items() if demand.weighed])
 def test_a_force_of_a_pier_that_nobody_has_weighed_does_not_apply(demand):
-    one = case()
-    del one["pier"]["mass_t"]
+    one = TIED | {"pier": {key: value for key, value in TIED["pier"].items() if key != "mass_t"}}
     found = judged(runs([0.3], **FORCES), one=one, demand=demand, at_most=100.0)
     assert (found.verdict, found.note) == ("does not apply", "the study does not say what the pier weighs")
 

@@ -10,6 +10,7 @@ from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 from report_page import Page, figures, panels, svg_texts
 from report_samples import FIG7, FOUNDATIONS, case_entry, response, three_piers, write_results
@@ -255,6 +256,31 @@ def test_a_lone_rigid_response_is_drawn_without_loops(tmp_path):
     drawn = next(svg for svg in figures(text) if "readings" in svg.attrib["class"])
     assert "θ/α" in svg_texts(drawn)
     assert "L" not in svg_texts(drawn)
+
+
+def test_loops_of_devices_are_in_kn_within_their_column_and_columns_line_up(tmp_path):
+    """A friction damper of 450 kN at both pivots: the force axis reaches it on either side of 0, with numbers."""
+    pier = Pier(alpha=0.2, p=1.0, mass_t=1000.0)
+    bare, tied = response("ERZ-NS", "rigid", RigidBase(), pier=pier), response("ERZ-NS", "1", RigidBase(), pier=pier)
+    way = 2.0 * pier.half_width * np.abs(tied.theta)
+    columns = {"t": tied.t}
+    for side in ("left", "right"):
+        columns |= {f"damper 1 {side} elongation": way, f"damper 1 {side} force": 0.45 * np.sign(np.gradient(way))}
+    tied = replace(tied, restraints=pd.DataFrame(columns))
+    write_results(tmp_path)
+    text = write_report(tmp_path, [bare, tied]).read_text(encoding="utf-8")
+    drawn = [svg for svg in figures(text) if "readings" in svg.attrib["class"]]
+    assert len({svg.attrib["viewBox"] for svg in drawn}) == 1
+    (loops,) = (node for node in drawn[-1].iter() if node.get("data-kind") == "plane")
+    low, high = map(float, loops.attrib["data-y"].split())
+    assert low < -450.0 < 450.0 < high < 600.0
+    words = [node for node in drawn[-1].iter() if node.tag == "text" and node.text]
+    numbers = {float(node.text.replace("−", "-")) for node in words if re.fullmatch(r"−?\d+", node.text)}
+    assert min(numbers) <= -200.0
+    assert max(numbers) >= 200.0
+    assert "damper 1" in {node.text for node in words}
+    width = float(drawn[-1].attrib["viewBox"].split()[2])
+    assert all(0.0 <= float(node.get("x")) <= width for node in words)
 
 
 def test_of_many_responses_the_worst_of_each_case_is_drawn(tmp_path):

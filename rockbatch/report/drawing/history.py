@@ -16,6 +16,8 @@ PIXELS = 200  # of one history, across
 QUANTITIES = ("θ/α", "θ̇/(αp)", "E/M [J/kg]", "üg/g")
 SEPARATE = ("separation", "lift-off")
 LOOPS_HEIGHT = 128.0  # px
+MOST_DEVICES = 3
+"""Dampers and tendons of a run whose loops are drawn."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,7 +37,9 @@ class History:
     band : float
         |θ/α| up to which a weakly rocking pier keeps both supports: THEORY.md, eq. 10. Zero on the rigid base.
     loops : Markup
-        Force against deflection of both springs where they yield, or of dampers and tendons; else empty.
+        Force against deflection of both springs where they yield; else empty.
+    devices : tuple of Markup
+        Force against elongation of the first dampers and tendons, a picture of :data:`LOOPS_HEIGHT` each.
     """
 
     rigid: bool
@@ -48,6 +52,7 @@ class History:
     end: tuple[float, float]
     band: float
     loops: Markup
+    devices: tuple[Markup, ...] = ()
 
 
 def reduced(response: Response, left: float, width: float) -> History:
@@ -73,20 +78,16 @@ def reduced(response: Response, left: float, width: float) -> History:
         (float(t[worst]), float(theta[worst])),
         (float(t[-1]), float(theta[-1])),
         _band(response),
-        _foot(response, left, width),
+        _loops(response, left, width) if response.base.yields else Markup(""),
+        tuple(_device(response, name, left, width) for name in _devices(response)[:MOST_DEVICES]),
     )
 
 
-def _foot(response: Response, left: float, width: float) -> Markup:
-    """Loops of yielding springs, of the first two dampers and tendons, or of both beside each other."""
-    yields = response.base.yields
-    if response.restraints is None:
-        return _loops(response, left, width) if yields else Markup("")
-    if not yields:
-        return _restraints(response, left, width)
-    gap = 40.0
-    each = (width - gap) / 2
-    return join(_loops(response, left, each), _restraints(response, left + each + gap, each))
+def _devices(response: Response) -> list[str]:
+    """Dampers and tendons by their names; those at both pivots are one."""
+    columns = () if response.restraints is None else response.restraints
+    names = (str(name).removesuffix(" force") for name in columns if str(name).endswith(" force"))
+    return list(dict.fromkeys(name.removesuffix(" left").removesuffix(" right") for name in names))
 
 
 def _band(response: Response) -> float:
@@ -122,21 +123,23 @@ def _loops(response: Response, left: float, width: float) -> Markup:
     return join(*drawn)
 
 
-def _restraints(response: Response, left: float, width: float) -> Markup:
-    """F/(M g) against elongation [mm] of the first two dampers and tendons, side by side, each on its own scale."""
-    table = response.restraints
+def _device(response: Response, name: str, left: float, width: float) -> Markup:
+    """Force against elongation [mm] of a damper or tendon, in kN where the mass is known; of a pair, the right one behind."""
+    table, pier = response.restraints, response.pier
     assert table is not None
-    names = [str(name).removesuffix(" force") for name in table if str(name).endswith(" force")][:2]
-    gap, drawn = 26.0, []
-    each = (width - gap) / 2
-    for place, name in enumerate(names):
-        way = 1000.0 * table[f"{name} elongation"].to_numpy(dtype=np.float64)
-        force = table[f"{name} force"].to_numpy(dtype=np.float64) / response.pier.gravity
-        across, down = spanning(way), spanning(force)
-        axes = Axes(left + place * (each + gap), 17, each, LOOPS_HEIGHT - 50, across, down)
-        line = curve(axes.across(way), axes.down(force), "curve", "F/(M g)")
-        drawn += [axes.frame(across.ticks(2), down.ticks(2)), axes.readable("plane", line)]
-        drawn.append(text(axes.left + 4, axes.top + axes.height - 5, name, class_="q"))
-        drawn.append(text(axes.left + each / 2, LOOPS_HEIGHT - 3, "e [mm]", class_="m q"))
-    drawn.append(text(left - 2, 11, "F/(M g)", class_="q"))
-    return join(*drawn)
+    sides = [side for side in (" right", " left", "") if f"{name}{side} force" in table]
+    factor, unit = (1.0 / pier.gravity, "F/(M g)") if pier.mass_t is None else (pier.mass_t, "F [kN]")
+    ways = [1000.0 * table[f"{name}{side} elongation"].to_numpy(dtype=np.float64) for side in sides]
+    forces = [factor * table[f"{name}{side} force"].to_numpy(dtype=np.float64) for side in sides]
+    axes = Axes(left, 17, width, LOOPS_HEIGHT - 50, spanning(*ways), spanning(*forces))
+    lines = [
+        curve(axes.across(way), axes.down(force), "curve" if side != " right" else "curve right", f"{unit}{side}")
+        for side, way, force in zip(sides, ways, forces, strict=True)
+    ]
+    return join(
+        axes.frame(axes.x.ticks(4), axes.y.ticks(5)),
+        axes.readable("plane", *lines),
+        text(left - 2, 11, unit, class_="q"),
+        text(left + width, 11, name, class_="e"),
+        text(left + width / 2, LOOPS_HEIGHT - 3, "elongation [mm]", class_="m q"),
+    )

@@ -50,12 +50,20 @@ def _figures(finished: Finished, responses: Sequence[Response]) -> list[tuple[Ma
         same.sort(key=lambda number: (not kept[number]["rigid"], kept[number]["index"]))
         seen = [drawn[number] for one in same for number in (one, behind[one]) if number is not None]
         scales = [_scale(seen, row) for row in range(len(QUANTITIES))]
+        # As many loops below each column, so that columns beside each other line up
+        shown = [drawn[number] for number in same]
+        feet = [0] if any(one.loops for one in shown) else []
+        feet += range(1, 1 + max(len(one.devices) for one in shown))
         cells = []
         for number in same:
             back = behind[number]
             title = _title(finished, kept[number])
             drawing = picture(
-                drawn[number], None if back is None else drawn[back], scales, finished.label(kept[number]["record"])
+                drawn[number],
+                None if back is None else drawn[back],
+                scales,
+                finished.label(kept[number]["record"]),
+                feet,
             )
             cells.append(tag("figure", tag("figcaption", title), drawing))
         grid = tag("div", *cells, class_="histories", style=f"--w:{LEFT + WIDTH + 6:.0f}px")
@@ -125,7 +133,10 @@ def _title(finished: Finished, run: Row) -> Markup:
     return join(tag("span", finished.series[run["series"]].label), " ", record)
 
 
-def picture(own: History, behind: History | None, scales: Sequence[Scale], record: str) -> Markup:
+def picture(
+    own: History, behind: History | None, scales: Sequence[Scale], record: str, feet: Sequence[int] = ()
+) -> Markup:
+    """A column of histories; ``feet`` are the loops for which it has room, 0 for those of springs, 1 and on for devices."""
     end = max(own.end[0], behind.end[0] if behind else 0.0) or 1.0
     drawn: list[Markup] = []
     for row, (top, height) in enumerate(zip(TOPS, HEIGHTS, strict=True)):
@@ -144,8 +155,9 @@ def picture(own: History, behind: History | None, scales: Sequence[Scale], recor
         drawn.append(text(LEFT - 2, top - 5, LABELS[row], class_="q"))
     drawn.append(text(LEFT + WIDTH / 2, FOOT - 4, "t [s]", class_="m q"))
     height = FOOT
-    if own.loops:
-        drawn.append(tag("g", own.loops, transform=f"translate(0 {FOOT:g})"))
+    for row in feet:
+        if row < len(own.devices) + 1:
+            drawn.append(tag("g", (own.loops, *own.devices)[row], transform=f"translate(0 {height:g})"))
         height += LOOPS_HEIGHT
     said = f"Rotation, velocity, energy and ground acceleration against time under {record}"
     return svg(LEFT + WIDTH + 6, height, *drawn, description=said, class_="plot readings")
@@ -188,10 +200,10 @@ def _caption(pier: str, shown: Sequence[History], lines: bool) -> Markup:
         else "",
         ".",
         " At the foot, force against deflection of the left (L) and right (R) spring over their values at yield."
-        if any(one.loops and not one.rigid for one in shown)
+        if any(one.loops for one in shown)
         else "",
-        " At the foot, force over the pier's weight against elongation of dampers and tendons."
-        if any(one.loops and one.rigid for one in shown)
+        " At the foot, force against elongation of dampers and tendons; of a pair, the one at the right pivot is paler."
+        if any(one.devices for one in shown)
         else "",
     ]
     return join(*said)
