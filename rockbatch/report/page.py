@@ -2,6 +2,9 @@
 
 from collections.abc import Callable
 
+from rockbatch.report.compared import (
+    answer as compared_answer,
+)
 from rockbatch.report.compared import checks, difference, figures, inputs, only_in_one, pairs, studies, suites
 from rockbatch.report.contents import Contents
 from rockbatch.report.document import Section, document
@@ -56,13 +59,14 @@ SECTIONS: tuple[Callable[[Contents], Section | None], ...] = (
 """Those of one folder, from ``sections/``, in the order of the page: the answer first, then results, then inputs."""
 
 SECTIONS_OF_TWO: tuple[Callable[[Pair], Section | None], ...] = (
-    studies.section,
+    compared_answer.section,
     checks.section,
+    inputs.section,
     figures.section,
     pairs.section,
     suites.section,
     only_in_one.section,
-    inputs.section,
+    studies.section,
     difference.section,
 )
 """Those of two folders, from ``compared/``, in the order of the page."""

@@ -141,3 +141,33 @@ def test_inputs_that_are_the_same_are_said_to_be(tmp_path):
     page = Page(write_comparison(*two(tmp_path)).read_text(encoding="utf-8"))
     assert "inputs" not in page.tables
     assert "Pier, foundations, motions and numerics are the same in both." in page.text
+
+
+def answered(folders):
+    text = write_comparison(*folders).read_text(encoding="utf-8")
+    found = Page(text)
+    assert found.headings[:3] == ["The answer", "Does it pass", "What differs in the inputs"]
+    return Page(text.split('<section id="answer">')[1].split("</section>")[0]).text.removeprefix("The answer")
+
+
+def test_two_studies_begin_with_which_is_better_by_how_much_and_in_which_record(tmp_path):
+    """The only rotation that differs is the worst of each: ratio and counts by hand."""
+    runs = [({"changes": {("SYL360", "2"): {"theta_max_over_alpha": theta}}}) for theta in (0.8, 0.4)]
+    told = answered(two(tmp_path, *runs))
+    assert told.startswith("B is better: from A to B, worst rotation -50 % (SYL360), settlement +0 % (")
+    assert "smaller in 1 of 30 pairs of runs, larger in 0; it changes to 0.5 times (SYL360, 2) at least" in told
+
+
+def test_neither_is_better_where_one_response_grows_and_another_shrinks_or_nothing_changes(tmp_path):
+    same = answered(two(tmp_path))
+    assert same.startswith("Neither is better: from A to B, worst rotation +0 %")
+    other = tmp_path / "mixed"
+    other.mkdir()
+    changes = {("SYL360", "2"): {"theta_max_over_alpha": 0.8, "settlement_m": 0.0001}}
+    worse = {("SYL360", "2"): {"theta_max_over_alpha": 0.4, "settlement_m": 0.9}}
+    assert answered(two(other, {"changes": changes}, {"changes": worse})).startswith("Neither is better throughout")
+
+
+def test_a_study_in_which_the_pier_overturns_is_never_the_better_one(tmp_path):
+    told = answered(two(tmp_path, {"changes": {("SYL360", "2"): {"status": "overturned"}}}))
+    assert told.startswith("B is better: of 30 runs 0 do not end standing, of A 1.")
