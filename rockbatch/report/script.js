@@ -7,8 +7,13 @@ for (const table of document.querySelectorAll("table.sortable")) {
   const rows = [...body.rows];
   const heads = [...table.tHead.rows[table.tHead.rows.length - 1].cells];
 
+<<<<<<< HEAD
   // Numbers by value, ranges by their end, words by alphabet, nothing last; rows that tie stay in their order
   const number = (text) => Number(text.replace("∞", "Infinity").split(" of ")[0].split("\u00a0–\u00a0").pop());
+=======
+  // Numbers by value, words by alphabet, nothing last; rows that tie stay in their order
+  const number = (text) => Number(text.replace("∞", "Infinity").replace(/^[≥≤]\s*/, "").split(" of ")[0]);
+>>>>>>> 0d6aac6 (Print wide tables in parts at the size of the rest, and say what is folded and not printed)
   const compare = (a, b) => {
     if (a === b) return 0;
     if (a === "" || b === "") return a === "" ? 2 : -2;
@@ -147,7 +152,7 @@ for (const svg of document.querySelectorAll("svg.readings")) {
     const numbers = (key) => group.dataset[key].split(" ").map(Number);
     const [left, top, width, height] = numbers("box"), [x0, x1] = numbers("x"), [y0, y1] = numbers("y");
     return {
-      group, left, top, width, height, kind: group.dataset.kind, xRange: x1 - x0, yRange: y1 - y0,
+      group, left, top, width, height, kind: group.dataset.kind, names: (group.dataset.names ?? "|").split("|"), xRange: x1 - x0, yRange: y1 - y0,
       x: (px) => x0 + (px - left) / width * (x1 - x0), y: (py) => y1 - (py - top) / height * (y1 - y0),
       curves: [...group.querySelectorAll("path")].map((path) => ({ name: path.dataset.name, points: pointsOf(path) })),
     };
@@ -182,7 +187,8 @@ for (const svg of document.querySelectorAll("svg.readings")) {
     const points = one.curves.flatMap((curve) => curve.points);
     const [x, y] = points.reduce((best, p) => Math.hypot(p[0] - px, p[1] - py) < Math.hypot(best[0] - px, best[1] - py) ? p : best);
     one.group.append(made("circle", { class: "at", cx: x, cy: y, r: 2 }));
-    say(`v/δy = ${shown(one.x(x), one.xRange)}\nF/Fy = ${shown(one.y(y), one.yRange)}`, clientX, clientY);
+    const [across, down] = one.names;
+    say(`${across} = ${shown(one.x(x), one.xRange)}\n${down} = ${shown(one.y(y), one.yRange)}`, clientX, clientY);
   };
   const read = (event) => {
     for (const one of axes()) {
@@ -205,3 +211,49 @@ for (const svg of document.querySelectorAll("svg.readings")) {
     readTime((cursor ?? axes()[0].left) + step * (event.shiftKey ? 10 : 1));
   });
 }
+
+// Paper: a table that is too wide would shrink every page, so that it goes on in tables below, each with the first column
+const ROOM = 700; // px of a table on the screen, whose words are smaller on paper
+const slices = (table) => {
+  const heads = [...table.tHead.rows[table.tHead.rows.length - 1].cells];
+  const found = [];
+  let width = Infinity;
+  heads.slice(1).forEach((head, i) => {
+    const own = Math.min(head.offsetWidth, 300);
+    if (width + own > ROOM) {
+      found.push([]);
+      width = Math.min(heads[0].offsetWidth, 300);
+    }
+    found[found.length - 1].push(i + 1);
+    width += own;
+  });
+  return found;
+};
+const cut = (table, kept) => {
+  const copy = table.cloneNode(true);
+  const over = copy.tHead.rows.length > 1 ? [...copy.tHead.rows[0].cells] : [];
+  let place = 0;
+  for (const cell of over) {
+    const own = Array.from({ length: cell.colSpan }, (_, i) => place + i).filter((column) => kept.includes(column));
+    place += cell.colSpan;
+    if (own.length) cell.colSpan = own.length; else cell.remove();
+  }
+  const rows = [copy.tHead.rows[copy.tHead.rows.length - 1], ...copy.tBodies[0].rows];
+  for (const row of rows) [...row.cells].forEach((cell, i) => kept.includes(i) || cell.remove());
+  return copy;
+};
+addEventListener("beforeprint", () => {
+  for (const table of document.querySelectorAll(".wide > table")) {
+    const parts = table.offsetWidth > ROOM && !table.parentElement.classList.contains("prose") ? slices(table) : [];
+    if (parts.length < 2) continue;
+    const paper = document.createElement("div");
+    paper.className = "printed sliced";
+    paper.append(...parts.map((part) => cut(table, [0, ...part])));
+    table.parentElement.classList.add("whole-width");
+    table.parentElement.after(paper);
+  }
+});
+addEventListener("afterprint", () => {
+  document.querySelectorAll(".sliced").forEach((paper) => paper.remove());
+  document.querySelectorAll(".whole-width").forEach((wide) => wide.classList.remove("whole-width"));
+});

@@ -34,6 +34,7 @@ STUDY = study_text(
             }
         ],
     },
+    output={"forces": True},
     fragility={"measure": "PGA", "levels_g": [0.3, 0.6, 1.2]},
     sensitivity={"samples": 4, "uniform": {"alpha": [0.18, 0.22]}, "choice": {"kinematics": ["first-order", "finite"]}},
 )  # fmt: skip
@@ -87,6 +88,28 @@ def test_the_smallest_words_of_every_picture_can_be_read(tmp_path, report, width
     found = browse(tmp_path, report, MEASURE, size=(width, 900))["smallest"]
     assert set(found) == PICTURES
     assert {name: size for name, size in found.items() if size < 11} == {}
+
+
+@needs_chromium
+def test_a_wide_table_goes_on_below_on_paper_with_every_column_once(tmp_path, report):
+    act = """
+    const table = document.querySelector("#forces .wide > table");
+    const heads = (of) => [...of.tHead.rows[of.tHead.rows.length - 1].cells].map((cell) => cell.textContent);
+    found.all = heads(table);
+    dispatchEvent(new Event("beforeprint"));
+    const parts = [...document.querySelectorAll("#forces .sliced")][0].querySelectorAll("table");
+    found.parts = [...parts].map(heads);
+    found.rows = [...parts].map((part) => part.tBodies[0].rows.length - table.tBodies[0].rows.length);
+    dispatchEvent(new Event("afterprint"));
+    found.left = document.querySelectorAll(".sliced, .whole-width").length;
+    """
+    found = browse(tmp_path, report, act)
+    first, *rest = found["all"]
+    assert len(found["parts"]) > 1
+    assert all(part[0] == first for part in found["parts"])
+    assert [head for part in found["parts"] for head in part[1:]] == rest
+    assert set(found["rows"]) == {0}
+    assert found["left"] == 0
 
 
 @needs_chromium

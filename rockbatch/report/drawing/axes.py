@@ -83,11 +83,15 @@ class Axes:
             drawn += [text(x, foot + 13, s, class_="m") for x, s in zip(places, written(x_ticks), strict=True)]
         return join(*drawn)
 
-    def readable(self, kind: str, *content: object) -> Markup:
-        """``content`` in a group from which the script reads values back; ``kind`` is "time" or "plane"."""
+    def readable(self, kind: str, *content: object, names: str | None = None) -> Markup:
+        """``content`` in a group from which the script reads values back; ``kind`` is "time" or "plane".
+
+        ``names`` are those of the quantities of a plane: "elongation [mm]|F [kN]".
+        """
         box = f"{self.left:g} {self.top:g} {self.width:g} {self.height:g}"
         limits = f"{self.x.low:.6g} {self.x.high:.6g}", f"{self.y.low:.6g} {self.y.high:.6g}"
-        return tag("g", *content, class_="axes", data_kind=kind, data_box=box, data_x=limits[0], data_y=limits[1])
+        return tag("g", *content, class_="axes", data_kind=kind, data_box=box, data_x=limits[0], data_y=limits[1],
+                   data_names=names)  # fmt: skip
 
 
 def written(ticks: Sequence[float]) -> list[str]:

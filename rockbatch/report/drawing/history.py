@@ -117,7 +117,7 @@ def _loops(response: Response, left: float, width: float) -> Markup:
         line = curve(axes.across(np.clip(v, across.low, across.high)), axes.down(z), "curve", "F/Fy")
         frame = axes.frame(across.ticks(2), [-1, -0.5, 0], y_numbers=place == 0)
         name = text(axes.left + 4, axes.top + axes.height - 5, "LR"[place], class_="q")
-        drawn += [frame, axes.readable("plane", line), name]
+        drawn += [frame, axes.readable("plane", line, names="v/δy|F/Fy"), name]
         drawn.append(text(axes.left + each / 2, LOOPS_HEIGHT - 3, lowered("v/δ", "y"), class_="m q"))
     drawn.append(text(left - 2, 11, lowered("F/F", "y"), class_="q"))
     return join(*drawn)
@@ -138,7 +138,7 @@ def _device(response: Response, name: str, left: float, width: float) -> Markup:
     ]
     return join(
         axes.frame(axes.x.ticks(4), axes.y.ticks(5)),
-        axes.readable("plane", *lines),
+        axes.readable("plane", *lines, names=f"elongation [mm]|{unit}"),
         text(left - 2, 11, unit, class_="q"),
         text(left + width, 11, name, class_="e"),
         text(left + width / 2, LOOPS_HEIGHT - 3, "elongation [mm]", class_="m q"),
