@@ -7,13 +7,9 @@ for (const table of document.querySelectorAll("table.sortable")) {
   const rows = [...body.rows];
   const heads = [...table.tHead.rows[table.tHead.rows.length - 1].cells];
 
-<<<<<<< HEAD
   // Numbers by value, ranges by their end, words by alphabet, nothing last; rows that tie stay in their order
-  const number = (text) => Number(text.replace("∞", "Infinity").split(" of ")[0].split("\u00a0–\u00a0").pop());
-=======
-  // Numbers by value, words by alphabet, nothing last; rows that tie stay in their order
-  const number = (text) => Number(text.replace("∞", "Infinity").replace(/^[≥≤]\s*/, "").split(" of ")[0]);
->>>>>>> 0d6aac6 (Print wide tables in parts at the size of the rest, and say what is folded and not printed)
+  const number = (text) =>
+    Number(text.replace("∞", "Infinity").replace(/^[≥≤]\s*/, "").split(" of ")[0].split("\u00a0–\u00a0").pop());
   const compare = (a, b) => {
     if (a === b) return 0;
     if (a === "" || b === "") return a === "" ? 2 : -2;
@@ -38,6 +34,27 @@ for (const table of document.querySelectorAll("table.sortable")) {
       body.append(...keyed.map(([, row]) => row));
     });
   });
+
+  // What is copied goes into a spreadsheet: the rows that are shown, in their order
+  const copy = document.createElement("button");
+  copy.type = "button";
+  copy.className = "copy scripted";
+  copy.textContent = "Copy table";
+  copy.addEventListener("click", () => {
+    const lines = [heads, ...[...body.rows].filter((row) => !row.hidden).map((row) => [...row.cells])];
+    const text = lines.map((cells) => cells.map((cell) => cell.textContent.trim().replace(/\s+/g, " ")).join("\t")).join("\n");
+    copy.dataset.text = text;
+    const done = () => { copy.textContent = "Copied"; setTimeout(() => { copy.textContent = "Copy table"; }, 2000); };
+    const byHand = () => {
+      const area = document.body.appendChild(document.createElement("textarea"));
+      area.value = text;
+      area.select();
+      if (document.execCommand("copy")) done();
+      area.remove();
+    };
+    if (navigator.clipboard) navigator.clipboard.writeText(text).then(done, byHand); else byHand();
+  });
+  table.parentElement.before(copy);
 
   if (rows.length < 8) continue;
   const box = document.createElement("label");

@@ -62,6 +62,22 @@ def test_a_heading_sorts_by_value_both_ways_and_search_hides_the_rest(tmp_path, 
     assert (found["left"], found["said"]) == (1, "1 of 30 rows")
 
 
+def test_a_table_is_copied_as_it_is_shown_and_its_file_is_linked(tmp_path, page):
+    act = """
+    const input = document.querySelector("#peaks input");
+    input.value = "syl360 rigid"; input.dispatchEvent(new Event("input"));
+    const copy = document.querySelector("#peaks .copy");
+    copy.click(); found.text = copy.dataset.text;
+    found.link = document.querySelector("#peaks a").getAttribute("href");
+    """
+    found = browse(tmp_path, page, act)
+    head, row = (line.split("\t") for line in found["text"].split("\n"))
+    assert head[:2] == ["record", "case"]
+    assert row[:2] == ["SYL360", "rigid"]
+    assert len(head) == len(row)
+    assert found["link"] == "peaks.csv"
+
+
 def test_markers_say_their_value_to_the_pointer_and_to_the_arrow_keys(tmp_path, page):
     act = """
     const mark = document.querySelector(".panels use.s3");

@@ -133,7 +133,7 @@ def test_limits_of_rotations_are_drawn_where_they_are_and_named_in_the_legend(tm
     theta = 0.05
     write_verdicts(tmp_path, [drift(theta * PIER.alpha * 2.0 * PIER.height)])
     text = of_the_answer(write_report(tmp_path, []))
-    limits = {float(x) for x in re.findall(r'<line x1="([\d.]+)%"[^>]*class="limit"', text)}
+    limits = {float(x) for x in re.findall(r'<line x1="([\d.]+)%"[^>]*class="limit d0"', text)}
     (row,) = (strip for strip in re.findall(r"<svg.*?</svg>", text, re.DOTALL) if 'data-of="ERZ-NS"' in strip)
     dot = float(re.search(r'<line x1="([\d.]+)%"[^>]*class="rigid d0"', row)[1])
     (limit,) = limits

@@ -167,7 +167,7 @@ def test_the_page_asks_for_nothing_outside_itself(tmp_path):
     text = report(tmp_path, *responses, **results)
     page = Page(text)
     assert not {"link", "img", "iframe", "object", "base"} & set(page.tags)
-    assert all(link.startswith("#") for link in page.links)
+    assert all(link.startswith("#") or link == "peaks.csv" for link in page.links)  # which lies beside it
     assert "@import" not in text
     assert re.findall(r"url\((?!#)", text) == []
 
@@ -333,6 +333,17 @@ def test_the_same_results_give_the_same_bytes(tmp_path):
     responses, results = histories()
     first = report(tmp_path, *responses, **results)
     assert write_report(tmp_path, responses).read_text(encoding="utf-8") == first
+
+
+def test_panels_that_would_be_mostly_zero_share_a_sentence(tmp_path):
+    records = [(f"R{i}", 0.1 + 0.01 * i) for i in range(40)]
+    still = {(name, case): {"theta_max_over_alpha": 1e-4} for name, _ in records[:36] for case, _ in FOUNDATIONS}
+    write_results(tmp_path, records=records, changes=still)
+    text = write_report(tmp_path, []).read_text(encoding="utf-8")
+    assert len(panels(text)) == 4
+    assert "Without a panel: 36 records under which no pier rotates by more than" in text
+    rows = Page(text).tables["figure"]
+    assert {row[0] for row in rows[1:]} == {name for name, _ in records}
 
 
 def test_fifty_records_on_five_foundations_stay_below_two_megabytes(tmp_path):

@@ -63,7 +63,11 @@ def draw(
     ticks = [tick for tick in Scale(0.0, top).ticks(4) if tick <= top]
     grids = [
         [_line(_across(tick, top), "grid") for tick in ticks]
-        + [_line(_across(one.theta, top), "limit", tag("title", one.words)) for one in own if one.theta <= top]
+        + [
+            _line(_across(one.theta, top), _dash(place), tag("title", one.words))
+            for place, one in enumerate(own)
+            if one.theta <= top
+        ]
         for own in limits
     ]
     cells: list[Markup] = []
@@ -92,13 +96,16 @@ def draw(
 
 def _of_limits(limits: Sequence[Sequence[Limit]], top: float) -> list[Entry]:
     """Each limit once, with its side where the axis ends before it."""
-    drawn = tag("line", x1=11, x2=11, y1=0, y2=14, class_="limit")
-    words = dict.fromkeys(
-        one.words if one.theta <= top else f"{one.words}: beyond the axis, at θ/α = {one.theta:.3g}"
-        for own in limits
-        for one in own
-    )
-    return [(drawn, each) for each in words]
+    drawn: dict[str, Markup] = {}
+    for place, one in ((place, one) for own in limits for place, one in enumerate(own)):
+        words = one.words if one.theta <= top else f"{one.words}: beyond the axis, at θ/α = {one.theta:.3g}"
+        drawn.setdefault(words, tag("line", x1=11, x2=11, y1=0, y2=14, class_=_dash(place)))
+    return [(line, words) for words, line in drawn.items()]
+
+
+def _dash(place: int) -> str:
+    """How a limit is drawn, by its place among those of its column."""
+    return f"limit d{place % 4}"
 
 
 def _across(theta: float, top: float) -> float:

@@ -1,5 +1,6 @@
 """The picture of the paper's Fig. 5: a column of histories per run, loops at its foot."""
 
+import shlex
 from collections.abc import Sequence
 from typing import Any
 
@@ -32,7 +33,16 @@ def section(contents: Contents) -> Section | None:
         return None
     drawn = join(*(figure(*pair) for pair in _figures(contents.finished, contents.responses)))
     hint = "Point at a picture, touch it, or go through it with the arrow keys, to read values."
-    return Section("Histories", "histories", join(tag("p", hint, class_="scripted"), drawn))
+    return Section("Histories", "histories", join(tag("p", hint, class_="scripted"), drawn, _others(contents.finished)))
+
+
+def _others(finished: Finished) -> Markup:
+    """How to get at histories that were not kept."""
+    command = shlex.join(map(str, finished.info["command"]))
+    return tag(
+        "p", "Those of other runs: write ", tag("code", 'histories = "all"'), " under ", tag("code", "[output]"),
+        " of the study and start ", tag("code", command), " again; no run is repeated for its peaks.", class_="legend",
+    )  # fmt: skip
 
 
 def _figures(finished: Finished, responses: Sequence[Response]) -> list[tuple[Markup, Markup]]:

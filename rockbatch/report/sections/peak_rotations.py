@@ -22,6 +22,10 @@ MOST_RECORDS = 60
 MOST_SERIES = 24
 """Foundations that stand beside each other in a panel; of more, each has a row of its own."""
 MOST_FIGURES = 12
+INVISIBLE = 0.02
+"""Of the axis: below, a marker lies on it."""
+LEAST_QUIET = 4
+"""Records with nothing but such markers that share a sentence instead of a panel each."""
 MOST_MARKS = 12_000  # on the page: a megabyte and a half
 MOST_OF_A_FIGURE = 2_000  # foundations under one record, each with its line in the legend
 
@@ -65,6 +69,20 @@ def chosen(finished: Finished, runs: "pd.DataFrame", figures: int = 1) -> list[s
     return finished.by_pga(names)
 
 
+def _quiet(runs: "pd.DataFrame", records: Sequence[str], top: float) -> list[str]:
+    """Records under which all markers would lie on the axis; none where they are few, or all of them."""
+    worst = runs["theta_max_over_alpha"].where(runs["status"] == "ok", math.inf).groupby(runs["record"]).max()
+    quiet = [name for name in records if worst[name] < INVISIBLE * top]
+    return quiet if LEAST_QUIET <= len(quiet) < len(records) else []
+
+
+def _of_quiet(finished: Finished, quiet: Sequence[str], top: float) -> str:
+    if not quiet:
+        return ""
+    names = "; ".join(map(finished.label, quiet))
+    return f" Without a panel: {len(quiet)} records under which no pier rotates by more than {INVISIBLE * top:.2g} α ({names})."
+
+
 def figures(finished: Finished, caption: Sequence[object], *, side: str = "polarity") -> Markup:
     """A figure for each pier and scale, or for the first of many; ``caption`` is common to them.
 
@@ -76,19 +94,25 @@ def figures(finished: Finished, caption: Sequence[object], *, side: str = "polar
         # Piers are compared on one axis; larger motions have their own
         top = ceiling(finished.runs[finished.runs["scale"] == runs["scale"].iloc[0]])
         records = chosen(finished, runs, min(len(groups), MOST_FIGURES))
-        every, all_of_them = runs["record"].nunique(), len(runs)
+        quiet = _quiet(runs, records, top)
+        records = [name for name in records if name not in quiet]
+        every, all_of_them = runs["record"].nunique() - len(quiet), len(runs)
         if runs["record"].value_counts().max() > MOST_OF_A_FIGURE:
             runs = worst_first(runs[runs["record"].isin(records)], MOST_OF_A_FIGURE)
             records = [name for name in records if name in set(runs["record"])]
         told = [
             tag("strong", f"{words}. ") if words else "", *caption,
+            _of_quiet(finished, quiet, top),
             " Symbols in the shaded strip are runs without a largest rotation: the pier overturned, or left the ground."
             if runs["status"].isin(NO_PEAK).any() else "",
             f" Shown are the {len(runs):,} worst of {all_of_them:,} runs." if len(runs) < all_of_them else
             f" Shown are the {len(records):,} records with the worst runs of {every:,}." if len(records) < every else "",
         ]  # fmt: skip
-        shown.append(figure(draw(finished, runs, records, top, side), *told))
-        shown.append(at_a_glance(finished, runs, records) if side == "polarity" else Markup(""))
+        drawn = draw(finished, runs[~runs["record"].isin(quiet)], records, top, side)
+        shown.append(figure(drawn, *told))
+        shown.append(
+            at_a_glance(finished, runs, finished.by_pga([*records, *quiet])) if side == "polarity" else Markup("")
+        )
     if len(groups) > MOST_FIGURES:
         shown.append(tag("p", f"The first {MOST_FIGURES} of {len(groups)} combinations of pier and scale are shown."))
     return join(*shown)

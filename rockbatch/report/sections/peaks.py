@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     import pandas as pd
 
 MOST_COLUMNS = 24
-PRINTED = "On paper the table ends with its fifteenth column; all of them are on the screen."
 
 
 def section(contents: Contents) -> Section | None:
@@ -28,7 +27,8 @@ def section(contents: Contents) -> Section | None:
     if finished is None or finished.runs.empty:
         return None
     lead = [
-        "The worst first: overturned, ended by flight, then by rotation. All of it is in ", tag("code", "peaks.csv"), ". ",
+        "The worst first: overturned, ended by flight, then by rotation. All of it is in ",
+        tag("a", tag("code", PEAKS), href=PEAKS), ", beside this page. ",
         tag("span", "Click a heading to sort.", class_="scripted"),
     ]  # fmt: skip
     above = (tag("p", *lead), tag("p", PRINTED, class_="printed"), _linearised(finished), _ratcheting(finished))

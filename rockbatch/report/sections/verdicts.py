@@ -33,7 +33,9 @@ def section(contents: Contents) -> Section | None:
         worst = wording.worst_first(verdicts)[:MOST_WORST]
         parts += [_counts(verdicts), tag("details", every, matrix(verdicts)), tag("h3", "The worst verdicts")]
         parts.append(_every(worst, notes) if worst else tag("p", "Nothing fails or is left undecided."))
-        parts.append(tag("p", "All of them, with what governs each, are in ", tag("code", CHECKS), "."))
+        parts.append(
+            tag("p", "All of them, with what governs each, are in ", tag("a", tag("code", CHECKS), href=CHECKS), ".")
+        )
     else:
         rest = [one for one in verdicts if one.verdict not in (FAIL, NOT_DECIDED)]
         parts += [matrix(verdicts), tag("h3", "Every verdict"), _every([*wording.worst_first(verdicts), *rest], notes)]
