@@ -96,7 +96,7 @@ def _guided(finished: Finished, ended: Facts) -> Facts:
     """How the other runs went: guided flights, and the errors of the peaks."""
     runs = finished.runs
     stood = runs[runs["status"] == "ok"]
-    told = [f"{counted(len(runs), 'run')}." if ended else f"{counted(len(runs), 'run')}: all settled, none overturned."]
+    told = [f"{counted(len(runs), 'run')}." if ended else f"{counted(len(runs), 'run')}: all converged, none overturned."]
     if runs["status"].isin(NO_PEAK).any() and len(stood):
         told.append("The responses above are of those that end standing.")
     guided = stood[stood["flight_s"].notna()]
