@@ -127,6 +127,8 @@ def _told(one: Verdict, record_of: Words, where: str) -> str:
     if one.is_ban:
         verb = DEMANDS[one.demand].verb if one.demand in DEMANDS else "is not so"
         return " ".join(filter(None, (f"{one.check}: {record or 'some record'} {verb}", where))) + "."
+    if record and math.isfinite(one.governing) and one.governing != one.value:  # a mean, say, of several
+        record = f"at most {wording.number(one.governing)} {one.unit}".rstrip() + f" in {record}"
     return ", ".join(filter(None, (f"{one.check}: {wording.against(one)}", record, where))) + "."
 
 

@@ -85,6 +85,11 @@ def test_the_failing_checks_come_with_demand_limit_record_and_the_nearest_case()
     ]
 
 
+def test_of_a_mean_the_record_is_the_one_with_the_largest_demand_and_says_so():
+    mean = verdict("pads", "fail", check="drift", value=0.6, ratio=1.2, record="TAK000", governing=0.9, unit="m")
+    assert lines([mean])[0].details == ("drift: 0.6\u00a0m\u00a0>\u00a00.5\u00a0m, at most 0.9 m in record TAK000.",)
+
+
 def test_a_ban_that_fails_names_who_breaks_it():
     ban = verdict(
         "pads", "fail", check="stands", demand="overturned", statistic="max", limit=0.0, value=1.0, record="TAK"

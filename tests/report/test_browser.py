@@ -62,6 +62,18 @@ def test_a_heading_sorts_by_value_both_ways_and_search_hides_the_rest(tmp_path, 
     assert (found["left"], found["said"]) == (1, "1 of 30 rows")
 
 
+def test_marks_of_the_first_screen_say_their_value_too(tmp_path, page):
+    act = """
+    const mark = document.querySelector("#answer .dots use.s3");
+    at(mark, 0.5, 0.5); found.mark = tip();
+    const rigid = document.querySelector("#answer .dots .rigid");
+    at(rigid, 0.5, 0.5); found.rigid = tip();
+    """
+    found = browse(tmp_path, page, act)
+    assert re.search(r"\n3: β = 80, η = 2.5: 0\.\d{4} ± 3e-06", found["mark"].replace("\u00a0", " "))
+    assert re.search(r"\nrigid: 0\.\d{4} ± 3e-06", found["rigid"])
+
+
 def test_a_table_is_copied_as_it_is_shown_and_its_file_is_linked(tmp_path, page):
     act = """
     const input = document.querySelector("#peaks input");

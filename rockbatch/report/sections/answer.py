@@ -36,7 +36,13 @@ def worst(finished: Finished) -> Markup:
     else:
         ended = [*_overturned(finished), *_flown(finished), *_missing(finished)]
         facts = [*ended, *_responses(finished), *_guided(finished, ended)]
-    return tag("dl", *(join(tag("dt", words), tag("dd", said)) for words, said in facts), class_="facts")
+    listed = tag("dl", *(join(tag("dt", words), tag("dd", said)) for words, said in facts), class_="facts")
+    cases = len(finished.cases)
+    return (
+        join(tag("p", f"Worst of all {cases} cases, whatever is checked", class_="of-all"), listed)
+        if cases > 1
+        else listed
+    )
 
 
 def _responses(finished: Finished) -> Facts:
@@ -96,7 +102,9 @@ def _guided(finished: Finished, ended: Facts) -> Facts:
     """How the other runs went: guided flights, and the errors of the peaks."""
     runs = finished.runs
     stood = runs[runs["status"] == "ok"]
-    told = [f"{counted(len(runs), 'run')}." if ended else f"{counted(len(runs), 'run')}: all converged, none overturned."]
+    told = [
+        f"{counted(len(runs), 'run')}." if ended else f"{counted(len(runs), 'run')}: all converged, none overturned."
+    ]
     if runs["status"].isin(NO_PEAK).any() and len(stood):
         told.append("The responses above are of those that end standing.")
     guided = stood[stood["flight_s"].notna()]
