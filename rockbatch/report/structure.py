@@ -5,6 +5,7 @@ from typing import Any
 
 from rockbatch.errors import InputError
 from rockbatch.pier import Damper, Pier, Restraint, Tendon
+from rockbatch.pier.restraints import wrong_restraints
 from rockbatch.report.labels import plain
 from rockbatch.study.restraint_keys import KEYS_OF, fields_of
 
@@ -29,9 +30,15 @@ def pier_of(case: Mapping[str, Any]) -> Pier | None:
 
 
 def restraints_of(case: Mapping[str, Any]) -> tuple[Restraint, ...]:
-    """Dampers and tendons of a case."""
-    described = case["parameters"].get("restraints")
-    return tuple(map(_restraint, described)) if isinstance(described, list) else ()
+    """Dampers and tendons of a case; none where they cannot be."""
+    described, pier = case["parameters"].get("restraints"), pier_of(case)
+    if not isinstance(described, list) or pier is None:
+        return ()
+    try:
+        restraints = tuple(map(_restraint, described))
+        return () if wrong_restraints(pier, restraints) else restraints
+    except (TypeError, ValueError):
+        return ()
 
 
 def _restraint(values: Mapping[str, Any]) -> Restraint:

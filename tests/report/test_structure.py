@@ -8,7 +8,9 @@ from report_page import Page
 from studies import study_text, write_study
 
 import rockbatch as rb
+from rockbatch.pier import described
 from rockbatch.report.drawing import pier as drawing
+from rockbatch.report.structure import restraints_of
 
 BRIDGE = {
     "width_m": 7.0, "height_m": 30.0, "mass_t": 1800.0, "deck_mass_t": 1200.0, "deck_height_m": 31.5, "top_m": 30.0,
@@ -71,3 +73,12 @@ def test_the_deck_and_the_devices_are_drawn_to_scale():
     assert float(tendon.get("y2")) == pytest.approx(top, abs=0.2)
     damper = next(node for node in svg if node.get("class") == "damper s3")
     assert float(damper.get("x")) + 3.0 == pytest.approx(right + drawing.ASIDE, abs=0.2)
+
+
+@pytest.mark.parametrize(
+    "wrong", [[{"kind": "magic"}], [{"kind": "friction", "f": "much"}], [3], [{"psi": -1.0}], "none", [None]]
+)
+def test_devices_that_cannot_be_are_left_out(wrong):
+    """A run.json of somebody else's may say anything."""
+    pier = rb.Pier(alpha=0.2, p=1.0)
+    assert restraints_of({"pier": described(pier), "parameters": {"restraints": wrong}}) == ()
