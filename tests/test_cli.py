@@ -9,8 +9,9 @@ import time
 
 import pandas as pd
 import pytest
-from studies import study_text, write_study
+from studies import RIGID, SINE, study_text, write_study
 
+import rockbatch as rb
 from rockbatch.cli import COMMANDS, EXIT_CODES, main, parser
 from rockbatch.commands.messages import in_width
 
@@ -48,6 +49,25 @@ def test_run_writes_the_table_the_report_and_what_was_run(study, tmp_path, capsy
     printed = capsys.readouterr()
     assert f"{float(rows[0]['theta_max_over_alpha']):.4f}" in printed.out
     assert "2 of 2" not in printed.out  # progress goes to stderr
+
+
+def test_histories_of_another_record_are_added_on_demand_and_no_run_is_repeated(tmp_path, capsys):
+    pulses = [
+        SINE | {"name": name, "amplitude_g": size, "duration_s": 2.0} for name, size in (("weak", 0.3), ("strong", 0.5))
+    ]
+    study = write_study(tmp_path, study_text(pulses=pulses, cases=(RIGID,)))
+    out = tmp_path / "out"
+    command = ["run", str(study), "--out", str(out), "--jobs", "1"]
+    assert main(command) == 0
+    assert "--history RECORD" in (out / "report.html").read_text(encoding="utf-8")
+    table = (out / "peaks.csv").read_bytes()
+    assert [response.record for response in rb.open_results(out).responses] == ["strong"]
+    assert main([*command, "--history", "weak"]) == 0
+    assert "nothing is left to run" in capsys.readouterr().err
+    assert (out / "peaks.csv").read_bytes() == table
+    assert sorted(response.record for response in rb.open_results(out).responses) == ["strong", "weak"]
+    assert main([*command, "--history", "weka"]) == 2
+    assert "--history weka: no such record; did you mean weak?" in capsys.readouterr().err
 
 
 def test_the_table_is_the_same_bytes_with_any_number_of_jobs(study, tmp_path):

@@ -4,7 +4,7 @@ import datetime
 import json
 import math
 import platform
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -130,16 +130,22 @@ def write_peaks(journal: Journal, motions: MotionSet) -> dict[str, Any]:
 
 
 def finish(
-    directory: Path, study: Study, motions: MotionSet, runs: Plan, info: dict[str, Any], listener: Listener
+    directory: Path,
+    study: Study,
+    motions: MotionSet,
+    runs: Plan,
+    info: dict[str, Any],
+    listener: Listener,
+    records: Collection[str] = (),
 ) -> FinishedBatch:
-    """Write run.json, histories, checks and the report beside peaks.csv.
+    """Write run.json, histories, checks and the report beside peaks.csv; of ``records`` all histories, too.
 
     ``info`` is what run.json is to say: :func:`what_was_run`, ``jobs``, ``wall_s`` and ``kept``.
     """
     with told_if_slow(listener, f"writing {INFO}"):
         write_info(directory, info)
         saved = read_saved(directory)
-    histories, without = _keep_histories(saved, study, runs, listener)
+    histories, without = _keep_histories(saved, study, runs, listener, records)
     with told_if_slow(listener, f"holding {len(study.checks)} checks against {len(study.cases)} cases"):
         judged = verdicts(saved) if study.checks else []
         checks = write_verdicts(directory, judged) if study.checks else None
@@ -160,10 +166,10 @@ def _beside_peaks(saved: Saved, study: Study, motions: MotionSet) -> list[Path]:
 
 
 def _keep_histories(
-    saved: Saved, study: Study, runs: Plan, listener: Listener
+    saved: Saved, study: Study, runs: Plan, listener: Listener, records: Collection[str]
 ) -> tuple[Path | None, InputError | None]:
     """Write the histories that the study asks for: their file, and why some are not in it."""
-    chosen = kept(study, runs, saved.peaks.iloc[: len(runs)])
+    chosen = kept(study, runs, saved.peaks.iloc[: len(runs)], records)
     if chosen.left_out:
         number = len(chosen.numbers)
         listener.say(
@@ -172,7 +178,7 @@ def _keep_histories(
         )
     try:
         with listener.progress(len(chosen.numbers)) as told:
-            path = keep_histories(saved, study, runs, None if told is None else lambda: told(1))
+            path = keep_histories(saved, study, runs, None if told is None else lambda: told(1), records)
     except InputError as error:
         return None, error
     if path is None:

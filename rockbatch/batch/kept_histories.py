@@ -1,7 +1,7 @@
 """The runs whose histories are kept beside the peaks: run once more, and written down."""
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -35,7 +35,11 @@ BYTES_OF_AN_EVENT = 56.0
 
 
 def keep_histories(
-    saved: Saved, study: Study, runs: Sequence[PlannedRun], progress: Callable[[], object] | None = None
+    saved: Saved,
+    study: Study,
+    runs: Sequence[PlannedRun],
+    progress: Callable[[], object] | None = None,
+    records: Collection[str] = (),
 ) -> Path | None:
     """Write ``histories.h5`` beside finished results: the histories that the study asks for.
 
@@ -47,6 +51,8 @@ def keep_histories(
         The results of all ``runs`` of ``study``.
     progress : function, optional
         Called after each of :func:`kept`.
+    records : collection of str, optional
+        Records all of whose runs are kept, too.
 
     Returns
     -------
@@ -59,7 +65,7 @@ def keep_histories(
         held in memory.
     """
     table = saved.peaks.iloc[: len(runs)]  # then come the files that could not be used
-    chosen = kept(study, runs, table).numbers
+    chosen = kept(study, runs, table, records).numbers
     if not chosen:
         return None
     path = saved.directory / HISTORIES
@@ -88,17 +94,18 @@ class Kept:
     left_out: int = 0
 
 
-def kept(study: Study, runs: Sequence[PlannedRun], table: "pd.DataFrame") -> Kept:
-    """The runs whose histories the study asks for; one that was refused has none.
+def kept(study: Study, runs: Sequence[PlannedRun], table: "pd.DataFrame", records: Collection[str] = ()) -> Kept:
+    """Return the runs whose histories the study asks for, and all of ``records``; one that was refused has none.
 
     ``table`` has a row for each of ``runs``. With "worst", the greatest rotations go first, and what would make the file
     larger than ``histories_MB`` is left out; one history is kept however large.
     """
-    output = study.output
-    if output.histories == "none":
-        return Kept([])
+    output, ran = study.output, table["theta_max_over_alpha"].notna()
     if output.histories == "all":
-        return Kept([int(number) for number in table["theta_max_over_alpha"].notna().to_numpy().nonzero()[0]])
+        return Kept([int(number) for number in ran.to_numpy().nonzero()[0]])
+    named = [int(number) for number in (ran & table["record"].isin(records)).to_numpy().nonzero()[0]]
+    if output.histories == "none":
+        return Kept(named)
     chosen = worst(table, len(study.cases))
     rotations = table["theta_max_over_alpha"].to_numpy(float)
     numbers: list[int] = []
@@ -108,7 +115,8 @@ def kept(study: Study, runs: Sequence[PlannedRun], table: "pd.DataFrame") -> Kep
         if numbers and size > 1e6 * output.histories_MB:
             break
         numbers.append(number)
-    return Kept(sorted(numbers, key=lambda number: number % len(study.cases)), len(chosen) - len(numbers))
+    every = dict.fromkeys([*numbers, *named])
+    return Kept(sorted(every, key=lambda number: number % len(study.cases)), len(chosen) - len(numbers))
 
 
 def history_bytes(run: PlannedRun, row: "Mapping[str, Any] | pd.Series") -> float:

@@ -3,7 +3,7 @@
 import math
 import os
 import time
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,6 +19,7 @@ from rockbatch.motions import MotionSet
 from rockbatch.results.columns import PART, as_table, columns, unusable_rows
 from rockbatch.study import Study, given_study
 from rockbatch.study.suite import ground_motions
+from rockbatch.toml.kinds import closest
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -109,6 +110,7 @@ def run_into(
     command: Sequence[str],
     fresh: bool = False,
     share: tuple[int, int] | None = None,
+    records: Collection[str] = (),
 ) -> FinishedBatch | None:
     """Carry out what is not finished in ``directory`` yet, and write the results.
 
@@ -118,6 +120,8 @@ def run_into(
         The words after ``rockbatch`` that do it again, for run.json.
     share : tuple of two ints, optional
         (i, n): carry out the i-th of n shares only, and leave it in its journal.
+    records : collection of str, optional
+        Records all of whose histories are kept, beside those that the study asks for.
 
     Returns
     -------
@@ -131,6 +135,7 @@ def run_into(
     started = time.monotonic()
     motions = ground_motions(study)
     listener.motions(motions)
+    _check_records(records, motions)
     runs = Plan(study, motions)
     wanted = _share(len(runs), *share) if share else range(len(runs))
     digest = study_digests(study, motions)
@@ -140,7 +145,7 @@ def run_into(
         if cost is not None:
             what = f"{told(study, motions)} are finished in {directory}"
             listener.say(f"{what}; nothing is left to run (--fresh runs them again)")
-            return finish(directory, study, motions, runs, info | cost, listener)
+            return finish(directory, study, motions, runs, info | cost, listener, records)
         replaced = None if fresh or share else to_be_replaced(directory, study)
         if replaced:
             listener.say(f"{replaced}, will be replaced")
@@ -155,7 +160,21 @@ def run_into(
             )
             return None
         cost |= {"peaks": write_peaks(journal, motions), "wall_s": round(time.monotonic() - started, 3)}
-        return finish(directory, study, motions, runs, info | cost, listener)
+        return finish(directory, study, motions, runs, info | cost, listener, records)
+
+
+def _check_records(records: Collection[str], motions: MotionSet) -> None:
+    """Refuse records that there are not."""
+    names = [motion.name for motion in motions.motions]
+    wrong = []
+    for name in (name for name in records if name not in names):
+        near = closest(name, names)
+        wrong.append(
+            f"--history {name}: no such record; "
+            + (f"did you mean {near}?" if near else f"there is {', '.join(names)}")
+        )
+    if wrong:
+        raise InputError(*wrong)
 
 
 def _share(runs: int, share: int, shares: int) -> range:

@@ -25,6 +25,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="carry out the I-th of N shares only, in a folder of its own, for `rockbatch merge`",
     )
     parser.add_argument(
+        "--history",
+        action="append",
+        default=[],
+        metavar="RECORD",
+        help="keep the histories of all runs under this record, too; finished runs are not repeated for it",
+    )
+    parser.add_argument(
         "--dry-run",
         action="store_true",
         help="write nothing; say how many runs there are, and how long and how much disk they will take",
@@ -53,7 +60,7 @@ def main(arguments: argparse.Namespace) -> int:
         directory /= f"shard-{share}-of-{shares}"
     finished = run_into(
         directory, study, engine(arguments), Terminal(),
-        command=sys.argv[1:], fresh=arguments.fresh, share=arguments.shard,
+        command=sys.argv[1:], fresh=arguments.fresh, share=arguments.shard, records=arguments.history,
     )  # fmt: skip
     return 0 if finished is None else tell(finished, study)
 

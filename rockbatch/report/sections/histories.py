@@ -38,10 +38,10 @@ def section(contents: Contents) -> Section | None:
 
 def _others(finished: Finished) -> Markup:
     """How to get at histories that were not kept."""
-    command = shlex.join(map(str, finished.info["command"]))
+    command = shlex.join([*map(str, finished.info["command"]), "--history", "RECORD"])
     return tag(
-        "p", "Those of other runs: write ", tag("code", 'histories = "all"'), " under ", tag("code", "[output]"),
-        " of the study and start ", tag("code", command), " again; no run is repeated for its peaks.", class_="legend",
+        "p", "Histories of the runs under another record: ", tag("code", command), " with its name for RECORD; "
+        "finished runs are not repeated.", class_="legend",
     )  # fmt: skip
 
 
