@@ -143,11 +143,10 @@ def _open(
     idle = [one for name in failing for one in cases[name] if one.verdict == NOT_DECIDED]
     if not names and not idle:
         return None
-    anyway = (
-        f"{', '.join(dict.fromkeys(one.check for one in idle))}: not decided in cases that fail anyway." if idle else ""
-    )
+    checks = ", ".join(dict.fromkeys(one.check for one in idle))
     if not names:
-        return Line(NOT_DECIDED, "Left undecided", "", (anyway,))
+        return Line(NOT_DECIDED, "Left undecided", f"{checks}, in cases that fail anyway", ())
+    anyway = f"{checks}: not decided in cases that fail anyway." if idle else ""
     left = [one for name in names for one in cases[name] if one.verdict == NOT_DECIDED]
     details = [_why(one, record_of, case_of(one) if len(cases) > 1 else "") for one in left[:MOST_CHECKS]]
     if len(left) > MOST_CHECKS:

@@ -235,7 +235,7 @@ def _too_few(rule: Rule, count: str, records: int) -> str:
     if records >= least:
         return ""
     told = f"1 {count} counts" if records == 1 else f"{records} {count}s count"
-    return f"{told}; {who} asks for {least}" if who else told
+    return f"{told}, {who} asks for {least}" if who else told
 
 
 def _against(rule: Rule, value: float) -> tuple[float, float]:

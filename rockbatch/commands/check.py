@@ -82,7 +82,7 @@ def answered(verdicts: Sequence["Verdict"], saved: "Saved") -> str:
     lines = []
     for line in answer(verdicts, worst, case_of, lambda one: labels.get(one.record, one.record)):
         words = f"{line.says}: {line.which}." if line.which else f"{line.says}."
-        lines.append(coloured(f"{mark(line.verdict).split()[0]} {_filled(words, 0, 2)}", line.verdict))
+        lines.append(coloured(_filled(f"{mark(line.verdict).split()[0]} {words}", 0, 2), line.verdict))
         lines += [_filled(_plain(detail), 4, 6) for detail in line.details]
     if not verdicts:
         lines.append("No limits were set: nothing here passes or fails.")

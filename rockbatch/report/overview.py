@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 from rockbatch.checks import Verdict, wording
 from rockbatch.checks.demands import DEMANDS
 from rockbatch.checks.responses import PEAKS
+from rockbatch.checks.statistics import STATISTICS
 from rockbatch.report.document import figure
 from rockbatch.report.drawing import dots
 from rockbatch.report.drawing.panels import said_of
@@ -68,6 +69,8 @@ def _limits(finished: Finished, runs: "pd.DataFrame", verdicts: Sequence[Verdict
         if most is None or one.case not in names or one.scale not in scales or one.statistic == "count":
             continue
         words = f"limit of {one.check}, {wording.number(one.limit)} {one.unit}".rstrip()
+        if one.statistic != "max":  # a mean, say, that single records may exceed
+            words += f" ({STATISTICS[one.statistic].words})"
         of.setdefault(dots.Limit(words, one.limit / most.of(cases[0])), set()).add(one.case)
     return [
         limit if own == names else limit._replace(words=f"{limit.words} ({', '.join(sorted(own))})")

@@ -83,7 +83,7 @@ def test_a_statistic_over_the_records_is_what_a_hand_computes(asked, expected):
     [
         (7, 0.4, "pass", ""),
         (6, 0.6, "fail", "most unfavourable of fewer than 7"),
-        (2, 0.2, "not decided", "2 stations count; EN 1998-1 asks for 3"),
+        (2, 0.2, "not decided", "2 stations count, EN 1998-1 asks for 3"),
     ],
 )
 def test_en1998_takes_the_mean_of_seven_records_and_the_worst_of_fewer(count, value, verdict, note):
@@ -105,7 +105,7 @@ def test_asce7_takes_the_mean_of_eleven_records_and_decides_nothing_on_ten():
     assert judged(eleven(), statistic="asce7-16", at_most=0.61).verdict == "pass"
     ten = judged(eleven()[:10], statistic="asce7-16", at_most=10.0)
     assert ten.verdict == "not decided"
-    assert "10 stations count; ASCE 7-16 asks for 11" in ten.note
+    assert "10 stations count, ASCE 7-16 asks for 11" in ten.note
     assert judged(eleven()[:10], statistic="asce7-16", at_most=0.5).verdict == "fail"  # 0.55
 
 

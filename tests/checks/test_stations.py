@@ -64,7 +64,7 @@ def test_of_seven_stations_the_worse_components_count(statistic, value):
 def test_two_stations_decide_nothing_however_many_components_they_have(statistic):
     found = judged(pairs((0.1,) * 6, (0.2,) * 6), statistic=statistic)
     assert found.verdict == "not decided"
-    assert "2 stations count; " in found.note
+    assert "2 stations count, " in found.note
     assert " asks for 3" in found.note
 
 
@@ -178,7 +178,7 @@ def test_an_event_names_the_run_in_which_it_happens():
 def test_any_statistic_can_ask_for_more_records():
     assert judged(pairs(*FOUR), statistic="mean", least=4).verdict == "pass"
     found = judged(pairs(*FOUR), statistic="mean", least=5)
-    assert (found.verdict, found.note.split("; ")[:2]) == ("not decided", ["4 stations count", "the check asks for 5"])
+    assert (found.verdict, found.note.split("; ")[:1]) == ("not decided", ["4 stations count, the check asks for 5"])
     assert judged(pairs(*FOUR), statistic="mean", least=5, count="component").verdict == "pass"
     assert judged(pairs(*FOUR), statistic="max", least=5).verdict == "fail"  # more records lower no maximum
 

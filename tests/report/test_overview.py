@@ -120,7 +120,7 @@ def test_long_names_of_what_has_no_peak_leave_the_figure_its_room(tmp_path):
 
 
 def drift(limit, case="rigid"):
-    return verdict(case, "pass", check="bearings", demand="top_drift_m", unit="m", limit=limit)
+    return verdict(case, "pass", check="bearings", demand="top_drift_m", unit="m", limit=limit, statistic="median")
 
 
 def of_the_answer(path):
@@ -138,7 +138,7 @@ def test_limits_of_rotations_are_drawn_where_they_are_and_named_in_the_legend(tm
     dot = float(re.search(r'<line x1="([\d.]+)%"[^>]*class="rigid d0"', row)[1])
     (limit,) = limits
     assert limit == pytest.approx(1.5 + (dot - 1.5) * theta / 0.1, abs=0.2)
-    assert f"limit of bearings, {theta * PIER.alpha * 2 * PIER.height:.4g} m (rigid)" in Page(text).text
+    assert f"limit of bearings, {theta * PIER.alpha * 2 * PIER.height:.4g} m (median) (rigid)" in Page(text).text
 
 
 def test_a_limit_far_above_all_peaks_does_not_crowd_them(tmp_path):
