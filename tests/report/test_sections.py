@@ -95,7 +95,7 @@ def test_the_answer_says_how_far_the_worst_pier_rotates_and_how_high_its_heel_ri
     drift = 2 * Pier(alpha=0.13, p=0.35).height * 0.1 * 0.13  # without top_m, of the top of a uniform block
     assert f"drift of the top{drift:.3g} m ({1000 * drift:,.0f} mm), in the run of the greatest rotation" in told
     assert f"uplift of the heel{uplift_mm:.0f} mm, in the run of the greatest rotation" in told
-    assert "settlement, tiltnone: the ground is rigid" in told
+    assert "of the supportsneither settlement nor tilt: the ground is rigid" in told
     assert "p = 0.35 rad/s" in told
 
 

@@ -60,7 +60,7 @@ def _responses(finished: Finished) -> Facts:
         lean = " (mostly the lean of a base that has yielded)" if leans else ""
         facts.append((words, join(tag("strong", in_words(one)), lean, where)))
     if all(one.case["base"] == "rigid" for one in finished.worst):
-        facts.append(("settlement, tilt", join("none: the ground is rigid")))
+        facts.append(("of the supports", join("neither settlement nor tilt: the ground is rigid")))
     return facts
 
 
