@@ -31,7 +31,7 @@ def section(contents: Contents) -> Section | None:
         tag("a", tag("code", PEAKS), href=PEAKS), ", beside this page. ",
         tag("span", "Click a heading to sort.", class_="scripted"),
     ]  # fmt: skip
-    above = (tag("p", *lead), tag("p", PRINTED, class_="printed"), _linearised(finished), _ratcheting(finished))
+    above = (tag("p", *lead), _linearised(finished), _ratcheting(finished))
     return Section("Every run", "peaks", join(*above, _every_run(finished)))
 
 
