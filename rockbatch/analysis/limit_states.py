@@ -26,7 +26,7 @@ def applies(rule: Rule, case: Case) -> bool:
     """Whether a case, as run.json has it, is asked about this limit."""
     demand = DEMANDS[rule.demand]
     tied = not demand.device or has_device(case, demand.device)
-    return chooses(rule, str(case["case"]), 1.0) and case["base"] in demand.bases and tied
+    return chooses(rule, str(case["case"]), 1.0) and demand.on(case) and tied
 
 
 def threshold(rule: Rule) -> float:

@@ -65,6 +65,8 @@ class Demand:
         Whether it takes the mass of the pier.
     device : "", "damper" or "tendon"
         What the pier has to be tied with.
+    held : bool
+        Whether it applies on every base to a pier that dampers may hold at a tilt.
     """
 
     words: str
@@ -78,6 +80,11 @@ class Demand:
     needs: str = ""
     weighed: bool = False
     device: str = ""
+    held: bool = False
+
+    def on(self, case: Case) -> bool:
+        """Return whether it applies to the base of a case."""
+        return case["base"] in self.bases or (self.held and _holds_a_tilt(case))
 
     @property
     def unit(self) -> str:
@@ -103,9 +110,7 @@ def _without_error(value: Values) -> Found:
     return Found(value, np.full(len(value), np.nan))
 
 
-def _rotation(
-    words: str, name: str, lever: Callable[[Case], float], bases: tuple[str, ...] = ("rigid", "elastic", "yielding")
-) -> Demand:
+def _rotation(words: str, name: str, lever: Callable[[Case], float], **more: Any) -> Demand:
     """|θ|/α times ``lever``, from the columns theta_max_… or theta_res_…, which are over α."""
 
     def found(runs: "pd.DataFrame", case: Case) -> Found:
@@ -113,7 +118,7 @@ def _rotation(
         value = np.abs(_numbers(runs, f"{name}_over_alpha"))
         return Found(factor * value, factor * _numbers(runs, f"{name}_error"))
 
-    return Demand(words, found, bases, most=Most(lever, _OVERTURNS))
+    return Demand(words, found, most=Most(lever, _OVERTURNS), **more)
 
 
 def _alpha(case: Case) -> float:
@@ -175,7 +180,17 @@ def _device_force(device: str) -> Demand:
 
 def has_device(case: Case, device: str) -> bool:
     """Whether the pier is tied with a damper, or a tendon; a damper has a kind."""
-    return any(("kind" in each) == (device == "damper") for each in case["parameters"].get("restraints", ()))
+    return any(("kind" in each) == (device == "damper") for each in _ties(case))
+
+
+def _ties(case: Case) -> Iterable[Mapping[str, Any]]:
+    """Dampers and tendons of a case, as its file has them."""
+    return case["parameters"].get("restraints", ()) if "parameters" in case else ()
+
+
+def _holds_a_tilt(case: Case) -> bool:
+    """Whether a damper keeps a force at rest, as friction does."""
+    return any(each.get("kind") in ("friction", "hysteretic") and each.get("f") != 0.0 for each in _ties(case))
 
 
 def _column(name: str) -> Callable[["pd.DataFrame", Case], Found]:
@@ -311,8 +326,10 @@ DEMANDS = {
         most=Most(lambda case: 1.0, _OVERTURNS),
         needs="rocking",
     ),
-    "theta_res_over_alpha": _rotation("residual rotation over α", "theta_res", lambda case: 1.0, _SPRINGS),
-    "theta_res_rad": _rotation("residual rotation [rad]", "theta_res", _alpha, _SPRINGS),
+    "theta_res_over_alpha": _rotation(
+        "residual rotation over α", "theta_res", lambda case: 1.0, bases=_SPRINGS, held=True
+    ),
+    "theta_res_rad": _rotation("residual rotation [rad]", "theta_res", _alpha, bases=_SPRINGS, held=True),
     "base_tilt_rad": _tilt("residual tilt of the base [rad]", lambda case: 1.0),
     "differential_settlement_m": _tilt("settlement of one support against the other [m]", _width),
     "settlement_m": Demand(

@@ -126,7 +126,7 @@ def _verdict(rule: Rule, suite: "pd.DataFrame", case: Case, scale: float, count:
         count="" if demand.of_the_case else count,
         unit="" if rule.statistic == "count" else demand.unit,
     )
-    if case["base"] not in demand.bases:
+    if not demand.on(case):
         return none
     if demand.device and not has_device(case, demand.device):
         return replace(none, note=f"the pier has no {demand.device}")

@@ -25,7 +25,7 @@ def implausible(rule: Rule, cases: Sequence[Case]) -> Iterator[str]:
         )
     if demand.most is None:
         return
-    mine = [case for case in cases if case["base"] in demand.bases and is_about(rule, str(case["case"]))]
+    mine = [case for case in cases if demand.on(case) and is_about(rule, str(case["case"]))]
     most = max((demand.most.of(case) for case in mine), default=math.inf)
     if value > most:
         yield (

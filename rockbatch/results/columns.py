@@ -43,6 +43,13 @@ STATUSES = ("ok", "overturned", "flight", "failed")
 ALL = ("rigid", "elastic", "yielding")
 SPRINGS = ("elastic", "yielding")
 YIELDING = ("yielding",)
+TILTS = (*SPRINGS, "held")
+"""Where a pier may rest at a tilt: on springs, or on any base where friction or hysteretic dampers hold it."""
+
+
+_BASES_IN_WORDS = {
+    ALL: "", SPRINGS: "springs", YIELDING: "yielding springs", TILTS: "springs, or dampers that hold the pier at a tilt",
+}  # fmt: skip
 
 
 class OnPage(NamedTuple):
@@ -125,7 +132,7 @@ class Column:
     @property
     def where(self) -> str:
         """To which runs it applies, in words; empty for all."""
-        base = {ALL: "", SPRINGS: "springs", YIELDING: "yielding springs"}[self.bases]
+        base = _BASES_IN_WORDS[self.bases]
         run = "where the pier stood" if self.stood else "where there is one" if self.sometimes else ""
         return ", ".join(filter(None, (base, run)))
 
@@ -190,7 +197,7 @@ STAYING = (
     Column("t_max_s", "time of the greatest rotation", "t_max", "s", OnPage("at t [s]", ".2f")),
     Column(
         "theta_res_over_alpha", "residual rotation over α, at rest on the deformed base", "theta_res",
-        page=OnPage("θ_res/α", ".5f"), over_alpha=True, bases=SPRINGS, stood=True,
+        page=OnPage("θ_res/α", ".5f"), over_alpha=True, bases=TILTS, stood=True,
         suite=OfSuite("Residual rotation |θ_res|/α", ".5f"),
     ),
     Column(
@@ -212,8 +219,10 @@ _DISSIPATED = "plastic work of each support, per unit mass"
 
 MORE = (
     Column(
-        "theta_res_error", "estimated error of the residual rotation over α; empty with a fixed step",
-        "theta_res_error", page=OnPage("±", ".0e", behind="theta_res_over_alpha"), over_alpha=True, bases=SPRINGS,
+        "theta_res_error",
+        "estimated error of the residual rotation over α, with what it went on changing by while it was read; empty with a "
+        "fixed step",
+        "theta_res_error", page=OnPage("±", ".0e", behind="theta_res_over_alpha"), over_alpha=True, bases=TILTS,
         stood=True,
     ),
     Column("t_end_s", "when the analysis ended", "t_end", "s", OnPage("end [s]", ".2f", behind="flight_s")),

@@ -129,7 +129,7 @@ class Response(Shown):
 
     @property
     def theta_res(self) -> float:
-        """Residual rotation [rad]; NaN on the rigid base, and where the pier did not stand."""
+        """Residual rotation [rad]; NaN on a rigid base without dampers that hold a tilt, and where the pier did not stand."""
         return self.pier.alpha * self._number("theta_res_over_alpha")
 
     @property

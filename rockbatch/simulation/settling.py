@@ -11,7 +11,7 @@ from rockbatch.core.clock import window_of
 from rockbatch.motions.motion import Motion
 from rockbatch.pier import Base, Damper, Pier
 from rockbatch.results.outcome import Outcome
-from rockbatch.simulation.models import first_substeps
+from rockbatch.simulation.models import first_substeps, readings
 from rockbatch.simulation.runs import LEFT_ALONE, MOST_STEPS, Run, Stop, Trial, quiet_samples, steps_of, try_all
 
 HALVINGS = 8
@@ -91,7 +91,8 @@ def run_all_to_tolerance(runs: Sequence[Run], tolerance: float, quiet_s: float, 
             if enough(agreements[i]):
                 samples = runs[i].motion.npts - 1 + quiet_samples(quiet_s, runs[i].motion.dt)
                 peak = int(window_of(fine.outcome.t_max / runs[i].motion.dt, float(samples))[0])
-                settled[i] = _noted(fine, coarse, agreements[i][-1], tolerance * pier.alpha, peak)
+                outcome = _noted(fine, coarse, agreements[i][-1], tolerance * pier.alpha, peak)
+                settled[i] = _with_drift(runs[i], outcome)
                 if len(agreements[i]) > 1 or not _same_counts(fine.outcome, coarse.outcome):
                     doubtful.append(i)
                 del levels[i]
@@ -152,6 +153,17 @@ def _with_errors(fine: Outcome, coarse: Outcome, least: float) -> Outcome:
     if fine.theta_res is not None and coarse.theta_res is not None:
         residual = max(abs(fine.theta_res - coarse.theta_res), least)
     return replace(fine, theta_max_error=max(abs(fine.theta_max - coarse.theta_max), least), theta_res_error=residual)
+
+
+def _with_drift(run: Run, outcome: Outcome) -> Outcome:
+    """``outcome`` with what the residual rotation went on changing by while it was read, as a part of its error.
+
+    It depends by as much on when the record ends.
+    """
+    if outcome.theta_res_error is None or outcome.theta_res_drift is None:
+        return outcome
+    changed = abs(outcome.theta_res_drift) * readings(run.pier, run.base, run.motion.dt)[1] * run.motion.dt
+    return replace(outcome, theta_res_error=outcome.theta_res_error + changed)
 
 
 def agreement(fine: Trial, coarse: Trial, tolerance: float, pier: Pier) -> Agreement:

@@ -14,7 +14,7 @@ from rockbatch.checks import Rule, judge
 from rockbatch.checks.demands import DEMANDS
 from rockbatch.checks.statistics import STATISTICS, quantile
 from rockbatch.errors import InputError
-from rockbatch.pier import Damper, Tendon, YieldingBase
+from rockbatch.pier import Damper, RigidBase, Tendon, YieldingBase
 
 INF = math.inf
 
@@ -403,6 +403,18 @@ def test_a_force_of_a_pier_that_nobody_has_weighed_does_not_apply(demand):
     one = TIED | {"pier": {key: value for key, value in TIED["pier"].items() if key != "mass_t"}}
     found = judged(runs([0.3], **FORCES), one=one, demand=demand, at_most=100.0)
     assert (found.verdict, found.note) == ("does not apply", "the study does not say what the pier weighs")
+
+
+@pytest.mark.parametrize(("kind", "applies"), [("friction", True), ("hysteretic", True), ("viscous", False)])
+def test_a_residual_rotation_is_asked_of_a_rigid_base_where_dampers_may_hold_the_pier(kind, applies):
+    damper = Damper(
+        kind, **{"viscous": {"nu": 0.1}, "friction": {"f": 0.8}, "hysteretic": {"f": 0.8, "yield_m": 0.01}}[kind]
+    )
+    one = case("rigid", RigidBase(restraints=(damper,)))
+    for demand, value in (("theta_res_over_alpha", 0.02), ("theta_res_rad", 0.004)):
+        found = judged(runs([0.3], "rigid", **ROW), one=one, demand=demand, at_most=0.01)
+        assert found.verdict == (("fail" if value > 0.01 else "pass") if applies else "does not apply")
+    assert judged(runs([0.3], "rigid", **ROW), one=one, demand="base_tilt_rad").verdict == "does not apply"
 
 
 def test_a_friction_demand_without_limit_fails():

@@ -3,6 +3,7 @@ moment."""
 
 import math
 from dataclasses import replace
+from itertools import combinations
 
 import numpy as np
 import pytest
@@ -97,6 +98,18 @@ def test_residuals_do_not_depend_on_how_long_the_run_goes_on():
         assert getattr(long, name) == getattr(short, name), name
     assert short.t_read >= 2.0 + 5.0 * 2.0 * math.pi / 20.0
     assert short.settlement_drift > 0.0
+
+
+@pytest.mark.parametrize("base", [YieldingBase(40.0, 0.05, eta=2.5), YieldingBase(40.0, eta=2.5, zeta=0.05)])
+def test_zeros_behind_a_record_change_the_residual_rotation_by_no_more_than_its_error(base):
+    """Springs that ratchet tilt to and fro with every swing that goes on."""
+    shaking = rb.pulse("sine", name="sine", amplitude=3.0, period=1.5, dt=0.01, duration=6.0)
+    found = []
+    for zeros in (0, 53, 107):
+        longer = replace(shaking, horizontal=np.append(shaking.horizontal, np.zeros(zeros)))
+        found.append(run_to_tolerance(TOWER, base, longer, 1e-4))
+    for one, other in combinations(found, 2):
+        assert abs(one.theta_res - other.theta_res) <= max(one.theta_res_error, other.theta_res_error)
 
 
 @needs_records

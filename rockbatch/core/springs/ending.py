@@ -45,7 +45,7 @@ class Waiting(NamedTuple):
     read_wait: float  # samples between two readings; 0 where there is nothing to read twice
     decided_at: float  # sample from which on nothing can exceed the peak, UNSET before it
     read: float  # sample of the first reading, UNSET before it
-    read_left: float  # unstressed positions of both supports then [m]
+    read_left: float  # unstressed positions of both supports then [m], their difference a mean up to the second reading
     read_right: float
     last_read: float  # likewise, of the last one
     last_left: float
@@ -143,6 +143,17 @@ def _read_base(lanes, i, m, y, contact, supports):
 
 
 @inner
+def _include_in_mean(lanes, i, m, y, contact, supports):
+    """Bring the tilt, which is a mean over the time between the first two readings, up to this sample."""
+    waiting = lanes.waiting
+    left, right = base_of(m, y, contact, supports)
+    samples = lanes.clock.sample[i] - waiting.read[i] + 1.0
+    higher = 0.5 * (left - right - waiting.read_left[i] + waiting.read_right[i]) / samples
+    waiting.read_left[i] += higher
+    waiting.read_right[i] -= higher
+
+
+@inner
 def _in_devices(lanes, i, m, devices, y, contact, supports):
     """Note the load [m/s²] that supports carry at rest, and the energy [J/kg] that devices may give back beyond its work.
 
@@ -185,6 +196,8 @@ def over(traits, lanes, i, devices):
     if decided:
         if sample == waiting.last_read[i] + wait:
             _read_base(lanes, i, m, y, contact, supports)
+        elif sample < waiting.read[i] + wait:
+            _include_in_mean(lanes, i, m, y, contact, supports)
         if sample < max(samples, waiting.read[i] + wait):
             return RUNNING
     _in_devices(lanes, i, m, devices, y, contact, supports)
