@@ -53,36 +53,44 @@ def outcomes_of(
     """Simulate a group of runs, with what ``output`` asks for; ``None`` for those that ``stop`` has stopped."""
     stop = stop or Stop()
     simulated = [planned.run for planned in runs]
-    quiet_s = numerics.quiet_s
-    if numerics.substeps is not None:
-        outcomes = run_all_fixed(simulated, [numerics.substeps] * len(simulated), quiet_s, stop)
-    else:
-        assert numerics.tolerance is not None  # load_study gives one of the two
-        outcomes = run_all_to_tolerance(simulated, numerics.tolerance, quiet_s, stop)
+    outcomes = _run_all(simulated, numerics, stop)
     if output.both_laws:
-        outcomes = _with_other_law(simulated, outcomes, quiet_s, stop)
+        outcomes = _with_other_law(simulated, outcomes, numerics, stop)
     return [
-        outcome and _observed(run, outcome, quiet_s, output, stop)
+        outcome and _observed(run, outcome, numerics.quiet_s, output, stop)
         for run, outcome in zip(simulated, outcomes, strict=True)
     ]
 
 
+def _run_all(runs: list[Run], numerics: Numerics, stop: Stop) -> list[Outcome | None]:
+    """Simulate with the study's fixed step, or to its tolerance."""
+    if numerics.substeps is not None:
+        return run_all_fixed(runs, [numerics.substeps] * len(runs), numerics.quiet_s, stop)
+    assert numerics.tolerance is not None  # load_study gives one of the two
+    return run_all_to_tolerance(runs, numerics.tolerance, numerics.quiet_s, stop)
+
+
 def _with_other_law(
-    runs: list[Run], outcomes: list[Outcome | None], quiet_s: float, stop: Stop
+    runs: list[Run], outcomes: list[Outcome | None], numerics: Numerics, stop: Stop
 ) -> list[Outcome | None]:
-    """With the settlement of springs that creep by the other law too, at the steps that were kept."""
+    """With the settlement of springs that creep by the other law too; a note where that has not settled."""
     creeping = {
         i: replace(run, base=run.base.by_other_law())
         for i, (run, outcome) in enumerate(zip(runs, outcomes, strict=True))
         if run.base.ratchets and outcome is not None and outcome.was_run
     }
-    substeps = [outcomes[i].substeps for i in creeping]  # type: ignore[union-attr]
-    others = run_all_fixed(list(creeping.values()), substeps, quiet_s, stop)
+    others = _run_all(list(creeping.values()), numerics, stop)
     for i, other in zip(creeping, others, strict=True):
         outcome = outcomes[i]
         assert outcome is not None
-        outcomes[i] = other and replace(outcome, settlement_other_law=other.settlement)
+        outcomes[i] = other and _beside(outcome, other)
     return outcomes
+
+
+def _beside(outcome: Outcome, other: Outcome) -> Outcome:
+    failed = f"by the other spring law: {other.reason}" if other.status == "failed" else ""
+    note = "; ".join(filter(None, (outcome.note, failed)))
+    return replace(outcome, settlement_other_law=other.settlement, note=note)
 
 
 def _observed(run: Run, outcome: Outcome, quiet_s: float, output: Output, stop: Stop) -> Outcome | None:

@@ -4,7 +4,7 @@ Rotations are small: the heel of a pier that tilts by θ stands 2 b θ above its
 """
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 

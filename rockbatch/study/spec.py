@@ -122,7 +122,7 @@ class Output:
     rocking : bool
         Rocking about the lean of a base that has yielded, apart from it (THEORY.md, Results of a run).
     both_laws : bool
-        The settlement of Bouc–Wen springs by the other law too (THEORY.md, Results of a run); one more run at the kept step.
+        The settlement of Bouc–Wen springs by the other law too (THEORY.md, Results of a run), which is run likewise.
     intensity : bool
         Intensity measures beside the peaks, and which of them orders the peaks best; spectral accelerations are those at
         ``sa_periods_s`` [s].

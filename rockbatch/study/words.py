@@ -205,8 +205,8 @@ OUTPUT = {
     "estimate": "Whether what the equivalent oscillators of design practice give is written beside the peaks.",
     "ledger": "Whether the energy ledger of every run is added to the table.",
     "rocking": "Whether rocking about a base that has yielded is told from its lean in every run, which takes one more.",
-    "both_laws": "Whether the settlement of Bouc–Wen springs is found by the elastic–perfectly plastic law too, which takes one "
-    "more run; of others it is not a range.",
+    "both_laws": "Whether the settlement of Bouc–Wen springs is found by the elastic–perfectly plastic law too, which takes two "
+    "more runs or more; of others it is not a range.",
 }
 
 SUITE_ABOUT = "What holds for every check that does not say otherwise, and where more of them are."

@@ -102,7 +102,7 @@ def test_a_study_that_asks_gets_the_ledger_and_the_other_law_as_columns(tmp_path
     beside = rb.run(epp).set_index("case")
     assert OTHER_LAW not in beside  # nothing else is run beside springs that do not creep
     other = beside.loc["pads", "settlement_m"]
-    assert pads["settlement_other_law_m"] == pytest.approx(other, rel=1e-4)
+    assert pads["settlement_other_law_m"] == pytest.approx(other, rel=1e-12)  # to its own tolerance, at its own steps
     assert pads["settlement_m"] > 1.02 * other  # Bouc–Wen springs ratchet
 
 
