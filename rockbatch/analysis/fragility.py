@@ -95,7 +95,7 @@ def fragility(
     started = time.monotonic()
     asked, listener, carrier = given_study(study, motions), listener_of(progress), engine_of(jobs)
     spec = read_fragility(asked)
-    asked = replace(asked, output=output(spec, asked.output.both_laws))
+    asked = replace(asked, output=output(spec, asked.output))
     found = ground_motions(asked)
     listener.motions(found)
     records = found.motions

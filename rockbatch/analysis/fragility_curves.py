@@ -165,14 +165,15 @@ def _ratio(bounds: tuple[float, float]) -> float:
     return high / low if low > 0 else math.inf
 
 
-def output(spec: FragilitySpec, both_laws: bool) -> Output:
-    """What the runs have to bring beyond their peaks; ``both_laws`` where the study does not do without."""
+def output(spec: FragilitySpec, asked: Output) -> Output:
+    """What the runs have to bring beyond their peaks, of what the study has ``asked`` for only how."""
     needs = {DEMANDS[rule.demand].needs for rule in spec.limits}
     return Output(
         histories="none",
-        both_laws=both_laws and any(DEMANDS[rule.demand].other_law for rule in spec.limits),
+        both_laws=asked.both_laws and any(DEMANDS[rule.demand].other_law for rule in spec.limits),
         forces="forces" in needs,
         rocking="rocking" in needs,
+        least_normal_share=asked.least_normal_share,
     )
 
 

@@ -37,7 +37,7 @@ def study_digests(study: Study, motions: MotionSet) -> dict[str, str]:
         scales=(study.motions.polarity, study.motions.scale),
         numerics=(
             study.numerics,
-            *(getattr(study.output, key) for key in ("both_laws", "ledger", "forces", "rocking")),
+            *(getattr(study.output, key) for key in ("both_laws", "ledger", "forces", "rocking", "least_normal_share")),
         ),
     )
 

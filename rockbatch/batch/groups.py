@@ -11,7 +11,7 @@ from rockbatch.motions import Motion
 from rockbatch.pier import Base
 from rockbatch.results.outcome import Outcome
 from rockbatch.simulation import Run, Stop, first_substeps, run_all_fixed, run_all_to_tolerance, steps_of
-from rockbatch.simulation.histories import told_apart, with_observed, written
+from rockbatch.simulation.histories import told_apart, with_observed
 from rockbatch.study import Numerics, Output, Study
 
 MOST_STEPS_OF_A_LEDGER = 1_000_000
@@ -57,7 +57,7 @@ def outcomes_of(
     if output.both_laws:
         outcomes = _with_other_law(simulated, outcomes, numerics, stop)
     return [
-        outcome and _observed(run, outcome, numerics.quiet_s, output, stop)
+        outcome and _observed(run, outcome, numerics, output, stop)
         for run, outcome in zip(simulated, outcomes, strict=True)
     ]
 
@@ -93,21 +93,20 @@ def _beside(outcome: Outcome, other: Outcome) -> Outcome:
     return replace(outcome, settlement_other_law=other.settlement, note=note)
 
 
-def _observed(run: Run, outcome: Outcome, quiet_s: float, output: Output, stop: Stop) -> Outcome | None:
+def _observed(run: Run, outcome: Outcome, numerics: Numerics, output: Output, stop: Stop) -> Outcome | None:
     """With what observers make of the run, written down: lean, ledger and forces; unless it is very long or was refused."""
     if stop:
         return None
-    steps = steps_of(run.motion, outcome.substeps, quiet_s)
+    steps = steps_of(run.motion, outcome.substeps, numerics.quiet_s)
     ledger = output.ledger and steps <= MOST_STEPS_OF_A_LEDGER
     sized = output.forces and steps <= MOST_STEPS_OF_FORCES
     try:
-        outcome = told_apart(run, outcome, quiet_s, output.rocking)
+        outcome = told_apart(run, outcome, numerics.quiet_s, output.rocking)
         if not outcome.was_run or not (ledger or sized):
             return outcome
-        rows = written(run, outcome, quiet_s, every_step=True)
+        return with_observed(run, outcome, numerics, replace(output, ledger=ledger, forces=sized))
     except InputError:  # too many impacts to be written down
         return outcome
-    return with_observed(run, outcome, rows, ledger, sized)
 
 
 def _kind(base: Base) -> tuple[object, ...]:

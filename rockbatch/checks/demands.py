@@ -223,7 +223,9 @@ def _forces(words: str, *columns: str, factor: Callable[[Case], float] = lambda 
     def found(runs: "pd.DataFrame", case: Case) -> Found:
         value = np.maximum.reduce([_numbers(runs, column) for column in columns])
         none = np.isnan(value) & ~np.isnan(_numbers(runs, FORCES))
-        return _without_error(factor(case) * np.where(none, 0.0, value))
+        value = factor(case) * np.where(none, 0.0, value)
+        share = _numbers(runs, FORCES_ERROR) if FORCES_ERROR in runs else np.full(len(runs), np.nan)
+        return Found(value, value * share)
 
     return Demand(words, found, needs="forces", weighed=columns[0].endswith(("_kN", "_kN_s")), **more)
 
@@ -238,9 +240,13 @@ def _per_g(case: Case) -> float:
 
 _GAPS = ("heel_gap_left_m", "heel_gap_right_m")
 _DECK = "greatest absolute horizontal acceleration of the deck"
+_KEYS = "greatest base shear on shear keys, while the normal force is small,"
 
 FORCES = "base_shear_m_s2"
 """A column that every run with forces has."""
+
+FORCES_ERROR = "forces_error"
+"""The column of their error; tables of earlier versions have none."""
 
 ROCKING = "theta_rocking_over_alpha"
 """Likewise with rocking."""
@@ -257,7 +263,7 @@ _OF_FORCES = {
     "normal_force_m_s2": _forces("greatest normal force of all supports over the mass [m/s²]", "normal_force_m_s2"),
     "normal_force_kN": _forces("greatest normal force of all supports [kN]", "normal_force_kN"),
     "friction_demand": _forces(
-        "greatest base shear over the normal force at the time",
+        "greatest base shear over the normal force at the time, while that is not small",
         "friction_demand",
         most=Most(lambda case: MOST_FRICTION, "is more than any interface has"),
     ),
@@ -286,6 +292,9 @@ _OF_FORCES = {
     "impulse_m_s": _forces("vertical impulse of the hardest impact over the mass [m/s]", "impulse_m_s"),
     "impulse_kN_s": _forces("vertical impulse of the hardest impact [kN s]", "impulse_kN_s"),
     "omega_max_over_p": _forces("greatest angular velocity over p", "omega_max_over_p"),
+    "key_shear_m_s2": _forces(f"{_KEYS} over the mass [m/s²]", "key_shear_m_s2"),
+    "key_shear_kN": _forces(f"{_KEYS} [kN]", "key_shear_kN"),
+    "flight_longest_s": _forces("longest flight [s]", "flight_longest_s"),
 }
 
 _OF_DEVICES = {

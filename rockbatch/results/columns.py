@@ -373,7 +373,7 @@ DEVICES = (
 )  # fmt: skip
 """Of dampers and tendons."""
 _ITSELF = "the same, not over the mass, where that is known"
-_PIVOT = "greatest force of each support over half the weight, z η on yielding springs; of a rigid base, where it bears all of N"
+_PIVOT = "greatest force of each support over half the weight, its dashpot's included; of a rigid base, where it bears all of N"
 _GAP = "heel gap: greatest height of each pivot above where its support waits, the stroke of a key or damper"
 _SPEED = "greatest speed at which the heel gap opens or closes"
 
@@ -389,7 +389,8 @@ _FORCES = (
     ),
     _force("normal_force_kN", _ITSELF, "normal_force", "kN", "N [kN]", ".0f", per="mass"),
     _force(
-        "friction_demand", "greatest V over N at one time; inf where nothing presses the pier down, as in flight",
+        "friction_demand",
+        "greatest V over N at one time, while N is above [output] least_normal_share of the weight, 0.1 unless given",
         "friction_demand", "1", "V/N", ".4f", unbounded=True,
     ),
     _force("pivot_force_left", _PIVOT, "pivot_left", "1", "support L/(Mg/2)", ".3f"),
@@ -425,6 +426,21 @@ _FORCES = (
         "standard_gravity", "ground then [g]", ".4f", per="g", sometimes=True,
     ),
     _force("omega_max_over_p", "greatest angular velocity over p", "omega_over_p", "1", "θ̇_max/p", ".4f"),
+    _force(
+        "key_shear_m_s2", "greatest V over the mass while N is not above that share, as in flight: shear keys bear it",
+        "key_shear", "m/s^2", "V of keys/M [m/s²]", ".3f", sometimes=True,
+    ),
+    _force("key_shear_kN", _ITSELF, "key_shear", "kN", "V of keys [kN]", ".0f", per="mass"),
+    _force(
+        "flight_longest_s", "the longest of the flights that were followed", "flight_longest", "s",
+        "longest flight [s]", ".3f", sometimes=True,
+    ),
+    _force(
+        "forces_error",
+        "estimated error, as a share of itself, of that of these columns whose error is the largest: what halving the step "
+        "still changed; empty with a fixed step",
+        "error", "1", "±", ".0e", sometimes=True,
+    ),
 )  # fmt: skip
 """What designers size, until the run ends or the pier leans beyond α for good."""
 

@@ -25,7 +25,7 @@ class PeakForces:
     base_shear, normal_force : float
         Greatest V/M, and N/M of all supports, without the impulses of impacts [m/s²].
     friction_demand : float
-        Greatest |V|/N; infinite where nothing presses the pier down.
+        Greatest |V|/N while N is above a share of the weight.
     pivot_left, pivot_right : float
         Greatest force of each support over half the weight.
     heel_gap_left, heel_gap_right : float
@@ -42,6 +42,12 @@ class PeakForces:
         Greatest horizontal over vertical impulse of an impact.
     first_uplift, uplift_ground : float or None
         When a pivot first lifts [s], and magnitude of the horizontal ground acceleration then [m/s²].
+    key_shear : float or None
+        Greatest V/M while N is below that share: shear keys bear it [m/s²].
+    flight_longest : float or None
+        The longest flight that was followed [s].
+    error : float or None
+        By which share of itself halving the step still changed one of them at most; ``None`` with a fixed step.
     """
 
     base_shear: float
@@ -60,6 +66,9 @@ class PeakForces:
     impact_friction_demand: float | None = None
     first_uplift: float | None = None
     uplift_ground: float | None = None
+    key_shear: float | None = None
+    flight_longest: float | None = None
+    error: float | None = None
 
     def mirrored(self) -> "PeakForces":
         """Those of the mirror image."""
@@ -94,7 +103,8 @@ class Outcome:
         Greatest rotation about where the pier would rest on its base as it then was, and where it would at ``t_max`` [rad, to
         the side of the peak]; where it was asked for.
     theta_max_error, theta_res_error : float or None
-        Estimated errors of ``theta_max`` and ``theta_res`` [rad]; ``None`` with a fixed step.
+        Estimated errors of ``theta_max`` and ``theta_res`` [rad], the latter with what it went on changing by while it was
+        read; ``None`` with a fixed step.
     theta_res, base_tilt : float or None
         Residual rotation, static on the deformed base, and tilt of the base itself [rad].
     settlement : float or None

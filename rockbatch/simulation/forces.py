@@ -1,19 +1,21 @@
 """Forces of a run that was written down, and what of them a designer sizes: their peaks, the hardest impact, uplift."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from rockbatch.core import types
-from rockbatch.core.devices.laws import FRICTION
-from rockbatch.core.observe.forces import FORCES, NEVER, Forces, Hold, Outline, forces_on_rigid_base, forces_on_springs
+from rockbatch.core.devices.laws import ELEMENT, FRICTION
+from rockbatch.core.observe.forces import FORCES, Body, Forces, Hold, Outline
+from rockbatch.core.observe.peaks import NEVER, NOTED, Limits, Noted, Ties, forces_of_run
 from rockbatch.motions.motion import Samples
 from rockbatch.pier import Pier, RigidBase, YieldingBase
-from rockbatch.results.outcome import WOULD_SLIDE, Outcome, PeakForces
+from rockbatch.results.outcome import WOULD_SLIDE, PeakForces
 from rockbatch.results.response import FORCE_UNITS, IMPACT_UNITS
-from rockbatch.simulation.models import block, elements, ground_of, springs
+from rockbatch.simulation.models import block, elements, ground_of, model
 from rockbatch.simulation.restraints import apart
 from rockbatch.simulation.runs import Run
 
@@ -36,39 +38,48 @@ class Impacts(NamedTuple):
 
 
 class Greatest(NamedTuple):
-    """The greatest magnitudes of a run; when |V|/N first exceeds the interface's friction, and N is first negative [s]."""
+    """The greatest magnitudes of a run, of |V|/N while N is above a limit; and what is noted beside them."""
 
     forces: Forces
-    slides: float | None
-    pulls: float | None
+    noted: Noted
 
 
 def at_rows(run: Run, rows: np.recarray) -> np.recarray:
     """Forces (core.forces.Forces) at every row of a run that has both sides of every event."""
     found = np.recarray(len(rows), FORCES)
-    _observe(run, rows, found, np.zeros(0), np.full(2, NEVER))
+    _observe(run, rows, 0.0, found, np.zeros(0))
     return found
 
 
-def greatest(run: Run, rows: np.recarray) -> Greatest:
-    """The greatest forces of a run, ``rows`` of which are all its steps."""
-    extremes, firsts = np.zeros(len(Forces._fields)), np.full(2, NEVER)
-    _observe(run, rows, np.recarray(0, FORCES), extremes, firsts)
-    slides, pulls = (None if t == NEVER else float(t) for t in firsts)
-    return Greatest(Forces(*extremes.tolist()), slides, pulls)
+def greatest(run: Run, rows: np.recarray, least_normal: float) -> Greatest:
+    """The greatest forces of a run, ``rows`` of which are all its steps; friction counts where N > ``least_normal`` M g."""
+    extremes = np.zeros(len(Forces._fields))
+    noted = _observe(run, rows, least_normal, np.recarray(0, FORCES), extremes)
+    return Greatest(Forces(*extremes.tolist()), Noted(*noted.tolist()))
 
 
-def _observe(run: Run, rows: np.recarray, found: np.recarray, extremes: Samples, firsts: Samples) -> None:
+def _observe(run: Run, rows: np.recarray, least_normal: float, found: np.recarray, extremes: Samples) -> np.record:
+    noted = np.zeros(1, NOTED).view(np.recarray)
+    noted.slides = noted.pulls = NEVER
     if len(rows) == 0:
-        return
+        return noted[0]
     pier, base = run.pier, run.base
-    has = math.inf if base.friction is None else float(base.friction)
-    rest = (ground_of(run.motion), float(run.motion.dt), has, found, extremes, firsts)
+    limits = Limits(math.inf if base.friction is None else float(base.friction), least_normal * float(pier.gravity))
+    body = Body(_outline(pier), _hold(pier, base)) if isinstance(base, RigidBase) else float(pier.deck)
     plain, pulls = apart(base, rows)
-    if isinstance(base, RigidBase):
-        forces_on_rigid_base(block(pier, base), _outline(pier), _hold(pier, base), plain, pulls, *rest)
-    else:
-        forces_on_springs(springs(pier, base), float(pier.deck), plain, pulls, *rest)
+    ground, dt = ground_of(run.motion), float(run.motion.dt)
+    forces_of_run(
+        model(pier, base), body, plain, pulls, _ties(run, rows), ground, dt, limits, found, extremes, noted
+    )  # fmt: skip
+    return noted[0]
+
+
+def _ties(run: Run, rows: np.recarray) -> Ties | None:
+    """Dampers and tendons of a run, with their states at its ``rows``."""
+    if not run.base.restraints:
+        return None
+    laws = np.array([tuple(each) for each in elements(run.pier, run.base)], ELEMENT).view(np.recarray)
+    return Ties(laws, rows.state.copy(), float(rows.v[0]))
 
 
 def _hold(pier: Pier, base: RigidBase) -> Hold:
@@ -127,42 +138,43 @@ def impacts_table(rows: np.recarray, found: np.recarray) -> "pd.DataFrame":
     return table.astype({"pivot": "str"})
 
 
-def peak_forces(run: Run, outcome: Outcome, rows: np.recarray) -> tuple[PeakForces, str]:
-    """What a run asks of the design, and a note on what it tells that the model does not follow; empty where there is none.
+def peak_forces(run: Run, rows: np.recarray, least_normal: float) -> tuple[PeakForces, str]:
+    """Return what a run asks of the design, and a note on what the model does not follow of it; empty where there is nothing.
 
-    ``rows`` are those of a history with every step. An overturned pier counts until it leans beyond α for good.
+    ``rows`` are those of a history with every step. A pier counts until it leans beyond α for good. Friction counts while N is
+    above the share ``least_normal`` of the weight.
     """
-    pier, base = run.pier, run.base
-    if outcome.status == "overturned":
-        standing = np.flatnonzero(np.abs(rows.theta) <= pier.alpha)
-        rows = rows[: standing[-1] + 1].view(np.recarray)
-    whole = greatest(run, rows)
-    most = whole.forces
+    pier = run.pier
+    standing = np.flatnonzero(np.abs(rows.theta) <= pier.alpha)
+    rows = rows[: standing[-1] + 1].view(np.recarray)
+    whole = greatest(run, rows, least_normal)
+    most, noted = whole.forces, whole.noted
     events = rows[(rows.kind > 0.0) | (rows.kind == types.BEFORE_EVENT)].view(np.recarray)
     landings = impacts(events, at_rows(run, events))
-    carried = [force / (0.5 * pier.gravity) for force in (most.left, most.right)]
-    if isinstance(base, YieldingBase):
-        carried = [min(force, base.eta) for force in carried]  # a parabola may top it
+    # Yield is located to rounding; a dashpot adds to what the spring bears
+    bears = run.base.eta if isinstance(run.base, YieldingBase) and not run.base.zeta else math.inf
     peaks = PeakForces(
         base_shear=most.shear,
         normal_force=most.normal,
         friction_demand=most.friction,
-        pivot_left=carried[0],
-        pivot_right=carried[1],
+        pivot_left=min(most.left / (0.5 * pier.gravity), bears),
+        pivot_right=min(most.right / (0.5 * pier.gravity), bears),
         heel_gap_left=most.gap_left,
         heel_gap_right=most.gap_right,
         heel_speed_left=most.speed_left,
         heel_speed_right=most.speed_right,
         deck_acceleration=most.deck,
         omega_over_p=most.omega / pier.p,
-        **_hardest(landings),
+        key_shear=noted.key_shear or None,
+        flight_longest=noted.longest_flight or None,
+        **_hardest(run, events, landings),
         **_first_uplift(run, events),
     )
-    return peaks, _limits(run, whole, peaks)
+    return peaks, _limits(run, noted, peaks, least_normal)
 
 
-def _hardest(landings: Impacts) -> dict[str, float]:
-    """The hardest impact, that of the greatest landing velocity; nothing without one."""
+def _hardest(run: Run, events: np.recarray, landings: Impacts) -> dict[str, float]:
+    """The hardest impact, that of the greatest landing velocity, and the greatest friction demand of any; nothing without one."""
     if len(landings.after) == 0:
         return {}
     hardest = int(landings.speed.argmax())
@@ -170,8 +182,20 @@ def _hardest(landings: Impacts) -> dict[str, float]:
     pressed = landings.vertical > 0.0
     if pressed.any():
         shares = np.abs(landings.horizontal[pressed]) / landings.vertical[pressed]
-        told["impact_friction_demand"] = float(shares.max())
+        told["impact_friction_demand"] = float((shares * _of_bounces(run, events, landings.after[pressed])).max())
     return told
+
+
+def _of_bounces(run: Run, events: np.recarray, after: np.ndarray) -> Samples | float:
+    """Return by what the quotient of the impulses of each impact has to be multiplied for that of its bounces.
+
+    Coming to rest sums up ever lower bounces, each of which leaves the share e of the velocity: J_h is (1 − e) and J_v (1 + e) of
+    what a stop at once would take (THEORY.md, Forces).
+    """
+    if not isinstance(run.base, RigidBase):
+        return 1.0
+    e = block(run.pier, run.base).restitution
+    return np.where(events.kind[after] == types.REST, (1.0 - e) / (1.0 + e), 1.0)
 
 
 def _first_uplift(run: Run, rows: np.recarray) -> dict[str, float]:
@@ -184,19 +208,77 @@ def _first_uplift(run: Run, rows: np.recarray) -> dict[str, float]:
     return {"first_uplift": t, "uplift_ground": abs(shaken)}
 
 
-def _limits(run: Run, whole: Greatest, peaks: PeakForces) -> str:
+def _limits(run: Run, noted: Noted, peaks: PeakForces, least_normal: float) -> str:
     """What the forces say that the model does not follow: sliding, and a rigid base that would have to pull."""
     notes = []
-    if whole.pulls is not None and not run.base.on_springs:
+    if noted.pulls != NEVER and not run.base.on_springs:
         notes.append(
-            f"at {whole.pulls:.2f} s the ground would have to hold the pier down: it would leave it, which is not followed"
+            f"at {noted.pulls:.2f} s the ground would have to hold the pier down: it would leave it, which is not followed"
         )
     has = run.base.friction
+    if has is None:
+        return "; ".join(notes)
     most = max(peaks.friction_demand, peaks.impact_friction_demand or 0.0)
-    if has is not None and most > has:
-        when = "at an impact" if whole.slides is None else f"at {whole.slides:.2f} s"
-        told = f"reaches {most:.3g}" if math.isfinite(most) else "has no limit, as nothing presses the pier down"
+    if most > has:
+        when = "at an impact" if noted.slides == NEVER else f"at {noted.slides:.2f} s"
         notes.append(
-            f"{WOULD_SLIDE} {when}: the friction demand {told}, the interface has {has:g}; sliding is not followed"
+            f"{WOULD_SLIDE} {when}: the friction demand reaches {most:.3g}, the interface has {has:g}; sliding is not followed"
+        )
+    if peaks.key_shear is not None:
+        notes.append(
+            f"where the normal force is below {least_normal:g} of the weight, friction holds little: keys have to carry a "
+            f"base shear of up to {peaks.key_shear / run.pier.gravity:.3g} of the weight"
         )
     return "; ".join(notes)
+
+
+NOT_SETTLED = 0.01
+"""Error of a force, as a share of it, beyond which a run carries a note."""
+
+_FLOOR = 0.01
+"""Of what a quantity is measured by: the least value that an error is taken as a share of. Below it nobody designs for it."""
+
+_SIZED = {
+    "base shear": (("base_shear",), "force"),
+    "normal force": (("normal_force",), "force"),
+    "friction demand": (("friction_demand",), "friction"),
+    "force of a support": (("pivot_left", "pivot_right"), "share"),
+    "heel gap": (("heel_gap_left", "heel_gap_right"), "gap"),
+    "heel speed": (("heel_speed_left", "heel_speed_right"), "speed"),
+    "acceleration of the deck": (("deck_acceleration",), "force"),
+    "landing velocity": (("landing_velocity",), "speed"),
+    "impulse": (("impulse",), "speed"),
+    "friction demand of impacts": (("impact_friction_demand",), "friction"),
+    "angular velocity": (("omega_over_p",), "rotation"),
+    "base shear on the keys": (("key_shear",), "force"),
+}
+"""Fields of PeakForces that have an error, those of both pivots together, and what they are measured by."""
+
+
+def with_error(fine: PeakForces, coarse: PeakForces, pier: Pier) -> tuple[PeakForces, str]:
+    """Return ``fine`` with its error, the greatest share of itself by which a quantity differs from that of twice the step.
+
+    And a note on what has not settled; empty if all has.
+    """
+    scales = _scales(pier)
+    changes = {}
+    for name, (fields, measure) in _SIZED.items():
+        now, before = ([getattr(forces, field) or 0.0 for field in fields] for forces in (fine, coarse))
+        changed = max(abs(one - other) for one, other in zip(now, before, strict=True))
+        changes[name] = changed / max(*now, _FLOOR * scales[measure])
+    worst = max(changes, key=changes.__getitem__)
+    most = changes[worst]
+    note = f"forces not settled: halving the step still changed the {worst} by {most:.1%}" if most > NOT_SETTLED else ""
+    return replace(fine, error=most), note
+
+
+def _scales(pier: Pier) -> Mapping[str, float]:
+    """What quantities are measured by: the weight, friction tan α, and a pier that leans by α."""
+    return {
+        "force": pier.gravity,
+        "share": 1.0,
+        "friction": math.tan(pier.alpha),
+        "gap": 2.0 * pier.half_width * pier.alpha,
+        "speed": pier.size * pier.alpha * pier.p,
+        "rotation": pier.alpha,
+    }

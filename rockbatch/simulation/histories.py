@@ -15,12 +15,12 @@ from rockbatch.results.columns import TERMS, as_series, row
 from rockbatch.results.outcome import Outcome
 from rockbatch.results.response import EVENT_TYPES, Response
 from rockbatch.simulation import restraints
-from rockbatch.simulation.forces import at_rows, forces_table, impacts_table, peak_forces
+from rockbatch.simulation.forces import at_rows, forces_table, impacts_table, peak_forces, with_error
 from rockbatch.simulation.leaning import apart, may_lean, with_rocking
 from rockbatch.simulation.models import block, ground_of, least_substeps, springs
 from rockbatch.simulation.runs import Run, run_fixed, steps_of, written_run
 from rockbatch.simulation.settling import run_to_tolerance
-from rockbatch.study.spec import LEAST_TOLERANCE, Case
+from rockbatch.study.spec import LEAST_TOLERANCE, Case, Numerics, Output
 
 _EVENTS = {
     types.SEPARATION_LEFT: ("separation", "left"),
@@ -123,8 +123,9 @@ def simulate(
     outcome = told_apart(run, outcome, quiet_s, wait=wait)
     found = histories(run, outcome, quiet_s, name, {}, ledger=ledger, forces=forces, wait=wait)
     if ledger or forces:
-        rows = written(run, outcome, quiet_s, every_step=True, wait=wait)
-        outcome = with_observed(run, outcome, rows, ledger, forces)
+        numerics = Numerics(None if substeps else tolerance, substeps, quiet_s)
+        output = Output(ledger=ledger, forces=forces)
+        outcome = with_observed(run, outcome, numerics, output, wait)
     return replace(found, row=as_series(row(motion, "+", 1.0, Case(name, pier, foundation, {}), outcome)))
 
 
@@ -171,16 +172,25 @@ def told_apart(run: Run, outcome: Outcome, quiet_s: float, wanted: bool = False,
     return with_rocking(outcome, apart(run.pier, run.base, rows), run.pier.alpha)
 
 
-def with_observed(run: Run, outcome: Outcome, rows: np.recarray, ledger: bool, forces: bool) -> Outcome:
+def with_observed(run: Run, outcome: Outcome, numerics: Numerics, output: Output, wait: bool = True) -> Outcome:
     """With what observers make of the run, written down at every step: the energy ledger at its end, with the greatest
-    remainder on the way, and the greatest forces."""
-    if ledger:
+    remainder on the way, and the greatest forces, with their error where the step was chosen by a tolerance."""
+    rows = written(run, outcome, numerics.quiet_s, every_step=True, wait=wait)
+    if output.ledger:
         terms = energies(run, rows)
         at_end = dict(zip(TERMS, map(float, terms[-1]), strict=True))
         outcome = replace(outcome, energies=at_end | {"remainder": float(abs(terms[:, -1]).max())})
-    if forces:
-        peaks, note = peak_forces(run, outcome, rows)
-        outcome = replace(outcome, forces=peaks, note="; ".join(filter(None, (outcome.note, note))))
+    if output.forces:
+        notes = [outcome.note]
+        peaks, note = peak_forces(run, rows, output.least_normal_share)
+        notes.append(note)
+        if numerics.substeps is None and outcome.substeps % 2 == 0:
+            coarse = replace(outcome, substeps=outcome.substeps // 2)
+            del rows  # a history of every step may be large
+            rows = written(run, coarse, numerics.quiet_s, every_step=True, wait=wait)
+            peaks, note = with_error(peaks, peak_forces(run, rows, output.least_normal_share)[0], run.pier)
+            notes.append(note)
+        outcome = replace(outcome, forces=peaks, note="; ".join(filter(None, notes)))
     return outcome
 
 

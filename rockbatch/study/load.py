@@ -19,7 +19,7 @@ from rockbatch.study.motions import FEMA, MOTIONS, PULSE, SOURCES, read_motions_
 from rockbatch.study.piers import PART, PIER, read_piers
 from rockbatch.study.plausible import CONFIRM, TOLERANCE, complain_unless_usual, confirmed
 from rockbatch.study.spec import LEAST_TOLERANCE, Case, MotionSpec, Numerics, Output, Reference, Study
-from rockbatch.toml.kinds import KindError, boolean, choice, count, not_negative, positive, shown, text
+from rockbatch.toml.kinds import KindError, boolean, choice, count, not_negative, number, positive, shown, text
 from rockbatch.toml.reader import Key, Setting, Table, TomlFile
 
 TOP = {
@@ -36,6 +36,12 @@ def _tolerance(value: Any) -> float:
     return float(value)
 
 
+def _share(value: Any) -> float:
+    if not 0.0 < number(value) < 1.0:
+        raise KindError("a number above 0 and below 1, a share of the weight")
+    return float(value)
+
+
 NUMERICS = {
     "tolerance": Key(_tolerance, "1e-4"),
     "substeps": Key(count, "4"),
@@ -47,6 +53,7 @@ OUTPUT = {
     "ledger": Key(boolean, "true"),
     "forces": Key(boolean, "true"),
     "rocking": Key(boolean, "true"),
+    "least_normal_share": Key(_share, "0.1"),
     "both_laws": Key(boolean, "true"),
     "intensity": Key(boolean, "true"),
     "sa_periods_s": Key(positive, "[0.5, 1.0, 2.0]", many=True),
@@ -197,6 +204,9 @@ def _output(file: TomlFile) -> Output:
         if not read.get("intensity"):
             table.complain("sa_periods_s: is for intensity = true; write that too, or leave it out", "sa_periods_s")
         read["sa_periods_s"] = tuple(setting.value for setting in read["sa_periods_s"])
+    if "least_normal_share" in read and not read.get("forces"):
+        told = "least_normal_share: is for forces = true; write that too, or leave it out"
+        table.complain(told, "least_normal_share")
     return Output(**read)
 
 

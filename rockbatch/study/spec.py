@@ -105,6 +105,10 @@ class Numerics:
     quiet_s: float = 2.0
 
 
+LEAST_NORMAL_SHARE = 0.1
+"""Of the weight: the normal force below which shear keys, not friction, are what bears the base shear."""
+
+
 @dataclass(frozen=True)
 class Output:
     """What a study asks for beyond the peaks; each costs time.
@@ -121,6 +125,8 @@ class Output:
         What designers size, of every run: base shear, friction, supports, gaps, the deck, impacts (THEORY.md, Forces).
     rocking : bool
         Rocking about the lean of a base that has yielded, apart from it (THEORY.md, Results of a run).
+    least_normal_share : float
+        Share of the weight above which the normal force has to be for the friction demand to count.
     both_laws : bool
         The settlement of Bouc–Wen springs by the other law too (THEORY.md, Results of a run), which is run likewise.
     intensity : bool
@@ -135,6 +141,7 @@ class Output:
     ledger: bool = False
     forces: bool = False
     rocking: bool = False
+    least_normal_share: float = LEAST_NORMAL_SHARE
     both_laws: bool = True
     intensity: bool = False
     sa_periods_s: tuple[float, ...] = (0.5, 1.0, 2.0, 4.0)

@@ -200,6 +200,8 @@ OUTPUT = {
     "histories": 'Runs whose histories are kept: the "worst" record of each case, "all", or "none".',
     "histories_MB": 'How large their file may become with "worst"; the greatest rotations are kept first.',
     "forces": "Whether what designers size is added: base shear, friction, forces of the supports, gaps, impacts, accelerations.",
+    "least_normal_share": "Share of the weight that the normal force has to exceed for the friction demand to count: below it, "
+    "as in a hop, shear keys carry the base shear, which is a column of its own.",
     "intensity": "Whether intensity measures of each motion are written, and which of them orders the peaks best.",
     "sa_periods_s": "Periods of the spectral accelerations among the intensity measures.",
     "estimate": "Whether what the equivalent oscillators of design practice give is written beside the peaks.",

@@ -146,7 +146,7 @@ class TiedTwoSprings(TwoSprings):
         speed = self.speed(j, y)
         if isinstance(each, Damper) and each.kind == "hysteretic":
             z = y[FIRST + j]
-            return speed / each.yield_m * (1.0 - (abs(z) ** 5 if self.way[j] * z > 0.0 else 0.0))
+            return speed / each.yield_m * (1.0 - (min(abs(z), 1.0) ** 5 if self.way[j] * z > 0.0 else 0.0))
         return speed if self.state[j] == "yields" else 0.0
 
     def surfaces(self, leg):

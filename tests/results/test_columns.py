@@ -264,7 +264,7 @@ def test_a_table_without_a_varied_key_is_refused(tmp_path):
 
 
 def test_a_demand_without_bound_comes_back_from_disk(tmp_path):
-    """A pier that flies is not held by friction at all: V/N is infinite, in the table, the histories and the page."""
+    """A pier that flies is not held by friction at all: V/N is infinite then; the table has it while N is not small."""
     station = Path(__file__).parents[2] / "motions" / "near_fault" / "kaikoura2016_wtmc"
     pier, motions = {"alpha": 0.13, "p": 0.76}, {"path": str(station)}
     text = study_text(pier=pier, motions=motions, pulses=(), cases=(STOPPED,), output={"forces": True})
@@ -272,7 +272,8 @@ def test_a_demand_without_bound_comes_back_from_disk(tmp_path):
     opened = rb.open_results(tmp_path / "out")
     flown = opened.peaks[opened.peaks["status"] == "flight"]
     assert len(flown) == 2
-    assert np.isinf(flown["friction_demand"]).all()
+    assert np.isfinite(flown["friction_demand"]).all()
+    assert (flown["key_shear_m_s2"] > 0.0).all()
     assert np.isinf(opened.responses[0].forces["friction"]).any()
     assert np.isfinite(flown["base_shear_m_s2"]).all()
     assert (tmp_path / "out" / "report.html").exists()

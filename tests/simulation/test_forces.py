@@ -36,7 +36,7 @@ def test_who_does_not_ask_has_the_same_columns_and_bytes_without_those_of_forces
     assert list(plain) == [*names(STAYING), *names(MORE), "mirror_of"]
     assert list(plain)[-3:] == ["flight_height_m", "theta_max_is", "mirror_of"]
     pd.testing.assert_frame_equal(asked[list(plain)], plain)
-    assert len(set(asked) - set(plain)) == 21
+    assert len(set(asked) - set(plain)) == 25
     page = (tmp_path / "without" / "report.html").read_text(encoding="utf-8")
     assert "Forces" not in Page(page).headings
 
@@ -81,6 +81,17 @@ def test_friction_without_forces_says_what_to_write(tmp_path):
     with pytest.raises(InputError, match="friction: nothing to hold it against; write forces = true under") as error:
         rb.load_study(path)
     assert f"{path}:{path.read_text().splitlines().index('friction = 0.5') + 1}" in error.value.problems[0]
+
+
+@pytest.mark.parametrize("share", [0, 1, -0.1])
+def test_a_share_of_the_weight_lies_between_none_and_all_of_it(tmp_path, share):
+    with pytest.raises(InputError, match=r"least_normal_share = .*: expected a number above 0 and below 1"):
+        rb.load_study(study(tmp_path, output=QUIET | {"least_normal_share": share}))
+
+
+def test_a_share_of_the_weight_without_forces_says_what_to_write(tmp_path):
+    with pytest.raises(InputError, match="least_normal_share: is for forces = true; write that too, or leave it out"):
+        rb.load_study(study(tmp_path, forces=False, output=QUIET | {"least_normal_share": 0.2}))
 
 
 @pytest.mark.parametrize("friction", [0, -0.5])

@@ -1,18 +1,15 @@
-"""What the ground, the supports and the gaps under the pivots take of a run that was written down (THEORY.md, Forces).
-
-An observer, like the ledger: it reads the rows of a history, and the equations of motion give the forces of each. Within a
-step they are looked at once more, in its middle; runs that do not ask for it pay nothing.
-"""
+"""Forces of the ground and the supports, and gaps under the pivots, at one moment (THEORY.md, Forces)."""
 
 import math
 from typing import NamedTuple
 
 from rockbatch.core.block.equations import side_of
-from rockbatch.core.kernel import entry, kernel
-from rockbatch.core.observe.rows import block_contact, block_state, ground_at, middle_of, spring_contact, spring_state
-from rockbatch.core.springs.creep import forces, top, velocity_of_top
+from rockbatch.core.block.model import Block
+from rockbatch.core.kernel import kernel, question
+from rockbatch.core.springs.creep import forces, quickness, top, velocity_of_top
 from rockbatch.core.springs.equations import accelerations_at, geometry
-from rockbatch.core.system import accelerations, airborne, clearances, pulled, rates
+from rockbatch.core.springs.model import Springs, Supports
+from rockbatch.core.system import accelerations, airborne, clearances
 from rockbatch.core.table import record
 from rockbatch.core.trigonometry import sine_and_cosine
 from rockbatch.core.types import LEFT, RIGHT
@@ -42,11 +39,6 @@ FORCES = record(Forces)
 LIFTED = 1e-9
 """Of g: a normal force that is no more than rounding."""
 
-NEVER = -1.0
-"""Time of what does not happen."""
-
-_FRICTION = Forces._fields.index("friction")
-
 
 class Outline(NamedTuple):
     """What a block on a rigid base has beside Block."""
@@ -66,29 +58,11 @@ class Hold(NamedTuple):
     right_back: float
 
 
-@kernel
-def _put(out, i, found):
-    line = out[i]
-    line.shear, line.normal, line.left, line.right = found.shear, found.normal, found.left, found.right
-    line.gap_left, line.gap_right = found.gap_left, found.gap_right
-    line.speed_left, line.speed_right = found.speed_left, found.speed_right
-    line.deck, line.along, line.up, line.omega = found.deck, found.along, found.up, found.omega
-    line.friction, line.clearance = found.friction, found.clearance
+class Body(NamedTuple):
+    """What the forces on a block on a rigid base take beside it."""
 
-
-@kernel
-def _include(greatest, firsts, start, middle, end, t, has, gravity):
-    """Bring the greatest magnitudes, and the first times, up to a step that ends at ``t`` [s]: its ends, its middle, and where
-    the parabola through the three turns."""
-    for j in range(len(greatest)):
-        slope, bend = end[j] - start[j], start[j] + end[j] - 2.0 * middle[j]
-        greatest[j] = max(greatest[j], max(abs(middle[j]), abs(end[j])))
-        if abs(slope) < 2.0 * abs(bend) < math.inf:
-            greatest[j] = max(greatest[j], abs(middle[j] - slope * slope / (8.0 * bend)))
-    if firsts[0] == NEVER and greatest[_FRICTION] > has:
-        firsts[0] = t
-    if firsts[1] == NEVER and min(middle.normal, end.normal) < -LIFTED * gravity:
-        firsts[1] = t
+    outline: Outline
+    hold: Hold
 
 
 @kernel
@@ -126,93 +100,11 @@ def on_springs(m, deck, y, contact, waiting_left, waiting_right, horizontal, ver
 
 
 @kernel
-def _halfway(rows, pulls, i, column):
-    """Return a number of ``pulls`` in the middle of the step to row ``i``: of the cubic through four rows, or the mean of two.
-
-    Steps that follow dampers' laws differ in length; a cubic does not cross an event.
-    """
-    mean = 0.5 * (pulls[i - 1, column] + pulls[i, column])
-    if i < 2 or i + 1 >= len(rows) or max(rows[i - 1].kind, rows[i + 1].kind) > 0.0:
-        return mean
-    middle, total = 0.5 * (rows[i - 1].t + rows[i].t), 0.0
-    for j in range(i - 2, i + 2):
-        weight = 1.0
-        for k in range(i - 2, i + 2):
-            if k != j:
-                weight *= (middle - rows[k].t) / (rows[j].t - rows[k].t)
-        total += weight * pulls[j, column]
-    return total if abs(total) < math.inf else mean
-
-
-@kernel
 def _waits(was, contact, side, waiting, position):
     """Where the support on ``side`` waits [m]: where its pivot has left it, which is at ``position`` now."""
     before, now = (was.left, contact.left) if side == LEFT else (was.right, contact.right)
     left = (before != 0.0 or was.held == side) and now == 0.0 and contact.held != side
     return position if left else waiting
-
-
-@entry
-def forces_on_springs(m, deck, rows, pulls, ground, dt, has, out, greatest, firsts):
-    """Forces of a run on two springs: at every row, or the greatest of the whole run.
-
-    Parameters
-    ----------
-    m : Springs
-    deck : float
-        Height of the deck above the pivots [m].
-    rows : recarray of recording.Row, shape (n,)
-        History as the run wrote it, with both sides of every event; for the greatest, with every step.
-    pulls : ndarray, shape (n, 2)
-        Force [m/s²] and moment [m²/s²] of dampers and tendons at every row.
-    ground : ndarray, shape (npts, 4)
-        The motion of the run, of :func:`rockbatch.core.ground.ground_rows`.
-    dt : float
-        Its sampling interval [s].
-    has : float
-        Friction of the interface.
-    out : recarray of Forces, shape (n,) or (0,)
-        Filled at every row.
-    greatest : ndarray of zeros, shape (12 and more,) or (0,)
-        Filled with the greatest magnitude of each of Forces, at the rows, in the middles of steps and between.
-    firsts : ndarray of NEVER, shape (2,)
-        Filled beside ``greatest``: when |V|/N first exceeds ``has``, and when N is first negative [s].
-    """
-    waiting_left, waiting_right = 0.0 * deck, 0.0 * deck
-    was = spring_contact(rows[0])
-    under = pulled(m, pulls[0, 0], pulls[0, 1])
-    before = on_springs(
-        under, deck, spring_state(rows[0]), was, waiting_left, waiting_right, ground[0, 0], ground[0, 2]
-    )
-    for i in range(len(rows)):
-        y, contact, t = spring_state(rows[i]), spring_contact(rows[i]), rows[i].t
-        at = geometry(m, y.theta)
-        # A damped support creeps back to where it is unstressed
-        left_at = y.v + at.lift_left - m.yield_deflection * y.z_left
-        right_at = y.v + at.lift_right - m.yield_deflection * y.z_right
-        waiting_left = _waits(was, contact, LEFT, waiting_left, left_at)
-        waiting_right = _waits(was, contact, RIGHT, waiting_right, right_at)
-        was = contact
-        t_start = rows[i - 1].t if i > 0 else t
-        t_middle = 0.5 * (t_start + t)
-        ah, av = ground_at(ground, dt, t_middle, t)
-        under = pulled(m, pulls[i, 0], pulls[i, 1])
-        found = on_springs(under, deck, y, contact, waiting_left, waiting_right, ah, av)
-        if len(out) > 0:
-            _put(out, i, found)
-        if len(greatest) == 0:
-            continue
-        start, middle = found, found
-        if t > t_start and rows[i].kind <= 0.0:
-            y_start, start = spring_state(rows[i - 1]), before
-            ah_start, av_start = ground_at(ground, dt, t_middle, t_start)
-            k_start = rates(pulled(m, pulls[i - 1, 0], pulls[i - 1, 1]), y_start, contact, ah_start, av_start)
-            y = middle_of(y_start, k_start, y, rates(under, y, contact, ah, av), t - t_start)
-            ah, av = 0.5 * (ah_start + ah), 0.5 * (av_start + av)
-            under = pulled(m, _halfway(rows, pulls, i, 0), _halfway(rows, pulls, i, 1))
-            middle = on_springs(under, deck, y, contact, waiting_left, waiting_right, ah, av)
-        _include(greatest, firsts, start, middle, found, t, has, m.gravity)
-        before = found
 
 
 @kernel
@@ -279,30 +171,69 @@ def on_block(m, outline, hold, y, contact, horizontal, vertical):
     )  # fmt: skip
 
 
-@entry
-def forces_on_rigid_base(m, outline, hold, rows, pulls, ground, dt, has, out, greatest, firsts):
-    """Forces of a run on a rigid base: ``m`` is a Block, ``outline`` an Outline, ``hold`` a Hold; as forces_on_springs."""
-    under = pulled(m, pulls[0, 0], pulls[0, 1])
-    before = on_block(under, outline, hold, block_state(rows[0]), block_contact(rows[0]), ground[0, 0], ground[0, 2])
-    for i in range(len(rows)):
-        y, contact, t = block_state(rows[i]), block_contact(rows[i]), rows[i].t
-        t_start = rows[i - 1].t if i > 0 else t
-        t_middle = 0.5 * (t_start + t)
-        ah, av = ground_at(ground, dt, t_middle, t)
-        under = pulled(m, pulls[i, 0], pulls[i, 1])
-        found = on_block(under, outline, hold, y, contact, ah, av)
-        if len(out) > 0:
-            _put(out, i, found)
-        if len(greatest) == 0:
-            continue
-        start, middle = found, found
-        if t > t_start and rows[i].kind <= 0.0:
-            y_start, start = block_state(rows[i - 1]), before
-            ah_start, av_start = ground_at(ground, dt, t_middle, t_start)
-            k_start = rates(pulled(m, pulls[i - 1, 0], pulls[i - 1, 1]), y_start, contact, ah_start, av_start)
-            y = middle_of(y_start, k_start, y, rates(under, y, contact, ah, av), t - t_start)
-            ah, av = 0.5 * (ah_start + ah), 0.5 * (av_start + av)
-            under = pulled(m, _halfway(rows, pulls, i, 0), _halfway(rows, pulls, i, 1))
-            middle = on_block(under, outline, hold, y, contact, ah, av)
-        _include(greatest, firsts, start, middle, found, t, has, m.gravity)
-        before = found
+@question
+def waiting(m, y, was, contact, supports):
+    """Return where the supports of free pivots wait in state ``y``, whose contact ``was`` another until then."""
+
+
+@waiting.of(Springs)
+def _waiting_springs(m, y, was, contact, supports):
+    at = geometry(m, y.theta)
+    # A damped support creeps back to where it is unstressed
+    left = y.v + at.lift_left - m.yield_deflection * y.z_left
+    right = y.v + at.lift_right - m.yield_deflection * y.z_right
+    return Supports(_waits(was, contact, LEFT, supports.left, left), _waits(was, contact, RIGHT, supports.right, right))
+
+
+@waiting.of(Block)
+def _waiting_ground(m, y, was, contact, supports):
+    return supports
+
+
+@question
+def forces_at(m, body, y, contact, supports, horizontal, vertical):
+    """Return the Forces in state ``y``; ``body`` is the height of the deck [m] on springs, a Body on a rigid base."""
+
+
+@forces_at.of(Springs)
+def _forces_on_springs(m, body, y, contact, supports, horizontal, vertical):
+    return on_springs(m, body, y, contact, supports.left, supports.right, horizontal, vertical)
+
+
+@forces_at.of(Block)
+def _forces_on_block(m, body, y, contact, supports, horizontal, vertical):
+    return on_block(m, body.outline, body.hold, y, contact, horizontal, vertical)
+
+
+@question
+def fastest_heels(m, step):
+    """Return the shares of a step at which the left and the right heel may leave their supports fastest; 0 if at none."""
+
+
+@kernel
+def _fastest(m, on_spring, z, acceleration, length):
+    """Return the share of a step at which the gap above a support that creeps back opens fastest, 0 if it does not.
+
+    The support moves at w exp(−t/τ), its pivot at a steady acceleration a: that is where a + (w/τ) exp(−t/τ) = 0.
+    """
+    if m.damped is None or on_spring != 0.0 or z == 0.0:
+        return 0.0
+    quick = quickness(m)
+    ratio = -acceleration / (velocity_of_top(m, z) * quick)
+    share = -math.log(ratio) / (quick * length) if 0.0 < ratio < 1.0 else 0.0
+    return share if share < 1.0 else 0.0
+
+
+@fastest_heels.of(Springs)
+def _fastest_on_springs(m, step):
+    at, k, contact = geometry(m, step.start.theta), step.rates, step.contact
+    left, right = k.v_rate + at.arm_left * k.omega, k.v_rate + at.arm_right * k.omega
+    return (
+        _fastest(m, contact.left, step.start.z_left, left, step.length),
+        _fastest(m, contact.right, step.start.z_right, right, step.length),
+    )
+
+
+@fastest_heels.of(Block)
+def _fastest_on_ground(m, step):
+    return 0.0, 0.0

@@ -8,7 +8,7 @@ nothing. What is left over tests the equations, the events and the impacts at on
 from typing import NamedTuple
 
 from rockbatch.core.kernel import entry, kernel
-from rockbatch.core.observe.rows import block_contact, block_state, ground_at, middle_of, spring_contact, spring_state
+from rockbatch.core.observe.rows import contact_of, ground_within, state_of, step_between, within
 from rockbatch.core.springs.creep import forces
 from rockbatch.core.springs.equations import accelerations_at, geometry
 from rockbatch.core.springs.model import Contact
@@ -118,36 +118,30 @@ def ledger_on_springs(m, rows, pulls, ground, dt, out):
     out : recarray of Energies, zeros, shape (n,)
         Filled at every row.
     """
-    y = spring_state(rows[0])
-    kinetic0, potential0, elastic0 = _stored(m, y, spring_contact(rows[0]))
+    y = state_of(m, rows[0])
+    kinetic0, potential0, elastic0 = _stored(m, y, contact_of(m, rows[0]))
     shaken, plastic, impact, p_delta, constraint, damping = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(1, len(rows)):
-        y_end = spring_state(rows[i])
-        contact = spring_contact(rows[i])
+        y_end = state_of(m, rows[i])
+        contact = contact_of(m, rows[i])
         kind = int(rows[i].kind)
         if kind > 0:  # the other side of an event
             at = geometry(m, y.theta)
             if kind in (IMPACT_LEFT, IMPACT_RIGHT, IMPACT_BOTH):
                 impact += _impact_loss(m, y, kind)
             if m.finite is not None:
-                was, now = _lever(at, spring_contact(rows[i - 1])), _lever(at, contact)
+                was, now = _lever(at, contact_of(m, rows[i - 1])), _lever(at, contact)
                 both = at.lever * at.lever * (y_end.omega * y_end.omega - y.omega * y.omega)
                 constraint += 0.5 * (now * now * y_end.omega * y_end.omega - was * was * y.omega * y.omega - both)
         else:
-            t, t_end = rows[i - 1].t, rows[i].t
-            h = t_end - t
-            t_middle = 0.5 * (t + t_end)
-            ah, av = ground_at(ground, dt, t_middle, t)
-            ah_end, av_end = ground_at(ground, dt, t_middle, t_end)
-            ah_middle, av_middle = 0.5 * (ah + ah_end), 0.5 * (av + av_end)
             start, half_way, stop = _pulled(m, pulls, i)
-            k = rates(start, y, contact, ah, av)
-            k_end = rates(stop, y_end, contact, ah_end, av_end)
-            middle = middle_of(y, k, y_end, k_end, h)
-            k_middle = rates(half_way, middle, contact, ah_middle, av_middle)
-            s0, w0, d0, c0, q0 = _powers(start, y, k, contact, ah, av)
-            s1, w1, d1, c1, q1 = _powers(half_way, middle, k_middle, contact, ah_middle, av_middle)
-            s2, w2, d2, c2, q2 = _powers(stop, y_end, k_end, contact, ah_end, av_end)
+            step = step_between(start, stop, rows[i - 1], rows[i], ground, dt)
+            h, k, k_end = step.length, step.rates, step.rates_end
+            middle, (ah, av) = within(half_way, step, 0.5), ground_within(step, 0.5)
+            k_middle = rates(half_way, middle, contact, ah, av)
+            s0, w0, d0, c0, q0 = _powers(start, y, k, contact, step.horizontal, step.vertical)
+            s1, w1, d1, c1, q1 = _powers(half_way, middle, k_middle, contact, ah, av)
+            s2, w2, d2, c2, q2 = _powers(stop, y_end, k_end, contact, step.horizontal_end, step.vertical_end)
             shaken += h / 6.0 * (s0 + 4.0 * s1 + s2)
             plastic += h / 6.0 * (w0 + 4.0 * w1 + w2)
             p_delta += h / 6.0 * (d0 + 4.0 * d1 + d2)
@@ -179,24 +173,22 @@ def _shaken(m, y, contact, horizontal, vertical):
 @entry
 def ledger_on_rigid_base(m, rows, pulls, ground, dt, out):
     """Ledger of a run on a rigid base: ``m`` is a Block, ``rows`` its history; otherwise as :func:`ledger_on_springs`."""
-    y = block_state(rows[0])
-    kinetic, potential0 = _of_block(m, y, block_contact(rows[0]))
+    y = state_of(m, rows[0])
+    kinetic, potential0 = _of_block(m, y, contact_of(m, rows[0]))
     kinetic0, shaken, impact = kinetic, 0.0, 0.0
     for i in range(1, len(rows)):
-        y_end, contact = block_state(rows[i]), block_contact(rows[i])
+        y_end, contact = state_of(m, rows[i]), contact_of(m, rows[i])
         kinetic_end, potential = _of_block(m, y_end, contact)
         if rows[i].kind > 0:  # the other side of an event
             impact += kinetic - kinetic_end
         else:
-            t, t_end = rows[i - 1].t, rows[i].t
-            h, t_middle = t_end - t, 0.5 * (t + t_end)
-            ah, av = ground_at(ground, dt, t_middle, t)
-            ah_end, av_end = ground_at(ground, dt, t_middle, t_end)
-            k = rates(pulled(m, pulls[i - 1, 0], pulls[i - 1, 1]), y, contact, ah, av)
-            k_end = rates(pulled(m, pulls[i, 0], pulls[i, 1]), y_end, contact, ah_end, av_end)
-            s0 = _shaken(m, y, contact, ah, av)
-            s1 = _shaken(m, middle_of(y, k, y_end, k_end, h), contact, 0.5 * (ah + ah_end), 0.5 * (av + av_end))
-            shaken += h / 6.0 * (s0 + 4.0 * s1 + _shaken(m, y_end, contact, ah_end, av_end))
+            start, half_way, stop = _pulled(m, pulls, i)
+            step = step_between(start, stop, rows[i - 1], rows[i], ground, dt)
+            ah, av = ground_within(step, 0.5)
+            s0 = _shaken(m, y, contact, step.horizontal, step.vertical)
+            s1 = _shaken(m, within(half_way, step, 0.5), contact, ah, av)
+            s2 = _shaken(m, y_end, contact, step.horizontal_end, step.vertical_end)
+            shaken += step.length / 6.0 * (s0 + 4.0 * s1 + s2)
         line = out[i]
         line.kinetic, line.potential = kinetic_end - kinetic0, potential - potential0
         line.input, line.impact = shaken, impact

@@ -1,32 +1,40 @@
-"""What observers of a run that was written down read: the rows of its history, its ground, and the middle of a step."""
+"""What observers of a run that was written down read: the rows of its history, its ground, and the states within a step."""
 
-from rockbatch.core.block.model import Rocking, Stance
-from rockbatch.core.kernel import kernel
-from rockbatch.core.springs.model import Contact, State
-from rockbatch.core.table import along
+from typing import NamedTuple
+
+from rockbatch.core.block.model import Block, Rocking, Stance
+from rockbatch.core.kernel import kernel, question
+from rockbatch.core.springs.model import Contact, Springs, State
+from rockbatch.core.system import rates, share, staged
 
 
-@kernel
-def spring_state(row):
-    """Return the State of a row."""
+@question
+def state_of(m, row):
+    """Return the state in a row."""
+
+
+@state_of.of(Springs)
+def _state_on_springs(m, row):
     return State(row.v, row.theta, row.v_rate, row.omega, row.z_left, row.z_right)
 
 
-@kernel
-def spring_contact(row):
-    """Return the Contact of a row: that of the step that ends there, or after the event."""
-    return Contact(row.left, row.right, row.left_yields, row.right_yields, row.held)
-
-
-@kernel
-def block_state(row):
-    """Return the state of a row, Rocking."""
+@state_of.of(Block)
+def _state_of_block(m, row):
     return Rocking(row.v, row.theta, row.v_rate, row.omega)
 
 
-@kernel
-def block_contact(row):
-    """Return the Stance of a row: that of the step that ends there, or after the event."""
+@question
+def contact_of(m, row):
+    """Return the contact in a row: that of the step that ends there, or after the event."""
+
+
+@contact_of.of(Springs)
+def _contact_on_springs(m, row):
+    return Contact(row.left, row.right, row.left_yields, row.right_yields, row.held)
+
+
+@contact_of.of(Block)
+def _contact_of_block(m, row):
     return Stance(row.left, row.right, row.bore)
 
 
@@ -40,8 +48,73 @@ def ground_at(ground, dt, middle, t):
     return ground[sample, 0] + after * ground[sample, 1], ground[sample, 2] + after * ground[sample, 3]
 
 
+class Step(NamedTuple):
+    """A step between two rows of a history: states and rates at its ends, and the ground accelerations there [m/s²]."""
+
+    start: tuple
+    rates: tuple
+    end: tuple
+    rates_end: tuple
+    contact: tuple
+    length: float  # [s]
+    horizontal: float
+    vertical: float
+    horizontal_end: float
+    vertical_end: float
+
+
 @kernel
-def middle_of(y, k, y_end, k_end, h):
-    """Return the state in the middle of a step, from the cubic Hermite polynomial."""
-    middle = along(y, along(y_end, y, -1.0), 0.5)
-    return along(middle, along(k, k_end, -1.0), 0.125 * h)
+def step_between(under, under_end, row, row_end, ground, dt):
+    """Return the Step from ``row`` to ``row_end`` of a pier that is ``under`` the pull of its devices at both."""
+    start, end, contact = state_of(under, row), state_of(under, row_end), contact_of(under, row_end)
+    middle = 0.5 * (row.t + row_end.t)
+    ah, av = ground_at(ground, dt, middle, row.t)
+    ah_end, av_end = ground_at(ground, dt, middle, row_end.t)
+    k, k_end = rates(under, start, contact, ah, av), rates(under_end, end, contact, ah_end, av_end)
+    return Step(start, k, end, k_end, contact, row_end.t - row.t, ah, av, ah_end, av_end)
+
+
+@kernel
+def ground_within(step, s):
+    """Return ground accelerations, horizontal and vertical, at the share ``s`` of a step."""
+    horizontal = step.horizontal + s * (step.horizontal_end - step.horizontal)
+    return horizontal, step.vertical + s * (step.vertical_end - step.vertical)
+
+
+@kernel
+def cubic(start, rate, end, rate_end, h, s):
+    """Return the cubic Hermite polynomial at the share ``s`` of a step of ``h`` [s].
+
+    It keeps between its ends where both rates have the same sign: through what is steep at one end it would overshoot.
+    """
+    way = end - start
+    found = start + s * (way + (1.0 - s) * ((1.0 - s) * (h * rate - way) - s * (h * rate_end - way)))
+    if rate * rate_end < 0.0:
+        return found
+    return min(max(found, min(start, end)), max(start, end))
+
+
+@question
+def within(m, step, s):
+    """Return the state at the share ``s`` of a step; what decays in closed form does so here too."""
+
+
+@within.of(Springs)
+def _within_on_springs(m, step, s):
+    y, k, end, k_end, h = step.start, step.rates, step.end, step.rates_end, step.length
+    found = State(
+        cubic(y.v, k.v, end.v, k_end.v, h, s), cubic(y.theta, k.theta, end.theta, k_end.theta, h, s),
+        cubic(y.v_rate, k.v_rate, end.v_rate, k_end.v_rate, h, s), cubic(y.omega, k.omega, end.omega, k_end.omega, h, s),
+        cubic(y.z_left, k.z_left, end.z_left, k_end.z_left, h, s),
+        cubic(y.z_right, k.z_right, end.z_right, k_end.z_right, h, s),
+    )  # fmt: skip
+    return staged(m, found, y, step.contact, share(m, s * h))
+
+
+@within.of(Block)
+def _within_of_block(m, step, s):
+    y, k, end, k_end, h = step.start, step.rates, step.end, step.rates_end, step.length
+    return Rocking(
+        cubic(y.v, k.v, end.v, k_end.v, h, s), cubic(y.theta, k.theta, end.theta, k_end.theta, h, s),
+        cubic(y.v_rate, k.v_rate, end.v_rate, k_end.v_rate, h, s), cubic(y.omega, k.omega, end.omega, k_end.omega, h, s),
+    )  # fmt: skip

@@ -34,8 +34,10 @@ def section(contents: Contents) -> Section | None:
     lead = tag(
         "p",
         "The greatest values of each case over its records, and below those of every run, until it ends or the pier leans beyond "
-        "α for good. Forces are without the impulses of impacts; |V|/N is inf where both pivots are in the air, when keys alone "
-        "hold the pier. Of the first uplift, the earliest and the weakest ground are shown.",
+        "α for good. Forces are without the impulses of impacts. V/N counts while N is above a share of the weight, a tenth "
+        "unless the study has another least_normal_share; while it is not, as in flight, shear keys bear V whatever the "
+        "friction, which is a column of its own. ± is the error of the least certain column, as a share of it. Of the first "
+        "uplift, the earliest and the weakest ground are shown.",
     )
     parts = [lead, _sliding(finished), _of_frames(finished), _of_cases(finished, shown), tag("h3", "Every run")]
     return Section("Forces", "forces", join(*parts, _every_run(finished, shown)))
