@@ -324,7 +324,7 @@ def neglected(pier: Pier, theta: float) -> float:
     μ/(1+μ) sin α cos α |θ| of the inertia about a pivot and θ²/2 of the moment M g b (THEORY.md, Two springs, finite kinematics).
     """
     inertia = pier.mu / (1 + pier.mu) * math.sin(pier.alpha) * math.cos(pier.alpha) * abs(theta)
-    return inertia + 0.5 * theta**2
+    return inertia + 0.5 * theta * theta
 
 
 def rocking_frequency(pier: Pier, base: ElasticBase) -> float:

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rockbatch.core.devices.laws import FRICTION, HYSTERETIC, TAUT, TENDON, force, state_rate
-from rockbatch.core.devices.pull import gap
+from rockbatch.core.devices.elongation import attitude, gap
 from rockbatch.core.kernel import entry, kernel, question
 from rockbatch.core.observe.forces import LIFTED, Body, Forces, fastest_heels, forces_at, waiting
 from rockbatch.core.observe.rows import (
@@ -70,7 +70,8 @@ def _state_within(m, of, was, now, level, step, s):
     """Return the state of an element at the share ``s`` of a step, from its states ``was`` and ``now`` at the ends."""
     if of.kind != HYSTERETIC:
         return was + s * (now - was)
-    speed, speed_end = gap(m, of, step.start, level).speed, gap(m, of, step.end, level).speed
+    speed = gap(m, of.offset, attitude(m, step.start, level), step.start).speed
+    speed_end = gap(m, of.offset, attitude(m, step.end, level), step.end).speed
     rate = state_rate(of, speed, was, TAUT, math.copysign(1.0, speed))
     rate_end = state_rate(of, speed_end, now, TAUT, math.copysign(1.0, speed_end))
     return cubic(was, rate, now, rate_end, step.length, s)
@@ -79,18 +80,18 @@ def _state_within(m, of, was, now, level, step, s):
 @kernel
 def _by_laws(m, ties, i, step, y, s):
     """Return the Pull, in state ``y`` at the share ``s`` of the step to row ``i``, of all that has a law: not of friction."""
-    total, moment = 0.0, 0.0
+    total, moment, at = 0.0, 0.0, attitude(m, y, ties.level)
     for j in range(len(ties.elements)):
         of = ties.elements[j]
         if of.kind == FRICTION:
             continue
-        at = gap(m, of, y, ties.level)
+        here = gap(m, of.offset, at, y)
         x = _state_within(m, of, ties.states[i - 1, j], ties.states[i, j], ties.level, step, s)
-        one = force(of, at.elongation, at.speed, x, TAUT, 0.0)
+        pull = force(of, here.elongation, here.speed, x, TAUT, 0.0)
         if of.kind == TENDON:
-            one = min(max(one, 0.0), of.strength)
-        total += one * at.by_v
-        moment += one * at.arm
+            pull = min(max(pull, 0.0), of.strength)
+        total += pull * here.by_v
+        moment += pull * here.arm
     return Pull(total, moment)
 
 
