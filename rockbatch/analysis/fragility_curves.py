@@ -166,7 +166,7 @@ def _ratio(bounds: tuple[float, float]) -> float:
 
 
 def output(spec: FragilitySpec, asked: Output) -> Output:
-    """What the runs have to bring beyond their peaks, of what the study has ``asked`` for only how."""
+    """Return the output that the limits need beyond peaks, in the way that the study has ``asked`` for."""
     needs = {DEMANDS[rule.demand].needs for rule in spec.limits}
     return Output(
         histories="none",

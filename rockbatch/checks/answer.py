@@ -64,7 +64,7 @@ def _unlimited(verdicts: Sequence[Verdict], worst: Sequence[Worst]) -> list[Wors
 
 
 def _key(case: str, columns: Mapping[str, float | str]) -> tuple[object, ...]:
-    """What tells cases apart, in the ten digits that the files have."""
+    """Return what distinguishes cases, in the ten digits that the files have."""
     values = ((name, value if isinstance(value, str) else f"{value:.9g}") for name, value in columns.items())
     return str(case), *sorted(values)
 
@@ -139,7 +139,7 @@ def _open(
     case_of: Words,
     record_of: Words,
 ) -> Line | None:
-    """What is not decided, and why; in cases that fail anyway it does not matter."""
+    """Return what is not decided, and why; in cases that fail anyway it does not matter."""
     idle = [one for name in failing for one in cases[name] if one.verdict == NOT_DECIDED]
     if not names and not idle:
         return None

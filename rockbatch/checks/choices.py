@@ -28,7 +28,7 @@ def unmet(
     other_law: bool,
     output: Collection[str],
 ) -> Iterator[str]:
-    """What the rule chooses and is not there, each told in a message that starts with the name of its key.
+    """Return a message for each thing that the rule chooses and the study lacks, which starts with the name of its key.
 
     ``output`` are the keys of [output] whose columns are there.
     """

@@ -21,7 +21,7 @@ _SETTLED = frozenset(("settlement_m", "toe_settlement_m"))
 
 
 class Response(NamedTuple):
-    """What a response is called, and the demands whose limits bound it, too."""
+    """Name of a response, and the demands whose limits bound it, too."""
 
     words: str
     bounded_by: frozenset[str]

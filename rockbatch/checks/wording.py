@@ -91,7 +91,7 @@ def margin(one: Verdict) -> str:
 
 
 class Notes:
-    """What there is to know beside verdicts, so that a sentence that holds for several is said once.
+    """Remarks on verdicts, each said once for all of them that it holds for.
 
     A part of a note is common if it holds for every verdict of some checks, and for :data:`REPEATED` verdicts or more.
     """
@@ -113,12 +113,12 @@ class Notes:
                 self._counting.setdefault(one.counting, {})[one.check] = None
 
     def of(self, one: Verdict) -> str:
-        """What is to be said of this verdict alone."""
+        """Return the remark on this verdict alone."""
         parts = one.note.split("; ") if one.note else []
         return "; ".join(part for part in parts if one.check not in self._common.get(part, ()))
 
     def common(self) -> list[str]:
-        """What holds for all verdicts of some checks, and how runs count that did not go through: a sentence each."""
+        """Return remarks on all verdicts of some checks, and how runs count that did not go through: a sentence each."""
         told = [f"{', '.join(checks)}: {part}." for part, checks in self._common.items()]
         ways = [
             f"{', '.join(checks)}: runs that do not end standing count so: {way}."

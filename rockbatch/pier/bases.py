@@ -29,7 +29,7 @@ MOST_ETA = 100.0
 """Beyond it a wrong unit is likelier than the support: foundations bear 2 to 20 times what they carry."""
 
 MOST_NEGLECTED = 0.05
-"""Share of inertia and righting moment beyond which first-order kinematics is told in a note: 0.20 rad of a pier of α = 0.2."""
+"""Share of inertia and righting moment, neglected by first-order kinematics, from which a note says so: 0.20 rad at α = 0.2."""
 
 FLIGHT_LIMIT_MM = 5.0
 """Height of flight [mm] beyond which a run has a note, unless the base says another."""

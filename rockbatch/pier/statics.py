@@ -1,4 +1,4 @@
-"""What a pier bears before it moves: the ground acceleration and rotation at which it lifts off, and where it loses its balance.
+"""Statics of a pier before it moves: the ground acceleration and rotation at which it lifts off, and where it loses its balance.
 
 All quasi-static, THEORY.md (10), (14), (15) and (17). Viscous and hysteretic dampers bear nothing at rest and are left out.
 """

@@ -11,7 +11,7 @@ LINEARISED = "linearised kinematics"
 """Words of a note on a run whose rotations are too large for them."""
 
 LEANS = "lean"
-"""What the greatest rotation is where the pier hardly rocks then, on a base that has yielded."""
+"""Kind of a greatest rotation at which the pier hardly rocks, on a base that has yielded."""
 
 
 @dataclass(frozen=True)

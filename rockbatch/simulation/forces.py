@@ -139,7 +139,7 @@ def impacts_table(rows: np.recarray, found: np.recarray) -> "pd.DataFrame":
 
 
 def peak_forces(run: Run, rows: np.recarray, least_normal: float) -> tuple[PeakForces, str]:
-    """Return what a run asks of the design, and a note on what the model does not follow of it; empty where there is nothing.
+    """Return the demands of a run on the design, and a note on what the model does not follow of it; empty without any.
 
     ``rows`` are those of a history with every step. A pier counts until it leans beyond α for good. Friction counts while N is
     above the share ``least_normal`` of the weight.
@@ -236,7 +236,7 @@ NOT_SETTLED = 0.01
 """Error of a force, as a share of it, beyond which a run carries a note."""
 
 _FLOOR = 0.01
-"""Of what a quantity is measured by: the least value that an error is taken as a share of. Below it nobody designs for it."""
+"""Share of a quantity's scale below which it governs no design: an error is a share of no less than that."""
 
 _SIZED = {
     "base shear": (("base_shear",), "force"),
@@ -273,7 +273,7 @@ def with_error(fine: PeakForces, coarse: PeakForces, pier: Pier) -> tuple[PeakFo
 
 
 def _scales(pier: Pier) -> Mapping[str, float]:
-    """What quantities are measured by: the weight, friction tan α, and a pier that leans by α."""
+    """Return the scales of quantities: the weight, friction tan α, and a pier that leans by α."""
     return {
         "force": pier.gravity,
         "share": 1.0,

@@ -206,7 +206,7 @@ OUTPUT = {
     "sa_periods_s": "Periods of the spectral accelerations among the intensity measures.",
     "estimate": "Whether what the equivalent oscillators of design practice give is written beside the peaks.",
     "ledger": "Whether the energy ledger of every run is added to the table.",
-    "rocking": "Whether rocking about a base that has yielded is told from its lean in every run, which takes one more.",
+    "rocking": "Whether the rocking about a base that has yielded is separated from its lean in every run, which takes one more.",
     "both_laws": "Whether the settlement of Bouc–Wen springs is found by the elastic–perfectly plastic law too, which takes two "
     "more runs or more; of others it is not a range.",
 }

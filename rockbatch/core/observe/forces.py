@@ -59,7 +59,7 @@ class Hold(NamedTuple):
 
 
 class Body(NamedTuple):
-    """What the forces on a block on a rigid base take beside it."""
+    """Numbers beside Block that the forces on a rigid base need."""
 
     outline: Outline
     hold: Hold

@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rockbatch.core.devices.laws import FRICTION, HYSTERETIC, TAUT, TENDON, force, state_rate
 from rockbatch.core.devices.elongation import attitude, gap
+from rockbatch.core.devices.laws import FRICTION, HYSTERETIC, TAUT, TENDON, force, state_rate
 from rockbatch.core.kernel import entry, kernel, question
 from rockbatch.core.observe.forces import LIFTED, Body, Forces, fastest_heels, forces_at, waiting
 from rockbatch.core.observe.rows import (
@@ -39,14 +39,14 @@ _FRICTION, _SHEAR = Forces._fields.index("friction"), Forces._fields.index("shea
 
 
 class Limits(NamedTuple):
-    """What moments of a run are held against."""
+    """Limits that the moments of a run are held against."""
 
     friction: float  # coefficient of the interface, infinite where it is not known
     normal: float  # N/M below which friction counts for nothing [m/s²]
 
 
 class Noted(NamedTuple):
-    """What is noted of a run beside its greatest forces."""
+    """Times and impacts that are noted of a run beside its greatest forces."""
 
     slides: float  # when |V|/N first exceeds the friction, while N is above its limit; NEVER if it does not [s]
     pulls: float  # when N is first negative [s]

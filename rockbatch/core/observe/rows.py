@@ -1,4 +1,4 @@
-"""What observers of a run that was written down read: the rows of its history, its ground, and the states within a step."""
+"""Rows of a history, the ground under them, and states within a step: for observers of a run that was written down."""
 
 from typing import NamedTuple
 

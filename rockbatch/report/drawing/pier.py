@@ -103,7 +103,7 @@ def _pier(pier: Mapping[str, Any], scale: float, springs: bool) -> Markup:
 
 
 def _deck(pier: Mapping[str, Any], middle: float, b: float, ground: float, scale: float) -> list[Markup]:
-    """The deck at its height: a slab, whose own size nobody has given."""
+    """The deck at its height: a slab, whose own size is not given."""
     if not pier.get("deck_m"):
         return []
     y = ground - scale * float(pier["deck_m"])

@@ -83,7 +83,7 @@ def _drawn(finished: Finished) -> Markup:
 
 
 def _masses(given: Mapping[str, Any]) -> list[Markup]:
-    """What the study file gives of the pier, in its own units; what varies is in the tables."""
+    """Return the numbers of the pier in the units of the study file; those that vary are in the tables."""
     parts = given.get("part", ())
     words = GIVEN | ({"mass_t": ("shaft", "t")} if "deck_mass_t" in given else {})
     told = [
