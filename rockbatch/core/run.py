@@ -323,10 +323,9 @@ def _pass(traits, lanes, count, devices, substep, settings):
 @inner
 def _write_now(traits, lanes, devices, kind, x, history):
     """Write a row of the only lane as it is now, ``x`` [s] after its sample."""
-    if history.rows.shape[0] > 0:
-        y, contact, _ = moment(traits, lanes, 0)
-        t, m = lanes.clock.sample[0] * lanes.clock.dt[0] + x, with_pull(devices, model(traits, lanes, 0))
-        write(history, t, kind, m, devices, y, contact, ground_at(lanes, 0, x))
+    y, contact, _ = moment(traits, lanes, 0)
+    t, m = lanes.clock.sample[0] * lanes.clock.dt[0] + x, with_pull(devices, model(traits, lanes, 0))
+    write(history, t, kind, m, devices, y, contact, ground_at(lanes, 0, x))
 
 
 @entry
@@ -362,7 +361,8 @@ def _march(traits, runs, ground, settings, devices, marks, history, stop, memory
         i = NONE
         while i < count:
             status = _at_sample(traits, lanes, i, devices, ground, results)
-            _write_now(traits, lanes, devices, SAMPLE, 0.0, history)
+            if settings.recording:
+                _write_now(traits, lanes, devices, SAMPLE, 0.0, history)
             if status == RUNNING:
                 i += 1
             else:
