@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from rockbatch.checks.demands import DEMANDS, Case
+from rockbatch.checks.suite import OTHER_LAW, creeps
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, Verdict
 
 if TYPE_CHECKING:
@@ -99,6 +100,9 @@ def in_words(worst: Worst) -> str:
         return f"{1000 * value:.3g} mrad ({math.degrees(value):.2g}°)"
     if worst.demand == "top_drift_m":
         return f"{value:.3g} m ({_millimetres(value)} mm)"
+    if worst.demand == "settlement_m" and creeps(worst.case) and not math.isnan(worst.run.get(OTHER_LAW, math.nan)):
+        low, high = sorted((value, float(worst.run[OTHER_LAW])))
+        return f"{_millimetres(low)} to {_millimetres(high)} mm, by the law of the springs"
     return f"{_millimetres(value)} mm" if DEMANDS[worst.demand].unit == "m" else f"{value:.3g}"
 
 

@@ -38,6 +38,11 @@ def test_the_worst_of_every_response_is_found_whatever_is_checked():
     assert in_words(found["top_drift_m"]) == "1.73 m (1,731 mm)"
 
 
+def test_the_worst_settlement_of_springs_that_creep_is_a_range():
+    found = worst_of_all(worst(**YIELDED, settlement_other_law_m=[0.01, 0.02, 0.0, 0.0]))
+    assert in_words(found["settlement_m"]) == "20 to 381 mm, by the law of the springs"
+
+
 def test_a_run_that_overturned_has_no_worst_response():
     fell = worst_of_cases([(RIGID, runs((0.1, 40.0), name="rigid", status=["ok", "overturned"]))])
     assert worst_of_all(fell)["theta_max_over_alpha"].value == 0.1
