@@ -18,9 +18,6 @@ from rockbatch.core.kernel import kernel
 LANES = 16
 """Runs that a table holds side by side."""
 
-LINE = 64
-"""Bytes of a line of the processor's cache."""
-
 _CODES = {float: "f8", int: "i8"}
 _DOUBLE = ir.DoubleType()
 
@@ -37,9 +34,7 @@ def lanes_of(parts: Mapping[str, type[NamedTuple]]) -> np.dtype:
 
 def table(lanes: np.dtype) -> tuple[np.recarray, np.ndarray]:
     """Return one empty record of ``lanes`` in an array, and its numbers as rows with a column for each lane."""
-    memory = np.zeros(lanes.itemsize + LINE, np.uint8)
-    start = -memory.ctypes.data % LINE  # a vector that lies across two lines of the cache is loaded twice
-    memory = memory[start : start + lanes.itemsize].view(lanes)
+    memory = np.zeros(1, lanes)
     return memory.view(np.recarray), memory.view("f8").reshape(-1, LANES)
 
 

@@ -41,7 +41,7 @@ LIFTED = 1e-9
 
 
 class Outline(NamedTuple):
-    """What a block on a rigid base has beside Block."""
+    """Numbers of a block on a rigid base that Block lacks."""
 
     size: float  # R0 [m]
     width: float  # 2b between the corners [m]
