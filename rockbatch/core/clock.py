@@ -111,14 +111,20 @@ def start_clock(lanes, i, number, run, rest, alpha, theta):
 def read_ground(lanes, i, ground):
     """Read the ground at the last sample; zero after the record."""
     at, sample = lanes.ground, lanes.clock.sample[i]
-    if sample < lanes.clock.npts[i]:
-        row = np.uintp(lanes.clock.first_row[i] + sample)  # unsigned: no index from the end is looked for
-        at.horizontal[i] = ground[row, 0]
-        at.horizontal_slope[i] = ground[row, 1]
-        at.vertical[i] = ground[row, 2]
-        at.vertical_slope[i] = ground[row, 3]
-    else:
-        at.horizontal[i] = at.horizontal_slope[i] = at.vertical[i] = at.vertical_slope[i] = 0.0
+    moves = sample < lanes.clock.npts[i]
+    row = np.uintp(
+        lanes.clock.first_row[i] + (sample if moves else 0.0)
+    )  # unsigned: no index from the end is looked for
+    horizontal, horizontal_slope, vertical, vertical_slope = (
+        ground[row, 0],
+        ground[row, 1],
+        ground[row, 2],
+        ground[row, 3],
+    )
+    at.horizontal[i] = horizontal if moves else 0.0
+    at.horizontal_slope[i] = horizontal_slope if moves else 0.0
+    at.vertical[i] = vertical if moves else 0.0
+    at.vertical_slope[i] = vertical_slope if moves else 0.0
 
 
 @inlined

@@ -290,15 +290,25 @@ class Turn(NamedTuple):
     omega: float
 
 
+@inlined
+def _to_samples(lanes, count, ground):
+    """Bring all lanes to the next sample; return how many have more due there than the next step."""
+    clock, peak, due = lanes.clock, lanes.peak, 0
+    for i in range(count):
+        clock.sample[i] += 1.0
+        read_ground(lanes, i, ground)
+        goes_on = clock.sample[i] < clock.due[i]
+        peak.in_window[i] = max(peak.in_window[i], abs(lanes.now.theta[i])) if goes_on else peak.in_window[i]
+        due += 0 if goes_on else 1
+    return due
+
+
 @inner
-def _at_sample(traits, lanes, i, devices, ground, results):
-    """Bring lane ``i`` to the next sample: its status, RUNNING while it goes on."""
+def _at_sample(traits, lanes, i, devices, results):
+    """Do what is due at the sample that lane ``i`` has come to: its status, RUNNING while it goes on."""
     clock, peak = lanes.clock, lanes.peak
-    clock.sample[i] += 1.0
-    read_ground(lanes, i, ground)
     theta = lanes.now.theta[i]
     if clock.sample[i] < clock.due[i]:
-        peak.in_window[i] = max(peak.in_window[i], abs(theta))
         return RUNNING
     turn_window(lanes, i, theta, results)
     peak.in_window[i] = max(peak.in_window[i], abs(theta))
@@ -358,11 +368,12 @@ def _march(traits, runs, ground, settings, devices, marks, history, stop, memory
                     move(cells, count, i)
             if history.every_step and count > 0 and substep < settings.substeps - 1:
                 _write_now(traits, lanes, devices, STEP, (substep + 1.0) * lanes.clock.step[0], history)
-        i = NONE
+        due = _to_samples(lanes, count, ground)
+        if settings.recording and count > 0:
+            _write_now(traits, lanes, devices, SAMPLE, 0.0, history)
+        i = NONE if due > 0 else count
         while i < count:
-            status = _at_sample(traits, lanes, i, devices, ground, results)
-            if settings.recording:
-                _write_now(traits, lanes, devices, SAMPLE, 0.0, history)
+            status = _at_sample(traits, lanes, i, devices, results)
             if status == RUNNING:
                 i += 1
             else:
