@@ -1,6 +1,6 @@
 """What the site takes from the program itself and from the documents at the repository's top; a hook of MkDocs.
 
-Nothing of it is kept: the study file's reference and schemas come from the reader's tables, the columns from theirs, the
+Nothing of it is kept: the study file's reference and schemas come from the reader's tables, the
 commands from their parsers, the figures of the verification from the CSV files in benchmarks/, the pictures from gallery/. The
 verification is a PDF, too.
 """
@@ -27,7 +27,6 @@ import rockbatch
 from rockbatch.checks.demands import DEMANDS
 from rockbatch.checks.statistics import STATISTICS
 from rockbatch.cli import COMMANDS, main
-from rockbatch.results.columns import as_markdown
 from rockbatch.study.schema import schema_of
 from rockbatch.study.sections import FILES, MANIFEST, STUDY, Section
 from rockbatch.toml import asking
@@ -40,6 +39,7 @@ DOCUMENTS = {
     "theory.md": "THEORY.md",
     "performance.md": "benchmarks/README.md",
     "extending.md": "CONTRIBUTING.md",
+    "reference/columns.md": "docs/columns.md",
     "reference/motions.md": "motions/README.md",
 }
 """Pages that are documents of the repository."""
@@ -51,7 +51,6 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
     made |= {
         "reference/study.md": _study(),
         "reference/files.md": _other_files(),
-        "reference/columns.md": _columns(),
         "reference/commands.md": _commands(),
         "reference/python.md": _python(),
     }
@@ -217,19 +216,6 @@ def _demands() -> Iterator[str]:
 
 
 # Columns, commands, Python
-
-
-def _columns() -> str:
-    return "\n".join(
-        [
-            "# Columns of peaks.csv",
-            "",
-            "`peaks.csv` has a row for each record, polarity, scale and case, in the order of the study. A list in the study",
-            "adds a column of its own name after `substeps`. An empty cell means that the column does not apply to that run.",
-            "",
-            as_markdown(),
-        ]
-    )
 
 
 def _commands() -> str:

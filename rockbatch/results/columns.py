@@ -1,6 +1,6 @@
 """The columns of peaks.csv: each is one row of a table here, from which all that tells of it is made.
 
-The file, its types and units, the report's tables and tooltips, the comparison of two studies and the README's list follow from
+The file, its types and units, the report's tables and tooltips, the comparison of two studies and docs/columns.md follow from
 :data:`COLUMNS`. A new column is a row at the end of :data:`MORE`, and a number in :class:`Outcome` for it.
 """
 
@@ -571,7 +571,7 @@ def on_page(shown: str = "peaks") -> list[Column]:
 
 
 def as_markdown() -> str:
-    """The table of columns as the README has it; columns with one meaning share a line."""
+    """Return the table of docs/columns.md; columns with one meaning share a line."""
     lines = ["| column | unit | meaning | where |", "| --- | --- | --- | --- |"]
     for meaning, same in groupby(COLUMNS.values(), key=lambda column: column.meaning):
         told = list(same)

@@ -4,15 +4,18 @@ import re
 import shutil
 import tomllib
 from pathlib import Path
+from textwrap import dedent
 
 import pytest
 from jsonschema import Draft7Validator
 
 from rockbatch.cli import COMMANDS, main
+from rockbatch.study.load import load_study
 from rockbatch.study.schema import schema_of
 from rockbatch.study.sections import MANIFEST, STUDY
 
 ROOT = Path(__file__).parents[2]
+README = ROOT / "README.md"
 PAGES = sorted([*(ROOT / "docs" / "pages").rglob("*.md"), ROOT / "docs" / "commands.md"])
 SCHEMAS = [Draft7Validator(schema_of(sections, "")) for sections in (STUDY, MANIFEST)]
 SHELL = re.compile(r"^(?:\.venv/bin/)?(\w+) ?(\S*)(.*?)(?:#.*)?$")
@@ -24,7 +27,7 @@ def blocks(page, language):
 
 
 TOML = [(page.stem, text) for page in PAGES for text in blocks(page, "toml")]
-LINES = [(page.stem, line) for page in PAGES for text in blocks(page, "sh") for line in text.splitlines()]
+LINES = [(page.stem, line) for page in PAGES for text in blocks(page, "sh") for line in text.splitlines() if line]
 
 
 @pytest.mark.parametrize(("page", "text"), TOML, ids=[page for page, _ in TOML])
@@ -42,7 +45,8 @@ def test_every_command_is_there(page, line, capsys):
         assert word in COMMANDS
         with pytest.raises(SystemExit):
             main([word, "--help"])
-        assert [flag for flag in re.findall(r"--[\w-]+", rest) if flag not in capsys.readouterr().out] == []
+        printed = capsys.readouterr().out
+        assert [flag for flag in re.findall(r"--[\w-]+", rest) if flag not in printed] == []
     elif program == "make":
         assert re.search(rf"^{word}:", (ROOT / "Makefile").read_text(encoding="utf-8"), re.MULTILINE)
     elif program == "python":
@@ -65,3 +69,24 @@ def test_the_tutorial_comes_to_a_verdict(tmp_path, monkeypatch, capsys):
     assert code == ("FAIL" in told)
     assert "no overturning" in told
     assert "uplift of the heel" in told
+
+
+def test_the_page_of_commands_shows_every_command():
+    shown = re.findall(r"^rockbatch (\w+)", (ROOT / "docs" / "commands.md").read_text(encoding="utf-8"), re.MULTILINE)
+    assert set(shown) == set(COMMANDS)
+
+
+def test_the_study_of_the_readme_is_accepted_as_it_stands(tmp_path):
+    """A pier on a rigid base and on two pads with a damper."""
+    text = re.search(r"^    title = .*?(?=^\S)", README.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)
+    assert text is not None
+    (tmp_path / "records").mkdir()
+    (tmp_path / "pier4.toml").write_text(dedent(text.group()), encoding="utf-8")
+    study = load_study(tmp_path / "pier4.toml")
+    assert [len(case.base.restraints) for case in study.cases] == [0, 1, 1]
+
+
+def test_the_readme_stays_one_page_and_its_links_lead_somewhere():
+    text = README.read_text(encoding="utf-8")
+    assert len(text.splitlines()) <= 180
+    assert [link for link in re.findall(r"\]\(([\w./-]+)", text) if not (ROOT / link).exists()] == []

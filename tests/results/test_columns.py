@@ -36,7 +36,7 @@ from rockbatch.results.reading import read_saved
 from rockbatch.results.run_json import describe
 from rockbatch.study.suite import ground_motions
 
-README = Path(rb.__file__).parents[1] / "README.md"
+PAGE = Path(rb.__file__).parents[1] / "docs/columns.md"
 STUDY = """
 [pier]
 alpha = 0.2
@@ -106,9 +106,9 @@ def without(directory, *dropped):
     return directory
 
 
-def test_the_readme_lists_the_columns_as_the_table_has_them():
-    """To put it right: write what ``rockbatch.results.columns.as_markdown`` gives into the README."""
-    assert as_markdown() in README.read_text(encoding="utf-8")
+def test_the_page_of_columns_lists_them_as_the_table_has_them():
+    """To put it right: write what ``rockbatch.results.columns.as_markdown`` gives into docs/columns.md."""
+    assert as_markdown() in PAGE.read_text(encoding="utf-8")
 
 
 def test_a_name_ends_with_its_unit():
