@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rockbatch.core.kernel import inlined, inner, kernel
+from rockbatch.core.kernel import inlined, inner, shared
 from rockbatch.core.roots import hermite, largest_within, turning_point
 from rockbatch.core.system import clearances
 from rockbatch.core.types import NOT_FINITE, OVERTURNED, SURVIVED, Ground
@@ -142,7 +142,7 @@ def ground_rests(lanes, i):
     return over and lanes.ground.horizontal[i] == 0.0 and lanes.ground.vertical[i] == 0.0
 
 
-@kernel
+@shared
 def window_of(sample, samples):
     """Return the window of a run of ``samples`` in which ``sample`` lies, and the sample with which the next one begins.
 

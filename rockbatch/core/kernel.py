@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import numba
-from numba.extending import overload
+from numba.extending import overload, register_jitable
 
 _CORE = Path(__file__).parent
 
@@ -86,6 +86,12 @@ def _guarded(dispatcher: Any) -> Any:
 def inlined(function: Callable[..., Any]) -> Callable[..., Any]:
     """Compile a building block that becomes part of its callers: loops over it can be turned into vector code."""
     return _guarded(numba.njit(forceinline=True, **_OPTIONS | _WITHOUT_WRAPPER)(function))
+
+
+def shared(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Let kernels use a function that Python calls too, uncompiled: few calls are not worth a compilation each process."""
+    decorated: Callable[..., Any] = register_jitable(**_OPTIONS)(function)
+    return decorated
 
 
 def entry(function: Callable[..., Any]) -> Callable[..., Any]:
