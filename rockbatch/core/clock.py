@@ -24,7 +24,7 @@ it may not stand, and has to be taken event by event."""
 
 
 class Timing(NamedTuple):
-    """Of a run as it is asked for: its motion, its steps, and for how long it goes on."""
+    """Request of a run: its motion, its steps, and for how long it goes on."""
 
     dt: float  # sampling interval [s]
     substeps: float  # steps to a sampling interval
@@ -38,7 +38,7 @@ TIMING = tuple((name, float) for name in Timing._fields)
 
 
 class Clock(NamedTuple):
-    """Which run a lane holds, and where it is."""
+    """The run that a lane holds, and its time."""
 
     number: float  # of the run
     first_row: float  # of its motion among the ground's rows

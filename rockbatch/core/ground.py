@@ -7,7 +7,7 @@ from rockbatch.core.types import Ground
 
 
 def ground_rows(horizontal, vertical, dt):
-    """Accelerations [m/s²] and slopes [m/s³] from each sample to the next: horizontal, its slope, vertical, its slope.
+    """Return accelerations [m/s²] and slopes [m/s³] from each sample to the next: horizontal, its slope, vertical, its slope.
 
     Linear between samples, and from the last one to zero a sample later. ``vertical`` may be empty.
 

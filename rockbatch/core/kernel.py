@@ -1,4 +1,4 @@
-"""How kernels are compiled: a decorator for building blocks, one for entries, one for questions that systems answer."""
+"""Decorators that compile kernels: one for building blocks, one for entries, one for questions that systems answer."""
 
 import atexit
 import functools
@@ -17,7 +17,7 @@ _CORE = Path(__file__).parent
 
 
 def core_digest(folder: Path = _CORE) -> str:
-    """Digest of all kernel sources and of the compiler's version.
+    """Return the digest of all kernel sources and of the compiler's version.
 
     Numba's own cache looks only at the file of the function that is called: after a change in a function that it
     calls, it would go on with the old physics. The cache folder therefore bears this digest.
@@ -29,7 +29,7 @@ def core_digest(folder: Path = _CORE) -> str:
 
 
 def _usable_folder() -> str:
-    """First of: beside the sources, the user's cache, a temporary folder for this process, that can be written to."""
+    """Return the first writable folder: beside the sources, in the user's cache, or a temporary one of this process."""
     name = f"kernels-{core_digest()}"
     for parent in (lambda: _CORE / "__pycache__", lambda: Path.home() / ".cache" / "rockbatch"):
         try:

@@ -8,7 +8,7 @@ LARGEST_WHOLE = 10
 
 @inlined
 def power(x, n):
-    """xⁿ for x ≥ 0, by the type of n: None is the paper's 5, a whole number up to 10 is a product of squares.
+    """Return xⁿ for x ≥ 0, by the type of n: None is the paper's 5, a whole number up to 10 is a product of squares.
 
     Neither costs a call to pow, which would keep a loop over lanes from being turned into vector instructions.
     """

@@ -1,4 +1,4 @@
-"""Crossings and extrema inside a step, by the cubic Hermite polynomial through its ends."""
+"""Zero crossings and extrema inside a step, by the cubic Hermite polynomial through its ends."""
 
 import math
 
@@ -24,7 +24,7 @@ def surely(velocity, acceleration, rest):
 
 @kernel
 def hermite(f0, d0, f1, d1, h, x):
-    """Cubic through values f0, f1 with slopes d0, d1 at the ends of a step ``h``, at ``x`` within it."""
+    """Evaluate the cubic through values f0, f1 with slopes d0, d1 at the ends of a step ``h``, at ``x`` within it."""
     s = x / h
     difference = f1 - f0
     a = h * d0 - difference
@@ -34,7 +34,7 @@ def hermite(f0, d0, f1, d1, h, x):
 
 @kernel
 def turning_point(f0, d0, f1, d1, h):
-    """Where, within the step, the Hermite cubic turns, when the slopes d0 and d1 differ in sign.
+    """Return the time in the step at which the Hermite cubic turns, when the slopes d0 and d1 differ in sign.
 
     The slope is a quadratic with values d0 and d1 at the ends: exactly one root lies between; one at most beside d0 = 0.
     """
@@ -51,7 +51,7 @@ def turning_point(f0, d0, f1, d1, h):
 
 @kernel
 def _root(f0, d0, f1, d1, h, start, end):
-    """Zero in [start, end] of the cubic, positive at ``start`` and not at ``end``: Newton, halving where it leaps out.
+    """Return the zero in [start, end] of the cubic, positive at ``start`` and not at ``end``: Newton, halving where it leaps out.
 
     It starts from the chord's zero where [start, end] is all of the step. What a further trial would change is about
     the square of what the last one did, times half the curvature over the slope.
@@ -83,13 +83,13 @@ def _root(f0, d0, f1, d1, h, start, end):
 
 @inlined
 def excess(d0, d1, h):
-    """The most by which a Hermite cubic with slopes d0 and d1 goes beyond its ends: |s (1 − s)²| ≤ 4/27."""
+    """Bound by how much a Hermite cubic with slopes d0 and d1 goes beyond its ends: |s (1 − s)²| ≤ 4/27."""
     return 4.0 / 27.0 * h * (abs(d0) + abs(d1))
 
 
 @kernel
 def _extremes(f0, d0, f1, d1, h):
-    """Where in (0, h) the Hermite cubic has its maximum and its minimum; −1 for what it has not."""
+    """Return the times in (0, h) of the Hermite cubic's maximum and minimum; −1 for none."""
     mean = (f1 - f0) / h
     curve = 3.0 * (d0 + d1 - 2.0 * mean)  # slope(s) = d0 + 2 c s + curve s²
     c = 3.0 * mean - 2.0 * d0 - d1
@@ -105,10 +105,10 @@ def _extremes(f0, d0, f1, d1, h):
 
 @kernel
 def falls(f0, d0, f1, d1, h):
-    """When, in [0, h], a signal falls through zero, by the cubic through values and slopes at both ends; −1 if never.
+    """Return when, in [0, h], an event function falls through zero, by the cubic through both ends; −1 if never.
 
-    A signal that starts on its own surface, or a rounding below it, counts once it has left it. Where the cubic does
-    not show that it has, half of the time is the guess. A signal that falls and rises again within the step has fallen.
+    One that starts on its own surface, or a rounding below it, counts once it has left it. Where the cubic does
+    not show that it has, half of the time is the guess. One that falls and rises again within the step has fallen.
     """
     if f0 > 0.0 and f1 <= 0.0:
         return _root(f0, d0, f1, d1, h, 0.0, h)
@@ -135,7 +135,7 @@ def falls(f0, d0, f1, d1, h):
 
 @kernel
 def largest_within(f0, d0, f1, d1, h, best):
-    """Greatest |f| so far, and where in this step it is attained; −1 if ``best`` stands."""
+    """Return the greatest |f| so far, and the time in this step at which it is attained; −1 if ``best`` stands."""
     x_best = -1.0
     if d0 * d1 < 0.0 or (d0 == 0.0 and d1 != 0.0):
         x = turning_point(f0, d0, f1, d1, h)
@@ -149,7 +149,7 @@ def largest_within(f0, d0, f1, d1, h, best):
 
 @kernel
 def lowest_within(f0, d0, f1, d1, h, best):
-    """Least f so far, with the minimum inside this step if there is one."""
+    """Return the least f so far, with the minimum inside this step if there is one."""
     if d0 < 0.0 and d1 > 0.0:
         best = min(best, hermite(f0, d0, f1, d1, h, turning_point(f0, d0, f1, d1, h)))
     return min(best, f1)

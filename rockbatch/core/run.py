@@ -87,7 +87,7 @@ RESULT = np.dtype([*record(Result).descr, ("extremes", "f8", WINDOWS)])
 
 
 class Settings(NamedTuple):
-    """How all runs of a call are taken."""
+    """Settings of all runs of a call."""
 
     substeps: int  # steps to a sampling interval
     locate: bool  # events inside the step; without, they take place at its end: first order, for comparison only

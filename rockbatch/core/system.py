@@ -1,4 +1,4 @@
-"""What a driver asks of a system: each pier answers these questions in its own package (``springs``, ``block``).
+"""Questions that the driver asks of a system: each pier answers these questions in its own package (``springs``, ``block``).
 
 The first group is asked of a model ``m`` (Springs, Block), the second of the traits that kernels are compiled for, about a lane
 of a table. ``contact`` and ``supports`` hold what is constant between events; ``horizontal`` and ``vertical`` are ground

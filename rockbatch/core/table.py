@@ -77,13 +77,13 @@ def _addresses(builder, part, pointer, lane, names):
 def _get(typing_context, part, i, kind):
     """Return the named tuple ``kind`` in lane ``i`` of a part of the table."""
     fields = kind.instance_class._fields
-    found = types.NamedUniTuple(types.float64, len(fields), kind.instance_class)
+    result = types.NamedUniTuple(types.float64, len(fields), kind.instance_class)
 
     def generate(context, builder, signature, arguments):
         places = _addresses(builder, part, arguments[0], arguments[1], fields)
-        return context.make_tuple(builder, found, [builder.load(place) for place in places])
+        return context.make_tuple(builder, result, [builder.load(place) for place in places])
 
-    return found(part, i, kind), generate
+    return result(part, i, kind), generate
 
 
 @intrinsic

@@ -11,11 +11,11 @@ from rockbatch.core.kernel import inlined
 QUARTER = 0.25 * math.pi
 HALF_PI = 0.5 * math.pi
 HALF_PI_REST = 6.123233995736766e-17
-"""What π/2 has beyond its first 53 bits."""
+"""π/2 beyond its first 53 bits."""
 
 
 def _interpolated(series, nodes):
-    """Coefficients of the polynomial through the values of Σ series[k] zᵏ at ``nodes``, by Newton's differences, exact."""
+    """Return the coefficients of the polynomial through Σ series[k] zᵏ at ``nodes``, by Newton's differences, exact."""
     differences = [sum(c * z**k for k, c in enumerate(series)) for z in nodes]
     for j in range(1, len(nodes)):
         for i in range(len(nodes) - 1, j - 1, -1):
@@ -29,7 +29,7 @@ def _interpolated(series, nodes):
 
 
 def _coefficients(first):
-    """Of the polynomial of degree 5 in z that is next to Σ (−z)ᵏ/(2k + first)!, 0 ≤ z ≤ (π/4)².
+    """Return the coefficients of the polynomial of degree 5 in z that is next to Σ (−z)ᵏ/(2k + first)!, 0 ≤ z ≤ (π/4)².
 
     Through its values at Chebyshev's nodes, which lie so that the error is next to the least; rounded to 20 bits, they
     are the same on every machine.
@@ -46,7 +46,7 @@ _COSINE = _coefficients(4)  # (cos r − 1 + r²/2)/r⁴
 
 @inlined
 def _polynomial(c, z):
-    """Σ c[k] zᵏ of six coefficients."""
+    """Return Σ c[k] zᵏ of six coefficients."""
     return c[0] + z * (c[1] + z * (c[2] + z * (c[3] + z * (c[4] + z * c[5]))))
 
 
@@ -63,7 +63,7 @@ def flat_sine_and_cosine(angle):
 
 @inlined
 def sine_and_cosine(angle):
-    """Sine and cosine of ``angle`` [rad], wrong by 1.02 units in the last place at most where |angle| ≤ 3π/4.
+    """Return sine and cosine of ``angle`` [rad], wrong by 1.02 units in the last place at most where |angle| ≤ 3π/4.
 
     Where |angle| exceeds π/4, its distance r = π/2 − |angle| from the right angle, in two parts, takes its place, and
     sine and cosine change theirs. Sine is odd and cosine even to the bit. Beyond 3π/4, where no pier stands any more,

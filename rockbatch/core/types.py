@@ -82,7 +82,7 @@ class Signals(NamedTuple):
 
 
 class Result(NamedTuple):
-    """What a run comes to; SI units, per unit mass. NaN or 0 where a system does not have it."""
+    """Result of a run; SI units, per unit mass. NaN or 0 where a system does not have it."""
 
     status: int
     t_end: float

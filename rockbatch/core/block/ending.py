@@ -1,4 +1,4 @@
-"""When a run on a rigid base is over (THEORY.md, When a run is over). Looked at once a sample, from the end of the tail on."""
+"""Ending of a run on a rigid base (THEORY.md, When a run is over). Looked at once a sample, from the end of the tail on."""
 
 import math
 

@@ -15,7 +15,7 @@ from rockbatch.core.types import LEFT, RIGHT
 
 
 class News(NamedTuple):
-    """News of the pass."""
+    """Outcome of the pass."""
 
     kind: float
 

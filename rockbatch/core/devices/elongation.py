@@ -1,4 +1,4 @@
-"""How far a place on the base has risen: elongations of dampers and tendons (THEORY.md, Dampers and tendons).
+"""Elongations of dampers and tendons from the motion of the base (THEORY.md, Dampers and tendons).
 
 A device at the offset s from the middle of the base has the elongation e = u/cos(θ/2), where u is the rise of its place
 above that at rest. While a block turns about a point of the ground at the distance d that is 2 d sin(θ/2), the chord of the
@@ -14,7 +14,7 @@ from rockbatch.core.trigonometry import sine_and_cosine
 
 
 class Attitude(NamedTuple):
-    """Where the base is at one moment, and how it lies."""
+    """Position and inclination of the base at one moment."""
 
     sine: float  # of θ; in first-order kinematics θ
     cosine: float

@@ -42,7 +42,7 @@ class Element(NamedTuple):
 
 
 class Use(NamedTuple):
-    """What an element has been through: greatest and least force [m/s²], elongation [m], speed [m/s], energy [J/kg]."""
+    """Extremes of an element in a run: greatest and least force [m/s²], elongation [m], speed [m/s], energy [J/kg]."""
 
     most: float
     least: float
@@ -59,13 +59,13 @@ USE = record(Use)
 
 @kernel
 def tension(of, elongation, slack):
-    """Of a tendon that would be unstressed at ``slack`` − prestress/k, were it to take compression and any tension."""
+    """Return the force of a tendon unstressed at ``slack`` − prestress/k, were it to take compression and any tension."""
     return of.prestress + of.stiffness * (elongation - slack)
 
 
 @kernel
 def force(of, elongation, speed, state, mode, goes):
-    """Force [m/s²] of an element that ``goes`` out or in; ``state``: z of a hysteretic damper, u_0 [m] of a tendon."""
+    """Return the force [m/s²] of an element that ``goes`` out or in; ``state``: z of a hysteretic damper, u_0 [m] of a tendon."""
     if of.kind == FRICTION:
         return of.strength * goes
     if of.kind == VISCOUS and abs(speed) < of.linear_below:
@@ -81,7 +81,7 @@ def force(of, elongation, speed, state, mode, goes):
 
 @kernel
 def state_rate(of, speed, state, mode, goes):
-    """Rate of an element's state [1/s or m/s]: two-sided Bouc–Wen, n = 5; a tendon lengthens while it yields."""
+    """Return the rate of an element's state [1/s or m/s]: two-sided Bouc–Wen, n = 5; a tendon lengthens while it yields."""
     if of.kind == HYSTERETIC:
         loads = goes * state > 0.0
         return speed * of.stiffness * (1.0 - (power(min(abs(state), 1.0), None) if loads else 0.0))
@@ -90,13 +90,13 @@ def state_rate(of, speed, state, mode, goes):
 
 @kernel
 def loss_rate(of, speed, pull, mode):
-    """Power [W/kg] that goes into an element and is not stored in a tendon."""
+    """Return the power [W/kg] that goes into an element and is not stored in a tendon."""
     return 0.0 if of.kind == TENDON and mode != YIELDING else pull * speed
 
 
 @kernel
 def stored(of, elongation, state):
-    """Energy [J/kg] that a tendon gives back when it goes slack; 0 of dampers."""
+    """Return the energy [J/kg] that a tendon gives back when it goes slack; 0 of dampers."""
     if of.kind != TENDON:
         return 0.0
     pull = min(max(tension(of, elongation, state), 0.0), of.strength)
@@ -105,7 +105,7 @@ def stored(of, elongation, state):
 
 @kernel
 def mode_of(of, elongation, state, goes):
-    """Mode of a tendon at this elongation that goes on out or in."""
+    """Return the mode of a tendon at this elongation that goes on out or in."""
     if of.kind != TENDON:
         return TAUT
     pull = tension(of, elongation, state)

@@ -38,7 +38,7 @@ LINKED = 1e-12
 """Of the product of two such accelerations: a determinant below it means that two places can only move together."""
 
 PLASTIC = 1e-14
-"""How near to 1 the |z| of a hysteretic damper is 1: 1 − z decays by exp(−5 e/u_y) and would take steps of u_y for ever."""
+"""Distance from 1 at which |z| of a hysteretic damper is 1: 1 − z decays by exp(−5 e/u_y), in steps of u_y for ever."""
 
 TRAVEL = 0.5
 """Of u_y: what a hysteretic damper may be drawn out by in one step of a sample's length, and less the more steps a sample has."""
@@ -75,7 +75,7 @@ def devices_of(elements):
     if n == 0:
         return None
     size = 2 * n + 2
-    rows = np.array([tuple(each) for each in elements], ELEMENT).view(np.recarray)
+    rows = np.array([tuple(element) for element in elements], ELEMENT).view(np.recarray)
     x, stage, end = np.zeros(size), np.zeros(size), np.zeros(size)
     use = np.zeros(n, USE).view(np.recarray)
     gaps = np.zeros((6, n), GAP).view(np.recarray)
@@ -121,8 +121,8 @@ def _held_by_friction(m, first, second, y, contact, horizontal, vertical, streng
     determinant = own * own_other - by_other * other_by_own
     if abs(determinant) <= LINKED * own * own_other:
         with_first = math.copysign(strengths[1], by_other * own)
-        each = -free / (own * strengths[0] + by_other * with_first)
-        return each * strengths[0], each * with_first
+        share = -free / (own * strengths[0] + by_other * with_first)
+        return share * strengths[0], share * with_first
     return (by_other * free_other - own_other * free) / determinant, (
         other_by_own * free - own * free_other
     ) / determinant

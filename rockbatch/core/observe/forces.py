@@ -72,7 +72,7 @@ def _friction(gravity, shear, normal):
 
 @kernel
 def on_springs(m, deck, y, contact, waiting_left, waiting_right, horizontal, vertical):
-    """Forces in state ``y``; the supports of free pivots wait at ``waiting_…`` [m], the deck is at the height ``deck`` [m]."""
+    """Return the forces in state ``y``; free supports wait at ``waiting_…`` [m], the deck is at the height ``deck`` [m]."""
     at = geometry(m, y.theta)
     _, turning = accelerations_at(m, y, contact, at, horizontal, vertical)
     squared = y.omega * y.omega
@@ -101,7 +101,7 @@ def on_springs(m, deck, y, contact, waiting_left, waiting_right, horizontal, ver
 
 @kernel
 def _waits(was, contact, side, waiting, position):
-    """Where the support on ``side`` waits [m]: where its pivot has left it, which is at ``position`` now."""
+    """Return where the support on ``side`` waits [m]: where its pivot has left it, which is at ``position`` now."""
     before, now = (was.left, contact.left) if side == LEFT else (was.right, contact.right)
     left = (before != 0.0 or was.held == side) and now == 0.0 and contact.held != side
     return position if left else waiting
@@ -124,11 +124,11 @@ def _at_rest(m, outline, hold, y, horizontal, vertical):
     on_left, on_right = 0.5 * (normal + more), 0.5 * (normal - more)
     if lacks > 0.0:
         on_left, on_right = (normal, 0.0 * normal) if pressed == LEFT else (0.0 * normal, normal)
-    found = Forces(
+    forces = Forces(
         horizontal, normal, on_left, on_right,
         gap, gap, still, still, horizontal, still, still, y.omega, _friction(m.gravity, horizontal, normal), gap,
     )  # fmt: skip
-    return found, (pressed if lacks > back else 0.0)
+    return forces, (pressed if lacks > back else 0.0)
 
 
 @kernel
@@ -140,9 +140,9 @@ def on_block(m, outline, hold, y, contact, horizontal, vertical):
     side = side_of(contact)
     flies = airborne(m, contact)
     if side == 0.0 and not flies:
-        found, turns = _at_rest(m, outline, hold, y, horizontal, vertical)
+        forces, turns = _at_rest(m, outline, hold, y, horizontal, vertical)
         if turns == 0.0:
-            return found
+            return forces
         side = turns
         contact = type(contact)(0.5 * (1.0 - side), 0.5 * (1.0 + side), side)
     v_acceleration, turning = accelerations(m, y, contact, horizontal, vertical)

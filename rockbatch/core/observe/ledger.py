@@ -1,4 +1,4 @@
-"""The energy ledger of a run that was written down: where the input went, and what is left over (THEORY.md, Energy ledger).
+"""Energy balance of a recorded run: terms of the input, and the residual (THEORY.md, Energy ledger).
 
 An observer: it takes the rows of a history, step by step, and integrates the power of each term by Simpson's rule, with
 the state in the middle of a step from the cubic Hermite polynomial through its ends. Runs that do not ask for it pay
@@ -18,7 +18,7 @@ from rockbatch.core.types import IMPACT_BOTH, IMPACT_LEFT, IMPACT_RIGHT
 
 
 class Energies(NamedTuple):
-    """Terms of the ledger [J/kg]: what is stored, relative to the start; what went in and out since; what is left over."""
+    """Terms of the energy balance [J/kg]: stored relative to the start, supplied and dissipated since; the residual."""
 
     kinetic: float
     potential: float
@@ -42,7 +42,7 @@ def _lever(at, contact):
 
 @kernel
 def _stored(m, y, contact):
-    """Kinetic, potential and elastic energy per unit mass [J/kg]."""
+    """Return the kinetic, potential and elastic energy per unit mass [J/kg]."""
     lever = _lever(geometry(m, y.theta), contact) if m.finite is not None else m.height
     kinetic = 0.5 * y.v_rate * y.v_rate + 0.5 * (m.inertia + lever * lever) * y.omega * y.omega
     elastic = 0.5 * m.yield_force * m.yield_deflection * (y.z_left * y.z_left + y.z_right * y.z_right)
@@ -51,7 +51,7 @@ def _stored(m, y, contact):
 
 @kernel
 def _powers(m, y, k, contact, horizontal, vertical):
-    """Power of input, plastic work, P–Δ, constraint and the dashpots under the pivots [W/kg]."""
+    """Return the powers of input, plastic work, P–Δ, constraint and the dashpots under the pivots [W/kg]."""
     at = geometry(m, y.theta)
     left, right = y.v_rate + at.arm_left * y.omega, y.v_rate + at.arm_right * y.omega
     shaken = -horizontal * _lever(at, contact) * y.omega - vertical * y.v_rate
@@ -73,7 +73,7 @@ def _powers(m, y, k, contact, horizontal, vertical):
 
 @kernel
 def _crept(m, contact, y, y_end):
-    """Energy [J/kg] that supports without their pivots have lost to their dashpots: all that their springs had stored."""
+    """Return the energy [J/kg] that supports without their pivots have lost to their dashpots: all that was stored."""
     left = (1.0 - contact.left) * (y.z_left * y.z_left - y_end.z_left * y_end.z_left)
     right = (1.0 - contact.right) * (y.z_right * y.z_right - y_end.z_right * y_end.z_right)
     return 0.5 * m.yield_force * m.yield_deflection * (left + right)
@@ -81,7 +81,7 @@ def _crept(m, contact, y, y_end):
 
 @kernel
 def _impact_loss(m, before, kind):
-    """½ (1 − ε²) v̇_i²/(1 + a²/I) of a landing; of both pivots at once, 1 − ε² of the kinetic energy."""
+    """Return ½ (1 − ε²) v̇_i²/(1 + a²/I) of a landing; of both pivots at once, 1 − ε² of the kinetic energy."""
     at = geometry(m, before.theta)
     inertia = m.inertia + at.lever * at.lever
     lost = 0.5 * (1.0 - m.epsilon * m.epsilon)
@@ -94,7 +94,7 @@ def _impact_loss(m, before, kind):
 
 @kernel
 def _pulled(m, pulls, i):
-    """The pier at the start, in the middle and at the end of the step to row ``i``."""
+    """Return the pier at the start, in the middle and at the end of the step to row ``i``."""
     first, last = pulls[i - 1], pulls[i]
     middle = pulled(m, 0.5 * (first[0] + last[0]), 0.5 * (first[1] + last[1]))
     return pulled(m, first[0], first[1]), middle, pulled(m, last[0], last[1])
@@ -102,7 +102,7 @@ def _pulled(m, pulls, i):
 
 @entry
 def ledger_on_springs(m, rows, pulls, ground, dt, out):
-    """Ledger of a run on two springs.
+    """Compute the energy balance of a run on two springs.
 
     Parameters
     ----------
@@ -110,7 +110,7 @@ def ledger_on_springs(m, rows, pulls, ground, dt, out):
     rows : recarray of recording.Row, shape (n,)
         History as the run wrote it, every step.
     pulls : ndarray, shape (n, 2)
-        Force [m/s²] and moment [m²/s²] of dampers and tendons at every row; what they take and store is not told here.
+        Force [m/s²] and moment [m²/s²] of dampers and tendons at every row; what they take and store is not given here.
     ground : ndarray, shape (npts, 4)
         The motion of the run, of :func:`rockbatch.core.ground.ground_rows`.
     dt : float
@@ -172,7 +172,7 @@ def _shaken(m, y, contact, horizontal, vertical):
 
 @entry
 def ledger_on_rigid_base(m, rows, pulls, ground, dt, out):
-    """Ledger of a run on a rigid base: ``m`` is a Block, ``rows`` its history; otherwise as :func:`ledger_on_springs`."""
+    """Compute the energy balance of a run of a Block ``m`` with the history ``rows``; otherwise as :func:`ledger_on_springs`."""
     y = state_of(m, rows[0])
     kinetic, potential0 = _of_block(m, y, contact_of(m, rows[0]))
     kinetic0, shaken, impact = kinetic, 0.0, 0.0

@@ -1,4 +1,4 @@
-"""Forces of a run that was written down, at its rows and the greatest of all (THEORY.md, Forces).
+"""Forces of a recorded run, at its rows and the greatest of all (THEORY.md, Forces).
 
 An observer, like the ledger: runs that do not ask for it pay nothing. Forces follow from the state at any share of a step. Each
 step is looked at in its middle too, and where a parabola through the three moments promises a greater peak: what is taken
@@ -46,7 +46,7 @@ class Limits(NamedTuple):
 
 
 class Noted(NamedTuple):
-    """Times and impacts that are noted of a run beside its greatest forces."""
+    """Times and impacts of a run beside its greatest forces."""
 
     slides: float  # when |V|/N first exceeds the friction, while N is above its limit; NEVER if it does not [s]
     pulls: float  # when N is first negative [s]
@@ -58,7 +58,7 @@ NOTED = record(Noted)
 
 
 class Ties(NamedTuple):
-    """Dampers and tendons of a run that was written down."""
+    """Dampers and tendons of a recorded run."""
 
     elements: np.recarray  # of Element
     states: np.ndarray  # shape (rows, elements): z of a hysteretic damper, by how much a tendon has yielded [m]
@@ -107,7 +107,7 @@ def _not_tied(ties, m, pulls, i, step, y, s):
 
 @_tied.of(Ties)
 def _tied_by_devices(ties, m, pulls, i, step, y, s):
-    """By the devices' laws, and what friction adds to them at both ends, in a line between."""
+    """Use the devices' laws, and what friction adds to them at both ends, linear between."""
     start, now, end = (
         _by_laws(m, ties, i, step, step.start, 0.0),
         _by_laws(m, ties, i, step, y, s),
@@ -158,16 +158,16 @@ def _include(greatest, noted, moment, t, limits, gravity):
 @kernel
 def _passes(of, low, high, limit):
     """Return the Forces, between the shares ``low`` and ``high`` of a Stretch, where N passes ``limit`` and is just above it."""
-    found = _moment(of, high)
-    rises = found.normal >= limit
+    above_limit = _moment(of, high)
+    rises = above_limit.normal >= limit
     for _ in range(BISECTIONS):
         middle = 0.5 * (low + high)
         there = _moment(of, middle)
         above = there.normal >= limit
         if above:
-            found = there
+            above_limit = there
         low, high = (low, middle) if above == rises else (middle, high)
-    return found
+    return above_limit
 
 
 @kernel
@@ -206,18 +206,18 @@ def _look_within(of, t, before, now, limits, greatest, noted):
 
 
 @kernel
-def _put(out, i, found):
+def _put(out, i, forces):
     line = out[i]
-    line.shear, line.normal, line.left, line.right = found.shear, found.normal, found.left, found.right
-    line.gap_left, line.gap_right = found.gap_left, found.gap_right
-    line.speed_left, line.speed_right = found.speed_left, found.speed_right
-    line.deck, line.along, line.up, line.omega = found.deck, found.along, found.up, found.omega
-    line.friction, line.clearance = found.friction, found.clearance
+    line.shear, line.normal, line.left, line.right = forces.shear, forces.normal, forces.left, forces.right
+    line.gap_left, line.gap_right = forces.gap_left, forces.gap_right
+    line.speed_left, line.speed_right = forces.speed_left, forces.speed_right
+    line.deck, line.along, line.up, line.omega = forces.deck, forces.along, forces.up, forces.omega
+    line.friction, line.clearance = forces.friction, forces.clearance
 
 
 @entry
 def forces_of_run(m, body, rows, pulls, ties, ground, dt, limits, out, greatest, noted):
-    """Forces of a run: at every row, or the greatest of the whole run.
+    """Compute the forces of a run at every row, or the greatest of the whole run.
 
     Parameters
     ----------

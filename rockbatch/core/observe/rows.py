@@ -1,4 +1,4 @@
-"""Rows of a history, the ground under them, and states within a step: for observers of a run that was written down."""
+"""Rows of a history, the ground under them, and states within a step: for observers of a recorded run."""
 
 from typing import NamedTuple
 
@@ -88,10 +88,10 @@ def cubic(start, rate, end, rate_end, h, s):
     It keeps between its ends where both rates have the same sign: through what is steep at one end it would overshoot.
     """
     way = end - start
-    found = start + s * (way + (1.0 - s) * ((1.0 - s) * (h * rate - way) - s * (h * rate_end - way)))
+    value = start + s * (way + (1.0 - s) * ((1.0 - s) * (h * rate - way) - s * (h * rate_end - way)))
     if rate * rate_end < 0.0:
-        return found
-    return min(max(found, min(start, end)), max(start, end))
+        return value
+    return min(max(value, min(start, end)), max(start, end))
 
 
 @question
@@ -102,13 +102,13 @@ def within(m, step, s):
 @within.of(Springs)
 def _within_on_springs(m, step, s):
     y, k, end, k_end, h = step.start, step.rates, step.end, step.rates_end, step.length
-    found = State(
+    y_within = State(
         cubic(y.v, k.v, end.v, k_end.v, h, s), cubic(y.theta, k.theta, end.theta, k_end.theta, h, s),
         cubic(y.v_rate, k.v_rate, end.v_rate, k_end.v_rate, h, s), cubic(y.omega, k.omega, end.omega, k_end.omega, h, s),
         cubic(y.z_left, k.z_left, end.z_left, k_end.z_left, h, s),
         cubic(y.z_right, k.z_right, end.z_right, k_end.z_right, h, s),
     )  # fmt: skip
-    return staged(m, found, y, step.contact, share(m, s * h))
+    return staged(m, y_within, y, step.contact, share(m, s * h))
 
 
 @within.of(Block)

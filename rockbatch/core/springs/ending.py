@@ -1,4 +1,4 @@
-"""When a run on springs is over, and when its residuals are read (THEORY.md, When a run is over).
+"""Ending of a run on springs, and reading of its residuals (THEORY.md, When a run is over).
 
 Looked at once a sample, from the end of the record on.
 """
@@ -32,8 +32,8 @@ leaning further."""
 
 
 FORESEEN = 2.0
-"""How much faster than between its readings a base on springs that ratchet may drift on: its lean speeds it up, and vibration
-that has not decayed comes and goes (measured; a pier has overturned whose drift was taken as it was)."""
+"""Factor by which a base on springs that ratchet may drift on faster than between its readings: its lean speeds it up, and
+vibration that has not decayed comes and goes (measured; a pier has overturned whose drift was taken as it was)."""
 
 
 class Waiting(NamedTuple):

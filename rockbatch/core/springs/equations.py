@@ -11,7 +11,7 @@ from rockbatch.core.types import LEFT, Pull
 
 @inlined
 def geometry(m, theta):
-    """Pivots and levers at rotation ``theta`` (THEORY.md, eqs. 5 and 6; finite: THEORY.md, eqs. 8 and 9)."""
+    """Return pivots and levers at rotation ``theta`` (THEORY.md, eqs. 5 and 6; finite: THEORY.md, eqs. 8 and 9)."""
     b, h = m.half_width, m.height
     if m.finite is not None:
         s, c = sine_and_cosine(theta)
@@ -46,7 +46,7 @@ def pulled(m, force, moment):
 
 @inlined
 def _with_pull(pull, force, moment):
-    """Force and moment, upwards and to the right, with those of dampers and tendons."""
+    """Return force and moment, upwards and to the right, with those of dampers and tendons."""
     if pull is None:
         return force, moment
     return force - pull.force, moment - pull.moment
@@ -99,7 +99,7 @@ def rates(m, y, contact, horizontal, vertical):
 
 @kernel
 def pivot_acceleration(m, y, contact, side, horizontal, vertical):
-    """Vertical acceleration [m/s²] of the pivot on ``side`` (LEFT or RIGHT), from its support if that were without it."""
+    """Return the vertical acceleration [m/s²] of the pivot on ``side`` (LEFT or RIGHT), over that of its support without it."""
     at = geometry(m, y.theta)
     v_acceleration, theta_acceleration = accelerations_at(m, y, contact, at, horizontal, vertical)
     if side == LEFT:
@@ -154,7 +154,7 @@ def clearances(m, y, supports):
 
 @kernel
 def without(contact, side):
-    """Contacts once the pivot on ``side`` is free."""
+    """Return the contacts once the pivot on ``side`` is free."""
     held = 0.0 if contact.held == side else contact.held
     if side == LEFT:
         return Contact(0.0, contact.right, 0.0, contact.right_yields, held)
@@ -163,7 +163,7 @@ def without(contact, side):
 
 @kernel
 def touching(contact, side, yields):
-    """Contacts once the pivot on ``side`` is on its spring, on the branch that ``yields`` says."""
+    """Return the contacts once the pivot on ``side`` is on its spring, on the branch that ``yields`` says."""
     held = 0.0 if contact.held == side else contact.held
     if side == LEFT:
         return Contact(1.0, contact.right, yields, contact.right_yields, held)
@@ -172,7 +172,7 @@ def touching(contact, side, yields):
 
 @kernel
 def holding(contact, side, yields):
-    """Contacts once the pivot on ``side`` is held between contact and flight; only one can be."""
+    """Return the contacts once the pivot on ``side`` grazes its support, between contact and flight; only one can."""
     if contact.held == -side:
         contact = touching(contact, -side, yields)
     free = without(contact, side)
@@ -181,5 +181,5 @@ def holding(contact, side, yields):
 
 @kernel
 def on_ground(contact):
-    """Number of pivots that are not in the air."""
+    """Return the number of pivots that are not in the air."""
     return int(contact.left + contact.right + abs(contact.held))

@@ -1,4 +1,4 @@
-"""What can happen to a pivot: signals that are positive while nothing does, and fall through zero when it does.
+"""Event functions of the pivots: positive until an event, at which one falls through zero.
 
 Each pivot has two signals. On its spring: −z (separation) and the spring law's kink (reversal of the velocity, or
 yield). Free: the gap to the waiting support (landing). Held: the two conditions under which it stops being held.
@@ -25,7 +25,7 @@ def at_rest(m):
 
 @inlined
 def _gap(gap, velocity, acceleration, rest, rounding):
-    """A gap that is nothing but rounding, of a pivot that has no velocity either, opens if it is being lifted."""
+    """Return a gap; one that is nothing but rounding, of a pivot that has no velocity either, opens if it is being lifted."""
     if abs(velocity) <= rest and acceleration > 0.0 and abs(gap) <= rounding:
         return rounding
     return gap
@@ -33,7 +33,7 @@ def _gap(gap, velocity, acceleration, rest, rounding):
 
 @inlined
 def _compression(m, z, z_rate, velocity, acceleration):
-    """Force over F_y with which a pivot presses its support, and its rate [1/s]."""
+    """Return the force over F_y with which a pivot presses its support, and its rate [1/s]."""
     if m.damped is None:
         return -z, -z_rate
     slower = lag(m)
@@ -45,7 +45,7 @@ def _compression(m, z, z_rate, velocity, acceleration):
 
 @inlined
 def _above(m, position, velocity, acceleration, support, z, rest):
-    """Gap [m] of a free pivot over its support, and the velocity [m/s] with which it opens."""
+    """Return the gap [m] of a free pivot over its support, and the velocity [m/s] with which it opens."""
     velocity -= velocity_of_top(m, z)
     acceleration -= acceleration_of_top(m, z)
     gap = _gap(position - top(m, support, z), velocity, acceleration, rest, NO_GAP * m.yield_deflection)
@@ -54,7 +54,7 @@ def _above(m, position, velocity, acceleration, support, z, rest):
 
 @inlined
 def _on_spring(m, z, z_rate, yields, velocity, acceleration, rest):
-    """Values and slopes of the two signals of a pivot on its spring."""
+    """Return values and slopes of the two event functions of a pivot on its spring."""
     if abs(velocity) <= rest:
         if abs(acceleration) <= NO_ACCELERATION * m.gravity:
             acceleration = 0.0
@@ -66,7 +66,7 @@ def _on_spring(m, z, z_rate, yields, velocity, acceleration, rest):
 
 @kernel
 def _held(m, y, contact, side, horizontal, vertical):
-    """Held while contact would lift the pivot and freedom would press it down."""
+    """Return the event functions of a grazing contact: it lasts while contact would lift the pivot and freedom press it down."""
     lifted = pivot_acceleration(m, y, touching(contact, side, 0.0), side, horizontal, vertical)
     pressed = -pivot_acceleration(m, y, without(contact, side), side, horizontal, vertical)
     return lifted, pressed
@@ -116,7 +116,7 @@ def event_functions(m, devices, y, k, contact, supports, rest, ground):
 
 @kernel
 def settle(m, y, contact, side, horizontal, vertical):
-    """Contacts of a pivot that is at its support and goes as it does: the accelerations decide.
+    """Return the contacts of a pivot that is at its support and goes as it does: the accelerations decide.
 
     Contact equations that press it down keep it there; else free ones that lift it let it go; else neither has a
     solution, and it is held (Filippov's sliding mode).

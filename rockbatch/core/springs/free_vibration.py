@@ -1,4 +1,4 @@
-"""What a pier that is left alone can still do: how far its energy carries it, and whether over the summit.
+"""Bounds on free vibration: how far a pier's energy carries it, and whether beyond the unstable equilibrium.
 
 The ground is at rest. Between impacts energy is kept, at impacts and by yielding it is lost, so the energy of this
 moment bounds every later rotation (THEORY.md, When a run is over). Energies are per unit mass [J/kg]. ``load`` is
@@ -29,44 +29,44 @@ LEANS = 2
 
 @kernel
 def _capacity(m, load):
-    """Greatest moment of the supports about the centre of the base, over load · b: one carries all, or as much as it can."""
+    """Return the supports' greatest moment about the base's centre, over load · b: one carries all, or what it can."""
     return 1.0 if m.law == ELASTIC else min(1.0, 2.0 * m.yield_force / load - 1.0)
 
 
 @kernel
 def summit(m, load):
-    """Rotation [rad] at which the weight's moment equals the greatest of the supports."""
+    """Return the unstable equilibrium: the rotation [rad] at which the weight's moment equals the greatest of the supports."""
     tangent = _capacity(m, load) * (load / m.gravity) * m.half_width / m.height
     return math.atan(tangent) if m.finite is not None else tangent
 
 
 @kernel
 def rocking_stiffness(m):
-    """Restoring moment per rotation in full contact, on elastic springs [m²/s²]."""
+    """Return the restoring moment per rotation in full contact, on elastic springs [m²/s²]."""
     return 2.0 * m.yield_force * m.stiffness * m.half_width * m.half_width - m.gravity * m.height
 
 
 @kernel
 def rocking_period(m):
-    """Of rocking in full contact [s]: 2π/ω_r (THEORY.md, eq. 12)."""
+    """Return the period of rocking in full contact [s]: 2π/ω_r (THEORY.md, eq. 12)."""
     return 2.0 * math.pi * math.sqrt((m.inertia + m.height * m.height) / rocking_stiffness(m))
 
 
 @kernel
 def _travel(m, theta):
-    """Travel of a support over b: sin θ, or θ in first-order kinematics."""
+    """Return the travel of a support over b: sin θ, or θ in first-order kinematics."""
     return math.sin(theta) if m.finite is not None else theta
 
 
 @kernel
 def _weight_moment(m, travel):
-    """Moment of the weight about the centre of the base over g, per b cos θ of the supports' arm [m]."""
+    """Return the moment of the weight about the centre of the base over g, per b cos θ of the supports' arm [m]."""
     return m.height * (travel / math.sqrt(1.0 - travel * travel) if m.finite is not None else travel)
 
 
 @kernel
 def _climb(m, lean, target, load):
-    """Energy that it takes at least to turn from rest at ``lean`` to ``target`` [rad], or to the summit before it.
+    """Return the energy that it takes at least to turn from rest at ``lean`` to ``target`` [rad], or to the unstable equilibrium.
 
     The pier turns towards the support on the right, which is loaded by x, the supports' moment over load · b; the other one
     is unloaded, elastic. A Bouc–Wen spring takes 1/(1 − zⁿ) of the elastic deflection. From the capacity on, the moment
@@ -107,7 +107,7 @@ def _climb(m, lean, target, load):
 
 @kernel
 def _returned(m, theta):
-    """Share of the energy that may come back on the way to ``theta`` [rad]: 2 b h θ/(I0/M + h² + b²).
+    """Return the share of the energy that may come back on the way to ``theta`` [rad]: 2 b h θ/(I0/M + h² + b²).
 
     First-order P–Δ moments have no potential: what the vertical inertia v̈ does with the arm h θ is no energy of the
     model. It integrates to v̇ h θ θ̇, of which v̇ ≤ b θ̇. In finite kinematics H jumps by as much with a contact.
@@ -118,7 +118,7 @@ def _returned(m, theta):
 
 @kernel
 def _swept(m, lean, drift, sinking, swollen):
-    """How far [rad] a base that leans by ``lean`` to one side tilts on, ``drift`` if it were to go on as it has.
+    """Return by how much [rad] a base that leans by ``lean`` to one side tilts on, ``drift`` if it were to go on as it has.
 
     A Bouc–Wen support under a share 1 + h θ/b of its load sinks (1 + h θ/b)ⁿ times as fast: the lean grows by itself,
     by the factor exp(n h swollen · sinking/b²) while both sink by ``sinking`` [m] on average.
@@ -133,7 +133,7 @@ def _swept(m, lean, drift, sinking, swollen):
 
 
 class Drift(NamedTuple):
-    """By how much the base will move further at most, as far as can be foreseen: yielding springs ratchet on vibration."""
+    """Greatest further motion of the base that can be foreseen: yielding springs settle on with each cycle of vibration."""
 
     right: float  # tilt to the right [rad]
     left: float
@@ -142,7 +142,7 @@ class Drift(NamedTuple):
 
 @kernel
 def outlook_on_springs(m, y, contact, load, in_tendons, base, peak, calm, drift):
-    """OPEN, DECIDED or LEANS, of state ``y``.
+    """Return OPEN, DECIDED or LEANS for state ``y``.
 
     Parameters
     ----------
@@ -205,6 +205,6 @@ def outlook_on_springs(m, y, contact, load, in_tendons, base, peak, calm, drift)
 
 @kernel
 def _drop(m, theta):
-    """h (1 − cos θ) [m]."""
+    """Return h (1 − cos θ) [m]."""
     half = math.sin(0.5 * theta)
     return 2.0 * m.height * half * half

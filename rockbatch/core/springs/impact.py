@@ -8,7 +8,7 @@ from rockbatch.core.types import LEFT
 
 @kernel
 def land(m, y, side):
-    """State after the pivot on ``side`` (LEFT or RIGHT) has met its waiting support."""
+    """Return the state after the pivot on ``side`` (LEFT or RIGHT) has met its waiting support."""
     at = geometry(m, y.theta)
     arm = at.arm_left if side == LEFT else at.arm_right
     inertia = m.inertia + at.lever * at.lever
@@ -19,5 +19,5 @@ def land(m, y, side):
 
 @kernel
 def land_flat(m, y):
-    """State after both pivots have landed at one instant: both velocities, hence v̇ and θ̇, are multiplied by ε."""
+    """Return the state after both pivots have landed at one instant: both velocities, hence v̇ and θ̇, are multiplied by ε."""
     return State(y.v, y.theta, m.epsilon * y.v_rate, m.epsilon * y.omega, y.z_left, y.z_right)

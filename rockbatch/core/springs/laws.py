@@ -1,4 +1,4 @@
-"""The laws of a spring: ż = (v̇/δ_y)(1 − |z|ⁿ) while it yields, v̇/δ_y otherwise (THEORY.md, eq. 7).
+"""Constitutive models of a spring: ż = (v̇/δ_y)(1 − |z|ⁿ) while it yields, v̇/δ_y otherwise (THEORY.md, eq. 7).
 
 z = F/F_y is in [−1, 0]. Bouc–Wen is on the inelastic branch whenever it is being compressed; the elastic–perfectly
 plastic spring only once z = −1, where the same expression gives ż = 0; the elastic spring never. What tells one law from
@@ -21,13 +21,13 @@ _NODES, _WEIGHTS = (tuple(map(float, column)) for column in np.polynomial.legend
 
 @inlined
 def softening(m, x):
-    """Share of a spring's stiffness that is lost on the inelastic branch, at the force ``x`` = |z| from 0 to 1: xⁿ."""
+    """Return the share of a spring's stiffness that is lost on the inelastic branch, at the force ``x`` = |z| from 0 to 1: xⁿ."""
     return power(x, m.exponent)
 
 
 @inlined
 def z_rate(m, z, velocity, yields):
-    """Rate of z [1/s] of a spring in contact, from its velocity [m/s].
+    """Return the rate of z [1/s] of a spring in contact, from its velocity [m/s].
 
     A step too long for a hard landing may try z < −1: the law ends at −1 (see :func:`within_yield`), for beyond it
     would throw z back with all the more force and let a pressed spring separate.
@@ -40,38 +40,38 @@ def z_rate(m, z, velocity, yields):
 
 @inlined
 def within_yield(z, yields):
-    """z, no lower than −1 on the inelastic branch; a step that resolves the law never gets there."""
+    """Return z, no lower than −1 on the inelastic branch; a step that resolves the law never gets there."""
     return max(z, -1.0) if yields != 0.0 else z
 
 
 @inlined
 def branch_when_pressed(law):
-    """Branch of a spring that is loaded from a state without velocity."""
+    """Return the branch of a spring that is loaded from a state without velocity."""
     return 1.0 if law == BOUC_WEN else 0.0
 
 
 @inlined
 def ratchets(law):
-    """Whether a spring sinks with every small cycle of its load, be it below any that it has borne."""
+    """Return whether a spring sinks with every small cycle of its load, be it below any that it has borne."""
     return law == BOUC_WEN
 
 
 @inlined
 def kept_sign(law, on_spring, yields):
-    """Sign that a spring's velocity keeps while it stays on its branch; 0 where the branch does not depend on it."""
+    """Return the sign that a spring's velocity keeps while it stays on its branch; 0 where the branch does not depend on it."""
     reloads = branch_when_pressed(law)
     return on_spring * (reloads - (reloads + 1.0) * yields)
 
 
 @inlined
 def may_yield(law, yields):
-    """Whether the spring leaves its branch at z = −1."""
+    """Return whether the spring leaves its branch at z = −1."""
     return law == EPP and yields == 0.0
 
 
 @inlined
 def kink(law, yields, z, z_rate, velocity, acceleration):
-    """What is positive while a spring stays on its branch, and its rate."""
+    """Return the event function of a spring's switching point, positive while it stays on its branch, and its rate."""
     sign = kept_sign(law, 1.0, yields)
     if may_yield(law, yields):
         return 1.0 + z, z_rate
@@ -80,13 +80,13 @@ def kink(law, yields, z, z_rate, velocity, acceleration):
 
 @inlined
 def after_kink(law, yields, z):
-    """The other branch, and z, which is exactly −1 where it is there that the branch changes."""
+    """Return the other branch, and z, which is exactly −1 where it is there that the branch changes."""
     return 1.0 - yields, -1.0 if may_yield(law, yields) else z
 
 
 @inlined
 def branch_after_jump(law, yields, z, velocity, rest):
-    """Branch of a spring whose velocity has jumped to ``velocity`` [m/s], which counts as none up to ``rest``."""
+    """Return the branch of a spring whose velocity has jumped to ``velocity`` [m/s], which counts as none up to ``rest``."""
     if law == ELASTIC or abs(velocity) <= rest:
         return yields
     if velocity > 0.0:
@@ -96,20 +96,20 @@ def branch_after_jump(law, yields, z, velocity, rest):
 
 @inlined
 def branch_of_landing(m, z, velocity):
-    """Branch of a spring at ``z`` that a pivot meets with ``velocity`` [m/s]; a damped support may be met on its way up."""
+    """Return the branch of a spring at ``z`` that a pivot meets at ``velocity`` [m/s]; a damped one may be met on its way up."""
     loaded = branch_when_pressed(m.law)
     return loaded if m.damped is None else branch_after_jump(m.law, loaded, z, velocity, 0.0)
 
 
 @kernel
 def number(n):
-    """The exponent as a number; None stands for 5."""
+    """Return the exponent as a number; None stands for 5."""
     return 5.0 if n is None else n
 
 
 @kernel
 def static_deflection(force, exponent):
-    """Deflection/δ_y of a Bouc–Wen spring first loaded to ``force``/F_y < 1: ∫ ds/(1 − sⁿ) from 0, by its series."""
+    """Return the deflection/δ_y of a Bouc–Wen spring first loaded to ``force``/F_y < 1: ∫ ds/(1 − sⁿ) from 0, by its series."""
     ratio = power(force, exponent)
     n = number(exponent)
     term = force
@@ -124,13 +124,13 @@ def static_deflection(force, exponent):
 
 @kernel
 def deflection(m, force):
-    """Deflection/δ_y of a spring of any law that is first loaded to ``force``/F_y < 1."""
+    """Return the deflection/δ_y of a spring of any law that is first loaded to ``force``/F_y < 1."""
     return static_deflection(force, m.exponent) if m.law == BOUC_WEN else force
 
 
 @kernel
 def give(m, force):
-    """δ_y/F_y times the rate of deflection with force, of a spring that is loaded with ``force``/F_y up to 1."""
+    """Return δ_y/F_y times the rate of deflection with force, of a spring that is loaded with ``force``/F_y up to 1."""
     if m.law != BOUC_WEN:
         return 1.0
     return 1.0 / (1.0 - softening(m, min(max(force, 0.0), 1.0 - 1e-12)))
@@ -138,7 +138,7 @@ def give(m, force):
 
 @kernel
 def _elastic_share(x, n):
-    """(1 − x) xⁿ/(1 − xⁿ), smooth through x = 1, where it is 1/n."""
+    """Return (1 − x) xⁿ/(1 − xⁿ), smooth through x = 1, where it is 1/n."""
     xn = power(x, n)
     if n is None:
         square = x * x
@@ -150,7 +150,7 @@ def _elastic_share(x, n):
 
 @kernel
 def _integral(middle, half, n):
-    """∫ of the elastic share over middle ± half, over ``half``."""
+    """Integrate the elastic share over middle ± half; return the integral over ``half``."""
     total = 0.0
     if n is None and half <= _NEARBY:
         for i in range(len(_NODES_NEARBY)):
@@ -167,7 +167,7 @@ def _integral(middle, half, n):
 
 @kernel
 def plastic_work(m, z_from, z_to, plastic_deflection):
-    """Work/F_y [m] dissipated while a spring is compressed on its inelastic branch from ``z_from`` to ``z_to``.
+    """Return the work/F_y [m] dissipated while a spring is compressed on its inelastic branch from ``z_from`` to ``z_to``.
 
     The law does not depend on the rate, so the work follows from the two ends: with x = |z| the plastic deflection
     grows by δ_y xⁿ/(1 − xⁿ) dx, and ∫ x du = Δu − δ_y ∫ (1 − x) xⁿ/(1 − xⁿ) dx, whose integrand is smooth. At

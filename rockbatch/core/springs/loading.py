@@ -8,7 +8,7 @@ from rockbatch.core.springs.laws import plastic_work
 
 
 class Loading(NamedTuple):
-    """Where each spring's present branch began: unstressed position [m] and z; and the plastic work/F_y so far [m]."""
+    """Start of each spring's present branch: unstressed position [m] and z; and the plastic work/F_y so far [m]."""
 
     left: float
     z_left: float
@@ -29,14 +29,14 @@ def _branch(m, was, now, begun, z_begun, place, z, work):
 
 @inner
 def _closed(m, begun, z_begun, work, unstressed, z):
-    """The same, at the end of an inelastic branch, in a spring that is unstressed at ``unstressed`` from then on."""
+    """Return the same, at the end of an inelastic branch, in a spring that is unstressed at ``unstressed`` from then on."""
     work += plastic_work(m, z_begun, z, begun - unstressed)
     return unstressed, z, work
 
 
 @inner
 def branches(m, loading, before, after, y):
-    """Loading of both springs, brought up to an event that changed the contacts from ``before`` to ``after``."""
+    """Return the Loading of both springs, brought up to an event that changed the contacts from ``before`` to ``after``."""
     at = geometry(m, y.theta)
     left, z_left, work_left = _branch(
         m, before.left_yields, after.left_yields,
@@ -51,13 +51,13 @@ def branches(m, loading, before, after, y):
 
 @inner
 def close_left(m, loading, unstressed, z):
-    """Loading once the left spring has left its inelastic branch at ``z``, from then on unstressed at ``unstressed``."""
+    """Return the Loading once the left spring has left its inelastic branch at ``z``, then unstressed at ``unstressed``."""
     left, z_left, work_left = _closed(m, loading.left, loading.z_left, loading.work_left, unstressed, z)
     return Loading(left, z_left, work_left, loading.right, loading.z_right, loading.work_right)
 
 
 @inner
 def close_right(m, loading, unstressed, z):
-    """Likewise for the right spring."""
+    """Do the same for the right spring."""
     right, z_right, work_right = _closed(m, loading.right, loading.z_right, loading.work_right, unstressed, z)
     return Loading(loading.left, loading.z_left, loading.work_left, right, z_right, work_right)

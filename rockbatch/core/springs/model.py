@@ -49,7 +49,7 @@ Numbers = NamedTuple("Numbers", NUMBERS)  # type: ignore[misc]
 
 
 class State(NamedTuple):
-    """What the equations integrate; also its rates."""
+    """State that the equations integrate; also its rates."""
 
     v: float  # vertical displacement of the centre of mass from unstressed springs, up [m]
     theta: float  # rotation, positive to the right [rad]
@@ -60,7 +60,7 @@ class State(NamedTuple):
 
 
 class Contact(NamedTuple):
-    """What is constant between events: factors of 0 or 1 in one right-hand side."""
+    """Contacts, constant between events: factors of 0 or 1 in one right-hand side."""
 
     left: float  # the pivot is on its spring
     right: float

@@ -21,7 +21,7 @@ from rockbatch.core.table import get, put
 
 
 class News(NamedTuple):
-    """News of the pass, and the velocity reversals that it has corrected: when [s], UNSET without one, and z then."""
+    """Outcome of the pass, and the velocity reversals that it has corrected: when [s], UNSET without one, and z then."""
 
     kind: float
     left: float
@@ -34,7 +34,7 @@ class News(NamedTuple):
 
 @inlined
 def _clear(m, on_spring, yields, support, start, end, z, z_end, h):
-    """Positive where a pivot surely has neither separated nor landed nor, elastic–perfectly plastic, begun to yield.
+    """Return a number, positive if a pivot surely has neither separated nor landed nor, perfectly plastic, begun to yield.
 
     z moves no faster than the pivot's velocity/δ_y: what a cubic may go beyond its ends bounds it too.
     """
@@ -52,7 +52,7 @@ def _clear(m, on_spring, yields, support, start, end, z, z_end, h):
 
 @inlined
 def _new_low(on_spring, start, end, lowest, h):
-    """Whether a pivot may have been lower on its spring inside the piece than ever before, and at its ends."""
+    """Return whether a pivot may have been lower on its spring inside the sub-step than ever before, and at its ends."""
     least = min(start.position, end.position) - excess(start.velocity, end.velocity, h)
     return on_spring != 0.0 and start.velocity < 0.0 and end.velocity > 0.0 and least < lowest
 

@@ -19,7 +19,7 @@ class Pivot(NamedTuple):
 
 
 class Reversal(NamedTuple):
-    """What one spring's reversal in a step comes to; without one its times and additions are 0."""
+    """Reversal of one spring in a step; without one its times and additions are 0."""
 
     happened: bool
     after: float  # time from the reversal to the end of the step [s]
@@ -33,7 +33,7 @@ class Reversal(NamedTuple):
 
 @inlined
 def pivots(m, y):
-    """Both pivots in state ``y``."""
+    """Return both pivots in state ``y``."""
     at = geometry(m, y.theta)
     return (
         Pivot(y.v + at.lift_left, y.v_rate + at.arm_left * y.omega),
@@ -43,7 +43,7 @@ def pivots(m, y):
 
 @inlined
 def pivot_accelerations(m, y, k):
-    """Of both pivots [m/s²] in state ``y`` with rates ``k``."""
+    """Return the accelerations [m/s²] of both pivots in state ``y`` with rates ``k``."""
     at, turning = geometry(m, y.theta), y.omega * y.omega
     left = k.v_rate + at.arm_left * k.omega + at.bend_left * turning
     right = k.v_rate + at.arm_right * k.omega + at.bend_right * turning
@@ -57,7 +57,7 @@ def _size(z):
 
 @inlined
 def reversal(m, sign, rest, start, acceleration, end, z_end, h):
-    """The reversal of a spring in a step of ``h`` [s] that was taken on one branch, from Pivot ``start`` to ``end``.
+    """Return the reversal of a spring in a step of ``h`` [s] that was taken on one branch, from Pivot ``start`` to ``end``.
 
     Parameters
     ----------
@@ -93,7 +93,7 @@ def reversal(m, sign, rest, start, acceleration, end, z_end, h):
 
 @inlined
 def corrected(m, contact, y, left, right):
-    """The end of a step, ``y``, after the reversals ``left`` and ``right``.
+    """Return the end of a step, ``y``, after the reversals ``left`` and ``right``.
 
     What is added to z grows like the square of the time t since the reversal. Its force changes velocities like an
     impulse F_y δz t/3, and positions like F_y δz t²/12, which both springs follow.

@@ -1,4 +1,4 @@
-"""What an event makes of the pier: separation, landing, a spring's new branch, a pivot held or let go.
+"""Transitions at events: separation, landing, a spring's new branch, a contact that grazes or ends it.
 
 Written for the left pivot; at the right one, the mirror image is handled (θ → −θ, left ↔ right, ü_g → −ü_g).
 """
@@ -95,7 +95,7 @@ def handle(m, y, contact, supports, which, rest, horizontal, vertical):
 
 @kernel
 def _at_left(m, y, contact, supports, of_law, rest, horizontal, vertical):
-    """As :func:`handle`, for the left pivot, of its contact or of its spring's law."""
+    """Do what :func:`handle` does for the left pivot, of its contact or of its spring's law."""
     if contact.held == LEFT:
         at = geometry(m, y.theta)
         if not of_law:
@@ -114,7 +114,7 @@ def _at_left(m, y, contact, supports, of_law, rest, horizontal, vertical):
 
 @kernel
 def _separation(m, y, contact, supports, rest, horizontal, vertical):
-    """The left pivot's support bears nothing: from here on it stays, or creeps back as fast as the pivot rises."""
+    """Separate the left pivot, whose support bears nothing: from here on it stays, or creeps back as fast as the pivot rises."""
     at = geometry(m, y.theta)
     velocity = y.v_rate + at.arm_left * y.omega
     z = 0.0 if m.damped is None else -lag(m) * max(velocity, 0.0)
@@ -129,7 +129,7 @@ def _separation(m, y, contact, supports, rest, horizontal, vertical):
 
 @kernel
 def _landing(m, y, contact, supports, rest, horizontal, vertical):
-    """The left pivot meets its support; the right one may land at the same instant."""
+    """Land the left pivot on its support; the right one may land at the same instant."""
     if m.damped is not None:
         return _damped_landing(m, y, contact, supports, rest, horizontal, vertical)
     at = geometry(m, y.theta)
@@ -155,7 +155,7 @@ def _landing(m, y, contact, supports, rest, horizontal, vertical):
 
 @kernel
 def _damped_landing(m, y, contact, supports, rest, horizontal, vertical):
-    """The left pivot meets the top of its damped support: its dashpot bears it at once, without an impulse."""
+    """Land the left pivot on the top of its damped support: its dashpot bears it at once, without an impulse."""
     velocity = y.v_rate + geometry(m, y.theta).arm_left * y.omega
     if abs(velocity - velocity_of_top(m, y.z_left)) <= rest:
         return y, settle(m, y, contact, LEFT, horizontal, vertical), supports, IMPACT_LEFT
@@ -164,7 +164,7 @@ def _damped_landing(m, y, contact, supports, rest, horizontal, vertical):
 
 @kernel
 def _right_after_impulse(m, y, contact, supports, at, rest):
-    """Contacts and supports once an impulse at the left pivot has made the velocity of the right one jump too.
+    """Return contacts and supports once an impulse at the left pivot has made the velocity of the right one jump too.
 
     Its spring may have to change its branch, and a pivot that was held moves.
     """
