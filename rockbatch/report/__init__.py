@@ -34,8 +34,8 @@ def write_report(directory: Path, responses: Sequence[Response] | None = None, *
     Parameters
     ----------
     directory : Path
-        Folder with ``peaks.csv`` and ``run.json``, as ``rockbatch run`` leaves them. Histories, verdicts and what
-        ``rockbatch accuracy`` measured are shown where ``histories.h5``, ``checks.csv`` and ``accuracy.csv`` are there.
+        Folder with ``peaks.csv`` and ``run.json``, as ``rockbatch run`` leaves them. Histories, verdicts and the measurement
+        of ``rockbatch accuracy`` are shown if ``histories.h5``, ``checks.csv`` and ``accuracy.csv`` exist.
     responses : sequence of Response, optional
         Runs whose histories are shown instead of those in ``histories.h5``.
     out : Path, optional
@@ -45,7 +45,7 @@ def write_report(directory: Path, responses: Sequence[Response] | None = None, *
     -------
     Path of the report. An earlier one is replaced as a whole, or not at all.
 
-    Raises ``InputError`` where the results are missing, damaged or do not belong together.
+    Raises ``InputError`` if the results are missing, damaged or do not belong together.
     """
     directory = Path(directory)
     target = out or directory / REPORT
@@ -54,10 +54,10 @@ def write_report(directory: Path, responses: Sequence[Response] | None = None, *
 
 
 def write_comparison(first: Path, second: Path, *, out: Path | None = None) -> Path:
-    """Write one page that sets two studies against each other, run by run, and return its path.
+    """Write one page that compares two studies run by run, and return its path.
 
     ``out`` is ``compare-NAME.html`` in the first folder by default, with the name of the second. Raises ``InputError``
-    where results are missing or damaged.
+    if results are missing or damaged.
     """
     first, second = Path(first), Path(second)
     target = out or first / f"compare-{second.resolve().name}.html"
@@ -68,7 +68,7 @@ def write_comparison(first: Path, second: Path, *, out: Path | None = None) -> P
 
 
 def write_analyses(directory: Path, study: Study) -> Path:
-    """Write the report again with the analyses in it, if the folder holds results of the study; returns its path.
+    """Write the report again with the analyses in it, if the folder holds results of the study; return its path.
 
     Otherwise they get a page of their own, ``analyses.html``.
     """
@@ -76,8 +76,8 @@ def write_analyses(directory: Path, study: Study) -> Path:
     if _holds_results(directory, sha256):
         return write_report(directory)
     target = directory / "analyses.html"
-    told = {"title": study.title, "notes": study.notes, "text": study.text, "sha256": sha256}
-    write_whole(target, page(Contents(directory, told)))
+    description = {"title": study.title, "notes": study.notes, "text": study.text, "sha256": sha256}
+    write_whole(target, page(Contents(directory, description)))
     return target
 
 
@@ -91,14 +91,14 @@ def _holds_results(directory: Path, sha256: str) -> bool:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Report:
-    """A page that was made, and the tables it tells of.
+    """A written page, and the tables that it shows.
 
     Attributes
     ----------
     path : Path
         The page.
     folders : tuple of Path
-        Of the results, one or two.
+        Folders of the results, one or two.
     peaks, checks : DataFrame
         The rows of ``peaks.csv`` and ``checks.csv``; of two studies with a first column ``study``, "A" or "B".
     """
@@ -112,7 +112,7 @@ class Report:
         return f"<report of {' and '.join(map(str, self.folders))}: {self.path}>"
 
     def save(self, folder: str | os.PathLike[str]) -> Path:
-        """Write the page into ``folder``, under its name; returns its path."""
+        """Write the page into ``folder``, under its name; return its path."""
         directory = Path(folder)
         directory.mkdir(parents=True, exist_ok=True)
         return _write(self.folders, directory / self.path.name)
@@ -124,14 +124,14 @@ def report(
     *,
     out: str | os.PathLike[str] | None = None,
 ) -> Report:
-    """Make the report of finished results again, or of two studies side by side.
+    """Write the report of finished results again, or of two studies side by side.
 
     Parameters
     ----------
     directory : path
         A folder that ``rockbatch run``, or :func:`rockbatch.run` with ``out``, has written.
     other : path, optional
-        A second one, to compare the first with.
+        A second folder, to compare with the first.
     out : path, optional
         File to write; by default ``report.html`` in the folder, or ``compare-OTHER.html``.
 
@@ -143,7 +143,7 @@ def report(
     Raises
     ------
     InputError
-        Where results are missing, damaged or do not belong together.
+        If results are missing, damaged or do not belong together.
 
     Examples
     --------
@@ -168,7 +168,7 @@ def _write(folders: Sequence[Path], out: Path | None) -> Path:
 
 
 def _beside(tables: "Sequence[pd.DataFrame]") -> "pd.DataFrame":
-    """One table as it is, two under each other, told apart in a first column."""
+    """Return one table as it is, or two stacked, with a first column ``study`` that says which."""
     if len(tables) == 1:
         return tables[0]
     import pandas as pd
@@ -177,7 +177,7 @@ def _beside(tables: "Sequence[pd.DataFrame]") -> "pd.DataFrame":
 
 
 class _Door(ModuleType):
-    """This package has the name of the function that users call: ``rockbatch.report(...)`` is :func:`report`."""
+    """This package made callable: ``rockbatch.report(...)`` is :func:`report`."""
 
     __call__ = staticmethod(report)
 

@@ -1,4 +1,4 @@
-"""What a folder holds, as the sections of its report see it."""
+"""Contents of a folder, as the sections of its report read them."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ from rockbatch.results.response import Response
 
 @dataclass(frozen=True, eq=False)
 class Contents:
-    """All that a report can tell of; what a folder lacks is None or empty, and its sections are left out.
+    """Everything that a report can show; what a folder lacks is None or empty, and its sections are left out.
 
     Attributes
     ----------
@@ -24,11 +24,11 @@ class Contents:
     study : mapping
         ``path``, ``title``, ``notes``, ``text`` and ``sha256`` of the study file, as run.json has them.
     finished : Finished, optional
-        What ``rockbatch run`` left.
+        Results of ``rockbatch run``.
     responses : sequence of Response
         Runs whose histories are shown.
     verdicts : sequence of Verdict
-        What ``rockbatch check`` found.
+        Results of ``rockbatch check``.
     """
 
     directory: Path
@@ -38,7 +38,7 @@ class Contents:
     verdicts: Sequence[Verdict] = ()
 
     def analysis(self, name: str) -> FinishedAnalysis | None:
-        """The analysis that left NAME.json; None where there is none of this state of the study."""
+        """Return the analysis in NAME.json; None if there is none for this state of the study."""
         return finished_analysis.read(self.directory, name, self.study["sha256"])
 
 

@@ -1,4 +1,4 @@
-"""The file around the sections: one HTML document with its style and script, and no address outside it."""
+"""The HTML document around the sections, with its style and script, and no address outside it."""
 
 import base64
 import hashlib
@@ -19,7 +19,7 @@ class Section(NamedTuple):
 
 
 def document(kind: str, title: str, sections: Iterable[Section | None]) -> str:
-    """The whole file as HTML; sections that are None are left out."""
+    """Return the whole document as HTML; sections that are None are left out."""
     style, script = (
         files(__package__).joinpath(name).read_text(encoding="utf-8") for name in ("style.css", "script.js")
     )
@@ -37,7 +37,7 @@ def document(kind: str, title: str, sections: Iterable[Section | None]) -> str:
         tag("title", title),
         tag("style", Markup(style)),
     )
-    parts = [tag("section", tag("h2", one.heading), one.content, id=one.anchor) for one in shown]
+    parts = [tag("section", tag("h2", section.heading), section.content, id=section.anchor) for section in shown]
     body = tag(
         "body",
         markers(),
@@ -50,10 +50,10 @@ def document(kind: str, title: str, sections: Iterable[Section | None]) -> str:
 
 
 def paragraphs(*sentences: object) -> Markup:
-    """One paragraph for each sentence that is not empty."""
+    """Return one paragraph for each sentence that is not empty."""
     return join(*(tag("p", sentence) for sentence in sentences if sentence))
 
 
 def figure(drawn: Markup, *caption: object) -> Markup:
-    """A picture over its caption."""
+    """Return a picture with its caption below."""
     return tag("figure", drawn, tag("figcaption", *caption), class_="whole")

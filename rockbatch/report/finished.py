@@ -1,4 +1,4 @@
-"""Finished results as the report sees them: every run with its pier, its foundation and its ground motion."""
+"""Finished results as the report reads them: every run with its pier, its foundation and its ground motion."""
 
 import math
 import tomllib
@@ -22,24 +22,24 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Finished:
-    """All that a folder of results holds.
+    """Contents of a folder of results.
 
     Attributes
     ----------
     saved : Saved
-        The two files.
+        Contents of ``peaks.csv`` and ``run.json``.
     runs : DataFrame
-        The rows of ``peaks.csv`` that were simulated, without mirror images, and more of each: ``series`` and ``pier``,
-        places in the lists below; ``alpha`` [rad]; ``pga`` [g], that of the scaled motion; ``with_vertical``, "" unless the
-        study has both.
+        The simulated rows of ``peaks.csv``, without mirror images, with further columns: ``series`` and ``pier``, places in
+        the lists below; ``alpha`` [rad]; ``pga`` [g], that of the scaled motion; ``with_vertical``, "" unless the study
+        has both.
     series : list of Series
         The foundations.
     piers : list of str
-        Words for the varied values of the pier, one for each; [""] where none varies.
+        Descriptions of the varied values of each pier; [""] if none varies.
     places, pier_places : dict
         Place of each foundation in ``series``, and of the varied values of each pier in ``piers``.
     cases : dict
-        What run.json says about each foundation and pier that have runs, by their places.
+        Entries of run.json for each foundation and pier that have runs, by their places.
     """
 
     saved: Saved
@@ -52,17 +52,17 @@ class Finished:
 
     @property
     def info(self) -> dict[str, Any]:
-        """``run.json``."""
+        """Return the contents of ``run.json``."""
         return self.saved.info
 
     @cached_property
     def records(self) -> dict[str, dict[str, Any]]:
-        """What ``run.json`` knows about each ground motion."""
+        """Return the entries of ``run.json`` on the ground motions, by their names."""
         return {record["record"]: record for record in self.info["records"]}
 
     @cached_property
     def pier_as_given(self) -> dict[str, Any]:
-        """The table [pier] of the study file; empty where the text is none."""
+        """Return the table [pier] of the study file; empty if the text cannot be parsed."""
         try:
             pier = tomllib.loads(self.info["study"]["text"]).get("pier", {})
         except tomllib.TOMLDecodeError:
@@ -71,29 +71,29 @@ class Finished:
 
     @property
     def count(self) -> str:
-        """What counts as one record: "station", or "component"; the latter too where the stations are not known."""
+        """Return what counts as one record: "station", or "component"; the latter too if the stations are not known."""
         count = str(self.info.get("count", "station"))
         return "component" if counts_as(self.runs, count)[1] else count
 
     @cached_property
     def worst(self) -> list[Worst]:
-        """The worst responses of every case."""
+        """Return the worst responses of every case."""
         by_case = [runs for _, runs in self.runs.groupby(["series", "pier"])]
         places = ((int(runs["series"].iloc[0]), int(runs["pier"].iloc[0])) for runs in by_case)
         return worst_of_cases(zip(map(self.cases.__getitem__, places), by_case, strict=True))
 
     @cached_property
     def both_directions(self) -> bool:
-        """Whether motions were run in both polarities."""
+        """Return whether motions were run in both polarities."""
         return bool(self.runs["polarity"].nunique() > 1)
 
     @cached_property
     def mirrored(self) -> bool:
-        """Whether the table has mirror images beside what was simulated."""
+        """Return whether the table holds mirror images besides the simulated runs."""
         return len(simulated(self.saved.peaks)) < len(self.saved.peaks)
 
     def place(self, case: str, columns: Mapping[str, Any]) -> tuple[int, int]:
-        """Places in ``series`` and ``piers`` of a case with the given varied values."""
+        """Return the places in ``series`` and ``piers`` of a case with the given varied values."""
         varied = self.info["varied"]
         try:
             return self.places[foundation(case, columns, varied)], self.pier_places[_pier(columns, varied)]
@@ -104,56 +104,56 @@ class Finished:
             ) from None
 
     def by_pga(self, names: Sequence[str]) -> list[str]:
-        """``names`` of records, the weakest first."""
+        """Return ``names`` of records in order of peak ground acceleration, the weakest first."""
         return sorted(names, key=lambda name: (self.records.get(name, {}).get("pga_g", math.inf), name))
 
     def groups(self) -> "list[tuple[str, pd.DataFrame]]":
-        """Runs that share a scale, a pier and the vertical component, with the words that tell them from others."""
+        """Group runs by scale, pier and vertical component; each group comes with the words that identify it."""
         keys = ["scale", "pier", "with_vertical"]
         scaled = self.runs["scale"].nunique() > 1
-        found = []
+        groups = []
         for _, runs in self.runs.groupby(keys):
-            one = runs.iloc[0]
-            scale = f"motions scaled by {number(float(one['scale']))}" if scaled else ""
-            words = [self.piers[one["pier"]], scale, one["with_vertical"]]
-            found.append((", ".join(filter(None, words)), runs))
-        return found
+            first = runs.iloc[0]
+            scale = f"motions scaled by {number(float(first['scale']))}" if scaled else ""
+            words = [self.piers[first["pier"]], scale, first["with_vertical"]]
+            groups.append((", ".join(filter(None, words)), runs))
+        return groups
 
     def which(self, run: "pd.Series[Any]") -> str:
-        """The foundation of a run, and what else tells it from the runs of the same record, in words."""
+        """Describe a run among those of the same record: its foundation, and whatever else identifies it."""
         also = [self.piers[run["pier"]], f"scale {number(float(run['scale']))}" if run["scale"] != 1 else ""]
         also += ["reversed" if run["polarity"] == "-" else "", run["with_vertical"]]
-        told = ", ".join(filter(None, also))
-        return self.series[run["series"]].label + (f" ({told})" if told else "")
+        details = ", ".join(filter(None, also))
+        return self.series[run["series"]].label + (f" ({details})" if details else "")
 
     def label(self, record: str) -> str:
-        """What a record is called among people: event, station and direction; its name where the header tells nothing."""
+        """Return the readable name of a record: event, station and direction; its name if the header gives none."""
         return str(self.records.get(record, {}).get("label") or record)
 
     def named(self, record: str) -> str:
-        """A record's label, with its name in tables beside it where that is another one."""
+        """Return a record's label, with its name in tables in brackets if that differs."""
         label = self.label(record)
         return label if label == record else f"{label} ({record})"
 
     def shown(self, record: str) -> Markup:
-        """Likewise on the page, the name in the tables in paler words."""
+        """Return a record's label as HTML, with its name in tables in paler words if that differs."""
         label = self.label(record)
         if label == record:
             return join(label)
         return tag("span", label, " ", tag("span", record, class_="muted path"), class_="record")
 
     def where(self, run: "pd.Series[Any]") -> str:
-        """Which run this is, in words."""
+        """Describe a run by its record and case."""
         return f"{self.named(run['record'])}, case {self.which(run)}"
 
 
 def read(directory: Path) -> Finished:
-    """Read the results in a folder; raises ``InputError`` where they are missing, damaged or do not belong together."""
+    """Read the results in a folder; raises ``InputError`` if they are missing, damaged or do not belong together."""
     return finished(read_saved(directory))
 
 
 def finished(saved: Saved) -> Finished:
-    """Every run of ``saved`` with its pier, its foundation and its ground motion."""
+    """Return every run of ``saved`` with its pier, its foundation and its ground motion."""
     info, varied = saved.info, saved.info["varied"]
     grouped: dict[Key, list[dict[str, Any]]] = {}
     entries: dict[tuple[Key, Key], dict[str, Any]] = {}
@@ -195,7 +195,7 @@ def finished(saved: Saved) -> Finished:
 
 
 def _given(text: str) -> dict[str, set[str]]:
-    """Keys that a study's text gives for each case, by its name; none where it is no study."""
+    """Return the keys that a study's text gives for each case, by the case's name; empty if the text is no study."""
     try:
         cases = tomllib.loads(text).get("case", [])
         return {str(case.get("name", case.get("base"))): set(case) for case in cases}
@@ -204,19 +204,19 @@ def _given(text: str) -> dict[str, set[str]]:
 
 
 def as_dicts(runs: "pd.DataFrame") -> list[dict[str, Any]]:
-    """The rows of ``runs``, each by the names of the columns."""
+    """Return the rows of ``runs``, each as a mapping from column names to values."""
     return [{str(name): value for name, value in row.items()} for row in runs.to_dict("records")]
 
 
 def worst_first(runs: "pd.DataFrame", most: int) -> "pd.DataFrame":
-    """At most so many runs: overturned, ended by flight, then by rotation; failed ones last."""
+    """Return at most ``most`` runs: overturned, ended by flight, then by rotation; failed ones last."""
     place = runs["status"].map({"overturned": 0, "flight": 1, "failed": 3}).fillna(2)
     keys = place.to_frame("place").assign(theta=-runs["theta_max_over_alpha"])
     return runs.loc[keys.sort_values(["place", "theta"], kind="stable").index[:most]]
 
 
 def foundation(case: str, columns: Mapping[str, Any], varied: Sequence[str]) -> Key:
-    """What tells one foundation from another; ``columns`` maps varied keys to values."""
+    """Return the key that identifies a foundation; ``columns`` maps varied keys to values."""
     return (case, *(_plain(columns.get(key)) for key in varied if _of_foundation(key)))
 
 
@@ -229,14 +229,14 @@ def _pier(columns: Mapping[str, Any], varied: Sequence[str]) -> Key:
 
 
 def _plain(value: object) -> object:
-    """As peaks.csv has it: ten digits, and nothing where run.json leaves a key out."""
+    """Return a value as in peaks.csv: ten digits, and "" for a key that run.json omits."""
     if value is None or value != value:
         return ""
     return float(f"{value:.10g}") if isinstance(value, float | int) else value
 
 
 def _with_vertical(runs: "pd.DataFrame") -> "pd.Series[str] | str":
-    """Words for each run, where the study was run with and without the vertical component."""
+    """Return words for each run if the study was run with and without the vertical component; else ""."""
     if "vertical" not in runs or runs["vertical"].nunique() < 2:
         return ""
     yes = runs["vertical"].astype(str).str.lower().isin(["true", "1", "1.0", "yes", "with"])

@@ -1,4 +1,4 @@
-"""What ``rockbatch accuracy`` left in a folder."""
+"""Results of ``rockbatch accuracy`` in a folder."""
 
 import csv
 from collections.abc import Sequence
@@ -31,7 +31,7 @@ class Level:
 
     @property
     def milliseconds(self) -> str:
-        """Time per run [ms] in words; empty where it was not measured."""
+        """Return the time per run [ms] as text; empty if it was not measured."""
         if self.seconds_per_run is None:
             return ""
         value = 1000 * self.seconds_per_run
@@ -39,9 +39,9 @@ class Level:
 
 
 def read(path: Path, study: str) -> list[Level]:
-    """Levels of ``accuracy.csv`` as measured for the study with the SHA-256 ``study``.
+    """Return the levels of ``accuracy.csv`` measured for the study with the SHA-256 ``study``.
 
-    Empty where the file is missing, of another state of the study, or not such a table: the report does without.
+    Empty if the file is missing, belongs to another state of the study, or is no such table; the report then omits it.
     """
     try:
         with opened_text(path) as file:
@@ -58,6 +58,6 @@ def _number(text: str) -> float | None:
 
 
 def chosen(levels: Sequence[Level]) -> Level | None:
-    """The study's own setting, where it was measured."""
+    """Return the level at the study's own setting; None if it was not measured."""
     own = next((level for level in levels if level.method == "study"), None)
     return own if own is not None and own.error_max is not None and own.seconds_per_run else None

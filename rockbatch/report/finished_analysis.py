@@ -1,4 +1,4 @@
-"""What a command other than ``rockbatch run`` left in a folder: NAME.json and its tables."""
+"""Results of a command other than ``rockbatch run`` in a folder: NAME.json and its tables."""
 
 import hashlib
 import json
@@ -24,21 +24,21 @@ P = ParamSpec("P")
 T = TypeVar("T")
 
 _DAMAGE = (KeyError, IndexError, TypeError, ValueError, AttributeError, ArithmeticError)
-"""What drawing raises where a file of an analysis says something else than its command writes."""
+"""Exceptions that drawing raises if the file of an analysis does not hold what its command writes."""
 
 
 @dataclass(frozen=True)
 class FinishedAnalysis:
-    """An analysis that is finished: what NAME.json says about it, and its folder."""
+    """A finished analysis: the contents of NAME.json, and its folder."""
 
     directory: Path
     info: dict[str, Any]
 
     def provenance(self) -> Markup:
-        """Under which ground motions it was made, and with which versions; empty where an earlier version has not noted them."""
-        motions = [str(one["label"]) for one in self.info.get("under", ())]
+        """Return the ground motions and versions behind the analysis as HTML; empty if an earlier version did not note them."""
+        motions = [str(motion["label"]) for motion in self.info.get("under", ())]
         versions = {"rockbatch": self.info["rockbatch"], **self.info["versions"]} if "versions" in self.info else {}
-        told = (
+        parts = (
             [
                 f"{counted(len(motions), 'ground motion')}: {'; '.join(motions[:MOST_NAMES])}"
                 + (f"; and {len(motions) - MOST_NAMES} more" if len(motions) > MOST_NAMES else "")
@@ -46,19 +46,19 @@ class FinishedAnalysis:
             if motions
             else []
         )
-        told += (
+        parts += (
             [f"made with {', '.join(f'{name} {version}' for name, version in versions.items())}"] if versions else []
         )
         return (
-            tag("p", ". ".join(part[0].upper() + part[1:] for part in told), ".", class_="legend")
-            if told
+            tag("p", ". ".join(part[0].upper() + part[1:] for part in parts), ".", class_="legend")
+            if parts
             else Markup("")
         )
 
     def table(self, name: str, columns: Collection[str]) -> "pd.DataFrame | None":
-        """One of its tables; None where NAME.json does not name it, or where it is damaged or lacks a column.
+        """Return one of its tables; None if NAME.json does not list it, or if it is damaged or lacks a column.
 
-        Warns of an ``EditedTable``.
+        Warns with ``EditedTable`` if the table was changed after it was written.
         """
         if name not in self.info.get("files", []):
             return None
@@ -73,10 +73,10 @@ class FinishedAnalysis:
 
 
 def read(directory: Path, name: str, sha256: str) -> FinishedAnalysis | None:
-    """The analysis ``name`` in a folder.
+    """Return the analysis ``name`` in a folder.
 
-    None where there is none, or where it is of another state of the study than the one with the digest ``sha256``: the
-    report does without. Warns of an ``EditedTable`` where NAME.json is not as it was written.
+    None if there is none, or if it belongs to another state of the study than the one with the digest ``sha256``; the
+    report then omits it. Warns with ``EditedTable`` if NAME.json was changed after it was written.
     """
     path = Path(directory) / f"{name}.json"
     try:
@@ -93,19 +93,19 @@ def read(directory: Path, name: str, sha256: str) -> FinishedAnalysis | None:
 
 
 def digest_of(info: Mapping[str, Any]) -> str:
-    """Digest of all that NAME.json says, which it has in its own ``sha256``."""
+    """Return the digest of everything in NAME.json but its own ``sha256``."""
     said = {key: value for key, value in info.items() if key != "sha256"}
     return hashlib.sha256(json.dumps(said).encode()).hexdigest()
 
 
 def _tell(path: Path) -> None:
-    """Warn of a file that is not as it was written."""
-    told = f"{path}: not as it was written: it was edited, or is damaged; what can be read of it is shown"
-    warnings.warn(told, EditedTable, stacklevel=3)
+    """Warn of a file that was changed after it was written."""
+    message = f"{path}: not as it was written: it was edited, or is damaged; what can be read of it is shown"
+    warnings.warn(message, EditedTable, stacklevel=3)
 
 
 def of_files(name: str) -> Callable[[Callable[P, T]], Callable[P, T]]:
-    """A section that is drawn from NAME.json and its tables, which may come from anybody: where they do not fit, words say so."""
+    """Wrap a section drawn from NAME.json and its tables: if they do not fit each other, raise ``InputError``."""
 
     def decorated(section: Callable[P, T]) -> Callable[P, T]:
         @wraps(section)
@@ -126,7 +126,7 @@ def of_files(name: str) -> Callable[[Callable[P, T]], Callable[P, T]]:
 
 
 def named(values: Mapping[str, Any], shown: Sequence[str]) -> str:
-    """The values that tell one picture from another, in words: "pads, β = 40"."""
+    """Describe a picture among the others by its values: "pads, β = 40"."""
     words = [str(values["case"])]
     words += [quantity(name, values[name]) for name in shown if name != "case" and values[name] == values[name]]
     return ", ".join(words)

@@ -1,4 +1,4 @@
-"""What foundations, piers and quantities are called on the page."""
+"""Names of foundations, piers and quantities on the page."""
 
 import re
 from collections.abc import Collection, Iterable, Mapping, Sequence
@@ -38,12 +38,12 @@ BASE_KEYS = (
     "flight_limit_mm", "friction",
 )  # fmt: skip
 SAME = {"beta": "stiffness_kN_m", "eta": "yield_kN"}
-"""Keys of a study that say the same, without units and with: a foundation is called by the one that its study gives."""
+"""Equivalent keys, without and with units: a foundation is described by the one that its study gives."""
 
 _RAISED = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 Key = tuple[object, ...]
-"""What tells one foundation from another: the case, and its varied values in the order of the study."""
+"""Identity of a foundation: the case, and its varied values in the order of the study."""
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,7 @@ class Series:
 
 
 def quantity(key: str, value: object, digits: int = 10) -> str:
-    """A value in words that stay on one line: "β = 40", "Fy = 45,000 kN", "kinematics finite"."""
+    """Describe a value in words that stay on one line: "β = 40", "Fy = 45,000 kN", "kinematics finite"."""
     symbol, unit = SYMBOLS.get(key, (key, ""))
     if not isinstance(value, float | int):
         return f"{symbol} {value}"
@@ -65,7 +65,7 @@ def quantity(key: str, value: object, digits: int = 10) -> str:
 
 
 def plain(value: float, digits: int) -> str:
-    """A number in the unit in which it was given, without an "e": "45,000", "2.5 × 10⁶"."""
+    """Format a number in the unit in which it was given, without an "e": "45,000", "2.5 × 10⁶"."""
     whole = len(str(int(abs(value))))
     if whole <= 6:
         written = f"{value:.{max(digits, whole)}g}"
@@ -75,29 +75,29 @@ def plain(value: float, digits: int) -> str:
 
 
 def digits_that_tell(values: Iterable[object], least: int = 3) -> int:
-    """Significant digits, ``least`` or more, with which numbers that differ look different."""
+    """Return the number of significant digits, at least ``least``, that distinguishes all different numbers."""
     numbers = {value for value in values if isinstance(value, float | int)}
     return next((n for n in range(least, 10) if len({f"{value:.{n}g}" for value in numbers}) == len(numbers)), 10)
 
 
 def counted(count: int, word: str) -> str:
-    """A number of things: "one run", "30 runs"."""
+    """Return a number of things in words: "one run", "30 runs"."""
     return f"{count:,} {word}s" if count != 1 else f"one {word}"
 
 
 def symbol(key: str) -> str:
-    """Head of a column that holds values of a study key: "p [rad/s]"."""
+    """Return the head of a column that holds values of a study key: "p [rad/s]"."""
     letter, unit = SYMBOLS.get(key, ("", ""))
     return (letter or key) + (f" [{unit}]" if unit else "")
 
 
 def heading(words: str) -> Markup:
-    """Words with their indices: "θ_max/α" has one."""
-    return Markup(re.sub(r"_([a-z0]+)", lambda found: tag("sub", found[1]), escape(words)))
+    """Return words with their subscripts as HTML, such as that of "θ_max/α"."""
+    return Markup(re.sub(r"_([a-z0]+)", lambda match: tag("sub", match[1]), escape(words)))
 
 
 def head(column: Column) -> Head:
-    """Head of a column of peaks.csv, with its name in the file and what it means."""
+    """Return the head of a column of peaks.csv, with its name in the file and its meaning."""
     assert column.page is not None
     factor = f" × {column.page.factor}" if column.page.factor != 1 else ""
     return Head(heading(column.page.head), column.page.form, f"{column.name}{factor}: {column.meaning}")
@@ -106,7 +106,7 @@ def head(column: Column) -> Head:
 def named(
     cases: Mapping[Key, Sequence[dict[str, Any]]], varied: Sequence[str], given: Mapping[str, Collection[str]]
 ) -> dict[Key, Series]:
-    """A series for each foundation, called after what sets it apart from the others.
+    """Return a series for each foundation, named after what distinguishes it from the others.
 
     ``cases`` are those of run.json, one for each pier on which the foundation was run; ``given`` holds the keys that the
     study gives for each case, by its name.
@@ -136,7 +136,7 @@ def named(
 
 
 def _is_reference(case: Mapping[str, Any]) -> bool:
-    """Whether a case is the rocking block itself, which figures have as a line: rigid ground, and nothing that ties the pier."""
+    """Return whether a case is the rocking block itself, drawn as a line: on rigid ground and without devices."""
     return case["base"] == "rigid" and not case["parameters"].get("restraints")
 
 
@@ -146,7 +146,7 @@ def _differing(constants: Sequence[dict[str, object]], varied: Sequence[str]) ->
 
 
 def _constants(cases: Sequence[dict[str, Any]]) -> dict[str, object]:
-    """Values that a foundation keeps on every pier; β of a given stiffness, for one, follows the pier."""
+    """Return the values that a foundation keeps on every pier; β of a given stiffness, for example, follows the pier."""
     first = {**cases[0]["parameters"], **cases[0]["columns"]}
     return {
         key: value
@@ -158,6 +158,6 @@ def _constants(cases: Sequence[dict[str, Any]]) -> dict[str, object]:
 
 
 def _as_given(constants: dict[str, object], given: Collection[str]) -> dict[str, object]:
-    """Without the other one of two keys that say the same."""
+    """Return ``constants`` without the keys that repeat a given one in other units."""
     unsaid = {free if unit in given else unit for free, unit in SAME.items()}
     return {key: value for key, value in constants.items() if key not in unsaid}

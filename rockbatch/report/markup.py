@@ -1,4 +1,4 @@
-"""HTML that is escaped by construction: whatever is not :class:`Markup` is text."""
+"""HTML that is escaped by construction: everything that is not :class:`Markup` is text."""
 
 import html
 import math
@@ -16,12 +16,12 @@ def escape(content: object) -> str:
 
 
 def join(*children: object, between: str = "") -> Markup:
-    """Children one after the other, escaped."""
+    """Return the children one after the other, escaped."""
     return Markup(between.join(escape(child) for child in children))
 
 
 def tag(name: str, *children: object, **attributes: object) -> Markup:
-    """An element; ``class_`` becomes ``class``, ``aria_label`` ``aria-label``; None and False leave one out."""
+    """Return an element; ``class_`` becomes ``class``, ``aria_label`` ``aria-label``; None and False omit an attribute."""
     written = [
         f" {key.rstrip('_').replace('_', '-')}" + ("" if value is True else f'="{escape(str(value))}"')
         for key, value in attributes.items()
@@ -31,7 +31,7 @@ def tag(name: str, *children: object, **attributes: object) -> Markup:
 
 
 def number(value: object, form: str = ".4g") -> str:
-    """A float in the given format, anything else as it is; empty where there is none."""
+    """Return a float in the given format, anything else as text; empty for None and NaN."""
     if value is None or (isinstance(value, float) and math.isnan(value)):
         return ""
     if not isinstance(value, float):

@@ -1,4 +1,4 @@
-"""Every peak in a picture of a few rows, by record or by foundation, however many there are."""
+"""All peaks in a picture of a few rows, by record or by foundation, for any number of runs."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
@@ -18,17 +18,17 @@ if TYPE_CHECKING:
     import pandas as pd
 
 MOST_ROWS = 14
-"""More would leave the first screen."""
+"""Rows that fit on the first screen."""
 MOST_COLUMNS = 3
 MOST_NAMED = 12
-"""Foundations with a mark of their own."""
+"""Most foundations that each have a mark of their own."""
 MOST_FOUNDATIONS = 300
 MOST_STRETCH = 2.0
-"""Of the axis, so that a limit far above all peaks does not crowd them at one end."""
+"""Largest factor on the axis, so that a limit far above all peaks does not crowd them at one end."""
 
 
 def by_record(finished: Finished, verdicts: Sequence[Verdict] = ()) -> Markup:
-    """A row for each of the records with the worst runs, and the other records in a last row; with the limits of checks."""
+    """Draw a row for each record with the worst runs, and one for all others; with the limits of checks."""
     runs = finished.runs
     if runs.empty:
         return Markup("")
@@ -51,35 +51,35 @@ def by_record(finished: Finished, verdicts: Sequence[Verdict] = ()) -> Markup:
     )
     limits = [_limits(finished, own, verdicts) for _, own in columns]
     top = ceiling(runs)
-    within = [one.theta for own in limits for one in own if one.theta < MOST_STRETCH * top]
+    within = [limit.theta for own in limits for limit in own if limit.theta < MOST_STRETCH * top]
     top = max([top, *(1.03 * theta for theta in within)])
     return figure(dots.draw(rows, [words for words, _ in columns], top, marks, limits), caption)
 
 
 def _limits(finished: Finished, runs: "pd.DataFrame", verdicts: Sequence[Verdict]) -> list[dots.Limit]:
-    """Limits of the checks of a rotation, as θ/α; none where piers of a column differ, since each has its own."""
+    """Return the limits of rotation checks as θ/α; empty if the piers of a column differ, since each has its own."""
     if runs["pier"].nunique() != 1:
         return []
     cases = [finished.cases[places] for places in set(zip(runs["series"], runs["pier"], strict=True))]
     names = {str(case["case"]) for case in cases}
     scales = set(runs["scale"])
-    of: dict[dots.Limit, set[str]] = {}
-    for one in verdicts:
-        most = DEMANDS[one.demand].most if one.demand in PEAKS else None
-        if most is None or one.case not in names or one.scale not in scales or one.statistic == "count":
+    cases_of: dict[dots.Limit, set[str]] = {}
+    for verdict in verdicts:
+        most = DEMANDS[verdict.demand].most if verdict.demand in PEAKS else None
+        if most is None or verdict.case not in names or verdict.scale not in scales or verdict.statistic == "count":
             continue
-        words = f"limit of {one.check}, {wording.number(one.limit)} {one.unit}".rstrip()
-        if one.statistic != "max":  # a mean, say, that single records may exceed
-            words += f" ({STATISTICS[one.statistic].words})"
-        of.setdefault(dots.Limit(words, one.limit / most.of(cases[0])), set()).add(one.case)
+        words = f"limit of {verdict.check}, {wording.number(verdict.limit)} {verdict.unit}".rstrip()
+        if verdict.statistic != "max":  # a mean, say, that single records may exceed
+            words += f" ({STATISTICS[verdict.statistic].words})"
+        cases_of.setdefault(dots.Limit(words, verdict.limit / most.of(cases[0])), set()).add(verdict.case)
     return [
         limit if own == names else limit._replace(words=f"{limit.words} ({', '.join(sorted(own))})")
-        for limit, own in sorted(of.items(), key=lambda item: item[0].theta)
+        for limit, own in sorted(cases_of.items(), key=lambda item: item[0].theta)
     ]
 
 
 def by_foundation(finished: Finished) -> Markup:
-    """A row for each of the best foundations, the others in a last row; and all of them, to be unfolded."""
+    """Draw a row for each of the best foundations and one for the others; below, folded, a row for every one."""
     runs, columns = finished.runs, _columns(finished)
     best = worst_first(runs, "series")[::-1]
     rows = [_row_of_foundation(finished, int(place), columns) for place in best[: MOST_ROWS - 1]]
@@ -102,14 +102,14 @@ def by_foundation(finished: Finished) -> Markup:
 
 
 def ceiling(runs: "pd.DataFrame") -> float:
-    """Top of the axis [θ_max/α] that holds all of ``runs`` that stood."""
+    """Return the top of the axis [θ_max/α] that holds all of ``runs`` that stood."""
     stood = runs[runs["status"] == "ok"]
     highest = (stood["theta_max_over_alpha"] + stood["theta_max_error"].fillna(0)).max()
     return 1.1 * float(highest) if highest > 0 else 1.0
 
 
 def _columns(finished: Finished) -> "list[tuple[str, pd.DataFrame]]":
-    """Runs of each pier and scale, or all of them together where those are many."""
+    """Return the runs of each pier and scale, or all of them together if those are many."""
     groups = finished.groups()
     return groups if len(groups) <= MOST_COLUMNS else [("", finished.runs)]
 
@@ -119,11 +119,11 @@ def _all(finished: Finished) -> str:
 
 
 def worst_first(runs: "pd.DataFrame", by: str) -> list[Any]:
-    """Records or foundations: by how many of their runs overturn, are ended by flight or fail, then by the largest rotation."""
+    """Sort records or foundations by how many runs overturn, end in flight or fail, then by the largest rotation."""
     which = runs[by]
     ended = [(runs["status"] == status).groupby(which).sum() for status in ("overturned", "flight", "failed")]
     stood = runs["theta_max_over_alpha"].where(runs["status"] == "ok").groupby(which).max().fillna(0.0)
-    return sorted(stood.index, key=lambda one: (*(-int(each[one]) for each in ended), -float(stood[one]), one))
+    return sorted(stood.index, key=lambda row: (*(-int(count[row]) for count in ended), -float(stood[row]), row))
 
 
 def _row_of_record(finished: Finished, name: str, columns: "Sequence[tuple[str, pd.DataFrame]]") -> dots.Row:
@@ -139,7 +139,7 @@ def _row_of_foundation(finished: Finished, place: int, columns: "Sequence[tuple[
 
 
 def _others(columns: "Sequence[tuple[str, pd.DataFrame]]", by: str, single: Sequence[object], every: int) -> dots.Row:
-    """All that have no row of their own."""
+    """Return the row of all that have no row of their own."""
     what = {"record": "records", "series": "foundations"}[by]
     rest = [own[~own[by].isin(single)] for _, own in columns]
     return dots.Row(f"the other {every - len(single):,} {what}", "", "", rest)

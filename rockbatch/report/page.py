@@ -1,4 +1,4 @@
-"""The pages: which sections they have, in which order, one line for each."""
+"""The pages: their sections, in order, one line each."""
 
 from collections.abc import Callable
 
@@ -73,13 +73,13 @@ SECTIONS_OF_TWO: tuple[Callable[[Pair], Section | None], ...] = (
 
 
 def page(contents: Contents) -> str:
-    """The report of one folder as HTML."""
+    """Return the report of one folder as HTML."""
     title = contents.study["title"] or "Rocking piers"
     return document("Rocking response of stepping piers", title, [section(contents) for section in SECTIONS])
 
 
 def comparison(pair: Pair) -> str:
-    """The page that sets two studies against each other as HTML."""
+    """Return the page that compares two studies as HTML."""
     a, b = (study.info["study"]["title"] or study.saved.directory.name for study in pair.studies)
     title = f"{a} against {b}" if a != b else f"{a}: two studies"
     sections = [section(pair) for section in SECTIONS_OF_TWO]

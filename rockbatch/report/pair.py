@@ -20,7 +20,7 @@ class Matched:
     """Runs of two studies that belong together.
 
     ``runs`` are of A and of B, row by row; those of B have A's places of series and pier. ``only`` are those that the
-    other study does not have, or has more than once. ``keys`` are the columns that were matched.
+    other study lacks, or has more than once. ``keys`` are the matched columns.
     """
 
     runs: "tuple[pd.DataFrame, pd.DataFrame]"
@@ -30,18 +30,18 @@ class Matched:
 
 @dataclass(frozen=True, eq=False)
 class Pair:
-    """All that the page of two studies can tell of, A first.
+    """Everything that the page of two studies can show, A first.
 
     Attributes
     ----------
     studies : tuple of Finished
-        What was run.
+        Results of both studies.
     verdicts : tuple of sequences of Verdict
-        What their checks came to.
+        Results of their checks.
     matched : Matched
         Runs that belong together.
     named : Finished
-        A, with series called after what was matched: the rest may differ in B.
+        A, with series named after the matched keys only, since the others may differ in B.
     """
 
     studies: tuple[Finished, Finished]
@@ -65,15 +65,15 @@ def match(a: Finished, b: Finished) -> Matched:
         keys.append("with_vertical")
 
     def places(study: Finished, name: str) -> "pd.DataFrame":
-        found = study.runs[keys].astype({key: object for key in both}).fillna({key: "" for key in both})
-        found[name] = range(len(found))
-        return found.drop_duplicates(keys, keep=False)
+        keyed = study.runs[keys].astype({key: object for key in both}).fillna({key: "" for key in both})
+        keyed[name] = range(len(keyed))
+        return keyed.drop_duplicates(keys, keep=False)
 
     pairs = places(a, "a").merge(places(b, "b"), on=keys).sort_values("a", kind="stable")
     first, second = a.runs.iloc[pairs["a"]], b.runs.iloc[pairs["b"]]
     shared = {name: first[name].to_numpy() for name in ("series", "pier", "with_vertical")}
-    left = a.runs.drop(index=first.index), b.runs.drop(index=second.index)
-    return Matched((first, second.assign(**shared)), left, keys)
+    unmatched = a.runs.drop(index=first.index), b.runs.drop(index=second.index)
+    return Matched((first, second.assign(**shared)), unmatched, keys)
 
 
 def _named(study: Finished, keys: list[str]) -> Finished:

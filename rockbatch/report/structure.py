@@ -1,4 +1,4 @@
-"""The structure of a case: its pier, dampers and tendons as run.json has them, and their numbers in words."""
+"""The structure of a case: its pier, dampers and tendons from run.json, and their numbers in words."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -13,7 +13,7 @@ _PIER = ("alpha", "p", "mu", "gravity", "mass_t", "top_m", "deck_over_columns", 
 _DAMPER = ("kind", "f", "nu", "yield_m", "exponent", "at")
 _TENDON = ("psi", "lam", "strength", "at")
 _PREFERRED = {"f": "force_kN", "nu": "coefficient_kN_s_m", "psi": "prestress_kN", "lambda": "stiffness_kN_m"}
-"""Keys without units, and those that say the same of a pier whose mass is known."""
+"""Keys without units, and the equivalent ones with units, for a pier whose mass is known."""
 _WORDS = {
     "f": ("f", ""), "force_kN": ("F", "kN"), "yield_mm": ("uy", "mm"), "nu": ("ν", ""), "coefficient_kN_s_m": ("C", ""),
     "exponent": ("a", ""), "psi": ("ψ", ""), "prestress_kN": ("P0", "kN"), "lambda": ("λ", ""),
@@ -22,7 +22,7 @@ _WORDS = {
 
 
 def pier_of(case: Mapping[str, Any]) -> Pier | None:
-    """The pier of a case; None of one that cannot be, for a run.json of somebody else's may say anything."""
+    """Return the pier of a case; None if its values are impossible, since run.json may come from anybody."""
     try:
         return Pier(**{name: case["pier"][name] for name in _PIER if case["pier"].get(name) is not None})
     except (InputError, TypeError, ValueError):
@@ -30,7 +30,7 @@ def pier_of(case: Mapping[str, Any]) -> Pier | None:
 
 
 def restraints_of(case: Mapping[str, Any]) -> tuple[Restraint, ...]:
-    """Dampers and tendons of a case; none where they cannot be."""
+    """Return the dampers and tendons of a case; empty if their values are impossible."""
     described, pier = case["parameters"].get("restraints"), pier_of(case)
     if not isinstance(described, list) or pier is None:
         return ()
@@ -48,7 +48,7 @@ def _restraint(values: Mapping[str, Any]) -> Restraint:
 
 
 def in_words(pier: Pier, restraint: Restraint) -> str:
-    """A damper or tendon with its numbers, in kN where the mass is known: "friction damper at each pivot, F = 450 kN"."""
+    """Describe a damper or tendon, in kN if the mass is known: "friction damper at each pivot, F = 450 kN"."""
     kind = restraint.kind if isinstance(restraint, Damper) else "tendon"
     fields = fields_of(pier)
     values = {}
@@ -58,8 +58,8 @@ def in_words(pier: Pier, restraint: Restraint) -> str:
             values[key] = getattr(restraint, field) * divisor
     power = values.pop("exponent", 1.0) if "coefficient_kN_s_m" in values else 1.0
     words = f"{kind} damper" if isinstance(restraint, Damper) else kind
-    told = [_number(key, value, power) for key, value in values.items() if value < float("inf")]
-    return ", ".join([f"{words} {_where(restraint)}", *told])
+    numbers = [_number(key, value, power) for key, value in values.items() if value < float("inf")]
+    return ", ".join([f"{words} {_where(restraint)}", *numbers])
 
 
 def _number(key: str, value: float, power: float) -> str:

@@ -1,4 +1,4 @@
-"""A table of the page."""
+"""Tables of the page."""
 
 from collections.abc import Iterable, Sequence
 from itertools import groupby
@@ -9,11 +9,11 @@ from rockbatch.report.markup import Markup, join, number, tag
 WHOLE = ".10g"  # as it was given
 MOST_ROWS = 1000
 MOST_OPEN = 60
-"""Rows of a table that stands open; a longer one is unfolded by whom it concerns, and not printed."""
+"""Rows of the longest table that is shown unfolded; longer ones are folded, and not printed."""
 
 
 class Head(NamedTuple):
-    """Head of a column: what it says, how its numbers are written, a word of explanation, and what stands over it."""
+    """Head of a column: its text, the format of its numbers, an explanation, and the head over several columns."""
 
     says: str
     form: str = WHOLE
@@ -29,11 +29,11 @@ def table(
     prose: bool = False,
     name: str | None = None,
 ) -> Markup:
-    """A table in a container of its own that scrolls when it is too wide. Columns without a value are left out.
+    """Return a table in a container that scrolls if it is too wide. Columns without a value are left out.
 
-    ``prose``: its cells hold words that go over several lines.
+    ``prose``: its cells hold text of several lines.
 
-    Of more than :data:`MOST_ROWS` rows the first are shown, and it says so; more than :data:`MOST_OPEN` are folded up.
+    Of more than :data:`MOST_ROWS` rows the first are shown, and a sentence says so; more than :data:`MOST_OPEN` are folded.
     """
     whole = list(rows)
     rows = whole[:MOST_ROWS]
@@ -63,19 +63,19 @@ def table(
 
 
 def told_apart(shown: int, all_: int, which: str = "first") -> Markup:
-    """That not all rows are shown; nothing where they are."""
+    """Return the sentence that not all rows are shown; empty if they are."""
     if shown >= all_:
         return Markup("")
     return tag("p", f"The {which} {shown:,} of {all_:,} rows are shown.", class_="muted")
 
 
 def alarm(words: str) -> Markup:
-    """Words that must not be missed; bold, too, for those who do not see the colour."""
+    """Mark words that must not be missed: bold as well as coloured."""
     return tag("span", words, class_="alarm")
 
 
 def sub(base: str, index: str, rest: str = "") -> Markup:
-    """A symbol with its index: θ_max."""
+    """Return a symbol with its subscript: θ_max."""
     return join(base, tag("sub", index), rest)
 
 

@@ -1,1 +1,1 @@
-"""Pictures as SVG: shapes, axes, and what the report draws with them."""
+"""Pictures as SVG: shapes, axes, and the drawings of the report."""

@@ -20,7 +20,7 @@ METHODS = {  # marker, colour, words, and on which side the notes stand, so that
 
 
 def draw(levels: Sequence[Level]) -> Markup:
-    """Error against time per run, both logarithmic: the largest error solid, the median dotted."""
+    """Draw error against time per run, both logarithmic: the largest error solid, the median dotted."""
     timed = [level for level in levels if level.seconds_per_run]
     times = [1000 * (level.seconds_per_run or 0) for level in timed]
     errors = [
@@ -29,9 +29,9 @@ def draw(levels: Sequence[Level]) -> Markup:
     axes = Axes(44, 20, 384, 260, _decades(times), _decades(errors))
     drawn = [axes.frame(axes.x.ticks(6), axes.y.ticks(8))]
     for method, (shape, colour, _, side) in METHODS.items():
-        at = [level for level in timed if level.method == method]
-        drawn += _lines(axes, at, f"s{colour}")
-        drawn += [_point(axes, level, shape, f"s{colour}", side) for level in at if level.error_max is not None]
+        same = [level for level in timed if level.method == method]
+        drawn += _lines(axes, same, f"s{colour}")
+        drawn += [_point(axes, level, shape, f"s{colour}", side) for level in same if level.error_max is not None]
     own = chosen(levels)
     if own is not None:
         if own.tolerance:
@@ -55,7 +55,7 @@ def draw(levels: Sequence[Level]) -> Markup:
 
 
 def _decades(values: Sequence[float]) -> Scale:
-    """Whole powers of ten around all values."""
+    """Return a logarithmic scale over whole powers of ten that holds all values."""
     low, high = min(values, default=1.0), max(values, default=1.0)
     return Scale(10.0 ** math.floor(math.log10(low)), 10.0 ** (math.floor(math.log10(high)) + 1), log=True)
 
@@ -66,7 +66,7 @@ def _at(axes: Axes, level: Level) -> tuple[float, float]:
 
 
 def _lines(axes: Axes, levels: Sequence[Level], class_: str) -> list[Markup]:
-    """From level to level: the largest error, and the median one."""
+    """Draw the largest and the median errors as lines from level to level."""
     x = axes.across(np.array([1000 * (level.seconds_per_run or math.nan) for level in levels]))
     drawn = []
     for name, dashes in (("error_max", ""), ("error_median", " d2")):
@@ -78,7 +78,7 @@ def _lines(axes: Axes, levels: Sequence[Level], class_: str) -> list[Markup]:
 
 
 def _point(axes: Axes, level: Level, shape: str, class_: str, side: int) -> Markup:
-    """A level's marker, and the number of steps per sample, or SciPy's tolerance, beside it."""
+    """Draw a level's marker with its number of steps per sample, or SciPy's tolerance, beside it."""
     x, y = _at(axes, level)
     words = f"k = {level.substeps:.0f}" if level.substeps else f"{level.tolerance:.0e}"
     place = text(x + 7 * side, y - 4 * side + 3, words, class_=class_ if side > 0 else f"{class_} e")

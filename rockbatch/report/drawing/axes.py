@@ -20,13 +20,13 @@ class Scale:
     log: bool = False
 
     def fraction(self, values: Array) -> Array:
-        """0 at ``low``, 1 at ``high``."""
+        """Return places along the scale: 0 at ``low``, 1 at ``high``."""
         if self.log:
             return np.log(values / self.low) / math.log(self.high / self.low)
         return (values - self.low) / (self.high - self.low)
 
     def ticks(self, about: int) -> list[float]:
-        """Round values, ``about`` as many or fewer."""
+        """Return round values, ``about`` as many or fewer."""
         if self.log:
             first, last = math.ceil(math.log10(self.low) - 1e-9), math.floor(math.log10(self.high) + 1e-9)
             return [10.0**i for i in range(first, last + 1, max(1, math.ceil((last - first + 1) / about)))]
@@ -38,10 +38,10 @@ class Scale:
 
 
 def spanning(*arrays: Array, margin: float = 0.06) -> Scale:
-    """A scale that holds every finite value, and zero, with a margin."""
-    found = [array[np.isfinite(array)] for array in arrays]
-    low = min((float(array.min()) for array in found if len(array)), default=0.0)
-    high = max((float(array.max()) for array in found if len(array)), default=0.0)
+    """Return a scale that holds every finite value, and zero, with a margin."""
+    finite = [array[np.isfinite(array)] for array in arrays]
+    low = min((float(array.min()) for array in finite if len(array)), default=0.0)
+    high = max((float(array.max()) for array in finite if len(array)), default=0.0)
     low, high = min(low, 0.0), max(high, 0.0)
     room = margin * (high - low) or 1.0
     return Scale(low - room * (low < 0 or high == low), high + room)
@@ -59,17 +59,17 @@ class Axes:
     y: Scale
 
     def across(self, values: float | Array) -> Array:
-        """Abscissae [px]."""
+        """Return abscissae [px]."""
         return self.left + self.width * self.x.fraction(np.asarray(values, dtype=np.float64))
 
     def down(self, values: float | Array) -> Array:
-        """Ordinates [px], from the top of the picture."""
+        """Return ordinates [px], from the top of the picture."""
         return self.top + self.height * (1 - self.y.fraction(np.asarray(values, dtype=np.float64)))
 
     def frame(
         self, x_ticks: Sequence[float] | None, y_ticks: Sequence[float], x_numbers: bool = True, y_numbers: bool = True
     ) -> Markup:
-        """Grid and the numbers beside it; without a grid across where ``x_ticks`` is None."""
+        """Draw the grid and the numbers beside it; no vertical lines if ``x_ticks`` is None."""
         right, foot = self.left + self.width, self.top + self.height
         lines = "".join(f"M{self.left:.1f} {y:.1f}H{right:.1f}" for y in self.down(np.array(y_ticks)))
         lines += "".join(f"M{x:.1f} {self.top:.1f}V{foot:.1f}" for x in self.across(np.array(x_ticks or [])))
@@ -84,7 +84,7 @@ class Axes:
         return join(*drawn)
 
     def readable(self, kind: str, *content: object, names: str | None = None) -> Markup:
-        """``content`` in a group from which the script reads values back; ``kind`` is "time" or "plane".
+        """Group ``content`` so that the script can read values back; ``kind`` is "time" or "plane".
 
         ``names`` are those of the quantities of a plane: "elongation [mm]|F [kN]".
         """
@@ -95,7 +95,7 @@ class Axes:
 
 
 def written(ticks: Sequence[float]) -> list[str]:
-    """Ticks with as many decimals as their step needs; powers of ten as such where they are far apart."""
+    """Format ticks with as many decimals as their step needs; as powers of ten if they are far apart."""
     if len(ticks) > 1 and ticks[0] > 0 and ticks[1] / ticks[0] > 9:
         return [_power_of_ten(tick) for tick in ticks]
     step = min((b - a for a, b in pairwise(ticks)), default=ticks[0] if ticks else 1.0) or 1.0

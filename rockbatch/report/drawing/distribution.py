@@ -20,7 +20,7 @@ DASHES = 4
 
 
 def draw(groups: "Sequence[tuple[str, pd.DataFrame]]", series: Sequence[Series], count: str) -> Markup:
-    """A panel for each of the groups, which are runs and the words for them; ``count`` is what counts as one record."""
+    """Draw a panel for each of the groups of runs, with their captions; ``count`` is what counts as one record."""
     eventful = any(runs["status"].isin(["overturned", "flight"]).any() for _, runs in groups)
     panels = [
         tag("figure", tag("figcaption", words or "all runs"), _panel(words, runs, series, count, eventful))
@@ -45,7 +45,7 @@ def _panel(words: str, runs: "pd.DataFrame", series: Sequence[Series], count: st
         drawn.append(rectangle(edge, axes.top, axes.left + axes.width - edge, axes.height, "band"))
     drawn.append(axes.frame([tick for tick in Scale(0, top).ticks(5) if tick <= top], axes.y.ticks(5)))
     for place, same in runs.groupby("series"):
-        one = series[int(str(place))]
+        own = series[int(str(place))]
         theta, share = distribution(
             same["theta_max_over_alpha"].to_numpy(dtype=np.float64),
             same["status"].to_list(),
@@ -54,11 +54,11 @@ def _panel(words: str, runs: "pd.DataFrame", series: Sequence[Series], count: st
         reached = float(share[-1]) if len(share) else 0.0
         x = np.repeat(np.concatenate(([0.0], theta, [right])), 2)[1:-1]
         y = np.repeat(np.concatenate(([0.0], share)), 2)
-        drawn.append(curve(axes.across(np.minimum(x, right)), axes.down(y), _style(one), one.label))
+        drawn.append(curve(axes.across(np.minimum(x, right)), axes.down(y), _style(own), own.label))
         if reached < 1.0 and same["status"].isin(["overturned", "flight"]).any():
-            said = f"{one.label}: {100 * (1 - reached):.0f} % overturned, or ended by flight"
+            said = f"{own.label}: {100 * (1 - reached):.0f} % overturned, or ended by flight"
             at = 0.5 * (edge + axes.left + axes.width)
-            drawn.append(line(at, float(axes.down(reached)), at, float(axes.down(1.0)), _style(one)))
+            drawn.append(line(at, float(axes.down(reached)), at, float(axes.down(1.0)), _style(own)))
             drawn.append(marker("overturned", at, float(axes.down(0.5 * (1.0 + reached))), colour="alarm", title=said))
     drawn.append(text(axes.left + axes.width / 2, HEIGHT - 6, lowered("θ", "max", "/α"), class_="m q"))
     drawn.append(text(axes.left - 26, 11, "share of the records", class_="q"))
@@ -66,7 +66,7 @@ def _panel(words: str, runs: "pd.DataFrame", series: Sequence[Series], count: st
 
 
 def _style(series: Series) -> str:
-    """The rigid base in ink, dashed where there are several; colours for the others, dashed where they come again."""
+    """Return the line's classes: the rigid base in ink, others in colours; dashed where a colour repeats."""
     dash = series.index % DASHES if series.rigid else series.index // COLOURS % DASHES
     colour = "ink" if series.rigid else f"s{series.index % COLOURS + 1}"
     return f"level {colour}" + (f" d{dash}" if dash else "")

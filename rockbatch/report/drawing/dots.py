@@ -1,4 +1,4 @@
-"""Peaks as dots on one axis, a row for each record or foundation: few pixels a row, and words as large at any width.
+"""Peaks as dots on one axis, a row for each record or foundation, with labels of the same size at any width.
 
 Places along the axis are shares of the width, so that nothing but the axis stretches.
 """
@@ -19,16 +19,16 @@ if TYPE_CHECKING:
 FIRST, LAST = 1.5, 97.0
 """Where the axis begins and ends [% of the width]."""
 MOST_LETTERS = 20
-"""Of the names of foundations without a peak; where they are longer, their number stands for them."""
+"""Longest list of the names of foundations without a peak; if it is longer, their number stands instead."""
 MIDDLE = 10
-"""Of a row of 20 px."""
+"""Middle of a row of 20 px [px]."""
 FAILED = {"failed": "no result: the run failed"}
 
 Run = dict[str, Any]
 
 
 class Row(NamedTuple):
-    """A row: its words, of which the ``end`` is never cut off, more of them when pointed at, and its runs in each column."""
+    """A row: its label, whose ``end`` is never cut off, its tooltip, and its runs in each column."""
 
     words: str
     end: str
@@ -37,25 +37,25 @@ class Row(NamedTuple):
 
 
 class Limit(NamedTuple):
-    """A limit that a check sets: what it says, and the rotation θ/α that it allows."""
+    """A limit that a check sets: its description, and the rotation θ/α that it allows."""
 
     words: str
     theta: float
 
 
 class Marks(NamedTuple):
-    """How runs are drawn: by ``series`` if they are few enough to be told apart, or all alike; and what each says."""
+    """Style of the marks of runs: by ``series``, or all alike if these are too many; and the tooltip of each."""
 
     series: Sequence[Series] | None
     says: Callable[[Run], str]
     kind: str
-    """What a mark stands for, if all are alike: "foundation"."""
+    """The thing that a mark stands for, if all are alike: "foundation"."""
 
 
 def draw(
     rows: Sequence[Row], columns: Sequence[str], top: float, marks: Marks, limits: Sequence[Sequence[Limit]] = ()
 ) -> Markup:
-    """The legend, every row in every column, and the axis of all, which ends at ``top`` [θ_max/α].
+    """Draw the legend, every row in every column, and the common axis, which ends at ``top`` [θ_max/α].
 
     ``limits`` are those of each column.
     """
@@ -64,9 +64,9 @@ def draw(
     grids = [
         [_line(_across(tick, top), "grid") for tick in ticks]
         + [
-            _line(_across(one.theta, top), _dash(place), tag("title", one.words))
-            for place, one in enumerate(own)
-            if one.theta <= top
+            _line(_across(limit.theta, top), _dash(place), tag("title", limit.words))
+            for place, limit in enumerate(own)
+            if limit.theta <= top
         ]
         for own in limits
     ]
@@ -95,7 +95,7 @@ def draw(
 
 
 def _of_limits(limits: Sequence[Sequence[Limit]], top: float) -> list[Entry]:
-    """Each limit once, with its side where the axis ends before it."""
+    """Return the legend's entry of each limit, once; with its value if it lies beyond the axis."""
     drawn: dict[str, Markup] = {}
     for place, one in ((place, one) for own in limits for place, one in enumerate(own)):
         words = one.words if one.theta <= top else f"{one.words}: beyond the axis, at θ/α = {one.theta:.3g}"
@@ -104,7 +104,7 @@ def _of_limits(limits: Sequence[Sequence[Limit]], top: float) -> list[Entry]:
 
 
 def _dash(place: int) -> str:
-    """How a limit is drawn, by its place among those of its column."""
+    """Return the line style of a limit, by its place among those of its column."""
     return f"limit d{place % 4}"
 
 
@@ -112,8 +112,8 @@ def _across(theta: float, top: float) -> float:
     return round(FIRST + (LAST - FIRST) * theta / top, 1)
 
 
-def _line(at: float, class_: str, *content: object, low: int = 20, high: int = 0) -> Markup:
-    return tag("line", *content, x1=f"{at}%", x2=f"{at}%", y1=high, y2=low, class_=class_)
+def _line(x: float, class_: str, *content: object, low: int = 20, high: int = 0) -> Markup:
+    return tag("line", *content, x1=f"{x}%", x2=f"{x}%", y1=high, y2=low, class_=class_)
 
 
 def _strip(runs: "pd.DataFrame", top: float, grid: Sequence[Markup], marks: Marks, words: str) -> Markup:
@@ -134,15 +134,15 @@ def _strip(runs: "pd.DataFrame", top: float, grid: Sequence[Markup], marks: Mark
     )  # fmt: skip
 
 
-def _mark(run: Run, at: float, marks: Marks) -> Markup:
+def _mark(run: Run, x: float, marks: Marks) -> Markup:
     said = tag("title", marks.says(run))
     if marks.series is None:
-        return tag("circle", said, cx=f"{at}%", cy=MIDDLE, r=3.5, class_="dot s1")
+        return tag("circle", said, cx=f"{x}%", cy=MIDDLE, r=3.5, class_="dot s1")
     series = marks.series[run["series"]]
     if series.rigid:
-        return _line(at, f"rigid d{series.index % 4}", said, low=MIDDLE + 7, high=MIDDLE - 7)
+        return _line(x, f"rigid d{series.index % 4}", said, low=MIDDLE + 7, high=MIDDLE - 7)
     shape, colour = style_of(series.index)
-    return marker(shape, f"{at}%", MIDDLE, colour=f"s{colour}", title=marks.says(run))
+    return marker(shape, f"{x}%", MIDDLE, colour=f"s{colour}", title=marks.says(run))
 
 
 def _without_peak(runs: "pd.DataFrame", marks: Marks) -> Markup:
@@ -182,7 +182,7 @@ def _legend(drawn: "Sequence[pd.DataFrame]", marks: Marks) -> list[Entry]:
     if marks.series is None:
         entries.append((tag("circle", cx=11, cy=7, r=3.5, class_="dot s1"), f"a {marks.kind}"))
     else:
-        shown = sorted((marks.series[place] for place in present), key=lambda one: (not one.rigid, one.index))
+        shown = sorted((marks.series[place] for place in present), key=lambda series: (not series.rigid, series.index))
         entries += map(_named, shown)
     ends = {status for runs in drawn for status in runs["status"]}
     entries += [(_sign(status), words) for status, words in (EVENTS | FAILED).items() if status in ends]

@@ -1,4 +1,4 @@
-"""One run in little: the curves of the paper's Fig. 5 thinned to what a picture shows, and its loops."""
+"""One run in miniature: the curves of the paper's Fig. 5 thinned to the resolution of the picture, and its loops."""
 
 import math
 from dataclasses import dataclass
@@ -17,19 +17,19 @@ QUANTITIES = ("θ/α", "θ̇/(αp)", "E/M [J/kg]", "üg/g")
 SEPARATE = ("separation", "lift-off")
 LOOPS_HEIGHT = 128.0  # px
 MOST_DEVICES = 3
-"""Dampers and tendons of a run whose loops are drawn."""
+"""Most dampers and tendons of a run whose loops are drawn."""
 
 
 @dataclass(frozen=True, eq=False)
 class History:
-    """What is drawn of a :class:`Response`, without the response itself: many of them are in the memory at once.
+    """The drawn parts of a :class:`Response`, without the response itself, since many are in memory at once.
 
     Attributes
     ----------
     curves : list
         Abscissae [s] and ordinates of each of :data:`QUANTITIES`, with every extremum that a pixel can show.
     impacts, separations, flights : ndarray
-        Times of the events [s]; of impacts and separations not more than can be told apart.
+        Times of the events [s]; of impacts and separations only those that can be distinguished.
     peak : tuple of float
         Time and θ/α of the largest rotation.
     end : tuple of float
@@ -37,7 +37,7 @@ class History:
     band : float
         |θ/α| up to which a weakly rocking pier keeps both supports: THEORY.md, eq. 10. Zero on the rigid base.
     loops : Markup
-        Force against deflection of both springs where they yield; else empty.
+        Force against deflection of both springs if they can yield; else empty.
     devices : tuple of Markup
         Force against elongation of the first dampers and tendons, a picture of :data:`LOOPS_HEIGHT` each.
     """
@@ -56,7 +56,7 @@ class History:
 
 
 def reduced(response: Response, left: float, width: float) -> History:
-    """The response in little; ``left`` and ``width`` [px] are where its loops go."""
+    """Return the response thinned for drawing; ``left`` and ``width`` [px] are the place of its loops."""
     pier, t = response.pier, response.t
     theta = response.theta / pier.alpha
     ground = response.history["ag_h"].to_numpy(dtype=np.float64) / pier.gravity
@@ -65,8 +65,8 @@ def reduced(response: Response, left: float, width: float) -> History:
     grain = max(float(t[-1]), 1e-9) / PIXELS
 
     def times(*kinds: str) -> Array:
-        at = response.events["t"][response.events["kind"].isin(kinds)].to_numpy(dtype=np.float64)
-        return np.unique(np.rint(at / grain)) * grain
+        moments = response.events["t"][response.events["kind"].isin(kinds)].to_numpy(dtype=np.float64)
+        return np.unique(np.rint(moments / grain)) * grain
 
     return History(
         not response.base.on_springs,
@@ -84,7 +84,7 @@ def reduced(response: Response, left: float, width: float) -> History:
 
 
 def _devices(response: Response) -> list[str]:
-    """Dampers and tendons by their names; those at both pivots are one."""
+    """Return the names of dampers and tendons; a pair at both pivots counts as one."""
     columns = () if response.restraints is None else response.restraints
     names = (str(name).removesuffix(" force") for name in columns if str(name).endswith(" force"))
     return list(dict.fromkeys(name.removesuffix(" left").removesuffix(" right") for name in names))
@@ -97,7 +97,7 @@ def _band(response: Response) -> float:
 
 
 def _loops(response: Response, left: float, width: float) -> Markup:
-    """F/F_y against v/δ_y of the left and the right spring, side by side on one scale."""
+    """Draw F/F_y against v/δ_y of the left and the right spring, side by side on one scale."""
     base: Any = response.base
     deflection = yield_deflection(response.pier, base)
     springs = [
@@ -110,21 +110,21 @@ def _loops(response: Response, left: float, width: float) -> Markup:
     margin = 0.08 * (high - low) + 0.01
     across, down = Scale(low - margin, high + margin), Scale(-1.08, 0.1)
     gap = 10.0
-    each = (width - gap) / 2
+    panel = (width - gap) / 2
     drawn = []
     for place, (v, z) in enumerate(springs):
-        axes = Axes(left + place * (each + gap), 17, each, LOOPS_HEIGHT - 50, across, down)
+        axes = Axes(left + place * (panel + gap), 17, panel, LOOPS_HEIGHT - 50, across, down)
         line = curve(axes.across(np.clip(v, across.low, across.high)), axes.down(z), "curve", "F/Fy")
         frame = axes.frame(across.ticks(2), [-1, -0.5, 0], y_numbers=place == 0)
         name = text(axes.left + 4, axes.top + axes.height - 5, "LR"[place], class_="q")
         drawn += [frame, axes.readable("plane", line, names="v/δy|F/Fy"), name]
-        drawn.append(text(axes.left + each / 2, LOOPS_HEIGHT - 3, lowered("v/δ", "y"), class_="m q"))
+        drawn.append(text(axes.left + panel / 2, LOOPS_HEIGHT - 3, lowered("v/δ", "y"), class_="m q"))
     drawn.append(text(left - 2, 11, lowered("F/F", "y"), class_="q"))
     return join(*drawn)
 
 
 def _device(response: Response, name: str, left: float, width: float) -> Markup:
-    """Force against elongation [mm] of a damper or tendon, in kN where the mass is known; of a pair, the right one behind."""
+    """Draw force against elongation [mm] of a device, in kN if the mass is known; of a pair, the right one behind."""
     table, pier = response.restraints, response.pier
     assert table is not None
     sides = [side for side in (" right", " left", "") if f"{name}{side} force" in table]

@@ -1,4 +1,4 @@
-"""Overturning maps as pictures: the regions of a pulse's frequencies and amplitudes, drawn as they were computed.
+"""Overturning maps as pictures: regions over the frequency and amplitude of a pulse, drawn as they were computed.
 
 Straight lines join the boundaries of neighbouring columns with the same outcomes in the same order. Where these differ each
 column reaches to the middle between the two: a boundary that both have goes through, and at the others the picture has a step.
@@ -34,8 +34,8 @@ REGIONS = {
 class Strip:
     """Neighbouring columns with the same outcomes, from the lowest amplitude to the highest.
 
-    ``frequencies``, shape (n,), are those of the columns and of both ends; ``edges``, shape (n, outcomes + 1), the amplitudes
-    between which each outcome lies there, straight lines in between.
+    ``frequencies``, shape (n,), are those of the columns and of both ends; ``edges``, shape (n, outcomes + 1), are the amplitudes
+    that bound each outcome there, joined by straight lines.
     """
 
     outcomes: tuple[str, ...]
@@ -43,13 +43,13 @@ class Strip:
     edges: Array
 
     def outcome(self, frequency: float, amplitude: float) -> str:
-        """The outcome at a point of the strip."""
+        """Return the outcome at a point of the strip."""
         tops = [float(np.interp(frequency, self.frequencies, top)) for top in self.edges.T[1:-1]]
         return self.outcomes[int(np.searchsorted(tops, amplitude))]
 
 
 def strips(own: "pd.DataFrame") -> list[Strip]:
-    """One map, rows of overturning_map.csv, from the lowest frequency to the highest: no gaps, no overlaps."""
+    """Return the strips of one map, rows of overturning_map.csv, by frequency, without gaps or overlaps."""
     columns = [
         Strip(
             tuple(column["outcome"]),
@@ -58,16 +58,16 @@ def strips(own: "pd.DataFrame") -> list[Strip]:
         )
         for frequency, column in own.groupby("omega_p_over_p")
     ]
-    found = columns[:1]
+    joined = columns[:1]
     for column in columns[1:]:
-        before = found.pop()
+        before = joined.pop()
         if column.outcomes != before.outcomes:
             middle = 0.5 * (before.frequencies[-1:] + column.frequencies)
             at_end, at_start = _meeting(before, column)
-            found.append(_joined(before, Strip(before.outcomes, middle, at_end[None])))
+            joined.append(_joined(before, Strip(before.outcomes, middle, at_end[None])))
             before = Strip(column.outcomes, middle, at_start[None])
-        found.append(_joined(before, column))
-    return found
+        joined.append(_joined(before, column))
+    return joined
 
 
 def _joined(left: Strip, right: Strip) -> Strip:
@@ -79,10 +79,10 @@ def _joined(left: Strip, right: Strip) -> Strip:
 
 
 def _meeting(left: Strip, right: Strip) -> tuple[Array, Array]:
-    """Edges of two strips with other outcomes where they meet, in the middle between the last column and the first.
+    """Return the edges of two strips with other outcomes halfway between the last column and the first.
 
     A boundary goes through if it is, of those between the same two outcomes, the nearest to one that it is the nearest to.
-    Others stay where they are, but for giving way to those.
+    Others stay, unless they have to give way to those.
     """
     ends = left.edges[-1], right.edges[0]
     through: list[tuple[int, int]] = [(0, 0)]
@@ -99,31 +99,31 @@ def _meeting(left: Strip, right: Strip) -> tuple[Array, Array]:
 
 
 def _giving_way(edges: Array, places: list[int], heights: list[float]) -> Array:
-    """Edges of which those at ``places`` are moved to ``heights``, and the others stay between them."""
+    """Return edges, those at ``places`` moved to ``heights`` and the others kept between them."""
     low, high = np.full(len(edges), -np.inf), np.full(len(edges), np.inf)
     low[places] = high[places] = heights
     return np.clip(edges, np.maximum.accumulate(low), np.minimum.accumulate(high[::-1])[::-1])
 
 
 def _kind(strip: Strip, edge: int) -> tuple[str, ...]:
-    """The outcomes below and above an edge."""
+    """Return the outcomes below and above an edge."""
     return strip.outcomes[edge - 1 : edge + 1]
 
 
 def _nearest(height: float, kind: tuple[str, ...], other: Strip, edges: Array) -> int:
-    """Which edge of another strip, with the same outcomes on both sides, is the nearest; 0 where there is none."""
+    """Return the nearest edge of another strip with the same outcomes on both sides; 0 if there is none."""
     same = [i for i in range(1, len(other.outcomes)) if _kind(other, i) == kind]
     return min(same, key=lambda i: abs(edges[i] - height), default=0)
 
 
 def outcome_at(drawn: Sequence[Strip], frequency: float, amplitude: float) -> str:
-    """The outcome that a map shows at a point."""
-    own = next((each for each in drawn if frequency <= each.frequencies[-1]), drawn[-1])
+    """Return the outcome that a map shows at a point."""
+    own = next((strip for strip in drawn if frequency <= strip.frequencies[-1]), drawn[-1])
     return own.outcome(frequency, amplitude)
 
 
 def draw(own: "pd.DataFrame") -> tuple[Markup, list[Entry]]:
-    """The picture of one map, and its legend."""
+    """Draw one map; return the picture and its legend."""
     drawn = strips(own)
     across = Scale(float(drawn[0].frequencies[0]), float(drawn[-1].frequencies[-1]))
     axes = Axes(32, 26, WIDTH - 44, HEIGHT - 64, across, Scale(float(own["low"].min()), float(own["high"].max())))
@@ -146,31 +146,31 @@ Line = tuple[Array, Array]
 
 
 def _path(axes: Axes, lines: Iterable[Line], class_: str) -> Markup:
-    """All lines as one path."""
+    """Return all lines as one path."""
     gap = np.array([math.nan])
     pieces = [(np.append(axes.across(x), gap), np.append(axes.down(y), gap)) for x, y in lines]
     if not pieces:
         return Markup("")
-    x, y = (np.concatenate(each) for each in zip(*pieces, strict=True))
+    x, y = (np.concatenate(coordinates) for coordinates in zip(*pieces, strict=True))
     return curve(x, y, class_)
 
 
 def _areas(drawn: Sequence[Strip], outcome: str) -> Iterator[Line]:
-    """The outlines of all regions with an outcome."""
+    """Yield the outlines of all regions with an outcome."""
     for strip in drawn:
         x = np.concatenate((strip.frequencies, strip.frequencies[::-1]))
-        for place, each in enumerate(strip.outcomes):
-            if each == outcome:
+        for place, region in enumerate(strip.outcomes):
+            if region == outcome:
                 yield x, np.concatenate((strip.edges[:, place], strip.edges[::-1, place + 1]))
 
 
 def _inside(drawn: Sequence[Strip]) -> Iterator[Line]:
-    """The boundaries along each strip."""
+    """Return the boundaries along each strip."""
     return ((strip.frequencies, edge) for strip in drawn for edge in strip.edges.T[1:-1])
 
 
 def _between(drawn: Sequence[Strip]) -> Iterator[Line]:
-    """Where the outcome changes from a strip to the next."""
+    """Yield the lines at which the outcome changes from a strip to the next."""
     for left, right in pairwise(drawn):
         x = left.frequencies[-1]
         heights = np.union1d(left.edges[-1], right.edges[0])

@@ -23,7 +23,7 @@ RIGID_LINES = 4
 def draw(
     finished: Finished, runs: "pd.DataFrame", records: Sequence[str], top: float, side: str = "polarity"
 ) -> Markup:
-    """Panels of ``records``; ``top`` is the end of the common axis, θ_max/α."""
+    """Draw panels of ``records``; ``top`` is the end of the common axis, θ_max/α."""
     runs = runs.assign(side=runs[side])
     present = [finished.series[place] for place in sorted(runs["series"].unique())]
     ticks = {series.index: series.tick for series in present if not series.rigid}
@@ -43,7 +43,7 @@ def draw(
 
 
 class _Panel:
-    """How every record of a figure is drawn."""
+    """Axes and styles that the panels of a figure have in common."""
 
     def __init__(
         self, series: list[Series], top: float, eventful: bool, ticks: dict[int, str], width: float, sides: list[str]
@@ -101,7 +101,7 @@ class _Panel:
 
 
 def said_of(series: Series, run: dict[str, Any], both: bool) -> str:
-    """What a marker says when pointed at: "2: η = 3.5: 0.0617 ± 3e-07"."""
+    """Return the tooltip of a marker: "2: η = 3.5: 0.0617 ± 3e-07"."""
     name = series.label + (f" ({run['polarity']})" if both else "")
     if run["status"] != "ok":
         return f"{name}: {run['status']}"
@@ -116,7 +116,7 @@ def _rigid(series: Series, second: bool) -> str:
 
 
 def _legend(present: Sequence[Series], sides: Sequence[str], runs: "pd.DataFrame") -> Markup:
-    """How each series is drawn, and its name."""
+    """Draw the legend: a marker or line for each series, and its name."""
     entries: list[tuple[Markup, str]] = []
     for series in sorted(present, key=lambda series: (not series.rigid, series.index)):
         named = series.rigid or series.label.split(":")[0] == series.tick

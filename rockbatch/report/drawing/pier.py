@@ -1,4 +1,4 @@
-"""The pier as it stands, to scale: the pivots on which it steps, its centre of mass, and what it stands on."""
+"""The pier to scale: the pivots on which it steps, its centre of mass, its supports and its devices."""
 
 import math
 from collections.abc import Collection, Mapping, Sequence
@@ -9,25 +9,25 @@ from rockbatch.report.drawing.svg import line, lowered, rectangle, svg, text
 from rockbatch.report.markup import Markup, number, tag
 
 HEIGHT = 190.0
-"""Of the highest pier [px]."""
+"""Height of the highest pier [px]."""
 
 LEFT, RIGHT, ABOVE, BELOW = 30.0, 110.0, 14.0, 48.0
-"""Room around a pier for what is written there [px]."""
+"""Room around a pier for its labels [px]."""
 
 SPRING = 20.0
 """Height of a support's spring [px]: not to scale, it has none."""
 
 ASIDE = 9.0
-"""By how much a damper is drawn outside the pivot at which it is [px]."""
+"""Distance of a damper outside its pivot [px]."""
 
 MOST = 4
-"""Piers that are drawn; more would say nothing new."""
+"""Most piers that are drawn; more would show nothing new."""
 
 
 def piers(all_of_them: Sequence[Mapping[str, Any]], bases: Collection[str]) -> list[Markup]:
-    """A picture of each pier, at one scale; ``all_of_them`` as run.json has them, ``bases`` what they stand on.
+    """Draw each pier, at one scale; ``all_of_them`` as in run.json, ``bases`` the kinds of their bases.
 
-    None of a pier that cannot be: a run.json of somebody else's may say anything.
+    A pier with impossible values is left out, since run.json may come from anybody.
     """
     shown = [pier for pier in all_of_them if _can_be(pier)][:MOST]
     if not shown:
@@ -37,11 +37,11 @@ def piers(all_of_them: Sequence[Mapping[str, Any]], bases: Collection[str]) -> l
 
 
 def devices(pier: Pier, restraints: Sequence[Restraint]) -> tuple[tuple[str, float], ...]:
-    """Kinds and places of dampers and tendons, as offsets from the axis [m]."""
+    """Return kinds and places of dampers and tendons, as offsets from the axis [m]."""
     return tuple(
-        (each.kind if isinstance(each, Damper) else "tendon", offset)
-        for each in restraints
-        for offset in offsets(pier, each)
+        (restraint.kind if isinstance(restraint, Damper) else "tendon", offset)
+        for restraint in restraints
+        for offset in offsets(pier, restraint)
     )
 
 
@@ -56,7 +56,7 @@ def _can_be(pier: Mapping[str, Any]) -> bool:
 
 
 def _top(pier: Mapping[str, Any]) -> float:
-    """Height of the highest point of the shaft [m]; of a uniform block unless it is known."""
+    """Return the height of the highest point of the shaft [m]; that of a uniform block if it is not given."""
     return float(pier.get("top_m") or 2.0 * pier["height_m"])
 
 
@@ -103,7 +103,7 @@ def _pier(pier: Mapping[str, Any], scale: float, springs: bool) -> Markup:
 
 
 def _deck(pier: Mapping[str, Any], middle: float, b: float, ground: float, scale: float) -> list[Markup]:
-    """The deck at its height: a slab, whose own size is not given."""
+    """Draw the deck at its height: a slab of no particular size, since none is given."""
     if not pier.get("deck_m"):
         return []
     y = ground - scale * float(pier["deck_m"])
@@ -115,7 +115,7 @@ def _deck(pier: Mapping[str, Any], middle: float, b: float, ground: float, scale
 
 
 def _device(kind: str, middle: float, at: float, ground: float, top: float) -> list[Markup]:
-    """A tendon up to the top at its place, or a damper between the base and the ground, outside the support there."""
+    """Draw a tendon up to the top, or a damper between the base and the ground, outside the support there."""
     if kind == "tendon":
         return [line(middle + at, ground + SPRING, middle + at, ground - top, "tendon s2", kind)]
     x = middle + at + math.copysign(ASIDE, at)
@@ -128,7 +128,7 @@ def _device(kind: str, middle: float, at: float, ground: float, top: float) -> l
 
 
 def _support(x: float, ground: float, spring: bool) -> list[Markup]:
-    """What is under a pivot: a spring on the ground, or the ground."""
+    """Draw the support of a pivot: a spring on the ground, or the ground."""
     below = ground + (SPRING if spring else 0.0)
     parts = [line(x - 9.0, below, x + 9.0, below, "rigid")]
     parts += [line(x + at, below, x + at - 4.0, below + 5.0, "edge") for at in (-5.0, 0.0, 5.0, 9.0)]
@@ -141,11 +141,11 @@ def _support(x: float, ground: float, spring: bool) -> list[Markup]:
 
 
 def _length(x1: float, y1: float, x2: float, y2: float, words: str) -> list[Markup]:
-    """A line with its ends and its length, below or beside it."""
+    """Draw a dimension line, with its text below or beside it."""
     flat = y1 == y2
     ends = [
         line(x, y - 3.0, x, y + 3.0, "edge") if flat else line(x - 3.0, y, x + 3.0, y, "edge")
         for x, y in ((x1, y1), (x2, y2))
     ]
-    told = text(0.5 * (x1 + x2), y1 + 14.0, words, class_="m") if flat else text(x1 + 4.0, 0.5 * (y1 + y2) + 4.0, words)
-    return [line(x1, y1, x2, y2, "edge"), *ends, told]
+    note = text(0.5 * (x1 + x2), y1 + 14.0, words, class_="m") if flat else text(x1 + 4.0, 0.5 * (y1 + y2) + 4.0, words)
+    return [line(x1, y1, x2, y2, "edge"), *ends, note]

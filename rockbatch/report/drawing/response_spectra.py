@@ -1,4 +1,4 @@
-"""The response spectra of the suite: what the records ask of structures of any period, in one picture."""
+"""The response spectra of the suite in one picture."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -12,27 +12,27 @@ from rockbatch.report.drawing.svg import COLOURS, Array, curve, key, line, recta
 from rockbatch.report.markup import Markup, join
 
 LABELLED = COLOURS
-"""Suites of as many records show which is which; larger ones show their spread."""
+"""Most records whose spectra are labelled one by one; larger suites show their spread."""
 
 
 def drawable(spectra: Mapping[str, Any]) -> bool:
-    """Whether periods rise, and every spectrum has a value for each; a file of somebody else's may say anything."""
+    """Return whether periods rise, and every spectrum has a value for each; run.json may come from anybody."""
     periods, more = spectra["period_s"], [spectra[name] for name in ("mean_sa_g", "target_sa_g") if name in spectra]
     rising = len(periods) > 1 and all(a < b for a, b in pairwise([0.0, *periods]))
     both = len(more) != 1
-    there = all(len(one) == len(periods) for one in [*spectra["sa_g"], *more])
+    there = all(len(spectrum) == len(periods) for spectrum in [*spectra["sa_g"], *more])
     return (
         rising
         and both
         and there
-        and all(value is None or value >= 0 for one in [*spectra["sa_g"], *more] for value in one)
+        and all(value is None or value >= 0 for spectrum in [*spectra["sa_g"], *more] for value in spectrum)
     )
 
 
 def draw(spectra: dict[str, Any], names: Sequence[str], fitted: tuple[float, float] | None = None) -> Markup:
-    """Pseudo-spectral acceleration [g] over the period [s], both logarithmic.
+    """Draw pseudo-spectral acceleration [g] over the period [s], both logarithmic.
 
-    ``spectra`` is that of run.json: ``damping``, ``period_s``, in the order of ``names`` ``sa_g``, and perhaps
+    ``spectra`` is that of run.json: ``damping``, ``period_s``, ``sa_g`` in the order of ``names``, and optionally
     ``target_sa_g``, to which the suite's ``mean_sa_g`` is ``fitted`` between two periods [s].
     """
     periods, values = np.array(spectra["period_s"], dtype=float), np.array(spectra["sa_g"], dtype=float)
@@ -71,7 +71,7 @@ def draw(spectra: dict[str, Any], names: Sequence[str], fitted: tuple[float, flo
 
 
 def _ticks(scale: Scale) -> list[float]:
-    """1, 2 and 5 times the powers of ten, as spectra are read; the powers alone where they would crowd."""
+    """Return 1, 2 and 5 times the powers of ten, as usual for spectra; fewer if they would crowd."""
     decades = range(math.floor(math.log10(scale.low)), math.ceil(math.log10(scale.high)) + 1)
-    found = [m * 10.0**i for i in decades for m in (1, 2, 5) if scale.low <= m * 10.0**i <= scale.high]
-    return found if len(found) <= 9 else scale.ticks(8)
+    ticks = [m * 10.0**i for i in decades for m in (1, 2, 5) if scale.low <= m * 10.0**i <= scale.high]
+    return ticks if len(ticks) <= 9 else scale.ticks(8)

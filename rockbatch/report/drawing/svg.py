@@ -1,4 +1,4 @@
-"""Pictures as inline SVG: text stays text, colours come from the style sheet, and curves are drawn in tenths of a pixel."""
+"""Pictures as inline SVG: text stays text, colours come from the style sheet, and curves are in tenths of a pixel."""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -33,7 +33,7 @@ MARKERS = ("disc", "square", "up", "diamond", "down", "cross", "star", "left", "
 
 
 def style_of(index: int) -> tuple[str, int]:
-    """Marker and colour of the ``index``-th foundation: no common factor, so 70 pairs before one comes back."""
+    """Return marker and colour of the ``index``-th foundation: no common factor, so 70 different pairs."""
     return MARKERS[index % len(MARKERS)], index % COLOURS + 1
 
 
@@ -48,7 +48,7 @@ def _polygon(corners: int, radius: float, start: float, waist: float) -> str:
 
 
 def markers() -> Markup:
-    """Definitions of all markers, once for the page."""
+    """Return the definitions of all markers, once for the page."""
     shapes = {"disc": _DISC, "cross": _CROSS, "overturned": _SALTIRE, "flight": _ARROW}
     shapes |= {name: _polygon(*form) for name, form in _POLYGONS.items()}
     paths = [tag("path", id=f"m-{name}", d=d) for name, d in shapes.items()]
@@ -56,18 +56,18 @@ def markers() -> Markup:
 
 
 def marker(name: str, x: float | str, y: float, *, colour: str, title: str | None = None) -> Markup:
-    """A marker at (x, y); ``colour`` are classes of the style sheet, ``title`` what it says when pointed at."""
+    """Draw a marker at (x, y); ``colour`` are classes of the style sheet, ``title`` is its tooltip."""
     said = tag("title", title) if title else Markup("")
     return tag("use", said, href=f"#m-{name}", x=_short(x), y=_short(y), class_=colour)
 
 
 def text(x: float | str, y: float, *content: object, class_: str = "") -> Markup:
-    """Text at (x, y); ``x`` in pixels, or a share of the width: "50%"."""
+    """Draw text at (x, y); ``x`` in pixels, or a share of the width: "50%"."""
     return tag("text", *content, x=_short(x), y=_short(y), class_=class_ or None)
 
 
 def lowered(base: str, index: str, rest: str = "") -> Markup:
-    """Text with a subscript: ("θ", "max", "/α")."""
+    """Return text with a subscript: ("θ", "max", "/α")."""
     raised = tag("tspan", rest, dy="-2") if rest else Markup("")
     return join(base, tag("tspan", index, dy="2", class_="sub"), raised)
 
@@ -84,16 +84,16 @@ def line(x1: float, y1: float, x2: float, y2: float, class_: str, title: str | N
 
 
 def svg(width: float, height: float, *content: object, description: str, class_: str = "plot") -> Markup:
-    """A picture of that size [px]; ``description`` is for those who cannot see it."""
+    """Return a picture of that size [px]; ``description`` is for those who cannot see it."""
     return tag("svg", *content, class_=class_, role="img", aria_label=description, viewBox=f"0 0 {width:g} {height:g}")
 
 
 Entry = tuple[Markup, str]
-"""Of a legend: a drawing for 22 × 14 px, and its words."""
+"""Entry of a legend: a drawing for 22 × 14 px, and its text."""
 
 
 def key(entries: Sequence[Entry]) -> Markup:
-    """A legend."""
+    """Return a legend."""
     pictures = [
         tag("svg", drawn, class_="plot", viewBox="0 0 22 14", width=22, height=14, aria_hidden="true")
         for drawn, _ in entries
@@ -106,7 +106,7 @@ def key(entries: Sequence[Entry]) -> Markup:
 
 
 def side_by_side(drawn: Iterable[tuple[str, Markup, Sequence[Entry]]], width: float) -> Markup:
-    """Pictures with titles and legends, as many beside each other as there is room for; what the legends share, once."""
+    """Arrange pictures with titles beside each other as room permits, over one legend without repeated entries."""
     entries: dict[str, Markup] = {}
     pictures = []
     for title, picture, own in drawn:
@@ -123,12 +123,12 @@ def _short(value: float | str) -> str:
 
 
 def curve(x: Array, y: Array, class_: str, name: str | None = None) -> Markup:
-    """A curve through points in pixels, NaN where it is interrupted; ``name`` is what the script calls it."""
+    """Draw a curve through points in pixels, interrupted at NaN; ``name`` is its name in the script."""
     return tag("path", d=_relative(x, y), transform=f"scale({1 / FINE:g})", class_=class_, data_name=name)
 
 
 def _relative(x: Array, y: Array) -> str:
-    """Points as a path of whole steps; those that repeat the one before or lie straight between two are left out."""
+    """Return points as a path of whole steps, without repeated points and those on a straight line between two others."""
     there = np.isfinite(x) & np.isfinite(y)
     parts = []
     for piece in np.split(np.arange(len(x)), np.flatnonzero(np.diff(there.astype(np.int8))) + 1):
@@ -142,7 +142,7 @@ def _relative(x: Array, y: Array) -> str:
 
 
 def _bends(points: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
-    """Places of the points without which the drawing would change."""
+    """Return the places of the points without which the drawing would change."""
     moved = np.flatnonzero(np.any(np.diff(points, axis=0) != 0, axis=1)) + 1
     kept = np.concatenate(([0], moved))
     if len(kept) < 3:
@@ -158,7 +158,7 @@ def _compact(numbers: Sequence[int] | npt.NDArray[np.int64]) -> str:
 
 
 def thin(x: Array, y: Array, buckets: int) -> tuple[Array, Array]:
-    """Fewer points of a history that draw the same: of each bucket the first, least, largest and last.
+    """Return fewer points of a history that draw the same: of each bucket the first, least, largest and last.
 
     Parameters
     ----------
