@@ -65,7 +65,7 @@ class FinishedAnalysis:
         path, noted = self.directory / name, self.info.get("digests", {}).get(name, {}).get("sha256")
         try:
             if noted and sha256_of(path) != noted:
-                _tell(path)
+                _warn_edited(path)
             table = read_table(path)
         except (OSError, ValueError):
             return None
@@ -88,7 +88,7 @@ def read(directory: Path, name: str, sha256: str) -> FinishedAnalysis | None:
     except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
         of_study, intact = None, False
     if not intact:
-        _tell(path)
+        _warn_edited(path)
     return FinishedAnalysis(Path(directory), info) if of_study == sha256 else None
 
 
@@ -98,7 +98,7 @@ def digest_of(info: Mapping[str, Any]) -> str:
     return hashlib.sha256(json.dumps(said).encode()).hexdigest()
 
 
-def _tell(path: Path) -> None:
+def _warn_edited(path: Path) -> None:
     """Warn of a file that was changed after it was written."""
     message = f"{path}: not as it was written: it was edited, or is damaged; what can be read of it is shown"
     warnings.warn(message, EditedTable, stacklevel=3)

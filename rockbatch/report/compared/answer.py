@@ -1,4 +1,4 @@
-"""The answer of two studies: which does better, by how much, and in which record."""
+"""The answer of two studies: the better one, the difference, and the governing records."""
 
 import math
 
@@ -19,7 +19,7 @@ INDEPENDENT = ("theta_max_over_alpha", "settlement_m", "base_tilt_rad", "ductili
 
 
 def section(pair: Pair) -> Section:
-    """Which study does better, from the runs that both have."""
+    """Report the better study, from the runs that both have."""
     studies = [
         study_of(study, runs.index.tolist()) for study, runs in zip(pair.studies, pair.matched.runs, strict=True)
     ]
@@ -31,19 +31,19 @@ def section(pair: Pair) -> Section:
 
 
 def study_of(study: Finished, index: list[int]) -> Finished:
-    """A study with some of its runs alone."""
+    """Return a study restricted to some of its runs."""
     return Finished(
         study.saved, study.runs.loc[index], study.series, study.piers, study.places, study.pier_places, study.cases
     )
 
 
 def _better(studies: list[Finished], worst: list[dict[str, Worst]]) -> Markup:
-    """The study with fewer runs that do not end standing, or else the one whose worst responses are smaller."""
+    """Name the study with fewer runs that do not end standing, or else the one with smaller worst responses."""
     lost = [int(study.runs["status"].isin((*NO_PEAK, "failed")).sum()) for study in studies]
     if lost[0] != lost[1]:
         good, bad = (0, 1) if lost[0] < lost[1] else (1, 0)
-        told = f": of {counted(len(studies[0].runs), 'run')} {lost[good]} do not end standing, of {SIDES[bad]} {lost[bad]}."
-        return join(tag("strong", f"{SIDES[good]} is better"), told)
+        lead = f": of {counted(len(studies[0].runs), 'run')} {lost[good]} do not end standing, of {SIDES[bad]} {lost[bad]}."
+        return join(tag("strong", f"{SIDES[good]} is better"), lead)
     changes = {
         name: _change(*(own[name].value for own in worst)) for name in INDEPENDENT if all(name in own for own in worst)
     }
@@ -52,11 +52,11 @@ def _better(studies: list[Finished], worst: list[dict[str, Worst]]) -> Markup:
         (True, False): "B is better", (False, True): "A is better", (True, True): "Neither is better throughout",
         (False, False): "Neither is better",
     }[smaller, larger]  # fmt: skip
-    each = [
+    diff = [
         f"{RESPONSES[name].words} {100 * change:+.3g} % ({_record(studies, worst, name)})"
         for name, change in changes.items()
     ]
-    return join(tag("strong", says), f": from A to B, worst {', '.join(each)}." if each else ": no run ends standing.")
+    return join(tag("strong", says), f": from A to B, worst {', '.join(diff)}." if diff else ": no run ends standing.")
 
 
 def _change(first: float, second: float) -> float:
@@ -64,13 +64,13 @@ def _change(first: float, second: float) -> float:
 
 
 def _record(studies: list[Finished], worst: list[dict[str, Worst]], name: str) -> str:
-    """The record of the worst, or those of both."""
+    """Return the record of the worst response, or those of both studies."""
     labels = (study.label(own[name].run["record"]) for study, own in zip(studies, worst, strict=True))
     return "; then ".join(dict.fromkeys(labels))
 
 
 def _pairs(pair: Pair) -> str:
-    """In how many pairs of runs the rotation is smaller, and the greatest changes either way."""
+    """Report in how many pairs of runs the rotation is smaller, and the greatest changes either way."""
     a, b = pair.matched.runs
     first, second = (runs["theta_max_over_alpha"].where(runs["status"] == "ok").to_numpy(float) for runs in (a, b))
     both = (first > 0) & (second >= 0)
@@ -79,25 +79,25 @@ def _pairs(pair: Pair) -> str:
     ratio = second[both] / first[both]
     runs = a[both]
     ends = [(float(ratio[place]), runs.iloc[place]) for place in (int(ratio.argmin()), int(ratio.argmax()))]
-    told = [f"{value:.2g} times ({pair.named.label(run['record'])}, {pair.named.which(run)})" for value, run in ends]
+    said = [f"{value:.2g} times ({pair.named.label(run['record'])}, {pair.named.which(run)})" for value, run in ends]
     smaller = int((ratio < 1.0).sum())
     return (
         f"From A to B the rotation becomes smaller in {smaller} of {counted(int(both.sum()), 'pair')} of runs, larger in "
-        f"{int((ratio > 1.0).sum())}; it changes to {told[0]} at least and to {told[1]} at most."
+        f"{int((ratio > 1.0).sum())}; it changes to {said[0]} at least and to {said[1]} at most."
     )
 
 
 def _table(studies: list[Finished], worst: list[dict[str, Worst]]) -> Markup:
-    """The worst of every response in both studies."""
+    """Return the worst of every response in both studies as a table."""
     rows: list[list[object]] = []
     for name, response in RESPONSES.items():
-        own = [each.get(name) for each in worst]
+        own = [responses.get(name) for responses in worst]
         if not any(own):
             continue
         row: list[object] = [response.words]
-        for study, one in zip(studies, own, strict=True):
-            row += ["none", None] if one is None else [in_words(one), _where(study, one)]
-        values = [math.nan if one is None else one.value for one in own]
+        for study, extreme in zip(studies, own, strict=True):
+            row += ["none", None] if extreme is None else [in_words(extreme), _where(study, extreme)]
+        values = [math.nan if extreme is None else extreme.value for extreme in own]
         row.append(values[1] / values[0] if values[0] > 0 and values[1] == values[1] else None)
         rows.append(row)
     heads = [Head("worst of the runs in common")]
@@ -105,5 +105,5 @@ def _table(studies: list[Finished], worst: list[dict[str, Worst]]) -> Markup:
     return table([*heads, Head("B / A", ".3f")], rows, prose=True, name="Worst responses of both")
 
 
-def _where(study: Finished, one: Worst) -> str:
-    return f"{study.label(one.run['record'])}, {study.which(one.run)}"
+def _where(study: Finished, worst: Worst) -> str:
+    return f"{study.label(worst.run['record'])}, {study.which(worst.run)}"

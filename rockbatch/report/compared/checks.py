@@ -1,4 +1,4 @@
-"""Whether the piers of both studies pass."""
+"""Verdicts on the piers of both studies."""
 
 from rockbatch.report.document import Section
 from rockbatch.report.markup import join, tag
@@ -7,7 +7,7 @@ from rockbatch.report.sections import verdicts
 
 
 def section(pair: Pair) -> Section:
-    """The answer of each study, and every check in every case."""
+    """Report the answer of each study, and every check in every case."""
     parts: list[object] = []
     for name, study, judged in zip(SIDES, pair.studies, pair.verdicts, strict=True):
         parts += [tag("h3", name), tag("div", verdicts.answer(judged, study))]

@@ -1,4 +1,4 @@
-"""How the study files differ, line by line, and the versions."""
+"""Differences between the study files, line by line, and between versions."""
 
 import difflib
 
@@ -8,7 +8,7 @@ from rockbatch.report.pair import Pair
 
 
 def section(pair: Pair) -> Section:
-    """The differing lines of the study files."""
+    """Show the differing lines of the study files."""
     texts = [study.info["study"]["text"].splitlines() for study in pair.studies]
     lines = list(difflib.unified_diff(texts[0], texts[1], "A", "B", n=1, lineterm=""))
     versions = [
@@ -17,6 +17,6 @@ def section(pair: Pair) -> Section:
         )
         for s in pair.studies
     ]
-    told = tag("p", f"Versions: A {versions[0]}; B {versions[1]}.") if versions[0] != versions[1] else ""
+    differing = tag("p", f"Versions: A {versions[0]}; B {versions[1]}.") if versions[0] != versions[1] else ""
     shown = tag("pre", tag("code", "\n".join(lines))) if lines else tag("p", "The study files are the same.")
-    return Section("How the study files differ", "difference", join(shown, told))
+    return Section("How the study files differ", "difference", join(shown, differing))

@@ -1,4 +1,4 @@
-"""The figures of the peaks with the markers of both studies."""
+"""Figures of the peaks with the markers of both studies."""
 
 from dataclasses import replace
 
@@ -10,7 +10,7 @@ from rockbatch.report.table import THETA
 
 
 def section(pair: Pair) -> Section | None:
-    """Panels with the markers of both studies; of both directions, the worse one."""
+    """Draw panels with the markers of both studies; of both directions, the worse one."""
     import pandas as pd
 
     named, matched = pair.named, pair.matched

@@ -1,4 +1,4 @@
-"""What differs in what went into both studies: the pier, the foundations, the motions and the numerics, value by value."""
+"""Inputs in which both studies differ: pier, foundations, motions and numerics, value by value."""
 
 from collections.abc import Collection, Iterable
 
@@ -10,7 +10,7 @@ from rockbatch.report.pair import SIDES, Pair
 from rockbatch.report.table import Head, table
 
 MOST = 6
-"""Values of one key that are shown."""
+"""Most values of one key that are shown."""
 
 PIER = ("alpha", "p", "mu", "gravity", "size_m", "mass_t", "top_m")
 BASE = (
@@ -23,43 +23,43 @@ Values = list[object]
 
 
 def section(pair: Pair) -> Section:
-    """A row for each input that is not the same."""
+    """Return a row for each input that differs."""
     in_both = set.intersection(*({case["case"] for case in study.info["cases"]} for study in pair.studies))
     sides = [_inputs(study, in_both) for study in pair.studies]
     names = dict.fromkeys(name for side in sides for name in side)
     rows = []
     for name in names:
-        one, other = (side.get(name, []) for side in sides)
-        if one != other:
-            rows.append([name, _shown(one, one + other), _shown(other, one + other)])
+        values, others = (side.get(name, []) for side in sides)
+        if values != others:
+            rows.append([name, _shown(values, values + others), _shown(others, values + others)])
     heads = [Head("input"), *map(Head, SIDES)]
     nothing: Markup = tag("p", "Pier, foundations, motions and numerics are the same in both.")
     return Section("What differs in the inputs", "inputs", table(heads, rows, name="Inputs") if rows else nothing)
 
 
 def _inputs(study: Finished, compared: Collection[str]) -> dict[str, Values]:
-    """All values of every input, by what it is called; of a case only where it is ``compared``."""
+    """Return all values of every input, by its name; of cases only those that are ``compared``."""
     info = study.info
-    found: dict[str, Values] = {}
+    inputs: dict[str, Values] = {}
     for key in PIER:
-        found[f"pier: {_called(key)}"] = _distinct(case["pier"].get(key) for case in info["cases"])
-    found["cases"] = _distinct(case["case"] for case in info["cases"])
-    for name in filter(compared.__contains__, found["cases"]):
+        inputs[f"pier: {_called(key)}"] = _distinct(case["pier"].get(key) for case in info["cases"])
+    inputs["cases"] = _distinct(case["case"] for case in info["cases"])
+    for name in filter(compared.__contains__, inputs["cases"]):
         own = [case for case in info["cases"] if case["case"] == name]
-        found[f"{name}: base"] = _distinct(case["base"] for case in own)
+        inputs[f"{name}: base"] = _distinct(case["base"] for case in own)
         for key in BASE:
-            found[f"{name}: {_called(key)}"] = _distinct(case["parameters"].get(key) for case in own)
+            inputs[f"{name}: {_called(key)}"] = _distinct(case["parameters"].get(key) for case in own)
     records = [record["record"] for record in info["records"]]
-    found["ground motions"] = [*sorted(records)]
+    inputs["ground motions"] = [*sorted(records)]
     vertical = sum(record["pga_v_g"] is not None for record in info["records"])
     some = f"{vertical} of {len(records)}"
-    found["with the vertical component"] = [{0: "none", len(records): "all"}.get(vertical, some)]
-    found["files that could not be used"] = [len(info["unusable"])]
-    found["scale"] = _distinct(study.runs["scale"].tolist())
-    found["polarity"] = _distinct(study.runs["polarity"].tolist())
+    inputs["with the vertical component"] = [{0: "none", len(records): "all"}.get(vertical, some)]
+    inputs["files that could not be used"] = [len(info["unusable"])]
+    inputs["scale"] = _distinct(study.runs["scale"].tolist())
+    inputs["polarity"] = _distinct(study.runs["polarity"].tolist())
     for key, words in NUMERICS.items():
-        found[words] = _distinct([info["numerics"].get(key)])
-    return found
+        inputs[words] = _distinct([info["numerics"].get(key)])
+    return inputs
 
 
 def _called(key: str) -> str:
@@ -68,12 +68,12 @@ def _called(key: str) -> str:
 
 
 def _distinct(values: Iterable[object]) -> Values:
-    """Those that are there, each once, in their order."""
+    """Return the values that are not None, each once, in order."""
     return list(dict.fromkeys(value for value in values if value is not None))
 
 
 def _shown(values: Values, both: Values) -> str:
-    """Values in words, with the digits that it takes to tell those of both studies apart."""
+    """Format values with the digits that distinguish those of both studies."""
     digits = digits_that_tell(both, least=4)
     words = [f"{value:.{digits}g}" if isinstance(value, float | int) else str(value) for value in values]
     if len(words) > MOST:

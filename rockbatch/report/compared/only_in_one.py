@@ -8,7 +8,7 @@ from rockbatch.report.table import Head, table
 
 
 def section(pair: Pair) -> Section | None:
-    """A row for each case that has runs without a counterpart; None where all have one."""
+    """Return a row for each case that has runs without a counterpart; None if all have one."""
     rows: list[list[Any]] = []
     for name, study, runs in zip(SIDES, pair.studies, pair.matched.only, strict=True):
         grouped = runs.groupby(["series", "pier", "scale", "polarity", "with_vertical"], sort=False)

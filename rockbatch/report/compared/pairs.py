@@ -13,7 +13,7 @@ from rockbatch.results.columns import COLUMNS
 
 
 def section(pair: Pair) -> Section | None:
-    """A row for each pair of runs."""
+    """Return a row for each pair of runs."""
     a, b = pair.matched.runs
     if a.empty:
         return None

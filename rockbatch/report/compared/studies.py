@@ -1,4 +1,4 @@
-"""What is compared: both studies, and records that are not the same motion in both."""
+"""Both studies, and records that are not the same motion in both."""
 
 import math
 
@@ -12,19 +12,19 @@ from rockbatch.report.sections.studied import studied
 
 
 def section(pair: Pair) -> Section:
-    """What is compared."""
+    """Describe both studies."""
     parts: list[object] = [
         tag("p", f"{counted(len(pair.matched.runs[0]), 'pair')} of runs with the same ground motion and case name.")
     ]
     for name, study in zip(SIDES, pair.studies, strict=True):
         title = study.info["study"]["title"] or ""
-        told = join(f"{name}: {title} ", tag("code", study.saved.directory))
-        parts += [tag("h3", told), worst(study), studied(study, level="h4")]
+        heading = join(f"{name}: {title} ", tag("code", study.saved.directory))
+        parts += [tag("h3", heading), worst(study), studied(study, level="h4")]
     return Section("What is compared", "studied", join(*parts, paragraphs(_other_motions(*pair.studies))))
 
 
 def _other_motions(a: Finished, b: Finished) -> Markup:
-    """Records of one name that are not the same motion."""
+    """List records of one name that are not the same motion."""
     keys = ("pga_g", "pga_v_g", "npts", "dt_s")
     other = [
         name for name in a.records

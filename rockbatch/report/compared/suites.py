@@ -1,4 +1,4 @@
-"""What the suite comes to in each case of both studies."""
+"""Statistics of the suite in each case of both studies."""
 
 from rockbatch.report.document import Section
 from rockbatch.report.markup import join, tag
@@ -7,7 +7,7 @@ from rockbatch.report.sections import statistics
 
 
 def section(pair: Pair) -> Section | None:
-    """Statistics over the runs that both have: another suite would be another statistic."""
+    """Return statistics over the runs that both have, since another suite would give other statistics."""
     matched = pair.matched
     if matched.runs[0].empty:
         return None
@@ -15,7 +15,8 @@ def section(pair: Pair) -> Section | None:
     sides = list(SIDES)
     if with_vertical[0] != with_vertical[1]:
         sides = [
-            f"{name}, {'with' if has else 'without'} vertical" for name, has in zip(SIDES, with_vertical, strict=True)
+            f"{name}, {'with' if vertical else 'without'} vertical"
+            for name, vertical in zip(SIDES, with_vertical, strict=True)
         ]
     keys = ["scale", "pier", "series", "with_vertical"]
     runs = dict(zip(sides, matched.runs, strict=True))

@@ -1,4 +1,4 @@
-"""What the runs cost, how large their errors are, and what ``rockbatch accuracy`` measured of both."""
+"""Cost and errors of the runs, and the results of ``rockbatch accuracy``."""
 
 from collections.abc import Sequence
 
@@ -13,7 +13,7 @@ from rockbatch.report.table import Head, table
 
 
 def section(contents: Contents) -> Section | None:
-    """Time and estimated errors of the runs, and the measurement where there is one of this study."""
+    """Report time and estimated errors of the runs, and the measurement of this study if any."""
     if contents.finished is None:
         return None
     levels = read(contents.directory / "accuracy.csv", contents.study["sha256"])
@@ -53,7 +53,7 @@ def _measured(levels: Sequence[Level]) -> Markup:
 
 
 def _lead(levels: Sequence[Level]) -> str:
-    """What the picture shows, in a sentence about the study's own setting; empty without it."""
+    """Describe the study's own setting in a sentence; empty if it was not measured."""
     own = chosen(levels)
     if own is None:
         return ""
@@ -64,7 +64,7 @@ def _lead(levels: Sequence[Level]) -> str:
 
 
 def _table(levels: Sequence[Level]) -> Markup:
-    """Every level in numbers."""
+    """Return every level in numbers."""
     heads = [
         Head("method"),
         Head("k", ".0f", "substeps: steps per sample"),

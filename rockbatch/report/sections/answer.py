@@ -1,4 +1,4 @@
-"""The answer: whether the pier passes, the worst responses, what did not settle or flew, and every peak in one picture."""
+"""The answer: verdicts, worst responses, runs without a result, and every peak in one picture."""
 
 import math
 
@@ -16,11 +16,11 @@ from rockbatch.results.suite_statistics import NO_PEAK
 MOST_REASONS = 2
 
 Facts = list[tuple[str, Markup]]
-"""A few words, and a sentence, of each."""
+"""Headings with a sentence each."""
 
 
 def section(contents: Contents) -> Section | None:
-    """What the first screen says; every check and every run follow further down."""
+    """Return the first screen; every check and every run follow further down."""
     finished = contents.finished
     if finished is None:
         return None
@@ -30,7 +30,7 @@ def section(contents: Contents) -> Section | None:
 
 
 def worst(finished: Finished) -> Markup:
-    """The worst responses, and how the runs ended: first where one did not end standing."""
+    """Return the worst responses, and how the runs ended, first those that did not end standing."""
     if finished.runs.empty:
         facts = [("peaks", join("No ground motion could be used: there are no results.")), *_missing(finished)]
     else:
@@ -46,7 +46,7 @@ def worst(finished: Finished) -> Markup:
 
 
 def _responses(finished: Finished) -> Facts:
-    """The worst of all cases, whatever is checked, with the run in which it occurs."""
+    """Return the worst of all cases, regardless of checks, with the run in which it occurs."""
     largest = worst_of_all(finished.worst)
     facts: Facts = []
     first: dict[object, str] = {}
@@ -74,7 +74,7 @@ def _overturned(finished: Finished) -> Facts:
 
 
 def _flown(finished: Finished) -> Facts:
-    """Runs that ended when both pivots left the ground."""
+    """Report runs that ended when both pivots left the ground."""
     flown = finished.runs[finished.runs["status"] == "flight"].sort_values("flight_s", kind="stable")
     if flown.empty:
         return []
@@ -84,22 +84,22 @@ def _flown(finished: Finished) -> Facts:
 
 
 def _missing(finished: Finished) -> Facts:
-    """What has no result, and the commonest reasons."""
+    """Report files and runs without a result, and the commonest reasons."""
     failed = finished.runs[finished.runs["status"] == "failed"]
     unread = len(finished.info["unusable"])
     if not len(failed) and not unread:
         return []
     lost = [f"{counted(unread, 'file')} could not be used"] if unread else []
     lost += [f"{counted(len(failed), 'run')} failed"] if len(failed) else []
-    told: list[object] = [alarm(" and ".join(lost).capitalize())]
+    sentence: list[object] = [alarm(" and ".join(lost).capitalize())]
     reasons = failed["reason"].astype(str).str.split("[:;]", n=1).str[0].value_counts().head(MOST_REASONS)
     if len(reasons):
-        told.append(f" ({'; '.join(f'{count} ×: {reason}' for reason, count in reasons.items())})")
-    return [("without a result", join(*told, "; see ", tag("a", "Not used", href="#unusable"), "."))]
+        sentence.append(f" ({'; '.join(f'{count} ×: {reason}' for reason, count in reasons.items())})")
+    return [("without a result", join(*sentence, "; see ", tag("a", "Not used", href="#unusable"), "."))]
 
 
 def _guided(finished: Finished, ended: Facts) -> Facts:
-    """How the other runs went: guided flights, and the errors of the peaks."""
+    """Report how the other runs ended: guided flights, and the errors of the peaks."""
     runs = finished.runs
     stood = runs[runs["status"] == "ok"]
     told = [
@@ -118,7 +118,7 @@ def _guided(finished: Finished, ended: Facts) -> Facts:
 
 
 def _error(finished: Finished) -> str:
-    """How large the errors of the peaks are."""
+    """Report the largest error of the peaks, or that none was estimated."""
     numerics = finished.info["numerics"]
     largest = finished.runs["theta_max_error"].max()
     if largest == largest:

@@ -1,4 +1,4 @@
-"""What one record says and what a suite says: the distribution of the largest rotations."""
+"""The distribution of the largest rotations over the suite, and what a single record can tell."""
 
 from rockbatch.checks.suite import counts_as
 from rockbatch.report.contents import Contents
@@ -11,11 +11,11 @@ from rockbatch.report.sections.statistics import RECORDS
 
 MOST_PANELS = 12
 MOST_CURVES = 21
-"""Of a panel: three times seven colours; more cannot be told apart."""
+"""Most curves of a panel: three times seven colours; more cannot be distinguished."""
 BEST = 7
-"""Foundations that are drawn where there are more."""
+"""Foundations that are drawn if there are more."""
 LEAST_RECORDS = 3
-"""Fewer have no distribution."""
+"""Least number of records for a distribution."""
 
 ONE_RECORD = (
     "The peak under one record predicts no earthquake. Held against shaking tables, planar rocking models miss the "
@@ -26,7 +26,7 @@ ONE_RECORD = (
 
 
 def section(contents: Contents) -> Section | None:
-    """The sentence that belongs to every peak, and a curve for each case where there are enough records."""
+    """Return the caution that belongs to every peak, and a curve for each case if there are enough records."""
     finished = contents.finished
     if finished is None or finished.runs.empty:
         return None

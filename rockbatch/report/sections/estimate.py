@@ -1,4 +1,4 @@
-"""What the equivalent oscillators of design practice would have estimated, beside what was computed; a comparison."""
+"""Estimates by the equivalent oscillators of design practice beside the computed peaks, as a comparison."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -40,7 +40,7 @@ WORDS = (
 
 
 def section(contents: Contents) -> Section | None:
-    """The estimates of every run; None where the study does not ask for them."""
+    """Return the estimates of every run; None if the study does not ask for them."""
     finished = contents.finished
     path = contents.directory / ESTIMATE
     if finished is None or not path.exists():
@@ -53,7 +53,7 @@ def section(contents: Contents) -> Section | None:
 
 
 def _summary(finished: Finished, runs: list[dict[str, Any]]) -> Markup:
-    """How often each method has an answer, each motion counted once, and how far it is off on rigid ground alone."""
+    """Report how often each method has an answer, motion by motion, and its error on rigid ground alone."""
     bare = [run for run in runs if _is_bare(finished, run)]
     once = list({(run["record"], finished.place(run["case"], run)[1], run["scale"]): run for run in runs}.values())
     sentences = []
@@ -77,18 +77,18 @@ def _summary(finished: Finished, runs: list[dict[str, Any]]) -> Markup:
 
 
 def _is_bare(finished: Finished, run: Mapping[str, Any]) -> bool:
-    """Whether a run is of what the estimates are of: a block on rigid ground alone."""
+    """Return whether a run is of the system that is estimated: a block on rigid ground alone."""
     return finished.series[finished.place(run["case"], run)[0]].rigid
 
 
 def _dampings(runs: list[dict[str, Any]], method: str) -> str:
-    """The equivalent damping of the piers, in percent."""
-    found = sorted({round(100 * run[f"{method}_damping"], 2) for run in runs})
-    return f"{found[0]:g} %" if len(found) == 1 else f"{found[0]:g} to {found[-1]:g} %"
+    """Return the equivalent damping of the piers, in percent."""
+    dampings = sorted({round(100 * run[f"{method}_damping"], 2) for run in runs})
+    return f"{dampings[0]:g} %" if len(dampings) == 1 else f"{dampings[0]:g} to {dampings[-1]:g} %"
 
 
 def _table(finished: Finished, runs: list[dict[str, Any]]) -> Markup:
-    """A row for each motion and pier: the estimates, and what was computed on rigid ground alone."""
+    """Return a row for each motion and pier: the estimates, and the peaks computed on rigid ground alone."""
     rows: dict[tuple[str, int, float, str], dict[int, dict[str, Any]]] = {}
     for run in runs:
         series, pier = finished.place(run["case"], run)
@@ -107,12 +107,12 @@ def _table(finished: Finished, runs: list[dict[str, Any]]) -> Markup:
     ]
     written = []
     for (record, place_of_pier, scale, sign), same in rows.items():
-        one = next(iter(same.values()))
-        found = [_computed(same.get(place)) for place in places]
+        first = next(iter(same.values()))
+        peaks = [_computed(same.get(place)) for place in places]
         names = [finished.shown(record), finished.piers[place_of_pier] or None, scale if len(scales) > 1 else None]
-        estimates = (_estimate(one, method) for method in DAMPING)
-        told = [*names, sign if len(signs) > 1 else None, one["pga_over_g_tan_alpha"], *estimates, *found]
-        written.append(told)
+        estimates = (_estimate(first, method) for method in DAMPING)
+        row = [*names, sign if len(signs) > 1 else None, first["pga_over_g_tan_alpha"], *estimates, *peaks]
+        written.append(row)
     where = tag("p", "Every run: ", tag("code", ESTIMATE), class_="muted")
     return join(table(heads, written, sortable=True, name="Code estimates"), where)
 

@@ -1,4 +1,4 @@
-"""What designers size: the greatest forces, gaps and velocities of every case, and those of every run."""
+"""Quantities for design: the greatest forces, gaps and velocities of every case, and those of every run."""
 
 from typing import TYPE_CHECKING
 
@@ -17,14 +17,14 @@ if TYPE_CHECKING:
     import pandas as pd
 
 _LEAST = ("first_uplift_s", "first_uplift_g")
-"""Of these less is worse."""
+"""Columns of which the smallest value is the worst."""
 
 _CUT_SHORT = ("flight", "failed")
-"""Of a run that ended so, what it would have come to is not known."""
+"""Statuses of runs that ended early: their values are only bounds."""
 
 
 def section(contents: Contents) -> Section | None:
-    """Forces, where the study has asked for them."""
+    """Report forces if the study asks for them."""
     finished = contents.finished
     if finished is None:
         return None
@@ -44,7 +44,7 @@ def section(contents: Contents) -> Section | None:
 
 
 def _of_cases(finished: Finished, shown: list[Column]) -> Markup:
-    """A row for each case: the worst of its runs, column by column."""
+    """Return a row for each case: the worst of its runs, column by column."""
     rows: list[list[object]] = []
     for words, group in finished.groups():
         for place in group["series"].unique():
@@ -62,7 +62,7 @@ def _of_cases(finished: Finished, shown: list[Column]) -> Markup:
 
 
 def _worst(column: Column, runs: "pd.DataFrame", cut_short: bool) -> object:
-    """The worst of the runs, with a sign where it is a bound only."""
+    """Return the worst of the runs, with ≥ or ≤ if it is only a bound."""
     values = runs[column.name].dropna()
     if values.empty:
         return None
@@ -88,19 +88,19 @@ def _every_run(finished: Finished, shown: list[Column]) -> Markup:
 
 
 def _sliding(finished: Finished) -> Markup:
-    """How many runs ask more friction than their interface has."""
+    """Report how many runs need more friction than their interface has."""
     runs = finished.runs
     pairs = zip(runs["series"], runs["pier"], strict=True)
-    has = np.array([finished.cases[pair]["parameters"].get("friction", np.inf) for pair in pairs])
-    if not np.isfinite(has).any():
+    available = np.array([finished.cases[pair]["parameters"].get("friction", np.inf) for pair in pairs])
+    if not np.isfinite(available).any():
         return Markup("")
     asked = runs[["friction_demand", "impact_friction_demand"]].max(axis=1).to_numpy()
-    slides, known = asked > has, np.isfinite(has) & ~np.isnan(asked)
+    slides, known = asked > available, np.isfinite(available) & ~np.isnan(asked)
     if not slides.any():
         return tag("p", f"No run asks more friction than its interface has, of {counted(int(known.sum()), 'run')}.")
-    told = f"{counted(int(slides.sum()), 'run')} of {int(known.sum())}: the friction demand is greater than the interface's. "
+    message = f"{counted(int(slides.sum()), 'run')} of {int(known.sum())}: the friction demand is greater than the interface's. "
     return tag(
-        "p", alarm(told), "The pier would slide there, which the model does not follow: see the notes of the runs."
+        "p", alarm(message), "The pier would slide there, which the model does not follow: see the notes of the runs."
     )
 
 

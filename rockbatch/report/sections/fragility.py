@@ -1,4 +1,4 @@
-"""What ``rockbatch fragility`` found: a panel for each limit with points, curves and bands, and a table of medians."""
+"""Results of ``rockbatch fragility``: for each limit points, curves and bands, and a table of medians."""
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
@@ -18,7 +18,7 @@ from rockbatch.report.table import Head, table
 WIDTH, HEIGHT = 300.0, 190.0
 STRIP = 4.0
 CASES_OF_A_PANEL = 4
-"""More curves with their bands would hide each other."""
+"""Most curves of a panel, since more bands would hide each other."""
 
 Curve = Mapping[str, Any]
 """One of ``curves`` of fragility.json."""
@@ -26,47 +26,47 @@ Curve = Mapping[str, Any]
 
 @of_files("fragility")
 def section(contents: Contents) -> Section | None:
-    """The curves; None where there are none."""
-    found = contents.analysis("fragility")
-    if found is None or not found.info["curves"]:
+    """Draw the fragility curves; None if there are none."""
+    analysis = contents.analysis("fragility")
+    if analysis is None or not analysis.info["curves"]:
         return None
-    info = found.info
+    info = analysis.info
     drawn = figure(_panels(info), _caption(info))
-    return Section("Fragility", "fragility", join(_lead(info), drawn, _table(info), found.provenance()))
+    return Section("Fragility", "fragility", join(_lead(info), drawn, _table(info), analysis.provenance()))
 
 
 def _lead(info: Mapping[str, Any]) -> Markup:
-    told = f"The probability that a limit is exceeded by a motion with a given {info['measure']}, from {info['records']} records"
-    told += " (polarity: mirror images, counted once)" if len(info["polarities"]) > 1 else ""
+    words = f"The probability that a limit is exceeded by a motion with a given {info['measure']}, from {info['records']} records"
+    words += " (polarity: mirror images, counted once)" if len(info["polarities"]) > 1 else ""
     if info.get("stations", info["records"]) < info["records"]:
-        told += (
+        words += (
             f", components of {info['stations']} stations: each counts by itself, though those of a station are not independent, "
             "so that the bands are too narrow"
         )
     if info["method"] == "ida":
-        told += (
+        words += (
             f". Incremental dynamic analysis: of each record the least intensity that exceeds the limit, bisected to "
             f"{100 * info['tolerance']:g} %; records that never exceed it are censored. A rocking pier can overturn at one level "
             "and stand at a higher one: the first exceedance counts"
         )
-        told += f"; {info['looked_at']}." if info.get("looked_at") else "."
+        words += f"; {info['looked_at']}." if info.get("looked_at") else "."
     else:
-        told += (
+        words += (
             ", all of them scaled to every level; the bands allow for that these are the same records at every level."
         )
-    little = [f"{one['limit_state']}, {_label(one)}" for one in info["curves"] if one["says_little"]]
+    little = [f"{entry['limit_state']}, {_label(entry)}" for entry in info["curves"] if entry["says_little"]]
     warning = (
         tag("strong", f"Too many runs are undecided for these curves to say much: {'; '.join(little)}. ")
         if little
         else ""
     )
-    return tag("p", warning, told)
+    return tag("p", warning, words)
 
 
 def _caption(info: Mapping[str, Any]) -> str:
     share = f"{100 * info['confidence']:g} %"
     points = "Markers: share of the decided records that exceed the limit at a level; bars: with the undecided ones either way. "
-    if any("open" in one for one in info["curves"]):
+    if any("open" in entry for entry in info["curves"]):
         points += (
             "Undecided runs count for nothing in a curve; between dotted edges: what it may be, whatever they come to. "
         )
@@ -75,7 +75,7 @@ def _caption(info: Mapping[str, Any]) -> str:
         if info["method"] == "ida"
         else ""
     )
-    if any(one.get("looked") for one in info["curves"]):
+    if any(entry.get("looked") for entry in info["curves"]):
         steps += "Strips above the axes: intensities at which records were looked at; gaps were not. "
     return (
         f"{points}{steps}Curves: lognormal, by maximum likelihood (Baker 2015); shaded: {share} profile-likelihood "
@@ -83,15 +83,15 @@ def _caption(info: Mapping[str, Any]) -> str:
     )
 
 
-def _label(one: Curve) -> str:
-    words = [quantity(name, value) for name, value in one["columns"].items()]
-    return f"{one['case']}: {', '.join(words)}" if words else one["case"]
+def _label(entry: Curve) -> str:
+    words = [quantity(name, value) for name, value in entry["columns"].items()]
+    return f"{entry['case']}: {', '.join(words)}" if words else entry["case"]
 
 
 def _panels(info: Mapping[str, Any]) -> Markup:
     limits: dict[str, list[Curve]] = {}
-    for one in info["curves"]:
-        limits.setdefault(one["limit_state"], []).append(one)
+    for entry in info["curves"]:
+        limits.setdefault(entry["limit_state"], []).append(entry)
     styles = {label: style_of(i) for i, label in enumerate(dict.fromkeys(map(_label, info["curves"])))}
     drawn = []
     for name, curves in limits.items():
@@ -110,15 +110,15 @@ def _stroke(colour: int) -> Markup:
 
 
 def _panel(info: Mapping[str, Any], curves: Sequence[Curve], styles: Mapping[str, tuple[str, int]]) -> Markup:
-    strips = STRIP * sum(bool(one.get("looked")) for one in curves)
+    strips = STRIP * sum(bool(entry.get("looked")) for entry in curves)
     axes = Axes(
         32, 20 + strips, WIDTH - 42, HEIGHT - 58 - strips, Scale(0.0, 1.1 * info["levels"][-1]), Scale(0.0, 1.0)
     )
     drawn = [axes.frame(axes.x.ticks(6), axes.y.ticks(5)), *_strips(axes, curves, styles)]
-    for one in curves:
-        drawn += _band(axes, one, styles[_label(one)][1])
-    for one in curves:
-        drawn += _drawn(axes, one, *styles[_label(one)])
+    for entry in curves:
+        drawn += _band(axes, entry, styles[_label(entry)][1])
+    for entry in curves:
+        drawn += _drawn(axes, entry, *styles[_label(entry)])
     drawn.append(text(axes.left + axes.width / 2, HEIGHT - 6, f"{info['measure']} [{info['unit']}]", class_="m q"))
     drawn.append(text(axes.left - 26, 11, "probability", class_="q"))
     said = f"Probability of {curves[0]['limit_state']} over {info['measure']}"
@@ -126,53 +126,53 @@ def _panel(info: Mapping[str, Any], curves: Sequence[Curve], styles: Mapping[str
 
 
 def _strips(axes: Axes, curves: Sequence[Curve], styles: Mapping[str, tuple[str, int]]) -> Iterator[Markup]:
-    """Where first exceedances were looked for, a strip for each curve above the axes; a level is a dash of 2 px."""
-    looked = [one for one in curves if one.get("looked")]
-    for place, one in enumerate(looked):
+    """Yield a strip for each curve above the axes: the levels searched for first exceedances, each a dash of 2 px."""
+    looked = [entry for entry in curves if entry.get("looked")]
+    for place, entry in enumerate(looked):
         y = axes.top - STRIP * (len(looked) - place)
-        for low, high in one["looked"]:
+        for low, high in entry["looked"]:
             first, last = float(axes.across(low)), float(axes.across(high))
-            yield line(first - 1, y, last + 1, y, f"level s{styles[_label(one)][1]}")
+            yield line(first - 1, y, last + 1, y, f"level s{styles[_label(entry)][1]}")
 
 
-def _band(axes: Axes, one: Curve, colour: int) -> Iterator[Markup]:
+def _band(axes: Axes, entry: Curve, colour: int) -> Iterator[Markup]:
     for name, class_ in (("open", "open"), ("curve", "area")):
-        if name in one:
-            x, low, high = (np.array(one[name][side]) for side in ("x", "low", "high"))
+        if name in entry:
+            x, low, high = (np.array(entry[name][side]) for side in ("x", "low", "high"))
             around = np.concatenate((low, high[::-1]))
             yield curve(axes.across(np.concatenate((x, x[::-1]))), axes.down(around), f"{class_} s{colour}")
 
 
-def _drawn(axes: Axes, one: Curve, shape: str, colour: int) -> Iterator[Markup]:
+def _drawn(axes: Axes, entry: Curve, shape: str, colour: int) -> Iterator[Markup]:
     class_ = f"s{colour}"
-    if "curve" in one:
-        x, p = (np.array(one["curve"][name]) for name in ("x", "p"))
+    if "curve" in entry:
+        x, p = (np.array(entry["curve"][name]) for name in ("x", "p"))
         yield curve(axes.across(x), axes.down(p), f"level {class_}")
-    if one["capacities"] and "open" not in one:  # a share of the records needs all of them
-        yield curve(*_steps(axes, [high for _, high in one["capacities"]]), f"level {class_} d2")
-    for point in one["points"]:
+    if entry["capacities"] and "open" not in entry:  # a share of the records needs all of them
+        yield curve(*_steps(axes, [high for _, high in entry["capacities"]]), f"level {class_} d2")
+    for point in entry["points"]:
         if not point["records"]:
             continue
         at = float(axes.across(point["level"]))
         exceeded, undecided, records = point["exceeded"], point["undecided"], point["records"]
         if undecided:
             least, most = (float(axes.down(k / records)) for k in (exceeded, exceeded + undecided))
-            yield line(at, least, at, most, class_, _said(one, point))
+            yield line(at, least, at, most, class_, _said(entry, point))
         if records > undecided:
             share = float(axes.down(exceeded / (records - undecided)))
-            yield marker(shape, at, share, colour=class_, title=_said(one, point))
+            yield marker(shape, at, share, colour=class_, title=_said(entry, point))
 
 
-def _said(one: Curve, point: Mapping[str, Any]) -> str:
+def _said(entry: Curve, point: Mapping[str, Any]) -> str:
     ends = [f"{point[name]} {words}" for name, words in (("collapsed", "overturned"), ("flight", "flew"), ("failed", "failed"))
             if point[name]]  # fmt: skip
-    told = f"{_label(one)}, {point['level']:g}: {point['exceeded']} of {point['records']} records exceed the limit"
+    counts = f"{_label(entry)}, {point['level']:g}: {point['exceeded']} of {point['records']} records exceed the limit"
     undecided = [f"{point['undecided']} undecided"] if point["undecided"] else []
-    return "; ".join([told, *undecided, *ends])
+    return "; ".join([counts, *undecided, *ends])
 
 
 def _steps(axes: Axes, capacities: Sequence[float | None]) -> tuple[np.ndarray, np.ndarray]:
-    """Share of the records whose capacity is at most x, as a staircase [px]."""
+    """Return the share of the records whose capacity is at most x, as a staircase [px]."""
     known = np.sort([x for x in capacities if x is not None])
     known = np.minimum(known, axes.x.high)
     shares = np.arange(len(known) + 1) / len(capacities)
@@ -196,18 +196,18 @@ def _table(info: Mapping[str, Any]) -> Markup:
     ]
     rows = [
         [
-            one["limit_state"],
-            _label(one),
-            one["median"],
-            _interval(one.get("median_interval")),
-            _interval(one["median_undecided"]),
-            one["dispersion"],
-            _interval(one.get("dispersion_interval")),
-            max(point["records"] for point in one["points"]),
-            max(point["collapsed"] for point in one["points"]),
-            one["note"],
+            entry["limit_state"],
+            _label(entry),
+            entry["median"],
+            _interval(entry.get("median_interval")),
+            _interval(entry["median_undecided"]),
+            entry["dispersion"],
+            _interval(entry.get("dispersion_interval")),
+            max(point["records"] for point in entry["points"]),
+            max(point["collapsed"] for point in entry["points"]),
+            entry["note"],
         ]
-        for one in info["curves"]
+        for entry in info["curves"]
     ]
     return table(heads, rows, prose=True, name="Medians and dispersions")
 

@@ -1,4 +1,4 @@
-"""The ground motions: their response spectra, their measures, and where they come from."""
+"""The ground motions: response spectra, intensity measures, and sources."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -17,7 +17,7 @@ PULSE_LIKE = (
 
 
 def section(contents: Contents) -> Section | None:
-    """The ground motions that could be used."""
+    """Describe the ground motions that could be used."""
     finished = contents.finished
     if finished is None or not finished.info["records"]:
         return None
@@ -25,7 +25,7 @@ def section(contents: Contents) -> Section | None:
 
 
 def _spectra(finished: Finished) -> Markup:
-    """Their response spectra; nothing where run.json has no spectra, as of very large suites, or a target: drawn with that."""
+    """Draw the response spectra; empty if run.json has none, as for very large suites, or if the target shows them."""
     records, spectra = finished.info["records"], finished.info.get("spectra")
     if (
         "target" in finished.info
@@ -42,7 +42,7 @@ def _spectra(finished: Finished) -> Markup:
 
 
 def _records(finished: Finished) -> Markup:
-    """The ground motions as they were used, like the paper's Table 1, the weakest first."""
+    """Return a table of the ground motions as used, like the paper's Table 1, the weakest first."""
     heads = [
         Head("record"),
         Head("station", note="its components count as one record"),
@@ -75,19 +75,19 @@ def _records(finished: Finished) -> Markup:
     rows = [
         [
             finished.shown(record["record"]),
-            *(_told(record, name) if name != "factor" or scaled else None for name in names),
+            *(_value(record, name) if name != "factor" or scaled else None for name in names),
         ]
         for record in ordered
     ]
     measured = table(heads, rows, sortable=True, name="Ground motions")
     lacking = finished.info.get("without_vertical")
     without = tag("p", f"no vertical: {'; '.join(map(finished.named, lacking))}") if lacking else ""
-    told = tag("h3", "Where they come from, and what was done to them")
-    return join(measured, without, told, _sources(finished, ordered))
+    heading = tag("h3", "Where they come from, and what was done to them")
+    return join(measured, without, heading, _sources(finished, ordered))
 
 
-def _told(record: dict[str, Any], name: str) -> Any:
-    """A value of run.json, as the table of ground motions has it."""
+def _value(record: dict[str, Any], name: str) -> Any:
+    """Return a value of run.json as shown in the table of ground motions."""
     if name == "processed":
         return {True: "yes", False: "no"}.get(record.get(name, ""))
     if name == "check":

@@ -28,7 +28,7 @@ Row = dict[str, Any]
 
 
 def section(contents: Contents) -> Section | None:
-    """The histories that were kept; None where there are none."""
+    """Draw the stored histories; None if there are none."""
     if contents.finished is None or not len(contents.responses):
         return None
     drawn = join(*(figure(*pair) for pair in _figures(contents.finished, contents.responses)))
@@ -37,7 +37,7 @@ def section(contents: Contents) -> Section | None:
 
 
 def _others(finished: Finished) -> Markup:
-    """How to get at histories that were not kept."""
+    """Give the command that stores other histories."""
     command = shlex.join([*map(str, finished.info["command"]), "--history", "RECORD"])
     return tag(
         "p", "Histories of the runs under another record: ", tag("code", command), " with its name for RECORD; "
@@ -46,24 +46,24 @@ def _others(finished: Finished) -> Markup:
 
 
 def _figures(finished: Finished, responses: Sequence[Response]) -> list[tuple[Markup, Markup]]:
-    """Pictures with their captions, one for each pier: a column for every response, or for the worst of many."""
+    """Draw a figure with its caption for each pier: a column for every response, or for the worst of many."""
     kept = _kept(finished, responses)
     numbers = _chosen(finished, kept)
     behind = {number: _behind(kept, number) for number in numbers}
-    # A rigid base that stands behind another column needs none of its own
+    # A rigid base drawn behind another column needs none of its own
     columns = [number for number in numbers if number not in behind.values()]
     there = {number for number in (*columns, *behind.values()) if number is not None}
     drawn = {number: reduced(responses[number], LEFT, WIDTH) for number in sorted(there)}
-    found = []
+    figures = []
     for pier in dict.fromkeys(kept[number]["pier"] for number in columns):
         same = [number for number in columns if kept[number]["pier"] == pier]
         same.sort(key=lambda number: (not kept[number]["rigid"], kept[number]["index"]))
-        seen = [drawn[number] for one in same for number in (one, behind[one]) if number is not None]
+        seen = [drawn[number] for column in same for number in (column, behind[column]) if number is not None]
         scales = [_scale(seen, row) for row in range(len(QUANTITIES))]
         # As many loops below each column, so that columns beside each other line up
         shown = [drawn[number] for number in same]
-        feet = [0] if any(one.loops for one in shown) else []
-        feet += range(1, 1 + max(len(one.devices) for one in shown))
+        feet = [0] if any(history.loops for history in shown) else []
+        feet += range(1, 1 + max(len(history.devices) for history in shown))
         cells = []
         for number in same:
             back = behind[number]
@@ -78,27 +78,27 @@ def _figures(finished: Finished, responses: Sequence[Response]) -> list[tuple[Ma
             cells.append(tag("figure", tag("figcaption", title), drawing))
         grid = tag("div", *cells, class_="histories", style=f"--w:{LEFT + WIDTH + 6:.0f}px")
         lines = any(behind[number] is not None for number in same)
-        found.append((grid, _caption(finished.piers[pier], [drawn[number] for number in same], lines)))
-    return found
+        figures.append((grid, _caption(finished.piers[pier], [drawn[number] for number in same], lines)))
+    return figures
 
 
 def _kept(finished: Finished, responses: Sequence[Response]) -> list[Row]:
-    """Which runs there are, without reading their histories."""
+    """Return the runs that have histories, without reading these."""
     if isinstance(responses, Responses):
         runs = as_dicts(responses.runs)
     else:
         names = ("record", "case", "polarity", "scale", "status")
-        runs = [{name: getattr(one, name) for name in names} | one.columns for one in responses]
+        runs = [{name: getattr(response, name) for name in names} | response.columns for response in responses]
     kept = []
     for run in runs:
         series, pier = finished.place(run["case"], run)
-        one = finished.series[series]
-        kept.append(run | {"series": series, "pier": pier, "rigid": one.rigid, "index": one.index})
+        own = finished.series[series]
+        kept.append(run | {"series": series, "pier": pier, "rigid": own.rigid, "index": own.index})
     return kept
 
 
 def _chosen(finished: Finished, kept: Sequence[Row]) -> list[int]:
-    """Numbers of the runs to be shown: all, or of many the worst of each case, and of many cases the worst."""
+    """Return the numbers of the runs to show: all, or of many the worst of each case, and of many cases the worst."""
     if len(kept) <= MOST_COLUMNS:
         return list(range(len(kept)))
     names = ["record", "polarity", "scale", "series", "pier"]
@@ -113,7 +113,7 @@ def _chosen(finished: Finished, kept: Sequence[Row]) -> list[int]:
 
 
 def _behind(kept: Sequence[Row], number: int) -> int | None:
-    """The same motion and pier on the rigid base, where it was kept."""
+    """Return the number of the same motion and pier on the rigid base; None if it was not stored."""
     run = kept[number]
     names = ("record", "polarity", "scale", "pier")
     if run["rigid"]:
@@ -122,14 +122,14 @@ def _behind(kept: Sequence[Row], number: int) -> int | None:
 
 
 def _scale(shown: Sequence[History], row: int) -> Scale:
-    """One scale for all columns; a pier that fell does not stretch it."""
+    """Return one scale for all columns, not stretched by piers that overturned."""
     stood = [history for history in shown if history.status == "ok"] or shown
     bands = [np.array([-history.band, history.band]) for history in stood] if row == 0 else []
     return spanning(*(history.curves[row][1] for history in stood), *bands)
 
 
 def _standing(own: History, row: int) -> Array:
-    """A quantity until the pier is on its way over: what it does on the ground would hide how it rocked."""
+    """Return a quantity until the pier overturns, since later values would hide how it rocked."""
     t, theta = own.curves[0]
     over = np.flatnonzero(np.abs(theta) > OVER)
     times, values = own.curves[row]
@@ -138,15 +138,15 @@ def _standing(own: History, row: int) -> Array:
 
 def _title(finished: Finished, run: Row) -> Markup:
     also = [f"scaled by {run['scale']:g}" if run["scale"] != 1 else "", "reversed" if run["polarity"] == "-" else ""]
-    told = ", ".join(filter(None, also))
-    record = tag("span", finished.named(run["record"]) + (f", {told}" if told else ""), class_="muted")
+    details = ", ".join(filter(None, also))
+    record = tag("span", finished.named(run["record"]) + (f", {details}" if details else ""), class_="muted")
     return join(tag("span", finished.series[run["series"]].label), " ", record)
 
 
 def picture(
     own: History, behind: History | None, scales: Sequence[Scale], record: str, feet: Sequence[int] = ()
 ) -> Markup:
-    """A column of histories; ``feet`` are the loops for which it has room, 0 for those of springs, 1 and on for devices."""
+    """Draw a column of histories; ``feet`` are the loops below it: 0 for those of springs, from 1 on for devices."""
     end = max(own.end[0], behind.end[0] if behind else 0.0) or 1.0
     drawn: list[Markup] = []
     for row, (top, height) in enumerate(zip(TOPS, HEIGHTS, strict=True)):
@@ -179,7 +179,7 @@ def _curve(axes: Axes, t: Array, y: Array, class_: str, name: str) -> Markup:
 
 
 def _events(axes: Axes, own: History) -> Markup:
-    """Impacts at the foot, separations at the top, flights across, the peak with its value, and how it ended."""
+    """Draw impacts at the foot, separations at the top, flights across, the peak with its value, and the end of the run."""
     foot, marks = axes.top + axes.height, []
     for times, start, way in ((own.impacts, foot, -5), (own.separations, axes.top, 5)):
         strokes = "".join(f"M{x:.1f} {start:.1f}v{way}" for x in axes.across(times))
@@ -203,17 +203,17 @@ def _caption(pier: str, shown: Sequence[History], lines: bool) -> Markup:
         tag("strong", f"{pier}. ") if pier else "",
         "Rotation, angular velocity, energy relative to the start, and ground acceleration, against time. "
         "In the first panel: the largest rotation with its value; strokes at the foot for impacts, at the top for separations",
-        "; dashed: both pivots off the ground" if any(len(one.flights) for one in shown) else "",
+        "; dashed: both pivots off the ground" if any(len(history.flights) for history in shown) else "",
         "; thin line: rigid base" if lines else "",
         "; shaded: rotations at which both supports stay loaded in weak rocking"
-        if any(one.band for one in shown)
+        if any(history.band for history in shown)
         else "",
         ".",
         " At the foot, force against deflection of the left (L) and right (R) spring over their values at yield."
-        if any(one.loops for one in shown)
+        if any(history.loops for history in shown)
         else "",
         " At the foot, force against elongation of dampers and tendons; of a pair, the one at the right pivot is paler."
-        if any(one.devices for one in shown)
+        if any(history.devices for history in shown)
         else "",
     ]
     return join(*said)

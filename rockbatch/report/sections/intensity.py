@@ -1,4 +1,4 @@
-"""Intensity measures of the motions, and which of them orders the peaks best, case by case."""
+"""Intensity measures of the motions, and how well each of them orders the peaks, case by case."""
 
 import math
 from typing import TYPE_CHECKING
@@ -24,15 +24,15 @@ SYMBOLS = {
 
 
 def section(contents: Contents) -> Section | None:
-    """Which measure orders the peaks best in each case; None where the study does not ask for measures."""
+    """Report the measure that orders the peaks best in each case; None if the study does not ask for measures."""
     finished = contents.finished
     path = contents.directory / INTENSITY
     if finished is None or not path.exists():
         return None
-    found = read_table(path)
-    if found.empty:
+    measures = read_table(path)
+    if measures.empty:
         return None
-    order = orders(found, finished.info["varied"])
+    order = orders(measures, finished.info["varied"])
     explained = (
         "How well each measure of the motion orders the largest rotations of a case: Spearman's rank correlation ρ (1: in the "
         "same order, −1: in the opposite one), and the dispersion σ, the standard deviation of ln θ about the line of least "
@@ -50,7 +50,7 @@ def section(contents: Contents) -> Section | None:
 
 
 def _order(finished: Finished, order: "pd.DataFrame") -> Markup:
-    """A table of rank correlations and one of dispersions, with a row for each case and scale."""
+    """Return a table of rank correlations and one of dispersions, with a row for each case and scale."""
     varied = finished.info["varied"]
     many_scales = order["scale"].nunique() > 1
     names = list(dict.fromkeys(order["measure"]))
@@ -63,9 +63,9 @@ def _order(finished: Finished, order: "pd.DataFrame") -> Markup:
         rho, sigma, first = by["rank_correlation"], by["dispersion"], by.iloc[0]
         case = [words, float(first["scale"]) if many_scales else None]
         best = _symbol(rho.idxmax()) if rho.notna().any() else "—"
-        ranks.append([*case, first["runs"], first["without_peak"], best, *(_told(rho[name]) for name in names)])
+        ranks.append([*case, first["runs"], first["without_peak"], best, *(_shown(rho[name]) for name in names)])
         best = _symbol(sigma.idxmin()) if sigma.notna().any() else "—"
-        lines.append([*case, first["fitted"], None, best, *(_told(sigma[name]) for name in names)])
+        lines.append([*case, first["fitted"], None, best, *(_shown(sigma[name]) for name in names)])
     measures = [
         Head(_symbol(name), ".2f", f"{name}: {MEANING.get(name, 'spectral acceleration [g]')}") for name in names
     ]
@@ -79,10 +79,10 @@ def _order(finished: Finished, order: "pd.DataFrame") -> Markup:
     )
 
 
-def _told(value: float) -> float | str:
+def _shown(value: float) -> float | str:
     return "—" if math.isnan(value) else float(value)
 
 
 def _symbol(name: object) -> str:
-    """PGA/(g tan α), or the spectral acceleration of sa_0.5s_g: S_a(0.5 s)."""
+    """Return the symbol of a measure: PGA/(g tan α), or S_a(0.5 s) for sa_0.5s_g."""
     return SYMBOLS.get(str(name)) or f"SA({str(name).removeprefix('sa_').removesuffix('s_g')}\u00a0s)"

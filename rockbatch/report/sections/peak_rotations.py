@@ -20,18 +20,18 @@ if TYPE_CHECKING:
 
 MOST_RECORDS = 60
 MOST_SERIES = 24
-"""Foundations that stand beside each other in a panel; of more, each has a row of its own."""
+"""Most foundations side by side in a panel; if there are more, each has a row of its own."""
 MOST_FIGURES = 12
 INVISIBLE = 0.02
-"""Of the axis: below, a marker lies on it."""
+"""Share of the axis below which a marker lies on it."""
 LEAST_QUIET = 4
-"""Records with nothing but such markers that share a sentence instead of a panel each."""
+"""Least number of records with only such markers that share a sentence instead of a panel each."""
 MOST_MARKS = 12_000  # on the page: a megabyte and a half
 MOST_OF_A_FIGURE = 2_000  # foundations under one record, each with its line in the legend
 
 
 def section(contents: Contents) -> Section | None:
-    """A figure for each pier and scale, with its numbers."""
+    """Draw a figure for each pier and scale, with its numbers."""
     finished = contents.finished
     if finished is None or finished.runs.empty:
         return None
@@ -53,13 +53,13 @@ def section(contents: Contents) -> Section | None:
         ),
     }
     legend = [
-        tag("p", tag("sup", mark), " ", words, class_="legend") for mark, (words, has) in marks.items() if has.any()
+        tag("p", tag("sup", mark), " ", words, class_="legend") for mark, (words, mask) in marks.items() if mask.any()
     ]
     return Section("Peak rotations", "figure", join(drawn, *legend))
 
 
 def chosen(finished: Finished, runs: "pd.DataFrame", figures: int = 1) -> list[str]:
-    """Records that have a panel, in order of PGA: all of them, or of many those with the worst runs."""
+    """Return the records that have a panel, by PGA: all of them, or of many those with the worst runs."""
     names = list(runs["record"].unique())
     room = max(1, min(MOST_RECORDS, MOST_MARKS * len(names) // max(1, len(runs) * figures)))
     if len(names) > room:
@@ -70,7 +70,7 @@ def chosen(finished: Finished, runs: "pd.DataFrame", figures: int = 1) -> list[s
 
 
 def _quiet(runs: "pd.DataFrame", records: Sequence[str], top: float) -> list[str]:
-    """Records under which all markers would lie on the axis; none where they are few, or all of them."""
+    """Return the records whose markers would all lie on the axis; none if these are few, or all of them."""
     worst = runs["theta_max_over_alpha"].where(runs["status"] == "ok", math.inf).groupby(runs["record"]).max()
     quiet = [name for name in records if worst[name] < INVISIBLE * top]
     return quiet if LEAST_QUIET <= len(quiet) < len(records) else []
@@ -84,7 +84,7 @@ def _of_quiet(finished: Finished, quiet: Sequence[str], top: float) -> str:
 
 
 def figures(finished: Finished, caption: Sequence[object], *, side: str = "polarity") -> Markup:
-    """A figure for each pier and scale, or for the first of many; ``caption`` is common to them.
+    """Draw a figure for each pier and scale, or for the first of many; ``caption`` is common to them.
 
     Runs whose column ``side`` has the second of two values are drawn with open markers.
     """
@@ -100,7 +100,7 @@ def figures(finished: Finished, caption: Sequence[object], *, side: str = "polar
         if runs["record"].value_counts().max() > MOST_OF_A_FIGURE:
             runs = worst_first(runs[runs["record"].isin(records)], MOST_OF_A_FIGURE)
             records = [name for name in records if name in set(runs["record"])]
-        told = [
+        parts = [
             tag("strong", f"{words}. ") if words else "", *caption,
             _of_quiet(finished, quiet, top),
             " Symbols in the shaded strip are runs without a largest rotation: the pier overturned, or left the ground."
@@ -109,7 +109,7 @@ def figures(finished: Finished, caption: Sequence[object], *, side: str = "polar
             f" Shown are the {len(records):,} records with the worst runs of {every:,}." if len(records) < every else "",
         ]  # fmt: skip
         drawn = draw(finished, runs[~runs["record"].isin(quiet)], records, top, side)
-        shown.append(figure(drawn, *told))
+        shown.append(figure(drawn, *parts))
         shown.append(
             at_a_glance(finished, runs, finished.by_pga([*records, *quiet])) if side == "polarity" else Markup("")
         )

@@ -22,7 +22,7 @@ MOST_COLUMNS = 24
 
 
 def section(contents: Contents) -> Section | None:
-    """Every run."""
+    """Return every run in a table."""
     finished = contents.finished
     if finished is None or finished.runs.empty:
         return None
@@ -36,7 +36,7 @@ def section(contents: Contents) -> Section | None:
 
 
 def at_a_glance(finished: Finished, runs: "pd.DataFrame", records: "Sequence[str]") -> Markup:
-    """The paper's Fig. 7 in numbers: a row per record, a column per foundation (and direction)."""
+    """Return the paper's Fig. 7 in numbers: a row per record, a column per foundation (and direction)."""
     series = [(place, finished.series[place]) for place in runs["series"].unique()]
     series.sort(key=lambda pair: (not pair[1].rigid, pair[1].index))
     signs = sorted(runs["polarity"].unique())
@@ -44,21 +44,21 @@ def at_a_glance(finished: Finished, runs: "pd.DataFrame", records: "Sequence[str
         return Markup("")
     heads = [Head("record"), Head("PGA [g]", ".3f")]
     heads += [
-        Head(one.label + (f" ({sign})" if len(signs) > 1 else ""), THETA_FORMAT) for _, one in series for sign in signs
+        Head(own.label + (f" ({sign})" if len(signs) > 1 else ""), THETA_FORMAT) for _, own in series for sign in signs
     ]
     stood = runs[runs["status"] == "ok"]["theta_max_over_alpha"]
     shown = runs[runs["record"].isin(records)]
-    found = {(run["record"], run["series"], run["polarity"]): run for run in as_dicts(shown)}
+    run_of = {(run["record"], run["series"], run["polarity"]): run for run in as_dicts(shown)}
     rows: list[list[object]] = []
     for name in records:
-        values = [found.get((name, place, sign)) for place, _ in series for sign in signs]
+        values = [run_of.get((name, place, sign)) for place, _ in series for sign in signs]
         pga = next((run["pga"] for run in values if run), math.nan)
         rows.append([finished.shown(name), pga, *(outcome(run, stood.max()) for run in values)])
     return table(heads, rows, name="Peak rotations in numbers")
 
 
 def outcome(run: "dict[str, Any] | None", worst: float = math.nan) -> object:
-    """θ_max/α of a run, or what happened instead."""
+    """Return θ_max/α of a run, or how it ended instead."""
     if run is None:
         return ""
     status, theta, flight = run["status"], float(run["theta_max_over_alpha"]), run["flight_s"]
@@ -77,9 +77,9 @@ def outcome(run: "dict[str, Any] | None", worst: float = math.nan) -> object:
 
 
 def _every_run(finished: Finished) -> Markup:
-    """The rows of ``peaks.csv``, the worst first."""
+    """Return the rows of ``peaks.csv``, the worst first."""
     runs, varied = finished.runs, finished.info["varied"]
-    # These say something only where they change
+    # Shown only if they vary
     also = {"polarity": finished.both_directions, "scale": runs["scale"].nunique() > 1}
     names = {"record": head(COLUMNS["record"])}
     if (runs["station"] != "").any() and (runs["station"] != runs["record"]).any():
@@ -104,10 +104,10 @@ def _every_run(finished: Finished) -> Markup:
         ]
         for run in as_dicts(shown)
     ]
-    told = tag("p", alarm(f"{PEAKS} {finished.saved.told_missing}"), ".") if finished.saved.missing else ""
+    warning = tag("p", alarm(f"{PEAKS} {finished.saved.told_missing}"), ".") if finished.saved.missing else ""
     heads = [*names.values(), *columns.values()]
     drawn = table(heads, rows, sortable=True, name="Every run")
-    return join(told, told_apart(len(shown), len(runs), "worst"), drawn)
+    return join(warning, told_apart(len(shown), len(runs), "worst"), drawn)
 
 
 def _cell(name: str, value: Any) -> object:
@@ -117,24 +117,24 @@ def _cell(name: str, value: Any) -> object:
 
 
 def _settlement(run: dict[str, Any]) -> object:
-    """Settlement [mm] of a run; by two spring laws the range between both."""
+    """Return the settlement [mm] of a run; by two spring laws, the range between both."""
     own, other = (on_scale(name, run.get(name)) for name in ("settlement_m", OTHER_LAW))
     if own is None or other is None:
         return own
     form = COLUMNS["settlement_m"].page
-    low, high = (number(each, form.form if form else ".2f") for each in sorted((own, other)))
+    low, high = (number(value, form.form if form else ".2f") for value in sorted((own, other)))
     return Markup(low if low == high else f"{low}\u00a0–\u00a0{high}")
 
 
 def on_scale(name: str, value: float | None) -> float | None:
-    """A number of column ``name`` in the unit in which the page has it; None where there is none."""
+    """Return a number of column ``name`` in the unit of the page; None for NaN and None."""
     column = COLUMNS.get(name)
     factor = column.page.factor if column and column.page else 1
     return None if value is None or value != value else factor * float(value)
 
 
 def _linearised(finished: Finished) -> Markup:
-    """How many runs rotate further than first-order kinematics holds."""
+    """Report how many runs rotate beyond the range of first-order kinematics."""
     far = int(finished.runs["note"].str.contains(LINEARISED).sum())
     if not far:
         return Markup("")
@@ -149,7 +149,7 @@ def _linearised(finished: Finished) -> Markup:
 
 
 def _ratcheting(finished: Finished) -> Markup:
-    """That settlement is a range by the spring law, and how wide it is where both were run."""
+    """State that settlement depends on the spring law, with its widest range if both were run."""
     if not any(map(creeps, finished.info["cases"])):
         return Markup("")
     told = (

@@ -1,4 +1,4 @@
-"""Published values beside ours."""
+"""Published values beside computed ones."""
 
 import math
 from fnmatch import fnmatchcase
@@ -15,7 +15,7 @@ from rockbatch.results.suite_statistics import NO_PEAK
 
 
 def section(contents: Contents) -> Section | None:
-    """The references of the study; None where it has none."""
+    """Compare with the references of the study; None if it has none."""
     finished = contents.finished
     if finished is None or not finished.info["references"]:
         return None
@@ -23,7 +23,7 @@ def section(contents: Contents) -> Section | None:
 
 
 def _published(finished: Finished) -> Markup:
-    """Every run that a reference's record pattern, case and columns fit."""
+    """Return every run that matches a reference's record pattern, case and columns."""
     runs = finished.runs
     more = [key for key in ("polarity", "scale") if runs[key].nunique() > 1]
     keys = [*finished.info["varied"], *more]

@@ -1,4 +1,4 @@
-"""How to get there again."""
+"""How to reproduce the results."""
 
 import shlex
 
@@ -8,7 +8,7 @@ from rockbatch.report.markup import join, tag
 
 
 def section(contents: Contents) -> Section:
-    """The study file, and the command, versions and machine of a run."""
+    """Return the study file, and the command, versions and machine of a run."""
     study, finished = contents.study, contents.finished
     text = tag("pre", tag("code", study["text"]))
     if finished is None:

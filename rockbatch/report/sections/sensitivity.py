@@ -1,4 +1,4 @@
-"""Pictures of ``rockbatch sensitivity``: what each input does to the answer alone, and Sobol's indices."""
+"""Pictures of ``rockbatch sensitivity``: the effect of each input alone, and Sobol's indices."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
@@ -26,24 +26,24 @@ SOBOL = ("case", "parameter", "first", "first_error", "total", "total_error")
 
 @of_files("sensitivity")
 def section(contents: Contents) -> Section | None:
-    """The inputs one at a time, and all at once; None where they were not studied."""
-    found = contents.analysis("sensitivity")
-    if found is None:
+    """Report the inputs one at a time, and all at once; None if they were not studied."""
+    analysis = contents.analysis("sensitivity")
+    if analysis is None:
         return None
-    swings, shares = found.table("sensitivity.csv", TORNADO), found.table("sobol.csv", SOBOL)
+    swings, shares = analysis.table("sensitivity.csv", TORNADO), analysis.table("sobol.csv", SOBOL)
     if swings is None or shares is None:
         return None
-    keys = ["case", *found.info["varied"]]
-    parts = [_lead(found.info), _without_vertical(found.info)]
+    keys = ["case", *analysis.info["varied"]]
+    parts = [_lead(analysis.info), _without_vertical(analysis.info)]
     for names, own in swings.groupby(keys, sort=False, dropna=False):
         both = own.merge(shares, on=[*keys, "parameter"])
         values = dict(zip(keys, names, strict=True))
-        told = [name for name in keys if swings[name].nunique(dropna=False) > 1]
-        words = named(values, told)
+        varying = [name for name in keys if swings[name].nunique(dropna=False) > 1]
+        words = named(values, varying)
         parts.append(figure(_tornado(both), f"{words}: one input at a time, all others as in the study."))
         parts.append(figure(_bars(both), f"{words}: all inputs at once over their ranges."))
         parts.append(_numbers(both))
-    parts.append(found.provenance())
+    parts.append(analysis.provenance())
     return Section("What the answer depends on", "sensitivity", join(*parts))
 
 
@@ -61,10 +61,10 @@ def _lead(info: dict[str, Any]) -> Markup:
 
 
 def _without_vertical(info: dict[str, Any]) -> Markup:
-    """That the input "vertical" changes nothing where no record has a vertical component."""
+    """Warn that the input "vertical" has no effect if no record has a vertical component."""
     motions = info.get("under", [])
-    studied = any(each.get("name") == "vertical" for each in info["inputs"])
-    if not studied or not motions or any(one["vertical"] for one in motions):
+    studied = any(entry.get("name") == "vertical" for entry in info["inputs"])
+    if not studied or not motions or any(motion["vertical"] for motion in motions):
         return Markup("")
     return tag(
         "p",
@@ -82,7 +82,7 @@ def _symbol(name: str) -> str:
 
 
 def _frame(inputs: Sequence[str], scale: Scale) -> tuple[Axes, list[Markup]]:
-    """Axes with a row for each input, from the top, and their names."""
+    """Return axes with a row for each input, from the top, and their names."""
     axes = Axes(LEFT, TOP, WIDTH - LEFT - 52, ROW * len(inputs), scale, Scale(0.0, len(inputs)))
     names = [
         text(LEFT - 6, TOP + ROW * (place + 0.5) + 4, _symbol(name), class_="e") for place, name in enumerate(inputs)
@@ -96,9 +96,9 @@ def _tornado(both: "pd.DataFrame") -> Markup:
     room = 0.12 * (high - low) or 0.1 * abs(high) or 1.0
     axes, drawn = _frame(both["parameter"].tolist(), Scale(max(0.0, low - room), high + room))
     base = float(axes.across(ends[0, 1]))
-    for place, each in enumerate(both.to_dict("records")):
+    for place, row in enumerate(both.to_dict("records")):
         middle = TOP + ROW * (place + 0.5)
-        for colour, end, answer in (("s1", each["low"], each["answer_low"]), ("s2", each["high"], each["answer_high"])):
+        for colour, end, answer in (("s1", row["low"], row["answer_low"]), ("s2", row["high"], row["answer_high"])):
             at = float(axes.across(answer))
             left, right = sorted((base, at))
             shift = -BAR if colour == "s1" else 0
@@ -119,14 +119,14 @@ def _tornado(both: "pd.DataFrame") -> Markup:
 def _bars(both: "pd.DataFrame") -> Markup:
     own = both.sort_values("total", ascending=False, kind="stable")
     whiskers = [own[name] + sign * own[f"{name}_error"] for name in ("first", "total") for sign in (-1, 1)]
-    ends = np.concatenate([np.nan_to_num(each.to_numpy(float)) for each in whiskers])
+    ends = np.concatenate([np.nan_to_num(column.to_numpy(float)) for column in whiskers])
     axes, drawn = _frame(own["parameter"].tolist(), spanning(ends))
     zero = float(axes.across(0.0))
-    for place, each in enumerate(own.to_dict("records")):
+    for place, row in enumerate(own.to_dict("records")):
         for colour, name, shift in (("s1", "first", -BAR), ("s2", "total", 0)):
-            if np.isnan(each[name]):
+            if np.isnan(row[name]):
                 continue
-            y, value, error = TOP + ROW * (place + 0.5) + shift, each[name], each[f"{name}_error"]
+            y, value, error = TOP + ROW * (place + 0.5) + shift, row[name], row[f"{name}_error"]
             at, low, high = (float(x) for x in axes.across(np.array([value, value - error, value + error])))
             left, right = sorted((zero, at))
             drawn.append(rectangle(left, y, right - left, BAR, f"filled {colour}"))
@@ -154,15 +154,15 @@ def _numbers(both: "pd.DataFrame") -> Markup:
         "answer_low", "answer_base", "answer_high", "first", "first_error", "total", "total_error",
     )  # fmt: skip
     rows = [
-        [_symbol(each["parameter"]), *(_written(each[end]) for end in ("low", "base", "high")),
-         *(float(each[name]) for name in names)]
-        for each in both.to_dict("records")
+        [_symbol(row["parameter"]), *(_written(row[end]) for end in ("low", "base", "high")),
+         *(float(row[name]) for name in names)]
+        for row in both.to_dict("records")
     ]  # fmt: skip
     return table(heads, rows, name="Sensitivity in numbers")
 
 
 def _written(value: object) -> str:
-    """An end of a range: numbers stand beside words in the same column of the table, hence may be texts."""
+    """Format an end of a range, which may be text, since columns of the table hold numbers and words."""
     try:
         return number(float(str(value)))
     except ValueError:

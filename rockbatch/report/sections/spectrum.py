@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 WIDTH, HEIGHT = 420.0, 250.0
 ROW = 10.0
-"""Height of a row of marks of what overturned [px]: one for each slenderness, or they would hide each other."""
+"""Height of a row of marks of overturned runs [px]: one for each slenderness, or they would hide each other."""
 
 ACROSS = {"two_pi_over_p_s": "2π/p [s]"}
 QUANTILES = {"median": "", "p16": " d2", "p84": " d1"}
@@ -38,28 +38,28 @@ QUANTILES = {"median": "", "p16": " d2", "p84": " d1"}
 
 @of_files("spectrum")
 def section(contents: Contents) -> Section | None:
-    """Spectra and maps; None where there are none."""
-    found = contents.analysis("spectrum")
-    if found is None:
+    """Draw rocking spectra and overturning maps; None if there are none."""
+    analysis = contents.analysis("spectrum")
+    if analysis is None:
         return None
     parts = []
-    suite = found.table("spectrum_suite.csv", ("case", "scale", "alpha", "count", *QUANTILES))
+    suite = analysis.table("spectrum_suite.csv", ("case", "scale", "alpha", "count", *QUANTILES))
     if suite is not None:
-        parts += _spectra(found, suite)
-    regions = found.table("overturning_map.csv", ("map", "case", "omega_p_over_p", "outcome", "low", "high"))
+        parts += _spectra(analysis, suite)
+    regions = analysis.table("overturning_map.csv", ("map", "case", "omega_p_over_p", "outcome", "low", "high"))
     if regions is not None:
-        parts += _maps(found, regions)
-    content = join(*parts, found.provenance())
+        parts += _maps(analysis, regions)
+    content = join(*parts, analysis.provenance())
     return Section("Rocking spectra and overturning", "spectrum", content) if parts else None
 
 
 # Rocking spectra
 
 
-def _spectra(found: FinishedAnalysis, suite: "pd.DataFrame") -> list[Markup]:
-    axis = found.info["axis"]
-    apart = [name for name in ("case", "scale", *found.info["varied"]) if name not in ("alpha", axis)]
-    told = [name for name in apart if name in ("case",) or suite[name].nunique(dropna=False) > 1]
+def _spectra(analysis: FinishedAnalysis, suite: "pd.DataFrame") -> list[Markup]:
+    axis = analysis.info["axis"]
+    apart = [name for name in ("case", "scale", *analysis.info["varied"]) if name not in ("alpha", axis)]
+    varying = [name for name in apart if name in ("case",) or suite[name].nunique(dropna=False) > 1]
     many = bool((suite["count"] > 1).any())
     lead = "Largest rotation over slenderness against the size of the pier, a curve for each slenderness. "
     if many:
@@ -68,7 +68,7 @@ def _spectra(found: FinishedAnalysis, suite: "pd.DataFrame") -> list[Markup]:
         )
     lead += "Above the frame: overturned or ended by flight (∞), which counts as larger than any rotation."
     drawn = [
-        (named(dict(zip(apart, names, strict=True)), told), *_curves(runs, axis, many))
+        (named(dict(zip(apart, names, strict=True)), varying), *_curves(runs, axis, many))
         for names, runs in suite.groupby(apart, sort=False, dropna=False)
     ]
     return [
@@ -78,7 +78,7 @@ def _spectra(found: FinishedAnalysis, suite: "pd.DataFrame") -> list[Markup]:
 
 
 def _curves(points: "pd.DataFrame", axis: str, many: bool) -> tuple[Markup, list[Entry]]:
-    """The spectra of a case, and their legend."""
+    """Draw the rocking spectra of a case; return the picture and its legend."""
     names = list(QUANTILES) if many else ["median"]
     finite = points[names].to_numpy(float)
     top = 1.08 * max(float(finite[np.isfinite(finite)].max(initial=0.0)), 1e-6)
@@ -116,8 +116,8 @@ def _curves(points: "pd.DataFrame", axis: str, many: bool) -> tuple[Markup, list
 # Overturning maps
 
 
-def _maps(found: FinishedAnalysis, regions: "pd.DataFrame") -> list[Markup]:
-    apart = ["map", "case", *found.info["varied_map"]]
+def _maps(analysis: FinishedAnalysis, regions: "pd.DataFrame") -> list[Markup]:
+    apart = ["map", "case", *analysis.info["varied_map"]]
     drawn = [
         tag(
             "p",
@@ -125,7 +125,7 @@ def _maps(found: FinishedAnalysis, regions: "pd.DataFrame") -> list[Markup]:
             " = 2π over its period, ", sub("a", "p"), " its peak acceleration.",
         )
     ]  # fmt: skip
-    asked = {each["name"]: each for each in found.info["maps"]}
+    asked = {pulse["name"]: pulse for pulse in analysis.info["maps"]}
     pictures: dict[str, list[tuple[str, Markup, list[Entry]]]] = {}
     for names, own in regions.groupby(apart, sort=False, dropna=False):
         values = dict(zip(apart, names, strict=True))

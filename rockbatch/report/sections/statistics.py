@@ -1,4 +1,4 @@
-"""What the suite of ground motions comes to in each case: mean, median, percentiles, and how many runs have no peak."""
+"""Statistics of the suite in each case: mean, median, percentiles, and the number of runs without a peak."""
 
 import math
 from collections.abc import Callable, Hashable, Mapping, Sequence
@@ -32,7 +32,7 @@ WORDS = (
 
 
 def section(contents: Contents) -> Section | None:
-    """Tables of every quantity, a row for each case; with and without the vertical component side by side."""
+    """Return tables of every quantity, a row for each case; with and without the vertical component side by side."""
     finished = contents.finished
     if finished is None or finished.runs.empty:
         return None
@@ -75,7 +75,7 @@ def tables(
     heads: Sequence[Head],
     count: str,
 ) -> Markup:
-    """A table for each quantity that has values.
+    """Return a table for each quantity that has values.
 
     Parameters
     ----------
@@ -142,17 +142,17 @@ def _heads(sides: Sequence[str], form: str) -> list[Head]:
 
 
 def _cells(suites: Sequence[Suite | None], form: str) -> list[object]:
-    return [None if one is None else _cell(one, name, form) for name in _COLUMNS for one in suites]
+    return [None if own is None else _cell(own, name, form) for name in _COLUMNS for own in suites]
 
 
-def _cell(one: Suite, name: str, form: str) -> object:
-    value = getattr(one, name)
+def _cell(own: Suite, name: str, form: str) -> object:
+    value = getattr(own, name)
     if name in ("overturned", "flight", "failed"):
         return alarm(str(value)) if value else value
     if isinstance(value, int):
         return value
     if math.isinf(value):
         return alarm("∞")
-    if name == "mean" and one.standing < one.count:
-        return "—" if math.isnan(value) else join(f"{value:{form}} ", tag("span", f"of {one.standing}", class_="muted"))
+    if name == "mean" and own.standing < own.count:
+        return "—" if math.isnan(value) else join(f"{value:{form}} ", tag("span", f"of {own.standing}", class_="muted"))
     return value

@@ -1,4 +1,4 @@
-"""What was studied: the pier, its foundations and the ground motions, in words and units."""
+"""The study in words and units: the pier, its foundations and the ground motions."""
 
 import math
 from collections.abc import Mapping
@@ -36,14 +36,14 @@ BALANCE = (
 
 
 def section(contents: Contents) -> Section | None:
-    """What was studied."""
+    """Describe the study."""
     if contents.finished is None:
         return None
     return Section("What was studied", "studied", studied(contents.finished))
 
 
 def studied(finished: Finished, level: str = "h3") -> Markup:
-    """The pier, the foundations and the records, in words and units; ``level`` is that of the heading within."""
+    """Describe the pier, the foundations and the records; ``level`` is that of the headings within."""
     info, runs = finished.info, finished.runs
     piers: dict[tuple[float, ...], dict[str, float]] = {}
     for case in info["cases"]:
@@ -66,7 +66,7 @@ def studied(finished: Finished, level: str = "h3") -> Markup:
 
 
 def _drawn(finished: Finished) -> Markup:
-    """A picture of each pier with the devices that tie it."""
+    """Draw each pier with its devices."""
     bases = {case["base"] for case in finished.info["cases"]}
     has_deck = "deck_mass_t" in finished.pier_as_given
     shown: dict[tuple[object, ...], tuple[dict[str, Any], list[str]]] = {}
@@ -86,21 +86,21 @@ def _masses(given: Mapping[str, Any]) -> list[Markup]:
     """Return the numbers of the pier in the units of the study file; those that vary are in the tables."""
     parts = given.get("part", ())
     words = GIVEN | ({"mass_t": ("shaft", "t")} if "deck_mass_t" in given else {})
-    told = [
+    numbers = [
         f"{words[key][0]} {plain(value, 6)} {words[key][1]}".strip()
         for key, value in given.items()
         if key in words and isinstance(value, int | float)
     ]
-    told += [
+    numbers += [
         f"a part of {part['mass_t']:g} t at {part['height_m']:g} m"
         for part in (parts if isinstance(parts, list) else ())
         if isinstance(part, dict) and all(isinstance(part.get(key), int | float) for key in ("mass_t", "height_m"))
     ]
-    return [tag("li", f"As given: {', '.join(told)}.")] if told else []
+    return [tag("li", f"As given: {', '.join(numbers)}.")] if numbers else []
 
 
 def balance(finished: Finished) -> Markup:
-    """At which acceleration and rotation each case lifts off, beyond which it does not come back, and what ties it."""
+    """Report acceleration and rotation at lift-off, the unstable equilibrium and the devices of each case."""
     varied_pier = [key for key in finished.info["varied"] if key in PIER_KEYS]
     heads = [
         Head("case"),
@@ -130,7 +130,7 @@ def balance(finished: Finished) -> Markup:
             lift_off_rotation(pier, ties, deflection) / pier.alpha,
             "never: the tendons hold it" if edge is None else edge / pier.alpha,
             (pier.restitution if given_e is None else float(given_e)) if rigid else None,
-            "; ".join(in_words(pier, each) for each in ties) or "none",
+            "; ".join(in_words(pier, device) for device in ties) or "none",
         ])  # fmt: skip
     return join(
         table(heads, rows, prose=True, name="Lift-off, balance and devices"), tag("p", BALANCE, class_="legend")
@@ -182,7 +182,7 @@ def _motions(finished: Finished) -> str:
 
 
 def foundations(finished: Finished) -> Markup:
-    """What the piers stand on: parameters, and the deflections that follow from them."""
+    """Describe the bases of the piers: parameters, and the deflections that follow from them."""
     varied_pier = [key for key in finished.info["varied"] if key in PIER_KEYS]
     heads = [Head("case"), *(Head(symbol(key)) for key in varied_pier), Head("base")]
     weighed = {

@@ -1,4 +1,4 @@
-"""The suite against its target spectrum, how many of its records are pulse-like, and how near they were to their sources."""
+"""The suite against its target spectrum, its pulse-like records, and their distances from the source."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -38,7 +38,7 @@ MOST_PERIODS = 12
 
 
 def section(contents: Contents) -> Section | None:
-    """Spectra against their target; None where the study has no target spectrum."""
+    """Compare the suite with its target spectrum; None if the study has none."""
     finished = contents.finished
     target = None if finished is None else finished.info.get("target")
     if finished is None or target is None or not finished.info["records"] or not _sound(target):
@@ -54,9 +54,9 @@ def section(contents: Contents) -> Section | None:
 
 
 def _sound(target: Mapping[str, Any]) -> bool:
-    """Whether the parts of a target fit each other; a file of somebody else's may say anything."""
+    """Return whether the parts of a target fit each other, since run.json may come from anybody."""
     periods, spectra = target["period_s"], (target["sa_g"], target["mean_sa_g"])
-    fitting = all(len(one) == len(periods) > 0 for one in spectra)
+    fitting = all(len(spectrum) == len(periods) > 0 for spectrum in spectra)
     return (
         len(target["range_s"]) == 2 and min(target["range_s"]) > 0 and fitting and min((*periods, *target["sa_g"])) > 0
     )
@@ -67,7 +67,7 @@ def _fit(target: Mapping[str, Any], records: Sequence[Mapping[str, Any]]) -> Mar
     share = f"{target['at_least']:g}"
     scaled = FACTORS[target["factors"]].format(share=share)
     factors = [record.get("factor", 1.0) for record in records]
-    told = (
+    extent = (
         f" (factors {min(factors):.3g} to {max(factors):.3g}, in the table of ground motions)"
         if target["factors"] != "none"
         else ""
@@ -85,7 +85,7 @@ def _fit(target: Mapping[str, Any], records: Sequence[Mapping[str, Any]]) -> Mar
     if target["pairs"] == "srss" and target["alone"]:
         alone = alarm(f" {counted(target['alone'], 'station')} without two components: that is less than a pair has.")
     what = tag("strong", target["spectrum"])
-    first = join("Target: ", what, f", between {low:g} s and {high:g} s. {scaled}{told}.")
+    first = join("Target: ", what, f", between {low:g} s and {high:g} s. {scaled}{extent}.")
     return paragraphs(first, join(words, warning), join(PAIRS[target["pairs"]], alone), CAVEAT)
 
 
@@ -94,7 +94,7 @@ def _over(target: Mapping[str, Any]) -> "np.ndarray[Any, np.dtype[np.float64]]":
 
 
 def _picture(finished: Finished, target: Mapping[str, Any], records: Sequence[Mapping[str, Any]]) -> Markup:
-    """Target, records and mean; nothing where run.json has no spectra, as of very large suites."""
+    """Draw target, records and mean; empty if run.json has no spectra, as for very large suites."""
     spectra = finished.info.get("spectra")
     if not spectra or len(spectra["sa_g"]) != len(records) or not response_spectra.drawable(spectra):
         return join()
@@ -108,7 +108,7 @@ def _picture(finished: Finished, target: Mapping[str, Any], records: Sequence[Ma
 
 
 def _ratios(target: Mapping[str, Any]) -> Markup:
-    """Mean over target, at some of the periods, both ends among them."""
+    """Return the mean over the target at some of the periods, including both ends."""
     periods, over = target["period_s"], _over(target)
     places = np.unique(np.linspace(0, len(periods) - 1, min(MOST_PERIODS, len(periods))).round().astype(int))
     heads = [
@@ -124,15 +124,15 @@ def _ratios(target: Mapping[str, Any]) -> Markup:
 def _near_source(records: Sequence[Mapping[str, Any]]) -> Markup:
     kinds = [record.get("pulse") for record in records]
     pulses, open_ = kinds.count("yes"), kinds.count("ambiguous")
-    told_periods = (record.get("pulse_period_s") for record in records if record.get("pulse") == "yes")
-    periods = sorted(period for period in told_periods if period is not None)
-    told = f"{pulses} of {counted(len(records), 'horizontal component')} ({100 * pulses / len(records):.0f} %) "
-    told += f"{'is' if pulses == 1 else 'are'} pulse-like"
+    of_pulses = (record.get("pulse_period_s") for record in records if record.get("pulse") == "yes")
+    periods = sorted(period for period in of_pulses if period is not None)
+    sentence = f"{pulses} of {counted(len(records), 'horizontal component')} ({100 * pulses / len(records):.0f} %) "
+    sentence += f"{'is' if pulses == 1 else 'are'} pulse-like"
     stations = {record.get("station") or record["record"] for record in records}
     with_pulse = {record.get("station") or record["record"] for record in records if record.get("pulse") == "yes"}
-    told += f", at {len(with_pulse)} of {counted(len(stations), 'station')}" if len(stations) < len(records) else ""
-    told += f", with pulses of {periods[0]:.2g} to {periods[-1]:.2g} s" if periods else ""
-    told += f"; of {open_} more the criterion does not tell" if open_ else ""
+    sentence += f", at {len(with_pulse)} of {counted(len(stations), 'station')}" if len(stations) < len(records) else ""
+    sentence += f", with pulses of {periods[0]:.2g} to {periods[-1]:.2g} s" if periods else ""
+    sentence += f"; of {open_} more the criterion does not tell" if open_ else ""
     criterion = (
         "By the wavelet criterion of Baker (2007): pulse indicator above 0.85, PGV of 0.3 m/s at least before scaling, "
         "and an early pulse. It was made for fault-normal components; another direction of the same record may be "
@@ -153,4 +153,4 @@ def _near_source(records: Sequence[Mapping[str, Any]]) -> Markup:
         "A site near a fault asks for a share of pulse-like records like that of its hazard, and one far from faults for "
         "none; see which yours is."
     )
-    return join(tag("h3", "Pulses and near-source records"), paragraphs(f"{told}. {criterion}", where, asked))
+    return join(tag("h3", "Pulses and near-source records"), paragraphs(f"{sentence}. {criterion}", where, asked))

@@ -1,4 +1,4 @@
-"""What could not be used, or was left out, and why."""
+"""Files and runs that gave no result or were left out, with reasons."""
 
 from rockbatch.report.contents import Contents
 from rockbatch.report.document import Section
@@ -8,7 +8,7 @@ from rockbatch.report.table import Head, table
 
 
 def section(contents: Contents) -> Section | None:
-    """Files and runs that gave no result, and what was left out; None where everything was used."""
+    """List files and runs without a result, and those left out; None if everything was used."""
     finished = contents.finished
     if finished is None:
         return None
@@ -21,7 +21,7 @@ def section(contents: Contents) -> Section | None:
 
 
 def _unusable(finished: Finished) -> Markup:
-    """Files and runs that gave no result, and why."""
+    """List files and runs that gave no result, with reasons."""
     rows = [[entry["name"], "", entry["source"], entry["reason"]] for entry in finished.info["unusable"]]
     failed = finished.runs[finished.runs["status"] == "failed"]
     rows += [[finished.shown(run["record"]), finished.which(run), "", run["reason"]] for _, run in failed.iterrows()]
@@ -29,6 +29,6 @@ def _unusable(finished: Finished) -> Markup:
 
 
 def _left_out(finished: Finished) -> Markup:
-    """Files and records that were left out on purpose, or are no records, and why."""
+    """List files and records that were left out on purpose, or are no records, with reasons."""
     rows = [[entry["name"], entry["source"], entry["reason"]] for entry in finished.info["left_out"]]
     return table([Head("record"), Head("file"), Head("why")], rows, prose=True, name="Left out")

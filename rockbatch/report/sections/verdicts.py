@@ -1,4 +1,4 @@
-"""Whether the pier passes: the answer in a sentence, every check in every case at a glance, and what the checks ask."""
+"""Verdicts: the answer in a sentence, every check in every case, and the demands of the checks."""
 
 import math
 from collections.abc import Sequence
@@ -18,11 +18,11 @@ BASIS = {"code": "code clause", "literature": "literature", "judgement": "engine
 SAID = {PASS: "passes:", FAIL: "fails:", NOT_DECIDED: "not decided:", DOES_NOT_APPLY: "does not apply"}
 CLASSES = {PASS: "pass", FAIL: "fail", NOT_DECIDED: "undecided", DOES_NOT_APPLY: "muted"}
 MOST_WORST = 10
-"""Rows of the worst verdicts, where there are too many to tell all."""
+"""Rows of the worst verdicts, if there are too many to list all."""
 
 
 def section(contents: Contents) -> Section | None:
-    """Every check in every case, what the checks ask, and every verdict, or the worst of many; None without checks."""
+    """Return all checks in all cases, their demands, and all verdicts, or the worst of many; None without checks."""
     verdicts = contents.verdicts
     if not verdicts:
         return None
@@ -37,26 +37,26 @@ def section(contents: Contents) -> Section | None:
             tag("p", "All of them, with what governs each, are in ", tag("a", tag("code", CHECKS), href=CHECKS), ".")
         )
     else:
-        rest = [one for one in verdicts if one.verdict not in (FAIL, NOT_DECIDED)]
+        rest = [verdict for verdict in verdicts if verdict.verdict not in (FAIL, NOT_DECIDED)]
         parts += [matrix(verdicts), tag("h3", "Every verdict"), _every([*wording.worst_first(verdicts), *rest], notes)]
     return Section("Every check", "checks", join(*parts, tag("h3", "What the checks ask"), _asked(verdicts)))
 
 
 def mark(verdict: str, words: str) -> Markup:
-    """A verdict's sign before ``words``, in its colour; the sign has a name for those who hear the page."""
+    """Put a verdict's sign before ``words``, in its colour; screen readers read the sign's name."""
     sign = tag("span", wording.SIGNS[verdict], role="img", aria_label=SAID[verdict])
     return tag("span", sign, f"\u00a0{words}" if words else "", class_=CLASSES[verdict])
 
 
 def answer(verdicts: Sequence[Verdict], finished: Finished) -> Markup:
-    """Which cases pass, what fails and by how much, and what is not decided."""
+    """Report the cases that pass, what fails and by how much, and what is not decided."""
     if not verdicts:
         return join(
             "No limits were set: nothing here passes or fails. ", tag("code", "rockbatch check"),
             " judges finished results by rules.",
         )  # fmt: skip
-    scaled = len({one.scale for one in verdicts}) > 1
-    lines = answered(verdicts, finished.worst, lambda one: _case(one, scaled), lambda one: finished.label(one.record))
+    scaled = len({row.scale for row in verdicts}) > 1
+    lines = answered(verdicts, finished.worst, lambda row: _case(row, scaled), lambda row: finished.label(row.record))
     return tag("ul", *map(_line, lines), class_="answer")
 
 
@@ -67,21 +67,21 @@ def _line(line: Line) -> Markup:
 
 
 def _by_case(verdicts: Sequence[Verdict]) -> dict[str, list[Verdict]]:
-    scaled = len({one.scale for one in verdicts}) > 1
+    scaled = len({verdict.scale for verdict in verdicts}) > 1
     cases: dict[str, list[Verdict]] = {}
-    for one in verdicts:
-        cases.setdefault(_case(one, scaled), []).append(one)
+    for verdict in verdicts:
+        cases.setdefault(_case(verdict, scaled), []).append(verdict)
     return cases
 
 
-def _case(one: Verdict, scaled: bool) -> str:
-    words = [quantity(key, value) for key, value in one.columns.items()]
-    words += [f"motions scaled by {one.scale:g}"] if scaled else []
-    return one.case + (f" ({', '.join(words)})" if words else "")
+def _case(verdict: Verdict, scaled: bool) -> str:
+    words = [quantity(key, value) for key, value in verdict.columns.items()]
+    words += [f"motions scaled by {verdict.scale:g}"] if scaled else []
+    return verdict.case + (f" ({', '.join(words)})" if words else "")
 
 
 def legend() -> Markup:
-    """What :func:`matrix` shows."""
+    """Return the legend of :func:`matrix`."""
     words = (
         "Demand over limit; above 1 is too much; of events, whether there are any. ✓ passes, ✗ fails, ? not decided: the bounds "
         "of the demand straddle the limit, or records are missing; – does not apply."
@@ -90,24 +90,24 @@ def legend() -> Markup:
 
 
 def matrix(verdicts: Sequence[Verdict]) -> Markup:
-    """A row for each case, a column for each check: demand over limit, and the verdict."""
-    checks = list(dict.fromkeys(one.check for one in verdicts))
+    """Return a row for each case, a column for each check: demand over limit, and the verdict."""
+    checks = list(dict.fromkeys(verdict.check for verdict in verdicts))
     rows = []
     for case, same in _by_case(verdicts).items():
-        found = {one.check: one for one in same}
-        rows.append([case, *(_cell(found[name]) if name in found else "" for name in checks)])
+        by_check = {verdict.check: verdict for verdict in same}
+        rows.append([case, *(_cell(by_check[name]) if name in by_check else "" for name in checks)])
     return table([Head("case"), *(Head(name) for name in checks)], rows, name="Checks of every case")
 
 
-def _cell(one: Verdict) -> Markup:
-    return mark(one.verdict, wording.demanded(one) if one.is_ban else wording.ratio(one))
+def _cell(verdict: Verdict) -> Markup:
+    return mark(verdict.verdict, wording.demanded(verdict) if verdict.is_ban else wording.ratio(verdict))
 
 
 def _counts(verdicts: Sequence[Verdict]) -> Markup:
-    """A row for each check: how many of its verdicts there are of each kind."""
+    """Return a row for each check: the number of verdicts of each kind."""
     by_check: dict[str, list[Verdict]] = {}
-    for one in verdicts:
-        by_check.setdefault(one.check, []).append(one)
+    for verdict in verdicts:
+        by_check.setdefault(verdict.check, []).append(verdict)
     rows = [
         [name, *(mark(way, str(n)) if n else "" for way, n in wording.count_of(same).items())]
         for name, same in by_check.items()
@@ -122,20 +122,20 @@ def _asked(verdicts: Sequence[Verdict]) -> Markup:
         Head("limit from"),
         Head("reason"),
     ]
-    first = {one.check: one for one in reversed(verdicts)}
-    asked = [first[name] for name in dict.fromkeys(one.check for one in verdicts)]
-    rows = [[one.check, wording.asked(one), BASIS.get(one.basis, one.basis), one.reason] for one in asked]
-    rests = {one.statistic: wording.unchecked(one) for one in asked}
-    told = [
+    first = {row.check: row for row in reversed(verdicts)}
+    asked = [first[name] for name in dict.fromkeys(row.check for row in verdicts)]
+    rows = [[row.check, wording.asked(row), BASIS.get(row.basis, row.basis), row.reason] for row in asked]
+    rests = {row.statistic: wording.unchecked(row) for row in asked}
+    sentences = [
         *wording.Notes(verdicts).common(),
         *wording.counting(verdicts),
         *(f"{name}: {words}." for name, words in rests.items() if words),
     ]
-    return join(table(heads, rows, prose=True, name="What the checks ask"), *(tag("p", words) for words in told))
+    return join(table(heads, rows, prose=True, name="What the checks ask"), *(tag("p", words) for words in sentences))
 
 
 def _every(verdicts: Sequence[Verdict], notes: wording.Notes) -> Markup:
-    """A row for each verdict: its numbers with their unit, the run that governs, and what else there is to know."""
+    """Return a row for each verdict: its numbers with their unit, the governing run, and remarks."""
     bounds = "bounds left by errors, by the other spring law and by runs without an outcome"
     heads = [
         Head("check"),
@@ -152,18 +152,18 @@ def _every(verdicts: Sequence[Verdict], notes: wording.Notes) -> Markup:
         ),
         Head("note"),
     ]
-    scaled = len({one.scale for one in verdicts}) > 1
+    scaled = len({row.scale for row in verdicts}) > 1
     rows = [
         [
-            one.check, _case(one, scaled), mark(one.verdict, one.verdict), wording.demanded(one), _between(one),
-            "" if math.isnan(one.value) else wording.limit(one), wording.margin(one), one.unit, one.records or None,
-            wording.governing(one), "; ".join(filter(None, (one.counted, notes.of(one)))),
+            row.check, _case(row, scaled), mark(row.verdict, row.verdict), wording.demanded(row), _between(row),
+            "" if math.isnan(row.value) else wording.limit(row), wording.margin(row), row.unit, row.records or None,
+            wording.governing(row), "; ".join(filter(None, (row.counted, notes.of(row)))),
         ]
-        for one in verdicts
+        for row in verdicts
     ]  # fmt: skip
     return table(heads, rows, sortable=True, prose=True, name="Verdicts")
 
 
-def _between(one: Verdict) -> str:
-    low, high = ("∞" if math.isinf(value) else number(value) for value in (one.low, one.high))
-    return f"{low} – {high}" if low != high and not one.is_ban else ""
+def _between(verdict: Verdict) -> str:
+    low, high = ("∞" if math.isinf(value) else number(value) for value in (verdict.low, verdict.high))
+    return f"{low} – {high}" if low != high and not verdict.is_ban else ""
