@@ -109,7 +109,7 @@ def of_files(name: str) -> Callable[[Callable[P, T]], Callable[P, T]]:
 
     def decorated(section: Callable[P, T]) -> Callable[P, T]:
         @wraps(section)
-        def told(*args: P.args, **more: P.kwargs) -> T:
+        def checked(*args: P.args, **more: P.kwargs) -> T:
             try:
                 return section(*args, **more)
             except InputError:
@@ -120,7 +120,7 @@ def of_files(name: str) -> Callable[[Callable[P, T]], Callable[P, T]]:
                     f"{name}.json and its tables do not fit each other, or are damaged ({what}); start `rockbatch {name}` again"
                 ) from error
 
-        return told
+        return checked
 
     return decorated
 

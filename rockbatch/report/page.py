@@ -56,7 +56,7 @@ SECTIONS: tuple[Callable[[Contents], Section | None], ...] = (
     notes.section,
     reproduce.section,
 )
-"""Those of one folder, from ``sections/``, in the order of the page: the answer first, then results, then inputs."""
+"""Sections of one folder, from ``sections/``, in the order of the page: the answer first, then results, then inputs."""
 
 SECTIONS_OF_TWO: tuple[Callable[[Pair], Section | None], ...] = (
     compared_answer.section,
@@ -69,7 +69,7 @@ SECTIONS_OF_TWO: tuple[Callable[[Pair], Section | None], ...] = (
     studies.section,
     difference.section,
 )
-"""Those of two folders, from ``compared/``, in the order of the page."""
+"""Sections of two folders, from ``compared/``, in the order of the page."""
 
 
 def page(contents: Contents) -> str:

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from rockbatch.report.markup import Markup, join, number, tag
 
-WHOLE = ".10g"  # as it was given
+WHOLE = ".10g"  # all digits as given
 MOST_ROWS = 1000
 MOST_OPEN = 60
 """Rows of the longest table that is shown unfolded; longer ones are folded, and not printed."""

@@ -36,5 +36,5 @@ def _other_motions(a: Finished, b: Finished) -> Markup:
     return join(tag("span", "Not the same motion in both", class_="alarm"), f", though of one name: {listed}.")
 
 
-def _same(one: float | None, other: float | None) -> bool:
-    return one is other if one is None or other is None else math.isclose(one, other, rel_tol=1e-9)
+def _same(a: float | None, b: float | None) -> bool:
+    return a is b if a is None or b is None else math.isclose(a, b, rel_tol=1e-9)

@@ -10,8 +10,8 @@ from rockbatch.report.drawing.svg import curve, key, line, lowered, marker, svg,
 from rockbatch.report.finished_accuracy import Level, chosen
 from rockbatch.report.markup import Markup, join
 
-LEAST = 1e-14  # errors below are drawn there: rounding
-METHODS = {  # marker, colour, words, and on which side the notes stand, so that neighbours keep clear of each other
+LEAST = 1e-14  # smaller errors, of rounding, are drawn there
+METHODS = {  # marker, colour, words, and the side of the notes, so that neighbours do not overlap
     "located": ("disc", 1, "events located inside the step", -1),
     "not located": ("square", 2, "events at the end of the step", 1),
     "SciPy DOP853": ("up", 3, "SciPy DOP853", 1),

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 FIRST, LAST = 1.5, 97.0
-"""Where the axis begins and ends [% of the width]."""
+"""Ends of the axis [% of the width]."""
 MOST_LETTERS = 20
 """Longest list of the names of foundations without a peak; if it is longer, their number stands instead."""
 MIDDLE = 10

@@ -12,7 +12,7 @@ from rockbatch.report.drawing.svg import Array, curve, lowered, text, thin
 from rockbatch.report.markup import Markup, join
 from rockbatch.results.response import Response
 
-PIXELS = 200  # of one history, across
+PIXELS = 200  # width of one history
 QUANTITIES = ("θ/α", "θ̇/(αp)", "E/M [J/kg]", "üg/g")
 SEPARATE = ("separation", "lift-off")
 LOOPS_HEIGHT = 128.0  # px
@@ -104,7 +104,7 @@ def _loops(response: Response, left: float, width: float) -> Markup:
         (response.history[f"v_{side}"].to_numpy(dtype=np.float64) / deflection, force)
         for side, force in (("left", response.z_left), ("right", response.z_right))
     ]
-    # As in the paper, the axis ends where the spring lets go: a lifted pivot may be far above
+    # As in the paper, the axis ends where the spring unloads: a lifted pivot may be far above
     loaded = np.concatenate([v[z < 0] for v, z in springs])
     low, high = (float(loaded.min()), float(loaded.max())) if len(loaded) else (-1.0, 0.0)
     margin = 0.08 * (high - low) + 0.01

@@ -1,7 +1,7 @@
 """Overturning maps as pictures: regions over the frequency and amplitude of a pulse, drawn as they were computed.
 
 Straight lines join the boundaries of neighbouring columns with the same outcomes in the same order. Where these differ each
-column reaches to the middle between the two: a boundary that both have goes through, and at the others the picture has a step.
+column reaches halfway to the next: a boundary that both have continues, and at the others the picture has a step.
 """
 
 import math
@@ -81,7 +81,7 @@ def _joined(left: Strip, right: Strip) -> Strip:
 def _meeting(left: Strip, right: Strip) -> tuple[Array, Array]:
     """Return the edges of two strips with other outcomes halfway between the last column and the first.
 
-    A boundary goes through if it is, of those between the same two outcomes, the nearest to one that it is the nearest to.
+    A boundary continues if it and its counterpart between the same two outcomes are each other's nearest.
     Others stay, unless they have to give way to those.
     """
     ends = left.edges[-1], right.edges[0]
@@ -129,7 +129,7 @@ def draw(own: "pd.DataFrame") -> tuple[Markup, list[Entry]]:
     axes = Axes(32, 26, WIDTH - 44, HEIGHT - 64, across, Scale(float(own["low"].min()), float(own["high"].max())))
     present = [name for name in REGIONS if REGIONS[name][0] and any(name in strip.outcomes for strip in drawn)]
     picture = [
-        # One path for each outcome, or a hair of background would shine through where two strips meet
+        # One path for each outcome, or a hair of background would show where two strips meet
         *(_path(axes, _areas(drawn, name), f"filled {REGIONS[name][0]}") for name in present),
         axes.frame(axes.x.ticks(8), axes.y.ticks(8)),
         _path(axes, [*_inside(drawn), *_between(drawn)], "level"),

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 HEIGHT = 146.0  # px
-VISIBLE = 0.015  # of the axis: error bars that are shorter hide behind their marker
+VISIBLE = 0.015  # share of the axis: shorter error bars hide behind their marker
 RIGID_LINES = 4
 
 

@@ -39,7 +39,7 @@ def draw(spectra: dict[str, Any], names: Sequence[str], fitted: tuple[float, flo
     target = np.array(spectra.get("target_sa_g", ()), dtype=float)
     shown = np.concatenate((values[values > 0], target[target > 0]))
     top = float(shown.max(initial=1e-3))
-    low = max(float(shown.min(initial=top)), 1e-4 * top)  # a record that is nearly nothing must not flatten the rest
+    low = max(float(shown.min(initial=top)), 1e-4 * top)  # a record of nearly zeros must not flatten the rest
     axes = Axes(44, 20, 384, 260, Scale(periods[0], periods[-1], log=True), Scale(low / 1.2, 1.2 * top, log=True))
     few = len(names) <= LABELLED
     drawn = [axes.frame(_ticks(axes.x), _ticks(axes.y))]

@@ -10,7 +10,7 @@ from rockbatch.report.markup import Markup, join, tag
 
 Array = npt.NDArray[np.float64]
 
-FINE = 10  # steps of a curve's coordinates to a pixel
+FINE = 10  # steps per pixel of a curve's coordinates
 COLOURS = 7
 EVENTS = {"overturned": "overturned", "flight": "flight: both pivots off the ground"}
 

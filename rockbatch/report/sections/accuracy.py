@@ -22,7 +22,7 @@ def section(contents: Contents) -> Section | None:
 
 def _cost(finished: Finished) -> str:
     info, errors = finished.info, finished.runs["theta_max_error"].dropna()
-    kept = info.get("kept", 0)  # of an earlier session, or of other machines: what they took is not known
+    kept = info.get("kept", 0)  # of an earlier session, or of other machines, whose time is unknown
     cost = f"{counted(kept, 'run')} had been finished before. " if kept else ""
     if kept < info["runs"]:
         took = f"{number(float(info['wall_s']), '.3g')} s on {counted(info['jobs'], 'thread')}"
@@ -42,11 +42,11 @@ def _measured(levels: Sequence[Level]) -> Markup:
         )
         return paragraphs(against)
     runs = counted(int(levels[0].runs or 0), "run")
-    settled = number(max(level.reference_change or 0.0 for level in levels), ".0e")
+    last_change = number(max(level.reference_change or 0.0 for level in levels), ".0e")
     caption = (
         f"Measured on {levels[0].machine}, in one thread, over {runs} of this study (SciPy's solvers: at most two of "
         "them, on springs), against runs with ever smaller steps, the last halving of which changed the peak by "
-        f"{settled} at most. k: steps per sample; SciPy: its rtol. Runs that overturn, or end otherwise than they "
+        f"{last_change} at most. k: steps per sample; SciPy: its rtol. Runs that overturn, or end otherwise than they "
         "should, have no error; the table counts the latter."
     )
     return join(paragraphs(_lead(levels)), figure(draw(levels), caption), _table(levels))

@@ -54,14 +54,14 @@ def section(contents: Contents) -> Section | None:
 
 def _summary(finished: Finished, runs: list[dict[str, Any]]) -> Markup:
     """Report how often each method has an answer, motion by motion, and its error on rigid ground alone."""
-    bare = [run for run in runs if _is_bare(finished, run)]
+    on_rigid = [run for run in runs if _is_rigid_block(finished, run)]
     once = list({(run["record"], finished.place(run["case"], run)[1], run["scale"]): run for run in runs}.values())
     sentences = []
     for method, name in METHODS.items():
         outcomes = [run[f"{method}_outcome"] for run in once]
         ratios = [
             run[f"{method}_theta_over_alpha"] / run["theta_max_over_alpha"]
-            for run in bare
+            for run in on_rigid
             if run[f"{method}_outcome"] == "rocks" and run["status"] == "ok" and run["theta_max_over_alpha"] > 0
         ]
         counts = ", ".join(f"{words} {outcomes.count(kind)}" for kind, words in OUTCOMES.items() if kind in outcomes)
@@ -71,12 +71,12 @@ def _summary(finished: Finished, runs: list[dict[str, Any]]) -> Markup:
             sentence += f"; where it gives a rotation, that is {low:.2f} to {high:.2f} times the computed one"
             sentence += f" on rigid ground, {middle:.2f} in the median of {counted(len(ratios), 'run')}"
         sentences.append(f"{sentence}.")
-    if not bare:
+    if not on_rigid:
         sentences.append("No case stands on rigid ground without devices, so that nothing computed compares with them.")
     return paragraphs(*sentences)
 
 
-def _is_bare(finished: Finished, run: Mapping[str, Any]) -> bool:
+def _is_rigid_block(finished: Finished, run: Mapping[str, Any]) -> bool:
     """Return whether a run is of the system that is estimated: a block on rigid ground alone."""
     return finished.series[finished.place(run["case"], run)[0]].rigid
 

@@ -1,4 +1,4 @@
-"""How to reproduce the results."""
+"""Inputs, versions and machine from which the results can be reproduced."""
 
 import shlex
 

@@ -118,19 +118,19 @@ def balance(finished: Finished) -> Markup:
         pier = pier_of(case)
         if pier is None:
             continue
-        ties, rigid, given = restraints_of(case), case["base"] == "rigid", case["parameters"]
+        devices, rigid, given = restraints_of(case), case["base"] == "rigid", case["parameters"]
         deflection = 0.0 if rigid else float(given.get("delta_s_m") or 0.0)
-        edge = unstable_equilibrium(pier, ties)
+        edge = unstable_equilibrium(pier, devices)
         given_e = given.get("restitution")
         own = [quantity(key, value) for key, value in case["columns"].items() if key not in PIER_KEYS]
         rows.append([
             " ".join([str(case["case"]), *own]),
             *(case["columns"].get(key) for key in varied_pier),
-            lift_off_acceleration(pier, ties, deflection),
-            lift_off_rotation(pier, ties, deflection) / pier.alpha,
+            lift_off_acceleration(pier, devices, deflection),
+            lift_off_rotation(pier, devices, deflection) / pier.alpha,
             "never: the tendons hold it" if edge is None else edge / pier.alpha,
             (pier.restitution if given_e is None else float(given_e)) if rigid else None,
-            "; ".join(in_words(pier, device) for device in ties) or "none",
+            "; ".join(in_words(pier, device) for device in devices) or "none",
         ])  # fmt: skip
     return join(
         table(heads, rows, prose=True, name="Lift-off, balance and devices"), tag("p", BALANCE, class_="legend")
