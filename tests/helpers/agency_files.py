@@ -19,7 +19,7 @@ def in_columns(values, form: str, per_line: int) -> list[str]:
 
 
 def geonet_component(label: str, values, *, volume: int = 1, dt: float = 0.005, pad: float = 0.0) -> list[str]:
-    """One component of a V1A (1) or V2A (2) file; ``values`` in mm/s²."""
+    """Return one component of a V1A (1) or V2A (2) file; ``values`` in mm/s²."""
     npts = len(values)
     ints = [2016, 11, 13, 11, 2, 560, 0, 0, 2016, 11, *[0] * 8, 13, 11, *[0] * 10]
     ints += [npts, 0, 0, npts, *[npts if volume == 2 else 0] * 2, 0, 0, 2, 19715]
@@ -60,7 +60,7 @@ def geonet_text(volume: int = 1, **header) -> str:
 
 
 def dyna_text(values=A, stream: str = "HNE", **changed: str | None) -> str:
-    """A DYNA file; ``changed`` replaces a key's value, ``None`` leaves the key out."""
+    """Return a DYNA file; ``changed`` replaces a key's value, ``None`` leaves the key out."""
     header: dict[str, str | None] = {
         "EVENT_NAME": "MADE UP",
         "EVENT_ID": "X-1",
@@ -87,7 +87,7 @@ def dyna_text(values=A, stream: str = "HNE", **changed: str | None) -> str:
 
 
 def renadic_channel(label: str, values, times=None, *, number: int = 1, trigger: str = "2/27/2010 6:34:11.500"):
-    """One channel; ``values`` in g/10."""
+    """Return one channel; ``values`` in g/10."""
     times = 0.005 * np.arange(len(values)) if times is None else times
     pairs = np.column_stack([times, values]).ravel()
     peak = values[np.abs(values).argmax()] / 10

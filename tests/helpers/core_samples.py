@@ -14,7 +14,7 @@ TOWER = Pier(alpha=0.13, p=0.38)
 
 
 def pulse(shape: str, period: float, amplitude_g: float = 1.0, dt: float = 0.005, end: float = 10.0) -> Motion:
-    """One cycle of a sine or cosine sampled at i dt ≤ ``period`` [s], then zeros until ``end`` [s]."""
+    """Return one cycle of a sine or cosine sampled at i dt ≤ ``period`` [s], then zeros until ``end`` [s]."""
     t = np.arange(round(end / dt) + 1) * dt
     wave = {"sine": np.sin, "cosine": np.cos}[shape]
     inside = t <= period + 1e-9
@@ -22,12 +22,12 @@ def pulse(shape: str, period: float, amplitude_g: float = 1.0, dt: float = 0.005
 
 
 def steady(horizontal: float, vertical: float, dt: float, samples: int) -> Motion:
-    """Constant ground accelerations [m/s²] from the first sample on."""
+    """Return constant ground accelerations [m/s²] from the first sample on."""
     return Motion("steady", dt, np.full(samples, float(horizontal)), np.full(samples, float(vertical)))
 
 
 def broadband(rng: np.random.Generator, dt: float, npts: int, peak: float) -> Samples:
-    """Sum of twelve sines between 0.3 and 20 Hz under a half-sine envelope, scaled to ``peak`` [m/s²]."""
+    """Return a sum of twelve sines between 0.3 and 20 Hz under a half-sine envelope, scaled to ``peak`` [m/s²]."""
     t = np.arange(npts) * dt
     total = np.zeros(npts)
     for frequency in np.exp(rng.uniform(math.log(0.3), math.log(20.0), 12)):
@@ -40,7 +40,7 @@ def _log_uniform(rng: np.random.Generator, low: float, high: float) -> float:
 
 
 def hard_case(seed: int, npts: int = 400) -> tuple[Pier, Base, Motion]:
-    """Random pier on springs, from everything that the input checks let through, under a strong broadband motion.
+    """Return a random pier on springs, within what the input checks accept, and a strong broadband motion.
 
     α in 0.02..1.2, μ in 0.5..10, β from 1.05 times its least value to 300 (or twice that value), η in 1.01..10,
     n in 1..20, ε in 0..1 with its ends, all laws, both kinematics, both treatments of flight; a horizontal peak of

@@ -16,19 +16,19 @@ A, B, C = (np.round(wiggle(NPTS, seed, 90.0), 3) for seed in (1, 2, 3))  # cm/s�
 
 
 def read(text: str | bytes, name: str, gravity: float = 9.81) -> list[Component | Unusable]:
-    """What comes of a file: through the door that folders take, suffix and header included."""
+    """Read a file as the reader of folders does, by suffix and header."""
     data = text if isinstance(text, bytes) else text.encode("latin-1")
     return list(read_record(RecordFile(Path(name), name, data, gravity=gravity)))
 
 
 def in_columns(values, form: str, per_line: int) -> list[str]:
-    """Lines of numbers that may touch."""
+    """Return lines of numbers that may touch."""
     fields = [format(value, form) for value in values]
     return ["".join(fields[i : i + per_line]) for i in range(0, len(fields), per_line)]
 
 
 def one_digit_exponents(values, form: str, per_line: int) -> list[str]:
-    """Lines of numbers as SMC has them: `` 1.5057E+0-2.2223E+0``."""
+    """Return lines of numbers as in SMC files: `` 1.5057E+0-2.2223E+0``."""
     width = int(form.split(".")[0])
     mantissas = [format(float(value), f".{form.split('.')[1]}e").split("e") for value in values]
     fields = [f"{mantissa}E{int(power):+d}".rjust(width) for mantissa, power in mantissas]
@@ -105,7 +105,7 @@ def cosmos_series(
 def cosmos_text(
     values=A, direction: str = "90 Deg", *, stage: str = "Uncorrected", series: dict | None = None, **header
 ) -> str:
-    """One channel of accelerations in cm/s²."""
+    """Return one channel of accelerations in cm/s²."""
     lines = cosmos_header(f"{stage} acceleration", values, direction, **header)
     return "\n".join([*lines, *cosmos_series("acceleration", values, **(series or {})), ""])
 
@@ -122,7 +122,7 @@ def csmip_channel(
     station: str = "CCC",
     unit: str = "",
 ) -> list[str]:
-    """One channel of Volume 1, ``values`` in g, or 2, in cm/s²; as CGS writes it today, or as CDMG did."""
+    """Return one channel of Volume 1, ``values`` in g, or 2, in cm/s²; as CGS writes it today, or as CDMG did."""
     npts = len(values)
     where = f" Location: {place}" if place else ""
     peak = peak_of(values)
@@ -181,7 +181,7 @@ def csmip_channel(
 
 
 def csmip_text(volume: int = 1, **header) -> str:
-    """Three channels, of A, C and B in cm/s² or g/1000."""
+    """Return three channels, of A, C and B in cm/s² or g/1000."""
     parts = [("90 Deg", A), ("Up", C), ("360 Deg", B)]
     scale = 1e-3 if volume == 1 else 1.0
     channels = [
@@ -206,7 +206,7 @@ def smc_text(
     flag: int = -32768,
     peak: float | None = None,
 ) -> str:
-    """An SMC file in cm/s²; unknown integers are -32768, unknown real numbers 1.7E38."""
+    """Return an SMC file in cm/s²; unknown integers are -32768, unknown real numbers 1.7E38."""
     integers = [-32768] * 48
     integers[1:7] = clock
     integers[8:10] = [1, 3]
@@ -236,15 +236,15 @@ def smc_text(
 
 
 def damaged(good: bytes) -> st.SearchStrategy[bytes]:
-    """``good`` cut anywhere, with bytes changed: among them large counts and numbers."""
+    """Return a strategy of ``good`` cut anywhere, with bytes changed, among them large counts and numbers."""
     spots = st.tuples(
         st.integers(0, len(good)), st.binary(min_size=1, max_size=4) | st.sampled_from([b"9" * 9, b"1e308", b"-999"])
     )
 
     def put(length: int, changes: list[tuple[int, bytes]]) -> bytes:
         data = bytearray(good[:length])
-        for at, new in changes:
-            data[at : at + len(new)] = new
+        for start, new in changes:
+            data[start : start + len(new)] = new
         return bytes(data)
 
     # whole files more often than not: damage in the data is found behind a sound header
@@ -253,7 +253,7 @@ def damaged(good: bytes) -> st.SearchStrategy[bytes]:
 
 
 def assert_components_or_input_error(data: bytes, name: str) -> None:
-    """The one promise for files of whatever content; anything but ``InputError`` gets through."""
+    """Assert that a file of any content gives finite components, or ``InputError`` and no other exception."""
     try:
         readings = read(data, name)
     except InputError:

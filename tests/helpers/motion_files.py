@@ -1,4 +1,4 @@
-"""Small synthetic records for tests, and where the real ones are found."""
+"""Small synthetic records for tests, and the place of real ones."""
 
 import os
 import warnings
@@ -12,13 +12,13 @@ with warnings.catch_warnings():
     import obspy  # noqa: F401
 
 RECORDS = Path(os.environ.get("ROCKBATCH_RECORDS", "no-records"))
-"""A folder of real records, most of which may not be passed on; who has them names it in the environment."""
+"""Folder of real records, most of which may not be redistributed; its path comes from the environment."""
 
 needs_records = pytest.mark.skipif(not RECORDS.is_dir(), reason="ROCKBATCH_RECORDS names no folder of real records")
 
 
 def e15_7(value: float) -> str:
-    """A number as PEER's Fortran writes it in E15.7: ``  -.2415593E-03``."""
+    """Return a number as PEER's Fortran writes it in E15.7: ``  -.2415593E-03``."""
     mantissa, exponent = f"{abs(value):.6e}".split("e")
     digits = mantissa.replace(".", "")
     power = int(exponent) + 1 if value else 0
@@ -35,7 +35,7 @@ def at2_text(
     newline: str = "\n",
     number=e15_7,
 ) -> str:
-    """An AT2 file; ``count`` replaces the header line with the number of points."""
+    """Return an AT2 file; ``count`` replaces the header line with the number of points."""
     fields = [number(float(value)) for value in values]
     lines = ["".join(fields[i : i + 5]) for i in range(0, len(fields), 5)]
     count = count or f"NPTS= {len(fields):6d}, DT=   {dt} SEC"
@@ -43,7 +43,7 @@ def at2_text(
 
 
 def write_at2(folder: Path, name: str, values, **header) -> Path:
-    """An AT2 file in ``folder``."""
+    """Write an AT2 file into ``folder``."""
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / name
     path.write_bytes(at2_text(values, **header).encode("latin-1"))
@@ -51,9 +51,9 @@ def write_at2(folder: Path, name: str, values, **header) -> Path:
 
 
 def wiggle(npts: int = 200, seed: int = 1, scale: float = 0.1) -> np.ndarray:
-    """Noise in a bell, in g, its peak 0.9 ``scale`` and inside: no two records alike, and nothing odd about any.
+    """Return noise under a bell, in g, with its peak of 0.9 ``scale`` inside: no two records alike, none suspicious.
 
-    The ground comes to rest where it was: the sum and the first moment of the accelerations are none.
+    The ground comes to rest where it was: the sum and the first moment of the accelerations are zero.
     """
     t = np.linspace(-3, 3, npts)
     bell = np.exp(-(t**2))

@@ -9,7 +9,7 @@ def peak_of(values) -> float:
 
 
 def one_digit(value: float) -> str:
-    """A number as CSMNC has it: `` 3.888539E-2 ``."""
+    """Return a number as in CSMNC files: `` 3.888539E-2 ``."""
     mantissa, power = f"{value:.6e}".split("e")
     return f"{mantissa}E{int(power):+d}".rjust(12) + " "
 
@@ -70,7 +70,7 @@ def afad_text(unit: str = "gal", scale: float = 1.0, **changed: str | None) -> s
 def unam_text(ways=("N00E", "N90E", "V"), columns=(A, B, C), **changed: str | None) -> str:
     n = len(ways)
 
-    def each(*values) -> str:
+    def fields(*values) -> str:
         return "".join(f"/{value}" for value in values)
 
     header: dict[str, str | None] = {
@@ -81,17 +81,17 @@ def unam_text(ways=("N00E", "N90E", "V"), columns=(A, B, C), **changed: str | No
         "COORDENADAS DE LA ESTACION": "18.567007 LAT. N",
         "": "101.977162 LONG. W",
         "NUMERO DE CANALES": str(n),
-        "ORIENTACION C1-C6 (rumbo;orientacion)": each(*ways),
+        "ORIENTACION C1-C6 (rumbo;orientacion)": fields(*ways),
         "ORIENTACION C7-C12 (rumbo;orientacion)": "",
-        "VEL. DE MUESTREO, C1-C6 (muestras/s)": each(*[200] * n),
-        "INTERVALO DE MUESTREO, C1-C6 (s)": each(*[0.005] * n),
-        "UMBRAL DE DISPARO, C1-C6 (Gal)": each(*[0.5] * n),
+        "VEL. DE MUESTREO, C1-C6 (muestras/s)": fields(*[200] * n),
+        "INTERVALO DE MUESTREO, C1-C6 (s)": fields(*[0.005] * n),
+        "UMBRAL DE DISPARO, C1-C6 (Gal)": fields(*[0.5] * n),
         "FECHA DEL SISMO [GMT]": "2017/09/19",
         "HORA EPICENTRO (GMT)": "18:14:40",
         "HORA DE LA PRIMERA MUESTRA (GMT)": "18:14:44.500",
-        "NUM. TOTAL DE MUESTRAS, C1-C6": each(*map(len, columns)),
-        "ACEL. MAX.(Gal), C1-C6": each(*(f"{peak_of(x):.2f}" for x in columns)) + "      ",
-        "ACEL. MAX., C1-C6, EN LA MUESTRA": each(*(np.abs(x).argmax() + 1 for x in columns)),
+        "NUM. TOTAL DE MUESTRAS, C1-C6": fields(*map(len, columns)),
+        "ACEL. MAX.(Gal), C1-C6": fields(*(f"{peak_of(x):.2f}" for x in columns)) + "      ",
+        "ACEL. MAX., C1-C6, EN LA MUESTRA": fields(*(np.abs(x).argmax() + 1 for x in columns)),
         "UNIDADES DE LOS DATOS": "Gal (cm/s/s)",
         "FACTOR DE DECIMACION": "1",
         "FORMATO DATOS (FORTRAN,10 campos/dato)": f"{n}F10.4",
@@ -121,7 +121,7 @@ def unam_text(ways=("N00E", "N90E", "V"), columns=(A, B, C), **changed: str | No
 
 
 def bhrc_channel(label: str, values, *, volume: int = 1, rate: float = 200.0) -> list[str]:
-    """One channel; ``values`` in g/10."""
+    """Return one channel; ``values`` in g/10."""
     reals = [0.0193, 0.64, len(values) / 200, 0.0, 0.1]
     return [
         f"* VOL{volume}DS FILE:  5522/01",
@@ -150,7 +150,7 @@ def bhrc_text(**header) -> str:
 
 
 def usc_channel(label: str, values, times=None, mark: tuple[str, ...] = ()) -> list[str]:
-    """One channel; ``values`` in g/10."""
+    """Return one channel; ``values`` in g/10."""
     times = 0.005 * np.arange(len(values)) if times is None else times
     pairs = np.column_stack([times, values]).ravel()
     return [

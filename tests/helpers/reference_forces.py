@@ -7,11 +7,11 @@ from reference_solver import OM, TH, Leg, ground_legs
 from restrained_reference import TiedTwoSprings
 
 LOOKS = 24
-"""In a step, of 0.25/ω_v at most: a sine between two looks is 1.4·10⁻⁵ of itself higher than either."""
+"""Samples of a step, of 0.25/ω_v at most: a sine between two of them exceeds both by 1.4·10⁻⁵ of itself at most."""
 
 
 class Looking(Leg):
-    """A leg that shows all moments of its steps."""
+    """A leg that samples its steps at many times."""
 
     def __init__(self, peak, h, look):
         super().__init__(peak, h)
@@ -70,7 +70,7 @@ class WithForces(TiedTwoSprings):
             self.greatest[name] = max(self.greatest.get(name, 0.0), value)
 
     def _passing(self, t, shear, normal):
-        """Return |V|/N where N has passed its limit since the last look, in a line between both; 0 if it has not."""
+        """Return |V|/N where N has crossed its limit since the last sample, by linear interpolation; 0 if it has not."""
         t_before, shear_before, normal_before = self.before
         self.before = t, shear, normal
         limit = self.least * self.g

@@ -78,7 +78,7 @@ def ground_legs(motion: Motion, quiet_s: float) -> list[tuple[float, float, floa
 
 
 class Leg:
-    """Integration of one smooth stretch up to the first surface that is crossed downwards."""
+    """Integration of one smooth stretch up to the first event function that crosses zero downwards."""
 
     def __init__(self, peak: Callable[[float, float], None], h: float) -> None:
         self.peak = peak  # told (t, θ) wherever θ̇ = 0
@@ -298,7 +298,7 @@ class TwoSprings:
             moment = -fl * (self.b + self.h * th) + fr * (self.b - self.h * th)
             thdd = (moment - H * ah) / (self.inertia + self.h**2)
         for i in (0, 1):
-            if modes[i] == "held":  # between the two equations, so that the pivot stays where it is
+            if modes[i] == "held":  # grazing contact: between the two equations, so that the pivot stays
                 thdd = -(vdd - self.top_acceleration(i, y) + self.bend(i, y) * y[OM] ** 2) / self.arm(i, y)
         return vdd, thdd
 
@@ -380,7 +380,7 @@ class TwoSprings:
         self.out.events.append((float(t), kind, SIDES[i]))
 
     def _change(self, i: int, mode: str) -> None:
-        """Contact changes carry the constraint's energy ½ Δ(H²) θ̇² (finite kinematics)."""
+        """Change a pivot's contact, with the constraint's energy ½ Δ(H²) θ̇² (large-rotation kinematics)."""
         before = self.lever(self.mode, self.y)[0]
         self.mode[i] = mode
         if self.finite:
@@ -441,7 +441,7 @@ class TwoSprings:
         return "load" if self.law == "bouc-wen" and not rising else "unload"
 
     def _settle(self, t: float, i: int, ah: float, av: float) -> None:
-        """A pivot at z = 0 without velocity: pressed down, lifted, or held between the two equations."""
+        """Decide the mode of a pivot at z = 0 without velocity: loaded, lifted, or in grazing contact."""
         if self.pivot_acceleration(i, "load", self.y, ah, av) <= 0.0:
             self.mode[i] = self._branch(i)
         elif self.pivot_acceleration(i, "free", self.y, ah, av) > 0.0:
@@ -514,7 +514,7 @@ class TwoSprings:
 
 
 class Rigid:
-    """Housner's block: at rest, or rocking about the pivot that the sign s of θ names."""
+    """Housner's block: at rest, or rocking about the pivot given by the sign s of θ."""
 
     def __init__(self, pier: Pier, base: RigidBase, motion: Motion, quiet_s: float, theta0: float = 0.0) -> None:
         self.alpha, self.p, self.g = pier.alpha, pier.p, pier.gravity

@@ -1,4 +1,4 @@
-"""A report taken apart: its tables, texts, links and pictures."""
+"""A parsed report: its tables, texts, links and pictures."""
 
 import re
 import xml.etree.ElementTree as ET
@@ -8,7 +8,7 @@ VOID = {"meta", "br", "img", "input", "link"}
 
 
 class Page(HTMLParser):
-    """The elements of a page: every table as rows of texts, and what does not nest."""
+    """Parser of a page: every table as rows of texts, and elements that are not closed in order."""
 
     def __init__(self, text: str) -> None:
         super().__init__(convert_charrefs=True)

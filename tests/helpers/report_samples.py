@@ -1,4 +1,4 @@
-"""Made-up results for the report: right in form, plausible in size, not computed."""
+"""Made-up results for the report: correct in form, plausible in size, not computed."""
 
 import csv
 import hashlib

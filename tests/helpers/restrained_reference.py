@@ -1,7 +1,7 @@
-"""The reference solver with dampers and tendons: elongations and their derivatives from the coordinates of points of the base.
+"""The reference solver with devices: elongations and their derivatives from the coordinates of points of the base.
 
-What friction dampers without velocity do is a linear complementarity problem: each has a force within its bounds, and moves only
-against a force at its bound. Projected Gauss–Seidel steps solve it.
+Friction dampers without velocity are a linear complementarity problem: each has a force within its bounds, and moves only
+against a force at its bound. Projected Gauss–Seidel iterations solve it.
 """
 
 import math
@@ -18,7 +18,7 @@ FIRST = 11
 
 
 class TiedTwoSprings(TwoSprings):
-    """Elements: (restraint, offset s); each keeps z of a hysteretic damper, or by how much a tendon has yielded."""
+    """Block with devices (restraint, offset s); the states are z of hysteretic dampers and plastic elongations of tendons."""
 
     def __init__(self, pier: Pier, base: ElasticBase, motion: Motion, quiet_s: float) -> None:
         super().__init__(pier, base, motion, quiet_s)
@@ -28,7 +28,7 @@ class TiedTwoSprings(TwoSprings):
         share = load * 0.5 * self.g / self.fy
         self.v0, self.z0 = -self.dy * self._static_integral(share), -share
         self.y = [self.v0, 0.0, 0.0, 0.0, self.z0, self.z0] + [0.0] * (5 + len(self.elements))
-        self.way = [0.0 if self.rubs(j) else 1.0 for j in range(len(self.elements))]  # of friction that holds, 0
+        self.way = [0.0 if self.rubs(j) else 1.0 for j in range(len(self.elements))]  # 0 while friction holds
         self.hold = [0.0] * len(self.elements)
         self.state = ["taut"] * len(self.elements)
         for j, (each, _) in enumerate(self.elements):

@@ -1,4 +1,4 @@
-"""A slender block on a rigid base under a pulse, in closed form: what overturns it and what it survives.
+"""A slender block on a rigid base under a pulse, in closed form: conditions of overturning.
 
 In the slender limit, with time in 1/p, angles in α, W = ω_p/p, A = a_p/(g tan α) and ψ = asin(1/A) the pulse's phase at
 lift-off, the block obeys x″ = x + A sin(Wτ + ψ) for x = θ/α − 1. So x = −D sin(Wτ + ψ) + c cosh τ + s sinh τ with
@@ -17,7 +17,7 @@ ONE_SINE = (3.018600, 6.318071, 7.168129)
 
 
 def end_of_pulse(amplitude: float, end: float, w: float = W) -> tuple[float, float]:
-    """x and x′ when a sine pulse with ω_p/p = ``w`` has reached its phase ``end``, a multiple of π."""
+    """Return x and x′ when a sine pulse with ω_p/p = ``w`` has reached its phase ``end``, a multiple of π."""
     psi = math.asin(1.0 / amplitude)
     tau = (end - psi) / w
     c, s = -(w**2) / (1 + w**2), w * math.sqrt(amplitude**2 - 1) / (1 + w**2)
@@ -26,12 +26,12 @@ def end_of_pulse(amplitude: float, end: float, w: float = W) -> tuple[float, flo
 
 
 def outward(amplitude: float, end: float, w: float = W) -> float:
-    """Above 0 the block falls without an impact."""
+    """Return x + x′ at the end of the pulse; above 0 the block falls without an impact."""
     x, x_rate = end_of_pulse(amplitude, end, w)
     return x + x_rate
 
 
 def energy_after_impact(amplitude: float, w: float = W) -> float:
-    """Above 0 the block falls after its first impact, which follows the one-sine."""
+    """Return a measure of the energy after the first impact, which follows the one-sine; above 0 the block falls."""
     x, x_rate = end_of_pulse(amplitude, 2 * math.pi, w)
     return E**2 * (1 + x_rate**2 - x**2) - 1

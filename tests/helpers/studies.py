@@ -1,4 +1,4 @@
-"""Studies as the tests write them: a small pier under pulses, of which a test shows only what it varies."""
+"""Studies for tests: a small pier under pulses, of which a test states only what it varies."""
 
 import json
 from collections.abc import Mapping, Sequence

@@ -1,4 +1,4 @@
-"""MiniSEED files and the StationXML beside them, for tests of what ObsPy reads."""
+"""MiniSEED files and the StationXML beside them, for tests of ObsPy's readers."""
 
 from pathlib import Path
 

@@ -13,7 +13,7 @@ pytestmark = needs_chromium
 
 @pytest.fixture(scope="module")
 def page(tmp_path_factory):
-    """A report with everything that can be pointed at."""
+    """Write a report with everything that has a tooltip."""
     directory = tmp_path_factory.mktemp("results")
     write_results(directory, changes={("RRS228", "2"): {"status": "overturned"}})
     return write_report(directory, [response("ERZ-NS", name, base) for name, base in FOUNDATIONS[1:3]])

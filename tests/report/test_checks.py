@@ -1,4 +1,4 @@
-"""Whether the pier passes stands in a sentence and in a table, and what does not pass cannot be overlooked."""
+"""The verdict is in a sentence and in a table, and failures cannot be overlooked."""
 
 import math
 import re
@@ -38,33 +38,33 @@ def test_cases_that_pass_fail_and_are_not_decided_are_named(tmp_path):
 
 
 def test_all_passing_is_said_in_so_many_words_and_nothing_is_listed_as_failing(tmp_path):
-    found = page(tmp_path, *(verdict("1", "pass", demand=demand, check=demand) for demand in GOVERNING))
-    assert "✓ Every check passes in the only case." in found.text
-    assert "Closest to its limit: theta_max_over_alpha, 0.25 ≤ 0.5." in found.text
-    assert "What does not pass" not in found.text
+    shown = page(tmp_path, *(verdict("1", "pass", demand=demand, check=demand) for demand in GOVERNING))
+    assert "✓ Every check passes in the only case." in shown.text
+    assert "Closest to its limit: theta_max_over_alpha, 0.25 ≤ 0.5." in shown.text
+    assert "What does not pass" not in shown.text
 
 
 def test_a_demand_beside_its_limit_shows_on_which_side_it_lies(tmp_path):
-    found = page(tmp_path, verdict("1", "fail", ratio=1.001), verdict("2", "pass", ratio=1.0))
-    cells = [row[1].replace("\u00a0", " ") for row in found.tables["checks"][1:3]]
+    shown = page(tmp_path, verdict("1", "fail", ratio=1.001), verdict("2", "pass", ratio=1.0))
+    cells = [row[1].replace("\u00a0", " ") for row in shown.tables["checks"][1:3]]
     assert cells == ["✗ 1.0010", "✓ 1.00"]
 
 
 def test_an_infinite_demand_is_shown_as_such(tmp_path):
-    found = page(tmp_path, verdict("1", "fail", ratio=math.inf, value=math.inf, high=math.inf))
-    assert found.tables["checks"][1][1] == "✗\u00a0∞"
-    assert next(row for row in found.tables["checks"] if row[1] == "1")[3:5] == ["∞", "0.2 – ∞"]
+    shown = page(tmp_path, verdict("1", "fail", ratio=math.inf, value=math.inf, high=math.inf))
+    assert shown.tables["checks"][1][1] == "✗\u00a0∞"
+    assert next(row for row in shown.tables["checks"] if row[1] == "1")[3:5] == ["∞", "0.2 – ∞"]
 
 
 def test_a_verdict_stands_with_its_unit_margin_and_governing_run(tmp_path):
     more = {"unit": "m", "count": "station", "records": 5, "station": "WTMC", "record": "WTMC.N28W", "polarity": "-"}
-    found = page(
+    shown = page(
         tmp_path,
         verdict("1", "pass", **more, governing=0.25),
         verdict("2", "fail", ratio=2.0, margin=-0.5, value=1.0, low=1.0, high=1.0, **more, governing=1.5),
         verdict("3", "not decided", high=math.inf, **more, governing=0.2),
     )
-    rows = [[cell.replace("\u00a0", " ") for cell in row] for row in found.tables["checks"]]
+    rows = [[cell.replace("\u00a0", " ") for cell in row] for row in shown.tables["checks"]]
     start = next(i for i, row in enumerate(rows) if "governing run" in row)
     failed, unsure, passed = ([row[i] for i in (1, 2, 3, 6, 7, 8, 9)] for row in rows[start + 1 : start + 4])
     assert rows[start][8] == "stations"
@@ -85,33 +85,33 @@ def test_each_verdict_has_its_colour_and_a_sign_with_a_name(tmp_path):
 def test_an_event_that_no_record_may_do_reads_as_words(tmp_path):
     event = {"demand": "failed", "statistic": "max", "words": "no record has a run that is missing or not settled"}
     event |= {"check": "every run settled", "limit": 0.0, "low": 0.0, "margin": 0.0}
-    found = page(
+    shown = page(
         tmp_path,
         verdict("1", "pass", **event, value=0.0, high=0.0, ratio=0.0),
         verdict("2", "fail", **event, value=1.0, high=1.0, ratio=math.inf),
     )
-    rows = [[cell.replace("\u00a0", " ") for cell in row] for row in found.tables["checks"]]
+    rows = [[cell.replace("\u00a0", " ") for cell in row] for row in shown.tables["checks"]]
     assert [row[1] for row in rows[1:3]] == ["✓ none", "✗ some"]
-    assert "no record has a run that is missing or not settled" in found.text
-    assert "at most 0" not in found.text
+    assert "no record has a run that is missing or not settled" in shown.text
+    assert "at most 0" not in shown.text
 
 
 def test_many_verdicts_are_summed_up_and_the_worst_of_them_told(tmp_path):
     some = [verdict(f"c{i}", "fail", ratio=1.0 + i / 10, check="drift") for i in range(40)]
-    found = page(tmp_path, *some, *(verdict(f"c{i}", "pass") for i in range(5)))
-    rows = [[cell.replace("\u00a0", " ") for cell in row] for row in found.tables["checks"]]
+    shown = page(tmp_path, *some, *(verdict(f"c{i}", "pass") for i in range(5)))
+    rows = [[cell.replace("\u00a0", " ") for cell in row] for row in shown.tables["checks"]]
     assert rows[:3] == [["check", "pass", "fail"], ["drift", "", "✗ 40"], ["margin", "✓ 5", ""]]
     worst = [row for row in rows if row[0] == "drift" and "✗ fail" in row]
     assert [row[1] for row in worst] == [f"c{i}" for i in range(39, 29, -1)]
-    assert "All of them, with what governs each, are in checks.csv" in found.text
+    assert "All of them, with what governs each, are in checks.csv" in shown.text
 
 
 def test_what_a_statistic_of_a_code_rests_on_is_said(tmp_path):
-    found = page(
+    shown = page(
         tmp_path, verdict("1", "pass", statistic="nzs1170.5", words="maximum by NZS 1170.5 of theta_max_over_alpha")
     )
-    assert "nzs1170.5: the maximum of a family of at least three records, as NZS 1170.5 is commonly cited" in found.text
-    assert "neither the standard's own text nor a report of it could be checked" in found.text
+    assert "nzs1170.5: the maximum of a family of at least three records, as NZS 1170.5 is commonly cited" in shown.text
+    assert "neither the standard's own text nor a report of it could be checked" in shown.text
 
 
 def test_a_study_without_checks_does_not_claim_to_pass(tmp_path):

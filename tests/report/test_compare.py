@@ -1,4 +1,4 @@
-"""Two studies side by side: what belongs together is matched by name, and what does not is listed."""
+"""Two studies side by side: runs are matched by name, and those without a counterpart are listed."""
 
 import csv
 import json
@@ -145,13 +145,13 @@ def test_inputs_that_are_the_same_are_said_to_be(tmp_path):
 
 def answered(folders):
     text = write_comparison(*folders).read_text(encoding="utf-8")
-    found = Page(text)
-    assert found.headings[:3] == ["The answer", "Does it pass", "What differs in the inputs"]
+    page = Page(text)
+    assert page.headings[:3] == ["The answer", "Does it pass", "What differs in the inputs"]
     return Page(text.split('<section id="answer">')[1].split("</section>")[0]).text.removeprefix("The answer")
 
 
 def test_two_studies_begin_with_which_is_better_by_how_much_and_in_which_record(tmp_path):
-    """The only rotation that differs is the worst of each: ratio and counts by hand."""
+    """Compare ratio and counts by hand: the only rotation that differs is the worst of each."""
     runs = [({"changes": {("SYL360", "2"): {"theta_max_over_alpha": theta}}}) for theta in (0.8, 0.4)]
     told = answered(two(tmp_path, *runs))
     assert told.startswith("B is better: from A to B, worst rotation -50 % (SYL360), settlement +0 % (")
@@ -169,5 +169,5 @@ def test_neither_is_better_where_one_response_grows_and_another_shrinks_or_nothi
 
 
 def test_a_study_in_which_the_pier_overturns_is_never_the_better_one(tmp_path):
-    told = answered(two(tmp_path, {"changes": {("SYL360", "2"): {"status": "overturned"}}}))
-    assert told.startswith("B is better: of 30 runs 0 do not end standing, of A 1.")
+    answer = answered(two(tmp_path, {"changes": {("SYL360", "2"): {"status": "overturned"}}}))
+    assert answer.startswith("B is better: of 30 runs 0 do not end standing, of A 1.")

@@ -1,4 +1,4 @@
-"""What foundations are called: by what sets them apart, in the study's own keys and units, with no more digits than it takes."""
+"""Names of foundations: by what distinguishes them, in the study's own keys and units, with no more digits than necessary."""
 
 import math
 
@@ -14,7 +14,7 @@ MASS = {"width_m": 4.0, "height_m": 20.0, "mass_t": 1000.0}
 
 
 def labels(folder, *cases, pier=MASS):
-    """Labels of the foundations of a study with these cases."""
+    """Return the labels of the foundations of a study with these cases."""
     rb.run(write_study(folder, study_text(pier=pier, cases=cases, output={"histories": "none"})), out=folder / "out")
     return [series.label for series in read(folder / "out").series]
 
@@ -43,25 +43,25 @@ def test_digits_are_as_many_as_tell_values_apart():
 
 def test_a_foundation_is_called_by_the_keys_of_its_study(tmp_path):
     pads = {"name": "pads", "base": "yielding", "stiffness_kN_m": 1.5e6, "yield_kN": [9e3, 12.3456e3]}
-    found = labels(tmp_path, RIGID, pads)
-    assert [label.replace("\u00a0", " ") for label in found] == ["rigid", "pads: Fy = 9000 kN", "pads: Fy = 12,346 kN"]
+    names = labels(tmp_path, RIGID, pads)
+    assert [label.replace("\u00a0", " ") for label in names] == ["rigid", "pads: Fy = 9000 kN", "pads: Fy = 12,346 kN"]
 
 
 def test_with_a_mass_but_beta_and_eta_it_is_called_by_these(tmp_path):
     soft = {"name": "pads", "base": "yielding", "beta": [30.0, 40.0], "eta": 2.5}
-    found = labels(tmp_path, soft)
-    assert [label.replace("\u00a0", " ") for label in found] == ["pads: β = 30", "pads: β = 40"]
+    names = labels(tmp_path, soft)
+    assert [label.replace("\u00a0", " ") for label in names] == ["pads: β = 30", "pads: β = 40"]
 
 
 def test_each_case_is_called_in_its_own_way(tmp_path):
-    one = {"name": "one", "base": "elastic", "beta": 30.0}
-    other = {"name": "other", "base": "elastic", "stiffness_kN_m": 1.5e6}
-    found = labels(tmp_path, one, other)
-    assert [label.replace("\u00a0", " ") for label in found] == ["one: β = 30", "other: K = 1.5 × 10⁶ kN/m"]
+    soft = {"name": "one", "base": "elastic", "beta": 30.0}
+    stiff = {"name": "other", "base": "elastic", "stiffness_kN_m": 1.5e6}
+    names = labels(tmp_path, soft, stiff)
+    assert [label.replace("\u00a0", " ") for label in names] == ["one: β = 30", "other: K = 1.5 × 10⁶ kN/m"]
 
 
 def test_the_pier_is_drawn_to_scale():
-    """Widths and heights of the outline, read back from the picture, are in the ratio of the pier's."""
+    """Read widths and heights of the outline back from the picture: they are in the ratio of the pier's."""
     piers = [
         {"alpha": 0.2, "half_width_m": 4.0, "height_m": 20.0, "top_m": 30.0},
         {"alpha": 0.1, "half_width_m": 1.0, "height_m": 10.0},

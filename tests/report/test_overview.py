@@ -1,4 +1,4 @@
-"""The first screen is the answer, however many cases and records there are: the rest is summed up, or folded."""
+"""The first screen is the answer, for any number of cases and records: the rest is summed up, or folded."""
 
 import re
 
@@ -18,14 +18,14 @@ GRID = [(float(beta), eta) for beta in BETAS for eta in ETAS]
 
 
 def hundred(directory, records=FIG7, **changes):
-    """A report of a hundred cases."""
+    """Write a report of a hundred cases."""
     cases = [case_entry("pads", {"beta": b, "eta": e}, PIER, YieldingBase(beta=b, eta=e)) for b, e in GRID]
     write_results(directory, records=records, cases=cases, varied=("beta", "eta"), **changes)
     return write_report(directory, [])
 
 
 def rows(text, section):
-    """Words of each row of the pictures in a section, but for what is folded."""
+    """Return the words of each row of the pictures in a section, without the folded ones."""
     own = text[text.index(f'<section id="{section}">') :].split("</section>")[0]
     own = re.sub(r"<details>.*?</details>", "", own, flags=re.DOTALL)
     return [
@@ -77,10 +77,10 @@ def test_of_many_cases_that_fail_the_checks_and_the_nearest_case_are_named(tmp_p
     ratios = [1.1 + i / 10 for i in range(40)]
     some = [verdict(f"c{i}", "fail", ratio=r, value=0.5 * r, check="drift") for i, r in enumerate(ratios)]
     write_verdicts(tmp_path, some)
-    told = Page(write_report(tmp_path, []).read_text(encoding="utf-8")).text
-    assert "✗ All 40 cases fail: c0; c1; c2; c3; c4; c5; and 34 more." in told
-    assert "drift: 2.5 > 0.5, in c39 and 39 more cases." in told
-    assert "Nearest to passing: c0, drift at 1.10 × its limit." in told
+    text = Page(write_report(tmp_path, []).read_text(encoding="utf-8")).text
+    assert "✗ All 40 cases fail: c0; c1; c2; c3; c4; c5; and 34 more." in text
+    assert "drift: 2.5 > 0.5, in c39 and 39 more cases." in text
+    assert "Nearest to passing: c0, drift at 1.10 × its limit." in text
 
 
 def test_long_tables_are_folded_and_short_ones_stand_open(tmp_path):
@@ -128,7 +128,7 @@ def of_the_answer(path):
 
 
 def test_limits_of_rotations_are_drawn_where_they_are_and_named_in_the_legend(tmp_path):
-    """A drift of the top d allows θ/α = d/(2 h α) on a uniform block; the dots of known θ/α give the axis."""
+    """Compute the limit by hand: a drift of the top d allows θ/α = d/(2 h α) on a uniform block; known dots give the axis."""
     write_results(tmp_path, changes={("ERZ-NS", "rigid"): {"theta_max_over_alpha": 0.1}})
     theta = 0.05
     write_verdicts(tmp_path, [drift(theta * PIER.alpha * 2.0 * PIER.height)])
@@ -152,7 +152,7 @@ def test_a_limit_far_above_all_peaks_does_not_crowd_them(tmp_path):
 
 
 def test_cases_that_differ_by_dampers_differ_in_mark_and_colour(tmp_path):
-    """On rigid ground, too, where the pier without any is the line that the others are held against."""
+    """Check rigid ground, too, where the pier without dampers is the line to compare with."""
     names = ["bare", "steel", "oil"]
     cases = [case_entry(name, {}, PIER, RigidBase()) for name in names]
     for damped, kind in zip(cases[1:], ("hysteretic", "viscous"), strict=True):

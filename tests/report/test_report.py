@@ -1,4 +1,4 @@
-"""The report shows what was computed, escapes what it is told, and needs nothing but itself."""
+"""The report shows what was computed, escapes all text, and needs nothing but itself."""
 
 import json
 import math
@@ -122,7 +122,7 @@ def test_beta_of_a_given_stiffness_is_not_taken_for_a_constant_of_the_foundation
         for name, omega_v, eta in (("1", 20.0, 2.5), ("2", 30.0, 3.5))
     ]
     write_results(tmp_path, cases=cases, varied=("p",))
-    assert {one.label.replace("\u00a0", " ") for one in read(tmp_path).series} == {"1: η = 2.5", "2: η = 3.5"}
+    assert {series.label.replace("\u00a0", " ") for series in read(tmp_path).series} == {"1: η = 2.5", "2: η = 3.5"}
 
 
 def test_references_are_compared_with_every_run_they_fit(tmp_path):
@@ -135,11 +135,11 @@ def test_references_are_compared_with_every_run_they_fit(tmp_path):
     ]
     text = report(tmp_path, cases=three_piers(), varied=("p",), changes=changes, references=references)
     _, *rows = Page(text).tables["references"]
-    found = ["RSN779_LOMAP_LGP000", "rigid"]
+    run = ["RSN779_LOMAP_LGP000", "rigid"]
     agreement = ["0.1200", "0.1", "+20.0", "Palmeri & Makris (2007)"]
     assert rows == [
-        *([*found, p, *agreement] for p in ("0.38", "0.36", "0.35")),
-        [*found, "0.35", *agreement],
+        *([*run, p, *agreement] for p in ("0.38", "0.36", "0.35")),
+        [*run, "0.35", *agreement],
         ["*TCU*", "rigid", "", "no such run", "0.1", "", "Palmeri & Makris (2007)"],
     ]
 
@@ -242,10 +242,10 @@ def test_the_rigid_base_behind_a_column_is_drawn_to_its_peaks(tmp_path):
 
 def test_the_largest_rotation_and_the_events_are_marked(tmp_path):
     write_results(tmp_path)
-    one = response("ERZ-NS", "1", FOUNDATIONS[1][1])
-    text = write_report(tmp_path, [one]).read_text(encoding="utf-8")
+    drawn = response("ERZ-NS", "1", FOUNDATIONS[1][1])
+    text = write_report(tmp_path, [drawn]).read_text(encoding="utf-8")
     svg = next(svg for svg in figures(text) if "readings" in svg.attrib["class"])
-    assert f"{np.abs(one.theta).max() / one.pier.alpha:.4f}" in svg_texts(svg)
+    assert f"{np.abs(drawn.theta).max() / drawn.pier.alpha:.4f}" in svg_texts(svg)
     strokes = [node.get("d") for node in svg.iter() if node.get("class") == "event"]
     assert [len(stroke.split("M")) - 1 for stroke in strokes] == [1]  # the one separation of the sample
 
@@ -259,7 +259,7 @@ def test_a_lone_rigid_response_is_drawn_without_loops(tmp_path):
 
 
 def test_loops_of_devices_are_in_kn_within_their_column_and_columns_line_up(tmp_path):
-    """A friction damper of 450 kN at both pivots: the force axis reaches it on either side of 0, with numbers."""
+    """Draw a friction damper of 450 kN at both pivots: the force axis reaches it on either side of 0, with numbers."""
     pier = Pier(alpha=0.2, p=1.0, mass_t=1000.0)
     bare, tied = response("ERZ-NS", "rigid", RigidBase(), pier=pier), response("ERZ-NS", "1", RigidBase(), pier=pier)
     way = 2.0 * pier.half_width * np.abs(tied.theta)

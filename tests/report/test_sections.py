@@ -1,4 +1,4 @@
-"""Every section of a page has the same entry point, stands in the page's list once, and is left out where it does not apply."""
+"""Every section has the same entry point, is in the page's list once, and is left out if it does not apply."""
 
 import inspect
 import pkgutil

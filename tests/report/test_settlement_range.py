@@ -1,4 +1,4 @@
-"""Settlement of springs that creep is shown as the range between two spring laws, and checks take the worse."""
+"""Settlement of springs that ratchet is shown as the range between two spring laws, and checks take the worse."""
 
 from report_page import Page
 from studies import PADS, study_text, write_study
@@ -10,7 +10,7 @@ LIMIT = {"name": "settlement", "demand": "settlement_m", "reason": "bearings"}
 
 
 def test_settlement_is_a_range_in_the_report_on_the_terminal_and_in_checks(tmp_path, capsys):
-    """A limit between both laws: the pier fails by the larger one, and the verdict says both."""
+    """Set a limit between both laws: the pier fails by the larger settlement, and the verdict says both."""
     cases = (PADS | {"eta": 2.2, "epsilon": 0.1},)
     run = rb.run(write_study(tmp_path, study_text(cases=cases))).iloc[0]
     low, high = sorted((run["settlement_m"], run["settlement_other_law_m"]))

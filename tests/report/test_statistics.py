@@ -13,25 +13,25 @@ from rockbatch.results.suite_statistics import suite
 
 
 def test_mean_median_and_percentiles_are_those_of_the_magnitudes():
-    found = suite(np.array([0.1, -0.2, 0.3, 0.4, -0.5]), ["ok"] * 5)
-    assert (found.count, found.standing) == (5, 5)
+    result = suite(np.array([0.1, -0.2, 0.3, 0.4, -0.5]), ["ok"] * 5)
+    assert (result.count, result.standing) == (5, 5)
     # 16 % of four intervals is 0.64 of the first, 84 % is 0.36 of the last
     expected = 0.3, 0.1 + 0.64 * 0.1, 0.3, 0.4 + 0.36 * 0.1, 0.5
-    assert (found.mean, found.low, found.median, found.high, found.largest) == pytest.approx(expected, rel=1e-14)
+    assert (result.mean, result.low, result.median, result.high, result.largest) == pytest.approx(expected, rel=1e-14)
 
 
 def test_an_overturned_or_flying_run_counts_as_larger_than_any_and_leaves_the_mean_to_those_that_stood():
-    found = suite(np.array([0.1, 0.2, 0.3, 7.0, 0.05]), ["ok", "ok", "ok", "overturned", "flight"])
-    assert (found.count, found.standing, found.overturned, found.flight, found.failed) == (5, 3, 1, 1, 0)
-    assert found.mean == pytest.approx(0.2, rel=1e-14)
-    assert found.median == 0.3  # third of five, whatever the two came to
-    assert found.low == pytest.approx(0.164, rel=1e-14)
-    assert (found.high, found.largest) == (math.inf, math.inf)
+    result = suite(np.array([0.1, 0.2, 0.3, 7.0, 0.05]), ["ok", "ok", "ok", "overturned", "flight"])
+    assert (result.count, result.standing, result.overturned, result.flight, result.failed) == (5, 3, 1, 1, 0)
+    assert result.mean == pytest.approx(0.2, rel=1e-14)
+    assert result.median == 0.3  # third of five, whatever the two came to
+    assert result.low == pytest.approx(0.164, rel=1e-14)
+    assert (result.high, result.largest) == (math.inf, math.inf)
 
 
 def test_a_failed_run_is_counted_as_such_and_as_nothing_else():
-    found = suite(np.array([0.1, math.nan]), ["ok", "failed"])
-    assert (found.count, found.failed, found.mean, found.largest) == (1, 1, 0.1, 0.1)
+    result = suite(np.array([0.1, math.nan]), ["ok", "failed"])
+    assert (result.count, result.failed, result.mean, result.largest) == (1, 1, 0.1, 0.1)
     nothing = suite(np.array([math.nan]), ["failed"])
     assert (nothing.count, nothing.failed) == (0, 1)
     assert math.isnan(nothing.median)
@@ -44,10 +44,10 @@ def test_a_quantity_that_does_not_apply_has_no_statistics():
 def test_runs_of_one_station_count_once_with_the_worst_of_them():
     values = np.array([0.1, 0.4, 0.3, 0.2, 0.5, 7.0, 0.1, math.nan])
     status = ["ok", "ok", "ok", "ok", "ok", "overturned", "ok", "failed"]
-    found = suite(values, status, ["A", "A", "B", "B", "C", "C", "D", "D"])
-    assert (found.count, found.standing, found.overturned, found.failed) == (3, 2, 1, 1)
-    assert found.mean == pytest.approx(0.35, rel=1e-14)
-    assert (found.median, found.largest) == (0.4, math.inf)
+    result = suite(values, status, ["A", "A", "B", "B", "C", "C", "D", "D"])
+    assert (result.count, result.standing, result.overturned, result.failed) == (3, 2, 1, 1)
+    assert result.mean == pytest.approx(0.35, rel=1e-14)
+    assert (result.median, result.largest) == (0.4, math.inf)
     both = suite(np.array([1.0, 1.0]), ["flight", "overturned"], ["A", "A"])
     assert (both.count, both.overturned, both.flight) == (1, 1, 0)
 

@@ -1,4 +1,4 @@
-"""What was studied shows the structure: masses, deck, devices with their numbers, lift-off and balance; drawn to scale."""
+"""The section on the study shows the structure: masses, deck, devices with their numbers, lift-off and balance; to scale."""
 
 import re
 import xml.etree.ElementTree as ET
@@ -36,10 +36,10 @@ def studied(tmp_path_factory):
 
 
 def test_masses_deck_and_heights_stand_in_the_units_of_the_study(studied):
-    told = Page(studied).text
-    assert "mass 3000 t" in told
+    text = Page(studied).text
+    assert "mass 3000 t" in text
     given = "between the pivots 7 m, height 30 m, shaft 1800 t, deck 1200 t, centre of the deck at 31.5 m, drift read at 30 m"
-    assert f"As given: {given}." in told
+    assert f"As given: {given}." in text
 
 
 def test_devices_stand_with_their_numbers_beside_lift_off_and_balance(studied):
@@ -59,7 +59,7 @@ def test_devices_stand_with_their_numbers_beside_lift_off_and_balance(studied):
 
 
 def test_the_deck_and_the_devices_are_drawn_to_scale():
-    """Heights and places, read back from the picture, are in the ratio of the pier's."""
+    """Read heights and places back from the picture: they are in the ratio of the pier's."""
     pier = {"alpha": 0.2, "half_width_m": 4.0, "height_m": 20.0, "top_m": 30.0, "deck_m": 33.0}
     (drawn,) = drawing.piers([pier | {"devices": (("tendon", -2.0), ("viscous", 4.0))}], {"rigid"})
     svg = ET.fromstring(re.search("<svg.*</svg>", str(drawn))[0])
@@ -79,6 +79,6 @@ def test_the_deck_and_the_devices_are_drawn_to_scale():
     "wrong", [[{"kind": "magic"}], [{"kind": "friction", "f": "much"}], [3], [{"psi": -1.0}], "none", [None]]
 )
 def test_devices_that_cannot_be_are_left_out(wrong):
-    """A run.json of somebody else's may say anything."""
+    """Change run.json, which may come from anybody."""
     pier = rb.Pier(alpha=0.2, p=1.0)
     assert restraints_of({"pier": described(pier), "parameters": {"restraints": wrong}}) == ()

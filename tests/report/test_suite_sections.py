@@ -1,4 +1,4 @@
-"""What the report says of a suite: its distribution, target spectrum and pulses, intensity measures and code estimates."""
+"""Sections on the suite: its distribution, target spectrum and pulses, intensity measures and code estimates."""
 
 import json
 import math
@@ -24,7 +24,7 @@ PULSES = tuple(
 
 @pytest.fixture(scope="module")
 def asked(tmp_path_factory):
-    """The folder of a study that asks for all of it."""
+    """Write a folder of a study that asks for all of these sections."""
     folder = tmp_path_factory.mktemp("suite")
     text = study_text(
         pier={"alpha": [0.2, 0.3], "p": 1.0},
@@ -45,13 +45,13 @@ def page_of(folder, module):
 
 def test_every_report_says_that_one_record_predicts_nothing_and_shows_the_suite(tmp_path):
     write_results(tmp_path, changes={("CPM000", "2"): {"status": "overturned"}, ("SYL360", "2"): {"status": "flight"}})
-    found = distribution.section(read(tmp_path, ()))
-    page = Page(found.content)
+    section = distribution.section(read(tmp_path, ()))
+    page = Page(section.content)
     assert "predicts no earthquake" in page.text
     assert "Bachmann" in page.text
-    assert "33 % overturned, or ended by flight" in found.content
-    assert found.content.count("<figure") == 2  # the whole, and one panel
-    assert found.content.count('data-name="') == 5
+    assert "33 % overturned, or ended by flight" in section.content
+    assert section.content.count("<figure") == 2  # the whole, and one panel
+    assert section.content.count('data-name="') == 5
 
 
 def test_too_few_motions_have_no_distribution(tmp_path):
@@ -63,9 +63,9 @@ def test_too_few_motions_have_no_distribution(tmp_path):
 
 def test_more_groups_than_panels_are_told(tmp_path):
     write_results(tmp_path, scales=tuple(0.1 * i for i in range(1, 15)))
-    found = distribution.section(read(tmp_path, ()))
-    assert found.content.count("<figcaption>motions scaled") == 12
-    assert "The first 12 of 14 groups are shown." in Page(found.content).text
+    section = distribution.section(read(tmp_path, ()))
+    assert section.content.count("<figcaption>motions scaled") == 12
+    assert "The first 12 of 14 groups are shown." in Page(section.content).text
 
 
 def test_of_more_foundations_than_can_be_told_apart_the_best_are_drawn(tmp_path):
@@ -88,13 +88,13 @@ def test_intensity_measures_are_shown_by_case_with_the_best_of_each(asked):
     rows = [row for row in shown.tables[""] if row[0] != "case"]
     ranks, lines = rows[:4], rows[4:]
     for row, (_, same) in zip(ranks, order.groupby(["case", "alpha"], sort=False), strict=True):
-        one = same.set_index("measure")
-        assert row[-len(one) :] == [f"{value:.2f}" for value in one["rank_correlation"]]
+        measures = same.set_index("measure")
+        assert row[-len(measures) :] == [f"{value:.2f}" for value in measures["rank_correlation"]]
         assert row[1] == "6"
-        assert intensity._symbol(one["rank_correlation"].idxmax()) in row
+        assert intensity._symbol(measures["rank_correlation"].idxmax()) in row
     for row, (_, same) in zip(lines, order.groupby(["case", "alpha"], sort=False), strict=True):
-        one = same.set_index("measure")
-        assert row[-len(one) :] == ["—" if value != value else f"{value:.2f}" for value in one["dispersion"]]
+        measures = same.set_index("measure")
+        assert row[-len(measures) :] == ["—" if value != value else f"{value:.2f}" for value in measures["dispersion"]]
 
 
 # Code estimates
@@ -113,12 +113,12 @@ def test_estimates_are_labelled_as_a_comparison_that_need_not_converge(asked):
     table = rb.open_results(asked).estimate
     outcomes = table.drop_duplicates(["record", "alpha"])["priestley_outcome"].value_counts()
     assert f"below the threshold {outcomes['stays']}" in page.text
-    found = table[table["priestley_outcome"] == "rocks"]["priestley_theta_over_alpha"]
-    assert all(f"{value:.4f}" in page.text for value in found)
+    estimates = table[table["priestley_outcome"] == "rocks"]["priestley_theta_over_alpha"]
+    assert all(f"{value:.4f}" in page.text for value in estimates)
 
 
 def test_estimates_count_each_motion_once_and_are_compared_with_rigid_ground_alone(tmp_path):
-    """However many cases share them: the formulas are of a block on rigid ground, not of one on pads or with dampers."""
+    """Count each motion once: the formulas are of a block on rigid ground, not of one on pads or with dampers."""
     pads = {"name": "pads", "base": "elastic", "beta": [20, 30], "epsilon": 0.05}
     damped = {"name": "damped", "base": "rigid", "damper": [{"kind": "friction", "f": 0.02}]}
     output = {"estimate": True, "histories": "none"}
@@ -157,8 +157,8 @@ def test_the_target_is_drawn_with_every_record_and_the_mean_over_it(asked):
     page = Page(section.content)
     for name in ("target", "mean of the records", *(pulse["name"] for pulse in PULSES)):
         assert f'data-name="{name}"' in section.content
-    told = json.loads((asked / "run.json").read_text(encoding="utf-8"))["target"]
-    over = [mean / aim for mean, aim in zip(told["mean_sa_g"], told["sa_g"], strict=True)]
+    saved = json.loads((asked / "run.json").read_text(encoding="utf-8"))["target"]
+    over = [mean / aim for mean, aim in zip(saved["mean_sa_g"], saved["sa_g"], strict=True)]
     assert f"is {min(over):.2f} of the target at least" in page.text
     assert f"{max(over):.2f} at most" in page.text
     assert "below the 0.9 that is asked for" in page.text
@@ -205,14 +205,14 @@ def test_the_page_of_it_all_is_whole_and_spectra_are_drawn_once(asked):
 
 
 def test_measures_of_scaled_motions_are_not_called_as_recorded(tmp_path):
-    """Under a target PGA and the like are those of the motions as they were run."""
+    """Scale to a target: PGA and other measures are those of the motions as they were run."""
     write_results(tmp_path)
-    told = json.loads((tmp_path / "run.json").read_text(encoding="utf-8"))
-    told["records"] = [one | {"factor": 1.274} for one in told["records"]]
-    (tmp_path / "run.json").write_text(json.dumps(told), encoding="utf-8")
-    told = page_of(tmp_path, studied).text
-    assert "scaled to the target by 1.274;" in told
-    assert "as recorded" not in told
+    saved = json.loads((tmp_path / "run.json").read_text(encoding="utf-8"))
+    saved["records"] = [record | {"factor": 1.274} for record in saved["records"]]
+    (tmp_path / "run.json").write_text(json.dumps(saved), encoding="utf-8")
+    text = page_of(tmp_path, studied).text
+    assert "scaled to the target by 1.274;" in text
+    assert "as recorded" not in text
 
 
 def test_forces_of_a_case_with_runs_that_did_not_go_through_are_marked_as_bounds(tmp_path):

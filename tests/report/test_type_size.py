@@ -1,4 +1,4 @@
-"""The smallest words of every picture can be read, on a wide screen, on a narrow one and on paper."""
+"""The smallest text of every picture is legible on a wide screen, on a narrow one and on paper."""
 
 import re
 import zlib
@@ -58,7 +58,7 @@ for (const svg of document.querySelectorAll("main svg.plot")) {
 
 @pytest.fixture(scope="module")
 def report(tmp_path_factory):
-    """A report with every kind of picture."""
+    """Write a report with every kind of picture."""
     folder = tmp_path_factory.mktemp("pictures")
     study, out = str(write_study(folder, STUDY)), str(folder / "out")
     for command in ("run", "spectrum", "fragility", "sensitivity"):
@@ -68,7 +68,7 @@ def report(tmp_path_factory):
 
 
 def test_no_picture_is_made_for_more_room_than_it_has(report):
-    """Held without a browser: one that is drawn 440 px wide, in words of 11 px, is not shrunk where there are so many."""
+    """Check without a browser that a picture drawn 440 px wide, with text of 11 px, is not shrunk among many others."""
     text = report.read_text(encoding="utf-8")
     widths = [float(svg.attrib["viewBox"].split()[2]) for svg in figures(text) if "viewBox" in svg.attrib]
     assert len(widths) > 10
@@ -84,7 +84,7 @@ def test_no_picture_is_made_for_more_room_than_it_has(report):
 @needs_chromium
 @pytest.mark.parametrize("width", [1400, 500, 720], ids=["wide", "narrow", "paper"])
 def test_the_smallest_words_of_every_picture_can_be_read(tmp_path, report, width):
-    """On A4 with the margins of the page there are 688 px between them, as in a window of 720."""
+    """Check windows and paper: a window of 720 px has 688 px between the margins, as has A4."""
     found = browse(tmp_path, report, MEASURE, size=(width, 900))["smallest"]
     assert set(found) == PICTURES
     assert {name: size for name, size in found.items() if size < 11} == {}
@@ -114,7 +114,7 @@ def test_a_wide_table_goes_on_below_on_paper_with_every_column_once(tmp_path, re
 
 @needs_chromium
 def test_no_page_is_printed_smaller_because_a_table_is_too_wide(tmp_path, report):
-    """Chromium shrinks every page until the widest thing on any fits. Skia draws 300 units to an inch: 3.125 to a pixel."""
+    """Check the scale of the pages, which Chromium shrinks until the widest element fits: 300 units to an inch, 3.125 a pixel."""
     text = report.read_text(encoding="utf-8")
     for name in ("short", "long", "strong"):
         text = text.replace(f">{name}<", f">{name} motion of a station with a name of its own, 5 km south-west<")
@@ -127,8 +127,8 @@ def test_no_page_is_printed_smaller_because_a_table_is_too_wide(tmp_path, report
             drawn = zlib.decompress(stream)
         except zlib.error:
             continue
-        if found := re.match(rb"\s*\.2399\d* 0 0 -\.2399\d* 0 \d+ cm\s+q\s+([\d.]+) 0 0", drawn):
-            scales.add(float(found[1]))
+        if matrix := re.match(rb"\s*\.2399\d* 0 0 -\.2399\d* 0 \d+ cm\s+q\s+([\d.]+) 0 0", drawn):
+            scales.add(float(matrix[1]))
     assert scales == {3.125}
 
 
@@ -149,6 +149,6 @@ def test_a_pier_that_overturns_leaves_the_picture_and_does_not_flatten_how_it_ro
         Markup(""),
     )
     drawn = picture(fell, None, [], "record")
-    ranges = [[float(end) for end in found.split()] for found in re.findall(r'data-y="([^"]*)"', drawn)]
+    ranges = [[float(end) for end in limits.split()] for limits in re.findall(r'data-y="([^"]*)"', drawn)]
     assert len(ranges) == len(QUANTITIES)
     assert all(-2.0 < low < -0.4 < 0.4 < high < 2.0 for low, high in ranges)
