@@ -1,4 +1,4 @@
-"""The only door to the core: piers on bases under motions, with fixed steps or to a tolerance."""
+"""The only access to the core: piers on bases under motions, with fixed steps or to a tolerance."""
 
 from rockbatch.core.kernel import core_digest
 from rockbatch.simulation.models import (

@@ -1,4 +1,4 @@
-"""What makes a pier leave the ground with both pivots, in words."""
+"""Explain in words why both pivots of a pier leave the ground."""
 
 import math
 
@@ -13,7 +13,7 @@ _DAMP = f"see zeta, the damping of the supports; or {_ADVICE}"
 def cause_of_flight(
     motion: Motion, omega_v: float | None, gravity: float, t_flight: float, t_impact: float, zeta: float = 0.0
 ) -> str:
-    """Why a pier flies at ``t_flight`` [s], and what to do.
+    """Return why a pier flies at ``t_flight`` [s], and what to do, in words.
 
     Parameters
     ----------
@@ -26,18 +26,18 @@ def cause_of_flight(
     zeta : float
         Damping of the vertical vibration, as a share of critical.
     """
-    at = f"both pivots left the ground at {t_flight:.3f} s: "
-    until, down = 0.0, 0.0
+    opening = f"both pivots left the ground at {t_flight:.3f} s: "
+    peak, down = 0.0, 0.0
     if motion.vertical is not None:
         samples = np.append(motion.vertical, 0.0)
         down = float(np.interp(t_flight, np.arange(len(samples)) * motion.dt, samples)) / gravity
-        until = float(np.abs(samples[: math.floor(t_flight / motion.dt) + 1]).max()) / gravity
+        peak = float(np.abs(samples[: math.floor(t_flight / motion.dt) + 1]).max()) / gravity
     if omega_v is None or down <= -1.0 + 1e-9:
-        return f"{at}the ground fell away under the pier, with a vertical acceleration of {down:.2f} g"
+        return f"{opening}the ground fell away under the pier, with a vertical acceleration of {down:.2f} g"
     if t_flight - t_impact <= math.pi / omega_v:
-        return f"{at}thrown up {1000 * (t_flight - t_impact):.0f} ms after an impact; {_ADVICE}"
+        return f"{opening}thrown up {1000 * (t_flight - t_impact):.0f} ms after an impact; {_ADVICE}"
     oscillator = f"vertical oscillator of {omega_v / (2.0 * math.pi):.3g} Hz, damping {100.0 * zeta:.3g} %"
-    if until == 0.0:
-        return f"{at}{oscillator}, excited by rocking; {_DAMP}"
-    times = f"{1.0 / until:.1f} times the ground's {until:.2f} g until then"
-    return f"{at}{oscillator}, reached 1 g, {times}; {_DAMP}"
+    if peak == 0.0:
+        return f"{opening}{oscillator}, excited by rocking; {_DAMP}"
+    times = f"{1.0 / peak:.1f} times the ground's {peak:.2f} g until then"
+    return f"{opening}{oscillator}, reached 1 g, {times}; {_DAMP}"

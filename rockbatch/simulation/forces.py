@@ -1,4 +1,4 @@
-"""Forces of a run that was written down, and what of them a designer sizes: their peaks, the hardest impact, uplift."""
+"""Forces along a recorded run, and those that a designer sizes: peaks, the hardest impact, uplift."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -27,8 +27,8 @@ _LANDINGS = (types.IMPACT_LEFT, types.IMPACT_RIGHT, types.IMPACT_BOTH, types.RES
 
 
 class Impacts(NamedTuple):
-    """The impacts of a run, each shape (k,): the place of the row after it, what lands (−1 left, 1 right, 0 both), the
-    greatest speed of what lands [m/s], and the impulse on the pier per unit mass [m/s], horizontal and vertical."""
+    """Impacts of a run, each shape (k,): index of the row after it, what lands (−1 left, 1 right, 0 both), the greatest speed
+    of what lands [m/s], and the impulse on the pier per unit mass [m/s], horizontal and vertical."""
 
     after: np.ndarray
     side: np.ndarray
@@ -38,27 +38,27 @@ class Impacts(NamedTuple):
 
 
 class Greatest(NamedTuple):
-    """The greatest magnitudes of a run, of |V|/N while N is above a limit; and what is noted beside them."""
+    """Greatest magnitudes of the forces of a run, |V|/N counted while N is above a limit, and what else was noted."""
 
     forces: Forces
     noted: Noted
 
 
 def at_rows(run: Run, rows: np.recarray) -> np.recarray:
-    """Forces (core.forces.Forces) at every row of a run that has both sides of every event."""
-    found = np.recarray(len(rows), FORCES)
-    _observe(run, rows, 0.0, found, np.zeros(0))
-    return found
+    """Return the forces (core.observe.forces.Forces) at every row of a run that has both sides of every event."""
+    forces = np.recarray(len(rows), FORCES)
+    _observe(run, rows, 0.0, forces, np.zeros(0))
+    return forces
 
 
 def greatest(run: Run, rows: np.recarray, least_normal: float) -> Greatest:
-    """The greatest forces of a run, ``rows`` of which are all its steps; friction counts where N > ``least_normal`` M g."""
+    """Return the greatest forces of a run whose ``rows`` are all its steps; friction counts where N > ``least_normal`` M g."""
     extremes = np.zeros(len(Forces._fields))
     noted = _observe(run, rows, least_normal, np.recarray(0, FORCES), extremes)
     return Greatest(Forces(*extremes.tolist()), Noted(*noted.tolist()))
 
 
-def _observe(run: Run, rows: np.recarray, least_normal: float, found: np.recarray, extremes: Samples) -> np.record:
+def _observe(run: Run, rows: np.recarray, least_normal: float, forces: np.recarray, extremes: Samples) -> np.record:
     noted = np.zeros(1, NOTED).view(np.recarray)
     noted.slides = noted.pulls = NEVER
     if len(rows) == 0:
@@ -69,31 +69,36 @@ def _observe(run: Run, rows: np.recarray, least_normal: float, found: np.recarra
     plain, pulls = apart(base, rows)
     ground, dt = ground_of(run.motion), float(run.motion.dt)
     forces_of_run(
-        model(pier, base), body, plain, pulls, _ties(run, rows), ground, dt, limits, found, extremes, noted
+        model(pier, base), body, plain, pulls, _devices(run, rows), ground, dt, limits, forces, extremes, noted
     )  # fmt: skip
     return noted[0]
 
 
-def _ties(run: Run, rows: np.recarray) -> Ties | None:
-    """Dampers and tendons of a run, with their states at its ``rows``."""
+def _devices(run: Run, rows: np.recarray) -> Ties | None:
+    """Return the dampers and tendons of a run, with their states at its ``rows``; None without any."""
     if not run.base.restraints:
         return None
-    laws = np.array([tuple(each) for each in elements(run.pier, run.base)], ELEMENT).view(np.recarray)
+    laws = np.array([tuple(device) for device in elements(run.pier, run.base)], ELEMENT).view(np.recarray)
     return Ties(laws, rows.state.copy(), float(rows.v[0]))
 
 
 def _hold(pier: Pier, base: RigidBase) -> Hold:
     """Return what friction dampers can do against a pier at rest that begins to turn about its left or right pivot."""
-    found = []
+    numbers = []
     for side in (-1.0, 1.0):
-        rubs = [(of.strength, pier.half_width - side * of.offset) for of in elements(pier, base) if of.kind == FRICTION]
-        found.append(sum(math.copysign(strength, d) for strength, d in rubs if d != 0.0))
-        found.append(sum(strength * abs(d) for strength, d in rubs) / pier.inertia_about_pivot)
-    return Hold(*map(float, found))
+        rubs = [
+            (law.strength, pier.half_width - side * law.offset) for law in elements(pier, base) if law.kind == FRICTION
+        ]
+        numbers.append(sum(math.copysign(strength, d) for strength, d in rubs if d != 0.0))
+        numbers.append(sum(strength * abs(d) for strength, d in rubs) / pier.inertia_about_pivot)
+    return Hold(*map(float, numbers))
 
 
 def _outline(pier: Pier) -> Outline:
-    """The deck of a frame rests on corners of its columns, twice as far from their pivots as their centres of mass are."""
+    """Return the outline of a pier.
+
+    The deck of a frame rests on corners of its columns, twice as far from their pivots as their centres of mass are.
+    """
     size, width = float(pier.size), 2.0 * float(pier.half_width)
     if pier.deck_over_columns is not None:
         return Outline(size, width, width / math.sin(pier.alpha) / size, 0.0)
@@ -101,45 +106,45 @@ def _outline(pier: Pier) -> Outline:
 
 
 def _events(rows: np.recarray, kinds: Sequence[float]) -> np.ndarray:
-    """Places of the rows behind events of these ``kinds``."""
+    """Return the indices of the rows behind events of these ``kinds``."""
     events = np.flatnonzero(rows.kind > 0.0)
     return events[np.isin(rows.kind[events], kinds)]
 
 
-def impacts(rows: np.recarray, found: np.recarray) -> Impacts:
-    """Impacts between neighbouring rows: the speed before, and by how much the momentum changes."""
+def impacts(rows: np.recarray, forces: np.recarray) -> Impacts:
+    """Return the impacts between neighbouring rows: the speed before, and by how much the momentum changes."""
     after = _events(rows, _LANDINGS)
     before, kind = after - 1, rows.kind[after]
-    left, right = np.abs(found.speed_left[before]), np.abs(found.speed_right[before])
+    left, right = np.abs(forces.speed_left[before]), np.abs(forces.speed_right[before])
     comes_down = np.where(kind == types.REST, np.where(left > 0.0, types.IMPACT_LEFT, types.IMPACT_RIGHT), kind)
     side = np.where(comes_down == types.IMPACT_LEFT, -1, np.where(comes_down == types.IMPACT_RIGHT, 1, 0))
     speed = np.where(side < 0, left, np.where(side > 0, right, np.maximum(left, right)))
-    return Impacts(after, side, speed, found.along[after] - found.along[before], found.up[after] - found.up[before])
+    return Impacts(after, side, speed, forces.along[after] - forces.along[before], forces.up[after] - forces.up[before])
 
 
-def forces_table(t: Samples, found: np.recarray, gravity: float) -> "pd.DataFrame":
-    """:attr:`Response.forces` at the times ``t`` [s]."""
+def forces_table(t: Samples, forces: np.recarray, gravity: float) -> "pd.DataFrame":
+    """Return :attr:`Response.forces` at the times ``t`` [s]."""
     import pandas as pd
 
     half = 0.5 * gravity
-    told = [found.shear, found.normal, found.friction, found.left / half, found.right / half]
-    told += [found.gap_left, found.gap_right, found.speed_left, found.speed_right, found.deck]
-    return pd.DataFrame({"t": t.copy(), **dict(zip(FORCE_UNITS, told, strict=True))})
+    columns = [forces.shear, forces.normal, forces.friction, forces.left / half, forces.right / half]
+    columns += [forces.gap_left, forces.gap_right, forces.speed_left, forces.speed_right, forces.deck]
+    return pd.DataFrame({"t": t.copy(), **dict(zip(FORCE_UNITS, columns, strict=True))})
 
 
-def impacts_table(rows: np.recarray, found: np.recarray) -> "pd.DataFrame":
-    """:attr:`Response.impacts` of a run with these forces."""
+def impacts_table(rows: np.recarray, forces: np.recarray) -> "pd.DataFrame":
+    """Return :attr:`Response.impacts` of a run with these forces."""
     import pandas as pd
 
-    own = impacts(rows, found)
-    told = [rows.t[own.after], own.speed, own.horizontal, own.vertical]
-    table = pd.DataFrame(dict(zip(IMPACT_UNITS, told, strict=True)))
-    table.insert(1, "pivot", np.array(["left", "both", "right"], dtype=object)[own.side + 1])
+    landings = impacts(rows, forces)
+    columns = [rows.t[landings.after], landings.speed, landings.horizontal, landings.vertical]
+    table = pd.DataFrame(dict(zip(IMPACT_UNITS, columns, strict=True)))
+    table.insert(1, "pivot", np.array(["left", "both", "right"], dtype=object)[landings.side + 1])
     return table.astype({"pivot": "str"})
 
 
 def peak_forces(run: Run, rows: np.recarray, least_normal: float) -> tuple[PeakForces, str]:
-    """Return the demands of a run on the design, and a note on what the model does not follow of it; empty without any.
+    """Return the demands of a run on the design, and a note on what the model does not follow of it; empty if nothing.
 
     ``rows`` are those of a history with every step. A pier counts until it leans beyond α for good. Friction counts while N is
     above the share ``least_normal`` of the weight.
@@ -152,13 +157,13 @@ def peak_forces(run: Run, rows: np.recarray, least_normal: float) -> tuple[PeakF
     events = rows[(rows.kind > 0.0) | (rows.kind == types.BEFORE_EVENT)].view(np.recarray)
     landings = impacts(events, at_rows(run, events))
     # Yield is located to rounding; a dashpot adds to what the spring bears
-    bears = run.base.eta if isinstance(run.base, YieldingBase) and not run.base.zeta else math.inf
+    capacity = run.base.eta if isinstance(run.base, YieldingBase) and not run.base.zeta else math.inf
     peaks = PeakForces(
         base_shear=most.shear,
         normal_force=most.normal,
         friction_demand=most.friction,
-        pivot_left=min(most.left / (0.5 * pier.gravity), bears),
-        pivot_right=min(most.right / (0.5 * pier.gravity), bears),
+        pivot_left=min(most.left / (0.5 * pier.gravity), capacity),
+        pivot_right=min(most.right / (0.5 * pier.gravity), capacity),
         heel_gap_left=most.gap_left,
         heel_gap_right=most.gap_right,
         heel_speed_left=most.speed_left,
@@ -170,24 +175,24 @@ def peak_forces(run: Run, rows: np.recarray, least_normal: float) -> tuple[PeakF
         **_hardest(run, events, landings),
         **_first_uplift(run, events),
     )
-    return peaks, _limits(run, noted, peaks, least_normal)
+    return peaks, _not_followed(run, noted, peaks, least_normal)
 
 
 def _hardest(run: Run, events: np.recarray, landings: Impacts) -> dict[str, float]:
-    """The hardest impact, that of the greatest landing velocity, and the greatest friction demand of any; nothing without one."""
+    """Return the demands of the hardest impact, and the greatest friction demand of any; empty if none occurs."""
     if len(landings.after) == 0:
         return {}
     hardest = int(landings.speed.argmax())
-    told = {"landing_velocity": float(landings.speed[hardest]), "impulse": float(landings.vertical[hardest])}
+    peaks = {"landing_velocity": float(landings.speed[hardest]), "impulse": float(landings.vertical[hardest])}
     pressed = landings.vertical > 0.0
     if pressed.any():
         shares = np.abs(landings.horizontal[pressed]) / landings.vertical[pressed]
-        told["impact_friction_demand"] = float((shares * _of_bounces(run, events, landings.after[pressed])).max())
-    return told
+        peaks["impact_friction_demand"] = float((shares * _per_bounce(run, events, landings.after[pressed])).max())
+    return peaks
 
 
-def _of_bounces(run: Run, events: np.recarray, after: np.ndarray) -> Samples | float:
-    """Return by what the quotient of the impulses of each impact has to be multiplied for that of its bounces.
+def _per_bounce(run: Run, events: np.recarray, after: np.ndarray) -> Samples | float:
+    """Return the factor from the quotient of the impulses of each impact to that of its bounces.
 
     Coming to rest sums up ever lower bounces, each of which leaves the share e of the velocity: J_h is (1 − e) and J_v (1 + e) of
     what a stop at once would take (THEORY.md, Forces).
@@ -199,30 +204,30 @@ def _of_bounces(run: Run, events: np.recarray, after: np.ndarray) -> Samples | f
 
 
 def _first_uplift(run: Run, rows: np.recarray) -> dict[str, float]:
-    """When a pivot first lifts, and the magnitude of the horizontal ground acceleration then; nothing if none does."""
+    """Return the time of the first uplift, and the magnitude of the horizontal ground acceleration then; empty if none occurs."""
     lifted = _events(rows, _UPLIFTS)
     if len(lifted) == 0:
         return {}
     t, samples = float(rows.t[lifted[0]]), np.append(run.motion.horizontal, 0.0)
-    shaken = float(np.interp(t, np.arange(len(samples)) * run.motion.dt, samples))
-    return {"first_uplift": t, "uplift_ground": abs(shaken)}
+    acceleration = float(np.interp(t, np.arange(len(samples)) * run.motion.dt, samples))
+    return {"first_uplift": t, "uplift_ground": abs(acceleration)}
 
 
-def _limits(run: Run, noted: Noted, peaks: PeakForces, least_normal: float) -> str:
-    """What the forces say that the model does not follow: sliding, and a rigid base that would have to pull."""
+def _not_followed(run: Run, noted: Noted, peaks: PeakForces, least_normal: float) -> str:
+    """Return a note on what the model does not follow: sliding, and a rigid base that would have to pull."""
     notes = []
     if noted.pulls != NEVER and not run.base.on_springs:
         notes.append(
             f"at {noted.pulls:.2f} s the ground would have to hold the pier down: it would leave it, which is not followed"
         )
-    has = run.base.friction
-    if has is None:
+    limit = run.base.friction
+    if limit is None:
         return "; ".join(notes)
     most = max(peaks.friction_demand, peaks.impact_friction_demand or 0.0)
-    if most > has:
+    if most > limit:
         when = "at an impact" if noted.slides == NEVER else f"at {noted.slides:.2f} s"
         notes.append(
-            f"{WOULD_SLIDE} {when}: the friction demand reaches {most:.3g}, the interface has {has:g}; sliding is not followed"
+            f"{WOULD_SLIDE} {when}: the friction demand reaches {most:.3g}, the interface has {limit:g}; sliding is not followed"
         )
     if peaks.key_shear is not None:
         notes.append(
@@ -232,7 +237,7 @@ def _limits(run: Run, noted: Noted, peaks: PeakForces, least_normal: float) -> s
     return "; ".join(notes)
 
 
-NOT_SETTLED = 0.01
+LARGE_ERROR = 0.01
 """Error of a force, as a share of it, beyond which a run carries a note."""
 
 _FLOOR = 0.01
@@ -252,23 +257,23 @@ _SIZED = {
     "angular velocity": (("omega_over_p",), "rotation"),
     "base shear on the keys": (("key_shear",), "force"),
 }
-"""Fields of PeakForces that have an error, those of both pivots together, and what they are measured by."""
+"""Fields of PeakForces that have an error, those of both pivots together, and the scale of each."""
 
 
 def with_error(fine: PeakForces, coarse: PeakForces, pier: Pier) -> tuple[PeakForces, str]:
     """Return ``fine`` with its error, the greatest share of itself by which a quantity differs from that of twice the step.
 
-    And a note on what has not settled; empty if all has.
+    The second value is a note on what has not converged; empty if all has.
     """
     scales = _scales(pier)
     changes = {}
     for name, (fields, measure) in _SIZED.items():
         now, before = ([getattr(forces, field) or 0.0 for field in fields] for forces in (fine, coarse))
-        changed = max(abs(one - other) for one, other in zip(now, before, strict=True))
+        changed = max(abs(new - old) for new, old in zip(now, before, strict=True))
         changes[name] = changed / max(*now, _FLOOR * scales[measure])
     worst = max(changes, key=changes.__getitem__)
     most = changes[worst]
-    note = f"forces not settled: halving the step still changed the {worst} by {most:.1%}" if most > NOT_SETTLED else ""
+    note = f"forces not settled: halving the step still changed the {worst} by {most:.1%}" if most > LARGE_ERROR else ""
     return replace(fine, error=most), note
 
 

@@ -1,4 +1,4 @@
-"""Histories of one run: what the core wrote, with names, units and what follows from it."""
+"""Histories of one run: the rows that the core wrote, with names, units and derived quantities."""
 
 import math
 from dataclasses import replace
@@ -39,7 +39,7 @@ _EVENTS = {
 
 
 MOST_ROWS = 10_000_000
-"""Rows of a history that are held in memory, about a gigabyte."""
+"""Greatest number of rows of a history held in memory, about a gigabyte."""
 
 
 def simulate(
@@ -55,22 +55,22 @@ def simulate(
     forces: bool = False,
     wait: bool = True,
 ) -> Response:
-    """One run: what it comes to, as a row of peaks.csv, and its histories.
+    """Simulate one run, and return its results, as a row of peaks.csv, and its histories.
 
     Parameters
     ----------
     pier, foundation, motion
-        What rocks, on what, under what; a motion's vertical component is used if it has one.
+        The pier, its base and the ground motion, whose vertical component is used if it has one.
     tolerance : float
         On θ_max/α; the steps per sample are chosen to meet it.
     substeps : int, optional
         Steps per sample instead, for a fixed step.
     quiet_s : float
-        Time after the record [s].
+        Free-vibration tail after the record [s].
     case : str, optional
         Name of the foundation; its kind by default.
     ledger : bool
-        Keep the energy ledger too (THEORY.md, Energy ledger).
+        Keep the energy balance too (THEORY.md, Energy ledger).
     forces : bool
         Keep the forces, and what lands at impacts, too (THEORY.md, Forces).
     wait : bool
@@ -85,8 +85,8 @@ def simulate(
     Raises
     ------
     InputError
-        If the pier cannot stand on the foundation, with the limits; if a device or the motion is far from usual and its
-        ``confirm`` does not name what; if the run would take too many steps.
+        If the pier cannot stand on the foundation, with the limits; if a device or the motion is implausible and not
+        named in its ``confirm``; if the run would take too many steps.
 
     Examples
     --------
@@ -121,35 +121,35 @@ def simulate(
         raise InputError(f"{motion.name}: {outcome.reason}")
     run, name = Run(pier, foundation, motion), case or foundation.name
     outcome = told_apart(run, outcome, quiet_s, wait=wait)
-    found = histories(run, outcome, quiet_s, name, {}, ledger=ledger, forces=forces, wait=wait)
+    response = histories(run, outcome, quiet_s, name, {}, ledger=ledger, forces=forces, wait=wait)
     if ledger or forces:
         numerics = Numerics(None if substeps else tolerance, substeps, quiet_s)
         output = Output(ledger=ledger, forces=forces)
         outcome = with_observed(run, outcome, numerics, output, wait)
-    return replace(found, row=as_series(row(motion, "+", 1.0, Case(name, pier, foundation, {}), outcome)))
+    return replace(response, row=as_series(row(motion, "+", 1.0, Case(name, pier, foundation, {}), outcome)))
 
 
 def written(run: Run, outcome: Outcome, quiet_s: float, every_step: bool, wait: bool = True) -> np.recarray:
-    """A run whose outcome is known, written down: a record for each moment (``core.history``).
+    """Return the history of a run whose outcome is known: a record for each moment (``core.history``).
 
-    Raises ``InputError`` where they would be more than :data:`MOST_ROWS`.
+    Raises ``InputError`` for more than :data:`MOST_ROWS`.
     """
     samples = steps_of(run.motion, 1, quiet_s)
     capacity = int(outcome.substeps * samples if every_step else samples) + 64 * (
         outcome.impacts + outcome.separations + 64
     )
     capacity = min(capacity, MOST_ROWS)
-    found, rows = written_run(run, outcome.substeps, quiet_s, capacity, every_step=every_step, wait=wait)
-    if found.rows > MOST_ROWS:
+    result, rows = written_run(run, outcome.substeps, quiet_s, capacity, every_step=every_step, wait=wait)
+    if result.rows > MOST_ROWS:
         instead = "leave out the energy ledger or use fewer substeps" if every_step else "cut the record"
-        raise InputError(f"{run.motion.name}: a history of {found.rows} rows, more than {MOST_ROWS}; {instead}")
-    if found.rows > capacity:
-        found, rows = written_run(run, outcome.substeps, quiet_s, found.rows, every_step=every_step, wait=wait)
-    return rows[: found.rows].view(np.recarray)
+        raise InputError(f"{run.motion.name}: a history of {result.rows} rows, more than {MOST_ROWS}; {instead}")
+    if result.rows > capacity:
+        result, rows = written_run(run, outcome.substeps, quiet_s, result.rows, every_step=every_step, wait=wait)
+    return rows[: result.rows].view(np.recarray)
 
 
 def energies(run: Run, rows: np.recarray) -> Samples:
-    """Energy ledger [J/kg] at every row of a run: :data:`rockbatch.results.columns.TERMS`, shape (n, 10)."""
+    """Return the energy balance [J/kg] at every row of a run: :data:`rockbatch.results.columns.TERMS`, shape (n, 10)."""
     pier, base = run.pier, run.base
     ground, dt = ground_of(run.motion), float(run.motion.dt)
     terms = np.zeros((len(rows), len(TERMS)))
@@ -163,7 +163,8 @@ def energies(run: Run, rows: np.recarray) -> Samples:
 
 
 def told_apart(run: Run, outcome: Outcome, quiet_s: float, wanted: bool = False, wait: bool = True) -> Outcome:
-    """With rocking and lean apart if that is ``wanted``, or if the peak may be lean; by one more run on yielding springs."""
+    """Return ``outcome`` with rocking and lean apart, if ``wanted`` or the peak may be lean; on yielding springs by one more
+    run."""
     if not outcome.was_run or not (wanted or may_lean(outcome)):
         return outcome
     if not isinstance(run.base, YieldingBase) or outcome.status == "overturned":
@@ -173,8 +174,11 @@ def told_apart(run: Run, outcome: Outcome, quiet_s: float, wanted: bool = False,
 
 
 def with_observed(run: Run, outcome: Outcome, numerics: Numerics, output: Output, wait: bool = True) -> Outcome:
-    """With what observers make of the run, written down at every step: the energy ledger at its end, with the greatest
-    remainder on the way, and the greatest forces, with their error where the step was chosen by a tolerance."""
+    """Return ``outcome`` with what observers make of the run, recorded at every step.
+
+    These are the energy balance at its end, with the greatest residual on the way, and the greatest forces, with their error if
+    the step was chosen by a tolerance.
+    """
     rows = written(run, outcome, numerics.quiet_s, every_step=True, wait=wait)
     if output.ledger:
         terms = energies(run, rows)
@@ -207,7 +211,7 @@ def histories(
     scale: float = 1.0,
     wait: bool = True,
 ) -> Response:
-    """Histories of a run whose outcome is known: the same run again, with the same steps, written down.
+    """Return the histories of a run whose outcome is known, by repeating it with the same steps.
 
     The motion of ``run`` is scaled and turned already; ``polarity`` and ``scale`` say how.
     """
@@ -222,10 +226,10 @@ def histories(
         table = pd.DataFrame(energies(run, rows)[shown], columns=list(TERMS))
         table.insert(0, "t", rows.t[shown])
     rows = rows[shown]
-    sized = landed = None
+    demands = impacts = None
     if forces:
         moments = at_rows(run, rows)
-        sized, landed = forces_table(rows.t, moments, pier.gravity), impacts_table(rows, moments)
+        demands, impacts = forces_table(rows.t, moments, pier.gravity), impacts_table(rows, moments)
     devices = restraints.loops(pier, base, rows) if base.restraints else None
     state = _rigid_state(pier, base, rows) if isinstance(base, RigidBase) else _springs_state(pier, base, rows)
     t = rows.t.copy()
@@ -233,27 +237,27 @@ def histories(
     history = pd.DataFrame({"t": t, **state, "ag_h": _ground(motion.horizontal, motion.dt, t), "ag_v": vertical})
     events = pd.DataFrame(_events(rows, outcome.t_flight), columns=list(EVENT_TYPES)).astype(EVENT_TYPES)
     return Response(
-        motion.name, case, columns, pier, base, outcome.status, history, events, table, polarity, scale, sized, landed,
+        motion.name, case, columns, pier, base, outcome.status, history, events, table, polarity, scale, demands, impacts,
         devices,
     )  # fmt: skip
 
 
 def _events(rows: np.recarray, t_flight: float | None) -> list[tuple[float, str, str, int, int]]:
-    """Time, kind and pivot of every event, and the rows before and after it."""
+    """Return the time, kind and pivot of every event, and the rows before and after it."""
     kinds = rows.kind
-    found = []
+    events = []
     for after in np.flatnonzero(kinds > 0):
         jumps = kinds[after - 1] == types.BEFORE_EVENT
-        found.append((float(rows.t[after]), *_EVENTS[int(kinds[after])], int(after - jumps), int(after)))
+        events.append((float(rows.t[after]), *_EVENTS[int(kinds[after])], int(after - jumps), int(after)))
     if t_flight is not None:
         last = int(np.searchsorted(rows.t, t_flight, side="right")) - 1
-        found.append((t_flight, "flight", "", last, last))
-        found.sort(key=lambda event: event[0])
-    return found
+        events.append((t_flight, "flight", "", last, last))
+        events.sort(key=lambda event: event[0])
+    return events
 
 
 def _ground(acceleration: Samples, dt: float, t: Samples) -> Samples:
-    """Ground acceleration at times ``t``: linear between samples, zero from the sample after the last."""
+    """Return the ground acceleration at times ``t``: linear between samples, zero from the sample after the last."""
     samples = np.append(acceleration, 0.0)
     return np.interp(t, np.arange(len(samples)) * dt, samples)
 
@@ -273,7 +277,7 @@ def _rigid_state(pier: Pier, base: RigidBase, rows: np.recarray) -> dict[str, Sa
 
 
 def _springs_state(pier: Pier, base: ElasticBase, rows: np.recarray) -> dict[str, Samples]:
-    """State, pivots, and the energy stored since the start (THEORY.md, Results of a run): kinetic, potential and elastic."""
+    """Return state, pivots and stored energy since the start: kinetic, potential and elastic (THEORY.md, Results of a run)."""
     m = springs(pier, base)
     v, theta, z_left, z_right = rows.v, rows.theta, rows.z_left, rows.z_right
     b, h = m.half_width, m.height

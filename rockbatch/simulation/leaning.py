@@ -1,4 +1,4 @@
-"""Rocking apart from lean: rotation about where a pier would rest on its base (THEORY.md, Results of a run)."""
+"""Rocking and lean of a pier: rotation about where it would rest on its base (THEORY.md, Results of a run)."""
 
 from dataclasses import replace
 from typing import NamedTuple
@@ -10,17 +10,17 @@ from rockbatch.pier import ElasticBase, Pier, tilt_over_residual, vertical_frequ
 from rockbatch.results.outcome import LEANS, Outcome
 
 MOSTLY = 0.5
-"""Of θ_max: the least lean, and of the greatest rocking: the least of it at the peak, for the peak to count as rocking."""
+"""Least share of lean in θ_max, and share of the greatest rocking above that at the peak, for the peak to count as lean."""
 
 PARTS = 8
-"""Parts of the way from one row to the next in which the greatest rocking is looked for."""
+"""Parts of the interval between two rows in which the greatest rocking is sought."""
 
 
 class Apart(NamedTuple):
     """Rocking and lean of a run [rad].
 
     ``rocking`` is the greatest |θ − lean|, at ``t`` [s]; ``lean`` is the lean at the peak of |θ|, to its side, and
-    ``rocking_then`` what is left of the peak.
+    ``rocking_then`` the rest of the peak.
     """
 
     rocking: float
@@ -30,17 +30,17 @@ class Apart(NamedTuple):
 
     @property
     def leans(self) -> bool:
-        """Whether the peak is mostly lean, while the pier rocks far less than it has."""
+        """Return whether the peak is mostly lean, while the pier rocks far less than it has."""
         return self.lean >= MOSTLY * (self.lean + self.rocking_then) and self.rocking_then < MOSTLY * self.rocking
 
 
 def may_lean(outcome: Outcome) -> bool:
-    """Whether the greatest rotation may be mostly lean: the pier stands, and rests at half of it or more."""
+    """Return whether the greatest rotation may be mostly lean: the pier stands, and rests at half of it or more."""
     return outcome.status == "ok" and abs(outcome.theta_res or 0.0) >= MOSTLY * outcome.theta_max > 0.0
 
 
 def apart(pier: Pier, base: ElasticBase, rows: np.recarray) -> Apart:
-    """Tell rocking from lean in the ``rows`` of a run, at samples and both sides of events."""
+    """Separate rocking from lean in the ``rows`` of a run, at samples and both sides of events."""
     theta, lean, t = rows.theta, lean_of(pier, base, rows), rows.t
     swing = theta - lean
     h = np.diff(t)
@@ -48,42 +48,42 @@ def apart(pier: Pier, base: ElasticBase, rows: np.recarray) -> Apart:
     for s in np.arange(1, PARTS) / PARTS:  # θ is cubic between rows, and the lean straight
         between = (1.0 - s) * swing[:-1] + s * swing[1:]
         bent = (1.0 - s) * (h * rows.omega[:-1] - np.diff(theta)) - s * (h * rows.omega[1:] - np.diff(theta))
-        there = np.abs(between + s * (1.0 - s) * bent)
-        if len(there) and there.max() > most:
-            most, when = float(there.max()), float(t[there.argmax()] + s * h[there.argmax()])
+        rocking = np.abs(between + s * (1.0 - s) * bent)
+        if len(rocking) and rocking.max() > most:
+            most, when = float(rocking.max()), float(t[rocking.argmax()] + s * h[rocking.argmax()])
     peak = int(np.abs(theta).argmax())
     side = np.sign(theta[peak])
     return Apart(most, when, float(side * lean[peak]), float(side * swing[peak]))
 
 
 def lean_of(pier: Pier, base: ElasticBase, rows: np.recarray) -> Samples:
-    """Rotation [rad] at which the pier would rest on its base as it is at every row (THEORY.md, eq. 20)."""
+    """Return the rotation [rad] at which the pier would rest on its base as it is at every row (THEORY.md, eq. 20)."""
     b, h, theta = pier.half_width, pier.height, rows.theta
     rise, drop = b * theta, 0.0
     if base.kinematics == "finite":
         rise, drop = b * np.sin(theta), h * (1.0 - np.cos(theta))
     deflection = yield_deflection(pier, base)
-    left = _held(rows.v + rise + drop - deflection * rows.z_left, rows.left != 0.0)
-    right = _held(rows.v - rise + drop - deflection * rows.z_right, rows.right != 0.0)
+    left = _last_borne(rows.v + rise + drop - deflection * rows.z_left, rows.left != 0.0)
+    right = _last_borne(rows.v - rise + drop - deflection * rows.z_right, rows.right != 0.0)
     tilt = 0.5 * (left - right) / b
     return tilt / tilt_over_residual(pier.gravity, h, b, vertical_frequency(pier, base))
 
 
-def _held(unstressed: Samples, borne: Samples) -> Samples:
-    """Unstressed position of a support, which stays where it was while its pivot is away."""
+def _last_borne(unstressed: Samples, borne: Samples) -> Samples:
+    """Return the unstressed position of a support, which stays where it was while its pivot is away."""
     last = np.maximum.accumulate(np.where(borne, np.arange(len(borne)), 0))
     return unstressed[last]
 
 
-def with_rocking(outcome: Outcome, found: Apart, alpha: float) -> Outcome:
-    """Return ``outcome`` with rocking and lean, and a note where the peak is lean; angles in the note are over ``alpha``."""
+def with_rocking(outcome: Outcome, parts: Apart, alpha: float) -> Outcome:
+    """Return ``outcome`` with rocking and lean, and a note if the peak is lean; angles in the note are over ``alpha``."""
     outcome = replace(
-        outcome, theta_rocking=found.rocking, theta_lean=None if outcome.status == "flight" else found.lean
+        outcome, theta_rocking=parts.rocking, theta_lean=None if outcome.status == "flight" else parts.lean
     )
-    if outcome.status != "ok" or not found.leans:
+    if outcome.status != "ok" or not parts.leans:
         return outcome
-    told = (
-        f"theta_max is mostly lean: the base leaned by {found.lean / alpha:.4f} alpha then, about which the pier rocked by "
-        f"{found.rocking_then / alpha:.4f} alpha, and by {found.rocking / alpha:.4f} alpha at most, at {found.t:.2f} s"
+    remark = (
+        f"theta_max is mostly lean: the base leaned by {parts.lean / alpha:.4f} alpha then, about which the pier rocked by "
+        f"{parts.rocking_then / alpha:.4f} alpha, and by {parts.rocking / alpha:.4f} alpha at most, at {parts.t:.2f} s"
     )
-    return replace(outcome, theta_max_is=LEANS, note="; ".join(filter(None, (outcome.note, told))))
+    return replace(outcome, theta_max_is=LEANS, note="; ".join(filter(None, (outcome.note, remark))))

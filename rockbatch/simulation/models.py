@@ -1,4 +1,4 @@
-"""From piers, bases and motions to the plain numbers that the core takes, and the steps that they ask for."""
+"""Numbers that the core takes for piers, bases and motions, and the steps that these need."""
 
 import math
 from functools import lru_cache
@@ -39,11 +39,11 @@ STABLE_STEP = 2.0
 """Largest ω h that is run at all: Runge–Kutta 4 blows up an oscillator beyond 2√2."""
 
 PATIENCE = 40.0
-"""Of 1/p: how long after the record a pier is waited for that, by its energy, could still turn further or overturn. By
-then it has left any unstable equilibrium that rounding can hold."""
+"""Time in 1/p for which a run goes on after the record at most, while by its energy the pier could still turn further or
+overturn. By then it has left any unstable equilibrium that rounding can hold."""
 
 STEEP = 100.0
-"""Of p: rate at which a viscous damper with an exponent below 1 slows a block on rigid ground that hardly moves."""
+"""In units of p: rate at which a viscous damper with an exponent below 1 slows a block on rigid ground that hardly moves."""
 
 READ_AFTER = 5.0
 """Periods 2π/ω_v of the vertical vibration from the end of the record to the moment at which residuals are read."""
@@ -58,7 +58,7 @@ DAMPERS: dict[DamperKind, float] = {"friction": FRICTION, "viscous": VISCOUS, "h
 
 @lru_cache(maxsize=4096)
 def springs(pier: Pier, base: ElasticBase) -> Springs:
-    """What the core takes for ``pier`` on springs: plain floats, per unit mass."""
+    """Return the core's numbers for ``pier`` on springs: plain floats, per unit mass."""
     exponent: float | int | None = None
     eta, law = 1.0, ELASTIC  # an elastic spring is measured by its static force and deflection
     if isinstance(base, YieldingBase):
@@ -84,7 +84,7 @@ def springs(pier: Pier, base: ElasticBase) -> Springs:
 
 
 def _exponent(n: float) -> float | int | None:
-    """n, of the type that the core's compiled code goes by."""
+    """Return n in the type by which the core's compiled code is chosen."""
     if n == 5:
         return None
     return int(n) if n in range(1, LARGEST_WHOLE + 1) else float(n)
@@ -92,7 +92,7 @@ def _exponent(n: float) -> float | int | None:
 
 @lru_cache(maxsize=4096)
 def block(pier: Pier, base: RigidBase) -> Block:
-    """Return what the core takes for ``pier`` on a rigid base: plain floats, per unit mass."""
+    """Return the core's numbers for ``pier`` on a rigid base: plain floats, per unit mass."""
     restitution = pier.restitution if base.restitution is None else base.restitution
     return Block(
         half_width=float(pier.size * math.sin(pier.alpha)),  # not that of a frame's column
@@ -109,7 +109,7 @@ def block(pier: Pier, base: RigidBase) -> Block:
 
 
 def model(pier: Pier, base: Base) -> Block | Springs:
-    """Return what the core takes for ``pier`` on ``base``."""
+    """Return the core's numbers for ``pier`` on ``base``."""
     return block(pier, base) if isinstance(base, RigidBase) else springs(pier, base)
 
 
@@ -134,24 +134,24 @@ def line_of(
 
 
 def elements(pier: Pier, base: Base) -> list[Element]:
-    """What the core takes for the dampers and tendons of ``base``: plain floats, per unit mass."""
-    found = []
+    """Return the core's numbers for the dampers and tendons of ``base``: plain floats, per unit mass."""
+    numbers = []
     b, g = pier.half_width, pier.gravity
-    for each in base.restraints:
-        for offset in offsets(pier, each):
-            if isinstance(each, Tendon):
-                stiffness = each.lam * g * pier.size / b**2
-                law = (TENDON, g * each.strength, stiffness, 0.0, 1.0, g * each.psi)
+    for device in base.restraints:
+        for offset in offsets(pier, device):
+            if isinstance(device, Tendon):
+                stiffness = device.lam * g * pier.size / b**2
+                law = (TENDON, g * device.strength, stiffness, 0.0, 1.0, g * device.psi)
             else:
-                soft = 1.0 / each.yield_m if each.kind == "hysteretic" else 0.0
-                law = (DAMPERS[each.kind], g * each.f, soft, each.nu * pier.p, each.exponent, 0.0)
+                soft = 1.0 / device.yield_m if device.kind == "hysteretic" else 0.0
+                law = (DAMPERS[device.kind], g * device.f, soft, device.nu * pier.p, device.exponent, 0.0)
             kind, strength, stiffness, coefficient, exponent, pretension = law
-            found.append(Element(
+            numbers.append(Element(
                 kind, float(strength), float(stiffness), float(coefficient),
                 float(exponent), float(pretension), float(offset),
                 *_linear_part(pier, base, offset, float(coefficient), float(exponent)),
             ))  # fmt: skip
-    return found
+    return numbers
 
 
 def _linear_part(pier: Pier, base: Base, offset: float, coefficient: float, exponent: float) -> tuple[float, float]:
@@ -174,32 +174,32 @@ def _fastest(pier: Pier, base: Base) -> float:
 
 
 def _lever(pier: Pier, base: Base, offset: float) -> float:
-    """Acceleration at the place of an element by a force there that is one over the mass, in full contact or about a corner."""
+    """Return the acceleration at a device under a force there of one per unit mass, in full contact or about a corner."""
     if not base.on_springs:
         return (pier.half_width + abs(offset)) ** 2 / pier.inertia_about_pivot
     return 1.0 + offset**2 / (pier.inertia + pier.height**2)
 
 
 def prestress(pier: Pier, base: Base) -> float:
-    """Σ P0/M of all tendons [m/s²]."""
-    return sum(each.prestress for each in elements(pier, base))
+    """Return Σ P0/M of all tendons [m/s²]."""
+    return sum(law.prestress for law in elements(pier, base))
 
 
 def fastest_rate(pier: Pier, base: Base) -> float:
-    """Greatest rate [1/s] of a model: of the springs, of vibration against elements, of decay by linear dampers."""
+    """Return the greatest rate [1/s] of a model: of the springs, of vibration against devices, of decay by linear dampers."""
     stiff, slows, steep = 0.0, 0.0, False
-    for each in elements(pier, base):
-        lever = _lever(pier, base, each.offset)
-        stiff += lever * each.stiffness * (each.strength if each.kind == HYSTERETIC else each.kind == TENDON)
-        slows += lever * each.coefficient
-        steep = steep or each.exponent < 1.0
+    for law in elements(pier, base):
+        lever = _lever(pier, base, law.offset)
+        stiff += lever * law.stiffness * (law.strength if law.kind == HYSTERETIC else law.kind == TENDON)
+        slows += lever * law.coefficient
+        steep = steep or law.exponent < 1.0
     if base.on_springs:
         return max(math.hypot(_fastest(pier, base), math.sqrt(stiff)), 2.0 * slows)
     return max(math.sqrt(stiff), _fastest(pier, base) if steep else slows)
 
 
 def ground_of(motion: Motion) -> Samples:
-    """A motion as the core takes it, shape (npts, 4); see :func:`rockbatch.core.ground.ground_rows`."""
+    """Return a motion as the core takes it, shape (npts, 4); see :func:`rockbatch.core.ground.ground_rows`."""
     vertical = () if motion.vertical is None else motion.vertical
     return ground_rows(motion.horizontal, vertical, float(motion.dt))
 
@@ -210,7 +210,7 @@ def first_substeps(pier: Pier, base: Base, dt: float) -> int:
 
 
 def least_substeps(pier: Pier, base: Base, dt: float) -> int:
-    """Steps per sample [of ``dt`` s] below which the integration would blow up."""
+    """Return the steps per sample [of ``dt`` s] below which the integration would blow up."""
     return _substeps_for(STABLE_STEP, pier, base, dt)
 
 
@@ -219,15 +219,15 @@ def _substeps_for(largest: float, pier: Pier, base: Base, dt: float) -> int:
 
 
 def patience(pier: Pier, dt: float) -> int:
-    """Samples [of ``dt`` s] that a pier is waited for at most; see :data:`PATIENCE`."""
+    """Return the samples [of ``dt`` s] for which a run goes on after the record at most; see :data:`PATIENCE`."""
     return int(PATIENCE / (pier.p * dt)) + 1
 
 
 def readings(pier: Pier, base: Base, dt: float) -> tuple[int, int]:
-    """When residuals are read, in samples [of ``dt`` s]: after the record, and for a second time after the first.
+    """Return when residuals are read, in samples [of ``dt`` s]: after the record, and how long after the first reading again.
 
-    The second reading tells how they drift, over whole periods of full-contact rocking, the first of them not shorter
-    than :data:`READ_AFTER` tells. 0, 0 on elastic springs, which have none.
+    The second reading gives their drift, over whole periods of full-contact rocking that span :data:`READ_AFTER` at least. 0, 0
+    on elastic springs, which have no residuals.
     """
     if not isinstance(base, YieldingBase):
         return 0, 0

@@ -1,4 +1,4 @@
-"""Runs with given steps: piers on bases under motions, side by side, and what each comes to."""
+"""Runs with given steps: piers on bases under motions, side by side, and the outcome of each."""
 
 import math
 from collections.abc import Sequence
@@ -54,7 +54,7 @@ from rockbatch.simulation.models import (
 from rockbatch.simulation.restraints import rests_at, rests_on_rigid_base
 
 MOST_STEPS = 1e8
-"""Steps that a run may take to settle, about a quarter of a minute of work."""
+"""Greatest number of steps of a run, about a quarter of a minute of work."""
 
 _STATUS = {
     SURVIVED: ("ok", ""),
@@ -73,10 +73,10 @@ _STATUS = {
 }
 
 LEFT_ALONE = tuple(_STATUS[code][1] for code in (UNDECIDED, GROWING))
-"""Reasons of runs that failed because nothing decided them for so long, which smaller steps do not change."""
+"""Reasons of runs that failed because the longest tail did not decide them, which smaller steps do not change."""
 
-TOLD = 1e-4
-"""Of α: a residual rotation that dampers and tendons hold is told in a note beyond it."""
+NOTED_TILT = 1e-4
+"""In units of α: change of the residual rotation by dampers and tendons beyond which a note reports it."""
 
 _RESTLESS = "left alone after the record for {seconds:.0f} s, the pier has still the energy for a greater rotation"
 _HIGH = "flew up to {height:.2g} mm, more than flight_limit_mm = {limit:g}"
@@ -89,7 +89,7 @@ _LATE_FLIGHT = "flew at {t:.2f} s, when nothing could exceed the peak any more; 
 
 @dataclass(frozen=True)
 class Run:
-    """What is simulated: a pier on a base under a motion."""
+    """A pier on a base under a motion."""
 
     pier: Pier
     base: Base
@@ -98,10 +98,10 @@ class Run:
 
 @dataclass(frozen=True)
 class Trial:
-    """What a run with given steps came to.
+    """Outcome of a run with given steps, and its trajectory in short.
 
     ``extremes``, shape (:data:`rockbatch.core.clock.WINDOWS`,), holds the greatest |θ| [rad] at a sample in equal
-    parts of the run, NaN for those that it did not reach: its trajectory in short.
+    parts of the run, NaN for those that it did not reach.
     """
 
     outcome: Outcome
@@ -109,7 +109,7 @@ class Trial:
 
 
 class Stop:
-    """Ends, in their kernels, the runs of other threads that were given it."""
+    """Flag that ends, in their kernels, the runs of other threads that were given it."""
 
     def __init__(self) -> None:
         self.flag = np.zeros(1, np.uint8)
@@ -163,8 +163,8 @@ def _row_type(kind: Kind, devices: int) -> np.dtype:
     ])  # fmt: skip
 
 
-def _result(found: np.record) -> Result:
-    return Result(*found.tolist()[: len(Result._fields)])
+def _result(record: np.record) -> Result:
+    return Result(*record.tolist()[: len(Result._fields)])
 
 
 def run_fixed(
@@ -184,11 +184,11 @@ def run_all_fixed(
     locate: bool = True,
     wait: bool = True,
 ) -> list[Outcome | None]:
-    """Runs with given steps per sample, side by side, in the order of ``runs``; ``None`` for those that were stopped.
+    """Run with given steps per sample, side by side; return outcomes in the order of ``runs``, ``None`` for stopped ones.
 
-    What a run comes to does not depend on those beside it. With ``locate=False`` events take place at the end of their
-    step: first order, for comparison only. With ``wait=False`` a run ends ``quiet_s`` after its record, whatever the
-    pier then does. A step beyond the method's stability is not run; the outcome says how many it takes.
+    An outcome does not depend on the runs beside it. With ``locate=False`` events take place at the end of their step: first
+    order, for comparison only. With ``wait=False`` a run ends ``quiet_s`` after its record, whatever the pier then does. A step
+    beyond the method's stability is not run; the outcome says how many it takes.
     """
     return [None if trial is None else trial.outcome for trial in try_all(runs, substeps, quiet_s, stop, locate, wait)]
 
@@ -201,7 +201,7 @@ def try_all(
     locate: bool = True,
     wait: bool = True,
 ) -> list[Trial | None]:
-    """As :func:`run_all_fixed`, with the trajectories in short."""
+    """Run as :func:`run_all_fixed`, and return the trajectories in short, too."""
     trials: list[Trial | None] = [_refused(run, steps, quiet_s) for run, steps in zip(runs, substeps, strict=True)]
     alike: dict[tuple[Kind, int], list[int]] = {}
     for i, run in enumerate(runs):
@@ -211,73 +211,73 @@ def try_all(
             trials[i] = _with_devices(run, substeps[i], quiet_s, stop, locate, wait)
         else:
             alike.setdefault((kind_of(model(run.pier, run.base)), substeps[i]), []).append(i)
-    for (kind, steps), which in alike.items():
+    for (kind, steps), members in alike.items():
         first_rows: dict[int, int] = {}
         grounds: list[Samples] = []
         lines = []
-        for i in which:
+        for i in members:
             motion = runs[i].motion
             if id(motion) not in first_rows:
                 first_rows[id(motion)] = sum(map(len, grounds))
                 grounds.append(ground_of(motion))
             lines.append(_line(runs[i], steps, quiet_s, first_rows[id(motion)], wait))
         ground = grounds[0] if len(grounds) == 1 else np.concatenate(grounds)
-        for i, found in zip(which, march(kind, lines, ground, stop.flag, steps, locate), strict=True):
-            if found.status != RUNNING:
-                trials[i] = Trial(_outcome(runs[i], steps, _result(found)), found.extremes)
+        for i, record in zip(members, march(kind, lines, ground, stop.flag, steps, locate), strict=True):
+            if record.status != RUNNING:
+                trials[i] = Trial(_outcome(runs[i], steps, _result(record)), record.extremes)
     return trials
 
 
 def _with_devices(run: Run, substeps: int, quiet_s: float, stop: Stop, locate: bool, wait: bool) -> Trial | None:
-    """Return one run with dampers and tendons, with what they have been through; ``None`` if it was stopped."""
+    """Run once with dampers and tendons, and return the trial with their demands; ``None`` if it was stopped."""
     devices = devices_of(elements(run.pier, run.base))
     assert devices is not None
     kind, lines = kind_of(model(run.pier, run.base)), [_line(run, substeps, quiet_s, 0, wait)]
-    found = march(kind, lines, ground_of(run.motion), stop.flag, substeps, locate, False, NO_ROWS, devices)[0]
-    if found.status == RUNNING:
+    record = march(kind, lines, ground_of(run.motion), stop.flag, substeps, locate, False, NO_ROWS, devices)[0]
+    if record.status == RUNNING:
         return None
-    result = _result(found)
+    result = _result(record)
     outcome = _held_at_rest(run, result, devices, _outcome(run, substeps, result))
-    return Trial(replace(outcome, **_use(run, devices.use)), found.extremes)
+    return Trial(replace(outcome, **_use(run, devices.use)), record.extremes)
 
 
-def _held_at_rest(run: Run, found: Result, devices: Devices, outcome: Outcome) -> Outcome:
-    """Return ``outcome`` with the residual rotation at which dampers and tendons let the pier rest."""
+def _held_at_rest(run: Run, result: Result, devices: Devices, outcome: Outcome) -> Outcome:
+    """Return ``outcome`` with the residual rotation at which dampers and tendons hold the pier."""
     pier, base = run.pier, run.base
     if outcome.status != "ok" or not base.has_residual:
         return outcome
     n, holds = len(devices.elements), devices.goes == STICKS
     states = devices.x[:n]
     if isinstance(base, ElasticBase):
-        rests = rests_at(pier, base, found, float(devices.level[0]), states, holds)
-        told = f"dampers and tendons hold the pier at {rests:.3g} rad, its supports would at {outcome.theta_res or 0.0:.3g}"
+        rotation = rests_at(pier, base, result, float(devices.level[0]), states, holds)
+        remark = f"dampers and tendons hold the pier at {rotation:.3g} rad, its supports would at {outcome.theta_res or 0.0:.3g}"
     else:
-        rests = 0.0 if not math.isnan(found.t_rest) else rests_on_rigid_base(pier, base, found, states, holds)
-        told = f"dampers hold the pier at a rotation of {rests:.3g} rad"
-    if abs(rests - (outcome.theta_res or 0.0)) > TOLD * pier.alpha:
-        outcome = replace(outcome, note="; ".join(filter(None, (outcome.note, told))))
-    return replace(outcome, theta_res=rests)
+        rotation = 0.0 if not math.isnan(result.t_rest) else rests_on_rigid_base(pier, base, result, states, holds)
+        remark = f"dampers hold the pier at a rotation of {rotation:.3g} rad"
+    if abs(rotation - (outcome.theta_res or 0.0)) > NOTED_TILT * pier.alpha:
+        outcome = replace(outcome, note="; ".join(filter(None, (outcome.note, remark))))
+    return replace(outcome, theta_res=rotation)
 
 
 def _use(run: Run, use: np.recarray) -> dict[str, Any]:
-    """What dampers and tendons have been through, by the fields of Outcome; None of what there is not."""
-    kinds = np.array([each.kind for each in elements(run.pier, run.base)])
+    """Return the demands on dampers and tendons by the fields of Outcome, of the kinds that the base has."""
+    kinds = np.array([element.kind for element in elements(run.pier, run.base)])
     dampers, tendons = use[kinds != TENDON].view(np.recarray), use[kinds == TENDON].view(np.recarray)
-    found: dict[str, Any] = {}
+    demands: dict[str, Any] = {}
     if len(dampers):
-        found["damper_force"] = float(np.maximum(dampers.most, -dampers.least).max()) / run.pier.gravity
-        found["damper_stroke"] = float(dampers.stroke.max())
-        found["damper_speed"] = float(dampers.speed.max())
-        found["damper_energy"] = float(dampers.lost.sum())
+        demands["damper_force"] = float(np.maximum(dampers.most, -dampers.least).max()) / run.pier.gravity
+        demands["damper_stroke"] = float(dampers.stroke.max())
+        demands["damper_speed"] = float(dampers.speed.max())
+        demands["damper_energy"] = float(dampers.lost.sum())
     if len(tendons):
-        found["tendon_force"] = float(tendons.most.max()) / run.pier.gravity
-        found["tendon_yield"] = float(tendons.yielded.max())
-        found["tendon_slack"] = int(tendons.slack.sum())
-    return found
+        demands["tendon_force"] = float(tendons.most.max()) / run.pier.gravity
+        demands["tendon_yield"] = float(tendons.yielded.max())
+        demands["tendon_slack"] = int(tendons.slack.sum())
+    return demands
 
 
 def _refused(run: Run, substeps: int, quiet_s: float) -> Trial | None:
-    """What a run comes to that is not to be run, else ``None``."""
+    """Return the trial of a run that must not be run, else ``None``."""
     pier, base, motion = run.pier, run.base, run.motion
     least = least_substeps(pier, base, motion.dt)
     if substeps < least:
@@ -294,65 +294,69 @@ def _refused(run: Run, substeps: int, quiet_s: float) -> Trial | None:
     return None
 
 
-def _outcome(run: Run, substeps: int, found: Result) -> Outcome:
-    """Return the Outcome of what a run came to."""
+def _outcome(run: Run, substeps: int, result: Result) -> Outcome:
+    """Return the Outcome of a run from the core's ``result``."""
     pier, base = run.pier, run.base
-    status, reason = _STATUS[found.status]
+    status, reason = _STATUS[result.status]
     more: dict[str, Any] = {}
     omega_v, zeta = None, 0.0
     if isinstance(base, ElasticBase):
-        more = _of_springs(pier, base, found, survived=status == "ok")
+        more = _of_springs(pier, base, result, survived=status == "ok")
         omega_v, zeta = vertical_frequency(pier, base), base.zeta or 0.0
-    if found.status == FLIGHT:
-        reason = cause_of_flight(run.motion, omega_v, pier.gravity, found.t_flight, found.t_impact, zeta)
+    if result.status == FLIGHT:
+        reason = cause_of_flight(run.motion, omega_v, pier.gravity, result.t_flight, result.t_impact, zeta)
     notes = []
-    if found.status == RESTLESS:
-        notes.append(_RESTLESS.format(seconds=found.t_end - run.motion.duration))
-    elif found.status == LATE_FLIGHT:
-        notes.append(_LATE_FLIGHT.format(t=found.t_end))
-    share = neglected(pier, found.theta_max) if base.kinematics == "first-order" else 0.0
+    if result.status == RESTLESS:
+        notes.append(_RESTLESS.format(seconds=result.t_end - run.motion.duration))
+    elif result.status == LATE_FLIGHT:
+        notes.append(_LATE_FLIGHT.format(t=result.t_end))
+    share = neglected(pier, result.theta_max) if base.kinematics == "first-order" else 0.0
     if share > MOST_NEGLECTED and status != "overturned":
-        notes.append(_LARGE.format(theta=found.theta_max, words=LINEARISED, share=share))
-    if 1000.0 * found.flight_height > base.flight_limit_mm:
-        notes.append(_HIGH.format(height=1000.0 * found.flight_height, limit=base.flight_limit_mm))
+        notes.append(_LARGE.format(theta=result.theta_max, words=LINEARISED, share=share))
+    if 1000.0 * result.flight_height > base.flight_limit_mm:
+        notes.append(_HIGH.format(height=1000.0 * result.flight_height, limit=base.flight_limit_mm))
     return Outcome(
         status=status,
         reason=reason,
-        theta_max=min(found.theta_max, ON_ITS_SIDE),
-        t_max=found.t_max,
-        impacts=found.impacts,
-        separations=found.uplifts,
-        t_flight=None if math.isnan(found.t_flight) else found.t_flight,
-        flights=found.flights,
-        flight_duration=found.flight_duration,
-        flight_height=found.flight_height,
-        t_end=found.t_end,
+        theta_max=min(result.theta_max, ON_ITS_SIDE),
+        t_max=result.t_max,
+        impacts=result.impacts,
+        separations=result.uplifts,
+        t_flight=None if math.isnan(result.t_flight) else result.t_flight,
+        flights=result.flights,
+        flight_duration=result.flight_duration,
+        flight_height=result.flight_height,
+        t_end=result.t_end,
         substeps=substeps,
         note="; ".join(notes),
         **more,
     )
 
 
-def _of_springs(pier: Pier, base: ElasticBase, found: Result, survived: bool) -> dict[str, Any]:
-    """Return what only piers on springs have: residuals if the pier ``survived``, and what became of yielding springs."""
+def _of_springs(pier: Pier, base: ElasticBase, result: Result, survived: bool) -> dict[str, Any]:
+    """Return what only piers on springs have: residuals if the pier ``survived``, and the demands on yielding springs."""
     more: dict[str, Any] = {}
     if survived:
         # From the base's tilt to the rotation, static on the deformed base (THEORY.md, eq. 20)
         omega_v = vertical_frequency(pier, base)
         lean = 1.0 / tilt_over_residual(pier.gravity, pier.height, pier.half_width, omega_v)
-        tilt = 0.5 * (found.base_left - found.base_right) / pier.half_width
-        more |= {"settlement": -0.5 * (found.base_left + found.base_right), "base_tilt": tilt, "theta_res": lean * tilt}
+        tilt = 0.5 * (result.base_left - result.base_right) / pier.half_width
+        more |= {
+            "settlement": -0.5 * (result.base_left + result.base_right),
+            "base_tilt": tilt,
+            "theta_res": lean * tilt,
+        }
         if base.yields:
-            more["t_read"] = found.t_read
-            if not math.isnan(found.drift_left):
-                more["settlement_drift"] = -0.5 * (found.drift_left + found.drift_right)
-                more["theta_res_drift"] = 0.5 * lean * (found.drift_left - found.drift_right) / pier.half_width
+            more["t_read"] = result.t_read
+            if not math.isnan(result.drift_left):
+                more["settlement_drift"] = -0.5 * (result.drift_left + result.drift_right)
+                more["theta_res_drift"] = 0.5 * lean * (result.drift_left - result.drift_right) / pier.half_width
     if base.yields:
         deflection = yield_deflection(pier, base)
-        more["ductility_left"] = -found.deepest_left / deflection
-        more["ductility_right"] = -found.deepest_right / deflection
-        more["dissipated_left"] = found.dissipated_left
-        more["dissipated_right"] = found.dissipated_right
+        more["ductility_left"] = -result.deepest_left / deflection
+        more["ductility_right"] = -result.deepest_right / deflection
+        more["dissipated_left"] = result.dissipated_left
+        more["dissipated_right"] = result.dissipated_right
     return more
 
 
@@ -361,5 +365,5 @@ def _not_run(reason: str, substeps: int) -> Trial:
 
 
 def steps_of(motion: Motion, substeps: int, quiet_s: float) -> float:
-    """Number of steps of a run to the end of its quiet time."""
+    """Return the number of steps of a run to the end of its free-vibration tail."""
     return substeps * (motion.npts + quiet_s / motion.dt)

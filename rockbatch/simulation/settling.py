@@ -1,4 +1,4 @@
-"""Error control: ever smaller steps until results do not depend on them (THEORY.md, The error that a row reports)."""
+"""Step-halving error control: smaller steps until the results converge (THEORY.md, The error that a row reports)."""
 
 import math
 from collections.abc import Sequence
@@ -15,68 +15,68 @@ from rockbatch.simulation.models import first_substeps, readings
 from rockbatch.simulation.runs import LEFT_ALONE, MOST_STEPS, Run, Stop, Trial, quiet_samples, steps_of, try_all
 
 HALVINGS = 8
-"""How often the step is halved before a run counts as not settled."""
+"""Greatest number of halvings of the step before a run counts as not converged."""
 
 ROUNDING = 1e-12
 """Least error of θ/α that is ever claimed."""
 
 ROUGH = 3e-8
-"""Least error of θ/α that is claimed with a viscous damper whose force is a root of the speed: what a turning leaves over does
-not fall evenly with the step, so that two runs may agree better than either is right."""
+"""Least error of θ/α that is claimed with a viscous damper whose force is a root of the speed: its error at a velocity reversal
+does not fall evenly with the step, so that two runs may agree better than either is right."""
 
 SAME_TIME = 0.01
-"""Of 1/p: how well the time of overturning, of flight and of the peak is to be known."""
+"""In units of 1/p: tolerance on the time of overturning, of flight and of the peak."""
 
 SAME_FALL = 0.02
-"""Of α: how well the rotations before a pier overturned are to be known."""
+"""In units of α: tolerance on the rotations before a pier overturned."""
 
 CHANGE = 1e-8
-"""Of a motion: less than any record knows of it. Where it changes the peak beyond the tolerance, no error is claimed."""
+"""Relative change of a motion, less than a record resolves. If it changes the peak beyond the tolerance, no error is claimed."""
 
 COUNTS = ("impacts", "separations", "flights")
 
 FAR_BELOW = 3.0
-"""Changes of an extreme, by which it has to stay below the peak for not having settled to be harmless."""
+"""An extreme that has not converged is harmless if it is below the peak by so many times its change."""
 
 
 class Agreement(IntEnum):
-    """How far two trials of a run agree."""
+    """Extent to which two trials of a run agree."""
 
     NONE = 0
-    RESULTS = 1  # in outcome, peak and residual rotation; its time, or other extremes near the peak, have not settled
-    APART = 2  # likewise, and the extremes that have not settled are far below the peak
+    RESULTS = 1  # in outcome, peak and residual rotation; its time, or other extremes near the peak, have not converged
+    APART = 2  # likewise, and the extremes that have not converged are far below the peak
     THROUGHOUT = 3  # in the extremes of all windows too
 
 
 PAIRS = {Agreement.THROUGHOUT: 1, Agreement.APART: 2, Agreement.RESULTS: 4}
-"""Halvings in a row that have to agree at least so far: the less two runs have in common, the more it takes."""
+"""Halvings in a row that have to agree to this extent at least: the less two runs have in common, the more it takes."""
 
 
 def run_to_tolerance(pier: Pier, base: Base, motion: Motion, tolerance: float, quiet_s: float = 2.0) -> Outcome:
-    """Run with ever smaller steps; see :func:`run_all_to_tolerance`."""
+    """Run with step halving; see :func:`run_all_to_tolerance`."""
     outcome = run_all_to_tolerance([Run(pier, base, motion)], tolerance, quiet_s, Stop())[0]
     assert outcome is not None
     return outcome
 
 
 def run_all_to_tolerance(runs: Sequence[Run], tolerance: float, quiet_s: float, stop: Stop) -> list[Outcome | None]:
-    """Run each with ever smaller steps until the results agree to ``tolerance`` on θ_max/α and on θ_res/α.
+    """Return the converged outcome of each run: halve its step until results agree to ``tolerance`` on θ_max/α and on θ_res/α.
 
-    The finer result is kept, and the difference is its estimated error: the coarser one's, hence on the safe side.
-    The trajectories, times of overturning and of flight have to agree too, since an early peak tells nothing of what
-    comes after it: where they do not, it takes more halvings (:data:`PAIRS`). The first step respects the springs'
-    frequency, because two coarse runs that agree prove nothing otherwise. A run that has not settled after
-    :data:`HALVINGS`, or would take more than :data:`rockbatch.simulation.runs.MOST_STEPS` steps, keeps its best values
-    and fails with the reason; counts that have not settled are a note. ``None`` for those that were stopped.
+    The finer result is kept, and the difference is its estimated error: the coarser one's, hence on the safe side. The
+    trajectories, times of overturning and of flight have to agree too, since an early peak says nothing of what comes after it:
+    if they do not, it takes more halvings (:data:`PAIRS`). The first step respects the springs' frequency, because two coarse
+    runs that agree prove nothing otherwise. A run that has not converged after :data:`HALVINGS`, or would take more than
+    :data:`rockbatch.simulation.runs.MOST_STEPS` steps, keeps its best values and fails with the reason; counts that have not
+    converged are a note. ``None`` for those that were stopped.
     """
-    settled: list[Outcome | None] = [None] * len(runs)
+    outcomes: list[Outcome | None] = [None] * len(runs)
     first = [first_substeps(run.pier, run.base, run.motion.dt) for run in runs]
     levels = {i: [trial] for i, trial in enumerate(try_all(runs, first, quiet_s, stop)) if trial is not None}
     agreements: dict[int, list[Agreement]] = {i: [] for i in levels}
     while levels:
         for i in [i for i in levels if _steps_of_next(runs[i], levels[i], quiet_s) > MOST_STEPS]:
             more = f"; the next try would take {_steps_of_next(runs[i], levels[i], quiet_s):.0e} steps"
-            settled[i] = _not_settled(runs[i].pier, levels.pop(i), tolerance, more)
+            outcomes[i] = _not_converged(runs[i].pier, levels.pop(i), tolerance, more)
         going, doubtful = list(levels), []
         substeps = [2 * levels[i][-1].outcome.substeps for i in going]
         for i, fine in zip(going, try_all([runs[i] for i in going], substeps, quiet_s, stop), strict=True):
@@ -92,38 +92,38 @@ def run_all_to_tolerance(runs: Sequence[Run], tolerance: float, quiet_s: float, 
                 samples = runs[i].motion.npts - 1 + quiet_samples(quiet_s, runs[i].motion.dt)
                 peak = int(window_of(fine.outcome.t_max / runs[i].motion.dt, float(samples))[0])
                 outcome = _noted(fine, coarse, agreements[i][-1], tolerance * pier.alpha, peak)
-                settled[i] = _with_drift(runs[i], outcome)
+                outcomes[i] = _with_drift(runs[i], outcome)
                 if len(agreements[i]) > 1 or not _same_counts(fine.outcome, coarse.outcome):
                     doubtful.append(i)
                 del levels[i]
             elif len(agreements[i]) == HALVINGS:
-                settled[i] = _not_settled(pier, levels.pop(i), tolerance, "")
-        _look_for_chaos(runs, settled, doubtful, tolerance, quiet_s, stop)
-    return settled
+                outcomes[i] = _not_converged(pier, levels.pop(i), tolerance, "")
+        _look_for_chaos(runs, outcomes, doubtful, tolerance, quiet_s, stop)
+    return outcomes
 
 
-def _same_counts(one: Outcome, other: Outcome) -> bool:
+def _same_counts(fine: Outcome, coarse: Outcome) -> bool:
     """Return whether two outcomes have the same counts of events."""
-    return all(getattr(one, name) == getattr(other, name) for name in COUNTS)
+    return all(getattr(fine, name) == getattr(coarse, name) for name in COUNTS)
 
 
 def _look_for_chaos(
     runs: Sequence[Run],
-    settled: list[Outcome | None],
+    outcomes: list[Outcome | None],
     doubtful: Sequence[int],
     tolerance: float,
     quiet_s: float,
     stop: Stop,
 ) -> None:
-    """Claim no error of ``doubtful`` runs whose θ_max depends on digits that no record has: two of them agree by chance."""
-    which = [(i, now) for i in doubtful if (now := settled[i]) is not None and now.theta_max_error is not None]
-    if not which:
+    """Claim no error of ``doubtful`` runs whose θ_max depends on digits that no record has: their agreement is chance."""
+    checked = [(i, now) for i in doubtful if (now := outcomes[i]) is not None and now.theta_max_error is not None]
+    if not checked:
         return
-    changed = [replace(runs[i], motion=runs[i].motion.times(1.0 + CHANGE)) for i, _ in which]
-    others = try_all(changed, [now.substeps for _, now in which], quiet_s, stop)
-    for (i, now), other in zip(which, others, strict=True):
+    changed = [replace(runs[i], motion=runs[i].motion.times(1.0 + CHANGE)) for i, _ in checked]
+    others = try_all(changed, [now.substeps for _, now in checked], quiet_s, stop)
+    for (i, now), other in zip(checked, others, strict=True):
         if other is None:
-            settled[i] = None
+            outcomes[i] = None
         elif not abs(other.outcome.theta_max - now.theta_max) <= tolerance * runs[i].pier.alpha:
             becomes = (
                 "overturns" if other.outcome.status == "overturned" else f"comes to {other.outcome.theta_max:.3g} rad"
@@ -132,7 +132,7 @@ def _look_for_chaos(
                 f"the peak is chaotic, under a motion {CHANGE:g} stronger the pier {becomes}: no error of it is claimed"
             )
             note = "; ".join(filter(None, (now.note, chaos)))
-            settled[i] = replace(now, theta_max_error=None, note=note)
+            outcomes[i] = replace(now, theta_max_error=None, note=note)
 
 
 def _steps_of_next(run: Run, levels: Sequence[Trial], quiet_s: float) -> float:
@@ -140,13 +140,13 @@ def _steps_of_next(run: Run, levels: Sequence[Trial], quiet_s: float) -> float:
 
 
 def _least_error(base: Base) -> float:
-    """Of θ/α."""
-    rough = any(isinstance(each, Damper) and each.kind == "viscous" and each.exponent < 1.0 for each in base.restraints)
+    """Return the least error of θ/α that is claimed on ``base``."""
+    rough = any(isinstance(d, Damper) and d.kind == "viscous" and d.exponent < 1.0 for d in base.restraints)
     return ROUGH if rough else ROUNDING
 
 
 def _with_errors(fine: Outcome, coarse: Outcome, least: float) -> Outcome:
-    """``fine`` with what it changed against ``coarse``, ``least`` [rad] at least."""
+    """Return ``fine`` with its differences from ``coarse`` as errors, ``least`` [rad] at least."""
     if fine.status != coarse.status or fine.status in ("overturned", "failed"):  # θ_max is where the run ended
         return fine
     residual = None
@@ -156,9 +156,9 @@ def _with_errors(fine: Outcome, coarse: Outcome, least: float) -> Outcome:
 
 
 def _with_drift(run: Run, outcome: Outcome) -> Outcome:
-    """``outcome`` with what the residual rotation went on changing by while it was read, as a part of its error.
+    """Return ``outcome`` with the drift of the residual rotation between its readings as a part of its error.
 
-    It depends by as much on when the record ends.
+    The residual rotation depends by as much on when the record ends.
     """
     if outcome.theta_res_error is None or outcome.theta_res_drift is None:
         return outcome
@@ -167,7 +167,7 @@ def _with_drift(run: Run, outcome: Outcome) -> Outcome:
 
 
 def agreement(fine: Trial, coarse: Trial, tolerance: float, pier: Pier) -> Agreement:
-    """How far two runs agree; ``tolerance`` on rotations [rad]."""
+    """Return how far two runs agree; ``tolerance`` on rotations [rad]."""
     now, before = fine.outcome, coarse.outcome
     if now.status != before.status:
         return Agreement.NONE
@@ -200,7 +200,7 @@ def _flight(outcome: Outcome) -> float:
 
 
 def enough(agreements: Sequence[Agreement]) -> bool:
-    """Whether the last of ``agreements``, from one halving to the next, suffice."""
+    """Return whether the last of ``agreements``, from one halving to the next, suffice."""
     for least, pairs in PAIRS.items():
         last = agreements[-pairs:]
         if len(last) == pairs and min(last) >= least:
@@ -208,35 +208,35 @@ def enough(agreements: Sequence[Agreement]) -> bool:
     return False
 
 
-def _noted(fine: Trial, coarse: Trial, how_far: Agreement, tolerance: float, peak: int) -> Outcome:
-    """Return the outcome with a note on what has not settled beside it; ``tolerance`` in rad, ``peak`` the window of the peak.
+def _noted(fine: Trial, coarse: Trial, extent: Agreement, tolerance: float, peak: int) -> Outcome:
+    """Return the outcome with a note on what has not converged beside it; ``tolerance`` in rad, ``peak`` the window of the peak.
 
-    Where rotations before the peak have not settled no error is claimed: the peak depends on digits that no record has, and
-    two runs that agree on it agree by chance.
+    If rotations before the peak have not converged, no error is claimed: the peak depends on digits that no record has, and two
+    runs that agree on it agree by chance.
     """
     now, before = fine.outcome, coarse.outcome
     notes = [now.note] if now.note else []
     differs = np.abs(fine.extremes - coarse.extremes) > tolerance
-    if how_far < Agreement.THROUGHOUT and differs.any():
+    if extent < Agreement.THROUGHOUT and differs.any():
         greatest = np.nanmax(np.fmax(fine.extremes, coarse.extremes)[differs])
         notes.append(f"lesser rotations, up to {greatest:.2g} rad, have not settled")
         if differs[: peak + 1].any() and now.status == "ok":
             now = replace(now, theta_max_error=None)
             notes.append("some of them before the peak, which is chaotic: no error of it is claimed")
     for name in COUNTS:
-        one, other = sorted((getattr(before, name), getattr(now, name)))
-        if one != other:
-            notes.append(f"{name} not settled: {one} or {other}")
+        fewer, more = sorted((getattr(before, name), getattr(now, name)))
+        if fewer != more:
+            notes.append(f"{name} not settled: {fewer} or {more}")
     if now.status == "ok" and now.t_flight != before.t_flight:
         times = [_flight(before), _flight(now)]
         if not abs(times[1] - times[0]) <= 1e-3:
-            told = [f"at {t:.3f} s" if t == t else "none" for t in times]
-            notes.append(f"first flight not settled: {told[0]} or {told[1]}")
+            moments = [f"at {t:.3f} s" if t == t else "none" for t in times]
+            notes.append(f"first flight not settled: {moments[0]} or {moments[1]}")
     return replace(now, note="; ".join(notes))
 
 
-def _not_settled(pier: Pier, levels: Sequence[Trial], tolerance: float, more: str) -> Outcome:
-    """The finest run that there is, with its values, as one that failed."""
+def _not_converged(pier: Pier, levels: Sequence[Trial], tolerance: float, more: str) -> Outcome:
+    """Return the finest of a run's ``levels``, with its values, as failed."""
     finest = levels[-1].outcome
     if finest.status == "failed":
         return finest

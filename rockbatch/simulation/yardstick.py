@@ -1,8 +1,8 @@
-"""The pier on springs with SciPy's ``solve_ivp``, as one would write it without this library: a yardstick for speed.
+"""The pier on springs with SciPy's ``solve_ivp``, as one would write it without this library: a reference solver for speed.
 
-Right-hand side, events and what follows from them are the core's compiled functions, so that what is timed is the
-solver: steps no longer than a sample, terminal events, a restart after each. Only ``rockbatch accuracy`` and tests
-come here, for SciPy takes a second to load.
+Right-hand side, event functions and transitions are the core's compiled functions, so that only the solver is timed: steps no
+longer than a sample, terminal events, a restart after each. Only ``rockbatch accuracy`` and tests import this module, for SciPy
+takes a second to load.
 """
 
 import math
@@ -33,13 +33,13 @@ def rates(m, y, contact, horizontal, vertical):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def signals(m, y, contact, supports, rest, horizontal, vertical):  # type: ignore[no-untyped-def]
+def event_values(m, y, contact, supports, rest, horizontal, vertical):  # type: ignore[no-untyped-def]
     """Return the values of the event functions, compiled; rates matter to slopes only."""
     return event_functions(m, None, y, y, contact, supports, rest, Ground(horizontal, 0.0, vertical, 0.0))[0]
 
 
 class OutOfTimeError(Exception):
-    """A solver that was not ready in the time that it was given."""
+    """A solver that did not finish in the time that it was given."""
 
 
 def solve(
@@ -51,7 +51,7 @@ def solve(
     quiet_s: float = 2.0,
     seconds: float = math.inf,
 ) -> tuple[str, float]:
-    """Status and θ_max [rad] of a run on springs.
+    """Return status and θ_max [rad] of a run on springs.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ def solve(
     quiet_s : float
         Time after the record [s]; the run ends there even if the pier might still overturn.
     seconds : float
-        What the solver may take [s]; raises :class:`OutOfTimeError` then.
+        Time that the solver may take [s]; raises :class:`OutOfTimeError` beyond it.
 
     Returns
     -------
@@ -92,34 +92,34 @@ def solve(
         return rates(m, State(*y.tolist()), contact, horizontal(s), vertical(s))
 
     def values(s: float, state: State) -> Any:
-        return signals(m, state, contact, supports, rest, horizontal(s), vertical(s))
+        return event_values(m, state, contact, supports, rest, horizontal(s), vertical(s))
 
-    def signal(i: int) -> Any:
+    def event_function(i: int) -> Any:
         def event(s: float, y: Any) -> float:
             value = float(values(s, State(*y.tolist()))[i])
             return value if abs(value) > rest else rest  # rounding does not cross
 
         return _terminal(event)
 
-    events = [*(signal(i) for i in range(4)), _terminal(_upright), _turning]
+    events = [*(event_function(i) for i in range(4)), _terminal(_upright), _velocity_reversal]
     theta_max = 0.0
     for _ in range(MOST_EVENTS):
-        # An impact at one pivot may turn the other's velocity: that is an event before the next step
-        which = next((i for i, value in enumerate(values(t, y)) if value < -rest), None)
-        if which is None:
+        # An impact at one pivot may reverse the other's velocity: that is an event before the next step
+        number = next((i for i, value in enumerate(values(t, y)) if value < -rest), None)
+        if number is None:
             solution = solve_ivp(rhs, (t, end), np.array(y), method=method, max_step=dt, events=events, **tolerances)
-            turned = solution.y_events[-1]
-            reached = [theta_max, *np.abs(solution.y[1]), *(np.abs(turned[:, 1]) if len(turned) else ())]
+            reversals = solution.y_events[-1]
+            reached = [theta_max, *np.abs(solution.y[1]), *(np.abs(reversals[:, 1]) if len(reversals) else ())]
             theta_max = float(max(reached))
             if solution.status < 0 or not math.isfinite(theta_max):
                 return "failed", theta_max
             if solution.status == 0:
                 return "ok", theta_max
-            which = next(i for i, times in enumerate(solution.t_events) if len(times))
-            if which == 4:
+            number = next(i for i, times in enumerate(solution.t_events) if len(times))
+            if number == 4:
                 return "overturned", theta_max
             t, y = float(solution.t[-1]), State(*solution.y[:, -1].tolist())
-        y, contact, supports, _ = handle(m, y, contact, supports, which, rest, horizontal(t), vertical(t))
+        y, contact, supports, _ = handle(m, y, contact, supports, number, rest, horizontal(t), vertical(t))
         if contact.left == contact.right == contact.held == 0 and not m.guided:
             beyond = abs(y.theta) >= pier.alpha and y.theta * y.omega > 0.0
             return "overturned" if beyond else "flight", theta_max
@@ -129,22 +129,22 @@ def solve(
 
 
 def _ground(samples: Any, dt: float) -> Any:
-    """Ground acceleration [m/s²] as a function of time [s]: linear between samples, zero after the last."""
+    """Return the ground acceleration [m/s²] as a function of time [s]: linear between samples, zero after the last."""
     if samples is None:
         return lambda t: 0.0
     values = [*samples.tolist(), 0.0]
 
-    def at(t: float) -> float:
+    def acceleration(t: float) -> float:
         i = int(t / dt)
         if i >= len(values) - 1:
             return 0.0
         return float(values[i] + (t / dt - i) * (values[i + 1] - values[i]))
 
-    return at
+    return acceleration
 
 
 def _terminal(event: Any) -> Any:
-    """``event`` ends the integration where it falls through zero."""
+    """Return ``event`` as one that ends the integration where it falls through zero."""
     event.terminal, event.direction = True, -1.0
     return event
 
@@ -153,5 +153,5 @@ def _upright(t: float, y: Any) -> float:
     return 0.5 * math.pi - abs(y[1])
 
 
-def _turning(t: float, y: Any) -> float:
+def _velocity_reversal(t: float, y: Any) -> float:
     return float(y[3])
