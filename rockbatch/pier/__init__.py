@@ -1,4 +1,4 @@
-"""The pier and what it stands on: a rigid block and three kinds of base (Palmeri & Makris 2007)."""
+"""The pier and its base: a rigid block on three kinds of base (Palmeri & Makris 2007)."""
 
 from rockbatch.pier.bases import (
     EPSILON_AND_ZETA,

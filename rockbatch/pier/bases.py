@@ -1,6 +1,6 @@
-"""What a pier stands on: three kinds of base (Palmeri & Makris 2007).
+"""Bases of a pier: rigid, elastic and yielding (Palmeri & Makris 2007).
 
-Values are checked where they meet: :func:`problems` says what is impossible about a pier on a base, and the limit.
+Values are checked together: :func:`problems` reports what is impossible about a pier on a base, and the limit.
 """
 
 import math
@@ -20,19 +20,19 @@ from rockbatch.pier.restraints import (
 from rockbatch.units import MOST
 
 LEAST_ETA = 1.000001
-"""Closer to 1, Bouc–Wen springs would have to sink without end to carry the weight."""
+"""Least η: closer to 1, Bouc–Wen springs would have to sink without end to carry the weight."""
 
 MOST_EXPONENT = 1000.0
-"""Of Bouc–Wen springs: the corner is as sharp as that of elastic–perfectly plastic ones, which have none."""
+"""Greatest n of Bouc–Wen springs: their corner is as sharp as that of elastic–perfectly plastic ones, which have none."""
 
 MOST_ETA = 100.0
-"""Beyond it a wrong unit is likelier than the support: foundations bear 2 to 20 times what they carry."""
+"""η beyond which a wrong unit is likelier than the support: foundations bear 2 to 20 times what they carry."""
 
 MOST_NEGLECTED = 0.05
-"""Share of inertia and righting moment, neglected by first-order kinematics, from which a note says so: 0.20 rad at α = 0.2."""
+"""Share of inertia and righting moment, neglected by linearised kinematics, from which a note reports it: 0.20 rad at α = 0.2."""
 
 FLIGHT_LIMIT_MM = 5.0
-"""Height of flight [mm] beyond which a run has a note, unless the base says another."""
+"""Height of flight [mm] beyond which a run has a note, unless the base gives another."""
 
 Kinematics = Literal["first-order", "finite"]
 Flight = Literal["guided", "stop"]
@@ -42,23 +42,23 @@ WITH_EXPONENT: tuple[SpringLaw, ...] = ("bouc-wen",)
 """Laws that an exponent n belongs to; the others have a sharp corner."""
 
 RATCHETING: tuple[SpringLaw, ...] = ("bouc-wen",)
-"""Laws that creep under vibration: springs by them settle a little with every cycle below their yield force."""
+"""Laws with cyclic settlement (ratcheting): their springs settle a little with every cycle below their yield force."""
 
 OTHER_LAW: dict[str, SpringLaw] = {"bouc-wen": "epp"}
-"""For laws that creep under vibration one that does not: between both the settlement lies (THEORY.md, Results of a run)."""
+"""For each law that ratchets one that does not: the settlement lies between both (THEORY.md, Results of a run)."""
 
 EPSILON_AND_ZETA = "zeta is given too, and a damped support takes a landing without an impulse; keep one"
-"""What is said of both."""
+"""Message about a support with both."""
 
 
 class _Traits:
-    """What a base is and can do, asked by name and not by its class; each class says what differs."""
+    """Properties of a base, asked for by name and not by its class; each class gives those that differ."""
 
     on_springs: ClassVar[bool] = False
-    """Whether two springs carry the pier, and deflect."""
+    """True if two springs carry the pier, and deflect."""
 
     yields: ClassVar[bool] = False
-    """Whether these springs yield, so that the pier may settle."""
+    """True if these springs yield, so that the pier may settle."""
 
     flight: Flight
     flight_limit_mm: float
@@ -66,26 +66,26 @@ class _Traits:
 
     @property
     def flies(self) -> bool:
-        """Whether a run goes on while both pivots are in the air."""
+        """Return whether a run goes on while both pivots are in the air."""
         return self.flight == "guided"
 
     @property
     def has_exponent(self) -> bool:
-        """Whether the springs' law has an exponent n."""
+        """Return whether the springs' law has an exponent n."""
         return False
 
     @property
     def ratchets(self) -> bool:
-        """Whether the springs creep under vibration."""
+        """Return whether the springs settle cyclically under vibration (ratcheting)."""
         return False
 
     @property
     def has_residual(self) -> bool:
-        """Whether the pier may rest at a tilt: on springs that yielded, or held by friction or hysteretic dampers."""
+        """Return whether the pier may rest at a tilt: on springs that yielded, or held by friction or hysteretic dampers."""
         return self.yields or holds_a_tilt(self.restraints)
 
     def by_other_law(self) -> Self:
-        """The same base with its springs by the other law (:data:`OTHER_LAW`); itself where it has none."""
+        """Return the same base with its springs by the other law (:data:`OTHER_LAW`); itself if it has none."""
         return self
 
 
@@ -95,8 +95,8 @@ class RigidBase(_Traits):
 
     ``restitution`` is the factor e on the angular velocity at an impact; ``None`` means :attr:`Pier.restitution`, Housner's
     e = 1 − 2μ/(1+μ) sin²α, which conserves the angular momentum about the new pivot, or 0 where that is negative.
-    ``restraints`` are dampers and tendons that tie the pier to the ground.
-    ``friction``, if known, is the coefficient of the interface: a run says where its forces ask for more (THEORY.md, Forces).
+    ``restraints`` are dampers and tendons between the pier and the ground.
+    ``friction``, if known, is the coefficient of the interface: a run reports where its forces need more (THEORY.md, Forces).
     ``flight`` and ``flight_limit_mm`` are as on springs (:class:`ElasticBase`).
 
     Examples
@@ -117,7 +117,7 @@ class RigidBase(_Traits):
     """β of ground that does not give: the limit of springs."""
 
     def parameters(self, pier: Pier) -> dict[str, Any]:
-        """What run.json says about this base under ``pier``."""
+        """Return this base under ``pier`` by the keys of run.json."""
         of_frame = None if pier.deck_over_columns is None else pier.restitution  # None stands for Housner's
         own: dict[str, Any] = {"restitution": of_frame if self.restitution is None else self.restitution}
         own |= {"flight": self.flight, "flight_limit_mm": self.flight_limit_mm}
@@ -144,9 +144,9 @@ class ElasticBase(_Traits):
         ζ, 0..1: a dashpot beside each spring, C = ζ M ω_v, by its share of critical damping of the vertical vibration. It
         takes the place of ε: a pivot that lands on a damped support is borne without an impulse.
     friction : float, optional
-        Coefficient of the interface, if known: a run says where its forces ask for more, and goes on (THEORY.md, Forces).
+        Coefficient of the interface, if known: a run reports where its forces need more, and goes on (THEORY.md, Forces).
     restraints : tuple of Damper and Tendon
-        That tie the pier to the ground beside its springs (THEORY.md, Dampers and tendons).
+        Devices between the pier and the ground beside its springs (THEORY.md, Dampers and tendons).
 
     Examples
     --------
@@ -167,7 +167,7 @@ class ElasticBase(_Traits):
     on_springs = True
 
     def parameters(self, pier: Pier) -> dict[str, Any]:
-        """What run.json says about these springs under ``pier``."""
+        """Return these springs under ``pier`` by the keys of run.json."""
         landing = {"epsilon": self.epsilon} if self.zeta is None else {"zeta": self.zeta}
         own: dict[str, Any] = {"beta": self.beta, **landing, "kinematics": self.kinematics}
         own |= {"flight": self.flight, "flight_limit_mm": self.flight_limit_mm}
@@ -177,9 +177,9 @@ class ElasticBase(_Traits):
 
     @classmethod
     def from_stiffness(cls, pier: Pier, stiffness_kN_m: float, **rest: Any) -> Self:
-        """Base from the stiffness K of one support [kN/m] under ``pier``, whose mass is known; ``rest`` as in the class.
+        """Return a base from the stiffness K of one support [kN/m] under ``pier``, whose mass is known; ``rest`` as in the class.
 
-        Raises ``InputError`` where the pier has no mass, or K is not above 0.
+        Raises ``InputError`` if the pier has no mass, or K is not above 0.
         """
         return cls(beta_of(pier, stiffness_kN_m), **rest)
 
@@ -214,20 +214,20 @@ class YieldingBase(ElasticBase):
 
     @property
     def has_exponent(self) -> bool:
-        """Whether ``n`` means anything to these springs."""
+        """Return whether ``n`` applies to these springs."""
         return self.spring in WITH_EXPONENT
 
     @property
     def ratchets(self) -> bool:
-        """Whether these springs creep under vibration."""
+        """Return whether these springs settle cyclically under vibration (ratcheting)."""
         return self.spring in RATCHETING
 
     def by_other_law(self) -> Self:
-        """The same springs by the other law, elastic–perfectly plastic for Bouc–Wen; themselves where they do not creep."""
+        """Return these springs by the other law, elastic–perfectly plastic for Bouc–Wen; themselves if they do not ratchet."""
         return replace(self, spring=OTHER_LAW.get(self.spring, self.spring))
 
     def parameters(self, pier: Pier) -> dict[str, Any]:
-        """What run.json says about these springs under ``pier``."""
+        """Return these springs under ``pier`` by the keys of run.json."""
         own = super().parameters(pier) | {"eta": self.eta, "spring": self.spring}
         if self.has_exponent:
             own["n"] = self.n
@@ -235,7 +235,7 @@ class YieldingBase(ElasticBase):
 
     @classmethod
     def from_stiffness(cls, pier: Pier, stiffness_kN_m: float, yield_kN: float | None = None, **rest: Any) -> Self:
-        """As :meth:`ElasticBase.from_stiffness`, with the yield force F_y of one support [kN], or with ``eta``."""
+        """Return a base as :meth:`ElasticBase.from_stiffness`, with the yield force F_y of one support [kN], or with ``eta``."""
         if yield_kN is not None:
             rest["eta"] = eta_of(pier, yield_kN)
         return super().from_stiffness(pier, stiffness_kN_m, **rest)
@@ -249,13 +249,13 @@ def _interface(friction: float | None) -> dict[str, float]:
 
 
 def beta_of(pier: Pier, stiffness_kN_m: float) -> float:
-    """β = sqrt(2K/M)/p of supports with the stiffness K [kN/m]. Raises ``InputError`` for a pier without mass."""
+    """Return β = sqrt(2K/M)/p of supports with the stiffness K [kN/m]. Raises ``InputError`` for a pier without mass."""
     mass = _mass(pier, stiffness_kN_m=(stiffness_kN_m, " [kN/m]"))
     return math.sqrt(2 * stiffness_kN_m / mass) / pier.p
 
 
 def eta_of(pier: Pier, yield_kN: float) -> float:
-    """η = 2 F_y/(M g) of supports with the yield force F_y [kN]. Raises ``InputError`` for a pier without mass."""
+    """Return η = 2 F_y/(M g) of supports with the yield force F_y [kN]. Raises ``InputError`` for a pier without mass."""
     return 2 * yield_kN / (_mass(pier, yield_kN=(yield_kN, " [kN]")) * pier.gravity)
 
 
@@ -269,17 +269,17 @@ def _mass(pier: Pier, **value: tuple[float | None, str]) -> float:
 
 
 def in_kilonewtons(pier: Pier, base: Base) -> dict[str, float]:
-    """K = β² p² M/2 [kN/m] and F_y = η M g/2 [kN] by the keys of a study; empty for a pier without mass or springs."""
+    """Return K = β² p² M/2 [kN/m] and F_y = η M g/2 [kN] by the keys of a study; empty for a pier without mass or springs."""
     if pier.mass_t is None or not base.on_springs:
         return {}
-    found = {"stiffness_kN_m": 0.5 * pier.mass_t * vertical_frequency(pier, base) ** 2}
+    values = {"stiffness_kN_m": 0.5 * pier.mass_t * vertical_frequency(pier, base) ** 2}
     if isinstance(base, YieldingBase):
-        found["yield_kN"] = 0.5 * base.eta * pier.mass_t * pier.gravity
-    return found
+        values["yield_kN"] = 0.5 * base.eta * pier.mass_t * pier.gravity
+    return values
 
 
 def least_beta(pier: Pier, base: Base) -> float:
-    """β below which the pier topples on its springs under its own weight, or at the least push (THEORY.md, eq. 13).
+    """Return β below which the pier topples on its springs under its own weight, or at the least push (THEORY.md, eq. 13).
 
     A Bouc–Wen spring under the weight, z = −1/η, is softer where it is loaded than where it is unloaded, by the factor
     r = 1 − η⁻ⁿ, with tendons r = 1 − (η/(1 + ψ))⁻ⁿ; both together have 2r/(1 + r) of the elastic springs' stiffness in
@@ -295,23 +295,23 @@ def least_beta(pier: Pier, base: Base) -> float:
 
 
 def vertical_frequency(pier: Pier, base: Base) -> float:
-    """Circular frequency ω_v = β p [rad/s] of vertical vibration in full contact; infinite on a rigid base."""
+    """Return the circular frequency ω_v = β p [rad/s] of vertical vibration in full contact; infinite on a rigid base."""
     return base.beta * pier.p
 
 
 def static_deflection(pier: Pier, base: Base) -> float:
-    """δ_s = g/ω_v² [m], of the springs under the weight at rest, while elastic; 0 on a rigid base."""
+    """Return δ_s = g/ω_v² [m], of the springs under the weight at rest, while elastic; 0 on a rigid base."""
     return pier.gravity / vertical_frequency(pier, base) ** 2
 
 
 def yield_deflection(pier: Pier, base: ElasticBase) -> float:
-    """δ_y = η δ_s [m], at which a spring yields; elastic springs are measured by δ_s, η = 1."""
+    """Return δ_y = η δ_s [m], at which a spring yields; elastic springs are measured by δ_s, η = 1."""
     eta = base.eta if isinstance(base, YieldingBase) else 1.0
     return eta * pier.gravity / vertical_frequency(pier, base) ** 2
 
 
 def tilt_over_residual(gravity: float, height: float, half_width: float, omega_v: float) -> float:
-    """Tilt of the base over the residual rotation, 1 − g h/(ω_v² b²): the weight leans the pier (THEORY.md, eq. 20).
+    """Return the tilt of the base over the residual rotation, 1 − g h/(ω_v² b²): the weight leans the pier (THEORY.md, eq. 20).
 
     ``gravity`` g [m/s²]; ``height`` h and ``half_width`` b [m], of the centre of mass from the pivots; ``omega_v`` [rad/s].
     """
@@ -319,7 +319,7 @@ def tilt_over_residual(gravity: float, height: float, half_width: float, omega_v
 
 
 def neglected(pier: Pier, theta: float) -> float:
-    """Share of inertia and righting moment that first-order kinematics neglects at the rotation ``theta`` [rad].
+    """Return the share of inertia and righting moment that linearised kinematics neglects at the rotation ``theta`` [rad].
 
     μ/(1+μ) sin α cos α |θ| of the inertia about a pivot and θ²/2 of the moment M g b (THEORY.md, Two springs, finite kinematics).
     """
@@ -328,14 +328,14 @@ def neglected(pier: Pier, theta: float) -> float:
 
 
 def rocking_frequency(pier: Pier, base: ElasticBase) -> float:
-    """Circular frequency ω_r [rad/s] of rocking in full contact, on elastic springs (THEORY.md, eq. 12)."""
+    """Return the circular frequency ω_r [rad/s] of rocking in full contact, on elastic springs (THEORY.md, eq. 12)."""
     mu, alpha = pier.mu, pier.alpha
     stiffness = mu * (math.sin(alpha) * base.beta * pier.p) ** 2 - (1 + mu) * pier.p**2 * math.cos(alpha)
     return math.sqrt(max(stiffness, 0.0) / (1 + mu * math.cos(alpha) ** 2))
 
 
 def fastest(pier: Pier, base: ElasticBase) -> float:
-    """Greatest rate [rad/s] in full contact: of vertical vibration or rocking, or of what decays where they creep.
+    """Return the greatest rate [rad/s] in full contact: of vertical vibration or rocking, or of decay if overdamped.
 
     A vibration ω with the damping d, its decay's rate, has ω as its rate as long as d < ω, and d + √(d² − ω²) beyond;
     d is ζ ω_v of the vertical one, and ζ ω_v μ sin²α/(1 + μ cos²α) of rocking (THEORY.md, Damped supports).
@@ -353,7 +353,7 @@ def fastest(pier: Pier, base: ElasticBase) -> float:
 
 
 def problems(pier: Pier, base: Base) -> list[str]:
-    """What is impossible about ``pier`` on ``base``: one sentence each, with the limit; empty if nothing."""
+    """Return what is impossible about ``pier`` on ``base``: one sentence each, with the limit; empty if nothing."""
     wrong = not_positive(
         friction=(base.friction, ", the coefficient of the interface"),
         flight_limit_mm=(base.flight_limit_mm, " [mm], a height of flight"),
@@ -415,5 +415,5 @@ def problems(pier: Pier, base: Base) -> list[str]:
 
 
 def _unknown(key: str, word: str, known: tuple[str, ...]) -> list[str]:
-    """What is wrong about ``word`` unless it is one of the known ones."""
-    return [] if word in known else [f'{key} = "{word}": must be ' + " or ".join(f'"{each}"' for each in known)]
+    """Return what is wrong about ``word`` unless it is one of the known ones."""
+    return [] if word in known else [f'{key} = "{word}": must be ' + " or ".join(f'"{choice}"' for choice in known)]

@@ -10,7 +10,7 @@ from rockbatch.pier.plausible import unlikely_sizes
 from rockbatch.units import GRAVITY, LEAST, MOST
 
 POSSIBLE = {"alpha": (1e-4, math.pi / 2), "p": (1e-3, 1e3), "mu": (1e-3, 1e12), "gravity": (1e-3, 1e3)}
-"""What a pier can be, far beyond what any is: p = 0.001 rad/s is one of 7000 km. Beyond it a run would never end."""
+"""Ranges of a pier's values, far beyond any pier: p = 0.001 rad/s is one of 7000 km. Beyond them a run would never end."""
 
 
 class Part(NamedTuple):
@@ -28,7 +28,7 @@ class Part(NamedTuple):
 
     @classmethod
     def shaft(cls, width_m: float, height_m: float, mass_t: float) -> "Part":
-        """A uniform shaft that stands on the pivots: a rectangle."""
+        """Return a uniform shaft that stands on the pivots: a rectangle."""
         return cls(mass_t, 0.5 * height_m, mass_t * (width_m**2 + height_m**2) / 12.0)
 
 
@@ -47,15 +47,15 @@ class Pier:
     gravity : float
         g [m/s²].
     mass_t : float, optional
-        Mass M of all that rocks [t]; only forces in kN and stiffnesses in kN/m ask for it.
+        Mass M of all that rocks [t]; only forces in kN and stiffnesses in kN/m need it.
     top_m : float, optional
-        Height above the pivots at which drift is read [m]; twice that of the centre of mass where it is not given.
+        Height above the pivots at which drift is read [m]; twice that of the centre of mass by default.
     deck_over_columns : float, optional
         γ = m_d/(N m_c) of a rocking frame, whose equivalent block this is; see :meth:`frame`.
     deck_height_m : float, optional
-        Height above the pivots of the deck's centre [m], whose acceleration is told; the top where it is not given.
+        Height above the pivots of the deck's centre [m], whose acceleration is computed; the top by default.
 
-    Raises ``InputError`` with all that is impossible.
+    Raises ``InputError`` with every impossible value.
 
     Examples
     --------
@@ -112,10 +112,10 @@ class Pier:
         top_m: float | None = None,
         confirm: Collection[str] = (),
     ) -> "Pier":
-        """Pier from its size R0 [m], the distance from a pivot to the centre of mass.
+        """Return a pier of the size R0 [m], the distance from a pivot to the centre of mass.
 
-        Here and in the other ways to make a pier of lengths, ``confirm`` names those that are right though they are far from
-        usual: "width_m", "top_m", "deck_height_m". Raises ``InputError`` for what is impossible or not confirmed.
+        Here and in the other constructors from lengths, ``confirm`` names values that are right though unusual: "width_m",
+        "top_m", "deck_height_m". Raises ``InputError`` for what is impossible or not confirmed.
         """
         wrong = not_positive(size_m=(size_m, " [m]"), mu=(mu, " (3 for a rectangle)"))
         if not wrong:
@@ -135,7 +135,7 @@ class Pier:
         top_m: float | None = None,
         confirm: Collection[str] = (),
     ) -> "Pier":
-        """Solid rectangular block; its width and height [m] give α, R0 and μ = 3. ``confirm``: see :meth:`from_size`."""
+        """Return a solid rectangular block; its width and height [m] give α, R0 and μ = 3. ``confirm``: see :meth:`from_size`."""
         wrong = not_positive(width_m=(width_m, " [m]"), height_m=(height_m, " [m]"))
         wrong = wrong or unlikely_sizes(width_m, height_m, confirm, top_m=top_m)
         if wrong:
@@ -154,7 +154,7 @@ class Pier:
         gravity: float = GRAVITY,
         confirm: Collection[str] = (),
     ) -> "Pier":
-        """Pier of any shape, with what it carries (THEORY.md, The pier).
+        """Return a pier of any shape, with what it carries (THEORY.md, The pier).
 
         Parameters
         ----------
@@ -163,9 +163,9 @@ class Pier:
         parts : iterable of Part
             Or of (mass_t, height_m, inertia_t_m2): masses m_i at heights h_i, with inertias I_i about their own centres.
         top_m : float, optional
-            Where drift is read [m]; at the highest part's centre by default.
+            Height at which drift is read [m]; at the highest part's centre by default.
         deck_height_m : float, optional
-            Where the deck's acceleration is told [m]; at the top by default.
+            Height at which the deck's acceleration is computed [m]; at the top by default.
         confirm : collection of str
             See :meth:`from_size`.
 
@@ -194,8 +194,8 @@ class Pier:
         height = math.fsum(part.mass_t * part.height_m for part in parts) / mass
         inertia = math.fsum(part.inertia_t_m2 + part.mass_t * (part.height_m - height) ** 2 for part in parts)
         if height == 0 or inertia == 0:
-            what = "no height" if height == 0 else "no rotary inertia about their common centre"
-            raise InputError(f"parts: they have {what}; a shaft has m (width² + height²)/12 at half its height")
+            lack = "no height" if height == 0 else "no rotary inertia about their common centre"
+            raise InputError(f"parts: they have {lack}; a shaft has m (width² + height²)/12 at half its height")
         if wrong := unlikely_sizes(width_m, 2 * height, confirm, top_m=top_m, deck_height_m=deck_height_m):
             raise InputError(*wrong)
         size = math.hypot(0.5 * width_m, height)
@@ -218,7 +218,7 @@ class Pier:
         gravity: float = GRAVITY,
         confirm: Collection[str] = (),
     ) -> "Pier":
-        """Uniform shaft of ``width_m`` × ``height_m`` and ``mass_t``, and a deck on it.
+        """Return a uniform shaft of ``width_m`` × ``height_m`` and ``mass_t``, with a deck on it.
 
         ``deck_height_m`` is that of the deck's centre, at the top of the shaft by default; ``deck_inertia_t_m2`` its rotary
         inertia about it, 0 for a deck on bearings that does not turn with the pier. Drift is read at ``top_m``, by default the
@@ -233,12 +233,12 @@ class Pier:
         deck = Part(deck_mass_t, height_m if deck_height_m is None else deck_height_m, deck_inertia_t_m2)
         top = max(height_m, deck.height_m) if top_m is None else top_m
         parts = [Part.shaft(width_m, height_m, mass_t), deck]
-        judged = ("width_m", "top_m", "deck_height_m")
-        return cls.of_parts(width_m, parts, top_m=top, deck_height_m=deck.height_m, gravity=gravity, confirm=judged)
+        confirmed = ("width_m", "top_m", "deck_height_m")
+        return cls.of_parts(width_m, parts, top_m=top, deck_height_m=deck.height_m, gravity=gravity, confirm=confirmed)
 
     @classmethod
     def frame(cls, column: "Pier", columns: int, deck_mass_t: float) -> "Pier":
-        """Rocking frame: equal columns, and a deck that rests on their tops and keeps level (Makris & Vassiliou 2013).
+        """Return a rocking frame: equal columns, and a deck that rests on their tops and keeps level (Makris & Vassiliou 2013).
 
         Parameters
         ----------
@@ -283,44 +283,44 @@ class Pier:
 
     @property
     def size(self) -> float:
-        """R0 [m], from a pivot to the centre of mass."""
+        """Return R0 [m], from a pivot to the centre of mass."""
         return self.mu / (1 + self.mu) * self.gravity / self.p**2
 
     @property
     def half_width(self) -> float:
-        """b = R0 sin α [m]; of a frame that of a column, whose R0 is (1+γ)/(1+2γ) of the equivalent block's."""
+        """Return b = R0 sin α [m]; of a frame that of a column, whose R0 is (1+γ)/(1+2γ) of the equivalent block's."""
         ratio = self.deck_over_columns
         share = 1.0 if ratio is None else (1 + ratio) / (1 + 2 * ratio)
         return share * self.size * math.sin(self.alpha)
 
     @property
     def height(self) -> float:
-        """h = R0 cos α [m], of the centre of mass above the pivots."""
+        """Return h = R0 cos α [m], of the centre of mass above the pivots."""
         return self.size * math.cos(self.alpha)
 
     @property
     def inertia(self) -> float:
-        """I0/M = R0²/μ [m²], about the centre of mass, per unit mass."""
+        """Return I0/M = R0²/μ [m²], about the centre of mass, per unit mass."""
         return self.size**2 / self.mu
 
     @property
     def inertia_about_pivot(self) -> float:
-        """I0/M + R0² [m²], about a pivot, per unit mass."""
+        """Return I0/M + R0² [m²], about a pivot, per unit mass."""
         return self.inertia + self.size**2
 
     @property
     def top(self) -> float:
-        """Height above the pivots at which drift is read [m]: ``top_m``, or twice that of the centre of mass."""
+        """Return the height above the pivots at which drift is read [m]: ``top_m``, or twice that of the centre of mass."""
         return 2.0 * self.height if self.top_m is None else self.top_m
 
     @property
     def deck(self) -> float:
-        """Height above the pivots at which the deck's acceleration is told [m]: ``deck_height_m``, or that of the top."""
+        """Return the height above the pivots at which the deck's acceleration is computed [m]: ``deck_height_m``, or the top."""
         return self.top if self.deck_height_m is None else self.deck_height_m
 
     @property
     def restitution(self) -> float:
-        """Factor e on the angular velocity at an impact on rigid ground, which keeps the angular momentum (THEORY.md, eq. 16).
+        """Return the factor e on the angular velocity at an impact on rigid ground, keeping angular momentum (THEORY.md, eq. 16).
 
         Housner's 1 − 2μ/(1+μ) sin²α, or (1 − 3/2 sin²α + 3γ cos 2α)/(1 + 3γ) of a frame (Makris & Vassiliou 2013). A pier so
         stocky that this is negative would have to turn back through the corner that it has just landed on: it stops, e = 0.
@@ -332,12 +332,12 @@ class Pier:
 
     @property
     def least_beta(self) -> float:
-        """β = ω_v/p below which the pier topples on its springs under its own weight (g h < ω_v² b²)."""
+        """Return β = ω_v/p below which the pier topples on its springs under its own weight (g h < ω_v² b²)."""
         return math.sqrt((1 + self.mu) * math.cos(self.alpha) / self.mu) / math.sin(self.alpha)
 
 
 def not_positive(**values: tuple[float | None, str]) -> list[str]:
-    """What is said of those numbers that are given, and are not above 0; each comes with its unit or a hint."""
+    """Return a message for each given number that is not above 0; each comes with its unit or a hint."""
     return [
         f"{name} = {value:g}: must be a number above 0{hint}" + (f", {LEAST:g} to {MOST:g}" if value > 0 else "")
         for name, (value, hint) in values.items()
@@ -346,7 +346,7 @@ def not_positive(**values: tuple[float | None, str]) -> list[str]:
 
 
 def described(pier: Pier) -> dict[str, float]:
-    """A pier by the names and units of run.json; mass, top, γ and deck only where it has them."""
+    """Return a pier by the names and units of run.json; mass, top, γ and deck only if it has them."""
     optional = ("mass_t", "top_m", "deck_over_columns", "deck_height_m")
     given = {name: getattr(pier, name) for name in optional}
     return {

@@ -1,18 +1,18 @@
-"""Sizes that a wrong unit, or two exchanged, explain better than a pier: refused until ``confirm`` names them."""
+"""Implausible sizes, as of a wrong unit or of two values exchanged: refused until ``confirm`` names them."""
 
 from collections.abc import Collection
 
 LOWEST, HIGHEST = 0.25, 2.5
-"""Of a pier's height: where its deck is, and where its drift is read."""
+"""Bounds of the heights of deck and drift, over the pier's height."""
 
 
 def remedy(name: str) -> str:
-    """Say what to do about a value that is not usual."""
+    """Return what to do about an unusual value."""
     return f'check the unit; if it is right, write confirm = ["{name}"]'
 
 
 def unlikely_sizes(width_m: float, height_m: float, confirm: Collection[str], **heights: float | None) -> list[str]:
-    """Return what is odd about a pier's width and height [m] and its other ``heights``, but for those in ``confirm``."""
+    """Return what is odd about a pier's width and height [m] and its other ``heights``, except those in ``confirm``."""
     odd = {}
     if width_m > height_m:
         odd["width_m"] = (

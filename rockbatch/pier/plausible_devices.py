@@ -1,4 +1,4 @@
-"""Dampers and tendons that a wrong unit explains better than a device: refused until their ``confirm`` names the value."""
+"""Implausible dampers and tendons, as of a wrong unit: refused until their ``confirm`` names the value."""
 
 from typing import NamedTuple
 
@@ -13,7 +13,7 @@ THINNEST, WIDEST = 2.5e-5, 0.5
 """Yield deflection of a hysteretic damper [m]; steel ones have 1 to 20 mm."""
 
 MOST_LAMBDA = 100.0
-"""λ of a tendon, by which it adds the pier's weight at a hundredth of α; strands have 0.1 to 10."""
+"""Greatest λ of a tendon, by which it adds the pier's weight at a hundredth of α; strands have 0.1 to 10."""
 
 
 class Doubt(NamedTuple):
@@ -24,18 +24,18 @@ class Doubt(NamedTuple):
 
 
 def doubt(pier: Pier, device: Restraint) -> Doubt | None:
-    """Return what is odd about a damper or tendon of ``pier``; None if nothing is, or it is confirmed."""
+    """Return what is odd about a damper or tendon of ``pier``; None if nothing is, or if it is confirmed."""
     odd = _of_tendon(pier, device) if isinstance(device, Tendon) else _of_damper(pier, device)
     return None if odd is None or odd.name in device.confirm else odd
 
 
 def unlikely_devices(pier: Pier, devices: tuple[Restraint, ...]) -> list[str]:
-    """Return what is odd about dampers and tendons of ``pier``, a sentence each, but for what they confirm."""
-    judged = [(each, doubt(pier, each)) for each in devices]
+    """Return what is odd about dampers and tendons of ``pier``, a sentence each, except what they confirm."""
+    doubts = [(device, doubt(pier, device)) for device in devices]
     return [
-        f"{'tendon' if isinstance(each, Tendon) else 'damper'}: {odd.name} = {getattr(each, odd.name):g}: {odd.meaning}; "
+        f"{'tendon' if isinstance(device, Tendon) else 'damper'}: {odd.name} = {getattr(device, odd.name):g}: {odd.meaning}; "
         f"{remedy(odd.name)}"
-        for each, odd in judged
+        for device, odd in doubts
         if odd is not None
     ]
 

@@ -1,4 +1,4 @@
-"""What ties a pier to the ground beside its own weight: dampers and tendons (THEORY.md, Dampers and tendons)."""
+"""Devices between a pier and the ground: dampers and tendons (THEORY.md, Dampers and tendons)."""
 
 import math
 from collections.abc import Sequence
@@ -10,11 +10,11 @@ from rockbatch.pier.block import Pier
 DamperKind = Literal["friction", "viscous", "hysteretic"]
 
 MOST_FORCE = 10.0
-"""Of the pier's weight, beyond which a wrong unit is likelier than the device."""
+"""Force over the pier's weight beyond which a wrong unit is likelier than the device."""
 
 
 LEAST_EXPONENT, MOST_EXPONENT = 0.1, 2.0
-"""Of a viscous damper: fluid dampers have 0.15 to 1, and one of 0 is friction."""
+"""Bounds of a viscous damper's exponent: fluid dampers have 0.15 to 1, and one of 0 is friction."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class Damper:
     at : float, "left", "right" or None
         Offset from the centre of the base [m], positive to the right; None: one at each pivot.
     confirm : sequence of str
-        "nu" or "yield_m", if it is right though it is far from usual.
+        "nu" or "yield_m", if the value is right though unusual.
 
     Examples
     --------
@@ -68,11 +68,11 @@ class Tendon:
     lam : float
         λ = k_t b²/(M g R0), its stiffness.
     strength : float
-        T_y/(M g) at which it yields, and is longer from then on; infinite where it does not.
+        T_y/(M g) at which it yields, and stays longer; infinite if it does not yield.
     at : float, "left" or "right"
         Offset from the centre of the base [m], positive to the right.
     confirm : sequence of str
-        "lam", or "psi" of one that has neither prestress nor stiffness, if it is right though it is far from usual.
+        "lam", or "psi" of one that has neither prestress nor stiffness, if the value is right though unusual.
 
     Examples
     --------
@@ -94,13 +94,13 @@ Restraint = Damper | Tendon
 
 
 def holds_a_tilt(restraints: tuple[Restraint, ...]) -> bool:
-    """Whether a damper among them may hold the pier at a tilt: it keeps a force at rest, as friction does."""
-    return any(isinstance(each, Damper) and each.kind != "viscous" and each.f > 0 for each in restraints)
+    """Return whether a damper among them may hold the pier at a tilt: it keeps a force at rest, as friction does."""
+    return any(isinstance(device, Damper) and device.kind != "viscous" and device.f > 0 for device in restraints)
 
 
 def described_restraints(restraints: tuple[Restraint, ...]) -> dict[str, Any]:
-    """What run.json says about dampers and tendons; nothing without."""
-    return {"restraints": [_described(each) for each in restraints]} if restraints else {}
+    """Return dampers and tendons by the keys of run.json; empty without any."""
+    return {"restraints": [_described(device) for device in restraints]} if restraints else {}
 
 
 def _described(restraint: Restraint) -> dict[str, Any]:
@@ -109,7 +109,7 @@ def _described(restraint: Restraint) -> dict[str, Any]:
 
 
 def offsets(pier: Pier, restraint: Restraint) -> tuple[float, ...]:
-    """Where the elements of a restraint are, from the centre of the base [m]."""
+    """Return the places at which ``restraint`` acts, from the centre of the base [m]."""
     b = pier.half_width
     if restraint.at is None:
         return -b, b
@@ -119,14 +119,14 @@ def offsets(pier: Pier, restraint: Restraint) -> tuple[float, ...]:
 
 
 def prestress_over_weight(pier: Pier, restraints: tuple[Restraint, ...]) -> float:
-    """ψ of all tendons together."""
-    return sum(each.psi * len(offsets(pier, each)) for each in restraints if isinstance(each, Tendon))
+    """Return ψ of all tendons together."""
+    return sum(tendon.psi * len(offsets(pier, tendon)) for tendon in restraints if isinstance(tendon, Tendon))
 
 
 def wrong_on_springs(pier: Pier, restraints: tuple[Restraint, ...]) -> list[str]:
-    """What is impossible about dampers and tendons of a pier on springs: one sentence each; empty if nothing."""
+    """Return what is impossible about dampers and tendons of a pier on springs: one sentence each; empty if nothing."""
     wrong = []
-    tendons = tuple(each for each in restraints if isinstance(each, Tendon))
+    tendons = tuple(device for device in restraints if isinstance(device, Tendon))
     if not symmetric(pier, tendons):
         wrong.append(
             "tendon: on springs a tendon off the axis needs its like on the other side, or it leans the pier before any "
@@ -136,25 +136,25 @@ def wrong_on_springs(pier: Pier, restraints: tuple[Restraint, ...]) -> list[str]
 
 
 def wrong_restraints(pier: Pier, restraints: tuple[Restraint, ...]) -> list[str]:
-    """What is impossible about dampers and tendons under ``pier``: one sentence each; empty if nothing."""
+    """Return what is impossible about dampers and tendons under ``pier``: one sentence each; empty if nothing."""
     wrong = []
     if restraints and pier.deck_over_columns is not None:
         wrong.append("columns: dampers and tendons of a rocking frame are not solved; leave them or columns out")
-    for each in restraints:
-        name = "tendon" if isinstance(each, Tendon) else "damper"
-        if isinstance(each.at, str) and each.at not in ("left", "right"):
-            wrong.append(f'{name}: at = "{each.at}": must be "left", "right" or an offset in m')
-        elif isinstance(each.at, float | int) and not abs(each.at) <= 2.0 * pier.half_width:
+    for device in restraints:
+        name = "tendon" if isinstance(device, Tendon) else "damper"
+        if isinstance(device.at, str) and device.at not in ("left", "right"):
+            wrong.append(f'{name}: at = "{device.at}": must be "left", "right" or an offset in m')
+        elif isinstance(device.at, float | int) and not abs(device.at) <= 2.0 * pier.half_width:
             wrong.append(
-                f"{name}: at = {each.at:g}: must be within the base's width either side, {2 * pier.half_width:.4g} m"
+                f"{name}: at = {device.at:g}: must be within the base's width either side, {2 * pier.half_width:.4g} m"
             )
-        wrong += _wrong_tendon(each) if isinstance(each, Tendon) else _wrong_damper(each)
+        wrong += _wrong_tendon(device) if isinstance(device, Tendon) else _wrong_damper(device)
     return wrong + ([] if wrong else _wrong_friction(pier, restraints))
 
 
 def _wrong_friction(pier: Pier, restraints: tuple[Restraint, ...]) -> list[str]:
-    rubbing = [each for each in restraints if isinstance(each, Damper) and each.kind == "friction"]
-    if sum(len(offsets(pier, each)) for each in rubbing) <= 2:
+    rubbing = [damper for damper in restraints if isinstance(damper, Damper) and damper.kind == "friction"]
+    if sum(len(offsets(pier, damper)) for damper in rubbing) <= 2:
         return []
     return [
         "damper: two places of friction at most can be solved, for example one damper at both pivots; join their forces, or "
@@ -195,22 +195,22 @@ def _wrong_tendon(tendon: Tendon) -> list[str]:
 
 
 def recentres(pier: Pier, restraints: tuple[Restraint, ...]) -> bool:
-    """Whether weight and prestress overcome friction at small rotations, about either corner: 2 f < 1 + ψ, dampers at both.
+    """Return whether weight and prestress overcome friction at small rotations, about either corner.
 
-    Dampers without a yield deflection of theirs, and those with one, count alike.
+    That is 2 f < 1 + ψ with dampers at both. Dampers count alike with and without a yield deflection.
     """
     for corner in (-pier.half_width, pier.half_width):
         holds, rights = 0.0, 1.0
-        for each in restraints:
-            arms = sum(abs(offset - corner) for offset in offsets(pier, each)) / pier.half_width
-            holds += each.f * arms if isinstance(each, Damper) and each.kind != "viscous" else 0.0
-            rights += each.psi * arms if isinstance(each, Tendon) else 0.0
+        for device in restraints:
+            arms = sum(abs(offset - corner) for offset in offsets(pier, device)) / pier.half_width
+            holds += device.f * arms if isinstance(device, Damper) and device.kind != "viscous" else 0.0
+            rights += device.psi * arms if isinstance(device, Tendon) else 0.0
         if holds >= rights:
             return False
     return True
 
 
 def symmetric(pier: Pier, restraints: tuple[Restraint, ...]) -> bool:
-    """Whether the mirror image of a run is that of the reversed motion: each element has its like on the other side."""
-    placed = [(offset, replace(each, at=0.0)) for each in restraints for offset in offsets(pier, each)]
-    return all(placed.count((-offset, each)) == placed.count((offset, each)) for offset, each in placed)
+    """Return whether a run is the mirror image of that under the reversed motion: each device has its like on the other side."""
+    placed = [(offset, replace(device, at=0.0)) for device in restraints for offset in offsets(pier, device)]
+    return all(placed.count((-offset, device)) == placed.count((offset, device)) for offset, device in placed)

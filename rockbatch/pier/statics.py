@@ -9,7 +9,7 @@ from rockbatch.pier.block import Pier
 from rockbatch.pier.restraints import Restraint, Tendon, offsets, prestress_over_weight
 
 POINTS = 900
-"""Rotations up to a right angle among which a loss of balance is looked for."""
+"""Rotations up to a right angle among which a loss of balance is sought."""
 
 
 def lift_off_rotation(pier: Pier, restraints: tuple[Restraint, ...], static_deflection: float) -> float:
@@ -30,14 +30,14 @@ def lift_off_acceleration(pier: Pier, restraints: tuple[Restraint, ...] = (), st
     lean = lift_off_rotation(pier, restraints, static_deflection)
     least = math.inf
     for pivot in (-pier.half_width, pier.half_width):
-        held = 0.0
-        for each in restraints:
-            for offset in offsets(pier, each):
-                if isinstance(each, Tendon):
-                    held += each.psi * abs(offset - pivot)
-                elif each.kind == "friction":  # on springs the pier turns about its middle
-                    held += each.f * abs(offset if on_springs else offset - pivot)
-        least = min(least, math.tan(pier.alpha) + held / pier.height)
+        moment = 0.0
+        for device in restraints:
+            for offset in offsets(pier, device):
+                if isinstance(device, Tendon):
+                    moment += device.psi * abs(offset - pivot)
+                elif device.kind == "friction":  # on springs the pier turns about its middle
+                    moment += device.f * abs(offset if on_springs else offset - pivot)
+        least = min(least, math.tan(pier.alpha) + moment / pier.height)
     return least - lean
 
 
@@ -46,14 +46,16 @@ def unstable_equilibrium(pier: Pier, restraints: tuple[Restraint, ...] = ()) -> 
 
     Of a pier that rocks about a pivot on rigid ground: α without tendons. None where tendons hold it at any rotation.
     """
-    tendons = [(each, offset) for each in restraints if isinstance(each, Tendon) for offset in offsets(pier, each)]
-    ways = [_loses_balance(pier, tendons, side) for side in ((1.0, -1.0) if tendons else (1.0,))]
-    return min((theta for theta in ways if theta is not None), default=None)
+    tendons = [
+        (tendon, offset) for tendon in restraints if isinstance(tendon, Tendon) for offset in offsets(pier, tendon)
+    ]
+    rotations = [_loses_balance(pier, tendons, side) for side in ((1.0, -1.0) if tendons else (1.0,))]
+    return min((theta for theta in rotations if theta is not None), default=None)
 
 
 def _loses_balance(pier: Pier, tendons: list[tuple[Tendon, float]], side: float) -> float | None:
     def righting(theta: float) -> float:
-        """Moment about the pivot over M g R0."""
+        """Return the moment about the pivot over M g R0."""
         moment = math.sin(pier.alpha - theta)
         for tendon, offset in tendons:
             arm = pier.half_width + side * offset
