@@ -1,1 +1,1 @@
-"""The next questions about a study, each answered by batches of runs of its own."""
+"""Analyses of a study, each by batches of runs of its own."""

@@ -1,4 +1,4 @@
-"""Speed against error of a study on this machine: from what it asks to its table."""
+"""Error against time of a study on this machine: the analysis and its table."""
 
 import json
 import os
@@ -21,10 +21,10 @@ if TYPE_CHECKING:
     import pandas as pd
 
 RUNS = 24
-"""That are measured, unless another number is asked for."""
+"""Default number of runs that are measured."""
 
 SECONDS = 60.0
-"""That it takes at most, or little more, unless another number is asked for."""
+"""Default time that it takes at most, or little more [s]."""
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -49,7 +49,7 @@ class Accuracy(Analysis):
     def save(self, folder: str | os.PathLike[str]) -> tuple[Path, ...]:
         """Write ``accuracy.csv``, and the report again where the folder holds results of this very study.
 
-        Returns the paths of what was written. Raises ``InputError`` if the disk is full.
+        Returns the paths written. Raises ``InputError`` if the disk is full.
         """
         directory = Path(folder)
         directory.mkdir(parents=True, exist_ok=True)
@@ -58,7 +58,7 @@ class Accuracy(Analysis):
         return (path, write_report(directory)) if self._has_results(directory) else (path,)
 
     def _has_results(self, directory: Path) -> bool:
-        """Whether the folder holds results of this very study with these motions, whose report can show the table."""
+        """Return whether the folder holds results of this very study with these motions, whose report can show the table."""
         try:
             info = json.loads(read_text(directory / INFO))
             records = tuple(record["record"] for record in info["records"])
@@ -78,7 +78,7 @@ def accuracy(
     motions: str | os.PathLike[str] | None = None,
     progress: Progress = None,
 ) -> Accuracy:
-    """Error of θ_max/α against time per run, for this study on this machine, beside SciPy's solvers.
+    """Measure the error of θ_max/α against time per run, for this study on this machine, beside SciPy's solvers.
 
     Parameters
     ----------
@@ -93,7 +93,7 @@ def accuracy(
         How long it may take [s], once the kernels are compiled. What there is no time for is left out: runs, the longest of
         the fixed steps, repetitions, the tightest of SciPy's tolerances.
     scipy : bool
-        Whether SciPy's solvers are measured too; they are slow.
+        Measure SciPy's solvers too; they are slow.
 
     Returns
     -------
@@ -103,15 +103,15 @@ def accuracy(
     Raises
     ------
     InputError
-        With every mistake in the study; if no run settles with ever smaller steps, so that there is no error to measure.
+        With every mistake in the study; if no run converges under step halving, so that there is no error to measure.
 
     Examples
     --------
-    >>> found = rb.accuracy("pier4.toml", runs=2, scipy=False)
-    >>> found
+    >>> result = rb.accuracy("pier4.toml", runs=2, scipy=False)
+    >>> result
     <accuracy of 'Pier 4'>
       tables  accuracy (13 rows)
-    >>> found.accuracy[["method", "substeps", "runs"]].head(3)
+    >>> result.accuracy[["method", "substeps", "runs"]].head(3)
         method  substeps  runs
     0  located         1     2
     1  located         2     2
@@ -122,15 +122,15 @@ def accuracy(
     if not seconds > 0:
         raise InputError(f"seconds = {seconds:g}: must be above 0")
     asked, listener = given_study(study, motions), listener_of(progress)
-    found = ground_motions(asked)
+    suite = ground_motions(asked)
     make_ready(asked, listener)
     clock = Clock(seconds)
-    chosen = references(asked, found, runs, listener, clock)
+    chosen = references(asked, suite, runs, listener, clock)
     measured = Accuracy(
         study=asked,
         info={},
-        unusable=tuple(found.unusable),
+        unusable=tuple(suite.unusable),
         accuracy=measure(asked, chosen, scipy, listener, clock),
-        records=tuple(motion.name for motion in found.motions),
+        records=tuple(motion.name for motion in suite.motions),
     )
     return measured if out is None else replace(measured, files=measured.save(out))

@@ -34,7 +34,7 @@ COLUMNS = (
     "error_max",
     "seconds_per_run",
     "status_differs",  # runs that end otherwise than the reference
-    "reference_change",  # what the last halving still changed in the least settled reference
+    "reference_change",  # what the last halving still changed in the least converged reference
     "machine",
     "study",  # SHA-256 of the study file
 )
@@ -45,16 +45,16 @@ SCIPY_TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10)
 SCIPY_RUNS = 2
 REPEATS = 5
 
-SETTLED = 1e-12
+CONVERGED = 1e-12
 """Change of θ_max/α at which a reference is not refined further: a few hundred times the rounding of θ_max/α = 1."""
 
 ACCEPTED = 1e-9
-"""Largest change with which it still serves as one, where rounding or sensitivity keeps it from settling."""
+"""Largest change of a reference that is accepted, if rounding or sensitivity keeps it from converging."""
 
 HALVINGS = 10
 
 REFERENCES, STEPS = 0.4, 0.7
-"""Shares of the time by which the references, and then the steps, are to be finished; what is left is SciPy's."""
+"""Shares of the time by which the references, and then the steps, are to be finished; the rest is SciPy's."""
 
 Setting = dict[str, Any]
 Simulate = Callable[[Sequence[PlannedRun]], list[tuple[str, float]]]
@@ -62,19 +62,19 @@ Simulate = Callable[[Sequence[PlannedRun]], list[tuple[str, float]]]
 
 
 class Clock:
-    """How long a measurement may take: so many ``seconds`` from now on."""
+    """Time budget of a measurement: ``seconds`` from now on."""
 
     def __init__(self, seconds: float = math.inf) -> None:
         self.seconds, self.started = seconds, time.monotonic()
 
     def left(self, share: float = 1.0) -> float:
-        """Seconds until ``share`` of the time is over."""
+        """Return the seconds until ``share`` of the time is over."""
         return self.started + share * self.seconds - time.monotonic()
 
 
 @dataclass(frozen=True)
 class Reference:
-    """A run, its outcome with a step so fine that it does not matter, and what the last halving changed [θ_max/α]."""
+    """A run, its converged outcome, and what the last halving changed [θ_max/α]."""
 
     run: PlannedRun
     outcome: Outcome
@@ -82,14 +82,14 @@ class Reference:
 
 
 def spread(runs: Sequence[PlannedRun], most: int) -> list[PlannedRun]:
-    """At most ``most`` of ``runs``, evenly over the study, the first and the last among them."""
+    """Return at most ``most`` of ``runs``, evenly over the study, the first and the last among them."""
     if len(runs) <= most:
         return list(runs)
     return [runs[i] for i in np.linspace(0, len(runs) - 1, most).round().astype(int)]
 
 
 def reference(run: PlannedRun, quiet_s: float, seconds: float = math.inf) -> Reference | None:
-    """Halve the step until it does not matter any more; None for a run that does not get there, or not in ``seconds``."""
+    """Halve the step until the outcome converges; None for a run that does not, or not in ``seconds``."""
     pier, base = run.case.pier, run.case.base
     clock, took = Clock(seconds), 0.0
     substeps = 2 * first_substeps(pier, base, run.motion.dt)
@@ -105,7 +105,7 @@ def reference(run: PlannedRun, quiet_s: float, seconds: float = math.inf) -> Ref
         moved = 0.0 if fine.status == "overturned" else abs(fine.theta_max - outcome.theta_max) / pier.alpha
         change = moved if fine.status == outcome.status and fine.status != "failed" else math.inf
         outcome = fine
-        if change <= SETTLED:
+        if change <= CONVERGED:
             break
     return Reference(run, outcome, change) if change <= ACCEPTED else None
 
@@ -113,7 +113,7 @@ def reference(run: PlannedRun, quiet_s: float, seconds: float = math.inf) -> Ref
 def references(
     study: Study, motions: MotionSet, most: int, listener: Listener, clock: Clock | None = None
 ) -> list[Reference]:
-    """References of at most so many runs of the study, as many as there is time for, but for those that do not settle.
+    """Return references of at most ``most`` runs of the study, as many as there is time for, without those that do not converge.
 
     Raises ``InputError`` if there is none.
     """
@@ -121,34 +121,34 @@ def references(
     runs = Plan(study, motions)
     chosen = spread(runs, most)
     listener.say(f"{len(chosen)} of {len(runs)} runs: their references, with ever smaller steps")
-    settled: dict[int, Reference] = {}
+    converged: dict[int, Reference] = {}
     tried = 0
-    with listener.progress(len(chosen)) as told:
+    with listener.progress(len(chosen)) as advance:
         for i in sorted(range(len(chosen)), key=_scattered):
-            left = clock.left(REFERENCES if settled else 1.0)
-            if left <= 0:
+            remaining = clock.left(REFERENCES if converged else 1.0)
+            if remaining <= 0:
                 break
-            found = reference(chosen[i], study.numerics.quiet_s, left)
-            settled |= {} if found is None else {i: found}
+            refined = reference(chosen[i], study.numerics.quiet_s, remaining)
+            converged |= {} if refined is None else {i: refined}
             tried += 1
-            if told is not None:
-                told(1)
-    if not settled:
+            if advance is not None:
+                advance(1)
+    if not converged:
         raise InputError(
             f"{study.path}: no run settles with ever smaller steps, so there is nothing to measure errors against; "
             "give it more time, or look at the runs that failed"
         )
-    if len(settled) < tried:
+    if len(converged) < tried:
         listener.say(
-            f"left out: {count(tried - len(settled), 'run')} that did not settle with ever smaller steps in time"
+            f"left out: {count(tried - len(converged), 'run')} that did not settle with ever smaller steps in time"
         )
     if tried < len(chosen):
         listener.say(f"left out, for want of time: {count(len(chosen) - tried, 'run')} (--seconds gives more)")
-    return [settled[i] for i in sorted(settled)]
+    return [converged[i] for i in sorted(converged)]
 
 
 def _scattered(i: int) -> float:
-    """A key by which the first few of a range are spread over all of it, wherever one stops: multiples of the golden section."""
+    """Return a key that spreads the first few of a range over all of it, wherever one stops: multiples of the golden section."""
     return i * 0.6180339887498949 % 1.0
 
 
@@ -159,7 +159,7 @@ def measure(
     listener: Listener | None = None,
     clock: Clock | None = None,
 ) -> "pd.DataFrame":
-    """Time and error of fixed steps, with and without the location of events, of the study's own setting, and of SciPy.
+    """Measure time and error of fixed steps, with and without the location of events, of the study's own setting, and of SciPy.
 
     Everything runs in one thread, and its processor time counts, whatever else the machine does: medians of
     :data:`REPEATS` passes over all runs, of fewer where ``clock`` says so. SciPy: one pass over at most :data:`SCIPY_RUNS`
@@ -174,7 +174,7 @@ def measure(
     listener, clock = listener or Listener(), clock or Clock()
     rows = _of_steps(study, references, listener, clock)
     if scipy:
-        rows += _yardstick(references, listener, clock)
+        rows += _of_scipy(references, listener, clock)
     table = pd.DataFrame(rows, columns=list(COLUMNS))
     table["substeps"] = table["substeps"].astype("Int64")
     table["tolerance"] = table["tolerance"].astype("float64")
@@ -184,7 +184,7 @@ def measure(
 
 
 def _of_steps(study: Study, references: Sequence[Reference], listener: Listener, clock: Clock) -> list[dict[str, Any]]:
-    """The study's own setting, which is measured first, below those with fixed steps for which there is time."""
+    """Return rows of the study's own setting, measured first, below those with fixed steps for which there is time."""
     numerics = study.numerics
 
     def fixed(substeps: int, locate: bool) -> Simulate:
@@ -204,7 +204,7 @@ def _of_steps(study: Study, references: Sequence[Reference], listener: Listener,
     listener.say(f"errors and times of {len(settings)} settings on {count(len(references), 'run')}")
     rows: list[dict[str, Any]] = []
     took = 0.0
-    with listener.progress(len(settings) * len(references)) as told:
+    with listener.progress(len(settings) * len(references)) as advance:
         for place, (setting, simulate) in enumerate(settings):
             if rows and 2 * took > clock.left():  # twice the steps take twice the time
                 listener.say(f"left out, for want of time: from {setting['substeps']} steps per sample on")
@@ -213,8 +213,8 @@ def _of_steps(study: Study, references: Sequence[Reference], listener: Listener,
             until = clock.left(REFERENCES + share * (STEPS - REFERENCES))
             rows.append(setting | _measured(references, simulate, REPEATS, until))
             took = time.monotonic() - started
-            if told is not None:
-                told(len(references))
+            if advance is not None:
+                advance(len(references))
     order = ("located", "not located", "study")
     return sorted(rows, key=lambda row: order.index(row["method"]))
 
@@ -223,39 +223,39 @@ def _ends(outcomes: Sequence[Outcome | None]) -> list[tuple[str, float]]:
     return [(outcome.status, outcome.theta_max) for outcome in outcomes if outcome is not None]  # none was stopped
 
 
-def _yardstick(references: Sequence[Reference], listener: Listener, clock: Clock) -> list[dict[str, Any]]:
-    """SciPy's solvers, from the loosest tolerance on; one that takes half of what time is left is not asked for more."""
+def _of_scipy(references: Sequence[Reference], listener: Listener, clock: Clock) -> list[dict[str, Any]]:
+    """Return rows of SciPy's solvers, from the loosest tolerance on; one that takes half of the time left goes no further."""
     from rockbatch.simulation.yardstick import OutOfTimeError, solve
 
-    chosen = [one for one in references if one.run.case.base.on_springs and one.outcome.status == "ok"]
+    chosen = [ref for ref in references if ref.run.case.base.on_springs and ref.outcome.status == "ok"]
     if len(chosen) > SCIPY_RUNS:  # from the middle of the study's halves
         chosen = [chosen[(2 * i + 1) * len(chosen) // (2 * SCIPY_RUNS)] for i in range(SCIPY_RUNS)]
     if not chosen:
         return []
 
-    after = {id(one.run): one.outcome.t_end - one.run.motion.duration for one in chosen}
+    after = {id(ref.run): ref.outcome.t_end - ref.run.motion.duration for ref in chosen}
 
-    def solver(method: str, tolerance: float, told: Told | None = None) -> Simulate:
+    def solver(method: str, tolerance: float, advance: Told | None = None) -> Simulate:
         def solved(run: PlannedRun) -> tuple[str, float]:
             pier, base, seconds = run.case.pier, run.case.base, 0.5 * clock.left()
-            found = solve(pier, base, run.motion, method, tolerance, after[id(run)], seconds)  # type: ignore[arg-type]
-            if told is not None:
-                told(1)
-            return found
+            outcome = solve(pier, base, run.motion, method, tolerance, after[id(run)], seconds)  # type: ignore[arg-type]
+            if advance is not None:
+                advance(1)
+            return outcome
 
         return lambda runs: list(map(solved, runs))
 
     listener.say("SciPy's solvers on the same equations (--no-scipy leaves them out)")
     rows: list[dict[str, Any]] = []
     going = list(SCIPY)
-    with listener.progress(len(SCIPY) * len(SCIPY_TOLERANCES) * len(chosen)) as told:
+    with listener.progress(len(SCIPY) * len(SCIPY_TOLERANCES) * len(chosen)) as advance:
         for tolerance in SCIPY_TOLERANCES:
             for method in tuple(going):
                 setting = {"method": f"SciPy {method}", "substeps": None, "tolerance": tolerance}
                 try:
                     if not rows:  # compiles what is called from Python
                         solver("LSODA", 1e-3)([chosen[0].run])
-                    rows.append(setting | _measured(chosen, solver(method, tolerance, told), 1))
+                    rows.append(setting | _measured(chosen, solver(method, tolerance, advance), 1))
                 except OutOfTimeError:
                     going.remove(method)
                     listener.say(f"left out, for want of time: SciPy {method} from rtol {tolerance:.0e} on")
@@ -265,19 +265,19 @@ def _yardstick(references: Sequence[Reference], listener: Listener, clock: Clock
 def _measured(
     references: Sequence[Reference], simulate: Simulate, repeats: int, seconds: float = math.inf
 ) -> dict[str, Any]:
-    """Errors and times of ``simulate`` over the referenced runs; once at least, again while there are ``seconds`` left."""
-    runs = [one.run for one in references]
+    """Return errors and times of ``simulate`` over the references; once at least, repeated while ``seconds`` remain."""
+    runs = [ref.run for ref in references]
     times: list[float] = []
     clock = Clock(seconds)
     while not times or (len(times) < repeats and clock.left() > 0):
         start = time.thread_time()
-        found = simulate(runs)
+        ends = simulate(runs)
         times.append(time.thread_time() - start)
-    done = sum(math.isfinite(theta_max) for _, theta_max in found)  # a step that would blow up is not run
-    same = [status == one.outcome.status for one, (status, _) in zip(references, found, strict=True)]
+    done = sum(math.isfinite(theta_max) for _, theta_max in ends)  # a step that would blow up is not run
+    same = [status == ref.outcome.status for ref, (status, _) in zip(references, ends, strict=True)]
     errors = [
-        abs(theta_max - one.outcome.theta_max) / one.run.case.pier.alpha
-        for one, alike, (status, theta_max) in zip(references, same, found, strict=True)
+        abs(theta_max - ref.outcome.theta_max) / ref.run.case.pier.alpha
+        for ref, alike, (status, theta_max) in zip(references, same, ends, strict=True)
         if alike and status != "overturned"
     ]
     return {
@@ -287,5 +287,5 @@ def _measured(
         "error_max": max(errors, default=None),
         "seconds_per_run": statistics.median(times) / done if done else None,
         "status_differs": same.count(False),
-        "reference_change": max(one.change for one in references),
+        "reference_change": max(ref.change for ref in references),
     }

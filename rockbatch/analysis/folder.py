@@ -1,4 +1,4 @@
-"""What an analysis comes to, and what it leaves in a folder: its tables, and NAME.json, which says what they hold."""
+"""Results of an analysis and its folder: the tables, and NAME.json, which describes them."""
 
 import hashlib
 import json
@@ -28,18 +28,18 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Analysis(Shown):
-    """What an analysis came to: each of its tables is an attribute with the name of its CSV file, None where there is none.
+    """Results of an analysis: each table is an attribute with the name of its CSV file, None if the analysis has none.
 
     Attributes
     ----------
     study : Study
-        What was asked.
+        The study that was analysed.
     info : dict
-        NAME.json: what was done, and what it cost.
+        NAME.json: what was done, and its cost.
     unusable : tuple of Unusable
         Files of the study that are no usable records, and why.
     files : tuple of Path
-        What was written; empty where nothing was.
+        Paths written; empty if none were.
     """
 
     NAME: ClassVar[str]
@@ -52,7 +52,7 @@ class Analysis(Shown):
 
     @property
     def tables(self) -> "dict[str, pd.DataFrame]":
-        """Those that there are, by their names."""
+        """Return the tables that the analysis has, by their names."""
         return {name: table for name in self.TABLES if (table := getattr(self, name)) is not None}
 
     def _told(self) -> tuple[str, dict[str, str]]:
@@ -70,7 +70,7 @@ class Analysis(Shown):
         return self.tables.get(self.NAME)
 
     def save(self, folder: str | os.PathLike[str]) -> tuple[Path, ...]:
-        """Write what the command leaves in ``folder``: the tables, NAME.json and the report; returns their paths.
+        """Write what the command leaves in ``folder``: the tables, NAME.json and the report; return their paths.
 
         Raises ``InputError`` if the disk is full, or if another process is writing into the folder.
         """
@@ -88,11 +88,11 @@ class Analysis(Shown):
 
 
 class AnalysisFolder:
-    """What an analysis leaves in a folder: its tables, and NAME.json, which says what they hold.
+    """Folder of an analysis: its tables, and NAME.json, which describes them.
 
-    ``info`` is what NAME.json will say: what was done, in which ``files`` it is, and of which runs, by their digests; its own
-    is added. It is written as soon as a table is, so that a command that was killed later takes it as it is. In a folder that is
-    ``passing`` there is no report.
+    ``info`` is the content of NAME.json: what was done, in which ``files`` it is, and of which runs, by their digests; the
+    analysis adds its own. It is written as soon as a table is, so that a later command takes the table as it is if this one is
+    killed. A folder that is ``passing`` has no report.
     """
 
     def __init__(
@@ -117,15 +117,15 @@ class AnalysisFolder:
     def under(self, motions: Sequence[Motion]) -> None:
         """Note the ground motions, for the report to name them."""
         self.info["under"] = [
-            {"record": one.name, "label": one.label, "vertical": one.pga_vertical is not None} for one in motions
+            {"record": m.name, "label": m.label, "vertical": m.pga_vertical is not None} for m in motions
         ]
 
     def has(self, file: str, digest: Mapping[str, str]) -> bool:
-        """Whether ``file`` holds the runs with that digest already; ``InputError`` where it is not as it was written."""
-        path, found = self.directory / file, self._earlier.get(file)
-        if not (isinstance(found, dict) and found.get("runs") == digest and is_plain(path)):
+        """Return whether ``file`` holds the runs with that digest already; raises ``InputError`` if it was edited."""
+        path, earlier = self.directory / file, self._earlier.get(file)
+        if not (isinstance(earlier, dict) and earlier.get("runs") == digest and is_plain(path)):
             return False
-        if found.get("sha256") != sha256_of(path):
+        if earlier.get("sha256") != sha256_of(path):
             raise InputError(
                 f"{path}: not as it was written; nothing is run: keep it as a copy elsewhere if it was edited, and start "
                 "over with --fresh"
@@ -134,7 +134,7 @@ class AnalysisFolder:
 
     @contextmanager
     def journal(self, file: str, columns: Sequence[str], digest: Mapping[str, str]) -> Iterator[Journal]:
-        """The journal of the runs in ``file``; tells what is in it already, and what stays in it after Ctrl-C."""
+        """Yield the journal of the runs in ``file``; report what is in it already, and what stays in it after Ctrl-C."""
         with Journal(self.directory / f"{file}.part", columns, digest, self.fresh, tell=self.listener.say) as journal:
             if len(journal):
                 self.listener.say(f"{count(len(journal), 'run')} are finished already (--fresh starts over)")
@@ -163,12 +163,12 @@ class AnalysisFolder:
         (self.directory / file).unlink(missing_ok=True)
 
     def tables(self, names: Sequence[str]) -> dict[str, Any]:
-        """The tables NAME.csv as the disk has them; None where this analysis has none."""
+        """Return the tables NAME.csv as the disk has them; None for those that this analysis does not have."""
         files = self.info["files"]
         return {name: read_table(self.directory / f"{name}.csv") if f"{name}.csv" in files else None for name in names}
 
     def end(self, **cost: object) -> tuple[Path, ...]:
-        """Note what the analysis cost, and write the report; returns all files that there are to stay."""
+        """Note what the analysis cost, and write the report; return all files that stay."""
         self.info |= cost
         self._write_info()
         if self.passing:
@@ -177,15 +177,15 @@ class AnalysisFolder:
         return (*(self.directory / file for file in self.info["files"]), self.path, report)
 
     def _write_info(self) -> None:
-        told = self.info | {"sha256": digest_of(self.info)}
-        write_whole(self.path, json.dumps(told, indent=1, ensure_ascii=False) + "\n")
+        content = self.info | {"sha256": digest_of(self.info)}
+        write_whole(self.path, json.dumps(content, indent=1, ensure_ascii=False) + "\n")
 
 
 @contextmanager
 def analysis_folder(
     out: str | os.PathLike[str] | None, name: str, study: Study, fresh: bool, listener: Listener
 ) -> Iterator[AnalysisFolder]:
-    """The folder of an analysis; without ``out`` one that passes, with all that is in it."""
+    """Yield the folder of an analysis; without ``out`` a temporary one, removed with all that is in it."""
     if out is not None:
         yield AnalysisFolder(Path(out), name, study, fresh=fresh, listener=listener)
         return
@@ -194,7 +194,7 @@ def analysis_folder(
 
 
 def _earlier(path: Path) -> dict[str, Any]:
-    """Digests of the runs in each file, and of the file, as an earlier analysis has noted them."""
+    """Return the digests of the runs in each file, and of the file, as an earlier analysis has noted them."""
     try:
         return dict(json.loads(read_text(path))["digests"])
     except (OSError, ValueError, KeyError, TypeError, RecursionError):

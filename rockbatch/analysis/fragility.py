@@ -1,4 +1,4 @@
-"""Fragility of a study: from what it asks to its tables."""
+"""Fragility of a study: the analysis and its tables."""
 
 import os
 import time
@@ -38,7 +38,7 @@ class Fragility(Analysis):
     curves : tuple of Curve
         Medians, dispersions and their intervals, or why there are none.
     spec : FragilitySpec
-        What [fragility] of the study asks for.
+        The settings in [fragility] of the study.
     """
 
     NAME: ClassVar[str] = "fragility"
@@ -60,7 +60,7 @@ def fragility(
     fresh: bool = False,
     progress: Progress = None,
 ) -> Fragility:
-    """How probable overturning, and every limit of a check, is at a given intensity: [fragility] of a study.
+    """Compute how probable overturning, and every limit of a check, is at a given intensity: [fragility] of a study.
 
     Every horizontal component is a record here, whatever [suite] says: a probability is that of a motion along the pier. Those
     of one station are not independent, so that the bands are then too narrow.
@@ -68,10 +68,9 @@ def fragility(
     Parameters
     ----------
     study, motions, jobs, fresh, progress
-        As for :func:`rockbatch.run`; there is a new count for each wave of runs.
+        As for :func:`rockbatch.run`; the count starts anew for each wave of runs.
     out : path, optional
-        Folder for what ``rockbatch fragility`` leaves, which is gone on with if it was interrupted; without it nothing is
-        kept on disk.
+        Folder for the files of ``rockbatch fragility``, continued if it was interrupted; without it nothing is kept on disk.
 
     Returns
     -------
@@ -85,20 +84,20 @@ def fragility(
 
     Examples
     --------
-    >>> found = rb.fragility("pier4.toml")
-    >>> found
+    >>> result = rb.fragility("pier4.toml")
+    >>> result
     <fragility of 'Pier 4'>
       tables  fragility (16 rows), fragility_runs (16 rows)
-    >>> [path.name for path in found.save("reports/fragility")]
+    >>> [path.name for path in result.save("reports/fragility")]
     ['fragility.csv', 'fragility_runs.csv', 'fragility.json', 'analyses.html']
     """
     started = time.monotonic()
     asked, listener, carrier = given_study(study, motions), listener_of(progress), engine_of(jobs)
     spec = read_fragility(asked)
     asked = replace(asked, output=output(spec, asked.output))
-    found = ground_motions(asked)
-    listener.motions(found)
-    records = found.motions
+    suite = ground_motions(asked)
+    listener.motions(suite)
+    records = suite.motions
     unscaled = intensities(records, spec, asked.cases[0].pier.gravity)
     if asked.motions.scale != (1.0,):
         listener.say("scale of [motions] is not used: the levels of [fragility] take its place")
@@ -115,7 +114,7 @@ def fragility(
         carrier,
     ):
         results.under(records)
-        listener.say(f"{_what(spec, asked, len(records))} on {carrier}{_then(spec)}")
+        listener.say(f"{_planned(spec, asked, len(records))} on {carrier}{_afterwards(spec)}")
         make_ready(asked, listener)
         waves = Waves(asked, journal, carrier, listener.progress)
         curves = assess(asked, spec, records, waves)
@@ -133,7 +132,7 @@ def fragility(
         return Fragility(
             study=asked,
             info=results.info,
-            unusable=tuple(found.unusable),
+            unusable=tuple(suite.unusable),
             files=files,
             **results.tables(Fragility.TABLES),
             curves=tuple(curves),
@@ -141,11 +140,11 @@ def fragility(
         )
 
 
-def _what(spec: FragilitySpec, study: Study, records: int) -> str:
+def _planned(spec: FragilitySpec, study: Study, records: int) -> str:
     runs = records * len(spec.levels) * len(study.cases)
     levels = f"{count(records, 'record')} at {len(spec.levels)} levels of {spec.label}"
     return f"{levels}: {count(runs, 'run')}{once(study)}"
 
 
-def _then(spec: FragilitySpec) -> str:
+def _afterwards(spec: FragilitySpec) -> str:
     return f"; then first exceedances are hunted for and bisected to {spec.tolerance:g}" if spec.method == "ida" else ""

@@ -81,9 +81,10 @@ class Stripe(NamedTuple):
 
 
 class Undecided(NamedTuple):
-    """Of how many ``runs`` of a curve it is not known on which side of the limit they are: they flew, failed, or else.
+    """Runs of a curve of which it is not known on which side of the limit they are: they flew, failed, or else.
 
-    ``other`` are within their error of the limit, or overturned where the check counts that as unknown.
+    ``runs`` is the number of all runs of the curve; ``other`` are within their error of the limit, or overturned where the
+    check counts that as unknown.
     """
 
     runs: int
@@ -93,15 +94,15 @@ class Undecided(NamedTuple):
 
     @property
     def number(self) -> int:
-        """All of them."""
+        """Return the number of all of them."""
         return self.flight + self.failed + self.other
 
     @property
     def words(self) -> str:
-        """ "12 of 400 runs undecided: 10 flew, 2 failed"; empty where there are none."""
+        """Return "12 of 400 runs undecided: 10 flew, 2 failed"; empty if there are none."""
         kinds = {"flew": self.flight, "failed": self.failed, "too near to the limit, or counted as unknown": self.other}
-        told = ", ".join(f"{number} {kind}" for kind, number in kinds.items() if number)
-        return f"{self.number} of {self.runs} runs undecided: {told}" if told else ""
+        parts = ", ".join(f"{number} {kind}" for kind, number in kinds.items() if number)
+        return f"{self.number} of {self.runs} runs undecided: {parts}" if parts else ""
 
 
 class Readings(NamedTuple):
@@ -112,13 +113,13 @@ class Readings(NamedTuple):
 
     @property
     def medians(self) -> tuple[float, float]:
-        """From the one to the other; 0 or infinite where that has no curve."""
+        """Return both medians, the lower first; 0 or infinite for one without a curve."""
         low = self.exceeded.median if isinstance(self.exceeded, Lognormal) else 0.0
         high = self.withstood.median if isinstance(self.withstood, Lognormal) else math.inf
         return min(low, high), max(low, high)
 
     def probability(self, x: Values) -> tuple[Values, Values]:
-        """P(x) from the one to the other, each of the shape of ``x``; 0 or 1 where that has no curve."""
+        """Return both P(x), the lower first, each of the shape of ``x``; 0 or 1 for one without a curve."""
         low = self.withstood.probability(x) if isinstance(self.withstood, Lognormal) else np.zeros(len(x))
         high = self.exceeded.probability(x) if isinstance(self.exceeded, Lognormal) else np.ones(len(x))
         return np.minimum(low, high), np.maximum(low, high)
@@ -131,15 +132,15 @@ class Curve:
     Attributes
     ----------
     case, limit
-        Which.
+        Its case and its limit.
     stripes : tuple of Stripe
         Counts at every level.
     fitted : Lognormal or str
         The curve, to which undecided runs add nothing, or why there is none.
     undecided : Undecided
-        How many runs these are.
+        Number of undecided runs.
     readings : Readings or None
-        The curves between which it lies, whatever they would have come to; None where there are none.
+        The curves between which it lies, whatever undecided runs would have come to; None without any.
     capacities : tuple of (int, Capacity)
         Number of each motion that counts, and its capacity; empty for stripes.
     """
@@ -154,7 +155,7 @@ class Curve:
 
     @property
     def says_little(self) -> bool:
-        """Whether undecided runs leave the median more open than the number of records does."""
+        """Return whether undecided runs leave the median more open than the number of records does."""
         if self.readings is None or not isinstance(self.fitted, Lognormal):
             return False
         return _ratio(self.readings.medians) > _ratio(self.fitted.median_interval)
@@ -178,8 +179,8 @@ def output(spec: FragilitySpec, asked: Output) -> Output:
 
 
 def intensities(motions: Iterable[Motion], spec: FragilitySpec, gravity: float) -> list[float]:
-    """Intensity measure of every motion as it is, in the unit of the levels; ``InputError`` for one that has none."""
-    found, wrong = [], []
+    """Return the intensity measure of every motion as it is, in the unit of the levels; raises ``InputError`` if one has none."""
+    measures, wrong = [], []
     for motion in motions:
         if spec.measure == "PGA":
             value = motion.pga / gravity
@@ -192,16 +193,16 @@ def intensities(motions: Iterable[Motion], spec: FragilitySpec, gravity: float) 
                 f"{motion.name}: its horizontal component has {spec.label} = 0, and no scale brings it to a level; "
                 "take it out of [motions]"
             )
-        found.append(float(value))
+        measures.append(float(value))
     if wrong:
         raise InputError(*wrong)
-    return found
+    return measures
 
 
 def assess(study: Study, spec: FragilitySpec, motions: Sequence[Motion], simulate: Simulate) -> list[Curve]:
-    """Fragility curves of every case and every limit that it is asked about.
+    """Return the fragility curves of every case for every limit that applies to it.
 
-    Every record is scaled to every level; with method "ida" the first exceedance of every record is then hunted below that on
+    Every record is scaled to every level; with method "ida" the first exceedance of every record is then sought below that on
     the levels, in one wave, and bisected, in more of them.
 
     ``simulate`` is called once for the levels and once for every wave, each depending on the rows before.
@@ -211,7 +212,7 @@ def assess(study: Study, spec: FragilitySpec, motions: Sequence[Motion], simulat
     asked = [(c, rule) for rule in spec.limits for c, case in enumerate(cases) if applies(rule, case)]
     runs.carry_out(Point(m, x, c) for m in range(len(motions)) for x in spec.levels for c in range(len(cases)))
 
-    def look(wanted: Sequence[tuple[_Key, float]]) -> list[int]:
+    def states_of(wanted: Sequence[tuple[_Key, float]]) -> list[int]:
         points = [(rule, Point(m, x, c)) for (c, rule, m), x in wanted]
         runs.carry_out(point for _, point in points)
         return runs.states(points)
@@ -220,8 +221,8 @@ def assess(study: Study, spec: FragilitySpec, motions: Sequence[Motion], simulat
     on_levels = iter(runs.states([(rule, Point(m, x, c)) for c, rule, m in keys for x in spec.levels]))
     looks = {key: {x: next(on_levels) for x in spec.levels} for key in keys}
     if spec.method == "ida":
-        looks = hunt(looks, spec.levels, lambda key: spec.step_on(study.cases[key[0]].base), look)
-        looks = bisect(looks, spec.levels, spec.tolerance, look)
+        looks = hunt(looks, spec.levels, lambda key: spec.step_on(study.cases[key[0]].base), states_of)
+        looks = bisect(looks, spec.levels, spec.tolerance, states_of)
     return [_curve(runs, spec, c, rule, [looks[c, rule, m] for m in range(len(motions))]) for c, rule in asked]
 
 
@@ -239,7 +240,7 @@ class _Runs:
         self._last: tuple[dict[Point, int], pd.DataFrame]
 
     def carry_out(self, wanted: Iterable[Point]) -> None:
-        """One wave of runs."""
+        """Carry out one wave of runs."""
         points = sorted({*wanted})  # what shares a motion stands together
         polarity = self.study.motions.simulated
         table = self.simulate(ScaledRuns(points, self.motions, self.unscaled, self.study.cases, polarity))
@@ -247,28 +248,28 @@ class _Runs:
         self._last = {point: i for i, point in enumerate(points)}, table
 
     def states(self, asked: Sequence[tuple[Rule, Point]]) -> list[int]:
-        """What runs of the last wave say about limits."""
+        """Return the states of runs of the last wave with respect to limits."""
         places, table = self._last
         together: dict[tuple[Rule, int], list[int]] = {}
         for number, (rule, point) in enumerate(asked):
             together.setdefault((rule, point.case), []).append(number)
-        found = [LEFT_OUT] * len(asked)
+        result = [LEFT_OUT] * len(asked)
         for (rule, case), numbers in together.items():
             rows = table.iloc[[places[asked[number][1]] for number in numbers]]
             for number, state in zip(numbers, states(rule, rows, self.cases[case]).tolist(), strict=True):
-                found[number] = state
-        return found
+                result[number] = state
+        return result
 
 
 def _curve(runs: _Runs, spec: FragilitySpec, case: int, rule: Rule, looks: Sequence[Looks]) -> Curve:
-    """The curve through what every motion came to."""
-    on_levels = np.array([[each[x] for x in spec.levels] for each in looks], dtype=np.int8)
+    """Return the curve through the states of every motion."""
+    on_levels = np.array([[own[x] for x in spec.levels] for own in looks], dtype=np.int8)
     undecided = _undecided(runs, case, looks)
     capacities: tuple[tuple[int, Capacity], ...] = ()
     if spec.method == "ida":
-        found = ((m, capacity(each, spec.levels)) for m, each in enumerate(looks))
-        capacities = tuple((m, one) for m, one in found if one is not None)
-        fits = _through_brackets([one for _, one in capacities], spec)
+        by_motion = ((m, capacity(own, spec.levels)) for m, own in enumerate(looks))
+        capacities = tuple((m, known) for m, known in by_motion if known is not None)
+        fits = _through_brackets([known for _, known in capacities], spec)
     else:
         fits = _through_stripes(on_levels, spec)
     stripes = _stripes(on_levels, spec.levels, runs, case)
@@ -276,17 +277,17 @@ def _curve(runs: _Runs, spec: FragilitySpec, case: int, rule: Rule, looks: Seque
 
 
 def _undecided(runs: _Runs, case: int, looks: Sequence[Looks]) -> Undecided:
-    counted = [(Point(m, x, case), state) for m, each in enumerate(looks) for x, state in each.items()]
+    counted = [(Point(m, x, case), state) for m, own in enumerate(looks) for x, state in own.items()]
     status = Counter(runs.status[point] for point, state in counted if state == UNDECIDED)
     flight, failed = status.pop("flight", 0), status.pop("failed", 0)
     return Undecided(sum(state != LEFT_OUT for _, state in counted), flight, failed, status.total())
 
 
-def _stripes(found: npt.NDArray[np.int8], levels: Sequence[float], runs: _Runs, case: int) -> tuple[Stripe, ...]:
+def _stripes(observed: npt.NDArray[np.int8], levels: Sequence[float], runs: _Runs, case: int) -> tuple[Stripe, ...]:
     stripes = []
-    for x, at in zip(levels, found.T, strict=True):
-        ended = Counter(runs.status[Point(m, x, case)] for m in range(len(at)))
-        counts = (int(np.count_nonzero(which)) for which in (at != LEFT_OUT, at == EXCEEDED, at == UNDECIDED))
+    for x, row in zip(levels, observed.T, strict=True):
+        ended = Counter(runs.status[Point(m, x, case)] for m in range(len(row)))
+        counts = (int(np.count_nonzero(which)) for which in (row != LEFT_OUT, row == EXCEEDED, row == UNDECIDED))
         stripes.append(Stripe(x, *counts, *(ended[status] for status in ("overturned", "flight", "failed"))))
     return tuple(stripes)
 
@@ -294,9 +295,9 @@ def _stripes(found: npt.NDArray[np.int8], levels: Sequence[float], runs: _Runs, 
 Fits = tuple[Lognormal | str, Readings | None]
 
 
-def _through_stripes(found: npt.NDArray[np.int8], spec: FragilitySpec) -> Fits:
+def _through_stripes(observed: npt.NDArray[np.int8], spec: FragilitySpec) -> Fits:
     levels = np.array(spec.levels)
-    within, undecided, beyond = ((found == state).astype(float) for state in (WITHSTOOD, UNDECIDED, EXCEEDED))
+    within, undecided, beyond = ((observed == state).astype(float) for state in (WITHSTOOD, UNDECIDED, EXCEEDED))
 
     def through(within: Values, beyond: Values) -> Lognormal | str:
         return fit(Capacities.of_same_records(levels, within, beyond), spec.confidence)
@@ -310,12 +311,12 @@ def _through_stripes(found: npt.NDArray[np.int8], spec: FragilitySpec) -> Fits:
 def _through_brackets(capacities: Sequence[Capacity], spec: FragilitySpec) -> Fits:
     def through(brackets: Sequence[Bracket]) -> Lognormal | str:
         low, high = np.array(brackets, dtype=np.float64).reshape(-1, 2).T
-        told = (low > 0) | np.isfinite(high)
-        return fit(Capacities(low[told], high[told], np.ones(told.sum())), spec.confidence)
+        informative = (low > 0) | np.isfinite(high)
+        return fit(Capacities(low[informative], high[informative], np.ones(informative.sum())), spec.confidence)
 
-    fitted = through([one.decided for one in capacities])
-    if not any(one.undecided for one in capacities):
+    fitted = through([known.decided for known in capacities])
+    if not any(known.undecided for known in capacities):
         return fitted, None
     return fitted, Readings(
-        *(through([getattr(one, name) for one in capacities]) for name in ("if_exceeded", "if_withstood"))
+        *(through([getattr(known, name) for known in capacities]) for name in ("if_exceeded", "if_withstood"))
     )

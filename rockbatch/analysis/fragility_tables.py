@@ -1,4 +1,4 @@
-"""Fragility curves as they are written down: points and capacities as tables, fits and bands for fragility.json."""
+"""Fragility curves as output: points and capacities as tables, fits and bands for fragility.json."""
 
 import math
 from collections.abc import Sequence
@@ -19,11 +19,11 @@ if TYPE_CHECKING:
 
 POINTS, CAPACITIES, RUNS = "fragility.csv", "fragility_capacities.csv", "fragility_runs.csv"
 SAMPLES = 80
-"""Of a curve and its band."""
+"""Points of a curve and its band."""
 
 
 def points(curves: Sequence[Curve], spec: FragilitySpec, varied: Sequence[str]) -> "pd.DataFrame":
-    """fragility.csv: a row for each curve and level, with the counts of :class:`Stripe` as columns.
+    """Return fragility.csv: a row for each curve and level, with the counts of :class:`Stripe` as columns.
 
     ``p`` is the curve there; it is between ``p_low`` and ``p_high``, whatever the undecided runs of all levels come to.
     """
@@ -34,14 +34,14 @@ def points(curves: Sequence[Curve], spec: FragilitySpec, varied: Sequence[str]) 
         own = {"measure": spec.label, "unit": spec.unit}
         p = _probabilities(curve, np.array(spec.levels))
         rows += [
-            _which(curve, varied) | own | stripe._asdict() | {name: float(of[i]) for name, of in p.items()}
+            _which(curve, varied) | own | stripe._asdict() | {name: float(values[i]) for name, values in p.items()}
             for i, stripe in enumerate(curve.stripes)
         ]
     return pd.DataFrame(rows).rename(columns={"records": "n"})
 
 
 def _probabilities(curve: Curve, x: Values) -> dict[str, Values]:
-    """P(x) of a curve, and what it lies between; NaN where there is none."""
+    """Return P(x) of a curve, and what it lies between; NaN without a curve."""
     p = curve.fitted.probability(x) if isinstance(curve.fitted, Lognormal) else np.full(len(x), np.nan)
     low, high = curve.readings.probability(x) if curve.readings else (p, p)
     return {"p": p, "p_low": np.fmin(low, p), "p_high": np.fmax(high, p)}
@@ -50,11 +50,11 @@ def _probabilities(curve: Curve, x: Values) -> dict[str, Values]:
 def capacities(
     curves: Sequence[Curve], spec: FragilitySpec, varied: Sequence[str], names: Sequence[str], unscaled: Sequence[float]
 ) -> "pd.DataFrame":
-    """fragility_capacities.csv: a row for each curve and record.
+    """Return fragility_capacities.csv: a row for each curve and record.
 
     A capacity is above ``above`` and at most ``at_most`` by the runs that are decided, in the unit of the levels; the same as
     scales of the record. Below it ``undecided`` runs are not: it is at most ``if_exceeded`` if they exceed the limit, and above
-    ``if_withstood`` if they withstand it. ``widest_step`` is the greatest relative step between looks below it: an exceedance
+    ``if_withstood`` if they withstand it. ``widest_step`` is the greatest relative step between runs below it: an exceedance
     in a narrower window may have been missed.
     ``names`` and ``unscaled`` are those of the motions, and their intensities as they are.
     """
@@ -62,17 +62,17 @@ def capacities(
 
     rows: list[dict[str, Any]] = []
     for curve in curves:
-        for motion, one in curve.capacities:
-            bounds = {"above": one.decided.low, "at_most": _or_nothing(one.decided.high)}
+        for motion, cap in curve.capacities:
+            bounds = {"above": cap.decided.low, "at_most": _or_nothing(cap.decided.high)}
             otherwise = {
-                "if_exceeded": _or_nothing(one.if_exceeded.high) if one.undecided else math.nan,
-                "if_withstood": one.if_withstood.low if one.undecided else math.nan,
+                "if_exceeded": _or_nothing(cap.if_exceeded.high) if cap.undecided else math.nan,
+                "if_withstood": cap.if_withstood.low if cap.undecided else math.nan,
             }
             rows.append(
                 {"record": names[motion], **_which(curve, varied), "measure": spec.label, "unit": spec.unit}
-                | {"found": _found(one), **bounds}
+                | {"found": _state(cap), **bounds}
                 | {f"scale_{name}": bound / unscaled[motion] for name, bound in bounds.items()}
-                | {"undecided": one.undecided, **otherwise, "returns": one.returns, "widest_step": one.widest_step}
+                | {"undecided": cap.undecided, **otherwise, "returns": cap.returns, "widest_step": cap.widest_step}
             )
     return pd.DataFrame(rows)
 
@@ -86,16 +86,16 @@ def _which(curve: Curve, varied: Sequence[str]) -> dict[str, Any]:
     return {"case": curve.case.name, **columns, "limit_state": curve.limit.name}
 
 
-def _found(one: Capacity) -> str:
-    if one.undecided:
+def _state(cap: Capacity) -> str:
+    if cap.undecided:
         return "undecided"
-    if math.isinf(one.decided.high):
+    if math.isinf(cap.decided.high):
         return "beyond the highest level"
-    return "below the lowest level" if one.decided.low == 0 else "exceeded"
+    return "below the lowest level" if cap.decided.low == 0 else "exceeded"
 
 
 def described(curves: Sequence[Curve], spec: FragilitySpec, study: Study, records: int) -> dict[str, Any]:
-    """What fragility.json says: what was asked, and every curve; an open bound of an interval is null."""
+    """Return the content of fragility.json: what was asked, and every curve; an open bound of an interval is null."""
     return {
         "method": spec.method,
         "measure": spec.label,
@@ -111,34 +111,34 @@ def described(curves: Sequence[Curve], spec: FragilitySpec, study: Study, record
 
 
 def looked_at(curves: Sequence[Curve], spec: FragilitySpec) -> str:
-    """Where first exceedances were looked for, case by case, in words; empty for stripes."""
+    """Return where first exceedances were sought, case by case, in words; empty for stripes."""
     if spec.method != "ida":
         return ""
     hunted = {curve.case.name: step for curve in curves if (step := spec.step_on(curve.case.base)) is not None}
     others = list(dict.fromkeys(curve.case.name for curve in curves if curve.case.name not in hunted))
-    told = []
+    parts = []
     if hunted:
         width = f"{100 * next(iter(hunted.values())):g} %"
-        told.append(f"in steps of {width} from the lowest level up ({', '.join(hunted)}), which miss narrower windows")
+        parts.append(f"in steps of {width} from the lowest level up ({', '.join(hunted)}), which miss narrower windows")
     if others:
         apart = max(high / low - 1.0 for low, high in pairwise(spec.levels))
-        told.append(
+        parts.append(
             f"at the levels alone, up to {100 * apart:.0f} % apart ({', '.join(others)}): an exceedance between two of them, "
             "below the first on the levels, is missed, and the median may be too high; hunt_step in [fragility] looks there too"
         )
-    return "first exceedances were looked for " + "; ".join(told)
+    return "first exceedances were looked for " + "; ".join(parts)
 
 
 def _looked(curve: Curve, spec: FragilitySpec) -> list[tuple[float, float]]:
-    """Where all records were looked at up to their first exceedance: intervals, of no width at a level."""
+    """Return the intervals in which all records were run up to their first exceedance; of no width at a level."""
     if spec.step_on(curve.case.base) is None:
         return [(level, level) for level in spec.levels]
-    return [(spec.levels[0], min(spec.levels[-1], max((one.decided.high for _, one in curve.capacities), default=0.0)))]
+    return [(spec.levels[0], min(spec.levels[-1], max((cap.decided.high for _, cap in curve.capacities), default=0.0)))]
 
 
 def _described(curve: Curve, spec: FragilitySpec) -> dict[str, Any]:
     fitted, readings = curve.fitted, curve.readings
-    told: dict[str, Any] = {
+    content: dict[str, Any] = {
         "case": curve.case.name,
         "columns": curve.case.columns,
         "limit_state": curve.limit.name,
@@ -152,23 +152,23 @@ def _described(curve: Curve, spec: FragilitySpec) -> dict[str, Any]:
         "says_little": curve.says_little,
         "median_undecided": _finite(readings.medians) if readings else None,
         "points": [stripe._asdict() for stripe in curve.stripes],
-        "capacities": [_finite(one.decided) for _, one in curve.capacities],
+        "capacities": [_finite(cap.decided) for _, cap in curve.capacities],
         "looked": _looked(curve, spec) if spec.method == "ida" else [],
     }
     x = np.linspace(0.0, 1.1 * spec.levels[-1], SAMPLES + 1)[1:]
     if readings:
         p = _probabilities(curve, x)
-        told["open"] = _rounded({"x": x, "low": p["p_low"], "high": p["p_high"]})
+        content["open"] = _rounded({"x": x, "low": p["p_low"], "high": p["p_high"]})
     if isinstance(fitted, Lognormal):
         drawn = dict(zip(("x", "p", "low", "high"), (x, fitted.probability(x), *fitted.band(x)), strict=True))
-        told |= {
+        content |= {
             "median": fitted.median,
             "median_interval": _finite(fitted.median_interval),
             "dispersion": fitted.dispersion,
             "dispersion_interval": _finite(fitted.dispersion_interval),
             "curve": _rounded(drawn),
         }
-    return told
+    return content
 
 
 def _rounded(drawn: dict[str, Values]) -> dict[str, list[float]]:
@@ -176,12 +176,12 @@ def _rounded(drawn: dict[str, Values]) -> dict[str, list[float]]:
 
 
 def _finite(bounds: tuple[float, float]) -> list[float | None]:
-    """JSON has no infinity."""
+    """Return ``bounds`` with None for infinity, which JSON does not have."""
     return [bound if math.isfinite(bound) else None for bound in bounds]
 
 
 def note(curve: Curve, spec: FragilitySpec) -> str:
-    """What to know about a curve, or why there is none."""
+    """Return remarks on a curve, or why there is none."""
     fitted = curve.fitted
     notes = [_about_undecided(curve), fitted if isinstance(fitted, str) else ""]
     if isinstance(fitted, Lognormal):
@@ -191,20 +191,20 @@ def note(curve: Curve, spec: FragilitySpec) -> str:
             notes.append("the median is extrapolated below the lowest level")
         if any(math.isinf(bound) for bound in (*fitted.median_interval, *fitted.dispersion_interval)):
             notes.append("the records leave the intervals open: more of them, or other levels, would close them")
-    if returning := sum(one.returns > 0 for _, one in curve.capacities):
+    if returning := sum(cap.returns > 0 for _, cap in curve.capacities):
         notes.append(f"{returning} of {len(curve.capacities)} records withstand a level above their first exceedance")
     return "; ".join(filter(None, notes))
 
 
 def _about_undecided(curve: Curve) -> str:
-    """How many runs are undecided, and what the curve would be with them."""
-    told = curve.undecided.words
-    if not told:
+    """Return how many runs are undecided, and what the curve would be with them."""
+    remark = curve.undecided.words
+    if not remark:
         return ""
     if curve.readings is None:
-        return f"{told}, above the first exceedance of their records, where they change nothing"
+        return f"{remark}, above the first exceedance of their records, where they change nothing"
     beyond, within = (
-        f"a median of {one.median:.4g}" if isinstance(one, Lognormal) else f"no curve ({one})" for one in curve.readings
+        f"a median of {fit.median:.4g}" if isinstance(fit, Lognormal) else f"no curve ({fit})" for fit in curve.readings
     )
-    told += f"; they count for nothing here: as beyond the limit they would give {beyond}, as within it {within}"
-    return f"says little: {told}" if curve.says_little else told
+    remark += f"; they count for nothing here: as beyond the limit they would give {beyond}, as within it {within}"
+    return f"says little: {remark}" if curve.says_little else remark

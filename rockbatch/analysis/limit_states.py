@@ -1,4 +1,4 @@
-"""Whether a run exceeds a limit: a check of the study, asked of one record at a time."""
+"""States of runs with respect to a limit: a check of the study, applied to one record at a time."""
 
 from typing import TYPE_CHECKING
 
@@ -15,27 +15,27 @@ if TYPE_CHECKING:
     import pandas as pd
 
 LEFT_OUT, WITHSTOOD, UNDECIDED, EXCEEDED = -1, 0, 1, 2
-"""What a run says about a limit.
+"""States of a run with respect to a limit.
 
-A run is undecided where the bounds of its demand straddle the limit, by its error estimate or because it flew, failed or
-overturned and the check counts that as unknown; it is left out where the check says so.
+A run is undecided if the bounds of its demand straddle the limit, by its error estimate or because it flew, failed or
+overturned and the check counts that as unknown; it is left out if the check says so.
 """
 
 
 def applies(rule: Rule, case: Case) -> bool:
-    """Whether a case, as run.json has it, is asked about this limit."""
+    """Return whether a limit applies to a case, given as in run.json."""
     demand = DEMANDS[rule.demand]
-    tied = not demand.device or has_device(case, demand.device)
-    return chooses(rule, str(case["case"]), 1.0) and demand.on(case) and tied
+    equipped = not demand.device or has_device(case, demand.device)
+    return chooses(rule, str(case["case"]), 1.0) and demand.on(case) and equipped
 
 
 def threshold(rule: Rule) -> float:
-    """What the demand of one record must not exceed; a count of records has it in ``above``."""
+    """Return what the demand of one record must not exceed; a count of records has it in ``above``."""
     return (rule.above or 0.0) if rule.statistic == "count" else rule.limit
 
 
 def words(rule: Rule) -> str:
-    """The limit of one record in words, "theta_max_over_alpha > 0.5"; empty where the name says it all."""
+    """Return the limit of one record in words, "theta_max_over_alpha > 0.5"; empty if the name says it all."""
     if rule == OVERTURNING:
         return ""
     limit = threshold(rule)
@@ -43,8 +43,8 @@ def words(rule: Rule) -> str:
 
 
 def states(rule: Rule, runs: "pd.DataFrame", case: Case) -> npt.NDArray[np.int8]:
-    """What each of the n runs of a case, rows of peaks.csv, says about the limit, shape (n,)."""
+    """Return the state of each of the n runs of a case, rows of peaks.csv, shape (n,)."""
     bounds, kept = of_runs(rule, runs, case)
     limit = threshold(rule)
-    found = np.where(bounds.low > limit, EXCEEDED, np.where(bounds.high > limit, UNDECIDED, WITHSTOOD))
-    return np.where(kept, found, LEFT_OUT).astype(np.int8)
+    state = np.where(bounds.low > limit, EXCEEDED, np.where(bounds.high > limit, UNDECIDED, WITHSTOOD))
+    return np.where(kept, state, LEFT_OUT).astype(np.int8)

@@ -1,7 +1,7 @@
 """Lognormal fragility P(x) = Φ(ln(x/θ)/β) by maximum likelihood, with its confidence region.
 
-A record has a capacity, the intensity that it takes to exceed a limit, of which an analysis tells the interval: up to x
-where the limit is exceeded at x, above x where it is not, or the bracket of a bisection. One likelihood serves all,
+A record has a capacity, the intensity that it takes to exceed a limit, of which an analysis gives the interval: up to x
+if the limit is exceeded at x, above x if it is not, or the bracket of a bisection. One likelihood serves all,
 
     ℓ = Σ n ln[Φ(z(high)) − Φ(z(low))],    z(x) = ln(x/θ)/β = a + b ln x.
 
@@ -20,18 +20,18 @@ import numpy.typing as npt
 Values = npt.NDArray[np.float64]
 
 RAYS = 360
-"""Directions in which the edge of the confidence region is looked for; between two it is off by 4e-5 of its width."""
+"""Directions in which the edge of the confidence region is sought; between two it is off by 4e-5 of its width."""
 
 HALVINGS = 30
-"""Of a ray around the edge."""
+"""Bisections of a ray around the edge."""
 
 LEAST_SLOPE = 1e-3
-"""Of z over standardised ln x; below, the capacity would spread over more than a thousand times what was sampled."""
+"""Least slope of z over standardised ln x; below, the capacity would spread over more than a thousand times what was sampled."""
 
 
 @dataclass(frozen=True)
 class Capacities:
-    """What is known of capacities: intervals low < x ≤ high, each with the number of records in it; shape (n,).
+    """Intervals of capacities, low < x ≤ high, each with the number of records in it; shape (n,).
 
     ``low`` is 0 where the limit was exceeded at the lowest level, ``high`` infinite where it never was. ``of_record``,
     shape (m, n), holds what each of m records contributes to ``count`` where a record contributes several times.
@@ -44,12 +44,12 @@ class Capacities:
 
     @classmethod
     def of_stripes(cls, levels: Values, records: Values, exceeded: Values) -> "Capacities":
-        """From the number of records at each level, fresh ones at each, shape (n,), and how many ``exceeded`` the limit."""
+        """Return those of fresh records at each level, by their number, shape (n,), and by how many ``exceeded`` the limit."""
         return cls._one_sided(levels, np.concatenate((exceeded, records - exceeded)).astype(np.float64))
 
     @classmethod
     def of_same_records(cls, levels: Values, within: Values, beyond: Values) -> "Capacities":
-        """From whether each of m records was ``within`` or ``beyond`` the limit at each level, shape (m, n), or neither."""
+        """Return those of m records, each ``within`` or ``beyond`` the limit at each level, shape (m, n), or neither."""
         of_record = np.hstack((beyond, within)).astype(np.float64)
         return cls._one_sided(levels, of_record.sum(axis=0), of_record[of_record.any(axis=1)])
 
@@ -58,8 +58,8 @@ class Capacities:
         n = len(levels)
         low = np.concatenate((np.zeros(n), levels))
         high = np.concatenate((levels, np.full(n, np.inf)))
-        there = count > 0
-        return cls(low[there], high[there], count[there], None if of_record is None else of_record[:, there])
+        used = count > 0
+        return cls(low[used], high[used], count[used], None if of_record is None else of_record[:, used])
 
 
 @dataclass(frozen=True)
@@ -83,13 +83,13 @@ class Lognormal:
     region: Values
 
     def probability(self, x: Values) -> Values:
-        """P(x), shape of ``x``."""
+        """Return P(x), shape of ``x``."""
         from scipy.special import ndtr
 
         return ndtr(np.log(x / self.median) / self.dispersion)
 
     def band(self, x: Values) -> tuple[Values, Values]:
-        """Pointwise profile-likelihood interval of P(x), each shape (n,)."""
+        """Return the pointwise profile-likelihood interval of P(x), each shape (n,)."""
         from scipy.special import ndtr
 
         a, b = self.region.T
@@ -98,14 +98,14 @@ class Lognormal:
 
 
 def fit(capacities: Capacities, confidence: float = 0.95) -> Lognormal | str:
-    """The maximum-likelihood curve, or why the data do not have one, in words.
+    """Return the maximum-likelihood curve, or why the data do not have one, in words.
 
     The intervals are those of the profile likelihood: extremes over all (a, b) whose ℓ is within half the χ²₁ quantile of
     the maximum. Unlike a bootstrap they need no luck: with a few records many resampled suites cannot be fitted. Unlike
     the delta method they keep to θ > 0, β > 0 and 0 ≤ P ≤ 1, and are as skew as the data are few.
 
     The binomial likelihood takes the records of every level as fresh ones. Where they are the same, the curve remains, but
-    levels tell much less than as many suites would: the region is stretched to the covariance of the records' own scores
+    levels say much less than as many suites would: the region is stretched to the covariance of the records' own scores
     (Chandler & Bate 2007, Biometrika 94(1):167–183), and never shrunk.
     """
     why = _degenerate(capacities)
@@ -121,7 +121,7 @@ def fit(capacities: Capacities, confidence: float = 0.95) -> Lognormal | str:
 
 
 def _degenerate(capacities: Capacities) -> str:
-    """Why no dispersion, or nothing at all, can be told from the data; empty if it can."""
+    """Return why the data give no dispersion, or nothing at all; empty if they do."""
     low, high = capacities.low, capacities.high
     if len(low) == 0:
         return "no record counts"
@@ -155,19 +155,19 @@ class _Likelihood:
         self.count, self.of_record = capacities.count, capacities.of_record
 
     def value(self, a: Values, b: Values) -> Values:
-        """ℓ, shape (m,); −∞ where a bracket has no probability."""
+        """Return ℓ, shape (m,); −∞ where a bracket has no probability."""
         z1, z2 = self._z(a, b)
         return (self.count * _log_difference(z1, z2)).sum(axis=-1)
 
     def _z(self, a: Values, b: Values) -> tuple[Values, Values]:
-        """z at both ends of every interval, shape (m, n)."""
+        """Return z at both ends of every interval, shape (m, n)."""
         a, b = np.atleast_1d(a)[:, None], np.atleast_1d(b)[:, None]
         z1 = np.where(np.isinf(self.low), -np.inf, a + b * np.where(np.isinf(self.low), 0.0, self.low))
         z2 = np.where(np.isinf(self.high), np.inf, a + b * np.where(np.isinf(self.high), 0.0, self.high))
         return z1, z2
 
     def derivatives(self, ab: Values) -> tuple[Values, Values]:
-        """Score of one record in each interval, shape (n, 2), and Hessian, shape (2, 2), of ℓ."""
+        """Return the score of one record in each interval, shape (n, 2), and the Hessian, shape (2, 2), of ℓ."""
         z1, z2 = (z[0] for z in self._z(ab[0], ab[1]))
         log_d = _log_difference(z1, z2)
         g1, g2 = (np.exp(-0.5 * z**2 - 0.5 * math.log(2.0 * math.pi) - log_d) for z in (z1, z2))
@@ -186,10 +186,10 @@ class _Likelihood:
         return scores, hessian
 
     def maximum(self) -> Values | None:
-        """(a, b) over ln x at the maximum; None where b > 0 does not hold there."""
+        """Return (a, b) over ln x at the maximum; None if b > 0 does not hold there."""
         from scipy.optimize import minimize
 
-        found = minimize(
+        optimum = minimize(
             lambda ab: -self.value(ab[0], ab[1])[0],
             np.array([0.0, 1.0]),
             jac=lambda ab: -self.count @ self.derivatives(ab)[0],
@@ -197,10 +197,10 @@ class _Likelihood:
             method="trust-exact",
             options={"gtol": 1e-9 * self.count.sum()},
         )
-        return self._plain(found.x) if found.x[1] > LEAST_SLOPE else None
+        return self._plain(optimum.x) if optimum.x[1] > LEAST_SLOPE else None
 
     def region(self, best: Values, confidence: float) -> Values:
-        """Edge of the region where ℓ is within half the χ²₁ quantile of its maximum, in (a, b) over ln x."""
+        """Return the edge of the region where ℓ is within half the χ²₁ quantile of its maximum, in (a, b) over ln x."""
         from scipy.special import ndtri
 
         centre = np.array([best[0] + best[1] * self.centre, best[1] * self.width])
@@ -228,31 +228,31 @@ class _Likelihood:
         return self._plain(centre[:, None] + edge).T
 
     def _plain(self, ab: Values) -> Values:
-        """(a, b) over ln x from those over what was standardised."""
+        """Return (a, b) over ln x from those over what was standardised."""
         b = ab[1] / self.width
         return np.array([ab[0] - b * self.centre, b])
 
 
 def _stretch(scores: Values) -> Values:
-    """Factor on deviations, shape (2, 2), from the scores of m records, shape (2, m), scaled to an information of 1."""
+    """Return factors on deviations, shape (2, 2), from the scores of m records, shape (2, m), scaled to an information of 1."""
     m = scores.shape[1]
     variances, axes = np.linalg.eigh(scores @ scores.T * (m / max(m - 1, 1)))
     return (axes * np.sqrt(np.maximum(variances, 1.0))) @ axes.T
 
 
 def _log_difference(z1: Values, z2: Values) -> Values:
-    """ln[Φ(z2) − Φ(z1)] without cancellation in either tail; −∞ where z2 ≤ z1."""
+    """Return ln[Φ(z2) − Φ(z1)] without cancellation in either tail; −∞ where z2 ≤ z1."""
     from scipy.special import log_ndtr
 
     upper = z1 > 0  # Φ(z2) − Φ(z1) = Φ(−z1) − Φ(−z2)
     small, large = log_ndtr(np.where(upper, -z2, z1)), log_ndtr(np.where(upper, -z1, z2))
     with np.errstate(divide="ignore", invalid="ignore"):
-        found = large + np.log(-np.expm1(small - large))
-    return np.where(z2 > z1, found, -np.inf)
+        difference = large + np.log(-np.expm1(small - large))
+    return np.where(z2 > z1, difference, -np.inf)
 
 
 def _intervals(edge: Values) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Intervals of θ = exp(−a/b) and β = 1/b over the region; open where it reaches b ≤ 0."""
+    """Return the intervals of θ = exp(−a/b) and β = 1/b over the region; open where it reaches b ≤ 0."""
     a, b = edge.T
     rising = b > 0
     medians = np.exp(np.clip(-a[rising] / b[rising], -700.0, 700.0))
@@ -266,7 +266,7 @@ def _intervals(edge: Values) -> tuple[tuple[float, float], tuple[float, float]]:
 
 
 def _crossings(a: Values, b: Values) -> list[float]:
-    """a where the closed edge crosses b = 0."""
+    """Return a where the closed edge crosses b = 0."""
     a2, b2 = np.roll(a, -1), np.roll(b, -1)
     crosses = (b > 0) != (b2 > 0)
     return list((a * b2 - a2 * b)[crosses] / (b2 - b)[crosses])

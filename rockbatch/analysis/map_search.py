@@ -1,4 +1,4 @@
-"""The search behind an overturning map: at which frequencies and amplitudes to look, and what the looks come to.
+"""Search behind an overturning map: at which frequencies and amplitudes to run, and the regions that follow.
 
 A map is a row of columns, one at each frequency. Along a column every change of the outcome is bisected. Between two columns the
 regions can be joined only where both have the same outcomes in the same order, and where straight lines between
@@ -14,9 +14,9 @@ Point = tuple[int, float, float]
 
 
 class End(NamedTuple):
-    """How a run ends: the region to which it belongs, and which of the ways there.
+    """End of a run: the region to which it belongs, and the way there.
 
-    Between two ways to the same region there is a change, too, which may hide a narrow region: the search tells them apart.
+    Between two ways to the same region there is a change, too, which may hide a narrow region: the search keeps them apart.
     """
 
     outcome: str
@@ -27,7 +27,7 @@ Points = list[tuple[float, End]]
 """Amplitudes of a column, in order, with their ends."""
 
 Ends = Callable[[Sequence[Point]], Iterable[End]]
-"""The ends of many points at once; what it says about one must not depend on the others."""
+"""From many points at once to their ends; that of one must not depend on the others."""
 
 
 class Region(NamedTuple):
@@ -41,25 +41,25 @@ class Region(NamedTuple):
 
 
 def regions(points: Sequence[tuple[float, End]], tolerance: float = 0.0) -> list[Region]:
-    """Neighbours with one outcome as a region; a boundary lies in the middle between two that differ.
+    """Return neighbours with one outcome as regions; a boundary lies in the middle between two that differ.
 
     What is no wider than ``tolerance`` belongs to the boundary, whose error then says so.
     """
-    found = _regions(points, points)
-    narrow = [each for each in found if each.high - each.low <= tolerance]
-    if not narrow or len(narrow) == len(found):
-        return found
-    kept = [point for point in points if not any(each.low <= point[0] <= each.high for each in narrow)]
+    unmerged = _regions(points, points)
+    narrow = [region for region in unmerged if region.high - region.low <= tolerance]
+    if not narrow or len(narrow) == len(unmerged):
+        return unmerged
+    kept = [point for point in points if not any(region.low <= point[0] <= region.high for region in narrow)]
     return _regions(kept, points)
 
 
-def _regions(points: Sequence[tuple[float, End]], of: Sequence[tuple[float, End]]) -> list[Region]:
+def _regions(points: Sequence[tuple[float, End]], whole: Sequence[tuple[float, End]]) -> list[Region]:
     runs = [
         (outcome, [amplitude for amplitude, _ in same]) for outcome, same in groupby(points, key=lambda p: p[1].outcome)
     ]
     inner = [(0.5 * (low[-1] + high[0]), 0.5 * (high[0] - low[-1])) for (_, low), (_, high) in pairwise(runs)]
     nan = float("nan")
-    ends = [(of[0][0], nan), *inner, (of[-1][0], nan)]
+    ends = [(whole[0][0], nan), *inner, (whole[-1][0], nan)]
     return [
         Region(outcome, low, high, low_error, high_error)
         for (outcome, _), ((low, low_error), (high, high_error)) in zip(runs, pairwise(ends), strict=True)
@@ -67,68 +67,68 @@ def _regions(points: Sequence[tuple[float, End]], of: Sequence[tuple[float, End]
 
 
 class Search:
-    """Looks at one map or several of the same ranges side by side.
+    """Search for the regions of one map, or of several of the same ranges side by side.
 
     Parameters
     ----------
     ends : function
         See :data:`Ends`.
     amplitudes : sequence of float
-        Of the grid, at which every column is looked at.
+        Amplitudes of the grid, run in every column.
     tolerance : float
-        Of the amplitude, within which every boundary is found, and straight lines follow it.
+        Tolerance on the amplitude, to which every boundary is found and straight lines follow it.
     width : float
-        Of the frequency: columns nearer to each other get none between them.
+        Width in frequency: columns nearer to each other get none between them.
     """
 
     def __init__(self, ends: Ends, amplitudes: Sequence[float], tolerance: float, width: float) -> None:
         self.ends, self.amplitudes, self.tolerance, self.width = ends, amplitudes, tolerance, width
-        self._found: dict[tuple[int, float], dict[float, End]] = {}
+        self._ends: dict[tuple[int, float], dict[float, End]] = {}
         self._regions: dict[tuple[int, float], list[Region]] = {}
 
     def find(self, maps: int, frequencies: Sequence[float]) -> list[dict[float, Points]]:
-        """The columns of each map by their frequencies, which are rising; those of the grid are among them."""
+        """Return the columns of each map by their frequencies, which are rising; those of the grid are among them."""
         columns = [list(frequencies) for _ in range(maps)]
         new = [(number, frequency) for number in range(maps) for frequency in frequencies]
         while new:
-            self._look([(*column, amplitude) for column in new for amplitude in self.amplitudes])
+            self._run([(*column, amplitude) for column in new for amplitude in self.amplitudes])
             while suggested := [point for number, own in enumerate(columns) for point in self._suggested(number, own)]:
-                self._look(suggested)
+                self._run(suggested)
             new = [(number, middle) for number, own in enumerate(columns) for middle in self._middles(number, own)]
             for number, middle in new:
                 columns[number].append(middle)
             for own in columns:
                 own.sort()
-        return [{f: sorted(self._found[number, f].items()) for f in own} for number, own in enumerate(columns)]
+        return [{f: sorted(self._ends[number, f].items()) for f in own} for number, own in enumerate(columns)]
 
-    def _look(self, points: Sequence[Point]) -> None:
-        """Look at ``points``, and bisect what changes in their columns."""
+    def _run(self, points: Sequence[Point]) -> None:
+        """Run ``points``, and bisect what changes in their columns."""
         columns = dict.fromkeys((number, frequency) for number, frequency, _ in points)
         while points:
             for (number, frequency, amplitude), end in zip(points, self.ends(points), strict=True):
-                self._found.setdefault((number, frequency), {})[amplitude] = end
+                self._ends.setdefault((number, frequency), {})[amplitude] = end
             points = [
                 (*column, 0.5 * (low + high))
                 for column in columns
-                for (low, below), (high, above) in pairwise(sorted(self._found[column].items()))
+                for (low, below), (high, above) in pairwise(sorted(self._ends[column].items()))
                 if below != above and high - low > self.tolerance
             ]
         for column in columns:
-            self._regions[column] = regions(sorted(self._found[column].items()), self.tolerance)
+            self._regions[column] = regions(sorted(self._ends[column].items()), self.tolerance)
 
     def _suggested(self, number: int, frequencies: Sequence[float]) -> list[Point]:
-        """The middles of all regions of a neighbour that has other regions: what is narrow there may be here too."""
+        """Return the middles of all regions of a neighbour that has other regions: what is narrow there may be here too."""
         wanted: dict[Point, None] = {}
         for left, right in pairwise(frequencies):
             both = self._regions[number, left], self._regions[number, right]
             if _outcomes(both[0]) != _outcomes(both[1]):
                 for frequency, other in ((left, both[1]), (right, both[0])):
-                    for each in other:
-                        wanted[number, frequency, 0.5 * (each.low + each.high)] = None
-        return [point for point in wanted if point[2] not in self._found[point[:2]]]
+                    for region in other:
+                        wanted[number, frequency, 0.5 * (region.low + region.high)] = None
+        return [point for point in wanted if point[2] not in self._ends[point[:2]]]
 
     def _middles(self, number: int, frequencies: Sequence[float]) -> list[float]:
-        """Between which neighbours another column is needed: where."""
+        """Return the frequencies between neighbours at which another column is needed."""
         columns = [self._regions[number, frequency] for frequency in frequencies]
         return [
             0.5 * (left + right)
@@ -137,7 +137,7 @@ class Search:
         ]
 
     def _joined(self, frequencies: Sequence[float], columns: Sequence[list[Region]], i: int) -> bool:
-        """Whether straight lines join the boundaries of columns ``i`` and ``i + 1``, as their neighbours have it."""
+        """Return whether straight lines join the boundaries of columns ``i`` and ``i + 1``, as their neighbours have it."""
         same = _outcomes(columns[i])
         if _outcomes(columns[i + 1]) != same:
             return False
@@ -156,10 +156,10 @@ class Search:
 
 
 def _outcomes(column: Sequence[Region]) -> list[str]:
-    return [each.outcome for each in column]
+    return [region.outcome for region in column]
 
 
 def _curvature(a: tuple[float, float], b: tuple[float, float], c: tuple[float, float]) -> float:
-    """Second derivative of the parabola through three points."""
+    """Return the second derivative of the parabola through three points."""
     (x1, y1), (x2, y2), (x3, y3) = a, b, c
     return 2 * ((y3 - y2) / (x3 - x2) - (y2 - y1) / (x2 - x1)) / (x3 - x1)

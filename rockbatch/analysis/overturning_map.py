@@ -30,18 +30,18 @@ SAFE, WITH_IMPACT, OUTRIGHT, FLIGHT, UNDECIDED = (
     "flight",
     "undecided",
 )
-"""Ends of a run; undecided is one that did not settle, near a boundary, say."""
+"""Ends of a run; undecided is one that did not converge, e.g. near a boundary."""
 
 SAMPLES = 400
-"""Of a period: a sine that is linear between them moves a boundary by 2e-5 of itself (2π/SAMPLES)²/12."""
+"""Samples of a period: a sine that is linear between them moves a boundary by 2e-5 of itself (2π/SAMPLES)²/12."""
 
 
 def ending(status: str, impacts: int, base: Base) -> End:
-    """The region to which a run belongs, and the way there.
+    """Return the region to which a run belongs, and the way there.
 
     Rigid blocks that overturn after another number of impacts do so by another way, with a boundary between the two, on which
-    they would stand at the summit for ever: near it there may be a window of safe amplitudes, however narrow. On springs the
-    impacts change with every amplitude, and tell nothing.
+    they would stay at the unstable equilibrium: near it there may be a window of safe amplitudes, however narrow. On springs
+    the impacts change with every amplitude, and say nothing.
     """
     if status == "overturned":
         return End(WITH_IMPACT if impacts else OUTRIGHT, 0 if base.on_springs else impacts)
@@ -56,7 +56,7 @@ class Maps:
         self._units: dict[tuple[int, float], Motion] = {}
 
     def runs(self, points: Sequence[Point]) -> Made:
-        """The runs at ``points``, (number of the case, ω_p/p, amplitude); their scale is the amplitude a_p/(g tan α)."""
+        """Return the runs at ``points``, (number of the case, ω_p/p, amplitude); their scale is the amplitude a_p/(g tan α)."""
 
         def make(index: int) -> PlannedRun:
             case, frequency, amplitude = points[index]
@@ -66,7 +66,7 @@ class Maps:
         return Made(len(points), make)
 
     def find(self, carry_out: "Callable[[Made], pd.DataFrame]") -> list[dict[float, Points]]:
-        """The columns of each case; ``carry_out`` gives the rows of peaks.csv of the runs of a wave, in their order."""
+        """Return the columns of each case; ``carry_out`` gives the rows of peaks.csv of the runs of a wave, in their order."""
 
         def ends(points: Sequence[Point]) -> list[End]:
             table = carry_out(self.runs(points))
@@ -79,7 +79,7 @@ class Maps:
         return Search(ends, amplitudes, self.spec.tolerance, self.spec.width).find(len(self.cases), frequencies)
 
     def _unit(self, number: int, frequency: float) -> Motion:
-        """The pulse with an amplitude of g tan α."""
+        """Return the pulse with an amplitude of g tan α."""
         if (number, frequency) not in self._units:
             spec, pier = self.spec, self.cases[number].pier
             period = 2 * math.pi / (frequency * pier.p)
@@ -95,9 +95,9 @@ class Maps:
             )
         return self._units[number, frequency]
 
-    def rows(self, found: Sequence[Mapping[float, Points]]) -> Iterator[Mapping[str, Any]]:
-        """Rows of overturning_map.csv, a region each, of what :meth:`find` has found."""
-        for case, columns in zip(self.cases, found, strict=True):
+    def rows(self, by_case: Sequence[Mapping[float, Points]]) -> Iterator[Mapping[str, Any]]:
+        """Yield the rows of overturning_map.csv, a region each, from the columns of each case."""
+        for case, columns in zip(self.cases, by_case, strict=True):
             for frequency, points in columns.items():
                 for region in regions(points, self.spec.tolerance):
                     yield {
@@ -110,5 +110,5 @@ class Maps:
 
 
 def columns(varied: Sequence[str]) -> list[str]:
-    """Columns of overturning_map.csv; amplitudes are a_p/(g tan α), a column of the map is told by ω_p/p."""
+    """Return the columns of overturning_map.csv; amplitudes are a_p/(g tan α), a column of the map is identified by ω_p/p."""
     return ["map", "case", *varied, "omega_p_over_p", *Region._fields]

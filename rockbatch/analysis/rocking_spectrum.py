@@ -24,10 +24,10 @@ if TYPE_CHECKING:
 FILE = "spectrum.csv"
 SUITE = "spectrum_suite.csv"
 GROUP = ("case", "scale")
-"""Columns, beside the varied ones, that tell one point of a spectrum from another."""
+"""Columns, beside the varied ones, that identify a point of a spectrum."""
 
 SIZE = ("p", "two_pi_over_p_s", "size_m")
-FOUND = (
+RESULTS = (
     "record",
     "polarity",
     "status",
@@ -42,25 +42,25 @@ FOUND = (
 
 
 def plan(study: Study, spectrum: SpectrumSpec, motions: MotionSet) -> Plan:
-    """The runs of a spectrum: those of the study that are simulated, on the piers of the spectrum."""
+    """Return the runs of a spectrum: those of the study that are simulated, on the piers of the spectrum."""
     once = replace(study.motions, polarity=(study.motions.simulated,))
     return Plan(replace(study, cases=spectrum.cases, motions=once), motions)
 
 
 def columns(spectrum: SpectrumSpec) -> list[str]:
-    """Columns of spectrum.csv: the point of the spectrum, and what one motion comes to there."""
-    return [*dict.fromkeys((*GROUP, *spectrum.varied, *SIZE, *FOUND))]
+    """Return the columns of spectrum.csv: the point of the spectrum, and the results of one motion there."""
+    return [*dict.fromkeys((*GROUP, *spectrum.varied, *SIZE, *RESULTS))]
 
 
 def row_of(run: PlannedRun, outcome: Outcome) -> dict[str, Any]:
-    """Row of spectrum.csv of a run that is finished."""
+    """Return the row of spectrum.csv of a run that is finished."""
     pier = run.case.pier
     size = {"p": pier.p, "two_pi_over_p_s": 2 * math.pi / pier.p, "size_m": pier.size}
     return size | row(run.motion, run.polarity, run.scale, run.case, outcome)
 
 
 def of_suite(table: "pd.DataFrame", varied: tuple[str, ...]) -> "pd.DataFrame":
-    """What the suite comes to at every point of the spectrum.
+    """Return the statistics of the suite at every point of the spectrum.
 
     Parameters
     ----------
@@ -81,9 +81,9 @@ def of_suite(table: "pd.DataFrame", varied: tuple[str, ...]) -> "pd.DataFrame":
     keys = [*GROUP, *varied]
     rows: list[Mapping[str, Any]] = []
     for names, runs in table.groupby(keys, sort=False, dropna=False):
-        found = asdict(suite(runs["theta_max_over_alpha"].to_numpy(float), runs["status"].tolist()))
-        found["p16"], found["p84"] = found.pop("low"), found.pop("high")
+        statistics = asdict(suite(runs["theta_max_over_alpha"].to_numpy(float), runs["status"].tolist()))
+        statistics["p16"], statistics["p84"] = statistics.pop("low"), statistics.pop("high")
         size = {name: runs[name].iloc[0] for name in SIZE}
-        rows.append(dict(zip(keys, names, strict=True)) | size | found)
+        rows.append(dict(zip(keys, names, strict=True)) | size | statistics)
     wanted = ("count", "p16", "median", "p84", "largest", "overturned", "flight", "failed")
     return pd.DataFrame(rows, columns=[*dict.fromkeys((*keys, *SIZE, *wanted))])

@@ -14,7 +14,7 @@ from rockbatch.study.sensitivity import Input, SensitivitySpec, Value, applying,
 
 RUNS = "sensitivity_runs.csv"
 COLUMNS = ("record", "polarity", "scale", "status", "theta_max_over_alpha", "reason")
-"""Of :data:`RUNS`."""
+"""Columns of :data:`RUNS`."""
 
 
 @dataclass(frozen=True)
@@ -26,15 +26,15 @@ class Point:
 
 
 def low_base_high(inputs: Sequence[Input], study: Study, case: Case) -> list[dict[str, Value]]:
-    """The study's own values; then, for each input, its low end and its high one with all others as they are.
+    """Return the study's own values; then, for each input, its low end and its high one with all others as they are.
 
     A restitution that is an input and that the study does not give is Housner's of its own pier.
     """
     own = own_values(study, case)
     if own.get("restitution", 0.0) is None:
         own["restitution"] = case.pier.restitution
-    base = {each.name: own[each.name] for each in inputs}
-    return [base, *(base | {each.name: level} for each in inputs for level in each.levels)]
+    base = {parameter.name: own[parameter.name] for parameter in inputs}
+    return [base, *(base | {parameter.name: level} for parameter in inputs for level in parameter.levels)]
 
 
 class Points:
@@ -50,8 +50,8 @@ class Points:
         for place, (case, inputs) in enumerate(zip(study.cases, self.inputs, strict=True)):
             ends = [len(self.all)]
             many = design(inputs, spec.samples, spec.seed) if inputs else []  # a rigid base may have none of them
-            for values in (low_base_high(inputs, study, case), many):
-                self.all += [Point(place, each) for each in values]
+            for group in (low_base_high(inputs, study, case), many):
+                self.all += [Point(place, values) for values in group]
                 ends.append(len(self.all))
             self.parts.append((slice(*ends[:2]), slice(*ends[1:])))
 
@@ -64,14 +64,14 @@ class Suite:
 
     def __init__(self, study: Study, points: Points, motions: Sequence[Motion]) -> None:
         self.cases, self.points = study.cases, points
-        turned = any(each.name == "polarity" for inputs in points.inputs for each in inputs)
+        turned = any(parameter.name == "polarity" for inputs in points.inputs for parameter in inputs)
         polarity = "+" if turned else study.motions.simulated
         self.members = [(number, polarity, scale) for number in range(len(motions)) for scale in study.motions.scale]
         self._motions = {True: motions, False: [replace(motion, vertical=None) for motion in motions]}
         self._moved = lru_cache(maxsize=8)(self._move)
 
     def runs(self) -> Made:
-        """Every motion at every point, the points running fastest: neighbours share their motion."""
+        """Return every motion at every point, the points running fastest: neighbours share their motion."""
         return Made(len(self.members) * len(self.points), self._run)
 
     def _run(self, index: int) -> PlannedRun:
@@ -84,11 +84,11 @@ class Suite:
         return PlannedRun(motion, polarity, scale, self.case(point), self._motions[vertical][number])
 
     def case(self, point: Point) -> Case:
-        """The case at a point."""
+        """Return the case at a point."""
         return varied(self.cases[point.case], point.values)
 
     def some_cases(self) -> tuple[Case, ...]:
-        """Cases all over the design, which between them need every kernel that the others need."""
+        """Return cases all over the design, which between them need every kernel that the others need."""
         return tuple(map(self.case, self.points.all[:: 1 + len(self.points) // 64]))
 
     def _move(self, number: int, polarity: str, scale: float, vertical: bool) -> Motion:
@@ -96,7 +96,7 @@ class Suite:
 
 
 def row_of(run: PlannedRun, outcome: Outcome) -> dict[str, Any]:
-    """What is kept of a run."""
+    """Return what is kept of a run."""
     return {
         "record": run.motion.name,
         "polarity": run.polarity,

@@ -1,4 +1,4 @@
-"""What the peak rotation depends on: a sensitivity study, from what it asks to its tables.
+"""Sensitivity of the peak rotation to the inputs of a study: the analysis and its tables.
 
 The answer is a statistic of the suite, at every point: at both ends of each input alone, and at the points of Sobol's
 indices.
@@ -39,7 +39,7 @@ TORNADO_COLUMNS = ("parameter", "low", "base", "high", "answer_low", "answer_bas
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Sensitivity(Analysis):
-    """What the peak rotation depends on; see also :class:`rockbatch.analysis.folder.Analysis`.
+    """Sensitivity of the peak rotation; see also :class:`rockbatch.analysis.folder.Analysis`.
 
     Attributes
     ----------
@@ -50,7 +50,7 @@ class Sensitivity(Analysis):
     sobol : DataFrame
         A row for each case and input: first-order and total indices, and their intervals.
     spec : SensitivitySpec
-        What [sensitivity] of the study asks for.
+        The settings in [sensitivity] of the study.
     """
 
     NAME: ClassVar[str] = "sensitivity"
@@ -71,15 +71,14 @@ def sensitivity(
     fresh: bool = False,
     progress: Progress = None,
 ) -> Sensitivity:
-    """What the peak rotation depends on, one at a time and by Sobol's indices: [sensitivity] of a study.
+    """Compute what the peak rotation depends on, one at a time and by Sobol's indices: [sensitivity] of a study.
 
     Parameters
     ----------
     study, motions, jobs, fresh, progress
         As for :func:`rockbatch.run`.
     out : path, optional
-        Folder for what ``rockbatch sensitivity`` leaves, which is gone on with if it was interrupted; without it nothing is
-        kept on disk.
+        Folder for the files of ``rockbatch sensitivity``, continued if it was interrupted; without it nothing is kept on disk.
 
     Returns
     -------
@@ -93,11 +92,11 @@ def sensitivity(
 
     Examples
     --------
-    >>> found = rb.sensitivity("pier4.toml")
-    >>> found
+    >>> result = rb.sensitivity("pier4.toml")
+    >>> result
     <sensitivity of 'Pier 4'>
       tables  sensitivity_runs (72 rows), sensitivity (3 rows), sobol (3 rows)
-    >>> found.sobol[["case", "parameter"]]
+    >>> result.sobol[["case", "parameter"]]
         case parameter
     0  rigid     alpha
     1   pads     alpha
@@ -107,20 +106,20 @@ def sensitivity(
     asked, listener, carrier = given_study(study, motions), listener_of(progress), engine_of(jobs)
     spec = read_sensitivity(asked)
     wanted = asked
-    if any(each.name == "vertical" for each in spec.inputs):  # read it, whatever the study does with it
+    if any(parameter.name == "vertical" for parameter in spec.inputs):  # read it, whatever the study does with it
         wanted = replace(asked, motions=replace(asked.motions, vertical=asked.motions.vertical or True))
-    found = ground_motions(wanted)
-    listener.motions(found)
+    suite = ground_motions(wanted)
+    listener.motions(suite)
     points = Points(asked, spec)
     with analysis_folder(out, Sensitivity.NAME, asked, fresh, listener) as results:
-        results.under(found.motions)
+        results.under(suite.motions)
         results.info |= {
             "varied": list(asked.varied),
             **{name: value for name, value in asdict(spec).items() if name != "inputs"},
-            "inputs": [asdict(each) for each in spec.inputs],
+            "inputs": [asdict(parameter) for parameter in spec.inputs],
         }
         with carrier:
-            _carry_out(results, points, found, carrier)
+            _carry_out(results, points, suite, carrier)
             engine = str(carrier)
         with opened_text(results.directory / sampled.RUNS) as rows:
             results.info["statuses"], values = values_of(csv.DictReader(rows), len(points), spec.overturned)
@@ -131,7 +130,7 @@ def sensitivity(
         return Sensitivity(
             study=asked,
             info=results.info,
-            unusable=tuple(found.unusable),
+            unusable=tuple(suite.unusable),
             files=files,
             **results.tables(Sensitivity.TABLES),
             spec=spec,
@@ -139,7 +138,7 @@ def sensitivity(
 
 
 def _carry_out(results: AnalysisFolder, points: Points, motions: MotionSet, carrier: Engine) -> None:
-    """Write the runs at all points, unless they are there."""
+    """Write the runs at all points, unless they exist already."""
     study, listener, file = results.study, results.listener, sampled.RUNS
     suite = Suite(study, points, motions.motions)
     runs = suite.runs()
@@ -165,9 +164,9 @@ def _carry_out(results: AnalysisFolder, points: Points, motions: MotionSet, carr
 
 
 def counted_as(status: str, theta_max_over_alpha: float, overturned: float) -> float:
-    """What a run adds to the answer: ``overturned`` at most, and that where it overturned or was ended by flight.
+    """Return what a run adds to the answer: ``overturned`` at most, and that if it overturned or was ended by flight.
 
-    A failed run counts with its best value, or as overturned where it has none.
+    A failed run counts with its best value, or as overturned if it has none.
     """
     if status in ("overturned", "flight") or np.isnan(theta_max_over_alpha):
         return overturned
@@ -175,68 +174,68 @@ def counted_as(status: str, theta_max_over_alpha: float, overturned: float) -> f
 
 
 def values_of(rows: Iterable[Mapping[str, str]], points: int, overturned: float) -> tuple[dict[str, int], Values]:
-    """How many runs ended in which way, and what each adds to the answer, shape (members of the suite, points).
+    """Return how many runs ended in which way, and what each adds to the answer, shape (members of the suite, points).
 
     ``rows`` are the texts of the runs' rows, in their order.
     """
     statuses: Counter[str] = Counter()
-    found = array("d")
+    values = array("d")
     for row in rows:
         statuses[row["status"]] += 1
-        found.append(counted_as(row["status"], float(row["theta_max_over_alpha"] or "nan"), overturned))
-    return dict(statuses), np.array(found).reshape(-1, points)
+        values.append(counted_as(row["status"], float(row["theta_max_over_alpha"] or "nan"), overturned))
+    return dict(statuses), np.array(values).reshape(-1, points)
 
 
 def answers(values: Values, statistic: str) -> Values:
-    """The statistic of the suite at every point, shape (points,), of ``values``, shape (members of the suite, points)."""
-    of = STATISTICS[statistic].of
-    assert of is not None
-    return np.array([of(at_point) for at_point in values.T])
+    """Return the statistic of the suite at every point, shape (points,), of ``values``, shape (members of the suite, points)."""
+    statistic_of = STATISTICS[statistic].of
+    assert statistic_of is not None
+    return np.array([statistic_of(at_point) for at_point in values.T])
 
 
-def tornado(inputs: Sequence[Input], points: Sequence[Point], found: Values) -> list[dict[str, Any]]:
-    """Rows of sensitivity.csv of a case, the greatest swing first: the answers at both ends of every input.
+def tornado(inputs: Sequence[Input], points: Sequence[Point], results: Values) -> list[dict[str, Any]]:
+    """Return the rows of sensitivity.csv of a case, the greatest swing first: the answers at both ends of every input.
 
-    ``points`` and ``found``, shape (1 + 2 inputs,), are those of :func:`low_base_high` and the answers there.
+    ``points`` and ``results``, shape (1 + 2 inputs,), are those of :func:`low_base_high` and the answers there.
     """
     base = points[0].values
     rows = []
-    for place, each in enumerate(inputs):
-        low, high = found[1 + 2 * place : 3 + 2 * place]
+    for place, parameter in enumerate(inputs):
+        low, high = results[1 + 2 * place : 3 + 2 * place]
         rows.append(
             {
-                "parameter": each.name,
-                "low": _written(each.levels[0]),
-                "base": _written(base[each.name]),
-                "high": _written(each.levels[1]),
+                "parameter": parameter.name,
+                "low": _written(parameter.levels[0]),
+                "base": _written(base[parameter.name]),
+                "high": _written(parameter.levels[1]),
                 "answer_low": low,
-                "answer_base": found[0],
+                "answer_base": results[0],
                 "answer_high": high,
-                "swing": max(low, high, found[0]) - min(low, high, found[0]),
+                "swing": max(low, high, results[0]) - min(low, high, results[0]),
             }
         )
     return sorted(rows, key=lambda row: -row["swing"])
 
 
 def _written(value: Value) -> float | str:
-    """Choices as a study file has them."""
+    """Return a value as a study file has it, choices in lower case."""
     return str(value).lower() if isinstance(value, bool) else value
 
 
 def tables(
     study: Study, spec: SensitivitySpec, points: Points, values: Values
 ) -> tuple["pd.DataFrame", "pd.DataFrame"]:
-    """The tables sensitivity.csv and sobol.csv of ``values``, shape (members of the suite, points)."""
+    """Return the tables sensitivity.csv and sobol.csv of ``values``, shape (members of the suite, points)."""
     import pandas as pd
 
-    found = answers(values, spec.statistic)
+    results = answers(values, spec.statistic)
     swings: list[dict[str, Any]] = []
     shares: list[pd.DataFrame] = []
-    for case, inputs, (one, many) in zip(study.cases, points.inputs, points.parts, strict=True):
+    for case, inputs, (ends, many) in zip(study.cases, points.inputs, points.parts, strict=True):
         own = {"case": case.name, **case.columns}
-        swings += [own | row for row in tornado(inputs, points.all[one], found[one])]
+        swings += [own | row for row in tornado(inputs, points.all[ends], results[ends])]
         if inputs:
-            shares.append(indices(inputs, found[many], spec.confidence, spec.seed).assign(**own))
+            shares.append(indices(inputs, results[many], spec.confidence, spec.seed).assign(**own))
     return (
         pd.DataFrame(swings, columns=["case", *study.varied, *TORNADO_COLUMNS]),
         pd.concat(shares, ignore_index=True)[["case", *study.varied, *COLUMNS]],

@@ -18,36 +18,36 @@ if TYPE_CHECKING:
 
 COLUMNS = ("parameter", "first", "first_error", "total", "total_error")
 RESAMPLES = 1000
-"""Of the bootstrap that gives the intervals."""
+"""Resamples of the bootstrap that gives the intervals."""
 
 
 def problem(inputs: Sequence[Input]) -> dict[str, Any]:
-    """The inputs as SALib takes them; a choice is a coin."""
+    """Return the inputs as SALib takes them; a choice is a coin."""
     distributions = {"uniform": "unif", "log_uniform": "logunif", "choice": "unif"}
     return {
         "num_vars": len(inputs),
-        "names": [each.name for each in inputs],
-        "bounds": [[0.0, 1.0] if each.spread == "choice" else list(each.levels) for each in inputs],
-        "dists": [distributions[each.spread] for each in inputs],
+        "names": [parameter.name for parameter in inputs],
+        "bounds": [[0.0, 1.0] if parameter.spread == "choice" else list(parameter.levels) for parameter in inputs],
+        "dists": [distributions[parameter.spread] for parameter in inputs],
     }
 
 
 def design(inputs: Sequence[Input], samples: int, seed: int) -> list[dict[str, Value]]:
-    """Saltelli's design on a scrambled Sobol sequence: ``samples`` × (inputs + 2) points, the values of each by name."""
+    """Return Saltelli's design on a scrambled Sobol sequence: ``samples`` × (inputs + 2) points, the values of each by name."""
     from SALib.sample import sobol
 
     drawn = sobol.sample(problem(inputs), samples, calc_second_order=False, seed=seed)
     return [
         {
-            each.name: each.levels[int(x >= 0.5)] if each.spread == "choice" else float(x)
-            for each, x in zip(inputs, point, strict=True)
+            parameter.name: parameter.levels[int(x >= 0.5)] if parameter.spread == "choice" else float(x)
+            for parameter, x in zip(inputs, point, strict=True)
         }
         for point in drawn
     ]
 
 
 def indices(inputs: Sequence[Input], answers: npt.NDArray[np.float64], confidence: float, seed: int) -> "pd.DataFrame":
-    """First-order and total index of each input.
+    """Return the first-order and total index of each input.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def indices(inputs: Sequence[Input], answers: npt.NDArray[np.float64], confidenc
     confidence : float
         Level of the intervals.
     seed : int
-        Of the bootstrap.
+        Seed of the bootstrap.
 
     Returns
     -------
@@ -68,11 +68,11 @@ def indices(inputs: Sequence[Input], answers: npt.NDArray[np.float64], confidenc
     import pandas as pd
     from SALib.analyze import sobol
 
-    table = pd.DataFrame({"parameter": [each.name for each in inputs]}, columns=list(COLUMNS), dtype=object)
+    table = pd.DataFrame({"parameter": [parameter.name for parameter in inputs]}, columns=list(COLUMNS), dtype=object)
     names = {"first": "S1", "first_error": "S1_conf", "total": "ST", "total_error": "ST_conf"}
     if np.ptp(answers) == 0:
         return table.astype(dict.fromkeys(names, float))
-    found = sobol.analyze(
+    estimates = sobol.analyze(
         problem(inputs), answers, calc_second_order=False, num_resamples=RESAMPLES, conf_level=confidence, seed=seed
     )
-    return table.assign(**{name: found[theirs] for name, theirs in names.items()})
+    return table.assign(**{name: estimates[theirs] for name, theirs in names.items()})

@@ -1,4 +1,4 @@
-"""Rocking spectra and overturning maps of a study: from what it asks to its tables."""
+"""Rocking spectra and overturning maps of a study: the analysis and its tables."""
 
 import os
 import time
@@ -41,7 +41,7 @@ class Spectrum(Analysis):
     overturning_runs : DataFrame or None
         The runs of the maps, as rows of peaks.csv.
     spectra, maps : SpectrumSpec or None, tuple of MapSpec
-        What [spectrum] of the study asks for.
+        The settings in [spectrum] of the study.
     """
 
     NAME: ClassVar[str] = "spectrum"
@@ -64,15 +64,14 @@ def spectrum(
     fresh: bool = False,
     progress: Progress = None,
 ) -> Spectrum:
-    """Rocking spectra over the size of the pier, and maps of the pulses that overturn it: [spectrum] of a study.
+    """Compute rocking spectra over the size of the pier, and maps of the pulses that overturn it: [spectrum] of a study.
 
     Parameters
     ----------
     study, motions, jobs, fresh, progress
-        As for :func:`rockbatch.run`; there is a new count for each wave of runs.
+        As for :func:`rockbatch.run`; the count starts anew for each wave of runs.
     out : path, optional
-        Folder for what ``rockbatch spectrum`` leaves, which is gone on with if it was interrupted; without it nothing is
-        kept on disk.
+        Folder for the files of ``rockbatch spectrum``, continued if it was interrupted; without it nothing is kept on disk.
 
     Returns
     -------
@@ -87,11 +86,11 @@ def spectrum(
 
     Examples
     --------
-    >>> found = rb.spectrum("pier4.toml")
-    >>> found
+    >>> result = rb.spectrum("pier4.toml")
+    >>> result
     <spectrum of 'Pier 4'>
       tables  spectrum (12 rows), spectrum_suite (6 rows)
-    >>> found.spectrum_suite[["case", "two_pi_over_p_s", "overturned"]].head(3)
+    >>> result.spectrum_suite[["case", "two_pi_over_p_s", "overturned"]].head(3)
         case  two_pi_over_p_s  overturned
     0  rigid              3.0           2
     1   pads              3.0           2
@@ -101,20 +100,20 @@ def spectrum(
     asked, carrier = given_study(study, motions), engine_of(jobs)
     spectra, maps = read_spectrum(asked)
     listener = listener_of(progress)
-    found = MotionSet()
+    suite = MotionSet()
     with analysis_folder(out, Spectrum.NAME, asked, fresh, listener) as results, carrier:
         if spectra is not None:
-            found = ground_motions(asked)
-            listener.motions(found)
-            results.under(found.motions)
-            _carry_out_spectra(results, spectra, found, carrier)
+            suite = ground_motions(asked)
+            listener.motions(suite)
+            results.under(suite.motions)
+            _carry_out_spectra(results, spectra, suite, carrier)
         if maps:
             _carry_out_maps(results, maps, carrier)
         files = results.end(engine=str(carrier), wall_s=round(time.monotonic() - started, 3))
         return Spectrum(
             study=asked,
             info=results.info,
-            unusable=tuple(found.unusable),
+            unusable=tuple(suite.unusable),
             files=files,
             **results.tables(Spectrum.TABLES),
             spectra=spectra,
@@ -123,7 +122,7 @@ def spectrum(
 
 
 def _carry_out_spectra(results: AnalysisFolder, spectra: SpectrumSpec, motions: MotionSet, carrier: Engine) -> None:
-    """Write the rocking spectra, unless they are there, and what the suite comes to."""
+    """Write the rocking spectra, unless they exist already, and the statistics of the suite."""
     study, listener, file = results.study, results.listener, rocking_spectrum.FILE
     runs = rocking_spectrum.plan(study, spectra, motions)
     digest = digests(
@@ -149,14 +148,14 @@ def _carry_out_spectra(results: AnalysisFolder, spectra: SpectrumSpec, motions: 
 
 
 def _carry_out_maps(results: AnalysisFolder, maps: Sequence[MapSpec], carrier: Engine) -> None:
-    """Write the overturning maps, unless they are there."""
+    """Write the overturning maps, unless they exist already."""
     import pandas as pd
 
     study, listener = replace(results.study, output=NOTHING_MORE), results.listener
     file, of_runs = overturning_map.FILE, overturning_map.RUNS
     results.info["varied_map"] = list(study.varied)
-    told = ("name", "shape", "tolerance", "width")
-    results.info["maps"] = [{name: getattr(spec, name) for name in told} for spec in maps]
+    fields = ("name", "shape", "tolerance", "width")
+    results.info["maps"] = [{name: getattr(spec, name) for name in fields} for spec in maps]
     digest = digests([], maps=maps, cases=study.cases, numerics=study.numerics)
     if results.has(of_runs, digest) and is_plain(results.directory / file):
         results.keep(file)
@@ -170,9 +169,9 @@ def _carry_out_maps(results: AnalysisFolder, maps: Sequence[MapSpec], carrier: E
             own, before = overturning_map.Maps(spec, study.cases), waves.finished
             grid = _grid(spec, len(study.cases))
             listener.say(f"map {spec.name}: {grid} on {carrier}; then what changes is looked at more closely")
-            found = own.find(waves)
-            rows += own.rows(found)
-            listener.say(f"map {spec.name}: {sum(map(len, found))} frequencies, {waves.finished - before} runs")
+            by_case = own.find(waves)
+            rows += own.rows(by_case)
+            listener.say(f"map {spec.name}: {sum(map(len, by_case))} frequencies, {waves.finished - before} runs")
         results.keep_table(file, pd.DataFrame(rows, columns=overturning_map.columns(study.varied)))
         journal.write_in_order(results.directory / of_runs)
         results.keep(of_runs, digest)

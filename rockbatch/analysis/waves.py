@@ -1,4 +1,4 @@
-"""Runs in waves, each of which depends on what the one before came to; all of them in one journal."""
+"""Runs in waves, each of which depends on the results of the one before; all of them in one journal."""
 
 from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager, nullcontext
@@ -16,13 +16,13 @@ if TYPE_CHECKING:
 
 
 class Waves:
-    """Carries out wave after wave, and gives each back as its rows of peaks.csv, in the order of its runs.
+    """Carries out wave after wave, and returns each as its rows of peaks.csv, in the order of its runs.
 
     The numbers of the runs go on from wave to wave: as long as a wave follows from the rows before it alone, a search that
     was killed goes on where it stopped. Rows always come from the journal, with its ten digits, so that nothing depends on
     whether they were there already.
 
-    ``progress`` is asked, with the number of runs that a wave has left, for a context that is called with the number of
+    ``progress`` takes the number of runs that a wave has left, and returns a context that is called with the number of
     those that are finished.
     """
 
@@ -38,8 +38,8 @@ class Waves:
 
     def __call__(self, runs: Runs) -> "pd.DataFrame":
         first, self.finished = self.finished, self.finished + len(runs)
-        left = sum(number not in self.journal for number in range(first, self.finished))
-        with self.progress(left) if self.progress and left else nullcontext() as progress:
+        pending = sum(number not in self.journal for number in range(first, self.finished))
+        with self.progress(pending) if self.progress and pending else nullcontext() as progress:
             carry_out(
                 runs, self.study.numerics, self.journal, self.engine, self.study.output, first=first, progress=progress
             )
@@ -47,7 +47,7 @@ class Waves:
 
 
 def _read(cells: Mapping[str, str]) -> dict[str, Any]:
-    """Cells as numbers where they are, None where one does not apply."""
+    """Return cells as numbers where they are, None where one does not apply."""
     return {
         name: text if name in TEXTS else None if text == "" else int(text) if name in COUNTS else _number(text)
         for name, text in cells.items()
