@@ -79,7 +79,7 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    """Public names are loaded when first used: the compiler costs 0.4 s, and a report needs none."""
+    """Load a public name when it is first used: the compiler costs 0.4 s, and a report needs none."""
     if name in _HOMES:
         from importlib import import_module
 

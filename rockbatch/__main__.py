@@ -5,9 +5,8 @@ import sys
 
 
 def main() -> int:
-    """Run the command line; an interrupt while it is being loaded is told as any other."""
-    # Threads of OpenBLAS and numexpr would gain nothing here, and where they cannot start, these end the process as they are
-    # loaded.
+    """Run the command line; an interrupt while it is being loaded is reported as any other."""
+    # Threads of OpenBLAS and numexpr would gain nothing here, and if they cannot start, these end the process when loaded.
     os.environ.setdefault("OMP_NUM_THREADS", "1")
     try:
         from rockbatch.cli import main as command_line

@@ -1,4 +1,4 @@
-"""The command line: subcommands, and how mistakes are told."""
+"""The command line: subcommands, and how mistakes are reported."""
 # PYTHON_ARGCOMPLETE_OK: shells with argcomplete's global completion complete it, too
 
 import argparse
@@ -50,46 +50,46 @@ EXIT_CODES = """exit codes:
 
 
 def parser() -> argparse.ArgumentParser:
-    """What the command line understands."""
+    """Return the parser of the command line."""
     plain = argparse.RawDescriptionHelpFormatter
     commands = "\n".join(f"  {name:<13}{command.HELP}" for name, command in COMMANDS.items())
     first = "first steps:\n  rockbatch init mypier\n  cd mypier\n  rockbatch run pier.toml"
-    found = argparse.ArgumentParser(
+    root = argparse.ArgumentParser(
         prog="rockbatch",
         usage="rockbatch [-h] [--version] COMMAND ...",
         description="Peak rotations of stepping bridge piers under a folder of ground motions.",
         epilog=f"commands:\n{commands}\n\n{first}\n\n{EXIT_CODES}",
         formatter_class=plain,
     )
-    found.add_argument("--version", action="version", version=f"rockbatch {__version__}")
-    subparsers = found.add_subparsers(dest="command", metavar="COMMAND", prog="rockbatch", help=argparse.SUPPRESS)
+    root.add_argument("--version", action="version", version=f"rockbatch {__version__}")
+    subparsers = root.add_subparsers(dest="command", metavar="COMMAND", prog="rockbatch", help=argparse.SUPPRESS)
     for name, command in COMMANDS.items():
         epilog = f"example:\n  {command.EXAMPLE}\n\n{EXIT_CODES}"
         command.add_arguments(
             subparsers.add_parser(name, description=command.HELP, epilog=epilog, formatter_class=plain)
         )
-    return found
+    return root
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line; returns the exit code: :data:`EXIT_CODES`. Without a command it lists those that there are."""
+    """Run the command line and return the exit code (:data:`EXIT_CODES`); without a command, list the commands."""
     open_missing()
-    understood = parser()
+    root = parser()
     if "_ARGCOMPLETE" in os.environ:  # the shell asks what may come next
         with suppress(ImportError):
             import argcomplete
 
-            argcomplete.autocomplete(understood)
-    parsed = understood.parse_args(arguments)
+            argcomplete.autocomplete(root)
+    parsed = root.parse_args(arguments)
     if parsed.command is None:
-        understood.print_help()
+        root.print_help()
         return 2
     code = _carried_out(parsed)
     return code or int(is_lost(sys.stdout))
 
 
 def _carried_out(parsed: argparse.Namespace) -> int:
-    """The exit code of a command; what went wrong is told in words."""
+    """Run a command and return its exit code; report what went wrong in words."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("always", AboutResults)
@@ -109,14 +109,14 @@ def _carried_out(parsed: argparse.Namespace) -> int:
 
 
 def _plainly(otherwise: Callable[..., None]) -> Callable[..., None]:
-    """How warnings are shown: what there is to say of a folder of results once and in plain words, others ``otherwise``."""
-    said = set()
+    """Return how warnings are shown: those about a folder of results once and in plain words, others ``otherwise``."""
+    shown = set()
 
     def show(message: Warning | str, category: type[Warning], *place: Any) -> None:
         if not issubclass(category, AboutResults):
             otherwise(message, category, *place)
-        elif str(message) not in said:
-            said.add(str(message))
+        elif str(message) not in shown:
+            shown.add(str(message))
             say(f"rockbatch: {message}")
 
     return show

@@ -1,4 +1,4 @@
-"""Mistakes of the user, told all at once and without a traceback, and what they should know of results they open."""
+"""Mistakes of the user, reported all at once and without a traceback, and warnings about results that are opened."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -36,7 +36,7 @@ class UnstatedError(InputError):
 
 @contextmanager
 def starting_threads(otherwise: str = "") -> Iterator[None]:
-    """Have it said in words, by ``InputError``, that no more threads can be started, and what else to do but allow them."""
+    """Raise ``InputError`` if no more threads can be started, with what else to do (``otherwise``) but allow them."""
     try:
         yield
     except RuntimeError as error:
@@ -49,7 +49,7 @@ def starting_threads(otherwise: str = "") -> Iterator[None]:
 
 
 class AboutResults(UserWarning):
-    """What there is to know of a folder of results that is opened."""
+    """A remark on a folder of results that is opened."""
 
 
 class MissingColumns(AboutResults):
@@ -57,4 +57,4 @@ class MissingColumns(AboutResults):
 
 
 class EditedTable(AboutResults):
-    """A table, or what an analysis says of itself, that is not as it was written."""
+    """A table, or what an analysis has written of itself, that was edited."""

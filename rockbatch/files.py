@@ -1,8 +1,8 @@
-"""The files of a folder of results, and texts from elsewhere: the one door for each.
+"""Access to the files of a folder of results, and to texts from elsewhere.
 
-A folder may come from anybody. What is read there, or gone on with, is a plain file of that folder (:func:`opened`);
-what is new takes its place as a whole (:func:`replacing`); and one process at a time writes (:func:`only_writer`). A
-text from elsewhere is :func:`legible` before it is shown, and :func:`csv_safe` in a table.
+A folder may come from anybody. What is read or continued there is a plain file of that folder (:func:`opened`); what is new
+takes its place as a whole (:func:`replacing`); and one process at a time writes (:func:`only_writer`). A text from elsewhere is
+:func:`legible` before it is shown, and :func:`csv_safe` in a table.
 """
 
 import csv
@@ -29,7 +29,7 @@ UNFINISHED = ".unfinished"
 NAMES = ("record", "case", "polarity", "status", "reason", "mirror_of", "map", "limit")
 """Columns of tables that hold words from elsewhere."""
 MOST_TEXT = 1 << 30
-"""Bytes of a file that is read as a whole: run.json of the largest study takes a third of it."""
+"""Most bytes of a file that is read as a whole: run.json of the largest study takes a third of it."""
 
 _PLAIN_ONLY = sum(getattr(os, flag, 0) for flag in ("O_NOFOLLOW", "O_NONBLOCK", "O_CLOEXEC", "O_BINARY"))
 """A link is not followed, and a pipe does not keep whoever opens it waiting."""
@@ -54,10 +54,10 @@ def opened(path: Path, mode: Literal["rb", "r+b"] = "rb") -> io.FileIO:
         if error.errno in (errno.ELOOP, errno.EISDIR, errno.ENXIO):
             raise _not_plain(path, "no plain file") from None
         raise
-    told = os.fstat(handle)
-    if not stat.S_ISREG(told.st_mode) or (mode == "r+b" and told.st_nlink > 1):
+    status = os.fstat(handle)
+    if not stat.S_ISREG(status.st_mode) or (mode == "r+b" and status.st_nlink > 1):
         os.close(handle)
-        raise _not_plain(path, "a file with several names" if stat.S_ISREG(told.st_mode) else "no plain file")
+        raise _not_plain(path, "a file with several names" if stat.S_ISREG(status.st_mode) else "no plain file")
     return io.FileIO(handle, mode)
 
 
@@ -68,7 +68,7 @@ def _not_plain(path: Path, what: str) -> InputError:
 
 
 def is_plain(path: Path) -> bool:
-    """Whether there is a plain file."""
+    """Return whether ``path`` is a plain file."""
     try:
         return stat.S_ISREG(os.lstat(path).st_mode)
     except (OSError, ValueError):
@@ -76,12 +76,12 @@ def is_plain(path: Path) -> bool:
 
 
 def opened_text(path: Path) -> io.TextIOWrapper:
-    """As :func:`opened`, for a table: UTF-8, with its line breaks as they are."""
+    """Open a table as :func:`opened` does: UTF-8, with its line breaks as they are."""
     return io.TextIOWrapper(io.BufferedReader(opened(path)), encoding="utf-8", newline="")
 
 
 def read_text(path: Path) -> str:
-    """The whole of a UTF-8 file of a folder of results; ``InputError`` as :func:`opened`, and for one that is too large."""
+    """Return the whole of a UTF-8 file of a folder of results; ``InputError`` as :func:`opened`, and for one too large."""
     with opened(path) as file:
         size = os.fstat(file.fileno()).st_size
         if size > MOST_TEXT:
@@ -90,16 +90,16 @@ def read_text(path: Path) -> str:
 
 
 def sha256_of(path: Path) -> str:
-    """Digest of a file of a folder of results."""
+    """Return the digest of a file of a folder of results."""
     with opened(path) as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
-    """A temporary file beside ``path`` that takes its place at the end of the ``with`` block, or goes with an error.
+    """Yield a temporary file beside ``path`` that takes its place at the end of the ``with`` block, or is removed on an error.
 
-    Whoever looks finds the earlier file or the new one, never a part.
+    A reader finds the earlier file or the new one, never a part.
     """
     with told_when_full(path):
         handle, name = tempfile.mkstemp(prefix=f".{path.name}-", suffix=UNFINISHED, dir=path.parent)
@@ -127,7 +127,7 @@ def write_whole(path: Path, text: str) -> None:
 
 @contextmanager
 def told_when_full(path: Path, kept: str = "what was finished before is kept") -> Iterator[None]:
-    """Turns the operating system's error for a full disk, or a quota, into an ``InputError`` about ``path``."""
+    """Turn the operating system's error for a full disk, or a quota, into an ``InputError`` about ``path``."""
     try:
         yield
     except OSError as error:
@@ -140,7 +140,7 @@ def told_when_full(path: Path, kept: str = "what was finished before is kept") -
 
 @contextmanager
 def only_writer(folder: Path) -> Iterator[None]:
-    """Nobody else may write into ``folder`` meanwhile; ``InputError`` if another process does already.
+    """Keep all others from writing into ``folder`` meanwhile; ``InputError`` if another process does already.
 
     The operating system gives the lock back when its process ends, however it ends.
     """
@@ -154,8 +154,8 @@ def only_writer(folder: Path) -> Iterator[None]:
             f"{folder}: another process is writing its results there; wait for it, or choose another folder with --out"
         ) from None
     try:
-        for left in folder.glob(f".*{UNFINISHED}"):  # by a process that was killed
-            left.unlink(missing_ok=True)
+        for leftover in folder.glob(f".*{UNFINISHED}"):  # by a process that was killed
+            leftover.unlink(missing_ok=True)
         yield
     finally:
         with suppress(OSError):  # Windows keeps files that are open
@@ -164,13 +164,15 @@ def only_writer(folder: Path) -> Iterator[None]:
 
 
 def legible(text: str, keep: str = "") -> str:
-    """``text`` with control characters, and bytes of a file's name that are no text, written as ``\\x1b``: it can be
-    printed, stays on its line, and goes into UTF-8. ``keep`` are those that stay: line breaks of a text of several."""
+    """Return ``text`` with control characters, and bytes of a file's name that are no text, written as ``\\x1b``.
 
-    def escaped(found: re.Match[str]) -> str:
-        if found[0] in keep:
-            return found[0]
-        code = ord(found[0])
+    It can be printed, stays on its line, and goes into UTF-8. ``keep`` are those that stay: line breaks of a text of several.
+    """
+
+    def escaped(match: re.Match[str]) -> str:
+        if match[0] in keep:
+            return match[0]
+        code = ord(match[0])
         byte = code - 0xDC00 if 0xDC80 <= code <= 0xDCFF else code  # how Python carries such a byte
         return f"\\x{byte:02x}" if byte <= 0xFF else f"\\u{byte:04x}"
 
@@ -178,7 +180,7 @@ def legible(text: str, keep: str = "") -> str:
 
 
 def csv_safe(text: str) -> str:
-    """``text`` as a cell that no spreadsheet takes for a formula (OWASP, "CSV injection").
+    """Return ``text`` as a cell that no spreadsheet takes for a formula (OWASP, "CSV injection").
 
     Where it, or what follows a semicolon in it (which separates cells in half of the world), begins with = + - @, a tab or
     a line break, an apostrophe goes before that; also before apostrophes that are followed by one of these, so that
@@ -188,12 +190,12 @@ def csv_safe(text: str) -> str:
 
 
 def csv_plain(cell: str) -> str:
-    """The text that :func:`csv_safe` made ``cell`` of."""
+    """Return the text of which :func:`csv_safe` made ``cell``."""
     return _SAVED_FORMULA.sub("", cell) if "'" in cell else cell
 
 
 def csv_text(columns: Sequence[str], rows: Iterable[Mapping[str, object]]) -> str:
-    """A CSV file: empty cells where a row has nothing or NaN, floats to ten digits, texts that are :func:`csv_safe`."""
+    """Return a CSV file: empty cells where a row has nothing or NaN, floats to ten digits, texts that are :func:`csv_safe`."""
     buffer = io.StringIO()
     writer = csv.writer(buffer, lineterminator="\n")
     writer.writerow(columns)
@@ -202,7 +204,7 @@ def csv_text(columns: Sequence[str], rows: Iterable[Mapping[str, object]]) -> st
 
 
 def read_table(path: Path) -> "pd.DataFrame":
-    """A table that was written so; names in it that look like numbers stay names."""
+    """Read a table that :func:`csv_text` wrote; names in it that look like numbers stay names."""
     import pandas as pd
 
     with opened(path) as file:
@@ -213,7 +215,7 @@ def read_table(path: Path) -> "pd.DataFrame":
 
 
 def csv_cell(value: object) -> object:
-    """What a CSV writer is given for ``value``: nothing for None and NaN, ten digits of a float, a text that does no harm."""
+    """Return ``value`` for a CSV writer: nothing for None and NaN, ten digits of a float, a text that does no harm."""
     if value is None or value != value:
         return ""
     if isinstance(value, float):

@@ -1,4 +1,4 @@
-"""What objects tell of themselves: a few lines in a terminal, a small table in a notebook."""
+"""Display of objects: a few lines in a terminal, a small table in a notebook."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
@@ -9,18 +9,18 @@ if TYPE_CHECKING:
     import pandas as pd
 
 MOST_ROWS = 12
-"""Of a table in a notebook."""
+"""Greatest number of rows of a table in a notebook."""
 
 
 class Shown(ABC):
-    """An object whose ``repr`` and whose picture in a notebook are made of the same few facts."""
+    """An object whose ``repr`` and view in a notebook are made of the same few facts."""
 
     @abstractmethod
     def _told(self) -> tuple[str, Mapping[str, str]]:
-        """What it is, and facts about it by their names; those without words are left out."""
+        """Return the title, and facts by their names; those without words are left out."""
 
     def _beneath(self) -> "pd.DataFrame | None":
-        """A table to show below the facts, in notebooks only; its first rows are."""
+        """Return a table whose first rows are shown below the facts, in notebooks only."""
         return None
 
     def __repr__(self) -> str:
@@ -42,5 +42,5 @@ class Shown(ABC):
 
 
 def several(n: int, noun: str) -> str:
-    """A number of things: "1 run", "2 runs"; empty for none."""
+    """Return a number of things: "1 run", "2 runs"; empty for none."""
     return "" if n == 0 else f"{n} {noun}" if n == 1 else f"{n} {noun}s"

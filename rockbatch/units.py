@@ -6,7 +6,7 @@ GRAVITY = 9.81
 """Acceleration of gravity [m/s²] that the reference paper uses (its R0 = 7.36 m for p = 1 rad/s, μ = 3)."""
 
 LEAST, MOST = 1e-15, 1e15
-"""No number that anybody states is smaller, but for 0, or larger, whatever its unit: products and powers of some stay finite."""
+"""Bounds of any number that a user states, but for 0, whatever its unit: products and powers of some stay finite."""
 
 _ACCELERATION_IN_M_S2 = {
     "m/s2": 1.0,
@@ -21,12 +21,12 @@ _LENGTH_IN_M = {"mm": 0.001, "cm": 0.01, "m": 1.0}
 
 
 def length_factor(unit: str) -> float | None:
-    """Factor that turns "cm", or a "cm/sec", into m, or m/s; ``None`` for another unit."""
+    """Return the factor that turns "cm", or a "cm/sec", into m, or m/s; ``None`` for another unit."""
     return _LENGTH_IN_M.get(unit.strip().lower().partition("/")[0])
 
 
 def acceleration_factor(unit: str, gravity: float = GRAVITY) -> float:
-    """Factor that turns an acceleration in ``unit`` into m/s².
+    """Return the factor that turns an acceleration in ``unit`` into m/s².
 
     Spellings such as ``cm/s/s``, ``cm/s²``, ``CM/SEC**2``, ``nm/(s^2)``, ``m*s**-2`` and ``G`` are understood; "g"
     is ``gravity`` [m/s²], the same that the pier weighs with, so that ratios ü_g/g survive. Raises ``ValueError`` for

@@ -53,7 +53,7 @@ def main(arguments: argparse.Namespace) -> int:
 
     from rockbatch.analysis.accuracy import accuracy
 
-    found = accuracy(
+    result = accuracy(
         study,
         folder(arguments),
         runs=arguments.runs,
@@ -61,13 +61,13 @@ def main(arguments: argparse.Namespace) -> int:
         scipy=not arguments.no_scipy,
         progress=Terminal(),
     )
-    show(shown(found.accuracy))
-    tell_files(found)
+    show(shown(result.accuracy))
+    tell_files(result)
     return 0
 
 
 def shown(table: "pd.DataFrame") -> str:
-    """The table for a terminal: errors of θ_max/α, milliseconds per run."""
+    """Return the table for a terminal: errors of θ_max/α, milliseconds per run."""
     import pandas as pd
 
     def error(value: float) -> str:
@@ -91,5 +91,5 @@ def shown(table: "pd.DataFrame") -> str:
             "other outcome": table["status_differs"].map(lambda count: str(count) if count else ""),
         }
     )
-    settled = table["reference_change"].max()
-    return f"Error of theta_max/alpha (references to {settled:.0e})\n{in_width(cells, index=False)}"
+    change = table["reference_change"].max()
+    return f"Error of theta_max/alpha (references to {change:.0e})\n{in_width(cells, index=False)}"

@@ -1,4 +1,4 @@
-"""What commands that answer a question about a study have in common."""
+"""Parts that the commands of analyses share."""
 
 import argparse
 from typing import TYPE_CHECKING, Any
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 def asked(arguments: argparse.Namespace) -> dict[str, Any]:
-    """What the command line says of every analysis: its folder, what carries it out, and who hears of it."""
+    """Return the arguments of every analysis: its folder, its engine, and the listener for its messages."""
     return {
         "out": folder(arguments),
         "jobs": engine(arguments),
@@ -20,7 +20,7 @@ def asked(arguments: argparse.Namespace) -> dict[str, Any]:
     }
 
 
-def tell_files(found: "Analysis") -> None:
-    """Say what was written."""
-    for path in found.files:
+def tell_files(analysis: "Analysis") -> None:
+    """Print the paths of the files that were written."""
+    for path in analysis.files:
         say(str(path))

@@ -18,7 +18,7 @@ HELP = "hold finished results against design checks"
 EXAMPLE = "rockbatch check reports/pier"
 WIDTH = 100
 WORST = 10
-"""Verdicts that are told in full where there are too many for all."""
+"""Verdicts that are printed in full if there are too many for all."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -34,10 +34,10 @@ def main(arguments: argparse.Namespace) -> int:
     from rockbatch.results.reading import read_saved
 
     saved = read_saved(arguments.directory)
-    found = verdicts(saved, arguments.rules)
+    results = verdicts(saved, arguments.rules)
     if unusable := len(saved.info["unusable"]):
         say(f"files that are no usable records, and in no suite: {unusable}")
-    code = tell(found, write_verdicts(arguments.directory, found), saved)
+    code = tell(results, write_verdicts(arguments.directory, results), saved)
     from rockbatch.files import is_plain
 
     if is_plain(arguments.directory / "report.html"):
@@ -48,7 +48,7 @@ def main(arguments: argparse.Namespace) -> int:
 
 
 def tell(verdicts: Sequence["Verdict"], path: Path, saved: "Saved") -> int:
-    """Print the verdicts, which are in ``path``, and the answer; returns 1 if a check fails or is not decided, else 0."""
+    """Print the verdicts, which are in ``path``, and the answer; return 1 if a check fails or is not decided, else 0."""
     from rockbatch.checks import wording
 
     many = len(verdicts) > wording.MOST
@@ -63,7 +63,7 @@ def tell(verdicts: Sequence["Verdict"], path: Path, saved: "Saved") -> int:
 
 
 def answered(verdicts: Sequence["Verdict"], saved: "Saved") -> str:
-    """The answer as the report begins with it, and the worst responses, whatever is checked."""
+    """Return the answer as the report begins with it, and the worst responses, whatever is checked."""
     from rockbatch.checks.answer import answer
     from rockbatch.checks.responses import RESPONSES, in_words, worst_of_all, worst_of_cases
     from rockbatch.checks.suite import simulated, suites
@@ -71,34 +71,35 @@ def answered(verdicts: Sequence["Verdict"], saved: "Saved") -> str:
     from rockbatch.commands.summary import named
 
     labels = {record["record"]: record.get("label") or record["record"] for record in saved.info["records"]}
-    scaled = len({one.scale for one in verdicts}) > 1
+    scaled = len({verdict.scale for verdict in verdicts}) > 1
 
-    def case_of(one: "Verdict") -> str:
-        values = one.columns | ({"scale": one.scale} if scaled else {})
-        return f"{one.case} {named(values, values.values())}".rstrip()
+    def case_of(verdict: "Verdict") -> str:
+        values = verdict.columns | ({"scale": verdict.scale} if scaled else {})
+        return f"{verdict.case} {named(values, values.values())}".rstrip()
 
     runs = simulated(saved.peaks[saved.peaks["case"] != ""])
     worst = worst_of_cases(suites(runs, saved.info["cases"]))
     lines = []
-    for line in answer(verdicts, worst, case_of, lambda one: labels.get(one.record, one.record)):
+    for line in answer(verdicts, worst, case_of, lambda verdict: labels.get(verdict.record, verdict.record)):
         words = f"{line.says}: {line.which}." if line.which else f"{line.says}."
         lines.append(coloured(_filled(f"{mark(line.verdict).split()[0]} {words}", 0, 2), line.verdict))
         lines += [_filled(_plain(detail), 4, 6) for detail in line.details]
     if not verdicts:
         lines.append("No limits were set: nothing here passes or fails.")
-    responses = {RESPONSES[name].words: one for name, one in worst_of_all(worst).items()}
+    responses = {RESPONSES[name].words: response for name, response in worst_of_all(worst).items()}
     width = max(map(len, responses), default=0)
-    for words, one in responses.items():
-        columns = one.case["columns"]
+    for words, response in responses.items():
+        columns = response.case["columns"]
         where = (
-            f"{labels.get(one.run['record'], one.run['record'])}, {one.case['case']} {named(columns, columns.values())}"
+            f"{labels.get(response.run['record'], response.run['record'])}, {response.case['case']} "
+            f"{named(columns, columns.values())}"
         )
-        lines.append(_filled(f"{words:<{width}}  {in_words(one)}: {where.rstrip()}", 2, width + 6))
+        lines.append(_filled(f"{words:<{width}}  {in_words(response)}: {where.rstrip()}", 2, width + 6))
     return "\n".join(lines)
 
 
 def table(verdicts: Sequence["Verdict"]) -> str:
-    """A block of lines for each case and scale, then what each check asks."""
+    """Return a block of lines for each case and scale, then what each check asks."""
     from rockbatch.checks.wording import Notes
 
     notes = Notes(verdicts)
@@ -106,12 +107,12 @@ def table(verdicts: Sequence["Verdict"]) -> str:
 
 
 def summed_up(verdicts: Sequence["Verdict"]) -> str:
-    """How many verdicts of each kind every check has, the worst of them, and what each check asks."""
+    """Return how many verdicts of each kind every check has, the worst of them, and what each check asks."""
     from rockbatch.checks import wording
 
     by_check: dict[str, list[Verdict]] = {}
-    for one in verdicts:
-        by_check.setdefault(one.check, []).append(one)
+    for verdict in verdicts:
+        by_check.setdefault(verdict.check, []).append(verdict)
     rows = [(name, *map(str, wording.count_of(same).values())) for name, same in by_check.items()]
     head = ("check", *wording.WAYS)
     widths = [max(map(len, column)) for column in zip(head, *rows, strict=True)]
@@ -127,7 +128,7 @@ def summed_up(verdicts: Sequence["Verdict"]) -> str:
 
 
 def _blocks(verdicts: Sequence["Verdict"], notes: "Notes") -> list[str]:
-    """A block of lines for verdicts beside each other of one case and scale."""
+    """Return a block of lines for verdicts beside each other of one case and scale."""
     from rockbatch.checks import wording
     from rockbatch.commands.summary import named
 
@@ -145,16 +146,16 @@ def _blocks(verdicts: Sequence["Verdict"], notes: "Notes") -> list[str]:
 
 
 def _lines(verdict: "Verdict", widths: list[int], notes: "Notes") -> list[str]:
-    """The numbers of a verdict, then what there is to know beside them: the run that governs first."""
+    """Return the numbers of a verdict, then remarks on them: the run that governs first."""
     from rockbatch.checks import wording
     from rockbatch.commands.marks import coloured
 
     lines = [coloured(_line(_cells(verdict), widths), verdict.verdict)]
     if verdict.verdict == "does not apply":
         return lines
-    told = (wording.governing(verdict), verdict.counted, notes.of(verdict))
-    if any(told):
-        lines.append(_filled("; ".join(filter(None, told)), 6, 6))
+    remarks = (wording.governing(verdict), verdict.counted, notes.of(verdict))
+    if any(remarks):
+        lines.append(_filled("; ".join(filter(None, remarks)), 6, 6))
     return lines
 
 
@@ -186,20 +187,20 @@ def _plain(text: str) -> str:
 
 
 def _checks(verdicts: Sequence["Verdict"], notes: "Notes") -> str:
-    """What each check asks, and why; what a record is, and what the statistics of codes rest on."""
+    """Return what each check asks, and why; what a record is, and the basis of the statistics of codes."""
     from rockbatch.checks import wording
 
     first = {verdict.check: verdict for verdict in reversed(verdicts)}
     names = dict.fromkeys(verdict.check for verdict in verdicts)
-    rests = {one.statistic: one for one in reversed(verdicts) if wording.unchecked(one)}
+    rests = {verdict.statistic: verdict for verdict in reversed(verdicts) if wording.unchecked(verdict)}
     lines = [_asked(first[name]) for name in names]
-    lines += [_filled(told, 2, 6) for told in (*notes.common(), *wording.counting(verdicts))]
-    lines += [_filled(f"{name}: {wording.unchecked(one)}.", 2, 6) for name, one in rests.items()]
+    lines += [_filled(note, 2, 6) for note in (*notes.common(), *wording.counting(verdicts))]
+    lines += [_filled(f"{name}: {wording.unchecked(verdict)}.", 2, 6) for name, verdict in rests.items()]
     return "\n".join(["Checks", *lines])
 
 
 def _asked(verdict: "Verdict") -> str:
-    """What a check asks, and why."""
+    """Return what a check asks, and why."""
     from rockbatch.checks import wording
 
     asked = f"{verdict.check}: {wording.asked(verdict)} [{verdict.basis}] {verdict.reason}"

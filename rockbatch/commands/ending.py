@@ -1,4 +1,4 @@
-"""What a batch that is finished, in one process or in several, is told by."""
+"""Report on a finished batch, of one process or of several."""
 
 from typing import TYPE_CHECKING
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 def tell(finished: "FinishedBatch", study: "Study") -> int:
-    """Print the table of peaks and the verdicts, and say what is in the folder; returns the exit code."""
+    """Print the table of peaks and the verdicts, and the paths of what is in the folder; return the exit code."""
     from rockbatch.checks.suite import simulated
     from rockbatch.checks.verdicts import CHECKS
     from rockbatch.commands import check
@@ -25,15 +25,17 @@ def tell(finished: "FinishedBatch", study: "Study") -> int:
     by_pga = sorted(finished.motions.motions, key=lambda motion: motion.pga)
     named = {motion.name: motion.short for motion in by_pga}
     show(summary(peaks, study.varied, named))
-    told = peaks.assign(record=peaks["record"].map(named))
-    for warning in filter(None, (other_law(told, study.varied), linearised(told), leaning(told), sliding(told))):
+    labelled = peaks.assign(record=peaks["record"].map(named))
+    for warning in filter(
+        None, (other_law(labelled, study.varied), linearised(labelled), leaning(labelled), sliding(labelled))
+    ):
         say(warning)
     if study.checks:
         code = max(code, check.tell(finished.verdicts, finished.saved.directory / CHECKS, finished.saved))
     else:
         show(check.answered((), finished.saved))
     for path in finished.files:
-        if path.name != CHECKS:  # told with the verdicts
+        if path.name != CHECKS:  # printed with the verdicts
             say(str(path))
     unusable = len(finished.saved.info["unusable"])
     failed = int(((peaks["status"] == "failed") & (peaks["case"] != "")).sum())

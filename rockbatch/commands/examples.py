@@ -10,7 +10,7 @@ EXAMPLE = "rockbatch examples"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    del parser  # nothing can be asked
+    del parser  # it has no arguments
 
 
 def main(arguments: argparse.Namespace) -> int:

@@ -1,4 +1,4 @@
-"""``rockbatch fragility``: how probable overturning, and every limit of a check, is at a given intensity."""
+"""``rockbatch fragility``: the probability of overturning, and of exceeding every limit of a check, at a given intensity."""
 
 import argparse
 import math
@@ -30,17 +30,17 @@ def main(arguments: argparse.Namespace) -> int:
     from rockbatch.analysis.fragility_tables import RUNS
 
     options = asked(arguments)
-    found = fragility(study, **options)
-    show(table(found.curves, found.spec))
-    tell_files(found)
-    failed = any(stripe.failed for curve in found.curves for stripe in curve.stripes)
+    result = fragility(study, **options)
+    show(table(result.curves, result.spec))
+    tell_files(result)
+    failed = any(stripe.failed for curve in result.curves for stripe in curve.stripes)
     if failed:
         say(f"some runs failed and are undecided; the column reason of {options['out'] / RUNS} says why")
-    return 1 if found.unusable or failed else 0
+    return 1 if result.unusable or failed else 0
 
 
 def table(curves: Sequence["Curve"], spec: "FragilitySpec") -> str:
-    """Medians and dispersions with their intervals, a line for each limit and case, and what to know about them."""
+    """Return medians and dispersions with their intervals, a line for each limit and case, and what to know about them."""
     import pandas as pd
 
     from rockbatch.analysis.fragility_tables import looked_at, note
@@ -70,21 +70,21 @@ def table(curves: Sequence["Curve"], spec: "FragilitySpec") -> str:
             }
         if curve.readings:
             row["open"] = _interval(curve.readings.medians)
-        if told := note(curve, spec):
-            notes.append(f"{curve.limit.name}, {case}: {told}")
+        if remark := note(curve, spec):
+            notes.append(f"{curve.limit.name}, {case}: {remark}")
         rows.append(row)
     level = f"{100 * spec.confidence:g} %"
     heads = ["limit", "case", f"median [{spec.unit}]", level, "undecided", "dispersion", level]
-    found = pd.DataFrame(rows)
-    found.columns = pd.Index(heads)
+    cells = pd.DataFrame(rows)
+    cells.columns = pd.Index(heads)
     if not any(curve.readings for curve in curves):
-        found = found.drop(columns="undecided")
+        cells = cells.drop(columns="undecided")
     limits = [f"{limit.name}: {words(limit)}" for limit in spec.limits if words(limit)]
     title = f"Fragility for {spec.label}, {'incremental dynamic analysis' if spec.method == 'ida' else 'stripes'}"
     if little := sum(curve.says_little for curve in curves):
         some = f"{little} of {count(len(curves), 'curve')} {'says' if little == 1 else 'say'} little"
         title += f"; {some}: too many runs are undecided"
-    return "\n".join(filter(None, [title, in_width(found, index=False), *limits, looked_at(curves, spec), *notes]))
+    return "\n".join(filter(None, [title, in_width(cells, index=False), *limits, looked_at(curves, spec), *notes]))
 
 
 def _interval(bounds: tuple[float, float]) -> str:

@@ -1,4 +1,4 @@
-"""``rockbatch init``: a study of one's own to begin with."""
+"""``rockbatch init``: a new study to begin with."""
 
 import argparse
 import shlex
@@ -37,6 +37,6 @@ def main(arguments: argparse.Namespace) -> int:
 
 
 def _called() -> str:
-    """What a shell needs to find rockbatch from any folder: its name, or its path where the name would not do."""
+    """Return what a shell needs to find rockbatch from any folder: its name, or its path if the name would not do."""
     here = shutil.which("rockbatch", path=str(Path(sys.executable).parent))
     return "rockbatch" if here is None or shutil.which("rockbatch") == here else shlex.quote(here)

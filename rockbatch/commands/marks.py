@@ -12,12 +12,12 @@ _PLAIN = {PASS: "+", FAIL: "x", NOT_DECIDED: "?", DOES_NOT_APPLY: "-"}
 
 
 def mark(verdict: str) -> str:
-    """Sign and word of a verdict: "✗ FAIL"; the signs are plain ones where the terminal cannot show the others."""
+    """Return sign and word of a verdict: "✗ FAIL"; the signs are plain ones if the terminal cannot show the others."""
     return f"{shown(SIGNS[verdict], _PLAIN[verdict])} {_LOUD.get(verdict, verdict)}"
 
 
 def shown(text: str, instead: str) -> str:
-    """``text``, or what is written ``instead`` where stdout cannot show it."""
+    """Return ``text``, or ``instead`` if stdout cannot show it."""
     try:
         text.encode(sys.stdout.encoding or "ascii")
     except (UnicodeEncodeError, LookupError):
@@ -26,6 +26,6 @@ def shown(text: str, instead: str) -> str:
 
 
 def coloured(text: str, verdict: str) -> str:
-    """``text`` in the colour of a verdict, where stdout is a terminal and nobody asked for none (NO_COLOR, TERM=dumb)."""
+    """Return ``text`` in the colour of a verdict, if stdout is a terminal and colours are not declined (NO_COLOR, TERM=dumb)."""
     plain = "NO_COLOR" in os.environ or os.environ.get("TERM") == "dumb" or not sys.stdout.isatty()
     return text if plain or verdict not in _COLOURS else f"\x1b[{_COLOURS[verdict]}m{text}\x1b[0m"

@@ -1,4 +1,4 @@
-"""``rockbatch merge``: the shares of a study that several machines have carried out, to what one run would have left."""
+"""``rockbatch merge``: the shares of a study that several machines have carried out, joined as if one run had."""
 
 import argparse
 import sys

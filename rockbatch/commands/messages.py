@@ -1,4 +1,4 @@
-"""What commands tell: messages on stderr, what they were asked for on stdout."""
+"""Output of commands: messages on stderr, what they were asked for on stdout."""
 
 import shutil
 import sys
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class Terminal(Listener):
-    """Tells on stderr what it hears of a batch."""
+    """Listener that prints on stderr what it hears of a batch."""
 
     def motions(self, found: "MotionSet") -> None:
         """See :class:`Listener`."""
@@ -33,27 +33,27 @@ class Terminal(Listener):
 
 
 def say(text: str) -> None:
-    """Print a message where it does not mix with what a command was asked for."""
+    """Print a message on stderr, where it does not mix with what a command was asked for."""
     tell(sys.stderr, text)
 
 
 def show(text: str) -> None:
-    """Print what a command was asked for."""
+    """Print on stdout what a command was asked for."""
     tell(sys.stdout, text)
 
 
 def in_width(table: "pd.DataFrame", index: bool = True) -> str:
-    """A table as text; where it is shown on a terminal, its columns go below each other rather than beyond the edge."""
+    """Return a table as text; on a terminal its columns go below each other rather than beyond the edge."""
     width = shutil.get_terminal_size().columns if sys.stdout.isatty() else None
     return table.to_string(index=index, line_width=width)
 
 
 def tell_motions(motions: "MotionSet") -> None:
-    """Tell which files are not used, and how many nobody misses."""
+    """Print which files are not used and why, and how many are left out."""
     for file in motions.unusable:
         say(f"not used: {file.source}: {file.reason}")
-    for one, other in _twice(motions):
-        say(f"{one} and {other} have the same samples: checks count them once, curves twice; leave one out")
+    for first, repeat in _twice(motions):
+        say(f"{first} and {repeat} have the same samples: checks count them once, curves twice; leave one out")
     if lacking := [motion.named for motion in motions.motions if motion.lacks_vertical]:
         say(f"no vertical: {'; '.join(lacking)}")
     if motions.left_out:
@@ -61,7 +61,7 @@ def tell_motions(motions: "MotionSet") -> None:
 
 
 def _twice(motions: "MotionSet") -> list[tuple[str, str]]:
-    """Names of motions with the same samples: the first, and each that repeats it."""
+    """Return the names of motions with the same samples: the first, and each that repeats it."""
     first: dict[tuple[float, bytes], str] = {}
     pairs = []
     for motion in motions.motions:

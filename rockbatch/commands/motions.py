@@ -60,30 +60,30 @@ def main(arguments: argparse.Namespace) -> int:
         if len(arguments.path) > 1:
             raise InputError("--write-manifest: give one folder, which it is written into")
         say(str(write_draft(arguments.path[0], options)))
-    found = read_motions(arguments.path, options=options)
-    rows = [row(motion) for motion in found]
+    suite = read_motions(arguments.path, options=options)
+    rows = [row(motion) for motion in suite]
     if arguments.csv:
-        _write(arguments.csv, rows, found)
+        _write(arguments.csv, rows, suite)
     show(_table(rows))
-    _list("What was done", [(motion.named, note) for motion in found.motions for note in motion.notes])
-    lacking = [motion.named for motion in found.motions if motion.lacks_vertical]
+    _list("What was done", [(motion.named, note) for motion in suite.motions for note in motion.notes])
+    lacking = [motion.named for motion in suite.motions if motion.lacks_vertical]
     _list("No vertical", [(name, "none beside it that fits") for name in lacking])
-    _list("Not used", [(file.source, file.reason) for file in found.unusable])
-    _list("Left out", [(file.source, file.reason) for file in found.left_out])
-    stations = len({motion.of_station for motion in found.motions})
-    told = f"{len(found.motions)} records, {len(found.unusable)} files not used, {len(found.left_out)} left out"
-    say(f"{told}; {count(stations, 'station')}")
-    if arguments.strict and found.unusable:
+    _list("Not used", [(file.source, file.reason) for file in suite.unusable])
+    _list("Left out", [(file.source, file.reason) for file in suite.left_out])
+    stations = len({motion.of_station for motion in suite.motions})
+    counts = f"{len(suite.motions)} records, {len(suite.unusable)} files not used, {len(suite.left_out)} left out"
+    say(f"{counts}; {count(stations, 'station')}")
+    if arguments.strict and suite.unusable:
         return 2
-    return 1 if found.unusable or not found.motions else 0
+    return 1 if suite.unusable or not suite.motions else 0
 
 
-def _write(path: Path, rows: list[dict[str, Any]], found: "MotionSet") -> None:
+def _write(path: Path, rows: list[dict[str, Any]], suite: "MotionSet") -> None:
     from rockbatch.errors import InputError
     from rockbatch.files import csv_text, write_whole
     from rockbatch.motions.motion_set import COLUMNS
 
-    files: list[Unusable | LeftOut] = [*found.unusable, *found.left_out]
+    files: list[Unusable | LeftOut] = [*suite.unusable, *suite.left_out]
     not_used = [{"record": file.name, "file_h": file.source, "reason": file.reason} for file in files]
     heads = list(COLUMNS)
     heads.insert(heads.index("azimuth_deg"), "reason")
@@ -94,18 +94,18 @@ def _write(path: Path, rows: list[dict[str, Any]], found: "MotionSet") -> None:
 
 
 def _table(rows: list[dict[str, Any]]) -> str:
-    """The rows in columns of equal width; a column without a value is left out."""
+    """Return the rows in columns of equal width; a column without a value is left out."""
     from rockbatch.motions.motion_set import TEXTS
 
     used = {key: shown for key, shown in _SHOWN.items() if key == "record" or any(row[key] is not None for row in rows)}
     lines = [[head for head, _ in used.values()]]
     lines += [["" if row[key] is None else format(row[key], form) for key, (_, form) in used.items()] for row in rows]
     widths = [max(len(line[i]) for line in lines) for i in range(len(used))]
-    left = [key in TEXTS for key in used]
+    aligned_left = [key in TEXTS for key in used]
     return "\n".join(
         "  ".join(
             cell.ljust(width) if text else cell.rjust(width)
-            for cell, width, text in zip(line, widths, left, strict=True)
+            for cell, width, text in zip(line, widths, aligned_left, strict=True)
         ).rstrip()
         for line in lines
     )

@@ -1,4 +1,4 @@
-"""Options that commands share: the folder of the results, and what carries out the runs."""
+"""Options that commands share: the folder of the results, and the engine that carries out the runs."""
 
 import argparse
 from dataclasses import replace
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 def add_study(parser: argparse.ArgumentParser) -> None:
-    """Which study, under which motions, and where its results go."""
+    """Add the options for the study, its motions and the folder of its results."""
     parser.add_argument("study", type=Path, metavar="STUDY.toml", help="the study file")
     parser.add_argument("--out", type=Path, metavar="DIR", help="folder for the results (default: reports/STUDY)")
     parser.add_argument(
@@ -21,7 +21,7 @@ def add_study(parser: argparse.ArgumentParser) -> None:
 
 
 def study_of(arguments: argparse.Namespace) -> "Study":
-    """The study that is given, with what the command line changes of it."""
+    """Return the study that is given, with the changes that the command line makes."""
     from rockbatch.study import load_study
 
     study = load_study(arguments.study, motions=arguments.motions)
@@ -29,7 +29,7 @@ def study_of(arguments: argparse.Namespace) -> "Study":
 
 
 def add_engine(parser: argparse.ArgumentParser) -> None:
-    """What carries out the runs, and whether those that an earlier process has finished count."""
+    """Add the options for the engine that carries out the runs, and for starting over."""
     parser.add_argument("--jobs", type=_jobs, metavar="N", help="threads, or processes (default: all processors)")
     parser.add_argument(
         "--fresh", action="store_true", help="start over, instead of going on with what is finished in the folder"
@@ -61,12 +61,12 @@ def _jobs(text: str) -> int:
 
 
 def folder(arguments: argparse.Namespace) -> Path:
-    """Where the results go."""
+    """Return the folder of the results."""
     return arguments.out or Path("reports") / arguments.study.stem
 
 
 def engine(arguments: argparse.Namespace) -> "Engine":
-    """What carries out the runs; a context."""
+    """Return the engine that carries out the runs; a context."""
     from rockbatch.batch.threads import Threads, cores
 
     if arguments.engine == "dask" or arguments.scheduler:

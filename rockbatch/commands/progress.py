@@ -1,4 +1,4 @@
-"""How far a batch is: a bar with the time left on a terminal, plain lines elsewhere."""
+"""Progress of a batch: a bar with the time remaining on a terminal, plain lines elsewhere."""
 
 import io
 import os
@@ -13,7 +13,7 @@ SECONDS_BETWEEN_LINES = 2.0
 
 
 class Progress:
-    """Call it with the number of runs that are finished since the last call; use it as a context."""
+    """Progress of a batch: call it with the number of runs that are finished since the last call; use it as a context."""
 
     def __init__(self, total: int, stream: TextIO | None = None) -> None:
         self.total = total
@@ -48,10 +48,10 @@ class Progress:
         now = time.monotonic()
         if now - self.last_line >= SECONDS_BETWEEN_LINES:
             self.last_line = now
-            left = (now - self.started) * (self.total - self.done) / self.done
-            tell(self.stream, f"{self.done} of {self.total} runs, {left:.0f} s left")
+            remaining = (now - self.started) * (self.total - self.done) / self.done
+            tell(self.stream, f"{self.done} of {self.total} runs, {remaining:.0f} s left")
 
 
 def _can_draw(stream: TextIO) -> bool:
-    """Whether ``stream`` is a terminal that has a size; some that are made by programs have none."""
+    """Return whether ``stream`` is a terminal that has a size; some that are made by programs have none."""
     return stream.isatty() and min(os.get_terminal_size(stream.fileno())) > 0

@@ -39,8 +39,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _shard(text: str) -> tuple[int, int]:
-    found = re.fullmatch(r"(\d+)/(\d+)", text, re.ASCII)
-    share, shares = map(int, found.groups()) if found else (0, 0)
+    match = re.fullmatch(r"(\d+)/(\d+)", text, re.ASCII)
+    share, shares = map(int, match.groups()) if match else (0, 0)
     if not 1 <= share <= shares:
         raise argparse.ArgumentTypeError(f"{text}: must be such as 2/4, the second of four shares")
     return share, shares
@@ -66,20 +66,20 @@ def main(arguments: argparse.Namespace) -> int:
 
 
 def _expect(study: "Study", jobs: int | None) -> int:
-    """Say what the study would take."""
+    """Print the time and the disk space that the study would take."""
     from rockbatch.batch.expecting import expected
     from rockbatch.batch.threads import cores
 
-    found = expected(study, jobs or cores(), Terminal())
-    threads = "1 thread" if found.jobs == 1 else f"{found.jobs} threads"
-    show(found.what)
-    show(f"{in_words(found.seconds)} on {threads}, as {found.tried} of them took; then the report")
-    show(f"peaks.csv: about {found.table / 1e6:.2g} MB; histories: about {found.histories / 1e6:.2g} MB")
+    estimate = expected(study, jobs or cores(), Terminal())
+    threads = "1 thread" if estimate.jobs == 1 else f"{estimate.jobs} threads"
+    show(estimate.what)
+    show(f"{in_words(estimate.seconds)} on {threads}, as {estimate.tried} of them took; then the report")
+    show(f"peaks.csv: about {estimate.table / 1e6:.2g} MB; histories: about {estimate.histories / 1e6:.2g} MB")
     return 0
 
 
 def in_words(seconds: float) -> str:
-    """A time as one would say it: "less than 1 s", "40 s", "12 min", "3.5 h"."""
+    """Return a time as one would say it: "less than 1 s", "40 s", "12 min", "3.5 h"."""
     if seconds < 1.0:
         return "less than 1 s"
     if seconds < 90.0:

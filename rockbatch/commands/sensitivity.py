@@ -1,4 +1,4 @@
-"""``rockbatch sensitivity``: what the peak rotation depends on, one at a time and by Sobol's indices."""
+"""``rockbatch sensitivity``: the sensitivity of the peak rotation, one at a time and by Sobol's indices."""
 
 import argparse
 from typing import TYPE_CHECKING
@@ -24,17 +24,17 @@ def main(arguments: argparse.Namespace) -> int:
 
     from rockbatch.analysis.sensitivity import sensitivity
 
-    found = sensitivity(study, **asked(arguments))
-    show(shown(found.sensitivity, found.sobol, study.varied))
-    ended = ", ".join(f"{number} {status}" for status, number in sorted(found.info["statuses"].items()))
-    cut = f"theta_max/alpha = {found.spec.overturned:g}"
+    result = sensitivity(study, **asked(arguments))
+    show(shown(result.sensitivity, result.sobol, study.varied))
+    ended = ", ".join(f"{number} {status}" for status, number in sorted(result.info["statuses"].items()))
+    cut = f"theta_max/alpha = {result.spec.overturned:g}"
     say(f"{ended}; runs that overturned or were ended by flight count as {cut}")
-    tell_files(found)
-    return 1 if found.unusable else 0  # what failed counts, as the report says
+    tell_files(result)
+    return 1 if result.unusable else 0  # what failed counts, as the report says
 
 
 def shown(swings: "pd.DataFrame", shares: "pd.DataFrame", varied: tuple[str, ...]) -> str:
-    """Both tables for a terminal, a block for each case: the answer at both ends, and the indices with their errors."""
+    """Return both tables for a terminal, a block for each case: the answer at both ends, and the indices with their errors."""
     from rockbatch.commands.summary import named
 
     keys = ["case", *varied]

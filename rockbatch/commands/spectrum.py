@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 HELP = "rocking spectra, and maps of the pulses that overturn"
 EXAMPLE = "rockbatch spectrum pier.toml"
 MOST_LINES = 12
-"""Of a table for the terminal."""
+"""Greatest number of lines of a table for the terminal."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -30,46 +30,46 @@ def main(arguments: argparse.Namespace) -> int:
 
     from rockbatch.analysis.spectrum import spectrum
 
-    found = spectrum(study, **asked(arguments))
+    result = spectrum(study, **asked(arguments))
     failed = 0
-    if found.spectra is not None and found.spectrum is not None and found.spectrum_suite is not None:
-        show(shown(found.spectrum_suite, found.spectra))
-        failed = int((found.spectrum["status"] == "failed").sum())
+    if result.spectra is not None and result.spectrum is not None and result.spectrum_suite is not None:
+        show(shown(result.spectrum_suite, result.spectra))
+        failed = int((result.spectrum["status"] == "failed").sum())
         if failed:
-            runs = count(len(found.spectrum), "run")
+            runs = count(len(result.spectrum), "run")
             say(f"{failed} of {runs} failed and count in no quantile; the column reason says why")
-    if found.overturning_map is not None:
-        show(shown_maps(found.overturning_map, study.varied))
-    tell_files(found)
-    return 1 if failed or found.unusable else 0
+    if result.overturning_map is not None:
+        show(shown_maps(result.overturning_map, study.varied))
+    tell_files(result)
+    return 1 if failed or result.unusable else 0
 
 
 def shown(suite: "pd.DataFrame", spectrum: "SpectrumSpec") -> str:
-    """Medians of θ_max/α for a terminal: a line for each value on the axis, ∞ where the pier overturns."""
+    """Return medians of θ_max/α for a terminal: a line for each value on the axis, ∞ where the pier overturns."""
     import numpy as np
     import pandas as pd
 
     from rockbatch.commands.summary import named
 
     axis = spectrum.axis
-    apart = [name for name in ("case", "scale", *spectrum.varied) if name != axis]
-    told = [name for name in apart if name != "case" and (name != "scale" or suite[name].nunique() > 1)]
+    keys = [name for name in ("case", "scale", *spectrum.varied) if name != axis]
+    labels = [name for name in keys if name != "case" and (name != "scale" or suite[name].nunique() > 1)]
     lines = spread(suite[axis].unique())
     columns: dict[str, dict[str, str]] = {}
-    for names, own in suite[suite[axis].isin(lines)].groupby(apart, sort=False, dropna=False):
-        values = dict(zip(apart, names, strict=True))
-        columns[f"{names[0]} {named(told, [values[name] for name in told])}"] = {
+    for names, own in suite[suite[axis].isin(lines)].groupby(keys, sort=False, dropna=False):
+        values = dict(zip(keys, names, strict=True))
+        columns[f"{names[0]} {named(labels, [values[name] for name in labels])}"] = {
             f"{value:.4g}": "" if np.isnan(median) else "∞" if np.isinf(median) else f"{median:.4f}"
             for value, median in zip(own[axis], own["median"], strict=True)
         }
     cells = pd.DataFrame(columns).rename_axis(axis, axis="columns").fillna("")
-    of = suite[axis].nunique()
-    some = f", {len(lines)} of {of} values of {axis}" if len(lines) < of else ""
+    total = suite[axis].nunique()
+    some = f", {len(lines)} of {total} values of {axis}" if len(lines) < total else ""
     return f"Median of theta_max/alpha{some}; ∞: overturned or ended by flight\n{in_width(cells)}"
 
 
 def spread(values: "np.ndarray") -> "np.ndarray":
-    """At most :data:`MOST_LINES` of ``values``, evenly, the first and the last among them."""
+    """Return at most :data:`MOST_LINES` of ``values``, evenly, the first and the last among them."""
     import numpy as np
 
     if len(values) <= MOST_LINES:
@@ -78,7 +78,7 @@ def spread(values: "np.ndarray") -> "np.ndarray":
 
 
 def _evenly(values: "np.ndarray") -> "np.ndarray":
-    """At most :data:`MOST_LINES` of ``values``, those that are nearest to evenly spaced ones."""
+    """Return at most :data:`MOST_LINES` of ``values``, those that are nearest to evenly spaced ones."""
     import numpy as np
 
     wanted = np.linspace(values[0], values[-1], MOST_LINES)
@@ -86,7 +86,7 @@ def _evenly(values: "np.ndarray") -> "np.ndarray":
 
 
 def shown_maps(table: "pd.DataFrame", varied: tuple[str, ...]) -> str:
-    """The regions of every map for a terminal, a line for each frequency."""
+    """Return the regions of every map for a terminal, a line for each frequency."""
     from rockbatch.commands.summary import named
 
     blocks = []
@@ -94,7 +94,9 @@ def shown_maps(table: "pd.DataFrame", varied: tuple[str, ...]) -> str:
         lines = [f"{names[0]}, {names[1]} {named(varied, names[2:])}".rstrip() + ": outcome by a_p/(g tan alpha)"]
         for frequency in _evenly(own["omega_p_over_p"].unique()):
             column = own[own["omega_p_over_p"] == frequency]
-            told = "; ".join(f"{each.low:.4g} to {each.high:.4g} {each.outcome}" for each in column.itertuples())
-            lines.append(f"  omega_p/p = {frequency:<6.4g} {told}")
+            regions = "; ".join(
+                f"{region.low:.4g} to {region.high:.4g} {region.outcome}" for region in column.itertuples()
+            )
+            lines.append(f"  omega_p/p = {frequency:<6.4g} {regions}")
         blocks.append("\n".join(lines))
     return "\n\n".join(blocks)

@@ -1,8 +1,7 @@
-"""The door to the terminal.
+"""Output to the terminal.
 
-What is told may come from anybody's files, so that what a terminal would obey is written out
-(:func:`rockbatch.files.legible`); and a stream that takes no more, or cannot write a letter, ends nothing: the results are on
-the disk.
+Text may come from anybody's files, so that what a terminal would obey is written out (:func:`rockbatch.files.legible`); and a
+stream that takes no more, or cannot write a letter, ends nothing: the results are on the disk.
 """
 
 import errno
@@ -15,13 +14,13 @@ from typing import TextIO
 from rockbatch.files import legible
 
 _COLOURS = re.compile(r"(\x1b\[(?:0|31|32|33)m)")
-"""Those of verdicts, which a terminal gets as they are."""
+"""Colours of verdicts, which a terminal gets as they are."""
 
 _lost: dict[TextIO, OSError] = {}
 
 
 def open_missing() -> None:
-    """Have a stdout and a stderr where a program is started without: files that are opened later must not take their places."""
+    """Open a stdout and a stderr if the program is started without: files that are opened later must not take their places."""
     for name in ("stdout", "stderr"):
         if getattr(sys, name) is None:
             setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115
@@ -50,5 +49,5 @@ def give_up(stream: TextIO, error: OSError) -> None:
 
 
 def is_lost(stream: TextIO) -> bool:
-    """Whether something could not be printed there."""
+    """Return whether something could not be printed there, and forget it."""
     return _lost.pop(stream, None) is not None

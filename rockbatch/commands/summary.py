@@ -12,13 +12,13 @@ if TYPE_CHECKING:
 
 
 MOST_RUNS = 1000
-"""Larger studies are told by their worst runs."""
+"""Runs of a study beyond which its worst runs are printed instead of all."""
 
 
 def summary(table: "pd.DataFrame", varied: tuple[str, ...], records: Mapping[str, str]) -> str:
-    """Blocks of text, a line for each of ``records`` in their order, the status beside the value where it is not "ok".
+    """Return blocks of text, a line for each of ``records`` in their order, the status beside the value if it is not "ok".
 
-    ``records`` has for each name in the table what is written in its place.
+    ``records`` maps each name in the table to what is written in its place.
     """
     runs = table[table["case"] != ""]
     if len(runs) > MOST_RUNS:
@@ -39,7 +39,7 @@ def summary(table: "pd.DataFrame", varied: tuple[str, ...], records: Mapping[str
 
 
 def _worst(runs: "pd.DataFrame", varied: tuple[str, ...]) -> str:
-    """How the runs of a large study ended, and the ten with the greatest rotations."""
+    """Return how the runs of a large study ended, and the ten with the greatest rotations."""
     ended = ", ".join(f"{count} {status}" for status, count in runs["status"].value_counts().items())
     shown = ["record", "polarity", "scale", "case", *varied, "status", "theta_max_over_alpha", "theta_max_error"]
     largest = runs.nlargest(10, "theta_max_over_alpha")[shown]
@@ -47,7 +47,7 @@ def _worst(runs: "pd.DataFrame", varied: tuple[str, ...]) -> str:
 
 
 def other_law(table: "pd.DataFrame", varied: Sequence[str]) -> str:
-    """A warning where the settlement is a range by the spring law, of a tenth and a millimetre or more; empty elsewhere."""
+    """Return a warning if the settlement is a range by the spring law, of a tenth and a millimetre or more; else empty."""
     import numpy as np
 
     if "settlement_other_law_m" not in table:
@@ -58,8 +58,8 @@ def other_law(table: "pd.DataFrame", varied: Sequence[str]) -> str:
     if not differ.any():
         return ""
     worst = table.iloc[int(np.nanargmax(gap.to_numpy()))]
-    told = ["scale", *varied] if table["scale"].nunique() > 1 else varied
-    which = f"{worst['record']}, {worst['case']} {named(told, [worst[name] for name in told])}".rstrip()
+    keys = ["scale", *varied] if table["scale"].nunique() > 1 else varied
+    which = f"{worst['record']}, {worst['case']} {named(keys, [worst[name] for name in keys])}".rstrip()
     mm = [1000 * worst[name] for name in ("settlement_m", "settlement_other_law_m")]
     law = "Bouc–Wen" if mm[0] > mm[1] else "elastic–perfectly plastic"
     runs = "1 run" if differ.sum() == 1 else f"{int(differ.sum())} runs"
@@ -70,7 +70,7 @@ def other_law(table: "pd.DataFrame", varied: Sequence[str]) -> str:
 
 
 def linearised(table: "pd.DataFrame") -> str:
-    """A warning of rotations too large for first-order kinematics; empty if there are none."""
+    """Return a warning of rotations too large for linearised kinematics; empty if there are none."""
     from rockbatch.results.outcome import LINEARISED
 
     runs = int(table["note"].str.contains(LINEARISED).sum())
@@ -81,7 +81,7 @@ def linearised(table: "pd.DataFrame") -> str:
 
 
 def sliding(table: "pd.DataFrame") -> str:
-    """A warning where the friction demand is greater than what the interface has; empty elsewhere."""
+    """Return a warning if the friction demand is greater than what the interface has; else empty."""
     from rockbatch.results.outcome import WOULD_SLIDE
 
     slides = int(table["note"].str.contains(WOULD_SLIDE).sum())
@@ -94,7 +94,7 @@ def sliding(table: "pd.DataFrame") -> str:
 
 
 def leaning(table: "pd.DataFrame") -> str:
-    """A warning where the greatest rotation is lean and not rocking; empty elsewhere."""
+    """Return a warning if the greatest rotation is lean and not rocking; else empty."""
     leans = int((table["theta_max_is"] == LEANS).sum())
     if not leans:
         return ""
@@ -122,6 +122,6 @@ def _block(runs: "pd.DataFrame", rows: list[str], case_keys: list[str]) -> str:
 
 
 def named(keys: Iterable[str], values: Iterable[Any]) -> str:
-    """``beta=40 eta=2.5``, without keys that do not apply."""
+    """Return ``beta=40 eta=2.5``, without keys that do not apply."""
     pairs = [(key, value) for key, value in zip(keys, values, strict=True) if value == value and value != ""]
     return " ".join(f"{key}={value}" if isinstance(value, str) else f"{key}={value:g}" for key, value in pairs)
