@@ -1,4 +1,4 @@
-"""What a test may take: a hang, or memory that only a header asks for, is a failure, and not the end of the machine."""
+"""Limits of time and memory for tests: a hang, or memory that only a header asks for, fails the test and not the machine."""
 
 import resource
 import signal
@@ -8,12 +8,12 @@ from pathlib import Path
 
 
 class HangError(BaseException):
-    """What ran was still at it when its time was over."""
+    """The time given was over."""
 
 
 @contextmanager
 def bounds(seconds: float, megabytes: float) -> Iterator[None]:
-    """Fail what takes longer than so many seconds of computing time, or asks for more memory than so much on top."""
+    """Fail what takes more computing time [s] or more additional memory [MiB] than given."""
 
     def stop(*_: object) -> None:
         raise HangError(f"more than {seconds:g} s")

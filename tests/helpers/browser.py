@@ -11,7 +11,7 @@ import pytest
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 needs_chromium = pytest.mark.skipif(CHROMIUM is None, reason="needs Chromium")
-# Runs before the page: what goes wrong is written down
+# Runs before the page: records errors
 WATCH = """
 const wrong = [];
 addEventListener("error", (event) => wrong.push(event.message), true);
@@ -42,11 +42,11 @@ document.body.append(result);
 
 
 def browse(tmp_path, page, act="", *, size=(1200, 900)):
-    """What ``act``, run after the page's own script, fills into ``found``."""
+    """Return what ``act``, run after the page's own script, fills into ``found``."""
     text = page.read_text(encoding="utf-8")
     scripts = WATCH, ACT % act
     hashes = [base64.b64encode(hashlib.sha256(script.encode()).digest()).decode() for script in scripts]
-    text = text.replace("script-src ", "script-src " + " ".join(f"'sha256-{one}'" for one in hashes) + " ", 1)
+    text = text.replace("script-src ", "script-src " + " ".join(f"'sha256-{digest}'" for digest in hashes) + " ", 1)
     text = text.replace("<title>", f"<script>{scripts[0]}</script><title>", 1)
     text = text.replace("</body>", f"<script>{scripts[1]}</script></body>")
     driven = tmp_path / "driven.html"

@@ -24,7 +24,7 @@ RECORD = {
 
 
 def case(name: str = "pads", base: Base = PADS, **columns: float | str) -> dict[str, Any]:
-    """A case as run.json has it."""
+    """Return a case as run.json has it."""
     return describe_case(Case(name, PIER, base, columns))
 
 
@@ -32,8 +32,8 @@ RIGID, ELASTIC = case("rigid", RigidBase()), case("elastic", ElasticBase(beta=50
 
 
 def runs(theta: Any = (0.1, 0.2, 0.6, 0.3), name: str = "pads", **cells: Any) -> pd.DataFrame:
-    """One run that went well for each value of θ_max/α, each of a station of its own; ``cells`` has a value, or one for each
-    run, for other columns."""
+    """Return one run that went well for each value of θ_max/α, each of its own station; ``cells`` gives other columns, a value
+    each."""
     table = pd.DataFrame({"theta_max_over_alpha": [float(value) for value in theta]})
     table["record"] = [f"r{i}" for i in range(len(table))]
     table["case"], table["polarity"], table["scale"], table["status"], table["reason"] = name, "+", 1.0, "ok", ""
@@ -47,26 +47,26 @@ def runs(theta: Any = (0.1, 0.2, 0.6, 0.3), name: str = "pads", **cells: Any) ->
 
 
 def folder(path: Path, peaks: pd.DataFrame, cases: list[dict[str, Any]], checks: str = "", **info: Any) -> Path:
-    """A folder as ``rockbatch run`` leaves it, of a study with the text ``checks``."""
+    """Write a folder as ``rockbatch run`` leaves it, of a study with the text ``checks``."""
     table = peaks.reindex(columns=list(dict.fromkeys([*names(STAYING), *names(MORE), *peaks.columns])))
     path.mkdir(exist_ok=True)
     table.to_csv(path / "peaks.csv", index=False, float_format="%.10g")
     records = peaks.loc[peaks["case"] != "", ["record", "station"]].drop_duplicates("record")
-    told = {
+    content = {
         "rockbatch": "0", "created": "", "command": [], "versions": {}, "machine": "",
         "study": {"path": "pier.toml", "title": "", "notes": "", "text": checks, "sha256": ""},
         "numerics": {"tolerance": 1e-4, "substeps": None, "quiet_s": 2.0},
-        "varied": list(dict.fromkeys(key for one in cases for key in one["columns"])),
+        "varied": list(dict.fromkeys(key for entry in cases for key in entry["columns"])),
         "cases": cases,
-        "records": [RECORD | one for one in records.to_dict("records")],
+        "records": [RECORD | cells for cells in records.to_dict("records")],
         "unusable": [], "references": [], "runs": len(peaks), "jobs": 1, "wall_s": 1.0,
     }  # fmt: skip
-    (path / "run.json").write_text(json.dumps(told | info), encoding="utf-8")
+    (path / "run.json").write_text(json.dumps(content | info), encoding="utf-8")
     return path
 
 
 def verdict(case: str, decided: str, *, check: str = "margin", ratio: float = 0.5, **more: object) -> Verdict:
-    """What a check found in a case."""
+    """Return the verdict of a check on a case."""
     values = {
         "columns": {}, "scale": 1.0, "demand": "theta_max_over_alpha", "statistic": "mean",
         "words": "mean of theta_max_over_alpha", "records": 6, "runs": 6, "value": 0.25, "low": 0.2, "high": 0.3,

@@ -1,4 +1,4 @@
-"""Runs by the core itself, of blocks that start in motion, which the public interface does not have."""
+"""Runs by the core itself, of blocks that start in motion, which the public interface does not offer."""
 
 import numpy as np
 
@@ -12,12 +12,12 @@ KIND = kind_of(None)
 
 
 def block_line(m: Block, theta: float, omega: float, dt: float, substeps: int, npts: int, quiet_samples: int = 0):
-    """Line of a run from ``theta`` [rad] and ``omega`` [rad/s] on, over the first ``npts`` rows of the ground."""
+    """Return the line of a run from ``theta`` [rad] and ``omega`` [rad/s] on, over the first ``npts`` rows of the ground."""
     return line_of(m, theta, omega, dt, substeps, quiet_samples, 0, npts, 0)
 
 
 def run_blocks(lines, ground: Samples, substeps: int, history: Samples | None = None, stop: int = 0) -> np.recarray:
-    """Results of runs whose lines they are, which have ``substeps`` in common; they are stopped at once by a ``stop`` of 1."""
+    """Return the results of the runs with these lines, of the same ``substeps``; a ``stop`` of 1 stops them at once."""
     more = {} if history is None else {"history": history}
     return march(KIND, lines, ground, np.full(1, stop, np.uint8), substeps, **more)
 
@@ -25,8 +25,8 @@ def run_blocks(lines, ground: Samples, substeps: int, history: Samples | None = 
 def run_block(
     m: Block, theta: float, omega: float, ground: Samples, dt: float, substeps: int, rows: int = 0
 ) -> tuple[np.record, np.recarray]:
-    """Result of one run, and its history of at most ``rows`` rows."""
+    """Return the result of one run, and its history of at most ``rows`` rows."""
     row = np.dtype([(name, "f8") for name in (*MOMENT, *KIND.columns)])
     history = np.zeros((rows, len(row)))
-    found = run_blocks([block_line(m, theta, omega, dt, substeps, len(ground))], ground, substeps, history)[0]
-    return found, history.view(row)[: found.rows, 0].view(np.recarray)
+    result = run_blocks([block_line(m, theta, omega, dt, substeps, len(ground))], ground, substeps, history)[0]
+    return result, history.view(row)[: result.rows, 0].view(np.recarray)

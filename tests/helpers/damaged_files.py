@@ -27,7 +27,7 @@ def traced(form: str) -> bytes:
 
 
 def samples() -> dict[str, list[tuple[str, bytes]]]:
-    """Whole files of each format, by its name: (file's name, content)."""
+    """Return whole files of each format, by its name: (file's name, content)."""
     table = "\n".join(f"{0.01 * i:.2f},{value:.5f}" for i, value in enumerate(wiggle(120)))
     texts = {
         "PEER AT2": [("x.AT2", at2_text(wiggle(120)))],
@@ -46,15 +46,15 @@ def samples() -> dict[str, list[tuple[str, bytes]]]:
         "CWA free field": [("x.dat", cwa_text())],
         "text columns": [("x.csv", f"time [s],acc [g]\n{table}\n"), ("x.bbp", BBP)],
     }
-    found = {name: [(file, text.encode("latin-1")) for file, text in files] for name, files in texts.items()}
-    return found | {"MiniSEED": [("x.mseed", traced("MSEED"))], "SAC": [("x.sac", traced("SAC"))]}
+    encoded = {name: [(file, text.encode("latin-1")) for file, text in files] for name, files in texts.items()}
+    return encoded | {"MiniSEED": [("x.mseed", traced("MSEED"))], "SAC": [("x.sac", traced("SAC"))]}
 
 
 SAMPLES = samples()
 
 
 def somewhere(data: bytearray, rng: np.random.Generator) -> int:
-    """A place, in the header more often than its length would have it."""
+    """Return a place, in the header more often than its length would have it."""
     return int(rng.integers(0, max(1, len(data) if rng.random() < 0.5 else len(data) // 5)))
 
 
@@ -63,13 +63,13 @@ def cut(data: bytearray, rng: np.random.Generator) -> bytearray:
 
 
 def hole(data: bytearray, rng: np.random.Generator) -> bytearray:
-    at = somewhere(data, rng)
-    return data[:at] + data[at + int(rng.integers(1, 400)) :]
+    place = somewhere(data, rng)
+    return data[:place] + data[place + int(rng.integers(1, 400)) :]
 
 
-def again(data: bytearray, rng: np.random.Generator) -> bytearray:
-    at = somewhere(data, rng)
-    return data[:at] + data[max(0, at - int(rng.integers(1, 400))) :]
+def repeated(data: bytearray, rng: np.random.Generator) -> bytearray:
+    place = somewhere(data, rng)
+    return data[:place] + data[max(0, place - int(rng.integers(1, 400))) :]
 
 
 def noise(data: bytearray, rng: np.random.Generator) -> bytearray:
@@ -90,14 +90,14 @@ EXTREMES = (0.0, -1.0, 1e-30, 1e30, -1e30, np.inf, -np.inf, np.nan, 2**31 - 1, -
 
 
 def word(data: bytearray, rng: np.random.Generator) -> bytearray:
-    """Four bytes, as the headers of binary files have them, become a number that nothing there can be."""
-    at = 4 * int(rng.integers(0, max(1, min(len(data), 700) // 4)))
+    """Replace four bytes, as in the headers of binary files, by a number that nothing there can be."""
+    place = 4 * int(rng.integers(0, max(1, min(len(data), 700) // 4)))
     value, order = EXTREMES[int(rng.integers(len(EXTREMES)))], "<>"[int(rng.integers(2))]
     whole = np.isfinite(value) and abs(value) < 2**31 and rng.random() < 0.5
     return (
-        data[:at]
+        data[:place]
         + bytearray(struct.pack(f"{order}{'i' if whole else 'f'}", int(value) if whole else value))
-        + data[at + 4 :]
+        + data[place + 4 :]
     )
 
 
@@ -108,14 +108,14 @@ WORDS = (
 
 
 def number(data: bytearray, rng: np.random.Generator) -> bytearray:
-    """A number, or what stands in its place, becomes another: counts, intervals, values."""
-    at = somewhere(data, rng)
-    while at < len(data) and not chr(data[at]).isdigit():
-        at += 1
-    end = at
+    """Replace a number, or what stands in its place, by another: counts, intervals, values."""
+    place = somewhere(data, rng)
+    while place < len(data) and not chr(data[place]).isdigit():
+        place += 1
+    end = place
     while end < len(data) and chr(data[end]) in "0123456789.eE+-":
         end += 1
-    return data[:at] + WORDS[int(rng.integers(len(WORDS)))] + data[end:]
+    return data[:place] + WORDS[int(rng.integers(len(WORDS)))] + data[end:]
 
 
 def line_ends(data: bytearray, rng: np.random.Generator) -> bytes:
@@ -138,7 +138,7 @@ def other_content(data: bytearray, rng: np.random.Generator) -> bytes:
 DAMAGES: tuple[Damage, ...] = (
     cut,
     hole,
-    again,
+    repeated,
     noise,
     noise,
     word,
@@ -153,7 +153,7 @@ DAMAGES: tuple[Damage, ...] = (
 
 
 def damaged(whole: bytes, rng: np.random.Generator) -> bytes:
-    """A file with one to three kinds of damage, one upon the other; one in twenty is whole."""
+    """Return a file with one to three kinds of damage, one upon the other; one in twenty is whole."""
     if rng.random() < 0.05:
         return whole
     data: bytes | bytearray = bytearray(whole)

@@ -1,4 +1,4 @@
-"""Greatest forces of the reference solver: looked at many times in every step of DOP853, with no code of the core."""
+"""Greatest forces of the reference solver: sampled many times in every step of DOP853, with no code of the core."""
 
 import math
 

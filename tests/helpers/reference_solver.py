@@ -1,7 +1,7 @@
-"""The model a second time, for the tests: SciPy's DOP853, one leg per smooth stretch, no code of the core.
+"""A second implementation of the model for the tests: SciPy's DOP853, one leg per smooth stretch, no code of the core.
 
-Between two events and two changes of slope of the ground the equations are smooth. Each such leg is integrated to
-rounding, its end is polished by repeating the last step, and the next leg starts from there. Slow and plain on purpose.
+Between two events and two changes of slope of the ground the equations are smooth. Each such leg is integrated to rounding, its
+end is polished by repeating the last step, and the next leg starts from there. Slow and plain on purpose.
 
 Symbols: α, μ, p, b, h, o_i, z_i as in THEORY.md, Symbols; everything is per unit mass, SI, radians.
 """
@@ -26,7 +26,7 @@ Surface = Callable[[float, list[float]], float]
 
 @dataclass
 class ReferenceRun:
-    """What a run comes to; ``events`` holds (time, kind, pivot)."""
+    """Results of a run; ``events`` holds (time, kind, pivot)."""
 
     status: str = "ok"
     t_end: float = 0.0
@@ -48,7 +48,7 @@ class ReferenceRun:
 
 
 def ground_legs(motion: Motion, quiet_s: float) -> list[tuple[float, float, float, float, float, float]]:
-    """Stretches of linear ground acceleration: t0, t1, ü_g(t0), its slope, v̈_g(t0), its slope."""
+    """Return stretches of linear ground acceleration: t0, t1, ü_g(t0), its slope, v̈_g(t0), its slope."""
     dt = motion.dt
     quiet = math.ceil(quiet_s / dt - 1e-9)
     count = motion.npts + quiet
@@ -81,7 +81,7 @@ class Leg:
     """Integration of one smooth stretch up to the first event function that crosses zero downwards."""
 
     def __init__(self, peak: Callable[[float, float], None], h: float) -> None:
-        self.peak = peak  # told (t, θ) wherever θ̇ = 0
+        self.peak = peak  # called with (t, θ) at every velocity reversal
         self.h = h
 
     def run(
@@ -94,9 +94,9 @@ class Leg:
         theta: int,
         omega: int,
     ) -> tuple[float, list[float], int | None]:
-        """Final time and state, and the surface that ended the leg (None at ``t1``).
+        """Return the final time and state, and the surface that ended the leg (None at ``t1``).
 
-        A surface is positive while the mode lasts; its scale tells rounding from departure. One on which the leg
+        A surface is positive while the mode lasts; its scale separates rounding from departure. One on which the leg
         starts counts once it has been left; if it is left on the wrong side, it fires at once.
         """
         armed = [g(t0, y0) > tiny for g, tiny in surfaces]
@@ -138,14 +138,14 @@ class Leg:
 
     @staticmethod
     def _root(g, dense, before, after):
-        """Where ``g`` falls through zero between two times, from the step's interpolant."""
+        """Return where ``g`` falls through zero between two times, from the step's interpolant."""
         if g(before, dense(before).tolist()) <= 0.0:
             return before
         return brentq(lambda x: g(x, dense(x).tolist()), before, after, xtol=1e-17, rtol=1e-15)
 
     @staticmethod
     def _hop(g, tiny, dense, before, after):
-        """A time shortly after ``before`` at which ``g`` is positive, if it left its surface and came back at once."""
+        """Return a time shortly after ``before`` at which ``g`` is positive, if it left its surface and came back at once."""
         for j in range(1, 15):
             s = before + (after - before) * 0.5**j
             if g(s, dense(s).tolist()) > tiny:
@@ -154,17 +154,17 @@ class Leg:
 
     @staticmethod
     def _polish(rhs, surface, a, ya, root, b):
-        """The interpolant is of lower order than the step: repeat the step up to the root, and correct it."""
+        """Repeat the step up to the root, and correct the root: the interpolant is of lower order than the step."""
 
-        def at(s: float) -> list[float]:
+        def state_at(s: float) -> list[float]:
             if s - a <= 4e-16 * max(1.0, abs(a)):
                 return list(ya)
-            again = DOP853(rhs, a, np.array(ya), s, rtol=RTOL, atol=ATOL, first_step=s - a)
-            while again.status == "running":
-                again.step()
-            return again.y.tolist()
+            solver = DOP853(rhs, a, np.array(ya), s, rtol=RTOL, atol=ATOL, first_step=s - a)
+            while solver.status == "running":
+                solver.step()
+            return solver.y.tolist()
 
-        state = at(root)
+        state = state_at(root)
         for _ in range(2):
             rate = rhs(root, state)
             step = 1e-7 * (b - a)
@@ -175,7 +175,7 @@ class Leg:
             moved = root - surface(root, state) / slope
             if not a <= moved <= b or abs(moved - root) > 1e-3 * (b - a):
                 break
-            root, state = moved, at(moved)
+            root, state = moved, state_at(moved)
         return root, state
 
     def _turning(self, dense, a, ya, b, yb, theta, omega) -> None:
@@ -342,14 +342,14 @@ class TwoSprings:
     def surfaces(self, leg: tuple[float, ...]) -> list[tuple[Surface, float, int, str]]:
         t0, _, h0, hs, v0, vs = leg
         speed = 1e-13 * self.omega_v * self.dy
-        found: list[tuple[Surface, float, int, str]] = []
+        surfaces: list[tuple[Surface, float, int, str]] = []
         for i in (0, 1):
             mode = self.mode[i]
             if mode == "free":
-                found.append((lambda t, y, i=i: self.pivot(i, y) - self.top(i, y), 1e-14 * self.dy, i, "land"))
+                surfaces.append((lambda t, y, i=i: self.pivot(i, y) - self.top(i, y), 1e-14 * self.dy, i, "land"))
             elif mode == "held":
                 for as_mode, sign in (("load", 1.0), ("free", -1.0)):
-                    found.append(
+                    surfaces.append(
                         (
                             lambda t, y, i=i, m=as_mode, s=sign: (
                                 s * self.pivot_acceleration(i, m, y, h0 + hs * (t - t0), v0 + vs * (t - t0))
@@ -360,19 +360,19 @@ class TwoSprings:
                         )
                     )
             elif self.law == "elastic":
-                found.append((lambda t, y, i=i: self.pressed(i, y), 1e-14, i, "separate"))
+                surfaces.append((lambda t, y, i=i: self.pressed(i, y), 1e-14, i, "separate"))
             elif self.law == "epp":
                 if mode == "yield":
-                    found.append((lambda t, y, i=i: -self.rate(i, y), speed, i, "unload"))
+                    surfaces.append((lambda t, y, i=i: -self.rate(i, y), speed, i, "unload"))
                 else:
-                    found.append((lambda t, y, i=i: self.pressed(i, y), 1e-14, i, "separate"))
-                    found.append((lambda t, y, i=i: 1.0 + y[ZL + i], 1e-14, i, "yield"))
+                    surfaces.append((lambda t, y, i=i: self.pressed(i, y), 1e-14, i, "separate"))
+                    surfaces.append((lambda t, y, i=i: 1.0 + y[ZL + i], 1e-14, i, "yield"))
             elif mode == "load":
-                found.append((lambda t, y, i=i: -self.rate(i, y), speed, i, "unload"))
+                surfaces.append((lambda t, y, i=i: -self.rate(i, y), speed, i, "unload"))
             else:
-                found.append((lambda t, y, i=i: self.rate(i, y), speed, i, "load"))
-                found.append((lambda t, y, i=i: self.pressed(i, y), 1e-14, i, "separate"))
-        return found
+                surfaces.append((lambda t, y, i=i: self.rate(i, y), speed, i, "load"))
+                surfaces.append((lambda t, y, i=i: self.pressed(i, y), 1e-14, i, "separate"))
+        return surfaces
 
     # Events
 
@@ -532,7 +532,7 @@ class Rigid:
             self.out.theta_max, self.out.t_max = abs(theta), t
 
     def _lift_off(self, leg: tuple[float, ...], t: float) -> float | None:
-        """First instant ≥ t in the leg at which |ü_g| exceeds (g + v̈_g) tan α."""
+        """Return the first instant ≥ t in the leg at which |ü_g| exceeds (g + v̈_g) tan α."""
         t0, t1, h0, hs, v0, vs = leg
         first = None
         for s in (1.0, -1.0):
@@ -592,7 +592,7 @@ class Rigid:
 
 
 def reference(pier: Pier, base: ElasticBase | RigidBase, motion: Motion, quiet_s: float = 0.0) -> ReferenceRun:
-    """The run of ``pier`` on ``base`` under ``motion``, to about ten digits."""
+    """Return the run of ``pier`` on ``base`` under ``motion``, to about ten digits."""
     if isinstance(base, RigidBase):
         return Rigid(pier, base, motion, quiet_s).run()
     return TwoSprings(pier, base, motion, quiet_s).run()

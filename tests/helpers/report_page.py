@@ -63,14 +63,14 @@ class Page(HTMLParser):
 
 
 def figures(text: str) -> list[ET.Element]:
-    """The inline pictures, but for those of legends; raises where one is not well-formed XML."""
+    """Return the inline pictures, but for those of legends; raises if one is not well-formed XML."""
     return [
         svg for svg in map(ET.fromstring, re.findall(r"<svg.*?</svg>", text, flags=re.DOTALL)) if "role" in svg.attrib
     ]
 
 
 def panels(text: str) -> list[ET.Element]:
-    """The pictures of peak rotations, one for each ground motion, scale and pier."""
+    """Return the pictures of peak rotations, one for each ground motion, scale and pier."""
     return [svg for svg in figures(text) if {"marks", "strip"} & set(svg.attrib["class"].split()) == {"marks"}]
 
 

@@ -30,7 +30,7 @@ FOUNDATIONS: list[tuple[str, Base]] = [
 
 
 def case_entry(name: str, columns: dict[str, Any], pier: Pier, base: Base) -> dict[str, Any]:
-    """A case as run.json has it."""
+    """Return a case as run.json has it."""
     parameters: dict[str, Any] = {}
     if isinstance(base, RigidBase):
         parameters["restitution"] = base.restitution
@@ -141,7 +141,7 @@ def write_results(
 
 
 def three_piers() -> list[dict[str, Any]]:
-    """The cases of Fig. 7 for the three values of p that the paper may mean."""
+    """Return the cases of Fig. 7 for the three values of p that the paper may mean."""
     return [
         case_entry(name, {"p": p}, Pier(alpha=0.13, p=p), base)
         for p in (0.38, 0.36, 0.35)
@@ -150,7 +150,7 @@ def three_piers() -> list[dict[str, Any]]:
 
 
 def response(record: str, case: str, base: Base, *, pier: Pier | None = None, **columns: float | str) -> Response:
-    """Histories that look like rocking: two decaying cycles with a ripple at the springs' frequency."""
+    """Return histories that look like rocking: two decaying cycles with a ripple at the springs' frequency."""
     pier = pier or Pier(alpha=0.20, p=1.0)
     t = np.linspace(0, 8, 8001)
     rate = 1.5 if isinstance(base, RigidBase) else 1.7

@@ -14,7 +14,7 @@ from rockbatch.motions.motion import Motion
 from rockbatch.pier import Damper, ElasticBase, Pier, Tendon, offsets
 
 FIRST = 11
-"""Of the states of elements, behind those of the springs."""
+"""Index of the first device's state, behind those of the springs."""
 
 
 class TiedTwoSprings(TwoSprings):
@@ -23,20 +23,20 @@ class TiedTwoSprings(TwoSprings):
     def __init__(self, pier: Pier, base: ElasticBase, motion: Motion, quiet_s: float) -> None:
         super().__init__(pier, base, motion, quiet_s)
         self.p, self.size = pier.p, math.hypot(self.b, self.h)
-        self.elements = [(each, s) for each in base.restraints for s in offsets(pier, each)]
-        load = 1.0 + sum(each.psi for each, _ in self.elements if isinstance(each, Tendon))
+        self.elements = [(device, s) for device in base.restraints for s in offsets(pier, device)]
+        load = 1.0 + sum(device.psi for device, _ in self.elements if isinstance(device, Tendon))
         share = load * 0.5 * self.g / self.fy
         self.v0, self.z0 = -self.dy * self._static_integral(share), -share
         self.y = [self.v0, 0.0, 0.0, 0.0, self.z0, self.z0] + [0.0] * (5 + len(self.elements))
         self.way = [0.0 if self.rubs(j) else 1.0 for j in range(len(self.elements))]  # 0 while friction holds
         self.hold = [0.0] * len(self.elements)
         self.state = ["taut"] * len(self.elements)
-        for j, (each, _) in enumerate(self.elements):
-            if isinstance(each, Tendon) and each.psi == 0.0:
+        for j, (device, _) in enumerate(self.elements):
+            if isinstance(device, Tendon) and device.psi == 0.0:
                 self.state[j] = "slack"
 
     def shape(self, j: int, y: Sequence[float]) -> tuple[float, ...]:
-        """Elongation e, ∂e/∂v, ∂e/∂θ, and what ë has beside v̈ ∂e/∂v + θ̈ ∂e/∂θ.
+        """Return the elongation e, ∂e/∂v, ∂e/∂θ, and what ë has beside v̈ ∂e/∂v + θ̈ ∂e/∂θ.
 
         The point (s, −h) of the block, as seen from its centre of mass, has risen by u. With finite kinematics e = w u,
         w² = 2/(1 + cos θ), so that w' = w q and q' = 1/(2 + 2 cos θ), where q = sin θ/(2 + 2 cos θ).
@@ -59,20 +59,20 @@ class TiedTwoSprings(TwoSprings):
         return by_v * y[VD] + by_theta * y[OM]
 
     def rubs(self, j: int) -> bool:
-        each = self.elements[j][0]
-        return isinstance(each, Damper) and each.kind == "friction"
+        device = self.elements[j][0]
+        return isinstance(device, Damper) and device.kind == "friction"
 
     def lift(self, j: int, y: Sequence[float], accelerations: tuple[float, float]) -> float:
-        """Second rate of the elongation."""
+        """Return the second rate of the elongation."""
         _, by_v, by_theta, bend = self.shape(j, y)
         return by_v * accelerations[0] + by_theta * accelerations[1] + bend
 
     def still(self, modes, y, ah, av, which: Sequence[int]) -> tuple[np.ndarray, np.ndarray]:
-        """Accelerations at the dampers ``which`` without their forces, and what one of each adds to all of them."""
+        """Return accelerations at the dampers ``which`` without their forces, and what one of each adds to all of them."""
 
         def lifts() -> np.ndarray:
-            found = self.under_pulls(modes, y, ah, av)
-            return np.array([self.lift(j, y, found) for j in which])
+            accelerations = self.under_pulls(modes, y, ah, av)
+            return np.array([self.lift(j, y, accelerations) for j in which])
 
         for j in which:
             self.hold[j] = 0.0
@@ -84,21 +84,21 @@ class TiedTwoSprings(TwoSprings):
         return free, np.array(by).T
 
     def pull(self, j: int, y: Sequence[float]) -> float:
-        """Over the mass, in tension."""
-        each, _ = self.elements[j]
+        """Return the force over the mass, in tension."""
+        device, _ = self.elements[j]
         if self.rubs(j):
-            return self.way[j] * each.f * self.g if self.way[j] else self.hold[j]
+            return self.way[j] * device.f * self.g if self.way[j] else self.hold[j]
         speed = self.speed(j, y)
-        if isinstance(each, Tendon):
+        if isinstance(device, Tendon):
             if self.state[j] == "slack":
                 return 0.0
-            return each.strength * self.g if self.state[j] == "yields" else self.tension(j, y)
-        if each.kind == "viscous":
-            return self.viscous(each, self.elements[j][1], speed)
-        return each.f * self.g * y[FIRST + j]
+            return device.strength * self.g if self.state[j] == "yields" else self.tension(j, y)
+        if device.kind == "viscous":
+            return self.viscous(device, self.elements[j][1], speed)
+        return device.f * self.g * y[FIRST + j]
 
     def viscous(self, damper: Damper, s: float, speed: float) -> float:
-        """C |ė|^a; where a < 1, linear where it would damp faster than the supports vibrate (THEORY.md)."""
+        """Return C |ė|^a; if a < 1, linear where it would damp faster than the supports vibrate (THEORY.md)."""
         c, a = damper.nu * self.p, damper.exponent
         if a < 1.0:
             slow = (c * (1.0 + s * s / (self.inertia + self.h**2)) / self.omega_v) ** (1.0 / (1.0 - a))
@@ -136,21 +136,21 @@ class TiedTwoSprings(TwoSprings):
         plain = super().rhs(leg)
 
         def f(t, y):
-            y = [float(each) for each in y]
+            y = [float(x) for x in y]
             return plain(t, y) + [self._rate(j, y) for j in range(len(self.elements))]
 
         return f
 
     def _rate(self, j: int, y: Sequence[float]) -> float:
-        each, _ = self.elements[j]
+        device, _ = self.elements[j]
         speed = self.speed(j, y)
-        if isinstance(each, Damper) and each.kind == "hysteretic":
+        if isinstance(device, Damper) and device.kind == "hysteretic":
             z = y[FIRST + j]
-            return speed / each.yield_m * (1.0 - (min(abs(z), 1.0) ** 5 if self.way[j] * z > 0.0 else 0.0))
+            return speed / device.yield_m * (1.0 - (min(abs(z), 1.0) ** 5 if self.way[j] * z > 0.0 else 0.0))
         return speed if self.state[j] == "yields" else 0.0
 
     def surfaces(self, leg):
-        found = super().surfaces(leg)
+        surfaces = super().surfaces(leg)
         still, slight = 1e-13 * self.omega_v * self.dy, 1e-13 * self.g
         t0, _, h0, hs, v0, vs = leg
 
@@ -158,21 +158,21 @@ class TiedTwoSprings(TwoSprings):
             self.accelerations(self.mode, y, h0 + hs * (t - t0), v0 + vs * (t - t0))
             return self.elements[j][0].f * self.g - abs(self.hold[j])
 
-        for j, (each, _) in enumerate(self.elements):
+        for j, (device, _) in enumerate(self.elements):
             if self.rubs(j) and not self.way[j]:
-                found.append((lambda t, y, j=j: bears(t, y, j), slight, j, "slips"))
-            elif isinstance(each, Damper):
-                found.append((lambda t, y, j=j: self.way[j] * self.speed(j, y), still, j, "turns"))
+                surfaces.append((lambda t, y, j=j: bears(t, y, j), slight, j, "slips"))
+            elif isinstance(device, Damper):
+                surfaces.append((lambda t, y, j=j: self.way[j] * self.speed(j, y), still, j, "turns"))
             elif self.state[j] == "yields":
-                found.append((lambda t, y, j=j: self.speed(j, y), still, j, "holds"))
+                surfaces.append((lambda t, y, j=j: self.speed(j, y), still, j, "holds"))
             elif self.state[j] == "slack":
-                found.append((lambda t, y, j=j: -self.tension(j, y), slight, j, "holds"))
+                surfaces.append((lambda t, y, j=j: -self.tension(j, y), slight, j, "holds"))
             else:
-                found.append((lambda t, y, j=j: self.tension(j, y), slight, j, "slackens"))
-                if math.isfinite(each.strength):
-                    limit = each.strength * self.g
-                    found.append((lambda t, y, j=j, limit=limit: limit - self.tension(j, y), slight, j, "yields"))
-        return found
+                surfaces.append((lambda t, y, j=j: self.tension(j, y), slight, j, "slackens"))
+                if math.isfinite(device.strength):
+                    limit = device.strength * self.g
+                    surfaces.append((lambda t, y, j=j, limit=limit: limit - self.tension(j, y), slight, j, "yields"))
+        return surfaces
 
     def _fire(self, t, i, kind, ah, av):
         after = {"holds": "taut", "slackens": "slack", "yields": "yields"}
@@ -191,7 +191,7 @@ class TiedTwoSprings(TwoSprings):
             self.settle_friction(ah, av)
 
     def settle_friction(self, ah: float, av: float) -> None:
-        """Who moves goes on; of the others, who bears all that it can is let go, and the rest hold."""
+        """Let dampers that move go on; of the others, those at their bound slip, and the rest hold."""
         rubbing = [j for j in range(len(self.elements)) if self.rubs(j)]
         which = []
         for j in rubbing:

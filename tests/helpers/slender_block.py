@@ -3,7 +3,7 @@
 In the slender limit, with time in 1/p, angles in α, W = ω_p/p, A = a_p/(g tan α) and ψ = asin(1/A) the pulse's phase at
 lift-off, the block obeys x″ = x + A sin(Wτ + ψ) for x = θ/α − 1. So x = −D sin(Wτ + ψ) + c cosh τ + s sinh τ with
 D = A/(1 + W²), c = −W²/(1 + W²) and s = W √(A² − 1)/(1 + W²). Once the pulse is over x + x′ decides: above 0 the block
-falls, at 0 it stays at the summit, below 0 it comes back, and falls to the other side if e² (1 + x′² − x²) > 1, the
+falls, at 0 it stays at the unstable equilibrium, below 0 it comes back, and falls to the other side if e² (1 + x′² − x²) > 1, the
 kinetic energy after an impact at x = −1. (Zhang & Makris 2001 give the first of these conditions.)
 """
 

@@ -29,14 +29,14 @@ PADS = {"name": "pads", "base": "yielding", "beta": 50, "eta": 2.5}
 
 
 def toml(table: Table, header: str = "", name: str = "") -> str:
-    """``table`` as TOML: its own keys first, then the tables in it, each after an empty line."""
+    """Return ``table`` as TOML: its own keys first, then the tables in it, each after an empty line."""
     own, inner = [], []
     for key, value in table.items():
         path = f"{name}.{key}" if name else key
         if isinstance(value, Mapping):
             inner.append(toml(value, f"[{path}]\n", path))
-        elif isinstance(value, list | tuple) and all(isinstance(each, Mapping) for each in value):
-            inner += [toml(each, f"[[{path}]]\n", path) for each in value]
+        elif isinstance(value, list | tuple) and all(isinstance(item, Mapping) for item in value):
+            inner += [toml(item, f"[[{path}]]\n", path) for item in value]
         else:
             own.append(f"{key} = {json.dumps(value, ensure_ascii=False)}\n")
     return "".join([*(["\n", header, *own] if own else []), *inner])
@@ -51,13 +51,13 @@ def study_text(
     cases: Sequence[Table] = (RIGID, PADS),
     **tables: Any,
 ) -> str:
-    """Text of a study; ``motions`` are keys beside its pulses, ``tables`` what comes after its cases."""
+    """Return the text of a study; ``motions`` are keys beside its pulses, ``tables`` what comes after its cases."""
     named = {} if title is None else {"title": title}
     return toml(named | {"pier": pier, "motions": {**(motions or {}), "pulse": pulses}, "case": cases, **tables})
 
 
 def write_study(folder: Path, text: str, name: str = "study.toml") -> Path:
-    """The study's file in ``folder``."""
+    """Write the study's file into ``folder`` and return its path."""
     path = folder / name
     path.write_text(text, encoding="utf-8")
     return path
