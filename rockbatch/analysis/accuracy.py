@@ -85,10 +85,10 @@ def accuracy(
     study, motions, progress
         As for :func:`rockbatch.run`.
     out : path, optional
-        Folder for ``accuracy.csv``; where it holds results of the study, their report shows it. Without it nothing is
+        Folder for ``accuracy.csv``; if it holds results of the study, their report shows it. Without it nothing is
         written.
     runs : int
-        How many runs are measured, spread over the study; fewer where there is no time for more.
+        Number of runs measured, spread over the study; fewer if there is no time for more.
     seconds : float
         How long it may take [s], once the kernels are compiled. What there is no time for is left out: runs, the longest of
         the fixed steps, repetitions, the tightest of SciPy's tolerances.

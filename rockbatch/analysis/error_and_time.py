@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 
 COLUMNS = (
     "method",  # located, not located, study, SciPy DOP853, SciPy LSODA
-    "substeps",  # steps per sample, where they are given
-    "tolerance",  # where it is given: on θ_max/α, or SciPy's rtol
+    "substeps",  # steps per sample, if given
+    "tolerance",  # if given: on θ_max/α, or SciPy's rtol
     "runs",
     "error_median",  # of θ_max/α, over the runs that end as the reference does and do not overturn
     "error_95",

@@ -33,7 +33,7 @@ LEAST_SLOPE = 1e-3
 class Capacities:
     """Intervals of capacities, low < x ≤ high, each with the number of records in it; shape (n,).
 
-    ``low`` is 0 where the limit was exceeded at the lowest level, ``high`` infinite where it never was. ``of_record``,
+    ``low`` is 0 if the limit was exceeded at the lowest level, ``high`` infinite if it never was. ``of_record``,
     shape (m, n), holds what each of m records contributes to ``count`` where a record contributes several times.
     """
 

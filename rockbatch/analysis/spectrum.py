@@ -77,7 +77,7 @@ def spectrum(
     -------
     Spectrum
         With the tables ``spectrum`` and ``spectrum_suite``, ``overturning_map`` and ``overturning_runs``, as their CSV files
-        have them; None where the study does not ask for spectra, or for maps.
+        have them; None if the study has no spectra, or no maps.
 
     Raises
     ------

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class Waves:
-    """Carries out wave after wave, and returns each as its rows of peaks.csv, in the order of its runs.
+    """Runner of waves of runs, each returned as its rows of peaks.csv, in the order of its runs.
 
     The numbers of the runs go on from wave to wave: as long as a wave follows from the rows before it alone, a search that
     was killed goes on where it stopped. Rows always come from the journal, with its ten digits, so that nothing depends on
@@ -47,7 +47,7 @@ class Waves:
 
 
 def _read(cells: Mapping[str, str]) -> dict[str, Any]:
-    """Return cells as numbers where they are, None where one does not apply."""
+    """Return cells as numbers if they are numbers, None if empty."""
     return {
         name: text if name in TEXTS else None if text == "" else int(text) if name in COUNTS else _number(text)
         for name, text in cells.items()

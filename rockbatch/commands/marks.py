@@ -1,4 +1,4 @@
-"""Verdicts in the terminal: a sign and a word for each, and a colour where there are colours."""
+"""Verdicts in the terminal: a sign and a word for each, and a colour if the terminal has colours."""
 
 import os
 import sys

@@ -33,7 +33,7 @@ class Terminal(Listener):
 
 
 def say(text: str) -> None:
-    """Print a message on stderr, where it does not mix with what a command was asked for."""
+    """Print a message on stderr, apart from what a command was asked for."""
     tell(sys.stderr, text)
 
 

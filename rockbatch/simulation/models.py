@@ -114,7 +114,7 @@ def model(pier: Pier, base: Base) -> Block | Springs:
 
 
 def kind_of(m: Block | Springs) -> Kind:
-    """Return the kind of a pier, whose runs share compiled code; kinds compare equal where they are the same."""
+    """Return the kind of a pier, whose runs share compiled code; kinds are compared by value."""
     if isinstance(m, Block):
         return block_lanes.kind_of(m)
     kind = spring_lanes.kind_of(m)
@@ -205,7 +205,8 @@ def ground_of(motion: Motion) -> Samples:
 
 
 def first_substeps(pier: Pier, base: Base, dt: float) -> int:
-    """Return the steps per sample [of ``dt`` s] that the model's highest frequency asks for, FIRST_ON_ROCK on a rigid base."""
+    """Return the steps per sample [of ``dt`` s] that the model's highest frequency needs, FIRST_ON_ROCK at least on a rigid
+    base."""
     return max(_substeps_for(FREQUENCY_STEP, pier, base, dt), 1 if base.on_springs else FIRST_ON_ROCK)
 
 
