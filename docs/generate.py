@@ -28,10 +28,9 @@ from rockbatch.checks.demands import DEMANDS
 from rockbatch.checks.statistics import STATISTICS
 from rockbatch.cli import COMMANDS, main
 from rockbatch.study.schema import schema_of
-from rockbatch.study.sections import FILES, MANIFEST, STUDY, Section
-from rockbatch.toml import asking
+from rockbatch.study.sections import FILES, MANIFEST, STUDY
 from rockbatch.toml.kinds import Choice, shown
-from rockbatch.toml.reader import Key
+from rockbatch.toml.section import Key, Section
 
 HERE = Path(__file__).parent
 TOP = HERE.parent
@@ -172,28 +171,30 @@ def _sections(sections: Iterable[Section]) -> Iterator[str]:
         anchor = "-".join(section.at) or "top"
         heading = f"`{section.header}`" if section.header else "At the top"
         yield from (f"## {heading} {{ #{anchor} }}", "", section.about, "")
-        if section.only_for:
-            yield from ("| key | value | default | bases | meaning |", "| --- | --- | --- | --- | --- |")
-        else:
-            yield from ("| key | value | default | meaning |", "| --- | --- | --- | --- |")
-        for name, key in section.keys.items():
-            bases = f" {', '.join(section.only_for.get(name, ())) or 'all'} |" if section.only_for else ""
-            yield f"| `{name}` | {_value(key)} | {_default(section, name)} |{bases} {section.words.get(name, '')} |"
+        yield from ("| key | value | default | meaning |", "| --- | --- | --- | --- |")
+        for name, key in section.items():
+            yield f"| `{name}` | {_value(key)} | {_default(section, name)} | {_only(key)}{key.words} |"
         yield ""
 
 
+def _only(key: Key) -> str:
+    """With which values of other keys it applies."""
+    told = [" or ".join(f"`{other} = {shown(value)}`" for value in values) for other, values in key.only.items()]
+    return f"With {', '.join(told)}: " if told else ""
+
+
 def _value(key: Key) -> str:
-    if isinstance(key.kind, Choice):
+    if isinstance(key.kind, Choice) and not key.kind.own_words:
         told = "one of " + ", ".join(f"`{shown(option)}`" for option in key.kind.options)
         if len(key.kind.options) > 10:
             told = "one of [these](#demands)"
     else:
-        told = f"{asking.told(key.kind)}, such as `{key.example}`"
+        told = f"{'a range, each end ' if key.pair else ''}{key.kind.words}, such as `{key.example}`"
     return told + (", or a list" if key.many else "")
 
 
 def _default(section: Section, name: str) -> str:
-    if section.keys[name].required:
+    if section[name].required:
         return "**required**"
     default = section.default(name)
     if default is None:

@@ -34,6 +34,11 @@ class UnstatedError(InputError):
         self.keys = keys
 
 
+def remedy(name: str) -> str:
+    """Say what to do about a value that is not usual."""
+    return f'check the unit; if it is right, write confirm = ["{name}"]'
+
+
 @contextmanager
 def starting_threads(otherwise: str = "") -> Iterator[None]:
     """Raise ``InputError`` if no more threads can be started, with what else to do (``otherwise``) but allow them."""

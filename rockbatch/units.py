@@ -1,12 +1,51 @@
 """Units at the border: everything inside is SI, angles are in radians."""
 
 import re
+from collections.abc import Callable
+from dataclasses import dataclass
 
 GRAVITY = 9.81
 """Acceleration of gravity [m/s²] that the reference paper uses (its R0 = 7.36 m for p = 1 rad/s, μ = 3)."""
 
 LEAST, MOST = 1e-15, 1e15
 """Bounds of any number that a user states, but for 0, whatever its unit: products and powers of some stay finite."""
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """Values that a quantity can have, from ``low`` to ``high``; ``above`` and ``below`` exclude these ends.
+
+    ``unit`` follows "a number above 0" in messages; ``why`` is what is said of any other value that is out of bounds, a text or
+    a function of the value, in place of the bounds alone.
+    """
+
+    low: float
+    high: float
+    unit: str = ""
+    why: str | Callable[[float], str] = ""
+    above: bool = False
+    below: bool = False
+
+    def __contains__(self, value: float) -> bool:
+        return (self.low < value if self.above else self.low <= value) and (
+            value < self.high if self.below else value <= self.high
+        )
+
+    def message(self, value: float) -> str:
+        """Return what is wrong about a value that is out of bounds, to follow "name = value: "."""
+        if value <= 0 and self.low >= 0 and (self.low > 0 or self.above):
+            return f"must be a number above 0{self.unit}"
+        if callable(self.why):
+            return self.why(value)
+        return self.why or f"must be within {self.low:g} and {self.high:g}"
+
+    def problems(self, name: str, value: float | None) -> list[str]:
+        """Return the message about a value, after its name, if it is given and out of bounds."""
+        return [] if value is None or value in self else [f"{name} = {value:.10g}: {self.message(value)}"]
+
+
+POSITIVE = Bounds(LEAST, MOST)
+"""Any number above 0."""
 
 _ACCELERATION_IN_M_S2 = {
     "m/s2": 1.0,

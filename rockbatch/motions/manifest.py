@@ -20,25 +20,30 @@ from rockbatch.motions.formats import ReadOptions
 from rockbatch.motions.motion import Unusable
 from rockbatch.motions.orientation import Orientation
 from rockbatch.toml.kinds import boolean, choice, closest, not_negative, number, positive, shown, text
-from rockbatch.toml.reader import Key, Table, TomlFile
+from rockbatch.toml.reader import Table, TomlFile
+from rockbatch.toml.section import Key, Section
 from rockbatch.units import acceleration_factor
 
-RECORD = {
-    "file": Key(kinds.file_name, '"RSN1063_NORTHR_RRS228.AT2"', required=True),
-    "component": Key(text, '"NS"'),
-    "use": Key(boolean, "false"),
-    "role": Key(choice("horizontal", "vertical"), '"vertical"'),
-    "azimuth": Key(kinds.azimuth, "228"),
-    "unit": Key(kinds.unit, '"cm/s2"'),
-    "dt": Key(kinds.step, "0.01"),
-    "scale": Key(positive, "1.0"),
-    "polarity": Key(choice("+", "-"), '"-"'),
-    "station": Key(text, '"Rinaldi"'),
-    "distance_km": Key(not_negative, "6.5"),
-    "magnitude": Key(number, "6.7"),
-    "confirm": Key(boolean, "true"),
-    "confirm_pga": Key(boolean, "true"),
-}
+RECORD = Section(("record",), (
+    "What is known about a record that its file does not say, or says wrongly. The file `motions.toml` lies in the folder of "
+    "the records; `rockbatch motions FOLDER --write-manifest` drafts it."
+), {
+    "file": Key(kinds.file_name, '"RSN1063_NORTHR_RRS228.AT2"',
+        "The file, relative to the folder of the manifest.", required=True),
+    "component": Key(text, '"NS"', "One of several components in the file, by its label or its name."),
+    "use": Key(boolean, "false", "false: it is left out; true: it is used before other files of the same recording."),
+    "role": Key(choice("horizontal", "vertical"), '"vertical"', "Whether the component is horizontal or vertical."),
+    "azimuth": Key(kinds.azimuth, "228", "Direction of the component, degrees clockwise from north."),
+    "unit": Key(kinds.unit, '"cm/s2"', "Unit of acceleration, in place of the file's own."),
+    "dt": Key(kinds.step, "0.01", "Sampling interval [s], in place of the file's own."),
+    "scale": Key(positive, "1.0", "Factor on the accelerations."),
+    "polarity": Key(choice("+", "-"), '"-"', '"-" reverses the component.'),
+    "station": Key(text, '"Rinaldi"', "Name of the station; components that share it belong together."),
+    "distance_km": Key(not_negative, "6.5", "Distance to the rupture."),
+    "magnitude": Key(number, "6.7", "Magnitude of the earthquake."),
+    "confirm": Key(boolean, "true", "Whether the record is right though something about it is grossly odd."),
+    "confirm_pga": Key(boolean, "true", "Whether its peak acceleration is right though it is far from usual."),
+}, many=True)  # fmt: skip
 _MOST_HINTS = 10  # for files that are not there: each is compared with all that are
 _LONGEST_HEAD = 1000  # bytes of the first line of a CSV
 _CONFIRM = ("confirm", "confirm_pga")

@@ -24,9 +24,8 @@ from collections.abc import Callable, Collection
 
 import numpy as np
 
-from rockbatch.errors import InputError
+from rockbatch.errors import InputError, remedy
 from rockbatch.motions.motion import Initial, Motion, Samples
-from rockbatch.pier.plausible import remedy
 from rockbatch.units import GRAVITY
 
 SHAPES = ("sine", "cosine", "half-sine", "ricker", "mavroeidis-papageorgiou")

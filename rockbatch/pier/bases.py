@@ -4,11 +4,11 @@ Values are checked together: :func:`problems` reports what is impossible about a
 """
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from typing import Any, ClassVar, Literal, Self, get_args
 
 from rockbatch.errors import InputError
-from rockbatch.pier.block import Pier, not_positive
+from rockbatch.pier.block import Pier
 from rockbatch.pier.restraints import (
     Restraint,
     described_restraints,
@@ -17,7 +17,7 @@ from rockbatch.pier.restraints import (
     wrong_on_springs,
     wrong_restraints,
 )
-from rockbatch.units import MOST
+from rockbatch.units import LEAST, MOST, POSITIVE, Bounds
 
 LEAST_ETA = 1.000001
 """Least η: closer to 1, Bouc–Wen springs would have to sink without end to carry the weight."""
@@ -49,6 +49,32 @@ OTHER_LAW: dict[str, SpringLaw] = {"bouc-wen": "epp"}
 
 EPSILON_AND_ZETA = "zeta is given too, and a damped support takes a landing without an impulse; keep one"
 """Message about a support with both."""
+
+
+def _strength(eta: float) -> str:
+    if eta > MOST:
+        return f"must be {MOST:g} at most"
+    return (
+        "the springs cannot carry the weight; eta = yield force over static force must be above 1 "
+        f"(at least {LEAST_ETA:.6f})"
+    )
+
+
+BOUNDS = {
+    "restitution": Bounds(0.0, 1.0, why="must be within 0..1 (leave it out for Housner's value)"),
+    "friction": Bounds(LEAST, MOST, ", the coefficient of the interface"),
+    "flight_limit_mm": Bounds(LEAST, MOST, " [mm], a height of flight"),
+    "zeta": Bounds(0.0, 1.0, why="damping of the supports, as a share of critical, must be within 0..1"),
+    "epsilon": Bounds(0.0, 1.0, why="the landing pivot's restitution must be within 0..1"),
+    "eta": Bounds(LEAST_ETA, MOST, why=_strength),
+    "n": Bounds(1.0, MOST_EXPONENT, why=f"the Bouc–Wen exponent must be at least 1, and {MOST_EXPONENT:g} at most"),
+}
+"""Possible values of the fields of bases; the least β and η depend on the pier and on tendons, too (:func:`problems`)."""
+
+WORDS: dict[str, tuple[str, ...]] = {
+    "kinematics": get_args(Kinematics), "flight": get_args(Flight), "spring": get_args(SpringLaw),
+}  # fmt: skip
+"""Possible words of the fields of bases."""
 
 
 class _Traits:
@@ -250,17 +276,17 @@ def _interface(friction: float | None) -> dict[str, float]:
 
 def beta_of(pier: Pier, stiffness_kN_m: float) -> float:
     """Return β = sqrt(2K/M)/p of supports with the stiffness K [kN/m]. Raises ``InputError`` for a pier without mass."""
-    mass = _mass(pier, stiffness_kN_m=(stiffness_kN_m, " [kN/m]"))
+    mass = _mass(pier, stiffness_kN_m=stiffness_kN_m)
     return math.sqrt(2 * stiffness_kN_m / mass) / pier.p
 
 
 def eta_of(pier: Pier, yield_kN: float) -> float:
     """Return η = 2 F_y/(M g) of supports with the yield force F_y [kN]. Raises ``InputError`` for a pier without mass."""
-    return 2 * yield_kN / (_mass(pier, yield_kN=(yield_kN, " [kN]")) * pier.gravity)
+    return 2 * yield_kN / (_mass(pier, yield_kN=yield_kN) * pier.gravity)
 
 
-def _mass(pier: Pier, **value: tuple[float | None, str]) -> float:
-    wrong = not_positive(**value)
+def _mass(pier: Pier, **value: float) -> float:
+    wrong = [problem for name, number in value.items() for problem in POSITIVE.problems(name, number)]
     if pier.mass_t is None:
         wrong.append("mass_t is missing: kN and kN/m are of a pier whose mass is known")
     if wrong or pier.mass_t is None:
@@ -353,67 +379,48 @@ def fastest(pier: Pier, base: ElasticBase) -> float:
 
 
 def problems(pier: Pier, base: Base) -> list[str]:
-    """Return what is impossible about ``pier`` on ``base``: one sentence each, with the limit; empty if nothing."""
-    wrong = not_positive(
-        friction=(base.friction, ", the coefficient of the interface"),
-        flight_limit_mm=(base.flight_limit_mm, " [mm], a height of flight"),
-    )
-    if isinstance(base, RigidBase):
-        e = base.restitution
-        wrong += wrong_restraints(pier, base.restraints)
-        if e is not None and not 0 <= e <= 1:
-            wrong.append(f"restitution = {e:g}: must be within 0..1 (leave it out for Housner's value)")
-        return wrong + _unknown("flight", base.flight, get_args(Flight))
-    if pier.deck_over_columns is not None:
+    """Return what is impossible about ``pier`` on ``base``, a sentence each, with the limit; empty if nothing is."""
+    if base.on_springs and pier.deck_over_columns is not None:
         return [
             f"columns: a rocking frame is solved on rigid ground only, and this base is {base.name}. On springs the columns "
             "sink by themselves, the deck no longer moves level, and no one block stands for them (Makris & Vassiliou 2013); "
             'write base = "rigid", or leave columns out for a single pier'
         ]
-    least = least_beta(pier, base)
-    if base.beta > MOST:
-        wrong.append(f"beta = {base.beta:g}: must be {MOST:g} at most")
-    elif not base.beta > pier.least_beta:
-        wrong.append(
-            f"beta = {base.beta:g}: the pier topples on its springs under its own weight; beta must be above "
-            f"sqrt((1+mu) cos(alpha)/mu)/sin(alpha) = {pier.least_beta:.4g}"
-            + (f", for these Bouc–Wen springs above {least:.4g}" if least > pier.least_beta else "")
-        )
-    elif not base.beta > least and isinstance(base, YieldingBase):
-        wrong.append(
-            f"beta = {base.beta:g}: the least push topples the pier, because Bouc–Wen springs near their yield force "
-            f"(eta = {base.eta:g}, n = {base.n:g}) give way on the loaded side; beta must be above {least:.4g}"
-        )
-    if base.zeta is not None and not 0 <= base.zeta <= 1:
-        wrong.append(f"zeta = {base.zeta:g}: damping of the supports, as a share of critical, must be within 0..1")
-    if base.zeta is not None and base.epsilon != 0:
+    wrong = [] if isinstance(base, RigidBase) else _wrong_stiffness(pier, base)
+    for name in (each.name for each in fields(base)):
+        value = getattr(base, name)
+        if name in BOUNDS:
+            wrong += BOUNDS[name].problems(name, value)
+        elif name in WORDS and value not in WORDS[name]:
+            wrong.append(f'{name} = "{value}": must be ' + " or ".join(f'"{word}"' for word in WORDS[name]))
+    if isinstance(base, ElasticBase) and base.zeta is not None and base.epsilon != 0:
         wrong.append(f"epsilon = {base.epsilon:g}: {EPSILON_AND_ZETA}")
-    if not 0 <= base.epsilon <= 1:
-        wrong.append(f"epsilon = {base.epsilon:g}: the landing pivot's restitution must be within 0..1")
     wrong += wrong_restraints(pier, base.restraints)
-    if not wrong:
+    if base.on_springs and not wrong:
         wrong += wrong_on_springs(pier, base.restraints)
-    wrong += _unknown("kinematics", base.kinematics, get_args(Kinematics))
-    wrong += _unknown("flight", base.flight, get_args(Flight))
     if isinstance(base, YieldingBase):
-        if base.eta > MOST:
-            wrong.append(f"eta = {base.eta:g}: must be {MOST:g} at most")
-        elif not base.eta >= LEAST_ETA:
-            wrong.append(
-                f"eta = {base.eta:.10g}: the springs cannot carry the weight; eta = yield force over static force must "
-                f"be above 1 (at least {LEAST_ETA:.6f})"
-            )
-        elif not base.eta >= (1.0 + prestress_over_weight(pier, base.restraints)) * LEAST_ETA:
+        prestress = prestress_over_weight(pier, base.restraints)
+        if LEAST_ETA <= base.eta < (1.0 + prestress) * LEAST_ETA:
             wrong.append(
                 f"eta = {base.eta:g}: the springs cannot carry the weight and the prestress of the tendons, psi = "
-                f"{prestress_over_weight(pier, base.restraints):g} of it; eta must be above 1 + psi"
+                f"{prestress:g} of it; eta must be above 1 + psi"
             )
-        wrong += _unknown("spring", base.spring, get_args(SpringLaw))
-        if not 1 <= base.n <= MOST_EXPONENT:
-            wrong.append(f"n = {base.n:g}: the Bouc–Wen exponent must be at least 1, and {MOST_EXPONENT:g} at most")
     return wrong
 
 
-def _unknown(key: str, word: str, known: tuple[str, ...]) -> list[str]:
-    """Return what is wrong about ``word`` unless it is one of the known ones."""
-    return [] if word in known else [f'{key} = "{word}": must be ' + " or ".join(f'"{choice}"' for choice in known)]
+def _wrong_stiffness(pier: Pier, base: ElasticBase) -> list[str]:
+    least = least_beta(pier, base)
+    if base.beta > MOST:
+        return [f"beta = {base.beta:g}: must be {MOST:g} at most"]
+    if not base.beta > pier.least_beta:
+        return [
+            f"beta = {base.beta:g}: the pier topples on its springs under its own weight; beta must be above "
+            f"sqrt((1+mu) cos(alpha)/mu)/sin(alpha) = {pier.least_beta:.4g}"
+            + (f", for these Bouc–Wen springs above {least:.4g}" if least > pier.least_beta else "")
+        ]
+    if not base.beta > least and isinstance(base, YieldingBase):
+        return [
+            f"beta = {base.beta:g}: the least push topples the pier, because Bouc–Wen springs near their yield force "
+            f"(eta = {base.eta:g}, n = {base.n:g}) give way on the loaded side; beta must be above {least:.4g}"
+        ]
+    return []

@@ -2,15 +2,37 @@
 
 import math
 from collections.abc import Collection, Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import NamedTuple
 
 from rockbatch.errors import InputError
 from rockbatch.pier.plausible import unlikely_sizes
-from rockbatch.units import GRAVITY, LEAST, MOST
+from rockbatch.units import GRAVITY, LEAST, MOST, POSITIVE, Bounds
 
-POSSIBLE = {"alpha": (1e-4, math.pi / 2), "p": (1e-3, 1e3), "mu": (1e-3, 1e12), "gravity": (1e-3, 1e3)}
-"""Ranges of a pier's values, far beyond any pier: p = 0.001 rad/s is one of 7000 km. Beyond them a run would never end."""
+
+def _slenderness(alpha: float) -> str:
+    if alpha < math.pi / 2:
+        return f"must be within {BOUNDS['alpha'].low:g} and π/2 = 1.5708 rad"
+    return f"must be below π/2 = 1.5708 rad; if it is in degrees, write {math.radians(alpha):.4g}"
+
+
+_LENGTH, _MASS = Bounds(LEAST, MOST, " [m]"), Bounds(LEAST, MOST, " [t]")
+
+BOUNDS = {
+    "alpha": Bounds(1e-4, math.pi / 2, " [rad]", _slenderness, below=True),
+    "p": Bounds(1e-3, 1e3, " [rad/s]"),
+    "mu": Bounds(1e-3, 1e12, " (3 for a rectangle)"),
+    "gravity": Bounds(1e-3, 1e3, " [m/s²]"),
+    **dict.fromkeys(("size_m", "width_m", "height_m", "top_m", "deck_height_m"), _LENGTH),
+    **dict.fromkeys(("mass_t", "deck_mass_t"), _MASS),
+    "deck_over_columns": POSITIVE,
+}
+"""Possible values of a pier, far beyond any that exists: p = 0.001 rad/s is one of 7000 km. Beyond them a run would never end."""
+
+
+def out_of_bounds(**values: float | None) -> list[str]:
+    """Return a message for each of the named values that is given and not within its :data:`BOUNDS`."""
+    return [problem for name, value in values.items() for problem in BOUNDS[name].problems(name, value)]
 
 
 class Part(NamedTuple):
@@ -77,26 +99,7 @@ class Pier:
     deck_height_m: float | None = None
 
     def __post_init__(self) -> None:
-        wrong = not_positive(
-            alpha=(self.alpha, " [rad]"),
-            p=(self.p, " [rad/s]"),
-            mu=(self.mu, " (3 for a rectangle)"),
-            gravity=(self.gravity, " [m/s²]"),
-            mass_t=(self.mass_t, " [t]"),
-            top_m=(self.top_m, " [m]"),
-            deck_over_columns=(self.deck_over_columns, ""),
-            deck_height_m=(self.deck_height_m, " [m]"),
-        )
-        if self.alpha >= math.pi / 2:
-            wrong.append(
-                f"alpha = {self.alpha:g}: must be below π/2 = 1.5708 rad; "
-                f"if it is in degrees, write {math.radians(self.alpha):.4g}"
-            )
-        wrong = wrong or [
-            f"{name} = {value:g}: must be within {low:g} and {high:g}"
-            for name, (low, high) in POSSIBLE.items()
-            if not low <= (value := getattr(self, name)) <= high
-        ]
+        wrong = out_of_bounds(**{each.name: getattr(self, each.name) for each in fields(self)})
         if wrong:
             raise InputError(*wrong)
 
@@ -117,7 +120,7 @@ class Pier:
         Here and in the other constructors from lengths, ``confirm`` names values that are right though unusual: "width_m",
         "top_m", "deck_height_m". Raises ``InputError`` for what is impossible or not confirmed.
         """
-        wrong = not_positive(size_m=(size_m, " [m]"), mu=(mu, " (3 for a rectangle)"))
+        wrong = out_of_bounds(size_m=size_m, mu=mu)
         if not wrong:
             wrong = unlikely_sizes(0.0, 2 * size_m * math.cos(alpha), confirm, top_m=top_m)
         if wrong:
@@ -136,7 +139,7 @@ class Pier:
         confirm: Collection[str] = (),
     ) -> "Pier":
         """Return a solid rectangular block; its width and height [m] give α, R0 and μ = 3. ``confirm``: see :meth:`from_size`."""
-        wrong = not_positive(width_m=(width_m, " [m]"), height_m=(height_m, " [m]"))
+        wrong = out_of_bounds(width_m=width_m, height_m=height_m)
         wrong = wrong or unlikely_sizes(width_m, height_m, confirm, top_m=top_m)
         if wrong:
             raise InputError(*wrong)
@@ -180,9 +183,9 @@ class Pier:
             With every impossible number; part 1 is the first.
         """
         parts = [Part(*part) for part in parts]
-        wrong = not_positive(width_m=(width_m, " [m]"))
+        wrong = out_of_bounds(width_m=width_m)
         for n, part in enumerate(parts, 1):
-            wrong += not_positive(**{f"part_{n}_mass_t": (part.mass_t, " [t]")})
+            wrong += BOUNDS["mass_t"].problems(f"part_{n}_mass_t", part.mass_t)
             for name, value in (("height_m", part.height_m), ("inertia_t_m2", part.inertia_t_m2)):
                 if not (value == 0 or LEAST <= value <= MOST):
                     wrong.append(f"part_{n}_{name} = {value:g}: must be 0 or a number above it, to {MOST:g}")
@@ -224,10 +227,8 @@ class Pier:
         inertia about it, 0 for a deck on bearings that does not turn with the pier. Drift is read at ``top_m``, by default the
         higher of shaft and deck. See :meth:`of_parts`, and :meth:`from_size` for ``confirm``.
         """
-        wrong = not_positive(
-            width_m=(width_m, " [m]"), height_m=(height_m, " [m]"), mass_t=(mass_t, " [t]"),
-            deck_mass_t=(deck_mass_t, " [t]"),
-        ) or unlikely_sizes(width_m, height_m, confirm, deck_height_m=deck_height_m, top_m=top_m)  # fmt: skip
+        wrong = out_of_bounds(width_m=width_m, height_m=height_m, mass_t=mass_t, deck_mass_t=deck_mass_t)
+        wrong = wrong or unlikely_sizes(width_m, height_m, confirm, deck_height_m=deck_height_m, top_m=top_m)
         if wrong:
             raise InputError(*wrong)
         deck = Part(deck_mass_t, height_m if deck_height_m is None else deck_height_m, deck_inertia_t_m2)
@@ -261,7 +262,7 @@ class Pier:
         InputError
             With every impossible number.
         """
-        wrong = not_positive(deck_mass_t=(deck_mass_t, " [t]"))
+        wrong = out_of_bounds(deck_mass_t=deck_mass_t)
         if isinstance(columns, bool) or not isinstance(columns, int) or columns < 2:
             wrong.append(f"columns = {columns}: must be a whole number, 2 or above; a single one is a pier with a deck")
         if column.mass_t is None:
@@ -334,15 +335,6 @@ class Pier:
     def least_beta(self) -> float:
         """Return β = ω_v/p below which the pier topples on its springs under its own weight (g h < ω_v² b²)."""
         return math.sqrt((1 + self.mu) * math.cos(self.alpha) / self.mu) / math.sin(self.alpha)
-
-
-def not_positive(**values: tuple[float | None, str]) -> list[str]:
-    """Return a message for each given number that is not above 0; each comes with its unit or a hint."""
-    return [
-        f"{name} = {value:g}: must be a number above 0{hint}" + (f", {LEAST:g} to {MOST:g}" if value > 0 else "")
-        for name, (value, hint) in values.items()
-        if value is not None and not LEAST <= value <= MOST
-    ]
 
 
 def described(pier: Pier) -> dict[str, float]:

@@ -2,13 +2,10 @@
 
 from collections.abc import Collection
 
+from rockbatch.errors import remedy
+
 LOWEST, HIGHEST = 0.25, 2.5
 """Bounds of the heights of deck and drift, over the pier's height."""
-
-
-def remedy(name: str) -> str:
-    """Return what to do about an unusual value."""
-    return f'check the unit; if it is right, write confirm = ["{name}"]'
 
 
 def unlikely_sizes(width_m: float, height_m: float, confirm: Collection[str], **heights: float | None) -> list[str]:

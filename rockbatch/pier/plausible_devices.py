@@ -2,8 +2,8 @@
 
 from typing import NamedTuple
 
+from rockbatch.errors import remedy
 from rockbatch.pier.block import Pier
-from rockbatch.pier.plausible import remedy
 from rockbatch.pier.restraints import Damper, Restraint, Tendon
 
 SPEED = 0.1

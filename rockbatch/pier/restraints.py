@@ -6,15 +6,23 @@ from dataclasses import asdict, dataclass, field, replace
 from typing import Any, Literal, get_args
 
 from rockbatch.pier.block import Pier
+from rockbatch.units import LEAST, MOST, Bounds
 
 DamperKind = Literal["friction", "viscous", "hysteretic"]
 
-MOST_FORCE = 10.0
-"""Force over the pier's weight beyond which a wrong unit is likelier than the device."""
+BOUNDS = {
+    "f": Bounds(0.0, 10.0, why="its force over the weight must be within 0..10"),
+    "nu": Bounds(0.0, MOST, why="must be 0 or above"),
+    "exponent": Bounds(0.1, 2.0, why="must be within 0.1..2"),
+    "yield_m": Bounds(LEAST, MOST, why="a hysteretic damper yields at a deflection above 0 m"),
+    "psi": Bounds(0.0, 10.0, why="its prestress over the weight must be within 0..10"),
+    "lam": Bounds(0.0, MOST, why="must be 0 or above"),
+}
+"""Values of dampers and tendons. Beyond ten times the weight a wrong unit is likelier than the device; fluid dampers have
+exponents of 0.15 to 1, and one of 0 is friction."""
 
-
-LEAST_EXPONENT, MOST_EXPONENT = 0.1, 2.0
-"""Bounds of a viscous damper's exponent: fluid dampers have 0.15 to 1, and one of 0 is friction."""
+FIELDS = {"friction": ("f",), "hysteretic": ("f", "yield_m"), "viscous": ("nu", "exponent")}
+"""By kind of damper, the fields that count."""
 
 
 @dataclass(frozen=True)
@@ -140,16 +148,27 @@ def wrong_restraints(pier: Pier, restraints: tuple[Restraint, ...]) -> list[str]
     wrong = []
     if restraints and pier.deck_over_columns is not None:
         wrong.append("columns: dampers and tendons of a rocking frame are not solved; leave them or columns out")
-    for device in restraints:
-        name = "tendon" if isinstance(device, Tendon) else "damper"
-        if isinstance(device.at, str) and device.at not in ("left", "right"):
-            wrong.append(f'{name}: at = "{device.at}": must be "left", "right" or an offset in m')
-        elif isinstance(device.at, float | int) and not abs(device.at) <= 2.0 * pier.half_width:
-            wrong.append(
-                f"{name}: at = {device.at:g}: must be within the base's width either side, {2 * pier.half_width:.4g} m"
-            )
-        wrong += _wrong_tendon(device) if isinstance(device, Tendon) else _wrong_damper(device)
+    for each in restraints:
+        wrong += wrong_device(pier, each)
     return wrong + ([] if wrong else _wrong_friction(pier, restraints))
+
+
+def wrong_device(pier: Pier, device: Restraint) -> list[str]:
+    """Return what is impossible about one damper or tendon under ``pier``, a sentence each; empty if nothing is."""
+    name = "tendon" if isinstance(device, Tendon) else "damper"
+    wrong = []
+    if isinstance(device.at, str) and device.at not in ("left", "right"):
+        wrong.append(f'at = "{device.at}": must be "left", "right" or an offset in m')
+    elif isinstance(device.at, float | int) and not abs(device.at) <= 2.0 * pier.half_width:
+        wrong.append(f"at = {device.at:g}: must be within the base's width either side, {2 * pier.half_width:.4g} m")
+    if isinstance(device, Damper) and device.kind not in FIELDS:
+        wrong.append(f'kind = "{device.kind}": must be ' + " or ".join(f'"{kind}"' for kind in get_args(DamperKind)))
+    for field_ in ("psi", "lam") if isinstance(device, Tendon) else FIELDS.get(device.kind, ()):
+        wrong += BOUNDS[field_].problems(field_.replace("lam", "lambda"), getattr(device, field_))
+    if isinstance(device, Tendon) and not device.strength > device.psi:
+        strength = f"its yield force over the weight, {device.strength:g}"
+        wrong.append(f"{strength}, must be above its prestress, {device.psi:g}")
+    return [f"{name}: {problem}" for problem in wrong]
 
 
 def _wrong_friction(pier: Pier, restraints: tuple[Restraint, ...]) -> list[str]:
@@ -160,38 +179,6 @@ def _wrong_friction(pier: Pier, restraints: tuple[Restraint, ...]) -> list[str]:
         "damper: two places of friction at most can be solved, for example one damper at both pivots; join their forces, or "
         'write kind = "hysteretic" with a small yield_mm, whose limit friction is'
     ]
-
-
-def _wrong_damper(damper: Damper) -> list[str]:
-    wrong = []
-    if damper.kind not in get_args(DamperKind):
-        return [f'damper: kind = "{damper.kind}": must be ' + " or ".join(f'"{kind}"' for kind in get_args(DamperKind))]
-    if damper.kind == "viscous":
-        if not (math.isfinite(damper.nu) and damper.nu >= 0):
-            wrong.append(f"damper: nu = {damper.nu:g}: must be 0 or above")
-        if not LEAST_EXPONENT <= damper.exponent <= MOST_EXPONENT:
-            wrong.append(
-                f"damper: exponent = {damper.exponent:g}: must be within {LEAST_EXPONENT:g}..{MOST_EXPONENT:g}"
-            )
-        return wrong
-    if not 0 <= damper.f <= MOST_FORCE:
-        wrong.append(f"damper: f = {damper.f:g}: its force over the weight must be within 0..{MOST_FORCE:g}")
-    if damper.kind == "hysteretic" and not (math.isfinite(damper.yield_m) and damper.yield_m > 0):
-        wrong.append(f"damper: yield_m = {damper.yield_m:g}: a hysteretic damper yields at a deflection above 0 m")
-    return wrong
-
-
-def _wrong_tendon(tendon: Tendon) -> list[str]:
-    wrong = []
-    if not 0 <= tendon.psi <= MOST_FORCE:
-        wrong.append(f"tendon: psi = {tendon.psi:g}: its prestress over the weight must be within 0..{MOST_FORCE:g}")
-    if not (math.isfinite(tendon.lam) and tendon.lam >= 0):
-        wrong.append(f"tendon: lambda = {tendon.lam:g}: must be 0 or above")
-    if not tendon.strength > tendon.psi:
-        wrong.append(
-            f"tendon: its yield force over the weight, {tendon.strength:g}, must be above its prestress, {tendon.psi:g}"
-        )
-    return wrong
 
 
 def recentres(pier: Pier, restraints: tuple[Restraint, ...]) -> bool:

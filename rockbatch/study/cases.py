@@ -2,56 +2,88 @@
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, replace
-from typing import Any, NamedTuple, get_args
+from typing import Any, NamedTuple
 
 from rockbatch.pier import (
     EPSILON_AND_ZETA,
     WITH_EXPONENT,
     Base,
     ElasticBase,
-    Flight,
-    Kinematics,
     Pier,
     RigidBase,
-    SpringLaw,
     YieldingBase,
     beta_of,
     eta_of,
     least_beta,
     problems,
 )
+from rockbatch.pier.bases import BOUNDS, WORDS
+from rockbatch.pier.restraints import wrong_device
 from rockbatch.study.lists import Chosen, combinations, how_many, listed, too_many
-from rockbatch.study.piers import Values, has_mass
-from rockbatch.study.plausible import CONFIRM, MASSES, complain_unless_usual, complain_unless_usual_support, confirmed
-from rockbatch.study.restraint_keys import RESTRAINTS, complain_of_unlikely, read_restraints, restraints_of
-from rockbatch.toml.kinds import choice, number, positive, shown, text
-from rockbatch.toml.reader import Key, Setting, Table, TomlFile
+from rockbatch.study.piers import PIER, Values, has_mass
+from rockbatch.study.plausible import complain_unless_usual_support
+from rockbatch.study.restraint_keys import RESTRAINTS, complain_of_devices, read_restraints, restraints_of
+from rockbatch.toml.kinds import choice, positive, shown, text, within
+from rockbatch.toml.reader import Setting, Table, TomlFile
+from rockbatch.toml.section import CONFIRM, Clash, Key, Section
 
-_EVERY = {
-    "flight": Key(choice(*get_args(Flight)), '"stop"', many=True),
-    "flight_limit_mm": Key(positive, "20.0", many=True),
-    "friction": Key(positive, "0.5", many=True),
-}
-"""Keys that apply on every base."""
-_RIGID = {"restitution": Key(number, "0.9", many=True), **_EVERY}
-_ELASTIC = {
-    "beta": Key(number, "40.0", many=True),
-    "stiffness_kN_m": Key(positive, "2.0e6", many=True),
-    "mass_t": Key(positive, "3000.0", many=True),
-    "epsilon": Key(number, "0.05", many=True),
-    "zeta": Key(number, "0.05", many=True),
-    "kinematics": Key(choice(*get_args(Kinematics)), '"first-order"', many=True),
-    **_EVERY,
-}
-_YIELDING = _ELASTIC | {
-    "eta": Key(number, "2.5", many=True),
-    "yield_kN": Key(positive, "4.0e4", many=True),
-    "spring": Key(choice(*get_args(SpringLaw)), '"bouc-wen"', many=True),
-    "n": Key(number, "5", many=True),
-}
-BASES = {"rigid": _RIGID, "elastic": _ELASTIC, "yielding": _YIELDING}
-BASE_KEYS = _RIGID | _YIELDING
-CASE = {"name": Key(text, '"soft"'), "base": Key(choice(*BASES), '"yielding"', required=True)}
+_BASES: dict[str, type[Base]] = {"rigid": RigidBase, "elastic": ElasticBase, "yielding": YieldingBase}
+_ON_SPRINGS = {"base": tuple(name for name, base in _BASES.items() if base.on_springs)}
+_YIELDS = {"base": tuple(name for name, base in _BASES.items() if base.yields)}
+BASE_KEYS = {
+    "restitution": Key(within(BOUNDS["restitution"]), "0.9",
+        "Factor on the angular velocity at an impact; Housner's, from the geometry, if it is not given.", many=True,
+        only={"base": ("rigid",)}),
+    "beta": Key(positive, "40.0",
+        "Stiffness as β = ω_v/p, the vertical over the rocking frequency; or give `stiffness_kN_m`.", many=True,
+        only=_ON_SPRINGS),
+    "stiffness_kN_m": Key(positive, "2.0e6",
+        "Stiffness K of one support, for a pier whose mass is known; or give `beta`.", many=True, only=_ON_SPRINGS),
+    "mass_t": Key(positive, "3000.0", "Mass of all that rocks, unless `[pier]` says it.", many=True,
+        only=_ON_SPRINGS, usual=PIER["mass_t"].usual),
+    "epsilon": Key(within(BOUNDS["epsilon"]), "0.05",
+        "Restitution ε of the pivot that lands, from 0 (it stays) to 1 (it bounces without loss).", many=True, only=_ON_SPRINGS),
+    "zeta": Key(within(BOUNDS["zeta"]), "0.05",
+        "Dashpot beside each spring, as a share ζ of the critical damping of the vertical vibration; instead of `epsilon`.",
+        many=True, only=_ON_SPRINGS),
+    "kinematics": Key(choice(*WORDS["kinematics"]), '"first-order"',
+        "The paper's equations, \"first-order\", or those that hold for rotations of any size.", many=True, only=_ON_SPRINGS),
+    "eta": Key(within(BOUNDS["eta"]), "2.5",
+        "Strength as η = F_y/(static force of a support), above 1; or give `yield_kN`.", many=True, only=_YIELDS),
+    "yield_kN": Key(positive, "4.0e4",
+        "Yield force F_y of one support, for a pier whose mass is known; or give `eta`.", many=True, only=_YIELDS),
+    "spring": Key(choice(*WORDS["spring"]), '"bouc-wen"',
+        'Law of the supports: "bouc-wen", smooth, as in the paper, or "epp", elastic and then perfectly plastic.', many=True,
+        only=_YIELDS),
+    "n": Key(within(BOUNDS["n"]), "5",
+        "Bouc–Wen exponent: the larger, the sharper the corner between elastic and plastic.", many=True,
+        only=_YIELDS | {"spring": WITH_EXPONENT}),
+    "flight": Key(choice(*WORDS["flight"]), '"stop"',
+        'What happens when both pivots are off the ground: "guided" follows the pier, which shear keys hold sideways, until '
+        'it lands, and the run goes on; "stop" ends the run there, as in the paper.', many=True),
+    "flight_limit_mm": Key(within(BOUNDS["flight_limit_mm"]), "20.0",
+        "Height of the lower pivot in flight beyond which a run carries a note: as far as shear keys reach, say.", many=True),
+    "friction": Key(within(BOUNDS["friction"]), "0.5",
+        "Coefficient of friction of the interface, for runs with `forces = true` under `[output]`: those that would slide "
+        "say so.", many=True),
+}  # fmt: skip
+"""Keys that describe a base; in a list each value is a case."""
+CASE = Section(("case",), (
+    "What the pier stands on. Write one for each foundation to compare. All keys but `name`, `base` and `confirm` may be "
+    "lists: every combination is a case."
+), {
+    "name": Key(text, '"soft"', "Its name in tables; the base if there is only one case."),
+    "base": Key(choice(*_BASES), '"yielding"',
+        '"rigid": Housner\'s block on ground that neither gives nor yields; "elastic": two springs without tension; '
+        '"yielding": the same, and the springs yield.', required=True),
+    **BASE_KEYS,
+    **CONFIRM,
+}, many=True, required=True, homes=(YieldingBase, ElasticBase), clashes=(
+    Clash(("beta", "stiffness_kN_m"), "beta and stiffness_kN_m are given, which fix the same; keep one", at="stiffness_kN_m"),
+    Clash(("eta", "yield_kN"), "eta and yield_kN are given, which fix the same; keep one", at="yield_kN"),
+    Clash(("epsilon", "zeta"), f"epsilon = {{value}}: {EPSILON_AND_ZETA}"),
+    Clash(("mass_t",), "mass_t is for use with stiffness_kN_m or yield_kN; leave it out", lacking=("stiffness_kN_m", "yield_kN")),
+))  # fmt: skip
 
 _ANY_PIER = Pier(alpha=1.0, p=1.0)
 """Stands in where no pier can be read, so that what does not depend on it is checked all the same."""
@@ -113,13 +145,14 @@ def _expand(case: _Read, chosen: Chosen, pier: Pier, pier_values: Values) -> Exp
         pier = replace(pier, mass_t=given["mass_t"])
     base = _base(case.base, given, pier)
     wrong = problems(pier, base)
+    if not any_pier:
+        complain_of_devices(case.table, chosen, pier, base.restraints)
+    of_devices = {problem for device in base.restraints for problem in wrong_device(pier, device)}
     for problem in wrong:
-        if EPSILON_AND_ZETA in problem:  # told once, of the table
+        if problem in of_devices or EPSILON_AND_ZETA in problem:  # said already
             continue
         if not (any_pier and problem.startswith("beta")):
             _complain_where_due(case.table, chosen, problem, pier, base)
-    if not (wrong or any_pier):
-        complain_of_unlikely(case.table, chosen, pier, base.restraints)
     if not wrong and pier.mass_t is not None:
         complain_unless_usual_support(case.table, chosen, pier, base, case.believed)
     applying = {key: value for key, value in asdict(base).items() if value is not None} | given
@@ -169,59 +202,30 @@ def _without_repeats(all_of_them: Iterable[Chosen]) -> Iterator[Chosen]:
 
 def _case(table: Table) -> tuple[dict[str, Any], dict[str, list[Setting]], Collection[str], Collection[str]]:
     """Name and base, the settings of that base, the keys that are confirmed, and those of restraints that are lists."""
-    base = table.data.get("base")
-    keys = BASES.get(base, BASE_KEYS) if isinstance(base, str) else BASE_KEYS
-    unfit = {
-        name: f"does not apply to base = {shown(base)}; leave it out, or write "
-        + " or ".join(f'base = "{other}"' for other in BASES if name in BASES[other])
-        for name in BASE_KEYS.keys() - keys.keys()
-    }
-    if (sharp := _without_exponent(table)) and "n" in keys:
-        keys = {name: key for name, key in keys.items() if name != "n"}
-        unfit["n"] = f"does not apply to spring = {sharp} (sharp corner); leave it out, or write " + " or ".join(
-            f'spring = "{law}"' for law in WITH_EXPONENT
-        )
-    if has_mass(table.file) and "mass_t" in keys:
-        keys = {name: key for name, key in keys.items() if name != "mass_t"}
-        unfit["mass_t"] = "[pier] says already what the pier weighs; leave it out"
-    read = table.read(CASE | keys | CONFIRM, unfit=unfit, other=RESTRAINTS)
-    believed = confirmed(table, read, keys)
-    complain_unless_usual(table, "mass_t", read.get("mass_t", ()), MASSES["mass_t"], believed)
-    if "epsilon" in table.data and "zeta" in read:
-        table.complain(f"epsilon = {shown(table.data['epsilon'])}: {EPSILON_AND_ZETA}", "epsilon")
-    if base in ("elastic", "yielding"):
-        _check_one_of(table, "beta", "stiffness_kN_m")
-    if base == "yielding":
-        _check_one_of(table, "eta", "yield_kN")
-    if "mass_t" in table.data and "mass_t" in keys and not {"stiffness_kN_m", "yield_kN"} & table.data.keys():
-        table.complain("mass_t is for use with stiffness_kN_m or yield_kN; leave it out", "mass_t")
-    settings = {name: value for name, value in read.items() if name not in CASE}
+    read = table.read(CASE, other=RESTRAINTS)
+    believed = read.pop("confirm")
+    weighed = has_mass(table.file)
+    if weighed and read.pop("mass_t", None):
+        value = shown(table.data["mass_t"])
+        table.complain(f"mass_t = {value}: [pier] says already what the pier weighs; leave it out", "mass_t")
+    base = read.get("base", "")
+    for ratio, absolute in (("beta", "stiffness_kN_m"), ("eta", "yield_kN")):
+        if base not in BASE_KEYS[ratio].only["base"] or table.has(ratio):
+            continue
+        if not table.has(absolute):
+            table.complain(
+                f"{ratio} is missing; write for example {ratio} = {BASE_KEYS[ratio].example}, or {absolute} = "
+                f"{BASE_KEYS[absolute].example} with mass_t"
+            )
+        elif not (weighed or table.has("mass_t")):
+            example = BASE_KEYS["mass_t"].example
+            table.complain(
+                f"mass_t is missing beside {absolute}; write for example mass_t = {example}, here or in [pier]",
+                absolute,
+            )
+    settings = {name: value for name, value in read.items() if name in BASE_KEYS}
     of_each, of_restraints = read_restraints(table)
     return read, settings | of_each, believed, of_restraints
-
-
-def _without_exponent(table: Table) -> str:
-    """The laws that are written, as they are shown, if none of them has an exponent."""
-    written = table.data.get("spring")
-    laws = written if isinstance(written, list) else [written]
-    sharp = [law for law in laws if law in get_args(SpringLaw) and law not in WITH_EXPONENT]
-    return " or ".join(map(shown, sharp)) if sharp == laws else ""
-
-
-def _check_one_of(table: Table, ratio: str, absolute: str) -> None:
-    """Either the dimensionless parameter or its absolute counterpart, which takes the mass too."""
-    if ratio in table.data and absolute in table.data:
-        table.complain(f"{ratio} and {absolute} are given, which fix the same; keep one", absolute)
-    elif absolute in table.data and "mass_t" not in table.data and not has_mass(table.file):
-        example = BASE_KEYS["mass_t"].example
-        table.complain(
-            f"mass_t is missing beside {absolute}; write for example mass_t = {example}, here or in [pier]", absolute
-        )
-    elif ratio not in table.data and absolute not in table.data:
-        table.complain(
-            f"{ratio} is missing; write for example {ratio} = {BASE_KEYS[ratio].example}, or {absolute} = "
-            f"{BASE_KEYS[absolute].example} with mass_t"
-        )
 
 
 def _complain_where_due(table: Table, chosen: Chosen, problem: str, pier: Pier, base: Base) -> None:

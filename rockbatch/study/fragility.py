@@ -8,50 +8,20 @@ from rockbatch.checks.demands import DEMANDS
 from rockbatch.checks.rules import Rule
 from rockbatch.pier import Base
 from rockbatch.study.spec import Study
-from rockbatch.toml.kinds import KindError, choice, closest, number, positive, shown, text
-from rockbatch.toml.reader import Key, Table, TomlFile
+from rockbatch.toml.kinds import Number, choice, closest, positive, shown, text
+from rockbatch.toml.reader import Table, TomlFile
+from rockbatch.toml.section import Key, Section
 
 MEASURES = ("PGA", "PGV", "Sa")
 OVERTURNING = Rule("overturning", "overturned", at_most=0, reason="collapse of a rocking pier")
 """The limit state that every study has."""
 
 
-def _below_one(value: Any) -> float:
-    if not 0 <= number(value) < 1:
-        raise KindError("a number, 0 or above and below 1")
-    return float(value)
-
-
-def _tolerance(value: Any) -> float:
-    if not 1e-6 <= number(value) <= 1:
-        raise KindError("a number from 1e-6 to 1")
-    return float(value)
-
-
 HUNT_STEP = 0.01
 """Relative steps of the hunt on rigid ground, unless the study gives others."""
 
 
-def _step(value: Any) -> float:
-    if not 1e-3 <= number(value) <= 1:
-        raise KindError("a number from 0.001 to 1")
-    return float(value)
-
-
 LEVELS = {"PGA": "levels_g", "Sa": "levels_g", "PGV": "levels_m_s"}
-FRAGILITY = {
-    "method": Key(choice("stripes", "ida"), '"ida"'),
-    "measure": Key(choice(*MEASURES), '"PGV"', required=True),
-    "period_s": Key(positive, "1.0"),
-    "damping": Key(_below_one, "0.05"),
-    "levels_g": Key(positive, "[0.2, 0.4, 0.6, 0.8]", many=True),
-    "levels_m_s": Key(positive, "[0.25, 0.5, 1.0, 1.5]", many=True),
-    "tolerance": Key(_tolerance, "0.01"),
-    "hunt_step": Key(_step, "0.02"),
-    "checks": Key(text, '["no overturning", "uplift*"]', many=True),
-    "confidence": Key(_below_one, "0.95"),
-}
-"""Keys of [fragility]; :class:`FragilitySpec` says what they mean."""
 
 
 @dataclass(frozen=True)
@@ -105,6 +75,31 @@ class FragilitySpec:
         return f"Sa({self.period_s:g} s, {100 * self.damping:g} %)" if self.measure == "Sa" else self.measure
 
 
+_BELOW_ONE = Number("a number, 0 or above and below 1", low=0.0, high=1.0, below=True)
+_SA, _IDA = {"measure": ("Sa",)}, {"method": ("ida",)}
+FRAGILITY = Section(("fragility",), (
+    "Fragility curves, by `rockbatch fragility`: how probable it is at a given intensity that a limit is exceeded."
+), {
+    "method": Key(choice("stripes", "ida"), '"ida"',
+        '"stripes": every record at every level; "ida": also, for each record, the least intensity that exceeds a limit.',
+        default="stripes"),
+    "measure": Key(choice(*MEASURES), '"PGV"', "Intensity measure of the horizontal component.", required=True),
+    "period_s": Key(positive, "1.0", "Period of the oscillator of Sa.", only=_SA),
+    "damping": Key(_BELOW_ONE, "0.05", "Damping of the oscillator of Sa, as a fraction of critical damping.", only=_SA),
+    "levels_g": Key(positive, "[0.2, 0.4, 0.6, 0.8]", "Levels of PGA or Sa.", many=True, only={"measure": ("PGA", "Sa")}),
+    "levels_m_s": Key(positive, "[0.25, 0.5, 1.0, 1.5]", "Levels of PGV.", many=True, only={"measure": ("PGV",)}),
+    "tolerance": Key(Number("a number from 1e-6 to 1", low=1e-6, high=1.0), "0.01",
+        "Relative width to which the least intensity is narrowed down.", only=_IDA),
+    "hunt_step": Key(Number("a number from 0.001 to 1", low=1e-3, high=1.0), "0.02",
+        "Relative steps in which the first exceedance is hunted between the levels, on every base; if it is not given, 0.01 "
+        "on rigid ground and the levels alone elsewhere.", only=_IDA),
+    "checks": Key(text, '["no overturning", "uplift*"]',
+        "Which of the checks are limits, by name or pattern, beside overturning; all that are about records if it is not "
+        "given.", many=True),
+    "confidence": Key(_BELOW_ONE, "0.95", "Level of the confidence bands."),
+}, homes=(FragilitySpec,))  # fmt: skip
+
+
 def read_fragility(study: Study) -> FragilitySpec:
     """The table [fragility] of a study that is loaded.
 
@@ -122,24 +117,16 @@ def read_fragility(study: Study) -> FragilitySpec:
 def _levels(table: Table, read: dict[str, Any]) -> tuple[float, ...]:
     """The levels in the unit of the measure; what belongs to another measure is noted."""
     measure = read.get("measure")
-    given: dict[str, Any] = {name: read.pop(name) for name in ("levels_g", "levels_m_s") if name in read}
+    given = [read.pop(name, []) for name in ("levels_g", "levels_m_s")]
     if measure is None:
         return ()
-    own = LEVELS[measure]
-    for name in given.keys() - {own}:
-        table.complain(f"{name}: {measure} is given in {'m/s' if measure == 'PGV' else 'g'}; write {own}", name)
-    if own not in table.data and not given:
+    own, settings = LEVELS[measure], given[measure == "PGV"]
+    if not (settings or table.has("levels_g") or table.has("levels_m_s")):
         table.complain(f"{own} is missing; write for example {own} = {FRAGILITY[own].example}")
-    if measure == "Sa" and "period_s" not in table.data:
+    if measure == "Sa" and not table.has("period_s"):
         table.complain(f"period_s is missing; write for example period_s = {FRAGILITY['period_s'].example}")
-    for name in ("period_s", "damping"):
-        if measure != "Sa" and name in read:
-            table.complain(f'{name}: is for measure = "Sa"; leave it out', name)
-    for name in ("tolerance", "hunt_step"):
-        if name in read and read.get("method", "stripes") == "stripes":
-            table.complain(f'{name}: is for method = "ida"; leave it out, or write method = "ida"', name)
-    levels = [setting.value for setting in given.get(own, [])]
-    for setting, before in zip(given.get(own, [])[1:], levels, strict=False):
+    levels = [setting.value for setting in settings]
+    for setting, before in zip(settings[1:], levels, strict=False):
         if setting.value < before:
             table.complain_about(setting, f"{own} = {setting.value:g}: after {before:g}; write them in rising order")
     if len(levels) == 1:

@@ -35,6 +35,6 @@ def combinations(settings: Mapping[str, Sequence[Setting]]) -> Iterator[Chosen]:
 
 
 def listed(table: Table, names: Iterable[str]) -> tuple[str, ...]:
-    """The keys of the table that are lists, in the order of the file."""
-    names = set(names)
+    """Return the keys of the table that are lists of values to combine, in the order of the file."""
+    names = {*names} - {"confirm"}
     return tuple(name for name, value in table.data.items() if name in names and isinstance(value, list))

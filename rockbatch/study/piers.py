@@ -6,39 +6,84 @@ from typing import Any
 
 from rockbatch.errors import InputError
 from rockbatch.pier import Part, Pier
+from rockbatch.pier.block import BOUNDS
 from rockbatch.study.lists import Chosen, combinations, how_many, listed, too_many
-from rockbatch.study.plausible import CONFIRM, LENGTHS, MASSES, complain_unless_usual, confirmed
-from rockbatch.toml.kinds import KindError, count, not_negative, positive
-from rockbatch.toml.reader import Key, Setting, Table, TomlFile
+from rockbatch.toml.kinds import Whole, not_negative, positive, within
+from rockbatch.toml.reader import Setting, Table, TomlFile
+from rockbatch.toml.section import CONFIRM, Clash, Key, Section, Usual
 
-
-def _columns(value: Any) -> int:
-    if count(value) < 2:
-        raise KindError("a whole number, 2 or above (a single column is a pier with a deck)")
-    return int(value)
-
-
-PIER = {
-    "alpha": Key(positive, "0.13", many=True),
-    "mu": Key(positive, "3.0", many=True),
-    "gravity": Key(positive, "9.81"),  # one for all: motions given in g are turned into m/s² with it
-    "p": Key(positive, "0.38", many=True),
-    "size_m": Key(positive, "60.1", many=True),
-    "width_m": Key(positive, "4.0", many=True),
-    "height_m": Key(positive, "30.0", many=True),
-    "mass_t": Key(positive, "3000.0", many=True),
-    "deck_mass_t": Key(positive, "1000.0", many=True),
-    "deck_height_m": Key(positive, "31.0", many=True),
-    "deck_inertia_t_m2": Key(not_negative, "0.0", many=True),
-    "top_m": Key(positive, "31.5", many=True),
-    "columns": Key(_columns, "4", many=True),
-}
-PART = {
-    "mass_t": Key(positive, "500.0", many=True, required=True),
-    "height_m": Key(not_negative, "28.0", many=True, required=True),
-    "inertia_t_m2": Key(not_negative, "0.0", many=True),
-}
-PIER_KEYS = tuple(name for name in PIER if name != "mass_t")
+_LENGTH = Usual(400.0, "m: the highest bridge piers reach some 300 m")
+_MASS = Usual(1e6, "t: the heaviest bridge piers weigh some 200 000 t")
+PIER = Section(("pier",), (
+    "The pier, a rigid block that can pivot about its two lower corners. Its size is given in one of three ways: "
+    "`width_m` with `height_m`, `size_m`, or `p`. Every key but `gravity` may be a list: each value is a pier of its own."
+), {
+    "alpha": Key(within(BOUNDS["alpha"]), "0.13",
+        "Slenderness α: the angle at a lower corner between the vertical and the line to the centre of mass, in radians. It "
+        "follows from `width_m` and `height_m`, and is then left out.", many=True),
+    "mu": Key(within(BOUNDS["mu"]), "3.0",
+        "Shape factor μ = M R0²/I0, with the moment of inertia I0 about the centre of mass. It follows from `width_m` and "
+        "`height_m`, and is then left out.", many=True),
+    "gravity": Key(within(BOUNDS["gravity"]), "9.81",
+        "Acceleration of gravity [m/s²], for the pier and for motions that are given in g.",
+        usual=Usual(30.0, "m/s²: on Earth it is 9.81")),
+    "p": Key(within(BOUNDS["p"]), "0.38", "Frequency parameter [rad/s], p² = μ/(1+μ) · gravity/R0.", many=True),
+    "size_m": Key(within(BOUNDS["size_m"]), "60.1", "R0, from a lower corner to the centre of mass.", many=True, usual=_LENGTH),
+    "width_m": Key(within(BOUNDS["width_m"]), "4.0",
+        "Width of a solid rectangle; of a pier with parts, the distance between its pivots.", many=True, usual=_LENGTH),
+    "height_m": Key(within(BOUNDS["height_m"]), "30.0", "Height of a solid rectangle.", many=True, usual=_LENGTH),
+    "mass_t": Key(within(BOUNDS["mass_t"]), "3000.0",
+        "Mass of the pier, without its deck where there is one, of one column of a frame. Forces in kN need a mass.",
+        many=True, usual=_MASS),
+    "deck_mass_t": Key(within(BOUNDS["deck_mass_t"]), "1000.0",
+        "Mass of the deck that it carries; of a frame, of the whole deck.", many=True, usual=_MASS),
+    "deck_height_m": Key(within(BOUNDS["deck_height_m"]), "31.0",
+        "Height of the deck's centre above the pivots; `height_m` if it is not given.", many=True, usual=_LENGTH),
+    "deck_inertia_t_m2": Key(not_negative, "0.0",
+        "Moment of inertia of the deck about its own centre. 0 for a deck on bearings, which does not turn.", many=True),
+    "top_m": Key(within(BOUNDS["top_m"]), "31.5",
+        "Height above the pivots at which drift is read; the highest point that is known if it is not given.", many=True,
+        usual=_LENGTH),
+    "columns": Key(Whole(2, "a whole number, 2 or above (a single column is a pier with a deck)"), "4",
+        "Number of equal columns of a rocking frame under one deck, on a rigid base only.", many=True),
+    **CONFIRM,
+}, required=True, homes=(Pier,), clashes=(
+    Clash(("part",), "[[pier.part]]: needs width_m, between the pivots, and no other size; write width_m = 4.0",
+        lacking=("width_m",)),
+    Clash(("mass_t", "part"), "mass_t: the parts say what the pier weighs; leave it out"),
+    Clash(("deck_mass_t",),
+        "mass_t is missing beside deck_mass_t, of the pier without its deck; write for example mass_t = 2000.0",
+        lacking=("part", "mass_t", "columns")),
+    Clash(("deck_mass_t", "columns"), "mass_t is missing beside deck_mass_t, of one column; write for example mass_t = 2000.0",
+        lacking=("part", "mass_t")),
+    Clash(("deck_mass_t",), "deck_mass_t: goes with width_m and height_m; other sizes are those of the pier with its deck, and "
+        "mass_t is then the mass of both", lacking=("width_m", "columns")),
+    Clash(("deck_mass_t", "part"), "deck_height_m is missing beside deck_mass_t; write for example deck_height_m = 31.0",
+        lacking=("height_m", "deck_height_m")),
+    Clash(("deck_height_m",), "deck_height_m: there is no deck; write deck_mass_t too, or leave it out",
+        lacking=("deck_mass_t",)),
+    Clash(("deck_inertia_t_m2",), "deck_inertia_t_m2: there is no deck; write deck_mass_t too, or leave it out",
+        lacking=("deck_mass_t",)),
+    Clash(("columns",), "columns: a frame has a deck; write deck_mass_t, of the whole deck, too", lacking=("deck_mass_t",)),
+    Clash(("part", "columns"), "part: the columns of a frame are solid rectangles; leave [[pier.part]] out"),
+    Clash(("mu", "columns"), "mu: the columns of a frame are solid rectangles; leave it out"),
+    Clash(("deck_height_m", "columns"),
+        "deck_height_m: the deck of a frame rests on its columns and keeps level, so only its mass counts; leave it out"),
+    Clash(("deck_inertia_t_m2", "columns"),
+        "deck_inertia_t_m2: the deck of a frame keeps level, so only its mass counts; leave it out"),
+    Clash(("top_m", "columns"),
+        "top_m: the deck of a frame keeps level, so all of it drifts as the tops of the columns do; leave it out"),
+))  # fmt: skip
+PART = Section(("pier", "part"), (
+    "A part of a pier that is no uniform shaft, its centre on the axis. Write as many as there are, beside `width_m`."
+), {
+    "mass_t": Key(positive, "500.0", "Mass of the part.", required=True, many=True, usual=_MASS),
+    "height_m": Key(not_negative, "28.0", "Height of its centre above the pivots.",
+        required=True, many=True, usual=_LENGTH),
+    "inertia_t_m2": Key(not_negative, "0.0", "Moment of inertia about its own centre; 0 if it is not given.", many=True),
+    **CONFIRM,
+}, many=True)  # fmt: skip
+PIER_KEYS = tuple(name for name in PIER if name not in ("mass_t", "confirm"))
 """Keys that tell piers apart; the mass, which a [[case]] may have too, tells foundations apart."""
 
 Values = dict[str, float | str]
@@ -53,13 +98,10 @@ def read_piers(file: TomlFile) -> tuple[list[tuple[Pier, Values]], tuple[str, ..
     if table is None:
         return [], ()
     before = len(file.problems)
-    read = table.read(PIER | CONFIRM, other=("part",))
-    believed = confirmed(table, read, PIER)
+    read = table.read(PIER, other=("part",))
+    believed = read.pop("confirm")
     gravity = {"gravity": read.pop("gravity")} if "gravity" in read else {}
     _check_one_size(table)
-    _check_masses(table)
-    for name, usual in (LENGTHS | MASSES).items():
-        complain_unless_usual(table, name, read.get(name, ()), usual, believed)
     varied = listed(table, PIER)
     parts = file.tables("pier", "part", title="name")
     if table.data.get("part") == []:
@@ -90,15 +132,13 @@ def read_piers(file: TomlFile) -> tuple[list[tuple[Pier, Values]], tuple[str, ..
 
 def has_mass(file: TomlFile) -> bool:
     """Whether [pier] says what the pier weighs."""
-    return file.value(("pier", "mass_t")) is not None or bool(file.value(("pier", "part")))
+    return file.has(("pier", "mass_t")) or bool(file.value(("pier", "part")))
 
 
 def _part(table: Table, n: int) -> tuple[dict[str, Sequence[Setting]], tuple[str, ...]]:
     """Settings of the n-th part by the names that set them apart, and which of them are lists."""
-    read = table.read(PART | CONFIRM)
-    believed = confirmed(table, read, PART)
-    for name, usual in (LENGTHS | MASSES).items():
-        complain_unless_usual(table, name, read.get(name, ()), usual, believed)
+    read = table.read(PART)
+    del read["confirm"]
     return {f"part_{n}_{name}": its for name, its in read.items()}, tuple(f"part_{n}_{x}" for x in listed(table, PART))
 
 
@@ -151,13 +191,10 @@ def _complain_where_due(table: Table, chosen: Chosen, problem: str) -> None:
         table.complain(problem)
 
 
-# Mistakes that take more than one key to see
-
-
 def _check_one_size(table: Table) -> None:
-    """Exactly one way to give the pier's size, and α and μ only where they do not follow from it."""
-    parts = "part" in table.data
-    given = [name for name in table.data if name in ("p", "size_m", "width_m", "height_m")]
+    """Note a size that is given in no way or in several, and α and μ beside one that they follow from."""
+    parts = table.has("part")
+    given = [name for name in table.names if name in ("p", "size_m", "width_m", "height_m")]
     sides = [name for name in given if name in ("width_m", "height_m")]
     ways = len(given) - len(sides) + bool(sides)
     if ways == 0:
@@ -172,57 +209,9 @@ def _check_one_size(table: Table) -> None:
         missing = "height_m" if sides == ["width_m"] else "width_m"
         example = PIER[missing].example
         table.complain(f"{missing} is missing beside {sides[0]}; write for example {missing} = {example}")
-    if not sides and "alpha" not in table.data:
+    if not sides and not table.has("alpha"):
         table.complain("alpha is missing; write for example alpha = 0.13 (slenderness, rad)")
     if sides and ways == 1:
         of = "the parts" if parts else "width_m and height_m (of a solid rectangle)"
         for name in {"alpha", "mu"} & table.data.keys():
             table.complain(f"{name} follows from {of}; leave it out", name)
-
-
-def _check_masses(table: Table) -> None:
-    """Each mass is said once, and where it is."""
-    given = table.data.keys()
-    parts, deck, frame, sides = ("part" in given, "deck_mass_t" in given, "columns" in given, "width_m" in given)
-    if parts and not sides:
-        table.complain(
-            "[[pier.part]]: needs width_m, between the pivots, and no other size; write width_m = 4.0", "part"
-        )
-    if parts and "mass_t" in given:
-        table.complain("mass_t: the parts say what the pier weighs; leave it out", "mass_t")
-    if deck and not (parts or "mass_t" in given):
-        told = "of one column" if frame else "of the pier without its deck"
-        table.complain(
-            f"mass_t is missing beside deck_mass_t, {told}; write for example mass_t = 2000.0", "deck_mass_t"
-        )
-    if deck and not (sides or frame):
-        table.complain(
-            "deck_mass_t: goes with width_m and height_m; other sizes are those of the pier with its deck, and mass_t is then "
-            "the mass of both",
-            "deck_mass_t",
-        )
-    if deck and parts and not given & {"height_m", "deck_height_m"}:
-        table.complain(
-            "deck_height_m is missing beside deck_mass_t; write for example deck_height_m = 31.0", "deck_mass_t"
-        )
-    for name in ("deck_height_m", "deck_inertia_t_m2"):
-        if name in given and not deck:
-            table.complain(f"{name}: there is no deck; write deck_mass_t too, or leave it out", name)
-    if frame:
-        _check_frame(table)
-
-
-def _check_frame(table: Table) -> None:
-    """A frame takes its columns' size and mass, and its deck's mass."""
-    why = {
-        "part": "the columns of a frame are solid rectangles; leave [[pier.part]] out",
-        "mu": "the columns of a frame are solid rectangles; leave it out",
-        "deck_height_m": "the deck of a frame rests on its columns and keeps level, so only its mass counts; leave it out",
-        "deck_inertia_t_m2": "the deck of a frame keeps level, so only its mass counts; leave it out",
-        "top_m": "the deck of a frame keeps level, so all of it drifts as the tops of the columns do; leave it out",
-    }
-    if "deck_mass_t" not in table.data:
-        table.complain("columns: a frame has a deck; write deck_mass_t, of the whole deck, too", "columns")
-    for name, told in why.items():
-        if name in table.data:
-            table.complain(f"{name}: {told}", name)

@@ -1,57 +1,69 @@
 """Dampers and tendons of a case: [[case.damper]], and [case.tendon] or [[case.tendon]]."""
 
 from collections.abc import Mapping, Sequence
-from typing import Any, get_args
+from dataclasses import replace
+from typing import Any
 
-from rockbatch.pier import Damper, DamperKind, Pier, Restraint, Tendon, doubt, remedy
+from rockbatch.errors import remedy
+from rockbatch.pier import Damper, Pier, Restraint, Tendon, doubt
+from rockbatch.pier.restraints import BOUNDS, FIELDS, wrong_device
 from rockbatch.study.lists import Chosen, listed
 from rockbatch.study.piers import has_mass
-from rockbatch.study.plausible import CONFIRM, confirmed
-from rockbatch.toml.kinds import KindError, choice, not_negative, number, positive, shown
-from rockbatch.toml.reader import Key, Setting, Table
+from rockbatch.toml.kinds import Choice, choice, not_negative, number, positive, within
+from rockbatch.toml.reader import Setting, Table
+from rockbatch.toml.section import CONFIRM, Clash, Key, Section
 
+_PLACE = Choice(("left", "right"), '"left", "right" or an offset from the middle of the base in m', also=number)
+_FORCE, _VISCOUS = {"kind": ("friction", "hysteretic")}, {"kind": ("viscous",)}
 
-def _place(value: Any) -> float | str:
-    if isinstance(value, str) and value in ("left", "right"):
-        return value
-    if isinstance(value, str):
-        raise KindError('"left", "right" or an offset from the middle of the base in m')
-    return number(value)
-
-
-DAMPER = {
-    "kind": Key(choice(*get_args(DamperKind)), '"friction"', required=True),
-    "force_kN": Key(positive, "450.0", many=True),
-    "f": Key(not_negative, "0.02", many=True),
-    "yield_mm": Key(positive, "5.0", many=True),
-    "coefficient_kN_s_m": Key(not_negative, "900.0", many=True),
-    "nu": Key(not_negative, "0.5", many=True),
-    "exponent": Key(positive, "0.5", many=True),
-    "at": Key(_place, '"left"'),
-}
-TENDON = {
-    "prestress_kN": Key(not_negative, "5000.0", many=True),
-    "psi": Key(not_negative, "0.5", many=True),
-    "stiffness_kN_m": Key(not_negative, "40000.0", many=True),
-    "lambda": Key(not_negative, "1.0", many=True),
-    "yield_kN": Key(positive, "9000.0", many=True),
-    "at": Key(_place, "0.0"),
-}
+DAMPER = Section(("case", "damper"), "A damper between the pier and the ground. Write as many as there are.", {
+    "kind": Key(choice(*FIELDS), '"friction"',
+        "What its force depends on: the direction of the motion, a yielding displacement, or the speed.", required=True),
+    "force_kN": Key(positive, "450.0",
+        "Force of a friction or hysteretic damper, for a pier whose mass is known; or give `f`.", many=True, only=_FORCE),
+    "f": Key(within(BOUNDS["f"]), "0.02", "Force of a friction or hysteretic damper over the weight.", many=True, only=_FORCE),
+    "yield_mm": Key(positive, "5.0", "Yield displacement of a hysteretic damper.", many=True, only={"kind": ("hysteretic",)}),
+    "coefficient_kN_s_m": Key(not_negative, "900.0",
+        "Coefficient C of a viscous damper, in kN and m/s to the power of `exponent`; or give `nu`.", many=True, only=_VISCOUS),
+    "nu": Key(within(BOUNDS["nu"]), "0.5", "Coefficient of a viscous damper as C/(M p).", many=True, only=_VISCOUS),
+    "exponent": Key(within(BOUNDS["exponent"]), "0.5", "Exponent of the speed of a viscous damper.", many=True, only=_VISCOUS),
+    "at": Key(_PLACE, '"left"',
+        "Where it is: a pivot, or an offset [m] from the middle of the base; one at each pivot if it is not given."),
+    **CONFIRM,
+}, many=True, single=True, clashes=(
+    Clash(("force_kN", "f"), "force_kN and f are given, which fix the same; keep one", at="f"),
+    Clash(("coefficient_kN_s_m", "nu"), "coefficient_kN_s_m and nu are given, which fix the same; keep one", at="nu"),
+))  # fmt: skip
+TENDON = Section(
+    ("case", "tendon"), "An unbonded tendon between the pier and the ground, which takes tension only.", {
+    "prestress_kN": Key(not_negative, "5000.0",
+        "Its prestress P0, for a pier whose mass is known; or give `psi`.", many=True),
+    "psi": Key(within(BOUNDS["psi"]), "0.5", "Prestress over the weight.", many=True),
+    "stiffness_kN_m": Key(not_negative, "40000.0",
+        "Its stiffness k_t, for a pier whose mass is known; or give `lambda`.", many=True),
+    "lambda": Key(not_negative, "1.0", "Stiffness as λ = k_t b²/(M g R0).", many=True),
+    "yield_kN": Key(positive, "9000.0", "Force at which it yields; it does not yield if this is not given.", many=True),
+    "at": Key(_PLACE, "0.0",
+        "Where it is: a pivot, or an offset [m] from the middle of the base; on the axis if it is not given."),
+    **CONFIRM,
+}, many=True, single=True, clashes=(
+    Clash(("prestress_kN", "psi"), "prestress_kN and psi are given, which fix the same; keep one", at="psi"),
+    Clash(("stiffness_kN_m", "lambda"), "stiffness_kN_m and lambda are given, which fix the same; keep one", at="lambda"),
+))  # fmt: skip
 RESTRAINTS = ("damper", "tendon")
 
 IN_KN = ("force_kN", "coefficient_kN_s_m", "prestress_kN", "stiffness_kN_m", "yield_kN")
-_PULLS = (("prestress_kN", "psi"), ("stiffness_kN_m", "lambda"))
 _FIELDS = {
-    "coefficient_kN_s_m": "nu", "yield_mm": "yield_m", "prestress_kN": "psi", "stiffness_kN_m": "lam", "lambda": "lam",
+    "force_kN": "f", "coefficient_kN_s_m": "nu", "yield_mm": "yield_m", "prestress_kN": "psi", "stiffness_kN_m": "lam",
+    "lambda": "lam",
 }  # fmt: skip
-_BELONG = {  # keys of a damper of each kind: those of which one is needed, then the others
-    "friction": (("force_kN", "f"), ()),
-    "hysteretic": (("force_kN", "f"), ("yield_mm",)),
-    "viscous": (("coefficient_kN_s_m", "nu"), ("exponent",)),
-}
-KEYS_OF = {kind: (*either, *others) for kind, (either, others) in _BELONG.items()} | {
-    "tendon": tuple(name for name in TENDON if name != "at")
-}
+_UNMEASURED = ("kind", "at", "confirm")
+KEYS_OF = {
+    kind: tuple(
+        name for name, key in DAMPER.items() if name not in _UNMEASURED and kind in key.only.get("kind", (kind,))
+    )
+    for kind in FIELDS
+} | {"tendon": tuple(name for name in TENDON if name not in _UNMEASURED)}
 """Keys with numbers of a damper of each kind, and of a tendon."""
 
 
@@ -77,58 +89,52 @@ def read_restraints(case: Table) -> tuple[dict[str, Sequence[Setting]], tuple[st
     varied: tuple[str, ...] = ()
     for what, keys in (("damper", DAMPER), ("tendon", TENDON)):
         for n, table in enumerate(_tables(case, what), 1):
-            found = table.read(keys | CONFIRM)
-            believed = confirmed(table, found, keys)
-            if believed:
-                read[f"{what}_{n}_confirm"] = [Setting(tuple(_FIELDS.get(name, name) for name in believed), table.at)]
+            found = table.read(keys)
+            if believed := found.pop("confirm"):
+                read[f"{what}_{n}_confirm"] = [
+                    Setting(tuple(_FIELDS.get(name, name) for name in sorted(believed)), table.at)
+                ]
             for name, value in found.items():
                 read[f"{what}_{n}_{name}"] = value if isinstance(value, list) else [Setting(value, (*table.at, name))]
             varied += tuple(f"{what}_{n}_{name}" for name in listed(table, keys))
-            if what == "damper":
-                _check_damper(table, found.get("kind"))
-            else:
-                _check_pairs(table, _PULLS)
-                if not table.data.keys() & {name for pair in _PULLS for name in pair}:
-                    table.complain(
-                        "it has neither prestress nor stiffness, so that it is not there; write for example prestress_kN = "
-                        f"{TENDON['prestress_kN'].example}, or leave the table out"
-                    )
-            _check_mass(table)
+            _check_given(table, found.get("kind") if what == "damper" else "tendon")
+            for name in IN_KN:
+                if name in table.data and not has_mass(table.file):
+                    table.complain(f"{name}: kN are of a pier whose mass is known; write mass_t in [pier]", name)
     return read, varied
 
 
 def _tables(case: Table, what: str) -> list[Table]:
-    """One table, or several."""
-    if isinstance(case.data.get(what), dict):
-        return [Table(case.file, (*case.at, what), f"[case.{what}]", case.data[what])]
-    return case.file.tables(*case.at, what, title="kind")
+    """One table, or several, called by their place in the case."""
+    one = case.data.get(what)
+    if isinstance(one, dict):
+        return [Table(case.file, (*case.at, what), f"{case.label}, {what}", one)]
+    return [
+        replace(table, label=f"{case.label}, {what} {n}")
+        for n, table in enumerate(case.file.tables(*case.at, what, title="kind"), 1)
+    ]
 
 
-def _check_damper(table: Table, kind: str | None) -> None:
+_NEEDED = {
+    "friction": ("force_kN", "f"), "hysteretic": ("force_kN", "f"), "viscous": ("coefficient_kN_s_m", "nu"),
+    "tendon": ("prestress_kN", "psi", "stiffness_kN_m", "lambda"),
+}  # fmt: skip
+
+
+def _check_given(table: Table, kind: str | None) -> None:
+    """Note a damper without a force, or a tendon without prestress and stiffness."""
     if kind is None:
         return
-    either, others = _BELONG[kind]
-    for name in table.data.keys() & DAMPER.keys() - {"kind", "at", *either, *others}:
-        table.complain(f"{name}: does not apply to kind = {shown(kind)}; leave it out", name)
-    if not table.data.keys() & set(either):
-        table.complain(
-            f"{either[0]} is missing; write for example {either[0]} = {DAMPER[either[0]].example}, or {either[1]}"
-        )
-    _check_pairs(table, (either,))
-    if kind == "hysteretic" and "yield_mm" not in table.data:
+    first, other, *_ = _NEEDED[kind]
+    if not any(map(table.has, _NEEDED[kind])):
+        example = f"write for example {first} = {(TENDON if kind == 'tendon' else DAMPER)[first].example}, or"
+        if kind == "tendon":
+            told = "it has neither prestress nor stiffness, so that it is not there"
+            table.complain(f"{told}; {example} leave the table out")
+        else:
+            table.complain(f"{first} is missing; {example} {other}")
+    if kind == "hysteretic" and not table.has("yield_mm"):
         table.complain('yield_mm is missing; write for example yield_mm = 5.0, or kind = "friction", its limit')
-
-
-def _check_pairs(table: Table, pairs: Sequence[Sequence[str]]) -> None:
-    for one, other in pairs:
-        if one in table.data and other in table.data:
-            table.complain(f"{one} and {other} are given, which fix the same; keep one", other)
-
-
-def _check_mass(table: Table) -> None:
-    for name in IN_KN:
-        if name in table.data and not has_mass(table.file):
-            table.complain(f"{name}: kN are of a pier whose mass is known; write mass_t in [pier]", name)
 
 
 def restraints_of(pier: Pier, given: dict[str, Any]) -> tuple[Restraint, ...]:
@@ -149,18 +155,25 @@ def _taken(given: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
     return {name: values for name, values in taken.items() if name.startswith("tendon") or "kind" in values}
 
 
-def complain_of_unlikely(case: Table, chosen: Chosen, pier: Pier, restraints: Sequence[Restraint]) -> None:
-    """Note every value of a damper or tendon that is far from usual and not confirmed, at its key."""
-    for (name, values), each in zip(_taken(chosen).items(), restraints, strict=True):
-        odd = doubt(pier, each)
-        if odd is None:
-            continue
-        key = next((key for key in values if _FIELDS.get(key, key) == odd.name), "")
-        if key:
-            what, value = name.partition("_")[0], values[key]
-            case.complain_about(
-                value, f"{what}: {key} = {value.value:g}: {odd.meaning}; {remedy(key)} in [[case.{what}]]"
+def complain_of_devices(case: Table, chosen: Chosen, pier: Pier, devices: Sequence[Restraint]) -> None:
+    """Note what is impossible about dampers and tendons, or far from usual and not confirmed, each at its key."""
+    for (name, values), device in zip(_taken(chosen).items(), devices, strict=True):
+        what = name.partition("_")[0]
+        told = [problem.partition(": ")[2] for problem in wrong_device(pier, device)]
+        for problem in told:
+            symbol = problem.partition(" = ")[0]
+            key = next(
+                (key for key in values if key == symbol or _FIELDS.get(key) == symbol.replace("lambda", "lam")), ""
             )
+            if key and key != symbol:
+                problem = f"{key} = {values[key].value:g} means {problem}; check the unit"
+            case.complain_about(values[key or next(iter(values))], f"{what}: {problem}")
+        odd = doubt(pier, device)
+        key = next((key for key in values if odd is not None and _FIELDS.get(key, key) == odd.name), "")
+        if odd is not None and key and not told:
+            value = values[key]
+            meaning = f"{what}: {key} = {value.value:g}: {odd.meaning}"
+            case.complain_about(value, f"{meaning}; {remedy(key)} in [[case.{what}]]")
 
 
 def _restraint(values: Mapping[str, Any], pier: Pier) -> Restraint:

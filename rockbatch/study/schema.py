@@ -8,27 +8,24 @@ to be wrong, and takes all that is right; what takes several keys to see, only t
 
 import json
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
-from rockbatch.study.sections import FILES, Section
-from rockbatch.toml import asking
-from rockbatch.toml.reader import Key
-
-Schema = dict[str, Any]
+from rockbatch.study.sections import FILES
+from rockbatch.toml.kinds import Schema
+from rockbatch.toml.section import Section, options
 
 
 def schema_of(sections: Sequence[Section], title: str) -> Schema:
-    """The schema of a file with these sections, of which the one at the top comes first and outer ones before inner."""
+    """Return the schema of a file with these sections, of which the one at the top comes first and outer ones before inner."""
     tables: dict[tuple[str, ...], Schema] = {}
-    inner = {name for section in sections for name in section.inner}
     for section in sections:
         table = tables[section.at] = _table(section)
         if section.at:
             outer = tables[section.at[:-1]]
             name = section.at[-1]
             several = {"type": "array", "items": table}
-            either = {"anyOf": [table, several]} if name in inner else several
+            either = {"anyOf": [table, several]} if section.single else several
             outer["properties"][name] = either if section.many else table
             if section.numbered:
                 outer.setdefault("patternProperties", {})[f"^{name}_[1-9][0-9]*$"] = table
@@ -38,39 +35,49 @@ def schema_of(sections: Sequence[Section], title: str) -> Schema:
 
 
 def _table(section: Section) -> Schema:
-    found: Schema = {
+    table: Schema = {
         "type": "object",
         "description": section.about,
-        "properties": {name: _value(section, name, key) for name, key in section.keys.items()},
+        "properties": {name: _value(section, name) for name in section},
         "additionalProperties": False,
-        "required": [name for name, key in section.keys.items() if key.required],
+        "required": [name for name, key in section.items() if key.required],
     }
     if section.free:
-        found["patternProperties"] = {section.free: {"type": "number"}}
-    if section.only_for:
-        bases = section.keys["base"].kind
-        found["allOf"] = [_only(section, base) for base in asking.schema(bases)["enum"]]
-    return found
+        table["patternProperties"] = {section.free: {"type": "number"}}
+    others = dict.fromkeys(other for key in section.values() for other in key.only)
+    if conditions := [excluded for other in others for excluded in _excluded(section, other)]:
+        table["allOf"] = conditions
+    return table
 
 
-def _only(section: Section, base: str) -> Schema:
-    """Which keys a case on this base may have."""
-    names = [name for name in section.keys if base in section.only_for.get(name, (base,))]
-    names += [name for name, bases in section.inner.items() if base in bases]
-    return {
-        "if": {"properties": {"base": {"const": base}}, "required": ["base"]},
-        "then": {"propertyNames": {"enum": names}},
-    }
+def _excluded(section: Section, other: str) -> Iterator[Schema]:
+    """Keys that do not apply beside each value of another key, of which there may be several, and without it."""
+    for value in options(section[other]):
+        one: Schema = {"const": value}
+        several = {"anyOf": [one, {"type": "array", "items": one, "minItems": 1}]}
+        condition = {"properties": {other: several if section[other].many else one}, "required": [other]}
+        yield from _unless(section, other, value, condition)
+    if not section[other].required:
+        yield from _unless(section, other, section.default(other), {"not": {"required": [other]}})
 
 
-def _value(section: Section, name: str, key: Key) -> Schema:
-    one = asking.schema(key.kind)
-    if key.many:
+def _unless(section: Section, other: str, value: Any, condition: Schema) -> Iterator[Schema]:
+    names = [name for name, key in section.items() if other in key.only and value not in key.only[other]]
+    if names:
+        yield {"if": condition, "then": {"properties": dict.fromkeys(names, False)}}
+
+
+def _value(section: Section, name: str) -> Schema:
+    key = section[name]
+    one = key.kind.schema()
+    if key.pair:
+        one = {"type": "array", "items": one, "minItems": 2, "maxItems": 2}
+    elif key.many:
         several = {"type": "array", "items": one, "minItems": 1, "uniqueItems": key.distinct}
         one = {"anyOf": [one, several]}
-    found = one | {"description": section.words.get(name, "")}
     default = section.default(name)
-    return found if default is None else found | {"default": list(default) if isinstance(default, tuple) else default}
+    words = one | {"description": key.words}
+    return words if default is None else words | {"default": list(default) if isinstance(default, tuple) else default}
 
 
 def main(arguments: Sequence[str]) -> int:

@@ -3,12 +3,14 @@
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from itertools import product
-from typing import Any, get_args
+from typing import Any
 
 from rockbatch.checks.statistics import STATISTICS
 from rockbatch.errors import InputError
-from rockbatch.pier import Kinematics, SpringLaw, beta_of, eta_of, in_kilonewtons, problems
-from rockbatch.study.ranges import range_of
+from rockbatch.pier import beta_of, eta_of, in_kilonewtons, problems
+from rockbatch.study.cases import CASE
+from rockbatch.study.motions import MOTIONS
+from rockbatch.study.piers import PIER
 from rockbatch.study.restraint_inputs import (
     TABLE,
     is_of_restraint,
@@ -21,8 +23,9 @@ from rockbatch.study.restraint_inputs import (
 )
 from rockbatch.study.restraint_keys import DAMPER, RESTRAINTS, TENDON
 from rockbatch.study.spec import Case, Study
-from rockbatch.toml.kinds import KindError, boolean, choice, count, number, positive, shown
-from rockbatch.toml.reader import Key, Table, TomlFile
+from rockbatch.toml.kinds import Choice, Number, boolean, choice, count, positive, shown
+from rockbatch.toml.reader import Table, TomlFile
+from rockbatch.toml.section import Key, Section
 
 OF_PIER = ("alpha", "p", "mu")
 OF_MOTION = ("vertical", "polarity")
@@ -32,83 +35,6 @@ IN_KILONEWTONS = {"stiffness_kN_m": "beta", "yield_kN": "eta"}
 """Inputs that a pier of known mass turns into ratios, and which."""
 
 Value = float | str | bool
-
-
-def _power_of_two(value: Any) -> int:
-    """As Sobol's sequence needs it to be balanced."""
-    if count(value) & (value - 1) or value < 4:
-        raise KindError("a power of two from 4")
-    return int(value)
-
-
-def _share(value: Any) -> float:
-    if not 0 < number(value) < 1:
-        raise KindError("a number between 0 and 1")
-    return float(value)
-
-
-SENSITIVITY = {
-    "statistic": Key(choice(*(name for name, each in STATISTICS.items() if each.of and not each.code)), '"median"'),
-    "overturned": Key(positive, "1.0"),
-    "samples": Key(_power_of_two, "64"),
-    "confidence": Key(_share, "0.95"),
-    "seed": Key(count, "1"),
-}
-
-
-def _with_examples(keys: Mapping[str, Key], **examples: str) -> dict[str, Key]:
-    """Some of ``keys``, with a range as their example."""
-    return {name: replace(keys[name], example=example) for name, example in examples.items()}
-
-
-_RANGES = {
-    name: Key(positive if name in (*OF_PIER, *IN_KILONEWTONS) else number, example, many=True)
-    for name, example in (
-        ("alpha", "[0.12, 0.16]"),
-        ("p", "[0.3, 0.5]"),
-        ("mu", "[2.5, 3.5]"),
-        ("restitution", "[0.85, 0.95]"),
-        ("beta", "[30, 90]"),
-        ("epsilon", "[0.05, 0.3]"),
-        ("zeta", "[0.02, 0.1]"),
-        ("eta", "[2.0, 4.0]"),
-        ("n", "[2, 8]"),
-        ("stiffness_kN_m", "[1e6, 4e6]"),
-        ("yield_kN", "[3e4, 6e4]"),
-    )
-}
-UNIFORM = _RANGES
-LOG_UNIFORM = {name: replace(key, kind=positive) for name, key in _RANGES.items()}
-_DAMPER_RANGES = _with_examples(
-    DAMPER,
-    force_kN="[300.0, 600.0]",
-    f="[0.01, 0.05]",
-    yield_mm="[3.0, 8.0]",
-    coefficient_kN_s_m="[500.0, 2000.0]",
-    nu="[0.2, 0.8]",
-    exponent="[0.3, 1.0]",
-)
-_TENDON_RANGES = _with_examples(
-    TENDON,
-    prestress_kN="[3000.0, 6000.0]",
-    psi="[0.2, 0.8]",
-    stiffness_kN_m="[2.0e4, 8.0e4]",
-    yield_kN="[8000.0, 1.2e4]",
-    **{"lambda": "[0.5, 2.0]"},
-)
-UNIFORM_OF = {"damper": _DAMPER_RANGES, "tendon": _TENDON_RANGES}
-LOG_UNIFORM_OF = {
-    what: {name: replace(key, kind=positive) for name, key in keys.items()} for what, keys in UNIFORM_OF.items()
-}
-"""Keys of tables within, such as [sensitivity.uniform.damper], or damper.f = … in [sensitivity.uniform]."""
-CHOICE = {
-    "kinematics": Key(choice(*get_args(Kinematics)), '["first-order", "finite"]', many=True),
-    "spring": Key(choice(*get_args(SpringLaw)), '["bouc-wen", "epp"]', many=True),
-    "vertical": Key(boolean, "[true, false]", many=True),
-    "polarity": Key(choice("+", "-"), '["+", "-"]', many=True),
-}
-WITHIN: dict[str, dict[str, dict[str, Key]]] = {"uniform": UNIFORM_OF, "log_uniform": LOG_UNIFORM_OF, "choice": {}}
-SPREADS = {"uniform": UNIFORM, "log_uniform": LOG_UNIFORM, "choice": CHOICE}
 
 
 @dataclass(frozen=True)
@@ -158,6 +84,89 @@ class SensitivitySpec:
     samples: int = 64
     confidence: float = 0.95
     seed: int = 1
+
+
+SENSITIVITY = Section(("sensitivity",), (
+    "What the answer depends on, by `rockbatch sensitivity`: one input at a time, and Sobol indices of all together."
+), {
+    "statistic": Key(choice(*(name for name, each in STATISTICS.items() if each.of and not each.code)), '"median"',
+        "How the records are summed up."),
+    "overturned": Key(positive, "1.0", "The θ_max/α as which a run counts that overturned; larger ones count so too."),
+    "samples": Key(Choice(tuple(2**k for k in range(2, 31)), "a power of two from 4"), "64",
+        "Size N of the design: N (d + 2) points for d inputs, each under every record."),
+    "confidence": Key(Number("a number between 0 and 1", low=0.0, high=1.0, above=True, below=True), "0.95",
+        "Level of the intervals of the indices."),
+    "seed": Key(count, "1", "Seed of the design and of the intervals."),
+}, homes=(SensitivitySpec,))  # fmt: skip
+
+
+def _ranges(spread: str, keys: Mapping[str, Key], **examples: str) -> dict[str, Key]:
+    """Some of the study's keys as ranges; of a logarithmic one the values are above 0."""
+    return {
+        name: Key(positive if spread == "log_uniform" else keys[name].kind, example, keys[name].words, pair=True)
+        for name, example in examples.items()
+    }
+
+
+def _of_case(spread: str) -> dict[str, Key]:
+    return _ranges(spread, PIER, alpha="[0.12, 0.16]", p="[0.3, 0.5]", mu="[2.5, 3.5]") | _ranges(
+        spread, CASE, restitution="[0.85, 0.95]", beta="[30, 90]", epsilon="[0.05, 0.3]", zeta="[0.02, 0.1]", eta="[2.0, 4.0]",
+        n="[2, 8]", stiffness_kN_m="[1e6, 4e6]", yield_kN="[3e4, 6e4]",
+    )  # fmt: skip
+
+
+def _of_devices(spread: str) -> dict[str, dict[str, Key]]:
+    return {
+        "damper": _ranges(
+            spread, DAMPER, force_kN="[300.0, 600.0]", f="[0.01, 0.05]", yield_mm="[3.0, 8.0]",
+            coefficient_kN_s_m="[500.0, 2000.0]", nu="[0.2, 0.8]", exponent="[0.3, 1.0]",
+        ),
+        "tendon": _ranges(
+            spread, TENDON, prestress_kN="[3000.0, 6000.0]", psi="[0.2, 0.8]", stiffness_kN_m="[2.0e4, 8.0e4]",
+            yield_kN="[8000.0, 1.2e4]", **{"lambda": "[0.5, 2.0]"},
+        ),
+    }  # fmt: skip
+
+
+def _choices(keys: Mapping[str, Key], **examples: str) -> dict[str, Key]:
+    return {name: Key(keys[name].kind, example, keys[name].words, many=True) for name, example in examples.items()}
+
+
+UNIFORM = Section(
+    ("sensitivity", "uniform"),
+    "Inputs of which every value in a range is as likely as another: the least and the largest value.",
+    _of_case("uniform"),
+)
+LOG_UNIFORM = Section(
+    ("sensitivity", "log_uniform"),
+    "Inputs that are as likely to be half as to be twice: the least and the largest value.",
+    _of_case("log_uniform"),
+)
+CHOICE = Section(
+    ("sensitivity", "choice"),
+    "Inputs with two values, both as likely.",
+    {
+        **_choices(CASE, kinematics='["first-order", "finite"]', spring='["bouc-wen", "epp"]'),
+        "vertical": Key(boolean, "[true, false]", "With the records' vertical components, or without.", many=True),
+        **_choices(MOTIONS, polarity='["+", "-"]'),
+    },
+)
+WITHIN: dict[str, dict[str, dict[str, Key]]] = {
+    "uniform": _of_devices("uniform"), "log_uniform": _of_devices("log_uniform"), "choice": {},
+}  # fmt: skip
+"""Keys of tables within, such as [sensitivity.uniform.damper], or damper.f = … in [sensitivity.uniform]."""
+SPREADS = {"uniform": UNIFORM, "log_uniform": LOG_UNIFORM, "choice": CHOICE}
+SECTIONS = (SENSITIVITY, *SPREADS.values(), *(
+    Section(
+        ("sensitivity", spread, what),
+        f"Inputs of the {what} of a case, the least and the largest value; or write {what}.{first} = {keys[first].example} "
+        f"above. Where several {what}s of a case have the key, {what}_1 is the first that the case has, {what}_2 the next.",
+        keys,
+        numbered=True,
+    )
+    for spread, within in WITHIN.items()
+    for (what, keys), first in zip(within.items(), ("f", "psi"), strict=False)
+))  # fmt: skip
 
 
 def applying(inputs: Iterable[Input], case: Case) -> tuple[Input, ...]:
@@ -254,16 +263,13 @@ def _inputs(file: TomlFile, spread: str, keys: Mapping[str, Key]) -> list[Input]
 
 def _read(table: Table, spread: str, keys: Mapping[str, Key], **more: Any) -> list[Input]:
     found = []
-    for name, settings in table.read(keys, **more).items():
-        if spread != "choice":
-            levels = range_of(table, name, settings)
-        elif len(settings) == 2:
-            levels = settings[0].value, settings[1].value
-        else:
-            levels = None
-            table.complain(f"{name}: expected both choices; write {name} = {keys[name].example}", name)
-        if levels is not None:
-            found.append(Input(name, spread, levels))
+    for name, levels in table.read(keys, **more).items():
+        if spread == "choice":
+            if len(levels) != 2:
+                table.complain(f"{name}: expected both choices; write {name} = {keys[name].example}", name)
+                continue
+            levels = levels[0].value, levels[1].value
+        found.append(Input(name, spread, levels))
     return found
 
 

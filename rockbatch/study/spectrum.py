@@ -10,55 +10,20 @@ from rockbatch.errors import InputError
 from rockbatch.motions.pulses import SHAPES
 from rockbatch.pier import Pier, problems
 from rockbatch.study.cases import read_cases
-from rockbatch.study.motions import check_shape
+from rockbatch.study.motions import PULSE, check_shape
 from rockbatch.study.piers import has_mass
-from rockbatch.study.ranges import Range, range_of
 from rockbatch.study.spec import Case, Study
-from rockbatch.toml.kinds import KindError, choice, count, number, positive, text
-from rockbatch.toml.reader import Key, Table, TomlFile
+from rockbatch.toml.kinds import Number, Whole, choice, number, positive, text
+from rockbatch.toml.reader import Table, TomlFile
+from rockbatch.toml.section import Key, Section
+
+Range = tuple[float, float]
 
 AXES = ("two_pi_over_p_s", "p", "size_m")
 """What a spectrum may run over: 2π/p [s], p [rad/s], or R0 [m]."""
 
-LEAST_POINTS = 2
-"""Of a range: its ends."""
-
 LEAST_TOLERANCE = 1e-9
 """Of a boundary, along either axis; halves of intervals that are shorter would soon be no numbers between their ends."""
-
-
-def _oscillations(value: Any) -> float:
-    if number(value) <= 1:
-        raise KindError("a number above 1")
-    return float(value)
-
-
-def _tolerance(value: Any) -> float:
-    if number(value) < LEAST_TOLERANCE:
-        raise KindError(f"a number, {LEAST_TOLERANCE:g} or above")
-    return float(value)
-
-
-SPECTRUM = {
-    "alpha": Key(positive, "[0.10, 0.15, 0.20]", many=True),
-    "two_pi_over_p_s": Key(positive, "[2, 16]", many=True),
-    "p": Key(positive, "[0.4, 3]", many=True),
-    "size_m": Key(positive, "[1, 60]", many=True),
-    "points": Key(count, "41"),
-    "spacing": Key(choice("linear", "log"), '"log"'),
-}
-MAP = {
-    "name": Key(text, '"one-sine"', required=True),
-    "shape": Key(choice(*SHAPES), '"sine"', required=True),
-    "gamma": Key(_oscillations, "1.5"),
-    "nu": Key(number, "0.0"),
-    "frequency": Key(positive, "[1.0, 8.0]", required=True, many=True),
-    "frequencies": Key(count, "29"),
-    "amplitude": Key(positive, "[1.0, 12.0]", required=True, many=True),
-    "amplitudes": Key(count, "45"),
-    "tolerance": Key(_tolerance, "1e-3"),
-    "width": Key(_tolerance, "0.02"),
-}
 
 
 @dataclass(frozen=True)
@@ -109,6 +74,36 @@ class MapSpec:
         )
 
 
+_POINTS = Whole(2, "a whole number, 2 or above: the ends of the range are among them")
+_WIDTH = Number(f"a number, {LEAST_TOLERANCE:g} or above", low=LEAST_TOLERANCE)
+SPECTRUM = Section(("spectrum",), (
+    "Rocking spectra, by `rockbatch spectrum`: the greatest rotation over the size of the pier. "
+    "One of the three ranges is given."
+), {
+    "alpha": Key(positive, "[0.10, 0.15, 0.20]", "Slendernesses [rad], a curve for each.", many=True),
+    "two_pi_over_p_s": Key(positive, "[2, 16]", "Range of 2π/p.", pair=True),
+    "p": Key(positive, "[0.4, 3]", "Range of p [rad/s].", pair=True),
+    "size_m": Key(positive, "[1, 60]", "Range of the size R0.", pair=True),
+    "points": Key(_POINTS, "41", "Number of values along the range.", default=41),
+    "spacing": Key(choice("linear", "log"), '"log"', "How the values are spaced.", default="linear"),
+})  # fmt: skip
+MAP = Section(("spectrum", "map"), "A map of the pulses that overturn the pier, for every case. Write as many as are wanted.", {
+    "name": Key(text, '"one-sine"', "Its name in the report.", required=True),
+    "shape": Key(choice(*SHAPES), '"sine"', "Formula of the pulse.", required=True),
+    "gamma": Key(Number("a number above 1", low=1.0, above=True), "1.5",
+        "Number of oscillations of a Mavroeidis–Papageorgiou pulse.", only=PULSE["gamma"].only),
+    "nu": Key(number, "0.0", "Phase of a Mavroeidis–Papageorgiou pulse [rad].", only=PULSE["nu"].only),
+    "frequency": Key(positive, "[1.0, 8.0]",
+        "Range of ω_p/p, the circular frequency of the pulse over the pier's frequency parameter.", required=True, pair=True),
+    "frequencies": Key(_POINTS, "29", "Number of frequencies in the grid."),
+    "amplitude": Key(positive, "[1.0, 12.0]",
+        "Range of a_p/(g tan α); 1 just lifts the pier off rigid ground.", required=True, pair=True),
+    "amplitudes": Key(_POINTS, "45", "Number of amplitudes in the grid."),
+    "tolerance": Key(_WIDTH, "1e-3", "Width of a_p/(g tan α) within which every boundary is found."),
+    "width": Key(_WIDTH, "0.02", "Width of ω_p/p within which it is found where regions begin or end."),
+}, many=True, homes=(MapSpec,))  # fmt: skip
+
+
 def read_spectrum(study: Study) -> tuple[SpectrumSpec | None, tuple[MapSpec, ...]]:
     """The spectrum and the maps that a study file asks for.
 
@@ -132,20 +127,19 @@ def read_spectrum(study: Study) -> tuple[SpectrumSpec | None, tuple[MapSpec, ...
 
 def _spectrum(table: Table, study: Study) -> SpectrumSpec | None:
     read = table.read(SPECTRUM, other=["map"])
-    if "alpha" not in table.data:
+    if not table.has("alpha"):
         table.complain(f"alpha is missing; write for example alpha = {SPECTRUM['alpha'].example}")
-    given = [name for name in AXES if name in table.data]
+    given = [name for name in AXES if table.has(name)]
     if len(given) != 1:
         ways = " or ".join(f"{name} = {SPECTRUM[name].example}" for name in AXES)
         table.complain(f"it runs over one range; write {ways}", *given[1:2])
         return None
     (axis,) = given
-    ends = range_of(table, axis, read.get(axis))
-    points = _points(table, "points", read.get("points", 41))
-    if "alpha" not in read or ends is None or points is None:
+    if not read.keys() >= {"alpha", axis}:
         return None
     space = np.geomspace if read.get("spacing") == "log" else np.linspace
-    values = space(*ends, points).tolist()
+    low, high = read[axis]
+    values = space(low, high, read.get("points", SPECTRUM["points"].default)).tolist()
     piers = _piers(table, read["alpha"], axis, values, study)
     before = len(table.file.problems)
     expanded, varied = read_cases(table.file, piers)
@@ -207,21 +201,10 @@ def _maps(file: TomlFile) -> list[MapSpec]:
     for table in file.tables("spectrum", "map", title="name"):
         before = len(file.problems)
         read = table.read(MAP)
-        check_shape(table, read)
-        for name in ("frequency", "amplitude"):
-            read[name] = range_of(table, name, read.get(name))
-        for name in ("frequencies", "amplitudes"):
-            _points(table, name, read.get(name, LEAST_POINTS))
+        check_shape(table)
         if read.get("name") in names:
             table.complain(f'name = "{read["name"]}": given twice; give each map its own name', "name")
         names.add(read.get("name", ""))
         if file.is_sound_since(before):
             maps.append(MapSpec(**read))
     return maps
-
-
-def _points(table: Table, name: str, found: int) -> int | None:
-    if found < LEAST_POINTS:
-        table.complain(f"{name} = {found}: expected {LEAST_POINTS} or more, the ends of the range among them", name)
-        return None
-    return found

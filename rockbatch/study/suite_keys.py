@@ -1,6 +1,5 @@
 """Keys of [motions] that make a suite of records: offsets, directions, selection, target, and what is believed."""
 
-import math
 from typing import Any
 
 from rockbatch.motions import kinds
@@ -8,8 +7,9 @@ from rockbatch.motions.baseline import RULES, Offset
 from rockbatch.motions.selection import Selection
 from rockbatch.motions.turning import every
 from rockbatch.study.target import read_target
-from rockbatch.toml.kinds import KindError, boolean, choice, not_negative, number, text
-from rockbatch.toml.reader import Key, Setting, Table
+from rockbatch.toml.kinds import KindError, Number, Other, boolean, choice, not_negative, text
+from rockbatch.toml.reader import Table
+from rockbatch.toml.section import Key, Section
 
 
 def _table(value: Any) -> dict[str, Any]:
@@ -18,37 +18,44 @@ def _table(value: Any) -> dict[str, Any]:
     return value
 
 
-def _bound(value: Any) -> float:
-    """An end of a range; inf where there is none."""
-    if isinstance(value, float) and math.isinf(value) and value > 0:
-        return value
-    return number(value)
-
-
-def _angle(value: Any) -> float:
-    if not 1 <= number(value) <= 90:
-        raise KindError("an angle within 1..90 degrees")
-    return float(value)
-
+_TABLE = Other("a table in braces", _table, {"type": "object"})
+_END = Number(endless=True)
 
 SUITE = {
-    "offset": Key(choice(*RULES[1:]), '"mean"'),
-    "offset_window_s": Key(not_negative, "[0.0, 5.0]", many=True, distinct=False),
-    "axis_deg": Key(kinds.azimuth, "35"),
-    "every_deg": Key(_angle, "15"),
-    "select": Key(_table, "{ pga_g = [0.1, inf] }"),
-    "target": Key(_table, "{ pga_g = 0.4 }"),
-    "confirm": Key(text, '["CHAN07", "RSN825_*"]', many=True),
-    "confirm_pga": Key(text, '["RSN825_CAPEMEND_CPM000"]', many=True),
-    "strict": Key(boolean, "true"),
-}
-_SELECT = {
-    "pga_g": Key(_bound, "[0.1, 0.6]", many=True, distinct=False),
-    "pgv_m_s": Key(_bound, "[0.3, inf]", many=True, distinct=False),
-    "duration_s": Key(_bound, "[20, 120]", many=True, distinct=False),
-    "d5_95_s": Key(_bound, "[5, 40]", many=True, distinct=False),
-    "magnitude": Key(_bound, "[6.5, 8.0]", many=True, distinct=False),
-}
+    "offset": Key(choice(*RULES[1:]), '"mean"',
+        'What is taken off every record: "keep" nothing, its "mean", or its mean over the time before the event. If it is '
+        "not given, the mean is taken off where the format leaves the instrument's zero in the data."),
+    "offset_window_s": Key(not_negative, "[0.0, 5.0]",
+        'The time before the event, from and to [s] after the first sample, for offset = "pre-event".', pair=True,
+        only={"offset": ("pre-event",)}),
+    "axis_deg": Key(kinds.azimuth, "35",
+        "Direction of the pier's axis in degrees from north, to which the horizontal pair of each station is turned."),
+    "every_deg": Key(Number("an angle within 1..90 degrees", low=1.0, high=90.0), "15",
+        "Step of directions in degrees: each horizontal pair is turned to all of them below 180°."),
+    "select": Key(_TABLE, "{ pga_g = [0.1, inf] }", "Which records are used; see `[motions.select]`."),
+    "target": Key(_TABLE, "{ pga_g = 0.4 }", "What each record is scaled to; see `[motions.target]`."),
+    "confirm": Key(text, '["CHAN07", "RSN825_*"]',
+        "Names of records, or patterns with * and ?, that are right though something about them is grossly odd; also "
+        '"scale", where that is.', many=True),
+    "confirm_pga": Key(text, '["RSN825_CAPEMEND_CPM000"]',
+        "Names of records, or patterns, whose peak acceleration is right though it is far from usual.", many=True),
+    "strict": Key(boolean, "true", "Whether one record that cannot be used ends the study before anything is run."),
+}  # fmt: skip
+"""Keys of [motions] that are read here."""
+
+SELECT = Section(("motions", "select"), (
+    "Which records are used: the least and the largest value of each measure, of the horizontal component before it is scaled. "
+    "`inf` leaves a range open."
+), {
+    "pga_g": Key(_END, "[0.1, 0.6]", "Peak ground acceleration.", pair=True),
+    "pgv_m_s": Key(_END, "[0.3, inf]", "Peak ground velocity.", pair=True),
+    "duration_s": Key(_END, "[20, 120]",
+        "Length of the record from its first to its last sample.", pair=True),
+    "d5_95_s": Key(_END, "[5, 40]",
+        "Significant duration, in which the Arias intensity grows from 5 to 95 %.", pair=True),
+    "magnitude": Key(_END, "[6.5, 8.0]",
+        "Magnitude, which a manifest beside the records has to say.", pair=True),
+})  # fmt: skip
 
 
 def read_suite(motions: Table, read: dict[str, Any]) -> dict[str, Any]:
@@ -64,8 +71,7 @@ def read_suite(motions: Table, read: dict[str, Any]) -> dict[str, Any]:
     if "strict" in read:
         found["strict"] = read["strict"]
     if "select" in read and (table := motions.file.table(*motions.at, "select")):
-        limits = {name: _range(table, name, given) for name, given in table.read(_SELECT).items()}
-        found["select"] = Selection(**limits)
+        found["select"] = Selection(**table.read(SELECT))
     if "target" in read and (table := motions.file.table(*motions.at, "target")):
         found["target"] = read_target(table)
     return found
@@ -73,21 +79,15 @@ def read_suite(motions: Table, read: dict[str, Any]) -> dict[str, Any]:
 
 def _offset(motions: Table, read: dict[str, Any]) -> Offset:
     rule, window = read.get("offset"), read.get("offset_window_s")
-    if rule == "pre-event" and "offset_window_s" not in motions.data:
+    if rule != "pre-event":
+        return Offset(rule) if rule else Offset()
+    if not motions.has("offset_window_s"):
         motions.complain(
             'offset = "pre-event": over which time? write for example offset_window_s = [0.0, 5.0], '
             "seconds from the first sample",
             "offset",
         )
-    elif "offset_window_s" in motions.data and "offset" not in motions.data:
-        motions.complain('offset_window_s: is for offset = "pre-event"; write that too', "offset_window_s")
-    elif "offset_window_s" in motions.data and rule in ("keep", "mean"):
-        motions.complain(f'offset_window_s: does not apply to offset = "{rule}"; leave it out', "offset_window_s")
-    elif window is not None:
-        limits = _range(motions, "offset_window_s", window)
-        if rule == "pre-event" and limits is not None:
-            return Offset(rule, limits)
-    return Offset(rule) if rule in ("keep", "mean") else Offset()
+    return Offset(rule, window) if window else Offset()
 
 
 def _azimuths(motions: Table, read: dict[str, Any]) -> tuple[float, ...]:
@@ -96,14 +96,3 @@ def _azimuths(motions: Table, read: dict[str, Any]) -> tuple[float, ...]:
     if "axis_deg" in read:
         return (read["axis_deg"],)
     return every(read["every_deg"]) if "every_deg" in read else ()
-
-
-def _range(table: Table, name: str, given: list[Setting]) -> tuple[float, float] | None:
-    """Two values in order; None, with the mistake noted, for anything else."""
-    values = [setting.value for setting in given]
-    written = table.data[name]
-    if len(values) == 2 and values[0] < values[1]:
-        return values[0], values[1]
-    if not isinstance(written, list) or len(values) == len(written):  # else a value is refused already
-        table.complain(f"{name} = {written}: must be two values in order, the least and the largest", name)
-    return None

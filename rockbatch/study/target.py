@@ -1,7 +1,7 @@
 """What records are scaled to: ``target`` in [motions], one measure or a whole spectrum."""
 
-from collections.abc import Mapping
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 from rockbatch.errors import InputError
@@ -15,18 +15,12 @@ from rockbatch.motions.design_spectra import (
 )
 from rockbatch.motions.scaling import Target
 from rockbatch.motions.spectrum_target import FACTORS, PAIRS, SpectrumTarget
-from rockbatch.study.plausible import CONFIRM, TARGETS, complain_unless_usual, confirmed
-from rockbatch.study.ranges import range_of
-from rockbatch.toml.kinds import KindError, choice, closest, number, positive, shown, text
-from rockbatch.toml.reader import Key, Setting, Table
+from rockbatch.toml.kinds import Choice, KindError, Number, Other, choice, closest, positive, shown, text
+from rockbatch.toml.reader import Table
+from rockbatch.toml.section import CONFIRM, Key, Section, Usual
 
 CODES = ("EN 1998-1", "ASCE 7")
-
-
-def _fraction(value: Any) -> float:
-    if not 0 <= number(value) < 1:
-        raise KindError("a fraction of critical damping, within 0..1")
-    return float(value)
+_ALSO_CALLED = {"ec8": CODES[0], "en1998": CODES[0], "eurocode": CODES[0], "asce": CODES[1]}
 
 
 def _entry(value: Any) -> Any:
@@ -40,42 +34,65 @@ def _entry(value: Any) -> Any:
     return text(value)
 
 
-def _type(value: Any) -> int:
-    if isinstance(value, bool) or value not in (1, 2):
-        raise KindError("1 or 2, the type of spectrum")
-    return int(value)
-
-
+_ENTRY = Other(
+    "the name of a code or of a file, or pairs of a period [s] and a spectral acceleration [g]",
+    _entry,
+    {
+        "anyOf": [
+            text.schema(),
+            {"type": "array", "items": positive.schema(), "minItems": 2, "maxItems": 2},
+        ]
+    },
+)
 _MEASURE = {
-    "pga_g": Key(positive, "0.4"),
-    "pgv_m_s": Key(positive, "0.5"),
-    "sa_g": Key(positive, "0.8"),
-    "period_s": Key(positive, "1.0"),
-    "damping": Key(_fraction, "0.05"),
-}
+    "pga_g": Key(positive, "0.4", "Peak ground acceleration of the horizontal component.",
+        usual=Usual(5.0, "g: the strongest earthquakes had 2 to 4 g")),
+    "pgv_m_s": Key(positive, "0.5", "Peak ground velocity of the horizontal component.",
+        usual=Usual(5.0, "m/s: the strongest earthquakes had some 3 m/s")),
+    "sa_g": Key(positive, "0.8", "Pseudo-spectral acceleration at `period_s`.",
+        usual=Usual(10.0, "g: the strongest earthquakes had 5 to 8 g")),
+    "period_s": Key(positive, "1.0", "Period of the oscillator of `sa_g`."),
+    "damping": Key(Number("a fraction of critical damping, within 0..1", low=0.0, high=1.0, below=True), "0.05",
+        "Damping of the oscillators, as a fraction of critical damping."),
+}  # fmt: skip
 _EUROCODE = {
-    "type": Key(_type, "1"),
-    "ground": Key(choice(*EUROCODE[1]), '"B"'),
-    "ag_g": Key(positive, "0.25"),
-    "soil_factor": Key(positive, "1.2"),
-    "tb_s": Key(positive, "0.15"),
-    "tc_s": Key(positive, "0.5"),
-    "td_s": Key(positive, "2.0"),
-}
+    "type": Key(Choice((1, 2), "1 or 2, the type of spectrum"), "1", "Type of the spectrum of EN 1998-1."),
+    "ground": Key(choice(*EUROCODE[1]), '"B"', "Ground type of EN 1998-1."),
+    "ag_g": Key(positive, "0.25", "Design ground acceleration on ground A, with the importance factor, of EN 1998-1.",
+        usual=Usual(2.0, "g: codes have 0.05 to 0.6 g")),
+    "soil_factor": Key(positive, "1.2", "Soil factor S of EN 1998-1; that of the ground type if it is not given."),
+    "tb_s": Key(positive, "0.15", "Period T_B of EN 1998-1; that of the ground type if it is not given."),
+    "tc_s": Key(positive, "0.5", "Period T_C of EN 1998-1; that of the ground type if it is not given."),
+    "td_s": Key(positive, "2.0", "Period T_D of EN 1998-1; that of the ground type if it is not given."),
+}  # fmt: skip
 _ASCE = {
-    "sds_g": Key(positive, "1.0"),
-    "sd1_g": Key(positive, "0.6"),
-    "tl_s": Key(positive, "8.0"),
-}
+    "sds_g": Key(positive, "1.0", "Design spectral acceleration S_DS of ASCE 7, at short periods.",
+        usual=Usual(5.0, "g: codes have 0.1 to 3 g")),
+    "sd1_g": Key(positive, "0.6", "Design spectral acceleration S_D1 of ASCE 7, at 1 s.",
+        usual=Usual(5.0, "g: codes have 0.05 to 2 g")),
+    "tl_s": Key(positive, "8.0", "Long-period transition period T_L of ASCE 7."),
+}  # fmt: skip
 _SPECTRUM = {
-    "spectrum": Key(_entry, '"EN 1998-1"', required=True, many=True, distinct=False),
-    "period_range_s": Key(positive, "[0.4, 4.0]", required=True, many=True, distinct=False),
-    "factors": Key(choice(*FACTORS), '"both"'),
-    "pairs": Key(choice(*PAIRS), '"srss"'),
-    "at_least": Key(positive, "0.9"),
+    "spectrum": Key(_ENTRY, '"EN 1998-1"',
+        'Target spectrum: "EN 1998-1", "ASCE 7", a file with periods [s] and spectral accelerations [g], or a list of such '
+        "pairs.", required=True, many=True, distinct=False),
+    "period_range_s": Key(positive, "[0.4, 4.0]",
+        "Periods between which the records are fitted to the spectrum.", required=True, pair=True),
+    "factors": Key(choice(*FACTORS), '"both"',
+        'What is scaled to the spectrum: "each" record, the whole "suite" by one factor, "both", one after the other, or '
+        '"none", only to compare.'),
+    "pairs": Key(choice(*PAIRS), '"srss"',
+        'Whether each component has its own spectrum, "apart", or each station one of both components, "srss", as in EN '
+        "1998-2."),
+    "at_least": Key(positive, "0.9", "Share of the target that the mean of the suite has to reach everywhere in the range."),
     "damping": _MEASURE["damping"],
-}
-TARGET = _MEASURE | {name: replace(key, required=False) for name, key in (_SPECTRUM | _EUROCODE | _ASCE).items()}
+}  # fmt: skip
+TARGET = Section(("motions", "target"), (
+    "What records are scaled to, by one factor on all components of each: one measure (`pga_g`, `pgv_m_s`, or `sa_g` with "
+    "`period_s`), or a `spectrum` over `period_range_s`. The keys of a code's spectrum go with that code only."
+), {
+    **_MEASURE, **{name: replace(key, required=False) for name, key in (_SPECTRUM | _EUROCODE | _ASCE).items()}, **CONFIRM,
+}, homes=(Target, SpectrumTarget))  # fmt: skip
 """Every key that a target may have, of one measure or of a spectrum."""
 
 _OWN = {"EN 1998-1": _EUROCODE, "ASCE 7": _ASCE}
@@ -95,7 +112,7 @@ def _read_measure(table: Table) -> Target | None:
         _MEASURE | CONFIRM,
         unfit=dict.fromkeys((*_SPECTRUM, *_EUROCODE, *_ASCE), "is for a target with spectrum = …"),
     )
-    _check_usual(table, read, _MEASURE)
+    del read["confirm"]
     measures = [name for name in ("pga_g", "pgv_m_s", "sa_g") if name in table.data]
     if len(measures) != 1:
         found = " and ".join(measures) + " are given" if measures else "it is missing what to scale to"
@@ -111,17 +128,18 @@ def _read_measure(table: Table) -> Target | None:
 
 def _read_spectrum(table: Table) -> SpectrumTarget | None:
     before = len(table.file.problems)
-    code = _code(table.data["spectrum"])
+    written = table.data["spectrum"]
+    code = _code(written)
     own = _OWN.get(code, {})
+    if not code and isinstance(written, str) and not _is_there(table.file.path.parent / written):
+        own = _EUROCODE | _ASCE  # the name is what is wrong
     unfit = {
         name: f"is for spectrum = {shown(other)}; leave it out"
         for other, keys in _OWN.items()
-        if other != code
-        for name in keys
+        for name in keys.keys() - own.keys()
     }
     read = table.read(_SPECTRUM | own | CONFIRM, unfit=unfit | _UNFIT_FOR_SPECTRUM)
-    _check_usual(table, read, _SPECTRUM | own)
-    limits = range_of(table, "period_range_s", read.get("period_range_s"))
+    limits = read.get("period_range_s")
     spectrum = _spectrum(table, code, read) if "spectrum" in read else None
     if not table.file.is_sound_since(before) or spectrum is None or limits is None:
         return None
@@ -132,12 +150,6 @@ def _read_spectrum(table: Table) -> SpectrumTarget | None:
         for problem in error.problems:
             table.complain(problem, "period_range_s")
         return None
-
-
-def _check_usual(table: Table, read: dict[str, Any], keys: Mapping[str, Key]) -> None:
-    believed = confirmed(table, read, keys)
-    for name in TARGETS.keys() & read.keys():
-        complain_unless_usual(table, name, [Setting(read[name], (*table.at, name))], TARGETS[name], believed)
 
 
 def _code(value: Any) -> str:
@@ -170,10 +182,18 @@ def _spectrum(table: Table, code: str, read: dict[str, Any]) -> Spectrum | None:
         return None
 
 
+def _is_there(path: Path) -> bool:
+    try:
+        return path.exists()
+    except (OSError, ValueError):  # a name that no file can have
+        return False
+
+
 def _of_file(table: Table, written: str, damping: float) -> TableSpectrum:
     path = table.file.path.parent / written
-    if not path.exists():
-        meant = closest(written, CODES)
+    if not _is_there(path):
+        plain = "".join(filter(str.isalnum, written.lower()))
+        meant = next((code for start, code in _ALSO_CALLED.items() if plain.startswith(start)), closest(written, CODES))
         hint = f"did you mean {shown(meant)}?" if meant else f"write {' or '.join(map(shown, CODES))}, or a file"
         raise InputError(f"spectrum = {shown(written)}: no such file ({path.resolve()}); {hint}")
     return read_spectrum(path, damping)

@@ -1,33 +1,177 @@
-"""What a value may be: each kind returns it as the program wants it, or says what was expected."""
+"""Kinds of values: each returns a value as the program uses it, says what it expects, and gives its JSON schema."""
 
 import difflib
 import json
 import math
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import islice
-from typing import Any
+from typing import Any, Protocol
 
 from rockbatch.files import legible
-from rockbatch.units import LEAST, MOST
+from rockbatch.units import LEAST, MOST, Bounds
 
 _LONGEST = 100  # characters of a word that others are compared with
 
+Schema = dict[str, Any]
+"""A JSON schema, draft 7."""
+
 
 class KindError(ValueError):
-    """A value that cannot be used: what was expected, and the value that was probably meant."""
+    """A value that cannot be used: what was expected, and the value that was probably meant.
 
-    def __init__(self, expected: str, meant: str | None = None) -> None:
+    ``whole`` marks a message that is complete as it stands and needs no "expected" before it and no example after it.
+    """
+
+    def __init__(self, expected: str, meant: str | None = None, *, whole: bool = False) -> None:
         super().__init__(expected)
-        self.meant = meant
+        self.meant, self.whole = meant, whole
 
 
-Kind = Callable[[Any], Any]
-"""Returns the value as the program wants it, or raises :class:`KindError`."""
+class Kind(Protocol):
+    """The values that a key may have."""
+
+    @property
+    def words(self) -> str:
+        """What is expected, for messages and the reference."""
+
+    def __call__(self, value: Any) -> Any:
+        """Return the value as the program uses it. Raises :class:`KindError`."""
+
+    def schema(self) -> Schema:
+        """Return the JSON schema of the values that are accepted."""
 
 
-def number(value: Any) -> float:
-    """Any finite number; an integer will do, a boolean will not."""
+@dataclass(frozen=True)
+class Number:
+    """A finite number within ``low`` and ``high``; an integer will do, a boolean will not.
+
+    ``says`` is what a message expects; ``above`` and ``below`` exclude these ends. ``bounds`` are those of the quantity, whose
+    message explains itself; ``but`` is the one number that is excluded; ``endless`` accepts positive infinity, which leaves a
+    range open.
+    """
+
+    says: str = "a number"
+    low: float = -math.inf
+    high: float = math.inf
+    above: bool = False
+    below: bool = False
+    bounds: Bounds | None = None
+    but: float | None = None
+    endless: bool = False
+
+    @property
+    def words(self) -> str:
+        bounds = self.bounds
+        if bounds is None or (bounds.low <= LEAST and bounds.high >= MOST):
+            return self.says
+        if bounds.high >= MOST:
+            return f"a number, {bounds.low:.7g} or above"
+        return f"a number from {bounds.low:g} to {'below ' if bounds.below else ''}{bounds.high:g}"
+
+    def __call__(self, value: Any) -> float:
+        if self.endless and isinstance(value, float) and value == math.inf:
+            return value
+        converted = _finite(value)
+        if converted not in Bounds(self.low, self.high, above=self.above, below=self.below) or converted == self.but:
+            raise KindError(self.says)
+        if converted != 0 and not LEAST <= abs(converted) <= MOST:
+            raise KindError(f"a number of the size {LEAST:g} to {MOST:g}")
+        if self.bounds is not None and converted not in self.bounds:
+            raise KindError(self.bounds.message(converted), whole=True)
+        return converted
+
+    def schema(self) -> Schema:
+        limits = self.bounds or Bounds(self.low, self.high, above=self.above, below=self.below)
+        form: Schema = {"type": "number"}
+        if limits.low > -math.inf:
+            form["exclusiveMinimum" if limits.above else "minimum"] = limits.low
+        if limits.high < math.inf:
+            form["exclusiveMaximum" if limits.below else "maximum"] = limits.high
+        return form if self.but is None else form | {"not": {"const": self.but}}
+
+
+@dataclass(frozen=True)
+class Whole:
+    """A whole number from ``low``."""
+
+    low: int = 1
+    words: str = "a whole number, 1 or above"
+
+    def __call__(self, value: Any) -> int:
+        if isinstance(value, bool) or not isinstance(value, int) or value < self.low:
+            raise KindError(self.words)
+        return value
+
+    def schema(self) -> Schema:
+        return {"type": "integer", "minimum": self.low}
+
+
+@dataclass(frozen=True)
+class Text:
+    """Text that is not empty; ``check`` may refuse some of it with :class:`KindError`, which a schema cannot say."""
+
+    words: str = "text in quotes"
+    check: Callable[[str], None] | None = None
+
+    def __call__(self, value: Any) -> str:
+        if not isinstance(value, str) or not value.strip():
+            raise KindError("text in quotes")
+        if self.check is not None:
+            self.check(value)
+        if legible(value, keep="\t\r\n") != value:
+            raise KindError("text without control characters")
+        return value
+
+    def schema(self) -> Schema:
+        return {"type": "string", "pattern": r"\S"}
+
+
+@dataclass(frozen=True)
+class Choice:
+    """One of a few words, numbers or truth values; ``also`` is a kind whose values are accepted beside them."""
+
+    options: tuple[Any, ...]
+    own_words: str = ""
+    also: Number | None = None
+
+    @property
+    def words(self) -> str:
+        return self.own_words or "one of " + ", ".join(map(shown, self.options))
+
+    def __call__(self, value: Any) -> Any:
+        for option in self.options:
+            if value == option and isinstance(value, bool) == isinstance(option, bool):
+                return option
+        if self.also is not None and not isinstance(value, str):
+            return self.also(value)
+        words = [option for option in self.options if isinstance(option, str)]
+        meant = closest(value, words) if isinstance(value, str) else None
+        raise KindError(self.words, meant and shown(meant))
+
+    def schema(self) -> Schema:
+        if self.options == (True, False):
+            return {"type": "boolean"}
+        enum: Schema = {"enum": list(self.options)}
+        return enum if self.also is None else {"anyOf": [self.also.schema(), enum]}
+
+
+@dataclass(frozen=True)
+class Other:
+    """Values of a form of their own: ``read`` returns or refuses them, ``form`` is their schema."""
+
+    words: str
+    read: Callable[[Any], Any]
+    form: Schema
+
+    def __call__(self, value: Any) -> Any:
+        return self.read(value)
+
+    def schema(self) -> Schema:
+        return dict(self.form)
+
+
+def _finite(value: Any) -> float:
     if isinstance(value, str):
         raise KindError("a number (without quotes)")
     if isinstance(value, bool) or not isinstance(value, int | float):
@@ -38,71 +182,26 @@ def number(value: Any) -> float:
         converted = math.inf
     if not math.isfinite(converted):
         raise KindError("a finite number")
-    if converted != 0 and not LEAST <= abs(converted) <= MOST:
-        raise KindError(f"a number of the size {LEAST:g} to {MOST:g}")
     return converted
 
 
-def positive(value: Any) -> float:
-    """A number above 0."""
-    if number(value) <= 0:
-        raise KindError("a number above 0")
-    return float(value)
-
-
-def not_negative(value: Any) -> float:
-    """A number, 0 or above."""
-    if number(value) < 0:
-        raise KindError("0 or a number above it")
-    return float(value)
-
-
-def nonzero(value: Any) -> float:
-    """A number other than 0."""
-    if number(value) == 0:
-        raise KindError("a number other than 0")
-    return float(value)
-
-
-def count(value: Any) -> int:
-    """A whole number from 1."""
-    if isinstance(value, bool) or not isinstance(value, int) or value < 1:
-        raise KindError("a whole number, 1 or above")
-    return value
-
-
-def boolean(value: Any) -> bool:
-    """True or false."""
-    if not isinstance(value, bool):
-        raise KindError("true or false (without quotes)")
-    return value
-
-
-def text(value: Any) -> str:
-    """Text that is not empty."""
-    if not isinstance(value, str) or not value.strip():
-        raise KindError("text in quotes")
-    if legible(value, keep="\t\r\n") != value:
-        raise KindError("text without control characters")
-    return value
-
-
-@dataclass(frozen=True)
-class Choice:
-    """One of a few words."""
-
-    options: tuple[str, ...]
-
-    def __call__(self, value: Any) -> str:
-        if value not in self.options:
-            meant = closest(value, self.options) if isinstance(value, str) else None
-            raise KindError("one of " + ", ".join(map(shown, self.options)), meant and shown(meant))
-        return str(value)
-
-
 def choice(*options: str) -> Choice:
-    """The kind of one of ``options``."""
+    """Return the kind of one of ``options``."""
     return Choice(options)
+
+
+def within(bounds: Bounds) -> Number:
+    """Return the kind of a number within the bounds of a quantity; of one above 0 the sign is checked first."""
+    return replace(positive, bounds=bounds) if bounds.low > 0 or bounds.above else Number(bounds=bounds)
+
+
+number = Number()
+positive = Number("a number above 0", low=0.0, above=True)
+not_negative = Number("0 or a number above it", low=0.0)
+nonzero = Number("a number other than 0", but=0.0)
+count = Whole()
+boolean = Choice((True, False), "true or false (without quotes)")
+text = Text()
 
 
 def closest(word: str, known: Iterable[str]) -> str | None:

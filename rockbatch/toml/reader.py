@@ -8,39 +8,16 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from rockbatch.errors import InputError
-from rockbatch.toml.kinds import Kind, KindError, closest, shown
+from rockbatch.errors import InputError, remedy
+from rockbatch.toml.kinds import KindError, closest, shown
 from rockbatch.toml.lines import At, TooDeepError, key_lines
+from rockbatch.toml.section import CONFIRM, Key, Section, options
 
 LARGEST = 4 * 2**20
 """Bytes of a study or a manifest: ten thousand records with all that can be said of them."""
 
 MOST_TOLD = 100
 """Mistakes of a file that are told at once."""
-
-
-@dataclass(frozen=True)
-class Key:
-    """What a key may hold.
-
-    Attributes
-    ----------
-    kind : callable
-        Checks one value.
-    example : str
-        A value as one would write it, for messages.
-    required : bool
-    many : bool
-        Whether a list is welcome; the value read is then a list of :class:`Setting`, also for a single value.
-    distinct : bool
-        Whether the values of a list must differ.
-    """
-
-    kind: Kind
-    example: str
-    required: bool = False
-    many: bool = False
-    distinct: bool = True
 
 
 class Setting(NamedTuple):
@@ -59,7 +36,9 @@ class TomlFile:
     data: dict[str, Any]
     lines: dict[At, int]
     homes: Mapping[str, str] = field(default_factory=dict)
-    """The table a key belongs to, for keys found in another one."""
+    """Where a key or table belongs, in words, for those found in another place."""
+    misspelt: set[At] = field(default_factory=set)
+    """Keys and tables that are probably there under a name that is not known."""
     problems: list[tuple[int, str]] = field(default_factory=list)
     """The first ones, ``MOST_TOLD`` at most: line and message."""
 
@@ -139,12 +118,16 @@ class TomlFile:
             return Table(self, at, f"[{name}]", found)
         if found is not None:
             self.complain(at, f"{name}: expected one table; write [{name}] on a line of its own, once")
-        elif required:
+        elif required and at not in self.misspelt:
             self.complain(at, f"[{name}] is missing; write {required}")
         return None
 
+    def has(self, at: At) -> bool:
+        """Return whether there is a value at ``at``, or one whose key is probably misspelt."""
+        return self.value(at) is not None or at in self.misspelt
+
     def tables(self, *at: str | int, title: str) -> list["Table"]:
-        """The tables ``[[at]]``; the key ``title`` of each names it in messages."""
+        """Return the tables ``[[at]]``; the key ``title`` of each names it in messages."""
         name = ".".join(part for part in at if isinstance(part, str))
         found = self.value(at)
         if found is None:
@@ -186,10 +169,19 @@ class Table:
         """Note a mistake about one value."""
         self.complain(message, *setting.at[len(self.at) :])
 
+    @property
+    def names(self) -> list[str]:
+        """The keys that are written, in the order of the file, and then those that are probably misspelt."""
+        return [*self.data, *(str(at[-1]) for at in self.file.misspelt if at[:-1] == self.at)]
+
+    def has(self, name: str) -> bool:
+        """Return whether the key is written, if perhaps misspelt."""
+        return name in self.data or (*self.at, name) in self.file.misspelt
+
     def read(
         self, keys: Mapping[str, Key], *, unfit: Mapping[str, str] | None = None, other: Iterable[str] = ()
     ) -> dict[str, Any]:
-        """The usable values by key, in the order of the file; what is unusable, unknown or missing is noted.
+        """Return the usable values by key, in the order of the file; note what is unusable, unknown or missing.
 
         A caller may go on checking with what is left: :meth:`TomlFile.finish` raises in the end.
         ``unfit`` gives reasons for keys that exist but have no place here; ``other`` keys are read elsewhere.
@@ -199,21 +191,67 @@ class Table:
         for name, value in self.data.items():
             if self.file.is_full:
                 break
-            if name in keys:
-                found = self._checked(name, keys[name], value)
-                if found is not None:
-                    usable[name] = found
-            elif name in unfit:
-                self.complain(f"{name} = {shown(value)}: {unfit[name]}", name)
-            elif name not in other:
-                self._unknown(name, [*keys, *other])
+            if name not in keys:
+                if name in unfit:
+                    self.complain(f"{name} = {shown(value)}: {unfit[name]}", name)
+                elif name not in other:
+                    self._unknown(name, [*keys, *other])
+            elif why := self._not_applying(keys, name):
+                self.complain(f"{name} = {shown(value)}: {why}", name)
+            elif (found := self._checked(name, keys[name], value)) is not None:
+                usable[name] = found
         for name, key in keys.items():
-            if key.required and name not in self.data:
-                self.complain(f"{name} is missing; write for example {name} = {key.example}")
+            if key.required and not self.has(name):
+                few = 1 < len(options(key)) < 6
+                one = f"; {name} is {key.kind.words}" if few else ""
+                self.complain(f"{name} is missing; write for example {name} = {key.example}{one}")
+        for clash in keys.clashes if isinstance(keys, Section) else ():
+            if all(map(self.has, clash.given)) and not any(map(self.has, clash.lacking)):
+                value = shown(self.data.get(clash.given[0]))
+                self.complain(clash.message.replace("{value}", value), clash.at or clash.given[0])
+        self._doubt(keys, usable)
         return usable
+
+    def _not_applying(self, keys: Mapping[str, Key], name: str) -> str:
+        """Return why a key does not apply beside the values of others; empty if it does, or they are not known."""
+        for other, values in keys[name].only.items():
+            instead = " or ".join(f"{other} = {shown(value)}" for value in values)
+            if other not in self.data:
+                default = keys.default(other) if isinstance(keys, Section) else keys[other].default
+                if default in values or keys[other].required or self.has(other):
+                    continue
+                return f"is for {instead}; write that too, or leave it out"
+            written = self.data[other]
+            given = written if isinstance(written, list) else [written]
+            if given and not any(each in values or each not in options(keys[other]) for each in given):
+                return f"does not apply to {other} = {' or '.join(map(shown, given))}; leave it out, or write {instead}"
+        return ""
+
+    def _doubt(self, keys: Mapping[str, Key], usable: dict[str, Any]) -> None:
+        """Note values larger than usual that are not confirmed; ``confirm`` is then the set of keys that are."""
+        written = usable.get("confirm")
+        confirmed = {setting.value for setting in written} if isinstance(written, list) else set()
+        if keys.get("confirm") is CONFIRM["confirm"]:
+            usable["confirm"] = frozenset(confirmed)
+            there = [shown(name) for name in self.data if name in keys and name != "confirm"]
+            for setting in written or ():
+                if shown(setting.value) not in there:
+                    instead = f"write one of {', '.join(there)}" if there else "leave it out"
+                    told = f"confirm = {shown(setting.value)}: this table has no such key; {instead}"
+                    self.complain_about(setting, told)
+        for name in usable.keys() - confirmed:
+            usual = keys[name].usual
+            if usual is not None:
+                found = usable[name] if keys[name].many else [Setting(usable[name], (*self.at, name))]
+                for setting in found:
+                    if setting.value > usual.most:
+                        told = f"{name} = {setting.value:g}: more than {usual.most:g} {usual.words}"
+                        self.complain_about(setting, f"{told}; {remedy(name)} in this table")
 
     def _checked(self, name: str, key: Key, value: Any) -> Any:
         whole = Setting(value, (*self.at, name))
+        if key.pair:
+            return self._range(name, key, value)
         if not key.many:
             if isinstance(value, list):
                 self._wrong(name, key, whole, KindError("one value, not a list"))
@@ -238,6 +276,19 @@ class Table:
             usable.append(Setting(converted, setting.at))
         return usable or None
 
+    def _range(self, name: str, key: Key, value: Any) -> tuple[Any, Any] | None:
+        """The least and the largest value, in this order."""
+        written = value if isinstance(value, list) else [value]
+        ends = [self._converted(name, key, Setting(item, (*self.at, name, n))) for n, item in enumerate(written)]
+        if any(end is None for end in ends):
+            return None
+        if len(ends) == 2 and ends[0] < ends[1]:
+            return ends[0], ends[1]
+        example = shown([ends[1], ends[0]]) if len(ends) == 2 and ends[0] > ends[1] else key.example
+        told = f"{name} = {shown(value)}: expected a range, its two ends in order"
+        self.complain(f"{told}; write for example {name} = {example}", name)
+        return None
+
     def _converted(self, name: str, key: Key, setting: Setting) -> Any:
         try:
             return key.kind(setting.value)
@@ -246,6 +297,9 @@ class Table:
             return None
 
     def _wrong(self, name: str, key: Key, setting: Setting, wrong: KindError) -> None:
+        if wrong.whole:
+            self.complain_about(setting, f"{name} = {shown(setting.value)}: {wrong}")
+            return
         instead = f"write for example {name} = {key.example}"
         if wrong.meant:
             instead = f"did you mean {wrong.meant}?"
@@ -260,6 +314,8 @@ class Table:
             instead = f"it belongs under {home}"
         elif meant is not None:
             instead = f"did you mean {meant}?"
+            if meant not in self.data:
+                self.file.misspelt.add((*self.at, meant))
         else:
             instead = "write one of " + ", ".join(known)
         written = name if name.isidentifier() and len(name) <= _LONGEST else shown(name)

@@ -136,7 +136,7 @@ def test_a_limit_is_odd_only_where_it_is_so_for_all_its_cases(tmp_path):
         ("pier", "= 3000", '= 3000\nconfirm = ["heigth_m"]', 'confirm = "heigth_m": this table has no such key; write one'),
         ("numerics", "1e-4", '1e-4\nconfirm = "quiet_s"', 'this table has no such key; write one of "tolerance"'),
         ("check", "= 0.1", '= 0.1\nconfirm = "name"', 'confirm = "name": expected one of "at_most", "at_least", "above"'),
-        ("numerics", "1e-4", "9e-13", "tolerance = 9e-13: expected 1e-12 or above, because rounding alone makes as much"),
+        ("numerics", "1e-4", "9e-13", "tolerance = 9e-13: must be 1e-12 or above, because rounding alone makes as much"),
         ("numerics", "1e-4", "0", "tolerance = 0: expected a number above 0"),
     ],
 )  # fmt: skip
@@ -216,7 +216,7 @@ def test_a_viscous_damper_in_newtons_is_a_thousand_times_that_in_kilonewtons():
 
 def test_an_empty_tendon_is_told(tmp_path):
     (problem,) = problems_of(written_with(tmp_path, case='[[case]]\nname = "a"\nbase = "rigid"\n[[case.tendon]]\n'))
-    assert "[[case.tendon]] no. 1: it has neither prestress nor stiffness, so that it is not there" in problem
+    assert '[[case]] "a", tendon 1: it has neither prestress nor stiffness, so that it is not there' in problem
 
 
 @pytest.mark.parametrize(

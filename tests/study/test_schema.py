@@ -4,6 +4,8 @@ import importlib
 import json
 import pkgutil
 import tomllib
+from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -18,8 +20,11 @@ from rockbatch.study import load_study
 from rockbatch.study.schema import main, schema_of
 from rockbatch.study.sections import CHECKS, FILES, MANIFEST, STUDY
 from rockbatch.study.sensitivity import read_sensitivity
-from rockbatch.toml import asking, kinds
-from rockbatch.toml.reader import Key
+from rockbatch.toml import kinds
+from rockbatch.toml.kinds import KindError, Text, Whole
+from rockbatch.toml.reader import Table, TomlFile
+from rockbatch.toml.section import CONFIRM, Key, options
+from rockbatch.units import Bounds
 
 CONFIGS = Path(__file__).parents[2] / "configs"
 STUDIES = Draft7Validator(schema_of(STUDY, "study"))
@@ -106,59 +111,143 @@ def test_what_is_right_is_taken_whichever_form_it_has():
 
 
 @pytest.mark.parametrize("name", FILES)
-def test_every_key_has_words_and_all_words_have_a_key(name):
+def test_every_key_says_what_it_means_in_a_sentence(name):
     for section in FILES[name]:
-        assert {*section.words} == {*section.keys}, f"words of {section.header} in rockbatch/study/words.py"
-        assert all(words.endswith(".") for words in section.words.values())
+        assert all(key.words.endswith(".") for key in section.values()), section.header
 
 
 def test_every_key_that_is_read_anywhere_has_its_place_in_a_section():
-    listed = {name for sections in FILES.values() for section in sections for name in section.keys}
+    listed = {name for sections in FILES.values() for section in sections for name in section}
     for package in (rockbatch.study, rockbatch.checks, rockbatch.motions):
         for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
             for name, value in vars(importlib.import_module(module.name)).items():
-                if isinstance(value, dict) and value and all(isinstance(key, Key) for key in value.values()):
+                if isinstance(value, Mapping) and value and all(isinstance(key, Key) for key in value.values()):
                     assert value.keys() <= listed, f"{module.name}.{name}"
+
+
+SECTIONS = [(file, section) for file, sections in FILES.items() for section in sections if section.keys_read]
+TABLES = ("select", "target")  # keys of [motions] that are tables of their own
+NUMBERS = (-1e6, -7.0, -1, 0, 1e-6, 0.5, 1, 1.25, 2, 3, 4, 64, 1e6)
+OTHERS = (True, False, "", " ", "x", "rigid", "+", "left", "EN 1998-1", "g", [], {}, [{}], [[0.5, 0.5]], [[0.5]], 2.5)
+
+
+def values_of(key):
+    """Values at, inside and outside the bounds of a key, words of its own and others, and values of other types."""
+    kind = key.kind
+    ends = [end for end in (getattr(kind, "low", 0), getattr(kind, "high", 0)) if abs(end) < 1e14]
+    if getattr(kind, "bounds", None) is not None:
+        ends += [end for end in (kind.bounds.low, kind.bounds.high) if 1e-14 < abs(end) < 1e14]
+    near = [end + step for end in ends for step in (0, 1e-6, -1e-6, 1, -1) if end + step == 0 or abs(end + step) > 1e-9]
+    example = tomllib.loads(f"x = {key.example}")["x"]
+    single = [*NUMBERS, *OTHERS, *near, *getattr(kind, "options", ()), example]
+    lists = [[one] for one in single] + [[0.5, 1.5], [1, 2], ["a", "b"], ["+", "-"], [1, "x"], [1, 2, 3], [1, 1]]
+    return single + lists
+
+
+def unlike(value):
+    """A value that JSON and TOML tell apart: 2.0 is a whole number in JSON."""
+    items = value if isinstance(value, list) else [value]
+    return any(isinstance(item, float) and item.is_integer() for item in items)
+
+
+def refused_by_reader(section, name, data):
+    """Whether the reader refuses this key of a table, whatever goes together in it."""
+    section = replace(section, clashes=())
+    file = TomlFile(Path("x.toml"), "", data, {("t", key): n for n, key in enumerate(data, 1)})
+    Table(file, ("t",), "", data).read(section)
+    line = list(data).index(name) + 1
+    return any(problem[0] == line for problem in file.problems)
+
+
+def refused_by_schema(schema, name, data):
+    """Whether the schema refuses this key; without a validator, because of another key."""
+    return any(list(error.path)[:1] == [name] or error.validator is None for error in schema.iter_errors(data))
+
+
+@pytest.mark.parametrize(("file", "section"), SECTIONS, ids=[f"{file} {section.header}" for file, section in SECTIONS])
+def test_reader_and_schema_take_and_refuse_the_same_values_of_every_key(file, section):
+    """Of ranges and lists, too. The order of a range, and what a unit or a file's name may be, no schema tells."""
+    schema = Draft7Validator(schema_of([replace(section, at=())], ""))
+    for name, key in section.items():
+        given = {other: allowed[0] for other, allowed in key.only.items()} | ({"confirm": [name]} if key.usual else {})
+        whole = isinstance(key.kind, Whole)
+        for value in values_of(key):
+            if name in TABLES or key is CONFIRM["confirm"] or (whole and unlike(value)):
+                continue
+            ends = value if key.pair and isinstance(value, list) and len(value) == 2 else []
+            if ends and all(takes(key, end) for end in ends) and not ends[0] < ends[1]:
+                continue
+            text = isinstance(key.kind, Text) and key.kind.check
+            if text and isinstance(value, str) and value.strip():
+                continue
+            if (
+                key.many
+                and isinstance(value, list)
+                and len({repr(key.kind(v)) for v in value if takes(key, v)}) < len(value)
+            ):
+                continue  # 1 and 1.0 are one number to the reader
+            data = given | {name: value}
+            told = f"{section.header} {name} = {value!r}"
+            assert refused_by_reader(section, name, data) == refused_by_schema(schema, name, data), told
+
+
+@pytest.mark.parametrize(("file", "section"), SECTIONS, ids=[f"{file} {section.header}" for file, section in SECTIONS])
+def test_reader_and_schema_refuse_a_key_beside_the_same_values_of_another(file, section):
+    """Such as eta on a rigid base, n of springs without an exponent, f of a viscous damper; a list has them all."""
+    schema = Draft7Validator(schema_of([replace(section, at=())], ""))
+    for name, key in section.items():
+        value = tomllib.loads(f"x = {key.example}")["x"]
+        for other, allowed in key.only.items():
+            beside = {each: values[0] for each, values in key.only.items() if each != other}
+            cases = [{other: option} for option in options(section[other])]
+            cases += [{other: list(options(section[other]))}] if section[other].many else []
+            for given in ({}, *cases):
+                data = beside | given | {name: value}
+                refused = refused_by_reader(section, name, data)
+                assert refused == refused_by_schema(schema, name, data), data
+                if len(given) == 1 and not isinstance(given[other], list):
+                    assert refused == (given[other] not in allowed), data
+
+
+def takes(key, value):
+    try:
+        key.kind(value)
+    except KindError:
+        return False
+    return True
 
 
 @pytest.mark.parametrize("name", FILES)
 def test_every_example_is_taken_by_the_reader_and_by_the_schema(name):
     for section in FILES[name]:
-        properties = schema_of([section], "")["properties"] if not section.at else None
-        for key, rule in section.keys.items():
-            value = tomllib.loads(f"x = {rule.example}")["x"]
-            if key in ("select", "target"):
-                continue  # tables of their own
-            for one in value if rule.many and isinstance(value, list) else [value]:
-                assert asking.takes(rule.kind, one), f"{section.header} {key}"
-                assert Draft7Validator(asking.schema(rule.kind)).is_valid(one), f"{section.header} {key}"
-            assert properties is None or key in properties
-
-
-def place(value):
-    """A kind of one's own: a word, or a number."""
-    if isinstance(value, str) and value != "left":
-        raise kinds.KindError('"left" or an offset in m')
-    return value if value == "left" else kinds.number(value)
+        schema = Draft7Validator(schema_of([replace(section, at=())], ""))
+        for key, declared in section.items():
+            if declared is CONFIRM["confirm"]:
+                continue
+            data = {other: values[0] for other, values in declared.only.items()} | tomllib.loads(
+                f"{key} = {declared.example}"
+            )
+            assert not refused_by_reader(section, key, data), f"{section.header} {key}"
+            assert not refused_by_schema(schema, key, data), f"{section.header} {key}"
 
 
 @pytest.mark.parametrize(
-    ("kind", "schema", "told"),
+    ("kind", "schema", "words"),
     [
         (kinds.number, {"type": "number"}, "a number"),
         (kinds.positive, {"type": "number", "exclusiveMinimum": 0}, "a number above 0"),
         (kinds.not_negative, {"type": "number", "minimum": 0}, "0 or a number above it"),
-        (kinds.nonzero, {"type": "number"}, "a number other than 0"),
+        (kinds.nonzero, {"type": "number", "not": {"const": 0}}, "a number other than 0"),
         (kinds.count, {"type": "integer", "minimum": 1}, "a whole number, 1 or above"),
         (kinds.boolean, {"type": "boolean"}, "true or false (without quotes)"),
-        (kinds.text, {"type": "string", "minLength": 1}, "text in quotes"),
-        (place, {"anyOf": [{"type": "number"}, {"const": "left"}]}, '"left" or an offset in m'),
+        (kinds.text, {"type": "string", "pattern": r"\S"}, "text in quotes"),
         (kinds.choice("a", "b"), {"enum": ["a", "b"]}, 'one of "a", "b"'),
+        (kinds.within(Bounds(0, 1)), {"type": "number", "minimum": 0, "maximum": 1}, "a number from 0 to 1"),
     ],
 )
-def test_a_kind_tells_what_it_takes(kind, schema, told):
-    assert asking.schema(kind) == schema
-    assert asking.told(kind) == told
+def test_a_kind_says_what_it_takes(kind, schema, words):
+    assert kind.schema() == schema
+    assert kind.words == words
 
 
 def test_the_schema_can_be_written(capsys):
