@@ -41,7 +41,10 @@ class Bounds:
 
     def problems(self, name: str, value: float | None) -> list[str]:
         """Return the message about a value, after its name, if it is given and out of bounds."""
-        return [] if value is None or value in self else [f"{name} = {value:.10g}: {self.message(value)}"]
+        if value is None or value in self:
+            return []
+        written = f"{value:g}" if float(f"{value:g}") not in self else f"{value:.10g}"  # not rounded into the bounds
+        return [f"{name} = {written}: {self.message(value)}"]
 
 
 POSITIVE = Bounds(LEAST, MOST)

@@ -110,7 +110,7 @@ class Expanded(NamedTuple):
 def read_cases(file: TomlFile, piers: Sequence[tuple[Pier, Values]]) -> tuple[list[Expanded], tuple[str, ...]]:
     """Every [[case]] on every pier, and which keys are lists in any of them."""
     tables = file.tables("case", title="name")
-    if file.data.get("case", []) == []:
+    if file.data.get("case", []) == [] and ("case",) not in file.misspelt:
         file.complain(("case",), '[[case]] is missing; write at least one, for example with base = "rigid"')
     read = []
     varied: dict[str, None] = {}

@@ -108,11 +108,13 @@ def _tables(case: Table, what: str) -> list[Table]:
     """One table, or several, called by their place in the case."""
     one = case.data.get(what)
     if isinstance(one, dict):
-        return [Table(case.file, (*case.at, what), f"{case.label}, {what}", one)]
-    return [
-        replace(table, label=f"{case.label}, {what} {n}")
-        for n, table in enumerate(case.file.tables(*case.at, what, title="kind"), 1)
-    ]
+        return [Table(case.file, (*case.at, what), _label(case, what, 1), one)]
+    tables = case.file.tables(*case.at, what, title="kind")
+    return [replace(table, label=_label(case, what, n)) for n, table in enumerate(tables, 1)]
+
+
+def _label(case: Table, what: str, n: int | str) -> str:
+    return f"{case.label}, {what}" + ("" if isinstance(case.data.get(what), dict) else f" {n}")
 
 
 _NEEDED = {
@@ -158,7 +160,7 @@ def _taken(given: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
 def complain_of_devices(case: Table, chosen: Chosen, pier: Pier, devices: Sequence[Restraint]) -> None:
     """Note what is impossible about dampers and tendons, or far from usual and not confirmed, each at its key."""
     for (name, values), device in zip(_taken(chosen).items(), devices, strict=True):
-        what = name.partition("_")[0]
+        what, _, n = name.partition("_")
         told = [problem.partition(": ")[2] for problem in wrong_device(pier, device)]
         for problem in told:
             symbol = problem.partition(" = ")[0]
@@ -167,13 +169,12 @@ def complain_of_devices(case: Table, chosen: Chosen, pier: Pier, devices: Sequen
             )
             if key and key != symbol:
                 problem = f"{key} = {values[key].value:g} means {problem}; check the unit"
-            case.complain_about(values[key or next(iter(values))], f"{what}: {problem}")
+            case.file.complain(values[key or next(iter(values))].at, f"{_label(case, what, n)}: {problem}")
         odd = doubt(pier, device)
         key = next((key for key in values if odd is not None and _FIELDS.get(key, key) == odd.name), "")
         if odd is not None and key and not told:
-            value = values[key]
-            meaning = f"{what}: {key} = {value.value:g}: {odd.meaning}"
-            case.complain_about(value, f"{meaning}; {remedy(key)} in [[case.{what}]]")
+            meaning = f"{_label(case, what, n)}: {key} = {values[key].value:g}: {odd.meaning}"
+            case.file.complain(values[key].at, f"{meaning}; {remedy(key)} in [[case.{what}]]")
 
 
 def _restraint(values: Mapping[str, Any], pier: Pier) -> Restraint:

@@ -341,6 +341,8 @@ def nearby(path: Path, written: str) -> str:
 _LONGEST = 200  # characters of a line that are looked at: the patterns below take the square of their number
 
 _SLIPS = (  # what people write, and what TOML wants
+    ("[“”„‟‘’‚«»]", 'quotes must be straight: "rigid"'),
+    ("[−–—]", "a minus must be the plain one of the keyboard: -"),
     (r"=\s*[+-]?\d+,\d+\s*$", "decimals take a point: 0.13"),
     (r"=\s*\[?.*(?<![\w.])\.\d", "a decimal needs a digit before the point: 0.5"),
     (r"=\s*\[?.*\d\.(?![\d])", "a decimal needs a digit after the point: 5.0"),
@@ -361,6 +363,18 @@ def _syntax_error(path: Path, text: str, error: str) -> str:
     line = all_lines[number - 1].strip()[:_LONGEST]
     bare = re.sub(r"\s#.*", "", line)
     hint = next((f"; {advice}" for pattern, advice in _SLIPS if re.search(pattern, bare)), "")
-    if "overwrite" in reason or "declare" in reason or "twice" in reason:
-        hint = "; it is given a second time, keep one"
+    if "overwrite" in reason or "declare" in reason or "twice" in reason or "mutate" in reason:
+        hint = _second_time(all_lines, number)
     return f"{path}:{number}: not valid TOML: {reason[:1].lower()}{reason[1:]}: {line[:80]}{hint}"
+
+
+def _second_time(lines: list[str], number: int) -> str:
+    """What is wrong about a table that is there already: perhaps one within it stands before it."""
+    header = re.match(r"\s*\[\[\s*([\w-]+)\s*\]\]", lines[number - 1][:_LONGEST])
+    if header:
+        inner = re.compile(rf"\s*\[+\s*{header[1]}\s*\.")
+        first = next((n for n, line in enumerate(lines[: number - 1], 1) if inner.match(line[:_LONGEST])), 0)
+        if first:
+            told = lines[first - 1].strip()[:_LONGEST]
+            return f"; {told} in line {first} stands before it: write it below the [[{header[1]}]] that it belongs to"
+    return "; it is given a second time, keep one"

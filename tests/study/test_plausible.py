@@ -187,19 +187,19 @@ def written_with(folder, motions="", case='[[case]]\nname = "rock"\nbase = "rigi
     ("device", "key", "said"),
     [
         ('damper]]\nkind = "viscous"\ncoefficient_kN_s_m = 5e6', "coefficient_kN_s_m",
-         "damper: coefficient_kN_s_m = 5e+06: at 5.9 mm/s one damper has the force of the pier's weight"),
-        ('damper]]\nkind = "viscous"\nnu = 4000', "nu", "damper: nu = 4000: at "),
+         "damper 1: coefficient_kN_s_m = 5e+06: at 5.9 mm/s one damper has the force of the pier's weight"),
+        ('damper]]\nkind = "viscous"\nnu = 4000', "nu", "damper 1: nu = 4000: at "),
         ('damper]]\nkind = "hysteretic"\nforce_kN = 450\nyield_mm = 0.005', "yield_mm",
-         "damper: yield_mm = 0.005: the damper yields at 0.005 mm, where steel ones do at 1 to 20 mm"),
+         "damper 1: yield_mm = 0.005: the damper yields at 0.005 mm, where steel ones do at 1 to 20 mm"),
         ("tendon]]\nstiffness_kN_m = 5e7", "stiffness_kN_m",
-         "tendon: stiffness_kN_m = 5e+07: it adds 17.7 times the pier's weight at a rotation of 0.01 α"),
-        ("tendon]]\npsi = 0.0", "psi", "tendon: psi = 0: with no prestress and no stiffness the tendon is not there"),
+         "tendon 1: stiffness_kN_m = 5e+07: it adds 17.7 times the pier's weight at a rotation of 0.01 α"),
+        ("tendon]]\npsi = 0.0", "psi", "tendon 1: psi = 0: with no prestress and no stiffness the tendon is not there"),
     ],
 )  # fmt: skip
 def test_devices_that_a_wrong_unit_explains_are_refused_until_they_are_confirmed(tmp_path, device, key, said):
     case = f'[[case]]\nname = "a"\nbase = "rigid"\n[[case.{device}\n'
     (problem,) = problems_of(written_with(tmp_path, case=case))
-    assert f': [[case]] "a": {said}' in problem
+    assert f': [[case]] "a", {said}' in problem
     assert problem.endswith(f'if it is right, write confirm = ["{key}"] in [[case.{device[:6]}]]')
     assert key in (tmp_path / "study.toml").read_text().splitlines()[int(problem.split(":")[1]) - 1]
     assert problems_of(written_with(tmp_path, case=f'{case}confirm = ["{key}"]\n')) == ()
