@@ -6,52 +6,14 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from rockbatch.checks.demands import DEMANDS
-from rockbatch.checks.rules import BASES, CONFIRMED, COUNTING, COUNTS, Rule
-from rockbatch.checks.statistics import STATISTICS
+from rockbatch.checks.rules import CHECK, COUNT, COUNTS, Rule
 from rockbatch.errors import InputError
-from rockbatch.toml.kinds import boolean, choice, count, not_negative, number, positive, shown, text
+from rockbatch.toml.kinds import choice, shown, text
 from rockbatch.toml.reader import Table, TomlFile
 from rockbatch.toml.section import Key, Section
 
-_COUNT = (
-    'What counts as one record: a "station" in one earthquake, with the worst of its components and polarities, '
-    'or each "component"'
-)
-CHECK = Section(("check",), (
-    "A design check: a demand, how it is summed up over the records, and a limit. `rockbatch check` holds results against it."
-), {
-    "name": Key(text, '"overturning margin"', "Its name in the table of verdicts.", required=True),
-    "demand": Key(choice(*DEMANDS), '"theta_max_over_alpha"', "What is looked at.", required=True),
-    "statistic": Key(choice(*STATISTICS), '"mean"', 'How the records are summed up; "max" if it is not given.'),
-    "above": Key(not_negative, "0.5",
-        'With statistic = "count": the value that a record has to exceed to count; 0 for events if it is not given.'),
-    "least": Key(count, "7", "Number of records below which nothing passes; what the statistic asks for if it is not given."),
-    "count": Key(choice(*COUNTS), '"component"',
-        f"{_COUNT}; what `[suite]` says if it is not given."),
-    "at_most": Key(number, "0.5", "The limit."),
-    "at_least": Key(number, "2.0", "The limit, for what belongs to the foundation, where more is better."),
-    "basis": Key(choice(*BASES), '"code"', "Where the limit comes from."),
-    "reason": Key(text, '"EN 1998-2, 7.6.2"', "Clause, source, or why, in words.", required=True),
-    "case": Key(text, '["soft", "stiff*"]',
-        "Names of the cases to check, or patterns with * and ?; all if it is not given.", many=True),
-    "scale": Key(positive, "1.0",
-        "Scales of the motions to check, each a suite of its own; all if it is not given.", many=True),
-    "polarity": Key(choice("+", "-"), '"+"', "The only polarity to look at."),
-    "overturned": Key(choice(*COUNTING), '"infinite"',
-        'How a run counts that overturned: "infinite", beyond any limit; "unknown", anything from what is known upwards; '
-        '"value", as the table has it; "left out". "infinite" if it is not given.'),
-    "flight": Key(choice(*COUNTING), '"unknown"', 'How a run counts that was ended by flight; "unknown" if it is not given.'),
-    "failed": Key(choice(*COUNTING), '"unknown"',
-        'How a run counts that has not settled, or was not run; "unknown" if it is not given.'),
-    "other_law": Key(boolean, "true",
-        "Whether nothing passes without the settlement by the other spring law; where both were run the worse counts."),
-    "confirm": Key(choice(*CONFIRMED), '["at_most"]',
-        "Keys of this check that are right though nothing could exceed such a limit.", many=True),
-}, many=True, homes=(Rule,))  # fmt: skip
-"""A [[check]]; :class:`Rule` says what its keys mean."""
-
 SUITE = Section(("suite",), "What holds for every check that does not say otherwise, and where more of them are.", {
-    "count": Key(choice(*COUNTS), '"component"', f"{_COUNT}.", default=COUNTS[0]),
+    "count": Key(choice(*COUNTS), '"component"', f"{COUNT}.", default=COUNTS[0]),
     "checks": Key(text, '"checks.toml"',
         "A file of checks, relative to this one, that hold beside those written here; its text is kept in run.json."),
 })  # fmt: skip

@@ -1,13 +1,13 @@
 """What a check asks: a demand, how its suite is summed up, a limit, and where the limit comes from."""
 
 import math
-from collections.abc import Iterable
 from dataclasses import dataclass
 
 from rockbatch.checks.demands import DEMANDS
 from rockbatch.checks.statistics import STATISTICS
 from rockbatch.errors import InputError
-from rockbatch.toml.kinds import KindError, choice, shown
+from rockbatch.toml.kinds import Choice, KindError, boolean, choice, count, not_negative, number, positive, shown, text
+from rockbatch.toml.section import Key, Section
 
 BASES = ("code", "literature", "judgement")
 COUNTING = ("infinite", "unknown", "value", "left out")
@@ -158,18 +158,52 @@ def is_ban(demand: str, statistic: str, limit: float) -> bool:
     return demand in DEMANDS and DEMANDS[demand].event and statistic == "max" and 0 <= limit < 1
 
 
+COUNT = (
+    'What counts as one record: a "station" in one earthquake, with the worst of its components and polarities, '
+    'or each "component"'
+)
+CHECK = Section(("check",), (
+    "A design check: a demand, how it is summed up over the records, and a limit. `rockbatch check` holds results against it."
+), {
+    "name": Key(text, '"overturning margin"', "Its name in the table of verdicts.", required=True),
+    "demand": Key(choice(*DEMANDS), '"theta_max_over_alpha"', "What is looked at.", required=True),
+    "statistic": Key(choice(*STATISTICS), '"mean"', 'How the records are summed up; "max" if it is not given.'),
+    "above": Key(not_negative, "0.5",
+        'With statistic = "count": the value that a record has to exceed to count; 0 for events if it is not given.'),
+    "least": Key(count, "7", "Number of records below which nothing passes; what the statistic asks for if it is not given."),
+    "count": Key(choice(*COUNTS), '"component"',
+        f"{COUNT}; what `[suite]` says if it is not given."),
+    "at_most": Key(number, "0.5", "The limit."),
+    "at_least": Key(number, "2.0", "The limit, for what belongs to the foundation, where more is better."),
+    "basis": Key(choice(*BASES), '"code"', "Where the limit comes from."),
+    "reason": Key(text, '"EN 1998-2, 7.6.2"', "Clause, source, or why, in words.", required=True),
+    "case": Key(text, '["soft", "stiff*"]',
+        "Names of the cases to check, or patterns with * and ?; all if it is not given.", many=True),
+    "scale": Key(positive, "1.0",
+        "Scales of the motions to check, each a suite of its own; all if it is not given.", many=True),
+    "polarity": Key(choice("+", "-"), '"+"', "The only polarity to look at."),
+    "overturned": Key(choice(*COUNTING), '"infinite"',
+        'How a run counts that overturned: "infinite", beyond any limit; "unknown", anything from what is known upwards; '
+        '"value", as the table has it; "left out". "infinite" if it is not given.'),
+    "flight": Key(choice(*COUNTING), '"unknown"', 'How a run counts that was ended by flight; "unknown" if it is not given.'),
+    "failed": Key(choice(*COUNTING), '"unknown"',
+        'How a run counts that has not settled, or was not run; "unknown" if it is not given.'),
+    "other_law": Key(boolean, "true",
+        "Whether nothing passes without the settlement by the other spring law; where both were run the worse counts."),
+    "confirm": Key(choice(*CONFIRMED), '["at_most"]',
+        "Keys of this check that are right though nothing could exceed such a limit.", many=True),
+}, many=True, homes=(Rule,))  # fmt: skip
+"""A [[check]]; :class:`Rule` says what its keys mean."""
+
+
 def _unknown_words(rule: Rule) -> list[str]:
-    allowed: dict[str, Iterable[str]] = {
-        "demand": DEMANDS, "statistic": STATISTICS, "basis": BASES, "polarity": ("+", "-"),
-        "count": COUNTS, "overturned": COUNTING, "flight": COUNTING, "failed": COUNTING,
-    }  # fmt: skip
     wrong = []
-    for name, words in allowed.items():
+    for name, key in CHECK.items():
         value = getattr(rule, name)
-        if value is None:
+        if value is None or key.many or not isinstance(key.kind, Choice):
             continue
         try:
-            choice(*words)(value)
+            key.kind(value)
         except KindError as error:
             meant = f"; did you mean {error.meant}?" if error.meant else ""
             wrong.append(f"{name} = {shown(value)}: expected {error}{meant}")
@@ -177,41 +211,46 @@ def _unknown_words(rule: Rule) -> list[str]:
 
 
 def _misfits(rule: Rule) -> list[str]:
-    """What the attributes of a rule say about each other."""
-    demand = DEMANDS[rule.demand]
-    wrong = []
-    if rule.at_most is not None and rule.at_least is not None:
-        wrong.append("at_least: given beside at_most; keep one, and write the other as a check of its own")
-    elif rule.at_most is None and rule.at_least is None:
-        least = {"eta": 2.0, "yield_kN": 4e4, "stiffness_kN_m": 2e6}.get(rule.demand)
-        name, example = ("at_most", 0.5) if least is None else ("at_least", least)
-        wrong.append(f"{name} is missing, the limit; write for example {name} = {example:.10g}")
-    elif not demand.of_the_case and rule.at_most is None:
-        wrong.append(f"at_least = {rule.at_least:g}: more of {rule.demand} is worse; write at_most = {rule.at_least:g}")
-    elif not math.isfinite(rule.limit):
-        wrong.append(f"{rule.sense.replace(' ', '_')} = {rule.limit:g}: must be a finite number")
-    if demand.of_the_case:
-        given = [name for name in ("statistic", "least", "count") if getattr(rule, name) is not None]
-        wrong += [f"{name}: {rule.demand} is the same for all records; leave it out" for name in given]
-    if rule.above is not None and rule.statistic != "count":
-        wrong.append('above: is for statistic = "count"; leave it out')
-    elif rule.statistic == "count" and rule.above is None and not (demand.event or demand.of_the_case):
-        wrong.append("above is missing, what a record has to exceed to count; write for example above = 0.5")
-    statistic = STATISTICS[rule.statistic or "max"]
-    if rule.least is not None and rule.least < statistic.least:
-        wrong.append(
-            f"least = {rule.least}: {statistic.code or 'a statistic'} asks for {statistic.least}; leave it out"
-        )
-    if demand.event and statistic.code:
-        wrong.append(
-            f'statistic = "{rule.statistic}": is for quantities, and {rule.demand} is yes or no; write "max" or "count"'
-        )
-    given = [name for name in USUAL if getattr(rule, name) is not None]
-    if not demand.of_runs:
-        wrong += [f"{name}: says nothing about {rule.demand}; leave it out" for name in given]
-    elif rule.statistic == "asce7-16":
-        wrong += [f"{name}: is unacceptable by ASCE 7-16; leave it out" for name in given]
-    if rule.other_law and demand.other_law is None:
-        told = " and ".join(name for name, each in DEMANDS.items() if each.other_law)
-        wrong.append(f"other_law: is for {told}; leave it out")
-    return wrong
+    """Return what the attributes of a rule say about each other, each message at the first of them that is wrong."""
+    demand, statistic = DEMANDS[rule.demand], STATISTICS[rule.statistic or "max"]
+    both = rule.at_most is not None and rule.at_least is not None
+    neither = rule.at_most is None and rule.at_least is None
+    wrong_way = not demand.of_the_case and rule.at_most is None and not neither
+    least = {"eta": 2.0, "yield_kN": 4e4, "stiffness_kN_m": 2e6}.get(rule.demand)
+    example = "at_most = 0.5" if least is None else f"at_least = {least:.10g}"
+    counts = rule.statistic == "count"
+    with_other_law = " and ".join(name for name, each in DEMANDS.items() if each.other_law)
+    rules = [
+        (both, "at_least: given beside at_most; keep one, and write the other as a check of its own"),
+        (neither, f"{example.split()[0]} is missing, the limit; write for example {example}"),
+        (wrong_way, f"at_least = {rule.limit:g}: more of {rule.demand} is worse; write at_most = {rule.limit:g}"),
+        (
+            not (both or neither or wrong_way or math.isfinite(rule.limit)),
+            f"{rule.sense.replace(' ', '_')} = {rule.limit:g}: must be a finite number",
+        ),
+        (rule.above is not None and not counts, 'above: is for statistic = "count"; leave it out'),
+        (
+            counts and rule.above is None and not (demand.event or demand.of_the_case),
+            "above is missing, what a record has to exceed to count; write for example above = 0.5",
+        ),
+        (
+            rule.least is not None and rule.least < statistic.least,
+            f"least = {rule.least}: {statistic.code or 'a statistic'} asks for {statistic.least}; leave it out",
+        ),
+        (
+            demand.event and statistic.code != "",
+            f'statistic = "{rule.statistic}": is for quantities, and {rule.demand} is yes or no; write "max" or "count"',
+        ),
+        (rule.other_law and demand.other_law is None, f"other_law: is for {with_other_law}; leave it out"),
+    ]
+    without_place = [  # attributes that say nothing about such a demand or statistic
+        (demand.of_the_case, ("statistic", "least", "count"), f"{rule.demand} is the same for all records"),
+        (not demand.of_runs, USUAL, f"says nothing about {rule.demand}"),
+        (demand.of_runs and rule.statistic == "asce7-16", USUAL, "is unacceptable by ASCE 7-16"),
+    ]
+    return [message for applies, message in rules if applies] + [
+        f"{name}: {why}; leave it out"
+        for applies, names, why in without_place
+        for name in names
+        if applies and getattr(rule, name) is not None
+    ]

@@ -5,7 +5,7 @@ import json
 import math
 import platform
 from collections.abc import Mapping
-from dataclasses import asdict
+from dataclasses import asdict, fields
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -18,7 +18,8 @@ from rockbatch.motions.motion import Motion
 from rockbatch.motions.spectrum import periods_over, suite_spectra
 from rockbatch.motions.spectrum_target import SpectrumTarget
 from rockbatch.motions.velocity_pulses import pulse_of
-from rockbatch.pier import described
+from rockbatch.pier import Damper, Tendon, described
+from rockbatch.pier.bases import BOUNDS, WORDS
 from rockbatch.results.columns import units
 from rockbatch.results.shape import Maybe
 from rockbatch.study import Case, Study
@@ -27,12 +28,10 @@ INFO = "run.json"
 
 _NUMBER = (float, None)
 _VALUES = {str: (float, str)}
-_NUMBERS_OF_BASE = (
-    "beta", "eta", "epsilon", "n", "omega_v", "delta_s_m", "delta_y_m", "stiffness_kN_m", "yield_kN", "restitution", "zeta",
-    "friction", "flight_limit_mm",
-)  # fmt: skip
-_RESTRAINT = {"kind": Maybe(str), "at": Maybe((float, str))} | {
-    name: Maybe(_NUMBER) for name in ("f", "nu", "yield_m", "exponent", "psi", "lam", "strength")
+_NUMBERS_OF_BASE = (*BOUNDS, "beta", "omega_v", "delta_s_m", "delta_y_m", "stiffness_kN_m", "yield_kN")
+_RESTRAINT = {each.name: Maybe(_NUMBER) for each in (*fields(Damper), *fields(Tendon)) if each.name != "confirm"} | {
+    "kind": Maybe(str),
+    "at": Maybe((float, str)),
 }
 _OF_FILE = {"name": str, "source": str, "reason": str}
 _SPECTRA = {
@@ -62,7 +61,7 @@ SHAPE = {
             | {name: Maybe(_NUMBER) for name in ("mass_t", "top_m", "deck_height_m", "deck_over_columns")},
             "base": ("rigid", "elastic", "yielding"),
             "parameters": {name: Maybe(_NUMBER) for name in _NUMBERS_OF_BASE}
-            | {name: Maybe((str, None)) for name in ("spring", "kinematics", "flight")}
+            | {name: Maybe((str, None)) for name in WORDS}
             | {"restraints": Maybe([_RESTRAINT])},
         }
     ],

@@ -26,28 +26,10 @@ LEVELS = {"PGA": "levels_g", "Sa": "levels_g", "PGV": "levels_m_s"}
 
 @dataclass(frozen=True)
 class FragilitySpec:
-    """How intensity is measured, where fragility is sampled, and which limits are asked about.
+    """[fragility]: how intensity is measured, where fragility is sampled, and which limits are asked about.
 
-    Attributes
-    ----------
-    method : "stripes" or "ida"
-        Each record scaled to each level; or also the least intensity that exceeds each limit, by bisection.
-    measure : "PGA", "PGV" or "Sa"
-        Intensity measure of the horizontal component; Sa is the pseudo-spectral acceleration.
-    period_s, damping : float
-        Of the oscillator of Sa [s, ratio].
-    levels : tuple of float
-        Rising levels of the measure [g, or m/s for PGV].
-    tolerance : float
-        Relative width to which the bisection brackets the least scale that exceeds a limit.
-    hunt_step : float or None
-        Relative steps in which the first exceedance is hunted between the levels, on every base; None: in steps of
-        :data:`HUNT_STEP` on rigid ground, where a run takes milliseconds, and on the levels alone elsewhere.
-    limits : tuple of Rule
-        Overturning, then the checks; each is held against every record by itself, and runs that flew or failed are
-        undecided unless the check leaves them out.
-    confidence : float
-        Level of the confidence bands.
+    :data:`FRAGILITY` says what each key means. ``levels`` rise, in :attr:`unit`; ``limits`` are overturning, then the checks,
+    each held against every record by itself, with runs that flew or failed undecided unless the check leaves them out.
     """
 
     method: str

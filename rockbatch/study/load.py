@@ -9,8 +9,8 @@ from pathlib import Path
 from rockbatch.checks.choices import unmet
 from rockbatch.checks.demands import BROUGHT
 from rockbatch.checks.plausible import implausible
-from rockbatch.checks.reading import CHECK, SUITE, read_checks
-from rockbatch.checks.rules import Rule
+from rockbatch.checks.reading import SUITE, read_checks
+from rockbatch.checks.rules import CHECK, Rule
 from rockbatch.errors import InputError
 from rockbatch.pier import described, symmetric
 from rockbatch.study.cases import BASE_KEYS, CASE, Expanded, read_cases

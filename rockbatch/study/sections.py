@@ -2,8 +2,9 @@
 
 from dataclasses import replace
 
-from rockbatch.checks.reading import CHECK, SUITE
+from rockbatch.checks.reading import SUITE
 from rockbatch.checks.reading import TOP as CHECKS_TOP
+from rockbatch.checks.rules import CHECK
 from rockbatch.motions.manifest import RECORD
 from rockbatch.study import load, sensitivity
 from rockbatch.study.fragility import FRAGILITY

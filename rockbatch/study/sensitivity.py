@@ -62,21 +62,7 @@ class Input:
 
 @dataclass(frozen=True)
 class SensitivitySpec:
-    """A sensitivity study.
-
-    Attributes
-    ----------
-    inputs : tuple of Input
-    statistic : str
-        Of the suite, a name in :data:`rockbatch.checks.statistics.STATISTICS`.
-    overturned : float
-        The θ_max/α as which a run counts that overturned or was ended by flight; larger ones are cut there too.
-    samples : int
-        N of Saltelli's design: N (d + 2) points for d inputs.
-    confidence : float
-        Level of the intervals of Sobol indices.
-    seed : int
-    """
+    """[sensitivity]: what is varied, and how it is sampled. :data:`SENSITIVITY` says what each key means."""
 
     inputs: tuple[Input, ...]
     statistic: str = "median"

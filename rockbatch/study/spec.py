@@ -22,7 +22,7 @@ class FemaSpec:
 
 @dataclass(frozen=True)
 class PulseSpec:
-    """An acceleration pulse: amplitude [g], times [s]; gamma and nu for "mavroeidis-papageorgiou" only."""
+    """[[motions.pulse]]: an acceleration pulse; gamma and nu for "mavroeidis-papageorgiou" only."""
 
     name: str
     shape: str
@@ -36,35 +36,10 @@ class PulseSpec:
 
 @dataclass(frozen=True)
 class MotionSpec:
-    """Which ground motions, and how they are used.
+    """[motions]: which ground motions are used, and how. :data:`rockbatch.study.motions.MOTIONS` says what each key means.
 
-    Attributes
-    ----------
-    paths : tuple of Path
-        Files and folders; they exist.
-    vertical : bool or "required"
-        Whether a record's vertical component is used, or even has to be there.
-    polarity : tuple of str
-        "+", "-" (horizontal reversed).
-    scale : tuple of float
-        Factors on all components, above 0.
-    unit, dt, columns, sensitivity, role
-        For files that do not state them: acceleration unit, sampling interval [s], names of the columns of a
-        text file, counts per acceleration unit, and "horizontal" for components of unknown direction.
-    offset : Offset
-        What is taken off the accelerations.
-    azimuths : tuple of float
-        Directions [degrees from north] that horizontal pairs are turned to; none: as recorded.
-    select : Selection
-        Which records are used.
-    target : Target, SpectrumTarget or None
-        What records are scaled to; ``scale`` comes on top. Pulses have their own amplitude.
-    confirm, confirm_pga : tuple of str
-        Names, or patterns with * and ?, of records that are right whatever is odd about them, or about their PGA.
-    strict : bool
-        Whether a record that cannot be used ends the study before anything is run.
-    fema_p695 : tuple of FemaSpec
-    pulses : tuple of PulseSpec
+    ``paths`` are files and folders that exist, ``azimuths`` the directions [degrees from north] that horizontal pairs are turned
+    to, none: as recorded, and ``target`` what records are scaled to, with ``scale`` on top; pulses have their own amplitude.
     """
 
     paths: tuple[Path, ...] = ()
@@ -98,7 +73,7 @@ LEAST_TOLERANCE = 1e-12
 
 @dataclass(frozen=True)
 class Numerics:
-    """A tolerance on θ_max/α, or a fixed number of substeps per sample; ``quiet_s`` [s] after the record."""
+    """[numerics]: a tolerance on θ_max/α, or a fixed number of substeps per sample; ``quiet_s`` [s] after the record."""
 
     tolerance: float | None = 1e-4
     substeps: int | None = None
@@ -111,30 +86,7 @@ LEAST_NORMAL_SHARE = 0.1
 
 @dataclass(frozen=True)
 class Output:
-    """What a study asks for beyond the peaks; each costs time.
-
-    Attributes
-    ----------
-    histories : "worst", "all" or "none"
-        The runs whose histories are kept: the worst record of each case, all, or none.
-    histories_MB : float
-        How large their file may become with "worst".
-    ledger : bool
-        The energy ledger of every run (THEORY.md, Energy ledger).
-    forces : bool
-        What designers size, of every run: base shear, friction, supports, gaps, the deck, impacts (THEORY.md, Forces).
-    rocking : bool
-        Rocking about the lean of a base that has yielded, apart from it (THEORY.md, Results of a run).
-    least_normal_share : float
-        Share of the weight above which the normal force has to be for the friction demand to count.
-    both_laws : bool
-        The settlement of Bouc–Wen springs by the other law too (THEORY.md, Results of a run), which is run likewise.
-    intensity : bool
-        Intensity measures beside the peaks, and which of them orders the peaks best; spectral accelerations are those at
-        ``sa_periods_s`` [s].
-    estimate : bool
-        What the equivalent oscillators of design practice give, beside the peaks.
-    """
+    """[output]: what a study asks for beyond the peaks; each costs time; :data:`rockbatch.study.load.OUTPUT` explains them."""
 
     histories: str = "worst"
     histories_MB: float = 20.0  # noqa: N815 (the study's key)

@@ -47,11 +47,9 @@ class SpectrumSpec:
 
 @dataclass(frozen=True)
 class MapSpec:
-    """An overturning map: amplitudes a_p/(g tan α) over frequencies ω_p/p of one pulse, for every case of the study.
+    """[[spectrum.map]]: amplitudes a_p/(g tan α) over frequencies ω_p/p of one pulse, for every case of the study.
 
-    ``frequency`` and ``amplitude`` are the ranges, with so many values of each in the grid; ``tolerance`` is the width
-    within which boundaries are found, of a_p/(g tan α), and ``width`` the one within which it is found, of ω_p/p, where the
-    regions change in number or order. ``gamma`` and ``nu`` as in :func:`rockbatch.motions.pulse`.
+    :data:`MAP` says what each key means.
     """
 
     name: str

@@ -4,6 +4,7 @@ import json
 import os
 import random
 import shutil
+from dataclasses import replace
 
 import h5py
 import numpy as np
@@ -215,6 +216,25 @@ def places(shape, value, at=()):
             yield from places(shape[key], value[key], (*at, key))
     if isinstance(shape, list) and value:
         yield from places(shape[0], value[0], (*at, 0))
+
+
+@pytest.mark.parametrize(
+    "base",
+    [
+        rb.RigidBase(restitution=0.9, friction=0.5),
+        rb.ElasticBase(60.0, zeta=0.1, friction=0.5),
+        rb.YieldingBase(60.0, 0.1, eta=3.0, n=4.0),
+    ],
+)
+def test_all_that_is_written_about_a_base_and_its_devices_has_a_shape(base):
+    """What has none, such as restraints once, a reader would take as it comes."""
+    devices = (rb.Damper("hysteretic", f=0.1, yield_m=0.01, at="left"), rb.Tendon(0.1, 0.5, at=0.5))
+    pier = rb.Pier(0.2, 1.0, mass_t=100.0)
+    written = replace(base, restraints=devices).parameters(pier)
+    shape = SHAPE["cases"][0]["parameters"]
+    assert written.keys() <= shape.keys()
+    assert all({*device} <= {*shape["restraints"].shape[0]} for device in written["restraints"])
+    assert fits(written, shape)
 
 
 @pytest.mark.filterwarnings("ignore::rockbatch.errors.AboutResults")  # of a digest that is another
