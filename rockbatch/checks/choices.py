@@ -10,12 +10,12 @@ from rockbatch.toml.kinds import closest, shown
 
 
 def is_about(rule: Rule, case: str) -> bool:
-    """Whether the rule is about the case of this name."""
+    """Return whether the rule is about the case of this name."""
     return not rule.case or any(_fits(case, pattern) for pattern in rule.case)
 
 
 def chooses(rule: Rule, case: str, scale: float) -> bool:
-    """Whether the rule is about the case of this name at this scale."""
+    """Return whether the rule is about the case of this name at this scale."""
     return is_about(rule, case) and (not rule.scale or any(math.isclose(scale, one) for one in rule.scale))
 
 

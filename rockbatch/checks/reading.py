@@ -25,7 +25,7 @@ TOP = Section((), "", {
 
 
 def load_rules(path: str | os.PathLike[str]) -> tuple[Rule, ...]:
-    """The rules of a file: its [[check]] tables; a study file will do, whose other tables are then not looked at.
+    """Return the rules of a file: its [[check]] tables; a study file will do, whose other tables are then not looked at.
 
     Raises ``InputError`` with every mistake and its line.
     """

@@ -122,7 +122,7 @@ class Rule:
         return "at most" if self.at_most is not None else "at least"
 
     def counts(self, status: str) -> str:
-        """How a run of this status counts, one of :data:`COUNTING`."""
+        """Return how a run of this status counts, one of :data:`COUNTING`."""
         usual = "infinite" if self.statistic == "asce7-16" else USUAL[status]
         return getattr(self, status) or usual
 
@@ -154,7 +154,7 @@ class Rule:
 
 
 def is_ban(demand: str, statistic: str, limit: float) -> bool:
-    """Whether a check with these asks that an event happens under no record."""
+    """Return whether a check with these asks that an event happens under no record."""
     return demand in DEMANDS and DEMANDS[demand].event and statistic == "max" and 0 <= limit < 1
 
 

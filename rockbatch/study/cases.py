@@ -108,7 +108,7 @@ class Expanded(NamedTuple):
 
 
 def read_cases(file: TomlFile, piers: Sequence[tuple[Pier, Values]]) -> tuple[list[Expanded], tuple[str, ...]]:
-    """Every [[case]] on every pier, and which keys are lists in any of them."""
+    """Return every [[case]] on every pier, and which keys are lists in any of them."""
     tables = file.tables("case", title="name")
     if file.data.get("case", []) == [] and ("case",) not in file.misspelt:
         file.complain(("case",), '[[case]] is missing; write at least one, for example with base = "rigid"')
@@ -165,7 +165,7 @@ def _expand(case: _Read, chosen: Chosen, pier: Pier, pier_values: Values) -> Exp
 
 
 def _base(name: str, given: Mapping[str, Any], pier: Pier) -> Base:
-    """The base; K [kN/m] and F_y [kN] become β and η by the mass of the pier.
+    """Return the base; K [kN/m] and F_y [kN] become β and η by the mass of the pier.
 
     Where β or η is missing, which is noted already, a possible value lets the rest be checked.
     """
@@ -186,7 +186,7 @@ def _base(name: str, given: Mapping[str, Any], pier: Pier) -> Base:
 
 
 def _without_repeats(all_of_them: Iterable[Chosen]) -> Iterator[Chosen]:
-    """Without n where the spring has none; what is then alike comes once."""
+    """Yield all without n if the spring has none; what is then alike comes once."""
     seen = set()
     for chosen in all_of_them:
         if "spring" in chosen and chosen["spring"].value not in WITH_EXPONENT:
@@ -201,7 +201,7 @@ def _without_repeats(all_of_them: Iterable[Chosen]) -> Iterator[Chosen]:
 
 
 def _case(table: Table) -> tuple[dict[str, Any], dict[str, list[Setting]], Collection[str], Collection[str]]:
-    """Name and base, the settings of that base, the keys that are confirmed, and those of restraints that are lists."""
+    """Return name and base, settings of the base, confirmed keys, and those keys of devices that are lists."""
     read = table.read(CASE, other=RESTRAINTS)
     believed = read.pop("confirm")
     weighed = has_mass(table.file)

@@ -43,7 +43,7 @@ class FragilitySpec:
     hunt_step: float | None = None
 
     def step_on(self, base: Base) -> float | None:
-        """Relative steps of the hunt between the levels on ``base``; None where it is the levels alone."""
+        """Return the relative steps of the hunt between the levels on ``base``; None where it is the levels alone."""
         return HUNT_STEP if self.hunt_step is None and not base.on_springs else self.hunt_step
 
     @property
@@ -83,7 +83,7 @@ FRAGILITY = Section(("fragility",), (
 
 
 def read_fragility(study: Study) -> FragilitySpec:
-    """The table [fragility] of a study that is loaded.
+    """Return what the table [fragility] of a loaded study asks for.
 
     Raises ``InputError`` with every mistake in it, with its line.
     """
@@ -97,7 +97,7 @@ def read_fragility(study: Study) -> FragilitySpec:
 
 
 def _levels(table: Table, read: dict[str, Any]) -> tuple[float, ...]:
-    """The levels in the unit of the measure; what belongs to another measure is noted."""
+    """Return the levels in the unit of the measure; what belongs to another measure is noted."""
     measure = read.get("measure")
     given = [read.pop(name, []) for name in ("levels_g", "levels_m_s")]
     if measure is None:
@@ -117,7 +117,7 @@ def _levels(table: Table, read: dict[str, Any]) -> tuple[float, ...]:
 
 
 def _limits(table: Table, rules: tuple[Rule, ...], chosen: list[Any] | None) -> tuple[Rule, ...]:
-    """The checks of the study that are asked about, all by default, at all scales; those of the case alone are left out."""
+    """Return the checks that are limit states, all by default, at all scales; those of the case alone are left out."""
     able = [rule for rule in rules if not DEMANDS[rule.demand].of_the_case and rule.demand != OVERTURNING.demand]
     if any(rule.name == OVERTURNING.name for rule in able):
         table.complain(f"a [[check]] is called {shown(OVERTURNING.name)}, as the limit state is; give it another name")
@@ -135,7 +135,7 @@ def _limits(table: Table, rules: tuple[Rule, ...], chosen: list[Any] | None) -> 
 
 
 def _of_one_record(rule: Rule) -> Rule:
-    """A check as a limit of every record, in whatever suite and direction.
+    """Return a check as a limit of every record, in whatever suite and direction.
 
     A run that flew or failed may be left out, but else it is undecided: a check is on the safe side where such a run counts as
     infinite, a fragility is not.

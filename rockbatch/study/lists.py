@@ -14,12 +14,12 @@ MOST_CASES = 100_000
 
 
 def how_many(settings: Mapping[str, Sequence[Setting]]) -> int:
-    """Number of combinations."""
+    """Return the number of combinations."""
     return math.prod(map(len, settings.values()))
 
 
 def too_many(number: int, what: str) -> str:
-    """What is said of more than :data:`MOST_CASES`; empty for fewer."""
+    """Return what is said of more than :data:`MOST_CASES`; empty for fewer."""
     if number <= MOST_CASES:
         return ""
     return (
@@ -29,7 +29,7 @@ def too_many(number: int, what: str) -> str:
 
 
 def combinations(settings: Mapping[str, Sequence[Setting]]) -> Iterator[Chosen]:
-    """Every combination, the last key varying fastest."""
+    """Return every combination, the last key varying fastest."""
     for chosen in product(*settings.values()):
         yield dict(zip(settings, chosen, strict=True))
 

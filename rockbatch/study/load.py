@@ -159,7 +159,7 @@ def _symmetric(case: Expanded) -> bool:
 
 
 def given_study(study: str | os.PathLike[str] | Study, motions: str | os.PathLike[str] | None = None) -> Study:
-    """A study as functions are given it: a file, which is loaded, perhaps with other ``motions``, or one that is loaded."""
+    """Return a loaded study; a file is loaded, perhaps with other ``motions``."""
     if not isinstance(study, Study):
         return load_study(study, motions=motions)
     if motions is not None:
@@ -170,7 +170,7 @@ def given_study(study: str | os.PathLike[str] | Study, motions: str | os.PathLik
 
 
 def _unfit(cases: Sequence[Expanded], motions: MotionSpec, output: Output, rule: Rule) -> Iterator[str]:
-    """What a check chooses and the study does not have, and a limit that is implausible for its piers."""
+    """Return what a check chooses and the study does not have, and a limit that is implausible for its piers."""
     yield from unmet(
         rule,
         cases=list(dict.fromkeys(each.name for each in cases)),
@@ -205,7 +205,7 @@ def _output(file: TomlFile) -> Output:
 
 
 def _complain_about_friction(file: TomlFile) -> None:
-    """The forces that friction is held against cost a second run at every step: the study says that it wants them."""
+    """Note friction in a study without forces: what it is held against costs a second run at every step."""
     for table in file.tables("case", title="name"):
         if "friction" in table.data:
             table.complain(

@@ -64,7 +64,7 @@ _MOST_SAMPLES = 10_000_000
 
 
 def read_motions_table(file: TomlFile, replaced_by: Path | None = None) -> MotionSpec:
-    """All of [motions]. ``replaced_by`` stands for every source in it, whose paths then need not exist."""
+    """Read all of [motions]. ``replaced_by`` stands for every source in it, whose paths then need not exist."""
     table = file.table("motions")
     read = table.read(MOTIONS, other=SOURCES) if table else {}
     entries = read.pop("path", [])
@@ -138,7 +138,7 @@ def _pulses(file: TomlFile) -> tuple[PulseSpec, ...]:
 
 
 def _check_pulse(table: Table, read: dict[str, Any], believed: Collection[str]) -> None:
-    """What the keys of one pulse say about each other; the pulse itself knows most of it."""
+    """Check the keys of one pulse against each other; the pulse itself knows most of it."""
     before = len(table.file.problems)
     check_shape(table)
     if read.get("duration_s", 0.0) / read.get("dt_s", math.inf) > _MOST_SAMPLES:

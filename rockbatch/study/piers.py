@@ -90,7 +90,7 @@ Values = dict[str, float | str]
 
 
 def read_piers(file: TomlFile) -> tuple[list[tuple[Pier, Values]], tuple[str, ...]]:
-    """The piers of [pier] with their keys' values (none if there are mistakes), and which keys are lists.
+    """Return the piers of [pier] with their keys' values (none if there are mistakes), and which keys are lists.
 
     Those of the n-th [[pier.part]] are called part_n_mass_t and so on.
     """
@@ -131,19 +131,19 @@ def read_piers(file: TomlFile) -> tuple[list[tuple[Pier, Values]], tuple[str, ..
 
 
 def has_mass(file: TomlFile) -> bool:
-    """Whether [pier] says what the pier weighs."""
+    """Return whether [pier] says what the pier weighs."""
     return file.has(("pier", "mass_t")) or bool(file.value(("pier", "part")))
 
 
 def _part(table: Table, n: int) -> tuple[dict[str, Sequence[Setting]], tuple[str, ...]]:
-    """Settings of the n-th part by the names that set them apart, and which of them are lists."""
+    """Return the settings of the n-th part by the names that set them apart, and which of them are lists."""
     read = table.read(PART)
     del read["confirm"]
     return {f"part_{n}_{name}": its for name, its in read.items()}, tuple(f"part_{n}_{x}" for x in listed(table, PART))
 
 
 def _pier(values: dict[str, Any], parts: int, believed: Collection[str]) -> Pier:
-    """The pier that these keys say; which of them go together is checked already."""
+    """Return the pier that these keys say; which of them go together is checked already."""
     rest: dict[str, Any] = {name: values[name] for name in ("gravity", "top_m") if name in values}
     rest["confirm"] = believed
     if parts:
@@ -167,7 +167,7 @@ def _pier(values: dict[str, Any], parts: int, believed: Collection[str]) -> Pier
 
 
 def _of_parts(values: dict[str, Any], parts: int, rest: dict[str, Any]) -> Pier:
-    """A pier of parts, and the deck as one more; drift is read at the highest point that is known."""
+    """Return a pier of parts, and the deck as one more; drift is read at the highest point that is known."""
     all_of_them = [
         Part(**{name: values[f"part_{n}_{name}"] for name in PART if f"part_{n}_{name}" in values})
         for n in range(1, parts + 1)

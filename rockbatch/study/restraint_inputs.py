@@ -26,12 +26,12 @@ class Parameter(NamedTuple):
 
 
 def is_of_restraint(name: str) -> bool:
-    """Whether an input is one of a damper or tendon."""
+    """Return whether an input is one of a damper or tendon."""
     return "." in name
 
 
 def numbered(pier: Pier, restraints: Sequence[Restraint]) -> dict[str, Parameter]:
-    """All parameters by names with numbers, "damper_1.f": those of which dampers and tendons of this kind have a value."""
+    """Return all parameters of dampers and tendons that have a value, by names with numbers: "damper_1.f"."""
     found: dict[str, Parameter] = {}
     counts: Counter[str] = Counter()
     given_by = fields_of(pier)
@@ -57,7 +57,7 @@ def _plain(name: str) -> str:
 
 
 def own_restraint_values(pier: Pier, restraints: Sequence[Restraint]) -> dict[str, float]:
-    """What the study itself says about each, to the digits in which studies are written."""
+    """Return what the study itself says about each, to the digits in which studies are written."""
     return {
         name: float(f"{getattr(restraints[each.place], each.field) * each.divisor:.12g}")
         for name, each in parameters(pier, restraints).items()
@@ -65,7 +65,7 @@ def own_restraint_values(pier: Pier, restraints: Sequence[Restraint]) -> dict[st
 
 
 def with_values(pier: Pier, restraints: Sequence[Restraint], values: Mapping[str, float]) -> tuple[Restraint, ...]:
-    """The dampers and tendons with other values of such parameters, under the pier as it is at that point."""
+    """Return the dampers and tendons with other values of such parameters, under the pier as it is at that point."""
     where, changed = parameters(pier, restraints), list(restraints)
     for name, value in values.items():
         place, field, divisor = where[name]
@@ -75,7 +75,7 @@ def with_values(pier: Pier, restraints: Sequence[Restraint], values: Mapping[str
 
 
 def unclear(names: Iterable[str], case: Case) -> dict[str, str]:
-    """Which names of inputs do not say whose they are in this case, or say it twice, and what to write instead."""
+    """Return by name what is ambiguous about inputs of dampers and tendons in this case, and what to write instead."""
     own = numbered(case.pier, case.base.restraints)
     where = parameters(case.pier, case.base.restraints)
     told: dict[str, str] = {}
@@ -92,7 +92,7 @@ def unclear(names: Iterable[str], case: Case) -> dict[str, str]:
 
 
 def why_none(name: str, cases: Iterable[Case]) -> str:
-    """Why no case has this parameter of a damper or tendon."""
+    """Return why no case has this parameter of a damper or tendon."""
     table, key = name.split(".")
     what, number = table.partition("_")[::2]
     most, kinds, heavy = 0, set(), False
@@ -114,7 +114,7 @@ def why_none(name: str, cases: Iterable[Case]) -> str:
 
 
 def problem_in_words(problem: str, values: Mapping[str, Any]) -> tuple[str, str]:
-    """A problem of a damper or tendon, "damper: f = …", and the input that it is about, as that is called; "" if none is."""
+    """Return a problem of a device, "damper: f = …", in terms of the input that it is about, and its name; "" if none is."""
     what, _, told = problem.partition(": ")
     mine = [name for name in values if is_of_restraint(name) and name.startswith(what)]
     if not mine:

@@ -68,7 +68,7 @@ KEYS_OF = {
 
 
 def fields_of(pier: Pier) -> dict[str, tuple[str, float]]:
-    """The field of Damper or Tendon that each key gives, and the key's value over the field's; in kN where the mass is known."""
+    """Return by key the field of Damper or Tendon, and the key's value over the field's; those in kN if the mass is known."""
     found = {name: (name, 1.0) for name in ("f", "nu", "exponent", "psi")}
     found |= {"yield_mm": ("yield_m", 1000.0), "lambda": ("lam", 1.0)}
     if pier.mass_t is not None:
@@ -84,7 +84,7 @@ def fields_of(pier: Pier) -> dict[str, tuple[str, float]]:
 
 
 def read_restraints(case: Table) -> tuple[dict[str, Sequence[Setting]], tuple[str, ...]]:
-    """Settings of all dampers and tendons of a case, by names that set them apart, and which of them are lists."""
+    """Return the settings of all dampers and tendons of a case, by names that set them apart, and which of them are lists."""
     read: dict[str, Sequence[Setting]] = {}
     varied: tuple[str, ...] = ()
     for what, keys in (("damper", DAMPER), ("tendon", TENDON)):
@@ -105,7 +105,7 @@ def read_restraints(case: Table) -> tuple[dict[str, Sequence[Setting]], tuple[st
 
 
 def _tables(case: Table, what: str) -> list[Table]:
-    """One table, or several, called by their place in the case."""
+    """Return one table, or several, called by their place in the case."""
     one = case.data.get(what)
     if isinstance(one, dict):
         return [Table(case.file, (*case.at, what), _label(case, what, 1), one)]
@@ -140,7 +140,7 @@ def _check_given(table: Table, kind: str | None) -> None:
 
 
 def restraints_of(pier: Pier, given: dict[str, Any]) -> tuple[Restraint, ...]:
-    """Dampers and tendons by the settings of :func:`read_restraints`, which are taken out of ``given``."""
+    """Return dampers and tendons by the settings of :func:`read_restraints`, which are taken out of ``given``."""
     taken = _taken(given)
     for name in [name for name in given if name.startswith(tuple(f"{what}_" for what in RESTRAINTS))]:
         del given[name]
@@ -148,7 +148,7 @@ def restraints_of(pier: Pier, given: dict[str, Any]) -> tuple[Restraint, ...]:
 
 
 def _taken(given: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
-    """The settings of each damper and tendon: those of the first damper under "damper_1"."""
+    """Return the settings of each damper and tendon: those of the first damper under "damper_1"."""
     taken: dict[str, dict[str, Any]] = {}
     for name, value in given.items():
         if name.startswith(tuple(f"{what}_" for what in RESTRAINTS)):

@@ -51,7 +51,7 @@ def _table(section: Section) -> Schema:
 
 
 def _excluded(section: Section, other: str) -> Iterator[Schema]:
-    """Keys that do not apply beside each value of another key, of which there may be several, and without it."""
+    """Yield the keys that do not apply beside each value of another key, of which there may be several, and without it."""
     for value in options(section[other]):
         one: Schema = {"const": value}
         several = {"anyOf": [one, {"type": "array", "items": one, "minItems": 1}]}

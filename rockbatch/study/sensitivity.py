@@ -87,7 +87,7 @@ SENSITIVITY = Section(("sensitivity",), (
 
 
 def _ranges(spread: str, keys: Mapping[str, Key], **examples: str) -> dict[str, Key]:
-    """Some of the study's keys as ranges; of a logarithmic one the values are above 0."""
+    """Return some of the study's keys as ranges; of a logarithmic one the values are above 0."""
     return {
         name: Key(positive if spread == "log_uniform" else keys[name].kind, example, keys[name].words, pair=True)
         for name, example in examples.items()
@@ -156,19 +156,19 @@ SECTIONS = (SENSITIVITY, *SPREADS.values(), *(
 
 
 def applying(inputs: Iterable[Input], case: Case) -> tuple[Input, ...]:
-    """The inputs that a case has."""
+    """Return the inputs that a case has."""
     own = {*_of_base(case), *OF_PIER, *OF_MOTION, *_in_kilonewtons(case), *parameters(case.pier, case.base.restraints)}
     return tuple(each for each in inputs if each.name in own)
 
 
 def _of_base(case: Case) -> set[str]:
-    """Fields of the base that mean something to it: ε, or ζ where that is given in its place."""
+    """Return fields of the base that mean something to it: ε, or ζ where that is given in its place."""
     zeta = getattr(case.base, "zeta", None)
     return {each.name for each in fields(case.base)} - {"epsilon" if zeta is not None else "zeta"}
 
 
 def varied(case: Case, values: Mapping[str, Value]) -> Case:
-    """The case with other values of its pier and its base. Raises :class:`InputError` where the pier cannot be."""
+    """Return the case with other values of its pier and its base. Raises :class:`InputError` where the pier cannot be."""
     given: dict[str, Any] = {name: value for name, value in values.items() if name not in OF_MOTION}
     pier = replace(case.pier, **{name: given.pop(name) for name in OF_PIER if name in given})
     for name, ratio in IN_KILONEWTONS.items():
@@ -181,7 +181,7 @@ def varied(case: Case, values: Mapping[str, Value]) -> Case:
 
 
 def own_values(study: Study, case: Case) -> dict[str, Any]:
-    """What the study itself says about every input."""
+    """Return what the study itself says about every input."""
     of_motion = {"vertical": study.motions.vertical, "polarity": study.motions.polarity[0]}
     pier = {name: getattr(case.pier, name) for name in OF_PIER}
     base = {each.name: getattr(case.base, each.name) for each in fields(case.base)}
@@ -189,13 +189,13 @@ def own_values(study: Study, case: Case) -> dict[str, Any]:
 
 
 def _in_kilonewtons(case: Case) -> dict[str, float]:
-    """Stiffness [kN/m] and yield force [kN] of a case on springs, where the mass is known."""
+    """Return the stiffness [kN/m] and yield force [kN] of a case on springs, where the mass is known."""
     # To the digits in which studies are written, so that a range may end at the study's own value
     return {name: float(f"{value:.12g}") for name, value in in_kilonewtons(case.pier, case.base).items()}
 
 
 def read_sensitivity(study: Study) -> SensitivitySpec:
-    """What the study file asks for in [sensitivity].
+    """Return what the study file asks for in [sensitivity].
 
     Raises
     ------
@@ -260,7 +260,7 @@ def _read(table: Table, spread: str, keys: Mapping[str, Key], **more: Any) -> li
 
 
 def _check(table: Table, inputs: Sequence[Input], study: Study) -> None:
-    """Every input belongs to some case, its range holds the study's value, and every corner is possible."""
+    """Check that every input belongs to some case, that its range holds the study's value, and that every corner is possible."""
     used: set[str] = set()
     places = {each.name: each.at for each in inputs}
     for case in study.cases:
@@ -287,7 +287,7 @@ def _check(table: Table, inputs: Sequence[Input], study: Study) -> None:
 
 
 def _why_none(name: str, study: Study) -> str:
-    """Why no case of the study has this input."""
+    """Return why no case of the study has this input."""
     if is_of_restraint(name):
         return why_none(name, study.cases)
     if name in IN_KILONEWTONS:
@@ -300,7 +300,7 @@ def _why_none(name: str, study: Study) -> str:
 
 
 def _check_corners(table: Table, inputs: Sequence[Input], case: Case) -> None:
-    """What is possible at all corners is so between them: no limit turns back within a range."""
+    """Check the corners of all ranges: what is possible there is so between them, as no limit turns back within a range."""
     places = {each.name: each.at for each in inputs}
     told: set[str] = set()
     for corner in product(*(each.levels for each in inputs)):
@@ -322,7 +322,7 @@ def _check_corners(table: Table, inputs: Sequence[Input], case: Case) -> None:
 
 
 def _in_words(problem: str, values: Mapping[str, Any]) -> tuple[str, str]:
-    """A problem of the structure, "eta = …", at a corner, in words of the input that it is about, and which that is."""
+    """Return a problem of the structure, "eta = …", at a corner, in terms of the input that it is about, and its name."""
     problem, name = problem_in_words(problem, values)
     if name:
         return problem, name

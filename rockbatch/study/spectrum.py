@@ -103,7 +103,7 @@ MAP = Section(("spectrum", "map"), "A map of the pulses that overturn the pier, 
 
 
 def read_spectrum(study: Study) -> tuple[SpectrumSpec | None, tuple[MapSpec, ...]]:
-    """The spectrum and the maps that a study file asks for.
+    """Return the spectrum and the maps that a study file asks for.
 
     Raises
     ------
@@ -163,7 +163,7 @@ def _spectrum(table: Table, study: Study) -> SpectrumSpec | None:
 def _piers(
     table: Table, alphas: Any, axis: str, values: list[float], study: Study
 ) -> list[tuple[Pier, dict[str, Any]]]:
-    """Piers of every slenderness and size, with all else of the study's, and their values by key.
+    """Return piers of every slenderness and size, with all else of the study's, and their values by key.
 
     A mass that only a case says is no pier's: the case brings it itself.
     """

@@ -10,7 +10,7 @@ from rockbatch.study.spec import Study
 
 
 def ground_motions(study: Study) -> MotionSet:
-    """All motions of a study: its files, packaged records and pulses, and what could not be used.
+    """Return all motions of a study: its files, packaged records and pulses, and what could not be used.
 
     Records are read, freed of their offsets, turned and paired, then selected, then scaled to the study's target;
     its ``scale`` and ``polarity`` are left to the runs. Raises ``InputError`` where nothing is left, or in a strict

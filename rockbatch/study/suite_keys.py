@@ -59,7 +59,7 @@ SELECT = Section(("motions", "select"), (
 
 
 def read_suite(motions: Table, read: dict[str, Any]) -> dict[str, Any]:
-    """Fields of a ``MotionSpec`` from the values of the keys ``SUITE`` in [motions]; mistakes are noted."""
+    """Return fields of a ``MotionSpec`` from the values of the keys ``SUITE`` in [motions]; mistakes are noted."""
     found: dict[str, Any] = {
         "offset": _offset(motions, read),
         "azimuths": _azimuths(motions, read),

@@ -24,7 +24,7 @@ _ALSO_CALLED = {"ec8": CODES[0], "en1998": CODES[0], "eurocode": CODES[0], "asce
 
 
 def _entry(value: Any) -> Any:
-    """The name of a code or file, or one pair of a table."""
+    """Return the name of a code or file, or one pair of a table."""
     if isinstance(value, list):
         if len(value) != 2:
             raise KindError("pairs of a period [s] and a spectral acceleration [g]")
@@ -102,7 +102,7 @@ _UNFIT_FOR_SPECTRUM = dict.fromkeys(
 
 
 def read_target(table: Table) -> Target | SpectrumTarget | None:
-    """The target of [motions]; None, with the mistakes noted, where it is no target."""
+    """Return the target of [motions]; None, with the mistakes noted, where it is no target."""
     return _read_spectrum(table) if "spectrum" in table.data else _read_measure(table)
 
 
@@ -153,7 +153,7 @@ def _read_spectrum(table: Table) -> SpectrumTarget | None:
 
 
 def _code(value: Any) -> str:
-    """The code that is meant, however it is written; empty for a table."""
+    """Return the code that is meant, however it is written; empty for a table."""
     if not isinstance(value, str):
         return ""
     plain = {name.replace(" ", "").lower(): name for name in CODES}

@@ -205,14 +205,14 @@ text = Text()
 
 
 def closest(word: str, known: Iterable[str]) -> str | None:
-    """The known word that ``word`` was probably meant to be, whatever its case."""
+    """Return the known word that ``word`` was probably meant to be, whatever its case."""
     by_lower = {name.lower(): name for name in known}
     found = difflib.get_close_matches(word[:_LONGEST].lower(), by_lower, n=1)
     return by_lower[found[0]] if found else None
 
 
 def shown(value: Any, limit: int = 60) -> str:
-    """The value as TOML writes it, cut where it is long, and legible whatever it holds."""
+    """Return the value as TOML writes it, cut where it is long, and legible whatever it holds."""
     if isinstance(value, bool):
         written = str(value).lower()
     elif isinstance(value, str):

@@ -33,7 +33,7 @@ class TooDeepError(ValueError):
 
 
 def key_lines(text: str) -> dict[At, int]:
-    """Line (from 1) of every table, key and list element in ``text``.
+    """Return the line (from 1) of every table, key and list element in ``text``.
 
     Raises :class:`TooDeepError` before a parser would be long over it, ``ValueError`` where the text is no TOML.
     """

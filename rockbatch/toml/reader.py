@@ -49,7 +49,7 @@ class TomlFile:
 
     @staticmethod
     def text_of(path: Path) -> str:
-        """The text of a file. Raises :class:`InputError` where it cannot be read, is too large or no UTF-8."""
+        """Return the text of a file. Raises :class:`InputError` where it cannot be read, is too large or no UTF-8."""
         try:
             with path.open("rb") as opened:
                 content = opened.read(LARGEST + 1)
@@ -99,7 +99,7 @@ class TomlFile:
         return len(self.problems) >= MOST_TOLD
 
     def is_sound_since(self, before: int) -> bool:
-        """Whether no mistake was noted after the first ``before``; never of a file that notes no more."""
+        """Return whether no mistake was noted after the first ``before``; never of a file that notes no more."""
         return len(self.problems) == before and not self.is_full
 
     def finish(self) -> None:
@@ -111,7 +111,7 @@ class TomlFile:
             raise InputError(*in_order)
 
     def table(self, *at: str | int, required: str = "") -> "Table | None":
-        """The table ``[at]``; None where there is none. ``required``: what to write if it is missing."""
+        """Return the table ``[at]``, or None; ``required`` says what to write if it is missing."""
         name = ".".join(map(str, at))
         found = self.value(at)
         if isinstance(found, dict):
@@ -142,7 +142,7 @@ class TomlFile:
         ]
 
     def value(self, at: At) -> Any:
-        """The value at ``at``, None where there is none."""
+        """Return the value at ``at``, or None."""
         here: Any = self.data
         for part in at:
             if isinstance(here, dict):
@@ -277,7 +277,7 @@ class Table:
         return usable or None
 
     def _range(self, name: str, key: Key, value: Any) -> tuple[Any, Any] | None:
-        """The least and the largest value, in this order."""
+        """Return the least and the largest value, in this order."""
         written = value if isinstance(value, list) else [value]
         ends = [self._converted(name, key, Setting(item, (*self.at, name, n))) for n, item in enumerate(written)]
         if any(end is None for end in ends):
@@ -329,7 +329,7 @@ def _unreadable(path: Path, error: OSError) -> str:
 
 
 def nearby(path: Path, written: str) -> str:
-    """What was meant by ``written``, if the folder of ``path`` holds a similar name; else empty."""
+    """Return what was meant by ``written``, if the folder of ``path`` holds a similar name; else empty."""
     try:
         names = os.listdir(path.parent)
     except OSError:
@@ -369,7 +369,7 @@ def _syntax_error(path: Path, text: str, error: str) -> str:
 
 
 def _second_time(lines: list[str], number: int) -> str:
-    """What is wrong about a table that is there already: perhaps one within it stands before it."""
+    """Return what is wrong about a table that is there already: perhaps one within it stands before it."""
     header = re.match(r"\s*\[\[\s*([\w-]+)\s*\]\]", lines[number - 1][:_LONGEST])
     if header:
         inner = re.compile(rf"\s*\[+\s*{header[1]}\s*\.")

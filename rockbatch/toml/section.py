@@ -139,7 +139,7 @@ class Section(Mapping[str, Key]):
 
 
 def homes(sections: Iterable[Section]) -> dict[str, str]:
-    """Return, by the name of a key or of an inner table, where it belongs."""
+    """Return by the name of a key or of an inner table, where it belongs."""
     found: dict[str, dict[str, None]] = {}
     outer: dict[tuple[str, ...], Section] = {}
     for section in sections:
