@@ -126,8 +126,8 @@ def read_cases(file: TomlFile, piers: Sequence[tuple[Pier, Values]]) -> tuple[li
         varied |= dict.fromkeys((*listed(table, BASE_KEYS), *of_restraints))
         if "base" in own:
             read.append((_Read(table, name, own["base"], believed), settings))
-    if told := too_many(max(len(piers), 1) * sum(how_many(settings) for _, settings in read), "cases"):
-        file.complain(("case",), told)
+    if message := too_many(max(len(piers), 1) * sum(how_many(settings) for _, settings in read), "cases"):
+        file.complain(("case",), message)
         return [], tuple(varied)
     expanded = [
         _expand(case, chosen, pier, pier_values)

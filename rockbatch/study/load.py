@@ -131,8 +131,8 @@ def load_study(path: str | os.PathLike[str], *, motions: str | os.PathLike[str] 
     references = _references(file, cases, varied)
     output = _output(file)
     if len(motion_spec.polarity) > 1 and not all(_symmetric(each) for each in cases):
-        told = "dampers or tendons on one side make another run of the reversed motion, not the mirror image; keep one polarity"
-        file.complain(("motions", "polarity"), f"[motions]: {told}")
+        message = "dampers or tendons on one side make another run of the reversed motion, not the mirror image"
+        file.complain(("motions", "polarity"), f"[motions]: {message}; keep one polarity")
     if not output.forces:
         _complain_about_friction(file)
     checks = read_checks(file, partial(_unfit, cases, motion_spec, output) if cases else None)
@@ -179,8 +179,8 @@ def _unfit(cases: Sequence[Expanded], motions: MotionSpec, output: Output, rule:
         other_law=output.both_laws or not any(each.base.ratchets for each in cases),
         output=[key for key in BROUGHT if getattr(output, key)],
     )
-    told = [{"case": each.name, "base": each.base.name, "pier": described(each.pier)} for each in cases]
-    yield from implausible(rule, told)
+    rows = [{"case": each.name, "base": each.base.name, "pier": described(each.pier)} for each in cases]
+    yield from implausible(rule, rows)
 
 
 def _numerics(file: TomlFile) -> Numerics:

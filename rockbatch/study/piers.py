@@ -112,8 +112,8 @@ def read_piers(file: TomlFile) -> tuple[list[tuple[Pier, Values]], tuple[str, ..
         its, names = _part(part, n)
         read |= its
         varied += names
-    if told := too_many(how_many(read), "piers"):
-        table.complain(told)
+    if message := too_many(how_many(read), "piers"):
+        table.complain(message)
     if not file.is_sound_since(before):
         return [], ()
     piers = []

@@ -21,9 +21,11 @@ def complain_unless_usual_support(
     name = "stiffness_kN_m"
     deflection = static_deflection(pier, base)
     if name in chosen and name not in believed and deflection < LEAST_DEFLECTION:
-        told = f"{name} = {chosen[name].value:g}: the pier's weight presses the supports in by {1000 * deflection:.2g} mm only"
-        table.complain_about(chosen[name], f"{told}, where sound rock gives some 0.1 mm; {remedy(name)} in this table")
+        message = f"{name} = {chosen[name].value:g}: the pier's weight presses the supports in by {1000 * deflection:.2g} mm only"
+        table.complain_about(
+            chosen[name], f"{message}, where sound rock gives some 0.1 mm; {remedy(name)} in this table"
+        )
     name = "yield_kN"
     if name in chosen and name not in believed and (eta := eta_of(pier, chosen[name].value)) > MOST_ETA:
-        told = f"{name} = {chosen[name].value:g}: {eta:.3g} times what the support carries at rest"
-        table.complain_about(chosen[name], f"{told}, where 2 to 20 times is usual; {remedy(name)} in this table")
+        message = f"{name} = {chosen[name].value:g}: {eta:.3g} times what the support carries at rest"
+        table.complain_about(chosen[name], f"{message}, where 2 to 20 times is usual; {remedy(name)} in this table")

@@ -32,7 +32,7 @@ def is_of_restraint(name: str) -> bool:
 
 def numbered(pier: Pier, restraints: Sequence[Restraint]) -> dict[str, Parameter]:
     """Return all parameters of dampers and tendons that have a value, by names with numbers: "damper_1.f"."""
-    found: dict[str, Parameter] = {}
+    parameters_by_name: dict[str, Parameter] = {}
     counts: Counter[str] = Counter()
     given_by = fields_of(pier)
     for place, each in enumerate(restraints):
@@ -41,15 +41,15 @@ def numbered(pier: Pier, restraints: Sequence[Restraint]) -> dict[str, Parameter
         for key in KEYS_OF[kind]:
             endless = not isinstance(each, Damper) and key == "yield_kN" and each.strength == float("inf")
             if key in given_by and not endless:
-                found[f"{what}_{counts[what]}.{key}"] = Parameter(place, *given_by[key])
-    return found
+                parameters_by_name[f"{what}_{counts[what]}.{key}"] = Parameter(place, *given_by[key])
+    return parameters_by_name
 
 
 def parameters(pier: Pier, restraints: Sequence[Restraint]) -> dict[str, Parameter]:
     """As :func:`numbered`; those that only one damper or tendon has go without a number, too."""
-    found = numbered(pier, restraints)
-    plain = [_plain(name) for name in found]
-    return found | {_plain(name): each for name, each in found.items() if plain.count(_plain(name)) == 1}
+    by_number = numbered(pier, restraints)
+    plain = [_plain(name) for name in by_number]
+    return by_number | {_plain(name): each for name, each in by_number.items() if plain.count(_plain(name)) == 1}
 
 
 def _plain(name: str) -> str:
@@ -78,17 +78,17 @@ def unclear(names: Iterable[str], case: Case) -> dict[str, str]:
     """Return by name what is ambiguous about inputs of dampers and tendons in this case, and what to write instead."""
     own = numbered(case.pier, case.base.restraints)
     where = parameters(case.pier, case.base.restraints)
-    told: dict[str, str] = {}
+    problems: dict[str, str] = {}
     fixed: dict[tuple[int, str], str] = {}
     for name in filter(is_of_restraint, names):
         meant = [each for each in own if _plain(each) == name]
         if len(meant) > 1:
-            told[name] = f"{name}: case {shown(case.name)} has {len(meant)} of them; write {' or '.join(meant)}"
+            problems[name] = f"{name}: case {shown(case.name)} has {len(meant)} of them; write {' or '.join(meant)}"
         if name in where:
             other = fixed.setdefault(where[name][:2], name)
             if other != name:
-                told[name] = f"{other} and {name} are given, which fix the same; keep one"
-    return told
+                problems[name] = f"{other} and {name} are given, which fix the same; keep one"
+    return problems
 
 
 def why_none(name: str, cases: Iterable[Case]) -> str:
@@ -115,13 +115,13 @@ def why_none(name: str, cases: Iterable[Case]) -> str:
 
 def problem_in_words(problem: str, values: Mapping[str, Any]) -> tuple[str, str]:
     """Return a problem of a device, "damper: f = …", in terms of the input that it is about, and its name; "" if none is."""
-    what, _, told = problem.partition(": ")
+    what, _, message = problem.partition(": ")
     mine = [name for name in values if is_of_restraint(name) and name.startswith(what)]
     if not mine:
         return problem, ""
-    key = told.partition(" = ")[0]
+    key = message.partition(" = ")[0]
     if same := next((name for name in mine if name.endswith(f".{key}")), ""):
-        return told.replace(key, same, 1), same
+        return message.replace(key, same, 1), same
     fields = {name: field for name, (field, _) in fields_of(_HEAVY).items()} | {"stiffness_kN_m": "lambda"}
     name = next((name for name in mine if fields[name.partition(".")[2]] == key), mine[0])
     return f"{name} = {values[name]:g} means {problem}", name

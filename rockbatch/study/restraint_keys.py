@@ -69,18 +69,18 @@ KEYS_OF = {
 
 def fields_of(pier: Pier) -> dict[str, tuple[str, float]]:
     """Return by key the field of Damper or Tendon, and the key's value over the field's; those in kN if the mass is known."""
-    found = {name: (name, 1.0) for name in ("f", "nu", "exponent", "psi")}
-    found |= {"yield_mm": ("yield_m", 1000.0), "lambda": ("lam", 1.0)}
+    fields = {name: (name, 1.0) for name in ("f", "nu", "exponent", "psi")}
+    fields |= {"yield_mm": ("yield_m", 1000.0), "lambda": ("lam", 1.0)}
     if pier.mass_t is not None:
         weight = pier.mass_t * pier.gravity
-        found |= {
+        fields |= {
             "force_kN": ("f", weight),
             "coefficient_kN_s_m": ("nu", weight * pier.p / pier.gravity),
             "prestress_kN": ("psi", weight),
             "stiffness_kN_m": ("lam", weight * pier.size / pier.half_width**2),
             "yield_kN": ("strength", weight),
         }
-    return found
+    return fields
 
 
 def read_restraints(case: Table) -> tuple[dict[str, Sequence[Setting]], tuple[str, ...]]:
@@ -89,15 +89,15 @@ def read_restraints(case: Table) -> tuple[dict[str, Sequence[Setting]], tuple[st
     varied: tuple[str, ...] = ()
     for what, keys in (("damper", DAMPER), ("tendon", TENDON)):
         for n, table in enumerate(_tables(case, what), 1):
-            found = table.read(keys)
-            if believed := found.pop("confirm"):
+            values = table.read(keys)
+            if believed := values.pop("confirm"):
                 read[f"{what}_{n}_confirm"] = [
                     Setting(tuple(_FIELDS.get(name, name) for name in sorted(believed)), table.at)
                 ]
-            for name, value in found.items():
+            for name, value in values.items():
                 read[f"{what}_{n}_{name}"] = value if isinstance(value, list) else [Setting(value, (*table.at, name))]
             varied += tuple(f"{what}_{n}_{name}" for name in listed(table, keys))
-            _check_given(table, found.get("kind") if what == "damper" else "tendon")
+            _check_given(table, values.get("kind") if what == "damper" else "tendon")
             for name in IN_KN:
                 if name in table.data and not has_mass(table.file):
                     table.complain(f"{name}: kN are of a pier whose mass is known; write mass_t in [pier]", name)
@@ -131,8 +131,8 @@ def _check_given(table: Table, kind: str | None) -> None:
     if not any(map(table.has, _NEEDED[kind])):
         example = f"write for example {first} = {(TENDON if kind == 'tendon' else DAMPER)[first].example}, or"
         if kind == "tendon":
-            told = "it has neither prestress nor stiffness, so that it is not there"
-            table.complain(f"{told}; {example} leave the table out")
+            message = "it has neither prestress nor stiffness, so that it is not there"
+            table.complain(f"{message}; {example} leave the table out")
         else:
             table.complain(f"{first} is missing; {example} {other}")
     if kind == "hysteretic" and not table.has("yield_mm"):
@@ -161,8 +161,8 @@ def complain_of_devices(case: Table, chosen: Chosen, pier: Pier, devices: Sequen
     """Note what is impossible about dampers and tendons, or far from usual and not confirmed, each at its key."""
     for (name, values), device in zip(_taken(chosen).items(), devices, strict=True):
         what, _, n = name.partition("_")
-        told = [problem.partition(": ")[2] for problem in wrong_device(pier, device)]
-        for problem in told:
+        problems = [problem.partition(": ")[2] for problem in wrong_device(pier, device)]
+        for problem in problems:
             symbol = problem.partition(" = ")[0]
             key = next(
                 (key for key in values if key == symbol or _FIELDS.get(key) == symbol.replace("lambda", "lam")), ""
@@ -172,7 +172,7 @@ def complain_of_devices(case: Table, chosen: Chosen, pier: Pier, devices: Sequen
             case.file.complain(values[key or next(iter(values))].at, f"{_label(case, what, n)}: {problem}")
         odd = doubt(pier, device)
         key = next((key for key in values if odd is not None and _FIELDS.get(key, key) == odd.name), "")
-        if odd is not None and key and not told:
+        if odd is not None and key and not problems:
             meaning = f"{_label(case, what, n)}: {key} = {values[key].value:g}: {odd.meaning}"
             case.file.complain(values[key].at, f"{meaning}; {remedy(key)} in [[case.{what}]]")
 

@@ -53,9 +53,9 @@ def _table(section: Section) -> Schema:
 def _excluded(section: Section, other: str) -> Iterator[Schema]:
     """Yield the keys that do not apply beside each value of another key, of which there may be several, and without it."""
     for value in options(section[other]):
-        one: Schema = {"const": value}
-        several = {"anyOf": [one, {"type": "array", "items": one, "minItems": 1}]}
-        condition = {"properties": {other: several if section[other].many else one}, "required": [other]}
+        single: Schema = {"const": value}
+        several = {"anyOf": [single, {"type": "array", "items": single, "minItems": 1}]}
+        condition = {"properties": {other: several if section[other].many else single}, "required": [other]}
         yield from _unless(section, other, value, condition)
     if not section[other].required:
         yield from _unless(section, other, section.default(other), {"not": {"required": [other]}})
@@ -69,14 +69,14 @@ def _unless(section: Section, other: str, value: Any, condition: Schema) -> Iter
 
 def _value(section: Section, name: str) -> Schema:
     key = section[name]
-    one = key.kind.schema()
+    single = key.kind.schema()
     if key.pair:
-        one = {"type": "array", "items": one, "minItems": 2, "maxItems": 2}
+        single = {"type": "array", "items": single, "minItems": 2, "maxItems": 2}
     elif key.many:
-        several = {"type": "array", "items": one, "minItems": 1, "uniqueItems": key.distinct}
-        one = {"anyOf": [one, several]}
+        several = {"type": "array", "items": single, "minItems": 1, "uniqueItems": key.distinct}
+        single = {"anyOf": [single, several]}
     default = section.default(name)
-    words = one | {"description": key.words}
+    words = single | {"description": key.words}
     return words if default is None else words | {"default": list(default) if isinstance(default, tuple) else default}
 
 

@@ -238,25 +238,25 @@ def _inputs(file: TomlFile, spread: str, keys: Mapping[str, Key]) -> list[Input]
     within = [name for name in table.data if TABLE.fullmatch(name)]
     if not WITHIN[spread]:
         unfit |= dict.fromkeys(within, "belongs under [sensitivity.uniform]")
-    found = _read(table, spread, keys, unfit=unfit, other=(*within, *RESTRAINTS) if WITHIN[spread] else ())
+    inputs = _read(table, spread, keys, unfit=unfit, other=(*within, *RESTRAINTS) if WITHIN[spread] else ())
     for name in within if WITHIN[spread] else ():
         inner = file.table("sensitivity", spread, name)
         if inner is not None:
             of = WITHIN[spread][name.partition("_")[0]]
-            found += [replace(each, name=f"{name}.{each.name}") for each in _read(inner, spread, of)]
-    return found
+            inputs += [replace(each, name=f"{name}.{each.name}") for each in _read(inner, spread, of)]
+    return inputs
 
 
 def _read(table: Table, spread: str, keys: Mapping[str, Key], **more: Any) -> list[Input]:
-    found = []
+    inputs = []
     for name, levels in table.read(keys, **more).items():
         if spread == "choice":
             if len(levels) != 2:
                 table.complain(f"{name}: expected both choices; write {name} = {keys[name].example}", name)
                 continue
             levels = levels[0].value, levels[1].value
-        found.append(Input(name, spread, levels))
-    return found
+        inputs.append(Input(name, spread, levels))
+    return inputs
 
 
 def _check(table: Table, inputs: Sequence[Input], study: Study) -> None:
@@ -268,8 +268,8 @@ def _check(table: Table, inputs: Sequence[Input], study: Study) -> None:
         mine = applying(inputs, case)
         used |= {each.name for each in mine}
         wrong = unclear(places, case)
-        for name, told in wrong.items():
-            table.complain(told, *places[name])
+        for name, message in wrong.items():
+            table.complain(message, *places[name])
         used |= wrong.keys()
         for each in mine:
             low, high = each.levels
@@ -302,7 +302,7 @@ def _why_none(name: str, study: Study) -> str:
 def _check_corners(table: Table, inputs: Sequence[Input], case: Case) -> None:
     """Check the corners of all ranges: what is possible there is so between them, as no limit turns back within a range."""
     places = {each.name: each.at for each in inputs}
-    told: set[str] = set()
+    reported: set[str] = set()
     for corner in product(*(each.levels for each in inputs)):
         values = dict(zip(places, corner, strict=True))
         try:
@@ -312,9 +312,9 @@ def _check_corners(table: Table, inputs: Sequence[Input], case: Case) -> None:
             wrong = error.problems
         for problem in wrong:
             problem, name = _in_words(problem, values)
-            if name in told:
+            if name in reported:
                 continue
-            told.add(name)
+            reported.add(name)
             at = name if name in places else next((other for other in OF_PIER if other in places), "")
             which = ", ".join(f"{key} = {shown(values[key])}" for key in OF_PIER if key in values)
             where = f" (at {which})" if which and name not in OF_PIER else ""

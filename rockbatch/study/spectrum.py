@@ -142,12 +142,12 @@ def _spectrum(table: Table, study: Study) -> SpectrumSpec | None:
     before = len(table.file.problems)
     expanded, varied = read_cases(table.file, piers)
     del table.file.problems[before:]  # said below, with the slenderness to which it applies
-    told = set()
+    reported = set()
     for each in expanded:
         alpha = each.pier.alpha
         for problem in problems(each.pier, each.base):
-            if (alpha, each.name) not in told:
-                told.add((alpha, each.name))
+            if (alpha, each.name) not in reported:
+                reported.add((alpha, each.name))
                 table.complain(f'alpha = {alpha:g}, case "{each.name}": {problem}', "alpha")
     apart = [name for name in ("mu", "mass_t") if len({values.get(name) for _, values in piers}) > 1]
     varied = ("alpha", *apart, axis, *(name for name in varied if name not in apart))

@@ -18,7 +18,7 @@ def ground_motions(study: Study) -> MotionSet:
     """
     spec = study.motions
     gravity = study.cases[0].pier.gravity
-    found = read_motions(
+    records = read_motions(
         spec.paths,
         vertical=spec.vertical,
         gravity=gravity,
@@ -29,10 +29,10 @@ def ground_motions(study: Study) -> MotionSet:
         confirmed=spec.confirm,
         confirmed_pga=spec.confirm_pga,
     )
-    found = selected(found, spec.select, gravity)
+    records = selected(records, spec.select, gravity)
     if spec.target is not None:
-        found = at_target(found, spec.target, gravity, spec.confirm)
-    reasons = [f"{file.source}: {file.reason}" for file in found.unusable]
+        records = at_target(records, spec.target, gravity, spec.confirm)
+    reasons = [f"{file.source}: {file.reason}" for file in records.unusable]
     if spec.strict and reasons:
         raise InputError(*reasons, f"{len(reasons)} of the records cannot be used, and the study is strict")
     pulses = [
@@ -49,8 +49,8 @@ def ground_motions(study: Study) -> MotionSet:
         )
         for shape in spec.pulses
     ]
-    if not found.motions and not pulses:
-        reasons += [f"{file.source}: {file.reason}" for file in found.left_out]
+    if not records.motions and not pulses:
+        reasons += [f"{file.source}: {file.reason}" for file in records.left_out]
         where = ", ".join(str(path) for path in spec.paths)
         raise InputError(f"{where}: no ground motion that can be used; `rockbatch motions PATH` shows why", *reasons)
-    return replace(found, motions=[*found.motions, *pulses])
+    return replace(records, motions=[*records.motions, *pulses])

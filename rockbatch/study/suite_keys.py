@@ -60,21 +60,21 @@ SELECT = Section(("motions", "select"), (
 
 def read_suite(motions: Table, read: dict[str, Any]) -> dict[str, Any]:
     """Return fields of a ``MotionSpec`` from the values of the keys ``SUITE`` in [motions]; mistakes are noted."""
-    found: dict[str, Any] = {
+    fields: dict[str, Any] = {
         "offset": _offset(motions, read),
         "azimuths": _azimuths(motions, read),
         "select": Selection(),
     }
     for name in ("confirm", "confirm_pga"):
         if name in read:
-            found[name] = tuple(setting.value for setting in read[name])
+            fields[name] = tuple(setting.value for setting in read[name])
     if "strict" in read:
-        found["strict"] = read["strict"]
+        fields["strict"] = read["strict"]
     if "select" in read and (table := motions.file.table(*motions.at, "select")):
-        found["select"] = Selection(**table.read(SELECT))
+        fields["select"] = Selection(**table.read(SELECT))
     if "target" in read and (table := motions.file.table(*motions.at, "target")):
-        found["target"] = read_target(table)
-    return found
+        fields["target"] = read_target(table)
+    return fields
 
 
 def _offset(motions: Table, read: dict[str, Any]) -> Offset:

@@ -115,8 +115,8 @@ def _read_measure(table: Table) -> Target | None:
     del read["confirm"]
     measures = [name for name in ("pga_g", "pgv_m_s", "sa_g") if name in table.data]
     if len(measures) != 1:
-        found = " and ".join(measures) + " are given" if measures else "it is missing what to scale to"
-        table.complain(f"{found}; write one of pga_g, pgv_m_s, sa_g with period_s, or spectrum", *measures[1:2])
+        given = " and ".join(measures) + " are given" if measures else "it is missing what to scale to"
+        table.complain(f"{given}; write one of pga_g, pgv_m_s, sa_g with period_s, or spectrum", *measures[1:2])
     elif measures == ["sa_g"] and "period_s" not in table.data:
         table.complain("period_s is missing beside sa_g; write for example period_s = 1.0", "sa_g")
     elif measures != ["sa_g"]:

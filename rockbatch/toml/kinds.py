@@ -207,8 +207,8 @@ text = Text()
 def closest(word: str, known: Iterable[str]) -> str | None:
     """Return the known word that ``word`` was probably meant to be, whatever its case."""
     by_lower = {name.lower(): name for name in known}
-    found = difflib.get_close_matches(word[:_LONGEST].lower(), by_lower, n=1)
-    return by_lower[found[0]] if found else None
+    matches = difflib.get_close_matches(word[:_LONGEST].lower(), by_lower, n=1)
+    return by_lower[matches[0]] if matches else None
 
 
 def shown(value: Any, limit: int = 60) -> str:

@@ -113,10 +113,10 @@ class TomlFile:
     def table(self, *at: str | int, required: str = "") -> "Table | None":
         """Return the table ``[at]``, or None; ``required`` says what to write if it is missing."""
         name = ".".join(map(str, at))
-        found = self.value(at)
-        if isinstance(found, dict):
-            return Table(self, at, f"[{name}]", found)
-        if found is not None:
+        value = self.value(at)
+        if isinstance(value, dict):
+            return Table(self, at, f"[{name}]", value)
+        if value is not None:
             self.complain(at, f"{name}: expected one table; write [{name}] on a line of its own, once")
         elif required and at not in self.misspelt:
             self.complain(at, f"[{name}] is missing; write {required}")
@@ -129,16 +129,16 @@ class TomlFile:
     def tables(self, *at: str | int, title: str) -> list["Table"]:
         """Return the tables ``[[at]]``; the key ``title`` of each names it in messages."""
         name = ".".join(part for part in at if isinstance(part, str))
-        found = self.value(at)
-        if found is None:
+        value = self.value(at)
+        if value is None:
             return []
-        if not (isinstance(found, list) and all(isinstance(item, dict) for item in found)):
+        if not (isinstance(value, list) and all(isinstance(item, dict) for item in value)):
             self.complain(at, f"{name}: expected a list of tables; write [[{name}]] above each one")
             return []
-        labels = [shown(item[title]) if title in item else f"no. {n}" for n, item in enumerate(found, 1)]
+        labels = [shown(item[title]) if title in item else f"no. {n}" for n, item in enumerate(value, 1)]
         return [
             Table(self, (*at, n), f"[[{name}]] {label}", item)
-            for n, (label, item) in enumerate(zip(labels, found, strict=True))
+            for n, (label, item) in enumerate(zip(labels, value, strict=True))
         ]
 
     def value(self, at: At) -> Any:
@@ -200,17 +200,21 @@ class Table:
                 self.complain(f"{name} = {shown(value)}: {why}", name)
             elif (found := self._checked(name, keys[name], value)) is not None:
                 usable[name] = found
+        self._check_missing(keys)
+        self._doubt(keys, usable)
+        return usable
+
+    def _check_missing(self, keys: Mapping[str, Key]) -> None:
+        """Note required keys that are missing, and keys that do not go together."""
         for name, key in keys.items():
             if key.required and not self.has(name):
                 few = 1 < len(options(key)) < 6
-                one = f"; {name} is {key.kind.words}" if few else ""
-                self.complain(f"{name} is missing; write for example {name} = {key.example}{one}")
+                choices = f"; {name} is {key.kind.words}" if few else ""
+                self.complain(f"{name} is missing; write for example {name} = {key.example}{choices}")
         for clash in keys.clashes if isinstance(keys, Section) else ():
             if all(map(self.has, clash.given)) and not any(map(self.has, clash.lacking)):
                 value = shown(self.data.get(clash.given[0]))
                 self.complain(clash.message.replace("{value}", value), clash.at or clash.given[0])
-        self._doubt(keys, usable)
-        return usable
 
     def _not_applying(self, keys: Mapping[str, Key], name: str) -> str:
         """Return why a key does not apply beside the values of others; empty if it does, or they are not known."""
@@ -237,16 +241,16 @@ class Table:
             for setting in written or ():
                 if shown(setting.value) not in there:
                     instead = f"write one of {', '.join(there)}" if there else "leave it out"
-                    told = f"confirm = {shown(setting.value)}: this table has no such key; {instead}"
-                    self.complain_about(setting, told)
+                    message = f"confirm = {shown(setting.value)}: this table has no such key; {instead}"
+                    self.complain_about(setting, message)
         for name in usable.keys() - confirmed:
             usual = keys[name].usual
             if usual is not None:
-                found = usable[name] if keys[name].many else [Setting(usable[name], (*self.at, name))]
-                for setting in found:
+                settings = usable[name] if keys[name].many else [Setting(usable[name], (*self.at, name))]
+                for setting in settings:
                     if setting.value > usual.most:
-                        told = f"{name} = {setting.value:g}: more than {usual.most:g} {usual.words}"
-                        self.complain_about(setting, f"{told}; {remedy(name)} in this table")
+                        message = f"{name} = {setting.value:g}: more than {usual.most:g} {usual.words}"
+                        self.complain_about(setting, f"{message}; {remedy(name)} in this table")
 
     def _checked(self, name: str, key: Key, value: Any) -> Any:
         whole = Setting(value, (*self.at, name))
@@ -285,8 +289,8 @@ class Table:
         if len(ends) == 2 and ends[0] < ends[1]:
             return ends[0], ends[1]
         example = shown([ends[1], ends[0]]) if len(ends) == 2 and ends[0] > ends[1] else key.example
-        told = f"{name} = {shown(value)}: expected a range, its two ends in order"
-        self.complain(f"{told}; write for example {name} = {example}", name)
+        message = f"{name} = {shown(value)}: expected a range, its two ends in order"
+        self.complain(f"{message}; write for example {name} = {example}", name)
         return None
 
     def _converted(self, name: str, key: Key, setting: Setting) -> Any:
@@ -356,10 +360,10 @@ _SLIPS = (  # what people write, and what TOML wants
 
 
 def _syntax_error(path: Path, text: str, error: str) -> str:
-    found = re.search(r"\(at (?:line (\d+), column \d+|end of document)\)", error)
-    reason = (error[: found.start()] if found else error)[:_LONGEST].strip()
+    place = re.search(r"\(at (?:line (\d+), column \d+|end of document)\)", error)
+    reason = (error[: place.start()] if place else error)[:_LONGEST].strip()
     all_lines = text.split("\n")
-    number = int(found.group(1)) if found and found.group(1) else max(1, len(text.rstrip().split("\n")))
+    number = int(place.group(1)) if place and place.group(1) else max(1, len(text.rstrip().split("\n")))
     line = all_lines[number - 1].strip()[:_LONGEST]
     bare = re.sub(r"\s#.*", "", line)
     hint = next((f"; {advice}" for pattern, advice in _SLIPS if re.search(pattern, bare)), "")
@@ -375,6 +379,6 @@ def _second_time(lines: list[str], number: int) -> str:
         inner = re.compile(rf"\s*\[+\s*{header[1]}\s*\.")
         first = next((n for n, line in enumerate(lines[: number - 1], 1) if inner.match(line[:_LONGEST])), 0)
         if first:
-            told = lines[first - 1].strip()[:_LONGEST]
-            return f"; {told} in line {first} stands before it: write it below the [[{header[1]}]] that it belongs to"
+            above = lines[first - 1].strip()[:_LONGEST]
+            return f"; {above} in line {first} stands before it: write it below the [[{header[1]}]] that it belongs to"
     return "; it is given a second time, keep one"

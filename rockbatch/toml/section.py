@@ -140,15 +140,15 @@ class Section(Mapping[str, Key]):
 
 def homes(sections: Iterable[Section]) -> dict[str, str]:
     """Return by the name of a key or of an inner table, where it belongs."""
-    found: dict[str, dict[str, None]] = {}
+    headers: dict[str, dict[str, None]] = {}
     outer: dict[tuple[str, ...], Section] = {}
     for section in sections:
         outer[section.at] = section
         if len(section.at) > 1:
             above = outer[section.at[:-1]]
-            found[section.at[-1]] = {f"{'its ' if above.many else ''}{above.header}: write {section.header}": None}
+            headers[section.at[-1]] = {f"{'its ' if above.many else ''}{above.header}: write {section.header}": None}
         for name in section if section.at else ():
-            if not (section.free and name in found):  # a reference repeats the keys of cases
-                found.setdefault(name, {})[section.header] = None
+            if not (section.free and name in headers):  # a reference repeats the keys of cases
+                headers.setdefault(name, {})[section.header] = None
     own = {section.at[0] for section in outer.values() if section.at}
-    return {name: " or ".join(places) for name, places in found.items() if name not in ("name", "confirm", *own)}
+    return {name: " or ".join(places) for name, places in headers.items() if name not in ("name", "confirm", *own)}
