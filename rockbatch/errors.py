@@ -17,8 +17,8 @@ class InputError(ValueError):
     ... except rb.InputError as error:
     ...     for problem in error.problems:
     ...         print(problem)
-    p = 0: must be a number above 0 [rad/s]
     alpha = 7.4: must be below π/2 = 1.5708 rad; if it is in degrees, write 0.1292
+    p = 0: must be a number above 0 [rad/s]
     """
 
     def __init__(self, *problems: str) -> None:
