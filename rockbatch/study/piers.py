@@ -131,8 +131,8 @@ def read_piers(file: TomlFile) -> tuple[list[tuple[Pier, Values]], tuple[str, ..
 
 
 def has_mass(file: TomlFile) -> bool:
-    """Return whether [pier] says what the pier weighs."""
-    return file.has(("pier", "mass_t")) or bool(file.value(("pier", "part")))
+    """Return whether [pier] says what the pier weighs, or may do so under another name."""
+    return file.has(("pier", "mass_t")) or bool(file.value(("pier", "part"))) or ("pier",) in file.misspelt
 
 
 def _part(table: Table, n: int) -> tuple[dict[str, Sequence[Setting]], tuple[str, ...]]:

@@ -41,6 +41,13 @@ def test_a_misspelt_key_is_told_alone_and_not_as_missing_too(tmp_path, tables, m
     assert problem.partition(": ")[2] == message
 
 
+def test_a_misspelt_pier_is_told_alone_though_its_mass_is_not_read(tmp_path):
+    devices = {"damper": [{"kind": "friction", "force_kN": 40.0}]}
+    text = study_text(pier=HEAVY, cases=[PADS | devices]).replace("[pier]", "[peir]")
+    (problem,) = said(tmp_path, text)
+    assert problem.endswith("peir: unknown section; did you mean pier?")
+
+
 @pytest.mark.parametrize(
     ("tables", "message"),
     [
