@@ -103,7 +103,7 @@ def _levels(table: Table, read: dict[str, Any]) -> tuple[float, ...]:
     if measure is None:
         return ()
     own, settings = LEVELS[measure], given[measure == "PGV"]
-    if not (settings or table.has("levels_g") or table.has("levels_m_s")):
+    if not table.has(own):
         table.complain(f"{own} is missing; write for example {own} = {FRAGILITY[own].example}")
     if measure == "Sa" and not table.has("period_s"):
         table.complain(f"period_s is missing; write for example period_s = {FRAGILITY['period_s'].example}")

@@ -288,9 +288,8 @@ class Table:
             return None
         if len(ends) == 2 and ends[0] < ends[1]:
             return ends[0], ends[1]
-        example = shown([ends[1], ends[0]]) if len(ends) == 2 and ends[0] > ends[1] else key.example
-        message = f"{name} = {shown(value)}: expected a range, its two ends in order"
-        self.complain(f"{message}; write for example {name} = {example}", name)
+        example = shown([min(ends), max(ends)]) if ends and min(ends) < max(ends) else key.example
+        self.complain(f"{name} = {shown(value)}: expected a range; write for example {name} = {example}", name)
         return None
 
     def _converted(self, name: str, key: Key, setting: Setting) -> Any:

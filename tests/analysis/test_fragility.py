@@ -419,15 +419,21 @@ def test_components_of_one_station_make_bands_that_are_too_narrow_and_it_is_said
         ("", ["measure is missing"]),
         ('measure = "PGD"', ['expected one of "PGA", "PGV", "Sa"; did you mean']),
         ('measure = "PGA"', ["levels_g is missing"]),
-        ('measure = "PGA"\nlevels_m_s = [0.2, 0.4]', ["levels_m_s: PGA is given in g; write levels_g"]),
+        (
+            'measure = "PGA"\nlevels_m_s = [0.2, 0.4]',
+            ['levels_m_s = [0.2, 0.4]: does not apply to measure = "PGA"', "levels_g is missing"],
+        ),
         ('measure = "Sa"\nlevels_g = [0.2, 0.4]', ["period_s is missing"]),
         (
             'measure = "PGA"\nperiod_s = 1.0\nlevels_g = [0.2]',
-            ['period_s: is for measure = "Sa"', "one level tells no"],
+            [
+                'period_s = 1.0: does not apply to measure = "PGA"; leave it out, or write measure = "Sa"',
+                "one level tells no",
+            ],
         ),
         ('measure = "PGA"\nlevels_g = [0.4, 0.2]', ["levels_g = 0.2: after 0.4; write them in rising order"]),
-        (f"{STRIPES}\ntolerance = 0.1", ['tolerance: is for method = "ida"']),
-        (f"{STRIPES}\nhunt_step = 0.1", ['hunt_step: is for method = "ida"']),
+        (f"{STRIPES}\ntolerance = 0.1", ['tolerance = 0.1: is for method = "ida"; write that too']),
+        (f"{STRIPES}\nhunt_step = 0.1", ['hunt_step = 0.1: is for method = "ida"']),
         (f"{IDA}\nhunt_step = 1e-4", ["hunt_step = 0.0001: expected a number from 0.001 to 1"]),
         (f'{STRIPES}\nmethod = "IDA"', ['did you mean "ida"?']),
         (

@@ -281,7 +281,12 @@ TWO = TIED | {"damper": [{"kind": "friction", "f": 0.05, "at": "left"}, {"kind":
             "f = ",
             'does not hold the 0.05 of case "tied"; write damper.f = [0.05, 0.1]',
         ),
-        ({"damper": {"f": [0.02, 20.0]}}, {}, "f = ", "damper.f = 20: its force over the weight must be within 0..10"),
+        (
+            {"damper": {"f": [0.02, 20.0]}},
+            {},
+            "f = ",
+            "[sensitivity.uniform.damper]: f = 20.0: its force over the weight must be within 0..10",
+        ),
         ({"damper": {"f": [0.1, 0.02]}}, {}, "f = ", "expected a range; write for example f = [0.02, 0.1]"),
         ({"damper": {"force": [1.0, 2.0]}}, {}, "force = ", "force: unknown key; did you mean force_kN?"),
         (

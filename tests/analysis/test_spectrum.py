@@ -133,7 +133,7 @@ def test_every_mistake_is_told_with_its_line(tmp_path):
         read(text, tmp_path)
     told = "\n".join(caught.value.problems)
     for line, words in (
-        (38, "points = 1: expected 2 or more"),
+        (38, "points = 1: expected a whole number, 2 or above"),
         (39, "pint: unknown key; did you mean points?"),
         (42, 'did you mean "sine"?'),
         (43, "frequency = [5, 1]: expected a range; write for example frequency = [1.0, 5.0]"),

@@ -283,7 +283,7 @@ def test_a_pulse_needs_the_parameters_of_its_shape_and_no_others(tmp_path, capsy
     assert main(["spectrum", str(tmp_path / "study.toml"), "--out", str(tmp_path / "out")]) == 2
     told = capsys.readouterr().err
     for words in (
-        '21: [[spectrum.map]] "one": nu: does not apply',
+        '21: [[spectrum.map]] "one": nu = 1.0: does not apply',
         "gamma = 1.0: expected a number above 1",
         "nu is missing",
         'name = "one": given twice',
