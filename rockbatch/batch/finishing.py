@@ -27,7 +27,8 @@ from rockbatch.results.columns import PEAKS, unusable_rows
 from rockbatch.results.estimate import ESTIMATE, write_estimate
 from rockbatch.results.histories_file import HISTORIES
 from rockbatch.results.intensity import INTENSITY, write_intensity
-from rockbatch.results.reading import Saved, edited, read_saved
+from rockbatch.results.opened import open_results
+from rockbatch.results.reading import Saved, edited
 from rockbatch.results.run_json import INFO, describe, versions, write_info
 from rockbatch.study import Study
 
@@ -144,14 +145,14 @@ def finish(
     """
     with told_if_slow(listener, f"writing {INFO}"):
         write_info(directory, info)
-        saved = read_saved(directory)
+        saved = open_results(directory)
     histories, without = _keep_histories(saved, study, runs, listener, records)
     with told_if_slow(listener, f"holding {len(study.checks)} checks against {len(study.cases)} cases"):
         judged = verdicts(saved) if study.checks else []
         checks = write_verdicts(directory, judged) if study.checks else None
     beside = _beside_peaks(saved, study, motions)
     with told_if_slow(listener, f"writing {REPORT}"):
-        report = write_report(directory)
+        report = write_report(directory, saved=saved)
     written = (directory / PEAKS, directory / INFO, *beside, histories, checks, report)
     return FinishedBatch(saved, motions, judged, tuple(path for path in written if path), without)
 

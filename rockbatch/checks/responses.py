@@ -45,7 +45,13 @@ class Worst(NamedTuple):
     demand: str
     value: float
     case: Case
-    run: "pd.Series[Any]"
+    runs: "pd.DataFrame"
+    place: int
+
+    @property
+    def run(self) -> "pd.Series[Any]":
+        """Row of peaks.csv of the run, which is at ``place`` among ``runs``."""
+        return self.runs.iloc[self.place]
 
 
 def worst_of_cases(suites: "Iterable[tuple[Case, pd.DataFrame]]") -> list[Worst]:
@@ -58,14 +64,14 @@ def worst_of_cases(suites: "Iterable[tuple[Case, pd.DataFrame]]") -> list[Worst]
     """
     worst = []
     for case, runs in suites:
-        stood = runs[(runs["status"] == "ok") & runs["theta_max_over_alpha"].notna()]
+        stood = ((runs["status"] == "ok") & runs["theta_max_over_alpha"].notna()).to_numpy()
         for name in RESPONSES:
             if case["base"] not in DEMANDS[name].bases:
                 continue
-            values = DEMANDS[name].of(stood, case).value
+            values = np.where(stood, DEMANDS[name].of(runs, case).value, np.nan)
             if np.isfinite(values).any():
                 place = int(np.nanargmax(values))
-                worst.append(Worst(name, float(values[place]), case, stood.iloc[place]))
+                worst.append(Worst(name, float(values[place]), case, runs, place))
     return worst
 
 

@@ -31,9 +31,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def main(arguments: argparse.Namespace) -> int:
     from rockbatch.checks import write_verdicts
     from rockbatch.results.checking import verdicts
-    from rockbatch.results.reading import read_saved
+    from rockbatch.results.opened import open_results
 
-    saved = read_saved(arguments.directory)
+    saved = open_results(arguments.directory)
     results = verdicts(saved, arguments.rules)
     if unusable := len(saved.info["unusable"]):
         say(f"files that are no usable records, and in no suite: {unusable}")
@@ -43,7 +43,7 @@ def main(arguments: argparse.Namespace) -> int:
     if is_plain(arguments.directory / "report.html"):
         from rockbatch.report import write_report
 
-        say(str(write_report(arguments.directory)))
+        say(str(write_report(arguments.directory, saved=saved)))
     return code
 
 

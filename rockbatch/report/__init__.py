@@ -16,7 +16,7 @@ from rockbatch.report.contents import Contents, read
 from rockbatch.report.finished import read as read_finished
 from rockbatch.report.page import comparison, page
 from rockbatch.report.pair import pair
-from rockbatch.results.reading import read_saved
+from rockbatch.results.opened import Results, open_results
 from rockbatch.results.response import Response
 from rockbatch.study import Study
 
@@ -28,7 +28,13 @@ REPORT = "report.html"
 __all__ = ["REPORT", "Report", "report", "write_analyses", "write_comparison", "write_report"]
 
 
-def write_report(directory: Path, responses: Sequence[Response] | None = None, *, out: Path | None = None) -> Path:
+def write_report(
+    directory: Path,
+    responses: Sequence[Response] | None = None,
+    *,
+    out: Path | None = None,
+    saved: Results | None = None,
+) -> Path:
     """Write ``report.html`` beside the results it tells of.
 
     Parameters
@@ -40,6 +46,8 @@ def write_report(directory: Path, responses: Sequence[Response] | None = None, *
         Runs whose histories are shown instead of those in ``histories.h5``.
     out : Path, optional
         File to write instead.
+    saved : Results, optional
+        The results, where they were read already.
 
     Returns
     -------
@@ -49,7 +57,7 @@ def write_report(directory: Path, responses: Sequence[Response] | None = None, *
     """
     directory = Path(directory)
     target = out or directory / REPORT
-    write_whole(target, page(read(directory, responses)))
+    write_whole(target, page(read(directory, responses, saved)))
     return target
 
 
@@ -115,7 +123,7 @@ class Report:
         """Write the page into ``folder``, under its name; return its path."""
         directory = Path(folder)
         directory.mkdir(parents=True, exist_ok=True)
-        return _write(self.folders, directory / self.path.name)
+        return _write([open_results(folder) for folder in self.folders], directory / self.path.name)
 
 
 def report(
@@ -157,14 +165,17 @@ def report(
     Name: count, dtype: int64
     """
     folders = (Path(directory),) if other is None else (Path(directory), Path(other))
-    path = _write(folders, None if out is None else Path(out))
-    tables = [(read_saved(folder).peaks, as_table(read_verdicts(folder))) for folder in folders]
+    saved = [open_results(folder) for folder in folders]
+    path = _write(saved, None if out is None else Path(out))
+    tables = [(one.peaks, as_table(read_verdicts(one.directory))) for one in saved]
     peaks, checks = (_beside(own) for own in zip(*tables, strict=True))
     return Report(path, folders, peaks, checks)
 
 
-def _write(folders: Sequence[Path], out: Path | None) -> Path:
-    return write_report(folders[0], out=out) if len(folders) == 1 else write_comparison(*folders, out=out)
+def _write(saved: Sequence[Results], out: Path | None) -> Path:
+    if len(saved) > 1:
+        return write_comparison(*(one.directory for one in saved), out=out)
+    return write_report(saved[0].directory, out=out, saved=saved[0])
 
 
 def _beside(tables: "Sequence[pd.DataFrame]") -> "pd.DataFrame":

@@ -9,7 +9,7 @@ from rockbatch.checks import Verdict, read_verdicts
 from rockbatch.report import finished_analysis
 from rockbatch.report.finished import Finished, finished
 from rockbatch.report.finished_analysis import FinishedAnalysis
-from rockbatch.results.opened import open_results
+from rockbatch.results.opened import Results, open_results
 from rockbatch.results.response import Response
 
 
@@ -42,11 +42,13 @@ class Contents:
         return finished_analysis.read(self.directory, name, self.study["sha256"])
 
 
-def read(directory: Path, responses: Sequence[Response] | None = None) -> Contents:
+def read(directory: Path, responses: Sequence[Response] | None = None, saved: Results | None = None) -> Contents:
     """All that the folder of a run holds; ``responses`` are shown instead of those in ``histories.h5``.
+
+    ``saved`` is what was read there already.
 
     Raises ``InputError`` where the results are missing, damaged or do not belong together.
     """
-    results = open_results(directory)
+    results = saved or open_results(directory)
     shown = results.responses if responses is None else responses
     return Contents(directory, results.info["study"], finished(results), shown, read_verdicts(directory))

@@ -2,6 +2,8 @@
 
 import html
 import math
+import re
+from functools import cache
 
 from rockbatch.files import legible
 
@@ -12,22 +14,34 @@ class Markup(str):
 
 def escape(content: object) -> str:
     """``content`` as HTML, legible; only :class:`Markup` goes through as it is."""
-    return content if isinstance(content, Markup) else html.escape(legible(str(content), keep="\t\r\n"))
+    if isinstance(content, Markup):
+        return content
+    text = str(content)
+    return text if _PLAIN.fullmatch(text) else html.escape(legible(text, keep="\t\r\n"))
+
+
+_PLAIN = re.compile(r"[\w .,:;/()+−–-]*")
+"""Most texts: nothing in them is escaped."""
 
 
 def join(*children: object, between: str = "") -> Markup:
     """Return the children one after the other, escaped."""
-    return Markup(between.join(escape(child) for child in children))
+    return Markup(between.join([escape(child) for child in children]))
 
 
 def tag(name: str, *children: object, **attributes: object) -> Markup:
     """Return an element; ``class_`` becomes ``class``, ``aria_label`` ``aria-label``; None and False omit an attribute."""
     written = [
-        f" {key.rstrip('_').replace('_', '-')}" + ("" if value is True else f'="{escape(str(value))}"')
+        _attribute(key) if value is True else f'{_attribute(key)}="{escape(str(value))}"'
         for key, value in attributes.items()
         if value is not None and value is not False
     ]
-    return Markup(f"<{name}{''.join(written)}>{join(*children)}</{name}>")
+    return Markup(f"<{name}{''.join(written)}>{''.join(map(escape, children))}</{name}>")
+
+
+@cache
+def _attribute(key: str) -> str:
+    return f" {key.rstrip('_').replace('_', '-')}"
 
 
 def number(value: object, form: str = ".4g") -> str:

@@ -1,6 +1,6 @@
 """All peaks in a picture of a few rows, by record or by foundation, for any number of runs."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from rockbatch.checks import Verdict, wording
@@ -23,6 +23,8 @@ MOST_COLUMNS = 3
 MOST_NAMED = 12
 """Most foundations that each have a mark of their own."""
 MOST_FOUNDATIONS = 300
+SHOWN = ["record", "series", "polarity", "status", "theta_max_over_alpha", "theta_max_error"]
+"""Columns that the dots and their words are made of."""
 MOST_STRETCH = 2.0
 """Largest factor on the axis, so that a limit far above all peaks does not crowd them at one end."""
 
@@ -35,7 +37,8 @@ def by_record(finished: Finished, verdicts: Sequence[Verdict] = ()) -> Markup:
     columns = _columns(finished)
     names = worst_first(runs, "record")
     single = names if len(names) <= MOST_ROWS else names[: MOST_ROWS - 1]
-    rows = [_row_of_record(finished, str(name), columns) for name in single]
+    split = _split(columns, "record")
+    rows = [_row_of_record(finished, str(name), split) for name in single]
     if len(single) < len(names):
         rows.append(_others(columns, "record", single, len(names)))
     series = finished.series if len(finished.series) <= MOST_NAMED else None
@@ -82,7 +85,8 @@ def by_foundation(finished: Finished) -> Markup:
     """Draw a row for each of the best foundations and one for the others; below, folded, a row for every one."""
     runs, columns = finished.runs, _columns(finished)
     best = worst_first(runs, "series")[::-1]
-    rows = [_row_of_foundation(finished, int(place), columns) for place in best[: MOST_ROWS - 1]]
+    split = _split(columns, "series")
+    rows = [_row_of_foundation(finished, int(place), split) for place in best[: MOST_ROWS - 1]]
     rows.append(_others(columns, "series", best[: MOST_ROWS - 1], len(best)))
     marks = dots.Marks(
         None,
@@ -93,7 +97,7 @@ def by_foundation(finished: Finished) -> Markup:
     order = ", a row for each foundation, the best first: those that overturn, fly or fail the least often, then by their peaks"
     caption = join("Largest rotation over slenderness, ", THETA, order, _all(finished))
     every = sorted(best)[:MOST_FOUNDATIONS]
-    drawn = dots.draw([_row_of_foundation(finished, int(place), columns) for place in every], words, top, marks)
+    drawn = dots.draw([_row_of_foundation(finished, int(place), split) for place in every], words, top, marks)
     first = "All" if len(every) == len(best) else f"The first {len(every)} of"
     return join(
         figure(dots.draw(rows, words, top, marks), caption),
@@ -126,20 +130,32 @@ def worst_first(runs: "pd.DataFrame", by: str) -> list[Any]:
     return sorted(stood.index, key=lambda row: (*(-int(count[row]) for count in ended), -float(stood[row]), row))
 
 
-def _row_of_record(finished: Finished, name: str, columns: "Sequence[tuple[str, pd.DataFrame]]") -> dots.Row:
+def _split(columns: "Sequence[tuple[str, pd.DataFrame]]", by: str) -> "list[Callable[[object], pd.DataFrame]]":
+    """Of each column what gives the runs of one record or foundation."""
+
+    def of(runs: "pd.DataFrame") -> "Callable[[object], pd.DataFrame]":
+        places = runs.groupby(by).indices
+        return lambda one: runs.iloc[places.get(one, [])]
+
+    return [of(own[SHOWN]) for _, own in columns]
+
+
+def _row_of_record(finished: Finished, name: str, columns: "Sequence[Callable[[object], pd.DataFrame]]") -> dots.Row:
     """Of the label the direction, at the end, always stays."""
     words, comma, end = finished.label(name).rpartition(", ")
     words, end = (words, comma + end) if words else (end, "")
-    return dots.Row(words, end, finished.named(name), [own[own["record"] == name] for _, own in columns])
+    return dots.Row(words, end, finished.named(name), [own(name) for own in columns])
 
 
-def _row_of_foundation(finished: Finished, place: int, columns: "Sequence[tuple[str, pd.DataFrame]]") -> dots.Row:
+def _row_of_foundation(
+    finished: Finished, place: int, columns: "Sequence[Callable[[object], pd.DataFrame]]"
+) -> dots.Row:
     label = finished.series[place].label
-    return dots.Row(label, "", label, [own[own["series"] == place] for _, own in columns])
+    return dots.Row(label, "", label, [own(place) for own in columns])
 
 
 def _others(columns: "Sequence[tuple[str, pd.DataFrame]]", by: str, single: Sequence[object], every: int) -> dots.Row:
     """Return the row of all that have no row of their own."""
     what = {"record": "records", "series": "foundations"}[by]
-    rest = [own[~own[by].isin(single)] for _, own in columns]
+    rest = [own.loc[~own[by].isin(single), SHOWN] for _, own in columns]
     return dots.Row(f"the other {every - len(single):,} {what}", "", "", rest)

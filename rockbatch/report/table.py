@@ -4,7 +4,7 @@ from collections.abc import Iterable, Sequence
 from itertools import groupby
 from typing import NamedTuple
 
-from rockbatch.report.markup import Markup, join, number, tag
+from rockbatch.report.markup import Markup, escape, join, number, tag
 
 WHOLE = ".10g"  # all digits as given
 MOST_ROWS = 1000
@@ -40,19 +40,19 @@ def table(
     used = [i for i in range(len(heads)) if i == 0 or any(row[i] not in (None, "") for row in rows)]
     numeric = {i for i in used if heads[i].form != WHOLE or any(isinstance(row[i], float | int) for row in rows)}
 
-    def cell(kind: str, i: int, content: object, **more: object) -> Markup:
-        return tag(kind, content, class_="n" if i in numeric else None, **more)
-
-    top = [tag("tr", *(cell("th", i, heads[i].says, scope="col", title=heads[i].note) for i in used))]
+    classes = {i: "n" if i in numeric else None for i in used}
+    top = [tag("tr", *(tag("th", heads[i].says, class_=classes[i], scope="col", title=heads[i].note) for i in used))]
     if any(heads[i].over for i in used):
         spans = [(over, len(list(same))) for over, same in groupby(used, key=lambda i: heads[i].over)]
         over = (tag("th", says, scope="colgroup" if says else None, colspan=wide) for says, wide in spans)
         top.insert(0, tag("tr", *over, class_="over"))
-    body = []
-    for row in rows:
-        texts = {i: row[i] if isinstance(row[i], Markup) else number(row[i], heads[i].form) for i in used}
-        first = {"scope": "row"}
-        body.append(tag("tr", *(cell("th", i, texts[i], **first) if i == 0 else cell("td", i, texts[i]) for i in used)))
+    columns = [
+        _cells(
+            "td" if i else "th", [row[i] for row in rows], heads[i].form, class_=classes[i], scope=None if i else "row"
+        )
+        for i in used
+    ]
+    body = [tag("tr", *cells) for cells in zip(*columns, strict=True)]
     drawn = tag("table", tag("thead", *top), tag("tbody", *body), class_="sortable" if sortable else None)
     wide = tag(
         "div", drawn, class_="wide prose" if prose else "wide", tabindex="0", role="region", aria_label=name or "Table"
@@ -60,6 +60,17 @@ def table(
     if len(rows) > MOST_OPEN:
         wide = tag("details", tag("summary", f"{name or 'Table'}: {len(rows):,} rows"), wide)
     return join(told_apart(len(rows), len(whole)), wide)
+
+
+def _cells(kind: str, values: Iterable[object], form: str, **attributes: object) -> list[Markup]:
+    """The cells of a column."""
+    start, end = tag(kind, _HERE, **attributes).split(_HERE)
+    return [
+        Markup(f"{start}{escape(value if isinstance(value, Markup) else number(value, form))}{end}") for value in values
+    ]
+
+
+_HERE = Markup("\0")
 
 
 def told_apart(shown: int, all_: int, which: str = "first") -> Markup:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from rockbatch.checks.statistics import quantile
+from rockbatch.checks.statistics import Values
 
 NO_PEAK = ("overturned", "flight")
 """Outcomes without a largest rotation: they count as larger than any."""
@@ -37,30 +37,41 @@ class Suite:
 
 class Records(NamedTuple):
     """Runs as records: the worst magnitude of each, infinite where the pier overturned or flew, NaN where it is unknown;
-    and of which of them that is so. Shapes (n,)."""
+    of which of them that is so; and the group to which each belongs, in whose order they are. Shapes (n,)."""
 
-    worst: npt.NDArray[np.float64]
+    worst: Values
     overturned: npt.NDArray[np.bool_]
     flight: npt.NDArray[np.bool_]
     failed: npt.NDArray[np.bool_]
+    group: npt.NDArray[np.int64]
 
     @property
-    def known(self) -> npt.NDArray[np.float64]:
-        """Of the records that have an outcome, and to which the quantity applies."""
-        return self.worst[~self.failed & ~np.isnan(self.worst)]
+    def known(self) -> npt.NDArray[np.bool_]:
+        """Whether each has an outcome to which the quantity applies."""
+        return ~self.failed & ~np.isnan(self.worst)
 
 
-def records(values: npt.NDArray[np.float64], status: Sequence[str], counted_as: Sequence[str] | None = None) -> Records:
+def records(
+    values: Values,
+    status: Sequence[str],
+    counted_as: Sequence[str] | None = None,
+    group: npt.NDArray[np.int64] | None = None,
+) -> Records:
     """The records of runs with ``values``, shape (n,), of which the magnitude counts, and the ``status`` of each.
 
-    Runs that are ``counted_as`` one record count once, with the worst of them: overturned before flight before any value.
-    Where one of them failed and none is worse than any value, the record is unknown. By default every run is a record.
+    Runs of one ``group`` that are ``counted_as`` one record count once, with the worst of them: overturned before flight
+    before any value. Where one of them failed and none is worse than any value, the record is unknown. By default every run
+    is a record, and all are of group 0.
     """
     kinds = np.asarray(status, dtype=object)
     gone = np.isin(kinds, NO_PEAK)
     magnitudes = np.where(gone, math.inf, np.where(kinds == "failed", math.nan, np.abs(values)))
-    names = np.arange(len(kinds)) if counted_as is None else np.asarray(counted_as, dtype=str)
-    found, record = np.unique(names, return_inverse=True)
+    names = np.arange(len(kinds))
+    if counted_as is not None:
+        names = np.unique(np.asarray(counted_as, dtype=str), return_inverse=True)[1]
+    if group is None:
+        group = np.zeros(len(kinds), dtype=np.int64)
+    found, record = np.unique(group * (len(names) + 1) + names, return_inverse=True)
 
     def any_of(runs: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
         return np.bincount(record, runs, len(found)) > 0
@@ -70,26 +81,49 @@ def records(values: npt.NDArray[np.float64], status: Sequence[str], counted_as: 
     over = any_of(kinds == "overturned")
     flown = any_of(kinds == "flight") & ~over
     failed = any_of(kinds == "failed") & ~over & ~flown
-    return Records(worst, over, flown, failed)
+    return Records(worst, over, flown, failed, found // (len(names) + 1))
 
 
-def suite(values: npt.NDArray[np.float64], status: Sequence[str], counted_as: Sequence[str] | None = None) -> Suite:
+def suite(values: Values, status: Sequence[str], counted_as: Sequence[str] | None = None) -> Suite:
     """Statistics of the magnitudes of ``values``, shape (n,), over their :func:`records`; NaN does not apply."""
-    of = records(values, status, counted_as)
-    known = of.known
-    stood = known[np.isfinite(known)]
-    if len(known):
-        low, median, high, largest = (quantile(known, q) for q in (0.16, 0.5, 0.84, 1.0))
-    else:
-        low = median = high = largest = math.nan
-    mean = float(stood.mean()) if len(stood) else math.nan
-    counts = (int(each.sum()) for each in (of.overturned, of.flight, of.failed))
-    return Suite(len(known), len(stood), mean, low, median, high, largest, *counts)
+    return suites(values, status, counted_as, np.zeros(len(values), dtype=np.int64), 1)[0]
+
+
+def suites(
+    values: Values, status: Sequence[str], counted_as: Sequence[str] | None, group: npt.NDArray[np.int64], groups: int
+) -> list[Suite]:
+    """Statistics of each of ``groups`` groups of runs; ``group``, shape (n,), is the place of that of each run."""
+    of = records(values, status, counted_as, group)
+    known, which = of.worst[of.known], of.group[of.known]
+    ordered = known[np.lexsort((known, which))]
+    n = np.bincount(which, minlength=groups)
+    first = np.cumsum(n) - n
+    stood = np.isfinite(known)
+    standing = np.bincount(which[stood], minlength=groups)
+    total = np.bincount(which[stood], known[stood], groups)
+    mean = np.where(standing > 0, total / np.maximum(standing, 1), math.nan)
+    at = [_quantiles(ordered, first, n, q) for q in (0.16, 0.5, 0.84, 1.0)]
+    counts = [np.bincount(of.group[each], minlength=groups) for each in (of.overturned, of.flight, of.failed)]
+    return [Suite(*one) for one in zip(*(each.tolist() for each in (n, standing, mean, *at, *counts)), strict=True)]
+
+
+def _quantiles(ordered: Values, first: npt.NDArray[np.int64], n: npt.NDArray[np.int64], q: float) -> Values:
+    """As :func:`rockbatch.checks.statistics.quantile`, of ``n`` values each, in order, from ``first`` on; NaN of none."""
+    found = np.full(len(n), math.nan)
+    has = n > 0
+    last = n[has] - 1
+    below = np.floor(q * last).astype(np.int64)
+    share = q * last - below
+    low, high = ordered[first[has] + below], ordered[first[has] + np.minimum(below + 1, last)]
+    between = share >= 1e-9  # else rounding, no reason to look at the next rank
+    with np.errstate(invalid="ignore"):
+        found[has] = np.where(between, np.where(np.isinf(high), math.inf, low + share * (high - low)), low)
+    return found
 
 
 def distribution(
-    values: npt.NDArray[np.float64], status: Sequence[str], counted_as: Sequence[str] | None = None
-) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+    values: Values, status: Sequence[str], counted_as: Sequence[str] | None = None
+) -> tuple[Values, Values]:
     """Empirical distribution of the magnitudes of ``values``, shape (n,), over their :func:`records`.
 
     Returns
@@ -98,6 +132,7 @@ def distribution(
         The value of each record that stood, in order, and the share of all records with an outcome that do not exceed it:
         those under which the pier overturned, or that were ended by flight, exceed all of them.
     """
-    known = np.sort(records(values, status, counted_as).known)
+    of = records(values, status, counted_as)
+    known = np.sort(of.worst[of.known])
     stood = known[np.isfinite(known)]
     return stood, np.arange(1, len(stood) + 1) / max(len(known), 1)

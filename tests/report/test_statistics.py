@@ -8,8 +8,9 @@ import pytest
 from report_page import Page
 from report_samples import FIG7, write_results
 
+from rockbatch.checks.statistics import quantile
 from rockbatch.report import write_report
-from rockbatch.results.suite_statistics import suite
+from rockbatch.results.suite_statistics import records, suite, suites
 
 
 def test_mean_median_and_percentiles_are_those_of_the_magnitudes():
@@ -50,6 +51,26 @@ def test_runs_of_one_station_count_once_with_the_worst_of_them():
     assert (result.median, result.largest) == (0.4, math.inf)
     both = suite(np.array([1.0, 1.0]), ["flight", "overturned"], ["A", "A"])
     assert (both.count, both.overturned, both.flight) == (1, 1, 0)
+
+
+def test_groups_that_are_taken_at_once_have_the_statistics_that_each_has_alone():
+    rng = np.random.default_rng(3)
+    group = rng.integers(0, 7, 300)  # of eight: the last has no runs
+    values = np.where(rng.random(300) < 0.1, math.nan, rng.normal(size=300))
+    status = rng.choice(["ok", "ok", "ok", "overturned", "flight", "failed"], 300).tolist()
+    names = [f"S{i}" for i in rng.integers(0, 12, 300)]
+    found = suites(values, status, names, group, 8)
+    for place in range(7):
+        of = np.flatnonzero(group == place)
+        one = records(values[of], [status[i] for i in of], [names[i] for i in of])
+        known = one.worst[one.known]
+        told = found[place].low, found[place].median, found[place].high, found[place].largest
+        assert told == tuple(quantile(known, q) for q in (0.16, 0.5, 0.84, 1.0))
+        stood = known[np.isfinite(known)]
+        assert (found[place].count, found[place].standing) == (len(known), len(stood))
+        assert found[place].mean == pytest.approx(stood.mean(), rel=1e-12)
+        assert found[place].overturned == len({names[i] for i in of if status[i] == "overturned"})
+    assert (found[7].count, math.isnan(found[7].median)) == (0, True)
 
 
 @pytest.mark.parametrize(("count", "n", "largest"), [("station", "3", "worse"), ("component", "6", "every")])

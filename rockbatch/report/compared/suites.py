@@ -21,8 +21,7 @@ def section(pair: Pair) -> Section | None:
     keys = ["scale", "pier", "series", "with_vertical"]
     runs = dict(zip(sides, matched.runs, strict=True))
     names, heads = statistics.rows_of(pair.named, matched.runs[0], keys)
-    grouped = {side: dict(list(same.groupby(keys))) for side, same in runs.items()}
     content = join(
-        tag("p", "Over the pairs of runs only."), statistics.tables(grouped, names, heads, pair.studies[0].count)
+        tag("p", "Over the pairs of runs only."), statistics.tables(runs, keys, names, heads, pair.studies[0].count)
     )
     return Section("The suite in each case", "suite", content)

@@ -3,8 +3,11 @@
 Places along the axis are shares of the width, so that nothing but the axis stretches.
 """
 
+import math
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
 
 from rockbatch.report.drawing.axes import Scale, written
 from rockbatch.report.drawing.svg import EVENTS, Entry, key, marker, style_of, text
@@ -118,36 +121,41 @@ def _line(x: float, class_: str, *content: object, low: int = 20, high: int = 0)
 
 def _strip(runs: "pd.DataFrame", top: float, grid: Sequence[Markup], marks: Marks, words: str) -> Markup:
     """One row in one column."""
-    stood = runs[(runs["status"] == "ok") & runs["theta_max_over_alpha"].notna()]
-    seen: dict[tuple[object, float], Markup] = {}
-    for run in as_dicts(stood.sort_values("theta_max_over_alpha", ascending=False, kind="stable")):
-        at = _across(run["theta_max_over_alpha"], top)
-        which = run["series"] if marks.series else None
-        if (which, at) not in seen:  # others would lie under it
-            seen[which, at] = _mark(run, at, marks)
-    peaks = stood["theta_max_over_alpha"]
-    low, high = (number(float(each), THETA_FORMAT) for each in (peaks.min(), peaks.max()))
-    said = f"{words}: θmax/α {low} to {high}" if len(stood) > 1 else f"{words}: θmax/α {high}"
+    peaks = runs["theta_max_over_alpha"].to_numpy(dtype=np.float64)
+    order = np.argsort(-peaks, kind="stable")
+    order = order[((runs["status"] == "ok").to_numpy() & ~np.isnan(peaks))[order]]
+    thetas = peaks[order].tolist()
+    series = runs["series"].to_numpy()[order].tolist() if marks.series else [None] * len(order)
+    first: dict[tuple[object, float], int] = {}
+    for which, theta, place in zip(series, thetas, order.tolist(), strict=True):
+        first.setdefault((which, _across(theta, top)), place)  # others would lie under it
+    seen = [
+        _mark(run, at, marks) for (_, at), run in zip(first, as_dicts(runs.iloc[list(first.values())]), strict=True)
+    ]
+    low, high = (number(theta, THETA_FORMAT) for theta in (thetas[-1:] + thetas[:1] or [math.nan, math.nan]))
+    said = f"{words}: θmax/α {low} to {high}" if len(thetas) > 1 else f"{words}: θmax/α {high}"
     return tag(
-        "svg", *grid, *seen.values(), class_="plot strip marks", role="img", data_of=words,
-        aria_label=said if len(stood) else f"{words}: no peak",
+        "svg", *grid, *seen, class_="plot strip marks", role="img", data_of=words,
+        aria_label=said if thetas else f"{words}: no peak",
     )  # fmt: skip
 
 
 def _mark(run: Run, x: float, marks: Marks) -> Markup:
-    said = tag("title", marks.says(run))
+    title = marks.says(run)
     if marks.series is None:
-        return tag("circle", said, cx=f"{x}%", cy=MIDDLE, r=3.5, class_="dot s1")
+        return tag("circle", tag("title", title), cx=f"{x}%", cy=MIDDLE, r=3.5, class_="dot s1")
     series = marks.series[run["series"]]
     if series.rigid:
-        return _line(x, f"rigid d{series.index % 4}", said, low=MIDDLE + 7, high=MIDDLE - 7)
+        return _line(x, f"rigid d{series.index % 4}", tag("title", title), low=MIDDLE + 7, high=MIDDLE - 7)
     shape, colour = style_of(series.index)
-    return marker(shape, f"{x}%", MIDDLE, colour=f"s{colour}", title=marks.says(run))
+    return marker(shape, f"{x}%", MIDDLE, colour=f"s{colour}", title=title)
 
 
 def _without_peak(runs: "pd.DataFrame", marks: Marks) -> Markup:
     """What had no peak: by the foundations' letters, or how many."""
-    told = []
+    told: list[Markup] = []
+    if (runs["status"] == "ok").all():
+        return tag("span", class_="ends")
     for status, words in (EVENTS | FAILED).items():
         some = runs[runs["status"] == status]
         if len(some):
@@ -177,14 +185,14 @@ def _sign(status: str) -> Markup:
 
 
 def _legend(drawn: "Sequence[pd.DataFrame]", marks: Marks) -> list[Entry]:
-    present = {place for runs in drawn for place in runs["series"]}
+    present = {place for runs in drawn for place in runs["series"].unique().tolist()}
     entries: list[Entry] = []
     if marks.series is None:
         entries.append((tag("circle", cx=11, cy=7, r=3.5, class_="dot s1"), f"a {marks.kind}"))
     else:
         shown = sorted((marks.series[place] for place in present), key=lambda series: (not series.rigid, series.index))
         entries += map(_named, shown)
-    ends = {status for runs in drawn for status in runs["status"]}
+    ends = {status for runs in drawn for status in runs["status"].unique().tolist()}
     entries += [(_sign(status), words) for status, words in (EVENTS | FAILED).items() if status in ends]
     return entries
 

@@ -6,6 +6,7 @@ from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import numpy.typing as npt
 
 from rockbatch.checks.suite import counts_as
 from rockbatch.report.contents import Contents
@@ -15,10 +16,13 @@ from rockbatch.report.labels import heading
 from rockbatch.report.markup import Markup, join, tag
 from rockbatch.report.table import MOST_ROWS, Head, alarm, table, told_apart
 from rockbatch.results.columns import COLUMNS
-from rockbatch.results.suite_statistics import Suite, suite
+from rockbatch.results.suite_statistics import Suite, suites
 
 if TYPE_CHECKING:
     import pandas as pd
+
+Row = tuple[Hashable, ...]
+"""Values that tell a row of the tables from others."""
 
 RECORDS = {
     "station": "A record is a station, as in the checks: the worst of its components and polarities counts.",
@@ -39,14 +43,12 @@ def section(contents: Contents) -> Section | None:
     runs, keys = finished.runs, ["scale", "pier", "series"]
     names, heads = rows_of(finished, runs, keys)
     shown = dict(islice(names.items(), MOST_ROWS))
-    if len(shown) < len(names):
-        runs = runs[runs.set_index(keys).index.isin(list(shown))]
-    sides = {str(side): dict(list(same.groupby(keys))) for side, same in runs.groupby("with_vertical")}
-    content = join(told_apart(len(shown), len(names)), tables(sides, shown, heads, finished.count))
+    sides = {str(side): same for side, same in runs.groupby("with_vertical")}
+    content = join(told_apart(len(shown), len(names)), tables(sides, keys, shown, heads, finished.count))
     return Section("The suite in each case", "suite", content)
 
 
-def rows_of(finished: Finished, runs: "pd.DataFrame", keys: list[str]) -> tuple[dict[Hashable, list[str]], list[Head]]:
+def rows_of(finished: Finished, runs: "pd.DataFrame", keys: list[str]) -> tuple[dict[Row, list[str]], list[Head]]:
     """Texts of the first cells of each row, and their heads; ``keys`` are columns of ``runs`` that tell rows apart."""
     many_scales = runs["scale"].nunique() > 1
     words: dict[str, Callable[[Any], str]] = {
@@ -62,7 +64,7 @@ def rows_of(finished: Finished, runs: "pd.DataFrame", keys: list[str]) -> tuple[
         "with_vertical": Head("vertical"),
     }
     shown = [name for name in heads if name in keys]
-    names: dict[Hashable, list[str]] = {}
+    names: dict[Row, list[str]] = {}
     for key in runs[keys].drop_duplicates().sort_values(keys).itertuples(index=False, name=None):
         values = dict(zip(keys, key, strict=True))
         names[key] = [words[name](values[name]) for name in shown]
@@ -70,8 +72,9 @@ def rows_of(finished: Finished, runs: "pd.DataFrame", keys: list[str]) -> tuple[
 
 
 def tables(
-    sides: "Mapping[str, Mapping[Any, pd.DataFrame]]",
-    names: Mapping[Hashable, Sequence[str]],
+    sides: "Mapping[str, pd.DataFrame]",
+    keys: list[str],
+    names: Mapping[Row, Sequence[str]],
     heads: Sequence[Head],
     count: str,
 ) -> Markup:
@@ -80,38 +83,45 @@ def tables(
     Parameters
     ----------
     sides : mapping
-        Runs of each row, for every side that is compared, by the words for the side; one side needs no words.
+        Runs of every side that is compared, by the words for it; one side needs no words.
+    keys : list of str
+        Columns of the runs that tell rows apart.
     names : mapping
-        Texts of the first cells of each row, which stand under ``heads``.
+        Texts of the first cells of each row, by its values of ``keys``, which stand under ``heads``. Other runs do not count.
     count : str
         What counts as one record, one of :data:`rockbatch.checks.rules.COUNTS`.
     """
     drawn = [tag("p", RECORDS[count] + WORDS)]
+    grouped = [_by_row(runs, keys, names) for runs in sides.values()]
+    counted_as = [counts_as(runs, count)[0].to_list() for runs, _ in grouped]
     for column in COLUMNS.values():
-        there = all(column.name in runs for side in sides.values() for runs in side.values())
+        there = all(column.name in runs for runs, _ in grouped)
         if column.suite is None or column.page is None or not there:
             continue
         says, form = heading(column.suite.heading), column.suite.form
-        found = {
-            side: {
-                key: suite(
-                    column.page.factor * runs[column.name].to_numpy(dtype=np.float64),
-                    runs["status"].to_list(),
-                    counts_as(runs, count)[0].to_list(),
-                )
-                for key, runs in groups.items()
-                if runs[column.name].notna().any()
-            }
-            for side, groups in sides.items()
-        }
-        keys = [key for key in names if any(key in suites for suites in found.values())]
-        if keys:
-            rows = [[*names[key], *_cells([suites.get(key) for suites in found.values()], form)] for key in keys]
+        found = []
+        for (runs, rows), records in zip(grouped, counted_as, strict=True):
+            values = column.page.factor * runs[column.name].to_numpy(dtype=np.float64)
+            has = np.bincount(rows, ~np.isnan(values), len(names)) > 0
+            of_rows = suites(values, runs["status"].to_list(), records, rows, len(names))
+            found.append([suite if any_ else None for suite, any_ in zip(of_rows, has, strict=True)])
+        cells = [[*words, *_cells(own, form)] for words, *own in zip(names.values(), *found, strict=True) if any(own)]
+        if cells:
             drawn += [
                 tag("h3", says),
-                table([*heads, *_heads(list(sides), form)], rows, name=f"Suite: {column.suite.heading}"),
+                table([*heads, *_heads(list(sides), form)], cells, name=f"Suite: {column.suite.heading}"),
             ]
     return join(*drawn)
+
+
+def _by_row(
+    runs: "pd.DataFrame", keys: list[str], names: Mapping[Row, object]
+) -> "tuple[pd.DataFrame, npt.NDArray[np.int64]]":
+    """The runs that are in one of the rows ``names``, and the place of its row of each."""
+    import pandas as pd
+
+    place = pd.MultiIndex.from_tuples(list(names), names=keys).get_indexer(pd.MultiIndex.from_frame(runs[keys]))
+    return runs[place >= 0], place[place >= 0].astype(np.int64)
 
 
 _COLUMNS = {
