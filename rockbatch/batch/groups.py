@@ -90,7 +90,7 @@ def _with_other_law(
 def _beside(outcome: Outcome, other: Outcome) -> Outcome:
     failed = f"by the other spring law: {other.reason}" if other.status == "failed" else ""
     note = "; ".join(filter(None, (outcome.note, failed)))
-    return replace(outcome, settlement_other_law=other.settlement, note=note)
+    return outcome.changed(settlement_other_law=other.settlement, note=note)
 
 
 def _observed(run: Run, outcome: Outcome, numerics: Numerics, output: Output, stop: Stop) -> Outcome | None:

@@ -45,12 +45,14 @@ def apart(pier: Pier, base: ElasticBase, rows: np.recarray) -> Apart:
     swing = theta - lean
     h = np.diff(t)
     most, when = float(np.abs(swing).max()), float(t[np.abs(swing).argmax()])
+    first, last = (h * omega - np.diff(theta) for omega in (rows.omega[:-1], rows.omega[1:]))
+    bound = np.maximum(np.abs(swing[:-1]), np.abs(swing[1:])) + np.maximum(np.abs(first), np.abs(last))
+    near = np.flatnonzero(bound > most)
     for s in np.arange(1, PARTS) / PARTS:  # θ is cubic between rows, and the lean straight
-        between = (1.0 - s) * swing[:-1] + s * swing[1:]
-        bent = (1.0 - s) * (h * rows.omega[:-1] - np.diff(theta)) - s * (h * rows.omega[1:] - np.diff(theta))
-        rocking = np.abs(between + s * (1.0 - s) * bent)
+        between = (1.0 - s) * swing[near] + s * swing[near + 1]
+        rocking = np.abs(between + s * (1.0 - s) * ((1.0 - s) * first[near] - s * last[near]))
         if len(rocking) and rocking.max() > most:
-            most, when = float(rocking.max()), float(t[rocking.argmax()] + s * h[rocking.argmax()])
+            most, when = float(rocking.max()), float(t[near[rocking.argmax()]] + s * h[near[rocking.argmax()]])
     peak = int(np.abs(theta).argmax())
     side = np.sign(theta[peak])
     return Apart(most, when, float(side * lean[peak]), float(side * swing[peak]))

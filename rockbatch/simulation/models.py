@@ -180,11 +180,13 @@ def _lever(pier: Pier, base: Base, offset: float) -> float:
     return 1.0 + offset**2 / (pier.inertia + pier.height**2)
 
 
+@lru_cache(maxsize=4096)
 def prestress(pier: Pier, base: Base) -> float:
     """Return Σ P0/M of all tendons [m/s²]."""
     return sum(law.prestress for law in elements(pier, base))
 
 
+@lru_cache(maxsize=4096)
 def fastest_rate(pier: Pier, base: Base) -> float:
     """Return the greatest rate [1/s] of a model: of the springs, of vibration against devices, of decay by linear dampers."""
     stiff, slows, steep = 0.0, 0.0, False
@@ -224,6 +226,7 @@ def patience(pier: Pier, dt: float) -> int:
     return int(PATIENCE / (pier.p * dt)) + 1
 
 
+@lru_cache(maxsize=4096)
 def readings(pier: Pier, base: Base, dt: float) -> tuple[int, int]:
     """Return when residuals are read, in samples [of ``dt`` s]: after the record, and how long after the first reading again.
 

@@ -85,7 +85,7 @@ def run_all_to_tolerance(runs: Sequence[Run], tolerance: float, quiet_s: float, 
                 continue
             pier, coarse = runs[i].pier, levels[i][-1]
             least = _least_error(runs[i].base) * pier.alpha
-            fine = replace(fine, outcome=_with_errors(fine.outcome, coarse.outcome, least))
+            fine = Trial(_with_errors(fine.outcome, coarse.outcome, least), fine.extremes)
             levels[i].append(fine)
             agreements[i].append(agreement(fine, coarse, tolerance * pier.alpha, pier))
             if enough(agreements[i]):
@@ -132,7 +132,7 @@ def _look_for_chaos(
                 f"the peak is chaotic, under a motion {CHANGE:g} stronger the pier {becomes}: no error of it is claimed"
             )
             note = "; ".join(filter(None, (now.note, chaos)))
-            outcomes[i] = replace(now, theta_max_error=None, note=note)
+            outcomes[i] = now.changed(theta_max_error=None, note=note)
 
 
 def _steps_of_next(run: Run, levels: Sequence[Trial], quiet_s: float) -> float:
@@ -152,7 +152,7 @@ def _with_errors(fine: Outcome, coarse: Outcome, least: float) -> Outcome:
     residual = None
     if fine.theta_res is not None and coarse.theta_res is not None:
         residual = max(abs(fine.theta_res - coarse.theta_res), least)
-    return replace(fine, theta_max_error=max(abs(fine.theta_max - coarse.theta_max), least), theta_res_error=residual)
+    return fine.changed(theta_max_error=max(abs(fine.theta_max - coarse.theta_max), least), theta_res_error=residual)
 
 
 def _with_drift(run: Run, outcome: Outcome) -> Outcome:
@@ -163,7 +163,7 @@ def _with_drift(run: Run, outcome: Outcome) -> Outcome:
     if outcome.theta_res_error is None or outcome.theta_res_drift is None:
         return outcome
     changed = abs(outcome.theta_res_drift) * readings(run.pier, run.base, run.motion.dt)[1] * run.motion.dt
-    return replace(outcome, theta_res_error=outcome.theta_res_error + changed)
+    return outcome.changed(theta_res_error=outcome.theta_res_error + changed)
 
 
 def agreement(fine: Trial, coarse: Trial, tolerance: float, pier: Pier) -> Agreement:
@@ -221,7 +221,7 @@ def _noted(fine: Trial, coarse: Trial, extent: Agreement, tolerance: float, peak
         greatest = np.nanmax(np.fmax(fine.extremes, coarse.extremes)[differs])
         notes.append(f"lesser rotations, up to {greatest:.2g} rad, have not settled")
         if differs[: peak + 1].any() and now.status == "ok":
-            now = replace(now, theta_max_error=None)
+            now = now.changed(theta_max_error=None)
             notes.append("some of them before the peak, which is chaotic: no error of it is claimed")
     for name in COUNTS:
         fewer, more = sorted((getattr(before, name), getattr(now, name)))
@@ -232,7 +232,7 @@ def _noted(fine: Trial, coarse: Trial, extent: Agreement, tolerance: float, peak
         if not abs(times[1] - times[0]) <= 1e-3:
             moments = [f"at {t:.3f} s" if t == t else "none" for t in times]
             notes.append(f"first flight not settled: {moments[0]} or {moments[1]}")
-    return replace(now, note="; ".join(notes))
+    return now.changed(note="; ".join(notes))
 
 
 def _not_converged(pier: Pier, levels: Sequence[Trial], tolerance: float, more: str) -> Outcome:
@@ -257,4 +257,4 @@ def _not_converged(pier: Pier, levels: Sequence[Trial], tolerance: float, more: 
             changes = ["rotations almost as large as the peak"]
         what = " and ".join(changes) or f"the outcome, from {before.status} to {finest.status}"
     reason = f"not settled: halving the step still changed {what}; at {finest.substeps} substeps: {finest.status}{more}"
-    return replace(finest, status="failed", reason=reason, note="")
+    return finest.changed(status="failed", reason=reason, note="")
