@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from itertools import accumulate
 
@@ -11,8 +12,10 @@ from rockbatch.batch.kept_histories import history_bytes
 from rockbatch.batch.listening import Listener, make_ready
 from rockbatch.batch.plan import Chosen, Plan, PlannedRun
 from rockbatch.batch.running import told
+from rockbatch.errors import starting_threads
 from rockbatch.results.columns import columns
-from rockbatch.simulation import first_substeps, steps_of
+from rockbatch.results.outcome import Outcome
+from rockbatch.simulation import Stop, first_substeps, steps_of
 from rockbatch.study import Study
 from rockbatch.study.suite import ground_motions
 
@@ -21,6 +24,9 @@ TRIED = 256
 
 STEPS_TRIED = 3e7
 """Steps of all of them, at most, as far as that can be foreseen: a second or two."""
+
+SECONDS_TRIED = 0.5
+"""After which no more are begun."""
 
 BYTES_OF_A_CELL = 9.0
 """Of peaks.csv, on average."""
@@ -54,21 +60,18 @@ class Expected:
 
 
 def expected(study: Study, jobs: int, listener: Listener) -> Expected:
-    """Run a few runs, spread over the study, and extrapolate by the number of samples."""
+    """Run a few runs, spread over the study, on as many threads, and extrapolate by the number of samples."""
     motions = ground_motions(study)
     listener.motions(motions)
     plan = Plan(study, motions)
     simulated = Chosen(plan, to_simulate(plan, range(len(plan))))
     steps = [_steps(study, run) for run in simulated]
-    tried = _spread(steps)
     make_ready(study, listener)
-    some = [simulated[i] for i in tried]
     started = time.perf_counter()
-    found = outcomes_of(some, study.numerics, study.output)
+    tried = _tried(study, simulated, _spread(steps), jobs, listener)
     took = time.perf_counter() - started
-    seconds = took * sum(steps) / max(sum(steps[i] for i in tried), 1.0) / jobs
-    rows = [row_of(run, outcome) for run, outcome in zip(some, found, strict=True) if outcome is not None]
-    size = sum(history_bytes(run, row) for run, row in zip(some, rows, strict=True)) / max(len(rows), 1)
+    seconds = took * sum(steps) / max(sum(steps[i] for i in tried), 1.0)
+    size = sum(history_bytes(simulated[i], row_of(simulated[i], tried[i])) for i in tried) / max(len(tried), 1)
     histories = {"none": 0.0, "all": len(plan) * size}.get(
         study.output.histories, min(len(study.cases) * size, 1e6 * study.output.histories_MB)
     )
@@ -80,6 +83,34 @@ def _steps(study: Study, run: PlannedRun) -> float:
     """Steps of a run that settles at once."""
     substeps = study.numerics.substeps or 3 * first_substeps(run.case.pier, run.case.base, run.motion.dt)
     return steps_of(run.motion, substeps, study.numerics.quiet_s)
+
+
+def _tried(
+    study: Study, runs: Sequence[PlannedRun], chosen: Sequence[int], jobs: int, listener: Listener
+) -> dict[int, Outcome]:
+    """Return outcomes of ``chosen`` runs by their indices: first a run for each thread, then twice as many, until time is up."""
+    found: dict[int, Outcome | None] = {}
+    stop, begun = Stop(), 0
+
+    def carried_out(share: Sequence[int]) -> list[Outcome | None]:
+        return outcomes_of([runs[i] for i in share], study.numerics, study.output, stop)
+
+    with listener.progress(len(chosen)) as progress, ThreadPoolExecutor(jobs) as pool:
+        started = time.perf_counter()
+        try:
+            while begun < len(chosen) and (begun == 0 or time.perf_counter() - started < SECONDS_TRIED):
+                wave = chosen[begun : 2 * begun + jobs]
+                shares = [wave[i::jobs] for i in range(min(jobs, len(wave)))]
+                with starting_threads(", or write --jobs 1" * (jobs > 1)):
+                    outcomes = pool.map(carried_out, shares)
+                for share, own in zip(shares, outcomes, strict=True):
+                    found |= zip(share, own, strict=True)
+                begun += len(wave)
+                if progress is not None:
+                    progress(len(wave))
+        finally:
+            stop.set()
+    return {i: outcome for i, outcome in found.items() if outcome is not None}
 
 
 def _spread(steps: Sequence[float]) -> list[int]:

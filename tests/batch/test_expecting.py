@@ -1,5 +1,8 @@
 """What a dry run says, held against what the run then leaves."""
 
+import math
+from contextlib import contextmanager
+
 import pytest
 from studies import PADS, RIGID, study_text, write_study
 
@@ -19,7 +22,8 @@ def study(tmp_path):
     return write_study(tmp_path, text)
 
 
-def test_runs_and_sizes_are_those_that_come_out(study, tmp_path):
+def test_runs_and_sizes_are_those_that_come_out(study, tmp_path, monkeypatch):
+    monkeypatch.setattr(expecting, "SECONDS_TRIED", math.inf)
     found = expected(load_study(study), 2, Listener())
     out = tmp_path / "out"
     main(["run", str(study), "--out", str(out)])
@@ -41,6 +45,7 @@ def test_time_of_a_few_stands_for_all(study, monkeypatch):
             return outcomes_of(runs, *rest)
 
         monkeypatch.setattr(expecting, "TRIED", tried)
+        monkeypatch.setattr(expecting, "SECONDS_TRIED", math.inf)
         monkeypatch.setattr(expecting, "outcomes_of", counted)
         monkeypatch.setattr(expecting.time, "perf_counter", lambda steps=steps: steps[0])
         found = expected(loaded, 1, Listener())
@@ -49,6 +54,30 @@ def test_time_of_a_few_stands_for_all(study, monkeypatch):
         monkeypatch.undo()
     assert foreseen == pytest.approx([foreseen[0]] * 3)
     assert expected(loaded, 1, Listener()).seconds < 60.0
+
+
+def test_runs_are_tried_on_all_threads_until_the_time_is_up_and_that_is_shown(study, monkeypatch):
+    shares, shown = [], []
+
+    class Watching(Listener):
+        @contextmanager
+        def progress(self, total):
+            yield lambda more: shown.append((more, total))
+
+    outcomes_of = expecting.outcomes_of
+
+    def watched(runs, *rest):
+        shares.append(len(runs))
+        return outcomes_of(runs, *rest)
+
+    monkeypatch.setattr(expecting, "outcomes_of", watched)
+    monkeypatch.setattr(expecting, "SECONDS_TRIED", math.inf)
+    every = expected(load_study(study), 2, Watching())
+    assert (every.tried, every.jobs) == (39, 2)
+    assert sorted(shares) == sorted([1, 1, 2, 2, 4, 4, 8, 8, 5, 4])
+    assert shown == [(2, 39), (4, 39), (8, 39), (16, 39), (9, 39)]
+    monkeypatch.setattr(expecting, "SECONDS_TRIED", 0.0)
+    assert expected(load_study(study), 2, Watching()).tried == 2
 
 
 def test_nothing_is_written(study, tmp_path, monkeypatch, capsys):
