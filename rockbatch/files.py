@@ -15,6 +15,7 @@ import stat
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
+from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -195,12 +196,44 @@ def csv_plain(cell: str) -> str:
 
 
 def csv_text(columns: Sequence[str], rows: Iterable[Mapping[str, object]]) -> str:
-    """Return a CSV file: empty cells where a row has nothing or NaN, floats to ten digits, texts that are :func:`csv_safe`."""
+    """Return a CSV file; its rows as :func:`csv_lines` has them."""
+    rows = list(rows)
+    lines = csv_lines([[row.get(name) for row in rows] for name in columns])
+    return csv_line(columns) + "".join(f"{line}\n" for line in lines)
+
+
+def csv_line(cells: Iterable[object]) -> str:
+    """Return a line of a CSV file with ``cells`` as they are."""
     buffer = io.StringIO()
-    writer = csv.writer(buffer, lineterminator="\n")
-    writer.writerow(columns)
-    writer.writerows([csv_cell(row.get(name)) for name in columns] for row in rows)
+    csv.writer(buffer, lineterminator="\n").writerow(cells)
     return buffer.getvalue()
+
+
+def csv_lines(columns: Sequence[Sequence[object]]) -> list[str]:
+    """Return the rows of a CSV file, without their line breaks, made a column at a time.
+
+    Cells of None and NaN are empty, floats have ten digits, and texts are legible and :func:`csv_safe`.
+    """
+    return [",".join(cells) or '""' for cells in zip(*map(_cells, columns), strict=True)]
+
+
+def _cells(column: Sequence[object]) -> Sequence[str]:
+    kinds = set(map(type, column))
+    if kinds == {type(None)}:  # many are
+        return [""] * len(column)
+    if kinds == {float}:
+        return [f"{value:.10g}" if value == value else "" for value in column]
+    return [
+        "" if value is None or value != value
+        else f"{value:.10g}" if isinstance(value, float)
+        else _text_cell(value) if isinstance(value, str) else str(value)
+        for value in column
+    ]  # fmt: skip
+
+
+@lru_cache(maxsize=1024)
+def _text_cell(text: str) -> str:
+    return csv_line([csv_safe(legible(text, keep="\t\r\n")), None])[:-2]
 
 
 def read_table(path: Path) -> "pd.DataFrame":
@@ -212,12 +245,3 @@ def read_table(path: Path) -> "pd.DataFrame":
     for name in table.columns.intersection(list(NAMES)):
         table[name] = table[name].fillna("").map(csv_plain)
     return table
-
-
-def csv_cell(value: object) -> object:
-    """Return ``value`` for a CSV writer: nothing for None and NaN, ten digits of a float, a text that does no harm."""
-    if value is None or value != value:
-        return ""
-    if isinstance(value, float):
-        return f"{value:.10g}"
-    return csv_safe(legible(value, keep="\t\r\n")) if isinstance(value, str) else value

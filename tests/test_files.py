@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rockbatch.files import csv_plain, csv_safe, csv_text, legible
+from rockbatch.files import csv_lines, csv_plain, csv_safe, csv_text, legible
 
 
 @pytest.mark.parametrize("text", ["=1+1", "+1", "-2+3", "@SUM(A1)", "\t=1", "\r=1", '=HYPERLINK("http://x")'])
@@ -50,3 +50,25 @@ def test_what_a_terminal_would_obey_is_shown_instead():
     assert legible(name) == "a\\x1b[31m\\xff\\x0a.AT2"
     assert legible("\u202eTA.1") == "\\u202eTA.1"
     assert legible("Zürich 東京 – π") == "Zürich 東京 – π"
+
+
+def test_columns_make_the_lines_that_a_csv_writer_makes_of_their_cells():
+    texts = ["", "a", 'b "c"', "d,e", "f\ng", " h ", "7", "µ⟂"]
+    columns = [
+        texts,
+        [0.1 + 0.2, math.nan, -0.0, 1e300, math.inf, 5e-324, 1.0, 2.0],
+        [1, True, None, 2, 3, 4, 5, 6],
+        [None] * 8,
+    ]
+    cells = [
+        texts,
+        ["0.3", "", "-0", "1e+300", "inf", "4.940656458e-324", "1", "2"],
+        [1, True, "", 2, 3, 4, 5, 6],
+        [""] * 8,
+    ]
+    lines = []
+    for row in zip(*cells, strict=True):
+        buffer = io.StringIO()
+        csv.writer(buffer, lineterminator="\n").writerow(row)
+        lines.append(buffer.getvalue())
+    assert [f"{line}\n" for line in csv_lines(columns)] == lines

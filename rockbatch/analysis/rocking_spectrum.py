@@ -56,7 +56,7 @@ def row_of(run: PlannedRun, outcome: Outcome) -> dict[str, Any]:
     """Return the row of spectrum.csv of a run that is finished."""
     pier = run.case.pier
     size = {"p": pier.p, "two_pi_over_p_s": 2 * math.pi / pier.p, "size_m": pier.size}
-    return size | row(run.motion, run.polarity, run.scale, run.case, outcome)
+    return size | row(run.ran(outcome))
 
 
 def of_suite(table: "pd.DataFrame", varied: tuple[str, ...]) -> "pd.DataFrame":

@@ -1,7 +1,7 @@
 """Every record in every case: runs to rows, those that are not there yet."""
 
 from array import array
-from collections.abc import Callable, Container, Iterator, Mapping
+from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from contextlib import closing
 from typing import Any
 
@@ -9,19 +9,26 @@ from rockbatch.batch.groups import NOTHING_MORE
 from rockbatch.batch.journal import Journal
 from rockbatch.batch.plan import MOST_RUNS, Chosen, PlannedRun, Runs
 from rockbatch.batch.threads import Engine
-from rockbatch.checks.suite import MIRROR_OF
 from rockbatch.errors import InputError
-from rockbatch.results.columns import row
+from rockbatch.results.columns import cells, row
 from rockbatch.results.outcome import Outcome
 from rockbatch.study import Numerics, Output
 
 
 class InMemory(dict[int, Mapping[str, Any]]):
-    """Rows of finished runs by their numbers, in place of a journal where nothing is kept on disk."""
+    """Rows of finished runs by their numbers, with some ``columns``, in place of a journal where nothing is kept on disk."""
+
+    def __init__(self, columns: Sequence[str]) -> None:
+        self.columns = columns
 
     def add_all(self, rows: Mapping[int, Mapping[str, Any]]) -> None:
         """As :meth:`Journal.add_all`."""
         self.update(rows)
+
+    def add_columns(self, numbers: Sequence[int], columns: Mapping[str, Sequence[Any]]) -> None:
+        """As :meth:`Journal.add_columns`."""
+        rows = zip(*columns.values(), strict=True)
+        self.update((number, dict(zip(columns, row, strict=True))) for number, row in zip(numbers, rows, strict=True))
 
 
 def carry_out(
@@ -47,17 +54,21 @@ def carry_out(
     among : range, optional
         Indices of the runs that are wanted, if not all.
     row : function, optional
-        What the journal is told of a run and its outcome; :func:`row_of` by default.
+        The row of a run with its outcome, where that is not a row of peaks.csv.
     progress : function, optional
         Called with the number of simulations of each group that is finished.
     """
     wanted = range(len(runs)) if among is None else among
-    told = row or row_of
     left = to_simulate(runs, wanted, journal, first)
     with closing(engine.outcomes(Chosen(runs, left), numerics, output)) as groups:
         for group in groups:
-            rows = (pair for i, outcome in group for pair in _images(runs, left[i], outcome, told))
-            journal.add_all({first + i: cells for i, cells in rows if i in wanted and first + i not in journal})
+            images = (each for place, outcome in group for each in _images(runs, left[place], outcome))
+            news = [one for one in images if one[0] in wanted and first + one[0] not in journal]
+            if row is not None:
+                journal.add_all({first + i: row(run, outcome) for i, run, outcome in news})
+            elif news:
+                found = cells([run.ran(outcome) for _, run, outcome in news], journal.columns)
+                journal.add_columns([first + i for i, _, _ in news], found)
             if progress is not None:
                 progress(len(group))
 
@@ -76,6 +87,8 @@ def to_simulate(runs: Runs, wanted: range, journal: Container[int] = (), first: 
     def is_left(index: int) -> bool:
         return index in wanted and first + index not in journal
 
+    if not runs.mirrored:
+        return array("q", filter(is_left, wanted))
     found = array("q")
     for index in filter(is_left, wanted):
         simulated = runs.images(index)[0]
@@ -84,15 +97,13 @@ def to_simulate(runs: Runs, wanted: range, journal: Container[int] = (), first: 
     return found
 
 
-def _images(
-    runs: Runs, index: int, outcome: Outcome, told: Callable[[PlannedRun, Outcome], Mapping[str, Any]]
-) -> Iterator[tuple[int, Mapping[str, Any]]]:
-    """Index and row of a run that was simulated, and of its mirror image."""
+def _images(runs: Runs, index: int, outcome: Outcome) -> Iterator[tuple[int, PlannedRun, Outcome]]:
+    """Index, run and outcome of a run that was simulated, and of its mirror image."""
     for image in runs.images(index):
         run = runs[image]
-        yield image, told(run, outcome.mirrored() if run.mirror_of else outcome)
+        yield image, run, outcome.mirrored() if run.mirror_of else outcome
 
 
 def row_of(run: PlannedRun, outcome: Outcome) -> dict[str, Any]:
     """Row of peaks.csv of a run that is finished."""
-    return row(run.motion, run.polarity, run.scale, run.case, outcome) | {MIRROR_OF: run.mirror_of}
+    return row(run.ran(outcome))

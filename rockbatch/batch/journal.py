@@ -15,10 +15,13 @@ from typing import Any, NamedTuple, Self
 
 from rockbatch.batch.plan import MOST_RUNS
 from rockbatch.errors import InputError
-from rockbatch.files import csv_cell, csv_plain, only_writer, opened, replacing, told_when_full
+from rockbatch.files import csv_line, csv_lines, csv_plain, only_writer, opened, replacing, told_when_full
 
 ABSENT = -1
 ROWS_AT_ONCE = 1000
+
+BUFFER = 1 << 16
+"""Bytes of the file that are read at a time when the table is written."""
 
 MOST_OF_A_LINE = 1 << 20
 """Bytes; a longer one is damage, and is not held in memory."""
@@ -75,7 +78,7 @@ class Journal:
         self.runs = runs
         self._fresh = fresh
         self._tell = tell or (lambda _: None)
-        self._first = _line([_told(self.digest), *self.columns])[:-1]
+        self._first = _encoded(csv_line([_told(self.digest), *self.columns]))[:-1]
         self._seed = zlib.crc32(self._first)
         self._forget()
         self._written = False
@@ -139,7 +142,11 @@ class Journal:
 
     def add_all(self, rows: Mapping[int, Mapping[str, Any]]) -> None:
         """Write down the rows of finished runs by their numbers, once for good: on return the disk has them."""
-        self._add((number, _line(self._cells(row))) for number, row in rows.items())
+        self.add_columns(list(rows), {name: [row.get(name) for row in rows.values()] for name in self.columns})
+
+    def add_columns(self, numbers: Sequence[int], columns: Mapping[str, Sequence[Any]]) -> None:
+        """As :meth:`add_all`: the columns of the rows of runs ``numbers``, each shape (n,); those that lack are empty."""
+        self._add(zip(numbers, self._lines(len(numbers), columns), strict=True))
 
     def add_from(self, path: Path) -> None:
         """Take over what is in another journal of the same digest and columns, such as that of another machine.
@@ -173,12 +180,17 @@ class Journal:
         return Written(rows, digest.hexdigest())
 
     def _lines_in_order(self, extra_rows: Iterable[Mapping[str, Any]]) -> Iterator[bytes]:
-        yield _line(self.columns)
-        yield from map(self._row, self)
-        yield from (_line(self._cells(row)) for row in extra_rows)
+        yield _encoded(csv_line(self.columns))
+        with os.fdopen(os.dup(self._file.fileno()), "rb", BUFFER) as buffered:
+            for number in self:
+                buffered.seek(self._starts[number])
+                yield _unfolded(buffered.read(self._sizes[number]))
+        for row in extra_rows:
+            yield from self._lines(1, {name: [cell] for name, cell in row.items()})
 
-    def _cells(self, row: Mapping[str, Any]) -> list[Any]:
-        return [csv_cell(row.get(name)) for name in self.columns]
+    def _lines(self, rows: int, columns: Mapping[str, Sequence[Any]]) -> Iterator[bytes]:
+        empty = [None] * rows
+        return (_encoded(f"{line}\n") for line in csv_lines([columns.get(name, empty) for name in self.columns]))
 
     def _row(self, number: int) -> bytes:
         self._file.seek(self._starts[number])
@@ -321,10 +333,8 @@ def _damaged(lines: int) -> str:
     return f"{lines} line{'s are' if lines > 1 else ' is'} damaged"
 
 
-def _line(cells: Iterable[Any]) -> bytes:
-    text = io.StringIO()
-    csv.writer(text, lineterminator="\n").writerow(cells)
-    return text.getvalue().encode(errors="backslashreplace")
+def _encoded(line: str) -> bytes:
+    return line.encode(errors="backslashreplace")
 
 
 def _told(digest: Mapping[str, str]) -> str:

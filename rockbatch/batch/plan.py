@@ -7,6 +7,8 @@ from functools import lru_cache
 from typing import overload
 
 from rockbatch.motions import Motion, MotionSet
+from rockbatch.results.columns import Ran
+from rockbatch.results.outcome import Outcome
 from rockbatch.simulation import Run
 from rockbatch.study import Case, Study
 
@@ -31,6 +33,10 @@ class PlannedRun:
         """What is simulated: the pier of the case on its base, under the motion."""
         return Run(self.case.pier, self.case.base, self.motion)
 
+    def ran(self, outcome: Outcome) -> Ran:
+        """Return the run with what it came to."""
+        return Ran(outcome, self.motion, self.polarity, self.scale, self.case, self.mirror_of)
+
 
 def scaled(motion: Motion, scale: float, polarity: str) -> Motion:
     """A motion times ``scale``; with polarity "-" its horizontal component is reversed."""
@@ -41,6 +47,9 @@ def scaled(motion: Motion, scale: float, polarity: str) -> Motion:
 
 class Runs(Sequence[PlannedRun]):
     """Runs that are made when they are asked for, so that memory does not grow with their number."""
+
+    mirrored = False
+    """Whether some are mirror images of others."""
 
     @abstractmethod
     def run(self, number: int) -> PlannedRun:
@@ -84,12 +93,14 @@ class Plan(Runs):
         self.polarity, self.scale = study.motions.polarity, study.motions.scale
         self.cases = study.cases
         self.simulated = study.motions.simulated
+        self.mirrored = len(self.polarity) > 1
         self._of_one = len(self.scale) * len(self.cases)  # runs of a motion in one polarity
         self._simulated_first = sorted(range(len(self.polarity)), key=lambda i: self.polarity[i] != self.simulated)
+        self._length = len(self.motions) * len(self.polarity) * self._of_one
         self._moved = lru_cache(maxsize=2)(self._move)
 
     def __len__(self) -> int:
-        return len(self.motions) * len(self.polarity) * len(self.scale) * len(self.cases)
+        return self._length
 
     def run(self, number: int) -> PlannedRun:
         """See :class:`Runs`."""
@@ -103,7 +114,7 @@ class Plan(Runs):
 
     def images(self, number: int) -> Sequence[int]:
         """See :class:`Runs`."""
-        if len(self.polarity) == 1:
+        if not self.mirrored:
             return (number,)
         group, rest = divmod(number, self._of_one)
         first = group - group % len(self.polarity)

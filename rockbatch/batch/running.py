@@ -95,7 +95,7 @@ def run(
 def _in_memory(study: Study, engine: Engine, listener: Listener) -> "pd.DataFrame":
     found = ground_motions(study)
     listener.motions(found)
-    runs, rows = Plan(study, found), InMemory()
+    runs, rows = Plan(study, found), InMemory(columns(study))
     with engine, listener.progress(len(to_simulate(runs, range(len(runs))))) as progress:
         carry_out(runs, study.numerics, rows, engine, study.output, progress=progress)
     return as_table([*(rows[i] for i in sorted(rows)), *unusable_rows(found)], study)

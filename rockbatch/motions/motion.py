@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -184,7 +185,7 @@ class Motion(Shown):
         """Time from the first to the last sample [s]."""
         return (self.npts - 1) * self.dt
 
-    @property
+    @cached_property
     def pga(self) -> float:
         """Peak horizontal ground acceleration [m/s²]."""
         return float(np.abs(self.horizontal).max())

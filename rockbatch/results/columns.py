@@ -4,7 +4,7 @@ The file, its types and units, the report's tables and tooltips, the comparison 
 :data:`COLUMNS`. A new column is a row at the end of :data:`MORE`, and a number in :class:`Outcome` for it.
 """
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 from operator import attrgetter
@@ -67,11 +67,22 @@ class OnPage(NamedTuple):
 
 
 class Ran(NamedTuple):
-    """A run that is finished: what it came to, and under which motion, as it was run, with which pier."""
+    """A run that is finished: what it came to, in which case, and under which motion, as it was run.
+
+    ``mirror_of`` is the polarity of the run whose mirror image it is; None where that is not asked.
+    """
 
     outcome: Outcome
-    pier: Pier
     motion: Motion
+    polarity: str
+    scale: float
+    case: Case
+    mirror_of: str | None = None
+
+    @property
+    def pier(self) -> Pier:
+        """The pier of its case."""
+        return self.case.pier
 
 
 class OfSuite(NamedTuple):
@@ -488,17 +499,32 @@ _OVER_ALPHA = tuple(column.name for column in COLUMNS.values() if column.over_al
 _read_fields = attrgetter(*_FIELDS.values())
 
 
-def row(motion: Motion, polarity: str, scale: float, case: Case, outcome: Outcome) -> dict[str, Any]:
-    """Row of peaks.csv: the names of a run under ``motion``, scaled and turned as ``polarity`` says, and its outcome over α."""
-    alpha, ran = case.pier.alpha, Ran(outcome, case.pier, motion)
-    found: dict[str, Any] = {"record": motion.name, "station": motion.of_station, "case": case.name}
-    found |= {"polarity": polarity, "scale": scale, **case.columns}
-    found |= zip(_FIELDS, _read_fields(outcome), strict=True)
-    found |= {name: of(ran) for name, of in _FUNCTIONS.items()}
+def cells(runs: Sequence[Ran], wanted: Container[str] = COLUMNS) -> dict[str, list[Any]]:
+    """The columns of peaks.csv of ``runs``, each shape (n,): their names, and their outcomes over α.
+
+    Numbers that functions give are only those of ``wanted`` columns. None where a column does not apply.
+    """
+    found: dict[str, list[Any]] = {
+        "record": [ran.motion.name for ran in runs],
+        "station": [ran.motion.of_station for ran in runs],
+        "case": [ran.case.name for ran in runs],
+        "polarity": [ran.polarity for ran in runs],
+        "scale": [ran.scale for ran in runs],
+        MIRROR_OF: [ran.mirror_of for ran in runs],
+    }
+    varied = dict.fromkeys(name for case in {id(ran.case): ran.case for ran in runs}.values() for name in case.columns)
+    found |= {name: [ran.case.columns.get(name) for ran in runs] for name in varied}
+    found |= zip(_FIELDS, map(list, zip(*(_read_fields(ran.outcome) for ran in runs), strict=True)), strict=True)
+    found |= {name: [of(ran) for ran in runs] for name, of in _FUNCTIONS.items() if name in wanted}
+    alpha = [ran.case.pier.alpha for ran in runs]
     for name in _OVER_ALPHA:
-        if found[name] is not None:
-            found[name] /= alpha
+        found[name] = [None if x is None else x / a for x, a in zip(found[name], alpha, strict=True)]
     return found
+
+
+def row(ran: Ran) -> dict[str, Any]:
+    """The row of peaks.csv of a run."""
+    return {name: values[0] for name, values in cells([ran]).items()}
 
 
 def unusable_rows(motions: MotionSet) -> list[dict[str, Any]]:

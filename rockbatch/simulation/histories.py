@@ -11,14 +11,14 @@ from rockbatch.errors import InputError
 from rockbatch.motions.motion import Motion, Samples
 from rockbatch.motions.plausible import unlikely_samples
 from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, YieldingBase, problems, unlikely_devices
-from rockbatch.results.columns import TERMS, as_series, row
+from rockbatch.results.columns import TERMS, Ran, as_series, row
 from rockbatch.results.outcome import Outcome
 from rockbatch.results.response import EVENT_TYPES, Response
 from rockbatch.simulation import restraints
 from rockbatch.simulation.forces import at_rows, forces_table, impacts_table, peak_forces, with_error
 from rockbatch.simulation.leaning import apart, may_lean, with_rocking
 from rockbatch.simulation.models import block, ground_of, least_substeps, springs
-from rockbatch.simulation.runs import Run, run_fixed, steps_of, written_run
+from rockbatch.simulation.runs import Run, run_fixed, written_run
 from rockbatch.simulation.settling import run_to_tolerance
 from rockbatch.study.spec import LEAST_TOLERANCE, Case, Numerics, Output
 
@@ -40,6 +40,9 @@ _EVENTS = {
 
 MOST_ROWS = 10_000_000
 """Greatest number of rows of a history held in memory, about a gigabyte."""
+
+SPARE = 1.1
+"""Rows for which there is room, over the steps of a run: velocity reversals of springs have rows of their own."""
 
 
 def simulate(
@@ -126,7 +129,7 @@ def simulate(
         numerics = Numerics(None if substeps else tolerance, substeps, quiet_s)
         output = Output(ledger=ledger, forces=forces)
         outcome = with_observed(run, outcome, numerics, output, wait)
-    return replace(response, row=as_series(row(motion, "+", 1.0, Case(name, pier, foundation, {}), outcome)))
+    return replace(response, row=as_series(row(Ran(outcome, motion, "+", 1.0, Case(name, pier, foundation, {})))))
 
 
 def written(run: Run, outcome: Outcome, quiet_s: float, every_step: bool, wait: bool = True) -> np.recarray:
@@ -134,10 +137,8 @@ def written(run: Run, outcome: Outcome, quiet_s: float, every_step: bool, wait: 
 
     Raises ``InputError`` for more than :data:`MOST_ROWS`.
     """
-    samples = steps_of(run.motion, 1, quiet_s)
-    capacity = int(outcome.substeps * samples if every_step else samples) + 64 * (
-        outcome.impacts + outcome.separations + 64
-    )
+    steps = outcome.t_end / run.motion.dt * (outcome.substeps if every_step else 1)
+    capacity = int(SPARE * steps) + 64 * (outcome.impacts + outcome.separations + 64)
     capacity = min(capacity, MOST_ROWS)
     result, rows = written_run(run, outcome.substeps, quiet_s, capacity, every_step=every_step, wait=wait)
     if result.rows > MOST_ROWS:
@@ -164,11 +165,19 @@ def energies(run: Run, rows: np.recarray) -> Samples:
 
 def told_apart(run: Run, outcome: Outcome, quiet_s: float, wanted: bool = False, wait: bool = True) -> Outcome:
     """Return ``outcome`` with rocking and lean apart, if ``wanted`` or the peak may be lean; on yielding springs by one more
-    run."""
+    run.
+
+    After the record nothing shakes the pier, and it swings no further about its rest: a run to the end of its quiet time, a
+    quarter of the whole, tells most peaks from lean.
+    """
     if not outcome.was_run or not (wanted or may_lean(outcome)):
         return outcome
     if not isinstance(run.base, YieldingBase) or outcome.status == "overturned":
         return replace(outcome, theta_rocking=outcome.theta_max) if wanted else outcome
+    if not wanted and outcome.t_max <= run.motion.duration + quiet_s:
+        rows = written(run, outcome, quiet_s, every_step=False, wait=False)
+        if not apart(run.pier, run.base, rows).leans:
+            return outcome
     rows = written(run, outcome, quiet_s, every_step=False, wait=wait)
     return with_rocking(outcome, apart(run.pier, run.base, rows), run.pier.alpha)
 

@@ -16,7 +16,7 @@ from rockbatch.errors import InputError
 from rockbatch.motions import Motion
 from rockbatch.pier import ElasticBase, Pier, YieldingBase
 from rockbatch.report.sections.peaks import outcome
-from rockbatch.results.columns import as_table, row
+from rockbatch.results.columns import Ran, as_table, row
 from rockbatch.results.run_json import describe_case
 from rockbatch.simulation import Run, run_to_tolerance
 from rockbatch.simulation.histories import written
@@ -71,7 +71,8 @@ def test_a_peak_that_is_lean_is_said_to_be_with_the_rocking_before_it():
 
 
 def test_who_does_not_ask_has_the_note_all_the_same_and_pays_for_it_where_the_peak_may_be_lean_only():
-    leaned = outcome_of(PADS, pulse_and_vibration(0.5))
+    leaned, asked = (outcome_of(PADS, pulse_and_vibration(0.5), rocking=rocking) for rocking in (False, True))
+    assert leaned == asked
     assert (leaned.theta_max_is, "mostly lean" in leaned.note) == ("lean", True)
     assert rb.simulate(PIER, PADS, pulse_and_vibration(0.5)).row["theta_max_is"] == "lean"
     assert outcome_of(PADS, pulse_and_vibration(0.0)).theta_rocking is None
@@ -95,7 +96,7 @@ def test_a_check_may_ask_for_the_rocking_and_the_tables_mark_the_lean(tmp_path):
     study = load_study(write_study(tmp_path, text))
     (one,) = study.cases
     motion = pulse_and_vibration(0.5)
-    runs = as_table([row(motion, "+", 1.0, one, outcome_of(one.base, motion, rocking=True))], study)
+    runs = as_table([row(Ran(outcome_of(one.base, motion, rocking=True), motion, "+", 1.0, one))], study)
     verdicts = judge(study.checks, runs, [describe_case(one)])
     assert [verdict.verdict for verdict in verdicts] == ["fail", "pass"]
     assert verdicts[1].value == runs["theta_rocking_over_alpha"][0]
