@@ -173,7 +173,7 @@ def compiled(rocking: Rocking, tolerance: float, method: int) -> Callable[[], tu
     def run(m, cells, ground, time, info, numbers):
         t, theta_max = 0.0, 0.0
         now = State(start[0], start[1], start[2], start[3], start[4], start[5])
-        contact, supports = Contact(1.0, 1.0, 1.0, 1.0, 0.0), Supports(math.nan, math.nan)
+        contact, supports = Contact(1.0, 1.0, 1.0, 1.0, 0.0), Supports(math.nan, math.nan, -1.0, -1.0)
         for _ in range(MOST_EVENTS):
             i = int(t / dt)
             horizontal = ground[i, 0] + (t - i * dt) * ground[i, 1]
@@ -186,7 +186,7 @@ def compiled(rocking: Rocking, tolerance: float, method: int) -> Callable[[], tu
                     which = j
             if which == NONE:
                 cells[11], cells[12], cells[13], cells[14], cells[15] = contact
-                cells[16], cells[17] = supports
+                cells[16], cells[17] = supports.left, supports.right
                 for j in range(6):
                     numbers[j] = now[j]
                 t, which, theta_max = to_event(t, time, info, numbers, theta_max)

@@ -79,7 +79,7 @@ class Rocking:
 
     def put(self, contact: Contact, supports: Supports) -> None:
         """Contacts and supports of the next stretch, for the compiled functions."""
-        self.cells[11:16], self.cells[16:18] = contact, supports
+        self.cells[11:16], self.cells[16:18] = contact, supports[:2]
 
     def tolerances(self, tolerance: float) -> dict[str, Any]:
         """Relative, and absolute in units of δ_y for v, α for θ, these times ω_v and p for their rates, and 1 for z."""
@@ -143,7 +143,7 @@ def _rates(t, y, y_rates, cells, ground):
 def _events(t, y, values, cells, ground):
     m, state, contact, (horizontal, vertical) = _unpacked(t, y, cells, ground)
     rest = cells[18]
-    found = signals(m, state, contact, Supports(cells[16], cells[17]), rest, horizontal, vertical)
+    found = signals(m, state, contact, Supports(cells[16], cells[17], -1.0, -1.0), rest, horizontal, vertical)
     for i in range(4):
         values[i] = found[i] if abs(found[i]) > rest else rest  # rounding does not cross
     values[4] = 0.5 * math.pi - abs(state.theta)

@@ -1,6 +1,7 @@
 """Pier and bases: the relations between their sizes, and what is refused."""
 
 import math
+from dataclasses import replace
 from typing import get_args
 
 import numpy as np
@@ -104,6 +105,7 @@ def test_a_base_tells_what_it_can_do():
     assert told == [
         (False, False, False, False), (True, False, False, False), (True, True, True, True), (True, True, False, True),
     ]  # fmt: skip
+    assert not replace(bouc_wen, spring="hardening").ratchets
     assert RigidBase().by_other_law() == RigidBase()
     holds = {
         Damper("friction", f=0.05): True,

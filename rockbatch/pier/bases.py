@@ -20,7 +20,7 @@ from rockbatch.pier.restraints import (
 from rockbatch.units import LEAST, MOST, POSITIVE, Bounds
 
 LEAST_ETA = 1.000001
-"""Least η: closer to 1, Bouc–Wen springs would have to sink without end to carry the weight."""
+"""Least η: closer to 1, Bouc–Wen and hardening springs would have to sink without end to carry the weight."""
 
 MOST_EXPONENT = 1000.0
 """Greatest n of Bouc–Wen springs: their corner is as sharp as that of elastic–perfectly plastic ones, which have none."""
@@ -36,10 +36,10 @@ FLIGHT_LIMIT_MM = 5.0
 
 Kinematics = Literal["first-order", "finite"]
 Flight = Literal["guided", "stop"]
-SpringLaw = Literal["bouc-wen", "epp"]
+SpringLaw = Literal["bouc-wen", "epp", "hardening"]
 
-WITH_EXPONENT: tuple[SpringLaw, ...] = ("bouc-wen",)
-"""Laws that an exponent n belongs to; the others have a sharp corner."""
+WITH_EXPONENT: tuple[SpringLaw, ...] = ("bouc-wen", "hardening")
+"""Laws whose first loading is Bouc–Wen's curve with the exponent n; the other has a sharp corner."""
 
 RATCHETING: tuple[SpringLaw, ...] = ("bouc-wen",)
 """Laws with cyclic settlement (ratcheting): their springs settle a little with every cycle below their yield force."""
@@ -218,10 +218,11 @@ class YieldingBase(ElasticBase):
     ----------
     eta : float
         Bearing capacity index η = δ_y/δ_s > 1.
-    spring : "bouc-wen" or "epp"
-        The paper's smooth law (THEORY.md, eq. 7), or elastic–perfectly plastic.
+    spring : "bouc-wen", "epp" or "hardening"
+        The paper's smooth law (THEORY.md, eq. 7), elastic–perfectly plastic, or Bouc–Wen's curve with elastic unloading and
+        reloading up to the greatest force borne so far.
     n : float
-        Bouc–Wen exponent ≥ 1; 5 in the paper.
+        Bouc–Wen exponent ≥ 1 of the first and the last; 5 in the paper.
 
     Examples
     --------
@@ -307,8 +308,8 @@ def in_kilonewtons(pier: Pier, base: Base) -> dict[str, float]:
 def least_beta(pier: Pier, base: Base) -> float:
     """Return β below which the pier topples on its springs under its own weight, or at the least push (THEORY.md, eq. 13).
 
-    A Bouc–Wen spring under the weight, z = −1/η, is softer where it is loaded than where it is unloaded, by the factor
-    r = 1 − η⁻ⁿ, with tendons r = 1 − (η/(1 + ψ))⁻ⁿ; both together have 2r/(1 + r) of the elastic springs' stiffness in
+    A Bouc–Wen or hardening spring under the weight, z = −1/η, is softer where it is loaded than where it is unloaded, by the
+    factor r = 1 − η⁻ⁿ, with tendons r = 1 − (η/(1 + ψ))⁻ⁿ; both together have 2r/(1 + r) of the elastic springs' stiffness in
     rotation.
     """
     if not (isinstance(base, YieldingBase) and base.has_exponent and base.eta > 1 and base.n >= 1):
@@ -416,11 +417,11 @@ def _wrong_stiffness(pier: Pier, base: ElasticBase) -> list[str]:
         return [
             f"beta = {base.beta:g}: the pier topples on its springs under its own weight; beta must be above "
             f"sqrt((1+mu) cos(alpha)/mu)/sin(alpha) = {pier.least_beta:.4g}"
-            + (f", for these Bouc–Wen springs above {least:.4g}" if least > pier.least_beta else "")
+            + (f", for these springs above {least:.4g}" if least > pier.least_beta else "")
         ]
     if not base.beta > least and isinstance(base, YieldingBase):
         return [
-            f"beta = {base.beta:g}: the least push topples the pier, because Bouc–Wen springs near their yield force "
+            f"beta = {base.beta:g}: the least push topples the pier, because such springs near their yield force "
             f"(eta = {base.eta:g}, n = {base.n:g}) give way on the loaded side; beta must be above {least:.4g}"
         ]
     return []

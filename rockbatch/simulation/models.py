@@ -9,7 +9,7 @@ from rockbatch.core.devices.laws import FRICTION, HYSTERETIC, TENDON, VISCOUS, E
 from rockbatch.core.ground import ground_rows
 from rockbatch.core.powers import LARGEST_WHOLE
 from rockbatch.core.springs import lanes as spring_lanes
-from rockbatch.core.springs.model import BOUC_WEN, ELASTIC, EPP, Springs
+from rockbatch.core.springs.model import BOUC_WEN, ELASTIC, EPP, HARDENING, Springs
 from rockbatch.core.system import Kind
 from rockbatch.motions.motion import Motion, Samples
 from rockbatch.pier import (
@@ -49,7 +49,7 @@ READ_AFTER = 5.0
 """Periods 2π/ω_v of the vertical vibration from the end of the record to the moment at which residuals are read."""
 
 
-LAWS: dict[SpringLaw, float] = {"bouc-wen": BOUC_WEN, "epp": EPP}
+LAWS: dict[SpringLaw, float] = {"bouc-wen": BOUC_WEN, "epp": EPP, "hardening": HARDENING}
 """The core's codes of the laws of yielding springs."""
 
 DAMPERS: dict[DamperKind, float] = {"friction": FRICTION, "viscous": VISCOUS, "hysteretic": HYSTERETIC}

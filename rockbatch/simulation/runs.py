@@ -68,7 +68,7 @@ _STATUS = {
     GROWING: (
         "failed",
         "left alone after the record, the pier leans further and further: yielding springs ratchet on vibration that "
-        'nothing damps; spring = "epp" does so least',
+        'nothing damps; spring = "epp" and "hardening" do so least',
     ),
 }
 

@@ -13,9 +13,8 @@ import numpy as np
 
 from rockbatch.core import system
 from rockbatch.core.kernel import kernel
-from rockbatch.core.springs.lanes import static_state
-from rockbatch.core.springs.laws import branch_when_pressed
-from rockbatch.core.springs.model import Contact, State, Supports
+from rockbatch.core.springs.lanes import static_contact, static_state
+from rockbatch.core.springs.model import State
 from rockbatch.core.springs.transitions import handle
 from rockbatch.core.system import at_rest, event_functions
 from rockbatch.core.types import Ground
@@ -81,8 +80,7 @@ def solve(
     tolerances = {"rtol": tolerance, "atol": tolerance * np.array(scale)}
 
     t, y = 0.0, static_state(m, m.gravity)
-    branch = branch_when_pressed(m.law)
-    contact, supports = Contact(1.0, 1.0, branch, branch, 0.0), Supports(math.nan, math.nan)
+    contact, supports = static_contact(m, y)
 
     until = time.monotonic() + seconds
 

@@ -53,10 +53,11 @@ BASE_KEYS = {
     "yield_kN": Key(positive, "4.0e4",
         "Yield force F_y of one support, for a pier whose mass is known; or give `eta`.", many=True, only=_YIELDS),
     "spring": Key(choice(*WORDS["spring"]), '"bouc-wen"',
-        'Law of the supports: "bouc-wen", smooth, as in the paper, or "epp", elastic and then perfectly plastic.', many=True,
+        'Law of the supports: "bouc-wen", smooth, as in the paper; "epp", elastic and then perfectly plastic; or '
+        '"hardening", loaded at first as "bouc-wen", and elastic below the greatest force borne so far.', many=True,
         only=_YIELDS),
     "n": Key(within(BOUNDS["n"]), "5",
-        "Bouc–Wen exponent: the larger, the sharper the corner between elastic and plastic.", many=True,
+        "Bouc–Wen exponent, of hardening springs too: the larger, the sharper the corner between elastic and plastic.", many=True,
         only=_YIELDS | {"spring": WITH_EXPONENT}),
     "flight": Key(choice(*WORDS["flight"]), '"stop"',
         'What happens when both pivots are off the ground: "guided" follows the pier, which shear keys hold sideways, until '

@@ -80,6 +80,8 @@ PIER = Pier(0.2, 1.0)
         (YieldingBase(beta=40.0, eta=2.0, epsilon=0.1), 6.0),
         (YieldingBase(beta=40.0, eta=2.0, epsilon=0.1, spring="epp"), 6.0),
         (YieldingBase(beta=40.0, eta=1.5, epsilon=0.1, spring="epp", kinematics="finite", flight="stop"), 4.0),
+        (YieldingBase(beta=40.0, eta=2.0, zeta=0.05, spring="hardening"), 6.0),
+        (YieldingBase(beta=40.0, eta=1.5, epsilon=0.1, spring="hardening", kinematics="finite", flight="stop"), 4.0),
         (YieldingBase(beta=40.0, eta=2.0, epsilon=0.1), 15.0),
         (YieldingBase(beta=40.0, eta=2.0, epsilon=0.1), 30.0),
     ],

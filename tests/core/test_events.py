@@ -26,6 +26,7 @@ SHAKEN = Motion(
 ORDER_CASES = [
     pytest.param(YieldingBase(50.0, 0.1, eta=2.2), COARSE_SINE, id="fig5"),
     pytest.param(YieldingBase(50.0, 0.1, "finite", eta=2.2, spring="epp"), COARSE_SINE, id="epp-finite"),
+    pytest.param(YieldingBase(50.0, 0.1, eta=2.2, spring="hardening"), COARSE_SINE, id="hardening"),
     pytest.param(ElasticBase(50.0, 0.4), COARSE_SINE, id="elastic"),
     pytest.param(YieldingBase(50.0, 0.1, "finite", "guided", eta=5.0), SHAKEN, id="vertical-finite"),
 ]

@@ -22,6 +22,7 @@ BASES = {
     "elastic": rb.ElasticBase(50, 0.1, flight="guided"),
     "bouc-wen": rb.YieldingBase(50, 0.1, flight="guided", eta=2.2),
     "epp, finite": rb.YieldingBase(50, 0.1, flight="guided", eta=2.2, spring="epp", kinematics="finite"),
+    "hardening": rb.YieldingBase(50, 0.1, flight="guided", eta=2.2, spring="hardening"),
     "bouc-wen, finite, epsilon 0": rb.YieldingBase(50, 0.0, flight="guided", eta=2.2, kinematics="finite"),
 }
 
@@ -63,7 +64,7 @@ def test_p_delta_belongs_to_first_order_and_constraint_to_finite_kinematics():
     assert finite["constraint"].abs().max() > 1e-3
 
 
-@pytest.mark.parametrize("name", ["bouc-wen", "epp, finite"])
+@pytest.mark.parametrize("name", ["bouc-wen", "epp, finite", "hardening"])
 def test_plastic_work_is_that_of_the_outcome(name):
     """The outcome has it from the ends of each loading in closed form, the ledger from the power of the forces."""
     from rockbatch.simulation import run_fixed

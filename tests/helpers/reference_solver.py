@@ -191,6 +191,7 @@ class Leg:
 
 V, TH, VD, OM, ZL, ZR, WL, WR, INPUT, PDELTA, LOST = range(11)
 SIDES = ("left", "right")
+CURVED = ("bouc-wen", "hardening")
 
 
 class TwoSprings:
@@ -218,6 +219,7 @@ class TwoSprings:
         self.z0 = z0
         self.y = [self.v0, 0.0, 0.0, 0.0, z0, z0, 0.0, 0.0, 0.0, 0.0, 0.0]
         self.mode = ["unload", "unload"]
+        self.deepest = [z0, z0]  # of a hardening spring when it was last unloaded
         self.rest = [0.0, 0.0]  # o_i
         self.legs = ground_legs(motion, quiet_s)
         self.out = ReferenceRun()
@@ -226,7 +228,7 @@ class TwoSprings:
         self.count = 0
 
     def _static_integral(self, s: float) -> float:
-        if self.law != "bouc-wen":
+        if self.law not in CURVED:
             return s
         from scipy.integrate import quad
 
@@ -315,7 +317,7 @@ class TwoSprings:
         if mode in ("free", "held", "yield"):
             return 0.0
         z, rate = y[ZL + i], self.rate(i, y) / self.dy
-        if mode == "load" and self.law == "bouc-wen":
+        if mode == "load" and self.law in CURVED:
             return rate * (1.0 - min(abs(z), 1.0) ** self.n)  # a trial of a large step may leave the law
         return rate
 
@@ -369,6 +371,9 @@ class TwoSprings:
                     surfaces.append((lambda t, y, i=i: 1.0 + y[ZL + i], 1e-14, i, "yield"))
             elif mode == "load":
                 surfaces.append((lambda t, y, i=i: -self.rate(i, y), speed, i, "unload"))
+            elif self.law == "hardening":
+                surfaces.append((lambda t, y, i=i: self.pressed(i, y), 1e-14, i, "separate"))
+                surfaces.append((lambda t, y, i=i: y[ZL + i] - self.deepest[i], 1e-14, i, "load"))
             else:
                 surfaces.append((lambda t, y, i=i: self.rate(i, y), speed, i, "load"))
                 surfaces.append((lambda t, y, i=i: self.pressed(i, y), 1e-14, i, "separate"))
@@ -467,6 +472,10 @@ class TwoSprings:
         else:
             if kind == "yield":
                 self.y[ZL + i] = -1.0
+            elif self.law == "hardening" and kind == "load":
+                self.y[ZL + i] = self.deepest[i]
+            elif self.law == "hardening":
+                self.deepest[i] = self.y[ZL + i]
             self.mode[i] = kind
 
     def run(self) -> ReferenceRun:

@@ -35,6 +35,10 @@ SPRINGS = [
     pytest.param(FIG5, YieldingBase(50, 0.1, eta=3.0, n=50.0), SHORT_SINE, id="n50"),
     pytest.param(FIG5, YieldingBase(50, 0.1, eta=2.2, spring="epp"), SHORT_SINE, id="epp"),
     pytest.param(FIG6, YieldingBase(40, 0.3, "finite", eta=1.5, spring="epp"), SHORT_COSINE, id="epp-finite"),
+    pytest.param(FIG5, YieldingBase(50, 0.1, eta=2.2, spring="hardening"), SHORT_SINE, id="hardening"),
+    pytest.param(
+        FIG6, YieldingBase(40, 0.3, "finite", eta=1.5, spring="hardening", n=2.5), SHORT_COSINE, id="hardening-finite"
+    ),
     pytest.param(FIG5, ElasticBase(50, 0.4), SHORT_SINE, id="elastic"),
     pytest.param(FIG5, ElasticBase(50, 1.0, "finite"), SHORT_SINE, id="elastic-epsilon1-finite"),
     pytest.param(FIG5, ElasticBase(50, 1.0), SHORT_SINE, id="elastic-epsilon1"),
@@ -52,6 +56,12 @@ SPRINGS = [
         with_vertical(SHORT_SINE, 25.0),
         id="guided-flight-epp",
     ),
+    pytest.param(
+        FIG5,
+        YieldingBase(50, 0.6, flight="guided", eta=1.5, spring="hardening"),
+        with_vertical(SHORT_SINE, 25.0),
+        id="guided-flight-hardening",
+    ),
     pytest.param(FIG5, ElasticBase(50, 0.1, flight="stop"), with_vertical(SHORT_SINE, 25.0), id="stopped-by-flight"),
     pytest.param(
         Pier(alpha=0.6, p=1.5, mu=1.2),
@@ -64,6 +74,13 @@ SPRINGS = [
     pytest.param(FIG5, YieldingBase(50, zeta=0.05, eta=2.2), SHORT_SINE, id="damped-yielding"),
     pytest.param(FIG6, YieldingBase(60, kinematics="finite", zeta=1.0, eta=2.5), SHORT_COSINE, id="critical-finite"),
     pytest.param(FIG6, YieldingBase(40, zeta=0.01, eta=1.5, spring="epp"), SHORT_COSINE, id="damped-epp"),
+    pytest.param(FIG5, YieldingBase(50, zeta=0.05, eta=2.2, spring="hardening"), SHORT_SINE, id="damped-hardening"),
+    pytest.param(
+        FIG5,
+        YieldingBase(50, kinematics="finite", zeta=0.1, eta=3.0, spring="hardening", n=2.0),
+        with_vertical(SHORT_SINE, 25.0),
+        id="damped-guided-flight-hardening",
+    ),
     pytest.param(
         FIG5,
         YieldingBase(50, flight="guided", zeta=0.1, eta=3.0, n=2.0),

@@ -236,7 +236,7 @@ def test_static_deflection_is_the_integral_of_the_law(n, eta):
     assert found == pytest.approx(x * hyp2f1(1.0, 1.0 / n, 1.0 + 1.0 / n, x**n), rel=1e-11)
 
 
-@pytest.mark.parametrize(("spring", "n"), [("bouc-wen", 1.0), ("bouc-wen", 5.0), ("epp", 5.0)])
+@pytest.mark.parametrize(("spring", "n"), [("bouc-wen", 1.0), ("bouc-wen", 5.0), ("epp", 5.0), ("hardening", 5.0)])
 def test_dissipated_energy_is_the_area_of_the_hysteresis_loops(spring, n):
     """∮ F dv by the trapezoidal rule, less what the spring stores elastically; 1e-4: the rule's error at these rows."""
     motion = pulse("sine", 0.5, dt=0.0005, end=2.0)

@@ -20,7 +20,7 @@ from rockbatch.core.devices import laws as device_laws
 from rockbatch.core.devices.laws import FRICTION, HYSTERETIC, TENDON, VISCOUS, Element
 from rockbatch.core.observe import forces
 from rockbatch.core.springs import creep, equations, events, impact, laws
-from rockbatch.core.springs.model import BOUC_WEN, ELASTIC, EPP, Contact, Geometry, Springs, State, Supports
+from rockbatch.core.springs.model import BOUC_WEN, ELASTIC, EPP, HARDENING, Contact, Geometry, Springs, State, Supports
 from rockbatch.core.types import Ground, Pull
 
 U = pint.UnitRegistry()
@@ -62,7 +62,9 @@ CONTACTS = [
 ]
 KINEMATICS = pytest.mark.parametrize("finite", [None, True], ids=["first-order", "finite"])
 DAMPED = pytest.mark.parametrize("damped", [None, True], ids=["undamped", "damped"])
-LAWS = pytest.mark.parametrize("law", [ELASTIC, BOUC_WEN, EPP], ids=["elastic", "bouc-wen", "epp"])
+LAWS = pytest.mark.parametrize(
+    "law", [ELASTIC, BOUC_WEN, EPP, HARDENING], ids=["elastic", "bouc-wen", "epp", "hardening"]
+)
 
 WAITING = Supports(0.001 * M, 0.002 * M)
 CALM = Ground(0.1 * ACCELERATION, 0.2 * JERK, -0.1 * ACCELERATION, 0.3 * JERK)
@@ -185,7 +187,7 @@ def test_the_spring_law_gives_rates_deflections_and_work(n):
         assert_units([rate, laws.within_yield(-0.6 * ONE, yields)], [1 / S, ONE])
     assert_units([laws.static_deflection(0.4 * ONE, exponent)], [ONE])
     work = laws.plastic_work(m, -0.2 * ONE, -0.6 * ONE, 0.001 * M)
-    given = [laws.deflection(m, 0.4 * ONE), laws.give(m, 0.4 * ONE)]
+    given = [laws.deflection(m, 0.4 * ONE), laws.give(m, 0.4 * ONE, -0.3 * ONE)]
     assert_units([work, *given], [M, ONE, ONE])
 
 
@@ -194,7 +196,7 @@ def test_the_spring_law_gives_rates_deflections_and_work(n):
 @LAWS
 @pytest.mark.parametrize("contact", CONTACTS)
 def test_signals_compare_like_with_like_and_their_slopes_are_per_second(finite, damped, law, contact):
-    """In contact the force over F_y, else the gap; on a spring the pivot's velocity, for an EPP spring its way to yield 1 + z."""
+    """In contact the force over F_y, else the gap; on a spring the pivot's velocity, or its way to a yield point."""
     m, y, shaking = pier(finite, law, damped=damped), state(), ground()
     k = system.rates(m, y, contact, shaking.horizontal, shaking.vertical)
     rest = system.at_rest(m)

@@ -15,6 +15,7 @@ SINE = pulse("sine", 0.5, dt=0.01, end=3.0)
 BASES = [
     pytest.param(YieldingBase(50, 0.1, eta=2.2), id="bouc-wen"),
     pytest.param(YieldingBase(50, 0.1, "finite", "guided", eta=2.2, spring="epp"), id="epp-finite-guided"),
+    pytest.param(YieldingBase(50, eta=2.2, spring="hardening", zeta=0.05), id="hardening-damped"),
     pytest.param(ElasticBase(50, 0.0, "finite"), id="elastic-epsilon0"),
     pytest.param(RigidBase(), id="rigid"),
 ]

@@ -36,12 +36,14 @@ CASES = {
     "rigid": (FIG5, RigidBase(restitution=0.4), pulse("sine", 0.4, 0.5, dt=DT, end=3.0)),
     "bouc-wen": (FIG5, YieldingBase(50.0, 0.1, eta=2.2), SINE),
     "epp-finite-guided": (FIG5, YieldingBase(40.0, 0.3, "finite", "guided", eta=1.5, spring="epp"), SHAKEN),
+    "hardening": (FIG5, YieldingBase(50.0, 0.1, eta=2.2, spring="hardening"), SINE),
     "elastic-epsilon0-guided": (Pier(0.74, 1.0), ElasticBase(7.2, 0.0, flight="guided"), STOCKY),
 }
 MUST_HAPPEN = {
     "rigid": {LIFT_OFF, IMPACT_LEFT, IMPACT_RIGHT, REST},
     "bouc-wen": {SEPARATION_LEFT, SEPARATION_RIGHT, IMPACT_LEFT, IMPACT_RIGHT, SPRING_LEFT, SPRING_RIGHT},
     "epp-finite-guided": {SEPARATION_LEFT, SEPARATION_RIGHT, IMPACT_LEFT, IMPACT_RIGHT, SPRING_LEFT, SPRING_RIGHT},
+    "hardening": {SEPARATION_LEFT, SEPARATION_RIGHT, IMPACT_LEFT, IMPACT_RIGHT, SPRING_LEFT, SPRING_RIGHT},
     "elastic-epsilon0-guided": {SEPARATION_LEFT, SEPARATION_RIGHT, IMPACT_RIGHT},
 }
 

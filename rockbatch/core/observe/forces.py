@@ -182,7 +182,8 @@ def _waiting_springs(m, y, was, contact, supports):
     # A damped support creeps back to where it is unstressed
     left = y.v + at.lift_left - m.yield_deflection * y.z_left
     right = y.v + at.lift_right - m.yield_deflection * y.z_right
-    return Supports(_waits(was, contact, LEFT, supports.left, left), _waits(was, contact, RIGHT, supports.right, right))
+    left, right = _waits(was, contact, LEFT, supports.left, left), _waits(was, contact, RIGHT, supports.right, right)
+    return Supports(left, right, supports.yield_left, supports.yield_right)
 
 
 @waiting.of(Block)

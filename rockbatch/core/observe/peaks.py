@@ -242,7 +242,7 @@ def forces_of_run(m, body, rows, pulls, ties, ground, dt, limits, out, greatest,
     noted : recarray of Noted, shape (1,)
         Filled beside ``greatest``.
     """
-    supports, aloft = Supports(0.0 * dt, 0.0 * dt), 0.0
+    supports, aloft = Supports(0.0 * dt, 0.0 * dt, -1.0, -1.0), 0.0
     was = contact_of(m, rows[0])
     under = pulled(m, pulls[0, 0], pulls[0, 1])
     before = forces_at(under, body, state_of(m, rows[0]), was, supports, ground[0, 0], ground[0, 2])

@@ -121,7 +121,8 @@ def _outlook(lanes, i, m, y, contact, supports, devices):
     last, first = (last_left - last_right) / m.half_width, (first_left - first_right) / m.half_width
     to_right, to_left = max(0.0, first, last), max(0.0, -first, -last)
     sinking = max(0.0, -(last_left + last_right), -(first_left + first_right))
-    base, drift = Supports(left, right), Drift(to_right, to_left, sinking)
+    base = Supports(left, right, supports.yield_left, supports.yield_right)
+    drift = Drift(to_right, to_left, sinking)
     return outlook_on_springs(m, y, contact, waiting.load[i], waiting.stored[i], base, lanes.peak.theta[i], calm, drift)
 
 

@@ -53,14 +53,14 @@ def _above(m, position, velocity, acceleration, support, z, rest):
 
 
 @inlined
-def _on_spring(m, z, z_rate, yields, velocity, acceleration, rest):
+def _on_spring(m, z, z_rate, yields, point, velocity, acceleration, rest):
     """Return values and slopes of the two event functions of a pivot on its spring."""
     if abs(velocity) <= rest:
         if abs(acceleration) <= NO_ACCELERATION * m.gravity:
             acceleration = 0.0
         z_rate = surely(velocity, acceleration, rest) * m.stiffness
     contact, contact_slope = _compression(m, z, z_rate, velocity, acceleration)
-    law, law_slope = kink(m.law, yields, z, z_rate, velocity, acceleration)
+    law, law_slope = kink(m.law, yields, point, z, z_rate, velocity, acceleration)
     return contact, contact_slope, law, law_slope
 
 
@@ -82,7 +82,6 @@ def longest(m, y, k, contact, h):
 def event_functions(m, devices, y, k, contact, supports, rest, ground):
     """Return Signals of state ``y`` with rates ``k``, and their slopes; ``supports`` are those of free pivots [m]."""
     horizontal, vertical = ground.horizontal, ground.vertical
-    rest_left, rest_right = supports.left, supports.right
     at = geometry(m, y.theta)
     left_velocity = y.v_rate + at.arm_left * y.omega
     right_velocity = y.v_rate + at.arm_right * y.omega
@@ -93,18 +92,20 @@ def event_functions(m, devices, y, k, contact, supports, rest, ground):
     left_law, left_law_slope, right_law, right_law_slope = 1.0, 0.0, 1.0, 0.0
     if contact.left != 0.0:
         left, left_slope, left_law, left_law_slope = _on_spring(
-            m, y.z_left, k.z_left, contact.left_yields, left_velocity, left_acceleration, rest
-        )
+            m, y.z_left, k.z_left, contact.left_yields, supports.yield_left,
+            left_velocity, left_acceleration, rest,
+        )  # fmt: skip
     else:
         position = y.v + at.lift_left
-        left, left_slope = _above(m, position, left_velocity, left_acceleration, rest_left, y.z_left, rest)
+        left, left_slope = _above(m, position, left_velocity, left_acceleration, supports.left, y.z_left, rest)
     if contact.right != 0.0:
         right, right_slope, right_law, right_law_slope = _on_spring(
-            m, y.z_right, k.z_right, contact.right_yields, right_velocity, right_acceleration, rest
-        )
+            m, y.z_right, k.z_right, contact.right_yields, supports.yield_right,
+            right_velocity, right_acceleration, rest,
+        )  # fmt: skip
     else:
         position = y.v + at.lift_right
-        right, right_slope = _above(m, position, right_velocity, right_acceleration, rest_right, y.z_right, rest)
+        right, right_slope = _above(m, position, right_velocity, right_acceleration, supports.right, y.z_right, rest)
     if contact.held < 0.0:
         left, left_law = _held(m, y, contact, LEFT, horizontal, vertical)
         left_slope = 0.0
@@ -122,8 +123,8 @@ def settle(m, y, contact, side, horizontal, vertical):
     solution, and it is held (Filippov's sliding mode).
     """
     at = geometry(m, y.theta)
-    arm, z = (at.arm_left, y.z_left) if side == LEFT else (at.arm_right, y.z_right)
-    yields = branch_of_landing(m, z, y.v_rate + arm * y.omega)
+    arm = at.arm_left if side == LEFT else at.arm_right
+    yields = branch_of_landing(m, y.v_rate + arm * y.omega)
     on = touching(contact, side, yields)
     if pivot_acceleration(m, y, on, side, horizontal, vertical) < 0.0:
         return on

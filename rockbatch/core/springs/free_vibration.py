@@ -65,13 +65,13 @@ def _weight_moment(m, travel):
 
 
 @kernel
-def _climb(m, lean, target, load):
+def _climb(m, lean, target, load, point):
     """Return the energy that it takes at least to turn from rest at ``lean`` to ``target`` [rad], or to the unstable equilibrium.
 
     The pier turns towards the support on the right, which is loaded by x, the supports' moment over load · b; the other one
-    is unloaded, elastic. A Bouc–Wen spring takes 1/(1 − zⁿ) of the elastic deflection. From the capacity on, the moment
-    stays and the pier turns about its far support. For the other direction reverse both angles. A pier that leans
-    beyond ``target`` is there already: −inf.
+    is unloaded, elastic. A Bouc–Wen spring takes 1/(1 − zⁿ) of the elastic deflection, a hardening one beyond its yield
+    ``point``. From the capacity on, the moment stays and the pier turns about its far support. For the other direction
+    reverse both angles. A pier that leans beyond ``target`` is there already: −inf.
     """
     if lean >= target:
         return -math.inf
@@ -84,7 +84,7 @@ def _climb(m, lean, target, load):
     dx = (capacity - x) / PARTS
     for i in range(PARTS):
         middle = x + (i + 0.5) * dx
-        turn = 0.5 * deflection * dx * (1.0 + give(m, static_force * (1.0 + middle))) / b
+        turn = 0.5 * deflection * dx * (1.0 + give(m, static_force * (1.0 + middle), point)) / b
         part = min(turn, goal - travel)
         middle = x + (i + 0.5 * part / turn) * dx
         moment = load * (b * middle - weight * _weight_moment(m, travel + 0.5 * part))
@@ -147,7 +147,7 @@ def outlook_on_springs(m, y, contact, load, in_tendons, base, peak, calm, drift)
     Parameters
     ----------
     base : Supports
-        Where both supports are unstressed [m].
+        Where both supports are unstressed [m], and their yield points.
     in_tendons : float
         What tendons may give back beyond the work of their share of the load [J/kg].
     peak : float
@@ -199,7 +199,8 @@ def outlook_on_springs(m, y, contact, load, in_tendons, base, peak, calm, drift)
     stored = load * y.v + gained + 0.5 * spring * (y.z_left * y.z_left + y.z_right * y.z_right) + in_tendons
     at_lean += load * (middle - softness) + 0.5 * load * softness * (1.0 + uneven * uneven)
     energy = (1.0 + _returned(m, limit)) * (kinetic + stored - at_lean)
-    least = min(_climb(m, lean, limit - drift_right, load), _climb(m, -lean, limit - drift_left, load))
+    to_right = _climb(m, lean, limit - drift_right, load, base.yield_right)
+    least = min(to_right, _climb(m, -lean, limit - drift_left, load, base.yield_left))
     return DECIDED if energy <= least + 1e-12 * load * softness else OPEN
 
 

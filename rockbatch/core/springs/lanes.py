@@ -11,7 +11,7 @@ from rockbatch.core.rk4 import rk4
 from rockbatch.core.roots import lowest_within
 from rockbatch.core.springs import events, transitions  # noqa: F401  answers of the springs
 from rockbatch.core.springs.ending import Waiting, base_of
-from rockbatch.core.springs.laws import branch_when_pressed, deflection
+from rockbatch.core.springs.laws import curved, deflection, yield_point
 from rockbatch.core.springs.loading import Loading, branches, close_left, close_right
 from rockbatch.core.springs.model import NUMBERS, Contact, Numbers, Springs, SpringTraits, State, Supports
 from rockbatch.core.springs.passing import News
@@ -86,6 +86,14 @@ def static_state(m, load):
     return State(-m.yield_deflection * deflection(m, force), 0.0, 0.0, 0.0, -force, -force)
 
 
+@kernel
+def static_contact(m, y):
+    """Return contacts and supports in the static state ``y``, in first loading."""
+    branch = 1.0 if curved(m.law) else 0.0
+    point = yield_point(m.law, 0.0, y.z_left)
+    return Contact(1.0, 1.0, branch, branch, 0.0), Supports(0.0, 0.0, point, point)
+
+
 @system.begin.of(SpringTraits)
 def begin(traits, lanes, i, run):
     """Put the model of ``run`` into lane ``i``, in its static state."""
@@ -93,10 +101,8 @@ def begin(traits, lanes, i, run):
     pier = model(traits, lanes, i)
     y = static_state(pier, run.gravity + run.prestress)
     plastic = y.v - run.yield_deflection * y.z_left
-    branch = branch_when_pressed(pier.law)
-    put(lanes.now, i, y)
-    put(lanes.contact, i, Contact(1.0, 1.0, branch, branch, 0.0))
-    put(lanes.supports, i, Supports(0.0, 0.0))
+    contact, supports = static_contact(pier, y)
+    put_moment(traits, lanes, i, y, contact, supports)
     put(lanes.loading, i, Loading(plastic, y.z_left, 0.0, plastic, y.z_right, 0.0))
     put(lanes.lowest, i, Lowest(y.v, y.v, plastic))
     lanes.news.watched[i] = 1.0
@@ -135,7 +141,7 @@ def after_step(traits, lanes, i, marks, contact, whole):
 
 @system.attend.of(SpringTraits)
 def attend(traits, lanes, i):
-    """Take in extremes and plastic work of a sub-step of lane ``i`` that stands, and let the lane go on from its end."""
+    """Take in extremes, plastic work and yield points of a sub-step of lane ``i`` that stands; the lane goes on from its end."""
     m, news, h = model(traits, lanes, i), lanes.news, lanes.clock.step[i]
     y, end, contact = get(lanes.now, i, State), get(lanes.end, i, State), get(lanes.contact, i, Contact)
     if system.airborne(m, contact):
@@ -148,8 +154,10 @@ def attend(traits, lanes, i):
     loading = get(lanes.loading, i, Loading)
     if news.left[i] >= 0.0 and contact.left_yields == 0.0:
         loading = close_left(m, loading, left.position - m.yield_deflection * end.z_left, news.z_left[i])
+        lanes.supports.yield_left[i] = yield_point(m.law, lanes.supports.yield_left[i], news.z_left[i])
     if news.right[i] >= 0.0 and contact.right_yields == 0.0:
         loading = close_right(m, loading, right.position - m.yield_deflection * end.z_right, news.z_right[i])
+        lanes.supports.yield_right[i] = yield_point(m.law, lanes.supports.yield_right[i], news.z_right[i])
     put(lanes.loading, i, loading)
 
 

@@ -1,16 +1,17 @@
 """Constitutive models of a spring: ż = (v̇/δ_y)(1 − |z|ⁿ) while it yields, v̇/δ_y otherwise (THEORY.md, eq. 7).
 
-z = F/F_y is in [−1, 0]. Bouc–Wen is on the inelastic branch whenever it is being compressed; the elastic–perfectly
-plastic spring only once z = −1, where the same expression gives ż = 0; the elastic spring never. What tells one law from
-another is here: its branches and the kinks between them, its deflection and plastic work. ``yields`` is 1 on the inelastic
-branch, 0 on the elastic one.
+z = F/F_y is in [−1, 0]. Bouc–Wen is on the inelastic branch whenever it is being compressed, the elastic spring never. The
+two others have a yield point, and are on it from there on until their velocity reverses: the elastic–perfectly plastic spring
+from z = −1, where the same expression gives ż = 0, the hardening one from the least z that it has had. What distinguishes the
+laws is here: their branches and the switching points between them, deflection and plastic work. ``yields`` is 1 on the
+inelastic branch, 0 on the elastic one; ``point`` is the yield point.
 """
 
 import numpy as np
 
 from rockbatch.core.kernel import inlined, kernel
 from rockbatch.core.powers import power
-from rockbatch.core.springs.model import BOUC_WEN, ELASTIC, EPP
+from rockbatch.core.springs.model import BOUC_WEN, ELASTIC, EPP, HARDENING
 
 # Gauss–Legendre: poles of the integrand lie on the unit circle at ±2π/n, which n = 5 keeps well away from [0, 1]
 _NEARBY = 0.1  # half of a way over which half of the nodes suffice: 19⁻¹² is left, the poles being 9.5 such halves away
@@ -51,6 +52,12 @@ def branch_when_pressed(law):
 
 
 @inlined
+def curved(law):
+    """Return whether the first loading follows Bouc–Wen's curve, on the inelastic branch from the start."""
+    return law in (BOUC_WEN, HARDENING)
+
+
+@inlined
 def ratchets(law):
     """Return whether a spring sinks with every small cycle of its load, be it below any that it has borne."""
     return law == BOUC_WEN
@@ -65,40 +72,48 @@ def kept_sign(law, on_spring, yields):
 
 @inlined
 def may_yield(law, yields):
-    """Return whether the spring leaves its branch at z = −1."""
-    return law == EPP and yields == 0.0
+    """Return whether the spring leaves its branch at a yield point."""
+    return law >= EPP and yields == 0.0
 
 
 @inlined
-def kink(law, yields, z, z_rate, velocity, acceleration):
+def yield_point(law, point, z):
+    """Return the yield point of a spring, so far at ``point``, whose velocity reverses at ``z`` on its inelastic branch."""
+    return min(point, z) if law == HARDENING else -1.0
+
+
+@inlined
+def kink(law, yields, point, z, z_rate, velocity, acceleration):
     """Return the event function of a spring's switching point, positive while it stays on its branch, and its rate."""
     sign = kept_sign(law, 1.0, yields)
     if may_yield(law, yields):
-        return 1.0 + z, z_rate
+        return z - point, z_rate
     return (1.0, 0.0) if sign == 0.0 else (sign * velocity, sign * acceleration)
 
 
 @inlined
-def after_kink(law, yields, z):
-    """Return the other branch, and z, which is exactly −1 where it is there that the branch changes."""
-    return 1.0 - yields, -1.0 if may_yield(law, yields) else z
+def after_kink(law, yields, point, z):
+    """Return the other branch, and z, which is exactly the yield point where it is there that the branch changes."""
+    return 1.0 - yields, point if may_yield(law, yields) else z
 
 
 @inlined
-def branch_after_jump(law, yields, z, velocity, rest):
+def branch_after_jump(law, yields, point, z, velocity, rest):
     """Return the branch of a spring whose velocity has jumped to ``velocity`` [m/s], which counts as none up to ``rest``."""
     if law == ELASTIC or abs(velocity) <= rest:
         return yields
     if velocity > 0.0:
         return 0.0
-    return 1.0 if law == BOUC_WEN or z <= -1.0 else yields
+    return 1.0 if law == BOUC_WEN or z <= point else yields
 
 
 @inlined
-def branch_of_landing(m, z, velocity):
-    """Return the branch of a spring at ``z`` that a pivot meets at ``velocity`` [m/s]; a damped one may be met on its way up."""
-    loaded = branch_when_pressed(m.law)
-    return loaded if m.damped is None else branch_after_jump(m.law, loaded, z, velocity, 0.0)
+def branch_of_landing(m, velocity):
+    """Return the branch of a spring that a pivot meets at ``velocity`` [m/s]; a damped support may be met on its way up.
+
+    It has been unloaded since it reached its yield point, if it has one.
+    """
+    return 0.0 if m.damped is not None and velocity > 0.0 else branch_when_pressed(m.law)
 
 
 @kernel
@@ -125,13 +140,13 @@ def static_deflection(force, exponent):
 @kernel
 def deflection(m, force):
     """Return the deflection/δ_y of a spring of any law that is first loaded to ``force``/F_y < 1."""
-    return static_deflection(force, m.exponent) if m.law == BOUC_WEN else force
+    return static_deflection(force, m.exponent) if curved(m.law) else force
 
 
 @kernel
-def give(m, force):
+def give(m, force, point):
     """Return δ_y/F_y times the rate of deflection with force, of a spring that is loaded with ``force``/F_y up to 1."""
-    if m.law != BOUC_WEN:
+    if not curved(m.law) or (m.law == HARDENING and force < -point):
         return 1.0
     return 1.0 / (1.0 - softening(m, min(max(force, 0.0), 1.0 - 1e-12)))
 

@@ -4,10 +4,11 @@ from typing import NamedTuple
 
 from rockbatch.core.types import Pull
 
-# Constitutive models
+# Constitutive models; those from EPP on have a yield point
 ELASTIC = 0.0
 BOUC_WEN = 1.0
 EPP = 2.0
+HARDENING = 3.0
 
 
 class Springs(NamedTuple):
@@ -26,7 +27,7 @@ class Springs(NamedTuple):
     yield_force: float  # F_y/M [m/s²]
     epsilon: float  # restitution of the landing pivot; 1 for damped supports, whose dashpots lose the energy
     damping: float  # C/M = ζ ω_v of each support's dashpot [1/s]
-    law: float  # ELASTIC, BOUC_WEN or EPP
+    law: float  # ELASTIC, BOUC_WEN, EPP or HARDENING
     guided: float  # 1: flight goes on, 0: it ends the run
     exponent: float | int | None  # n of Bouc–Wen; None for the paper's 5, int for other whole numbers up to 10
     finite: bool | None  # True: finite kinematics; None: first-order
@@ -72,10 +73,12 @@ class Contact(NamedTuple):
 
 
 class Supports(NamedTuple):
-    """Positions [m] at which the supports of free pivots are unstressed; of others they mean nothing."""
+    """State of the supports that is constant between events."""
 
-    left: float
+    left: float  # position at which the support of a free pivot is unstressed [m]; of others it means nothing
     right: float
+    yield_left: float = -1.0  # yield point: z at which an elastic branch ends, where the law has one
+    yield_right: float = -1.0
 
 
 class Geometry(NamedTuple):

@@ -33,8 +33,8 @@ class News(NamedTuple):
 
 
 @inlined
-def _clear(m, on_spring, yields, support, start, end, z, z_end, h):
-    """Return a number, positive if a pivot surely has neither separated nor landed nor, perfectly plastic, begun to yield.
+def _clear(m, on_spring, yields, support, point, start, end, z, z_end, h):
+    """Return a number, positive if a pivot surely has neither separated nor landed, nor reached its yield ``point``.
 
     z moves no faster than the pivot's velocity/δ_y: what a cubic may go beyond its ends bounds it too.
     """
@@ -44,7 +44,7 @@ def _clear(m, on_spring, yields, support, start, end, z, z_end, h):
     if m.damped is not None:  # the dashpot pulls most where the parabola through both velocities and the way is highest
         bulge = 1.5 * abs((end.position - start.position) / h - 0.5 * (start.velocity + end.velocity))
         contact -= lag(m) * (max(start.velocity, end.velocity) + bulge)
-    until_yield = 1.0 + (min(z, z_end) - beyond_z)
+    until_yield = (min(z, z_end) - beyond_z) - point
     gap = min(start.position, end.position) - (top(m, support, z_end) + beyond)  # a support creeps up
     contact = min(contact, until_yield) if may_yield(m.law, yields) else contact
     return contact if on_spring != 0.0 else gap
@@ -88,11 +88,11 @@ def _turned(traits, lanes, i, settings):
     turn_right = reversal(m, sign_right, rest, right, acceleration_right, right_end, end.z_right, h)
     clear = min(
         _clear(
-            m, contact.left, contact.left_yields, supports.left[i],
+            m, contact.left, contact.left_yields, supports.left[i], supports.yield_left[i],
             left, left_end, y.z_left, end.z_left + turn_left.added, h,
         ),
         _clear(
-            m, contact.right, contact.right_yields, supports.right[i],
+            m, contact.right, contact.right_yields, supports.right[i], supports.yield_right[i],
             right, right_end, y.z_right, end.z_right + turn_right.added, h,
         ),
     )  # fmt: skip

@@ -9,7 +9,13 @@ from rockbatch.core.springs.creep import lag, velocity_of_top
 from rockbatch.core.springs.equations import geometry, on_ground, touching, without
 from rockbatch.core.springs.events import settle
 from rockbatch.core.springs.impact import land, land_flat
-from rockbatch.core.springs.laws import after_kink, branch_after_jump, branch_of_landing, branch_when_pressed
+from rockbatch.core.springs.laws import (
+    after_kink,
+    branch_after_jump,
+    branch_of_landing,
+    branch_when_pressed,
+    yield_point,
+)
 from rockbatch.core.springs.model import Contact, Springs, State, Supports
 from rockbatch.core.types import (
     CONTACT_LEFT,
@@ -57,6 +63,11 @@ def _mirrored_contact(contact):
 
 
 @kernel
+def _mirrored_supports(supports):
+    return Supports(supports.right, supports.left, supports.yield_right, supports.yield_left)
+
+
+@kernel
 def _mirrored_kind(kind):
     if kind == SEPARATION_LEFT:
         return SEPARATION_RIGHT
@@ -85,12 +96,32 @@ def transition(m, devices, y, contact, supports, which, rest, ground, dt):
 def handle(m, y, contact, supports, which, rest, horizontal, vertical):
     """Return state, contact, supports and kind after event ``which``, of a pivot's contact or of its spring's law."""
     if which in (CONTACT_LEFT, LAW_LEFT):
-        return _at_left(m, y, contact, supports, which == LAW_LEFT, rest, horizontal, vertical)
-    y, contact, supports, kind = _at_left(
-        _mirrored_pier(m), _mirrored(y), _mirrored_contact(contact), Supports(supports.right, supports.left),
+        after, now, moved, kind = _at_left(m, y, contact, supports, which == LAW_LEFT, rest, horizontal, vertical)
+        return after, now, with_yield_points(m, y, contact, now, moved), kind
+    after, now, moved, kind = _at_left(
+        _mirrored_pier(m), _mirrored(y), _mirrored_contact(contact), _mirrored_supports(supports),
         which == LAW_RIGHT, rest, -horizontal, vertical,
     )  # fmt: skip
-    return _mirrored(y), _mirrored_contact(contact), Supports(supports.right, supports.left), _mirrored_kind(kind)
+    now = _mirrored_contact(now)
+    moved = with_yield_points(m, y, contact, now, _mirrored_supports(moved))
+    return _mirrored(after), now, moved, _mirrored_kind(kind)
+
+
+@kernel
+def with_yield_points(m, y, before, after, supports):
+    """Return ``supports`` with the yield points of springs that have left their inelastic branch in state ``y``."""
+    left, right = supports.yield_left, supports.yield_right
+    if before.left_yields > after.left_yields:
+        left = yield_point(m.law, left, y.z_left)
+    if before.right_yields > after.right_yields:
+        right = yield_point(m.law, right, y.z_right)
+    return Supports(supports.left, supports.right, left, right)
+
+
+@kernel
+def _left_moved(supports, position):
+    """Return ``supports`` with the left one unstressed at ``position`` [m]."""
+    return Supports(position, supports.right, supports.yield_left, supports.yield_right)
 
 
 @kernel
@@ -99,12 +130,12 @@ def _at_left(m, y, contact, supports, of_law, rest, horizontal, vertical):
     if contact.held == LEFT:
         at = geometry(m, y.theta)
         if not of_law:
-            yields = branch_of_landing(m, y.z_left, y.v_rate + at.arm_left * y.omega)
+            yields = branch_of_landing(m, y.v_rate + at.arm_left * y.omega)
             return y, touching(contact, LEFT, yields), supports, HELD_LEFT
-        waiting = Supports(y.v + at.lift_left - m.yield_deflection * y.z_left, supports.right)
+        waiting = _left_moved(supports, y.v + at.lift_left - m.yield_deflection * y.z_left)
         return y, without(contact, LEFT), waiting, SEPARATION_LEFT
     if of_law:  # the spring changes its branch
-        yields, z = after_kink(m.law, contact.left_yields, y.z_left)
+        yields, z = after_kink(m.law, contact.left_yields, supports.yield_left, y.z_left)
         changed = State(y.v, y.theta, y.v_rate, y.omega, z, y.z_right)
         return changed, touching(contact, LEFT, yields), supports, SPRING_LEFT
     if contact.left != 0.0:
@@ -119,7 +150,7 @@ def _separation(m, y, contact, supports, rest, horizontal, vertical):
     velocity = y.v_rate + at.arm_left * y.omega
     z = 0.0 if m.damped is None else -lag(m) * max(velocity, 0.0)
     unborne = State(y.v, y.theta, y.v_rate, y.omega, z, y.z_right)
-    waiting = Supports(y.v + at.lift_left - m.yield_deflection * z, supports.right)
+    waiting = _left_moved(supports, y.v + at.lift_left - m.yield_deflection * z)
     if m.damped is None and velocity > rest:
         return unborne, without(contact, LEFT), waiting, SEPARATION_LEFT
     after = settle(m, unborne, contact, LEFT, horizontal, vertical)
@@ -150,7 +181,7 @@ def _landing(m, y, contact, supports, rest, horizontal, vertical):
     if abs(m.epsilon * velocity) > rest:
         return landed, touching(contact, LEFT, loaded), supports, IMPACT_LEFT
     after = settle(m, landed, contact, LEFT, horizontal, vertical)
-    return landed, after, Supports(y.v + at.lift_left, supports.right), IMPACT_LEFT
+    return landed, after, _left_moved(supports, y.v + at.lift_left), IMPACT_LEFT
 
 
 @kernel
@@ -159,7 +190,7 @@ def _damped_landing(m, y, contact, supports, rest, horizontal, vertical):
     velocity = y.v_rate + geometry(m, y.theta).arm_left * y.omega
     if abs(velocity - velocity_of_top(m, y.z_left)) <= rest:
         return y, settle(m, y, contact, LEFT, horizontal, vertical), supports, IMPACT_LEFT
-    return y, touching(contact, LEFT, branch_of_landing(m, y.z_left, velocity)), supports, IMPACT_LEFT
+    return y, touching(contact, LEFT, branch_of_landing(m, velocity)), supports, IMPACT_LEFT
 
 
 @kernel
@@ -172,8 +203,9 @@ def _right_after_impulse(m, y, contact, supports, at, rest):
     if contact.held == RIGHT and abs(velocity) > rest:
         if velocity < 0.0:
             return touching(contact, RIGHT, branch_when_pressed(m.law)), supports
-        return without(contact, RIGHT), Supports(supports.left, y.v + at.lift_right)
+        moved = Supports(supports.left, y.v + at.lift_right, supports.yield_left, supports.yield_right)
+        return without(contact, RIGHT), moved
     if contact.right == 0.0:
         return contact, supports
-    yields = branch_after_jump(m.law, contact.right_yields, y.z_right, velocity, rest)
+    yields = branch_after_jump(m.law, contact.right_yields, supports.yield_right, y.z_right, velocity, rest)
     return touching(contact, RIGHT, yields), supports

@@ -152,9 +152,7 @@ def _ratcheting(finished: Finished) -> Markup:
     """State that settlement depends on the spring law, with its widest range if both were run."""
     if not any(map(creeps, finished.info["cases"])):
         return Markup("")
-    told = (
-        "Bouc–Wen springs ratchet: they settle a little with every small cycle, elastic–perfectly plastic ones do not. "
-    )
+    told = "Bouc–Wen springs ratchet: they settle a little with every small cycle, springs by the other laws do not. "
     runs = finished.runs
     if OTHER_LAW not in runs:
         told += (
