@@ -97,7 +97,7 @@ def of_law(law: str, base: YieldingBase) -> ElasticBase:
     """``base`` with springs of ``law``; a flight goes on, so that no run ends early."""
     if law == "elastic":
         return ElasticBase(base.beta, base.epsilon, flight="guided")
-    return replace(base, spring="epp" if law == "epp" else "bouc-wen", flight="guided")
+    return replace(base, spring=law, flight="guided")
 
 
 def with_vertical(motion: Motion) -> Motion:
@@ -223,7 +223,7 @@ def main(repeats: int = 7, runs: int = 64, seconds: float | None = None) -> list
         "| --- | --- | --- | --- | --- | --- | --- |",
         *(
             measure(law, moved, substeps, runs, repeats)
-            for law in ("bouc-wen", "elastic", "epp")
+            for law in ("bouc-wen", "elastic", "epp", "hardening")
             for moved in (motion, with_vertical(motion))
             for substeps in (1, 2, 4)
         ),

@@ -64,7 +64,7 @@ def test_loops_of_spring_laws_are_closed_but_for_bouc_wen(benchmark):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("law", ["bouc-wen", "epp"])
+@pytest.mark.parametrize("law", ["bouc-wen", "epp", "hardening"])
 def test_settlements_agree_with_a_solver_that_knows_other_laws_too(benchmark, law):
     """A one-sine and vertical vibration; the other solver is of first order, with steps of 20 µs."""
     module = benchmark("spring_laws")
@@ -117,8 +117,8 @@ def test_the_bare_step_is_compared_for_every_law_the_rigid_base_every_step_and_c
     lines = benchmark("bare_step").main(repeats=1, runs=2, seconds=3.0)
     assert lines[0].startswith("vector instructions of ")
     rows = cells(lines)
-    laws, devices = rows[: (3 + 1) * 2 * 3], rows[(3 + 1) * 2 * 3 :]
-    assert len({tuple(row[:3]) for row in laws}) == (3 + 1) * 2 * 3
+    laws, devices = rows[: (4 + 1) * 2 * 3], rows[(4 + 1) * 2 * 3 :]
+    assert len({tuple(row[:3]) for row in laws}) == (4 + 1) * 2 * 3
     assert all(float(row[3]) > 0 for row in laws)
     assert any(float(row[5]) > 0 for row in laws)  # events per step: something happens within 3 s
     assert {tuple(row[:2]) for row in devices} == {(base, steps) for base in ("rigid", "bouc-wen") for steps in "124"}
