@@ -232,13 +232,17 @@ def test_bouc_wen_springs_near_their_yield_force_need_more_stiffness(n, beta, st
     assert (problems(FIG5, YieldingBase(beta, 0.1, eta=1.05, n=n)) == []) == stands
 
 
-@pytest.mark.parametrize(("n", "eta"), [(1.0, 1.05), (5.0, 1.2), (2.0, 1.1)])
-def test_the_limit_is_where_a_small_push_begins_to_grow(n, eta):
+@pytest.mark.parametrize(
+    ("spring", "n", "eta"),
+    [("bouc-wen", 1.0, 1.05), ("bouc-wen", 5.0, 1.2), ("bouc-wen", 2.0, 1.1), ("hardening", 5.0, 1.2)],
+)
+def test_the_limit_is_where_a_small_push_begins_to_grow(spring, n, eta):
     """A push of 1e-7 g that lasts: just above the limit the lean stays of its order, just below it runs away."""
     push = steady(1e-7 * 9.81, 0.0, 0.01, 2001)
     peaks = []
     for factor in (1.05, 0.95):
-        base = YieldingBase(factor * least_beta(FIG5, YieldingBase(50.0, 0.1, eta=eta, n=n)), 0.1, eta=eta, n=n)
+        base = YieldingBase(50.0, 0.1, eta=eta, n=n, spring=spring)
+        base = replace(base, beta=factor * least_beta(FIG5, base))
         peaks.append(run_fixed(FIG5, base, push, 4, 0.0, wait=False).theta_max)
     assert peaks[0] < 1e-4
     assert peaks[1] > 30.0 * peaks[0]

@@ -27,6 +27,7 @@ class TiedTwoSprings(TwoSprings):
         load = 1.0 + sum(device.psi for device, _ in self.elements if isinstance(device, Tendon))
         share = load * 0.5 * self.g / self.fy
         self.v0, self.z0 = -self.dy * self._static_integral(share), -share
+        self.deepest = [self.z0, self.z0]
         self.y = [self.v0, 0.0, 0.0, 0.0, self.z0, self.z0] + [0.0] * (5 + len(self.elements))
         self.way = [0.0 if self.rubs(j) else 1.0 for j in range(len(self.elements))]  # 0 while friction holds
         self.hold = [0.0] * len(self.elements)

@@ -20,10 +20,12 @@ from rockbatch.units import GRAVITY
 ELASTIC = ElasticBase(50.0, epsilon=0.3)
 DAMPED = ElasticBase(50.0, zeta=0.05)
 BOUC_WEN = YieldingBase(50.0, epsilon=0.3, eta=3.0)
+HARDENING = YieldingBase(50.0, epsilon=0.3, eta=3.0, spring="hardening")
 FINITE = YieldingBase(60.0, eta=3.5, spring="epp", zeta=0.1, kinematics="finite", flight="guided")
 BASES = [
     pytest.param(ELASTIC, id="elastic"),
     pytest.param(BOUC_WEN, id="bouc-wen"),
+    pytest.param(HARDENING, id="hardening"),
     pytest.param(DAMPED, id="damped", marks=pytest.mark.slow),  # these two are compiled by themselves
     pytest.param(FINITE, id="finite", marks=pytest.mark.slow),
 ]
