@@ -136,8 +136,8 @@ def history_bytes(run: PlannedRun, row: "Mapping[str, Any] | pd.Series") -> floa
 
 
 def _reversals(pier: Pier, base: Base) -> float:
-    """How often a second the Bouc–Wen springs change their branch at most: both, twice a period of the vertical vibration."""
-    if not base.has_exponent:
+    """Return how often a second springs that yield in every cycle change their branch: both, twice a period of the vibration."""
+    if not base.ratchets:
         return 0.0
     return 2.0 * vertical_frequency(pier, base) / math.pi
 
