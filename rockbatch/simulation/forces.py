@@ -10,7 +10,7 @@ import numpy as np
 from rockbatch.core import types
 from rockbatch.core.devices.laws import ELEMENT, FRICTION
 from rockbatch.core.observe.forces import FORCES, Body, Forces, Hold, Outline
-from rockbatch.core.observe.peaks import NEVER, NOTED, Limits, Noted, Ties, forces_of_run
+from rockbatch.core.observe.peaks import NEVER, NOTED, Limits, Noted, RecordedDevices, forces_of_run
 from rockbatch.motions.motion import Samples
 from rockbatch.pier import Pier, RigidBase, YieldingBase
 from rockbatch.results.outcome import WOULD_SLIDE, PeakForces
@@ -74,12 +74,12 @@ def _observe(run: Run, rows: np.recarray, least_normal: float, forces: np.recarr
     return noted[0]
 
 
-def _devices(run: Run, rows: np.recarray) -> Ties | None:
+def _devices(run: Run, rows: np.recarray) -> RecordedDevices | None:
     """Return the dampers and tendons of a run, with their states at its ``rows``; None without any."""
     if not run.base.restraints:
         return None
     laws = np.array([tuple(device) for device in elements(run.pier, run.base)], ELEMENT).view(np.recarray)
-    return Ties(laws, rows.state.copy(), float(rows.v[0]))
+    return RecordedDevices(laws, rows.state.copy(), float(rows.v[0]))
 
 
 def _hold(pier: Pier, base: RigidBase) -> Hold:

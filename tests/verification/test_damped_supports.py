@@ -10,7 +10,7 @@ from reference_solver import reference
 
 import rockbatch as rb
 from rockbatch.core import types
-from rockbatch.core.springs.creep import decay
+from rockbatch.core.springs.recovery import decay
 from rockbatch.motions.motion import Motion
 from rockbatch.pier import ElasticBase, Pier, YieldingBase, problems, rocking_frequency, vertical_frequency
 from rockbatch.simulation import Run, run_fixed, run_to_tolerance, written_run

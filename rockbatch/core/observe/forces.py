@@ -6,9 +6,9 @@ from typing import NamedTuple
 from rockbatch.core.block.equations import side_of
 from rockbatch.core.block.model import Block
 from rockbatch.core.kernel import kernel, question
-from rockbatch.core.springs.creep import forces, quickness, top, velocity_of_top
 from rockbatch.core.springs.equations import accelerations_at, geometry
 from rockbatch.core.springs.model import Springs, Supports
+from rockbatch.core.springs.recovery import forces, quickness, top, velocity_of_top
 from rockbatch.core.system import accelerations, airborne, clearances
 from rockbatch.core.table import record
 from rockbatch.core.trigonometry import sine_and_cosine

@@ -9,9 +9,9 @@ from typing import NamedTuple
 
 from rockbatch.core.kernel import entry, kernel
 from rockbatch.core.observe.rows import contact_of, ground_within, state_of, step_between, within
-from rockbatch.core.springs.creep import forces
 from rockbatch.core.springs.equations import accelerations_at, geometry
 from rockbatch.core.springs.model import Contact
+from rockbatch.core.springs.recovery import forces
 from rockbatch.core.system import lever, pulled, rates
 from rockbatch.core.table import record
 from rockbatch.core.types import IMPACT_BOTH, IMPACT_LEFT, IMPACT_RIGHT

@@ -57,7 +57,7 @@ class Noted(NamedTuple):
 NOTED = record(Noted)
 
 
-class Ties(NamedTuple):
+class RecordedDevices(NamedTuple):
     """Dampers and tendons of a recorded run."""
 
     elements: np.recarray  # of Element
@@ -78,15 +78,15 @@ def _state_within(m, of, was, now, level, step, s):
 
 
 @kernel
-def _by_laws(m, ties, i, step, y, s):
+def _by_laws(m, devices, i, step, y, s):
     """Return the Pull, in state ``y`` at the share ``s`` of the step to row ``i``, of all that has a law: not of friction."""
-    total, moment, at = 0.0, 0.0, attitude(m, y, ties.level)
-    for j in range(len(ties.elements)):
-        of = ties.elements[j]
+    total, moment, at = 0.0, 0.0, attitude(m, y, devices.level)
+    for j in range(len(devices.elements)):
+        of = devices.elements[j]
         if of.kind == FRICTION:
             continue
         here = gap(m, of.offset, at, y)
-        x = _state_within(m, of, ties.states[i - 1, j], ties.states[i, j], ties.level, step, s)
+        x = _state_within(m, of, devices.states[i - 1, j], devices.states[i, j], devices.level, step, s)
         pull = force(of, here.elongation, here.speed, x, TAUT, 0.0)
         if of.kind == TENDON:
             pull = min(max(pull, 0.0), of.strength)
@@ -96,22 +96,22 @@ def _by_laws(m, ties, i, step, y, s):
 
 
 @question
-def _tied(ties, m, pulls, i, step, y, s):
+def _under_devices(devices, m, pulls, i, step, y, s):
     """Return the pier under the pull of its devices in state ``y``, at the share ``s`` of the step to row ``i``."""
 
 
-@_tied.of(type(None))
-def _not_tied(ties, m, pulls, i, step, y, s):
+@_under_devices.of(type(None))
+def _without_devices(devices, m, pulls, i, step, y, s):
     return pulled(m, 0.0, 0.0)
 
 
-@_tied.of(Ties)
-def _tied_by_devices(ties, m, pulls, i, step, y, s):
+@_under_devices.of(RecordedDevices)
+def _with_devices(devices, m, pulls, i, step, y, s):
     """Use the devices' laws, and what friction adds to them at both ends, linear between."""
     start, now, end = (
-        _by_laws(m, ties, i, step, step.start, 0.0),
-        _by_laws(m, ties, i, step, y, s),
-        _by_laws(m, ties, i, step, step.end, 1.0),
+        _by_laws(m, devices, i, step, step.start, 0.0),
+        _by_laws(m, devices, i, step, y, s),
+        _by_laws(m, devices, i, step, step.end, 1.0),
     )
     rubs, rubs_end = pulls[i - 1, 0] - start.force, pulls[i, 0] - end.force
     turns, turns_end = pulls[i - 1, 1] - start.moment, pulls[i, 1] - end.moment
@@ -124,7 +124,7 @@ class Stretch(NamedTuple):
     m: tuple
     body: Body | float
     pulls: np.ndarray
-    ties: Ties | None
+    devices: RecordedDevices | None
     i: int
     step: Step
     supports: Supports
@@ -134,7 +134,7 @@ class Stretch(NamedTuple):
 def _moment(of, s):
     """Return the Forces at the share ``s`` of a Stretch."""
     y, (horizontal, vertical) = within(of.m, of.step, s), ground_within(of.step, s)
-    under = _tied(of.ties, of.m, of.pulls, of.i, of.step, y, s)
+    under = _under_devices(of.devices, of.m, of.pulls, of.i, of.step, y, s)
     return forces_at(under, of.body, y, of.step.contact, of.supports, horizontal, vertical)
 
 
@@ -216,7 +216,7 @@ def _put(out, i, forces):
 
 
 @entry
-def forces_of_run(m, body, rows, pulls, ties, ground, dt, limits, out, greatest, noted):
+def forces_of_run(m, body, rows, pulls, devices, ground, dt, limits, out, greatest, noted):
     """Compute the forces of a run at every row, or the greatest of the whole run.
 
     Parameters
@@ -228,7 +228,7 @@ def forces_of_run(m, body, rows, pulls, ties, ground, dt, limits, out, greatest,
         History as the run wrote it, with both sides of every event; for the greatest, with every step.
     pulls : ndarray, shape (n, 2)
         Force [m/s²] and moment [m²/s²] of dampers and tendons at every row.
-    ties : Ties or None
+    devices : RecordedDevices or None
         These dampers and tendons.
     ground : ndarray, shape (npts, 4)
         The motion of the run, of :func:`rockbatch.core.ground.ground_rows`.
@@ -261,7 +261,7 @@ def forces_of_run(m, body, rows, pulls, ties, ground, dt, limits, out, greatest,
         _include(greatest, noted, now, t, limits, m.gravity)
         if t > t_start and rows[i].kind <= 0.0:
             step = step_between(under_start, under, rows[i - 1], rows[i], ground, dt)
-            of = Stretch(m, body, pulls, ties, i, step, supports)
+            of = Stretch(m, body, pulls, devices, i, step, supports)
             _look_within(of, t, before, now, limits, greatest, noted)
         aloft = aloft + (t - t_start) if airborne(m, contact) else 0.0
         noted[0].longest_flight = max(noted[0].longest_flight, aloft)

@@ -14,12 +14,12 @@ from rockbatch.core.kernel import inner
 from rockbatch.core.springs.equations import geometry
 from rockbatch.core.springs.free_vibration import (
     DECIDED,
-    LEANS,
     OPEN,
+    UNSTABLE,
     Drift,
-    outlook_on_springs,
+    overturning_bound,
     rocking_period,
-    summit,
+    unstable_equilibrium,
 )
 from rockbatch.core.springs.laws import ratchets
 from rockbatch.core.springs.model import SpringTraits, Supports
@@ -105,8 +105,8 @@ def _tilt(m, y, contact, supports):
 
 
 @inner
-def _outlook(lanes, i, m, y, contact, supports, devices):
-    """Return OPEN, DECIDED or LEANS (see ``free_vibration``); OPEN while the ground moves."""
+def _overturning_bound(lanes, i, m, y, contact, supports, devices):
+    """Return OPEN, DECIDED or UNSTABLE (see ``free_vibration``); OPEN while the ground moves."""
     if not ground_rests(lanes, i):
         return OPEN
     waiting, dt = lanes.waiting, lanes.clock.dt[i]
@@ -123,7 +123,7 @@ def _outlook(lanes, i, m, y, contact, supports, devices):
     sinking = max(0.0, -(last_left + last_right), -(first_left + first_right))
     base = Supports(left, right, supports.yield_left, supports.yield_right)
     drift = Drift(to_right, to_left, sinking)
-    return outlook_on_springs(m, y, contact, waiting.load[i], waiting.stored[i], base, lanes.peak.theta[i], calm, drift)
+    return overturning_bound(m, y, contact, waiting.load[i], waiting.stored[i], base, lanes.peak.theta[i], calm, drift)
 
 
 @inner
@@ -202,15 +202,15 @@ def over(traits, lanes, i, devices):
         if sample < max(samples, waiting.read[i] + wait):
             return RUNNING
     _in_devices(lanes, i, m, devices, y, contact, supports)
-    outlook = _outlook(lanes, i, m, y, contact, supports, devices)
-    if outlook == DECIDED and not decided:
+    bound = _overturning_bound(lanes, i, m, y, contact, supports, devices)
+    if bound == DECIDED and not decided:
         waiting.decided_at[i] = sample
         _read_base(lanes, i, m, y, contact, supports)
-    if outlook == DECIDED and sample >= max(samples, waiting.read[i] + wait):
+    if bound == DECIDED and sample >= max(samples, waiting.read[i] + wait):
         return SURVIVED
     if sample == (samples + longest) // 2:
         waiting.midway[i], waiting.midway_tilt[i] = lanes.peak.theta[i], _tilt(m, y, contact, supports)
-    return RUNNING if sample < longest else _given_up(lanes, i, m, outlook, y, contact, supports)
+    return RUNNING if sample < longest else _given_up(lanes, i, m, bound, y, contact, supports)
 
 
 @system.next_due.of(SpringTraits)
@@ -227,11 +227,11 @@ def next_due(traits, lanes, i):
 
 
 @inner
-def _given_up(lanes, i, m, outlook, y, contact, supports):
+def _given_up(lanes, i, m, bound, y, contact, supports):
     """Return how a run ends that nothing has decided for so long; one that is not waited for is cut off as it is."""
     if lanes.waiting.patience[i] == 0.0:
         return SURVIVED
-    if outlook == LEANS or abs(y.theta) >= summit(m, lanes.waiting.load[i]):
+    if bound == UNSTABLE or abs(y.theta) >= unstable_equilibrium(m, lanes.waiting.load[i]):
         return UNDECIDED
     least = GROWTH * lanes.clock.alpha[i]
     turned = lanes.peak.theta[i] > lanes.waiting.midway[i] + least

@@ -2,9 +2,9 @@
 
 from rockbatch.core import system
 from rockbatch.core.kernel import inlined, kernel
-from rockbatch.core.springs.creep import acceleration_of_top, creep_rate, forces, share_left, top, with_creep
 from rockbatch.core.springs.laws import within_yield, z_rate
 from rockbatch.core.springs.model import Contact, Geometry, Springs, State
+from rockbatch.core.springs.recovery import acceleration_of_top, forces, recovery_rate, share_left, top, with_recovery
 from rockbatch.core.trigonometry import sine_and_cosine
 from rockbatch.core.types import LEFT, Pull
 
@@ -92,8 +92,8 @@ def rates(m, y, contact, horizontal, vertical):
         y.omega,
         v_acceleration,
         theta_acceleration,
-        creep_rate(m, z_rate(m, y.z_left, left, contact.left_yields), y.z_left, contact.left),
-        creep_rate(m, z_rate(m, y.z_right, right, contact.right_yields), y.z_right, contact.right),
+        recovery_rate(m, z_rate(m, y.z_left, left, contact.left_yields), y.z_left, contact.left),
+        recovery_rate(m, z_rate(m, y.z_right, right, contact.right_yields), y.z_right, contact.right),
     )
 
 
@@ -118,14 +118,14 @@ def share(m, h):
 @system.staged.of(Springs)
 def staged(m, y, start, contact, left):
     """Return a stage of a step, with what has recovered in closed form."""
-    return with_creep(m, y, start, contact, left)
+    return with_recovery(m, y, start, contact, left)
 
 
 @system.ended.of(Springs)
 def ended(m, y, start, contact, left):
     """Return the end of a step, with z no lower than −1 and what has recovered in closed form."""
     z_left, z_right = within_yield(y.z_left, contact.left_yields), within_yield(y.z_right, contact.right_yields)
-    return with_creep(m, State(y.v, y.theta, y.v_rate, y.omega, z_left, z_right), start, contact, left)
+    return with_recovery(m, State(y.v, y.theta, y.v_rate, y.omega, z_left, z_right), start, contact, left)
 
 
 @system.lever.of(Springs)

@@ -1,16 +1,16 @@
 """Event functions of the pivots: positive until an event, at which one falls through zero.
 
-Each pivot has two signals. On its spring: −z (separation) and the spring law's kink (reversal of the velocity, or
+Each pivot has two signals. On its spring: −z (separation) and the spring law's switching_point (reversal of the velocity, or
 yield). Free: the gap to the waiting support (landing). Held: the two conditions under which it stops being held.
 """
 
 from rockbatch.core import system
 from rockbatch.core.kernel import inlined, kernel
 from rockbatch.core.roots import NO_ACCELERATION, surely
-from rockbatch.core.springs.creep import acceleration_of_top, lag, top, velocity_of_top
 from rockbatch.core.springs.equations import geometry, holding, pivot_acceleration, touching, without
-from rockbatch.core.springs.laws import branch_of_landing, kink
+from rockbatch.core.springs.laws import branch_of_landing, switching_point
 from rockbatch.core.springs.model import Springs
+from rockbatch.core.springs.recovery import acceleration_of_top, lag, top, velocity_of_top
 from rockbatch.core.types import LEFT, RIGHT, Signals
 
 NO_GAP = 1e-12
@@ -60,7 +60,7 @@ def _on_spring(m, z, z_rate, yields, point, velocity, acceleration, rest):
             acceleration = 0.0
         z_rate = surely(velocity, acceleration, rest) * m.stiffness
     contact, contact_slope = _compression(m, z, z_rate, velocity, acceleration)
-    law, law_slope = kink(m.law, yields, point, z, z_rate, velocity, acceleration)
+    law, law_slope = switching_point(m.law, yields, point, z, z_rate, velocity, acceleration)
     return contact, contact_slope, law, law_slope
 
 

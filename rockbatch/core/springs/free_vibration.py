@@ -23,7 +23,7 @@ OPEN = 0
 """By its energy, the pier may still turn further than it has, or overturn."""
 DECIDED = 1
 """Nothing that comes later can exceed what has been."""
-LEANS = 2
+UNSTABLE = 2
 """The base leans so far that the pier cannot stand on it."""
 
 
@@ -34,7 +34,7 @@ def _capacity(m, load):
 
 
 @kernel
-def summit(m, load):
+def unstable_equilibrium(m, load):
     """Return the unstable equilibrium: the rotation [rad] at which the weight's moment equals the greatest of the supports."""
     tangent = _capacity(m, load) * (load / m.gravity) * m.half_width / m.height
     return math.atan(tangent) if m.finite is not None else tangent
@@ -95,7 +95,7 @@ def _climb(m, lean, target, load, point):
         if part < turn:
             return work
     theta = math.asin(travel) if m.finite is not None else travel
-    end = min(target, summit(m, load))
+    end = min(target, unstable_equilibrium(m, load))
     if end <= theta:
         return work
     if m.finite is not None:
@@ -141,8 +141,8 @@ class Drift(NamedTuple):
 
 
 @kernel
-def outlook_on_springs(m, y, contact, load, in_tendons, base, peak, calm, drift):
-    """Return OPEN, DECIDED or LEANS for state ``y``.
+def overturning_bound(m, y, contact, load, in_tendons, base, peak, calm, drift):
+    """Return OPEN, DECIDED or UNSTABLE for state ``y``.
 
     Parameters
     ----------
@@ -165,10 +165,10 @@ def outlook_on_springs(m, y, contact, load, in_tendons, base, peak, calm, drift)
     lean = tilt * swollen
     drift_right = _swept(m, lean, drift.right * swollen, drift.sinking, swollen)
     drift_left = _swept(m, -lean, drift.left * swollen, drift.sinking, swollen)
-    limit = min(peak, summit(m, load))
-    if abs(lean) >= summit(m, load):
-        return LEANS
-    if abs(y.theta) >= summit(m, load):
+    limit = min(peak, unstable_equilibrium(m, load))
+    if abs(lean) >= unstable_equilibrium(m, load):
+        return UNSTABLE
+    if abs(y.theta) >= unstable_equilibrium(m, load):
         return OPEN
     middle = 0.5 * (base.left + base.right)
     if calm:

@@ -21,7 +21,7 @@ _NODES, _WEIGHTS = (tuple(map(float, column)) for column in np.polynomial.legend
 
 
 @inlined
-def softening(m, x):
+def stiffness_loss(m, x):
     """Return the share of a spring's stiffness that is lost on the inelastic branch, at the force ``x`` = |z| from 0 to 1: xⁿ."""
     return power(x, m.exponent)
 
@@ -35,7 +35,7 @@ def z_rate(m, z, velocity, yields):
     """
     rate = velocity * m.stiffness
     if yields != 0.0:
-        rate *= 1.0 - softening(m, min(max(-z, 0.0), 1.0))
+        rate *= 1.0 - stiffness_loss(m, min(max(-z, 0.0), 1.0))
     return rate
 
 
@@ -83,7 +83,7 @@ def yield_point(law, point, z):
 
 
 @inlined
-def kink(law, yields, point, z, z_rate, velocity, acceleration):
+def switching_point(law, yields, point, z, z_rate, velocity, acceleration):
     """Return the event function of a spring's switching point, positive while it stays on its branch, and its rate."""
     sign = kept_sign(law, 1.0, yields)
     if may_yield(law, yields):
@@ -92,7 +92,7 @@ def kink(law, yields, point, z, z_rate, velocity, acceleration):
 
 
 @inlined
-def after_kink(law, yields, point, z):
+def after_switch(law, yields, point, z):
     """Return the other branch, and z, which is exactly the yield point where it is there that the branch changes."""
     return 1.0 - yields, point if may_yield(law, yields) else z
 
@@ -148,7 +148,7 @@ def give(m, force, point):
     """Return δ_y/F_y times the rate of deflection with force, of a spring that is loaded with ``force``/F_y up to 1."""
     if not curved(m.law) or (m.law == HARDENING and force < -point):
         return 1.0
-    return 1.0 / (1.0 - softening(m, min(max(force, 0.0), 1.0 - 1e-12)))
+    return 1.0 / (1.0 - stiffness_loss(m, min(max(force, 0.0), 1.0 - 1e-12)))
 
 
 @kernel

@@ -12,9 +12,9 @@ from rockbatch.core.clock import ATTEND, CALM, EVENTFUL, ON_ITS_SIDE, UNSET, gro
 from rockbatch.core.kernel import inlined
 from rockbatch.core.rk4 import rk4
 from rockbatch.core.roots import excess
-from rockbatch.core.springs.creep import lag, top
 from rockbatch.core.springs.laws import kept_sign, may_yield
 from rockbatch.core.springs.model import Contact, SpringTraits, State
+from rockbatch.core.springs.recovery import lag, top
 from rockbatch.core.springs.reversal import corrected, pivot_accelerations, pivots, reversal
 from rockbatch.core.system import model, rates
 from rockbatch.core.table import get, put

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 from rockbatch.core.kernel import inlined
 from rockbatch.core.springs.equations import geometry
-from rockbatch.core.springs.laws import softening
+from rockbatch.core.springs.laws import stiffness_loss
 from rockbatch.core.springs.model import State
 
 SHARP = 1e-3
@@ -79,9 +79,9 @@ def reversal(m, sign, rest, start, acceleration, end, z_end, h):
     cubic = share * (h * start.velocity - way) + before * (way - h * end.velocity)
     quartic = h * (0.5 * h * acceleration + 2.0 * start.velocity + end.velocity) - 3.0 * way
     unit = share * (way - before * (cubic + before * share * quartic)) * m.stiffness  # way after the reversal/δ_y
-    part = softening(m, _size(z_end))
+    part = stiffness_loss(m, _size(z_end))
     middle = z_end - 0.5 * unit * (1.0 + sign * part)
-    added = softening(m, _size(middle)) * abs(unit)
+    added = stiffness_loss(m, _size(middle)) * abs(unit)
     unloads = (sign < 0.0) == happened
     z = z_end - unit + (added if unloads else 0.0)
     # Two reversals: the parabola through both velocities and the way between them may dip below zero

@@ -5,18 +5,18 @@ Written for the left pivot; at the right one, the mirror image is handled (Î¸ â†
 
 from rockbatch.core import system
 from rockbatch.core.kernel import kernel
-from rockbatch.core.springs.creep import lag, velocity_of_top
 from rockbatch.core.springs.equations import geometry, on_ground, touching, without
 from rockbatch.core.springs.events import settle
 from rockbatch.core.springs.impact import land, land_flat
 from rockbatch.core.springs.laws import (
-    after_kink,
+    after_switch,
     branch_after_jump,
     branch_of_landing,
     branch_when_pressed,
     yield_point,
 )
 from rockbatch.core.springs.model import Contact, Springs, State, Supports
+from rockbatch.core.springs.recovery import lag, velocity_of_top
 from rockbatch.core.types import (
     CONTACT_LEFT,
     HELD_LEFT,
@@ -135,7 +135,7 @@ def _at_left(m, y, contact, supports, of_law, rest, horizontal, vertical):
         waiting = _left_moved(supports, y.v + at.lift_left - m.yield_deflection * y.z_left)
         return y, without(contact, LEFT), waiting, SEPARATION_LEFT
     if of_law:  # the spring changes its branch
-        yields, z = after_kink(m.law, contact.left_yields, supports.yield_left, y.z_left)
+        yields, z = after_switch(m.law, contact.left_yields, supports.yield_left, y.z_left)
         changed = State(y.v, y.theta, y.v_rate, y.omega, z, y.z_right)
         return changed, touching(contact, LEFT, yields), supports, SPRING_LEFT
     if contact.left != 0.0:

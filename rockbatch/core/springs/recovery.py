@@ -61,7 +61,7 @@ def acceleration_of_top(m, z):
 
 
 @inlined
-def creep_rate(m, rate, z, on_spring):
+def recovery_rate(m, rate, z, on_spring):
     """Return the rate of z [1/s]: ``rate`` on the spring, that of the recovery without its pivot."""
     return rate if m.damped is None or on_spring != 0.0 else -z * quickness(m)
 
@@ -73,7 +73,7 @@ def share_left(m, h):
 
 
 @inlined
-def with_creep(m, y, start, contact, share):
+def with_recovery(m, y, start, contact, share):
     """Return ``y``, some time after ``start``, with the ``share`` of z that is left to supports without their pivots."""
     if m.damped is None:
         return y
