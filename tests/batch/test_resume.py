@@ -94,15 +94,22 @@ def wait_for(out, runs):
 
 
 @unix
-def test_killed_at_random_instants_it_goes_on_and_ends_with_the_same_bytes(study, tmp_path, undisturbed, monkeypatch):
+def test_killed_at_random_instants_it_goes_on_and_ends_with_the_same_bytes(study, tmp_path, undisturbed):
     """While it starts, while runs are under way and written down, and while the table and the report are written."""
-    slowed_down(monkeypatch, 0.05)
     out = tmp_path / "out"
     chance = random.Random(7)
     finished, ended = [], []
-    while ended.count(-signal.SIGKILL) < 20:
-        process = started(study, out)
-        process.join(chance.uniform(0.0, 0.5))
+    while ended.count(-signal.SIGKILL) < 16:
+        here = finished_in(out)
+        place = chance.randint(here + 1, here + 60)
+        with pytest.MonkeyPatch.context() as patch:
+            held_at(patch, out, place)
+            process = started(study, out)
+        if len(ended) % 2:  # wherever it is
+            process.join(chance.uniform(0.0, 0.5))
+        else:
+            while process.is_alive() and finished_in(out) < place:
+                time.sleep(0.002)
         process.kill()
         process.join()
         ended.append(process.exitcode)
@@ -115,6 +122,18 @@ def test_killed_at_random_instants_it_goes_on_and_ends_with_the_same_bytes(study
     assert main(["run", str(study), "--out", str(out)]) == 0
     assert (out / "peaks.csv").read_bytes() == undisturbed
     assert sorted(file.name for file in out.iterdir()) == ["peaks.csv", "report.html", "run.json"]
+
+
+def held_at(monkeypatch, out, runs):
+    """No further group begins while so many runs are in the journal: there the process waits for its end."""
+    real = rockbatch.batch.threads.outcomes_of
+
+    def outcomes_of(*asked):
+        while finished_in(out) >= runs:
+            time.sleep(0.002)
+        return real(*asked)
+
+    monkeypatch.setattr(rockbatch.batch.threads, "outcomes_of", outcomes_of)
 
 
 def slowed_down(monkeypatch, seconds):
