@@ -100,7 +100,9 @@ def part(shape):
     return Shown(PARTS[shape])
 
 
-@pytest.mark.parametrize("shape", PARTS)
+@pytest.mark.parametrize(
+    "shape", [pytest.param(shape, marks=[pytest.mark.slow] * (shape == "ricker")) for shape in PARTS]
+)
 def test_a_map_shows_at_random_points_what_their_simulation_says(shape):
     shown = part(shape)
     differ, far = wrong(shown, scattered(shown.spec, 150))
@@ -108,6 +110,7 @@ def test_a_map_shows_at_random_points_what_their_simulation_says(shape):
     assert len(differ) <= 1
 
 
+@pytest.mark.slow
 def test_a_ricker_pulse_that_overturns_everywhere_is_not_shown_as_safe():
     """21 frequencies; between two of them the pier overturns from 6.5 to 8.5 g tan α, whatever the neighbours do."""
     shown = Shown(MapSpec("ricker", "ricker", (1.0, 3.0), (1.0, 10.0), 21, 37))

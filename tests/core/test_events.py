@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from core_samples import FIG5, broadband, hard_case, pulse, steady
+from core_samples import EVERY_KIND, FIG5, broadband, hard_case, hard_seeds, pulse, steady
 from reference_solver import reference
 
 import rockbatch as rb
@@ -200,10 +200,11 @@ def test_a_brief_separation_inside_one_large_step_is_seen():
     assert inside >= 1
 
 
-def test_no_event_fires_twice():
+@EVERY_KIND
+def test_no_event_fires_twice(every_kind):
     """On each pivot separation and impact alternate, through random hard cases with ε > 0."""
     checked = 0
-    for seed in range(60):
+    for seed in hard_seeds(range(60), every_kind):
         pier, base, motion = hard_case(seed)
         if base.epsilon == 0.0:
             continue
@@ -261,13 +262,14 @@ def test_a_run_from_rest_does_not_chatter_on_the_rounding_of_its_equilibrium():
     assert (known.status, failed) == ("ok", [])
 
 
+@EVERY_KIND
 @pytest.mark.parametrize("block", range(3))
-def test_random_hard_cases_end_with_a_sane_result(block):
+def test_random_hard_cases_end_with_a_sane_result(block, every_kind):
     """No hang, no NaN, no failure, counts that can be: 300 cases from the corners of what the input checks let through.
 
     A pivot can land only after it has left, so separations − impacts is the number of pivots in the air at the end.
     """
-    for seed in range(100 * block, 100 * block + 100):
+    for seed in hard_seeds(range(100 * block, 100 * block + 100), every_kind):
         pier, base, motion = hard_case(seed)
         substeps = max(1, math.ceil(base.beta * pier.p * motion.dt / 0.2))
         outcome = run_fixed(pier, base, motion, substeps, 0.5, wait=False)

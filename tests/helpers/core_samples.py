@@ -1,8 +1,10 @@
 """Piers, pulses and random hard cases that the tests of the numerical core share."""
 
 import math
+from collections.abc import Iterable
 
 import numpy as np
+import pytest
 
 from rockbatch.motions.motion import Motion, Samples
 from rockbatch.pier import Base, ElasticBase, Pier, YieldingBase
@@ -37,6 +39,22 @@ def broadband(rng: np.random.Generator, dt: float, npts: int, peak: float) -> Sa
 
 def _log_uniform(rng: np.random.Generator, low: float, high: float) -> float:
     return math.exp(rng.uniform(math.log(low), math.log(high)))
+
+
+EVERY_KIND = pytest.mark.parametrize(
+    "every_kind", [False, pytest.param(True, marks=pytest.mark.slow)], ids=["common", "every"]
+)
+"""Of hard cases: those that fast tests compile anyway, and all of them."""
+
+
+def hard_seeds(seeds: Iterable[int], every_kind: bool) -> list[int]:
+    """Return those ``seeds`` of hard cases that fast tests compile anyway: n other than 5 in first-order kinematics only."""
+    bases = {seed: hard_case(seed)[1] for seed in seeds}
+    return [
+        seed
+        for seed, base in bases.items()
+        if every_kind or base.kinematics == "first-order" or not base.has_exponent or base.n == 5.0
+    ]
 
 
 def hard_case(seed: int, npts: int = 400) -> tuple[Pier, Base, Motion]:

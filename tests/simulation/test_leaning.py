@@ -43,7 +43,12 @@ def outcome_of(base, motion, **output):
 
 
 @pytest.mark.parametrize(
-    "base", [PADS, replace(PADS, kinematics="finite"), *(replace(PADS, spring=law) for law in ("epp", "hardening"))]
+    "base",
+    [
+        PADS,
+        pytest.param(replace(PADS, kinematics="finite"), marks=pytest.mark.slow),
+        *(replace(PADS, spring=law) for law in ("epp", "hardening")),
+    ],
 )
 def test_where_a_pier_would_rest_at_the_end_is_the_residual_rotation_of_its_row(base):
     """The core reads that by itself, from the supports' positions: a mean over the time between two readings after the record."""

@@ -24,6 +24,7 @@ def with_vertical(motion: Motion, peak: float, seed: int = 0) -> Motion:
     return Motion(motion.name + "+vertical", motion.dt, motion.horizontal, vertical)
 
 
+SLOW = pytest.mark.slow  # compiled by itself: each of its traits is in another case, with the rest of the model common
 SPRINGS = [
     pytest.param(FIG5, YieldingBase(50, 0.1, eta=2.2), SHORT_SINE, id="fig5"),
     pytest.param(FIG5, YieldingBase(50, 0.1, "finite", eta=2.2), SHORT_SINE, id="fig5-finite"),
@@ -31,7 +32,7 @@ SPRINGS = [
     pytest.param(FIG6, YieldingBase(60, 0.1, "finite", eta=2.5), SHORT_COSINE, id="fig6-finite"),
     pytest.param(FIG5, YieldingBase(50, 0.1, eta=2.2, n=1.0), SHORT_SINE, id="n1"),
     pytest.param(FIG5, YieldingBase(50, 0.1, eta=2.2, n=2.0), SHORT_SINE, id="n2"),
-    pytest.param(FIG5, YieldingBase(50, 0.1, "finite", eta=3.0, n=2.5), SHORT_SINE, id="n2.5"),
+    pytest.param(FIG5, YieldingBase(50, 0.1, "finite", eta=3.0, n=2.5), SHORT_SINE, id="n2.5", marks=SLOW),
     pytest.param(FIG5, YieldingBase(50, 0.1, eta=3.0, n=50.0), SHORT_SINE, id="n50"),
     pytest.param(FIG5, YieldingBase(50, 0.1, eta=2.2, spring="epp"), SHORT_SINE, id="epp"),
     pytest.param(FIG6, YieldingBase(40, 0.3, "finite", eta=1.5, spring="epp"), SHORT_COSINE, id="epp-finite"),
@@ -70,9 +71,11 @@ SPRINGS = [
         id="stocky",
     ),
     pytest.param(FIG5, ElasticBase(50, zeta=0.05), SHORT_SINE, id="damped"),
-    pytest.param(FIG5, ElasticBase(50, kinematics="finite", zeta=0.2), SHORT_SINE, id="damped-finite"),
+    pytest.param(FIG5, ElasticBase(50, kinematics="finite", zeta=0.2), SHORT_SINE, id="damped-finite", marks=SLOW),
     pytest.param(FIG5, YieldingBase(50, zeta=0.05, eta=2.2), SHORT_SINE, id="damped-yielding"),
-    pytest.param(FIG6, YieldingBase(60, kinematics="finite", zeta=1.0, eta=2.5), SHORT_COSINE, id="critical-finite"),
+    pytest.param(
+        FIG6, YieldingBase(60, kinematics="finite", zeta=1.0, eta=2.5), SHORT_COSINE, id="critical-finite", marks=SLOW
+    ),
     pytest.param(FIG6, YieldingBase(40, zeta=0.01, eta=1.5, spring="epp"), SHORT_COSINE, id="damped-epp"),
     pytest.param(FIG5, YieldingBase(50, zeta=0.05, eta=2.2, spring="hardening"), SHORT_SINE, id="damped-hardening"),
     pytest.param(
@@ -86,6 +89,7 @@ SPRINGS = [
         YieldingBase(50, flight="guided", zeta=0.1, eta=3.0, n=2.0),
         with_vertical(SHORT_SINE, 25.0),
         id="damped-guided-flight",
+        marks=SLOW,
     ),
 ]
 

@@ -286,7 +286,15 @@ def test_random_flights_are_those_of_the_independent_reference(outcomes):
 # Tendons
 
 
-@pytest.mark.parametrize("base", [RigidBase(), ElasticBase(400.0, zeta=0.1, kinematics="finite")], ids=lambda b: b.name)
+@pytest.mark.parametrize(
+    "base",
+    [
+        pytest.param(RigidBase(), id="rigid"),
+        pytest.param(
+            ElasticBase(400.0, zeta=0.1, kinematics="finite"), id="elastic", marks=pytest.mark.slow
+        ),  # compiled by itself
+    ],
+)
 def test_a_tendon_of_twice_the_weight_keeps_a_pier_on_ground_that_falls_away(base):
     """−1.05 g for 0.2 s: it presses with 1.95 times the weight, and tendons are shorter on springs that unload."""
     motion = rb.pulse("sine", name="sine", amplitude=4.0, period=1.0, dt=0.005, duration=6.0)

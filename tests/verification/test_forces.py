@@ -434,7 +434,9 @@ HARD = {
 }
 
 
-@pytest.mark.parametrize("name", HARD)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.slow) if name == "little damping" else name for name in HARD]
+)
 def test_peaks_are_those_of_another_solver_where_a_law_is_steep(name):
     """DOP853 from event to event; the error of a run bounds what it differs by, and no parabola adds to a peak."""
     t = np.arange(0.0, 1.505, 0.01)
