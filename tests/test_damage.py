@@ -18,7 +18,7 @@ def sample(tmp_path_factory):
 
 
 @pytest.mark.filterwarnings("ignore::UserWarning")
-@pytest.mark.parametrize(("what", "times"), [("study", 150), ("journal", 150), ("folder", 40)])
+@pytest.mark.parametrize(("what", "times"), [("study", 150), ("journal", 150), ("folder", 20)])
 def test_a_damaged_one_ends_in_words_or_in_what_is_right(sample, what, times):
     ends, bad = damage.repeated(getattr(sample, f"damage_{what}"), times, seed=3)
     assert bad == []

@@ -1,6 +1,7 @@
 """The digest of the program: whatever can change a row, or the runs that come next, takes part in it."""
 
 import ast
+import functools
 import shutil
 from pathlib import Path
 
@@ -18,6 +19,7 @@ def file_of(module):
     return next((file for file in (path.with_suffix(".py"), path / "__init__.py") if file.is_file()), None)
 
 
+@functools.cache
 def imports(file):
     """The files of the package that ``file`` imports, anywhere in it; with a module come the packages around it."""
     found = set()

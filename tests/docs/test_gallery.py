@@ -19,7 +19,13 @@ def drawn(path):
     return module.draw()
 
 
-@pytest.mark.parametrize("path", SCRIPTS, ids=lambda path: path.stem)
+LONG = "fragility", "overturning_map", "spectrum"  # `make docs` draws them, too
+
+
+@pytest.mark.parametrize(
+    "path",
+    [pytest.param(path, id=path.stem, marks=[pytest.mark.slow] * (path.stem in LONG)) for path in SCRIPTS],
+)
 def test_each_script_draws_a_picture(path):
     figure = drawn(path)
     picture = BytesIO()

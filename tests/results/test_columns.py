@@ -214,6 +214,9 @@ def test_a_report_without_a_newer_column_is_made_and_says_so(tmp_path, dropped):
     text = write_report(without(tmp_path, dropped)).read_text(encoding="utf-8")
     assert f"has no column {dropped}, as an earlier version wrote it" in text
     assert f'title="{dropped}' not in text
+
+
+def test_a_report_of_all_columns_speaks_of_no_earlier_version(tmp_path):
     assert "earlier version" not in write_report(write_results_in(tmp_path / "full")).read_text(encoding="utf-8")
 
 

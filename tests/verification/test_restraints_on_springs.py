@@ -158,8 +158,15 @@ def test_friction_at_both_pivots_lets_go_at_one_time(base):
         assert coarse.theta_max == pytest.approx(fine.theta_max, abs=1e-6 * TOWER.alpha)
 
 
-@pytest.mark.parametrize("base", [ELASTIC, BOUC_WEN], ids=["elastic", "bouc-wen"])
-@pytest.mark.parametrize("at", [None, 0.0])
+@pytest.mark.parametrize(
+    ("base", "at"),
+    [
+        pytest.param(BOUC_WEN, None, id="bouc-wen, both"),
+        pytest.param(ELASTIC, 0.0, id="elastic, middle"),
+        pytest.param(BOUC_WEN, 0.0, id="bouc-wen, middle", marks=pytest.mark.slow),
+        pytest.param(ELASTIC, None, id="elastic, both", marks=pytest.mark.slow),
+    ],
+)
 def test_friction_beside_a_viscous_damper_lets_go(base, at):
     """Both are still until friction goes: to rounding, neither has turned then."""
     restraints = (Damper("viscous", nu=0.1, exponent=0.5, at=at), Damper("friction", f=0.06, at=at))
