@@ -3,7 +3,13 @@
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: run test lint slow thorough docs screenshots clean
+# Where this is set, every process compiles all modules anew.
+unexport PYTHONDONTWRITEBYTECODE
+
+# What is imported is compiled then: compiling all of the packages takes as long as unpacking them.
+INSTALL := $(BIN)/python -m pip install --no-compile --disable-pip-version-check --editable
+
+.PHONY: run test lint slow thorough pythons docs screenshots clean
 
 run: .venv/.run
 	$(BIN)/rockbatch run configs/near_fault.toml
@@ -36,18 +42,18 @@ screenshots: .venv/.run
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
 	  { echo "rockbatch needs Python 3.11 or newer; try: make $(MAKECMDGOALS) PYTHON=python3.12"; exit 1; }
 	$(PYTHON) -m venv .venv
-	@echo "installing rockbatch and what it needs into .venv (about 1 GB, a few minutes)"
+	@echo "installing rockbatch and what it needs into .venv (about 1 GB)"
 
 .venv/.run: .venv/bin/python pyproject.toml
-	$(BIN)/python -m pip install --quiet --editable ".[records]"
+	$(INSTALL) ".[records]"
 	@touch $@
 
 .venv/.test: .venv/bin/python pyproject.toml
-	$(BIN)/python -m pip install --quiet --editable ".[records,test]"
+	$(INSTALL) ".[records,test]"
 	@touch $@ .venv/.run
 
 .venv/.docs: .venv/bin/python pyproject.toml
-	$(BIN)/python -m pip install --quiet --editable ".[docs]"
+	$(INSTALL) ".[docs]"
 	@touch $@
 
 clean:
