@@ -55,7 +55,7 @@ def tied(base, restraints):
 
 
 @pytest.mark.parametrize("restraints", (RESTRAINTS | FRICTION).values(), ids=RESTRAINTS | FRICTION)
-@pytest.mark.parametrize("base", BASES)
+@pytest.mark.parametrize("base", [pytest.param(ELASTIC, id="elastic", marks=pytest.mark.slow), *BASES[1:]])
 def test_runs_agree_with_the_reference(base, restraints):
     vertical = 0.4 * GRAVITY * np.sin(np.arange(SHAKEN.npts) * 0.11)
     _agree(base, restraints, Motion("both", SHAKEN.dt, SHAKEN.horizontal, vertical))
