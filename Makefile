@@ -1,7 +1,8 @@
 # Two commands do everything on a fresh machine: `make run` and `make test`.
 
 PYTHON ?= python3
-BIN := .venv/bin
+VENV := .venv
+BIN := $(VENV)/bin
 
 # Where this is set, every process compiles all modules anew.
 unexport PYTHONDONTWRITEBYTECODE
@@ -11,51 +12,58 @@ INSTALL := $(BIN)/python -m pip install --no-compile --disable-pip-version-check
 
 .PHONY: run test lint slow thorough pythons docs screenshots clean
 
-run: .venv/.run
+run: $(VENV)/.run
 	$(BIN)/rockbatch run configs/near_fault.toml
 	$(BIN)/rockbatch run configs/fig7.toml
 
-test: .venv/.test
+test: $(VENV)/.test
 	$(BIN)/python -m pytest -n auto --dist loadfile -m "not slow"
 
-slow: .venv/.test
+slow: $(VENV)/.test
 	$(BIN)/python -m pytest -n auto --dist loadfile -m "slow and not thorough"
 
-thorough: .venv/.test
+thorough: $(VENV)/.test
 	$(BIN)/python -m pytest -n auto --dist load -m thorough
 
-lint: .venv/.test
+# The fast tests with every supported Python that is installed, each in an environment of its own.
+pythons:
+	@for version in 3.11 3.12 3.13 3.14; do \
+	  if python$$version -c "" 2> /dev/null; then $(MAKE) test PYTHON=python$$version VENV=.venv-$$version || exit 1; \
+	  else echo "python$$version is not installed: not tested"; fi; \
+	done
+
+lint: $(VENV)/.test
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-docs: .venv/.docs
+docs: $(VENV)/.docs
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet --config-file docs/mkdocs.yml
 	@echo "build/docs/index.html"
 
-screenshots: .venv/.run
+screenshots: $(VENV)/.run
 	$(BIN)/python -m pip install --quiet pypdfium2
 	$(BIN)/python docs/screenshots/take.py
 
-.venv/bin/python:
+$(VENV)/bin/python:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
 	  { echo "rockbatch needs Python 3.11 or newer; try: make $(MAKECMDGOALS) PYTHON=python3.12"; exit 1; }
-	$(PYTHON) -m venv .venv
-	@echo "installing rockbatch and what it needs into .venv (about 1 GB)"
+	$(PYTHON) -m venv $(VENV)
+	@echo "installing rockbatch and what it needs into $(VENV) (about 1 GB)"
 
-.venv/.run: .venv/bin/python pyproject.toml
+$(VENV)/.run: $(VENV)/bin/python pyproject.toml
 	$(INSTALL) ".[records]"
 	@touch $@
 
-.venv/.test: .venv/bin/python pyproject.toml
+$(VENV)/.test: $(VENV)/bin/python pyproject.toml
 	$(INSTALL) ".[records,test]"
-	@touch $@ .venv/.run
+	@touch $@ $(VENV)/.run
 
-.venv/.docs: .venv/bin/python pyproject.toml
+$(VENV)/.docs: $(VENV)/bin/python pyproject.toml
 	$(INSTALL) ".[docs]"
 	@touch $@
 
 clean:
-	rm -rf .venv build *.egg-info
+	rm -rf .venv .venv-* build *.egg-info
 	find . -name __pycache__ -prune -exec rm -rf {} +
