@@ -100,6 +100,7 @@ def test_threads_load_nothing_of_a_cluster():
 # A dask cluster
 
 
+@pytest.mark.slow
 def test_a_cluster_with_a_worker_killed_in_the_middle_comes_to_the_same_bytes(tmp_path, study, runs, monkeypatch):
     distributed = pytest.importorskip("distributed")
     monkeypatch.setattr(rockbatch.batch.groups, "LEAST_GROUP", 4)

@@ -164,9 +164,10 @@ class TestTheReference:
         assert one.theta_max == pytest.approx(other.theta_max, rel=1e-12)
         assert (one.impacts, one.up_left) == (other.impacts, pytest.approx(other.up_right, rel=1e-9))
 
-    def test_stops_only_when_nothing_follows(self, outcomes, reference, tmp_path):
+    @pytest.mark.parametrize("count", [10, pytest.param(25, marks=pytest.mark.slow)])
+    def test_stops_only_when_nothing_follows(self, outcomes, reference, tmp_path, count):
         cache = outcomes.Cache(tmp_path, 0)
-        for case in outcomes.cases(25):
+        for case in outcomes.cases(count):
             run, fine, _ = cache.get(case)
             if fine.decided and not isinstance(run.base, RigidBase):
                 patient = reference(run.pier, run.base, run.motion, 1e-12, patient=True, horizon=100.0)
