@@ -86,10 +86,16 @@ SPRINGS = [
     ),
     pytest.param(
         FIG5,
+        YieldingBase(50, flight="guided", zeta=0.1, eta=3.0),
+        with_vertical(SHORT_SINE, 25.0),
+        id="damped-guided-flight-n5",
+    ),
+    pytest.param(
+        FIG5,
         YieldingBase(50, flight="guided", zeta=0.1, eta=3.0, n=2.0),
         with_vertical(SHORT_SINE, 25.0),
         id="damped-guided-flight",
-        marks=SLOW,
+        marks=[SLOW, pytest.mark.thorough],
     ),
 ]
 
