@@ -193,6 +193,12 @@ def _holds_a_tilt(case: Case) -> bool:
     return any(each.get("kind") in ("friction", "hysteretic") and each.get("f") != 0.0 for each in _ties(case))
 
 
+def _rocking(runs: "pd.DataFrame", case: Case) -> Found:
+    """Rocking with its error; tables of earlier versions have none."""
+    error = _numbers(runs, ROCKING_ERROR) if ROCKING_ERROR in runs else np.full(len(runs), np.nan)
+    return Found(_numbers(runs, ROCKING), error)
+
+
 def _column(name: str) -> Callable[["pd.DataFrame", Case], Found]:
     return lambda runs, case: _without_error(_numbers(runs, name))
 
@@ -218,16 +224,21 @@ def _parameter(name: str) -> Callable[["pd.DataFrame", Case], Found]:
 
 
 def _forces(words: str, *columns: str, factor: Callable[[Case], float] = lambda case: 1.0, **more: Any) -> Demand:
-    """The greatest of some columns of forces, times ``factor``; 0 where a run has forces, and of this none: no impact, say."""
+    """The greatest of some columns of forces, times ``factor``.
+
+    0 where a run has forces, and of this none: no impact, say. Unknown where an earlier version wrote no such column.
+    """
 
     def found(runs: "pd.DataFrame", case: Case) -> Found:
+        if not set(columns) <= set(runs):
+            return _without_error(np.full(len(runs), np.nan))
         value = np.maximum.reduce([_numbers(runs, column) for column in columns])
         none = np.isnan(value) & ~np.isnan(_numbers(runs, FORCES))
         value = factor(case) * np.where(none, 0.0, value)
         share = _numbers(runs, FORCES_ERROR) if FORCES_ERROR in runs else np.full(len(runs), np.nan)
         return Found(value, value * share)
 
-    return Demand(words, found, needs="forces", weighed=columns[0].endswith(("_kN", "_kN_s")), **more)
+    return Demand(words, found, needs="forces", weighed=columns[0].endswith(("_kN", "_kN_s", "_kNm")), **more)
 
 
 def _thousand(case: Case) -> float:
@@ -251,6 +262,9 @@ FORCES_ERROR = "forces_error"
 ROCKING = "theta_rocking_over_alpha"
 """Likewise with rocking."""
 
+ROCKING_ERROR = "theta_rocking_error"
+"""The column of its error."""
+
 BROUGHT = {"forces": FORCES, "rocking": ROCKING}
 """By keys of [output], a column that each brings."""
 
@@ -260,6 +274,10 @@ MOST_FRICTION = 2.0
 _OF_FORCES = {
     "base_shear_m_s2": _forces("greatest base shear over the mass [m/s²]", "base_shear_m_s2"),
     "base_shear_kN": _forces("greatest base shear [kN]", "base_shear_kN"),
+    "base_moment_m2_s2": _forces(
+        "greatest moment about the middle of the base over the mass [m²/s²]", "base_moment_m2_s2"
+    ),
+    "base_moment_kNm": _forces("greatest moment about the middle of the base [kN m]", "base_moment_kNm"),
     "normal_force_m_s2": _forces("greatest normal force of all supports over the mass [m/s²]", "normal_force_m_s2"),
     "normal_force_kN": _forces("greatest normal force of all supports [kN]", "normal_force_kN"),
     "friction_demand": _forces(
@@ -331,7 +349,7 @@ DEMANDS = {
     ),
     ROCKING: Demand(
         "greatest rotation over α about where the pier would rest on its base as it then is",
-        _column(ROCKING),
+        _rocking,
         most=Most(lambda case: 1.0, _OVERTURNS),
         needs="rocking",
     ),

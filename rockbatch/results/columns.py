@@ -163,8 +163,9 @@ def _energy(term: str) -> Column:
 
 
 def _force(
-    name: str, meaning: str, field: str, unit: str, head: str, form: str, factor: int = 1, *, per: str = "", **more: Any
-) -> Column:
+    name: str, meaning: str, field: str, unit: str, head: str, form: str, factor: int = 1, *, per: str = "",
+    behind: str = "", **more: Any,
+) -> Column:  # fmt: skip
     """A column of what designers size, a ``field`` of PeakForces; ``per``: over "g", or times the "mass" that is known."""
 
     def of(ran: Ran) -> float | None:
@@ -173,7 +174,7 @@ def _force(
         factor = times.get(per, 1.0)
         return None if found is None or factor is None else found * factor
 
-    page = OnPage(head, form, factor, table="forces")
+    page = OnPage(head, form, factor, behind, table="forces")
     if per in ("mass", "half the weight"):
         more["sometimes"] = True
     told = f"{meaning}; with [output] forces = true"
@@ -452,6 +453,16 @@ _FORCES = (
         "still changed; empty with a fixed step",
         "error", "1", "±", ".0e", sometimes=True,
     ),
+    _force(
+        "base_moment_m2_s2",
+        "greatest moment about the middle of the base, of the vertical forces of supports, dampers and tendons, over the mass; "
+        "of a frame, of each column's about its own middle, all together",
+        "base_moment", "m^2/s^2", "base moment/M [m²/s²]", ".2f", behind="base_shear_kN",
+    ),
+    _force(
+        "base_moment_kNm", _ITSELF, "base_moment", "kN*m", "base moment [kN m]", ".0f", per="mass",
+        behind="base_moment_m2_s2",
+    ),
 )  # fmt: skip
 """What designers size, until the run ends or the pier leans beyond α for good."""
 
@@ -483,6 +494,20 @@ ASKED = (
     *DEVICES,
     *map(_energy, TERMS),
     *_FORCES,
+    Column(
+        "theta_rocking_error",
+        "estimated error of rocking, and of lean, over α: what halving the step still changed; empty with a fixed step; with "
+        "[output] rocking = true",
+        "theta_rocking_error", page=OnPage("±", ".0e", behind=ROCKING), over_alpha=True, stood=True,
+        asked=lambda study: study.output.rocking,
+    ),
+    Column(
+        "theta_lean_error",
+        "estimated error of rocking, and of lean, over α: what halving the step still changed; empty with a fixed step; with "
+        "[output] rocking = true",
+        "theta_lean_error", page=OnPage("±", ".0e", behind="theta_lean_over_alpha"), over_alpha=True, bases=YIELDING,
+        stood=True, asked=lambda study: study.output.rocking,
+    ),
 )  # fmt: skip
 """Columns at the end of a table whose study asks for them."""
 

@@ -255,7 +255,8 @@ def _read(group: "h5py.Group") -> Response:
     forces = impacts = None
     if "forces" in group:
         told = group_in(group, "forces")
-        columns_of_forces = {name: array_in(told, name, "f", len(t), finite=name != "friction") for name in FORCE_UNITS}
+        kept = (name for name in FORCE_UNITS if name in told or name != "base_moment")  # earlier versions had none
+        columns_of_forces = {name: array_in(told, name, "f", len(t), finite=name != "friction") for name in kept}
         forces = pd.DataFrame({"t": t} | columns_of_forces)
         impacts = _impacts(group_in(group, "impacts"))
     return Response(

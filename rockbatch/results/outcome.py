@@ -25,6 +25,8 @@ class PeakForces:
     ----------
     base_shear, normal_force : float
         Greatest V/M, and N/M of all supports, without the impulses of impacts [m/s²].
+    base_moment : float
+        Greatest moment over M about the middle of the base, of supports, dampers and tendons, likewise [m²/s²].
     friction_demand : float
         Greatest |V|/N while N is above a share of the weight.
     pivot_left, pivot_right : float
@@ -53,6 +55,7 @@ class PeakForces:
 
     base_shear: float
     normal_force: float
+    base_moment: float
     friction_demand: float
     pivot_left: float
     pivot_right: float
@@ -181,6 +184,8 @@ class Outcome:
     theta_max_is: str = ""
     theta_rocking: float | None = None
     theta_lean: float | None = None
+    theta_rocking_error: float | None = None
+    theta_lean_error: float | None = None
 
     @property
     def was_run(self) -> bool:

@@ -20,6 +20,7 @@ Samples = npt.NDArray[np.float64]
 FORCE_UNITS = {
     "base_shear": "m/s^2",
     "normal_force": "m/s^2",
+    "base_moment": "m^2/s^2",
     "friction": "1",
     "pivot_left": "1",
     "pivot_right": "1",
@@ -71,8 +72,9 @@ class Response(Shown):
         of their balance, the integrator's error.
     forces : DataFrame or None
         What is sized, at the rows of ``history``, where it was asked for (THEORY.md, Forces): ``base_shear`` V/M, to the right on
-        the pier, ``normal_force`` N/M [m/s²], ``friction`` |V|/N, ``pivot_…``, the supports' forces over half the weight,
-        ``heel_gap_…`` [m], ``heel_speed_…`` [m/s], opening, ``deck_acceleration`` [m/s²].
+        the pier, ``normal_force`` N/M [m/s²], ``base_moment`` over M about the middle of the base, of supports, dampers and
+        tendons [m²/s²], positive as the right support bears more, ``friction`` |V|/N, ``pivot_…``, the supports'
+        forces over half the weight, ``heel_gap_…`` [m], ``heel_speed_…`` [m/s], opening, ``deck_acceleration`` [m/s²].
     impacts : DataFrame or None
         With the forces: of each impact ``t`` [s], the ``pivot`` that lands, ``landing_velocity`` [m/s], down, and the
         impulse on the pier per unit mass, ``impulse_horizontal``, to the right, and ``impulse_vertical`` [m/s].

@@ -127,7 +127,7 @@ def forces_table(t: Samples, forces: np.recarray, gravity: float) -> "pd.DataFra
     import pandas as pd
 
     half = 0.5 * gravity
-    columns = [forces.shear, forces.normal, forces.friction, forces.left / half, forces.right / half]
+    columns = [forces.shear, forces.normal, forces.moment, forces.friction, forces.left / half, forces.right / half]
     columns += [forces.gap_left, forces.gap_right, forces.speed_left, forces.speed_right, forces.deck]
     return pd.DataFrame({"t": t.copy(), **dict(zip(FORCE_UNITS, columns, strict=True))})
 
@@ -161,6 +161,7 @@ def peak_forces(run: Run, rows: np.recarray, least_normal: float) -> tuple[PeakF
     peaks = PeakForces(
         base_shear=most.shear,
         normal_force=most.normal,
+        base_moment=most.moment,
         friction_demand=most.friction,
         pivot_left=min(most.left / (0.5 * pier.gravity), capacity),
         pivot_right=min(most.right / (0.5 * pier.gravity), capacity),
@@ -246,6 +247,7 @@ _FLOOR = 0.01
 _SIZED = {
     "base shear": (("base_shear",), "force"),
     "normal force": (("normal_force",), "force"),
+    "base moment": (("base_moment",), "moment"),
     "friction demand": (("friction_demand",), "friction"),
     "force of a support": (("pivot_left", "pivot_right"), "share"),
     "heel gap": (("heel_gap_left", "heel_gap_right"), "gap"),
@@ -281,6 +283,7 @@ def _scales(pier: Pier) -> Mapping[str, float]:
     """Return the scales of quantities: the weight, friction tan α, and a pier that leans by α."""
     return {
         "force": pier.gravity,
+        "moment": pier.gravity * pier.half_width,
         "share": 1.0,
         "friction": math.tan(pier.alpha),
         "gap": 2.0 * pier.half_width * pier.alpha,

@@ -16,11 +16,11 @@ from rockbatch.results.outcome import Outcome
 from rockbatch.results.response import EVENT_TYPES, Response
 from rockbatch.simulation import restraints
 from rockbatch.simulation.forces import at_rows, forces_table, impacts_table, peak_forces, with_error
-from rockbatch.simulation.leaning import apart, may_lean, with_rocking
+from rockbatch.simulation.leaning import apart, may_lean, with_error_of_rocking, with_rocking
 from rockbatch.simulation.models import block, ground_of, least_substeps, springs
 from rockbatch.simulation.runs import Run, run_fixed, written_run
 from rockbatch.simulation.settling import run_to_tolerance
-from rockbatch.study.spec import LEAST_TOLERANCE, Case, Numerics, Output
+from rockbatch.study.spec import LEAST_NORMAL_SHARE, LEAST_TOLERANCE, Case, Numerics, Output
 
 _EVENTS = {
     types.SEPARATION_LEFT: ("separation", "left"),
@@ -56,6 +56,7 @@ def simulate(
     case: str | None = None,
     ledger: bool = False,
     forces: bool = False,
+    least_normal_share: float = LEAST_NORMAL_SHARE,
     wait: bool = True,
 ) -> Response:
     """Simulate one run, and return its results, as a row of peaks.csv, and its histories.
@@ -76,6 +77,9 @@ def simulate(
         Keep the energy balance too (THEORY.md, Energy ledger).
     forces : bool
         Keep the forces, and what lands at impacts, too (THEORY.md, Forces).
+    least_normal_share : float
+        With the forces: share of the weight that the normal force has to exceed for friction to count, above 0 and below 1; as
+        ``[output] least_normal_share`` of a study, which :func:`rockbatch.run` takes.
     wait : bool
         Go on after ``quiet_s`` until nothing that comes later can exceed the peak; ``False``, with ``substeps``: end there.
 
@@ -103,17 +107,11 @@ def simulate(
     >>> response.plot().savefig("one-sine.pdf")
     """
     wrong = problems(pier, foundation) or unlikely_devices(pier, foundation.restraints)
-    wrong += unlikely_samples(motion, pier.gravity)
-    if not tolerance >= LEAST_TOLERANCE:
-        wrong.append(f"tolerance = {tolerance:g}: must be {LEAST_TOLERANCE:g} or above (on theta_max/alpha)")
-    if not (math.isfinite(quiet_s) and quiet_s >= 0):
-        wrong.append(f"quiet_s = {quiet_s:g}: must be 0 or more [s]")
-    if substeps is not None and (isinstance(substeps, bool) or not isinstance(substeps, int)):
-        wrong.append(f"substeps = {substeps}: must be a whole number")
+    wrong += unlikely_samples(motion, pier.gravity) + _unfit_numerics(tolerance, substeps, quiet_s, wait)
     if substeps is not None and not wrong and substeps < (least := least_substeps(pier, foundation, motion.dt)):
         wrong.append(f"substeps = {substeps}: must be a whole number of at least {least} for this pier and motion")
-    if substeps is None and not wait:
-        wrong.append("wait = False: the error of a run that is cut off cannot be told; give substeps")
+    if not 0.0 < least_normal_share < 1.0:
+        wrong.append(f"least_normal_share = {least_normal_share:g}: must be above 0 and below 1, a share of the weight")
     if wrong:
         raise InputError(*wrong)
     if substeps is None:
@@ -127,9 +125,23 @@ def simulate(
     response = histories(run, outcome, quiet_s, name, {}, ledger=ledger, forces=forces, wait=wait)
     if ledger or forces:
         numerics = Numerics(None if substeps else tolerance, substeps, quiet_s)
-        output = Output(ledger=ledger, forces=forces)
+        output = Output(ledger=ledger, forces=forces, least_normal_share=least_normal_share)
         outcome = with_observed(run, outcome, numerics, output, wait)
     return replace(response, row=as_series(row(Ran(outcome, motion, "+", 1.0, Case(name, pier, foundation, {})))))
+
+
+def _unfit_numerics(tolerance: float, substeps: int | None, quiet_s: float, wait: bool) -> list[str]:
+    """Return what is wrong about the numerical settings of a run, whatever its pier and motion."""
+    wrong = []
+    if not tolerance >= LEAST_TOLERANCE:
+        wrong.append(f"tolerance = {tolerance:g}: must be {LEAST_TOLERANCE:g} or above (on theta_max/alpha)")
+    if not (math.isfinite(quiet_s) and quiet_s >= 0):
+        wrong.append(f"quiet_s = {quiet_s:g}: must be 0 or more [s]")
+    if substeps is not None and (isinstance(substeps, bool) or not isinstance(substeps, int)):
+        wrong.append(f"substeps = {substeps}: must be a whole number")
+    if substeps is None and not wait:
+        wrong.append("wait = False: the error of a run that is cut off cannot be told; give substeps")
+    return wrong
 
 
 def written(run: Run, outcome: Outcome, quiet_s: float, every_step: bool, wait: bool = True) -> np.recarray:
@@ -165,7 +177,7 @@ def energies(run: Run, rows: np.recarray) -> Samples:
 
 def told_apart(run: Run, outcome: Outcome, quiet_s: float, wanted: bool = False, wait: bool = True) -> Outcome:
     """Return ``outcome`` with rocking and lean apart, if ``wanted`` or the peak may be lean; on yielding springs by one more
-    run.
+    run, and if ``wanted`` and the step was chosen by a tolerance by one of twice the step, which gives their error.
 
     After the record nothing shakes the pier, and it swings no further about its rest: a run to the end of its quiet time, a
     quarter of the whole, tells most peaks from lean.
@@ -173,13 +185,22 @@ def told_apart(run: Run, outcome: Outcome, quiet_s: float, wanted: bool = False,
     if not outcome.was_run or not (wanted or may_lean(outcome)):
         return outcome
     if not isinstance(run.base, YieldingBase) or outcome.status == "overturned":
-        return replace(outcome, theta_rocking=outcome.theta_max) if wanted else outcome
+        error = outcome.theta_max_error
+        return replace(outcome, theta_rocking=outcome.theta_max, theta_rocking_error=error) if wanted else outcome
     if not wanted and outcome.t_max <= run.motion.duration + quiet_s:
         rows = written(run, outcome, quiet_s, every_step=False, wait=False)
         if not apart(run.pier, run.base, rows).leans:
             return outcome
-    rows = written(run, outcome, quiet_s, every_step=False, wait=wait)
-    return with_rocking(outcome, apart(run.pier, run.base, rows), run.pier.alpha)
+    parts = apart(run.pier, run.base, written(run, outcome, quiet_s, every_step=False, wait=wait))
+    outcome = with_rocking(outcome, parts, run.pier.alpha)
+    if not wanted or outcome.theta_max_error is None or outcome.substeps % 2:
+        return outcome
+    rows = written(run, _of_twice_the_step(outcome), quiet_s, every_step=False, wait=wait)
+    return with_error_of_rocking(outcome, parts, apart(run.pier, run.base, rows))
+
+
+def _of_twice_the_step(outcome: Outcome) -> Outcome:
+    return replace(outcome, substeps=outcome.substeps // 2)
 
 
 def with_observed(run: Run, outcome: Outcome, numerics: Numerics, output: Output, wait: bool = True) -> Outcome:
@@ -198,9 +219,8 @@ def with_observed(run: Run, outcome: Outcome, numerics: Numerics, output: Output
         peaks, note = peak_forces(run, rows, output.least_normal_share)
         notes.append(note)
         if numerics.substeps is None and outcome.substeps % 2 == 0:
-            coarse = replace(outcome, substeps=outcome.substeps // 2)
             del rows  # a history of every step may be large
-            rows = written(run, coarse, numerics.quiet_s, every_step=True, wait=wait)
+            rows = written(run, _of_twice_the_step(outcome), numerics.quiet_s, every_step=True, wait=wait)
             peaks, note = with_error(peaks, peak_forces(run, rows, output.least_normal_share)[0], run.pier)
             notes.append(note)
         outcome = replace(outcome, forces=peaks, note="; ".join(filter(None, notes)))

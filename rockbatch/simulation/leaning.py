@@ -89,3 +89,12 @@ def with_rocking(outcome: Outcome, parts: Apart, alpha: float) -> Outcome:
         f"{parts.rocking_then / alpha:.4f} alpha, and by {parts.rocking / alpha:.4f} alpha at most, at {parts.t:.2f} s"
     )
     return replace(outcome, theta_max_is=LEANS, note="; ".join(filter(None, (outcome.note, remark))))
+
+
+def with_error_of_rocking(outcome: Outcome, fine: Apart, coarse: Apart) -> Outcome:
+    """Return ``outcome`` with the errors of rocking and lean: what halving the step from ``coarse`` to ``fine`` changed."""
+    return replace(
+        outcome,
+        theta_rocking_error=abs(fine.rocking - coarse.rocking),
+        theta_lean_error=None if outcome.theta_lean is None else abs(fine.lean - coarse.lean),
+    )

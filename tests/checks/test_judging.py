@@ -295,6 +295,8 @@ ROW = {
 FORCES = {
     "base_shear_m_s2": 3.0,
     "base_shear_kN": 9000.0,
+    "base_moment_m2_s2": 15.0,
+    "base_moment_kNm": 45000.0,
     "normal_force_m_s2": 12.0,
     "normal_force_kN": 36000.0,
     "friction_demand": 0.3,
@@ -427,6 +429,11 @@ def test_a_force_of_a_pier_that_nobody_has_weighed_does_not_apply(demand):
     one = TIED | {"pier": {key: value for key, value in TIED["pier"].items() if key != "mass_t"}}
     found = judged(runs([0.3], **FORCES), one=one, demand=demand, at_most=100.0)
     assert (found.verdict, found.note) == ("does not apply", "the study does not say what the pier weighs")
+
+
+def test_a_force_that_an_earlier_version_did_not_write_is_unknown_and_not_none():
+    earlier = runs([0.3], **{name: value for name, value in FORCES.items() if not name.startswith("base_moment")})
+    assert judged(earlier, demand="base_moment_kNm", at_most=100.0).verdict == "not decided"
 
 
 def test_a_friction_demand_without_limit_fails():

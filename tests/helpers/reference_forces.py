@@ -55,6 +55,9 @@ class WithForces(TiedTwoSprings):
         normal = sum(pressed)
         passes = self._passing(t, shear, normal)
         found = {"base_shear": abs(shear), "normal_force": normal, "deck_acceleration": abs(shear + swung)}
+        if not self.finite:  # where places of the base keep theirs
+            ties = sum(self.pull(j, y) * s for j, (_, s) in enumerate(self.elements))
+            found["base_moment"] = abs(self.b * (pressed[1] - pressed[0]) - ties)
         if normal >= self.least * self.g:
             found["friction_demand"] = abs(shear) / normal
         else:

@@ -114,7 +114,7 @@ def test_the_page_of_columns_lists_them_as_the_table_has_them():
 def test_a_name_ends_with_its_unit():
     """``theta_res_drift_per_s`` is 1/s, ``energy_input_J_kg`` is J/kg; pint reads them all."""
     endings = {"s": "s", "m": "m", "rad": "rad", "J/kg": "J_kg", "m/s": "m_s", "1/s": "per_s"}
-    endings |= {"m/s^2": "m_s2", "kN": "kN", "kN*s": "kN_s", "standard_gravity": "g"}
+    endings |= {"m/s^2": "m_s2", "kN": "kN", "kN*s": "kN_s", "standard_gravity": "g", "m^2/s^2": "m2_s2", "kN*m": "kNm"}
     for column in COLUMNS.values():
         pint.Unit(column.unit)
         ended = [unit for unit, ending in endings.items() if column.name.endswith(f"_{ending}")]

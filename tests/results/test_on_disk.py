@@ -198,6 +198,14 @@ def test_rigid_ground_of_an_earlier_version_which_did_not_say_so_ended_runs_at_t
     assert responses[0].base == rb.RigidBase(flight="stop")
 
 
+def test_forces_of_an_earlier_version_have_no_base_moment(tmp_path, results):
+    response = results.responses[0]
+    responses = stored(tmp_path, response)
+    with h5py.File(tmp_path / "histories.h5", "r+") as file:
+        del file["runs/000000/forces/base_moment"]
+    pd.testing.assert_frame_equal(responses[0].forces, response.forces.drop(columns="base_moment"))
+
+
 # The file, as others read it
 
 
@@ -218,7 +226,7 @@ def test_every_number_has_a_unit_and_a_length_that_fits(results):
         file.visititems(look)
     assert seen == {
         "second", "radian", "radian / second", "meter", "newton / kilogram", "joule / kilogram", "meter / second ** 2",
-        "meter / second", "1",
+        "meter / second", "meter ** 2 / second ** 2", "1",
     }  # fmt: skip
 
 

@@ -1,6 +1,7 @@
 """[output] forces = true: columns, demands and sections that only those have who ask, and friction of the interface."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -12,6 +13,7 @@ import rockbatch as rb
 from rockbatch.cli import main
 from rockbatch.errors import InputError
 from rockbatch.results.columns import MORE, STAYING, columns, names
+from rockbatch.study.suite import ground_motions
 
 WEIGHED = {"width_m": 4.0, "height_m": 30.0, "mass_t": 2000.0, "deck_mass_t": 1000.0, "deck_height_m": 31.0}
 ON_PADS = PADS | {"epsilon": 0.1}
@@ -36,7 +38,7 @@ def test_who_does_not_ask_has_the_same_columns_and_bytes_without_those_of_forces
     assert list(plain) == [*names(STAYING), *names(MORE), "mirror_of"]
     assert list(plain)[-3:] == ["flight_height_m", "theta_max_is", "mirror_of"]
     pd.testing.assert_frame_equal(asked[list(plain)], plain)
-    assert len(set(asked) - set(plain)) == 25
+    assert len(set(asked) - set(plain)) == 27
     page = (tmp_path / "without" / "report.html").read_text(encoding="utf-8")
     assert "Forces" not in Page(page).headings
 
@@ -57,6 +59,7 @@ def test_forces_are_in_kilonewtons_too_where_the_mass_is_known(tmp_path):
     row = rb.run(study(tmp_path, pier=WEIGHED, cases=(RIGID,))).iloc[0]
     for name in ("base_shear", "normal_force"):
         assert row[f"{name}_kN"] == pytest.approx(3000.0 * row[f"{name}_m_s2"], rel=1e-12)
+    assert row["base_moment_kNm"] == pytest.approx(3000.0 * row["base_moment_m2_s2"], rel=1e-12)
     assert row["impulse_kN_s"] == pytest.approx(3000.0 * row["impulse_m_s"], rel=1e-12)
     assert row["pivot_force_left_kN"] == pytest.approx(1500.0 * 9.81 * row["pivot_force_left"], rel=1e-12)
     without = rb.run(study(tmp_path, cases=(RIGID,))).iloc[0]
@@ -92,6 +95,20 @@ def test_a_share_of_the_weight_lies_between_none_and_all_of_it(tmp_path, share):
 def test_a_share_of_the_weight_without_forces_says_what_to_write(tmp_path):
     with pytest.raises(InputError, match="least_normal_share: is for forces = true; write that too, or leave it out"):
         rb.load_study(study(tmp_path, forces=False, output=QUIET | {"least_normal_share": 0.2}))
+
+
+def test_friction_counts_from_the_share_that_python_names_as_from_that_of_a_study(tmp_path):
+    asked = rb.load_study(study(tmp_path, cases=(ON_PADS,), output=QUIET | {"least_normal_share": 0.99}))
+    (motion,), (case,) = ground_motions(asked).motions, asked.cases
+    for share, of_study in ((0.99, asked), (0.1, replace(asked, output=replace(asked.output, least_normal_share=0.1)))):
+        row = rb.simulate(case.pier, case.base, motion, forces=True, least_normal_share=share).row
+        assert row["friction_demand"] == rb.run(of_study)["friction_demand"][0]
+    assert row["friction_demand"] > rb.run(asked)["friction_demand"][0]
+    for share in (0.0, 1.0, math.nan):
+        with pytest.raises(
+            InputError, match=r"least_normal_share = .*: must be above 0 and below 1, a share of the weight"
+        ):
+            rb.simulate(case.pier, case.base, motion, forces=True, least_normal_share=share)
 
 
 @pytest.mark.parametrize("friction", [0, -0.5])

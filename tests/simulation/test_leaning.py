@@ -18,8 +18,8 @@ from rockbatch.pier import ElasticBase, Pier, YieldingBase
 from rockbatch.report.sections.peaks import outcome
 from rockbatch.results.columns import Ran, as_table, row
 from rockbatch.results.run_json import describe_case
-from rockbatch.simulation import Run, run_to_tolerance
-from rockbatch.simulation.histories import written
+from rockbatch.simulation import Run, run_fixed, run_to_tolerance
+from rockbatch.simulation.histories import told_apart, written
 from rockbatch.simulation.leaning import lean_of
 from rockbatch.simulation.models import readings
 from rockbatch.study import Case, Numerics, Output, load_study
@@ -92,6 +92,33 @@ def test_where_nothing_yields_all_of_the_rotation_is_rocking(base):
     outcome = outcome_of(base, pulse_and_vibration(0.0), rocking=True)
     assert outcome.theta_rocking == pytest.approx(outcome.theta_max, rel=1e-4)
     assert abs(outcome.theta_lean or 0.0) < 1e-12
+
+
+def test_rocking_and_lean_have_the_error_that_a_run_of_a_quarter_of_the_step_confirms():
+    """Of pads that yield; a fixed step has none, and where nothing yields it is that of the peak."""
+    motion = pulse_and_vibration(0.5)
+    outcome = outcome_of(PADS, motion, rocking=True)
+    fine = run_fixed(PIER, PADS, motion, 4 * outcome.substeps)
+    fine = told_apart(Run(PIER, PADS, motion), fine, 2.0, wanted=True)
+    assert 0.0 < outcome.theta_rocking_error < 1e-3 * outcome.theta_rocking
+    assert abs(outcome.theta_rocking - fine.theta_rocking) <= outcome.theta_rocking_error
+    assert abs(outcome.theta_lean - fine.theta_lean) <= outcome.theta_lean_error
+    assert (fine.theta_rocking_error, fine.theta_lean_error) == (None, None)
+    rigid = outcome_of(rb.RigidBase(), motion, rocking=True)
+    assert (rigid.theta_rocking_error, rigid.theta_lean_error) == (rigid.theta_max_error, None)
+    assert outcome_of(PADS, motion).theta_rocking_error is None
+
+
+def test_a_check_of_rocking_is_not_decided_within_its_error(tmp_path):
+    check = {"name": "rocking", "demand": "theta_rocking_over_alpha", "at_most": 0.1, "reason": "a limit"}
+    study = load_study(write_study(tmp_path, study_text(cases=(ON_PADS,), check=[check], output={"rocking": True})))
+    motion = pulse_and_vibration(0.5)
+    outcome = outcome_of(study.cases[0].base, motion, rocking=True)
+    for near, verdict in ((0.5, "not decided"), (1.5, "pass"), (-1.5, "fail")):
+        limit = (outcome.theta_rocking + near * outcome.theta_rocking_error) / study.cases[0].pier.alpha
+        runs = as_table([row(motion, "+", 1.0, study.cases[0], outcome)], study)
+        (told,) = judge([replace(study.checks[0], at_most=limit)], runs, [describe_case(study.cases[0])])
+        assert told.verdict == verdict
 
 
 def test_a_check_may_ask_for_the_rocking_and_the_tables_mark_the_lean(tmp_path):

@@ -275,7 +275,10 @@ def test_a_device_has_a_force_and_the_rate_of_its_state(kind, unit):
         assert_units([device_laws.loss_rate(of, 0.1 * SPEED, one, device_laws.YIELDING)], [ACCELERATION * SPEED])
 
 
-FORCES = (*(ACCELERATION,) * 4, M, M, SPEED, SPEED, ACCELERATION, SPEED, SPEED, RAD / S, ONE, M)
+FORCES = (
+    *(ACCELERATION,) * 2, M * ACCELERATION, *(ACCELERATION,) * 2,
+    M, M, SPEED, SPEED, ACCELERATION, SPEED, SPEED, RAD / S, ONE, M,
+)  # fmt: skip
 
 
 @KINEMATICS

@@ -12,6 +12,7 @@ from reference_forces import greatest_forces
 import rockbatch as rb
 from rockbatch.batch.groups import outcomes_of
 from rockbatch.batch.plan import PlannedRun
+from rockbatch.pier import offsets
 from rockbatch.simulation.forces import with_error
 from rockbatch.study import Case, Numerics, Output
 
@@ -227,6 +228,7 @@ def test_a_pier_at_rest_bears_its_weight_and_half_of_it_on_each_support(name):
     assert forces.pivot_left == pytest.approx(1.0 + more - aside, rel=1e-12)
     assert forces.pivot_right == pytest.approx(1.0 + more + aside, rel=1e-12)
     assert (forces.heel_gap_left, forces.deck_acceleration, forces.omega_over_p) == (0.0, 0.0, 0.0)
+    assert forces.base_moment == pytest.approx(0.0, abs=1e-11)  # what presses it aside its tendon holds
     assert (forces.landing_velocity, forces.first_uplift) == (None, None)
 
 
@@ -237,6 +239,7 @@ def test_a_block_at_rest_that_is_shaken_below_uplift_leans_on_one_corner():
     assert forces.pivot_left == pytest.approx(1.999, rel=1e-12)
     assert (forces.pivot_right, forces.first_uplift) == (pytest.approx(1.0, rel=1e-12), None)
     assert forces.friction_demand == pytest.approx(0.999 * math.tan(PIER.alpha), rel=1e-12)
+    assert forces.base_moment == pytest.approx(0.999 * G * PIER.half_width, rel=1e-12)  # at the onset M g b
 
 
 # Newton's laws
@@ -273,6 +276,52 @@ def test_base_shear_of_finite_springs_is_that_of_the_horizontal_velocity(name, r
     speed = lever * response.omega
     expected = response.history["ag_h"].to_numpy()[rows] + (speed[rows + 1] - speed[rows - 1]) / (2 * FINE)
     assert close(response.forces["base_shear"].to_numpy()[rows], expected)
+
+
+@pytest.mark.parametrize("name", ["rigid", "elastic", "bouc-wen", "rigid, tied", "rigid, beyond", "bouc-wen, tied"])
+def test_base_moment_is_that_of_the_motion_by_differences(name, responses):
+    """About the middle of the base, of all that acts on the pier there: x (g + v̈_g + ÿ) − y (ü_g + ẍ) − (I0/M) θ̈.
+
+    On springs in first-order kinematics the ground acts at H = h + b θ (c_R − c_L) (THEORY.md, eq. 6).
+    """
+    response = responses[name]
+    rows = smooth_rows(response)
+    (x, y), at = centre(response), response.history.iloc[rows]
+    left, right = (response.forces[f"pivot_{side}"].to_numpy()[rows] > 0.0 for side in ("left", "right"))
+    lever = above = y[rows]
+    if not isinstance(response.base, rb.RigidBase):
+        lever, above = PIER.height + PIER.half_width * response.theta[rows] * (1.0 * right - left), PIER.height
+    expected = x[rows] * (G + at["ag_v"].to_numpy() + second_difference(y, rows))
+    expected -= lever * at["ag_h"].to_numpy() + above * second_difference(x, rows)
+    expected -= PIER.inertia * second_difference(response.theta, rows)
+    assert close(response.forces["base_moment"].to_numpy()[rows], expected)
+
+
+def ties_about_the_middle(response):
+    """Moment of the pulls of dampers and tendons on the base, at their places [m²/s²]; not of friction that holds."""
+    table, pier, lean = response.restraints, response.pier, 0.5 * response.theta
+    total = np.zeros(len(response.t))
+    if table is None:
+        return total
+    along = np.cos(lean) if isinstance(response.base, rb.RigidBase) else 1.0 / np.cos(lean)
+    along = along if response.base.kinematics == "finite" else 1.0
+    places = [s for each in response.base.restraints for s in offsets(pier, each)]
+    for name, s in zip(table.columns[2::2], places, strict=True):
+        total = total + table[name].to_numpy() * along * s
+    return total
+
+
+@EVERY_BASE
+def test_base_moment_is_that_of_the_supports_and_ties_at_their_places(name, responses):
+    """b (N_R − N_L) − Σ F s; of finite springs but for θ², by which places of a leaning base move."""
+    response = responses[name]
+    rows = smooth_rows(response)
+    rows = rows[(response.omega[rows] != 0.0) | (name != "rigid, tied")]
+    forces, half = response.forces.iloc[rows], 0.5 * G * PIER.half_width
+    expected = half * (forces["pivot_right"] - forces["pivot_left"]).to_numpy() - ties_about_the_middle(response)[rows]
+    finite_springs = response.base.on_springs and response.base.kinematics == "finite"
+    allowed = 0.5 * np.abs(response.theta).max() ** 2 if finite_springs else 1e-3
+    assert close(forces["base_moment"].to_numpy(), expected, allowed)
 
 
 @pytest.mark.parametrize("name", ["rigid", "elastic"])
@@ -395,7 +444,7 @@ def test_peaks_are_those_of_a_history_that_is_many_times_finer(name, responses):
     fine = response.forces.abs().max()
     if name == "rigid, tied":
         fine = np.fmax(fine, before_turnings(response).abs().max())
-    names = {"base_shear": "base_shear", "normal_force": "normal_force", "deck_acceleration": "deck_acceleration"}
+    names = {name: name for name in ("base_shear", "normal_force", "base_moment", "deck_acceleration")}
     names |= {name: name for name in fine.index if name.startswith(("pivot_", "heel_"))}
     for column, of_history in names.items():
         assert found[column] == pytest.approx(fine[of_history], rel=2e-5), column
@@ -449,10 +498,11 @@ def test_peaks_are_those_of_another_solver_where_a_law_is_steep(name):
     )
     assert cut.row["impacts"] == run.impacts > 0
     columns = {each: f"{each}_m_s2" for each in ("base_shear", "normal_force", "deck_acceleration", "key_shear")}
+    columns["base_moment"] = "base_moment_m2_s2"
     columns |= {f"pivot_{side}": f"pivot_force_{side}" for side in ("left", "right")}
     columns |= {f"heel_gap_{side}": f"heel_gap_{side}_m" for side in ("left", "right")}
     columns |= {f"heel_speed_{side}": f"heel_speed_{side}_m_s" for side in ("left", "right")}
-    assert {"friction_demand", "base_shear"} <= set(expected)
+    assert {"friction_demand", "base_shear", "base_moment"} <= set(expected)
     for each, value in expected.items():
         share = 2e-5 + response.row["forces_error"]
         assert cut.row.get(columns.get(each, each), 0.0) == pytest.approx(value, rel=share, abs=1e-9), each

@@ -20,6 +20,7 @@ class Forces(NamedTuple):
 
     shear: float  # V/M, horizontal, of the supports on the pier, to the right [m/s²]
     normal: float  # N/M, vertical, of all supports, up [m/s²]
+    moment: float  # over M, of supports and devices about the middle of the base, positive as the right one bears more [m²/s²]
     left: float  # of the left support [m/s²]
     right: float
     gap_left: float  # of the pivot above where its support waits [m]
@@ -74,16 +75,20 @@ def _friction(gravity, shear, normal):
 def on_springs(m, deck, y, contact, waiting_left, waiting_right, horizontal, vertical):
     """Return the forces in state ``y``; free supports wait at ``waiting_…`` [m], the deck is at the height ``deck`` [m]."""
     at = geometry(m, y.theta)
-    _, turning = accelerations_at(m, y, contact, at, horizontal, vertical)
+    v_acceleration, turning = accelerations_at(m, y, contact, at, horizontal, vertical)
     squared = y.omega * y.omega
-    lever, bend = m.height, 0.0 * m.height
+    side = contact.right - contact.left
+    ground_lever = at.lever + side * at.swing
+    lever, bend, place = m.height, 0.0 * m.height, m.height * y.theta
     swung = (deck - m.height) * turning
     if m.finite is not None:
-        side = contact.right - contact.left
-        lever, bend = at.lever + side * at.swing, at.lever_slope + side * at.swing_slope
+        lever, bend = ground_lever, at.lever_slope + side * at.swing_slope
+        place = side * m.half_width - bend
         sine, cosine = sine_and_cosine(y.theta)
         swung = (deck - m.height) * (cosine * turning - sine * squared)
     shear = horizontal + lever * turning + bend * squared
+    moment = place * (m.gravity + vertical + v_acceleration) - lever * (shear - horizontal) - m.inertia * turning
+    moment -= ground_lever * horizontal
     pull_left, pull_right = forces(m, y, contact, at)
     left, right = -pull_left, -pull_right
     free_left = 1.0 if contact.left == 0.0 and contact.held != LEFT else 0.0
@@ -91,7 +96,7 @@ def on_springs(m, deck, y, contact, waiting_left, waiting_right, horizontal, ver
     gap_left = free_left * (y.v + at.lift_left - top(m, waiting_left, y.z_left))
     gap_right = free_right * (y.v + at.lift_right - top(m, waiting_right, y.z_right))
     return Forces(
-        shear, left + right, left, right, gap_left, gap_right,
+        shear, left + right, moment, left, right, gap_left, gap_right,
         free_left * (y.v_rate + at.arm_left * y.omega - velocity_of_top(m, y.z_left)),
         free_right * (y.v_rate + at.arm_right * y.omega - velocity_of_top(m, y.z_right)),
         shear + swung, at.lever * y.omega, y.v_rate, y.omega,
@@ -125,7 +130,7 @@ def _at_rest(m, outline, hold, y, horizontal, vertical):
     if lacks > 0.0:
         on_left, on_right = (normal, 0.0 * normal) if pressed == LEFT else (0.0 * normal, normal)
     forces = Forces(
-        horizontal, normal, on_left, on_right,
+        horizontal, normal, -0.5 * outline.width * m.height / m.half_width * horizontal, on_left, on_right,
         gap, gap, still, still, horizontal, still, still, y.omega, _friction(m.gravity, horizontal, normal), gap,
     )  # fmt: skip
     return forces, (pressed if lacks > back else 0.0)
@@ -154,17 +159,18 @@ def on_block(m, outline, hold, y, contact, horizontal, vertical):
     along = lever * turning + slope * squared
     pull = m.pull.force * half_cosine
     grounded = 0.0 if flies else 1.0
-    normal = grounded * (m.gravity + vertical + v_acceleration + pull * half_cosine)
+    lifted = m.gravity + vertical + v_acceleration
+    normal = grounded * (lifted + pull * half_cosine)
     shear = horizontal + along + grounded * pull * half_sine
+    wide = 0.5 * outline.width / m.half_width  # 1, but of a frame: the block that stands for its columns is wider
+    place = lean * m.half_width - slope
+    moment = wide * (place * lifted - lever * (horizontal + along) - m.inertia * turning)
     deck = outline.deck_share * along + outline.deck_above * (cosine * turning - sine * squared)
     on_left, on_right = contact.left, contact.right
     left, right, left_speed, right_speed = clearances(m, y, None)
-    wide = (
-        0.5 * outline.width / m.half_width
-    )  # 1, but of a frame, whose columns are narrower than the block that stands for them
     off_left, off_right = wide * (1.0 - on_left), wide * (1.0 - on_right)
     return Forces(
-        shear, normal, on_left * normal, on_right * normal,
+        shear, normal, moment, on_left * normal, on_right * normal,
         off_left * left, off_right * right, off_left * left_speed, off_right * right_speed,
         horizontal + deck, lever * y.omega, y.v_rate, y.omega,
         _friction(m.gravity, shear, normal), min(off_left * left, off_right * right),

@@ -208,7 +208,8 @@ def _look_within(of, t, before, now, limits, greatest, noted):
 @kernel
 def _put(out, i, forces):
     line = out[i]
-    line.shear, line.normal, line.left, line.right = forces.shear, forces.normal, forces.left, forces.right
+    line.shear, line.normal, line.moment = forces.shear, forces.normal, forces.moment
+    line.left, line.right = forces.left, forces.right
     line.gap_left, line.gap_right = forces.gap_left, forces.gap_right
     line.speed_left, line.speed_right = forces.speed_left, forces.speed_right
     line.deck, line.along, line.up, line.omega = forces.deck, forces.along, forces.up, forces.omega
