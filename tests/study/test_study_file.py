@@ -602,6 +602,15 @@ def test_every_study_that_comes_along_is_sound_and_explains_itself(path):
     assert study.cases
 
 
+@pytest.mark.parametrize("path", sorted(CONFIGS.glob("*.toml")), ids=lambda path: path.stem)
+def test_a_study_whose_supports_settle_with_every_small_cycle_says_so(path):
+    """By the paper's law they do: its own studies, and those of rotations alone, keep it, and say which it is."""
+    study = load_study(path)
+    if any(case.base.ratchets for case in study.cases):
+        assert re.search("Bouc.Wen", study.notes)
+        assert not any("settlement" in rule.demand for rule in study.checks)
+
+
 def test_fig5_has_the_paper_s_parameters():
     study = load_study(CONFIGS / "fig5.toml")
     rigid, *yielding = study.cases
