@@ -89,7 +89,10 @@ def pulse(
         problems.append("name is empty: write the name that the pulse shall have in tables")
     if not problems:
         odd = unlikely(abs(amplitude) / GRAVITY, period, dt)
-        problems = [f"{key} = {text}; {remedy(key)}" for key, text in odd.items() if key not in confirm]
+        typed = {"amplitude": f"{amplitude:g} m/s², "}
+        problems = [
+            f"{key} = {typed.get(key, '')}{text}; {remedy(key)}" for key, text in odd.items() if key not in confirm
+        ]
     if problems:
         raise InputError(*problems)
     formula, length = _formula(shape, amplitude, period, gamma, nu)

@@ -1,5 +1,7 @@
 """Pulses: their formulas, the sampling rule, and every mistake named at once."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -107,3 +109,10 @@ def test_all_mistakes_come_at_once():
 def test_a_mistake_says_what_to_write(wrong, message):
     with pytest.raises(InputError, match=message):
         make(**wrong)
+
+
+def test_an_amplitude_that_only_a_wrong_unit_explains_is_told_as_typed_and_in_g():
+    with pytest.raises(InputError, match=re.escape("amplitude = 40 m/s², 4.08 g: more than 3 g")):
+        make("sine", amplitude=40.0)
+    confirmed = make("sine", amplitude=40.0, confirm=["amplitude"])
+    assert confirmed.pga == pytest.approx(40.0, rel=1e-6)
