@@ -234,8 +234,14 @@ def _not_followed(run: Run, noted: Noted, peaks: PeakForces, least_normal: float
         notes.append(
             f"where the normal force is below {least_normal:g} of the weight, friction holds little: keys have to carry a "
             f"base shear of up to {peaks.key_shear / run.pier.gravity:.3g} of the weight"
+            f"{_in_kilonewtons(run.pier, peaks.key_shear)}"
         )
     return "; ".join(notes)
+
+
+def _in_kilonewtons(pier: Pier, force: float) -> str:
+    """Return a force per unit mass [m/s²] in kN, after a comma; empty if the mass is not known."""
+    return "" if pier.mass_t is None else f", {pier.mass_t * force:,.0f} kN"
 
 
 LARGE_ERROR = 0.01

@@ -596,6 +596,8 @@ def test_a_run_says_where_it_would_slide():
     assert hops.forces.friction_demand < 5.0
     carried = f"keys have to carry a base shear of up to {hops.forces.key_shear / G:.3g} of the weight"
     assert hops.note == f"where the normal force is below 0.1 of the weight, friction holds little: {carried}"
+    weighed = outcome_of(replace(PIER, mass_t=3000.0), replace(BASES["elastic"], friction=5.0), motion)
+    assert weighed.note == f"{hops.note}, {3000.0 * hops.forces.key_shear:,.0f} kN"
     hard = outcome_of(PIER, rb.RigidBase(restitution=0.1, friction=2.0), replace(motion, vertical=None))
     assert hard.forces.friction_demand < 2.0 < hard.forces.impact_friction_demand
     assert "would slide at an impact" in hard.note
@@ -633,3 +635,5 @@ def test_a_frame_has_the_shear_and_the_weight_of_its_columns_and_its_deck():
     assert close(response.forces["deck_acceleration"].to_numpy()[rows], deck)
     gap = response.forces[["heel_gap_left", "heel_gap_right"]].max(axis=1).to_numpy()
     assert gap == pytest.approx(2 * column.half_width * np.sin(np.abs(theta)), abs=1e-12)
+    bears = 0.5 * G * (response.forces["pivot_right"] - response.forces["pivot_left"]).to_numpy()
+    assert response.forces["base_moment"].to_numpy() == pytest.approx(column.half_width * bears, abs=1e-9)
