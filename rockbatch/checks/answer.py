@@ -7,7 +7,7 @@ from typing import NamedTuple
 from rockbatch.checks import wording
 from rockbatch.checks.demands import DEMANDS
 from rockbatch.checks.responses import RESPONSES, Worst, in_words, unlimited, worst_of_all
-from rockbatch.checks.verdicts import FAIL, NOT_DECIDED, PASS, Verdict
+from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, Verdict
 
 MOST_NAMES = 6
 MOST_CHECKS = 3
@@ -46,7 +46,7 @@ def answer(verdicts: Sequence[Verdict], worst: Sequence[Worst], case_of: Words, 
     free = {name: _unlimited(cases[name], worst) for name in meeting}
     passing = [name for name in meeting if not free[name]]
     lines = [
-        _passing(passing, cases),
+        _passing(passing, cases, case_of),
         _without_limit({name: free[name] for name in meeting if free[name]}, len(cases)),
         _failing(failing, cases, case_of, record_of),
         _open(open_, failing, cases, case_of, record_of),
@@ -69,16 +69,32 @@ def _key(case: str, columns: Mapping[str, float | str]) -> tuple[object, ...]:
     return str(case), *sorted(values)
 
 
-def _passing(names: Sequence[str], cases: Mapping[str, Sequence[Verdict]]) -> Line | None:
+def _passing(names: Sequence[str], cases: Mapping[str, Sequence[Verdict]], case_of: Words) -> Line | None:
     if not names:
         return None
     ratios = [one for name in names for one in cases[name] if math.isfinite(one.ratio) and not one.is_ban]
     closest = max(ratios, key=lambda one: one.ratio, default=None)
-    details = () if closest is None else (f"Closest to its limit: {closest.check}, {wording.against(closest)}.",)
+    details: tuple[str, ...] = ()
+    if closest is not None:
+        where = f", in {case_of(closest)}" if len(names) > 1 else ""
+        details = (f"Closest to its limit: {closest.check}, {wording.against(closest)}{where}.",)
+    details += _exempt({name: cases[name] for name in names})
     if len(names) == len(cases):
         return Line(PASS, f"Every check passes in {_among(len(names), len(cases))}", "", details)
     says = f"{_among(len(names), len(cases))} pass{'es' * (len(names) == 1)} every check"
     return Line(PASS, says, _listed(names), details)
+
+
+def _exempt(cases: Mapping[str, Sequence[Verdict]]) -> tuple[str, ...]:
+    """Return which checks do not apply to which cases, a sentence for each set of checks."""
+    exempt: dict[tuple[str, ...], list[str]] = {}
+    for name, own in cases.items():
+        if checks := tuple(one.check for one in own if one.verdict == DOES_NOT_APPLY):
+            exempt.setdefault(checks, []).append(name)
+    return tuple(
+        f"Not asked of {_listed(names)}: {', '.join(checks)}, which do{'es' * (len(checks) == 1)} not apply there."
+        for checks, names in exempt.items()
+    )
 
 
 def _without_limit(free: Mapping[str, Sequence[Worst]], all_: int) -> Line | None:
@@ -111,6 +127,7 @@ def _failing(
     near = min((max(same, key=_excess) for same in failed.values()), key=_excess)
     if len(names) > 1 and math.isfinite(_excess(near)):
         details.append(f"Nearest to passing: {case_of(near)}, {near.check} at {wording.ratio(near)} × its limit.")
+        details += _exempt({case_of(near): cases[case_of(near)]})
     says = f"{_among(len(names), len(cases))} fail{'s' * (len(names) == 1)}"
     return Line(FAIL, _capital(says), _listed(names), tuple(details))
 

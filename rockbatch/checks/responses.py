@@ -31,12 +31,17 @@ class Response(NamedTuple):
 RESPONSES = {
     "theta_max_over_alpha": Response("rotation", PEAKS),
     "top_drift_m": Response("drift of the top", PEAKS),
-    "settlement_m": Response("settlement", _SETTLED),
-    "base_tilt_rad": Response("tilt", _RESIDUAL | {"toe_settlement_m"}),
+    "settlement_m": Response("mean settlement", _SETTLED),
+    "base_tilt_rad": Response("residual tilt", _RESIDUAL | {"toe_settlement_m"}),
+    "theta_res_rad": Response("residual rotation", _RESIDUAL),
     "heel_uplift_m": Response("uplift of the heel", PEAKS),
     "ductility": Response("ductility", frozenset(("ductility",))),
 }
-"""By their demands, in the order of the answer. The settlement of the toe is that of the pier and its tilt."""
+"""By their demands, in the order of the answer. The settlement of the toe is that of the pier and its tilt, and on springs the
+residual rotation follows from the tilt."""
+
+_HELD = 1e-4
+"""Of α: a residual rotation on rigid ground that counts."""
 
 
 class Worst(NamedTuple):
@@ -66,7 +71,7 @@ def worst_of_cases(suites: "Iterable[tuple[Case, pd.DataFrame]]") -> list[Worst]
     for case, runs in suites:
         stood = ((runs["status"] == "ok") & runs["theta_max_over_alpha"].notna()).to_numpy()
         for name in RESPONSES:
-            if case["base"] not in DEMANDS[name].bases:
+            if not DEMANDS[name].on(case) or (name == "theta_res_rad" and case["base"] != "rigid"):
                 continue
             values = np.where(stood, DEMANDS[name].of(runs, case).value, np.nan)
             if np.isfinite(values).any():
@@ -87,12 +92,16 @@ def worst_of_all(worst: Iterable[Worst]) -> dict[str, Worst]:
 def unlimited(worst: Sequence[Worst], verdicts: Sequence[Verdict]) -> list[Worst]:
     """Return the responses of a case that govern its design, and that no check bounds.
 
-    Rotation always governs, and stands for drift and uplift; settlement, tilt and ductility do where a support yields.
+    Rotation always governs, and stands for drift and uplift; settlement, tilt and ductility do where a support yields, the
+    residual rotation where dampers hold the pier at one on rigid ground.
     ``worst`` and ``verdicts`` are those of the case.
     """
     checked = {one.demand for one in verdicts if one.verdict != DOES_NOT_APPLY}
     yielded = any(one.demand == "ductility" and one.value > 1.0 for one in worst)
-    governing = ("theta_max_over_alpha", *(("settlement_m", "base_tilt_rad", "ductility") if yielded else ()))
+    governing = ["theta_max_over_alpha", *(("settlement_m", "base_tilt_rad", "ductility") if yielded else ())]
+    governing += [
+        one.demand for one in worst if one.demand == "theta_res_rad" and one.value > _HELD * one.case["pier"]["alpha"]
+    ]
     return [one for one in worst if one.demand in governing and not checked & RESPONSES[one.demand].bounded_by]
 
 
@@ -102,7 +111,7 @@ def in_words(worst: Worst) -> str:
     if worst.demand == "theta_max_over_alpha":
         theta = value * float(pier["alpha"])
         return f"{value:.4g} α = {math.degrees(theta):.3g}° ({theta:.3g} rad)"
-    if worst.demand == "base_tilt_rad":
+    if worst.demand in ("base_tilt_rad", "theta_res_rad"):
         return f"{1000 * value:.3g} mrad ({math.degrees(value):.2g}°)"
     if worst.demand == "top_drift_m":
         return f"{value:.3g} m ({_millimetres(value)} mm)"

@@ -9,6 +9,7 @@ from rockbatch.checks import wording
 from rockbatch.checks.answer import answer
 from rockbatch.checks.responses import in_words, worst_of_all, worst_of_cases
 from rockbatch.checks.verdicts import FAIL, NOT_DECIDED, PASS
+from rockbatch.pier import Damper, RigidBase
 
 SETTLED = {"settlement_m": [0.1, 0.381, 0.0, 0.2], "base_tilt_rad": [1e-3, -4e-3, 0.0, 0.0]}
 YIELDED = SETTLED | {"ductility_left": 2.0, "ductility_right": [1.0, 33.0, 1.0, 1.0]}
@@ -51,8 +52,10 @@ def test_a_run_that_overturned_has_no_worst_response():
 def test_nothing_is_green_where_settlement_tilt_and_ductility_have_no_limit():
     (line,) = lines([verdict("pads", "pass")], worst(**YIELDED))
     assert (line.verdict, line.which) == (NOT_DECIDED, "pads")
-    assert line.says == "The only case meets the limits, but none is set on settlement, tilt, ductility"
-    assert line.details == ("Without a limit, at most: settlement 381 mm, tilt 4 mrad (0.23°), ductility 33.",)
+    assert line.says == "The only case meets the limits, but none is set on mean settlement, residual tilt, ductility"
+    assert line.details == (
+        "Without a limit, at most: mean settlement 381 mm, residual tilt 4 mrad (0.23°), ductility 33.",
+    )
 
 
 @pytest.mark.parametrize("left_out", LIMITS)
@@ -88,6 +91,38 @@ def test_the_failing_checks_come_with_demand_limit_record_and_the_nearest_case()
         "soil: 5 > 4, record ERZ, in rock.",
         "Nearest to passing: rock, drift at 2.00 × its limit.",
     ]
+
+
+def test_what_is_not_asked_of_a_case_is_told_beside_its_passing_or_failing():
+    """Rigid ground neither settles nor yields: that it passes, or is nearest to passing, is no merit there."""
+    none = [verdict("rock", "does not apply", check=name) for name in ("settlement", "ductility")]
+    passing = lines([verdict("rock", "pass"), *none, verdict("pads", "pass", value=0.45, ratio=0.9)])
+    assert [words.replace("\u00a0", " ") for words in passing[0].details] == [
+        "Closest to its limit: margin, 0.45 ≤ 0.5, in pads.",
+        "Not asked of rock: settlement, ductility, which do not apply there.",
+    ]
+    failing = [verdict("rock", "fail", value=0.55, ratio=1.1), *none[:1], verdict("pads", "fail", value=0.6, ratio=1.2)]
+    assert lines(failing)[0].details[-2:] == (
+        "Nearest to passing: rock, margin at 1.10 × its limit.",
+        "Not asked of rock: settlement, which does not apply there.",
+    )
+
+
+def test_a_residual_rotation_that_dampers_hold_on_rigid_ground_needs_a_limit():
+    held = case("rigid", base=RigidBase(restraints=(Damper("friction", f=0.6),)))
+    leans = worst_of_cases([(held, runs((0.3, 0.2), name="rigid", theta_res_over_alpha=[0.0, -0.05]))])
+    assert (
+        in_words(worst_of_all(leans)["theta_res_rad"])
+        == f"{50 * PIER.alpha:.3g} mrad ({math.degrees(0.05 * PIER.alpha):.2g}°)"
+    )
+    rotation, residual = (
+        verdict("rigid", "pass", demand="theta_max_over_alpha"),
+        verdict("rigid", "pass", demand="theta_res_rad"),
+    )
+    assert [line.verdict for line in lines([rotation], leans)] == [NOT_DECIDED]
+    assert [line.verdict for line in lines([rotation, residual], leans)] == [PASS]
+    back = worst_of_cases([(held, runs((0.3, 0.2), name="rigid", theta_res_over_alpha=0.0))])
+    assert [line.verdict for line in lines([rotation], back)] == [PASS]
 
 
 def test_of_a_mean_the_record_is_the_one_with_the_largest_demand_and_says_so():

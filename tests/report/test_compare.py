@@ -154,7 +154,7 @@ def test_two_studies_begin_with_which_is_better_by_how_much_and_in_which_record(
     """Compare ratio and counts by hand: the only rotation that differs is the worst of each."""
     runs = [({"changes": {("SYL360", "2"): {"theta_max_over_alpha": theta}}}) for theta in (0.8, 0.4)]
     told = answered(two(tmp_path, *runs))
-    assert told.startswith("B is better: from A to B, worst rotation -50 % (SYL360), settlement +0 % (")
+    assert told.startswith("B is better: from A to B, worst rotation -50 % (SYL360), mean settlement +0 % (")
     assert "smaller in 1 of 30 pairs of runs, larger in 0; it changes to 0.5 times (SYL360, 2) at least" in told
 
 

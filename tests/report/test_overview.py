@@ -1,6 +1,7 @@
 """The first screen is the answer, for any number of cases and records: the rest is summed up, or folded."""
 
 import re
+from pathlib import Path
 
 import pytest
 from browser import browse, needs_chromium
@@ -8,6 +9,7 @@ from check_samples import verdict
 from report_page import Page
 from report_samples import FIG7, case_entry, write_results
 
+import rockbatch.report
 from rockbatch.checks import write_verdicts
 from rockbatch.pier import Pier, RigidBase, YieldingBase
 from rockbatch.report import write_report
@@ -176,3 +178,10 @@ def test_the_legend_stands_above_the_fold(tmp_path):
     write_verdicts(tmp_path, [*failing, verdict("4", "not decided", note="2 stations count; the check asks for 3")])
     act = 'found.legend = document.querySelector("#answer ul.key").getBoundingClientRect().bottom;'
     assert 0 < browse(tmp_path, write_report(tmp_path, []), act, size=(1280, 800))["legend"] < 800
+
+
+def test_the_picture_is_not_parted_from_its_axis_or_legend_on_paper():
+    style = (Path(rockbatch.report.__file__).parent / "style.css").read_text(encoding="utf-8")
+    printed = style[style.index("@media print") :]
+    whole = next(line for line in printed.splitlines() if line.endswith("{ break-inside: avoid; }"))
+    assert "figure:has(> .dots)" in whole

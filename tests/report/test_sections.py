@@ -11,13 +11,15 @@ import pytest
 from report_page import Page
 from report_samples import case_entry, write_results
 
-from rockbatch.pier import Pier, RigidBase
+from rockbatch.pier import Damper, Pier, RigidBase
 from rockbatch.report import compared, sections
 from rockbatch.report.contents import Contents, read
 from rockbatch.report.document import Section, document
 from rockbatch.report.markup import Markup
 from rockbatch.report.page import SECTIONS, SECTIONS_OF_TWO, page
 from rockbatch.report.sections import answer
+from rockbatch.results.run_json import describe_case
+from rockbatch.study import Case
 
 STUDY = {"title": "Piers & pads", "notes": "First.\n\nSecond.", "text": 'title = "Piers & pads"', "sha256": "0"}
 
@@ -93,20 +95,68 @@ def test_the_answer_says_how_far_the_worst_pier_rotates_and_how_high_its_heel_ri
     uplift_mm = 1000 * 2 * Pier(alpha=0.13, p=0.35).half_width * 0.1 * 0.13
     assert "rotation0.1 α = 0.745° (0.013 rad): SYL360, case rigid" in told
     drift = 2 * Pier(alpha=0.13, p=0.35).height * 0.1 * 0.13  # without top_m, of the top of a uniform block
-    assert f"drift of the top{drift:.3g} m ({1000 * drift:,.0f} mm), in the run of the greatest rotation" in told
-    assert f"uplift of the heel{uplift_mm:.0f} mm, in the run of the greatest rotation" in told
-    assert "of the supportsneither settlement nor tilt: the ground is rigid" in told
+    assert "whatever is checked; at α = 7.45° the pier alone stands on its edge" in told.lower()
+    assert (
+        f"drift of the top{drift:.3g} m ({1000 * drift:,.0f} mm), of a rigid shaft, in the run of the greatest rotation"
+        in told
+    )
+    assert f"uplift of the heel{uplift_mm:.0f} mm, above the toe, in the run of the greatest rotation" in told
+    assert "of the supportsno settlement: the ground is rigid; nothing holds the pier at a tilt" in told
     assert "p = 0.35 rad/s" in told
+
+
+def test_the_answer_has_what_dampers_bear_and_that_they_hold_the_pier_at_a_tilt(tmp_path):
+    """Rigid ground has no tilt of its own; friction may leave the pier at one."""
+    pier, base = Pier(alpha=0.13, p=0.38, mass_t=2000.0), RigidBase(restraints=(Damper("friction", f=0.3),))
+    write_results(
+        tmp_path,
+        cases=[describe_case(Case(name, pier, each, {})) for name, each in (("free", RigidBase()), ("damped", base))],
+    )
+    peaks = pd.read_csv(tmp_path / "peaks.csv")
+    damped = peaks["case"] == "damped"
+    peaks["theta_max_over_alpha"] = 0.2
+    peaks.loc[damped, ["theta_max_over_alpha", "theta_res_over_alpha"]] = 0.1, -0.02
+    peaks.loc[damped, ["damper_force_over_weight", "damper_force_kN", "damper_stroke_m"]] = 0.3, 5886.0, 0.04
+    peaks.loc[damped & (peaks["record"] == "ERZ-NS"), "damper_stroke_m"] = 0.0512
+    peaks.to_csv(tmp_path / "peaks.csv", index=False)
+    told = Page(section_of(tmp_path, answer)).text
+    assert "residual rotation2.6 mrad (0.15°): " in told
+    assert "of the supportsno settlement: the ground is rigiddampersforce of one at most 5,886 kN (damped); " in told
+    assert "stroke at most 51.2 mm: ERZ-NS, case damped" in told
+    assert "rotation by case0.2000 α (free); 0.1000 α (damped)" in told
+    peaks.loc[0, "status"] = "overturned"  # a case that does not stand is not compared with those that do
+    peaks.to_csv(tmp_path / "peaks.csv", index=False)
+    assert "rotation by case" not in Page(section_of(tmp_path, answer)).text
+
+
+@pytest.mark.parametrize(("error", "said"), [(2.1e-5, "0.00003"), (7e-4, "0.0007"), (3e-9, "0.000001")])
+def test_the_error_of_the_answer_is_a_plain_number_that_no_run_exceeds(tmp_path, error, said):
+    write_results(tmp_path, changes={("ERZ-NS", "1"): {"theta_max_error": error}})
+    peaks = pd.read_csv(tmp_path / "peaks.csv")
+    peaks["theta_max_error"] = peaks["theta_max_error"].clip(upper=error)
+    peaks.to_csv(tmp_path / "peaks.csv", index=False)
+    told = Page(section_of(tmp_path, answer)).text
+    assert f"Estimated error of rotation: at most {said} α (0.0001 α allowed)." in told
+
+
+def test_the_answer_says_what_has_converged_and_which_runs_have_notes(tmp_path):
+    """It is the peaks that have, and with a fixed step nobody knows."""
+    noted = {("ERZ-NS", "1"): {"note": "impacts not settled: 8 or 9"}, ("RRS228", "2"): {"note": "flew up to 9 mm"}}
+    write_results(tmp_path, changes=noted)
+    told = Page(section_of(tmp_path, answer)).text
+    assert "30 runs: every peak converged, none overturned." in told
+    assert "2 runs have notes." in told
+    write_results(tmp_path, numerics={"tolerance": None, "substeps": 4, "quiet_s": 2.0})
+    told = Page(section_of(tmp_path, answer)).text
+    assert "30 runs: none failed, none overturned." in told
+    assert "have notes" not in told
 
 
 def test_the_answer_counts_runs_that_flew_apart_from_those_that_ended_so(tmp_path):
     guided = {("ERZ-NS", "1"): {"flight_s": 3.0, "flight_height_m": 0.0021}, ("RRS228", "3"): {"flight_s": 4.0}}
     write_results(tmp_path, changes=guided | {("CPM000", "2"): {"status": "flight", "flight_s": 2.5}})
     told = Page(section_of(tmp_path, answer)).text
-    assert (
-        "In 2 runs both pivots left the ground, and the pier was guided down; the lower one rose by 2.1 mm at most."
-        in told
-    )
+    assert "In 2 runs both pivots left the ground, guided as by shear keys; the lower pivot rose by" in told
     assert "In one run both pivots leave the ground, and the analysis stops there: CPM000, case 2" in told
 
 

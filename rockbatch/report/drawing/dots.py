@@ -102,7 +102,9 @@ def _of_limits(limits: Sequence[Sequence[Limit]], top: float) -> list[Entry]:
     drawn: dict[str, Markup] = {}
     for place, one in ((place, one) for own in limits for place, one in enumerate(own)):
         words = one.words if one.theta <= top else f"{one.words}: beyond the axis, at θ/α = {one.theta:.3g}"
-        drawn.setdefault(words, tag("line", x1=11, x2=11, y1=0, y2=14, class_=_dash(place)))
+        drawn.setdefault(
+            words, tag("path", d="M11 0v14M7 0h8M7 14h8", class_=_dash(place))
+        )  # a rigid base is a stroke, too
     return [(line, words) for words, line in drawn.items()]
 
 

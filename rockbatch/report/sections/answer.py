@@ -1,6 +1,9 @@
 """The answer: verdicts, worst responses, runs without a result, and every peak in one picture."""
 
 import math
+from decimal import ROUND_UP, Decimal
+
+import numpy as np
 
 from rockbatch.checks.responses import RESPONSES, in_words, worst_of_all
 from rockbatch.report.contents import Contents
@@ -14,6 +17,10 @@ from rockbatch.report.table import alarm
 from rockbatch.results.suite_statistics import NO_PEAK
 
 MOST_REASONS = 2
+MOST_COMPARED = 4
+"""Cases whose greatest rotations stand beside each other."""
+LEAST_ERROR = 1e-6
+"""Of α: smaller errors are given as this."""
 
 Facts = list[tuple[str, Markup]]
 """Headings with a sentence each."""
@@ -37,12 +44,17 @@ def worst(finished: Finished) -> Markup:
         ended = [*_overturned(finished), *_flown(finished), *_missing(finished)]
         facts = [*ended, *_responses(finished), *_guided(finished, ended)]
     listed = tag("dl", *(join(tag("dt", words), tag("dd", said)) for words, said in facts), class_="facts")
-    cases = len(finished.cases)
-    return (
-        join(tag("p", f"Worst of all {cases} cases, whatever is checked", class_="of-all"), listed)
-        if cases > 1
-        else listed
-    )
+    return join(tag("p", _of_all(finished), class_="of-all"), listed)
+
+
+def _of_all(finished: Finished) -> Markup:
+    """Of what the worst is told, what α is, and where other symbols are explained."""
+    alphas = {f"{math.degrees(case['pier']['alpha']):.3g}°" for case in finished.cases.values()}
+    of = f" = {alphas.pop()}" if len(alphas) == 1 else ""
+    cases = f"Worst of all {len(finished.cases)} cases, whatever" if len(finished.cases) > 1 else "Whatever"
+    told = f"{cases} is checked; at α{of} the pier alone stands on its edge on rigid ground"
+    symbols = any("=" in words for words in (*(series.label for series in finished.series), *finished.piers))
+    return join(told, join("; other symbols: ", tag("a", "What was studied", href="#studied")) if symbols else "")
 
 
 def _responses(finished: Finished) -> Facts:
@@ -58,9 +70,35 @@ def _responses(finished: Finished) -> Facts:
             where = f", in the run of the greatest {first[run.name]}"
         leans = name == "theta_max_over_alpha" and run["theta_max_is"]
         lean = " (mostly the lean of a base that has yielded)" if leans else ""
-        facts.append((words, join(tag("strong", in_words(one)), lean, where)))
+        of = {"top_drift_m": ", of a rigid shaft", "heel_uplift_m": ", above the toe"}.get(name, "")
+        facts.append((words, join(tag("strong", in_words(one)), lean, of, where)))
     if all(one.case["base"] == "rigid" for one in finished.worst):
-        facts.append(("of the supports", join("neither settlement nor tilt: the ground is rigid")))
+        held = "" if "theta_res_rad" in largest else "; nothing holds the pier at a tilt"
+        facts.append(("of the supports", join(f"no settlement: the ground is rigid{held}")))
+    return [*facts, *_of_devices(finished)]
+
+
+def _of_devices(finished: Finished) -> Facts:
+    """Greatest force of dampers and tendons, in kN where the mass is known, and the greatest stroke, or yield, with its run."""
+    runs = finished.runs[finished.runs["status"] == "ok"]
+    facts: Facts = []
+    for device, way, words in (
+        ("damper", "damper_stroke_m", "stroke"),
+        ("tendon", "tendon_yield_m", "plastic elongation"),
+    ):
+        if way not in runs or runs[way].isna().all():
+            continue
+        weighed = f"{device}_force_kN" in runs and runs[f"{device}_force_kN"].notna().any()
+        forces = runs[f"{device}_force_kN" if weighed else f"{device}_force_over_weight"]
+        hardest, longest = (runs.iloc[int(np.nanargmax(each))] for each in (forces, runs[way]))
+        force = f"{forces.max():,.0f} kN" if weighed else f"{forces.max():.3g} of the pier's weight"
+        told: list[object] = ["force of one at most ", tag("strong", force), f" ({finished.which(hardest)}); "]
+        if longest[way] > 0.0:
+            told += [f"{words} at most ", tag("strong", f"{1000 * longest[way]:,.3g} mm")]
+            told.append(f": {finished.label(longest['record'])}, case {finished.which(longest)}")
+        else:
+            told.append(f"no {words}")
+        facts.append((f"{device}s", join(*told)))
     return facts
 
 
@@ -102,28 +140,43 @@ def _guided(finished: Finished, ended: Facts) -> Facts:
     """Report how the other runs ended: guided flights, and the errors of the peaks."""
     runs = finished.runs
     stood = runs[runs["status"] == "ok"]
-    told = [
-        f"{counted(len(runs), 'run')}." if ended else f"{counted(len(runs), 'run')}: all converged, none overturned."
-    ]
+    went = "every peak converged" if finished.info["numerics"].get("tolerance") else "none failed"
+    told = [counted(len(runs), "run") + ("." if ended else f": {went}, none overturned.")]
     if runs["status"].isin(NO_PEAK).any() and len(stood):
         told.append("The responses above are of those that end standing.")
     guided = stood[stood["flight_s"].notna()]
     if len(guided):
         height = float(guided["flight_height_m"].max())
-        rose = "" if math.isnan(height) else f"; the lower one rose by {1000 * height:.3g} mm at most"
-        told.append(
-            f"In {counted(len(guided), 'run')} both pivots left the ground, and the pier was guided down{rose}."
-        )
-    return [("runs", join(" ".join(filter(None, (*told, _error(finished))))))]
+        rose = "" if math.isnan(height) else f"; the lower pivot rose by {1000 * height:.3g} mm at most"
+        told.append(f"In {counted(len(guided), 'run')} both pivots left the ground, guided as by shear keys{rose}.")
+    noted = int((stood["note"] != "").sum())
+    have = f"{counted(noted, 'run').capitalize()} {'has a note' if noted == 1 else 'have notes'}"
+    where = join(" ", tag("a", have, href="#peaks"), ".") if noted else ""
+    return [*_by_case(finished), ("runs", join(" ".join(filter(None, (*told, _error(finished)))), where))]
+
+
+def _by_case(finished: Finished) -> Facts:
+    """The greatest rotation of each of a few cases, where all runs stood: what a study that compares them asks for."""
+    rotations = [one for one in finished.worst if one.demand == "theta_max_over_alpha"]
+    if (
+        not 1 < len(rotations) <= MOST_COMPARED
+        or len(rotations) < len(finished.cases)
+        or (finished.runs["status"] != "ok").any()
+    ):
+        return []
+    each = (f"{one.value:.4f} α ({finished.which(one.run)})" for one in rotations)
+    return [("rotation by case", join("; ".join(each)))]
 
 
 def _error(finished: Finished) -> str:
     """Report the largest error of the peaks, or that none was estimated."""
     numerics = finished.info["numerics"]
     largest = finished.runs["theta_max_error"].max()
-    if largest == largest:
-        asked = number(numerics["tolerance"])
-        return f"The largest estimated error of a peak, in θ/α, is {number(float(largest), '.1g')}; {asked} was asked."
+    if largest == largest and numerics["tolerance"]:
+        error = Decimal(repr(max(float(largest), LEAST_ERROR)))
+        error = error.quantize(Decimal(1).scaleb(error.adjusted()), ROUND_UP)
+        allowed = Decimal(repr(float(numerics["tolerance"])))
+        return f"Estimated error of rotation: at most {error:f} α ({allowed:f} α allowed)."
     if numerics.get("substeps"):
         steps = counted(numerics["substeps"], "step")
         return f"Every sampling interval was integrated in {steps}; the error was not estimated."
