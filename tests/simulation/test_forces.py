@@ -93,7 +93,9 @@ def test_a_share_of_the_weight_lies_between_none_and_all_of_it(tmp_path, share):
 
 
 def test_a_share_of_the_weight_without_forces_says_what_to_write(tmp_path):
-    with pytest.raises(InputError, match="least_normal_share: is for forces = true; write that too, or leave it out"):
+    with pytest.raises(
+        InputError, match=r"least_normal_share = 0\.2: is for forces = true; write that too, or leave it out"
+    ):
         rb.load_study(study(tmp_path, forces=False, output=QUIET | {"least_normal_share": 0.2}))
 
 

@@ -116,7 +116,7 @@ def test_a_check_of_rocking_is_not_decided_within_its_error(tmp_path):
     outcome = outcome_of(study.cases[0].base, motion, rocking=True)
     for near, verdict in ((0.5, "not decided"), (1.5, "pass"), (-1.5, "fail")):
         limit = (outcome.theta_rocking + near * outcome.theta_rocking_error) / study.cases[0].pier.alpha
-        runs = as_table([row(motion, "+", 1.0, study.cases[0], outcome)], study)
+        runs = as_table([row(Ran(outcome, motion, "+", 1.0, study.cases[0]))], study)
         (told,) = judge([replace(study.checks[0], at_most=limit)], runs, [describe_case(study.cases[0])])
         assert told.verdict == verdict
 
