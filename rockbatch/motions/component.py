@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rockbatch.motions.motion import Initial, Samples
+from rockbatch.motions.motion import Finding, Initial, Samples
 from rockbatch.motions.orientation import UNKNOWN, Orientation
 from rockbatch.motions.origin import NOBODY_KNOWS, Origin
 
@@ -36,15 +36,24 @@ class Seat:
 
     def is_that_of(self, other: "Seat") -> bool:
         """Whether both may be the same sensor, of a station that both name."""
-        if not self.number or self.number != other.number:
+        return bool(self.number) and self.number == other.number and not self._differs(other)
+
+    def is_other(self, other: "Seat") -> bool:
+        """Whether both are other sensors, of one station or of one network; stations may be called otherwise elsewhere."""
+        if not self.number or not other.number:
             return False
+        if self.number == other.number:
+            return self._differs(other)
+        return bool(self.network) and self.network == other.network
+
+    def _differs(self, other: "Seat") -> bool:
         pairs = (
             (self.network, other.network),
             (self.location, other.location),
             (self.place, other.place),
             (self.channel, other.channel),
         )
-        return all(one is None or two is None or _bare(one) == _bare(two) for one, two in pairs)
+        return not all(one is None or two is None or _bare(one) == _bare(two) for one, two in pairs)
 
 
 def _bare(text: str) -> str:
@@ -107,6 +116,8 @@ class Component:
         What the header calls event and station.
     notes : tuple of str
         What was done to the data.
+    odd : tuple of Finding
+        What copies of it, which are left out, have otherwise.
     """
 
     name: str
@@ -130,6 +141,7 @@ class Component:
     initial: Initial | None = None
     origin: Origin = NOBODY_KNOWS
     notes: tuple[str, ...] = ()
+    odd: tuple[Finding, ...] = ()
 
     @property
     def duration(self) -> float:

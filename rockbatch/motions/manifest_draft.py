@@ -11,10 +11,9 @@ from rockbatch.motions.component import Component
 from rockbatch.motions.doubles import without_doubles
 from rockbatch.motions.folder import Reading, read_files
 from rockbatch.motions.formats import ReadOptions
-from rockbatch.motions.motion import Finding, Motion, Unusable
-from rockbatch.motions.plausible import Judged, findings
+from rockbatch.motions.motion import Unusable
+from rockbatch.motions.plausible import gross_findings
 from rockbatch.motions.stations import by_station
-from rockbatch.units import GRAVITY
 
 _HEAD = """\
 # What is known about these records beside what their files say; rockbatch reads it wherever they are used.
@@ -100,18 +99,10 @@ def _table(component: Component, name: str, called: str, station: str, double: s
     if not orientation.vertical and orientation.azimuth is None:
         text += "# azimuth =\n"
     if not orientation.vertical:
-        text += "".join(f"# {odd.key} = true   # {legible(odd.text)}\n" for odd in _gross(component))
+        text += "".join(f"# {odd.key} = true   # {legible(odd.text)}\n" for odd in gross_findings(component))
     if double:
         text += f"# use = true   # {legible(double.partition(';')[0])}\n"
     return text + "# magnitude =\n# distance_km =\n"
-
-
-def _gross(component: Component) -> list[Finding]:
-    """What is grossly odd about a horizontal component, which has to be confirmed."""
-    alone = Motion(
-        component.name, component.dt, component.acceleration, initial=component.initial, processed=component.processed
-    )
-    return [odd for odd in findings(Judged(alone, component, (), GRAVITY)) if odd.gross]
 
 
 def _question(name: str, unusable: Unusable) -> str:

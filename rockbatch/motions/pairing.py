@@ -17,8 +17,7 @@ from rockbatch.motions.motion_set import MotionSet
 from rockbatch.motions.orientation import same_azimuth
 from rockbatch.motions.origin import directed
 from rockbatch.motions.plausible import ANY, Judged, doubt, findings, fits
-from rockbatch.motions.station_names import station_names
-from rockbatch.motions.stations import by_station
+from rockbatch.motions.stations import by_station, station_names
 from rockbatch.motions.turning import turn_pairs
 from rockbatch.toml.kinds import shown
 from rockbatch.units import GRAVITY
@@ -187,7 +186,7 @@ def _motion(h: Component, v: Component | None, notes: Iterable[str]) -> Motion:
             initial = h.initial and state_at(h.acceleration, h.dt, h.initial, common.begins[0])
             said += common.notes
     if v is not None:
-        said += [f"vertical: {note}" for note in v.notes]
+        said += [f"vertical: {note}" for note in (*v.notes, *(finding.text for finding in v.odd))]
         if v.orientation.down:
             said.append(f"vertical: {v.orientation.label or 'component'} is positive down, sign reversed")
     return Motion(

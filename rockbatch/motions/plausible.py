@@ -16,12 +16,14 @@ from rockbatch.motions import measures
 from rockbatch.motions.component import Component
 from rockbatch.motions.motion import Finding, Motion, Samples
 from rockbatch.motions.zero_line import mean_far_from_zero, never_changes_sign
+from rockbatch.units import GRAVITY
 
 LOWEST, HIGHEST = 0.001, 5.0
 """PGA [g] beyond which a wrong unit is likelier than the record; the largest recorded ones reach 2 to 4 g."""
 
-FARTHEST = 15.0
-"""PGD [m] beyond which no ground has moved; beside the ruptures of the largest earthquakes it was some 10 m."""
+FARTHEST, ABSURD = 15.0, 100.0
+"""PGD [m] beyond which no ground has moved (beside the ruptures of the largest earthquakes it was some 10 m), and beyond
+which not even an unprocessed acceleration drifts: it may be a velocity."""
 
 UNEQUAL = 5.0
 """Ratio of the PGAs of two horizontal components of a station beyond which one gain is likelier wrong than right."""
@@ -123,12 +125,12 @@ def alternating(samples: Samples) -> float:
 
 
 def displacement(judged: Judged) -> Finding | None:
-    """A displacement that no ground has, gross for a record that is said to be corrected, or that runs away."""
+    """A displacement that no ground has, gross for a corrected record, or beyond ``ABSURD``; or one that runs away."""
     motion = judged.motion
     found = measures.pgd(motion.horizontal, motion.dt, motion.initial)
     if found > FARTHEST:
         text = f"its displacement reaches {found:.3g} m, more than {FARTHEST:g} m: check its baseline"
-        return Finding("PGD", text, gross=motion.processed is True)
+        return Finding("PGD", text, gross=motion.processed is True or found > ABSURD)
     if measures.believable_pgd(motion) is not None:
         return None
     text = (
@@ -164,6 +166,14 @@ def unprocessed(judged: Judged) -> Finding | None:
     return Finding("unprocessed", "unprocessed: as recorded, with what the instrument adds at long periods")
 
 
+def differing_copies(judged: Judged) -> Finding | None:
+    """Return what copies of it that are left out have otherwise."""
+    odd = judged.component.odd
+    if not odd:
+        return None
+    return Finding(odd[0].what, "; ".join(finding.text for finding in odd), any(finding.gross for finding in odd))
+
+
 JUDGES: tuple[Callable[[Judged], Finding | None], ...] = (
     unlikely_peak,
     no_zero_line,
@@ -171,6 +181,7 @@ JUDGES: tuple[Callable[[Judged], Finding | None], ...] = (
     displacement,
     unequal_horizontals,
     in_a_structure,
+    differing_copies,
     unprocessed,
 )
 
@@ -179,6 +190,17 @@ def findings(judged: Judged) -> tuple[Finding, ...]:
     """All that is odd about a motion."""
     found = (judge(judged) for judge in JUDGES)
     return tuple(finding for finding in found if finding is not None)
+
+
+def gross_findings(component: Component) -> list[Finding]:
+    """Return what is grossly odd about a component alone, and neither it nor a manifest confirms."""
+    alone = Motion(
+        component.name, component.dt, component.acceleration, initial=component.initial, processed=component.processed
+    )
+    odd = findings(Judged(alone, component, (), GRAVITY))
+    return [
+        finding for finding in odd if finding.gross and not {"confirm", finding.key}.intersection(component.confirmed)
+    ]
 
 
 def doubt(name: str, odd: Sequence[Finding], confirmed: Collection[str]) -> str:

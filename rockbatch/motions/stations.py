@@ -1,13 +1,23 @@
-"""Which components are of one station."""
+"""Which components are of one station and recording, and which of these count as one record.
+
+:func:`by_station` finds a vertical for a horizontal within a folder. :func:`station_names` is about records: files in
+several folders or formats, the parts of a long recording, and scaled copies are one record. What says nothing of its event
+is a record of its own, unless a manifest's ``station`` joins it.
+"""
 
 import math
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections import Counter
+from collections.abc import Hashable, Iterable, Iterator, Sequence
+from itertools import combinations
+
+import numpy as np
 
 from rockbatch.motions.common_span import overlap
 from rockbatch.motions.component import Component, file_of
 
 _NUMBERED = re.compile(r"RSN\d+")
+_SAME_SHAPE = 1e-4  # of the peak: what printing a scaled copy may cost a sample
 
 
 def is_numbered(site: str) -> bool:
@@ -15,8 +25,14 @@ def is_numbered(site: str) -> bool:
     return _NUMBERED.fullmatch(site) is not None
 
 
+def in_one_event(a: Component, b: Component) -> bool:
+    """Whether two components of one sensor or station are of one event: by their times, or by what they say of it."""
+    unknown_time = a.start is None or b.start is None
+    return bool(a.event) and a.event == b.event if unknown_time else overlap(a, b)
+
+
 def by_station(components: Iterable[Component]) -> list[list[Component]]:
-    """Components of one station, folder and time together: by header first, then by name; in order of their first ones.
+    """Return components of one station, folder and time together, in order of their first ones: by header, then by name.
 
     Names join what headers leave without a vertical, or without a horizontal: components of the same RSN, and those
     of which one has no header that tells its station. Several files of one station that each hold a vertical and a
@@ -45,24 +61,32 @@ def by_station(components: Iterable[Component]) -> list[list[Component]]:
 
 
 def _by_time(group: list[Component]) -> list[list[Component]]:
-    """The records of one station: components that share time with others of theirs; one where a time is not known."""
+    """Return the records of one station: components that share time with others of theirs.
+
+    Where times and events are not known, a direction that comes again is that of another recording: then each file, or
+    each name of a station, is one.
+    """
+    records: dict[object, list[Component]] = {}
     if any(component.start is None for component in group):
-        return [group]
-    order = {id(component): i for i, component in enumerate(group)}
-    records: list[list[Component]] = []
-    end = -math.inf
+        ways = {(c.orientation.vertical, c.orientation.azimuth, c.orientation.label) for c in group}
+        if all(component.event for component in group) or len(ways) == len(group):
+            return [group]
+        files = Counter(file_of(component.source) for component in group)
+        for component in group:
+            file = file_of(component.source)
+            records.setdefault((file, "") if files[file] > 1 else ("", component.site), []).append(component)
+        return list(records.values())
+    end, place = -math.inf, {id(component): i for i, component in enumerate(group)}
     for component in sorted(group, key=lambda component: component.start or 0.0):
         start = component.start or 0.0
-        if start >= end:
-            records.append([])
-        records[-1].append(component)
+        records.setdefault(len(records) + (start >= end) - 1, []).append(component)
         end = max(end, start + component.duration)
-    ordered = [sorted(record, key=lambda component: order[id(component)]) for record in records]
-    return sorted(ordered, key=lambda record: order[id(record[0])])
+    ordered = [sorted(record, key=lambda component: place[id(component)]) for record in records.values()]
+    return sorted(ordered, key=lambda record: place[id(record[0])])
 
 
 def _by_file(record: list[Component]) -> Iterator[list[Component]]:
-    """One set for each file that holds a whole one, where several do, and one of the rest; else all together."""
+    """Return one set for each file that holds a whole one, where several do, and one of the rest; else all together."""
     files: dict[str, list[Component]] = {}
     for component in record:
         files.setdefault(file_of(component.source), []).append(component)
@@ -86,3 +110,88 @@ def _may_join(station: Sequence[Component], group: Sequence[Component]) -> bool:
 def _is_whole(station: Sequence[Component]) -> bool:
     """Whether there are both a vertical and a horizontal component."""
     return len({component.orientation.vertical for component in station}) == 2
+
+
+def station_names(stations: Sequence[Sequence[Component]]) -> list[str]:
+    """Return a name for each of ``stations``, as ``by_station`` has them; those of one record share theirs.
+
+    It is PEER's number, the station by its header, or what the names of its files share; of several records of that name
+    with the event, the folder or a number behind it.
+    """
+    root = list(range(len(stations)))
+
+    def first_of(i: int) -> int:
+        while root[i] != i:
+            root[i] = i = root[root[i]]
+        return i
+
+    alike: dict[Hashable, list[tuple[int, Component]]] = {}
+    for i, station in enumerate(stations):
+        for component in station:
+            for key in _keys(component):
+                alike.setdefault(key, []).append((i, component))
+    for same in alike.values():
+        for (i, a), (j, b) in combinations(same, 2):
+            low, high = sorted((first_of(i), first_of(j)))
+            if low != high and (_together(a, b) or _copies(a, b)):
+                root[high] = low
+    firsts = dict.fromkeys(first_of(i) for i in range(len(stations)))
+    names = dict(zip(firsts, _told_apart([stations[i] for i in firsts]), strict=True))
+    return [names[first_of(i)] for i in range(len(stations))]
+
+
+def _keys(component: Component) -> Iterator[Hashable]:
+    """Return what components of one record may have in common: those that share nothing of it need not be compared."""
+    if is_numbered(component.site):
+        yield component.site
+    if component.station:
+        yield component.folder, component.station
+    if component.seat.number:
+        yield "seat", component.seat.number.upper()
+    yield len(component.acceleration), int(np.abs(component.acceleration).argmax())
+
+
+def _together(a: Component, b: Component) -> bool:
+    """Whether headers, or PEER's numbers, say that both are of one station in one earthquake; sensor and stage do not matter."""
+    if is_numbered(a.site) and is_numbered(b.site):
+        return a.site == b.site
+    if a.station and (a.folder, a.station) == (b.folder, b.station):
+        return in_one_event(a, b) or (bool(a.source) and file_of(a.source) == file_of(b.source))
+    one, two = a.seat, b.seat
+    if not one.number or one.number.upper() != two.number.upper():
+        return False
+    return not (one.network and two.network and one.network != two.network) and in_one_event(a, b)
+
+
+def _copies(a: Component, b: Component) -> bool:
+    """Whether the samples of both are the same but for a factor."""
+    one, two = a.acceleration, b.acceleration
+    if len(one) != len(two) or abs(a.dt - b.dt) > 1e-6 * a.dt:
+        return False
+    i = int(np.abs(one).argmax())
+    if one[i] == 0 or two[i] == 0:
+        return False
+    return bool(np.abs(one / one[i] - two / two[i]).max() <= _SAME_SHAPE)
+
+
+def _told_apart(records: Sequence[Sequence[Component]]) -> list[str]:
+    """Return a name for each record: that of its station, and of several of one station what tells them apart."""
+    names = [_name(record[0]) for record in records]
+    for more in (lambda c: c.event, lambda c: c.folder.rsplit("/", 1)[-1]):
+        count = Counter(names)
+        names = [
+            f"{name} {more(record[0])}".strip() if count[name] > 1 else name
+            for name, record in zip(names, records, strict=True)
+        ]
+    seen: Counter[str] = Counter()
+    for i, name in enumerate(names):
+        seen[name] += 1
+        if seen[name] > 1:
+            names[i] = f"{name} ({seen[name]})"
+    return names
+
+
+def _name(component: Component) -> str:
+    if is_numbered(component.site):
+        return component.site
+    return component.seat.station.strip() or component.site or component.station or component.name
