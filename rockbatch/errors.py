@@ -39,6 +39,10 @@ def remedy(name: str) -> str:
     return f'check the unit; if it is right, write confirm = ["{name}"]'
 
 
+class NoRecordError(InputError):
+    """A file beside records that is none: spectra, velocities, notes."""
+
+
 @contextmanager
 def starting_threads(otherwise: str = "") -> Iterator[None]:
     """Raise ``InputError`` if no more threads can be started, with what else to do (``otherwise``) but allow them."""

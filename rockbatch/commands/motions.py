@@ -44,6 +44,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--dt", type=float, help="sampling interval [s] of text columns without a time column")
     parser.add_argument("--columns", help='names of text columns, such as "time,000,090,up"')
     parser.add_argument("--role", choices=("horizontal",), help="what components are whose direction nothing tells")
+    parser.add_argument(
+        "--layout", choices=("columns", "wrapped"), help="wrapped: one series goes on from line to line"
+    )
     parser.add_argument("--sensitivity", type=float, help="counts per acceleration unit")
 
 
@@ -53,7 +56,9 @@ def main(arguments: argparse.Namespace) -> int:
     from rockbatch.motions.motion_set import row
 
     columns = tuple(arguments.columns.split(",")) if arguments.columns else None
-    options = ReadOptions(arguments.unit, arguments.dt, columns, arguments.sensitivity, arguments.role)
+    options = ReadOptions(
+        arguments.unit, arguments.dt, columns, arguments.sensitivity, arguments.role, arguments.layout
+    )
     if arguments.write_manifest:
         from rockbatch.motions.manifest_draft import write_draft
 

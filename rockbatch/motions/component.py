@@ -1,13 +1,16 @@
 """One component of a record, before horizontals and verticals are paired."""
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from rockbatch.motions.motion import Finding, Initial, Samples
 from rockbatch.motions.orientation import UNKNOWN, Orientation
 from rockbatch.motions.origin import NOBODY_KNOWS, Origin
+
+FIRST_YEAR = 365 * 86400.0
+"""The end of 1970 [s since it began]: no recorder began in it, but headers without a date say so."""
 
 
 @dataclass(frozen=True)
@@ -39,11 +42,15 @@ class Seat:
         return bool(self.number) and self.number == other.number and not self._differs(other)
 
     def is_other(self, other: "Seat") -> bool:
-        """Whether both are other sensors, of one station or of one network; stations may be called otherwise elsewhere."""
+        """Whether both are other sensors, of one station or of one network; stations may be called otherwise elsewhere.
+
+        Where a channel has a number, the words for its place, which differ from format to format, do not matter.
+        """
         if not self.number or not other.number:
             return False
         if self.number == other.number:
-            return self._differs(other)
+            unplaced = None not in (self.channel, other.channel) or self.channel != other.channel
+            return (replace(self, place=None) if unplaced else self)._differs(other)
         return bool(self.network) and self.network == other.network
 
     def _differs(self, other: "Seat") -> bool:
@@ -118,6 +125,8 @@ class Component:
         What was done to the data.
     odd : tuple of Finding
         What copies of it, which are left out, have otherwise.
+    number : int
+        Of the component in its file, from 1.
     """
 
     name: str
@@ -142,6 +151,12 @@ class Component:
     origin: Origin = NOBODY_KNOWS
     notes: tuple[str, ...] = ()
     odd: tuple[Finding, ...] = ()
+    number: int = 0
+
+    @property
+    def dated(self) -> bool:
+        """Whether ``start`` is a date, and not only a time from which the components of one file set are counted."""
+        return self.start is not None and self.start >= FIRST_YEAR
 
     @property
     def duration(self) -> float:

@@ -21,7 +21,7 @@ from rockbatch.motions.component import NOWHERE, Component, file_of
 from rockbatch.motions.formats import is_usual
 from rockbatch.motions.motion import Finding, LeftOut, Samples
 from rockbatch.motions.orientation import UNKNOWN, same_azimuth
-from rockbatch.motions.plausible import gross_findings
+from rockbatch.motions.plausible import gross_findings, in_a_borehole
 from rockbatch.motions.stations import in_one_event, is_numbered
 
 _CORRECTED = {True: 0, None: 1, False: 2}
@@ -38,6 +38,25 @@ _SCALED = re.compile(r"(?<!un)(?<!not_)scaled", re.IGNORECASE)
 Pairs = dict[int, set[int]]
 
 
+def without_boreholes(components: Sequence[Component]) -> tuple[list[Component], list[LeftOut]]:
+    """Return the components without those in boreholes below a sensor at the surface that recorded the same earthquake."""
+    at_surface: dict[str, list[Component]] = {}
+    for component in components:
+        if component.seat.number and not in_a_borehole(component):
+            at_surface.setdefault(component.seat.number, []).append(component)
+    kept: list[Component] = []
+    left_out: list[LeftOut] = []
+    for component in components:
+        above = at_surface.get(component.seat.number, []) if in_a_borehole(component) and not component.wanted else []
+        used = next((other for other in above if in_one_event(component, other)), None)
+        if used is None:
+            kept.append(component)
+        else:
+            reason = f"in a borehole below {used.source}, which is used; use = true in motions.toml takes it too"
+            left_out.append(LeftOut(component.name, component.source, reason))
+    return kept, left_out
+
+
 def without_doubles(components: Sequence[Component]) -> tuple[list[Component], list[LeftOut]]:
     """Return the components that are used, in their order, and the copies that are left out, with the reason.
 
@@ -46,6 +65,7 @@ def without_doubles(components: Sequence[Component]) -> tuple[list[Component], l
     findings of the one that is used; where neither plausibility nor a file's name tells which factor is right, it has to
     be confirmed.
     """
+    components, below = without_boreholes(components)
     pairs = _pairs(components)
     factors = {(i, j): _factor(components[i], components[j]) for i, others in pairs.items() for j in others}
     rank = _ranks(components, pairs, factors)
@@ -70,7 +90,7 @@ def without_doubles(components: Sequence[Component]) -> tuple[list[Component], l
         for i, component in enumerate(components)
         if i not in stands_for
     ]
-    return kept_ones, left_out
+    return kept_ones, [*below, *left_out]
 
 
 def _pairs(components: Sequence[Component]) -> Pairs:
@@ -128,7 +148,7 @@ def _ranks(
             not first.unit,
             float(f"{first.dt:.3g}"),
             -round(math.log2(sum(energy[i] for i in members) or 1e-300)),
-            not is_usual(bare(Path(file_of(first.source))).suffix),
+            not is_usual(_suffix(first)),
             min(len(c.source) for c in of_set),
             members[0],
         )
@@ -156,14 +176,18 @@ def _sets(components: Sequence[Component]) -> Iterator[list[int]]:
             continue
         of_name: dict[Hashable, list[int]] = {}
         for i in members:
-            suffix = bare(Path(file_of(components[i].source))).suffix.lower()
-            of_name.setdefault((components[i].site, suffix), []).append(i)
+            of_name.setdefault((components[i].site, _suffix(components[i])), []).append(i)
         yield from of_name.values()
 
 
 def _file(component: Component) -> str:
     """Its file, by folder and source."""
     return f"{component.folder}/{file_of(component.source)}"
+
+
+def _suffix(component: Component) -> str:
+    """Return its file's suffix, in lower case."""
+    return bare(Path(file_of(component.source))).suffix.lower()
 
 
 def _samples(component: Component) -> bytes:
@@ -220,7 +244,14 @@ def _is_copy(a: Component, b: Component) -> bool:
     """
     if _file(a) == _file(b) or _numbers_differ(a, b) or not overlap(a, b):
         return False
-    if a.seat.is_other(b.seat) or not (UNKNOWN in (a.orientation, b.orientation) or _pointing_alike(a, b)):
+    if a.event and b.event and a.event != b.event and _suffix(a) == _suffix(b):  # which formats write as they like
+        return False
+    way = a.orientation
+    if (
+        a.seat.is_other(b.seat)
+        or not _pointing_alike(a, b)
+        or not (way.vertical or way.azimuth is not None or way.label)
+    ):
         return False
     if _factor(a, b) is not None:
         return False

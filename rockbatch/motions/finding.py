@@ -12,14 +12,35 @@ from rockbatch.motions import archives
 MANIFESTS = ("motions.toml", "motions.csv")
 
 _COMPANIONS = {
-    "text about the records": (".json", ".md", ".rst", ".pdf", ".doc", ".docx", ".htm", ".html", ".log", ".toml"),
-    "a table about the records": (".xls", ".xlsx", ".ods"),
+    "text about the records": (
+        *(
+            ".json",
+            ".md",
+            ".rst",
+            ".pdf",
+            ".doc",
+            ".docx",
+            ".htm",
+            ".html",
+            ".log",
+            ".toml",
+            ".yml",
+            ".yaml",
+            ".bib",
+            ".tex",
+        ),
+        *(".geojson", ".kml", ".kmz", ".url", ".cff", ".ini", ".cfg"),
+    ),
+    "a spreadsheet, which is not opened; if it holds records, save its sheets as CSV (UTF-8)": (
+        *(".xls", ".xlsx", ".xlsm", ".ods"),
+    ),
     "a picture": (".png", ".jpg", ".jpeg", ".gif", ".svg", ".tif", ".tiff", ".ps", ".eps"),
     "a program": (".py", ".m", ".ipynb", ".r", ".sh"),
-    "the velocity of a record": (".vt2",),
-    "the displacement of a record": (".dt2",),
+    "the velocity of a record": (".vt2", ".vel"),
+    "the displacement of a record": (".dt2", ".disp", ".dis"),
 }
 _BY_SUFFIX = {suffix: what for what, suffixes in _COMPANIONS.items() for suffix in suffixes}
+_NAMES = {"license", "licence", "copying", "notice", "authors", "citation", "contributing", "changelog", "index"}
 _SEARCH_RESULTS = "_searchresults.csv"  # that PEER's database puts beside the records
 
 
@@ -98,6 +119,8 @@ def _regular(path: Path, source: str) -> Found:
     if path.name.lower() == _SEARCH_RESULTS:
         return Found(path, source, companion="a table about the records")
     suffix = archives.bare(path).suffix.lower()
+    if path.stem.lower() in _NAMES and suffix in ("", ".txt"):
+        return Found(path, source, companion="text about the records")
     if path.name not in MANIFESTS and suffix in _BY_SUFFIX:
         return Found(path, source, companion=_BY_SUFFIX[suffix])
     return Found(path, source, archives.not_read(path))

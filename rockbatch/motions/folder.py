@@ -10,7 +10,7 @@ from typing import Literal
 
 import numpy as np
 
-from rockbatch.errors import InputError, UnstatedError
+from rockbatch.errors import InputError, NoRecordError, UnstatedError
 from rockbatch.motions import archives, fema_p695
 from rockbatch.motions.baseline import Offset, corrected
 from rockbatch.motions.bounded import TooLongError, Watch
@@ -56,7 +56,7 @@ def read_motions(
     confirmed: Sequence[str] = (),
     confirmed_pga: Sequence[str] = (),
 ) -> MotionSet:
-    """Motions of files and folders, in order of their paths, and what could not be used.
+    """Return the motions of files and folders, in order of their paths, and what could not be used.
 
     Parameters
     ----------
@@ -106,6 +106,18 @@ def read_motions(
     CHAN24 0.01 2.93
     """
     given = [Path(paths)] if isinstance(paths, str | os.PathLike) else [Path(path) for path in paths]
+    packaged = _packaged(given, fema, gravity)
+    readings, _ = read_files(given, options=options, gravity=gravity, offset=offset)
+    components, doubles = without_doubles([reading for reading in readings if isinstance(reading, Component)])
+    confirming = {"confirmed": confirmed, "confirmed_pga": confirmed_pga}
+    found = to_motions(components, packaged, vertical=vertical, gravity=gravity, azimuths=azimuths, **confirming)
+    unusable = [*(reading for reading in readings if isinstance(reading, Unusable)), *found.unusable]
+    left_out = [*(reading for reading in readings if isinstance(reading, LeftOut)), *doubles]
+    return MotionSet(found.motions, sorted(unusable, key=lambda u: u.source), left_out)
+
+
+def _packaged(given: Sequence[Path], fema: Sequence[tuple[str, float]], gravity: float) -> list[Component]:
+    """Return the components of the package; ``InputError`` for its unknown stations and for missing paths, all at once."""
     problems = [_missing(path) for path in given if not path.exists()]
     packaged = []
     for station, azimuth in fema:
@@ -115,21 +127,7 @@ def read_motions(
             problems += error.problems
     if problems:
         raise InputError(*problems)
-
-    readings, _ = read_files(given, options=options, gravity=gravity, offset=offset)
-    components, doubles = without_doubles([reading for reading in readings if isinstance(reading, Component)])
-    found = to_motions(
-        components,
-        packaged,
-        vertical=vertical,
-        gravity=gravity,
-        azimuths=azimuths,
-        confirmed=confirmed,
-        confirmed_pga=confirmed_pga,
-    )
-    unusable = [reading for reading in readings if isinstance(reading, Unusable)]
-    left_out = [reading for reading in readings if isinstance(reading, LeftOut)]
-    return MotionSet(found.motions, sorted([*unusable, *found.unusable], key=lambda u: u.source), [*left_out, *doubles])
+    return packaged
 
 
 def read_files(
@@ -155,7 +153,23 @@ def read_files(
             if file.path not in manifests:
                 readings += _readings(file, asked)
     manifest.finish()
-    return _without_renamed(readings, found), {file.source: file.path for file in found}
+    return _without_companions(_without_renamed(readings, found)), {file.source: file.path for file in found}
+
+
+def _without_companions(readings: Sequence[Reading]) -> list[Reading]:
+    """Return the readings with files left out that are no records (spectra, velocities, notes), if records lie beside them."""
+    folders = {_folder(reading) for reading in readings if isinstance(reading, Component)}
+    return [
+        LeftOut(reading.name, reading.source, f"no record: {reading.reason}")
+        if isinstance(reading, Unusable) and reading.companion and _folder(reading) in folders
+        else reading
+        for reading in readings
+    ]
+
+
+def _folder(reading: Reading) -> str:
+    """Return the folder of a reading's file, by its source."""
+    return file_of(reading.source).rpartition("/")[0]
 
 
 def _without_renamed(readings: Sequence[Reading], found: Sequence[Found]) -> list[Reading]:
@@ -212,6 +226,7 @@ def _readings(file: Found, asked: _Asked) -> list[Reading]:
     """
     stem = archives.bare(file.path).stem
     lacks: tuple[str, ...] = ()
+    companion = False
     try:
         with np.errstate(over="ignore", invalid="ignore"):  # what becomes of absurd numbers is looked at
             found = _used(file, asked)
@@ -219,6 +234,7 @@ def _readings(file: Found, asked: _Asked) -> list[Reading]:
     except InputError as error:
         reason = "; ".join(error.problems)
         lacks = error.keys if isinstance(error, UnstatedError) else ()
+        companion = isinstance(error, NoRecordError)
     except OSError as error:
         reason = f"cannot be read: {error.strerror or error}"
     except TooLongError:
@@ -227,7 +243,7 @@ def _readings(file: Found, asked: _Asked) -> list[Reading]:
         )
     except Exception as error:  # the type tells that a reader is at fault
         reason = f"its reader failed: {type(error).__name__}: {error}"
-    return [with_legible_texts(Unusable(stem, file.source, reason, lacks=lacks))]
+    return [with_legible_texts(Unusable(stem, file.source, reason, lacks=lacks, companion=companion))]
 
 
 def _used(file: Found, asked: _Asked) -> list[Reading]:
@@ -240,7 +256,7 @@ def _used(file: Found, asked: _Asked) -> list[Reading]:
         return [LeftOut(path.stem, file.source, f"no record: {file.companion}")]
     if file.refusal:
         return [Unusable(path.stem, file.source, file.refusal)]
-    read = _read(file, options_of(entries, asked.options), asked)
+    read = [replace(r, number=i) for i, r in enumerate(_read(file, options_of(entries, asked.options), asked), start=1)]
     others = [reading for reading in read if isinstance(reading, Unusable)]
     readings: list[Reading] = [_left_out(reading, entries) or reading for reading in others]
     components = [

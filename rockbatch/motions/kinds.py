@@ -1,7 +1,7 @@
 """Kinds of values that a study or a manifest may state about records: units, sampling intervals, azimuths of components."""
 
 from rockbatch.motions.limits import LONGEST_STEP, SHORTEST_STEP, STEPS
-from rockbatch.toml.kinds import Choice, KindError, Number, Text
+from rockbatch.toml.kinds import Choice, KindError, Number, Other, Text, Whole, text
 from rockbatch.units import acceleration_factor
 
 _LONGEST_NAME = 1000
@@ -19,8 +19,17 @@ def _is_file_name(value: str) -> None:
         raise KindError("the name of a file")
 
 
+_NUMBER = Whole()
+
+
+def _channel(value: int | str) -> int | str:
+    """Return the label or name of a component, or its number in the file, from 1."""
+    return _NUMBER(value) if isinstance(value, int) else text(value)
+
+
 unit = Text(check=_is_unit)
 file_name = Text(check=_is_file_name)
+channel = Other("text in quotes, or a whole number", _channel, {"anyOf": [text.schema(), _NUMBER.schema()]})
 vertical = Choice((True, False, "required"), 'true, false or "required"')
 step = Number(f"a sampling interval of {STEPS}", low=SHORTEST_STEP, high=LONGEST_STEP)
 azimuth = Number("an azimuth within 0..360 degrees", low=0.0, high=360.0)

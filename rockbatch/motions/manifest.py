@@ -7,6 +7,7 @@ the folder that the names of the files start from.
 import csv
 import io
 import os
+import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -16,7 +17,7 @@ from rockbatch.errors import InputError
 from rockbatch.motions import kinds
 from rockbatch.motions.archives import archive_of, is_member
 from rockbatch.motions.component import Component
-from rockbatch.motions.formats import ReadOptions
+from rockbatch.motions.formats import LAYOUTS, ReadOptions
 from rockbatch.motions.motion import Unusable
 from rockbatch.motions.orientation import Orientation
 from rockbatch.toml.kinds import boolean, choice, closest, not_negative, number, positive, shown, text
@@ -30,9 +31,11 @@ RECORD = Section(("record",), (
 ), {
     "file": Key(kinds.file_name, '"RSN1063_NORTHR_RRS228.AT2"',
         "The file, relative to the folder of the manifest.", required=True),
-    "component": Key(text, '"NS"', "One of several components in the file, by its label or its name."),
+    "component": Key(kinds.channel, '"NS"',
+        "One of several components in the file, by its label, its name, or its number in the file, from 1."),
     "use": Key(boolean, "false", "false: it is left out; true: it is used before other files of the same recording."),
     "role": Key(choice("horizontal", "vertical"), '"vertical"', "Whether the component is horizontal or vertical."),
+    "layout": Key(choice(*LAYOUTS), '"wrapped"', '"wrapped": its numbers are one series that goes on from line to line.'),
     "azimuth": Key(kinds.azimuth, "228", "Direction of the component, degrees clockwise from north."),
     "unit": Key(kinds.unit, '"cm/s2"', "Unit of acceleration, in place of the file's own."),
     "dt": Key(kinds.step, "0.01", "Sampling interval [s], in place of the file's own."),
@@ -47,7 +50,8 @@ RECORD = Section(("record",), (
 _MOST_HINTS = 10  # for files that are not there: each is compared with all that are
 _LONGEST_HEAD = 1000  # bytes of the first line of a CSV
 _CONFIRM = ("confirm", "confirm_pga")
-_TEXTS = ("file", "component", "role", "unit", "polarity", "station")
+_TEXTS = ("file", "role", "layout", "unit", "polarity", "station")
+_COUNTED = re.compile("[1-9][0-9]?")  # a number of a channel; azimuths have three digits
 _SAME = 1e-9  # relative: factors of units, and steps, that differ by less are the same
 
 
@@ -60,8 +64,8 @@ class Entry:
     values: dict[str, Any]
 
     @property
-    def component(self) -> str | None:
-        """Label or name of the component that is meant; ``None`` for all of the file."""
+    def component(self) -> str | int | None:
+        """Label, name or number in the file of the component that is meant; ``None`` for all of the file."""
         return self.values.get("component")
 
     @property
@@ -71,7 +75,7 @@ class Entry:
 
     def is_for(self, unusable: Unusable) -> bool:
         """Whether it is for this one component, which cannot be used."""
-        return self.component is not None and self.component in (unusable.label, unusable.name)
+        return self.component is not None and self.component in (unusable.label, unusable.name, unusable.number or None)
 
 
 @dataclass
@@ -158,10 +162,10 @@ def _nearby(path: Path, folder: Path) -> str:
 
 
 def options_of(entries: Sequence[Entry], options: ReadOptions) -> ReadOptions:
-    """``options`` with the unit and the sampling interval that the manifest has for the whole file."""
+    """Return ``options`` with the unit, the sampling interval and the layout that the manifest has for the whole file."""
     for entry in entries:
         if entry.component is None:
-            stated = {key: entry.values[key] for key in ("unit", "dt") if key in entry.values}
+            stated = {key: entry.values[key] for key in ("unit", "dt", "layout") if key in entry.values}
             options = replace(options, **stated, instead=frozenset(stated))
     return options
 
@@ -177,12 +181,14 @@ def described(
     for entry in entries:
         if entry.table.file.is_full:
             break
-        meant = [i for i, c in enumerate(components) if entry.component in (None, c.name, c.orientation.label)]
+        meant = [
+            i for i, c in enumerate(components) if entry.component in (None, c.name, c.orientation.label, c.number)
+        ]
         if not meant and components and not any(map(entry.is_for, others)):
             labels = [*(c.orientation.label or c.name for c in components), *(other.label for other in others)]
             known = ", ".join(map(shown, filter(None, labels)))
             said = f"component = {shown(entry.component)}: the file has {known}"
-            entry.table.complain(f"{said}; write one of these", "component")
+            entry.table.complain(f"{said}; write one of these, or its number in the file", "component")
         if len(meant) > 1:
             for key in {"azimuth", "role"} & entry.values.keys():
                 entry.table.complain(
@@ -219,8 +225,10 @@ def _described(component: Component, entry: Entry, gravity: float) -> Component:
         initial = initial and initial.times(-1.0)
         notes.append(f"sign reversed as {where} says")
     if "station" in values:
-        origin = replace(component.origin, station=values["station"])
-        component = replace(component, station=values["station"], site="", origin=origin)
+        joined = values["station"] in (component.station, component.site)  # as a draft has it: no name for people
+        name = component.origin.station if joined else values["station"]
+        component = replace(component, station=values["station"], site="", event=values["station"])
+        component = replace(component, origin=replace(component.origin, station=name))
     return replace(
         component,
         acceleration=component.acceleration * factor if factor != 1.0 else component.acceleration,
@@ -325,8 +333,10 @@ def _take_rows(file: TomlFile, reader: Any, records: list[dict[str, Any]], delim
 
 def _value(name: str, cell: str, delimiter: str) -> Any:
     """A cell as TOML would have it; a text where it is neither number nor truth value, which the key then refuses."""
-    if name in _TEXTS:
+    if name in _TEXTS or (name == "component" and not _COUNTED.fullmatch(cell)):
         return cell
+    if name == "component":
+        return int(cell)
     if cell.lower() in ("true", "false"):
         return cell.lower() == "true"
     try:

@@ -21,7 +21,8 @@ _HEAD = """\
 #
 # unit, dt     of the file's numbers, in place of its own; dt in s
 # azimuth      degrees clockwise from north;  role = "vertical" or "horizontal";  polarity = "-" reverses the sign
-# scale        factor on the record;  station: components that share it belong together
+# component    its label, or its number in the file;  scale: factor on the record
+# station      components that share it belong together, and count as one record
 # magnitude, distance_km;  use = false: leave it out;  use = true: use it whatever else there is of the same recording
 # confirm = true: it is right, however odd;  confirm_pga = true: its PGA outside 0.001-5 g is
 """
@@ -45,21 +46,28 @@ def write_draft(folder: Path, options: ReadOptions | None = None) -> Path:
 
 
 def draft(folder: Path, options: ReadOptions | None = None) -> str:
-    """The text of a manifest: a table for each component, a remark for each file that none was found in."""
+    """Return the text of a manifest: a table for each component, a remark for each file that none was found in.
+
+    As long as it is not edited it changes no name and no number.
+    """
     readings, paths = read_files([folder], options=options)
     components = [reading for reading in readings if isinstance(reading, Component)]
     doubles = {(double.name, double.source): double.reason for double in without_doubles(components)[1]}
     stations = {id(c): station[0].station or station[0].site for station in by_station(components) for c in station}
+    stated = options is not None and options.sensitivity is not None  # a unit alone would not say the sensitivity
+    labels: dict[str, list[tuple[str, str]]] = {}
+    for reading in readings:
+        labels.setdefault(_file_of(reading, paths), []).append((_label_of(reading), reading.name))
     blocks = [_HEAD]
     for reading in readings:
-        path = paths[_file_of(reading, paths)]
-        name = path.relative_to(folder).as_posix()
+        file = _file_of(reading, paths)
+        name = paths[file].relative_to(folder).as_posix()
         if legible(name) != name:
             blocks.append(f"# {legible(name)}: give it a name without control characters first\n")
         elif isinstance(reading, Component):
-            beside = [other for other in components if _file_of(other, paths) == _file_of(reading, paths)]
             double = doubles.get((reading.name, reading.source), "")
-            blocks.append(_table(reading, name, _called(reading, beside), stations[id(reading)], double))
+            called = _called(reading, labels[file])
+            blocks.append(_table(reading, name, called, stations[id(reading)], double, with_unit=not stated))
         elif isinstance(reading, Unusable) and reading.lacks:
             blocks.append(_question(name, reading))
         elif isinstance(reading, Unusable):
@@ -68,41 +76,51 @@ def draft(folder: Path, options: ReadOptions | None = None) -> str:
 
 
 def _file_of(reading: Reading, paths: Iterable[str]) -> str:
-    """Source of the file that a reading came from; a component's has its label behind."""
+    """Return the source of the file that a reading came from; a component's has its label behind."""
     return reading.source if reading.source in paths else reading.source.rpartition(" (")[0]
 
 
-def _called(component: Component, beside: Sequence[Component]) -> str:
-    """What tells a component from those ``beside`` it in its file; empty where it is alone."""
-    label = component.orientation.label
-    alike = [other for other in beside if other.orientation.label == label]
-    return "" if len(beside) == 1 else label if label and len(alike) == 1 else component.name
+def _label_of(reading: Reading) -> str:
+    if isinstance(reading, Component):
+        return reading.orientation.label
+    return reading.label if isinstance(reading, Unusable) else ""
 
 
-def _table(component: Component, name: str, called: str, station: str, double: str) -> str:
+def _called(component: Component, beside: Sequence[tuple[str, str]]) -> str | int | None:
+    """Return the label, name or number that no other component of the file has; ``None`` where it is alone.
+
+    ``beside`` are the labels and names of all of the file.
+    """
+    if len(beside) == 1:
+        return None
+    own = [text for text in (component.orientation.label, component.name) if text]
+    return next((text for text in own if sum(text in both for both in beside) == 1), component.number)
+
+
+def _table(
+    component: Component, name: str, called: str | int | None, station: str, double: str, with_unit: bool
+) -> str:
     orientation = component.orientation
     lines: list[tuple[str, Any]] = [("file", name)]
-    if called:
+    if called is not None:
         lines.append(("component", called))
     if orientation.known:
         lines.append(("role", "vertical" if orientation.vertical else "horizontal"))
     if orientation.azimuth is not None:
         lines.append(("azimuth", orientation.azimuth))
-    if component.unit:
+    if component.unit and with_unit:
         lines.append(("unit", component.unit))
-    lines.append(("station", station))
     text = "[[record]]\n" + "".join(f"{key} = {_written(value)}\n" for key, value in lines)
     if not orientation.known:
         text += (
             '# role = "horizontal"   # or "vertical": nothing tells its direction; it is not used until this is said\n'
         )
-    if not orientation.vertical and orientation.azimuth is None:
-        text += "# azimuth =\n"
     if not orientation.vertical:
+        text += "# azimuth =\n" if orientation.azimuth is None else ""
         text += "".join(f"# {odd.key} = true   # {legible(odd.text)}\n" for odd in gross_findings(component))
     if double:
         text += f"# use = true   # {legible(double.partition(';')[0])}\n"
-    return text + "# magnitude =\n# distance_km =\n"
+    return text + f"# station = {_written(station)}\n# magnitude =\n# distance_km =\n"
 
 
 def _question(name: str, unusable: Unusable) -> str:

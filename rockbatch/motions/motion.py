@@ -222,7 +222,8 @@ class Unusable:
     """A file that could not be used, and why; it stays in the tables as a row with its reason.
 
     ``label`` is that of the one component that is meant, as the file has it; empty where it is the whole file.
-    ``lacks`` has the keys of a manifest that would state what the file does not say.
+    ``lacks`` has the keys of a manifest that would state what the file does not say; ``number`` is that of the component
+    in its file, from 1, or 0; ``companion``: whether it is what lies beside records, such as spectra or notes.
     """
 
     name: str
@@ -230,6 +231,8 @@ class Unusable:
     reason: str
     label: str = ""
     lacks: tuple[str, ...] = ()
+    number: int = 0
+    companion: bool = False
 
 
 @dataclass(frozen=True)

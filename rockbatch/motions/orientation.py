@@ -221,6 +221,14 @@ def same_azimuth(a: float | None, b: float | None, within: float = 1.0) -> bool:
 _CLOCKS = re.compile(r"(?:INT|EXT)(?:T?C|CLOCK|CLK)|TCG?|CLOCK|CLK|TIME(?:CODE|MARKS?)|IRIG[A-Z]?|WWVB?|DCF|[ALV]C[EQ]")
 
 
+_SEISMOMETER = re.compile(r"[BCDEFGHLMSV][H][ZUVNE123RTXY]")
+
+
+def not_acceleration(channel: str) -> str:
+    """Return what a SEED channel code says that it measures instead of accelerations; empty where it does not."""
+    return f"velocities (channel {channel})" if _SEISMOMETER.fullmatch(channel.strip().upper()) else ""
+
+
 def is_clock(label: str) -> bool:
     """Whether a channel's label is that of the recorder's clock, such as "INTC", or SEED's "LCQ": no ground motion."""
     return _CLOCKS.fullmatch(re.sub(r"[^A-Z]", "", label.upper())) is not None

@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import dataclass
+from html import unescape
 
 from rockbatch.motions.orientation import Orientation
 
@@ -12,6 +13,7 @@ _CLOCK = re.compile(r",?[ -]*\d{1,2}:\d\d.*|,? -\d{4}\b.*")
 _STATE = re.compile(r", *[A-Z]{2,3}$")
 _YEAR = re.compile(r"(?<!\d)(?:19|20)\d\d(?!\d)")
 _SHORT_YEAR = re.compile(r"(?<!\d)\d{1,2}/\d{1,2}/(\d\d)(?!\d)")
+_STAMP = re.compile(r"((?:19|20)\d\d)(0[1-9]|1[0-2])([0-3]\d)[ _T-]?(?:([0-2]\d)([0-5]\d)(?:\d\d)?)?")
 _CENTURY = 30  # 29 is 2029, 30 is 1930: strong-motion records begin in 1933
 _EVENT, _STATION = 34, 18  # characters in a line of a terminal
 _CODE = 5  # letters that a word in capitals may have and be a code
@@ -80,6 +82,8 @@ def _event(text: str, date: str) -> str:
     year = _year(date) or _year(text)
     name = _CLOCK.sub("", _QUAKE.sub("", _RECORD_OF.sub("", " ".join(text.split())))).strip(" ,-")
     name = _in_words(_STATE.sub("", name))
+    if stamp := _STAMP.fullmatch(name):
+        return f"{stamp[1]}-{stamp[2]}-{stamp[3]}" + (f" {stamp[4]}:{stamp[5]}" if stamp[4] else "")
     if not name:
         return _CLOCK.sub("", " ".join(date.split())).strip(" ,-")
     return name if not year or _YEAR.search(name) else f"{name} {year}"
@@ -93,9 +97,13 @@ def _year(text: str) -> str:
     return f"{19 if int(short[1]) >= _CENTURY else 20}{short[1]}" if short else ""
 
 
+TURKISH = str.maketrans("ÐÝÞðýþ", "ĞİŞğış")
+"""From Latin-1, in which text of unknown encoding is read, to Windows-1254."""
+
+
 def _in_words(text: str) -> str:
     """A text without capitals throughout: "El Centro - Hwy 8/Meloland Overpass"; a code stays: "LGPC", "NP.8040"."""
-    text = " ".join(text.split()).strip(" ,-")
+    text = " ".join(unescape(text).split()).strip(" ,-")
     if not text.isupper() or (" " not in text and (len(text) <= _CODE or not text.isalpha())):
         return text
     return re.sub(r"(?<!\d)[^\W\d_]{2,}", lambda word: word[0].capitalize(), text)

@@ -210,7 +210,8 @@ def _told_apart(motions: list[Motion], folders: list[str]) -> list[Motion]:
     """Motions of the same name get the suffix of their files, then their folder, then a number."""
 
     def with_suffix(i: int, name: str) -> str:
-        file = PurePosixPath(re.sub(r"(?i)(\.gz)?( \(.*\))?$", "", motions[i].source))
+        first = motions[i].source.partition(" + ")[0]  # of a pair that was turned
+        file = PurePosixPath(re.sub(r"(?i)(\.gz)?( \(.*\))?$", "", first))
         return file.name + name[len(file.stem) :] if name.startswith(file.stem) else name
 
     def with_folder(i: int, name: str) -> str:

@@ -36,12 +36,19 @@ ANY = ("*",)
 
 _SWINGS = 7
 _GROUND = re.compile(
-    r"free.?field|\bground|basement|\bsurface\b|down.?hole|bore.?hole|\bsoil\b|foundation|footing|\bgrade\b|\bbase\b|\btoe\b"
+    r"free.?field|\bground|basement|\bsurface\b|\bsoil\b|foundation|footing|\bgrade\b|\bbase\b|\btoe\b"
+)
+_BOREHOLE = re.compile(r"bore.?hole|down.?hole|\bdwnhl?\b")
+_FLOOR = (
+    r"\b(?:[2-9]|[1-9]\d|second|third|fourth|fifth|sixth|seventh|eighth|ninth|tenth|top|upper)(?:st|nd|rd|th)?[ -]*"
+    r"(?:fl\b|flr\b|floor|stor(?:e?y)\b)|\bfl(?:oo)?r[ -]?(?:[2-9]|[1-9]\d)\b"
+)
+_IN_NAME = re.compile(  # what the name of a station says, which may be that of a street
+    rf"\broof\b|penthouse|\bdeck\b|\babut(?:ment)?\b|\bcrest\b(?! (?:r(?:oa)?d|dr|ave?|st|blvd|view))|{_FLOOR}"
 )
 _STRUCTURE = re.compile(
     r"\broof|penthouse|mezzanine|\battic\b|\bdeck\b|\bgirder|\babut|\bcrest\b|\bpier\b|\bbent\b|\bcolumn\b|\btower\b"
-    r"|\b(?:[2-9]|[1-9]\d|second|third|fourth|fifth|sixth|seventh|eighth|ninth|tenth|top|upper)(?:st|nd|rd|th)?[ -]*"
-    r"(?:fl\b|flr\b|floor|stor(?:e?y)\b)|\bfl(?:oo)?r[ -]?(?:[2-9]|[1-9]\d)\b"
+    rf"|{_FLOOR}"
 )
 
 
@@ -152,11 +159,19 @@ def unequal_horizontals(judged: Judged) -> Finding | None:
 
 
 def in_a_structure(judged: Judged) -> Finding | None:
-    """A sensor on an upper floor, a deck or a crest: the motion of a structure, and not of the ground."""
-    place = judged.component.seat.place or ""
-    if not _STRUCTURE.search(place.lower()) or _GROUND.search(place.lower()):
-        return None
-    return Finding("structure", f'"{place}" is in a structure, and not on the ground', gross=True)
+    """Return that a sensor is on an upper floor, a deck or a crest, or in a borehole, by its place or its station's name."""
+    if depth := in_a_borehole(judged.component):
+        return Finding("borehole", f'"{depth}" is in a borehole, and not at the surface', gross=True)
+    for text, words in ((judged.component.seat.place or "", _STRUCTURE), (judged.component.origin.station, _IN_NAME)):
+        if words.search(text.lower()) and not _GROUND.search(text.lower()):
+            return Finding("structure", f'"{text}" is in a structure, and not on the ground', gross=True)
+    return None
+
+
+def in_a_borehole(component: Component) -> str:
+    """Return the place, or the station's name, that says that a sensor is in a borehole; empty if none does."""
+    texts = (component.seat.place or "", component.origin.station)
+    return next((text for text in texts if _BOREHOLE.search(text.lower()) and "surface" not in text.lower()), "")
 
 
 def unprocessed(judged: Judged) -> Finding | None:

@@ -27,8 +27,7 @@ def is_numbered(site: str) -> bool:
 
 def in_one_event(a: Component, b: Component) -> bool:
     """Whether two components of one sensor or station are of one event: by their times, or by what they say of it."""
-    unknown_time = a.start is None or b.start is None
-    return bool(a.event) and a.event == b.event if unknown_time else overlap(a, b)
+    return overlap(a, b) if a.dated and b.dated else bool(a.event) and a.event == b.event
 
 
 def by_station(components: Iterable[Component]) -> list[list[Component]]:
@@ -67,7 +66,7 @@ def _by_time(group: list[Component]) -> list[list[Component]]:
     each name of a station, is one.
     """
     records: dict[object, list[Component]] = {}
-    if any(component.start is None for component in group):
+    if not all(component.dated for component in group):
         ways = {(c.orientation.vertical, c.orientation.azimuth, c.orientation.label) for c in group}
         if all(component.event for component in group) or len(ways) == len(group):
             return [group]

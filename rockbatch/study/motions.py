@@ -7,7 +7,7 @@ from typing import Any
 
 from rockbatch.errors import InputError, remedy
 from rockbatch.motions import kinds
-from rockbatch.motions.formats import ROLES, ReadOptions
+from rockbatch.motions.formats import LAYOUTS, ROLES, ReadOptions
 from rockbatch.motions.pulses import SHAPES, pulse, unlikely
 from rockbatch.study.spec import FemaSpec, MotionSpec, PulseSpec
 from rockbatch.study.suite_keys import SUITE, read_suite
@@ -37,6 +37,8 @@ MOTIONS = Section(("motions",), (
     "sensitivity": Key(nonzero, "428000.0", "Counts per unit of acceleration, for files in counts."),
     "role": Key(choice(*ROLES), '"horizontal"',
         "What components are whose direction nothing tells; they are not used if this is not given."),
+    "layout": Key(choice(*LAYOUTS), '"wrapped"',
+        'How text files without column names are laid out: "wrapped" is one series that goes on from line to line.'),
     **SUITE,
 }, homes=(MotionSpec,), clashes=(
     Clash(("axis_deg", "every_deg"), "axis_deg and every_deg are given; keep the one that records shall be turned to",

@@ -51,6 +51,7 @@ class MotionSpec:
     columns: tuple[str, ...] | None = None
     sensitivity: float | None = None
     role: str | None = None
+    layout: str | None = None
     offset: Offset = field(default_factory=Offset)
     azimuths: tuple[float, ...] = ()
     select: Selection = field(default_factory=Selection)

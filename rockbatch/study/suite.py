@@ -22,7 +22,7 @@ def ground_motions(study: Study) -> MotionSet:
         spec.paths,
         vertical=spec.vertical,
         gravity=gravity,
-        options=ReadOptions(spec.unit, spec.dt, spec.columns, spec.sensitivity, spec.role),
+        options=ReadOptions(spec.unit, spec.dt, spec.columns, spec.sensitivity, spec.role, spec.layout),
         fema=[(record.station, record.azimuth) for record in spec.fema_p695],
         offset=spec.offset,
         azimuths=spec.azimuths,

@@ -366,8 +366,8 @@ def test_a_unit_that_is_not_understood_costs_its_channel_with_the_reason(text, n
         (afad_text(**{"SAMPLING INTERVAL (sec)": None}), "x.txt", "the header lacks SAMPLING INTERVAL"),
         (afad_text(**{"NUMBER OF DATA": "many"}), "x.txt", 'NUMBER OF DATA: "many"; expected a number'),
         (unam_text(**{"NUM. TOTAL DE MUESTRAS, C1-C6": "/43/43/42"}), "x.191", "42, 43; expected the same for all"),
-        (unam_text(**{"NUM. TOTAL DE MUESTRAS, C1-C6": "/44/44/44"}), "x.191", "132 values from line .*it is cut"),
-        (unam_text(**{"NUM. TOTAL DE MUESTRAS, C1-C6": "/42/42/42"}), "x.191", "after the 42 declared samples"),
+        (unam_text(**{"NUM. TOTAL DE MUESTRAS, C1-C6": "/44/44/44"}), "x.191", "44 samples from line .*it is cut"),
+        (unam_text(**{"NUM. TOTAL DE MUESTRAS, C1-C6": "/40/40/40"}), "x.191", "after the 40 declared samples"),
         (unam_text(**{"FACTOR DE DECIMACION": "2"}), "x.191", "samples were left out"),
         (unam_text(**{"UNIDADES DE LOS DATOS": None}), "x.191", "the header lacks UNIDADES DE LOS DATOS"),
         (

@@ -255,9 +255,15 @@ def test_kiknet_borehole_and_surface_are_two_stations(tmp_path):
     for direction, suffix in ((2, "EW1"), (3, "UD1"), (5, "EW2"), (6, "UD2")):
         (tmp_path / f"TST.{suffix}").write_text(knet_text(str(direction))[0])
     found = read_motions(tmp_path)
-    assert [(m.name, m.vertical_source) for m in found.motions] == [("TST.EW1", "TST.UD1"), ("TST.EW2", "TST.UD2")]
-    assert "borehole" in found.motions[0].notes[0]
-    assert "surface" in found.motions[1].notes[0]
+    assert [(m.name, m.vertical_source) for m in found.motions] == [("TST", "TST.UD2")]
+    assert {left.source: left.reason.partition(",")[0] for left in found.left_out} == dict.fromkeys(
+        ("TST.EW1", "TST.UD1"), "in a borehole below TST.EW2"
+    )
+    for suffix in ("EW2", "UD2"):
+        (tmp_path / f"TST.{suffix}").unlink()
+    (alone,) = read_motions(tmp_path).unusable
+    assert alone.reason.startswith('"borehole" is in a borehole, and not at the surface; if it is right')
+    assert "surface" in found.motions[0].notes[0]
 
 
 @pytest.mark.parametrize("name", ["TST.EW.txt", "AOM003", "20180124.asc", "TST.ew.90"])

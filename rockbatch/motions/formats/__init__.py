@@ -31,7 +31,7 @@ from rockbatch.motions.formats import (
     unam,
     usc,
 )
-from rockbatch.motions.formats.record_file import ROLES, ReadOptions, RecordFile
+from rockbatch.motions.formats.record_file import LAYOUTS, ROLES, ReadOptions, RecordFile
 from rockbatch.motions.limits import HUGE, MOST_SAMPLES, STEPS, is_step
 from rockbatch.motions.motion import Unusable
 from rockbatch.motions.texts import with_legible_texts
@@ -39,6 +39,7 @@ from rockbatch.motions.texts import with_legible_texts
 __all__ = [
     "FORMATS",
     "HEAD",
+    "LAYOUTS",
     "ROLES",
     "Format",
     "ReadOptions",

@@ -16,7 +16,7 @@ from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.formats.recording import Recording, to_components
 from rockbatch.motions.motion import Samples, Unusable
-from rockbatch.motions.origin import origin_of
+from rockbatch.motions.origin import TURKISH, origin_of
 
 SUFFIXES: frozenset[str] = frozenset()
 
@@ -44,7 +44,8 @@ def _parse(text: str) -> list[Recording]:
     heads = next((i for i in range(min(_MOST, len(lines))) if _labels(lines[i])), None)
     if heads is None:
         raise InputError(f'no line of column names in the first {_MOST} lines; expected "N-S  E-W  U-D"')
-    header, labels = keys_of(lines[:heads]), _labels(lines[heads])
+    header = {key: value.translate(TURKISH) for key, value in keys_of(lines[:heads]).items()}
+    labels = _labels(lines[heads])
     npts, dt = _number(header, "NUMBER OF DATA"), _number(header, "SAMPLING INTERVAL (sec)")
     if npts != int(npts) or npts < 2 or not 0 < dt < 10:
         raise InputError(f"the header says {npts:g} values every {dt:g} s; expected a whole number and an interval")

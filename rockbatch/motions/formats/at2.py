@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rockbatch.errors import InputError, UnstatedError
+from rockbatch.errors import InputError, NoRecordError, UnstatedError
 from rockbatch.motions.component import Component, Seat
 from rockbatch.motions.formats.fixed_width import LOOKED_AT, is_cut_short
 from rockbatch.motions.formats.obspy_plugin import FileLike, first_bytes, name_and_bytes
@@ -36,6 +36,7 @@ _COUNT_AND_STEP = tuple(
     )
 )
 _UNIT = re.compile(r"\bUNITS?\s*(?:OF|[=:])\s*\(?\s*([A-Z0-9/*^²]+)", re.IGNORECASE)
+_IN_G = re.compile(r"\(\s*(g)\s*\)", re.IGNORECASE)  # of El Centro 1940 as it goes from hand to hand
 _DATE = re.compile(r"\d{1,2}/\d{1,2}/\d{2,4}|\d{4}-\d{2}-\d{2}")
 _SIGNED = re.compile(rf"[-+]?{_NUMBER}", re.IGNORECASE)
 _HEADER_LINES = 10  # the count stands in line 4; a few lines of grace for hand-edited headers
@@ -71,7 +72,7 @@ def looks_like_at2(head: bytes) -> bool:
     for i, line in enumerate(lines):
         if _count_and_step(line):
             above = " ".join(lines[:i]).upper()
-            return i > 0 and ("UNITS OF" in above or "PEER" in above)
+            return (i > 0 and ("UNITS OF" in above or "PEER" in above)) or _IN_G.search(f"{above} {line}") is not None
     return False
 
 
@@ -155,8 +156,10 @@ def _parse(text: str) -> _At2:
         )
     header = " ".join(lines[:at])
     if quantity := re.search(r"\b(?:VELOCITY|DISPLACEMENT) TIME\b", header, re.IGNORECASE):
-        raise InputError(f'header: found "{quantity[0]}…"; expected accelerations: take the .AT2 file of this record')
-    unit = _UNIT.search(header)
+        raise NoRecordError(
+            f'header: found "{quantity[0]}…"; expected accelerations: take the .AT2 file of this record'
+        )
+    unit = _UNIT.search(header) or _IN_G.search(" ".join(lines[: at + 1]))
     event, date, station, component = _title(lines[1].strip()) if at > 1 else ("", "", "", "")
     values = _values(text, sum(map(len, lines[: at + 1])), npts)
     return _At2(event, date, station, component, unit[1] if unit else None, dt, values, "PEER" in header.upper())

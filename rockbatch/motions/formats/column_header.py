@@ -14,6 +14,7 @@ _LABELLED = re.compile(rf"(?P<label>[^\s,;()\[\]][^,;\t()\[\]]*?)\s*{_UNIT}")
 _WORD = re.compile(rf"(?P<label>[^\s,;()\[\]]+)(?:\s*{_UNIT})?")  # a label of one word, perhaps with its unit
 _FIELD = re.compile(rf"(?P<label>[^()\[\]]*[^()\[\]\s])\s*(?:{_UNIT})?")  # one between commas or tabs
 _VALUE = re.compile(r"[:=]|\d\.\d|(?<!\w)\.\d")
+_COMPONENTS = re.compile(r"^(?:components?|channels?|columns)\s*[:=]\s*(?P<labels>\S.*)$", re.IGNORECASE)
 _STATED = re.compile(r"^units?\s*[:=]\s*(?P<unit>\S+)", re.IGNORECASE)
 _SAID = re.compile(  # acceleration in g; UNITS OF CM/S/S; Acceleration unit: gal; Acc. (cm/s2)
     r"(?:\bunits? of|\b(?:acc|accel|acceleration|amplitude|data)s?\.?(?:[ _]*(?:data|values|units?|time series|time history))?"
@@ -114,6 +115,10 @@ def columns_without_units(header: Sequence[str], width: int) -> list[Column] | N
     The first is time, or what a spectrum is drawn over, or all are directions or time: other lines of as many words are
     text, as are those with a value in them.
     """
+    if named := next((match for line in header if (match := _COMPONENTS.match(line))), None):
+        labels = [Column(_tidy(word)) for word in re.split(r"[\s,;]+", named["labels"].strip())]
+        if len(labels) == width and all(orientation_in(column.label).known for column in labels):
+            return labels
     for line in reversed(header):
         if _VALUE.search(line) or states_a_step(line):
             continue

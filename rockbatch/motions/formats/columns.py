@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from rockbatch.errors import InputError, UnstatedError
+from rockbatch.errors import InputError, NoRecordError, UnstatedError
 from rockbatch.motions.component import Component
 from rockbatch.motions.formats.column_header import (
     Column,
@@ -26,7 +26,7 @@ from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.record_file import ReadOptions, RecordFile
 from rockbatch.motions.formats.recording import Recording, to_components
 from rockbatch.motions.formats.stated_step import SAME_STEP, StatedStep, stated_step
-from rockbatch.motions.formats.table import read_table
+from rockbatch.motions.formats.table import WRAPPED, read_table
 from rockbatch.motions.formats.time_steps import grows_evenly, on_even_steps
 from rockbatch.motions.motion import Samples, Unusable
 from rockbatch.motions.orientation import orientation_in, same_azimuth, split_stem
@@ -72,7 +72,7 @@ def read_columns(file: RecordFile) -> list[Component | Unusable]:
 
 def _parse(text: str, options: ReadOptions) -> list[Recording]:
     """The columns of acceleration; ``InputError`` where they are not known, or have no unit."""
-    header, table = read_table(text)
+    header, table = read_table(text, wrapped=options.layout == "wrapped")
     if len(table) < 2:
         raise InputError("found one row of numbers; expected at least two samples")
     columns, notes = _columns(header, options, table)
@@ -92,7 +92,7 @@ def _parse(text: str, options: ReadOptions) -> list[Recording]:
         )
     if not wanted:
         found = " and ".join(columns[i].other for i in others)
-        raise InputError(f"found {found or 'a column of time and no other'}; expected accelerations")
+        raise NoRecordError(f"found {found or 'a column of time and no other'}; expected accelerations")
     left = tuple(f"{_called(i, columns[i])} left out: a {columns[i].other}" for i in others)
     dt, values, moved = _sampled(columns, table, header, options)
     return [
@@ -126,7 +126,7 @@ def _columns(header: list[str], options: ReadOptions, table: Samples) -> tuple[l
         return _guessed(header, table)
     columns = _with_time(columns, table)
     if what := spectrum_in(columns):
-        raise InputError(f"{what} is no time history; take the record of accelerations instead")
+        raise NoRecordError(f"{what} is no time history; take the record of accelerations instead")
     return columns, notes
 
 
@@ -184,7 +184,8 @@ def _guessed(header: list[str], table: Samples) -> tuple[list[Column], tuple[str
     raise InputError(
         f"found {width} columns and no header that says what they are; write one, "
         "e.g. # time(s) NS(cm/s2) UD(cm/s2), "
-        'or state in the study, e.g. columns = ["time", "000", "090", "up"] ("-" leaves one out)'
+        'or state in the study, e.g. columns = ["time", "000", "090", "up"] ("-" leaves one out). '
+        f"{WRAPPED}"
     )
 
 

@@ -11,7 +11,7 @@ the ground moved at the first sample, else real numbers 68 [cm/s] and 69 [cm] do
 import re
 from dataclasses import dataclass, replace
 
-from rockbatch.errors import InputError
+from rockbatch.errors import InputError, NoRecordError
 from rockbatch.motions.component import Component, Seat
 from rockbatch.motions.formats.fixed_width import fixed_numbers, lines_of
 from rockbatch.motions.formats.header_lines import found, line_at, moment, number
@@ -101,7 +101,7 @@ def _parse(text: str) -> list[Recording]:
                 recordings[-1] = (_beside(recordings[-1][0], series, values), header)
         at = end
     if not recordings:
-        raise InputError(
+        raise NoRecordError(
             f"holds {' and '.join(others) or 'nothing'}; expected accelerations: take the file that has them"
         )
     return [recording for recording, _ in recordings]
@@ -124,7 +124,7 @@ def _header(lines: list[str], at: int) -> _Header:
     """The header that begins at ``lines[at]``."""
     title = found(_TITLE, lines, at, "Corrected acceleration    (Format v01.20 with 13 text lines)")
     if "spectr" in title["what"].lower():
-        raise InputError(f"line {at + 1}: spectra; expected accelerations: take the V2 file of this record")
+        raise NoRecordError(f"line {at + 1}: spectra; expected accelerations: take the V2 file of this record")
     end = at + int(title["lines"])
     text = [line_at(lines, i) for i in range(at, end)]
     numbers = []

@@ -10,7 +10,7 @@ that declares the data. Pairs of time and value, as digitised from film, are rea
 import re
 from dataclasses import dataclass
 
-from rockbatch.errors import InputError
+from rockbatch.errors import InputError, NoRecordError
 from rockbatch.motions.component import Component, Seat
 from rockbatch.motions.formats.fixed_width import fixed_numbers, one_after_another
 from rockbatch.motions.formats.header_lines import found, line_at, moment, number
@@ -36,13 +36,16 @@ _SPACING = re.compile(
 )
 _UNIT = re.compile(r"(?:\(units:|in units of|, *in) *(?P<unit>[a-z0-9/*^]+)", re.IGNORECASE)
 _FORMAT = re.compile(r"\((?P<per_line>[0-9]{1,2})f(?P<width>[0-9]{1,2})\.[0-9]{1,2}\)", re.IGNORECASE)
-_CHANNEL = re.compile(r"chan +(?P<number>[0-9]{1,3}): *(?P<label>.*?) *(?:deg\b.*)?(?:\(|location:|$)", re.IGNORECASE)
+_CHANNEL = re.compile(
+    r"chan +(?P<number>[0-9]{1,3}): *(?P<label>.*?) *(?:deg(?:r|rees)?\b.*)?(?:\(|location:|$)", re.IGNORECASE
+)
 _OF_STATION = re.compile(r"sta +chn: *(?P<number>[0-9]{1,3})", re.IGNORECASE)
 _LOCATION = re.compile(r"location: *(?P<place>\S.*?) *$", re.IGNORECASE)
 _STATION = re.compile(r"station +(?:no|id)\. +(?P<code>\S+)", re.IGNORECASE)
 _CODES = re.compile(r"[0-9]+\.(?P<network>[A-Z0-9]{1,2})\.(?P<station>[A-Z0-9]{1,5})\.(?P<location>[A-Z0-9-]{2})\.")
 _START = re.compile(
-    r"start time: *([0-9]{1,2})/([0-9]{1,2})/([0-9]{2}), *([0-9]{1,2}):([0-9]{2}):([0-9]{2}(?:\.[0-9]{1,6})?) *(?:UTC|GMT)",
+    r"start time: *([0-9]{1,2})/([0-9]{1,2})/([0-9]{4}|[0-9]{2}),? *([0-9]{1,2}):([0-9]{2}):([0-9]{2}(?:\.[0-9]{1,6})?) *"
+    r"(?:UTC|GMT|\(GPS\)|\(Q=|$)",
     re.IGNORECASE,
 )
 _AGAIN = {  # where a header says once more what declares the data: line, and what it says
@@ -98,7 +101,9 @@ def _channel(lines: list[str], at: int) -> tuple[Recording, int]:
     if volume is None:
         raise InputError(f'line {at + 1}: found "{lines[at].strip()[:60]}"; expected "Uncorrected accelerogram data"')
     if volume == 3:
-        raise InputError(f"line {at + 1}: Volume 3, spectra; expected accelerations: take the .V2 file of this record")
+        raise NoRecordError(
+            f"line {at + 1}: Volume 3, spectra; expected accelerations: take the .V2 file of this record"
+        )
     header = at + volume - 1  # the lines that Volumes 1 and 2 have in common
     channel = found(_CHANNEL, lines, header + 6, "Chan  1: 90 Deg")
     station = found(_STATION, lines, header + 4, "Station No. …")["code"]
@@ -209,7 +214,8 @@ def _start(line: str) -> float | None:
     if said is None:
         return None
     month, day, year, hour, minute = (int(said[i]) for i in range(1, 6))
-    return moment(year + (1900 if year >= 30 else 2000), month, day, hour, minute, float(said[6]))
+    century = 0 if year > 99 else 1900 if year >= 30 else 2000
+    return moment(year + century, month, day, hour, minute, float(said[6]))
 
 
 def _stated_peak(lines: list[str], at: int, volume: int, unit: str) -> float | None:

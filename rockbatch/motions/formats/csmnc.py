@@ -7,7 +7,7 @@ description of them; lines in between differ from year to year.
 
 import re
 
-from rockbatch.errors import InputError
+from rockbatch.errors import InputError, NoRecordError
 from rockbatch.motions.component import Component, Seat
 from rockbatch.motions.formats.fixed_width import lines_of, number_in, spaced_numbers
 from rockbatch.motions.formats.header_lines import line_with, number
@@ -47,7 +47,7 @@ def _parse(text: str) -> list[Recording]:
     lines = lines_of(text)
     _, kind = line_with(_KIND, lines, _MOST, "UNCORRECTED ACCELERATION UNIT: CM/SEC/SEC")
     if not kind["what"].upper().startswith("ACC"):  # the Center's own description has "ACCCELERATION"
-        raise InputError(f'found "{kind["what"]}"; expected accelerations: take the file that has them')
+        raise NoRecordError(f'found "{kind["what"]}"; expected accelerations: take the file that has them')
     label = line_with(_COMPONENT, lines, _MOST, "COMP. EW")[1]["label"]
     station = line_with(_STATION, lines, _MOST, "STATION: …")[1]["code"]
     at, count = line_with(_COUNT, lines, _MOST, "NO. OF POINTS: … EQUALLY SPACED INTERVALS OF: … SEC")

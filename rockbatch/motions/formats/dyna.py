@@ -8,7 +8,7 @@ import re
 
 import numpy as np
 
-from rockbatch.errors import InputError
+from rockbatch.errors import InputError, NoRecordError
 from rockbatch.motions.component import Component, Seat
 from rockbatch.motions.formats.fixed_width import LOOKED_AT, is_cut_short, lines_of, number_in
 from rockbatch.motions.formats.header_lines import moment
@@ -16,11 +16,12 @@ from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.formats.recording import Recording, to_components
 from rockbatch.motions.motion import Samples, Unusable
-from rockbatch.motions.origin import origin_of
+from rockbatch.motions.origin import TURKISH, origin_of
 
 SUFFIXES = frozenset({".asc"})
 
 _MOST_KEYS = 200
+_TURKISH = ("TK", "TU", "KO")  # networks whose texts are in Windows-1254
 _ROUGHLY = 0.01  # relative: what the stated duration, rounded or off by a sample, may differ
 _PEAK = "PGA_CM/S^2"
 _MOMENT = re.compile(r"(\d{4})/?(\d\d)/?(\d\d)[_ T](\d\d):?(\d\d):?(\d\d(?:\.\d{1,6})?)", re.ASCII)
@@ -40,6 +41,8 @@ def _parse(text: str) -> list[Recording]:
     """The component, as a list of one; ``InputError`` with all that is wrong with the header, or the line."""
     lines = lines_of(text)
     header = _header(lines)
+    if header.get("NETWORK") in _TURKISH:
+        header = {key: value.translate(TURKISH) for key, value in header.items()}
     npts, dt = _count_and_step(header)
     values = _values(lines, len(header), npts)
     unit = header["UNITS"]
@@ -88,7 +91,7 @@ def _header(lines: list[str]) -> dict[str, str]:
         raise InputError(f"the header lacks {', '.join(lacking)}")
     kind = header.get("DATA_TYPE", "ACCELERATION")
     if kind.upper() != "ACCELERATION":
-        raise InputError(
+        raise NoRecordError(
             f"the header says DATA_TYPE: {kind[:40]}; expected ACCELERATION: take that file of this record"
         )
     return header

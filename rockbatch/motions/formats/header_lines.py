@@ -7,6 +7,13 @@ from datetime import UTC, datetime
 from rockbatch.errors import InputError
 
 _LONGEST = 200  # characters of a header line that are looked at
+_YEAR_FIRST = re.compile(r"(?P<year>\d{4})[-/. ](?P<month>\d{1,2}|[A-Z]{3,})[-/. ](?P<day>\d{1,2})(?!\d)", re.ASCII)
+_DAY_FIRST = re.compile(
+    r"(?P<day>\d{1,2})(?:[-/. ]| DEL? )(?P<month>\d{1,2}|[A-Z]{3,})(?:[-/., ]| DEL? )+(?P<year>\d{4})(?!\d)", re.ASCII
+)
+_MONTHS = {name: i for i, names in enumerate(
+    ("JAN ENE", "FEB", "MAR", "APR ABR", "MAY", "JUN", "JUL", "AUG AGO", "SEP SET", "OCT", "NOV", "DEC DIC"), start=1
+) for name in names.split()}  # fmt: skip
 
 
 def found(pattern: re.Pattern[str], lines: Sequence[str], at: int, expected: str) -> re.Match[str]:
@@ -48,6 +55,19 @@ def number(text: str, at: int) -> float:
         return float(text)
     except ValueError:
         raise InputError(f'line {at + 1}: found "{text}"; expected a number') from None
+
+
+def date_in(text: str) -> tuple[int, int, int] | None:
+    """Return year, month and day of a date such as "2000/07/21", "21/JUL/2000" or "21 de julio de 2000"; ``None`` if none.
+
+    The day stands before the month where the year is last. Months may be English or Spanish.
+    """
+    text = " ".join(text[:_LONGEST].upper().split())
+    found = _YEAR_FIRST.match(text) or _DAY_FIRST.match(text)
+    if found is None:
+        return None
+    month = int(found["month"]) if found["month"].isdecimal() else _MONTHS.get(found["month"][:3], 0)
+    return (int(found["year"]), month, int(found["day"])) if 1 <= month <= 12 else None
 
 
 def moment(year: int, month: int, day: int, hour: int, minute: int, second: float) -> float | None:

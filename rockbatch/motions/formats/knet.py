@@ -10,6 +10,7 @@ from rockbatch.motions.origin import origin_of
 SUFFIXES = frozenset({".ew", ".ns", ".ud", ".ew1", ".ns1", ".ud1", ".ew2", ".ns2", ".ud2"})
 
 _LEVELS = {"1": "KiK-net sensor 1: in the borehole", "2": "KiK-net sensor 2: at the surface"}
+_PLACES = {"1": "borehole", "2": "surface"}
 
 
 def is_knet(head: bytes) -> bool:
@@ -42,7 +43,7 @@ def read_knet(file: RecordFile) -> list[Component]:
             raw=True,
             processed=False,
             origin=origin_of(date=stats.knet.evot.strftime("%Y-%m-%d %H:%M"), station=stats.station),
-            seat=Seat(stats.station, location=level),
+            seat=Seat(stats.station, location=level, place=_PLACES.get(level)),
             notes=(_LEVELS[level],) if level in _LEVELS else (),
         )
     ]

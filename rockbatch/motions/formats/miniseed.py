@@ -11,7 +11,7 @@ from rockbatch.motions.formats import stationxml
 from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.formats.with_obspy import read_stream
 from rockbatch.motions.motion import Unusable
-from rockbatch.motions.orientation import Orientation, is_clock, orientation_of, unknown
+from rockbatch.motions.orientation import Orientation, is_clock, not_acceleration, orientation_of, unknown
 from rockbatch.motions.origin import origin_of
 from rockbatch.units import acceleration_factor
 
@@ -101,6 +101,11 @@ def _component(
         unit, sensitivity = entry.unit, entry.sensitivity
         origin = f"sensitivity {sensitivity:g} counts per {unit} from StationXML"
         orientation = _oriented(trace.id, orientation, entry)
+    elif (kind := not_acceleration(stats.channel)) and "unit" not in file.options.instead:
+        raise InputError(
+            f"{trace.id} holds {kind}, and accelerations are expected; if it does hold them, write unit = … for this file "
+            "in motions.toml"
+        )
     elif file.options.unit is not None or file.options.sensitivity is not None:
         unit, sensitivity = file.options.unit or "m/s2", file.options.sensitivity or 1.0
         origin = f"sensitivity {sensitivity:g} counts per {unit} as stated"

@@ -10,6 +10,9 @@ from rockbatch.motions.formats.stated_step import SAME_STEP
 from rockbatch.motions.limits import STEPS, is_step
 from rockbatch.units import GRAVITY, acceleration_factor
 
+LAYOUTS = ("columns", "wrapped")
+"""Of numbers in text files: a column for each component, or one series that goes on from line to line."""
+
 ROLES = ("horizontal",)
 """What all components of unknown direction may be said to be."""
 
@@ -37,6 +40,8 @@ class ReadOptions:
         What components are whose direction nothing tells: "horizontal".
     sensitivity : float or None
         Counts per ``unit`` (per m/s² where no unit is stated) of MiniSEED and SAC files.
+    layout : str or None
+        "wrapped": a text file without columns is one series that goes on from line to line.
     instead : frozenset of str
         Which of these a manifest states for this very file, in place of what it says itself.
 
@@ -57,6 +62,7 @@ class ReadOptions:
     columns: tuple[str, ...] | None = None
     sensitivity: float | None = None
     role: str | None = None
+    layout: str | None = None
     instead: frozenset[str] = frozenset()
 
     def __post_init__(self) -> None:
@@ -72,6 +78,8 @@ class ReadOptions:
             wrong.append(f"sensitivity = {self.sensitivity:g}: must be a number other than 0 [counts per unit]")
         if self.role not in (None, *ROLES):
             wrong.append(f'role = "{self.role}": must be "horizontal"; verticals are named one by one, in motions.toml')
+        if self.layout not in (None, *LAYOUTS):
+            wrong.append(f'layout = "{self.layout}": must be one of {", ".join(LAYOUTS)}')
         if self.columns is not None:
             object.__setattr__(self, "columns", tuple(self.columns))
             if all(name in ("-", "time", "t") for name in self.columns):

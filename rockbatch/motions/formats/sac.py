@@ -1,13 +1,15 @@
 """SAC (binary): one component, in a unit that its header does not tell reliably."""
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
-from rockbatch.errors import UnstatedError
-from rockbatch.motions.component import Component, Seat
+import numpy as np
+
+from rockbatch.errors import InputError, UnstatedError
+from rockbatch.motions.component import FIRST_YEAR, Component, Seat
 from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.formats.with_obspy import read_stream
 from rockbatch.motions.motion import Unusable
-from rockbatch.motions.orientation import Orientation, is_clock, orientation_of, split_stem, unknown
+from rockbatch.motions.orientation import Orientation, is_clock, not_acceleration, orientation_of, split_stem, unknown
 from rockbatch.motions.origin import Origin, origin_of
 from rockbatch.units import acceleration_factor
 
@@ -16,8 +18,9 @@ if TYPE_CHECKING:
 
 SUFFIXES = frozenset({".sac"})
 
-_FIRST_YEAR = 365 * 86400.0  # s since 1970: no recorder began in it, but headers without a time say so
 _LEVEL = 10.0  # degrees that a horizontal component may be off the horizontal
+_KIND_AT = 86 * 4  # header word IDEP
+_KINDS = {6: "displacements (IDEP 6)", 7: "velocities (IDEP 7)"}
 _VERSION_AT = 76 * 4  # header word NVHDR, 6 or 7
 
 
@@ -30,13 +33,19 @@ def is_sac(head: bytes) -> bool:
 def read_sac(file: RecordFile) -> list[Component | Unusable]:
     """The component of a SAC file, in the unit that the study states: data / sensitivity × unit.
 
-    SAC's own entry for the kind of data (IDEP) is not used: files in g that claim nm/s² are common.
+    SAC's own entry for the kind of data (IDEP) says no unit: files in g that claim nm/s² are common. Velocities and
+    displacements are refused by it, and by the channel of a seismometer, unless a manifest states the file's unit.
     """
     options = file.options
     (trace,) = read_stream(file.data, "SAC")
     stats = trace.stats
     if is_clock(stats.channel):
         return [Unusable(file.stem, file.source, "the recorder's clock, no ground motion", stats.channel)]
+    if (kind := _KINDS.get(_kind(file.data)) or not_acceleration(stats.channel)) and "unit" not in options.instead:
+        raise InputError(
+            f"its header says that it holds {kind}, and accelerations are expected; if it does hold them, write unit = … for "
+            "this file in motions.toml"
+        )
     if options.unit is None and options.sensitivity is None:
         raise UnstatedError(
             'SAC files do not tell their unit reliably; state it in the study, e.g. unit = "g" '
@@ -50,13 +59,13 @@ def read_sac(file: RecordFile) -> list[Component | Unusable]:
     return [
         Component(
             name=file.stem,
-            dt=float(stats.delta),
+            dt=float(str(np.float32(stats.delta))),  # the shortest decimal that a header of four bytes may mean
             acceleration=trace.data.astype(float) * factor,
             orientation=orientation or unknown(stats.channel),
             station=".".join(codes) if stats.station else "",
             source=file.source,
             start=start,
-            seat=Seat(stats.station if start >= _FIRST_YEAR else "", stats.network, stats.location),
+            seat=Seat(stats.station if start >= FIRST_YEAR else "", stats.network, stats.location),
             unit=options.unit or "m/s2",
             raw=True,
             origin=_origin(stats, start),
@@ -65,9 +74,17 @@ def read_sac(file: RecordFile) -> list[Component | Unusable]:
     ]
 
 
+def _kind(data: bytes) -> int:
+    """Return the header's kind of data (IDEP), in the byte order of its version."""
+    order: Literal["little", "big"] = (
+        "little" if int.from_bytes(data[_VERSION_AT : _VERSION_AT + 4], "little") in (6, 7) else "big"
+    )
+    return int.from_bytes(data[_KIND_AT : _KIND_AT + 4], order, signed=True)
+
+
 def _origin(stats: "Stats", start: float) -> Origin:
     """By the header's name of the event (KEVNM), or the day of the record."""
-    day = stats.starttime.strftime("%Y-%m-%d") if start >= _FIRST_YEAR else ""
+    day = stats.starttime.strftime("%Y-%m-%d") if start >= FIRST_YEAR else ""
     return origin_of(str(stats.sac.get("kevnm", "")), f"{stats.network}.{stats.station}".strip("."), day)
 
 

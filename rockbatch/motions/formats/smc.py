@@ -8,7 +8,7 @@ digits). Source: USGS National Strong-Motion Program, "SMC-format data files" (2
 import re
 from datetime import UTC, datetime, timedelta
 
-from rockbatch.errors import InputError
+from rockbatch.errors import InputError, NoRecordError
 from rockbatch.motions.component import Component, Seat
 from rockbatch.motions.formats.fixed_width import fixed_numbers, lines_of, number_in
 from rockbatch.motions.formats.header_lines import found, line_at
@@ -49,7 +49,7 @@ def _parse(text: str) -> list[Recording]:
     lines = lines_of(text)
     title = found(_TITLE, lines, 0, "2 CORRECTED ACCELEROGRAM")
     if title["kind"] not in _KINDS:
-        raise InputError(f'line 1: found "{title[0]}"; expected accelerations: take the .smc file that has them')
+        raise NoRecordError(f'line 1: found "{title[0]}"; expected accelerations: take the .smc file that has them')
     station = found(_STATION, lines, 5, "station = …, component= …")
     integers = [int(value) for value in fixed_numbers(lines, _INTEGERS, 48, 10, 8)]
     unknown, comments, npts = integers[0], integers[15], integers[16]
@@ -81,7 +81,10 @@ def _parse(text: str) -> list[Recording]:
             start=None if unknown in (second, ms) else _start(year, day, hour, minute, second, ms),
             uncorrected=title["kind"] == "1",
             processed=title["kind"] == "2",
-            seat=Seat(f"{station['name']} {integers[29]}".upper(), place=station["name"].upper()),
+            seat=Seat(
+                str(integers[29]) if integers[29] not in (unknown, 0) else station["name"].upper(),
+                place=station["name"].upper(),
+            ),
             event="" if unknown in (year, day, hour, minute) else f"{year}-{day:03d} {hour}:{minute}",
             origin=origin_of(line_at(lines, 3)[25:], station["name"], line_at(lines, 3)[:25]),
             stated_peak=max(peaks, default=None),

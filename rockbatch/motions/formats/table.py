@@ -5,24 +5,34 @@ from array import array
 
 import numpy as np
 
-from rockbatch.errors import InputError
+from rockbatch.errors import InputError, NoRecordError
+from rockbatch.motions.formats.column_header import stated_count
 from rockbatch.motions.formats.fixed_width import LOOKED_AT, is_cut_short, lines_of
 from rockbatch.motions.limits import HUGE
 from rockbatch.motions.motion import Samples
 
 _COMMENT = ("#", "%")
+WRAPPED = (
+    'If it is one series that goes on from line to line, state layout = "wrapped", in the study or for this file in '
+    "motions.toml"
+)
 _LONGEST, _MOST_HEADER = 300, 300  # characters of a header line, and lines, that are looked at
+_TOUCHING = re.compile(r"\s*(?:[-+]?\d*\.\d+(?:[EDed][-+]?\d+)?\s*)+")  # with points, unlike a date such as 2010-11-14
+_SIGN = re.compile(r"(?<=[\d])-(?=[\d.])")
 _NUMERIC = re.compile(r'[-+.,;"\s]*[0-9][-+0-9.,;eEdD"\s]*')
 
 
-def read_table(text: str) -> tuple[list[str], Samples]:
+def read_table(text: str, wrapped: bool = False) -> tuple[list[str], Samples]:
     """Header lines, without their comment sign, and the table of numbers, shape (npts, columns).
 
     Columns stand between blanks, tabs, commas or semicolons. Decimal commas are understood where they cannot
     be anything else: between semicolons, tabs or blanks in a file without a decimal point. Raises
-    ``InputError`` with the line for a row unlike those above it, and for commas that may be either.
+    ``InputError`` with the line for a row unlike those above it, and for commas that may be either. A ``wrapped`` table is one
+    column that goes on from line to line, as is one whose header states as many samples as there are numbers; its last row
+    may be shorter.
     """
     header: list[str] = []
+    rest: list[float] = []
     rows, at, width = array("d"), array("q"), 0
     lines = lines_of(text)
     separators = _separators(lines)
@@ -34,15 +44,21 @@ def read_table(text: str) -> tuple[list[str], Samples]:
             width = len(row)
             rows.extend(row)
             at.append(i)
+        elif row and len(row) < width and not any(map(str.strip, lines[i + 1 :])):
+            rest = row
         elif row:
-            raise InputError(f"line {i + 1}: found {len(row)} numbers; expected {width} as above")
+            raise _refused(lines, f"line {i + 1}: found {len(row)} numbers; expected {width} as above")
         elif stripped.strip(' ;,\t"'):
             if rows and not comment:
-                raise InputError(f'line {i + 1}: found "{stripped[:60]}"; expected {width} numbers as above')
+                raise _refused(lines, f'line {i + 1}: found "{stripped[:60]}"; expected {width} numbers as above')
             if len(header) < _MOST_HEADER:
                 header.append(stripped.lstrip("#% \t")[:_LONGEST])
     if not rows:
-        raise InputError("no columns of numbers found in it")
+        raise NoRecordError("no columns of numbers found in it")
+    wrapped = wrapped or (width > 1 and stated_count(header) == len(rows) + len(rest))
+    if rest and not wrapped:
+        hint = f". {WRAPPED}" if width > 2 else ""
+        raise _refused(lines, f"line {len(lines)}: found {len(rest)} numbers; expected {width} as above{hint}")
     table = np.array(rows).reshape(-1, width)
     wild = ~(np.abs(table) < HUGE).all(axis=1)
     if wild.any():
@@ -52,7 +68,14 @@ def read_table(text: str) -> tuple[list[str], Samples]:
         raise InputError(
             f"line {at[-1] + 1}: its last number is shorter than all others: the file is cut; fetch it again"
         )
-    return header, table
+    return header, np.append(table.ravel(), rest).reshape(-1, 1) if wrapped else table
+
+
+def _refused(lines: list[str], why: str) -> InputError:
+    """Return the error of a table, or of a text with some numbers in it: less than half of its lines hold numbers only."""
+    written = [line for line in lines if line.strip()]
+    numbers = sum(_NUMERIC.fullmatch(line) is not None for line in written)
+    return InputError(why) if 2 * numbers >= len(written) else NoRecordError(why)
 
 
 def _separators(lines: list[str]) -> tuple[str, str]:
@@ -87,6 +110,8 @@ def _numbers(line: str, between: str, decimal: str) -> list[float] | None:
         line = line.replace(between, " ")
     if decimal:
         line = line.replace(decimal, ".")
+    if _TOUCHING.fullmatch(line):
+        line = _SIGN.sub(r" \g<0>", line)
     try:
         return [float(token) for token in line.split()]
     except ValueError:

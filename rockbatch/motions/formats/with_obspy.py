@@ -19,6 +19,9 @@ if TYPE_CHECKING:
     from obspy import Stream
 
 
+_OPTIONS = {"SAC": {"round_sampling_interval": False}}  # rounding a step of four bytes, ObsPy warns of 1/512 s
+
+
 @contextmanager
 def _told_to_nobody() -> Iterator[list[str]]:
     """Collects errors that ObsPy's callbacks from C cannot raise; Python would print them on the terminal."""
@@ -39,7 +42,7 @@ def read_stream(data: bytes, name: str) -> "Stream":
         from obspy import read  # which warns of its own use of the standard library
 
         try:
-            stream = read(io.BytesIO(data), format=name, check_compression=False)
+            stream = read(io.BytesIO(data), format=name, check_compression=False, **_OPTIONS.get(name, {}))
         except Exception as error:  # ObsPy's readers raise all sorts of types on damaged files
             raise InputError(f"ObsPy's {name} reader refuses it: {type(error).__name__}: {error}") from None
     complaints = [str(w.message) for w in caught if not issubclass(w.category, DeprecationWarning | FutureWarning)]

@@ -1,0 +1,191 @@
+"""Of several copies of a recording one is used, as a whole set, and nothing counts twice: on files made here."""
+
+import numpy as np
+import pytest
+from fixed_column_files import A, B, C, cosmos_text, csmip_channel, smc_text
+from motion_files import wiggle, write_at2
+from national_files import unam_text
+from waveform_files import trace
+
+from rockbatch.motions import ReadOptions, read_motions
+
+DATE = "FECHA DEL SISMO [GMT]"
+
+
+def title(component: str, station: str = "STA", event: str = "Somewhere, 1/17/1994") -> str:
+    return f"{event}, {station}, {component}"
+
+
+def left_out(found) -> dict[str, str]:
+    return {double.source: double.reason for double in found.left_out}
+
+
+def shaking(seed: int, scale: float = 90.0) -> np.ndarray:
+    return np.round(wiggle(400, seed, scale), 3)
+
+
+# Several earthquakes
+
+
+def test_recordings_of_unknown_time_are_never_one_record(tmp_path):
+    """Four earthquakes at one station, whose files say nothing of their dates."""
+    for i in range(4):
+        columns = tuple(shaking(10 * i + k) for k in (1, 2, 3))
+        text = unam_text(columns=columns, **{DATE: None, "HORA EPICENTRO (GMT)": None})
+        (tmp_path / f"CANA000{i}.191").write_text(text, encoding="latin-1")
+    found = read_motions(tmp_path)
+    assert len(found.motions) == 8
+    assert len({motion.station for motion in found.motions}) == 4
+    assert all(motion.vertical_source.startswith(motion.source[:12]) for motion in found.motions)
+    assert len(read_motions(tmp_path, azimuths=(30.0,)).motions) == 4
+
+
+@pytest.mark.parametrize(
+    ("key", "date"),
+    [
+        ("FECHA DEL SISMO (GMT)", "21/JUL/2000"),
+        ("FECHA DEL SISMO (GMT)", "21 DE JULIO DEL 2000"),
+        ("FECHA DEL SISMO [GMT]", "21/07/2000"),
+        ("FECHA DEL SISMO", "2000-07-21"),
+    ],
+)
+def test_dates_of_unam_s_sister_institutes_are_read(tmp_path, key, date):
+    (tmp_path / "a.191").write_text(unam_text(**{DATE: None, key: date}), encoding="latin-1")
+    (tmp_path / "b.191").write_text(unam_text(**{DATE: "2000/07/21"}), encoding="latin-1")
+    found = read_motions(tmp_path)
+    assert {motion.source.partition(" ")[0] for motion in found.motions} == {"a.191"}
+    assert len(found.left_out) == 3
+    assert all("2000" in motion.origin.event for motion in found.motions)
+
+
+# Scaled copies
+
+
+def test_of_a_scaled_and_an_unscaled_copy_the_unscaled_one_is_used_and_the_factor_named(tmp_path):
+    write_at2(tmp_path, "scaled.AT2", 2.0 * wiggle(60), title=title("0"))
+    write_at2(tmp_path, "unscaled.AT2", wiggle(60), title=title("0"))
+    found = read_motions(tmp_path)
+    (motion,) = found.motions
+    assert motion.source == "unscaled.AT2"
+    assert left_out(found)["scaled.AT2"].startswith("the same recording, 2 times as large, as unscaled.AT2")
+    assert [finding.what for finding in motion.findings] == ["factor"]
+
+
+def test_where_nothing_tells_which_factor_is_right_it_is_asked_for(tmp_path):
+    write_at2(tmp_path, "one.AT2", wiggle(60), title=title("0"))
+    write_at2(tmp_path, "two.AT2", 2.0 * wiggle(60), title=title("0"))
+    found = read_motions(tmp_path)
+    (asked,) = found.unusable
+    assert asked.reason.startswith("two.AT2, left out, has the same samples times 2: check which of them is right; if")
+    (tmp_path / "motions.toml").write_text('[[record]]\nfile = "two.AT2"\nuse = true\n')
+    (motion,) = read_motions(tmp_path).motions
+    assert motion.source == "two.AT2"
+
+
+def test_a_sound_copy_is_used_instead_of_one_in_a_wrong_unit(tmp_path):
+    """In gal, but called g: 90 g, more intense than the sound one, and refused."""
+    write_at2(tmp_path, "gal.AT2", 981.0 * wiggle(60), title=title("0"))
+    write_at2(tmp_path, "right_one.AT2", wiggle(60), title=title("0"))
+    found = read_motions(tmp_path)
+    assert [motion.source for motion in found.motions] == ["right_one.AT2"]
+    assert not found.unusable
+    assert "981 times as large" in left_out(found)["gal.AT2"]
+
+
+def test_the_peak_of_a_left_out_vertical_is_heard_of(tmp_path):
+    for name, processed, up in (("a", "Uncorrected", 3.0), ("b", "Corrected", 1.0)):
+        for way, values in (("90 Deg", A), ("Up", up * C + (up > 1.0) * B)):
+            text = cosmos_text(values, way, stage=processed, scnl=f"8040.HN{'Z' if way == 'Up' else 'E'}.NP.D0")
+            (tmp_path / f"{name}_{way[:2]}.v1c").write_text(text, encoding="latin-1")
+    (motion,) = read_motions(tmp_path).motions
+    assert any("vertical: a_Up.v1c, the same recording, left out, has" in note for note in motion.notes)
+
+
+# One recording in two formats
+
+
+def csmip(label: str, values, **header) -> list[str]:
+    return csmip_channel(label, values / 981.0, volume=1, station="24386", record="24386-S1234-94017.01", **header)
+
+
+def test_a_csmip_file_and_miniseed_of_the_same_recording_are_one(tmp_path):
+    """The station is called 24386 here and CE.VNB there, and the file of film times does not know its time in UTC."""
+    series = {way: shaking(seed) for way, seed in (("90", 1), ("Up", 2), ("360", 3))}
+    lines = [line for way, values in series.items() for line in csmip(f"{way} Deg", values, modern=False)]
+    (tmp_path / "ce24386.v1").write_text("\n".join([*lines, ""]), encoding="latin-1")
+    for channel, way in (("HNE", "90"), ("HNZ", "Up"), ("HNN", "360")):
+        counts = trace(channel, (1e4 * series[way]).astype(np.int32))
+        counts.stats.network, counts.stats.station = "CE", "VNB"
+        counts.write(str(tmp_path / f"CE.VNB.{channel}.mseed"), format="MSEED")
+    found = read_motions(tmp_path, options=ReadOptions(unit="cm/s2", sensitivity=1e4), confirmed=["*"])
+    assert len(found.motions) == 2
+    assert len({motion.station for motion in found.motions}) == 1
+    assert len(found.left_out) == 3
+
+
+def test_an_smc_file_and_a_cosmos_file_of_the_same_recording_are_one(tmp_path):
+    values = shaking(4)
+    (tmp_path / "a.smc").write_text(smc_text(values, clock=(-32768,) * 6), encoding="latin-1")
+    text = cosmos_text(values, "135 Deg", series={"seconds": 2}, stage="Corrected", scnl="")
+    (tmp_path / "b.v2c").write_text(text.replace("NP-8040", "NP-1675"), encoding="latin-1")
+    found = read_motions(tmp_path)
+    assert (len(found.motions), len(found.left_out)) == (1, 1)
+
+
+def test_records_that_only_look_alike_stay_two(tmp_path):
+    """The same shaking later in the day, by their headers, is another recording."""
+    for i, hour in enumerate((17, 18)):
+        text = cosmos_text(A + 0.01 * i * B, clock=(2018, 11, 30, hour, 29))
+        (tmp_path / f"{i}.v1c").write_text(text, encoding="latin-1")
+    assert len(read_motions(tmp_path).motions) == 2
+
+
+# Whole sets
+
+
+def test_components_of_a_station_come_from_one_stream_the_one_with_the_finer_step(tmp_path):
+    """A stream at 40 Hz, stronger by chance in one direction, beside that at 200 Hz, of the same sensor."""
+    t = np.arange(4000) / 200
+    series = {way: 1e5 * np.exp(-((t - 8) ** 2) / 6) * np.sin(7 * t + k) for k, way in enumerate("ENZ")}
+    for band, rate, gain in (("B", 40, 1.5), ("H", 200, 1.0)):
+        for way, values in series.items():
+            each = trace(f"{band}N{way}", (gain * values[:: 200 // rate]).astype(np.int32))
+            each.stats.sampling_rate = rate
+            each.write(str(tmp_path / f"{band}N{way}.mseed"), format="MSEED")
+    options = ReadOptions(unit="cm/s2", sensitivity=1e3)
+    found = read_motions(tmp_path, options=options)
+    assert [(motion.source, motion.vertical_source) for motion in found.motions] == [
+        ("HNE.mseed", "HNZ.mseed"),
+        ("HNN.mseed", "HNZ.mseed"),
+    ]
+    assert len(read_motions(tmp_path, options=options, azimuths=(45.0,)).motions) == 1
+
+
+def test_a_set_is_chosen_as_a_whole(tmp_path):
+    """One instrument has the stronger east component, the other one the stronger north one."""
+    for folder, east, north in (("a", 1.5, 1.0), ("b", 1.0, 1.6)):
+        noise = wiggle(300, 9, 0.01 if folder == "a" else 0.02)
+        for way, values in (("0", north * wiggle(300, 1)), ("90", east * wiggle(300, 2)), ("UP", wiggle(300, 3))):
+            write_at2(tmp_path / folder, f"STA{way}.AT2", values + noise, title=title(way))
+    found = read_motions(tmp_path, confirmed=["*"])
+    used = {motion.source.partition("/")[0] for motion in found.motions}
+    assert (len(found.motions), len(used)) == (2, 1)
+    assert all(motion.vertical_source.partition("/")[0] in used for motion in found.motions)
+
+
+def test_sets_are_found_in_time_that_grows_with_their_number(tmp_path):
+    """Records of one station in many earthquakes are compared by what they say, not sample by sample."""
+    from rockbatch.motions import doubles
+
+    calls = []
+    plain = doubles.correlation
+    doubles.correlation = lambda one, two: calls.append(1) or plain(one, two)
+    try:
+        for i in range(60):
+            write_at2(
+                tmp_path, f"r{i}.AT2", wiggle(200, i + 1), title=title("0", event=f"E{i}, 1/{i % 28 + 1}/{1960 + i}")
+            )
+        assert len(read_motions(tmp_path).motions) == 60
+    finally:
+        doubles.correlation = plain
+    assert len(calls) < 60
