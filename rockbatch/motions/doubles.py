@@ -63,10 +63,10 @@ def without_doubles(components: Sequence[Component]) -> tuple[list[Component], l
     Sets are ranked as wholes (:func:`_ranks`), so that the components of a station come from one instrument. What a
     manifest wants (``use = true``) is always used. Copies that differ by a factor, or in their peaks, are named in the
     findings of the one that is used; where neither plausibility nor a file's name tells which factor is right, it has to
-    be confirmed.
+    be confirmed. Copies by a factor under other names stay, since suites are scaled on purpose, and say so.
     """
     components, below = without_boreholes(components)
-    pairs = _pairs(components)
+    pairs, scaled = _pairs(components)
     factors = {(i, j): _factor(components[i], components[j]) for i, others in pairs.items() for j in others}
     rank = _ranks(components, pairs, factors)
     used: set[int] = set()
@@ -85,6 +85,11 @@ def without_doubles(components: Sequence[Component]) -> tuple[list[Component], l
         decided = kept.wanted or rank[i][1:4] != rank[j][1:4]
         if finding := _difference(left, kept, factor, decided):
             odd.setdefault(j, []).append(finding)
+    for i, j in ((i, j) for i, others in scaled.items() for j in others if not {i, j} & stands_for.keys()):
+        for k, other in ((i, components[j]), (j, components[i])):
+            factor = _factor(other, components[k])
+            text = f"{other.source} has the same samples times {factor:.4g}; both are used, and count as one record"
+            odd.setdefault(k, []).append(Finding("factor", text))
     kept_ones = [
         replace(component, odd=(*component.odd, *odd[i])) if i in odd else component
         for i, component in enumerate(components)
@@ -93,8 +98,11 @@ def without_doubles(components: Sequence[Component]) -> tuple[list[Component], l
     return kept_ones, [*below, *left_out]
 
 
-def _pairs(components: Sequence[Component]) -> Pairs:
-    """Return the components that are of the same recording as each component; those without any are missing."""
+def _pairs(components: Sequence[Component]) -> tuple[Pairs, Pairs]:
+    """Return the components that are of the same recording as each component; those without any are missing.
+
+    And, once for each pair, copies by a factor of which nothing but their samples says that they are one recording.
+    """
     groups: dict[Hashable, list[int]] = {}
     for i, component in enumerate(components):
         groups.setdefault(_samples(component), []).append(i)
@@ -112,10 +120,17 @@ def _pairs(components: Sequence[Component]) -> Pairs:
             one, two = components[i], components[j]
             if _may_be_copies(one, two) if isinstance(key, bytes) else _same_recording(one, two, whole):
                 join(i, j)
+    scaled: Pairs = {}
     for i, j in _alike_in_time(components):
-        if j not in pairs.get(i, ()) and _is_copy(components[i], components[j]):
+        one, two = components[i], components[j]
+        if j in pairs.get(i, ()) or not _may_be_one(one, two):
+            continue
+        factor = _factor(one, two)
+        if factor is not None and abs(abs(factor) - 1.0) > _NO_FACTOR:
+            scaled.setdefault(i, set()).add(j)
+        elif _correlate(one, two):
             join(i, j)
-    return pairs
+    return pairs, scaled
 
 
 def _ranks(
@@ -236,25 +251,19 @@ def _growth(component: Component) -> Samples:
     return np.diff(np.searchsorted(energy, np.multiply(_SHARES, energy[-1]))) * component.dt
 
 
-def _is_copy(a: Component, b: Component) -> bool:
-    """Whether samples correlate of which headers do not say that they are of other sensors, times or directions.
-
-    Copies by a factor under other names stay: nothing but their samples says that they are one recording, and suites are
-    scaled on purpose. They count as one record.
-    """
+def _may_be_one(a: Component, b: Component) -> bool:
+    """Whether headers do not say that two components are of other files, sensors, times, events or directions."""
     if _file(a) == _file(b) or _numbers_differ(a, b) or not overlap(a, b):
         return False
     if a.event and b.event and a.event != b.event and _suffix(a) == _suffix(b):  # which formats write as they like
         return False
     way = a.orientation
-    if (
-        a.seat.is_other(b.seat)
-        or not _pointing_alike(a, b)
-        or not (way.vertical or way.azimuth is not None or way.label)
-    ):
-        return False
-    if _factor(a, b) is not None:
-        return False
+    known = way.vertical or way.azimuth is not None or bool(way.label)
+    return known and _pointing_alike(a, b) and not a.seat.is_other(b.seat)
+
+
+def _correlate(a: Component, b: Component) -> bool:
+    """Whether the samples of two components, brought to one step, are those of one recording."""
     coarse, fine = sorted((a, b), key=lambda c: -c.dt)
     return correlation(coarse.acceleration, _at_step(fine, coarse.dt)) >= _CERTAIN
 

@@ -189,3 +189,23 @@ def test_sets_are_found_in_time_that_grows_with_their_number(tmp_path):
     finally:
         doubles.correlation = plain
     assert len(calls) < 60
+
+
+def test_copies_by_a_factor_under_other_names_are_all_used_and_say_so(tmp_path):
+    for name, factor in (("design_000", 1.0), ("collapse_000", 1.5)):
+        rows = "".join(f"{0.01 * i:.2f} {factor * value:.6f}\n" for i, value in enumerate(wiggle(400)))
+        (tmp_path / f"{name}.txt").write_text("time(s) a(g)\n" + rows)
+    found = read_motions(tmp_path)
+    assert len(found.motions) == 2
+    assert len({motion.station for motion in found.motions}) == 1
+    assert [[finding.what for finding in motion.findings] for motion in found.motions] == [["factor"], ["factor"]]
+
+
+def test_a_reversed_copy_in_another_format_is_the_same_recording(tmp_path):
+    values = shaking(4)
+    (tmp_path / "a.smc").write_text(smc_text(values, clock=(-32768,) * 6), encoding="latin-1")
+    text = cosmos_text(-values, "135 Deg", series={"seconds": 2}, stage="Corrected", scnl="")
+    (tmp_path / "b.v2c").write_text(text, encoding="latin-1")
+    found = read_motions(tmp_path)
+    assert len(found.motions) == 1
+    assert "-1 times as large" in next(iter(left_out(found).values()))

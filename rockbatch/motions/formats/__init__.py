@@ -93,6 +93,7 @@ FORMATS = (
     Format("AFAD text", afad.SUFFIXES, afad.is_afad, afad.read_afad),
     Format("UNAM", unam.SUFFIXES, unam.is_unam, unam.read_unam),
     Format("CWA free field", cwa.SUFFIXES, cwa.is_cwa, cwa.read_cwa),
+    Format("PEER AT2", at2.SUFFIXES, at2.has_at2_count, at2.read_component, anywhere=False),
     Format("text columns", columns.SUFFIXES, columns.is_columns, columns.read_columns, anywhere=False),
 )
 """In the order in which they are tried: an AT2 file saved as .txt is AT2, other text is columns."""
@@ -143,7 +144,7 @@ def usable(reading: Component | Unusable) -> Component | Unusable:
 
 def _not_recognised(file: RecordFile) -> str:
     """What to say about a file whose header is that of no format, and what to do with it."""
-    names = " or ".join(known.name for known in FORMATS if file.path.suffix.lower() in known.suffixes)
+    names = " or ".join(dict.fromkeys(known.name for known in FORMATS if file.path.suffix.lower() in known.suffixes))
     foreign = next((what for magic, what in _FOREIGN.items() if file.data.startswith(magic)), "")
     if foreign or not names:
         return f"not a format that rockbatch reads{f', but {foreign}' if foreign else ''}; {_INSTEAD}"

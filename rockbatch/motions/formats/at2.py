@@ -72,8 +72,14 @@ def looks_like_at2(head: bytes) -> bool:
     for i, line in enumerate(lines):
         if _count_and_step(line):
             above = " ".join(lines[:i]).upper()
-            return (i > 0 and ("UNITS OF" in above or "PEER" in above)) or _IN_G.search(f"{above} {line}") is not None
+            return i > 0 and ("UNITS OF" in above or "PEER" in above)
     return False
+
+
+def has_at2_count(head: bytes) -> bool:
+    """Whether the first bytes have a count with a time step, as the header of an AT2 file: for files of that suffix."""
+    lines = head[:_HEADER_BYTES].decode("latin-1").splitlines()[:_HEADER_LINES]
+    return any(_count_and_step(line) for line in lines)
 
 
 def read_at2(filename: FileLike, headonly: bool = False, **kwargs: Any) -> "Stream":

@@ -6,7 +6,7 @@ from array import array
 import numpy as np
 
 from rockbatch.errors import InputError, NoRecordError
-from rockbatch.motions.formats.column_header import stated_count
+from rockbatch.motions.formats.column_header import columns_with_units, columns_without_units, stated_count
 from rockbatch.motions.formats.fixed_width import LOOKED_AT, is_cut_short, lines_of
 from rockbatch.motions.limits import HUGE
 from rockbatch.motions.motion import Samples
@@ -55,7 +55,8 @@ def read_table(text: str, wrapped: bool = False) -> tuple[list[str], Samples]:
                 header.append(stripped.lstrip("#% \t")[:_LONGEST])
     if not rows:
         raise NoRecordError("no columns of numbers found in it")
-    wrapped = wrapped or (width > 1 and stated_count(header) == len(rows) + len(rest))
+    if width > 1 and stated_count(header) == len(rows) + len(rest):
+        wrapped = wrapped or not (columns_with_units(header, width) or columns_without_units(header, width))
     if rest and not wrapped:
         hint = f". {WRAPPED}" if width > 2 else ""
         raise _refused(lines, f"line {len(lines)}: found {len(rest)} numbers; expected {width} as above{hint}")

@@ -1,0 +1,57 @@
+"""Write docs/pages/formats.md: which layouts of each format are read, and why others are refused.
+
+    python docs/layouts.py
+
+reads the files of ``tests/helpers/layouts.py``; a test compares the page with what comes of them today.
+"""
+
+import sys
+import tempfile
+from pathlib import Path
+
+from rockbatch.motions import read_motions
+
+HERE = Path(__file__).parent
+PAGE = HERE / "pages" / "formats.md"
+_HEAD = """\
+# Formats of records
+
+Every layout below is written as a file by `tests/helpers/layouts.py`, and read as a folder with only that file in it.
+*Read* means that all of its components are known, with their unit, step and direction; *asked for*, that a manifest or the
+study has to say or confirm something. What else is to be known about a format is under
+[Ground motions](reference/motions.md).
+
+"""
+
+
+def page() -> str:
+    """Return the text of the page."""
+    sys.path.insert(0, str(HERE.parent / "tests" / "helpers"))
+    from layouts import LAYOUTS
+
+    found = [(layout.format, layout.what, *_outcome(layout)) for layout in LAYOUTS]
+    lines = [_HEAD + "| format | layouts | read | asked for | refused |", "| --- | --: | --: | --: | --: |"]
+    for form in dict.fromkeys(row[0] for row in found):
+        outcomes = [row[2] for row in found if row[0] == form]
+        counts = [outcomes.count(outcome) for outcome in ("read", "asked for", "refused")]
+        lines.append(f"| {form} | {len(outcomes)} | {' | '.join(map(str, counts))} |")
+    lines += ["", "| format | layout | outcome | why |", "| --- | --- | --- | --- |"]
+    lines += [f"| {' | '.join(row)} |" for row in found]
+    return "\n".join([*lines, ""])
+
+
+def _outcome(layout) -> tuple[str, str]:
+    """Return whether a layout is read, and why not."""
+    with tempfile.TemporaryDirectory() as folder:
+        (Path(folder) / layout.file).write_bytes(layout.data)
+        found = read_motions(folder, options=layout.stated)
+    reasons = [refused.reason for refused in found.unusable]
+    if found.motions and not reasons:
+        return "read", ""
+    reason = reasons[0].split("; if it is right")[0]
+    asked = any(word in reasons[0] for word in ("state", "write confirm"))
+    return ("asked for" if asked else "refused"), reason.replace("|", "\\|")
+
+
+if __name__ == "__main__":
+    PAGE.write_text(page(), encoding="utf-8")
