@@ -17,7 +17,7 @@ RULES = ("as needed", "keep", "mean", "pre-event")
 
 @dataclass(frozen=True)
 class Offset:
-    """What is taken off every component.
+    """The offset that is taken off every component.
 
     Attributes
     ----------

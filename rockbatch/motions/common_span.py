@@ -104,7 +104,7 @@ def on_common_samples(first: Component, second: Component, names: tuple[str, str
 
 
 def _offset(first: Component, second: Component, name: str) -> tuple[float, list[str]]:
-    """What the second component starts later [s], without jitter, and the note on that."""
+    """Return the delay of the second component [s], without jitter, and the note on that."""
     if first.start is None or second.start is None:
         return 0.0, []
     offset, step = second.start - first.start, min(first.dt, second.dt)

@@ -7,7 +7,7 @@ import numpy as np
 
 from rockbatch.motions.motion import Finding, Initial, Samples
 from rockbatch.motions.orientation import UNKNOWN, Orientation
-from rockbatch.motions.origin import NOBODY_KNOWS, Origin
+from rockbatch.motions.origin import UNKNOWN_ORIGIN, Origin
 
 FIRST_YEAR = 365 * 86400.0
 """The end of 1970 [s since it began]: no recorder began in it, but headers without a date say so."""
@@ -148,7 +148,7 @@ class Component:
     event: str = ""
     processed: bool | None = None
     initial: Initial | None = None
-    origin: Origin = NOBODY_KNOWS
+    origin: Origin = UNKNOWN_ORIGIN
     notes: tuple[str, ...] = ()
     odd: tuple[Finding, ...] = ()
     number: int = 0

@@ -34,7 +34,7 @@ Reading = Component | Unusable | LeftOut
 
 @dataclass(frozen=True)
 class _Asked:
-    """What holds for all files that are read together."""
+    """Settings for all files that are read together."""
 
     manifest: Manifest
     options: ReadOptions
@@ -64,7 +64,7 @@ def read_motions(
         Files and folders; folders with all below them, and what their archives hold, without hidden files,
         read-me files and links that lead out. Manifests in them are obeyed.
     vertical : bool
-        Whether motions get their station's vertical component, where there is one; "required": what has none is
+        Whether motions get their station's vertical component, if it has one; "required": what has none is
         unusable.
     gravity : float
         What "g" means in files [m/s²].
@@ -195,7 +195,7 @@ def _is_unknown(file: Found) -> bool:
 
 
 def _content(file: Found, first: int | None = None) -> bytes:
-    """What a file holds, or its ``first`` bytes; nothing where it cannot be read, which its reason says."""
+    """Return the bytes of a file, or its ``first`` ones; none if it cannot be read."""
     try:
         return archives.content(file.path, first)
     except (InputError, OSError):
@@ -203,7 +203,7 @@ def _content(file: Found, first: int | None = None) -> bytes:
 
 
 def _missing(path: Path) -> str:
-    """What to say about a path that does not exist."""
+    """Return the message on a path that does not exist."""
     beside = [entry.name for entry in path.parent.iterdir()] if path.parent.is_dir() else []
     close = difflib.get_close_matches(path.name, beside, 1)
     hint = f"; did you mean {path.parent / close[0]}?" if close else ""
@@ -220,7 +220,7 @@ def _numbered(found: Sequence[Found]) -> set[Path]:
 
 
 def _readings(file: Found, asked: _Asked) -> list[Reading]:
-    """What one file is: components, and what its manifest leaves out, or the one reason why there are none.
+    """Return the readings of one file: components, and what its manifest leaves out, or the one reason why there are none.
 
     Whatever a file does ends here: it costs no other file, and its texts go on as they can be shown anywhere.
     """
@@ -247,7 +247,7 @@ def _readings(file: Found, asked: _Asked) -> list[Reading]:
 
 
 def _used(file: Found, asked: _Asked) -> list[Reading]:
-    """What one file is, with what a manifest says about it; raises what comes up in its reading."""
+    """Return the readings of one file, as a manifest describes them; raises what comes up in its reading."""
     path = archives.bare(file.path)
     entries = asked.manifest.of(file.path)
     if any(not entry.use and entry.component is None for entry in entries):
@@ -275,10 +275,10 @@ def _left_out(unusable: Unusable, entries: Sequence[Entry]) -> LeftOut | None:
     """A component that cannot be used, but is not missed: its manifest leaves it out, or it is no ground motion."""
     if is_clock(unusable.label):
         return LeftOut(unusable.name, unusable.source, f"no record: {unusable.label}, the recorder's clock")
-    told = next((entry for entry in entries if not entry.use and entry.is_for(unusable)), None)
-    if told is None:
+    entry = next((entry for entry in entries if not entry.use and entry.is_for(unusable)), None)
+    if entry is None:
         return None
-    return LeftOut(unusable.name, unusable.source, f"use = false in {told.table.file.path.name}")
+    return LeftOut(unusable.name, unusable.source, f"use = false in {entry.table.file.path.name}")
 
 
 def _read(file: Found, options: ReadOptions, asked: _Asked) -> Sequence[Component | Unusable]:

@@ -1,4 +1,4 @@
-"""What a record can be: beyond these a header is damaged, or the file no record, and arrays would not fit into memory."""
+"""Limits of records: beyond these a header is damaged, or the file no record, and arrays would not fit into memory."""
 
 SHORTEST_STEP, LONGEST_STEP = 1e-5, 1.0
 """Sampling interval [s]: recorders take 20 to 1000 samples a second; digitised film and simulations stay within, too."""
@@ -10,7 +10,7 @@ MOST_SAMPLES = 2 * 10**7
 """Of a component, also after its times were made even: a day at 200 Hz has 17 million."""
 
 HUGE = 1e30
-"""What no acceleration reaches in any unit; its powers and sums stay within the range of floats."""
+"""A bound that no acceleration reaches in any unit; its powers and sums stay within the range of floats."""
 
 
 def is_step(dt: float) -> bool:

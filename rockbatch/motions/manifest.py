@@ -57,7 +57,7 @@ _SAME = 1e-9  # relative: factors of units, and steps, that differ by less are t
 
 @dataclass(frozen=True)
 class Entry:
-    """What a manifest says of a file, or of one component in it: the values of its keys, and where they stand."""
+    """The entry of a file, or of one component in it: the values of its keys, and where they stand."""
 
     path: Path
     table: Table
@@ -88,7 +88,7 @@ class Manifest:
 
     @classmethod
     def read(cls, paths: Iterable[Path]) -> "Manifest":
-        """What the manifests at ``paths`` say together."""
+        """Return the entries of the manifests at ``paths``."""
         manifest = cls({}, [], [])
         for path in paths:
             try:
@@ -152,7 +152,7 @@ def _is_there(path: Path) -> bool:
 
 
 def _nearby(path: Path, folder: Path) -> str:
-    """What file was meant, if there is one of a similar name."""
+    """Return the hint at a file of a similar name; empty if there is none."""
     try:
         names = os.listdir(path.parent)
     except OSError:
@@ -243,7 +243,7 @@ def _described(component: Component, entry: Entry, gravity: float) -> Component:
 
 
 def _unit_factor(component: Component, entry: Entry, gravity: float) -> float:
-    """What turns numbers read in the component's unit into those of the manifest's."""
+    """Return the factor from the component's unit to that of the manifest."""
     if not component.unit:
         entry.table.complain("unit: the file has a scale of its own; leave it out, or write scale instead", "unit")
         return 1.0
@@ -277,7 +277,7 @@ def is_manifest(path: Path) -> bool:
         with path.open("rb") as file:
             head = _first_line(file.read(_LONGEST_HEAD).decode("utf-8-sig", "replace"))
     except OSError:
-        return True  # what cannot be read is told with the other mistakes
+        return True  # which is reported with the other mistakes
     try:
         return "file" in [cell.strip() for cell in next(csv.reader([head], delimiter=_delimiter(head)), [])]
     except csv.Error:

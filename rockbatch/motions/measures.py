@@ -88,7 +88,7 @@ def runs_away(displacements: Samples) -> bool:
 
 
 def believable_pgd(motion: Motion) -> float | None:
-    """PGD [m] of a motion; ``None`` where its displacement runs away, and nobody knows how it begins."""
+    """PGD [m] of a motion; ``None`` where its displacement runs away, and its initial state is unknown."""
     moved = displacement(motion.horizontal, motion.dt, motion.initial)
     return None if motion.initial is None and runs_away(moved) else float(np.abs(moved).max())
 

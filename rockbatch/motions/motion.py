@@ -1,4 +1,4 @@
-"""What a ground motion is: one horizontal component, perhaps with its station's vertical one."""
+"""Ground motions: one horizontal component, perhaps with its station's vertical one."""
 
 import math
 from collections.abc import Sequence
@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from rockbatch.errors import InputError
-from rockbatch.motions.origin import NOBODY_KNOWS, Origin
+from rockbatch.motions.origin import UNKNOWN_ORIGIN, Origin
 from rockbatch.showing import Shown
 from rockbatch.units import GRAVITY
 
@@ -30,7 +30,7 @@ class Initial:
 
 @dataclass(frozen=True)
 class Finding:
-    """What is odd about a motion.
+    """An oddity of a motion.
 
     Attributes
     ----------
@@ -77,11 +77,11 @@ class Motion(Shown):
     factor : float
         What brought the record to the study's target; it is in the components already.
     initial : Initial or None
-        Of the horizontal component, where its file tells it; ``None``: nobody knows, from rest then.
+        Of the horizontal component, where its file tells it; ``None``: unknown, from rest then.
     processed : bool or None
         Whether its agency has corrected the horizontal component; ``None`` where the file does not say.
     findings : tuple of Finding
-        What is odd about it, told when it was read.
+        Oddities that were found when it was read.
     origin : Origin
         Event, station and direction in words, as far as its header says them.
     lacks_vertical : bool
@@ -119,7 +119,7 @@ class Motion(Shown):
     initial: Initial | None = None
     processed: bool | None = None
     findings: tuple[Finding, ...] = ()
-    origin: Origin = NOBODY_KNOWS
+    origin: Origin = UNKNOWN_ORIGIN
     lacks_vertical: bool = False
     station: str = ""
     confirm: Sequence[str] = ()
@@ -151,7 +151,7 @@ class Motion(Shown):
 
     @property
     def label(self) -> str:
-        """What it is called among people: "Imperial Valley 1979, Meloland, 270"; its file where the header tells nothing."""
+        """Its name for people: "Imperial Valley 1979, Meloland, 270"; its file where the header tells nothing."""
         return self.origin.label or (self.name if self.source in ("", "pulse") else self.source)
 
     @property
@@ -237,7 +237,7 @@ class Unusable:
 
 @dataclass(frozen=True)
 class LeftOut:
-    """A file or record that nobody misses, and why: not selected, told not to be used, or no record at all."""
+    """A file or record that is left out on purpose, and why: not selected, not to be used, a copy, or no record."""
 
     name: str
     source: str

@@ -110,7 +110,7 @@ class MotionSet(Shown):
         raise InputError(f'there is no motion "{which}"; {hint}')
 
     def table(self) -> "pd.DataFrame":
-        """What is known of each motion, a row for each, as ``rockbatch motions --csv`` has it.
+        """Return what is known of each motion, a row for each, as ``rockbatch motions --csv`` has it.
 
         Returns
         -------

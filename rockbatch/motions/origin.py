@@ -1,4 +1,4 @@
-"""What a record is called among people: event and year, station, direction; "Imperial Valley 1979, Meloland, 270"."""
+"""The name of a record for people: event and year, station, direction; "Imperial Valley 1979, Meloland, 270"."""
 
 import re
 from dataclasses import dataclass
@@ -58,7 +58,7 @@ class Origin:
         return Origin(event, station, self.direction)
 
 
-NOBODY_KNOWS = Origin()
+UNKNOWN_ORIGIN = Origin()
 """Of a record whose header tells nothing of it."""
 
 

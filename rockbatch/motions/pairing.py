@@ -39,7 +39,7 @@ def to_motions(
     confirmed: Sequence[str] = ANY,
     confirmed_pga: Sequence[str] = (),
 ) -> MotionSet:
-    """Motions of ``components`` in their order, then of those of a package.
+    """Return the motions of ``components`` in their order, then of those of a package.
 
     Components belong together that share folder and station by their headers, else by their names; those of a
     package (no folder) join the files of the same RSN, whose own component of that azimuth goes first. With
@@ -81,7 +81,7 @@ def to_motions(
         left = [v for group in verticals for v in group if id(v) not in used]
         unusable += [Unusable(v.name, v.source, f"{reason} ({v.station or v.site})") for v in left]
     peaks = [[(c, c.pga) for c in station if not c.orientation.vertical] for station in stations]
-    named = _told_apart(motions, [c.folder for _, c in horizontals])
+    named = _distinct(motions, [c.folder for _, c in horizontals])
     judged = [
         Judged(motion, component, peaks[station], gravity)
         for motion, (station, component) in zip(named, horizontals, strict=True)
@@ -110,7 +110,7 @@ def _believed(judged: Iterable[Judged], patterns: Mapping[str, Sequence[str]], r
 
 
 def _question(component: Component) -> str:
-    """What has to be said of a component whose direction is not known, and where."""
+    """Return which statement a component of unknown direction lacks, and where to write it."""
     label = component.orientation.label
     one_of_several = bool(label) and component.source.endswith(f"({label})")
     which = f"component = {shown(label)}" if one_of_several else "it"
@@ -206,7 +206,7 @@ def _motion(h: Component, v: Component | None, notes: Iterable[str]) -> Motion:
     )
 
 
-def _told_apart(motions: list[Motion], folders: list[str]) -> list[Motion]:
+def _distinct(motions: list[Motion], folders: list[str]) -> list[Motion]:
     """Motions of the same name get the suffix of their files, then their folder, then a number."""
 
     def with_suffix(i: int, name: str) -> str:

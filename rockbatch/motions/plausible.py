@@ -1,4 +1,4 @@
-"""What is odd about a record: a peak that a wrong unit explains, faults of instruments, and where the sensor stood.
+"""Oddities of a record: a peak that a wrong unit explains, faults of instruments, and where the sensor stood.
 
 Each judge looks for one thing and returns a :class:`Finding`, or nothing; a further one joins by its name in ``JUDGES``.
 The limits are held against real records in motions/README.md.

@@ -135,7 +135,7 @@ def station_names(stations: Sequence[Sequence[Component]]) -> list[str]:
             if low != high and (_together(a, b) or _copies(a, b)):
                 root[high] = low
     firsts = dict.fromkeys(first_of(i) for i in range(len(stations)))
-    names = dict(zip(firsts, _told_apart([stations[i] for i in firsts]), strict=True))
+    names = dict(zip(firsts, _distinct([stations[i] for i in firsts]), strict=True))
     return [names[first_of(i)] for i in range(len(stations))]
 
 
@@ -173,7 +173,7 @@ def _copies(a: Component, b: Component) -> bool:
     return bool(np.abs(one / one[i] - two / two[i]).max() <= _SAME_SHAPE)
 
 
-def _told_apart(records: Sequence[Sequence[Component]]) -> list[str]:
+def _distinct(records: Sequence[Sequence[Component]]) -> list[str]:
     """Return a name for each record: that of its station, and of several of one station what tells them apart."""
     names = [_name(record[0]) for record in records]
     for more in (lambda c: c.event, lambda c: c.folder.rsplit("/", 1)[-1]):

@@ -12,7 +12,7 @@ _ENOUGH = 8  # samples: fewer tell nothing about their mean
 
 
 def never_changes_sign(motion: Motion) -> str:
-    """What is said of a series that is all above zero, or below, as spectra are; empty where it is not."""
+    """Return the remark on a series that is all above zero, or below, as spectra are; empty if it is not."""
     for what, samples in _series(motion):
         if samples.min() >= 0 or samples.max() <= 0:
             return f"{what}never changes sign, as spectra do and records do not"
@@ -20,7 +20,7 @@ def never_changes_sign(motion: Motion) -> str:
 
 
 def mean_far_from_zero(motion: Motion) -> str:
-    """What is said of a series whose mean is beyond ``FARTHEST_MEAN`` of its peak; empty where it is not."""
+    """Return the remark on a series whose mean is beyond ``FARTHEST_MEAN`` of its peak; empty if it is not."""
     for what, samples in _series(motion):
         share = abs(float(samples.mean())) / float(np.abs(samples).max())
         if share > FARTHEST_MEAN:

@@ -143,7 +143,7 @@ def usable(reading: Component | Unusable) -> Component | Unusable:
 
 
 def _not_recognised(file: RecordFile) -> str:
-    """What to say about a file whose header is that of no format, and what to do with it."""
+    """Return why a file is of no known format, and what to do with it."""
     names = " or ".join(dict.fromkeys(known.name for known in FORMATS if file.path.suffix.lower() in known.suffixes))
     foreign = next((what for magic, what in _FOREIGN.items() if file.data.startswith(magic)), "")
     if foreign or not names:

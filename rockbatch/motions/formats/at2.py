@@ -49,7 +49,7 @@ _WIDEST = 40  # characters of a number; longer ones are no numbers, and would co
 
 @dataclass(frozen=True)
 class _At2:
-    """What an AT2 file says; ``values`` in its own ``unit``, shape (npts,). PEER's own records are corrected ones."""
+    """The contents of an AT2 file; ``values`` in its own ``unit``, shape (npts,). PEER's own records are corrected ones."""
 
     event: str
     date: str
@@ -145,7 +145,7 @@ def read_component(file: RecordFile) -> list[Component]:
 
 
 def _parse(text: str) -> _At2:
-    """What the text of an AT2 file says; ``InputError`` with the line where it cannot be used."""
+    """Return the contents of an AT2 file; ``InputError`` with the line where it cannot be used."""
     lines = text[:_HEADER_CHARACTERS].splitlines(keepends=True)[:_HEADER_LINES]
     at = next((i for i, line in enumerate(lines) if _count_and_step(line)), None)
     found = None if at is None else _count_and_step(lines[at])

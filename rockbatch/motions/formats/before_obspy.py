@@ -1,4 +1,4 @@
-"""What is looked at in a file before one of ObsPy's readers gets it.
+"""Checks of a file before one of ObsPy's readers gets it.
 
 These readers believe what a header says: an event's longitude of 1e30 is brought below 180° by subtracting 360° for
 ever, and a control header whose blockette is 0 long is read again and again. So each of them has a check here, which

@@ -1,4 +1,4 @@
-"""What the header of a table says its columns are, in the ways that people write it."""
+"""Columns of a table by its header, in the ways that people write it."""
 
 import re
 from collections.abc import Sequence
@@ -40,7 +40,7 @@ _OTHERS = {
 
 @dataclass(frozen=True)
 class Column:
-    """What one column is: its label, and its unit where it is known."""
+    """One column: its label, and its unit if it is known."""
 
     label: str
     unit: str | None = None
@@ -68,7 +68,7 @@ class Column:
 
     @property
     def other(self) -> str:
-        """What it holds of a record besides acceleration: "velocity", "displacement"; empty where it is not said."""
+        """The quantity that it holds other than acceleration: "velocity", "displacement"; empty if it says none."""
         return next((_OTHERS[word] for word in sorted(self._words) if word in _OTHERS), "")
 
     @property
@@ -77,7 +77,7 @@ class Column:
 
 
 def spectrum_in(columns: Sequence[Column]) -> str:
-    """What kind of spectrum columns are, beginning with the labels that say so; empty where they are time histories."""
+    """Return the kind of spectrum of columns, after the labels that say so; empty for time histories."""
     telling = [column for column in columns if column.is_abscissa or column.is_ordinate]
     if not telling:
         return ""

@@ -110,7 +110,7 @@ def _parse(text: str, options: ReadOptions) -> list[Recording]:
 
 
 def _columns(header: list[str], options: ReadOptions, table: Samples) -> tuple[list[Column], tuple[str, ...]]:
-    """What the columns are, and what had to be said about them; ``InputError`` for those of a spectrum."""
+    """Return the columns, and notes on them; ``InputError`` for those of a spectrum."""
     width = table.shape[1]
     columns = columns_with_units(header, width) or columns_without_units(header, width)
     stated = options.columns
@@ -160,7 +160,7 @@ def _completed(i: int, said: Column, stated: str) -> Column:
 
 
 def _with_time(columns: list[Column], table: Samples) -> list[Column]:
-    """Columns with a T that has no unit told for what it is: time grows, the transverse component does not."""
+    """Return columns with a T without unit recognised: time grows, the transverse component does not."""
     if any(column.is_time for column in columns):
         return columns
     return [

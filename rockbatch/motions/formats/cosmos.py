@@ -52,7 +52,7 @@ _SCNL = re.compile(r"<SCNL>(?P<station>\w*)\.(?P<channel>\w*)\.(?P<network>\w*)\
 
 @dataclass(frozen=True)
 class _Header:
-    """What stands above the values of a channel, and where the lines after it begin.
+    """The header of a channel, and the index of the first line after it.
 
     ``integers`` and ``reals`` are counted from 1 in the specification, from 0 here; ``unknown`` stands for those
     that are unknown, and for missing values.
@@ -108,7 +108,7 @@ def _parse(text: str) -> list[Recording]:
 
 
 def _channel_line(header: _Header) -> tuple[str, str]:
-    """What headers of one channel share: the lines of its station and of its sensor."""
+    """Return what headers of one channel share: the lines of its station and of its sensor."""
     return line_at(header.text, 4), line_at(header.text, 8)
 
 
@@ -221,7 +221,7 @@ def _recording(header: _Header, series: re.Match[str], values: Samples, at: int)
 
 
 def _station_name(header: _Header) -> str:
-    """What stands behind number and codes: "Statn No: 02-008040 Code:NP-8040   USGS  AK:Anchorage;R B Atwood Bld"."""
+    """Return the name behind number and codes: "Statn No: 02-008040 Code:NP-8040   USGS  AK:Anchorage;R B Atwood Bld"."""
     line = line_at(header.text, 4)
     said = _CODE.search(line)
     words = re.split(r" {2,}", line[said.end() :].strip()) if said else []

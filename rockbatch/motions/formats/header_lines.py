@@ -1,4 +1,4 @@
-"""Header lines whose text is fixed: found where they must stand, or told where they are not."""
+"""Header lines whose text is fixed, dates and times in them, and errors with the number of the line."""
 
 import re
 from collections.abc import Sequence
@@ -35,7 +35,7 @@ def line_with(pattern: re.Pattern[str], lines: Sequence[str], most: int, expecte
 
 
 def keys_of(lines: Sequence[str]) -> dict[str, str]:
-    """What header lines ``KEY : value`` say, the first of each key; other lines are passed over."""
+    """Return the values of header lines ``KEY : value``, the first of each key; other lines are skipped."""
     header: dict[str, str] = {}
     for at in range(len(lines)):
         key, colon, value = line_at(lines, at).partition(":")

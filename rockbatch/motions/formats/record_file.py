@@ -14,7 +14,7 @@ LAYOUTS = ("columns", "wrapped")
 """Of numbers in text files: a column for each component, or one series that goes on from line to line."""
 
 ROLES = ("horizontal",)
-"""What all components of unknown direction may be said to be."""
+"""Roles that may be stated for all components of unknown direction."""
 
 
 _SAME_UNIT = 1e-9  # relative
@@ -22,7 +22,7 @@ _SAME_UNIT = 1e-9  # relative
 
 @dataclass(frozen=True)
 class ReadOptions:
-    """What a study states about files that do not state it themselves.
+    """Statements of a study about files that do not make them themselves.
 
     Text columns and AT2 files, whose headers people write, are refused where they say otherwise; files of formats that
     always have their unit and step are not concerned.

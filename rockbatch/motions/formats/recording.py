@@ -11,7 +11,7 @@ from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.measures import initial_of
 from rockbatch.motions.motion import Initial, Samples, Unusable
 from rockbatch.motions.orientation import Orientation, is_clock, orientation_of, unknown
-from rockbatch.motions.origin import NOBODY_KNOWS, Origin
+from rockbatch.motions.origin import UNKNOWN_ORIGIN, Origin
 from rockbatch.units import acceleration_factor, length_factor
 
 _SAME_PEAK = 0.01  # relative: header peaks are rounded, and taken before the last decimals of the data were cut
@@ -82,7 +82,7 @@ class Recording:
     displacements: Series | None = None
     stated_peak: float | None = None
     notes: tuple[str, ...] = ()
-    origin: Origin = NOBODY_KNOWS
+    origin: Origin = UNKNOWN_ORIGIN
     header: dict[str, str] = field(default_factory=dict)
 
 

@@ -23,7 +23,7 @@ _OPTIONS = {"SAC": {"round_sampling_interval": False}}  # rounding a step of fou
 
 
 @contextmanager
-def _told_to_nobody() -> Iterator[list[str]]:
+def _unraisable() -> Iterator[list[str]]:
     """Collects errors that ObsPy's callbacks from C cannot raise; Python would print them on the terminal."""
     found: list[str] = []
     before = sys.unraisablehook
@@ -37,7 +37,7 @@ def _told_to_nobody() -> Iterator[list[str]]:
 def read_stream(data: bytes, name: str) -> "Stream":
     """ObsPy's reading of ``data`` in the format ``name``; ``InputError`` where its header cannot be, or ObsPy complains."""
     data = CHECKS[name](data)
-    with warnings.catch_warnings(record=True) as caught, _told_to_nobody() as unraised:
+    with warnings.catch_warnings(record=True) as caught, _unraisable() as unraised:
         warnings.simplefilter("always")
         from obspy import read  # which warns of its own use of the standard library
 
