@@ -158,10 +158,11 @@ def read_files(
 
 def _without_companions(readings: Sequence[Reading]) -> list[Reading]:
     """Return the readings with files left out that are no records (spectra, velocities, notes), if records lie beside them."""
-    folders = {_folder(reading) for reading in readings if isinstance(reading, Component)}
+    components = [reading for reading in readings if isinstance(reading, Component)]
+    folders = {(_folder(component), station) for component in components for station in ("", component.seat.number)}
     return [
         LeftOut(reading.name, reading.source, f"no record: {reading.reason}")
-        if isinstance(reading, Unusable) and reading.companion and _folder(reading) in folders
+        if isinstance(reading, Unusable) and (_folder(reading), reading.companion) in folders
         else reading
         for reading in readings
     ]
@@ -226,7 +227,7 @@ def _readings(file: Found, asked: _Asked) -> list[Reading]:
     """
     stem = archives.bare(file.path).stem
     lacks: tuple[str, ...] = ()
-    companion = False
+    companion = None
     try:
         with np.errstate(over="ignore", invalid="ignore"):  # what becomes of absurd numbers is looked at
             found = _used(file, asked)
@@ -234,7 +235,7 @@ def _readings(file: Found, asked: _Asked) -> list[Reading]:
     except InputError as error:
         reason = "; ".join(error.problems)
         lacks = error.keys if isinstance(error, UnstatedError) else ()
-        companion = isinstance(error, NoRecordError)
+        companion = error.station if isinstance(error, NoRecordError) else None
     except OSError as error:
         reason = f"cannot be read: {error.strerror or error}"
     except TooLongError:

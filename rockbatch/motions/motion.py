@@ -223,7 +223,8 @@ class Unusable:
 
     ``label`` is that of the one component that is meant, as the file has it; empty where it is the whole file.
     ``lacks`` has the keys of a manifest that would state what the file does not say; ``number`` is that of the component
-    in its file, from 1, or 0; ``companion``: whether it is what lies beside records, such as spectra or notes.
+    in its file, from 1, or 0. A ``companion`` is what lies beside records, such as spectra or notes: beside any ("") or
+    those of a station.
     """
 
     name: str
@@ -232,7 +233,7 @@ class Unusable:
     label: str = ""
     lacks: tuple[str, ...] = ()
     number: int = 0
-    companion: bool = False
+    companion: str | None = None
 
 
 @dataclass(frozen=True)

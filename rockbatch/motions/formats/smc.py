@@ -53,13 +53,15 @@ def _parse(text: str) -> list[Recording]:
     station = found(_STATION, lines, 5, "station = …, component= …")
     integers = [int(value) for value in fixed_numbers(lines, _INTEGERS, 48, 10, 8)]
     unknown, comments, npts = integers[0], integers[15], integers[16]
+    number = str(integers[29]) if integers[29] not in (unknown, 0) else station["name"].upper()
     if comments < 0 or npts < 1:
         raise InputError(f"lines 13–14: found {comments} comments and {npts} values; expected counts")
     rate = _real(lines, 2)
     if rate is None or not 0.1 <= rate <= 1e5:
-        raise InputError(
+        raise NoRecordError(
             "line 18: no sampling rate, so its samples are pairs of time and value as digitised from film; take the "
-            'corrected file of this record ("2 CORRECTED ACCELEROGRAM")'
+            'corrected file of this record ("2 CORRECTED ACCELEROGRAM")',
+            number,
         )
     width, per_line = (14, 5) if integers[46] == 8 else (10, 8)
     first = _COMMENTS + comments
@@ -81,10 +83,7 @@ def _parse(text: str) -> list[Recording]:
             start=None if unknown in (second, ms) else _start(year, day, hour, minute, second, ms),
             uncorrected=title["kind"] == "1",
             processed=title["kind"] == "2",
-            seat=Seat(
-                str(integers[29]) if integers[29] not in (unknown, 0) else station["name"].upper(),
-                place=station["name"].upper(),
-            ),
+            seat=Seat(number, place=station["name"].upper()),
             event="" if unknown in (year, day, hour, minute) else f"{year}-{day:03d} {hour}:{minute}",
             origin=origin_of(line_at(lines, 3)[25:], station["name"], line_at(lines, 3)[:25]),
             stated_peak=max(peaks, default=None),
