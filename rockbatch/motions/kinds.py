@@ -1,5 +1,7 @@
 """Kinds of values that a study or a manifest may state about records: units, sampling intervals, azimuths of components."""
 
+from typing import Any
+
 from rockbatch.motions.limits import LONGEST_STEP, SHORTEST_STEP, STEPS
 from rockbatch.toml.kinds import Choice, KindError, Number, Other, Text, Whole, text
 from rockbatch.units import acceleration_factor
@@ -22,8 +24,10 @@ def _is_file_name(value: str) -> None:
 _NUMBER = Whole()
 
 
-def _channel(value: int | str) -> int | str:
+def _channel(value: Any) -> int | str:
     """Return the label or name of a component, or its number in the file, from 1."""
+    if isinstance(value, float) and value.is_integer():
+        value = int(value)  # 2.0, which a schema takes for a whole number, too
     return _NUMBER(value) if isinstance(value, int) else text(value)
 
 
