@@ -119,7 +119,7 @@ def test_nobody_gets_what_nobody_asked_for_and_tables_of_another_time_go(tmp_pat
 
 
 def test_periods_without_the_table_are_refused(tmp_path):
-    with pytest.raises(InputError, match="sa_periods_s: is for intensity = true"):
+    with pytest.raises(InputError, match=r"sa_periods_s = \[1\.0\]: is for intensity = true"):
         rb.load_study(write_study(tmp_path, study_text(output={"sa_periods_s": [1.0]})))
 
 

@@ -35,7 +35,7 @@ def test_a_pier_of_no_size_that_there_is_is_refused_at_its_key(tmp_path, value):
     [
         ({"beta": 1e300}, "beta = 1e+300: expected a number of the size 1e-15 to 1e+15"),
         ({"eta": 1e300}, "eta = 1e+300: expected a number of the size"),
-        ({"n": 1e12}, "n = 1e+12: the Bouc–Wen exponent must be at least 1, and 1000 at most"),
+        ({"n": 1e12}, "n = 1000000000000.0: the Bouc–Wen exponent must be at least 1, and 1000 at most"),
         ({"epsilon": 1e-300}, "epsilon = 1e-300: expected a number of the size"),
     ],
 )

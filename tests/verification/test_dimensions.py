@@ -19,7 +19,7 @@ from rockbatch.core.devices import elongation, pull
 from rockbatch.core.devices import laws as device_laws
 from rockbatch.core.devices.laws import FRICTION, HYSTERETIC, TENDON, VISCOUS, Element
 from rockbatch.core.observe import forces
-from rockbatch.core.springs import creep, equations, events, impact, laws
+from rockbatch.core.springs import equations, events, impact, laws, recovery
 from rockbatch.core.springs.model import BOUC_WEN, ELASTIC, EPP, HARDENING, Contact, Geometry, Springs, State, Supports
 from rockbatch.core.types import Ground, Pull
 
@@ -90,7 +90,7 @@ def plain_python(monkeypatch):
     the right one.
     """
     modules: tuple[ModuleType, ...] = (
-        laws, creep, equations, impact, events, trigonometry, block, block_events, forces, device_laws, elongation, pull, rk4,
+        laws, recovery, equations, impact, events, trigonometry, block, block_events, forces, device_laws, elongation, pull, rk4,
     )  # fmt: skip
     compiled_geometry = equations.geometry
 
