@@ -170,7 +170,7 @@ class Dask:
                 self._client.cancel(list(pending))
 
     def _finished_of(self, client: "Client", pending: "Iterable[Future]") -> "list[Future]":
-        """Those that have finished, one at least; ``OSError`` where there is nobody any more to finish them."""
+        """Wait for results, one at least; raise ``OSError`` if no worker is left to finish them."""
         from distributed import TimeoutError as NotYetError
         from distributed import wait
 

@@ -97,7 +97,7 @@ def cost_of_finished(directory: Path, info: dict[str, Any]) -> dict[str, Any] | 
 
 
 def to_be_replaced(directory: Path, study: Study) -> str | None:
-    """What results there are in ``directory`` that those of ``study`` will replace, in words; None where there are none.
+    """Describe the results in ``directory`` that those of ``study`` will replace; None without any.
 
     Raises
     ------

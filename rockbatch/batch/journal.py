@@ -227,7 +227,7 @@ class Journal:
     def _recover(self) -> int:
         """Find the rows that an earlier process has finished; returns how many lines are damaged.
 
-        Raises ``InputError`` where there are rows of another study, or where nothing tells of which study they are.
+        Raises ``InputError`` for rows of another study, or if nothing says of which study they are.
         """
         self._forget()
         lines = _whole_lines(self._file)

@@ -56,7 +56,7 @@ def keep_histories(
 
     Returns
     -------
-    Path of the file, or None where there is nothing to keep. An earlier file is replaced as a whole, or not at all.
+    Path of the file, or None if there is nothing to keep. An earlier file is replaced as a whole, or not at all.
 
     Raises
     ------

@@ -24,7 +24,7 @@ Case = Mapping[str, Any]
 
 
 class Found(NamedTuple):
-    """Values of a demand, shape (n,), and their estimated errors; NaN where there is none."""
+    """Values of a demand, shape (n,), and their estimated errors; NaN if unknown."""
 
     value: Values
     error: Values

@@ -46,17 +46,17 @@ class Verdict:
     basis, reason : str
         Where the limit comes from.
     counting, counted : str
-        How runs count that do not go through to their end, and how many there were; empty where there is nothing to say.
+        How runs that ended early count, and their number; empty without any.
     note : str
-        Why nothing was decided, and what else there is to know.
+        Reason of an undecided verdict, and remarks.
     count : str
         What counts as one record, one of :data:`rockbatch.checks.rules.COUNTS`; empty for a demand of the case.
     unit : str
         Of value, bounds, limit and margin; empty for a pure number.
     station, record, polarity : str
-        The run that governs: whose demand is the largest, or, where nothing is decided, may be; empty where there is none.
+        The run that governs: whose demand is the largest, or, where nothing is decided, may be; empty without one.
     governing : float
-        What that run demands; NaN where there is none.
+        Demand of that run; NaN without one.
     """
 
     check: str
@@ -123,7 +123,7 @@ def write_verdicts(directory: Path, verdicts: Iterable[Verdict]) -> Path:
 
 
 def read_verdicts(directory: Path) -> list[Verdict]:
-    """Read checks.csv in ``directory``; empty where there is none, ``InputError`` where it is damaged."""
+    """Read checks.csv in ``directory``; empty without one, ``InputError`` if it is damaged."""
     path = Path(directory) / CHECKS
     try:
         with opened_text(path) as file:

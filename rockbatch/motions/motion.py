@@ -63,11 +63,11 @@ class Motion(Shown):
     horizontal : ndarray, shape (npts,)
         Horizontal ground acceleration ü_g [m/s²], positive to the right.
     vertical : ndarray, shape (npts,), or None
-        Vertical ground acceleration v̈_g [m/s²], positive up; ``None`` where there is none.
+        Vertical ground acceleration v̈_g [m/s²], positive up; ``None`` without one.
     source : str
         Where the horizontal component came from: a file, a package, or "pulse".
     vertical_source : str
-        Likewise for the vertical one; empty where there is none.
+        Likewise for the vertical one; empty without one.
     notes : tuple of str
         What was done to the data on its way here, in words.
     azimuth : float or None
@@ -192,7 +192,7 @@ class Motion(Shown):
 
     @property
     def pga_vertical(self) -> float | None:
-        """Peak vertical ground acceleration [m/s²], ``None`` where there is no vertical component."""
+        """Peak vertical ground acceleration [m/s²], ``None`` without a vertical component."""
         return None if self.vertical is None else float(np.abs(self.vertical).max())
 
     def _told(self) -> tuple[str, dict[str, str]]:

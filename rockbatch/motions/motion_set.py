@@ -120,7 +120,7 @@ class MotionSet(Shown):
             record (:mod:`rockbatch.motions.measures`); ``azimuth_deg``, ``magnitude``, ``distance_km``, where known;
             ``processed``, "yes" or "no", as its agency says; ``check``, what is odd about it; ``processing``, what was done
             to it here; ``event``, ``station_name``, ``direction``, as its header says; ``station``, what components that
-            count as one record share. Words are "" and numbers NaN where there are none.
+            count as one record share. Missing words are "" and missing numbers NaN.
         """
         import pandas as pd
 
@@ -150,7 +150,7 @@ class MotionSet(Shown):
 
 
 def row(motion: Motion) -> dict[str, Any]:
-    """The row of a motion in :meth:`MotionSet.table`; None where there is nothing to say."""
+    """Return the row of a motion in :meth:`MotionSet.table`; None without remarks."""
     a, dt, vertical = motion.horizontal, motion.dt, motion.pga_vertical
     return {
         "record": motion.name,

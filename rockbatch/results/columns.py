@@ -144,7 +144,7 @@ class Column:
     def where(self) -> str:
         """To which runs it applies, in words; empty for all."""
         base = _BASES_IN_WORDS[self.bases]
-        run = "where the pier stood" if self.stood else "where there is one" if self.sometimes else ""
+        run = "where the pier stood" if self.stood else "if it occurs" if self.sometimes else ""
         return ", ".join(filter(None, (base, run)))
 
 
@@ -278,7 +278,7 @@ MORE = (
         sometimes=True,
     ),
     Column(
-        "note", "what else there is to know of a run that is right: counts that have not settled, say", "note",
+        "note", "remarks on a valid run, such as counts that did not converge", "note",
         kind="text", page=OnPage("note"), sometimes=True,
     ),
     Column(
@@ -414,7 +414,7 @@ _FORCES = (
     _force("heel_speed_left_m_s", _SPEED, "heel_speed_left", "m/s", "heel speed L [m/s]", ".3f"),
     _force("heel_speed_right_m_s", _SPEED, "heel_speed_right", "m/s", "heel speed R [m/s]", ".3f"),
     _force(
-        "deck_acceleration_m_s2", "greatest absolute horizontal acceleration of the deck, or of the top where there is none",
+        "deck_acceleration_m_s2", "greatest absolute horizontal acceleration of the deck, or of the top without one",
         "deck_acceleration", "m/s^2", "deck [m/s²]", ".3f",
     ),
     _force(
@@ -604,7 +604,7 @@ def _typed(table: "pd.DataFrame", varied: Sequence[str]) -> "pd.DataFrame":
 
 
 def in_words(name: str, value: Any) -> str:
-    """A value of a column as the report writes it, in the page's unit; empty where there is none."""
+    """A value of a column as the report writes it, in the page's unit; empty if it has none."""
     page = COLUMNS[name].page
     if value is None or value != value or page is None:
         return ""

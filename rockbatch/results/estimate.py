@@ -65,7 +65,7 @@ class Estimate(NamedTuple):
     Attributes
     ----------
     theta_over_alpha : float
-        φ; 0 where the pier stays, NaN where there is no answer.
+        φ; 0 where the pier stays, NaN if there is no answer.
     outcome : str
         "stays", "rocks", "overturns" (the rotation reached α), or "no convergence".
     """

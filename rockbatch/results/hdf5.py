@@ -55,7 +55,7 @@ def attributes_of(item: "h5py.Group") -> dict[str, Any]:
 
 
 def attribute(item: "h5py.Group", name: str) -> Any:
-    """One attribute, as Python's own number or text; None where there is none."""
+    """Return one attribute, as Python's own number or text; None if it is missing."""
     if name not in item.attrs:
         return None
     told = item.attrs.get_id(name)

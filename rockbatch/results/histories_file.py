@@ -7,9 +7,9 @@
     /runs/000000        attributes: record, case, polarity, scale, status
           varied        attributes: values of the study's varied keys
           pier, base    attributes: their parameters, as in rockbatch.pier; SI, angles in radians
-          t, theta, …   the columns of Response.history, shape (n,), those of springs where there are any
+          t, theta, …   the columns of Response.history, shape (n,), those of springs if it stands on them
           events        t, kind, pivot, before, after: the columns of Response.events
-          restraints    elongation and force of each damper and tendon, where there are any: Response.restraints
+          restraints    elongation and force of each damper and tendon, if any: Response.restraints
           ledger        the terms of the energy ledger, where it was asked for
           forces        what is sized, the columns of Response.forces, where it was asked for
           impacts       with them, the columns of Response.impacts
@@ -163,7 +163,7 @@ def _legible(text: str) -> str:
 
 
 class Responses(Sequence[Response]):
-    """The responses in a ``histories.h5``, each read when it is asked for; none where there is no file.
+    """The responses in a ``histories.h5``, each read when it is asked for; none without a file.
 
     Using them raises ``InputError`` where the file is damaged, is something else, or does not belong to the run that
     ``info``, its ``run.json``, tells of. Each response gets its row of ``peaks``, where those are given.

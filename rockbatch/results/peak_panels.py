@@ -77,7 +77,7 @@ def plot(peaks: "pd.DataFrame", info: Mapping[str, Any]) -> "Figure":
     """See :meth:`rockbatch.results.opened.Results.plot`, which hands over peaks.csv and run.json.
 
     Of many records, the :data:`MOST_PANELS` with the worst runs have a panel, in order of peak ground acceleration. Raises
-    ``InputError`` where there are no runs.
+    ``InputError`` without any runs.
     """
     from rockbatch.results.figure import ShownFigure
 

@@ -23,7 +23,7 @@ MOTIONS = Section(("motions",), (
     "path": Key(text, '"../motions"',
         "A folder with all it holds, a file, or a .zip, relative to the study file.", many=True),
     "vertical": Key(kinds.vertical, "true",
-        'Whether the vertical component of a record is used where there is one. With "required", records without one are '
+        'Whether the vertical component of a record is used if it has one. With "required", records without one are '
         "refused."),
     "polarity": Key(choice("+", "-"), '["+", "-"]',
         '"+" as recorded, "-" with the horizontal component reversed.', many=True),

@@ -33,7 +33,7 @@ PIER = Section(("pier",), (
         "Width of a solid rectangle; of a pier with parts, the distance between its pivots.", many=True, usual=_LENGTH),
     "height_m": Key(within(BOUNDS["height_m"]), "30.0", "Height of a solid rectangle.", many=True, usual=_LENGTH),
     "mass_t": Key(within(BOUNDS["mass_t"]), "3000.0",
-        "Mass of the pier, without its deck where there is one, of one column of a frame. Forces in kN need a mass.",
+        "Mass of the pier without its deck; of one column of a frame. Forces in kN need a mass.",
         many=True, usual=_MASS),
     "deck_mass_t": Key(within(BOUNDS["deck_mass_t"]), "1000.0",
         "Mass of the deck that it carries; of a frame, of the whole deck.", many=True, usual=_MASS),

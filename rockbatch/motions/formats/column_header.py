@@ -143,7 +143,7 @@ def _labels_of(line: str) -> list[list[Column]]:
 
 
 def speaks_of_spectra(header: Sequence[str]) -> str:
-    """The line of a header from which columns without labels may be a spectrum; empty where there is none."""
+    """Return the line of a header by which columns without labels may be a spectrum; empty without one."""
     return next((line for line in header if _SPECTRA.search(line)), "")
 
 

@@ -76,7 +76,7 @@ def _labels(sequence: str) -> list[str]:
 
 
 def _check_rate_and_length(header: dict[str, str], dt: float, npts: int) -> None:
-    """``InputError`` unless the stated rate and length, where there are any, are those of the columns."""
+    """``InputError`` unless the stated rate and length, if given, are those of the columns."""
     stated = {}
     for key in ("SampleRate(Hz)", "RecordLength(sec)"):
         try:

@@ -87,7 +87,7 @@ class Recording:
 
 
 def to_components(file: RecordFile, recordings: Sequence[Recording]) -> list[Component | Unusable]:
-    """The channels of ``file`` in m/s², named by its stem and, where there are several, their labels.
+    """Return the channels of ``file`` in m/s², named by its stem and, if there are several, their labels.
 
     A channel whose unit is not understood is an ``Unusable`` beside the others.
     """

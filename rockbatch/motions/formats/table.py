@@ -80,7 +80,7 @@ def _refused(lines: list[str], why: str) -> InputError:
 
 
 def _separators(lines: list[str]) -> tuple[str, str]:
-    """Characters between columns besides blanks, and the decimal comma where there is one ("" if not)."""
+    """Return the characters between columns besides blanks, and the decimal comma, "" without one."""
     if not any("," in line and _NUMERIC.fullmatch(line) for line in lines):
         return ";", ""
     body = [line for line in lines if _NUMERIC.fullmatch(line)]

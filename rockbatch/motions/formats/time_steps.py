@@ -86,7 +86,7 @@ def _on_grid(t: Samples, at: Samples) -> float | None:
 
 
 def _resolution(t: Samples) -> float:
-    """Unit of the last decimal that times are printed with, in their own unit; 0 where there are too many."""
+    """Return the unit of the last decimal that times are printed with, in their own unit; 0 if there are too many."""
     shortest = float(np.diff(t).min())
     for digits in range(_MOST_DIGITS + 1):
         scaled = t * 10.0**digits
