@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, ClassVar
 
 from rockbatch.analysis.error_and_time import Clock, measure, references
 from rockbatch.analysis.folder import Analysis
-from rockbatch.batch.listening import Progress, listener_of, make_ready
+from rockbatch.batch.compiling import make_ready
+from rockbatch.batch.listening import Progress, listener_of
 from rockbatch.errors import InputError
 from rockbatch.files import is_plain, read_text, write_whole
 from rockbatch.report import write_report

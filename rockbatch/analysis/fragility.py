@@ -9,8 +9,9 @@ from rockbatch.analysis.folder import Analysis, analysis_folder
 from rockbatch.analysis.fragility_curves import Curve, assess, intensities, output
 from rockbatch.analysis.fragility_tables import CAPACITIES, POINTS, RUNS, capacities, described, points
 from rockbatch.analysis.waves import Waves
+from rockbatch.batch.compiling import make_ready
 from rockbatch.batch.digests import digests
-from rockbatch.batch.listening import Progress, count, listener_of, make_ready, once
+from rockbatch.batch.listening import Progress, count, listener_of, once
 from rockbatch.batch.threads import Engine, engine_of
 from rockbatch.results.columns import columns
 from rockbatch.study import Study, given_study

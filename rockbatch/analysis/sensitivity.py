@@ -20,8 +20,9 @@ from rockbatch.analysis.folder import Analysis, AnalysisFolder, analysis_folder
 from rockbatch.analysis.sampled import Point, Points, Suite
 from rockbatch.analysis.sobol import COLUMNS, indices
 from rockbatch.batch.carrying_out import carry_out
+from rockbatch.batch.compiling import make_ready
 from rockbatch.batch.digests import digests
-from rockbatch.batch.listening import Progress, count, listener_of, make_ready, once
+from rockbatch.batch.listening import Progress, count, listener_of, once
 from rockbatch.batch.threads import Engine, engine_of
 from rockbatch.checks.statistics import STATISTICS, Values
 from rockbatch.files import opened_text

@@ -10,9 +10,10 @@ from rockbatch.analysis import overturning_map, rocking_spectrum
 from rockbatch.analysis.folder import Analysis, AnalysisFolder, analysis_folder
 from rockbatch.analysis.waves import Waves
 from rockbatch.batch.carrying_out import carry_out
+from rockbatch.batch.compiling import make_ready
 from rockbatch.batch.digests import digests
 from rockbatch.batch.groups import NOTHING_MORE
-from rockbatch.batch.listening import Progress, count, listener_of, make_ready, once
+from rockbatch.batch.listening import Progress, count, listener_of, once
 from rockbatch.batch.threads import Engine, engine_of
 from rockbatch.files import is_plain, read_table
 from rockbatch.motions import MotionSet

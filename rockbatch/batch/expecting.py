@@ -7,9 +7,10 @@ from dataclasses import dataclass
 from itertools import accumulate
 
 from rockbatch.batch.carrying_out import row_of, to_simulate
+from rockbatch.batch.compiling import make_ready
 from rockbatch.batch.groups import outcomes_of
 from rockbatch.batch.kept_histories import history_bytes
-from rockbatch.batch.listening import Listener, make_ready
+from rockbatch.batch.listening import Listener
 from rockbatch.batch.plan import Chosen, Plan, PlannedRun
 from rockbatch.batch.running import told
 from rockbatch.errors import starting_threads

@@ -3,16 +3,12 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from rockbatch.batch.plan import PlannedRun
 from rockbatch.errors import InputError
-from rockbatch.motions import Motion
-from rockbatch.pier import Base
 from rockbatch.results.outcome import Outcome
 from rockbatch.simulation import Run, Stop, first_substeps, run_all_fixed, run_all_to_tolerance, steps_of
 from rockbatch.simulation.histories import told_apart, with_observed
-from rockbatch.study import Numerics, Output, Study
+from rockbatch.study import Numerics, Output
 
 MOST_STEPS_OF_A_LEDGER = 1_000_000
 """Longer runs have no ledger in the table: each is written down whole, 100 bytes a step, and its energies beside it."""
@@ -107,18 +103,3 @@ def _observed(run: Run, outcome: Outcome, numerics: Numerics, output: Output, st
         return with_observed(run, outcome, numerics, replace(output, ledger=ledger, forces=sized))
     except InputError:  # too many impacts to be written down
         return outcome
-
-
-def _kind(base: Base) -> tuple[object, ...]:
-    """What kernels can hang on: all but the numbers that are the same to them, β, η and ε; of ζ, dampers and tendons whether
-    there are any."""
-    told = tuple(getattr(base, name, None) for name in ("name", "spring", "n", "kinematics", "flight"))
-    return *told, *(bool(getattr(base, name, None)) for name in ("zeta", "restraints"))
-
-
-def compile_kernels(study: Study) -> None:
-    """Have every kernel that the study needs compiled, or loaded, before the clock starts."""
-    still = Motion("still", 1e-3, np.zeros(2))
-    kinds = {_kind(case.base): case for case in study.cases}
-    runs = [PlannedRun(still, "+", 1.0, case) for case in kinds.values()]
-    outcomes_of(runs, replace(study.numerics, quiet_s=0.0), study.output)

@@ -96,27 +96,24 @@ def listener_of(progress: Progress) -> Listener:
     return Bars() if progress else Listener()
 
 
-def make_ready(study: "Study", listener: Listener) -> None:
-    """Have the kernels loaded before the clock starts; where they must be compiled first, it takes a while and is told."""
-    from rockbatch.batch.groups import compile_kernels
-
-    with told_if_slow(listener, "compiling the kernels (once for each kind of foundation, 20 to 30 s)"):
-        compile_kernels(study)
+def told_if_slow(listener: Listener, words: str) -> AbstractContextManager[None]:
+    """Tell ``listener`` what is under way, if it takes a while."""
+    return if_slow(lambda: listener.say(words))
 
 
 @contextmanager
-def told_if_slow(listener: Listener, words: str) -> "Iterator[None]":
-    """Says what is under way, if it takes a while."""
-    told = Timer(PATIENCE_S, listener.say, [words])
-    told.daemon = True
+def if_slow(action: Callable[[], object]) -> "Iterator[None]":
+    """Call ``action`` in another thread if what is under way takes more than PATIENCE_S."""
+    timer = Timer(PATIENCE_S, action)
+    timer.daemon = True
     with suppress(RuntimeError):  # of no more threads, those that carry out the runs tell
-        told.start()
+        timer.start()
     try:
         yield
     finally:
-        told.cancel()
-        if told.is_alive():
-            told.join()  # where few are allowed, the next thread may need its place
+        timer.cancel()
+        if timer.is_alive():
+            timer.join()  # where few are allowed, the next thread may need its place
 
 
 def once(study: "Study") -> str:

@@ -8,10 +8,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rockbatch.batch.carrying_out import InMemory, carry_out, to_simulate
+from rockbatch.batch.compiling import make_ready
 from rockbatch.batch.digests import study_digests
 from rockbatch.batch.finishing import FinishedBatch, cost_of_finished, finish, to_be_replaced, what_was_run, write_peaks
 from rockbatch.batch.journal import Journal
-from rockbatch.batch.listening import Listener, Progress, count, listener_of, make_ready, once
+from rockbatch.batch.listening import Listener, Progress, count, listener_of, once
 from rockbatch.batch.plan import Plan
 from rockbatch.batch.threads import Engine, engine_of
 from rockbatch.errors import InputError

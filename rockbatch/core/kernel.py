@@ -1,11 +1,13 @@
 """Decorators that compile kernels: one for building blocks, one for entries, one for questions that systems answer."""
 
 import atexit
+import contextlib
 import functools
 import hashlib
 import inspect
 import shutil
 import tempfile
+import uuid
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -100,9 +102,13 @@ def entry(function: Callable[..., Any]) -> Callable[..., Any]:
     folder = settings.CACHE_DIR
     settings.CACHE_DIR = CACHE_FOLDER
     try:
-        return numba.njit(cache=True, **_OPTIONS)(function)
+        dispatcher: Any = numba.njit(cache=True, **_OPTIONS)(function)
     finally:
         settings.CACHE_DIR = folder
+    with contextlib.suppress(AttributeError):  # uncompiled, or a Numba that keeps its cache otherwise
+        # Numba numbers the files: two processes that compile at a time would take one number, and one the other's code
+        dispatcher._cache._cache_file._data_name_pattern = f"{function.__name__}-{uuid.uuid4().hex}.{{number:d}}.nbc"
+    return dispatcher
 
 
 def question(stub: Callable[..., Any]) -> Any:

@@ -5,6 +5,7 @@ from rockbatch.simulation.models import (
     block,
     first_substeps,
     ground_of,
+    kernel_of,
     least_substeps,
     springs,
 )
@@ -25,6 +26,7 @@ __all__ = [
     "core_digest",
     "first_substeps",
     "ground_of",
+    "kernel_of",
     "least_substeps",
     "run_all_fixed",
     "run_all_to_tolerance",

@@ -1,16 +1,22 @@
 """The batch: every record in every case, in the order of the study, whatever the number of threads."""
 
+import pickle
+import subprocess
+import threading
+
 import numpy as np
 import pandas as pd
 import pytest
 from studies import COSINE, PADS, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
-import rockbatch.batch.groups
+import rockbatch.batch.compiling
 from rockbatch.batch.carrying_out import carry_out
+from rockbatch.batch.compiling import make_ready
 from rockbatch.batch.digests import study_digests
 from rockbatch.batch.groups import NOTHING_MORE, groups
 from rockbatch.batch.journal import Journal
+from rockbatch.batch.listening import Listener
 from rockbatch.batch.plan import Plan
 from rockbatch.batch.threads import Threads
 from rockbatch.results.columns import MORE, STAYING, columns, names
@@ -40,9 +46,47 @@ def test_kernels_of_damped_supports_and_of_dampers_are_made_ready_too(tmp_path, 
     )
     loaded = load_study(write_study(tmp_path, study_text(cases=cases)))
     ready = []
-    monkeypatch.setattr(rockbatch.batch.groups, "outcomes_of", lambda runs, *rest: ready.extend(runs))
-    rockbatch.batch.groups.compile_kernels(loaded)
+    monkeypatch.setattr(rockbatch.batch.compiling, "outcomes_of", lambda runs, *rest: ready.extend(runs))
+    make_ready(loaded, Listener())
     assert [run.case.name for run in ready] == ["rigid", "tied", "elastic", "damped"]
+
+
+def test_processes_assist_once_a_kernel_must_be_compiled(tmp_path, monkeypatch):
+    """The last kernels are compiled elsewhere, once each, and all are loaded here in the end."""
+    cases = (RIGID, *({"name": f"n {n}", "base": "yielding", "eta": 2, "beta": 40, "n": n} for n in (2.5, 5)))
+    loaded = load_study(write_study(tmp_path, study_text(cases=cases)))
+    here, elsewhere, assisted = [], [], threading.Event()
+
+    def compile_here(runs, *_):
+        here.extend(run.case.name for run in runs)
+        assert assisted.wait(60)
+
+    def process(_, input, **__):
+        elsewhere.append(pickle.loads(input)[0].case.name)
+        if len(elsewhere) == 2:
+            assisted.set()
+
+    monkeypatch.setattr("rockbatch.batch.listening.PATIENCE_S", 0.0)
+    monkeypatch.setattr(rockbatch.batch.compiling, "cores", lambda: 2)
+    monkeypatch.setattr(rockbatch.batch.compiling, "outcomes_of", compile_here)
+    monkeypatch.setattr(subprocess, "run", process)
+    said = Heard()
+    make_ready(loaded, said)
+    assert elsewhere == ["n 5", "n 2.5"]
+    assert here == ["rigid", "rigid", "n 2.5", "n 5"]
+    (sentence,) = said.said
+    assert sentence.startswith("compiling the kernels")
+
+
+class Heard(Listener):
+    """Remembers what is said."""
+
+    def __init__(self):
+        self.said = []
+
+    def say(self, text):
+        """See Listener."""
+        self.said.append(text)
 
 
 def test_rows_come_in_the_order_of_the_study(study):

@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 import rockbatch
-from rockbatch.core.kernel import core_digest
+from rockbatch.core.kernel import core_digest, entry
 
 SCRIPT = """
 import numpy as np
@@ -63,3 +63,13 @@ def test_the_digest_depends_on_every_source_of_the_core(tmp_path):
         assert core_digest(core) != digest, source.name
         source.write_bytes(text)
     assert core_digest(core) == digest
+
+
+def test_no_two_processes_write_one_file_of_machine_code():
+    """Numba numbers the files of a function: processes that compile at one time could run each other's code."""
+
+    def twice(x):
+        return 2.0 * x
+
+    names = {entry(twice)._cache._cache_file._data_name(1) for _ in range(2)}
+    assert len(names) == 2

@@ -1,0 +1,80 @@
+"""Kernels are compiled, or loaded from their cache, before the clock starts: different ones side by side."""
+
+import pickle
+import subprocess
+import sys
+from collections import deque
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import replace
+from threading import Thread
+
+import numpy as np
+
+from rockbatch.batch.groups import outcomes_of
+from rockbatch.batch.listening import Listener, if_slow
+from rockbatch.batch.plan import PlannedRun
+from rockbatch.batch.threads import cores
+from rockbatch.motions import Motion
+from rockbatch.simulation import kernel_of
+from rockbatch.study import Numerics, Output, Study
+
+Task = tuple[PlannedRun, Numerics, Output]
+"""A short run that needs a kernel."""
+
+
+def make_ready(study: Study, listener: Listener) -> None:
+    """Have every kernel that ``study`` needs compiled or loaded; if that takes a while, tell ``listener``.
+
+    Numba compiles one function at a time in a process. Once the first kernel turns out not to be in the cache, processes
+    on the other processors compile the last ones, and leave them in the cache.
+    """
+    tasks = _tasks(study)
+    waiting, assistants = deque(tasks), list[Thread]()
+
+    def slow() -> None:
+        listener.say("compiling the kernels (once for each kind of foundation, 10 to 30 s each)")
+        for _ in range(min(cores() - 1, len(waiting))):
+            assistants.append(Thread(target=_compile_elsewhere, args=(waiting,), daemon=True))
+            assistants[-1].start()
+
+    with if_slow(slow):
+        while task := _next(waiting.popleft):
+            _compile(task)
+    for assistant in assistants:
+        assistant.join()
+    for task in tasks if assistants else ():
+        _compile(task)  # loads what was compiled elsewhere
+
+
+def _tasks(study: Study) -> list[Task]:
+    """Return a run for each kernel of the study."""
+    still = Motion("still", 1e-3, np.zeros(2))
+    numerics = replace(study.numerics, quiet_s=0.0)
+    kernels = {kernel_of(case.pier, case.base): case for case in study.cases}
+    return [(PlannedRun(still, "+", 1.0, case), numerics, study.output) for case in kernels.values()]
+
+
+def _next(take: Callable[[], Task]) -> Task | None:
+    """Return the task that ``take`` takes from those that wait, if any."""
+    with suppress(IndexError):
+        return take()
+    return None
+
+
+def _compile(task: Task) -> None:
+    run, numerics, output = task
+    outcomes_of([run], numerics, output)
+
+
+def _compile_elsewhere(waiting: "deque[Task]") -> None:
+    """Have another process compile what waits, from its end; what it fails to compile is left to this one."""
+    while task := _next(waiting.pop):
+        with suppress(OSError):
+            subprocess.run(
+                [sys.executable, "-P", "-m", __name__], input=pickle.dumps(task), capture_output=True, check=False
+            )
+
+
+if __name__ == "__main__":
+    _compile(pickle.loads(sys.stdin.buffer.read()))
