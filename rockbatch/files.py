@@ -17,12 +17,10 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 from rockbatch.errors import InputError
-
-if TYPE_CHECKING:
-    import pandas as pd
+from rockbatch.lazy import pd
 
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 LOCK = "rockbatch.lock"
@@ -238,8 +236,6 @@ def _text_cell(text: str) -> str:
 
 def read_table(path: Path) -> "pd.DataFrame":
     """Read a table that :func:`csv_text` wrote; names in it that look like numbers stay names."""
-    import pandas as pd
-
     with opened(path) as file:
         table = pd.read_csv(file, keep_default_na=False, na_values=[""], dtype=dict.fromkeys(NAMES, "str"))
     for name in table.columns.intersection(list(NAMES)):

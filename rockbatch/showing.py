@@ -3,10 +3,8 @@
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from html import escape
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    import pandas as pd
+from rockbatch.lazy import pd
 
 MOST_ROWS = 12
 """Greatest number of rows of a table in a notebook."""

@@ -4,7 +4,7 @@ import json
 import os
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 from rockbatch.analysis.error_and_time import Clock, measure, references
 from rockbatch.analysis.folder import Analysis
@@ -12,14 +12,12 @@ from rockbatch.batch.compiling import make_ready
 from rockbatch.batch.listening import Progress, listener_of
 from rockbatch.errors import InputError
 from rockbatch.files import is_plain, read_text, write_whole
+from rockbatch.lazy import pd
 from rockbatch.report import write_report
 from rockbatch.results.columns import PEAKS
 from rockbatch.results.run_json import INFO
 from rockbatch.study import Study, given_study
 from rockbatch.study.suite import ground_motions
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 RUNS = 24
 """Default number of runs that are measured."""

@@ -7,7 +7,7 @@ import statistics
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -16,13 +16,11 @@ from rockbatch.batch.listening import Listener, Told, count
 from rockbatch.batch.plan import Plan, PlannedRun
 from rockbatch.batch.threads import cores
 from rockbatch.errors import InputError
+from rockbatch.lazy import pd
 from rockbatch.motions import MotionSet
 from rockbatch.results.outcome import Outcome
 from rockbatch.simulation import Stop, first_substeps, run_all_fixed, run_fixed
 from rockbatch.study import Study
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 COLUMNS = (
     "method",  # located, not located, study, SciPy DOP853, SciPy LSODA
@@ -169,8 +167,6 @@ def measure(
     -------
     DataFrame with the columns :data:`COLUMNS`, one row per method and setting.
     """
-    import pandas as pd
-
     listener, clock = listener or Listener(), clock or Clock()
     rows = _of_steps(study, references, listener, clock)
     if scipy:

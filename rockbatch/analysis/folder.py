@@ -8,22 +8,20 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 from rockbatch._version import __version__
 from rockbatch.batch.journal import Journal
 from rockbatch.batch.listening import Listener, count
 from rockbatch.errors import InputError
 from rockbatch.files import csv_text, is_plain, only_writer, read_table, read_text, sha256_of, write_whole
+from rockbatch.lazy import pd
 from rockbatch.motions import Motion, Unusable
 from rockbatch.report import write_analyses
 from rockbatch.report.finished_analysis import digest_of
 from rockbatch.results.run_json import versions
 from rockbatch.showing import Shown, several
 from rockbatch.study import Study
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)

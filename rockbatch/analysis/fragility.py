@@ -3,7 +3,7 @@
 import os
 import time
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 from rockbatch.analysis.folder import Analysis, analysis_folder
 from rockbatch.analysis.fragility_curves import Curve, assess, intensities, output
@@ -13,13 +13,11 @@ from rockbatch.batch.compiling import make_ready
 from rockbatch.batch.digests import digests
 from rockbatch.batch.listening import Progress, count, listener_of, once
 from rockbatch.batch.threads import Engine, engine_of
+from rockbatch.lazy import pd
 from rockbatch.results.columns import columns
 from rockbatch.study import Study, given_study
 from rockbatch.study.fragility import FragilitySpec, read_fragility
 from rockbatch.study.suite import ground_motions
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)

@@ -5,7 +5,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -17,15 +17,13 @@ from rockbatch.batch.plan import PlannedRun, Runs, scaled
 from rockbatch.checks.demands import DEMANDS
 from rockbatch.checks.rules import Rule
 from rockbatch.errors import InputError
+from rockbatch.lazy import pd
 from rockbatch.motions import Motion
 from rockbatch.motions.measures import pgv
 from rockbatch.motions.spectrum import spectral_acceleration
 from rockbatch.results.run_json import describe_case
 from rockbatch.study import Case, Output, Study
 from rockbatch.study.fragility import FragilitySpec
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 
 class Point(NamedTuple):

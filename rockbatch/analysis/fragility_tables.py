@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -11,11 +11,9 @@ from rockbatch.analysis.fragility_curves import Curve
 from rockbatch.analysis.ida import Capacity
 from rockbatch.analysis.limit_states import words
 from rockbatch.analysis.lognormal import Lognormal, Values
+from rockbatch.lazy import pd
 from rockbatch.study import Study
 from rockbatch.study.fragility import FragilitySpec
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 POINTS, CAPACITIES, RUNS = "fragility.csv", "fragility_capacities.csv", "fragility_runs.csv"
 SAMPLES = 80
@@ -27,8 +25,6 @@ def points(curves: Sequence[Curve], spec: FragilitySpec, varied: Sequence[str]) 
 
     ``p`` is the curve there; it is between ``p_low`` and ``p_high``, whatever the undecided runs of all levels come to.
     """
-    import pandas as pd
-
     rows: list[dict[str, Any]] = []
     for curve in curves:
         own = {"measure": spec.label, "unit": spec.unit}
@@ -58,8 +54,6 @@ def capacities(
     in a narrower window may have been missed.
     ``names`` and ``unscaled`` are those of the motions, and their intensities as they are.
     """
-    import pandas as pd
-
     rows: list[dict[str, Any]] = []
     for curve in curves:
         for motion, cap in curve.capacities:

@@ -1,7 +1,5 @@
 """States of runs with respect to a limit: a check of the study, applied to one record at a time."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 import numpy.typing as npt
 
@@ -9,10 +7,8 @@ from rockbatch.checks.choices import chooses
 from rockbatch.checks.demands import DEMANDS, Case, has_device
 from rockbatch.checks.rules import Rule
 from rockbatch.checks.suite import of_runs
+from rockbatch.lazy import pd
 from rockbatch.study.fragility import OVERTURNING
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 LEFT_OUT, WITHSTOOD, UNDECIDED, EXCEEDED = -1, 0, 1, 2
 """States of a run with respect to a limit.

@@ -7,18 +7,16 @@ frequency in number and order: :mod:`rockbatch.analysis.map_search` finds them.
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from rockbatch.analysis.map_search import End, Point, Points, Region, Search, regions
 from rockbatch.batch.plan import Made, PlannedRun, scaled
+from rockbatch.lazy import pd
 from rockbatch.motions import Motion
 from rockbatch.motions.pulses import pulse, pulse_length
 from rockbatch.pier import Base
 from rockbatch.study import Case
 from rockbatch.study.spectrum import MapSpec
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 FILE = "overturning_map.csv"
 RUNS = "overturning_runs.csv"

@@ -8,18 +8,16 @@ their parameters too, which stay as the study has them.
 import math
 from collections.abc import Mapping
 from dataclasses import asdict, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from rockbatch.batch.plan import Plan, PlannedRun
+from rockbatch.lazy import pd
 from rockbatch.motions import MotionSet
 from rockbatch.results.columns import row
 from rockbatch.results.outcome import Outcome
 from rockbatch.results.suite_statistics import suite
 from rockbatch.study import Study
 from rockbatch.study.spectrum import SpectrumSpec
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 FILE = "spectrum.csv"
 SUITE = "spectrum_suite.csv"
@@ -76,8 +74,6 @@ def of_suite(table: "pd.DataFrame", varied: tuple[str, ...]) -> "pd.DataFrame":
         (``p16``, ``median``, ``p84``), and the greatest (``largest``). A run that overturned, or was ended by flight,
         counts as infinite; a failed one is unknown and only counted.
     """
-    import pandas as pd
-
     keys = [*GROUP, *varied]
     rows: list[Mapping[str, Any]] = []
     for names, runs in table.groupby(keys, sort=False, dropna=False):

@@ -11,7 +11,7 @@ from array import array
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -26,13 +26,11 @@ from rockbatch.batch.listening import Progress, count, listener_of, once
 from rockbatch.batch.threads import Engine, engine_of
 from rockbatch.checks.statistics import STATISTICS, Values
 from rockbatch.files import opened_text
+from rockbatch.lazy import pd
 from rockbatch.motions import MotionSet
 from rockbatch.study import Study, given_study
 from rockbatch.study.sensitivity import Input, SensitivitySpec, Value, read_sensitivity
 from rockbatch.study.suite import ground_motions
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 ONE_AT_A_TIME, SOBOL = "sensitivity.csv", "sobol.csv"
 TORNADO_COLUMNS = ("parameter", "low", "base", "high", "answer_low", "answer_base", "answer_high", "swing")
@@ -227,8 +225,6 @@ def tables(
     study: Study, spec: SensitivitySpec, points: Points, values: Values
 ) -> tuple["pd.DataFrame", "pd.DataFrame"]:
     """Return the tables sensitivity.csv and sobol.csv of ``values``, shape (members of the suite, points)."""
-    import pandas as pd
-
     results = answers(values, spec.statistic)
     swings: list[dict[str, Any]] = []
     shares: list[pd.DataFrame] = []

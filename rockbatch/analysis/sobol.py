@@ -6,15 +6,13 @@ Comput. Phys. Commun. 181, 259–270).
 """
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from rockbatch.lazy import pd
 from rockbatch.study.sensitivity import Input, Value
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 COLUMNS = ("parameter", "first", "first_error", "total", "total_error")
 RESAMPLES = 1000
@@ -65,7 +63,6 @@ def indices(inputs: Sequence[Input], answers: npt.NDArray[np.float64], confidenc
         A row for each input: its name as ``parameter``, and ``first``, ``total`` with the half widths of their intervals,
         ``first_error`` and ``total_error``; NaN if all answers are the same.
     """
-    import pandas as pd
     from SALib.analyze import sobol
 
     table = pd.DataFrame({"parameter": [parameter.name for parameter in inputs]}, columns=list(COLUMNS), dtype=object)

@@ -4,7 +4,7 @@ import os
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 from rockbatch.analysis import overturning_map, rocking_spectrum
 from rockbatch.analysis.folder import Analysis, AnalysisFolder, analysis_folder
@@ -16,14 +16,12 @@ from rockbatch.batch.groups import NOTHING_MORE
 from rockbatch.batch.listening import Progress, count, listener_of, once
 from rockbatch.batch.threads import Engine, engine_of
 from rockbatch.files import is_plain, read_table
+from rockbatch.lazy import pd
 from rockbatch.motions import MotionSet
 from rockbatch.results.columns import columns
 from rockbatch.study import Study, given_study
 from rockbatch.study.spectrum import MapSpec, SpectrumSpec, read_spectrum
 from rockbatch.study.suite import ground_motions
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -150,8 +148,6 @@ def _carry_out_spectra(results: AnalysisFolder, spectra: SpectrumSpec, motions: 
 
 def _carry_out_maps(results: AnalysisFolder, maps: Sequence[MapSpec], carrier: Engine) -> None:
     """Write the overturning maps, unless they exist already."""
-    import pandas as pd
-
     study, listener = replace(results.study, output=NOTHING_MORE), results.listener
     file, of_runs = overturning_map.FILE, overturning_map.RUNS
     results.info["varied_map"] = list(study.varied)

@@ -2,17 +2,15 @@
 
 from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager, nullcontext
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from rockbatch.batch.carrying_out import carry_out
 from rockbatch.batch.journal import Journal
 from rockbatch.batch.plan import Runs
 from rockbatch.batch.threads import Engine
+from rockbatch.lazy import pd
 from rockbatch.results.columns import COUNTS, TEXTS, as_table
 from rockbatch.study import Study
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 
 class Waves:

@@ -4,13 +4,14 @@ import math
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from rockbatch.batch.plan import PlannedRun
 from rockbatch.checks.demands import FORCES
 from rockbatch.errors import InputError
+from rockbatch.lazy import pd
 from rockbatch.pier import Base, Pier, offsets, vertical_frequency
 from rockbatch.results.columns import TERMS
 from rockbatch.results.histories_file import HISTORIES, OF_SPRINGS, UNITS, write
@@ -19,9 +20,6 @@ from rockbatch.results.response import FORCE_UNITS, Response
 from rockbatch.simulation import run_fixed
 from rockbatch.simulation.histories import histories
 from rockbatch.study import Study
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 LEDGER = "energy_input_J_kg"
 """A column of every run with an energy ledger."""

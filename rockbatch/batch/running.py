@@ -5,7 +5,7 @@ import os
 import time
 from collections.abc import Collection, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from rockbatch.batch.carrying_out import InMemory, carry_out, to_simulate
 from rockbatch.batch.compiling import make_ready
@@ -16,14 +16,12 @@ from rockbatch.batch.listening import Listener, Progress, count, listener_of, on
 from rockbatch.batch.plan import Plan
 from rockbatch.batch.threads import Engine, engine_of
 from rockbatch.errors import InputError
+from rockbatch.lazy import pd
 from rockbatch.motions import MotionSet
 from rockbatch.results.columns import PART, as_table, columns, unusable_rows
 from rockbatch.study import Study, given_study
 from rockbatch.study.suite import ground_motions
 from rockbatch.toml.kinds import closest
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 
 def run(

@@ -6,15 +6,13 @@ Rotations are small: the heel of a pier that tilts by θ stands 2 b θ above its
 import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from rockbatch.checks.statistics import Values
+from rockbatch.lazy import pd
 from rockbatch.pier import MOST_ETA, tilt_over_residual
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 MOST_DUCTILITY = 100.0
 """Of a support, greatest over yield deflection: soils bear some 2 to 10."""

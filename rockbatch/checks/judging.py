@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -27,10 +27,8 @@ from rockbatch.checks.suite import (
 )
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, Verdict
 from rockbatch.errors import InputError
+from rockbatch.lazy import pd
 from rockbatch.toml.kinds import shown
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 MOST_NAMES = 5
 

@@ -2,16 +2,14 @@
 
 import math
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from rockbatch.checks.demands import DEMANDS, Case
 from rockbatch.checks.suite import OTHER_LAW, creeps
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, Verdict
-
-if TYPE_CHECKING:
-    import pandas as pd
+from rockbatch.lazy import pd
 
 PEAKS = frozenset(
     ("theta_max_over_alpha", "theta_max_rad", "top_drift_m", "top_drift_mm", "heel_uplift_m", "heel_uplift_mm")

@@ -2,7 +2,7 @@
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -10,10 +10,8 @@ import numpy.typing as npt
 from rockbatch.checks.demands import DEMANDS, Case
 from rockbatch.checks.rules import USUAL, Rule
 from rockbatch.checks.statistics import Values
+from rockbatch.lazy import pd
 from rockbatch.pier.bases import RATCHETING
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 OTHER_LAW = "settlement_other_law_m"
 MIRROR_OF = "mirror_of"
@@ -70,8 +68,6 @@ def complete(runs: "pd.DataFrame", stations: Mapping[str, str], polarities: Sequ
 
     ``stations`` has all records, each with its station, which is empty where nobody knows it.
     """
-    import pandas as pd
-
     planned = pd.MultiIndex.from_product([list(stations), polarities], names=["record", "polarity"]).to_frame(
         index=False
     )

@@ -5,14 +5,12 @@ import math
 from collections.abc import Iterable, Mapping
 from dataclasses import MISSING, asdict, dataclass, fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from rockbatch.checks.rules import is_ban
 from rockbatch.errors import InputError
 from rockbatch.files import csv_plain, csv_text, legible, opened_text, write_whole
-
-if TYPE_CHECKING:
-    import pandas as pd
+from rockbatch.lazy import pd
 
 PASS, FAIL, NOT_DECIDED, DOES_NOT_APPLY = "pass", "fail", "not decided", "does not apply"
 CHECKS = "checks.csv"
@@ -102,8 +100,6 @@ _BEFORE, _AFTER = ("check", "case"), tuple(name for name in _NAMES if name not i
 
 def as_table(verdicts: Iterable[Verdict]) -> "pd.DataFrame":
     """One row for each verdict; the varied values have columns of their own."""
-    import pandas as pd
-
     columns, rows = _table(verdicts)
     return pd.DataFrame(rows, columns=columns)
 

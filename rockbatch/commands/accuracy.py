@@ -1,14 +1,11 @@
 """``rockbatch accuracy``: error against time per run for a study on this machine, beside SciPy's solvers."""
 
 import argparse
-from typing import TYPE_CHECKING
 
 from rockbatch.commands.analyses import tell_files
 from rockbatch.commands.messages import Terminal, in_width, show
 from rockbatch.commands.options import add_study, folder, study_of
-
-if TYPE_CHECKING:
-    import pandas as pd
+from rockbatch.lazy import pd
 
 HELP = "measure error against time of a study on this machine"
 EXAMPLE = "rockbatch accuracy pier.toml --no-scipy"
@@ -68,7 +65,6 @@ def main(arguments: argparse.Namespace) -> int:
 
 def shown(table: "pd.DataFrame") -> str:
     """Return the table for a terminal: errors of θ_max/α, milliseconds per run."""
-    import pandas as pd
 
     def error(value: float) -> str:
         return "" if pd.isna(value) else f"{value:.1e}"

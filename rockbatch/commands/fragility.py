@@ -9,6 +9,7 @@ from rockbatch.batch.listening import count
 from rockbatch.commands.analyses import asked, tell_files
 from rockbatch.commands.messages import in_width, say, show
 from rockbatch.commands.options import add_engine, add_study, study_of
+from rockbatch.lazy import pd
 
 if TYPE_CHECKING:
     from rockbatch.analysis.fragility_curves import Curve
@@ -41,8 +42,6 @@ def main(arguments: argparse.Namespace) -> int:
 
 def table(curves: Sequence["Curve"], spec: "FragilitySpec") -> str:
     """Return medians and dispersions with their intervals, a line for each limit and case, and what to know about them."""
-    import pandas as pd
-
     from rockbatch.analysis.fragility_tables import looked_at, note
     from rockbatch.analysis.limit_states import words
     from rockbatch.analysis.lognormal import Lognormal

@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING
 
 from rockbatch.batch.listening import Listener, Told, count
 from rockbatch.commands.streams import tell
+from rockbatch.lazy import pd
 
 if TYPE_CHECKING:
-    import pandas as pd
-
     from rockbatch.motions import MotionSet
 
 

@@ -1,14 +1,11 @@
 """``rockbatch sensitivity``: the sensitivity of the peak rotation, one at a time and by Sobol's indices."""
 
 import argparse
-from typing import TYPE_CHECKING
 
 from rockbatch.commands.analyses import asked, tell_files
 from rockbatch.commands.messages import in_width, say, show
 from rockbatch.commands.options import add_engine, add_study, study_of
-
-if TYPE_CHECKING:
-    import pandas as pd
+from rockbatch.lazy import pd
 
 HELP = "which parameters the peak rotation depends on most"
 EXAMPLE = "rockbatch sensitivity pier.toml"
@@ -56,8 +53,6 @@ def shown(swings: "pd.DataFrame", shares: "pd.DataFrame", varied: tuple[str, ...
 
 
 def _aligned(cells: "dict[str, pd.Series]") -> str:
-    import pandas as pd
-
     return in_width(pd.DataFrame(cells), index=False)
 
 

@@ -7,10 +7,10 @@ from rockbatch.batch.listening import count
 from rockbatch.commands.analyses import asked, tell_files
 from rockbatch.commands.messages import in_width, say, show
 from rockbatch.commands.options import add_engine, add_study, study_of
+from rockbatch.lazy import pd
 
 if TYPE_CHECKING:
     import numpy as np
-    import pandas as pd
 
     from rockbatch.study.spectrum import SpectrumSpec
 
@@ -47,7 +47,6 @@ def main(arguments: argparse.Namespace) -> int:
 def shown(suite: "pd.DataFrame", spectrum: "SpectrumSpec") -> str:
     """Return medians of θ_max/α for a terminal: a line for each value on the axis, ∞ where the pier overturns."""
     import numpy as np
-    import pandas as pd
 
     from rockbatch.commands.summary import named
 

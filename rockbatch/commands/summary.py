@@ -1,15 +1,12 @@
 """The table of Fig. 7 in the terminal: θ_max/α of every record in every case, a block for each pier."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from rockbatch.commands.messages import in_width
+from rockbatch.lazy import pd
 from rockbatch.results.outcome import LEANS
 from rockbatch.study import PIER_KEYS
-
-if TYPE_CHECKING:
-    import pandas as pd
-
 
 MOST_RUNS = 1000
 """Runs of a study beyond which its worst runs are printed instead of all."""
@@ -106,8 +103,6 @@ def leaning(table: "pd.DataFrame") -> str:
 
 
 def _block(runs: "pd.DataFrame", rows: list[str], case_keys: list[str]) -> str:
-    import pandas as pd
-
     cells: dict[str, dict[str, str]] = {}
     for _, run in runs.iterrows():
         line = " ".join(f"{run[name]:g}" if name == "scale" else str(run[name]) for name in rows)

@@ -12,17 +12,14 @@ import re
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from rockbatch.errors import InputError
+from rockbatch.lazy import h5py
 from rockbatch.motions.component import Component
 from rockbatch.motions.orientation import Orientation, orientation_of
 from rockbatch.motions.origin import Origin
 from rockbatch.motions.turning import resolved
 from rockbatch.units import GRAVITY
-
-if TYPE_CHECKING:
-    import h5py
 
 SETS = ("farfield", "nearfield_pulse", "nearfield_no_pulse")
 
@@ -144,7 +141,6 @@ def _package() -> str:
 def _open(which: str) -> "h5py.File":
     """The HDF5 file of one set, with the filter that its data are packed with."""
     folder = _folder()
-    import h5py
     import hdf5plugin  # noqa: F401  registers the filter
 
     return h5py.File(folder / f"{which}.hdf5", "r")

@@ -3,16 +3,14 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from difflib import get_close_matches
-from typing import TYPE_CHECKING, Any, overload
+from typing import Any, overload
 
 from rockbatch.errors import InputError
+from rockbatch.lazy import pd
 from rockbatch.motions import measures
 from rockbatch.motions.motion import LeftOut, Motion, Unusable
 from rockbatch.showing import Shown, several
 from rockbatch.units import GRAVITY
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 COLUMNS = (
     "record",
@@ -122,8 +120,6 @@ class MotionSet(Shown):
             to it here; ``event``, ``station_name``, ``direction``, as its header says; ``station``, what components that
             count as one record share. Missing words are "" and missing numbers NaN.
         """
-        import pandas as pd
-
         rows = pd.DataFrame([row(motion) for motion in self.motions], columns=list(COLUMNS))
         texts = list(TEXTS)
         rows[texts] = rows[texts].fillna("").astype("str")

@@ -8,10 +8,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING
 
 from rockbatch.checks import as_table, read_verdicts
 from rockbatch.files import is_plain, read_text, write_whole
+from rockbatch.lazy import pd
 from rockbatch.report.contents import Contents, read
 from rockbatch.report.finished import read as read_finished
 from rockbatch.report.page import comparison, page
@@ -19,9 +19,6 @@ from rockbatch.report.pair import pair
 from rockbatch.results.opened import Results, open_results
 from rockbatch.results.response import Response
 from rockbatch.study import Study
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 REPORT = "report.html"
 
@@ -182,8 +179,6 @@ def _beside(tables: "Sequence[pd.DataFrame]") -> "pd.DataFrame":
     """Return one table as it is, or two stacked, with a first column ``study`` that says which."""
     if len(tables) == 1:
         return tables[0]
-    import pandas as pd
-
     return pd.concat(dict(zip("AB", tables, strict=True)), names=["study"]).reset_index("study").reset_index(drop=True)
 
 

@@ -6,18 +6,16 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from rockbatch.checks.responses import Worst, worst_of_cases
 from rockbatch.checks.suite import counts_as, simulated
 from rockbatch.errors import InputError
+from rockbatch.lazy import pd
 from rockbatch.report.labels import Key, Series, digits_that_tell, named, quantity
 from rockbatch.report.markup import Markup, join, number, tag
 from rockbatch.results.reading import Saved, read_saved
 from rockbatch.study import PIER_KEYS
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,16 +7,13 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import wraps
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
+from typing import Any, ParamSpec, TypeVar
 
 from rockbatch.errors import EditedTable, InputError
 from rockbatch.files import read_table, read_text, sha256_of
+from rockbatch.lazy import pd
 from rockbatch.report.labels import counted, quantity
 from rockbatch.report.markup import Markup, tag
-
-if TYPE_CHECKING:
-    import pandas as pd
-
 
 MOST_NAMES = 60
 

@@ -1,21 +1,19 @@
 """All peaks in a picture of a few rows, by record or by foundation, for any number of runs."""
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from rockbatch.checks import Verdict, wording
 from rockbatch.checks.demands import DEMANDS
 from rockbatch.checks.responses import PEAKS
 from rockbatch.checks.statistics import STATISTICS
+from rockbatch.lazy import pd
 from rockbatch.report.document import figure
 from rockbatch.report.drawing import dots
 from rockbatch.report.drawing.panels import said_of
 from rockbatch.report.finished import Finished
 from rockbatch.report.markup import Markup, join, tag
 from rockbatch.report.table import THETA
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 MOST_ROWS = 14
 """Rows that fit on the first screen."""

@@ -2,15 +2,12 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 from rockbatch.checks import Verdict
+from rockbatch.lazy import pd
 from rockbatch.report.finished import Finished
 from rockbatch.report.labels import quantity
 from rockbatch.study import PIER_KEYS
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 SIDES = ("A", "B")
 

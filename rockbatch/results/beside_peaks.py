@@ -2,16 +2,14 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 from rockbatch.checks.suite import simulated
 from rockbatch.files import csv_text, write_whole
+from rockbatch.lazy import pd
 from rockbatch.motions import Motion
 from rockbatch.pier import Pier
 from rockbatch.study import Study
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 NAMING = ("record", "case", "polarity", "scale")
 """Columns that name a run, with those of the varied keys."""

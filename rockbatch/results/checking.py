@@ -3,20 +3,18 @@
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from rockbatch.checks import Rule, Verdict, as_table, judge, load_rules, read_checks
 from rockbatch.checks.plausible import implausible
 from rockbatch.checks.reading import Checks
 from rockbatch.errors import InputError
+from rockbatch.lazy import pd
 from rockbatch.results.reading import Saved, read_saved
 from rockbatch.results.run_json import INFO, describe_case
 from rockbatch.study import Study, load_study
 from rockbatch.toml.kinds import shown
 from rockbatch.toml.reader import TomlFile
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 PathLike = str | os.PathLike[str]
 

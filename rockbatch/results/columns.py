@@ -8,17 +8,15 @@ from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 from operator import attrgetter
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 from rockbatch.checks.demands import ROCKING
 from rockbatch.checks.suite import MIRROR_OF, OTHER_LAW
+from rockbatch.lazy import pd
 from rockbatch.motions import Motion, MotionSet
 from rockbatch.pier import Damper, Pier, Restraint, Tendon
 from rockbatch.results.outcome import Outcome
 from rockbatch.study import Case, Study
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 PEAKS = "peaks.csv"
 PART = f"{PEAKS}.part"
@@ -579,15 +577,11 @@ def units(study: Study) -> dict[str, str]:
 
 def as_table(rows: Iterable[Mapping[str, Any]], study: Study) -> "pd.DataFrame":
     """The rows of peaks.csv as a DataFrame: NaN where a number does not apply, counts that can be missing."""
-    import pandas as pd
-
     return _typed(pd.DataFrame(list(rows), columns=columns(study)), study.varied)
 
 
 def as_series(cells: Mapping[str, Any]) -> "pd.Series[Any]":
     """A row on its own, as it stands in a table: what every table has, and of what is asked for what there is."""
-    import pandas as pd
-
     there = [column for column in ASKED if cells.get(column.name) is not None]
     table = pd.DataFrame([cells], columns=names((*STAYING, *MORE, *there)))
     return _typed(table, ()).iloc[0].rename(cells["record"])

@@ -19,19 +19,17 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
+from rockbatch.lazy import pd
 from rockbatch.motions import Motion
 from rockbatch.motions.spectrum import spectral_acceleration
 from rockbatch.pier import Pier
 from rockbatch.results import beside_peaks
 from rockbatch.study import Study
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 ESTIMATE = "estimate.csv"
 

@@ -4,12 +4,11 @@ HDF5 can lead elsewhere: links into other files, datasets whose bytes are in oth
 datasets (virtual ones), and sizes without bytes behind them. Whoever reads here gets a ``ValueError`` instead.
 """
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-if TYPE_CHECKING:
-    import h5py
+from rockbatch.lazy import h5py
 
 MOST_OF_A_TEXT = 10_000_000
 """Characters of a text that is kept in an attribute: the study's is the longest."""
@@ -17,8 +16,6 @@ MOST_OF_A_TEXT = 10_000_000
 
 def group_in(group: "h5py.Group", name: str) -> "h5py.Group":
     """A group that lies in ``group`` itself."""
-    import h5py
-
     found = _member(group, name)
     if not isinstance(found, h5py.Group):
         raise ValueError(f"{name} is no group")
@@ -32,8 +29,6 @@ def array_in(
 
     Texts come as ``str``. ``length`` is the number of values that there have to be; ``finite`` ones unless they may be infinite.
     """
-    import h5py
-
     found = _member(group, name)
     if not isinstance(found, h5py.Dataset) or found.ndim != 1 or found.dtype.kind != kind:
         raise ValueError(f"{name} is no list of {'texts' if kind == 'S' else 'numbers'}")
@@ -69,8 +64,6 @@ def attribute(item: "h5py.Group", name: str) -> Any:
 
 
 def _member(group: "h5py.Group", name: str) -> Any:
-    import h5py
-
     link = group.get(name, getlink=True)
     if link is None:
         raise ValueError(f"{name} is missing")

@@ -24,20 +24,17 @@ from dataclasses import asdict, replace
 from functools import cached_property
 from pathlib import Path
 from shutil import disk_usage
-from typing import TYPE_CHECKING, Any, overload
+from typing import Any, overload
 
 import numpy as np
 
 from rockbatch.errors import InputError
 from rockbatch.files import opened, replacing
+from rockbatch.lazy import h5py, pd
 from rockbatch.pier import Damper, ElasticBase, Pier, Restraint, RigidBase, Tendon, YieldingBase
 from rockbatch.results.columns import TERMS
 from rockbatch.results.hdf5 import array_in, attribute, attributes_of, group_in
 from rockbatch.results.response import EVENT_TYPES, FORCE_UNITS, IMPACT_UNITS, Response
-
-if TYPE_CHECKING:
-    import h5py
-    import pandas as pd
 
 HISTORIES = "histories.h5"
 """File of the histories that were kept, beside peaks.csv."""
@@ -81,8 +78,6 @@ def write(path: Path, responses: Iterable[Response], info: Mapping[str, Any]) ->
 
     Raises ``InputError`` if the disk is full.
     """
-    import h5py
-
     with replacing(path) as temporary, h5py.File(temporary, "w") as file:
         study = info["study"]
         own = {"format": FORMAT, "rockbatch": info["rockbatch"], "created": info["created"]}
@@ -180,8 +175,6 @@ class Responses(Sequence[Response]):
 
         Values are NaN where the key does not apply. No history is read for it.
         """
-        import pandas as pd
-
         rows = []
         if self.path.exists() or self.path.is_symlink():
             with self._opened() as runs:
@@ -207,8 +200,6 @@ class Responses(Sequence[Response]):
     @contextmanager
     def _opened(self) -> Iterator["h5py.Group"]:
         """The group of runs; errors on the way are told in words."""
-        import h5py
-
         with opened(self.path) as plain:
             try:
                 with h5py.File(plain, "r") as file:
@@ -231,8 +222,6 @@ class Responses(Sequence[Response]):
 
 
 def _read(group: "h5py.Group") -> Response:
-    import pandas as pd
-
     base = attributes_of(group_in(group, "base"))
     kind = _BASES[base.pop("name")]
     if "restraints" in base:
@@ -288,8 +277,6 @@ def _row_of(response: Response, peaks: "pd.DataFrame") -> "pd.Series[Any] | None
 
 def _impacts(group: "h5py.Group") -> "pd.DataFrame":
     """The table of impacts."""
-    import pandas as pd
-
     t = array_in(group, "t", "f")
     found: dict[str, Any] = {"t": t, "pivot": array_in(group, "pivot", "S", len(t))}
     found |= {name: array_in(group, name, "f", len(t)) for name in IMPACT_UNITS}
@@ -307,8 +294,6 @@ def _run(group: "h5py.Group") -> dict[str, Any]:
 
 def _events(group: "h5py.Group", rows: int) -> "pd.DataFrame":
     """The table of events, whose ``before`` and ``after`` are places in a history of so many rows."""
-    import pandas as pd
-
     length = len(array_in(group, "t", "f"))
     kinds = {"str": "S", "int64": "i", "float64": "f"}
     events = pd.DataFrame({name: array_in(group, name, kinds[of], length) for name, of in EVENT_TYPES.items()})

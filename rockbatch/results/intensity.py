@@ -4,19 +4,17 @@ import math
 from collections.abc import Iterator, Sequence
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
+from rockbatch.lazy import pd
 from rockbatch.motions import Motion, measures
 from rockbatch.motions.spectrum import spectral_acceleration
 from rockbatch.results import beside_peaks
 from rockbatch.results.suite_statistics import NO_PEAK
 from rockbatch.study import Study
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 INTENSITY = "intensity.csv"
 
@@ -135,8 +133,6 @@ def _line(x: Array, y: Array) -> tuple[float, float]:
 
 def orders(table: "pd.DataFrame", varied: Sequence[str]) -> "pd.DataFrame":
     """One row for each case, scale and measure of intensity.csv: its names, ``measure``, and the fields of :class:`Order`."""
-    import pandas as pd
-
     keys = ["case", *varied, "scale"]
     rows = [
         {

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from rockbatch.checks.suite import simulated
 from rockbatch.errors import InputError
 from rockbatch.files import read_table
+from rockbatch.lazy import pd
 from rockbatch.results.columns import in_words
 from rockbatch.results.estimate import ESTIMATE
 from rockbatch.results.histories_file import HISTORIES, Responses
@@ -20,7 +21,6 @@ from rockbatch.showing import Shown, several
 from rockbatch.toml.kinds import closest, shown
 
 if TYPE_CHECKING:
-    import pandas as pd
     from matplotlib.figure import Figure
 
 MOST_CANDIDATES = 8

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 from rockbatch.checks.suite import simulated
 from rockbatch.errors import InputError
+from rockbatch.lazy import pd
 from rockbatch.results.suite_statistics import NO_PEAK
 from rockbatch.study import PIER_KEYS
 
 if TYPE_CHECKING:
-    import pandas as pd
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure

@@ -8,11 +8,11 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from rockbatch.checks.suite import counts_as, simulated
+from rockbatch.lazy import pd
 from rockbatch.pier import Base, Pier
 from rockbatch.results.suite_statistics import NO_PEAK, distribution
 
 if TYPE_CHECKING:
-    import pandas as pd
     from matplotlib.figure import Figure
 
 

@@ -7,16 +7,14 @@ import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from rockbatch.errors import EditedTable, InputError, MissingColumns
 from rockbatch.files import csv_plain, legible, opened, opened_text, read_text, sha256_of
+from rockbatch.lazy import pd
 from rockbatch.results.columns import COUNTS, MORE, PEAKS, STATUSES, STAYING, TEXTS, UNBOUNDED, names
 from rockbatch.results.run_json import INFO, SHAPE
 from rockbatch.results.shape import unfit
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 MOST_PROBLEMS = 20
 MOST_COUNT = 1 << 53
@@ -132,8 +130,6 @@ def _legible(value: Any) -> Any:
 
 
 def _read_peaks(path: Path, varied: Sequence[str], problems: list[str]) -> "pd.DataFrame | None":
-    import pandas as pd
-
     try:
         with opened_text(path) as file:
             head = next(csv.reader(file), [])
@@ -229,8 +225,6 @@ def _is_number(text: str, whole: bool, unbounded: bool) -> bool:
 
 def _values(texts: "pd.Series[str]") -> "pd.Series[Any]":
     """Values of a varied key: numbers, or words such as "finite"; NaN where the key does not apply."""
-    import pandas as pd
-
     numbers = pd.to_numeric(texts, errors="coerce")
     words = numbers.isna() & (texts != "")
     return texts.where(texts != "") if words.any() else numbers.astype("float64")

@@ -7,12 +7,12 @@ import numpy as np
 import numpy.typing as npt
 
 from rockbatch.errors import InputError
+from rockbatch.lazy import pd
 from rockbatch.pier import Base, Pier
 from rockbatch.results.columns import in_words
 from rockbatch.showing import Shown
 
 if TYPE_CHECKING:
-    import pandas as pd
     from matplotlib.figure import Figure
 
 Samples = npt.NDArray[np.float64]

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from rockbatch.core import types
 from rockbatch.core.devices.laws import ELEMENT, FRICTION
 from rockbatch.core.observe.forces import FORCES, Body, Forces, Hold, Outline
 from rockbatch.core.observe.peaks import NEVER, NOTED, Limits, Noted, RecordedDevices, forces_of_run
+from rockbatch.lazy import pd
 from rockbatch.motions.motion import Samples
 from rockbatch.pier import Pier, RigidBase, YieldingBase
 from rockbatch.results.outcome import WOULD_SLIDE, PeakForces
@@ -18,9 +19,6 @@ from rockbatch.results.response import FORCE_UNITS, IMPACT_UNITS
 from rockbatch.simulation.models import block, elements, ground_of, model
 from rockbatch.simulation.restraints import apart
 from rockbatch.simulation.runs import Run
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 _UPLIFTS = (types.SEPARATION_LEFT, types.SEPARATION_RIGHT, types.LIFT_OFF)
 _LANDINGS = (types.IMPACT_LEFT, types.IMPACT_RIGHT, types.IMPACT_BOTH, types.REST)
@@ -124,8 +122,6 @@ def impacts(rows: np.recarray, forces: np.recarray) -> Impacts:
 
 def forces_table(t: Samples, forces: np.recarray, gravity: float) -> "pd.DataFrame":
     """Return :attr:`Response.forces` at the times ``t`` [s]."""
-    import pandas as pd
-
     half = 0.5 * gravity
     columns = [forces.shear, forces.normal, forces.moment, forces.friction, forces.left / half, forces.right / half]
     columns += [forces.gap_left, forces.gap_right, forces.speed_left, forces.speed_right, forces.deck]
@@ -134,8 +130,6 @@ def forces_table(t: Samples, forces: np.recarray, gravity: float) -> "pd.DataFra
 
 def impacts_table(rows: np.recarray, forces: np.recarray) -> "pd.DataFrame":
     """Return :attr:`Response.impacts` of a run with these forces."""
-    import pandas as pd
-
     landings = impacts(rows, forces)
     columns = [rows.t[landings.after], landings.speed, landings.horizontal, landings.vertical]
     table = pd.DataFrame(dict(zip(IMPACT_UNITS, columns, strict=True)))

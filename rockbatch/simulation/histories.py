@@ -8,6 +8,7 @@ import numpy as np
 from rockbatch.core import types
 from rockbatch.core.observe.ledger import LEDGER, ledger_on_rigid_base, ledger_on_springs
 from rockbatch.errors import InputError
+from rockbatch.lazy import pd
 from rockbatch.motions.motion import Motion, Samples
 from rockbatch.motions.plausible import unlikely_samples
 from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, YieldingBase, problems, unlikely_devices
@@ -244,8 +245,6 @@ def histories(
 
     The motion of ``run`` is scaled and turned already; ``polarity`` and ``scale`` say how.
     """
-    import pandas as pd
-
     pier, base, motion = run.pier, run.base, run.motion
     rows = written(run, outcome, quiet_s, every_step=ledger, wait=wait)
     shown = rows.kind != types.STEP

@@ -1,20 +1,16 @@
 """Devices of a recorded run: forces, elongations, and the energy balance with them."""
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rockbatch.core.devices.laws import FRICTION, HYSTERETIC, TENDON, Element
 from rockbatch.core.observe.ledger import LEDGER
 from rockbatch.core.types import Result
+from rockbatch.lazy import pd
 from rockbatch.motions.motion import Samples
 from rockbatch.pier import Base, Damper, ElasticBase, Pier, RigidBase, offsets
 from rockbatch.simulation.models import elements, prestress, springs
-
-if TYPE_CHECKING:
-    import pandas as pd
-
 
 AT_REST = 1e-9
 """In units of R0 α p: velocity that counts as none in a history."""
@@ -71,8 +67,6 @@ def _force(law: Element, pier: Pier, base: Base, rows: np.recarray, j: int) -> S
 
 def loops(pier: Pier, base: Base, rows: np.recarray) -> "pd.DataFrame":
     """Return the force [N/kg] and elongation [m] of every device at every row."""
-    import pandas as pd
-
     table = {"t": rows.t}
     for j, (law, name) in enumerate(zip(elements(pier, base), names(pier, base), strict=True)):
         table[f"{name} elongation"] = _elongation(law, pier, base, rows)[0]

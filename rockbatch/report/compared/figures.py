@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+from rockbatch.lazy import pd
 from rockbatch.report.document import Section
 from rockbatch.report.finished import worst_first
 from rockbatch.report.pair import SIDES, Pair
@@ -11,8 +12,6 @@ from rockbatch.report.table import THETA
 
 def section(pair: Pair) -> Section | None:
     """Draw panels with the markers of both studies; of both directions, the worse one."""
-    import pandas as pd
-
     named, matched = pair.named, pair.matched
     if matched.runs[0].empty:
         return None

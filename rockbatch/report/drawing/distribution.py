@@ -1,19 +1,16 @@
 """The distribution of the largest rotations over the suite: a panel for each pier and scale, a curve for each foundation."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rockbatch.checks.suite import counts_as
+from rockbatch.lazy import pd
 from rockbatch.report.drawing.axes import Axes, Scale
 from rockbatch.report.drawing.svg import COLOURS, curve, key, line, lowered, marker, rectangle, svg, text
 from rockbatch.report.labels import Series
 from rockbatch.report.markup import Markup, join, tag
 from rockbatch.results.suite_statistics import distribution
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 WIDTH, HEIGHT = 300.0, 190.0
 DASHES = 4

@@ -5,19 +5,17 @@ Places along the axis are shares of the width, so that nothing but the axis stre
 
 import math
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from rockbatch.lazy import pd
 from rockbatch.report.drawing.axes import Scale, written
 from rockbatch.report.drawing.svg import EVENTS, Entry, key, marker, style_of, text
 from rockbatch.report.finished import as_dicts
 from rockbatch.report.labels import Series
 from rockbatch.report.markup import Markup, join, number, tag
 from rockbatch.report.table import THETA, THETA_FORMAT
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 FIRST, LAST = 1.5, 97.0
 """Ends of the axis [% of the width]."""

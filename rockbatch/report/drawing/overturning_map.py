@@ -8,16 +8,13 @@ import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rockbatch.lazy import pd
 from rockbatch.report.drawing.axes import Axes, Scale
 from rockbatch.report.drawing.svg import Array, Entry, curve, line, lowered, rectangle, svg, text
 from rockbatch.report.markup import Markup
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 WIDTH, HEIGHT = 420.0, 320.0
 REGIONS = {

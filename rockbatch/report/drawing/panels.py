@@ -2,8 +2,9 @@
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from rockbatch.lazy import pd
 from rockbatch.report.drawing.axes import Axes, Scale
 from rockbatch.report.drawing.svg import EVENTS, key, line, lowered, marker, rectangle, style_of, svg, text
 from rockbatch.report.finished import Finished, as_dicts
@@ -11,9 +12,6 @@ from rockbatch.report.labels import Series
 from rockbatch.report.markup import Markup, join, number, tag
 from rockbatch.report.table import THETA_FORMAT
 from rockbatch.results.suite_statistics import NO_PEAK
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 HEIGHT = 146.0  # px
 VISIBLE = 0.015  # share of the axis: shorter error bars hide behind their marker

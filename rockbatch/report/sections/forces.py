@@ -1,9 +1,8 @@
 """Quantities for design: the greatest forces, gaps and velocities of every case, and those of every run."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from rockbatch.lazy import pd
 from rockbatch.report.contents import Contents
 from rockbatch.report.document import Section
 from rockbatch.report.finished import Finished, worst_first
@@ -12,9 +11,6 @@ from rockbatch.report.markup import Markup, join, number, tag
 from rockbatch.report.sections.peaks import on_scale
 from rockbatch.report.table import MOST_ROWS, Head, alarm, table, told_apart
 from rockbatch.results.columns import Column, on_page
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 _LEAST = ("first_uplift_s", "first_uplift_g")
 """Columns of which the smallest value is the worst."""

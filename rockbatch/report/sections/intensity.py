@@ -1,18 +1,15 @@
 """Intensity measures of the motions, and how well each of them orders the peaks, case by case."""
 
 import math
-from typing import TYPE_CHECKING
 
 from rockbatch.files import read_table
+from rockbatch.lazy import pd
 from rockbatch.report.contents import Contents
 from rockbatch.report.document import Section, paragraphs
 from rockbatch.report.finished import Finished
 from rockbatch.report.markup import Markup, join, tag
 from rockbatch.report.table import Head, table
 from rockbatch.results.intensity import INTENSITY, LEAST_RUNS, MEANING, orders
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 SYMBOLS = {
     "pga_over_g_tan_alpha": "PGA/(g tan α)",

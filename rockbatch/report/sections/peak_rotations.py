@@ -2,8 +2,8 @@
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
+from rockbatch.lazy import pd
 from rockbatch.report.contents import Contents
 from rockbatch.report.document import Section, figure
 from rockbatch.report.drawing.panels import draw
@@ -14,9 +14,6 @@ from rockbatch.report.sections.peaks import at_a_glance
 from rockbatch.report.table import THETA
 from rockbatch.results.outcome import LEANS
 from rockbatch.results.suite_statistics import NO_PEAK
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 MOST_RECORDS = 60
 MOST_SERIES = 24

@@ -4,6 +4,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from rockbatch.checks.suite import OTHER_LAW, creeps
+from rockbatch.lazy import pd
 from rockbatch.report.contents import Contents
 from rockbatch.report.document import Section
 from rockbatch.report.finished import Finished, as_dicts, worst_first
@@ -15,8 +16,6 @@ from rockbatch.results.outcome import LINEARISED
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-
-    import pandas as pd
 
 MOST_COLUMNS = 24
 

@@ -1,11 +1,12 @@
 """Pictures of ``rockbatch sensitivity``: the effect of each input alone, and Sobol's indices."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from rockbatch.checks.statistics import STATISTICS
+from rockbatch.lazy import pd
 from rockbatch.report.contents import Contents
 from rockbatch.report.document import Section, figure
 from rockbatch.report.drawing.axes import Axes, Scale, spanning
@@ -14,9 +15,6 @@ from rockbatch.report.finished_analysis import named, of_files
 from rockbatch.report.labels import SYMBOLS
 from rockbatch.report.markup import Markup, join, number, tag
 from rockbatch.report.table import Head, alarm, table
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 WIDTH, LEFT, TOP, ROW = 440, 84, 20, 30
 BAR = 12

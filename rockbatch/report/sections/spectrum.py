@@ -1,9 +1,8 @@
 """Pictures of ``rockbatch spectrum``: rocking spectra as curves, overturning maps as regions."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from rockbatch.lazy import pd
 from rockbatch.report.contents import Contents
 from rockbatch.report.document import Section, figure
 from rockbatch.report.drawing import overturning_map
@@ -24,9 +23,6 @@ from rockbatch.report.finished_analysis import FinishedAnalysis, named, of_files
 from rockbatch.report.labels import quantity, symbol
 from rockbatch.report.markup import Markup, join, tag
 from rockbatch.report.table import sub
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 WIDTH, HEIGHT = 420.0, 250.0
 ROW = 10.0

@@ -3,12 +3,13 @@
 import math
 from collections.abc import Callable, Hashable, Mapping, Sequence
 from itertools import islice
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from rockbatch.checks.suite import counts_as
+from rockbatch.lazy import pd
 from rockbatch.report.contents import Contents
 from rockbatch.report.document import Section
 from rockbatch.report.finished import Finished
@@ -17,9 +18,6 @@ from rockbatch.report.markup import Markup, join, tag
 from rockbatch.report.table import MOST_ROWS, Head, alarm, table, told_apart
 from rockbatch.results.columns import COLUMNS
 from rockbatch.results.suite_statistics import Suite, suites
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 Row = tuple[Hashable, ...]
 """Values that tell a row of the tables from others."""
@@ -118,8 +116,6 @@ def _by_row(
     runs: "pd.DataFrame", keys: list[str], names: Mapping[Row, object]
 ) -> "tuple[pd.DataFrame, npt.NDArray[np.int64]]":
     """The runs that are in one of the rows ``names``, and the place of its row of each."""
-    import pandas as pd
-
     place = pd.MultiIndex.from_tuples(list(names), names=keys).get_indexer(pd.MultiIndex.from_frame(runs[keys]))
     return runs[place >= 0], place[place >= 0].astype(np.int64)
 

@@ -1,0 +1,19 @@
+"""Packages that take long to load, loaded when they are first used: ``from rockbatch.lazy import pd``."""
+
+from importlib import import_module
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+
+
+class _Lazy(ModuleType):
+    """Module whose names are looked up in the one of the same name, which is loaded for the first of them."""
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(import_module(self.__name__), name)
+
+
+if TYPE_CHECKING:
+    import h5py as h5py
+    import pandas as pd
+else:
+    h5py, pd = _Lazy("h5py"), _Lazy("pandas")
