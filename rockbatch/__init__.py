@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from rockbatch.results.opened import open_results
     from rockbatch.results.response import Response
     from rockbatch.simulation.histories import simulate
-    from rockbatch.study import load_study
+    from rockbatch.study import Study, load_study
 
 _HOMES = {
     "Damper": "rockbatch.pier",
@@ -33,6 +33,7 @@ _HOMES = {
     "Response": "rockbatch.results.response",
     "RigidBase": "rockbatch.pier",
     "Rule": "rockbatch.checks",
+    "Study": "rockbatch.study",
     "Tendon": "rockbatch.pier",
     "YieldingBase": "rockbatch.pier",
     "accuracy": "rockbatch.analysis.accuracy",
@@ -61,6 +62,7 @@ __all__ = [
     "Response",
     "RigidBase",
     "Rule",
+    "Study",
     "Tendon",
     "YieldingBase",
     "accuracy",

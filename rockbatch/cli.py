@@ -3,6 +3,7 @@
 
 import argparse
 import os
+import re
 import sys
 import warnings
 from collections.abc import Callable, Sequence
@@ -80,12 +81,27 @@ def main(arguments: Sequence[str] | None = None) -> int:
             import argcomplete
 
             argcomplete.autocomplete(root)
-    parsed = root.parse_args(arguments)
+    parsed, unknown = root.parse_known_args(arguments)
+    if unknown:
+        root.error(f"unrecognized arguments: {' '.join(unknown)}{_meant(parsed.command, unknown)}")
     if parsed.command is None:
         root.print_help()
         return 2
     code = _carried_out(parsed)
     return code or int(is_lost(sys.stdout))
+
+
+def _meant(command: str | None, unknown: Sequence[str]) -> str:
+    """Return which options of the command were probably meant; empty if none is like them."""
+    from rockbatch.toml.kinds import closest
+
+    if command is None:
+        return ""
+    known = argparse.ArgumentParser()
+    COMMANDS[command].add_arguments(known)
+    options = re.findall(r"--[\w-]+", known.format_usage())
+    meant = [closest(word.partition("=")[0], options) for word in unknown if word.startswith("--")]
+    return f"; did you mean {', '.join(filter(None, meant))}?" if any(meant) else ""
 
 
 def _carried_out(parsed: argparse.Namespace) -> int:

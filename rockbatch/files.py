@@ -118,6 +118,15 @@ def replacing(path: Path) -> Iterator[Path]:
             raise
 
 
+def refuse_folders(directory: Path, names: Iterable[str]) -> None:
+    """Raise ``InputError`` with all folders that stand where files of these names will be written."""
+    folders = [path for path in (directory / name for name in names) if path.is_dir() and not path.is_symlink()]
+    if folders:
+        raise InputError(
+            *(f"{path}: a folder, where a file of this name is to be written; move it away" for path in folders)
+        )
+
+
 def write_whole(path: Path, text: str) -> None:
     """Write UTF-8 ``text`` to ``path``, whole or not at all."""
     with replacing(path) as temporary:
@@ -154,7 +163,8 @@ def only_writer(folder: Path) -> Iterator[None]:
         ) from None
     try:
         for leftover in folder.glob(f".*{UNFINISHED}"):  # by a process that was killed
-            leftover.unlink(missing_ok=True)
+            if is_plain(leftover):
+                leftover.unlink(missing_ok=True)
         yield
     finally:
         with suppress(OSError):  # Windows keeps files that are open

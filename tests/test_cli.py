@@ -6,6 +6,7 @@ import os
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import pandas as pd
 import pytest
@@ -134,6 +135,33 @@ def test_wrong_input_runs_nothing_and_exits_with_2(study, tmp_path, capsys):
 def test_a_missing_study_is_told_and_exits_with_2(tmp_path, capsys):
     assert main(["run", str(tmp_path / "none.toml")]) == 2
     assert "none.toml" in capsys.readouterr().err
+
+
+def test_a_misspelt_option_is_answered_with_the_one_of_its_command(study, capsys):
+    for words, end in (
+        (["run", str(study), "--dryrun"], "unrecognized arguments: --dryrun; did you mean --dry-run?"),
+        (["motions", ".", "--units=g"], "unrecognized arguments: --units=g; did you mean --unit?"),
+        (["run", str(study), "--zzz"], "unrecognized arguments: --zzz"),
+        (["--zzz"], "unrecognized arguments: --zzz"),
+    ):
+        with pytest.raises(SystemExit) as ended:
+            main(words)
+        assert ended.value.code == 2
+        assert capsys.readouterr().err.rstrip().endswith(end)
+
+
+def test_a_study_in_place_of_a_folder_of_results_is_told_the_folder(study, capsys):
+    for command in ("check", "report"):
+        assert main([command, str(study)]) == 2
+        told = capsys.readouterr().err
+        assert (
+            f"{study}: a file, not a folder of results; write the folder, such as {Path('reports', study.stem)}" in told
+        )
+
+
+def test_motions_of_an_empty_folder_have_no_table(tmp_path, capsys):
+    assert main(["motions", str(tmp_path)]) == 1
+    assert capsys.readouterr() == ("", "0 records, 0 files not used, 0 left out; 0 stations\n")
 
 
 def test_motions_shows_what_is_there_and_what_is_not_used(tmp_path, capsys):

@@ -282,8 +282,10 @@ def test_mistakes_are_told_before_anything_is_written(study, nowhere, name):
     broken.write_text(STUDY.replace("eta = 2.5", "eta = 0.9\nbeat = 40"), encoding="utf-8")
     with pytest.raises(rb.InputError, match=r"broken\.toml:35"):
         door(broken, out)
-    with pytest.raises(rb.InputError, match="loaded already"):
-        door(rb.load_study(study), out, motions=nowhere)
+    with pytest.raises(rb.InputError, match="no such file or folder"):
+        door(rb.load_study(study), out, motions=nowhere / "missing")
+    with pytest.raises(rb.InputError, match='motions = "3": expected a path, a MotionSet'):
+        door(study, out, motions=3)
     with pytest.raises(rb.InputError, match="progress = 3"):
         door(study, out, progress=3)
     if name != "accuracy":

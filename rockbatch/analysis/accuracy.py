@@ -16,7 +16,7 @@ from rockbatch.lazy import pd
 from rockbatch.report import write_report
 from rockbatch.results.columns import PEAKS
 from rockbatch.results.run_json import INFO
-from rockbatch.study import Study, given_study
+from rockbatch.study import Motions, Study, given_study
 from rockbatch.study.suite import ground_motions
 
 RUNS = 24
@@ -74,7 +74,7 @@ def accuracy(
     runs: int = RUNS,
     seconds: float = SECONDS,
     scipy: bool = True,
-    motions: str | os.PathLike[str] | None = None,
+    motions: Motions = None,
     progress: Progress = None,
 ) -> Accuracy:
     """Measure the error of θ_max/α against time per run, for this study on this machine, beside SciPy's solvers.
@@ -121,6 +121,8 @@ def accuracy(
     if not seconds > 0:
         raise InputError(f"seconds = {seconds:g}: must be above 0")
     asked, listener = given_study(study, motions), listener_of(progress)
+    if out is not None:
+        Accuracy.refuse_folders(Path(out))
     suite = ground_motions(asked)
     make_ready(asked, listener)
     clock = Clock(seconds)

@@ -14,10 +14,19 @@ from rockbatch._version import __version__
 from rockbatch.batch.journal import Journal
 from rockbatch.batch.listening import Listener, count
 from rockbatch.errors import InputError
-from rockbatch.files import csv_text, is_plain, only_writer, read_table, read_text, sha256_of, write_whole
+from rockbatch.files import (
+    csv_text,
+    is_plain,
+    only_writer,
+    read_table,
+    read_text,
+    refuse_folders,
+    sha256_of,
+    write_whole,
+)
 from rockbatch.lazy import pd
 from rockbatch.motions import Motion, Unusable
-from rockbatch.report import write_analyses
+from rockbatch.report import REPORT, write_analyses
 from rockbatch.report.finished_analysis import digest_of
 from rockbatch.results.run_json import versions
 from rockbatch.showing import Shown, several
@@ -47,6 +56,11 @@ class Analysis(Shown):
     info: dict[str, Any]
     unusable: tuple[Unusable, ...] = ()
     files: tuple[Path, ...] = ()
+
+    @classmethod
+    def refuse_folders(cls, directory: Path) -> None:
+        """Raise ``InputError`` if a folder stands where a file of this analysis is to be written."""
+        refuse_folders(directory, (*(f"{name}.csv" for name in cls.TABLES), f"{cls.NAME}.json", REPORT))
 
     @property
     def tables(self) -> "dict[str, pd.DataFrame]":
@@ -181,14 +195,15 @@ class AnalysisFolder:
 
 @contextmanager
 def analysis_folder(
-    out: str | os.PathLike[str] | None, name: str, study: Study, fresh: bool, listener: Listener
+    out: str | os.PathLike[str] | None, kind: type[Analysis], study: Study, fresh: bool, listener: Listener
 ) -> Iterator[AnalysisFolder]:
     """Yield the folder of an analysis; without ``out`` a temporary one, removed with all that is in it."""
     if out is not None:
-        yield AnalysisFolder(Path(out), name, study, fresh=fresh, listener=listener)
+        kind.refuse_folders(Path(out))
+        yield AnalysisFolder(Path(out), kind.NAME, study, fresh=fresh, listener=listener)
         return
     with TemporaryDirectory(prefix="rockbatch-") as directory:
-        yield AnalysisFolder(Path(directory), name, study, listener=listener, passing=True)
+        yield AnalysisFolder(Path(directory), kind.NAME, study, listener=listener, passing=True)
 
 
 def _earlier(path: Path) -> dict[str, Any]:

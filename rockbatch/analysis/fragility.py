@@ -15,7 +15,7 @@ from rockbatch.batch.listening import Progress, count, listener_of, once
 from rockbatch.batch.threads import Engine, engine_of
 from rockbatch.lazy import pd
 from rockbatch.results.columns import columns
-from rockbatch.study import Study, given_study
+from rockbatch.study import Motions, Study, given_study
 from rockbatch.study.fragility import FragilitySpec, read_fragility
 from rockbatch.study.suite import ground_motions
 
@@ -54,7 +54,7 @@ def fragility(
     study: str | os.PathLike[str] | Study,
     out: str | os.PathLike[str] | None = None,
     *,
-    motions: str | os.PathLike[str] | None = None,
+    motions: Motions = None,
     jobs: int | Engine | None = None,
     fresh: bool = False,
     progress: Progress = None,
@@ -108,7 +108,7 @@ def fragility(
         fragility=replace(spec, confidence=0.0),  # which no run depends on
     )
     with (
-        analysis_folder(out, Fragility.NAME, asked, fresh, listener) as results,
+        analysis_folder(out, Fragility, asked, fresh, listener) as results,
         results.journal(RUNS, columns(asked), digest) as journal,
         carrier,
     ):

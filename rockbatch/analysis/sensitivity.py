@@ -28,7 +28,7 @@ from rockbatch.checks.statistics import STATISTICS, Values
 from rockbatch.files import opened_text
 from rockbatch.lazy import pd
 from rockbatch.motions import MotionSet
-from rockbatch.study import Study, given_study
+from rockbatch.study import Motions, Study, given_study
 from rockbatch.study.sensitivity import Input, SensitivitySpec, Value, read_sensitivity
 from rockbatch.study.suite import ground_motions
 
@@ -65,7 +65,7 @@ def sensitivity(
     study: str | os.PathLike[str] | Study,
     out: str | os.PathLike[str] | None = None,
     *,
-    motions: str | os.PathLike[str] | None = None,
+    motions: Motions = None,
     jobs: int | Engine | None = None,
     fresh: bool = False,
     progress: Progress = None,
@@ -110,7 +110,7 @@ def sensitivity(
     suite = ground_motions(wanted)
     listener.motions(suite)
     points = Points(asked, spec)
-    with analysis_folder(out, Sensitivity.NAME, asked, fresh, listener) as results:
+    with analysis_folder(out, Sensitivity, asked, fresh, listener) as results:
         results.under(suite.motions)
         results.info |= {
             "varied": list(asked.varied),

@@ -19,7 +19,7 @@ from rockbatch.files import is_plain, read_table
 from rockbatch.lazy import pd
 from rockbatch.motions import MotionSet
 from rockbatch.results.columns import columns
-from rockbatch.study import Study, given_study
+from rockbatch.study import Motions, Study, given_study
 from rockbatch.study.spectrum import MapSpec, SpectrumSpec, read_spectrum
 from rockbatch.study.suite import ground_motions
 
@@ -58,7 +58,7 @@ def spectrum(
     study: str | os.PathLike[str] | Study,
     out: str | os.PathLike[str] | None = None,
     *,
-    motions: str | os.PathLike[str] | None = None,
+    motions: Motions = None,
     jobs: int | Engine | None = None,
     fresh: bool = False,
     progress: Progress = None,
@@ -100,7 +100,7 @@ def spectrum(
     spectra, maps = read_spectrum(asked)
     listener = listener_of(progress)
     suite = MotionSet()
-    with analysis_folder(out, Spectrum.NAME, asked, fresh, listener) as results, carrier:
+    with analysis_folder(out, Spectrum, asked, fresh, listener) as results, carrier:
         if spectra is not None:
             suite = ground_motions(asked)
             listener.motions(suite)

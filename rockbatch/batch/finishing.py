@@ -32,6 +32,9 @@ from rockbatch.results.reading import Saved, edited
 from rockbatch.results.run_json import INFO, describe, versions, write_info
 from rockbatch.study import Study
 
+OUTPUTS = (PEAKS, INFO, HISTORIES, INTENSITY, ESTIMATE, CHECKS, REPORT)
+"""Files that a run may leave in its folder."""
+
 
 @dataclass(frozen=True, eq=False)
 class FinishedBatch:
@@ -125,7 +128,7 @@ def write_peaks(journal: Journal, motions: MotionSet) -> dict[str, Any]:
     Returns its number of rows and its digest, as run.json has them.
     """
     directory = journal.path.parent
-    for name in (INFO, HISTORIES, INTENSITY, ESTIMATE, CHECKS, REPORT):
+    for name in OUTPUTS[1:]:
         (directory / name).unlink(missing_ok=True)
     return journal.write_in_order(directory / PEAKS, unusable_rows(motions))._asdict()
 

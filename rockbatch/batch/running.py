@@ -10,16 +10,25 @@ from typing import Any
 from rockbatch.batch.carrying_out import InMemory, carry_out, to_simulate
 from rockbatch.batch.compiling import make_ready
 from rockbatch.batch.digests import study_digests
-from rockbatch.batch.finishing import FinishedBatch, cost_of_finished, finish, to_be_replaced, what_was_run, write_peaks
+from rockbatch.batch.finishing import (
+    OUTPUTS,
+    FinishedBatch,
+    cost_of_finished,
+    finish,
+    to_be_replaced,
+    what_was_run,
+    write_peaks,
+)
 from rockbatch.batch.journal import Journal
 from rockbatch.batch.listening import Listener, Progress, count, listener_of, once
 from rockbatch.batch.plan import Plan
 from rockbatch.batch.threads import Engine, engine_of
 from rockbatch.errors import InputError
+from rockbatch.files import refuse_folders
 from rockbatch.lazy import pd
 from rockbatch.motions import MotionSet
 from rockbatch.results.columns import PART, as_table, columns, unusable_rows
-from rockbatch.study import Study, given_study
+from rockbatch.study import Motions, Study, given_study
 from rockbatch.study.suite import ground_motions
 from rockbatch.toml.kinds import closest
 
@@ -28,7 +37,7 @@ def run(
     study: str | os.PathLike[str] | Study,
     out: str | os.PathLike[str] | None = None,
     *,
-    motions: str | os.PathLike[str] | None = None,
+    motions: Motions = None,
     jobs: int | Engine | None = None,
     fresh: bool = False,
     progress: Progress = None,
@@ -43,8 +52,8 @@ def run(
         Folder for what ``rockbatch run`` leaves: ``peaks.csv``, ``run.json``, the histories and checks that the study asks
         for, and ``report.html``. What an earlier process has finished there counts; one that was interrupted is gone on
         with. Without it nothing is kept on disk, and there are no histories.
-    motions : path, optional
-        A file or folder that replaces all motions of a study file.
+    motions : path, MotionSet, Motion or list of Motion, optional
+        What replaces all motions of the study: a file or folder, or motions.
     jobs : int or Engine, optional
         Number of threads, all processors by default; or a cluster, :class:`rockbatch.batch.dask.Dask`. The table does not
         depend on it.
@@ -83,7 +92,8 @@ def run(
     if out is None:
         return _in_memory(asked, engine, listener)
     told = ["run", str(asked.path), "--out", os.fspath(out)]
-    told += [] if motions is None else ["--motions", os.fspath(motions)]
+    if motions is not None:
+        told += ["--motions", os.fspath(motions) if isinstance(motions, str | os.PathLike) else "(motions from Python)"]
     finished = run_into(Path(out), asked, engine, listener, command=told, fresh=fresh)
     assert finished is not None  # no share is asked for
     if finished.without:
@@ -132,6 +142,7 @@ def run_into(
         As :func:`run`.
     """
     started = time.monotonic()
+    refuse_folders(directory, OUTPUTS)
     motions = ground_motions(study)
     listener.motions(motions)
     _check_records(records, motions)

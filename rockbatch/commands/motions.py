@@ -69,7 +69,8 @@ def main(arguments: argparse.Namespace) -> int:
     rows = [row(motion) for motion in suite]
     if arguments.csv:
         _write(arguments.csv, rows, suite)
-    show(_table(rows))
+    if rows:
+        show(_table(rows))
     _list("What was done", [(motion.named, note) for motion in suite.motions for note in motion.notes])
     lacking = [motion.named for motion in suite.motions if motion.lacks_vertical]
     _list("No vertical", [(name, "none beside it that fits") for name in lacking])

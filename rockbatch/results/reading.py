@@ -63,6 +63,10 @@ def read_saved(directory: Path) -> Saved:
     and of an ``EditedTable``.
     """
     directory = Path(directory)
+    if directory.is_file():
+        raise InputError(
+            f"{directory}: a file, not a folder of results; write the folder, such as {Path('reports') / directory.stem}"
+        )
     problems: list[str] = []
     info = _read_info(directory / INFO, problems)
     peaks = _read_peaks(directory / PEAKS, [] if problems else info["varied"], problems)

@@ -1,14 +1,16 @@
 """The study file: what is asked, checked as a whole before anything runs."""
 
-from rockbatch.study.load import given_study, load_study
+from rockbatch.study.load import Study, given_study, load_study
+from rockbatch.study.motions import Motions
 from rockbatch.study.piers import PIER_KEYS
-from rockbatch.study.spec import Case, FemaSpec, MotionSpec, Numerics, Output, PulseSpec, Reference, Study
+from rockbatch.study.spec import Case, FemaSpec, MotionSpec, Numerics, Output, PulseSpec, Reference
 
 __all__ = [
     "PIER_KEYS",
     "Case",
     "FemaSpec",
     "MotionSpec",
+    "Motions",
     "Numerics",
     "Output",
     "PulseSpec",

@@ -7,9 +7,9 @@ from typing import Any
 from rockbatch.checks.demands import DEMANDS
 from rockbatch.checks.rules import Rule
 from rockbatch.pier import Base
-from rockbatch.study.spec import Study
+from rockbatch.study.load import Study
 from rockbatch.toml.kinds import Number, choice, closest, positive, shown, text
-from rockbatch.toml.reader import Table, TomlFile
+from rockbatch.toml.reader import Table
 from rockbatch.toml.section import Key, Section
 
 MEASURES = ("PGA", "PGV", "Sa")
@@ -87,7 +87,7 @@ def read_fragility(study: Study) -> FragilitySpec:
 
     Raises ``InputError`` with every mistake in it, with its line.
     """
-    file = TomlFile.parse(study.path, study.text)
+    file = study.file()
     table = file.table("fragility", required='[fragility] with measure = "PGV" and levels_m_s = [0.25, 0.5, 1.0, 1.5]')
     read = table.read(FRAGILITY) if table else {}
     limits = _limits(table, study.checks, read.pop("checks", None)) if table else ()

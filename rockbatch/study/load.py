@@ -1,24 +1,29 @@
 """From the study file to a checked Study."""
 
 import os
+import tomllib
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 from rockbatch.checks.choices import unmet
 from rockbatch.checks.demands import BROUGHT
 from rockbatch.checks.plausible import implausible
 from rockbatch.checks.reading import SUITE, read_checks
 from rockbatch.checks.rules import CHECK, Rule
-from rockbatch.errors import InputError
+from rockbatch.motions import MotionSet
 from rockbatch.pier import described, symmetric
+from rockbatch.showing import Shown, several
 from rockbatch.study.cases import BASE_KEYS, CASE, Expanded, read_cases
-from rockbatch.study.motions import FEMA, MOTIONS, PULSE, read_motions_table
+from rockbatch.study.motions import FEMA, MOTIONS, PULSE, Motions, as_source, read_motions_table
 from rockbatch.study.piers import PART, PIER, read_piers
 from rockbatch.study.restraint_keys import DAMPER, TENDON
-from rockbatch.study.spec import LEAST_TOLERANCE, Case, MotionSpec, Numerics, Output, Reference, Study
+from rockbatch.study.spec import LEAST_TOLERANCE, Case, MotionSpec, Numerics, Output, Reference
 from rockbatch.study.suite_keys import SELECT
+from rockbatch.study.tables import as_toml, changed, plain, without_lost_cases
 from rockbatch.study.target import TARGET
 from rockbatch.toml.kinds import Number, boolean, choice, count, not_negative, positive, shown, text, within
 from rockbatch.toml.reader import Table, TomlFile
@@ -90,15 +95,133 @@ SECTIONS = (
 ANALYSES = ("fragility", "spectrum", "sensitivity")
 
 
-def load_study(path: str | os.PathLike[str], *, motions: str | os.PathLike[str] | None = None) -> Study:
+@dataclass(frozen=True, repr=False)
+class Study(Shown):
+    """A study, checked, with every combination of pier, case and listed values as one :class:`Case`.
+
+    ``path`` and ``text`` are the file and its text, ``varied`` the names of the keys that were lists, ``checks`` the
+    rules that its results are held against, ``count`` what counts as one record of its suite, one of
+    :data:`rockbatch.checks.rules.COUNTS`, ``check_files`` the paths and texts of the files that its [suite] names for checks.
+    ``written`` is False if the text was made of tables, so that nobody knows its lines.
+
+    Examples
+    --------
+    >>> pier = rb.Study.from_dict({
+    ...     "title": "Pier 4",
+    ...     "pier": {"width_m": 4.0, "height_m": 30.0},
+    ...     "motions": {"path": "motions/near_fault"},
+    ...     "case": [{"name": "rock", "base": "rigid"}, {"name": "pads", "base": "elastic", "beta": [40, 80], "zeta": 0.05}],
+    ... })
+    >>> pier
+    <study 'Pier 4'>
+      pier      alpha 0.1326 rad, R0 15.13 m
+      motions   motions/near_fault
+      cases     rock, pads (2)
+      varied    beta
+      numerics  error of theta_max/alpha below 0.0001
+    >>> higher = pier.with_(pier={"height_m": 32}, case="rock")
+    >>> round(higher.cases[0].pier.alpha, 4)
+    0.1244
+    """
+
+    title: str
+    notes: str
+    path: Path
+    text: str
+    motions: MotionSpec
+    numerics: Numerics
+    cases: tuple[Case, ...]
+    references: tuple[Reference, ...]
+    varied: tuple[str, ...]
+    output: Output = field(default_factory=Output)
+    checks: tuple[Rule, ...] = ()
+    count: str = "station"
+    check_files: tuple[tuple[Path, str], ...] = ()
+    written: bool = True
+
+    @classmethod
+    def from_toml(cls, text: str, path: str | os.PathLike[str] = "study.toml", *, motions: Motions = None) -> "Study":
+        """Check a study that is the TOML ``text``, as :func:`load_study` checks a file.
+
+        ``path`` is what messages and results call it; paths in the study are relative to its folder. No such file is needed.
+        ``motions`` as for :func:`load_study`.
+        """
+        return _checked(TomlFile.parse(Path(path), text), motions)
+
+    @classmethod
+    def from_dict(
+        cls, tables: Mapping[str, Any], path: str | os.PathLike[str] = "study.toml", *, motions: Motions = None
+    ) -> "Study":
+        """Check a study of the tables and keys of a study file, such as ``{"pier": {"alpha": 0.13, "p": 0.38}, "case": […]}``.
+
+        Mistakes are reported as those of a file, by table and key. ``path`` and ``motions`` as for :meth:`from_toml`.
+        """
+        return _checked(TomlFile.parse(Path(path), as_toml(plain(tables))), motions, written=False)
+
+    def with_(self, *, motions: "Motions | Mapping[str, Any]" = None, **tables: Any) -> "Study":
+        """Return a changed study, checked again with everything in it.
+
+        Parameters
+        ----------
+        motions : path, MotionSet, Motion, list of Motion, or dict, optional
+            What replaces all motions of the study, or changes of [motions].
+        **tables
+            Changes by the names of tables and keys at the top: a dict changes a table key by key, and None takes a key, a table
+            or all tables of a name away. Of tables that have names, ``case="pads"`` and ``case=["rock", "pads"]`` keep these,
+            with the references and checks about them, ``case={"pads": {"beta": 60}}`` changes one, and a list of dicts
+            replaces all.
+
+        Raises
+        ------
+        InputError
+            With every mistake in the changed study, by table and key.
+        """
+        changes = tables | ({"motions": motions} if isinstance(motions, Mapping) else {})
+        instead = self.motions.instead if motions is None or isinstance(motions, Mapping) else motions
+        if not changes:
+            return _checked(self.file(), instead, written=self.written)
+        before = tomllib.loads(self.text)
+        after = without_lost_cases(before, changed(before, changes))
+        return _checked(TomlFile.parse(self.path, as_toml(after)), instead, written=False)
+
+    def file(self) -> TomlFile:
+        """Return the text, parsed again, for the tables of analyses."""
+        return _with_lines_if(self.written, TomlFile.parse(self.path, self.text))
+
+    def _told(self) -> tuple[str, dict[str, str]]:
+        """See :class:`Shown`."""
+        piers = list(dict.fromkeys((case.pier.alpha, case.pier.size) for case in self.cases))
+        names = Counter(case.name for case in self.cases)
+        instead = self.motions.instead
+        sources = (
+            [several(len(instead), "motion")] if isinstance(instead, MotionSet) else [*map(str, self.motions.paths)]
+        )
+        sources += [several(len(self.motions.fema_p695), "record"), several(len(self.motions.pulses), "pulse")]
+        step = self.numerics
+        return f"study {self.title!r}", {
+            "pier": f"alpha {piers[0][0]:.4g} rad, R0 {piers[0][1]:.4g} m"
+            if len(piers) == 1
+            else f"{len(piers)} piers",
+            "motions": ", ".join(filter(None, sources)),
+            "cases": ", ".join(name if n == 1 else f"{name} ({n})" for name, n in names.items()),
+            "varied": ", ".join(self.varied),
+            "checks": ", ".join(rule.name for rule in self.checks),
+            "numerics": f"{step.substeps} steps per sample"
+            if step.tolerance is None
+            else f"error of theta_max/alpha below {step.tolerance:g}",
+        }
+
+
+def load_study(path: str | os.PathLike[str], *, motions: Motions = None) -> Study:
     """Read and check the study file ``path``.
 
     Parameters
     ----------
     path : path-like
         A TOML file; paths in it are relative to its folder.
-    motions : path-like, optional
-        A file or folder that replaces all motions of the study.
+    motions : path, MotionSet, Motion or list of Motion, optional
+        What replaces all motions of the study: a file or folder, or motions, which are then selected and scaled as the study
+        says; the keys of [motions] by which files are read do not matter to these.
 
     Returns
     -------
@@ -109,8 +232,7 @@ def load_study(path: str | os.PathLike[str], *, motions: str | os.PathLike[str] 
     Raises
     ------
     InputError
-        With every mistake in the order of the file: the line, what was found, what was expected, and what to
-        write instead.
+        With every mistake in the order of the file: the line, the value, what was expected, and what to write instead.
 
     Examples
     --------
@@ -118,12 +240,21 @@ def load_study(path: str | os.PathLike[str], *, motions: str | os.PathLike[str] 
     >>> study.title, [case.name for case in study.cases]
     ('Pier 4', ['rigid', 'pads'])
     """
-    file = TomlFile.read(Path(path))
-    file.homes = homes(SECTIONS)
+    return _checked(TomlFile.read(Path(path)), motions)
+
+
+def _with_lines_if(written: bool, file: TomlFile) -> TomlFile:
+    if not written:
+        file.lines.clear()
+    return file
+
+
+def _checked(file: TomlFile, motions: Motions, *, written: bool = True) -> Study:
+    _with_lines_if(written, file).homes = homes(SECTIONS)
     top = Table(file, (), "", file.data).read(
         TOP, other=dict.fromkeys((*(section.at[0] for section in SECTIONS[1:]), *ANALYSES))
     )
-    motion_spec = read_motions_table(file, None if motions is None else Path(motions))
+    motion_spec = read_motions_table(file, as_source(motions))
     numerics = _numerics(file)
     piers, varied_pier = read_piers(file)
     cases, varied_case = read_cases(file, piers)
@@ -151,6 +282,7 @@ def load_study(path: str | os.PathLike[str], *, motions: str | os.PathLike[str] 
         checks=checks.rules,
         count=checks.counted,
         check_files=() if checks.file is None else ((checks.file.path, checks.file.text),),
+        written=written,
     )
 
 
@@ -158,15 +290,11 @@ def _symmetric(case: Expanded) -> bool:
     return symmetric(case.pier, case.base.restraints)
 
 
-def given_study(study: str | os.PathLike[str] | Study, motions: str | os.PathLike[str] | None = None) -> Study:
-    """Return a loaded study; a file is loaded, perhaps with other ``motions``."""
+def given_study(study: str | os.PathLike[str] | Study, motions: Motions = None) -> Study:
+    """Return a study, a file or one that is loaded, perhaps with other ``motions``."""
     if not isinstance(study, Study):
         return load_study(study, motions=motions)
-    if motions is not None:
-        raise InputError(
-            f"motions = {os.fspath(motions)}: the study is loaded already; write load_study(path, motions=...)"
-        )
-    return study
+    return study if motions is None else study.with_(motions=motions)
 
 
 def _unfit(cases: Sequence[Expanded], motions: MotionSpec, output: Output, rule: Rule) -> Iterator[str]:

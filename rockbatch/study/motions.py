@@ -1,12 +1,14 @@
 """The ground motions of a study file: [motions], [[motions.fema_p695]] and [[motions.pulse]]."""
 
 import math
-from collections.abc import Collection
+import os
+from collections import Counter
+from collections.abc import Collection, Sequence
 from pathlib import Path
 from typing import Any
 
 from rockbatch.errors import InputError, remedy
-from rockbatch.motions import kinds
+from rockbatch.motions import Motion, MotionSet, kinds
 from rockbatch.motions.formats import LAYOUTS, ROLES, ReadOptions
 from rockbatch.motions.pulses import SHAPES, pulse, unlikely
 from rockbatch.study.spec import FemaSpec, MotionSpec, PulseSpec
@@ -65,7 +67,36 @@ REQUIRED_OF_PULSE = {name for name, key in PULSE.items() if key.required}
 _MOST_SAMPLES = 10_000_000
 
 
-def read_motions_table(file: TomlFile, replaced_by: Path | None = None) -> MotionSpec:
+Motions = str | os.PathLike[str] | MotionSet | Motion | Sequence[Motion] | None
+"""What replaces the motions of a study."""
+
+
+def as_source(motions: Motions) -> Path | MotionSet | None:
+    """Return a path or a set of motions with different names; ``InputError`` for anything else."""
+    if motions is None:
+        return None
+    if isinstance(motions, str | os.PathLike):
+        return Path(motions)
+    if isinstance(motions, Motion):
+        motions = [motions]
+    try:
+        motion_set = motions if isinstance(motions, MotionSet) else MotionSet(list(motions))
+    except TypeError:
+        motion_set = MotionSet()
+    if not motion_set.motions or not all(isinstance(motion, Motion) for motion in motion_set.motions):
+        raise InputError(
+            f"motions = {shown(repr(motions))}: expected a path, a MotionSet that is not empty, or motions; "
+            "write for example motions = rb.read_motions(folder)"
+        )
+    names = Counter(motion.name for motion in motion_set.motions)
+    if twice := [
+        f"motions: {n} are called {shown(name)}; give each its own name" for name, n in names.items() if n > 1
+    ]:
+        raise InputError(*twice)
+    return motion_set
+
+
+def read_motions_table(file: TomlFile, replaced_by: Path | MotionSet | None = None) -> MotionSpec:
     """Read all of [motions]. ``replaced_by`` stands for every source in it, whose paths then need not exist."""
     table = file.table("motions")
     read = table.read(MOTIONS, other=SOURCES) if table else {}
@@ -82,10 +113,12 @@ def read_motions_table(file: TomlFile, replaced_by: Path | None = None) -> Motio
     read |= read_suite(table, {name: read.pop(name) for name in SUITE if name in read}) if table else {}
     fema = _fema(file)
     pulses = _pulses(file)
+    if isinstance(replaced_by, MotionSet):
+        return MotionSpec(instead=replaced_by, **read)
     if replaced_by is not None:
         if not replaced_by.exists():
             file.complain((), f"--motions {replaced_by}: {_missing(replaced_by, str(replaced_by))}")
-        return MotionSpec(paths=(replaced_by,), **read)
+        return MotionSpec(paths=(replaced_by,), instead=replaced_by, **read)
     if ("motions",) not in file.misspelt and not (table and any(map(table.has, SOURCES))):
         file.complain(
             ("motions",),

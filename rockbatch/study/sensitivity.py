@@ -9,6 +9,7 @@ from rockbatch.checks.statistics import STATISTICS
 from rockbatch.errors import InputError
 from rockbatch.pier import beta_of, eta_of, in_kilonewtons, problems
 from rockbatch.study.cases import CASE
+from rockbatch.study.load import Study
 from rockbatch.study.motions import MOTIONS
 from rockbatch.study.piers import PIER
 from rockbatch.study.restraint_inputs import (
@@ -22,7 +23,7 @@ from rockbatch.study.restraint_inputs import (
     with_values,
 )
 from rockbatch.study.restraint_keys import DAMPER, RESTRAINTS, TENDON
-from rockbatch.study.spec import Case, Study
+from rockbatch.study.spec import Case
 from rockbatch.toml.kinds import Choice, Number, boolean, choice, count, positive, shown
 from rockbatch.toml.reader import Table, TomlFile
 from rockbatch.toml.section import Key, Section
@@ -202,7 +203,7 @@ def read_sensitivity(study: Study) -> SensitivitySpec:
     InputError
         With every mistake, or because there is no such table.
     """
-    file = TomlFile.parse(study.path, study.text)
+    file = study.file()
     table = file.table("sensitivity", required="[sensitivity] and [sensitivity.uniform] with alpha = [0.12, 0.16]")
     read: dict[str, Any] = {}
     inputs: list[Input] = []

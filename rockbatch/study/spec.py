@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
-from rockbatch.checks.rules import Rule
+from rockbatch.motions import MotionSet
 from rockbatch.motions.baseline import Offset
 from rockbatch.motions.scaling import Target
 from rockbatch.motions.selection import Selection
@@ -40,6 +40,7 @@ class MotionSpec:
 
     ``paths`` are files and folders that exist, ``azimuths`` the directions [degrees from north] that horizontal pairs are turned
     to, none: as recorded, and ``target`` what records are scaled to, with ``scale`` on top; pulses have their own amplitude.
+    ``instead`` are motions from Python or a path that take the place of all sources.
     """
 
     paths: tuple[Path, ...] = ()
@@ -61,6 +62,7 @@ class MotionSpec:
     strict: bool = False
     fema_p695: tuple[FemaSpec, ...] = ()
     pulses: tuple[PulseSpec, ...] = ()
+    instead: Path | MotionSet | None = None
 
     @property
     def simulated(self) -> str:
@@ -120,27 +122,3 @@ class Reference:
     columns: dict[str, float | str]
     theta_max_over_alpha: float
     source: str
-
-
-@dataclass(frozen=True)
-class Study:
-    """A study file, checked, with every combination of pier, case and listed values as one :class:`Case`.
-
-    ``path`` and ``text`` are the file and its text, ``varied`` the names of the keys that were lists, ``checks`` the
-    rules that its results are held against, ``count`` what counts as one record of its suite, one of
-    :data:`rockbatch.checks.rules.COUNTS`, ``check_files`` the paths and texts of the files that its [suite] names for checks.
-    """
-
-    title: str
-    notes: str
-    path: Path
-    text: str
-    motions: MotionSpec
-    numerics: Numerics
-    cases: tuple[Case, ...]
-    references: tuple[Reference, ...]
-    varied: tuple[str, ...]
-    output: Output = Output()
-    checks: tuple[Rule, ...] = ()
-    count: str = "station"
-    check_files: tuple[tuple[Path, str], ...] = ()

@@ -10,9 +10,10 @@ from rockbatch.errors import InputError
 from rockbatch.motions.pulses import SHAPES
 from rockbatch.pier import Pier, problems
 from rockbatch.study.cases import read_cases
+from rockbatch.study.load import Study
 from rockbatch.study.motions import PULSE, check_shape
 from rockbatch.study.piers import has_mass
-from rockbatch.study.spec import Case, Study
+from rockbatch.study.spec import Case
 from rockbatch.toml.kinds import Number, Whole, choice, number, positive, text
 from rockbatch.toml.reader import Table, TomlFile
 from rockbatch.toml.section import Key, Section
@@ -110,7 +111,7 @@ def read_spectrum(study: Study) -> tuple[SpectrumSpec | None, tuple[MapSpec, ...
     InputError
         With every mistake in [spectrum], or because there is none.
     """
-    file = TomlFile.parse(study.path, study.text)
+    file = study.file()
     table = file.table(
         "spectrum", required="[spectrum] with alpha = [0.10, 0.15] and two_pi_over_p_s = [2, 16], or a [[spectrum.map]]"
     )

@@ -6,7 +6,7 @@ from rockbatch.errors import InputError
 from rockbatch.motions import MotionSet, ReadOptions, pulse, read_motions
 from rockbatch.motions.scaling import at_target
 from rockbatch.motions.selection import selected
-from rockbatch.study.spec import Study
+from rockbatch.study.load import Study
 
 
 def ground_motions(study: Study) -> MotionSet:
@@ -18,17 +18,20 @@ def ground_motions(study: Study) -> MotionSet:
     """
     spec = study.motions
     gravity = study.cases[0].pier.gravity
-    records = read_motions(
-        spec.paths,
-        vertical=spec.vertical,
-        gravity=gravity,
-        options=ReadOptions(spec.unit, spec.dt, spec.columns, spec.sensitivity, spec.role, spec.layout),
-        fema=[(record.station, record.azimuth) for record in spec.fema_p695],
-        offset=spec.offset,
-        azimuths=spec.azimuths,
-        confirmed=spec.confirm,
-        confirmed_pga=spec.confirm_pga,
-    )
+    if isinstance(spec.instead, MotionSet):
+        records = _as_given(spec.instead, spec.vertical)
+    else:
+        records = read_motions(
+            spec.paths,
+            vertical=spec.vertical,
+            gravity=gravity,
+            options=ReadOptions(spec.unit, spec.dt, spec.columns, spec.sensitivity, spec.role, spec.layout),
+            fema=[(record.station, record.azimuth) for record in spec.fema_p695],
+            offset=spec.offset,
+            azimuths=spec.azimuths,
+            confirmed=spec.confirm,
+            confirmed_pga=spec.confirm_pga,
+        )
     records = selected(records, spec.select, gravity)
     if spec.target is not None:
         records = at_target(records, spec.target, gravity, spec.confirm)
@@ -54,3 +57,14 @@ def ground_motions(study: Study) -> MotionSet:
         where = ", ".join(str(path) for path in spec.paths)
         raise InputError(f"{where}: no ground motion that can be used; `rockbatch motions PATH` shows why", *reasons)
     return replace(records, motions=[*records.motions, *pulses])
+
+
+def _as_given(motions: MotionSet, vertical: bool | str) -> MotionSet:
+    """Return motions that were read elsewhere, with the vertical components that the study asks for."""
+    if vertical is False:
+        return replace(motions, motions=[replace(motion, vertical=None) for motion in motions])
+    if vertical == "required":
+        lacking = [f"motions: {motion.name} has no vertical component" for motion in motions if motion.vertical is None]
+        if lacking:
+            raise InputError(*lacking)
+    return motions

@@ -58,3 +58,27 @@ def test_a_study_that_has_moved_is_known_by_its_title(finished, tmp_path, capsys
     other = write_study(tmp_path, study_text(title="Pier 5"), "pier5.toml")
     assert run(other, out) == 2
     assert '"Pier 4"' in capsys.readouterr().err
+
+
+def test_a_folder_called_like_an_output_is_noticed_before_the_first_run(tmp_path, capsys):
+    study = write_study(tmp_path, study_text(fragility={"measure": "PGA", "levels_g": [0.2, 0.4]}), "pier.toml")
+    of_run = ("peaks.csv", "run.json", "histories.h5", "intensity.csv", "checks.csv", "estimate.csv", "report.html")
+    for command, names in (("run", of_run), ("fragility", ("fragility_runs.csv", "fragility.json", "report.html"))):
+        for name in names:
+            out = tmp_path / command / name.replace(".", "_")
+            (out / name).mkdir(parents=True)
+            assert main([command, str(study), "--out", str(out)]) == 2
+            told = capsys.readouterr().err
+            assert (
+                told == f"rockbatch: {out / name}: a folder, where a file of this name is to be written; move it away\n"
+            )
+            assert [path.name for path in out.iterdir()] == [name]
+
+
+def test_a_folder_called_like_an_unfinished_file_stops_nothing_and_stays(finished, capsys):
+    study, out = finished
+    (out / ".x.unfinished").mkdir()
+    (out / ".y.unfinished").write_text("half")
+    assert run(study, out, "--fresh") in (0, 1)
+    assert (out / ".x.unfinished").is_dir()
+    assert not (out / ".y.unfinished").exists()

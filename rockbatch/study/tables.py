@@ -1,0 +1,143 @@
+"""Studies as tables of Python: changed by name, and written as TOML."""
+
+import datetime
+import json
+import os
+import re
+from collections.abc import Iterable, Mapping
+from fnmatch import fnmatchcase
+from typing import Any
+
+from rockbatch.errors import InputError
+from rockbatch.toml.kinds import closest, shown
+
+_BARE = re.compile(r"[A-Za-z0-9_-]+")
+_DEEPEST = 32
+_VALUES = (bool, int, float, str, datetime.date, datetime.time)
+
+
+def plain(value: Any, *place: str) -> Any:
+    """Return ``value`` as a TOML parser returns it: dicts, lists, numbers and texts.
+
+    Tuples and arrays become lists, paths texts, and keys with None are left out. Raises ``InputError`` for what TOML has not,
+    with its ``place``.
+    """
+    where = ".".join(place)
+    if hasattr(value, "tolist"):  # NumPy's arrays and numbers
+        value = value.tolist()
+    if len(place) > _DEEPEST:
+        raise InputError(f"{'.'.join(place[:3])}: tables or lists within one another, more than {_DEEPEST} deep")
+    if isinstance(value, Mapping):
+        return {str(key): plain(item, *place, str(key)) for key, item in value.items() if item is not None}
+    if isinstance(value, list | tuple):
+        return [plain(item, *place, str(n)) for n, item in enumerate(value)]
+    if isinstance(value, os.PathLike):
+        return os.fspath(value)
+    if not isinstance(value, _VALUES):
+        raise InputError(f"{where}: expected a number, a text, a list or a table, not an object {type(value).__name__}")
+    return value
+
+
+def changed(old: Any, new: Any, *place: str) -> Any:
+    """Return the value ``old`` of a study with the changes ``new``; ``InputError`` for a name that is not there.
+
+    A table is changed key by key, and None takes a key away. Of a list of tables, such as the cases, a name or a list of names
+    keeps those tables, and a mapping changes some of them by their names. Anything else takes the place of ``old``.
+    """
+    if isinstance(old, dict) and isinstance(new, Mapping):
+        result = dict(old)
+        for key, item in new.items():
+            if item is None:
+                result.pop(key, None)
+            else:
+                result[key] = changed(old.get(key), item, *place, str(key))
+        return result
+    if are_tables(old):
+        names = [new] if isinstance(new, str) else new
+        if isinstance(names, Mapping) or (isinstance(names, list | tuple) and all(isinstance(n, str) for n in names)):
+            return _by_name(old, names, *place)
+    return plain(new, *place)
+
+
+def _by_name(tables: list[dict[str, Any]], names: Any, *place: str) -> list[dict[str, Any]]:
+    there = {name_of(table): table for table in tables}
+    problems = []
+    for name in names:
+        if name not in there:
+            meant = closest(str(name), filter(None, there))
+            known = ", ".join(map(shown, filter(None, there))) or "none that has one; give a list of all tables"
+            instead = f"did you mean {shown(meant)}?" if meant else f"there is {known}"
+            problems.append(f"{'.'.join(place)} = {shown(name)}: there is none of this name; {instead}")
+    if problems:
+        raise InputError(*problems)
+    if not isinstance(names, Mapping):
+        return [there[name] for name in names]
+    return [
+        changed(table, names.get(name, {}), *place, name)
+        for name, table in there.items()
+        if names.get(name, {}) is not None
+    ]
+
+
+def name_of(table: Mapping[str, Any]) -> str:
+    """Return the name of a table among others of its kind; a single case may be called by its base."""
+    return str(table.get("name", table.get("base", "")))
+
+
+def are_tables(value: Any) -> bool:
+    """Return whether ``value`` is a list of tables, and not empty."""
+    return isinstance(value, list) and bool(value) and all(isinstance(item, dict) for item in value)
+
+
+def without_lost_cases(before: Mapping[str, Any], after: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the tables ``after`` a change without checks and references that are about cases alone that are gone."""
+    result = dict(after)
+    if not (are_tables(before.get("case")) and are_tables(after.get("case"))):
+        return result
+    there = [name_of(case) for case in after["case"]]
+    lost = [name for name in map(name_of, before["case"]) if name not in there]
+    for what in ("reference", "check"):
+        if not are_tables(result.get(what)):
+            continue
+        kept = []
+        for table in result.pop(what):
+            patterns = table["case"] if isinstance(table.get("case"), list) else [table.get("case", "*")]
+            about = [pattern for pattern in patterns if _fits(there, pattern) or not _fits(lost, pattern)]
+            if about:
+                kept.append(table if about == patterns else table | {"case": about})
+        if kept:
+            result[what] = kept
+    return result
+
+
+def _fits(names: Iterable[str], pattern: Any) -> bool:
+    return any(name == pattern or fnmatchcase(name, str(pattern)) for name in names)
+
+
+def as_toml(tables: Mapping[str, Any], *place: str) -> str:
+    """Return tables as :func:`plain` returns them as TOML: keys first, then the tables within, each under its header."""
+    own, inner = [], []
+    for key, value in tables.items():
+        header = ".".join(map(_key, (*place, key)))
+        if isinstance(value, dict):
+            inner.append(f"\n[{header}]\n{as_toml(value, *place, key)}")
+        elif are_tables(value):
+            inner += [f"\n[[{header}]]\n{as_toml(item, *place, key)}" for item in value]
+        else:
+            own.append(f"{_key(key)} = {_written(value)}\n")
+    return "".join([*own, *inner])
+
+
+def _key(name: str) -> str:
+    return name if _BARE.fullmatch(name) else _written(name)
+
+
+def _written(value: Any) -> str:
+    if isinstance(value, str):
+        lines = [json.dumps(line, ensure_ascii=False)[1:-1].replace("\x7f", r"\u007f") for line in value.split("\n")]
+        return f'"{lines[0]}"' if len(lines) == 1 else '"""\n' + "\n".join(lines) + '"""'
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{_key(key)} = {_written(item)}" for key, item in value.items()) + " }"
+    if isinstance(value, list):
+        return f"[{', '.join(map(_written, value))}]"
+    return str(value).lower() if isinstance(value, bool) else str(value)
