@@ -129,6 +129,24 @@ def cwa_text(start: str = "#StartTime: 1999/09/20-17:47:02.000", unit: str = "ga
     return "\n".join(["#StationCode: TCU068", start, f"#AmplitudeUnit:  {unit}", *keys, "#Data: 4F10.3 ", *rows, ""])
 
 
+def resorce_text(values=A / 100, **changed: str | None) -> str:
+    """Return a RESORCE file, ``values`` in m/s²; ``changed`` replaces a key's value, ``None`` leaves the key out."""
+    header: dict[str, str | None] = {
+        "Event Date & Time": "1980-05-23 12:26:24",
+        "Station Code / Name": "3202 / Made Up-Post Office",
+        "Network": "A network",
+        "Orientation": "N",
+        "Processing Info": "Instrument correction and acausal bandpass filtering",
+        "Filter Cut-off Frequency (Hz)": "0.800 - 25.000",
+        "Time Increment (s)": "0.005",
+        "Number of Data": str(len(values)),
+        "PGA (m/s/s)": f"{np.abs(values).max():.7E}",
+        **changed,
+    }
+    lines = [f"{key:30}: {value}" for key, value in header.items() if value is not None]
+    return "\n".join([*lines, "Accelaration time series in m/s/s", *in_columns(values, "14.7E", 5), ""])
+
+
 BBP = "\n".join(
     [
         "#    time(sec)      N-S(cm/s/s)      E-W(cm/s/s)      U-D(cm/s/s)",

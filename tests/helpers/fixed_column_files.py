@@ -235,6 +235,15 @@ def smc_text(
     return "\n".join(lines)
 
 
+def film_text(values=A, times=None, **header) -> str:
+    """Return an SMC file as digitised from film: pairs of time [s] and value, and no rate."""
+    times = np.cumsum(np.r_[0.0, np.resize([0.00137, 0.00147], len(values) - 1)]) if times is None else times
+    pairs = np.column_stack([times, values]).ravel()
+    return smc_text(
+        pairs, **{"title": "1 UNCORRECTED ACCELEROGRAM", "rate": 1.7e38, "peak": np.abs(values).max(), **header}
+    )
+
+
 def damaged(good: bytes) -> st.SearchStrategy[bytes]:
     """Return a strategy of ``good`` cut anywhere, with bytes changed, among them large counts and numbers."""
     spots = st.tuples(

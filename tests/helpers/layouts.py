@@ -7,8 +7,8 @@ import io
 from dataclasses import dataclass, field
 
 import numpy as np
-from agency_files import BBP, cwa_text, dyna_text, geonet_text, knet_text, renadic_text
-from fixed_column_files import cosmos_text, csmip_channel, csmip_text, smc_text
+from agency_files import BBP, cwa_text, dyna_text, geonet_text, knet_text, renadic_text, resorce_text
+from fixed_column_files import cosmos_text, csmip_channel, csmip_text, film_text, smc_text
 from motion_files import at2_text, wiggle
 from national_files import afad_text, bhrc_text, csmnc_text, unam_text, usc_text
 from obspy import Stream, Trace
@@ -44,6 +44,12 @@ def _table(head: str, per_line: int = 1, between: str = " ", time: bool = False,
     if time:
         return head + "".join(f"{0.01 * i:.2f}{between}{cell}\n" for i, cell in enumerate(cells))
     return head + "".join(between.join(cells[i : i + per_line]) + "\n" for i in range(0, npts, per_line))
+
+
+def _shake() -> str:
+    cells = [f"{value:9.6f}" for value in wiggle(123)]
+    title = "MADE UP EARTHQUAKE\nSOMEWHERE, 90 DEG\n\n"
+    return title + "".join("".join(cells[i : i + 8]) + "\n" for i in range(0, len(cells), 8))
 
 
 def _unam_in_exponents() -> str:
@@ -99,7 +105,7 @@ def _layouts() -> list[Layout]:
         ("CSMIP", "Volume 3, spectra", "x.V3", spectra, ReadOptions()),
         ("USGS SMC", "corrected, 8E10.4", "x.smc", smc_text(), ReadOptions()),
         ("USGS SMC", "corrected, 5E14.7", "x.smc", smc_text(digits=8), ReadOptions()),
-        ("USGS SMC", "from film, pairs of time and value", "x.smc", smc_text(rate=1.7e38), ReadOptions()),
+        ("USGS SMC", "from film, pairs of time and value", "x.smc", film_text(), ReadOptions()),
         ("RENADIC", "pairs of time and value", "x.V1", renadic_text(), ReadOptions()),
         ("USC", "Volume I", "x.s0a", usc_text(), ReadOptions()),
         (
@@ -109,6 +115,7 @@ def _layouts() -> list[Layout]:
             usc_text().replace("UNCORRECTED", "CORRECTED").replace("I:", "II:"),
             ReadOptions(),
         ),
+        ("RESORCE", "`.cor.acc`, 5E14.7", "1_N.cor.acc", resorce_text(), ReadOptions()),
         ("BHRC", "Volume 1", "x.V1", bhrc_text(), ReadOptions()),
         ("BHRC", "Volume 2", "x.V2", bhrc_text(volume=2), ReadOptions()),
         ("CSMNC", "uncorrected", "x.dat", csmnc_text(), ReadOptions()),
@@ -139,6 +146,8 @@ def _layouts() -> list[Layout]:
         ("text columns", "one column, nothing stated", "x_000.txt", _table(""), ReadOptions()),
         ("text columns", "five a line, `layout` stated", "x_000.txt", _table("", 5), wrapped),
         ("text columns", "five a line", "x_000.txt", _table("", 5), g),
+        ("text columns", "SHAKE, 8F9.6", "x.ACC", _shake(), g),
+        ("text columns", "SHAKE, 8F9.6, `layout` stated", "x_000.ACC", _shake(), wrapped),
         (
             *("text columns", "eight a line, count in the header", "x_000.acc"),
             *(_table("NPTS: 120\ndt: 0.01 s\nunits: g\n", 8), ReadOptions()),

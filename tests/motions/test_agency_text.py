@@ -22,6 +22,7 @@ from agency_files import (
     moment,
     renadic_channel,
     renadic_text,
+    resorce_text,
 )
 from fixed_column_files import read
 from hypothesis import HealthCheck, given, settings
@@ -290,6 +291,37 @@ def test_usc_times_from_film_are_interpolated_and_a_mark_between_channels_is_rea
     at = np.rint(times / east.dt).astype(int)
     np.testing.assert_allclose(east.acceleration[at], A / 1000 * 9.81, atol=ROUGHLY["USC"])
     assert down.orientation.down
+
+
+def test_the_reference_database_of_europe_is_read_in_its_own_layout():
+    (north,) = read(resorce_text(), "15279_N.cor.acc")
+    assert (north.name, north.dt, north.processed, north.orientation.azimuth) == ("15279_N.cor", 0.005, True, 0.0)
+    assert (north.origin.station, north.notes) == ("Made Up-Post Office", ())
+    np.testing.assert_allclose(north.acceleration, A / 100, rtol=1e-7)
+    (up,) = read(resorce_text(C / 100, Orientation="Z"), "15279_V.cor.acc")
+    assert (up.orientation.vertical, up.station) == (True, north.station)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (resorce_text(**{"Number of Data": "44"}), "line 19: found .*expected 4 values"),
+        (resorce_text(**{"Number of Data": "40"}), "line 19: found .* after the 40 declared values"),
+        (resorce_text(**{"Number of Data": "many"}), 'Number of Data: "many"; expected a number'),
+        (resorce_text(**{"Time Increment (s)": "0"}), "expected a whole number and an interval"),
+        (resorce_text().rstrip()[:-3], "line 19: found .*expected 3 values of 14 characters"),
+        (resorce_text().replace("Accelaration time", "Velocity time"), 'no line "Acceleration time series'),
+    ],
+)
+def test_a_file_of_that_database_that_is_not_whole_is_refused(text, message):
+    with pytest.raises(InputError, match=message):
+        read(text, "x.cor.acc")
+
+
+def test_of_uscs_second_volume_it_is_said_what_to_do():
+    text = usc_text().replace("UNCORRECTED", "CORRECTED").replace("I:", "II:")
+    with pytest.raises(InputError, match=r'Volume II, .*take Volume I .*layout = "wrapped"'):
+        read(text, "x.y0a")
 
 
 @pytest.mark.parametrize("case", CASES[-6:-1], ids=lambda case: case.name)

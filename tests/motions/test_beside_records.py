@@ -6,7 +6,7 @@ import agency_files as agency
 import numpy as np
 import pytest
 from agency_files import dyna_text, knet_text
-from fixed_column_files import A, B, C, csmip_channel, csmip_text, smc_text
+from fixed_column_files import A, B, C, csmip_channel, csmip_text, film_text, smc_text
 from motion_files import RECORDS, needs_records, wiggle, write_at2
 from national_files import afad_text, unam_text
 from obspy import Trace
@@ -328,10 +328,17 @@ def test_degrees_may_have_an_r_behind_in_csmip_files(tmp_path):
     assert [motion.azimuth for motion in read_motions(tmp_path).motions] == [270.0]
 
 
-def test_film_beside_the_corrected_record_of_its_station_is_left_out_and_of_another_one_was_meant(tmp_path):
-    (tmp_path / "film.smc").write_text(smc_text(rate=1.7e38, title="1 UNCORRECTED ACCELEROGRAM"), encoding="latin-1")
+def test_film_with_a_gap_beside_the_corrected_record_of_its_station_is_left_out_and_of_another_one_was_meant(tmp_path):
+    (tmp_path / "film.smc").write_text(film_text(times=np.r_[0:0.2:42j, 9.0]), encoding="latin-1")  # with a gap
     other = smc_text().replace("      1675", "      1676")
     for text, left in ((other, 0), (smc_text(), 1)):
         (tmp_path / "x.smc").write_text(text, encoding="latin-1")
         found = read_motions(tmp_path)
         assert (len(found.motions), len(found.left_out), len(found.unusable)) == (1, left, 1 - left)
+
+
+def test_film_is_a_copy_of_the_corrected_record_of_its_station(tmp_path):
+    (tmp_path / "film.smc").write_text(film_text(times=0.005 * np.arange(len(A))), encoding="latin-1")
+    (tmp_path / "x.smc").write_text(smc_text(), encoding="latin-1")
+    found = read_motions(tmp_path)
+    assert ([motion.name for motion in found.motions], len(found.left_out)) == (["x"], 1)

@@ -5,7 +5,7 @@ from datetime import UTC, datetime
 
 import numpy as np
 import pytest
-from fixed_column_files import A, B, C, assert_components_or_input_error, damaged, read, smc_text
+from fixed_column_files import NPTS, A, B, C, assert_components_or_input_error, damaged, film_text, read, smc_text
 from hypothesis import given, settings
 
 from rockbatch.errors import InputError
@@ -77,6 +77,16 @@ def test_a_clock_that_is_not_known_to_the_millisecond_gives_no_start(clock):
     assert read(smc_text(clock=clock), "x.smc")[0].start is None
 
 
+@pytest.mark.parametrize("digits", [-32768, 8])
+def test_film_without_a_rate_is_pairs_of_time_and_value_on_even_steps(digits):
+    times = np.cumsum([0, *np.random.default_rng(1).integers(4, 7, NPTS - 1)]) / 1000
+    (component,) = read(film_text(times=times, digits=digits), "x.smc")
+    assert component.raw
+    assert "uneven times" in component.notes[0]
+    at = np.rint(times / component.dt).astype(int)
+    np.testing.assert_allclose(component.acceleration[at], A / 100, atol=5.1e-5)
+
+
 def test_what_the_header_flags_or_contradicts_is_said():
     assert "flags a problem" in read(smc_text(flag=1), "x.smc")[0].notes[0]
     assert "header says a peak of" in read(smc_text(peak=980.0), "x.smc")[0].notes[0]
@@ -85,7 +95,11 @@ def test_what_the_header_flags_or_contradicts_is_said():
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        (smc_text(rate=1.7e38), "no sampling rate, so .* pairs of time and value.*take the corrected file"),
+        (
+            smc_text(rate=1.7e38),
+            "no sampling rate, so digitised from film: found 43 numbers; .*take the corrected file",
+        ),
+        (film_text(times=np.r_[0:0.2:42j, 9.0]), "film: time does not grow evenly: .*a gap is not filled"),
         (smc_text(title="3 VELOCITY"), "3 VELOCITY.*expected accelerations"),
         (smc_text(title="5 RESPONSE SPECTRA"), "5 RESPONSE SPECTRA.*expected accelerations"),
         (smc_text(title="*"), "expected accelerations"),
@@ -97,7 +111,7 @@ def test_what_the_header_flags_or_contradicts_is_said():
         (smc_text(count=-32768), "expected counts"),
         (smc_text(comments=1), "line 29: found .*expected 8 values"),
         (smc_text(comments=3), "line 3[15]: "),
-        (smc_text(rate=-200.0), "no sampling rate"),
+        (smc_text(rate=-200.0), "line 18: found a sampling rate of -200 Hz"),
         (smc_text().replace("2.0000000E+02", "2.00_0000E+02"), "line 18"),
         (smc_text().replace("station =", "nowhere ="), "line 6: found"),
     ],

@@ -11,7 +11,7 @@ import numpy as np
 from rockbatch.errors import InputError
 from rockbatch.motions.component import Component, Seat
 from rockbatch.motions.formats.fixed_width import lines_of, number_in, spaced_numbers
-from rockbatch.motions.formats.header_lines import keys_of, moment
+from rockbatch.motions.formats.header_lines import keys_of, moment, number_of
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.formats.recording import Recording, to_components
@@ -46,7 +46,7 @@ def _parse(text: str) -> list[Recording]:
         raise InputError(f'no line of column names in the first {_MOST} lines; expected "N-S  E-W  U-D"')
     header = {key: value.translate(TURKISH) for key, value in keys_of(lines[:heads]).items()}
     labels = _labels(lines[heads])
-    npts, dt = _number(header, "NUMBER OF DATA"), _number(header, "SAMPLING INTERVAL (sec)")
+    npts, dt = number_of(header, "NUMBER OF DATA"), number_of(header, "SAMPLING INTERVAL (sec)")
     if npts != int(npts) or npts < 2 or not 0 < dt < 10:
         raise InputError(f"the header says {npts:g} values every {dt:g} s; expected a whole number and an interval")
     values = spaced_numbers(lines, heads + 1, int(npts) * len(labels), len(labels)).reshape(-1, len(labels))
@@ -76,15 +76,6 @@ def _labels(line: str) -> list[str]:
     """The names of the columns; none where the line is another one."""
     names = line.split()
     return names if sorted(names) == ["E-W", "N-S", "U-D"] else []
-
-
-def _number(header: dict[str, str], key: str) -> float:
-    if key not in header:
-        raise InputError(f"the header lacks {key}")
-    try:
-        return number_in(header[key], 0)
-    except InputError:
-        raise InputError(f'the header says {key}: "{header[key][:40]}"; expected a number') from None
 
 
 def _unit(header: dict[str, str], labels: list[str], values: Samples) -> str:

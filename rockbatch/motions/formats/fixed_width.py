@@ -79,6 +79,13 @@ def fixed_numbers(lines: Sequence[str], first: int, count: int, width: int, per_
     return values
 
 
+def refuse_more(lines: Sequence[str], end: int, declared: str) -> None:
+    """Raise ``InputError`` for text from ``lines[end]`` on, after what a header has ``declared``: "the 40 values"."""
+    after = next((i for i in range(end, len(lines)) if lines[i].strip()), None)
+    if after is not None:
+        raise InputError(f'line {after + 1}: found "{lines[after][:40]}" after {declared}')
+
+
 def spaced_numbers(lines: Sequence[str], first: int, count: int, per_line: int) -> Samples:
     """``count`` numbers between blanks from ``lines[first]`` to the end of the file, shape (count,).
 

@@ -1,10 +1,11 @@
 """Header lines whose text is fixed, dates and times in them, and errors with the number of the line."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
 
 from rockbatch.errors import InputError
+from rockbatch.motions.formats.fixed_width import number_in
 
 _LONGEST = 200  # characters of a header line that are looked at
 _YEAR_FIRST = re.compile(r"(?P<year>\d{4})[-/. ](?P<month>\d{1,2}|[A-Z]{3,})[-/. ](?P<day>\d{1,2})(?!\d)", re.ASCII)
@@ -42,6 +43,16 @@ def keys_of(lines: Sequence[str]) -> dict[str, str]:
         if colon and key.strip():
             header.setdefault(key.strip(), value.strip())
     return header
+
+
+def number_of(header: Mapping[str, str], key: str) -> float:
+    """Return the number that a header states under ``key``; ``InputError`` where it has none."""
+    if key not in header:
+        raise InputError(f"the header lacks {key}")
+    try:
+        return number_in(header[key], 0)
+    except InputError:
+        raise InputError(f'the header says {key}: "{header[key][:40]}"; expected a number') from None
 
 
 def line_at(lines: Sequence[str], at: int) -> str:

@@ -14,7 +14,7 @@ from rockbatch.motions.formats.header_lines import found, moment
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.formats.recording import Recording, to_components
-from rockbatch.motions.formats.time_steps import on_even_steps
+from rockbatch.motions.formats.time_steps import from_pairs
 from rockbatch.motions.motion import Unusable
 from rockbatch.motions.orientation import is_clock
 from rockbatch.motions.origin import origin_of
@@ -73,17 +73,14 @@ def _channel(lines: list[str], at: int) -> tuple[tuple[Recording, float], int]:
     if end >= len(lines) or not lines[end].startswith("/&"):
         line = lines[end][:60] if end < len(lines) else "(end of file)"
         raise InputError(f'line {end + 1}: found "{line}"; expected "/&" after {npts} pairs; fetch it again')
-    try:
-        dt, values, notes = on_even_steps(pairs[:, 0], pairs[:, 1:])
-    except InputError as error:
-        raise InputError(f"channel {label} from line {at + 1} on: {error}") from None
+    dt, values, notes = from_pairs(pairs, f"channel {label} from line {at + 1} on")
     first = float(pairs[0, 0])
     trigger = _trigger(lines[at + 3])
     unit = units["unit"]
     recording = Recording(
         label=label,
         dt=dt,
-        values=values[:, 0],
+        values=values,
         unit=unit,
         station=f"{lines[at + 5].strip()}, {lines[at + 1].strip()}, uncorrected",
         codes=("", "".join(c for c in lines[at + 5].upper() if c.isascii() and c.isalnum())[:5], "", label.upper()),

@@ -2,7 +2,8 @@
 
 Eleven lines of text, six of integers (8I10) and ten of real numbers (5E15.7), as many comments as the integers
 say, then the values, which touch: ``1.5057E+0-2.2223E+0`` (8E10.4, or 5E14.7 where integer 47 says eight
-digits). Source: USGS National Strong-Motion Program, "SMC-format data files" (2001).
+digits). Without a sampling rate they are pairs of time [s] and value, as digitised from film: they are interpolated.
+Source: USGS National Strong-Motion Program, "SMC-format data files" (2001).
 """
 
 import re
@@ -10,12 +11,13 @@ from datetime import UTC, datetime, timedelta
 
 from rockbatch.errors import InputError, NoRecordError
 from rockbatch.motions.component import Component, Seat
-from rockbatch.motions.formats.fixed_width import fixed_numbers, lines_of, number_in
+from rockbatch.motions.formats.fixed_width import fixed_numbers, lines_of, number_in, refuse_more
 from rockbatch.motions.formats.header_lines import found, line_at
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.formats.recording import Recording, to_components
-from rockbatch.motions.motion import Unusable
+from rockbatch.motions.formats.time_steps import from_pairs
+from rockbatch.motions.motion import Samples, Unusable
 from rockbatch.motions.origin import origin_of
 
 SUFFIXES = frozenset({".smc"})
@@ -57,25 +59,18 @@ def _parse(text: str) -> list[Recording]:
     if comments < 0 or npts < 1:
         raise InputError(f"lines 13–14: found {comments} comments and {npts} values; expected counts")
     rate = _real(lines, 2)
-    if rate is None or not 0.1 <= rate <= 1e5:
-        raise NoRecordError(
-            "line 18: no sampling rate, so its samples are pairs of time and value as digitised from film; take the "
-            'corrected file of this record ("2 CORRECTED ACCELEROGRAM")',
-            number,
-        )
+    if rate is not None and not 0.1 <= rate <= 1e5:
+        raise InputError(f"line 18: found a sampling rate of {rate:g} Hz; expected 0.1 to 100000")
     width, per_line = (14, 5) if integers[46] == 8 else (10, 8)
-    first = _COMMENTS + comments
-    values = fixed_numbers(lines, first, npts, width, per_line)
-    end = first - -npts // per_line
-    after = next((i for i in range(end, len(lines)) if lines[i].strip()), None)
-    if after is not None:
-        raise InputError(f'line {after + 1}: found "{lines[after][:40]}" after the {npts} values that line 14 declares')
+    values = fixed_numbers(lines, _COMMENTS + comments, npts, width, per_line)
+    refuse_more(lines, _COMMENTS + comments - -npts // per_line, f"the {npts} values that line 14 declares")
+    dt, values, notes = _on_film(values, number) if rate is None else (float(f"{1.0 / rate:.12g}"), values, ())
     year, day, hour, minute, second, ms = integers[1:7]
     peaks = [abs(peak) for peak in (_real(lines, 30), _real(lines, 32)) if peak is not None]
     return [
         Recording(
             label=_label(integers[12], integers[13], unknown, station["label"]),
-            dt=float(f"{1.0 / rate:.12g}"),
+            dt=dt,
             values=values,
             unit=_UNIT,
             station=f"{station['name']} {integers[29]}, {year}-{day:03d} {hour}:{minute}, {_KINDS[title['kind']]}",
@@ -87,10 +82,22 @@ def _parse(text: str) -> list[Recording]:
             event="" if unknown in (year, day, hour, minute) else f"{year}-{day:03d} {hour}:{minute}",
             origin=origin_of(line_at(lines, 3)[25:], station["name"], line_at(lines, 3)[:25]),
             stated_peak=max(peaks, default=None),
-            notes=("its header flags a problem: read its comments",) if integers[17] == 1 else (),
+            notes=(*notes, *(["its header flags a problem: read its comments"] if integers[17] == 1 else [])),
             header={"station": station["name"], "event": line_at(lines, 3)[25:].strip()},
         )
     ]
+
+
+def _on_film(values: Samples, number: str) -> tuple[float, Samples, tuple[str, ...]]:
+    """Return interval [s], samples and notes of pairs of time [s] and value, which a header without a rate counts singly."""
+    try:
+        if len(values) % 2:
+            raise InputError(f"no sampling rate, so digitised from film: found {len(values)} numbers; expected pairs")
+        return from_pairs(values.reshape(-1, 2), "no sampling rate, so digitised from film")
+    except InputError as error:
+        raise NoRecordError(
+            f'{error}; or take the corrected file of this record ("2 CORRECTED ACCELEROGRAM")', number
+        ) from None
 
 
 def _real(lines: list[str], n: int) -> float | None:

@@ -62,6 +62,18 @@ def on_even_steps(t: Samples, values: Samples) -> tuple[float, Samples, tuple[st
     return dt, even, (_said(shortest, longest, dt, f"its peak is lower by {lost:.1%}"),)
 
 
+def from_pairs(pairs: Samples, channel: str) -> tuple[float, Samples, tuple[str, ...]]:
+    """Return the sampling interval, even samples, shape (npts,), and notes on pairs of time and value, shape (npts, 2).
+
+    Raises ``InputError``, with the ``channel`` in front, as :func:`on_even_steps` does.
+    """
+    try:
+        dt, values, notes = on_even_steps(pairs[:, 0], pairs[:, 1:])
+    except InputError as error:
+        raise InputError(f"{channel}: {error}") from None
+    return dt, values[:, 0], notes
+
+
 def _is_growing(t: Samples) -> bool:
     """Whether every time is later than the one before."""
     return len(t) > 1 and bool((np.diff(t) > 0).all())

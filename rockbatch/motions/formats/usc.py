@@ -13,7 +13,7 @@ from rockbatch.motions.formats.header_lines import found, line_at, number
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.formats.recording import Recording, to_components
-from rockbatch.motions.formats.time_steps import on_even_steps
+from rockbatch.motions.formats.time_steps import from_pairs
 from rockbatch.motions.motion import Samples, Unusable
 from rockbatch.motions.origin import origin_of
 
@@ -23,6 +23,7 @@ _HEADER = 27  # lines
 _WIDTH, _PER_LINE = 7, 10
 _LATE = 0.05  # s: what the stated duration may differ from the last time
 _TITLE = re.compile(r"OF UNCORRECTED ACCELEROGRAM DATA OF VOLUME I:")
+_CORRECTED = re.compile(r"(?<!UN)CORRECTED ACCELEROGRAM")
 _COMPONENT = re.compile(r"^ *COMP +(?P<label>\S+)")
 _STATION = re.compile(r"STATION USC# *(?P<code>\S+)")
 _COUNT = re.compile(r"NO\. OF POINTS *= *(?P<npts>[0-9]{1,9}) +DURATION *= *(?P<duration>[0-9.]{1,12}) *SEC")
@@ -30,8 +31,9 @@ _UNIT = re.compile(r"UNITS ARE SEC AND +(?P<unit>[A-Z0-9/]+)")
 
 
 def is_usc(head: bytes) -> bool:
-    """Whether the first bytes are the header of such a file."""
-    return _TITLE.search(head[:100].decode("latin-1")) is not None
+    """Return whether the first bytes are the header of a file of either volume."""
+    title = head[:100].decode("latin-1")
+    return _TITLE.search(title) is not None or (_CORRECTED.search(title) is not None and b"STATION USC#" in head[:800])
 
 
 def read_usc(file: RecordFile) -> list[Component | Unusable]:
@@ -41,6 +43,11 @@ def read_usc(file: RecordFile) -> list[Component | Unusable]:
 
 def _parse(text: str) -> list[Recording]:
     """The channels, one after the other; ``InputError`` with the line where the file is not whole."""
+    if _TITLE.search(text[:100]) is None and _CORRECTED.search(text[:100]):
+        raise InputError(
+            "line 1: Volume II, of whose layout no description is at hand; take Volume I of this record, or copy its "
+            'accelerations into a .txt file and write layout = "wrapped", unit and dt for it in motions.toml'
+        )
     return one_after_another(text, _channel)
 
 
@@ -57,15 +64,12 @@ def _channel(lines: list[str], at: int) -> tuple[Recording, int]:
     pairs, end = _pairs(lines, at + _HEADER, npts)
     if abs(pairs[-1, 0] - duration) > _LATE:
         raise InputError(f"line {at + 11} says {duration:g} s, but the last time is {pairs[-1, 0]:g} s")
-    try:
-        dt, values, notes = on_even_steps(pairs[:, 0], pairs[:, 1:])
-    except InputError as error:
-        raise InputError(f"channel {label} from line {at + 1} on: {error}") from None
+    dt, values, notes = from_pairs(pairs, f"channel {label} from line {at + 1} on")
     event, date = (line_at(lines, at + i)[:70].strip() for i in (1, 2))
     recording = Recording(
         label=label,
         dt=dt,
-        values=values[:, 0],
+        values=values,
         unit=unit,
         station=f"{station}, {event}, {date}",
         codes=("LA", station[:5], "", label.upper()),

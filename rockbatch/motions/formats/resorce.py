@@ -1,0 +1,61 @@
+"""RESORCE files (.cor.acc), the reference database of European records: one corrected component in m/s².
+
+Nine lines of ``KEY : value`` and one with the unit, then the accelerations, five to a line of 14 characters each, which
+touch. The layout is that of the database's own files.
+"""
+
+import re
+
+from rockbatch.errors import InputError
+from rockbatch.motions.component import Component, Seat
+from rockbatch.motions.formats.fixed_width import fixed_numbers, lines_of, refuse_more
+from rockbatch.motions.formats.header_lines import keys_of, line_with, number_of
+from rockbatch.motions.formats.record_file import RecordFile
+from rockbatch.motions.formats.recording import Recording, to_components
+from rockbatch.motions.motion import Unusable
+from rockbatch.motions.origin import origin_of
+
+SUFFIXES: frozenset[str] = frozenset()
+
+_WIDTH, _PER_LINE = 14, 5
+_UNIT = re.compile(r"acc\w* time series in +(?P<unit>\S+)", re.IGNORECASE)
+_NEEDED = ("Number of Data", "Time Increment (s)", "Orientation")
+
+
+def is_resorce(head: bytes) -> bool:
+    """Return whether the first bytes are the header of such a file."""
+    return head.startswith(b"Event Date & Time") and all(f"\n{key}".encode() in head for key in _NEEDED)
+
+
+def read_resorce(file: RecordFile) -> list[Component | Unusable]:
+    """Return the component of a file in m/s²."""
+    return to_components(file, _parse(file.text))
+
+
+def _parse(text: str) -> list[Recording]:
+    """Return the recording of a file; ``InputError`` with the line, or the key, where it is not whole."""
+    lines = lines_of(text)
+    at, unit = line_with(_UNIT, lines, 20, "Acceleration time series in m/s/s")
+    header = keys_of(lines[:at])
+    npts, dt = (number_of(header, key) for key in _NEEDED[:2])
+    if npts != int(npts) or npts < 2 or not 0 < dt < 10:
+        raise InputError(f"the header says {npts:g} values every {dt:g} s; expected a whole number and an interval")
+    values, end = fixed_numbers(lines, at + 1, int(npts), _WIDTH, _PER_LINE), at + 1 - -int(npts) // _PER_LINE
+    refuse_more(lines, end, f"the {npts:.0f} declared values")
+    if "Orientation" not in header:
+        raise InputError("the header lacks Orientation")
+    code, _, name = (part.strip() for part in header.get("Station Code / Name", "").partition("/"))
+    event = header.get("Event Date & Time", "")
+    return [
+        Recording(
+            label=header["Orientation"],
+            dt=dt,
+            values=values,
+            unit=unit["unit"],
+            station=f"{code}, {event}" if code else "",
+            processed=True,
+            seat=Seat(code),
+            event=event,
+            origin=origin_of(date=event, station=name or code),
+        )
+    ]
