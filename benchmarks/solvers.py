@@ -22,8 +22,8 @@ from rockbatch.analysis.error_and_time import reference
 from rockbatch.batch.plan import PlannedRun
 from rockbatch.motions import Motion
 from rockbatch.pier import YieldingBase
-from rockbatch.results.outcome import Outcome
 from rockbatch.simulation import Run, Stop, run_all_fixed, run_all_to_tolerance
+from rockbatch.simulation.outcome import Outcome
 from rockbatch.study import Case
 
 BASE = YieldingBase(80.0, 0.05, flight="stop", eta=2.5)

@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from rockbatch.analysis.sensitivity import sensitivity
     from rockbatch.analysis.spectrum import spectrum
     from rockbatch.batch.running import run
+    from rockbatch.batch.single import simulate
     from rockbatch.checks import Rule
     from rockbatch.errors import InputError
     from rockbatch.motions import Motion, MotionSet, ReadOptions, pulse, read_motions
@@ -17,8 +18,7 @@ if TYPE_CHECKING:
     from rockbatch.report import report
     from rockbatch.results.checking import check
     from rockbatch.results.opened import open_results
-    from rockbatch.results.response import Response
-    from rockbatch.simulation.histories import simulate
+    from rockbatch.simulation.response import Response
     from rockbatch.study import Study, load_study
 
 _HOMES = {
@@ -30,7 +30,7 @@ _HOMES = {
     "Part": "rockbatch.pier",
     "Pier": "rockbatch.pier",
     "ReadOptions": "rockbatch.motions",
-    "Response": "rockbatch.results.response",
+    "Response": "rockbatch.simulation.response",
     "RigidBase": "rockbatch.pier",
     "Rule": "rockbatch.checks",
     "Study": "rockbatch.study",
@@ -46,7 +46,7 @@ _HOMES = {
     "report": "rockbatch.report",
     "run": "rockbatch.batch.running",
     "sensitivity": "rockbatch.analysis.sensitivity",
-    "simulate": "rockbatch.simulation.histories",
+    "simulate": "rockbatch.batch.single",
     "spectrum": "rockbatch.analysis.spectrum",
 }
 

@@ -18,8 +18,9 @@ from rockbatch.batch.threads import cores
 from rockbatch.errors import InputError
 from rockbatch.lazy import pd
 from rockbatch.motions import MotionSet
-from rockbatch.results.outcome import Outcome
-from rockbatch.simulation import Stop, first_substeps, run_all_fixed, run_fixed
+from rockbatch.simulation.models import first_substeps
+from rockbatch.simulation.outcome import Outcome
+from rockbatch.simulation.runs import Stop, run_all_fixed, run_fixed
 from rockbatch.study import Study
 
 COLUMNS = (

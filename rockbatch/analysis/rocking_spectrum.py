@@ -14,8 +14,8 @@ from rockbatch.batch.plan import Plan, PlannedRun
 from rockbatch.lazy import pd
 from rockbatch.motions import MotionSet
 from rockbatch.results.columns import row
-from rockbatch.results.outcome import Outcome
 from rockbatch.results.suite_statistics import suite
+from rockbatch.simulation.outcome import Outcome
 from rockbatch.study import Study
 from rockbatch.study.spectrum import SpectrumSpec
 

@@ -8,7 +8,7 @@ from typing import Any
 from rockbatch.analysis.sobol import design
 from rockbatch.batch.plan import Made, PlannedRun, scaled
 from rockbatch.motions import Motion
-from rockbatch.results.outcome import Outcome
+from rockbatch.simulation.outcome import Outcome
 from rockbatch.study import Case, Study
 from rockbatch.study.sensitivity import Input, SensitivitySpec, Value, applying, own_values, varied
 

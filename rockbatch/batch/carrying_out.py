@@ -11,7 +11,7 @@ from rockbatch.batch.plan import MOST_RUNS, Chosen, PlannedRun, Runs
 from rockbatch.batch.threads import Engine
 from rockbatch.errors import InputError
 from rockbatch.results.columns import cells, row
-from rockbatch.results.outcome import Outcome
+from rockbatch.simulation.outcome import Outcome
 from rockbatch.study import Numerics, Output
 
 

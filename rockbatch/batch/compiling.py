@@ -16,7 +16,7 @@ from rockbatch.batch.listening import Listener, if_slow
 from rockbatch.batch.plan import PlannedRun
 from rockbatch.batch.threads import cores
 from rockbatch.motions import Motion
-from rockbatch.simulation import kernel_of
+from rockbatch.simulation.models import kernel_of
 from rockbatch.study import Numerics, Output, Study
 
 Task = tuple[PlannedRun, Numerics, Output]

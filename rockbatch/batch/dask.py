@@ -17,7 +17,7 @@ from rockbatch.batch.plan import PlannedRun, scaled
 from rockbatch.batch.threads import Outcomes, cores, finished
 from rockbatch.errors import InputError, starting_threads
 from rockbatch.motions import Motion
-from rockbatch.results.outcome import Outcome
+from rockbatch.simulation.outcome import Outcome
 from rockbatch.study import Case, Numerics, Output
 
 if TYPE_CHECKING:

@@ -15,8 +15,9 @@ from rockbatch.batch.plan import Chosen, Plan, PlannedRun
 from rockbatch.batch.running import told
 from rockbatch.errors import starting_threads
 from rockbatch.results.columns import columns
-from rockbatch.results.outcome import Outcome
-from rockbatch.simulation import Stop, first_substeps, steps_of
+from rockbatch.simulation.models import first_substeps
+from rockbatch.simulation.outcome import Outcome
+from rockbatch.simulation.runs import Stop, steps_of
 from rockbatch.study import Study
 from rockbatch.study.suite import ground_motions
 

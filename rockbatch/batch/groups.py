@@ -5,9 +5,11 @@ from dataclasses import replace
 
 from rockbatch.batch.plan import PlannedRun
 from rockbatch.errors import InputError
-from rockbatch.results.outcome import Outcome
-from rockbatch.simulation import Run, Stop, first_substeps, run_all_fixed, run_all_to_tolerance, steps_of
 from rockbatch.simulation.histories import told_apart, with_observed
+from rockbatch.simulation.models import first_substeps
+from rockbatch.simulation.outcome import Outcome
+from rockbatch.simulation.runs import Run, Stop, run_all_fixed, steps_of
+from rockbatch.simulation.settling import run_all_to_tolerance
 from rockbatch.study import Numerics, Output
 
 MOST_STEPS_OF_A_LEDGER = 1_000_000
@@ -98,8 +100,10 @@ def _observed(run: Run, outcome: Outcome, numerics: Numerics, output: Output, st
     sized = output.forces and steps <= MOST_STEPS_OF_FORCES
     try:
         outcome = told_apart(run, outcome, numerics.quiet_s, output.rocking)
-        if not outcome.was_run or not (ledger or sized):
+        if not outcome.was_run:
             return outcome
-        return with_observed(run, outcome, numerics, replace(output, ledger=ledger, forces=sized))
+        least = output.least_normal_share if sized else None
+        fixed = numerics.substeps is not None
+        return with_observed(run, outcome, numerics.quiet_s, ledger=ledger, least_normal=least, error=not fixed)
     except InputError:  # too many impacts to be written down
         return outcome

@@ -13,12 +13,12 @@ from rockbatch.checks.demands import FORCES
 from rockbatch.errors import InputError
 from rockbatch.lazy import pd
 from rockbatch.pier import Base, Pier, offsets, vertical_frequency
-from rockbatch.results.columns import TERMS
 from rockbatch.results.histories_file import HISTORIES, OF_SPRINGS, UNITS, write
 from rockbatch.results.reading import Saved
-from rockbatch.results.response import FORCE_UNITS, Response
-from rockbatch.simulation import run_fixed
 from rockbatch.simulation.histories import histories
+from rockbatch.simulation.outcome import TERMS
+from rockbatch.simulation.response import FORCE_UNITS, Response
+from rockbatch.simulation.runs import run_fixed
 from rockbatch.study import Study
 
 LEDGER = "energy_input_J_kg"

@@ -8,8 +8,8 @@ from typing import overload
 
 from rockbatch.motions import Motion, MotionSet
 from rockbatch.results.columns import Ran
-from rockbatch.results.outcome import Outcome
-from rockbatch.simulation import Run
+from rockbatch.simulation.outcome import Outcome
+from rockbatch.simulation.runs import Run
 from rockbatch.study import Case, Study
 
 

@@ -10,8 +10,8 @@ from typing import Protocol, Self
 from rockbatch.batch.groups import NOTHING_MORE, groups, outcomes_of
 from rockbatch.batch.plan import PlannedRun
 from rockbatch.errors import InputError, starting_threads
-from rockbatch.results.outcome import Outcome
-from rockbatch.simulation import Stop
+from rockbatch.simulation.outcome import Outcome
+from rockbatch.simulation.runs import Stop
 from rockbatch.study import Numerics, Output
 
 AHEAD = 2

@@ -5,7 +5,7 @@ from typing import Any
 
 from rockbatch.commands.messages import in_width
 from rockbatch.lazy import pd
-from rockbatch.results.outcome import LEANS
+from rockbatch.simulation.outcome import LEANS
 from rockbatch.study import PIER_KEYS
 
 MOST_RUNS = 1000
@@ -68,7 +68,7 @@ def other_law(table: "pd.DataFrame", varied: Sequence[str]) -> str:
 
 def linearised(table: "pd.DataFrame") -> str:
     """Return a warning of rotations too large for linearised kinematics; empty if there are none."""
-    from rockbatch.results.outcome import LINEARISED
+    from rockbatch.simulation.outcome import LINEARISED
 
     runs = int(table["note"].str.contains(LINEARISED).sum())
     rotate = "1 run rotates" if runs == 1 else f"{runs} runs rotate"
@@ -79,7 +79,7 @@ def linearised(table: "pd.DataFrame") -> str:
 
 def sliding(table: "pd.DataFrame") -> str:
     """Return a warning if the friction demand is greater than what the interface has; else empty."""
-    from rockbatch.results.outcome import WOULD_SLIDE
+    from rockbatch.simulation.outcome import WOULD_SLIDE
 
     slides = int(table["note"].str.contains(WOULD_SLIDE).sum())
     if not slides:

@@ -17,7 +17,7 @@ from rockbatch.report.finished import read as read_finished
 from rockbatch.report.page import comparison, page
 from rockbatch.report.pair import pair
 from rockbatch.results.opened import Results, open_results
-from rockbatch.results.response import Response
+from rockbatch.simulation.response import Response
 from rockbatch.study import Study
 
 REPORT = "report.html"

@@ -10,7 +10,7 @@ from rockbatch.report import finished_analysis
 from rockbatch.report.finished import Finished, finished
 from rockbatch.report.finished_analysis import FinishedAnalysis
 from rockbatch.results.opened import Results, open_results
-from rockbatch.results.response import Response
+from rockbatch.simulation.response import Response
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,26 +15,12 @@ from rockbatch.checks.suite import MIRROR_OF, OTHER_LAW
 from rockbatch.lazy import pd
 from rockbatch.motions import Motion, MotionSet
 from rockbatch.pier import Damper, Pier, Restraint, Tendon
-from rockbatch.results.outcome import Outcome
+from rockbatch.simulation.outcome import TERMS, Outcome
 from rockbatch.study import Case, Study
 
 PEAKS = "peaks.csv"
 PART = f"{PEAKS}.part"
 """Finished runs of a table that is under way."""
-
-TERMS = (
-    "kinetic",
-    "potential",
-    "elastic",
-    "input",
-    "plastic",
-    "impact",
-    "p_delta",
-    "constraint",
-    "damping",
-    "remainder",
-)
-"""Terms of the energy ledger, in the order in which the core returns them."""
 
 STATUSES = ("ok", "overturned", "flight", "failed")
 

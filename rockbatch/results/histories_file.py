@@ -32,9 +32,9 @@ from rockbatch.errors import InputError
 from rockbatch.files import opened, replacing
 from rockbatch.lazy import h5py, pd
 from rockbatch.pier import Damper, ElasticBase, Pier, Restraint, RigidBase, Tendon, YieldingBase
-from rockbatch.results.columns import TERMS
 from rockbatch.results.hdf5 import array_in, attribute, attributes_of, group_in
-from rockbatch.results.response import EVENT_TYPES, FORCE_UNITS, IMPACT_UNITS, Response
+from rockbatch.simulation.outcome import TERMS
+from rockbatch.simulation.response import EVENT_TYPES, FORCE_UNITS, IMPACT_UNITS, Response
 
 HISTORIES = "histories.h5"
 """File of the histories that were kept, beside peaks.csv."""

@@ -16,8 +16,8 @@ from rockbatch.results.estimate import ESTIMATE
 from rockbatch.results.histories_file import HISTORIES, Responses
 from rockbatch.results.intensity import INTENSITY, orders
 from rockbatch.results.reading import Saved, read_saved
-from rockbatch.results.response import Response
 from rockbatch.showing import Shown, several
+from rockbatch.simulation.response import Response
 from rockbatch.toml.kinds import closest, shown
 
 if TYPE_CHECKING:

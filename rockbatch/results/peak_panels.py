@@ -79,7 +79,7 @@ def plot(peaks: "pd.DataFrame", info: Mapping[str, Any]) -> "Figure":
     Of many records, the :data:`MOST_PANELS` with the worst runs have a panel, in order of peak ground acceleration. Raises
     ``InputError`` without any runs.
     """
-    from rockbatch.results.figure import ShownFigure
+    from rockbatch.simulation.plots import ShownFigure
 
     runs = _runs(peaks, info)
     if runs.empty:

@@ -1,59 +1,20 @@
-"""Pictures with matplotlib, for notebooks and papers; the report draws its own.
+"""Distribution of peaks over a suite as a figure, for notebooks and papers; the report draws its own."""
 
-The column of Palmeri & Makris (2007), Fig. 5, and the distribution of peaks over a suite.
-"""
-
-import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from rockbatch.checks.suite import counts_as, simulated
 from rockbatch.lazy import pd
-from rockbatch.pier import Base, Pier
 from rockbatch.results.suite_statistics import NO_PEAK, distribution
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def plot(history: "pd.DataFrame", events: "pd.DataFrame", pier: Pier, base: Base, title: str) -> "Figure":
-    """See :meth:`rockbatch.Response.plot`, which hands over its tables ``history`` and ``events``."""
-    from rockbatch.results.figure import ShownFigure
-
-    loops = base.on_springs
-    figure = ShownFigure(figsize=(7.0, 9.0 if loops else 7.0), layout="constrained")
-    names: list[Any] = [["rotation"] * 2, ["velocity"] * 2, ["energy"] * 2, ["ground"] * 2]
-    axes = figure.subplot_mosaic([*names, ["left", "right"]] if loops else names)
-    t = history["t"].to_numpy()
-    for name, values, label in (
-        ("rotation", history["theta"] / pier.alpha, "θ/α"),
-        ("velocity", history["omega"] / (pier.alpha * pier.p), "θ̇/(αp)"),
-        ("energy", history["energy"], "E [J/kg]"),
-        ("ground", history["ag_h"] / pier.gravity, "üg/g"),
-    ):
-        axes[name].plot(t, values, linewidth=0.9)
-        axes[name].set(ylabel=label, xlim=(t[0], t[-1]))
-        axes[name].grid(alpha=0.3)
-        if name != "rotation":
-            axes[name].sharex(axes["rotation"])
-    for impact in events["t"][events["kind"] == "impact"]:
-        axes["rotation"].axvline(impact, ymax=0.04, color="gray", linewidth=0.7)
-    axes["ground"].set_xlabel("t [s]")
-    if loops:
-        for side in ("left", "right"):
-            force, position = history[f"force_{side}"] / pier.gravity, history[f"v_{side}"]
-            loaded = force < 0
-            axes[side].plot(1000 * position.where(loaded, math.nan), force.where(loaded, math.nan), linewidth=0.8)
-            axes[side].set(xlabel=f"v of the {side} pivot [mm]", ylabel="F/(Mg)")
-            axes[side].grid(alpha=0.3)
-    figure.suptitle(title)
-    return figure
-
-
 def plot_cdf(peaks: "pd.DataFrame", varied: Sequence[str], count: str) -> "Figure":
     """See :meth:`rockbatch.results.opened.Results.plot_cdf`, which hands over the rows of peaks.csv, the varied keys,
     and what counts as one record."""
-    from rockbatch.results.figure import ShownFigure
+    from rockbatch.simulation.plots import ShownFigure
 
     figure = ShownFigure(figsize=(6.0, 4.0), layout="constrained")
     axes = figure.subplots()

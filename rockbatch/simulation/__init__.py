@@ -1,38 +1,19 @@
-"""The only access to the core: piers on bases under motions, with fixed steps or to a tolerance."""
+"""Runs of a pier on a base under a motion: the only access to the core, which is loaded by the first name that needs it."""
 
-from rockbatch.core.kernel import core_digest
-from rockbatch.simulation.models import (
-    block,
-    first_substeps,
-    ground_of,
-    kernel_of,
-    least_substeps,
-    springs,
-)
-from rockbatch.simulation.runs import (
-    Run,
-    Stop,
-    run_all_fixed,
-    run_fixed,
-    steps_of,
-    written_run,
-)
-from rockbatch.simulation.settling import run_all_to_tolerance, run_to_tolerance
+from importlib import import_module
+from typing import Any
 
-__all__ = [
-    "Run",
-    "Stop",
-    "block",
-    "core_digest",
-    "first_substeps",
-    "ground_of",
-    "kernel_of",
-    "least_substeps",
-    "run_all_fixed",
-    "run_all_to_tolerance",
-    "run_fixed",
-    "run_to_tolerance",
-    "springs",
-    "steps_of",
-    "written_run",
-]
+_HOMES = {
+    "rockbatch.core.kernel": ("core_digest",),
+    "rockbatch.simulation.models": ("block", "first_substeps", "ground_of", "kernel_of", "least_substeps", "springs"),
+    "rockbatch.simulation.runs": ("Run", "Stop", "run_all_fixed", "run_fixed", "steps_of", "written_run"),
+    "rockbatch.simulation.settling": ("run_all_to_tolerance", "run_to_tolerance"),
+}
+
+
+def __getattr__(name: str) -> Any:
+    """Return a public name from its module."""
+    for module, names in _HOMES.items():
+        if name in names:
+            return getattr(import_module(module), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -14,9 +14,9 @@ from rockbatch.core.observe.peaks import NEVER, NOTED, Limits, Noted, RecordedDe
 from rockbatch.lazy import pd
 from rockbatch.motions.motion import Samples
 from rockbatch.pier import Pier, RigidBase, YieldingBase
-from rockbatch.results.outcome import WOULD_SLIDE, PeakForces
-from rockbatch.results.response import FORCE_UNITS, IMPACT_UNITS
 from rockbatch.simulation.models import block, elements, ground_of, model
+from rockbatch.simulation.outcome import WOULD_SLIDE, PeakForces
+from rockbatch.simulation.response import FORCE_UNITS, IMPACT_UNITS
 from rockbatch.simulation.restraints import apart
 from rockbatch.simulation.runs import Run
 

@@ -1,6 +1,5 @@
 """Histories of one run: the rows that the core wrote, with names, units and derived quantities."""
 
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -9,19 +8,15 @@ from rockbatch.core import types
 from rockbatch.core.observe.ledger import LEDGER, ledger_on_rigid_base, ledger_on_springs
 from rockbatch.errors import InputError
 from rockbatch.lazy import pd
-from rockbatch.motions.motion import Motion, Samples
-from rockbatch.motions.plausible import unlikely_samples
-from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, YieldingBase, problems, unlikely_devices
-from rockbatch.results.columns import TERMS, Ran, as_series, row
-from rockbatch.results.outcome import Outcome
-from rockbatch.results.response import EVENT_TYPES, Response
+from rockbatch.motions.motion import Samples
+from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase
 from rockbatch.simulation import restraints
 from rockbatch.simulation.forces import at_rows, forces_table, impacts_table, peak_forces, with_error
 from rockbatch.simulation.leaning import apart, may_lean, with_error_of_rocking, with_rocking
-from rockbatch.simulation.models import block, ground_of, least_substeps, springs
-from rockbatch.simulation.runs import Run, run_fixed, written_run
-from rockbatch.simulation.settling import run_to_tolerance
-from rockbatch.study.spec import LEAST_NORMAL_SHARE, LEAST_TOLERANCE, Case, Numerics, Output
+from rockbatch.simulation.models import block, ground_of, springs
+from rockbatch.simulation.outcome import TERMS, Outcome
+from rockbatch.simulation.response import EVENT_TYPES, Response
+from rockbatch.simulation.runs import Run, written_run
 
 _EVENTS = {
     types.SEPARATION_LEFT: ("separation", "left"),
@@ -46,105 +41,6 @@ SPARE = 1.1
 """Rows for which there is room, over the steps of a run: velocity reversals of springs have rows of their own."""
 
 
-def simulate(
-    pier: Pier,
-    foundation: Base,
-    motion: Motion,
-    *,
-    tolerance: float = 1e-4,
-    substeps: int | None = None,
-    quiet_s: float = 2.0,
-    case: str | None = None,
-    ledger: bool = False,
-    forces: bool = False,
-    least_normal_share: float = LEAST_NORMAL_SHARE,
-    wait: bool = True,
-) -> Response:
-    """Simulate one run, and return its results, as a row of peaks.csv, and its histories.
-
-    Parameters
-    ----------
-    pier, foundation, motion
-        The pier, its base and the ground motion, whose vertical component is used if it has one.
-    tolerance : float
-        On θ_max/α; the steps per sample are chosen to meet it.
-    substeps : int, optional
-        Steps per sample instead, for a fixed step.
-    quiet_s : float
-        Free-vibration tail after the record [s].
-    case : str, optional
-        Name of the foundation; its kind by default.
-    ledger : bool
-        Keep the energy balance too (THEORY.md, Energy ledger).
-    forces : bool
-        Keep the forces, and what lands at impacts, too (THEORY.md, Forces).
-    least_normal_share : float
-        With the forces: share of the weight that the normal force has to exceed for friction to count, above 0 and below 1; as
-        ``[output] least_normal_share`` of a study, which :func:`rockbatch.run` takes.
-    wait : bool
-        Go on after ``quiet_s`` until nothing that comes later can exceed the peak; ``False``, with ``substeps``: end there.
-
-    Returns
-    -------
-    Response
-        ``status``, ``theta_max`` [rad], ``theta_max_error``, ``settlement`` [m], ``reason`` and the whole ``row``, but for the
-        settlement by the other spring law; and the histories ``t``, ``theta``, …, of the same steps.
-
-    Raises
-    ------
-    InputError
-        If the pier cannot stand on the foundation, with the limits; if a device or the motion is implausible and not
-        named in its ``confirm``; if the run would take too many steps.
-
-    Examples
-    --------
-    >>> motion = rb.pulse("sine", name="one-sine", amplitude=9.81, period=0.5, dt=0.005, duration=2.0)
-    >>> response = rb.simulate(rb.Pier(alpha=0.2, p=1.0), rb.RigidBase(), motion)
-    >>> response
-    <response one-sine × 1, rigid: ok>
-      θ_max/α  0.17801 ± 3e-12 at 1.30 s
-      history  808 rows until 4.00 s
-      events   1 × lift-off, 3 × impact
-    >>> response.plot().savefig("one-sine.pdf")
-    """
-    wrong = problems(pier, foundation) or unlikely_devices(pier, foundation.restraints)
-    wrong += unlikely_samples(motion, pier.gravity) + _unfit_numerics(tolerance, substeps, quiet_s, wait)
-    if substeps is not None and not wrong and substeps < (least := least_substeps(pier, foundation, motion.dt)):
-        wrong.append(f"substeps = {substeps}: must be a whole number of at least {least} for this pier and motion")
-    if not 0.0 < least_normal_share < 1.0:
-        wrong.append(f"least_normal_share = {least_normal_share:g}: must be above 0 and below 1, a share of the weight")
-    if wrong:
-        raise InputError(*wrong)
-    if substeps is None:
-        outcome = run_to_tolerance(pier, foundation, motion, tolerance, quiet_s)
-    else:
-        outcome = run_fixed(pier, foundation, motion, substeps, quiet_s, wait=wait)
-    if not outcome.was_run:
-        raise InputError(f"{motion.name}: {outcome.reason}")
-    run, name = Run(pier, foundation, motion), case or foundation.name
-    outcome = told_apart(run, outcome, quiet_s, wait=wait)
-    response = histories(run, outcome, quiet_s, name, {}, ledger=ledger, forces=forces, wait=wait)
-    if ledger or forces:
-        numerics = Numerics(None if substeps else tolerance, substeps, quiet_s)
-        output = Output(ledger=ledger, forces=forces, least_normal_share=least_normal_share)
-        outcome = with_observed(run, outcome, numerics, output, wait)
-    return replace(response, row=as_series(row(Ran(outcome, motion, "+", 1.0, Case(name, pier, foundation, {})))))
-
-
-def _unfit_numerics(tolerance: float, substeps: int | None, quiet_s: float, wait: bool) -> list[str]:
-    """Return what is wrong about the numerical settings of a run, whatever its pier and motion."""
-    wrong = []
-    if not tolerance >= LEAST_TOLERANCE:
-        wrong.append(f"tolerance = {tolerance:g}: must be {LEAST_TOLERANCE:g} or above (on theta_max/alpha)")
-    if not (math.isfinite(quiet_s) and quiet_s >= 0):
-        wrong.append(f"quiet_s = {quiet_s:g}: must be 0 or more [s]")
-    if substeps is not None and (isinstance(substeps, bool) or not isinstance(substeps, int)):
-        wrong.append(f"substeps = {substeps}: must be a whole number")
-    if substeps is None and not wait:
-        wrong.append("wait = False: the error of a run that is cut off cannot be told; give substeps")
-    return wrong
-
-
 def written(run: Run, outcome: Outcome, quiet_s: float, every_step: bool, wait: bool = True) -> np.recarray:
     """Return the history of a run whose outcome is known: a record for each moment (``core.history``).
 
@@ -163,7 +59,7 @@ def written(run: Run, outcome: Outcome, quiet_s: float, every_step: bool, wait: 
 
 
 def energies(run: Run, rows: np.recarray) -> Samples:
-    """Return the energy balance [J/kg] at every row of a run: :data:`rockbatch.results.columns.TERMS`, shape (n, 10)."""
+    """Return the energy balance [J/kg] at every row of a run: :data:`rockbatch.simulation.outcome.TERMS`, shape (n, 10)."""
     pier, base = run.pier, run.base
     ground, dt = ground_of(run.motion), float(run.motion.dt)
     terms = np.zeros((len(rows), len(TERMS)))
@@ -204,25 +100,37 @@ def _of_twice_the_step(outcome: Outcome) -> Outcome:
     return replace(outcome, substeps=outcome.substeps // 2)
 
 
-def with_observed(run: Run, outcome: Outcome, numerics: Numerics, output: Output, wait: bool = True) -> Outcome:
+def with_observed(
+    run: Run,
+    outcome: Outcome,
+    quiet_s: float,
+    *,
+    ledger: bool,
+    least_normal: float | None,
+    error: bool,
+    wait: bool = True,
+) -> Outcome:
     """Return ``outcome`` with what observers make of the run, recorded at every step.
 
-    These are the energy balance at its end, with the greatest residual on the way, and the greatest forces, with their error if
-    the step was chosen by a tolerance.
+    These are, if ``ledger``, the energy balance at its end, with the greatest residual on the way; and the greatest forces,
+    friction counted while N is above the share ``least_normal`` of the weight, unless that is None, with their ``error`` by
+    a run of twice the step.
     """
-    rows = written(run, outcome, numerics.quiet_s, every_step=True, wait=wait)
-    if output.ledger:
+    if not ledger and least_normal is None:
+        return outcome
+    rows = written(run, outcome, quiet_s, every_step=True, wait=wait)
+    if ledger:
         terms = energies(run, rows)
         at_end = dict(zip(TERMS, map(float, terms[-1]), strict=True))
         outcome = replace(outcome, energies=at_end | {"remainder": float(abs(terms[:, -1]).max())})
-    if output.forces:
+    if least_normal is not None:
         notes = [outcome.note]
-        peaks, note = peak_forces(run, rows, output.least_normal_share)
+        peaks, note = peak_forces(run, rows, least_normal)
         notes.append(note)
-        if numerics.substeps is None and outcome.substeps % 2 == 0:
+        if error and outcome.substeps % 2 == 0:
             del rows  # a history of every step may be large
-            rows = written(run, _of_twice_the_step(outcome), numerics.quiet_s, every_step=True, wait=wait)
-            peaks, note = with_error(peaks, peak_forces(run, rows, output.least_normal_share)[0], run.pier)
+            rows = written(run, _of_twice_the_step(outcome), quiet_s, every_step=True, wait=wait)
+            peaks, note = with_error(peaks, peak_forces(run, rows, least_normal)[0], run.pier)
             notes.append(note)
         outcome = replace(outcome, forces=peaks, note="; ".join(filter(None, notes)))
     return outcome

@@ -7,7 +7,7 @@ import numpy as np
 
 from rockbatch.motions.motion import Samples
 from rockbatch.pier import ElasticBase, Pier, tilt_over_residual, vertical_frequency, yield_deflection
-from rockbatch.results.outcome import LEANS, Outcome
+from rockbatch.simulation.outcome import LEANS, Outcome
 
 MOSTLY = 0.5
 """Least share of lean in θ_max, and share of the greatest rocking above that at the peak, for the peak to count as lean."""

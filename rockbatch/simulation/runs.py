@@ -37,7 +37,6 @@ from rockbatch.pier import (
     vertical_frequency,
     yield_deflection,
 )
-from rockbatch.results.outcome import LINEARISED, Outcome
 from rockbatch.simulation.flight import cause_of_flight
 from rockbatch.simulation.models import (
     elements,
@@ -51,6 +50,7 @@ from rockbatch.simulation.models import (
     prestress,
     readings,
 )
+from rockbatch.simulation.outcome import LINEARISED, Outcome
 from rockbatch.simulation.restraints import rests_at, rests_on_rigid_base
 
 MOST_STEPS = 1e8

@@ -10,8 +10,8 @@ import numpy as np
 from rockbatch.core.clock import window_of
 from rockbatch.motions.motion import Motion
 from rockbatch.pier import Base, Damper, Pier
-from rockbatch.results.outcome import Outcome
 from rockbatch.simulation.models import first_substeps, readings
+from rockbatch.simulation.outcome import Outcome
 from rockbatch.simulation.runs import LEFT_ALONE, MOST_STEPS, Run, Stop, Trial, quiet_samples, steps_of, try_all
 
 HALVINGS = 8

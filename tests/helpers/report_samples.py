@@ -13,7 +13,7 @@ import pandas as pd
 
 from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, YieldingBase
 from rockbatch.results.columns import MORE, STAYING, names
-from rockbatch.results.response import Response
+from rockbatch.simulation.response import Response
 
 COLUMNS = names((*STAYING, *MORE))
 FIG7 = [

@@ -31,9 +31,9 @@ from rockbatch.results.columns import (
     on_page,
     units,
 )
-from rockbatch.results.outcome import Outcome
 from rockbatch.results.reading import read_saved
 from rockbatch.results.run_json import describe
+from rockbatch.simulation.outcome import Outcome
 from rockbatch.study.suite import ground_motions
 
 PAGE = Path(rb.__file__).parents[1] / "docs/columns.md"

@@ -24,7 +24,7 @@ from rockbatch.results.histories_file import FORMAT, UNITS, Responses, write
 from rockbatch.results.reading import read_saved
 from rockbatch.results.run_json import describe, write_info
 from rockbatch.simulation import Run, run_to_tolerance
-from rockbatch.simulation.histories import histories, simulate
+from rockbatch.simulation.histories import histories
 from rockbatch.study.suite import ground_motions
 
 STUDY = study_text(
@@ -97,7 +97,7 @@ def stored(folder, *responses):
 
 def at_rest(name="still", case="rigid"):
     """The response to no motion at all."""
-    return simulate(PIER, rb.RigidBase(), rb.Motion(name, 0.01, np.zeros(3)), quiet_s=0.0, case=case)
+    return rb.simulate(PIER, rb.RigidBase(), rb.Motion(name, 0.01, np.zeros(3)), quiet_s=0.0, case=case)
 
 
 # Round trip
@@ -113,7 +113,7 @@ def test_every_response_comes_back_equal_to_the_bit(results):
         )  # fmt: skip
         if row.polarity == "-":
             motion = replace(motion, horizontal=-motion.horizontal)
-        again = simulate(
+        again = rb.simulate(
             response.pier, response.base, motion, substeps=int(row.substeps), case=row.case, ledger=True, forces=True
         )
         columns = {"alpha": row.alpha} | ({"spring": row.spring} if row.case == "pads" else {})
@@ -144,7 +144,7 @@ def test_a_response_without_ledger_or_events_comes_back_too(tmp_path):
 
 def test_an_event_points_to_the_rows_on_both_sides_of_its_jump():
     pulse = rb.pulse("sine", name="one-sine", amplitude=9.81, period=0.5, dt=0.01, duration=3.0)
-    response = simulate(PIER, rb.RigidBase(restitution=0.8), pulse)
+    response = rb.simulate(PIER, rb.RigidBase(restitution=0.8), pulse)
     impacts = response.events[response.events["kind"] == "impact"]
     assert len(impacts) > 3
     before, after = (response.history.iloc[impacts[side]] for side in ("before", "after"))
@@ -181,7 +181,7 @@ def test_flight_is_the_last_event_of_a_run_that_it_ends(tmp_path):
     down = np.full(200, -2 * 9.81)
     motion = rb.Motion("drop", 0.01, np.zeros(200), vertical=down)
     for base in (rb.ElasticBase(beta=50, flight="stop"), rb.YieldingBase(beta=50, flight="stop", eta=2.5)):
-        response = simulate(PIER, base, motion, quiet_s=0.0)
+        response = rb.simulate(PIER, base, motion, quiet_s=0.0)
         last = response.events.iloc[-1]
         assert (response.status, last["kind"]) == ("flight", "flight")
         assert last["after"] == len(response.t) - 1

@@ -11,7 +11,6 @@ from rockbatch import simulation
 from rockbatch.core.clock import WINDOWS
 from rockbatch.motions.motion import Motion
 from rockbatch.pier import Damper, ElasticBase, Pier, RigidBase, Tendon, YieldingBase
-from rockbatch.results.outcome import Outcome
 from rockbatch.simulation import (
     Run,
     first_substeps,
@@ -21,6 +20,7 @@ from rockbatch.simulation import (
     run_to_tolerance,
     settling,
 )
+from rockbatch.simulation.outcome import Outcome
 from rockbatch.simulation.runs import LEFT_ALONE, Trial
 
 SINE = pulse("sine", 0.5, dt=0.01, end=3.0)

@@ -12,7 +12,7 @@ import pytest
 
 from rockbatch.motions import Motion
 from rockbatch.pier import Pier, RigidBase
-from rockbatch.results.outcome import Outcome
+from rockbatch.simulation.outcome import Outcome
 
 BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
 PIER = Pier(alpha=0.2, p=1.0)

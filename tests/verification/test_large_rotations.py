@@ -9,7 +9,7 @@ from studies import SINE, study_text, write_study
 import rockbatch as rb
 from rockbatch.cli import main
 from rockbatch.pier import MOST_NEGLECTED, neglected
-from rockbatch.results.outcome import LINEARISED
+from rockbatch.simulation.outcome import LINEARISED
 
 TENDON = (rb.Tendon(psi=0.5, lam=2.0),)
 

@@ -10,7 +10,7 @@ from rockbatch.pier import yield_deflection
 from rockbatch.report.drawing.axes import Axes, Scale, spanning
 from rockbatch.report.drawing.svg import Array, curve, lowered, text, thin
 from rockbatch.report.markup import Markup, join
-from rockbatch.results.response import Response
+from rockbatch.simulation.response import Response
 
 PIXELS = 200  # width of one history
 QUANTITIES = ("θ/α", "θ̇/(αp)", "E/M [J/kg]", "üg/g")

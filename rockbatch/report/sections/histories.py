@@ -14,7 +14,7 @@ from rockbatch.report.drawing.svg import Array, curve, line, lowered, marker, re
 from rockbatch.report.finished import Finished, as_dicts, worst_first
 from rockbatch.report.markup import Markup, join, tag
 from rockbatch.results.histories_file import Responses
-from rockbatch.results.response import Response
+from rockbatch.simulation.response import Response
 
 MOST_COLUMNS = 40
 LEFT, WIDTH = 42.0, 176.0  # px

@@ -12,8 +12,8 @@ from rockbatch.report.markup import Markup, join, tag
 from rockbatch.report.overview import by_foundation, ceiling
 from rockbatch.report.sections.peaks import at_a_glance
 from rockbatch.report.table import THETA
-from rockbatch.results.outcome import LEANS
 from rockbatch.results.suite_statistics import NO_PEAK
+from rockbatch.simulation.outcome import LEANS
 
 MOST_RECORDS = 60
 MOST_SERIES = 24

@@ -12,7 +12,7 @@ from rockbatch.report.labels import counted, head, symbol
 from rockbatch.report.markup import Markup, join, number, tag
 from rockbatch.report.table import MOST_ROWS, THETA_FORMAT, Head, alarm, table, told_apart
 from rockbatch.results.columns import COLUMNS, PEAKS, on_page
-from rockbatch.results.outcome import LINEARISED
+from rockbatch.simulation.outcome import LINEARISED
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -15,6 +15,21 @@ LEANS = "lean"
 """Kind of a greatest rotation at which the pier hardly rocks, on a base that has yielded."""
 
 
+TERMS = (
+    "kinetic",
+    "potential",
+    "elastic",
+    "input",
+    "plastic",
+    "impact",
+    "p_delta",
+    "constraint",
+    "damping",
+    "remainder",
+)
+"""Terms of the energy ledger, in the order in which the core returns them."""
+
+
 @dataclass(frozen=True)
 class PeakForces:
     """What a run asks of the design, until it ends or the pier leans beyond α for good; SI units, per unit mass of the pier.

@@ -9,7 +9,6 @@ import numpy.typing as npt
 from rockbatch.errors import InputError
 from rockbatch.lazy import pd
 from rockbatch.pier import Base, Pier
-from rockbatch.results.columns import in_words
 from rockbatch.showing import Shown
 
 if TYPE_CHECKING:
@@ -187,7 +186,7 @@ class Response(Shown):
     def plot(self) -> "Figure":
         """Rotation, angular velocity, energy and ground motion against time, impacts as strokes, and the loops of both
         springs: a matplotlib Figure, ``response.plot().savefig("pier.pdf")``."""
-        from rockbatch.results.plots import plot
+        from rockbatch.simulation.plots import plot
 
         return plot(self.history, self.events, self.pier, self.base, self._title)
 
@@ -199,14 +198,18 @@ class Response(Shown):
             "events": ", ".join(f"{count} × {kind}" for kind, count in kinds.items()),
         }
         if self.row is not None:
-            peak, error, time = (
-                in_words(name, self.row[name]) for name in ("theta_max_over_alpha", "theta_max_error", "t_max_s")
-            )
-            settled = in_words("settlement_m", self.row["settlement_m"])
+            forms = {
+                "theta_max_over_alpha": ".5f",
+                "theta_max_error": ".0e",
+                "t_max_s": ".2f",
+                "theta_res_over_alpha": ".5f",
+            }
+            numbers = {name: self._number(name) for name in forms}
+            peak, error, time, residual = ("" if x != x else format(x, forms[name]) for name, x in numbers.items())
             facts = {
                 "θ_max/α": f"{peak}{f' ± {error}' if error else ''} at {time} s" if peak else "",
-                "θ_res/α": in_words("theta_res_over_alpha", self.row["theta_res_over_alpha"]),
-                "settlement": settled and f"{settled} mm",
+                "θ_res/α": residual,
+                "settlement": "" if self.settlement != self.settlement else f"{1000 * self.settlement:.2f} mm",
                 "reason": self.reason,
                 "note": self.note,
             } | facts

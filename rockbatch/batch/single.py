@@ -1,0 +1,125 @@
+"""One run: its row of peaks.csv, and its histories."""
+
+import math
+from dataclasses import replace
+from typing import TypedDict, Unpack
+
+from rockbatch.errors import InputError
+from rockbatch.motions import Motion
+from rockbatch.motions.plausible import unlikely_samples
+from rockbatch.pier import Base, Pier, problems, unlikely_devices
+from rockbatch.results.columns import Ran, as_series, row
+from rockbatch.simulation.histories import histories, told_apart, with_observed
+from rockbatch.simulation.models import least_substeps
+from rockbatch.simulation.response import Response
+from rockbatch.simulation.runs import Run, run_fixed
+from rockbatch.simulation.settling import run_to_tolerance
+from rockbatch.study import Case, Numerics
+from rockbatch.study.spec import LEAST_NORMAL_SHARE, LEAST_TOLERANCE
+
+
+class Steps(TypedDict, total=False):
+    """Settings of :class:`Numerics` by keyword."""
+
+    tolerance: float
+    substeps: int | None
+    quiet_s: float
+
+
+def simulate(
+    pier: Pier,
+    foundation: Base,
+    motion: Motion,
+    *,
+    case: str | None = None,
+    ledger: bool = False,
+    forces: bool = False,
+    least_normal_share: float = LEAST_NORMAL_SHARE,
+    wait: bool = True,
+    **steps: Unpack[Steps],
+) -> Response:
+    """Simulate one run, and return its results, as a row of peaks.csv, and its histories.
+
+    Parameters
+    ----------
+    pier, foundation, motion
+        The pier, its base and the ground motion, whose vertical component is used if it has one.
+    case : str, optional
+        Name of the foundation; its kind by default.
+    ledger : bool
+        Keep the energy balance too (THEORY.md, Energy ledger).
+    forces : bool
+        Keep the forces, and what lands at impacts, too (THEORY.md, Forces).
+    least_normal_share : float
+        With the forces: share of the weight that the normal force has to exceed for friction to count, above 0 and below 1; as
+        ``[output] least_normal_share`` of a study, which :func:`rockbatch.run` takes.
+    tolerance : float, default 1e-4
+        On θ_max/α; the steps per sample are chosen to meet it.
+    substeps : int, optional
+        Steps per sample instead, for a fixed step.
+    quiet_s : float, default 2
+        Free-vibration tail after the record [s].
+    wait : bool
+        Go on after ``quiet_s`` until nothing that comes later can exceed the peak; ``False``, with ``substeps``: end there.
+
+    Returns
+    -------
+    Response
+        ``status``, ``theta_max`` [rad], ``theta_max_error``, ``settlement`` [m], ``reason`` and the whole ``row``, but for the
+        settlement by the other spring law; and the histories ``t``, ``theta``, …, of the same steps.
+
+    Raises
+    ------
+    InputError
+        If the pier cannot stand on the foundation, with the limits; if a device or the motion is implausible and not
+        named in its ``confirm``; if the run would take too many steps.
+
+    Examples
+    --------
+    >>> motion = rb.pulse("sine", name="one-sine", amplitude=9.81, period=0.5, dt=0.005, duration=2.0)
+    >>> response = rb.simulate(rb.Pier(alpha=0.2, p=1.0), rb.RigidBase(), motion)
+    >>> response
+    <response one-sine × 1, rigid: ok>
+      θ_max/α  0.17801 ± 3e-12 at 1.30 s
+      history  808 rows until 4.00 s
+      events   1 × lift-off, 3 × impact
+    >>> response.plot().savefig("one-sine.pdf")
+    """
+    numerics, run = Numerics(**steps), Run(pier, foundation, motion)
+    _check(run, numerics, least_normal_share, wait)
+    if numerics.substeps is None:
+        outcome = run_to_tolerance(pier, foundation, motion, numerics.tolerance or 0.0, numerics.quiet_s)
+    else:
+        outcome = run_fixed(pier, foundation, motion, numerics.substeps, numerics.quiet_s, wait=wait)
+    if not outcome.was_run:
+        raise InputError(f"{motion.name}: {outcome.reason}")
+    name = case or foundation.name
+    outcome = told_apart(run, outcome, numerics.quiet_s, wait=wait)
+    response = histories(run, outcome, numerics.quiet_s, name, {}, ledger=ledger, forces=forces, wait=wait)
+    outcome = with_observed(
+        run, outcome, numerics.quiet_s, ledger=ledger, least_normal=least_normal_share if forces else None,
+        error=numerics.substeps is None, wait=wait,
+    )  # fmt: skip
+    return replace(response, row=as_series(row(Ran(outcome, motion, "+", 1.0, Case(name, pier, foundation, {})))))
+
+
+def _check(run: Run, numerics: Numerics, least_normal_share: float, wait: bool) -> None:
+    """Raise ``InputError`` with all that is impossible or implausible about a run and its settings."""
+    pier, base, motion, substeps = run.pier, run.base, run.motion, numerics.substeps
+    tolerance = numerics.tolerance or 0.0
+    wrong = problems(pier, base) or unlikely_devices(pier, base.restraints)
+    wrong += unlikely_samples(motion, pier.gravity)
+    if not tolerance >= LEAST_TOLERANCE:
+        wrong.append(f"tolerance = {tolerance:g}: must be {LEAST_TOLERANCE:g} or above (on theta_max/alpha)")
+    if not (math.isfinite(numerics.quiet_s) and numerics.quiet_s >= 0):
+        wrong.append(f"quiet_s = {numerics.quiet_s:g}: must be 0 or more [s]")
+    if substeps is not None and (isinstance(substeps, bool) or not isinstance(substeps, int)):
+        wrong.append(f"substeps = {substeps}: must be a whole number")
+    if substeps is None and not wait:
+        wrong.append("wait = False: the error of a run that is cut off cannot be told; give substeps")
+    if substeps is not None and not wrong and substeps < (least := least_substeps(pier, base, motion.dt)):
+        wrong.append(f"substeps = {substeps}: must be a whole number of at least {least} for this pier and motion")
+    if not 0.0 < least_normal_share < 1.0:
+        wrong.append(f"least_normal_share = {least_normal_share:g}: must be above 0 and below 1, a share of the weight")
+    if wrong:
+        raise InputError(*wrong)
