@@ -33,9 +33,15 @@ MOST_TEXT = 1 << 30
 _PLAIN_ONLY = sum(getattr(os, flag, 0) for flag in ("O_NOFOLLOW", "O_NONBLOCK", "O_CLOEXEC", "O_BINARY"))
 """A link is not followed, and a pipe does not keep whoever opens it waiting."""
 
-_FORMULA = re.compile(r"(?:\A|(?<=;))(?='*[=+\-@\t\r\n].)", re.DOTALL)
-_SAVED_FORMULA = re.compile(r"(?:\A|(?<=;))'(?='*[=+\-@\t\r\n].)", re.DOTALL)
-_UNPRINTABLE = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028\u2029\u202a-\u202e\u2066-\u2069\ud800-\udfff]")
+_FORMULA_AHEAD = r"(?='*[=+\-@＝＋－＠\t\r\n].)"
+_FORMULA = re.compile(rf"(?:\A|(?<=;)){_FORMULA_AHEAD}", re.DOTALL)
+_SAVED_FORMULA = re.compile(rf"(?:\A|(?<=;))'{_FORMULA_AHEAD}", re.DOTALL)
+_UNPRINTABLE = re.compile(
+    r"[\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff"  # controls, line breaks, bytes that are no text
+    r"\xad\u034f\u061c\u115f\u1160\u17b4\u17b5\u180b-\u180f\u200b-\u200f\u202a-\u202e\u2060-\u206f\u3164\ufe00-\ufe0f"
+    r"\ufeff\uffa0\ufff0-\ufffb\U0001bca0-\U0001bca3\U0001d173-\U0001d17a\U000e0000-\U000e0fff]"
+)
+"""Characters that are obeyed or not seen: the second and third lines are Unicode's Default_Ignorable_Code_Point."""
 
 
 def opened(path: Path, mode: Literal["rb", "r+b"] = "rb") -> io.FileIO:
@@ -173,9 +179,10 @@ def only_writer(folder: Path) -> Iterator[None]:
 
 
 def legible(text: str, keep: str = "") -> str:
-    """Return ``text`` with control characters, and bytes of a file's name that are no text, written as ``\\x1b``.
+    """Return ``text`` with control and invisible characters, and bytes of a file's name that are no text, written as ``\\x1b``.
 
-    It can be printed, stays on its line, and goes into UTF-8. ``keep`` are those that stay: line breaks of a text of several.
+    It can be printed, stays on its line, goes into UTF-8, and no other text looks like it. ``keep`` are characters that stay:
+    line breaks of a text of several.
     """
 
     def escaped(match: re.Match[str]) -> str:
@@ -183,7 +190,7 @@ def legible(text: str, keep: str = "") -> str:
             return match[0]
         code = ord(match[0])
         byte = code - 0xDC00 if 0xDC80 <= code <= 0xDCFF else code  # how Python carries such a byte
-        return f"\\x{byte:02x}" if byte <= 0xFF else f"\\u{byte:04x}"
+        return f"\\x{byte:02x}" if byte <= 0xFF else f"\\u{byte:04x}" if byte <= 0xFFFF else f"\\U{byte:08x}"
 
     return _UNPRINTABLE.sub(escaped, text)
 
@@ -191,9 +198,9 @@ def legible(text: str, keep: str = "") -> str:
 def csv_safe(text: str) -> str:
     """Return ``text`` as a cell that no spreadsheet takes for a formula (OWASP, "CSV injection").
 
-    Where it, or what follows a semicolon in it (which separates cells in half of the world), begins with = + - @, a tab or
-    a line break, an apostrophe goes before that; also before apostrophes that are followed by one of these, so that
-    :func:`csv_plain` gives the text back. A sign alone stays as it is.
+    Where it, or what follows a semicolon in it (which separates cells in half of the world), begins with = + - @, of full
+    width too, a tab or a line break, an apostrophe goes before that; also before apostrophes that are followed by one of
+    these, so that :func:`csv_plain` gives the text back. A sign alone stays as it is.
     """
     return _FORMULA.sub("'", text)
 

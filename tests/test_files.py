@@ -3,6 +3,7 @@
 import csv
 import io
 import math
+import unicodedata
 
 import pytest
 from hypothesis import given
@@ -10,8 +11,10 @@ from hypothesis import strategies as st
 
 from rockbatch.files import csv_lines, csv_plain, csv_safe, csv_text, legible
 
+FORMULAS = ["=1+1", "+1", "-2+3", "@SUM(A1)", "\t=1", "\r=1", '=HYPERLINK("http://x")', "＝1+1", "＋1", "－2", "＠A1"]
 
-@pytest.mark.parametrize("text", ["=1+1", "+1", "-2+3", "@SUM(A1)", "\t=1", "\r=1", '=HYPERLINK("http://x")'])
+
+@pytest.mark.parametrize("text", FORMULAS)
 def test_a_cell_that_a_spreadsheet_would_calculate_gets_an_apostrophe(text):
     assert csv_safe(text) == f"'{text}"
 
@@ -27,12 +30,12 @@ def test_other_texts_and_a_polarity_stay_as_they_are(text):
     assert csv_safe(text) == text
 
 
-@given(st.text(alphabet="'=+-@\t\nab;", max_size=6))
+@given(st.text(alphabet="'=+-@＝＋－＠\t\nab;", max_size=6))
 def test_a_safe_cell_gives_its_text_back_and_is_no_formula(text):
     cell = csv_safe(text)
     assert csv_plain(cell) == text
     for part in cell.split(";"):
-        assert len(part) < 2 or part[0] not in "=+-@\t\r\n"
+        assert len(part) < 2 or part[0] not in "=+-@＝＋－＠\t\r\n"
 
 
 def test_numbers_in_a_csv_stay_numbers_and_texts_cannot_break_it():
@@ -50,6 +53,23 @@ def test_what_a_terminal_would_obey_is_shown_instead():
     assert legible(name) == "a\\x1b[31m\\xff\\x0a.AT2"
     assert legible("\u202eTA.1") == "\\u202eTA.1"
     assert legible("Zürich 東京 – π") == "Zürich 東京 – π"
+
+
+@pytest.mark.parametrize("hidden", "\u200b\u200d\u200e\u2060\ufeff\xad\u061c\u3164\ufe0f\ufff9\U000e0041\U000e0100")
+def test_no_character_that_is_not_seen_makes_two_names_look_alike(hidden):
+    written = hidden.encode("ascii", "backslashreplace").decode()
+    assert legible(f"TA{hidden}Z") == f"TA{written}Z"
+    assert legible(f"TA{hidden}Z", keep="\t\r\n") == csv_text(("a",), [{"a": f"TA{hidden}Z"}]).split()[1]
+
+
+def test_all_format_characters_are_written_out_but_those_that_are_seen():
+    """Signs that enclose Arabic, Syriac and Kaithi numbers, and joiners of hieroglyphs and shorthand, are drawn."""
+    formats = {chr(code) for code in range(0x110000) if unicodedata.category(chr(code)) == "Cf"}
+    raw = {char for char in formats if legible(char) == char}
+    assert all(
+        any(word in unicodedata.name(char) for word in ("ARABIC", "SYRIAC", "KAITHI", "EGYPTIAN")) for char in raw
+    )
+    assert not raw & set("\u061c\u200b")
 
 
 def test_columns_make_the_lines_that_a_csv_writer_makes_of_their_cells():

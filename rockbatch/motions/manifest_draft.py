@@ -63,7 +63,7 @@ def draft(folder: Path, options: ReadOptions | None = None) -> str:
         file = _file_of(reading, paths)
         name = paths[file].relative_to(folder).as_posix()
         if legible(name) != name:
-            blocks.append(f"# {legible(name)}: give it a name without control characters first\n")
+            blocks.append(f"# {legible(name)}: give it a name without control or invisible characters first\n")
         elif isinstance(reading, Component):
             double = doubles.get((reading.name, reading.source), "")
             called = _called(reading, labels[file])

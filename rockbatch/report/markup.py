@@ -20,7 +20,7 @@ def escape(content: object) -> str:
     return text if _PLAIN.fullmatch(text) else html.escape(legible(text, keep="\t\r\n"))
 
 
-_PLAIN = re.compile(r"[\w .,:;/()+−–-]*")
+_PLAIN = re.compile(r"[A-Za-z0-9_Α-ω\xa0 .,:;/()+−–-]*")
 """Most texts: nothing in them is escaped."""
 
 

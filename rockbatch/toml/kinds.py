@@ -120,7 +120,7 @@ class Text:
         if self.check is not None:
             self.check(value)
         if legible(value, keep="\t\r\n") != value:
-            raise KindError("text without control characters")
+            raise KindError("text without control or invisible characters")
         return value
 
     def schema(self) -> Schema:

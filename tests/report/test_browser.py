@@ -42,6 +42,16 @@ def test_the_policy_of_the_page_would_stop_a_request(tmp_path, page):
     assert found["wrong"] or found["requests"]
 
 
+def test_the_policy_of_the_page_lets_nothing_lead_its_links_or_forms_elsewhere(tmp_path, page):
+    act = """
+    document.head.append(Object.assign(document.createElement("base"), { href: "https://x.invalid/" }));
+    found.base = document.baseURI.split(":")[0];
+    """
+    found = browse(tmp_path, page, act)
+    assert (found["base"], found["wrong"]) == ("file", ["base-uri"])
+    assert "; form-action 'none'" in page.read_text(encoding="utf-8").split("Content-Security-Policy")[1].split(">")[0]
+
+
 def test_a_heading_sorts_by_value_both_ways_and_search_hides_the_rest(tmp_path, page):
     act = """
     const heads = [...document.querySelectorAll("#peaks thead button")];

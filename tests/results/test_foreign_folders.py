@@ -377,7 +377,7 @@ def test_a_table_that_no_run_can_have_left_is_told_with_its_line(foreign, old, n
 
 
 def test_nothing_of_a_foreign_folder_reaches_terminal_or_report_as_a_command(tmp_path, capsys):
-    bell = "\x1b]0;owned\x07\x1b[2J\x9b31m\u202e"
+    bell = "\x1b]0;owned\x07\x1b[2J\x9b31m\u202e\u200b\u3164\U000e0041"
     write_results(
         tmp_path, records=[(f"rec{bell}", 0.5)], machine=f"here{bell}", notes=[bell],
         unusable=[{"name": f"bad{bell}", "source": f"x{bell}.at2", "reason": f"why{bell}"}],
@@ -396,7 +396,7 @@ def test_nothing_of_a_foreign_folder_reaches_terminal_or_report_as_a_command(tmp
     assert "rec\\x1b]0;owned\\x07" in page
     assert "nowhere\\x1b" in printed.err
     for text in (printed.out, printed.err, page, table):
-        assert not set(text) & set("\x1b\x07\x9b\u202e")
+        assert not set(text) & set("\x1b\x07\x9b\u202e\u200b\u3164\U000e0041")
 
 
 def test_the_report_of_made_up_histories_still_comes(tmp_path):

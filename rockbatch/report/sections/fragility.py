@@ -212,8 +212,8 @@ def _table(info: Mapping[str, Any]) -> Markup:
     return table(heads, rows, prose=True, name="Medians and dispersions")
 
 
-def _interval(bounds: Sequence[float | None] | None) -> str:
+def _interval(bounds: Sequence[float | None] | None) -> Markup:
     if bounds is None:
-        return ""
+        return Markup("")
     low, high = (math.inf if bound is None else bound for bound in bounds)
-    return f"{low:.3g}\u00a0–\u2060\u00a0{'∞' if math.isinf(high) else f'{high:.3g}'}"
+    return Markup(f"{low:.3g}\u00a0–\u2060\u00a0{'∞' if math.isinf(high) else f'{high:.3g}'}")
