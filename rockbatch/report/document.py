@@ -6,8 +6,10 @@ from collections.abc import Iterable
 from importlib.resources import files
 from typing import NamedTuple
 
+from rockbatch._version import __version__
 from rockbatch.report.drawing.svg import markers
 from rockbatch.report.markup import Markup, join, tag
+from rockbatch.report.templates import render
 
 
 class Section(NamedTuple):
@@ -18,35 +20,20 @@ class Section(NamedTuple):
     content: Markup
 
 
-def document(kind: str, title: str, sections: Iterable[Section | None]) -> str:
-    """Return the whole document as HTML; sections that are None are left out."""
+def document(kind: str, title: str, sections: Iterable[Section | None], version: str = __version__) -> str:
+    """Return the whole document as HTML; sections that are None or empty are left out.
+
+    On paper each page has the title and ``version``, that of the rockbatch that made the results.
+    """
     style, script = (
         files(__package__).joinpath(name).read_text(encoding="utf-8") for name in ("style.css", "script.js")
     )
-    shown = [section for section in sections if section is not None]
-    links = [tag("a", section.heading, href=f"#{section.anchor}") for section in shown]
-    # Only the script below may run, and nothing is fetched, whatever a record is called
+    shown = [section for section in sections if section is not None and section.content]
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
-    policy = f"default-src 'none'; style-src 'unsafe-inline'; script-src 'sha256-{digest}'; form-action 'none'; base-uri 'none'"
-    head = tag(
-        "head",
-        Markup('<meta charset="utf-8">'),
-        Markup(f'<meta http-equiv="Content-Security-Policy" content="{policy}">'),
-        Markup('<meta name="viewport" content="width=device-width, initial-scale=1">'),
-        Markup('<meta name="color-scheme" content="light dark">'),
-        tag("title", title),
-        tag("style", Markup(style)),
-    )
-    parts = [tag("section", tag("h2", section.heading), section.content, id=section.anchor) for section in shown]
-    body = tag(
-        "body",
-        markers(),
-        tag("header", tag("p", kind, class_="kind"), tag("h1", title)),
-        tag("nav", *links, aria_label="Sections"),
-        tag("main", *parts),
-        tag("script", Markup(script)),
-    )
-    return f'<!DOCTYPE html>\n<html lang="en">\n{head}\n{body}\n</html>\n'
+    return render(
+        "page.html", kind=kind, title=title, sections=shown, version=f"rockbatch {version}", digest=digest,
+        markers=markers(), style=Markup(style), script=Markup(script),
+    )  # fmt: skip
 
 
 def paragraphs(*sentences: object) -> Markup:

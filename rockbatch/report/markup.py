@@ -11,13 +11,17 @@ from rockbatch.files import legible
 class Markup(str):
     """Text that is HTML already."""
 
+    def __html__(self) -> str:
+        """Return the text for Jinja, which then does not escape it."""
+        return self
+
 
 def escape(content: object) -> str:
-    """``content`` as HTML, legible; only :class:`Markup` goes through as it is."""
+    """Return ``content`` as HTML, legible; only :class:`Markup` goes through as it is."""
     if isinstance(content, Markup):
         return content
     text = str(content)
-    return text if _PLAIN.fullmatch(text) else html.escape(legible(text, keep="\t\r\n"))
+    return text if _PLAIN.fullmatch(text) else Markup(html.escape(legible(text, keep="\t\r\n")))
 
 
 _PLAIN = re.compile(r"[A-Za-z0-9_Α-ω\xa0 .,:;/()+−–-]*")

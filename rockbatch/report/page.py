@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 
+from rockbatch._version import __version__
 from rockbatch.report.compared import (
     answer as compared_answer,
 )
@@ -75,7 +76,8 @@ SECTIONS_OF_TWO: tuple[Callable[[Pair], Section | None], ...] = (
 def page(contents: Contents) -> str:
     """Return the report of one folder as HTML."""
     title = contents.study["title"] or "Rocking piers"
-    return document("Rocking response of stepping piers", title, [section(contents) for section in SECTIONS])
+    made = __version__ if contents.finished is None else contents.finished.info["rockbatch"]
+    return document("Rocking response of stepping piers", title, [section(contents) for section in SECTIONS], made)
 
 
 def comparison(pair: Pair) -> str:
@@ -83,4 +85,5 @@ def comparison(pair: Pair) -> str:
     a, b = (study.info["study"]["title"] or study.saved.directory.name for study in pair.studies)
     title = f"{a} against {b}" if a != b else f"{a}: two studies"
     sections = [section(pair) for section in SECTIONS_OF_TWO]
-    return document("Rocking response of stepping piers, two studies", title, sections)
+    made = " and ".join(dict.fromkeys(study.info["rockbatch"] for study in pair.studies))
+    return document("Rocking response of stepping piers, two studies", title, sections, made)

@@ -49,6 +49,8 @@ def test_every_command_is_there(page, line, capsys):
         assert [flag for flag in re.findall(r"--[\w-]+", rest) if flag not in printed] == []
     elif program == "make":
         assert re.search(rf"^{word}:", (ROOT / "Makefile").read_text(encoding="utf-8"), re.MULTILINE)
+    elif program == "chromium":  # as tests/report/test_browser.py prints
+        assert "--print-to-pdf" in line
     elif program == "python":
         assert (ROOT / word).is_file()
     else:

@@ -18,6 +18,7 @@ from report_samples import FIG7, FOUNDATIONS, case_entry, response, three_piers,
 from rockbatch.errors import InputError
 from rockbatch.pier import Pier, RigidBase, YieldingBase
 from rockbatch.report import write_report
+from rockbatch.report.document import document
 from rockbatch.report.drawing.svg import COLOURS, MARKERS, curve, style_of, thin
 from rockbatch.report.finished import read
 from rockbatch.report.markup import escape, tag
@@ -170,6 +171,17 @@ def test_the_page_asks_for_nothing_outside_itself(tmp_path):
     assert all(link.startswith("#") or link == "peaks.csv" for link in page.links)  # which lies beside it
     assert "@import" not in text
     assert re.findall(r"url\((?!#)", text) == []
+
+
+def test_every_printed_page_has_study_version_and_number(tmp_path):
+    title = 'A "pier" \\ 1; } </style><b>é'
+    written = document("kind", title, [], version="1.2")
+    style = written[written.index("<style>") : written.index("</style>")]
+    assert '@bottom-right { content: counter(page) " / " counter(pages); }' in style
+    top = re.search(r'@top-left \{ content: "([^"]*)" \} @top-right \{ content: "rockbatch 1\.2" \} \}', style)
+    assert re.sub(r"\\([0-9a-f]+) ", lambda match: chr(int(match[1], 16)), top[1]) == title
+    page = report(tmp_path, rockbatch="0.0.7")
+    assert '@top-right { content: "rockbatch 0.0.7" }' in page
 
 
 def test_colours_of_figures_come_from_the_page_so_that_dark_mode_reaches_them(tmp_path):
