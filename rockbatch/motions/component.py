@@ -124,7 +124,7 @@ class Component:
     notes : tuple of str
         What was done to the data.
     odd : tuple of Finding
-        What copies of it, which are left out, have otherwise.
+        What its header, or copies of it which are left out, have otherwise.
     number : int
         Of the component in its file, from 1.
     """

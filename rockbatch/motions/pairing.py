@@ -12,7 +12,7 @@ import numpy as np
 from rockbatch.motions.common_span import on_common_samples, overlap, too_unlike
 from rockbatch.motions.component import Component
 from rockbatch.motions.measures import state_at
-from rockbatch.motions.motion import Motion, Unusable
+from rockbatch.motions.motion import Finding, Motion, Unusable
 from rockbatch.motions.motion_set import MotionSet
 from rockbatch.motions.orientation import same_azimuth
 from rockbatch.motions.origin import directed
@@ -185,8 +185,10 @@ def _motion(h: Component, v: Component | None, notes: Iterable[str]) -> Motion:
             dt, horizontal, vertical = common.dt, common.first, common.second
             initial = h.initial and state_at(h.acceleration, h.dt, h.initial, common.begins[0])
             said += common.notes
+    odd: tuple[Finding, ...] = ()
     if v is not None:
-        said += [f"vertical: {note}" for note in (*v.notes, *(finding.text for finding in v.odd))]
+        odd = tuple(replace(f, text=f"vertical: {f.text}") for f in v.odd if f.gross and "confirm" not in v.confirmed)
+        said += [f"vertical: {note}" for note in (*v.notes, *(f.text for f in v.odd if not f.gross))]
         if v.orientation.down:
             said.append(f"vertical: {v.orientation.label or 'component'} is positive down, sign reversed")
     return Motion(
@@ -202,6 +204,7 @@ def _motion(h: Component, v: Component | None, notes: Iterable[str]) -> Motion:
         distance_km=h.distance_km,
         initial=initial,
         processed=h.processed,
+        findings=odd,
         origin=directed(h.origin, h.orientation),
     )
 

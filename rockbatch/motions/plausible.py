@@ -182,8 +182,8 @@ def unprocessed(judged: Judged) -> Finding | None:
 
 
 def differing_copies(judged: Judged) -> Finding | None:
-    """Return what copies of it that are left out have otherwise."""
-    odd = judged.component.odd
+    """Return what its header or its copies that are left out have otherwise, and those of its vertical component."""
+    odd = (*judged.component.odd, *judged.motion.findings)
     if not odd:
         return None
     return Finding(odd[0].what, "; ".join(finding.text for finding in odd), any(finding.gross for finding in odd))

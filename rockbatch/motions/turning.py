@@ -107,5 +107,6 @@ def _turned(first: Component, second: Component, azimuth: float) -> Component:
         confirmed=tuple(key for key in first.confirmed if key in second.confirmed),
         processed=first.processed if first.processed == second.processed else None,
         initial=_initial(first, second, common, azimuth),
+        odd=(*first.odd, *second.odd),
         notes=(*own, *common.notes, f"turned to {azimuth:g}° from {first.name} and {second.name}"),
     )

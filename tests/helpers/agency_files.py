@@ -164,7 +164,7 @@ def knet_text(direction: str = "E-W", seconds: int = 2, offset: int = 4000, seed
         "Depth. (km)       30\nMag.              6.2\nStation Code      TST003\nStation Lat.      41.4053\n"
         "Station Long.     141.1691\nStation Height(m) 4\nRecord Time       2018/01/24 19:51:38\n"
         f"Sampling Freq(Hz) 100Hz\nDuration Time(s)  {seconds}\nDir.              {direction}\n"
-        "Scale Factor      7845(gal)/8223790\nMax. Acc. (gal)   22.485\n"
+        f"Scale Factor      7845(gal)/8223790\nMax. Acc. (gal)   {np.abs(counts - counts.mean()).max() * 7845 / 8223790:.3f}\n"
         "Last Correction   2018/01/24 19:51:38\nMemo.             \n"
     )
     return header + rows + "\n", counts

@@ -119,6 +119,22 @@ def number(data: bytearray, rng: np.random.Generator) -> bytearray:
     return data[:place] + WORDS[int(rng.integers(len(WORDS)))] + data[end:]
 
 
+def digit(data: bytearray, rng: np.random.Generator) -> bytearray:
+    """Lose a digit, or a point, as of a scale factor or a peak: what is left is a number all the same."""
+    place = somewhere(data, rng)
+    while place < len(data) and chr(data[place]) not in "0123456789.":
+        place += 1
+    return data[:place] + data[place + 1 :]
+
+
+def lines_lost(data: bytearray, rng: np.random.Generator) -> bytes:
+    """Lose some whole lines, or have them twice."""
+    lines = bytes(data).splitlines(keepends=True)
+    first, count = int(rng.integers(0, len(lines) + 1)), int(rng.integers(1, 20))
+    again = lines[first : first + count] * (2 * int(rng.integers(2)))
+    return b"".join([*lines[:first], *again, *lines[first + count :]])
+
+
 def line_ends(data: bytearray, rng: np.random.Generator) -> bytes:
     return bytes(data).replace(b"\n", (b"\r\n", b"\r", b"", b"\n\n", b"\x0c\n")[int(rng.integers(5))])
 
@@ -148,6 +164,8 @@ DAMAGES: tuple[Damage, ...] = (
     number,
     number,
     number,
+    digit,
+    lines_lost,
     line_ends,
     other_content,
 )

@@ -53,8 +53,9 @@ def _shake() -> str:
 
 
 def _unam_in_exponents() -> str:
-    text = unam_text(**{"FORMATO DATOS (FORTRAN,10 campos/dato)": "3E16.7"})
-    rows = "".join("".join(f"{value:16.7E}" for value in wiggle(3, i, 50.0)) + "\n" for i in range(43))
+    samples = np.array([wiggle(3, i, 50.0) for i in range(43)])
+    text = unam_text(columns=samples.T, **{"FORMATO DATOS (FORTRAN,10 campos/dato)": "3E16.7"})
+    rows = "".join("".join(f"{value:16.7E}" for value in row) + "\n" for row in samples)
     head = text[: text.index("DATOS DE ACELERACION")].replace("ACEL. MAX.(Gal)", "ACEL. MAX. (Gal)")
     return f"{head}DATOS DE ACELERACION:\n-----\nCANAL-1 CANAL-2 CANAL-3\nN00E; N90E; V;+\n-----\n{rows}"
 

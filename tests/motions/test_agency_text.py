@@ -337,9 +337,9 @@ def test_taiwanese_local_time_is_eight_hours_ahead():
 
 def test_a_header_peak_that_is_not_in_the_data_is_said_whatever_its_sign():
     peak = A[np.abs(A).argmax()]
-    assert read(dyna_text(**{"PGA_CM/S^2": f"{-peak:.6f}"}), "x.ASC")[0].notes == ()
+    assert read(dyna_text(**{"PGA_CM/S^2": f"{-peak:.6f}"}), "x.ASC")[0].odd == ()
     (component,) = read(dyna_text(**{"PGA_CM/S^2": f"{peak * 1.02:.6f}"}), "x.ASC")
-    assert "header says a peak of" in component.notes[0]
+    assert "header states a peak of" in component.odd[0].text
 
 
 def test_film_digitised_at_uneven_times_is_interpolated_and_it_is_said():
@@ -394,7 +394,6 @@ def test_a_unit_that_is_not_understood_costs_its_channel_with_the_reason(text, n
         (csmnc_text().replace("E+2 ", "E+x ", 1), "x.dat", r"line \d+: found .*expected a number"),
         (afad_text(**{"NUMBER OF DATA": "44"}), "x.txt", "132 values, 44 lines from line 19 on, but there are 43"),
         (afad_text(**{"RAW PGA VALUES (gal)": None}), "x.txt", "which tells the unit"),
-        (afad_text(scale=1 / 981), "x.txt", "unit of the columns is another one; write them as text columns"),
         (afad_text(**{"SAMPLING INTERVAL (sec)": None}), "x.txt", "the header lacks SAMPLING INTERVAL"),
         (afad_text(**{"NUMBER OF DATA": "many"}), "x.txt", 'NUMBER OF DATA: "many"; expected a number'),
         (unam_text(**{"NUM. TOTAL DE MUESTRAS, C1-C6": "/43/43/42"}), "x.191", "42, 43; expected the same for all"),

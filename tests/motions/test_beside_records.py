@@ -134,7 +134,7 @@ def test_files_of_unam_s_sister_institutes_are_read(tmp_path, changed):
 
 
 def test_a_unam_file_in_exponents_is_read(tmp_path):
-    text = unam_text(**{"FORMATO DATOS (FORTRAN,10 campos/dato)": "3E16.7"})
+    text = unam_text(columns=(A, B, C), **{"FORMATO DATOS (FORTRAN,10 campos/dato)": "3E16.7"})
     head = text[: text.index("DATOS DE ACELERACION")]
     rows = "\n".join("".join(f"{value:16.7E}" for value in row) for row in zip(A, B, C, strict=True))
     data = f"DATOS DE ACELERACION:\n-----\nCANAL-1 CANAL-2 CANAL-3\nN00E; N90E; V;+\n-----\n{rows}\n"

@@ -82,7 +82,7 @@ def test_every_format_that_obspy_reads_has_a_check_before(monkeypatch):
 
     with pytest.raises(KeyError):
         with_obspy.read_stream(b"", "PICKLE")
-    assert set(CHECKS) == {"SAC", "MSEED", "KNET"}
+    assert set(CHECKS) == {"SAC", "MSEED"}
 
 
 def test_a_reader_that_does_not_end_is_ended_and_costs_no_other_file(tmp_path, monkeypatch):

@@ -6,16 +6,14 @@ beside their peaks, "RAW PGA VALUES (gal)", which the columns must bear out. The
 
 import re
 
-import numpy as np
-
 from rockbatch.errors import InputError
 from rockbatch.motions.component import Component, Seat
-from rockbatch.motions.formats.fixed_width import lines_of, number_in, spaced_numbers
+from rockbatch.motions.formats.fixed_width import lines_of, spaced_numbers
 from rockbatch.motions.formats.header_lines import keys_of, moment, number_of
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.formats.recording import Recording, to_components
-from rockbatch.motions.motion import Samples, Unusable
+from rockbatch.motions.motion import Unusable
 from rockbatch.motions.origin import TURKISH, origin_of
 
 SUFFIXES: frozenset[str] = frozenset()
@@ -25,7 +23,6 @@ _TITLE = b"STRONG GROUND MOTION RECORDS OF TURKIYE"
 _PEAKS = re.compile(r"PGA VALUES *\((?P<unit>[^)]{1,20})\)", re.IGNORECASE)
 _PEAK = re.compile(r"\((?P<label>[NEU]-[SWD])\) *(?P<peak>[-+]?[0-9.]{1,15})")
 _MOMENT = re.compile(r"(\d{2})/(\d{2})/(\d{4}) (\d{2}):(\d{2}):(\d{2}(?:\.\d{1,6})?)", re.ASCII)
-_BEARS_OUT = 2.0  # times: what offsets may put between a stated peak and that of the column
 
 
 def is_afad(head: bytes) -> bool:
@@ -50,14 +47,15 @@ def _parse(text: str) -> list[Recording]:
     if npts != int(npts) or npts < 2 or not 0 < dt < 10:
         raise InputError(f"the header says {npts:g} values every {dt:g} s; expected a whole number and an interval")
     values = spaced_numbers(lines, heads + 1, int(npts) * len(labels), len(labels)).reshape(-1, len(labels))
-    unit = _unit(header, labels, values)
+    peaks = _peaks(header, labels)
     station, began = header.get("STATION ID", ""), header.get("RECORD TIME", "")
     return [
         Recording(
             label=label.replace("-", ""),
             dt=dt,
             values=values[:, i],
-            unit=unit,
+            unit=peaks[label][1],
+            stated_peak=peaks[label],
             station=f"{station}, {began}" if station else "",
             codes=("TK", station, "", label.replace("-", "")),
             start=_start(began),
@@ -78,22 +76,14 @@ def _labels(line: str) -> list[str]:
     return names if sorted(names) == ["E-W", "N-S", "U-D"] else []
 
 
-def _unit(header: dict[str, str], labels: list[str], values: Samples) -> str:
-    """The unit of the header's peaks; ``InputError`` where the columns do not have these in it, with offsets or without."""
+def _peaks(header: dict[str, str], labels: list[str]) -> dict[str, tuple[str, str]]:
+    """Return the header's peaks and their unit, which is that of the columns, too."""
     key = next((key for key in header if _PEAKS.search(key)), "")
     said = _PEAKS.search(key)
-    peaks = {match["label"]: match["peak"] for match in _PEAK.finditer(header.get(key, ""))}
-    if said is None or set(peaks) != set(labels):
+    stated = {match["label"]: match["peak"] for match in _PEAK.finditer(header.get(key, ""))}
+    if said is None or set(stated) != set(labels):
         raise InputError('the header lacks "RAW PGA VALUES (gal) : (N-S) … (E-W) … (U-D) …", which tells the unit')
-    stated = np.array([abs(number_in(peaks[label], 0)) for label in labels])
-    found = np.array([np.abs(values - offset).max(axis=0) for offset in (0.0, values.mean(axis=0))])
-    if not ((stated <= _BEARS_OUT * found) & (found <= _BEARS_OUT * stated)).any(axis=0).all():
-        pairs = ", ".join(f"{a:g} and {b:.4g}" for a, b in zip(stated, found[0], strict=True))
-        raise InputError(
-            f"peaks by its header, in {said['unit']}, and in its columns: {pairs}: the unit of the columns is another "
-            "one; write them as text columns with their unit"
-        )
-    return said["unit"]
+    return {label: (stated[label], said["unit"]) for label in labels}
 
 
 def _start(text: str) -> float | None:

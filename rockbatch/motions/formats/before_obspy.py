@@ -11,8 +11,6 @@ from collections.abc import Callable
 import numpy as np
 
 from rockbatch.errors import InputError
-from rockbatch.motions.formats.fixed_width import number_in
-from rockbatch.motions.limits import is_step
 
 _UNDEFINED = -12345  # of SAC; as text for its words of eight letters
 _SAC_HEADER, _FLOATS, _INTEGERS = 632, 70, 40  # bytes; words of four bytes, floats first
@@ -42,9 +40,6 @@ _FIXED = 48  # bytes of a data record's fixed header
 _LENGTHS = range(7, 21)  # of records, as powers of 2
 _LENGTH_IN = (b"005", b"008", b"010")  # the blockettes of a volume that tell the length of its records
 _BLOCKETTE = re.compile(rb"[0-9]{7}")  # three digits of type, four of length
-
-_KNET_LINES = 17
-_KNET_NUMBERS = ("Sampling Freq(Hz)", "Duration Time(s)", "Station Lat.", "Station Long.", "Lat.", "Long.")
 
 
 def sac(data: bytes) -> bytes:
@@ -120,20 +115,5 @@ def _data_record(record: bytes) -> None:
         at, seen = following, at
 
 
-def knet(data: bytes) -> bytes:
-    """K-NET or KiK-net ASCII whose header is there, with a rate, a duration and places that can be."""
-    lines = [line.decode("latin-1") for line in data[:8192].splitlines()[:_KNET_LINES]]
-    for name in _KNET_NUMBERS:
-        at = next((i for i, line in enumerate(lines) if line.startswith(name)), None)
-        if at is None:
-            raise InputError(f'no line "{name}" in the first {_KNET_LINES}; fetch it again')
-        text = lines[at][len(name) :].strip().removesuffix("Hz")
-        if not abs(value := number_in(text, at)) <= 1e6 or (
-            name.startswith("Samp") and not (value and is_step(1 / value))
-        ):
-            raise InputError(f'line {at + 1}: found "{lines[at].strip()[:60]}", which cannot be: it is damaged')
-    return data
-
-
-CHECKS: dict[str, Callable[[bytes], bytes]] = {"SAC": sac, "MSEED": mseed, "KNET": knet}
+CHECKS: dict[str, Callable[[bytes], bytes]] = {"SAC": sac, "MSEED": mseed}
 """By ObsPy's name of the format."""

@@ -214,7 +214,7 @@ def _recording(header: _Header, series: re.Match[str], values: Samples, at: int)
         event=line_at(header.text, 1),
         initial=_initial(header) if stage == "corrected" else None,
         origin=origin_of(line_at(header.text, 1), _station_name(header) or station, line_at(header.text, 3)),
-        stated_peak=None if peak == header.unknown else peak,
+        stated_peak=("" if peak == header.unknown else f"{peak:.5f}", ""),
         notes=(f"location: {where}",) if where else (),
         header={"station": line_at(header.text, 4).strip(), "event": line_at(header.text, 1).strip()},
     )

@@ -20,13 +20,11 @@ from rockbatch.motions.formats.recording import Recording, Series, to_components
 from rockbatch.motions.formats.renadic import is_renadic
 from rockbatch.motions.motion import Samples, Unusable
 from rockbatch.motions.origin import Origin, origin_of
-from rockbatch.units import acceleration_factor
 
 SUFFIXES = frozenset({".v1", ".v2", ".v3", ".raw"})
 
 _DATA = {1: 27, 2: 45}  # lines of a channel's header, by volume
 _PER_LINE = 8
-_SHARP = {1: 0.05, 2: 0.1}  # g; cm/s²: smaller peaks are printed too coarsely to compare with
 _TITLE = re.compile(r"\s*uncorrected accelerogram data\b", re.IGNORECASE)
 _SPACING = re.compile(
     r"\s*(?P<npts>[0-9]{1,9}) +"
@@ -59,8 +57,8 @@ _AGAIN = {  # where a header says once more what declares the data: line, and wh
     ),
 }
 _PEAK = {
-    1: (11, re.compile(r"max *= *[-+]?(?P<peak>[0-9]*\.[0-9]+) *g\b", re.IGNORECASE)),
-    2: (17, re.compile(r"peak acceleration *= *[-+]?(?P<peak>[0-9]*\.[0-9]+) *cm/sec/sec", re.IGNORECASE)),
+    1: (11, re.compile(r"max *= *[-+]?(?P<peak>[0-9]*\.[0-9]+) *g\b", re.IGNORECASE), "g"),
+    2: (17, re.compile(r"peak acceleration *= *[-+]?(?P<peak>[0-9]*\.[0-9]+) *cm/sec/sec", re.IGNORECASE), "cm/s2"),
 }
 
 
@@ -108,6 +106,7 @@ def _channel(lines: list[str], at: int) -> tuple[Recording, int]:
     channel = found(_CHANNEL, lines, header + 6, "Chan  1: 90 Deg")
     station = found(_STATION, lines, header + 4, "Station No. …")["code"]
     place = _LOCATION.search(line_at(lines, header + 6))
+    peak = _PEAK[volume][1].search(line_at(lines, at + _PEAK[volume][0]))
     record = line_at(lines, header + 3).split("  ")[0].strip()
     codes = _CODES.match(record)
     accelerations = _block(lines, at + _DATA[volume], ("accel",))
@@ -142,7 +141,7 @@ def _channel(lines: list[str], at: int) -> tuple[Recording, int]:
             origin=_origin(lines, header, station),
             velocities=others.get("veloc"),  # the header's initial velocity has the wrong sign in files of the USGS
             displacements=others.get("displ"),
-            stated_peak=_stated_peak(lines, at, volume, accelerations.unit),
+            stated_peak=(peak["peak"] if peak else "", _PEAK[volume][2]),
             notes=(f"channel {channel['number']}: {place['place']}",) if place else (),
             header={"station": line_at(lines, header + 5).strip(), "record": record},
         ),
@@ -216,18 +215,6 @@ def _start(line: str) -> float | None:
     month, day, year, hour, minute = (int(said[i]) for i in range(1, 6))
     century = 0 if year > 99 else 1900 if year >= 30 else 2000
     return moment(year + century, month, day, hour, minute, float(said[6]))
-
-
-def _stated_peak(lines: list[str], at: int, volume: int, unit: str) -> float | None:
-    """The peak in the header's text, in the unit of the data; ``None`` where it tells nothing."""
-    offset, pattern = _PEAK[volume]
-    said = pattern.search(line_at(lines, at + offset))
-    if said is None or float(said["peak"]) < _SHARP[volume]:
-        return None
-    try:
-        return float(said["peak"]) * acceleration_factor("g" if volume == 1 else "cm/s2") / acceleration_factor(unit)
-    except ValueError:
-        return None
 
 
 is_csmip_file, read_csmip_stream = plugin("CSMIP", is_csmip, _parse)

@@ -9,7 +9,7 @@ import re
 
 from rockbatch.errors import InputError, NoRecordError
 from rockbatch.motions.component import Component, Seat
-from rockbatch.motions.formats.fixed_width import lines_of, number_in, spaced_numbers
+from rockbatch.motions.formats.fixed_width import lines_of, spaced_numbers
 from rockbatch.motions.formats.header_lines import line_with, number
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.record_file import RecordFile
@@ -69,7 +69,7 @@ def _parse(text: str) -> list[Recording]:
             seat=Seat(station, "CN", place=_place(lines)),
             event=lines[1][:60],
             origin=origin_of(lines[2], station, lines[1]),
-            stated_peak=None if peak is None else number_in(peak["peak"], at + 1),
+            stated_peak=(peak["peak"] if peak else "", ""),
             header={"station": station, "event": lines[2].strip()[:60]},
         )
     ]

@@ -23,7 +23,6 @@ SUFFIXES = frozenset({".asc"})
 _MOST_KEYS = 200
 _TURKISH = ("TK", "TU", "KO")  # networks whose texts are in Windows-1254
 _ROUGHLY = 0.01  # relative: what the stated duration, rounded or off by a sample, may differ
-_PEAK = "PGA_CM/S^2"
 _MOMENT = re.compile(r"(\d{4})/?(\d\d)/?(\d\d)[_ T](\d\d):?(\d\d):?(\d\d(?:\.\d{1,6})?)", re.ASCII)
 
 
@@ -64,7 +63,7 @@ def _parse(text: str) -> list[Recording]:
             seat=Seat(codes[1], codes[0], codes[2]),
             event=event,
             origin=origin_of(header["EVENT_NAME"], header.get("STATION_NAME") or codes[1], year),
-            stated_peak=_peak(header) if unit.lower() == "cm/s^2" else None,
+            stated_peak=(header.get("PGA_CM/S^2", ""), "cm/s^2"),
             header={key.lower(): value for key, value in header.items() if value},
         )
     ]
@@ -139,11 +138,6 @@ def _start(text: str) -> float | None:
         return None
     year, month, day, hour, minute = (int(match[i]) for i in range(1, 6))
     return moment(year, month, day, hour, minute, float(match[6]))
-
-
-def _peak(header: dict[str, str]) -> float | None:
-    """The stated peak [cm/s²], without its sign."""
-    return _positive({_PEAK: header.get(_PEAK, "").lstrip("-")}, _PEAK)
 
 
 is_dyna_file, read_dyna_stream = plugin("DYNA", is_dyna, _parse)

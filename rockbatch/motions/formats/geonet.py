@@ -20,7 +20,6 @@ SUFFIXES = frozenset({".v1a", ".v2a"})
 
 _WIDTH, _PER_LINE = 8, 10
 _INTEGERS, _REALS, _DATA = 16, 20, 26  # lines of a component's header at which these begin
-_SHARP = 10.0  # peaks below this many units are printed too coarsely to compare with
 _TITLE = re.compile(r"(?P<un>un)?corrected accelerogram\s+(?P<id>\S+)", re.IGNORECASE)
 _COUNT = re.compile(
     r"number of points\s+(?P<npts>[0-9]{1,9})\s+duration\s+(?P<duration>[0-9.]{1,15})\s*s", re.IGNORECASE
@@ -82,7 +81,6 @@ def _component(lines: list[str], at: int) -> tuple[Recording, int]:
     for n in counts:
         blocks.append(fixed_numbers(lines, end, n, _WIDTH, _PER_LINE))
         end += -(-n // _PER_LINE)
-    stated = abs(number(peak["peak"], at + 13))
     recording = Recording(
         label=label,
         dt=dt,
@@ -98,7 +96,7 @@ def _component(lines: list[str], at: int) -> tuple[Recording, int]:
         origin=origin_of(line_at(lines, at + 6), lines[at + 2] or site, line_at(lines, at + 7)),
         velocities=_series(blocks[1], line_at(lines, at + 14)),
         displacements=_series(blocks[2], line_at(lines, at + 15)),
-        stated_peak=stated if stated > _SHARP and peak["unit"] == unit else None,
+        stated_peak=(peak["peak"], peak["unit"]),
         header={"accelerogram": title["id"], "site": lines[at + 2].strip()},
     )
     return recording, end

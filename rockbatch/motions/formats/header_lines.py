@@ -27,6 +27,24 @@ def found(pattern: re.Pattern[str], lines: Sequence[str], at: int, expected: str
     return match
 
 
+Line = tuple[int, re.Pattern[str], str]
+"""Of a header: how many lines after the first it stands, its pattern, and how it should look; "" if it may be another."""
+
+
+def read_header(lines: Sequence[str], at: int, layout: Sequence[Line]) -> dict[str, str]:
+    """Return the groups of the lines of a header that begins at ``lines[at]``, "" for those that are not in them.
+
+    Raises ``InputError`` with the line where one that is needed is another one, or none.
+    """
+    groups: dict[str, str] = {}
+    for offset, pattern, expected in layout:
+        match = (
+            found(pattern, lines, at + offset, expected) if expected else pattern.search(line_at(lines, at + offset))
+        )
+        groups |= {name: (match[name] or "" if match else "") for name in pattern.groupindex}
+    return groups
+
+
 def line_with(pattern: re.Pattern[str], lines: Sequence[str], most: int, expected: str) -> tuple[int, re.Match[str]]:
     """Index and match of the first of ``most`` lines that ``pattern`` is in; ``InputError`` where it is in none."""
     for at in range(min(most, len(lines))):
@@ -79,6 +97,15 @@ def date_in(text: str) -> tuple[int, int, int] | None:
         return None
     month = int(found["month"]) if found["month"].isdecimal() else _MONTHS.get(found["month"][:3], 0)
     return (int(found["year"]), month, int(found["day"])) if 1 <= month <= 12 else None
+
+
+def moment_of(groups: Mapping[str, str]) -> float | None:
+    """Return the time in UTC [s since 1970] of the groups ``year`` to ``second``; ``None`` if they are empty, or no time."""
+    try:
+        year, month, day, hour, minute = (int(groups[name]) for name in ("year", "month", "day", "hour", "minute"))
+        return moment(year, month, day, hour, minute, float(groups["second"].replace(",", ".")))
+    except (KeyError, ValueError):
+        return None
 
 
 def moment(year: int, month: int, day: int, hour: int, minute: int, second: float) -> float | None:

@@ -1,49 +1,89 @@
-"""K-NET and KiK-net (NIED): one component per file, counts with their scale in the header."""
+"""K-NET and KiK-net (NIED, Japan): one component per file, counts with their scale in the header.
+
+Seventeen lines of text, then eight counts to a line. The time of the first sample is 15 s before the stated one, the delay of
+the recorders, and nine hours ahead of UTC. The stated peak is that without the offset.
+"""
+
+import re
+from dataclasses import replace
+from datetime import UTC, datetime
 
 from rockbatch.errors import InputError
 from rockbatch.motions.component import Component, Seat
+from rockbatch.motions.formats.fixed_width import lines_of, spaced_numbers
+from rockbatch.motions.formats.header_lines import moment_of, read_header
 from rockbatch.motions.formats.record_file import RecordFile
-from rockbatch.motions.formats.with_obspy import read_stream
+from rockbatch.motions.formats.recording import Recording, to_components
+from rockbatch.motions.motion import Unusable
 from rockbatch.motions.orientation import orientation_of, unknown
 from rockbatch.motions.origin import origin_of
 
 SUFFIXES = frozenset({".ew", ".ns", ".ud", ".ew1", ".ns1", ".ud1", ".ew2", ".ns2", ".ud2"})
 
+_HEADER, _PER_LINE = 17, 8
+_JAPAN, _DELAY = 9 * 3600.0, 15.0  # s
+_TIME = r"(?P<year>\d{4})/(?P<month>\d\d)/(?P<day>\d\d) (?P<hour>\d\d):(?P<minute>\d\d):(?P<second>\d\d)"
+_EVENT = ((0, re.compile(rf"^Origin Time +{_TIME}", re.ASCII), "Origin Time 2018/01/24 19:51:00"),)
+_TEXT = (
+    (5, re.compile(r"^Station Code +(?P<station>\w{1,7})\s*$", re.ASCII), "Station Code AOM003"),
+    (9, re.compile(rf"^Record Time +{_TIME}", re.ASCII), "Record Time 2018/01/24 19:51:38"),
+    (10, re.compile(r"^Sampling Freq\(Hz\) +(?P<rate>[1-9]\d{0,4}) *Hz", re.ASCII), "Sampling Freq(Hz) 100Hz"),
+    (11, re.compile(r"^Duration Time\(s\) +(?P<seconds>\d{1,6}(?:\.\d{1,6})?)\s*$", re.ASCII), "Duration Time(s) 128"),
+    (12, re.compile(r"^Dir\. +(?P<channel>\S+)"), "Dir. N-S"),
+    (
+        13,
+        re.compile(r"^Scale Factor +(?P<gal>\d{1,9})\(gal\)/(?P<per>[1-9]\d{0,11})\s*$", re.ASCII),
+        "Scale Factor …(gal)/…",
+    ),
+    (14, re.compile(r"^Max\. Acc\. \(gal\) +(?P<peak>-?\d{1,6}\.\d{1,6})\s*$", re.ASCII), "Max. Acc. (gal) 22.485"),
+    (16, re.compile(r"^Memo\."), "Memo."),
+)
+_CHANNELS = {"1": "NS1", "2": "EW1", "3": "UD1", "4": "NS2", "5": "EW2", "6": "UD2"}
 _LEVELS = {"1": "KiK-net sensor 1: in the borehole", "2": "KiK-net sensor 2: at the surface"}
 _PLACES = {"1": "borehole", "2": "surface"}
 
 
 def is_knet(head: bytes) -> bool:
-    """Whether the first bytes are those of a K-NET or KiK-net ASCII file."""
+    """Return whether the first bytes are those of a K-NET or KiK-net ASCII file."""
     return head.startswith(b"Origin Time")
 
 
-def read_knet(file: RecordFile) -> list[Component]:
-    """The component of a file in m/s²; KiK-net's borehole and surface are two stations."""
-    (trace,) = read_stream(file.data, "KNET")
-    stats = trace.stats
-    if "knet" not in stats or not stats.npts:
-        raise InputError("the header or the data are missing; fetch it again")
-    expected = stats.knet.duration * stats.sampling_rate
-    if abs(stats.npts - expected) >= stats.sampling_rate:  # the header's duration is in whole seconds
-        raise InputError(
-            f"the header says {stats.knet.duration:g} s at {stats.sampling_rate:g} Hz, {expected:g} values, "
-            f"but the file holds {stats.npts}; fetch it again"
-        )
-    level = stats.channel[2:]
+def read_knet(file: RecordFile) -> list[Component | Unusable]:
+    """Return the component of a file in m/s², of no unit of its own; KiK-net's borehole and surface are two stations."""
+    readings = to_components(file, _parse(file.text))
+    return [replace(reading, unit="") if isinstance(reading, Component) else reading for reading in readings]
+
+
+def _parse(text: str) -> list[Recording]:
+    """Return the recording of a file; ``InputError`` with the line where it is not whole."""
+    lines = lines_of(text)
+    quake, start = moment_of(read_header(lines, 0, _EVENT)), moment_of(header := read_header(lines, 0, _TEXT))
+    station, rate, duration = header["station"], int(header["rate"]), float(header["seconds"])
+    npts = round(duration * rate)
+    if npts < 2 or abs(npts - duration * rate) > 1e-6:
+        raise InputError(f"line 12: found {duration:g} s at {rate} Hz; expected a whole number of samples above 1")
+    counts = spaced_numbers(lines, _HEADER, npts, _PER_LINE)
+    channel = _CHANNELS.get(header["channel"], header["channel"].replace("-", ""))
+    level = channel[2:]
     return [
-        Component(
-            name=file.stem,
-            dt=float(stats.delta),
-            acceleration=trace.data * stats.calib,
-            orientation=orientation_of(stats.channel[:2]) or unknown(stats.channel),
-            station=f"{stats.station}.{level}" if level else stats.station,
-            source=file.source,
-            start=stats.starttime.timestamp,
-            raw=True,
+        Recording(
+            label=channel,
+            orientation=orientation_of(channel[:2]) or unknown(channel),
+            dt=1.0 / rate,
+            values=counts * (0.01 * float(header["gal"]) / float(header["per"])),
+            unit="m/s2",
+            station=f"{station}.{level}" if level else station,
+            start=None if start is None else start - _JAPAN - _DELAY,
+            uncorrected=True,
             processed=False,
-            origin=origin_of(date=stats.knet.evot.strftime("%Y-%m-%d %H:%M"), station=stats.station),
-            seat=Seat(stats.station, location=level, place=_PLACES.get(level)),
+            origin=origin_of(date=_day(quake), station=station),
+            seat=Seat(station, location=level, place=_PLACES.get(level)),
+            stated_peak=(header["peak"], "gal"),
             notes=(_LEVELS[level],) if level in _LEVELS else (),
         )
     ]
+
+
+def _day(quake: float | None) -> str:
+    """Return the date of a time in Japan [s since 1970] in UTC; empty if it is none."""
+    return "" if quake is None else datetime.fromtimestamp(quake - _JAPAN, UTC).strftime("%Y-%m-%d %H:%M")

@@ -1,5 +1,6 @@
 """One channel as its file has it, in its own unit, and the way from there to a component in m/s²."""
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
@@ -9,12 +10,13 @@ from rockbatch.errors import InputError
 from rockbatch.motions.component import NOWHERE, Component, Seat
 from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.measures import initial_of
-from rockbatch.motions.motion import Initial, Samples, Unusable
+from rockbatch.motions.motion import Finding, Initial, Samples, Unusable
 from rockbatch.motions.orientation import Orientation, is_clock, orientation_of, unknown
 from rockbatch.motions.origin import UNKNOWN_ORIGIN, Origin
 from rockbatch.units import acceleration_factor, length_factor
 
-_SAME_PEAK = 0.01  # relative: header peaks are rounded, and taken before the last decimals of the data were cut
+_SAME_PEAK = 1e-4  # relative: half of the last of five digits, of 1.0000
+_PRINTED = re.compile(r"(?=.*\d)(?P<number>[-+]?\d*\.?(?P<decimals>\d*))(?:[EeDd](?P<power>[-+]?\d{1,3}))?")
 
 
 Series = tuple[Samples, str]
@@ -55,8 +57,10 @@ class Recording:
         The ground's state at the first sample, where the header tells it.
     velocities, displacements : Series or None
         That the file has beside the accelerations.
-    stated_peak : float or None
-        Peak that the header states, in ``unit``; its sign is not to be trusted.
+    stated_peak : (str, str)
+        Peak that the header states, as it is printed, and its unit ("" for ``unit``); its sign is not to be trusted.
+    as_read : ndarray, shape (n,), or None
+        Accelerations before they were interpolated, which have the stated peak.
     notes : tuple of str
         What was done to the data.
     origin : Origin
@@ -80,7 +84,8 @@ class Recording:
     initial: Initial | None = None
     velocities: Series | None = None
     displacements: Series | None = None
-    stated_peak: float | None = None
+    stated_peak: tuple[str, str] = ("", "")
+    as_read: Samples | None = None
     notes: tuple[str, ...] = ()
     origin: Origin = UNKNOWN_ORIGIN
     header: dict[str, str] = field(default_factory=dict)
@@ -112,9 +117,6 @@ def _component(file: RecordFile, recording: Recording, name: str, source: str) -
         factor = acceleration_factor(recording.unit, file.gravity)
     except ValueError as error:
         raise InputError(f'component "{recording.label}": {error}') from None
-    notes = [*recording.notes]
-    if recording.stated_peak is not None:
-        notes += _on_stated_peak(recording.values, abs(recording.stated_peak), recording.unit)
     acceleration = recording.values * factor
     series = [_in_metres(each) for each in (recording.velocities, recording.displacements)]
     return Component(
@@ -132,7 +134,8 @@ def _component(file: RecordFile, recording: Recording, name: str, source: str) -
         processed=recording.processed,
         origin=recording.origin,
         initial=initial_of(acceleration, recording.dt, *series) or recording.initial,
-        notes=tuple(notes),
+        notes=recording.notes,
+        odd=tuple(_peak_differs(recording, factor, file.gravity)),
     )
 
 
@@ -143,9 +146,32 @@ def _in_metres(series: Series | None) -> Samples | None:
     return series[0] * factor
 
 
-def _on_stated_peak(values: Samples, stated: float, unit: str) -> list[str]:
-    """A note where the data do not have the peak that the header states."""
-    found = float(np.abs(values).max(initial=0.0))
-    if abs(found - stated) <= _SAME_PEAK * max(found, stated):
+def _peak_differs(recording: Recording, factor: float, gravity: float) -> list[Finding]:
+    """Return that the samples do not have the peak that the header states, with their offset or without it.
+
+    ``factor`` brings samples into m/s². They may be off by a unit of the last digit of the stated peak, and by a part in
+    ten thousand, since some formats print five digits. A unit that is not understood states nothing.
+    """
+    text, unit = recording.stated_peak
+    number = _PRINTED.fullmatch(text.strip())
+    try:
+        scale = acceleration_factor(unit or recording.unit, gravity)
+    except ValueError:
+        number = None
+    if number is None:
         return []
-    return [f"its header says a peak of {stated:g} {unit}, its data have {found:g}: check the record"]
+    power = int(number["power"] or 0)
+    stated, printed = (
+        abs(float(number["number"])) * scale * 10.0**power,
+        scale * 10.0 ** (power - len(number["decimals"])),
+    )
+    samples = factor * (recording.values if recording.as_read is None else recording.as_read)
+    peaks = [float(np.abs(samples - offset).max(initial=0.0)) for offset in (0.0, samples.mean())]
+    if any(abs(peak - stated) <= printed + _SAME_PEAK * peak for peak in peaks):
+        return []
+    nearest = min(peaks, key=lambda peak: abs(peak - stated)) / scale
+    unit = unit or recording.unit
+    what = (
+        f"its header states a peak of {text.strip()} {unit}, and its samples have {nearest:.6g} {unit}: check its scale"
+    )
+    return [Finding("peak", what, gross=True)]

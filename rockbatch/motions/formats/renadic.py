@@ -18,13 +18,11 @@ from rockbatch.motions.formats.time_steps import from_pairs
 from rockbatch.motions.motion import Unusable
 from rockbatch.motions.orientation import is_clock
 from rockbatch.motions.origin import origin_of
-from rockbatch.units import GRAVITY, acceleration_factor
 
 SUFFIXES = frozenset({".v1", ".raw"})
 
 _HEADER = 27  # lines
 _WIDTH, _PER_LINE = 7, 10
-_SHARP = 0.05  # g: smaller peaks are printed too coarsely to compare with
 _PAIRS = "UNITS OF UNCOR ACCEL ARE SEC AND"
 _TITLE = re.compile(r"UNCORRECTED ACCELEROGRAM DATA")
 _CHANNEL = re.compile(r"CHAN\s+[0-9]{1,3}:\s*(?P<label>[^(]*?)\s*(?:\(|$)")
@@ -90,7 +88,8 @@ def _channel(lines: list[str], at: int) -> tuple[tuple[Recording, float], int]:
         seat=Seat(lines[at + 5].strip().upper()),
         event=lines[at + 1],
         origin=origin_of(lines[at + 1], lines[at + 5]),
-        stated_peak=_peak(units["peak"], unit),
+        stated_peak=(units["peak"] or "", "g"),
+        as_read=pairs[:, 1],
         notes=notes,
         header={"station": lines[at + 5].strip(), "event": lines[at + 1].strip()},
     )
@@ -104,15 +103,6 @@ def _trigger(line: str) -> float | None:
         return None
     month, day, year, hour, minute = (int(match[i]) for i in range(1, 6))
     return None if (year, month, day) == _NOT_SET else moment(year, month, day, hour, minute, float(match[6]))
-
-
-def _peak(text: str | None, unit: str) -> float | None:
-    """The header's peak, which is in g, in the unit of the data; ``None`` where it tells nothing."""
-    peak = abs(float(text)) if text else 0.0
-    try:
-        return peak * GRAVITY / acceleration_factor(unit) if peak >= _SHARP else None
-    except ValueError:
-        return None
 
 
 is_renadic_file, read_renadic_stream = plugin("RENADIC", is_renadic, _parse)

@@ -54,6 +54,7 @@ def _parse(text: str) -> list[Recording]:
             unit=unit["unit"],
             station=f"{code}, {event}" if code else "",
             processed=True,
+            stated_peak=(header.get("PGA (m/s/s)", ""), "m/s/s"),
             seat=Seat(code),
             event=event,
             origin=origin_of(date=event, station=name or code),

@@ -58,15 +58,15 @@ def _parse(text: str) -> list[Recording]:
     number = str(integers[29]) if integers[29] not in (unknown, 0) else station["name"].upper()
     if comments < 0 or npts < 1:
         raise InputError(f"lines 13–14: found {comments} comments and {npts} values; expected counts")
-    rate = _real(lines, 2)
+    rate = number_in(said, _REALS) if (said := _real(lines, 2)) else None
     if rate is not None and not 0.1 <= rate <= 1e5:
         raise InputError(f"line 18: found a sampling rate of {rate:g} Hz; expected 0.1 to 100000")
     width, per_line = (14, 5) if integers[46] == 8 else (10, 8)
-    values = fixed_numbers(lines, _COMMENTS + comments, npts, width, per_line)
+    numbers = fixed_numbers(lines, _COMMENTS + comments, npts, width, per_line)
     refuse_more(lines, _COMMENTS + comments - -npts // per_line, f"the {npts} values that line 14 declares")
-    dt, values, notes = _on_film(values, number) if rate is None else (float(f"{1.0 / rate:.12g}"), values, ())
+    dt, values, notes = _on_film(numbers, number) if rate is None else (float(f"{1.0 / rate:.12g}"), numbers, ())
     year, day, hour, minute, second, ms = integers[1:7]
-    peaks = [abs(peak) for peak in (_real(lines, 30), _real(lines, 32)) if peak is not None]
+    peaks = [peak for n in (30, 32) if (peak := _real(lines, n))]
     return [
         Recording(
             label=_label(integers[12], integers[13], unknown, station["label"]),
@@ -81,7 +81,8 @@ def _parse(text: str) -> list[Recording]:
             seat=Seat(number, place=station["name"].upper()),
             event="" if unknown in (year, day, hour, minute) else f"{year}-{day:03d} {hour}:{minute}",
             origin=origin_of(line_at(lines, 3)[25:], station["name"], line_at(lines, 3)[:25]),
-            stated_peak=max(peaks, default=None),
+            stated_peak=(max(peaks, key=lambda peak: abs(number_in(peak, 22)), default=""), ""),
+            as_read=numbers[1::2] if rate is None else None,
             notes=(*notes, *(["its header flags a problem: read its comments"] if integers[17] == 1 else [])),
             header={"station": station["name"], "event": line_at(lines, 3)[25:].strip()},
         )
@@ -100,11 +101,10 @@ def _on_film(values: Samples, number: str) -> tuple[float, Samples, tuple[str, .
         ) from None
 
 
-def _real(lines: list[str], n: int) -> float | None:
-    """Real number ``n`` of the header, counted from 1; ``None`` where it is written as the first: it is unknown."""
-    at, column = _REALS + (n - 1) // 5, 15 * ((n - 1) % 5)
-    field = line_at(lines, at)[column : column + 15]
-    return None if field.strip() == line_at(lines, _REALS)[:15].strip() else number_in(field, at)
+def _real(lines: list[str], n: int) -> str:
+    """Return real number ``n`` of the header, counted from 1, as it is written; "" if it is the first, which is unknown."""
+    field = line_at(lines, _REALS + (n - 1) // 5)[15 * ((n - 1) % 5) :][:15].strip()
+    return "" if field == line_at(lines, _REALS)[:15].strip() else field
 
 
 def _label(vertical: int, azimuth: int, unknown: int, text: str) -> str:

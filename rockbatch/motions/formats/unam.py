@@ -63,7 +63,8 @@ def _parse(text: str) -> list[Recording]:
     first = _first(lines, at, [way.strip() for way, _ in ways])
     values, more = _values(lines, first, int(npts), count, _value(header, "FORMATO DATOS"))
     unit = _value(header, "UNIDADES DE LOS DATOS").partition("(")[0].strip()
-    peaks = _peaks(header, count) if unit.lower() == "gal" else [None] * count
+    stated = _get(header, "ACEL. MAX.(Gal), C1-C6").strip("/ ").split("/")
+    peaks = stated if len(stated) == count else [""] * count
     station, date = _value(header, "CLAVE DE LA ESTACION"), _get(header, "FECHA DEL SISMO")
     name, start = _get(header, "NOMBRE DE LA ESTACION"), _start(header)
     event = f"{date} {_get(header, 'HORA EPICENTRO')}".strip()
@@ -83,7 +84,7 @@ def _parse(text: str) -> list[Recording]:
             seat=Seat(station),
             event=event,
             origin=origin_of("", name or station, date),
-            stated_peak=peaks[i],
+            stated_peak=(peaks[i], "gal"),
             notes=notes,
             header={"station": name, "file": _get(header, "NOMBRE DEL ARCHIVO")},
         )
@@ -127,14 +128,6 @@ def _same(header: dict[str, str], key: str, count: int) -> float:
     if len(texts) > 1:
         raise InputError(f"the header says {key} : {', '.join(sorted(texts))[:60]}; expected the same for all channels")
     return _single({re.sub(r"\s", "", key): texts.pop()}, key)
-
-
-def _peaks(header: dict[str, str], count: int) -> list[float | None]:
-    """Return the stated peaks [Gal], ``None`` where the header has none."""
-    try:
-        return [number_in(peak, 0) for peak in _each(header, "ACEL. MAX.(Gal), C1-C6", count)]
-    except InputError:
-        return [None] * count
 
 
 def _first(lines: list[str], at: int, ways: list[str]) -> int:

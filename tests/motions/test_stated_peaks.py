@@ -1,0 +1,108 @@
+"""The peak that a header states is that of the samples, but for rounding; else the record waits to be confirmed."""
+
+import re
+
+import numpy as np
+import pytest
+from agency_files import A, B, C, dyna_text, geonet_text, knet_text, renadic_channel, renadic_text, resorce_text
+from fixed_column_files import cosmos_text, csmip_text, film_text, smc_text
+from national_files import afad_text, csmnc_text, unam_text
+
+from rockbatch.motions import read_motions
+
+FILES = {
+    "K-NET": ("x.EW", knet_text()[0], r"(Max\. Acc\. \(gal\) +)([\d.]+)"),
+    "GeoNet": ("x.V2A", geonet_text(2), r"(Acceleration:  Peak +)(-?[\d.]+)"),
+    "DYNA": ("x.ASC", dyna_text(), r"(PGA_CM/S\^2: )(-?[\d.]+)"),
+    "COSMOS": ("x.V2c", cosmos_text(stage="Corrected", location="Ground"), ""),
+    "CSMIP Volume 1": ("x.V1", csmip_text(1), r"(Max  = *)(-?[\d.]+)"),
+    "CSMIP Volume 2": ("x.V2", csmip_text(2), r"(Peak acceleration = *)(-?[\d.]+)"),
+    "SMC": ("x.smc", smc_text(), ""),
+    "SMC film": ("x.smc", film_text(), ""),
+    "RENADIC": ("x.V1", renadic_text(), r"(MAX  = *)(-?[\d.]+)"),
+    "CSMNC": ("x.dat", csmnc_text(), r"(PEAK VALUE: +)(-?[\d.]+)"),
+    "AFAD": ("x.txt", afad_text(), r"(\((?:N-S|E-W|U-D)\) )(-?[\d.]+)"),
+    "UNAM": ("x.191", unam_text(), r"(\(Gal\), C1-C6 +: /)(-?[\d.]+/-?[\d.]+/-?[\d.]+)"),
+    "RESORCE": ("x.acc", resorce_text(), r"(PGA \(m/s/s\) +: )([\d.E+-]+)"),
+}
+OTHERS = {
+    "COSMOS": cosmos_text(stage="Corrected", location="Ground", peak=81.1),
+    "SMC": smc_text(peak=81.1),
+    "SMC film": film_text(peak=81.1),
+}
+TENFOLD = str.maketrans("123456789", "234567891")
+
+
+def changed(form: str) -> str:
+    """Return the file with every digit of its stated peak changed."""
+    _, text, stated = FILES[form]
+    return OTHERS.get(form) or re.sub(stated, lambda match: match[1] + match[2].translate(TENFOLD), text)
+
+
+@pytest.mark.parametrize("form", FILES)
+def test_a_peak_that_the_samples_do_not_have_is_a_reason_not_to_use_the_record(tmp_path, form):
+    name, text, _ = FILES[form]
+    (tmp_path / name).write_text(text, encoding="latin-1")
+    sound = read_motions(tmp_path)
+    assert sound.motions
+    assert not sound.unusable
+    assert not any(finding.what == "peak" for motion in sound.motions for finding in motion.findings)
+    (tmp_path / name).write_text(changed(form), encoding="latin-1")
+    assert text != changed(form)
+    found = read_motions(tmp_path)
+    assert not found.motions
+    for unusable in found.unusable:
+        stated, has = map(
+            float, re.search(r"states a peak of (\S+) \S+, and its samples have (\S+) ", unusable.reason).groups()
+        )
+        assert abs(abs(stated) - has) > 0.001 * has
+        assert "if it is right, write confirm = [" in unusable.reason
+    confirmed = read_motions(tmp_path, confirmed=["*"])
+    for motion, before in zip(confirmed.motions, sound.motions, strict=True):
+        np.testing.assert_array_equal(motion.horizontal, before.horizontal)
+        assert any(note.startswith("confirmed: ") and "states a peak" in note for note in motion.notes)
+
+
+@pytest.mark.parametrize("last", ["4", "6"])
+def test_a_unit_of_the_last_digit_is_rounding(tmp_path, last):
+    text = dyna_text(**{"PGA_CM/S^2": f"{np.abs(A).max():.2f}"[:-1] + last})
+    (tmp_path / "x.ASC").write_text(text.replace("810.06", "810.01").replace("810.04", "809.99"))
+    assert len(read_motions(tmp_path).motions) == 1
+
+
+def test_a_digit_lost_from_a_scale_and_lines_lost_from_the_data_are_told(tmp_path):
+    text = knet_text()[0]
+    (tmp_path / "x.EW").write_text(text.replace("/8223790", "/822379"))
+    (unusable,) = read_motions(tmp_path).unusable
+    assert re.search(
+        r"states a peak of \d+\.\d+ gal, and its samples have \d+\.\d+ gal: check its scale", unusable.reason
+    )
+    lines = text.splitlines(keepends=True)
+    for cut in (lines[:25] + lines[36:], [*lines, lines[20]], [*lines[:-1], lines[-1][:-10] + "\n"]):
+        (tmp_path / "x.EW").write_text("".join(cut))
+        (unusable,) = read_motions(tmp_path).unusable
+        assert "200 values" in unusable.reason or "found 7 numbers; expected 8" in unusable.reason
+
+
+def test_a_vertical_or_a_turned_component_with_another_peak_is_no_less_a_reason(tmp_path):
+    for name, values, stream in (("n", A, "HNN"), ("e", B, "HNE"), ("z", C, "HNZ")):
+        (tmp_path / f"{name}.ASC").write_text(dyna_text(values, stream))
+    assert len(read_motions(tmp_path).motions) == 2
+    peak = "PGA_CM/S^2"
+    (tmp_path / "z.ASC").write_text(dyna_text(C, "HNZ", **{peak: "81.0"}))
+    found = read_motions(tmp_path)
+    assert (len(found.motions), len(found.unusable)) == (0, 2)
+    assert all(unusable.reason.startswith("vertical: its header states a peak of 81.0") for unusable in found.unusable)
+    assert len(read_motions(tmp_path, vertical=False).motions) == 2
+    (tmp_path / "motions.toml").write_text('[[record]]\nfile = "z.ASC"\nconfirm = true\n')
+    assert len(read_motions(tmp_path).motions) == 2
+    (tmp_path / "e.ASC").write_text(dyna_text(B, "HNE", **{peak: "81.0"}))
+    (turned,) = read_motions(tmp_path, azimuths=(30.0,)).unusable
+    assert "states a peak of 81.0" in turned.reason
+
+
+def test_film_is_compared_before_it_is_interpolated(tmp_path):
+    times = np.cumsum([0, *np.random.default_rng(1).choice([0.005, 0.0065, 0.0083], len(A) - 1)])
+    (tmp_path / "x.V1").write_text("\n".join(renadic_channel("N10E", A / 100, np.round(times, 4))), encoding="latin-1")
+    (motion,) = read_motions(tmp_path).motions
+    assert any("interpolated" in note for note in motion.notes)
