@@ -194,7 +194,7 @@ def _value(key: Key) -> str:
 
 
 def _default(section: Section, name: str) -> str:
-    if section[name].required:
+    if section[name].always_required:
         return "**required**"
     default = section.default(name)
     if default is None:

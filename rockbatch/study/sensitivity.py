@@ -251,12 +251,10 @@ def _inputs(file: TomlFile, spread: str, keys: Mapping[str, Key]) -> list[Input]
 def _read(table: Table, spread: str, keys: Mapping[str, Key], **more: Any) -> list[Input]:
     inputs = []
     for name, levels in table.read(keys, **more).items():
-        if spread == "choice":
-            if len(levels) != 2:
-                table.complain(f"{name}: expected both choices; write {name} = {keys[name].example}", name)
-                continue
-            levels = levels[0].value, levels[1].value
-        inputs.append(Input(name, spread, levels))
+        if len(levels) == 2:
+            inputs.append(Input(name, spread, levels))
+        else:
+            table.complain(f"{name}: expected both choices; write {name} = {keys[name].example}", name)
     return inputs
 
 

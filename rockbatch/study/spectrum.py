@@ -1,6 +1,7 @@
 """Rocking spectra and overturning maps in a study file: [spectrum] and [[spectrum.map]]."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -11,7 +12,7 @@ from rockbatch.motions.pulses import SHAPES
 from rockbatch.pier import Pier, problems
 from rockbatch.study.cases import read_cases
 from rockbatch.study.load import Study
-from rockbatch.study.motions import PULSE, check_shape
+from rockbatch.study.motions import PULSE
 from rockbatch.study.piers import has_mass
 from rockbatch.study.spec import Case
 from rockbatch.toml.kinds import Number, Whole, choice, number, positive, text
@@ -90,8 +91,9 @@ MAP = Section(("spectrum", "map"), "A map of the pulses that overturn the pier, 
     "name": Key(text, '"one-sine"', "Its name in the report.", required=True),
     "shape": Key(choice(*SHAPES), '"sine"', "Formula of the pulse.", required=True),
     "gamma": Key(Number("a number above 1", low=1.0, above=True), "1.5",
-        "Number of oscillations of a Mavroeidis–Papageorgiou pulse.", only=PULSE["gamma"].only),
-    "nu": Key(number, "0.0", "Phase of a Mavroeidis–Papageorgiou pulse [rad].", only=PULSE["nu"].only),
+        "Number of oscillations of a Mavroeidis–Papageorgiou pulse.", required=True,
+        only=PULSE["gamma"].only),
+    "nu": Key(number, "0.0", "Phase of a Mavroeidis–Papageorgiou pulse [rad].", required=True, only=PULSE["nu"].only),
     "frequency": Key(positive, "[1.0, 8.0]",
         "Range of ω_p/p, the circular frequency of the pulse over the pier's frequency parameter.", required=True, pair=True),
     "frequencies": Key(_POINTS, "29", "Number of frequencies in the grid."),
@@ -162,7 +164,7 @@ def _spectrum(table: Table, study: Study) -> SpectrumSpec | None:
 
 
 def _piers(
-    table: Table, alphas: Any, axis: str, values: list[float], study: Study
+    table: Table, alphas: Sequence[float], axis: str, values: list[float], study: Study
 ) -> list[tuple[Pier, dict[str, Any]]]:
     """Return piers of every slenderness and size, with all else of the study's, and their values by key.
 
@@ -176,19 +178,19 @@ def _piers(
         for case in study.cases
     )
     piers = []
-    for alpha in alphas:
+    for n, alpha in enumerate(alphas):
         for other in others:
             for value in values:
-                own = {"alpha": alpha.value, "mu": other.mu, axis: value}
+                own = {"alpha": alpha, "mu": other.mu, axis: value}
                 try:
                     if axis == "size_m":
-                        p = Pier.from_size(alpha.value, value, other.mu, other.gravity).p
+                        p = Pier.from_size(alpha, value, other.mu, other.gravity).p
                     else:
                         p = value if axis == "p" else 2 * math.pi / value
-                    pier = replace(other, alpha=alpha.value, p=p)
+                    pier = replace(other, alpha=alpha, p=p)
                 except InputError as error:
                     for problem in error.problems:
-                        table.complain_about(alpha, problem)
+                        table.complain(problem, "alpha", n)
                     break
                 piers.append((pier, own if other.mass_t is None else own | {"mass_t": other.mass_t}))
     return piers
@@ -200,7 +202,6 @@ def _maps(file: TomlFile) -> list[MapSpec]:
     for table in file.tables("spectrum", "map", title="name"):
         before = len(file.problems)
         read = table.read(MAP)
-        check_shape(table)
         if read.get("name") in names:
             table.complain(f'name = "{read["name"]}": given twice; give each map its own name', "name")
         names.add(read.get("name", ""))

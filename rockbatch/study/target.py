@@ -112,7 +112,6 @@ def _read_measure(table: Table) -> Target | None:
         _MEASURE | CONFIRM,
         unfit=dict.fromkeys((*_SPECTRUM, *_EUROCODE, *_ASCE), "is for a target with spectrum = …"),
     )
-    del read["confirm"]
     measures = [name for name in ("pga_g", "pgv_m_s", "sa_g") if name in table.data]
     if len(measures) != 1:
         given = " and ".join(measures) + " are given" if measures else "it is missing what to scale to"
@@ -168,7 +167,7 @@ def _spectrum(table: Table, code: str, read: dict[str, Any]) -> Spectrum | None:
         if damping != 0.05:
             table.complain("damping: the spectrum of ASCE 7 is for 5 %; leave it out", "damping")
         return _asce(table, read)
-    entries = [setting.value for setting in read["spectrum"]]
+    entries = read["spectrum"]
     try:
         if len(entries) == 1 and isinstance(entries[0], str):
             return _of_file(table, entries[0], damping)

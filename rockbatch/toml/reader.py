@@ -178,16 +178,30 @@ class Table:
         """Return whether the key is written, if perhaps misspelt."""
         return name in self.data or (*self.at, name) in self.file.misspelt
 
+    @property
+    def confirmed(self) -> frozenset[str]:
+        """Names of the keys that the table confirms."""
+        written = self.data.get("confirm", ())
+        return frozenset(
+            name for name in (written if isinstance(written, list) else [written]) if isinstance(name, str)
+        )
+
     def read(
-        self, keys: Mapping[str, Key], *, unfit: Mapping[str, str] | None = None, other: Iterable[str] = ()
+        self,
+        keys: Mapping[str, Key],
+        *,
+        unfit: Mapping[str, str] | None = None,
+        other: Iterable[str] = (),
+        places: bool = False,
     ) -> dict[str, Any]:
         """Return the usable values by key, in the order of the file; note what is unusable, unknown or missing.
 
         A caller may go on checking with what is left: :meth:`TomlFile.finish` raises in the end.
-        ``unfit`` gives reasons for keys that exist but have no place here; ``other`` keys are read elsewhere.
+        ``unfit`` gives reasons for keys that exist but have no place here; ``other`` keys are read elsewhere. Of a key that takes
+        a list the value is a tuple, or with ``places`` a list of :class:`Setting`. :attr:`confirmed` is read apart.
         """
         unfit = unfit or {}
-        usable = {}
+        usable: dict[str, Any] = {}
         for name, value in self.data.items():
             if self.file.is_full:
                 break
@@ -198,16 +212,19 @@ class Table:
                     self._unknown(name, [*keys, *other])
             elif why := self._not_applying(keys, name):
                 self.complain(f"{name} = {shown(value)}: {why}", name)
-            elif (found := self._checked(name, keys[name], value)) is not None:
-                usable[name] = found
+            elif (settings := self._checked(name, keys[name], value)) is not None:
+                usable[name] = settings
         self._check_missing(keys)
         self._doubt(keys, usable)
+        if not places:
+            usable |= {name: tuple(one.value for one in usable[name]) for name in usable if keys[name].many}
         return usable
 
     def _check_missing(self, keys: Mapping[str, Key]) -> None:
         """Note required keys that are missing, and keys that do not go together."""
         for name, key in keys.items():
-            if key.required and not self.has(name):
+            applies = all(self.data.get(other) in values for other, values in key.only.items())
+            if key.required and applies and not self.has(name):
                 few = 1 < len(options(key)) < 6
                 choices = f"; {name} is {key.kind.words}" if few else ""
                 self.complain(f"{name} is missing; write for example {name} = {key.example}{choices}")
@@ -227,30 +244,27 @@ class Table:
                 return f"is for {instead}; write that too, or leave it out"
             written = self.data[other]
             given = written if isinstance(written, list) else [written]
-            if given and not any(each in values or each not in options(keys[other]) for each in given):
+            if given and not any(value in values or value not in options(keys[other]) for value in given):
                 return f"does not apply to {other} = {' or '.join(map(shown, given))}; leave it out, or write {instead}"
         return ""
 
     def _doubt(self, keys: Mapping[str, Key], usable: dict[str, Any]) -> None:
-        """Note values larger than usual that are not confirmed; ``confirm`` is then the set of keys that are."""
-        written = usable.get("confirm")
-        confirmed = {setting.value for setting in written} if isinstance(written, list) else set()
+        """Note confirmed keys that are not there, and values larger than usual that are not confirmed."""
         if keys.get("confirm") is CONFIRM["confirm"]:
-            usable["confirm"] = frozenset(confirmed)
             there = [shown(name) for name in self.data if name in keys and name != "confirm"]
-            for setting in written or ():
+            for setting in usable.pop("confirm", ()):
                 if shown(setting.value) not in there:
                     instead = f"write one of {', '.join(there)}" if there else "leave it out"
                     message = f"confirm = {shown(setting.value)}: this table has no such key; {instead}"
                     self.complain_about(setting, message)
-        for name in usable.keys() - confirmed:
+        for name in usable.keys() - self.confirmed:
             usual = keys[name].usual
-            if usual is not None:
-                settings = usable[name] if keys[name].many else [Setting(usable[name], (*self.at, name))]
-                for setting in settings:
-                    if setting.value > usual.most:
-                        message = f"{name} = {setting.value:g}: more than {usual.most:g} {usual.words}"
-                        self.complain_about(setting, f"{message}; {remedy(name)} in this table")
+            if usual is None:
+                continue
+            for setting in usable[name] if keys[name].many else [Setting(usable[name], (*self.at, name))]:
+                if setting.value > usual.most:
+                    message = f"{name} = {setting.value:g}: more than {usual.most:g} {usual.words}"
+                    self.complain_about(setting, f"{message}; {remedy(name)} in this table")
 
     def _checked(self, name: str, key: Key, value: Any) -> Any:
         whole = Setting(value, (*self.at, name))

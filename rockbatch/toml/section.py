@@ -30,8 +30,9 @@ class Key:
     words : str
         What it means, in a sentence.
     required : bool
+        Whether it has to be written, where it applies.
     many : bool
-        Whether a list is welcome; the value read is then a list of :class:`Setting`, also for a single value.
+        Whether a list is welcome; the value read is then a tuple, also for a single value.
     distinct : bool
         Whether the values of a list must differ.
     pair : bool
@@ -53,6 +54,11 @@ class Key:
     usual: Usual | None = None
     default: Any = None
     only: Mapping[str, tuple[Any, ...]] = field(default_factory=dict)
+
+    @property
+    def always_required(self) -> bool:
+        """Whether it has to be written whatever the other keys are."""
+        return self.required and not self.only
 
 
 def options(key: Key) -> tuple[Any, ...]:
