@@ -8,19 +8,18 @@ of triggering, are not: each file is a whole set of components, processed alike,
 import hashlib
 import math
 import re
-from collections.abc import Hashable, Iterator, Sequence, Set
+from collections.abc import Hashable, Iterable, Iterator, Sequence
 from dataclasses import replace
-from itertools import combinations
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 
 from rockbatch.motions.archives import bare
-from rockbatch.motions.common_span import overlap
 from rockbatch.motions.component import NOWHERE, Component, file_of
 from rockbatch.motions.formats import is_usual
 from rockbatch.motions.motion import Finding, LeftOut, Samples
-from rockbatch.motions.orientation import UNKNOWN, same_azimuth
+from rockbatch.motions.orientation import SAME_AZIMUTH, UNKNOWN
 from rockbatch.motions.plausible import gross_findings, in_a_borehole
 from rockbatch.motions.stations import in_one_event, is_numbered
 
@@ -35,7 +34,12 @@ _SHARES = (0.05, 0.25, 0.5, 0.75, 0.95)  # of ∫a² dt
 _SPREAD, _BLUR = 0.1, 0.05  # of the significant duration, and s: how far the times of these shares may differ in copies
 _SCALED = re.compile(r"(?<!un)(?<!not_)scaled", re.IGNORECASE)
 
+_BANDS = np.concatenate((np.arange(0.0, 12.5, 0.125), np.arange(12.5, 50.0, 0.5), np.arange(50.0, 101.0, 5.0)))  # Hz
+_SIMILAR = 0.9  # of amplitudes in bands: a little below _CERTAIN, which it bounds but for the edges of bands
+
 Pairs = dict[int, set[int]]
+Indices = npt.NDArray[np.int64]
+Truths = npt.NDArray[np.bool_]
 
 
 def without_boreholes(components: Sequence[Component]) -> tuple[list[Component], list[LeftOut]]:
@@ -85,7 +89,7 @@ def without_doubles(components: Sequence[Component]) -> tuple[list[Component], l
         decided = kept.wanted or rank[i][1:4] != rank[j][1:4]
         if finding := _difference(left, kept, factor, decided):
             odd.setdefault(j, []).append(finding)
-    for i, j in ((i, j) for i, others in scaled.items() for j in others if not {i, j} & stands_for.keys()):
+    for i, j in (pair for pair in scaled if not stands_for.keys() & pair):
         for k, other in ((i, components[j]), (j, components[i])):
             factor = _factor(other, components[k])
             text = f"{other.source} has the same samples times {factor:.4g}; both are used, and count as one record"
@@ -98,39 +102,32 @@ def without_doubles(components: Sequence[Component]) -> tuple[list[Component], l
     return kept_ones, [*below, *left_out]
 
 
-def _pairs(components: Sequence[Component]) -> tuple[Pairs, Pairs]:
+def _pairs(components: Sequence[Component]) -> tuple[Pairs, list[tuple[int, int]]]:
     """Return the components that are of the same recording as each component; those without any are missing.
 
-    And, once for each pair, copies by a factor of which nothing but their samples says that they are one recording.
+    And copies by a factor of which nothing but their samples says that they are one recording, in order.
     """
-    groups: dict[Hashable, list[int]] = {}
-    for i, component in enumerate(components):
-        groups.setdefault(_samples(component), []).append(i)
-        if component.seat.number:
-            groups.setdefault(component.seat.number, []).append(i)
-    whole = _whole_files(components)
+    table = _Table(components)
     pairs: Pairs = {}
+    scaled = []
 
     def join(i: int, j: int) -> None:
         pairs.setdefault(i, set()).add(j)
         pairs.setdefault(j, set()).add(i)
 
-    for key, group in groups.items():
-        for i, j in combinations(group, 2):
-            one, two = components[i], components[j]
-            if _may_be_copies(one, two) if isinstance(key, bytes) else _same_recording(one, two, whole):
-                join(i, j)
-    scaled: Pairs = {}
-    for i, j in _alike_in_time(components):
+    for i in range(len(components)):
+        for j in (*table.copies(i), *table.same_by_headers(i)):
+            join(i, j)
+    for i, j in table.alike():
         one, two = components[i], components[j]
-        if j in pairs.get(i, ()) or not _may_be_one(one, two):
+        if j in pairs.get(i, ()) or one.seat.is_other(two.seat):
             continue
         factor = _factor(one, two)
         if factor is not None and abs(abs(factor) - 1.0) > _NO_FACTOR:
-            scaled.setdefault(i, set()).add(j)
+            scaled.append((i, j))
         elif _correlate(one, two):
             join(i, j)
-    return pairs, scaled
+    return pairs, sorted(scaled)
 
 
 def _ranks(
@@ -212,54 +209,145 @@ def _samples(component: Component) -> bytes:
     return digest.digest()
 
 
-def _whole_files(components: Sequence[Component]) -> set[str]:
-    """Return the files that hold both a vertical and a horizontal component."""
-    verticals = {_file(component) for component in components if component.orientation.vertical}
-    return verticals & {_file(component) for component in components if not component.orientation.vertical}
+def _codes(values: Iterable[Hashable]) -> Indices:
+    """Return equal numbers for equal values, -1 for None and empty ones, shape (n,)."""
+    known: dict[Hashable, int] = {}
+    return np.array([known.setdefault(value, len(known)) if value else -1 for value in values], dtype=np.int64)
 
 
-def _same_recording(a: Component, b: Component, whole: Set[str]) -> bool:
-    """Whether the headers of both say so; those in one file are of different sensors.
+class _Table:
+    """What headers and samples say, a column for each fact, so that a component is compared to all others at once.
 
-    Two ``whole`` files of one step that are processed alike may be parts of one recording; their samples decide.
+    ``growth`` holds the times [s] between the ``_SHARES`` of ∫a² dt, and their sum; ``amplitude`` the Fourier amplitude in
+    ``_BANDS``, of which ``bands`` lie below the Nyquist frequency, and ``energy`` its squares up to each band. Both are
+    NaN until they are asked for.
     """
-    if not a.seat.is_that_of(b.seat) or not _pointing_alike(a, b) or _file(a) == _file(b):
-        return False
-    if _numbers_differ(a, b) or not in_one_event(a, b):
-        return False
-    may_be_parts = (
-        a.processed == b.processed and abs(a.dt - b.dt) <= _SAME_STEP * a.dt and whole >= {_file(a), _file(b)}
-    )
-    return not may_be_parts or correlation(a.acceleration, b.acceleration) >= _ALIKE
+
+    def __init__(self, components: Sequence[Component]) -> None:
+        self.components = components
+        self.file, self.suffix = _codes(map(_file, components)), _codes(map(_suffix, components))
+        self.numbered = _codes(c.site if is_numbered(c.site) else "" for c in components)
+        self.sensor, self.event = _codes(c.seat.number for c in components), _codes(c.event for c in components)
+        self.samples = _codes(map(_samples, components))
+        self.way = _codes(map(_way, components))
+        self.azimuth = np.array([c.orientation.azimuth for c in components], dtype=float)
+        self.start = np.array([c.start for c in components], dtype=float)
+        self.end = self.start + [c.duration for c in components]
+        self.dated = np.array([c.dated for c in components], dtype=bool)
+        self.growth = np.array([_growth(component) for component in components]).reshape(-1, len(_SHARES))
+        self.bands = np.array([np.searchsorted(_BANDS, 0.5 / c.dt, "right") - 1 for c in components], dtype=np.int64)
+        self.amplitude = np.full((len(components), len(_BANDS) - 1), math.nan, dtype=np.float32)
+        self.energy = np.full((len(components), len(_BANDS)), math.nan, dtype=np.float32)
+        vertical = np.array([c.orientation.vertical for c in components], dtype=bool)
+        self.whole_file = np.isin(self.file, self.file[vertical]) & np.isin(self.file, self.file[~vertical])
+
+    def _differ(self, column: Indices, i: int, j: Indices) -> Truths:
+        return (column[i] != column[j]) & (column[i] >= 0) & (column[j] >= 0)
+
+    def _pointing_alike(self, i: int, j: Indices) -> Truths:
+        """Whether components point the same way as ``i``, by azimuths, or else by their labels."""
+        off = np.abs((self.azimuth[j] - self.azimuth[i] + 180.0) % 360.0 - 180.0)
+        return (self.way[j] == self.way[i]) & ~(off > SAME_AZIMUTH)
+
+    def _overlap(self, i: int, j: Indices) -> Truths:
+        """Whether components have a time in common with ``i``, as far as is known."""
+        return ~((self.start[j] >= self.end[i]) | (self.start[i] >= self.end[j]))
+
+    def copies(self, i: int) -> list[int]:
+        """Return later components with the same samples that may be of the same sensor, event and direction."""
+        j = i + 1 + np.flatnonzero(self.samples[i + 1 :] == self.samples[i])
+        j = j[~self._differ(self.event, i, j)]
+        alike = dict(zip(j.tolist(), self._pointing_alike(i, j), strict=True))
+        of = self.components
+        return [
+            k
+            for k in alike
+            if (NOWHERE in (of[i].seat, of[k].seat) or of[i].seat.is_that_of(of[k].seat))
+            and (alike[k] or UNKNOWN in (of[i].orientation, of[k].orientation))
+        ]
+
+    def same_by_headers(self, i: int) -> list[int]:
+        """Return later components that headers say are of the same recording; those in one file are of different sensors.
+
+        Two whole files of one step that are processed alike may be parts of one recording; their samples decide.
+        """
+        if self.sensor[i] < 0:
+            return []
+        j = i + 1 + np.flatnonzero(self.sensor[i + 1 :] == self.sensor[i])
+        same_event = (self.event[i] >= 0) & (self.event[j] == self.event[i])
+        same_event = np.where(self.dated[i] & self.dated[j], self._overlap(i, j), same_event)
+        other = (self.file[j] == self.file[i]) | self._differ(self.numbered, i, j)
+        one, of = self.components[i], self.components
+        return [
+            k
+            for k in j[same_event & ~other & self._pointing_alike(i, j)].tolist()
+            if one.seat.is_that_of(of[k].seat) and not (self._may_be_parts(i, k) and not _agree(one, of[k]))
+        ]
+
+    def _may_be_parts(self, i: int, j: int) -> bool:
+        one, two = self.components[i], self.components[j]
+        alike = one.processed == two.processed and abs(one.dt - two.dt) <= _SAME_STEP * one.dt
+        return bool(alike and self.whole_file[i] and self.whole_file[j])
+
+    def alike(self) -> Iterator[tuple[int, int]]:
+        """Return pairs whose ∫a² dt grows alike in time, and whose spectra are alike, whatever their scale, start and step.
+
+        Few of them are no copies. Headers do not say that they are of other files, times, events or directions.
+        """
+        order = np.argsort(self.growth[:, -1], kind="stable")
+        length = self.growth[order, -1]
+        for n, i in enumerate(order.tolist()):
+            if self.way[i] < 0:
+                continue
+            within = _SPREAD * length[n] + _BLUR
+            j = order[n + 1 : np.searchsorted(length, length[n] + within, "right")]
+            j = j[(self.way[j] == self.way[i]) & (self.file[j] != self.file[i])]
+            # formats write of events as they like
+            other = self._differ(self.event, i, j) & (self.suffix[j] == self.suffix[i])
+            j = j[~(other | self._differ(self.numbered, i, j)) & self._overlap(i, j) & self._pointing_alike(i, j)]
+            j = j[(np.abs(self.growth[j, :-1] - self.growth[i, :-1]) <= within).all(axis=1)]
+            yield from ((min(i, k), max(i, k)) for k in j[self._similar(i, j)].tolist())
+
+    def _similar(self, i: int, j: Indices) -> Truths:
+        """Whether the spectra allow a correlation that decides: Σ AᵢAⱼ e^iφ, whatever the shift, is at most Σ |Aᵢ||Aⱼ|."""
+        for k in (i, *j[np.isnan(self.amplitude[j, 0])].tolist()) if len(j) else ():
+            if math.isnan(self.amplitude[k, 0]):
+                self.amplitude[k] = _amplitudes(self.components[k])
+                self.energy[k] = np.concatenate(([0.0], np.cumsum(np.square(self.amplitude[k]))))
+        common = np.minimum(self.bands[i], self.bands[j])
+        product = self.amplitude[j] @ self.amplitude[i]
+        return np.asarray(np.square(product) >= _SIMILAR**2 * self.energy[i, common] * self.energy[j, common])
 
 
-def _alike_in_time(components: Sequence[Component]) -> Iterator[tuple[int, int]]:
-    """Return pairs whose ∫a² dt grows alike in time, whatever their scale, start and step: few that are not copies."""
-    times = np.array([_growth(component) for component in components]).reshape(-1, len(_SHARES) - 1)
-    length = times.sum(axis=1)
-    order = np.argsort(length, kind="stable")
-    for n, i in enumerate(order):
-        within = _SPREAD * length[i] + _BLUR
-        others = order[n + 1 : np.searchsorted(length[order], length[i] + within, "right")]
-        alike = others[(np.abs(times[others] - times[i]) <= within).all(axis=1)]
-        yield from ((int(min(i, j)), int(max(i, j))) for j in alike)
+def _way(component: Component) -> tuple[str, ...]:
+    """Return what components that point alike share beside their azimuth; empty if nothing is known."""
+    way = component.orientation
+    if way.vertical:
+        return ("vertical",)
+    if way.azimuth is not None:
+        return ("azimuth",)
+    return ("label", way.label.upper()) if way.label else ()
 
 
 def _growth(component: Component) -> Samples:
-    """Return the times [s] between the ``_SHARES`` of ∫a² dt."""
+    """Return the times [s] between the ``_SHARES`` of ∫a² dt, and their sum."""
     energy = np.cumsum(np.square(component.acceleration))
-    return np.diff(np.searchsorted(energy, np.multiply(_SHARES, energy[-1]))) * component.dt
+    times = np.searchsorted(energy, np.multiply(_SHARES, energy[-1])) * component.dt
+    return np.append(np.diff(times), times[-1] - times[0])
 
 
-def _may_be_one(a: Component, b: Component) -> bool:
-    """Whether headers do not say that two components are of other files, sensors, times, events or directions."""
-    if _file(a) == _file(b) or _numbers_differ(a, b) or not overlap(a, b):
-        return False
-    if a.event and b.event and a.event != b.event and _suffix(a) == _suffix(b):  # which formats write as they like
-        return False
-    way = a.orientation
-    known = way.vertical or way.azimuth is not None or bool(way.label)
-    return known and _pointing_alike(a, b) and not a.seat.is_other(b.seat)
+def _amplitudes(component: Component) -> Samples:
+    """Return the Fourier amplitude in each of ``_BANDS``, 1 in all of them."""
+    a, dt = component.acceleration - component.acceleration.mean(), component.dt
+    n = 1 << max(2 * len(a), math.ceil(2.0 / (dt * _BANDS[1]))).bit_length()
+    energy = np.concatenate(([0.0], np.cumsum(np.square(np.abs(np.fft.rfft(a, n))))))
+    ends = np.minimum(np.ceil(_BANDS * n * dt).astype(int), len(energy) - 1)
+    return np.asarray(np.sqrt(np.maximum(np.diff(energy[ends]), 0.0) / (energy[-1] or 1.0)))
+
+
+def _agree(a: Component, b: Component) -> bool:
+    """Whether two components of one step, of which headers say that they are one recording, are so by their samples."""
+    return correlation(a.acceleration, b.acceleration) >= _ALIKE
 
 
 def _correlate(a: Component, b: Component) -> bool:
@@ -300,30 +388,6 @@ def _factor(a: Component, b: Component) -> float | None:
     if abs(factor - 1.0) <= _NO_FACTOR or np.abs(one - factor * two).max() > _SAME_SHAPE * np.abs(one).max():
         return None
     return factor or None
-
-
-def _numbers_differ(a: Component, b: Component) -> bool:
-    """Whether PEER's numbers say that they are other records."""
-    return is_numbered(a.site) and is_numbered(b.site) and a.site != b.site
-
-
-def _pointing_alike(a: Component, b: Component) -> bool:
-    """Whether both point the same way, by azimuths, or else by their labels."""
-    one, two = a.orientation, b.orientation
-    if one.vertical or two.vertical:
-        return one.vertical and two.vertical
-    if one.azimuth is None or two.azimuth is None:
-        return one.azimuth is None and two.azimuth is None and one.label.upper() == two.label.upper()
-    return same_azimuth(one.azimuth, two.azimuth)
-
-
-def _may_be_copies(a: Component, b: Component) -> bool:
-    """Whether components with the same samples do not say that they are of other sensors, events or directions."""
-    if NOWHERE not in (a.seat, b.seat) and not a.seat.is_that_of(b.seat):
-        return False
-    if a.event and b.event and a.event != b.event:
-        return False
-    return UNKNOWN in (a.orientation, b.orientation) or _pointing_alike(a, b)
 
 
 def _reason(left: Component, used: Component, factor: float | None) -> str:

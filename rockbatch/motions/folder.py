@@ -3,7 +3,8 @@
 import difflib
 import os
 import re
-from collections.abc import Container, Sequence
+import sys
+from collections.abc import Container, Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal
@@ -27,6 +28,7 @@ from rockbatch.motions.texts import with_legible_texts
 from rockbatch.units import GRAVITY
 
 _RSN = re.compile(r"RSN[_ ]?0*(\d+)(?!\d)", re.IGNORECASE)
+_MANY = 200  # files; fewer take no time worth a bar
 
 Paths = str | os.PathLike[str] | Sequence[str | os.PathLike[str]]
 Reading = Component | Unusable | LeftOut
@@ -149,11 +151,20 @@ def read_files(
     readings: list[Reading] = []
     with Watch() as watch:
         asked = _Asked(manifest, options or ReadOptions(), gravity, offset or Offset(), _numbered(found), watch)
-        for file in found:
+        for file in _with_progress(found):
             if file.path not in manifests:
                 readings += _readings(file, asked)
     manifest.finish()
     return _without_companions(_without_renamed(readings, found)), {file.source: file.path for file in found}
+
+
+def _with_progress(found: Sequence[Found]) -> Iterable[Found]:
+    """Return the files, with a bar in a terminal if there are many and they take more than a second."""
+    if len(found) < _MANY or sys.stderr is None or not sys.stderr.isatty():
+        return found
+    from tqdm import tqdm
+
+    return tqdm(found, unit="file", leave=False, delay=1.0)
 
 
 def _without_companions(readings: Sequence[Reading]) -> list[Reading]:

@@ -211,11 +211,15 @@ def counted(stems: Iterable[str]) -> set[str]:
     return found
 
 
-def same_azimuth(a: float | None, b: float | None, within: float = 1.0) -> bool:
-    """Whether two azimuths [degrees] agree ``within`` a degree; 360 and 0 are the same."""
+SAME_AZIMUTH = 1.0
+"""Degrees within which azimuths agree."""
+
+
+def same_azimuth(a: float | None, b: float | None) -> bool:
+    """Return whether two azimuths [degrees] agree; 360 and 0 are the same."""
     if a is None or b is None:
         return False
-    return abs((a - b + 180.0) % 360.0 - 180.0) <= within
+    return abs((a - b + 180.0) % 360.0 - 180.0) <= SAME_AZIMUTH
 
 
 _CLOCKS = re.compile(r"(?:INT|EXT)(?:T?C|CLOCK|CLK)|TCG?|CLOCK|CLK|TIME(?:CODE|MARKS?)|IRIG[A-Z]?|WWVB?|DCF|[ALV]C[EQ]")

@@ -7,7 +7,9 @@ from motion_files import wiggle, write_at2
 from national_files import unam_text
 from waveform_files import trace
 
-from rockbatch.motions import ReadOptions, read_motions
+from rockbatch.motions import ReadOptions, doubles, read_motions
+from rockbatch.motions.component import Component
+from rockbatch.motions.orientation import Orientation
 
 DATE = "FECHA DEL SISMO [GMT]"
 
@@ -173,22 +175,48 @@ def test_a_set_is_chosen_as_a_whole(tmp_path):
     assert all(motion.vertical_source.partition("/")[0] in used for motion in found.motions)
 
 
-def test_sets_are_found_in_time_that_grows_with_their_number(tmp_path):
-    """Records of one station in many earthquakes are compared by what they say, not sample by sample."""
-    from rockbatch.motions import doubles
-
-    calls = []
+@pytest.fixture
+def correlations(monkeypatch):
+    """The correlations that were computed, each of which takes a Fourier transform of the samples."""
+    computed: list[float] = []
     plain = doubles.correlation
-    doubles.correlation = lambda one, two: calls.append(1) or plain(one, two)
-    try:
-        for i in range(60):
-            write_at2(
-                tmp_path, f"r{i}.AT2", wiggle(200, i + 1), title=title("0", event=f"E{i}, 1/{i % 28 + 1}/{1960 + i}")
-            )
-        assert len(read_motions(tmp_path).motions) == 60
-    finally:
-        doubles.correlation = plain
-    assert len(calls) < 60
+
+    def noted(one, two):
+        computed.append(plain(one, two))
+        return computed[-1]
+
+    monkeypatch.setattr(doubles, "correlation", noted)
+    return computed
+
+
+@pytest.mark.parametrize("events", [True, False])
+def test_sets_are_found_in_time_that_grows_with_their_number(tmp_path, correlations, events):
+    """Records of one station in many earthquakes, or without a header, are hardly compared sample by sample."""
+    for i in range(60):
+        if events:
+            said = title("0", event=f"E{i}, 1/{i % 28 + 1}/{1960 + i}")
+            write_at2(tmp_path, f"r{i}.AT2", wiggle(200, i + 1), title=said)
+        else:
+            rows = "".join(f"{0.01 * k:.2f} {value:.6f}\n" for k, value in enumerate(wiggle(200, i + 1)))
+            (tmp_path / f"r{i}_NS.txt").write_text("time(s) a(g)\n" + rows)
+    assert len(read_motions(tmp_path).motions) == 60
+    assert len(correlations) < 60
+
+
+@pytest.mark.parametrize("change", ["half the step", "reversed", "noise", "cut", "another scale"])
+def test_spectra_rule_out_no_copy_that_the_samples_tell(change):
+    """A correlation is computed, and decides, however a recording of a narrow band was changed on its way."""
+    a = np.convolve(wiggle(4000, 5), np.hanning(40), "same")
+    b, dt = {
+        "half the step": (np.interp(np.arange(0, 3999, 0.5), np.arange(4000), a), 0.005),
+        "reversed": (-np.roll(a, 7), 0.01),
+        "noise": (a + 0.12 * a.std() * np.random.default_rng(1).normal(size=len(a)), 0.01),
+        "cut": (a[100:3900], 0.01),
+        "another scale": (981.0 * a, 0.01),
+    }[change]
+    north = Orientation("000", azimuth=0.0)
+    one, two = Component("a", 0.01, a, north, source="a"), Component("b", dt, b, north, source="b")
+    assert list(doubles._Table([one, two]).alike()) == [(0, 1)]
 
 
 def test_copies_by_a_factor_under_other_names_are_all_used_and_say_so(tmp_path):
