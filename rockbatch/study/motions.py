@@ -180,11 +180,8 @@ def _read_motions(table: Table) -> dict[str, Any]:
     """Return the fields of a ``MotionSpec`` that are keys of [motions], and "path" as it is written."""
     read = table.read(MOTIONS, other=SOURCES[1:])
     if "columns" in read:
-        try:
+        with table.noting("columns"):
             ReadOptions(columns=read["columns"])
-        except InputError as error:
-            for problem in error.problems:
-                table.complain(problem, "columns")
     read["offset"] = _offset(table, read)
     axis, step = read.pop("axis_deg", None), read.pop("every_deg", None)
     if axis is not None or step is not None:

@@ -27,23 +27,16 @@ def _entry(value: Any) -> Any:
     """Return the name of a code or file, or one pair of a table."""
     if isinstance(value, list):
         if len(value) != 2:
-            raise KindError("pairs of a period [s] and a spectral acceleration [g]")
-        return tuple(positive(each) for each in value)
+            raise KindError(_PAIRS)
+        return tuple(map(positive, value))
     if not isinstance(value, str):
-        raise KindError("the name of a code or of a file, or pairs of a period [s] and a spectral acceleration [g]")
+        raise KindError(_ENTRY.words)
     return text(value)
 
 
-_ENTRY = Other(
-    "the name of a code or of a file, or pairs of a period [s] and a spectral acceleration [g]",
-    _entry,
-    {
-        "anyOf": [
-            text.schema(),
-            {"type": "array", "items": positive.schema(), "minItems": 2, "maxItems": 2},
-        ]
-    },
-)
+_PAIRS = "pairs of a period [s] and a spectral acceleration [g]"
+_PAIR_SCHEMA = {"type": "array", "items": positive.schema(), "minItems": 2, "maxItems": 2}
+_ENTRY = Other(f"the name of a code or of a file, or {_PAIRS}", _entry, {"anyOf": [text.schema(), _PAIR_SCHEMA]})
 _MEASURE = {
     "pga_g": Key(positive, "0.4", "Peak ground acceleration of the horizontal component.",
         usual=Usual(5.0, "g: the strongest earthquakes had 2 to 4 g")),
@@ -59,7 +52,7 @@ _EUROCODE = {
     "type": Key(Choice((1, 2), "1 or 2, the type of spectrum"), "1", "Type of the spectrum of EN 1998-1."),
     "ground": Key(choice(*EUROCODE[1]), '"B"', "Ground type of EN 1998-1."),
     "ag_g": Key(positive, "0.25", "Design ground acceleration on ground A, with the importance factor, of EN 1998-1.",
-        usual=Usual(2.0, "g: codes have 0.05 to 0.6 g")),
+        required=True, usual=Usual(2.0, "g: codes have 0.05 to 0.6 g")),
     "soil_factor": Key(positive, "1.2", "Soil factor S of EN 1998-1; that of the ground type if it is not given."),
     "tb_s": Key(positive, "0.15", "Period T_B of EN 1998-1; that of the ground type if it is not given."),
     "tc_s": Key(positive, "0.5", "Period T_C of EN 1998-1; that of the ground type if it is not given."),
@@ -67,10 +60,10 @@ _EUROCODE = {
 }  # fmt: skip
 _ASCE = {
     "sds_g": Key(positive, "1.0", "Design spectral acceleration S_DS of ASCE 7, at short periods.",
-        usual=Usual(5.0, "g: codes have 0.1 to 3 g")),
+        required=True, usual=Usual(5.0, "g: codes have 0.1 to 3 g")),
     "sd1_g": Key(positive, "0.6", "Design spectral acceleration S_D1 of ASCE 7, at 1 s.",
-        usual=Usual(5.0, "g: codes have 0.05 to 2 g")),
-    "tl_s": Key(positive, "8.0", "Long-period transition period T_L of ASCE 7."),
+        required=True, usual=Usual(5.0, "g: codes have 0.05 to 2 g")),
+    "tl_s": Key(positive, "8.0", "Long-period transition period T_L of ASCE 7.", required=True),
 }  # fmt: skip
 _SPECTRUM = {
     "spectrum": Key(_ENTRY, '"EN 1998-1"',
@@ -87,11 +80,12 @@ _SPECTRUM = {
     "at_least": Key(positive, "0.9", "Share of the target that the mean of the suite has to reach everywhere in the range."),
     "damping": _MEASURE["damping"],
 }  # fmt: skip
+_OF_ANY_SPECTRUM = {name: replace(key, required=False) for name, key in (_SPECTRUM | _EUROCODE | _ASCE).items()}
 TARGET = Section(("motions", "target"), (
     "What records are scaled to, by one factor on all components of each: one measure (`pga_g`, `pgv_m_s`, or `sa_g` with "
     "`period_s`), or a `spectrum` over `period_range_s`. The keys of a code's spectrum go with that code only."
 ), {
-    **_MEASURE, **{name: replace(key, required=False) for name, key in (_SPECTRUM | _EUROCODE | _ASCE).items()}, **CONFIRM,
+    **_MEASURE, **_OF_ANY_SPECTRUM, **CONFIRM,
 }, homes=(Target, SpectrumTarget))  # fmt: skip
 """Every key that a target may have, of one measure or of a spectrum."""
 
@@ -131,7 +125,7 @@ def _read_spectrum(table: Table) -> SpectrumTarget | None:
     code = _code(written)
     own = _OWN.get(code, {})
     if not code and isinstance(written, str) and not _is_there(table.file.path.parent / written):
-        own = _EUROCODE | _ASCE  # the name is what is wrong
+        own = _OF_ANY_SPECTRUM | _SPECTRUM  # the name is what is wrong
     unfit = {
         name: f"is for spectrum = {shown(other)}; leave it out"
         for other, keys in _OWN.items()
@@ -142,13 +136,11 @@ def _read_spectrum(table: Table) -> SpectrumTarget | None:
     spectrum = _spectrum(table, code, read) if "spectrum" in read else None
     if not table.file.is_sound_since(before) or spectrum is None or limits is None:
         return None
-    own_keys = {name: read[name] for name in ("factors", "pairs", "at_least") if name in read}
-    try:
-        return SpectrumTarget(spectrum, limits, **own_keys)
-    except InputError as error:
-        for problem in error.problems:
-            table.complain(problem, "period_range_s")
-        return None
+    with table.noting("period_range_s"):
+        return SpectrumTarget(
+            spectrum, limits, **{name: read[name] for name in ("factors", "pairs", "at_least") if name in read}
+        )
+    return None
 
 
 def _code(value: Any) -> str:
@@ -168,17 +160,14 @@ def _spectrum(table: Table, code: str, read: dict[str, Any]) -> Spectrum | None:
             table.complain("damping: the spectrum of ASCE 7 is for 5 %; leave it out", "damping")
         return _asce(table, read)
     entries = read["spectrum"]
-    try:
+    with table.noting("spectrum"):
         if len(entries) == 1 and isinstance(entries[0], str):
             return _of_file(table, entries[0], damping)
         if any(isinstance(entry, str) for entry in entries):
             raise InputError("spectrum: expected one name, or pairs of a period [s] and a spectral acceleration [g]")
         periods, values = zip(*entries, strict=True)
         return TableSpectrum(periods, values, damping, "spectrum")
-    except InputError as error:
-        for problem in error.problems:
-            table.complain(problem, "spectrum")
-        return None
+    return None
 
 
 def _is_there(path: Path) -> bool:
@@ -199,14 +188,12 @@ def _of_file(table: Table, written: str, damping: float) -> TableSpectrum:
 
 
 def _eurocode(table: Table, read: dict[str, Any], damping: float) -> EurocodeSpectrum | None:
-    corners = ("soil_factor", "tb_s", "tc_s", "td_s")
-    given = {name: read[name] for name in corners if name in read}
-    missing = [name for name in ("ag_g",) if name not in table.data]
-    if len(given) < len(corners):
-        missing += [name for name in ("type", "ground") if name not in table.data]
-    for name in missing:
-        table.complain(f"{name} is missing; write for example {name} = {_EUROCODE[name].example}")
-    if missing or "ag_g" not in read or (len(given) < len(corners) and not {"type", "ground"} <= read.keys()):
+    given = {name: read[name] for name in ("soil_factor", "tb_s", "tc_s", "td_s") if name in read}
+    needed = ("type", "ground") if len(given) < 4 else ()
+    for name in needed:
+        if name not in table.data:
+            table.complain(f"{name} is missing; write for example {name} = {_EUROCODE[name].example}")
+    if not read.keys() >= {"ag_g", *needed}:
         return None
     name = "EN 1998-1"
     if {"type", "ground"} <= read.keys():
@@ -223,9 +210,6 @@ def _eurocode(table: Table, read: dict[str, Any], damping: float) -> EurocodeSpe
 
 
 def _asce(table: Table, read: dict[str, Any]) -> AsceSpectrum | None:
-    for name in _ASCE:
-        if name not in table.data:
-            table.complain(f"{name} is missing; write for example {name} = {_ASCE[name].example}")
     if not _ASCE.keys() <= read.keys():
         return None
     values = {name: read[name] for name in _ASCE}

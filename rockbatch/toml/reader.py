@@ -3,7 +3,8 @@
 import os
 import re
 import tomllib
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -168,6 +169,15 @@ class Table:
     def complain_about(self, setting: Setting, message: str) -> None:
         """Note a mistake about one value."""
         self.complain(message, *setting.at[len(self.at) :])
+
+    @contextmanager
+    def noting(self, *key: str | int) -> Iterator[None]:
+        """Note the problems of an ``InputError`` within the ``with`` block, which ends it, as mistakes about a key."""
+        try:
+            yield
+        except InputError as error:
+            for problem in error.problems:
+                self.complain(problem, *key)
 
     @property
     def names(self) -> list[str]:
