@@ -1,11 +1,13 @@
 """The cases of a study file, with every combination of listed values: [[case]]."""
 
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, replace
 from typing import Any, NamedTuple
 
+from rockbatch.errors import remedy
 from rockbatch.pier import (
     EPSILON_AND_ZETA,
+    MOST_ETA,
     WITH_EXPONENT,
     Base,
     ElasticBase,
@@ -16,15 +18,15 @@ from rockbatch.pier import (
     eta_of,
     least_beta,
     problems,
+    static_deflection,
 )
 from rockbatch.pier.bases import BOUNDS, WORDS
 from rockbatch.pier.restraints import wrong_device
-from rockbatch.study.lists import Chosen, combinations, how_many, listed, too_many
+from rockbatch.study.lists import Chosen, Grid, complain_where_due, too_many
 from rockbatch.study.piers import PIER, Values, has_mass
-from rockbatch.study.plausible import complain_unless_usual_support
-from rockbatch.study.restraint_keys import RESTRAINTS, complain_of_devices, read_restraints, restraints_of
+from rockbatch.study.restraint_keys import RESTRAINTS, Device, read_devices
 from rockbatch.toml.kinds import choice, positive, shown, text, within
-from rockbatch.toml.reader import Setting, Table, TomlFile
+from rockbatch.toml.reader import Table, TomlFile
 from rockbatch.toml.section import CONFIRM, Clash, Key, Section
 
 _BASES: dict[str, type[Base]] = {"rigid": RigidBase, "elastic": ElasticBase, "yielding": YieldingBase}
@@ -86,16 +88,21 @@ CASE = Section(("case",), (
     Clash(("mass_t",), "mass_t is for use with stiffness_kN_m or yield_kN; leave it out", lacking=("stiffness_kN_m", "yield_kN")),
 ))  # fmt: skip
 
+LEAST_DEFLECTION = 2e-5
+"""Static deflection [m] of supports below which a wrong unit is likelier than the ground: on sound rock it is some 0.1 mm."""
+
 _ANY_PIER = Pier(alpha=1.0, p=1.0)
 """Stands in where no pier can be read, so that what does not depend on it is checked all the same."""
 
 
 class _Read(NamedTuple):
-    """A [[case]] as it is written."""
+    """A [[case]] as it is written, and the values of its keys."""
 
     table: Table
     name: str
     base: str
+    devices: list[Device]
+    grid: Grid
 
 
 class Expanded(NamedTuple):
@@ -112,28 +119,27 @@ def read_cases(file: TomlFile, piers: Sequence[tuple[Pier, Values]]) -> tuple[li
     tables = file.tables("case", title="name")
     if file.data.get("case", []) == [] and ("case",) not in file.misspelt:
         file.complain(("case",), '[[case]] is missing; write at least one, for example with base = "rigid"')
-    read = []
+    cases = []
     varied: dict[str, None] = {}
     names: set[str] = set()
     for table in tables:
-        own, settings, of_restraints = _case(table)
-        name = own.get("name", own.get("base", ""))
+        case = _case(table)
         if len(tables) > 1 and "name" not in table.data:
             table.complain('name is missing; of several cases each needs its own, for example name = "soft"')
-        elif name in names:
-            table.complain(f"name = {shown(name)}: given twice; give each case its own name", "name")
-        names |= {name} - {""}
-        varied |= dict.fromkeys((*listed(table, BASE_KEYS), *of_restraints))
-        if "base" in own:
-            read.append((_Read(table, name, own["base"]), settings))
-    if message := too_many(max(len(piers), 1) * sum(how_many(settings) for _, settings in read), "cases"):
+        elif case.name in names:
+            table.complain(f"name = {shown(case.name)}: given twice; give each case its own name", "name")
+        names |= {case.name} - {""}
+        varied |= dict.fromkeys(case.grid.varied)
+        if case.base:
+            cases.append(case)
+    if message := too_many(max(len(piers), 1) * sum(len(case.grid) for case in cases), "cases"):
         file.complain(("case",), message)
         return [], tuple(varied)
     expanded = [
         _expand(case, chosen, pier, pier_values)
         for pier, pier_values in piers or [(_ANY_PIER, {})]
-        for case, settings in read
-        for chosen in _without_repeats(combinations(settings))
+        for case in cases
+        for chosen in _without_repeats(case.grid)
     ]
     return expanded, tuple(varied)
 
@@ -143,18 +149,20 @@ def _expand(case: _Read, chosen: Chosen, pier: Pier, pier_values: Values) -> Exp
     any_pier = pier is _ANY_PIER
     if "mass_t" in given:
         pier = replace(pier, mass_t=given["mass_t"])
-    base = _base(case.base, given, pier)
+    devices = tuple(device.made(pier, chosen) for device in case.devices)
+    base = _base(case.base, {name: given[name] for name in BASE_KEYS if name in given} | {"restraints": devices}, pier)
     wrong = problems(pier, base)
-    if not any_pier:
-        complain_of_devices(case.table, chosen, pier, base.restraints)
-    of_devices = {problem for device in base.restraints for problem in wrong_device(pier, device)}
+    for written, device in zip(case.devices, devices, strict=True):
+        if not any_pier:
+            written.complain(pier, chosen, device)
+    of_devices = {problem for device in devices for problem in wrong_device(pier, device)}
     for problem in wrong:
         if problem in of_devices or EPSILON_AND_ZETA in problem:  # said already
             continue
         if not (any_pier and problem.startswith("beta")):
-            _complain_where_due(case.table, chosen, problem, pier, base)
+            _complain(case.table, chosen, problem, pier, base)
     if not wrong and pier.mass_t is not None:
-        complain_unless_usual_support(case.table, chosen, pier, base, case.table.confirmed)
+        _complain_unless_usual(case.table, chosen, pier, base)
     applying = {key: value for key, value in asdict(base).items() if value is not None} | given
     applying.pop("restraints", None)  # their own keys say them
     if "zeta" in applying:
@@ -169,20 +177,18 @@ def _base(name: str, given: Mapping[str, Any], pier: Pier) -> Base:
 
     Where β or η is missing, which is noted already, a possible value lets the rest be checked.
     """
-    if name == "rigid":
-        rigid = dict(given)
-        return RigidBase(restraints=restraints_of(pier, rigid), **rigid)
-    own: dict[str, Any] = {"beta": 2 * pier.least_beta, **given}
-    own["restraints"] = restraints_of(pier, own)
+    own = dict(given)
     stiffness, strength, _ = (own.pop(key, None) for key in ("stiffness_kN_m", "yield_kN", "mass_t"))
+    kind = _BASES[name]
+    if kind.on_springs:
+        own.setdefault("beta", 2 * pier.least_beta)
     if stiffness and pier.mass_t:
         own["beta"] = beta_of(pier, stiffness)
-    if name == "elastic":
-        return ElasticBase(**own)
+    if kind.yields:
+        own.setdefault("eta", 2.0)
     if strength and pier.mass_t:
         own["eta"] = eta_of(pier, strength)
-    own.setdefault("eta", 2.0)
-    return YieldingBase(**own)
+    return kind(**own)
 
 
 def _without_repeats(all_of_them: Iterable[Chosen]) -> Iterator[Chosen]:
@@ -200,14 +206,13 @@ def _without_repeats(all_of_them: Iterable[Chosen]) -> Iterator[Chosen]:
 # Mistakes that take more than one key to see
 
 
-def _case(table: Table) -> tuple[dict[str, Any], dict[str, list[Setting]], Collection[str]]:
-    """Return name and base, settings of the base, and those keys of devices that are lists."""
-    read = table.read(CASE, other=RESTRAINTS, places=True)
+def _case(table: Table) -> _Read:
+    grid = Grid.of(table, CASE, other=RESTRAINTS)
+    base, name = (next((s.value for s in grid.settings.pop(key, ())), "") for key in ("base", "name"))
     weighed = has_mass(table.file)
-    if weighed and read.pop("mass_t", None):
+    if weighed and grid.settings.pop("mass_t", None):
         value = shown(table.data["mass_t"])
         table.complain(f"mass_t = {value}: [pier] says already what the pier weighs; leave it out", "mass_t")
-    base = read.get("base", "")
     for ratio, absolute in (("beta", "stiffness_kN_m"), ("eta", "yield_kN")):
         if base not in BASE_KEYS[ratio].only["base"] or table.has(ratio):
             continue
@@ -222,12 +227,11 @@ def _case(table: Table) -> tuple[dict[str, Any], dict[str, list[Setting]], Colle
                 f"mass_t is missing beside {absolute}; write for example mass_t = {example}, here or in [pier]",
                 absolute,
             )
-    settings = {name: value for name, value in read.items() if name in BASE_KEYS}
-    of_each, of_restraints = read_restraints(table)
-    return read, settings | of_each, of_restraints
+    devices, of_devices = read_devices(table)
+    return _Read(table, name or base, base, devices, grid + of_devices)
 
 
-def _complain_where_due(table: Table, chosen: Chosen, problem: str, pier: Pier, base: Base) -> None:
+def _complain(table: Table, chosen: Chosen, problem: str, pier: Pier, base: Base) -> None:
     """Place a problem of the structure, "key = …", at that key or at the one it was derived from, with its limit."""
     name = problem.split(" = ")[0]
     source = {"beta": "stiffness_kN_m", "eta": "yield_kN"}.get(name, "")
@@ -235,11 +239,26 @@ def _complain_where_due(table: Table, chosen: Chosen, problem: str, pier: Pier, 
     if source in chosen and mass is not None:
         least_omega_v = least_beta(pier, base) * pier.p
         least = least_omega_v * least_omega_v * mass / 2 if name == "beta" else mass * pier.gravity / 2
-        name = source
         weighing = f"mass_t = {mass:g}" if "mass_t" in chosen else f"the {mass:g} t of [pier]"
         derived = f"{source} = {chosen[source].value:g} with {weighing}"
         problem = f"{derived} means {problem}; write {source} above {least:.4g}"
-    if name in chosen:
-        table.complain_about(chosen[name], problem)
-    else:
-        table.complain(problem)
+    complain_where_due(table, chosen, problem)
+
+
+def _complain_unless_usual(table: Table, chosen: Chosen, pier: Pier, base: Base) -> None:
+    """Note a stiffness and a yield force that no support has under this pier, unless they are confirmed.
+
+    A wrong unit explains them better than the ground. The ratios beta and eta have no unit and are not judged: their limits, too,
+    are something to study.
+    """
+    deflection = static_deflection(pier, base)
+    odd = {}
+    if deflection < LEAST_DEFLECTION:
+        by = f"the pier's weight presses the supports in by {1000 * deflection:.2g} mm only"
+        odd["stiffness_kN_m"] = f"{by}, where sound rock gives some 0.1 mm"
+    if "yield_kN" in chosen and (eta := eta_of(pier, chosen["yield_kN"].value)) > MOST_ETA:
+        odd["yield_kN"] = f"{eta:.3g} times what the support carries at rest, where 2 to 20 times is usual"
+    for name, meaning in odd.items():
+        if name in chosen and name not in table.confirmed:
+            message = f"{name} = {chosen[name].value:g}: {meaning}; {remedy(name)} in this table"
+            table.complain_about(chosen[name], message)

@@ -2,9 +2,11 @@
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from itertools import product
 
 from rockbatch.toml.reader import Setting, Table
+from rockbatch.toml.section import Key
 
 Chosen = dict[str, Setting]
 """One value of each key."""
@@ -13,13 +15,37 @@ MOST_CASES = 100_000
 """Of a study: piers times foundations. Each stands in run.json and in the report, and is held in memory."""
 
 
-def how_many(settings: Mapping[str, Sequence[Setting]]) -> int:
-    """Return the number of combinations."""
-    return math.prod(map(len, settings.values()))
+@dataclass(frozen=True)
+class Grid:
+    """The values of several keys, each to be combined with every other, and the names of the keys that are lists."""
+
+    settings: dict[str, Sequence[Setting]] = field(default_factory=dict)
+    varied: tuple[str, ...] = ()
+
+    @classmethod
+    def of(cls, table: Table, keys: Mapping[str, Key], prefix: str = "", other: Iterable[str] = ()) -> "Grid":
+        """Read a table; ``prefix`` goes before its keys, ``other`` ones are read elsewhere."""
+        settings = {
+            prefix + name: value if keys[name].many else [Setting(value, (*table.at, name))]
+            for name, value in table.read(keys, other=other, places=True).items()
+        }
+        lists = [name for name, value in table.data.items() if name in keys and isinstance(value, list)]
+        return cls(settings, tuple(prefix + name for name in lists if name != "confirm"))
+
+    def __add__(self, other: "Grid") -> "Grid":
+        return Grid(self.settings | other.settings, self.varied + other.varied)
+
+    def __len__(self) -> int:
+        return math.prod(map(len, self.settings.values()))
+
+    def __iter__(self) -> Iterator[Chosen]:
+        """Yield every combination, the last key varying fastest."""
+        for chosen in product(*self.settings.values()):
+            yield dict(zip(self.settings, chosen, strict=True))
 
 
 def too_many(number: int, what: str) -> str:
-    """Return what is said of more than :data:`MOST_CASES`; empty for fewer."""
+    """Return a message about more than :data:`MOST_CASES`; empty for fewer."""
     if number <= MOST_CASES:
         return ""
     return (
@@ -28,13 +54,10 @@ def too_many(number: int, what: str) -> str:
     )
 
 
-def combinations(settings: Mapping[str, Sequence[Setting]]) -> Iterator[Chosen]:
-    """Return every combination, the last key varying fastest."""
-    for chosen in product(*settings.values()):
-        yield dict(zip(settings, chosen, strict=True))
-
-
-def listed(table: Table, names: Iterable[str]) -> tuple[str, ...]:
-    """Return the keys of the table that are lists of values to combine, in the order of the file."""
-    names = {*names} - {"confirm"}
-    return tuple(name for name, value in table.data.items() if name in names and isinstance(value, list))
+def complain_where_due(table: Table, chosen: Chosen, problem: str) -> None:
+    """Note a problem that begins with a key, "key = …", at that key, or else about the table."""
+    name = problem.split(" = ")[0]
+    if name in chosen:
+        table.complain_about(chosen[name], problem)
+    else:
+        table.complain(problem)

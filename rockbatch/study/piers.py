@@ -1,15 +1,15 @@
 """The piers of a study file, with every combination of listed values: [pier] and [[pier.part]]."""
 
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection
 from dataclasses import asdict
 from typing import Any
 
 from rockbatch.errors import InputError
 from rockbatch.pier import Part, Pier
 from rockbatch.pier.block import BOUNDS
-from rockbatch.study.lists import Chosen, combinations, how_many, listed, too_many
+from rockbatch.study.lists import Grid, complain_where_due, too_many
 from rockbatch.toml.kinds import Whole, not_negative, positive, within
-from rockbatch.toml.reader import Setting, Table, TomlFile
+from rockbatch.toml.reader import Table, TomlFile
 from rockbatch.toml.section import CONFIRM, Clash, Key, Section, Usual
 
 _LENGTH = Usual(400.0, "m: the highest bridge piers reach some 300 m")
@@ -98,35 +98,30 @@ def read_piers(file: TomlFile) -> tuple[list[tuple[Pier, Values]], tuple[str, ..
     if table is None:
         return [], ()
     before = len(file.problems)
-    read = table.read(PIER, other=("part",), places=True)
-    gravity = {"gravity": read.pop("gravity")} if "gravity" in read else {}
+    grid = Grid.of(table, PIER, other=("part",))
     _check_one_size(table)
-    varied = listed(table, PIER)
     parts = file.tables("pier", "part", title="name")
     if table.data.get("part") == []:
-        table.complain(
-            "part = []: a pier has one part at least; write [[pier.part]] above each, or leave it out", "part"
-        )
+        message = "a pier has one part at least; write [[pier.part]] above each, or leave it out"
+        table.complain(f"part = []: {message}", "part")
     for n, part in enumerate(parts, 1):
-        its, names = _part(part, n)
-        read |= its
-        varied += names
-    if message := too_many(how_many(read), "piers"):
+        grid += Grid.of(part, PART, f"part_{n}_")
+    if message := too_many(len(grid), "piers"):
         table.complain(message)
     if not file.is_sound_since(before):
         return [], ()
     piers = []
-    for chosen in combinations(read):
-        values = {name: setting.value for name, setting in chosen.items()} | gravity
+    for chosen in grid:
+        values = {name: setting.value for name, setting in chosen.items()}
         try:
             pier = _pier(values, len(parts), table.confirmed)
         except InputError as error:
             for problem in error.problems:
-                _complain_where_due(table, chosen, problem)
+                where = " in this table" if "write confirm" in problem else ""
+                complain_where_due(table, chosen, problem + where)
         else:
-            derived = {name: value for name, value in asdict(pier).items() if value is not None}
-            piers.append((pier, derived | values))
-    return piers, varied
+            piers.append((pier, {name: value for name, value in asdict(pier).items() if value is not None} | values))
+    return piers, grid.varied
 
 
 def has_mass(file: TomlFile) -> bool:
@@ -134,33 +129,27 @@ def has_mass(file: TomlFile) -> bool:
     return file.has(("pier", "mass_t")) or bool(file.value(("pier", "part"))) or ("pier",) in file.misspelt
 
 
-def _part(table: Table, n: int) -> tuple[dict[str, Sequence[Setting]], tuple[str, ...]]:
-    """Return the settings of the n-th part by the names that set them apart, and which of them are lists."""
-    read = table.read(PART, places=True)
-    return {f"part_{n}_{name}": its for name, its in read.items()}, tuple(f"part_{n}_{x}" for x in listed(table, PART))
+def _pier(values: dict[str, Any], parts: int, confirmed: Collection[str]) -> Pier:
+    """Return the pier that these keys describe; which of them go together is checked already."""
+    rest = {name: values[name] for name in ("gravity", "top_m") if name in values} | {"confirm": confirmed}
 
+    def made(constructor: Callable[..., Pier], *names: str) -> Pier:
+        return constructor(**{name: values[name] for name in names if name in values}, **rest)
 
-def _pier(values: dict[str, Any], parts: int, believed: Collection[str]) -> Pier:
-    """Return the pier that these keys say; which of them go together is checked already."""
-    rest: dict[str, Any] = {name: values[name] for name in ("gravity", "top_m") if name in values}
-    rest["confirm"] = believed
     if parts:
         return _of_parts(values, parts, rest)
     if "deck_mass_t" in values and "columns" not in values:
         names = ("width_m", "height_m", "mass_t", "deck_mass_t", "deck_height_m", "deck_inertia_t_m2")
-        return Pier.with_deck(**{name: values[name] for name in names if name in values}, **rest)
-    rest |= {
-        name: values[name] for name in ("alpha", "p", "size_m", "mu", "width_m", "height_m", "mass_t") if name in values
-    }
+        return made(Pier.with_deck, *names)
     if "width_m" in values:
-        pier = Pier.rectangle(**rest)
+        pier = made(Pier.rectangle, "width_m", "height_m", "mass_t")
     elif "size_m" in values:
-        pier = Pier.from_size(**rest)
+        pier = made(Pier.from_size, "alpha", "size_m", "mu", "mass_t")
     else:
         del rest["confirm"]
-        pier = Pier(**rest)
+        pier = made(Pier, "alpha", "p", "mu", "mass_t")
         if "top_m" in rest:
-            Pier.from_size(pier.alpha, pier.size, pier.mu, pier.gravity, top_m=pier.top_m, confirm=believed)
+            Pier.from_size(pier.alpha, pier.size, pier.mu, pier.gravity, top_m=pier.top_m, confirm=confirmed)
     return Pier.frame(pier, values["columns"], values["deck_mass_t"]) if "columns" in values else pier
 
 
@@ -176,17 +165,6 @@ def _of_parts(values: dict[str, Any], parts: int, rest: dict[str, Any]) -> Pier:
         all_of_them.append(Part(values["deck_mass_t"], deck, values.get("deck_inertia_t_m2", 0.0)))
     top = max(values.get("height_m", 0.0), *(part.height_m for part in all_of_them))
     return Pier.of_parts(values["width_m"], all_of_them, **{"top_m": top, "deck_height_m": deck} | rest)
-
-
-def _complain_where_due(table: Table, chosen: Chosen, problem: str) -> None:
-    """Place a problem of the pier, "key = …", at that key."""
-    if "write confirm" in problem:
-        problem += " in this table"
-    name = problem.split(" = ")[0]
-    if name in chosen:
-        table.complain_about(chosen[name], problem)
-    else:
-        table.complain(problem)
 
 
 def _check_one_size(table: Table) -> None:

@@ -1,16 +1,15 @@
 """Dampers and tendons of a case: [[case.damper]], and [case.tendon] or [[case.tendon]]."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 from rockbatch.errors import remedy
 from rockbatch.pier import Damper, Pier, Restraint, Tendon, doubt
 from rockbatch.pier.restraints import BOUNDS, FIELDS, wrong_device
-from rockbatch.study.lists import Chosen, listed
+from rockbatch.study.lists import Chosen, Grid
 from rockbatch.study.piers import has_mass
 from rockbatch.toml.kinds import Choice, choice, not_negative, number, positive, within
-from rockbatch.toml.reader import Setting, Table
+from rockbatch.toml.reader import Table
 from rockbatch.toml.section import CONFIRM, Clash, Key, Section
 
 _PLACE = Choice(("left", "right"), '"left", "right" or an offset from the middle of the base in m', also=number)
@@ -53,10 +52,6 @@ TENDON = Section(
 RESTRAINTS = ("damper", "tendon")
 
 IN_KN = ("force_kN", "coefficient_kN_s_m", "prestress_kN", "stiffness_kN_m", "yield_kN")
-_FIELDS = {
-    "force_kN": "f", "coefficient_kN_s_m": "nu", "yield_mm": "yield_m", "prestress_kN": "psi", "stiffness_kN_m": "lam",
-    "lambda": "lam",
-}  # fmt: skip
 _UNMEASURED = ("kind", "at", "confirm")
 KEYS_OF = {
     kind: tuple(
@@ -83,38 +78,82 @@ def fields_of(pier: Pier) -> dict[str, tuple[str, float]]:
     return fields
 
 
-def read_restraints(case: Table) -> tuple[dict[str, Sequence[Setting]], tuple[str, ...]]:
-    """Return the settings of all dampers and tendons of a case, by names that set them apart, and which of them are lists."""
-    read: dict[str, Sequence[Setting]] = {}
-    varied: tuple[str, ...] = ()
+_FIELDS = {key: name for key, (name, _) in fields_of(Pier(alpha=0.2, p=1.0, mass_t=1.0)).items()}
+
+
+@dataclass(frozen=True)
+class Device:
+    """A damper or tendon of a case as it is written: its table, and its name among the keys of the case, "damper_1"."""
+
+    table: Table
+    name: str
+
+    def values(self, chosen: Chosen) -> Chosen:
+        """Return those of the chosen values that are its own, by their keys."""
+        prefix = f"{self.name}_"
+        return {key.removeprefix(prefix): setting for key, setting in chosen.items() if key.startswith(prefix)}
+
+    def made(self, pier: Pier, chosen: Chosen) -> Restraint:
+        """Return it with the chosen values."""
+        values = {key: setting.value for key, setting in self.values(chosen).items()}
+        own: dict[str, Any] = {name: values[name] for name in ("kind", "at") if name in values}
+        own |= {field: values[key] / over for key, (field, over) in fields_of(pier).items() if key in values}
+        own["confirm"] = tuple(_FIELDS.get(name, name) for name in sorted(self.table.confirmed))
+        if "kind" not in values:
+            return Tendon(**own)
+        if values["kind"] == "hysteretic":
+            own.setdefault("yield_m", 0.001)  # missing, which is noted: a possible value lets the rest be checked
+        return Damper(**own)
+
+    def complain(self, pier: Pier, chosen: Chosen, device: Restraint) -> None:
+        """Note what is impossible about it, or far from usual and not confirmed, each at its key."""
+        values = self.values(chosen)
+        keys = {_FIELDS.get(key, key): key for key in values}
+        problems = [problem.partition(": ")[2] for problem in wrong_device(pier, device)]
+        for problem in problems:
+            symbol = problem.partition(" = ")[0]
+            key = keys.get("lam" if symbol == "lambda" else symbol, "")
+            if key and key != symbol:
+                problem = f"{key} = {values[key].value:g} means {problem}; check the unit"
+            self.table.complain(problem, key or next(iter(values)))
+        odd = doubt(pier, device)
+        if odd is not None and odd.name in keys and not problems:
+            key = keys[odd.name]
+            message = (
+                f"{key} = {values[key].value:g}: {odd.meaning}; {remedy(key)} in [[case.{self.name.partition('_')[0]}]]"
+            )
+            self.table.complain_about(values[key], message)
+
+
+def read_devices(case: Table) -> tuple[list[Device], Grid]:
+    """Return the dampers and tendons of a case, and the values of their keys: those of the first damper as "damper_1_f"."""
+    devices: list[Device] = []
+    grid = Grid()
     for what, keys in (("damper", DAMPER), ("tendon", TENDON)):
         for n, table in enumerate(_tables(case, what), 1):
-            values = table.read(keys, places=True)
-            if believed := table.confirmed:
-                read[f"{what}_{n}_confirm"] = [
-                    Setting(tuple(_FIELDS.get(name, name) for name in sorted(believed)), table.at)
-                ]
-            for name, value in values.items():
-                read[f"{what}_{n}_{name}"] = value if isinstance(value, list) else [Setting(value, (*table.at, name))]
-            varied += tuple(f"{what}_{n}_{name}" for name in listed(table, keys))
-            _check_given(table, values.get("kind") if what == "damper" else "tendon")
+            own = Grid.of(table, keys, f"{what}_{n}_")
+            kind = (
+                "tendon"
+                if what == "tendon"
+                else next((s.value for s in own.settings.get(f"damper_{n}_kind", ())), None)
+            )
+            if kind is not None:
+                devices.append(Device(table, f"{what}_{n}"))
+                _check_given(table, kind)
             for name in IN_KN:
                 if name in table.data and not has_mass(table.file):
                     table.complain(f"{name}: kN are of a pier whose mass is known; write mass_t in [pier]", name)
-    return read, varied
+            grid += own
+    return devices, grid
 
 
 def _tables(case: Table, what: str) -> list[Table]:
     """Return one table, or several, called by their place in the case."""
     one = case.data.get(what)
     if isinstance(one, dict):
-        return [Table(case.file, (*case.at, what), _label(case, what, 1), one)]
+        return [Table(case.file, (*case.at, what), f"{case.label}, {what}", one)]
     tables = case.file.tables(*case.at, what, title="kind")
-    return [replace(table, label=_label(case, what, n)) for n, table in enumerate(tables, 1)]
-
-
-def _label(case: Table, what: str, n: int | str) -> str:
-    return f"{case.label}, {what}" + ("" if isinstance(case.data.get(what), dict) else f" {n}")
+    return [replace(table, label=f"{case.label}, {what} {n}") for n, table in enumerate(tables, 1)]
 
 
 _NEEDED = {
@@ -123,10 +162,8 @@ _NEEDED = {
 }  # fmt: skip
 
 
-def _check_given(table: Table, kind: str | None) -> None:
+def _check_given(table: Table, kind: str) -> None:
     """Note a damper without a force, or a tendon without prestress and stiffness."""
-    if kind is None:
-        return
     first, other, *_ = _NEEDED[kind]
     if not any(map(table.has, _NEEDED[kind])):
         example = f"write for example {first} = {(TENDON if kind == 'tendon' else DAMPER)[first].example}, or"
@@ -137,51 +174,3 @@ def _check_given(table: Table, kind: str | None) -> None:
             table.complain(f"{first} is missing; {example} {other}")
     if kind == "hysteretic" and not table.has("yield_mm"):
         table.complain('yield_mm is missing; write for example yield_mm = 5.0, or kind = "friction", its limit')
-
-
-def restraints_of(pier: Pier, given: dict[str, Any]) -> tuple[Restraint, ...]:
-    """Return dampers and tendons by the settings of :func:`read_restraints`, which are taken out of ``given``."""
-    taken = _taken(given)
-    for name in [name for name in given if name.startswith(tuple(f"{what}_" for what in RESTRAINTS))]:
-        del given[name]
-    return tuple(_restraint(values, pier) for values in taken.values())
-
-
-def _taken(given: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
-    """Return the settings of each damper and tendon: those of the first damper under "damper_1"."""
-    taken: dict[str, dict[str, Any]] = {}
-    for name, value in given.items():
-        if name.startswith(tuple(f"{what}_" for what in RESTRAINTS)):
-            what, n, key = name.split("_", 2)
-            taken.setdefault(f"{what}_{n}", {})[key] = value
-    return {name: values for name, values in taken.items() if name.startswith("tendon") or "kind" in values}
-
-
-def complain_of_devices(case: Table, chosen: Chosen, pier: Pier, devices: Sequence[Restraint]) -> None:
-    """Note what is impossible about dampers and tendons, or far from usual and not confirmed, each at its key."""
-    for (name, values), device in zip(_taken(chosen).items(), devices, strict=True):
-        what, _, n = name.partition("_")
-        problems = [problem.partition(": ")[2] for problem in wrong_device(pier, device)]
-        for problem in problems:
-            symbol = problem.partition(" = ")[0]
-            key = next(
-                (key for key in values if key == symbol or _FIELDS.get(key) == symbol.replace("lambda", "lam")), ""
-            )
-            if key and key != symbol:
-                problem = f"{key} = {values[key].value:g} means {problem}; check the unit"
-            case.file.complain(values[key or next(iter(values))].at, f"{_label(case, what, n)}: {problem}")
-        odd = doubt(pier, device)
-        key = next((key for key in values if odd is not None and _FIELDS.get(key, key) == odd.name), "")
-        if odd is not None and key and not problems:
-            meaning = f"{_label(case, what, n)}: {key} = {values[key].value:g}: {odd.meaning}"
-            case.file.complain(values[key].at, f"{meaning}; {remedy(key)} in [[case.{what}]]")
-
-
-def _restraint(values: Mapping[str, Any], pier: Pier) -> Restraint:
-    own = {name: values[name] for name in ("kind", "at", "confirm") if name in values}
-    own |= {field: values[key] / over for key, (field, over) in fields_of(pier).items() if key in values}
-    if "kind" not in values:
-        return Tendon(**own)
-    if values["kind"] == "hysteretic":
-        own.setdefault("yield_m", 0.001)  # missing, which is noted: a possible value lets the rest be checked
-    return Damper(**own)
