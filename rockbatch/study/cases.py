@@ -210,7 +210,7 @@ def _case(table: Table) -> _Read:
     grid = Grid.of(table, CASE, other=RESTRAINTS)
     base, name = (next((s.value for s in grid.settings.pop(key, ())), "") for key in ("base", "name"))
     weighed = has_mass(table.file)
-    if weighed and grid.settings.pop("mass_t", None):
+    if weighed and grid.settings.pop("mass_t", ()):
         value = shown(table.data["mass_t"])
         table.complain(f"mass_t = {value}: [pier] says already what the pier weighs; leave it out", "mass_t")
     for ratio, absolute in (("beta", "stiffness_kN_m"), ("eta", "yield_kN")):

@@ -1,5 +1,6 @@
 """Parameters of dampers and tendons as inputs of a sensitivity study: damper.f, or damper_2.f where several have one."""
 
+import math
 import re
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
@@ -7,11 +8,9 @@ from dataclasses import replace
 from typing import Any, NamedTuple
 
 from rockbatch.pier import Damper, Pier, Restraint
-from rockbatch.study.restraint_keys import IN_KN, KEYS_OF, fields_of
+from rockbatch.study.restraint_keys import FIELD_OF, IN_KN, KEYS_OF, fields_of
 from rockbatch.study.spec import Case
 from rockbatch.toml.kinds import shown
-
-_HEAVY = Pier(alpha=0.2, p=1.0, mass_t=1.0)
 
 TABLE = re.compile(r"(damper|tendon)(?:_([1-9][0-9]*))?")
 """What a table of such inputs is called: that of the only one of its kind, or with its number in the study."""
@@ -35,12 +34,11 @@ def numbered(pier: Pier, restraints: Sequence[Restraint]) -> dict[str, Parameter
     parameters_by_name: dict[str, Parameter] = {}
     counts: Counter[str] = Counter()
     given_by = fields_of(pier)
-    for place, each in enumerate(restraints):
-        what, kind = ("damper", each.kind) if isinstance(each, Damper) else ("tendon", "tendon")
+    for place, device in enumerate(restraints):
+        what, kind = ("damper", device.kind) if isinstance(device, Damper) else ("tendon", "tendon")
         counts[what] += 1
         for key in KEYS_OF[kind]:
-            endless = not isinstance(each, Damper) and key == "yield_kN" and each.strength == float("inf")
-            if key in given_by and not endless:
+            if key in given_by and getattr(device, given_by[key][0]) != math.inf:
                 parameters_by_name[f"{what}_{counts[what]}.{key}"] = Parameter(place, *given_by[key])
     return parameters_by_name
 
@@ -48,19 +46,19 @@ def numbered(pier: Pier, restraints: Sequence[Restraint]) -> dict[str, Parameter
 def parameters(pier: Pier, restraints: Sequence[Restraint]) -> dict[str, Parameter]:
     """As :func:`numbered`; those that only one damper or tendon has go without a number, too."""
     by_number = numbered(pier, restraints)
-    plain = [_plain(name) for name in by_number]
-    return by_number | {_plain(name): each for name, each in by_number.items() if plain.count(_plain(name)) == 1}
+    counts = Counter(map(_plain, by_number))
+    return by_number | {_plain(name): where for name, where in by_number.items() if counts[_plain(name)] == 1}
 
 
 def _plain(name: str) -> str:
     return re.sub(r"_[0-9]+\.", ".", name)
 
 
-def own_restraint_values(pier: Pier, restraints: Sequence[Restraint]) -> dict[str, float]:
-    """Return what the study itself says about each, to the digits in which studies are written."""
+def values_of_devices(pier: Pier, restraints: Sequence[Restraint]) -> dict[str, float]:
+    """Return the values of all :func:`parameters`."""
     return {
-        name: float(f"{getattr(restraints[each.place], each.field) * each.divisor:.12g}")
-        for name, each in parameters(pier, restraints).items()
+        name: getattr(restraints[place], field) * divisor
+        for name, (place, field, divisor) in parameters(pier, restraints).items()
     }
 
 
@@ -122,6 +120,6 @@ def problem_in_words(problem: str, values: Mapping[str, Any]) -> tuple[str, str]
     key = message.partition(" = ")[0]
     if same := next((name for name in mine if name.endswith(f".{key}")), ""):
         return message.replace(key, same, 1), same
-    fields = {name: field for name, (field, _) in fields_of(_HEAVY).items()} | {"stiffness_kN_m": "lambda"}
-    name = next((name for name in mine if fields[name.partition(".")[2]] == key), mine[0])
+    field_of = FIELD_OF | {"lambda": "lambda", "stiffness_kN_m": "lambda"}
+    name = next((name for name in mine if field_of[name.partition(".")[2]] == key), mine[0])
     return f"{name} = {values[name]:g} means {problem}", name

@@ -78,7 +78,8 @@ def fields_of(pier: Pier) -> dict[str, tuple[str, float]]:
     return fields
 
 
-_FIELDS = {key: name for key, (name, _) in fields_of(Pier(alpha=0.2, p=1.0, mass_t=1.0)).items()}
+FIELD_OF = {key: name for key, (name, _) in fields_of(Pier(alpha=0.2, p=1.0, mass_t=1.0)).items()}
+"""The field of Damper or Tendon, by key."""
 
 
 @dataclass(frozen=True)
@@ -98,7 +99,7 @@ class Device:
         values = {key: setting.value for key, setting in self.values(chosen).items()}
         own: dict[str, Any] = {name: values[name] for name in ("kind", "at") if name in values}
         own |= {field: values[key] / over for key, (field, over) in fields_of(pier).items() if key in values}
-        own["confirm"] = tuple(_FIELDS.get(name, name) for name in sorted(self.table.confirmed))
+        own["confirm"] = tuple(FIELD_OF.get(name, name) for name in sorted(self.table.confirmed))
         if "kind" not in values:
             return Tendon(**own)
         if values["kind"] == "hysteretic":
@@ -108,7 +109,7 @@ class Device:
     def complain(self, pier: Pier, chosen: Chosen, device: Restraint) -> None:
         """Note what is impossible about it, or far from usual and not confirmed, each at its key."""
         values = self.values(chosen)
-        keys = {_FIELDS.get(key, key): key for key in values}
+        keys = {FIELD_OF.get(key, key): key for key in values}
         problems = [problem.partition(": ")[2] for problem in wrong_device(pier, device)]
         for problem in problems:
             symbol = problem.partition(" = ")[0]

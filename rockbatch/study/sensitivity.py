@@ -15,10 +15,9 @@ from rockbatch.study.piers import PIER
 from rockbatch.study.restraint_inputs import (
     TABLE,
     is_of_restraint,
-    own_restraint_values,
-    parameters,
     problem_in_words,
     unclear,
+    values_of_devices,
     why_none,
     with_values,
 )
@@ -158,14 +157,8 @@ SECTIONS = (SENSITIVITY, *SPREADS.values(), *(
 
 def applying(inputs: Iterable[Input], case: Case) -> tuple[Input, ...]:
     """Return the inputs that a case has."""
-    own = {*_of_base(case), *OF_PIER, *OF_MOTION, *_in_kilonewtons(case), *parameters(case.pier, case.base.restraints)}
-    return tuple(each for each in inputs if each.name in own)
-
-
-def _of_base(case: Case) -> set[str]:
-    """Return fields of the base that mean something to it: ε, or ζ where that is given in its place."""
-    zeta = getattr(case.base, "zeta", None)
-    return {each.name for each in fields(case.base)} - {"epsilon" if zeta is not None else "zeta"}
+    own = {*_own(case), *OF_MOTION}
+    return tuple(parameter for parameter in inputs if parameter.name in own)
 
 
 def varied(case: Case, values: Mapping[str, Value]) -> Case:
@@ -182,17 +175,18 @@ def varied(case: Case, values: Mapping[str, Value]) -> Case:
 
 
 def own_values(study: Study, case: Case) -> dict[str, Any]:
-    """Return what the study itself says about every input."""
-    of_motion = {"vertical": study.motions.vertical, "polarity": study.motions.polarity[0]}
+    """Return the study's own value of every input."""
+    return _own(case) | {"vertical": study.motions.vertical, "polarity": study.motions.polarity[0]}
+
+
+def _own(case: Case) -> dict[str, Any]:
+    """Return the values of all that a case may vary; ε, or ζ where that is given in its place."""
     pier = {name: getattr(case.pier, name) for name in OF_PIER}
-    base = {each.name: getattr(case.base, each.name) for each in fields(case.base)}
-    return pier | base | _in_kilonewtons(case) | own_restraint_values(case.pier, case.base.restraints) | of_motion
-
-
-def _in_kilonewtons(case: Case) -> dict[str, float]:
-    """Return the stiffness [kN/m] and yield force [kN] of a case on springs, where the mass is known."""
+    base = {field.name: getattr(case.base, field.name) for field in fields(case.base)}
+    base.pop("zeta" if base.get("zeta") is None else "epsilon", None)
+    derived = in_kilonewtons(case.pier, case.base) | values_of_devices(case.pier, case.base.restraints)
     # To the digits in which studies are written, so that a range may end at the study's own value
-    return {name: float(f"{value:.12g}") for name, value in in_kilonewtons(case.pier, case.base).items()}
+    return pier | base | {name: float(f"{value:.12g}") for name, value in derived.items()}
 
 
 def read_sensitivity(study: Study) -> SensitivitySpec:
