@@ -12,8 +12,8 @@ from types import ModuleType
 from rockbatch.checks import as_table, read_verdicts
 from rockbatch.files import is_plain, read_text, write_whole
 from rockbatch.lazy import pd
-from rockbatch.report.contents import Contents, read
-from rockbatch.report.finished import read as read_finished
+from rockbatch.report.finished import read
+from rockbatch.report.finished_analysis import Contents
 from rockbatch.report.page import comparison, page
 from rockbatch.report.pair import pair
 from rockbatch.results.opened import Results, open_results
@@ -66,9 +66,7 @@ def write_comparison(first: Path, second: Path, *, out: Path | None = None) -> P
     """
     first, second = Path(first), Path(second)
     target = out or first / f"compare-{second.resolve().name}.html"
-    studies = read_finished(first), read_finished(second)
-    verdicts = read_verdicts(first), read_verdicts(second)
-    write_whole(target, comparison(pair(studies, verdicts)))
+    write_whole(target, comparison(pair(read(first, ()), read(second, ()))))
     return target
 
 

@@ -8,18 +8,22 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+from rockbatch.checks import Verdict, read_verdicts
 from rockbatch.checks.responses import Worst, worst_of_cases
 from rockbatch.checks.suite import counts_as, simulated
 from rockbatch.errors import InputError
 from rockbatch.lazy import pd
+from rockbatch.report.finished_analysis import Contents
 from rockbatch.report.labels import Key, Series, digits_that_tell, named, quantity
 from rockbatch.report.markup import Markup, join, number, tag
-from rockbatch.results.reading import Saved, read_saved
+from rockbatch.results.opened import Results, open_results
+from rockbatch.results.reading import Saved
+from rockbatch.simulation.response import Response
 from rockbatch.study import PIER_KEYS
 
 
 @dataclass(frozen=True, eq=False)
-class Finished:
+class Finished(Contents):
     """Contents of a folder of results.
 
     Attributes
@@ -38,6 +42,10 @@ class Finished:
         Place of each foundation in ``series``, and of the varied values of each pier in ``piers``.
     cases : dict
         Entries of run.json for each foundation and pier that have runs, by their places.
+    responses : sequence of Response
+        Runs whose histories are shown.
+    verdicts : sequence of Verdict
+        Results of ``rockbatch check``.
     """
 
     saved: Saved
@@ -47,6 +55,8 @@ class Finished:
     places: dict[Key, int]
     pier_places: dict[Key, int]
     cases: dict[tuple[int, int], dict[str, Any]]
+    responses: Sequence[Response] = ()
+    verdicts: Sequence[Verdict] = ()
 
     @property
     def info(self) -> dict[str, Any]:
@@ -145,13 +155,14 @@ class Finished:
         return f"{self.named(run['record'])}, case {self.which(run)}"
 
 
-def read(directory: Path) -> Finished:
-    """Read the results in a folder; raises ``InputError`` if they are missing, damaged or do not belong together."""
-    return finished(read_saved(directory))
+def read(directory: Path, responses: Sequence[Response] | None = None, saved: Results | None = None) -> Finished:
+    """Return the results in a folder: every run with its pier, its foundation and its ground motion.
 
-
-def finished(saved: Saved) -> Finished:
-    """Return every run of ``saved`` with its pier, its foundation and its ground motion."""
+    ``responses`` are shown instead of those in ``histories.h5``; ``saved`` are the results if they were read already. Raises
+    ``InputError`` if the results are missing, damaged or do not belong together.
+    """
+    saved = saved or open_results(directory)
+    responses = saved.responses if responses is None else responses
     info, varied = saved.info, saved.info["varied"]
     grouped: dict[Key, list[dict[str, Any]]] = {}
     entries: dict[tuple[Key, Key], dict[str, Any]] = {}
@@ -189,7 +200,10 @@ def finished(saved: Saved) -> Finished:
     keys = [key for key in varied if key in PIER_KEYS]
     digits = [digits_that_tell(values) for values in zip(*piers, strict=True)]
     words = [", ".join(map(quantity, keys, values, digits)) for values in piers] or [""]
-    return Finished(saved, runs, list(series.values()), words, places, piers, cases)
+    return Finished(
+        saved.directory, info["study"], saved, runs, list(series.values()), words, places, piers, cases,
+        responses, read_verdicts(saved.directory),
+    )  # fmt: skip
 
 
 def _given(text: str) -> dict[str, set[str]]:

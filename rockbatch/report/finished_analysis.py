@@ -24,6 +24,18 @@ _DAMAGE = (KeyError, IndexError, TypeError, ValueError, AttributeError, Arithmet
 """Exceptions that drawing raises if the file of an analysis does not hold what its command writes."""
 
 
+@dataclass(frozen=True, eq=False)
+class Contents:
+    """Contents of a folder: its analyses, and ``path``, ``title``, ``notes``, ``text`` and ``sha256`` of the study."""
+
+    directory: Path
+    study: Mapping[str, Any]
+
+    def analysis(self, name: str) -> "FinishedAnalysis | None":
+        """Return the analysis in NAME.json; None if there is none for this state of the study."""
+        return read(self.directory, name, self.study["sha256"])
+
+
 @dataclass(frozen=True)
 class FinishedAnalysis:
     """A finished analysis: the contents of NAME.json, and its folder."""
@@ -35,22 +47,14 @@ class FinishedAnalysis:
         """Return the ground motions and versions behind the analysis as HTML; empty if an earlier version did not note them."""
         motions = [str(motion["label"]) for motion in self.info.get("under", ())]
         versions = {"rockbatch": self.info["rockbatch"], **self.info["versions"]} if "versions" in self.info else {}
-        parts = (
-            [
-                f"{counted(len(motions), 'ground motion')}: {'; '.join(motions[:MOST_NAMES])}"
-                + (f"; and {len(motions) - MOST_NAMES} more" if len(motions) > MOST_NAMES else "")
-            ]
-            if motions
-            else []
-        )
-        parts += (
-            [f"made with {', '.join(f'{name} {version}' for name, version in versions.items())}"] if versions else []
-        )
-        return (
-            tag("p", ". ".join(part[0].upper() + part[1:] for part in parts), ".", class_="legend")
-            if parts
-            else Markup("")
-        )
+        parts = []
+        if motions:
+            more = f"; and {len(motions) - MOST_NAMES} more" if len(motions) > MOST_NAMES else ""
+            parts.append(f"{counted(len(motions), 'ground motion')}: {'; '.join(motions[:MOST_NAMES])}{more}")
+        if versions:
+            parts.append(f"made with {', '.join(f'{name} {version}' for name, version in versions.items())}")
+        said = ". ".join(part[0].upper() + part[1:] for part in parts)
+        return tag("p", said, ".", class_="legend") if parts else Markup("")
 
     def table(self, name: str, columns: Collection[str]) -> "pd.DataFrame | None":
         """Return one of its tables; None if NAME.json does not list it, or if it is damaged or lacks a column.

@@ -56,3 +56,13 @@ def number(value: object, form: str = ".4g") -> str:
         return str(value)
     shown = format(value, form)
     return shown.removeprefix("-") if shown.startswith("-0") and float(shown) == 0 else shown
+
+
+def paragraphs(*sentences: object) -> Markup:
+    """Return one paragraph for each sentence that is not empty."""
+    return join(*(tag("p", sentence) for sentence in sentences if sentence))
+
+
+def figure(drawn: Markup, *caption: object) -> Markup:
+    """Return a picture with its caption below."""
+    return tag("figure", drawn, tag("figcaption", *caption), class_="whole")

@@ -3,16 +3,15 @@
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from rockbatch.checks import Verdict, wording
+from rockbatch.checks import wording
 from rockbatch.checks.demands import DEMANDS
 from rockbatch.checks.responses import PEAKS
 from rockbatch.checks.statistics import STATISTICS
 from rockbatch.lazy import pd
-from rockbatch.report.document import figure
 from rockbatch.report.drawing import dots
 from rockbatch.report.drawing.panels import said_of
 from rockbatch.report.finished import Finished
-from rockbatch.report.markup import Markup, join, tag
+from rockbatch.report.markup import Markup, figure, join, tag
 from rockbatch.report.table import THETA
 
 MOST_ROWS = 14
@@ -27,7 +26,7 @@ MOST_STRETCH = 2.0
 """Largest factor on the axis, so that a limit far above all peaks does not crowd them at one end."""
 
 
-def by_record(finished: Finished, verdicts: Sequence[Verdict] = ()) -> Markup:
+def by_record(finished: Finished) -> Markup:
     """Draw a row for each record with the worst runs, and one for all others; with the limits of checks."""
     runs = finished.runs
     if runs.empty:
@@ -50,14 +49,14 @@ def by_record(finished: Finished, verdicts: Sequence[Verdict] = ()) -> Markup:
     caption = join(
         "Largest rotation over slenderness, ", THETA, ", a row for each record, the worst first", _all(finished)
     )
-    limits = [_limits(finished, own, verdicts) for _, own in columns]
+    limits = [_limits(finished, own) for _, own in columns]
     top = ceiling(runs)
     within = [limit.theta for own in limits for limit in own if limit.theta < MOST_STRETCH * top]
     top = max([top, *(1.03 * theta for theta in within)])
     return figure(dots.draw(rows, [words for words, _ in columns], top, marks, limits), caption)
 
 
-def _limits(finished: Finished, runs: "pd.DataFrame", verdicts: Sequence[Verdict]) -> list[dots.Limit]:
+def _limits(finished: Finished, runs: "pd.DataFrame") -> list[dots.Limit]:
     """Return the limits of rotation checks as θ/α; empty if the piers of a column differ, since each has its own."""
     if runs["pier"].nunique() != 1:
         return []
@@ -65,7 +64,7 @@ def _limits(finished: Finished, runs: "pd.DataFrame", verdicts: Sequence[Verdict
     names = {str(case["case"]) for case in cases}
     scales = set(runs["scale"])
     cases_of: dict[dots.Limit, set[str]] = {}
-    for verdict in verdicts:
+    for verdict in finished.verdicts:
         most = DEMANDS[verdict.demand].most if verdict.demand in PEAKS else None
         if most is None or verdict.case not in names or verdict.scale not in scales or verdict.statistic == "count":
             continue

@@ -1,14 +1,13 @@
 """The pages: their sections, in order, one line each."""
 
 from collections.abc import Callable
+from typing import Any, NamedTuple
 
 from rockbatch._version import __version__
-from rockbatch.report.compared import (
-    answer as compared_answer,
-)
-from rockbatch.report.compared import checks, difference, figures, inputs, only_in_one, pairs, studies, suites
-from rockbatch.report.contents import Contents
-from rockbatch.report.document import Section, document
+from rockbatch.report import compared
+from rockbatch.report.finished import Finished
+from rockbatch.report.finished_analysis import Contents
+from rockbatch.report.markup import Markup
 from rockbatch.report.pair import Pair
 from rockbatch.report.sections import (
     accuracy,
@@ -17,73 +16,100 @@ from rockbatch.report.sections import (
     estimate,
     forces,
     fragility,
-    ground_motions,
     histories,
     intensity,
-    notes,
+    motions,
     peak_rotations,
     peaks,
     published,
-    reproduce,
     sensitivity,
     spectrum,
     statistics,
     studied,
     target,
-    unusable,
     verdicts,
-)
+)  # fmt: skip
+from rockbatch.report.templates import Section, document, render
 
-SECTIONS: tuple[Callable[[Contents], Section | None], ...] = (
-    answer.section,
-    peak_rotations.section,
-    verdicts.section,
-    published.section,
-    peaks.section,
-    forces.section,
-    statistics.section,
-    distribution.section,
-    intensity.section,
-    estimate.section,
-    fragility.section,
-    spectrum.section,
-    sensitivity.section,
-    histories.section,
-    studied.section,
-    target.section,
-    ground_motions.section,
-    unusable.section,
-    accuracy.section,
-    notes.section,
-    reproduce.section,
+
+class Part(NamedTuple):
+    """A section in the list of a page."""
+
+    heading: str
+    anchor: str
+    content: Callable[[Any], Markup]
+    """Function that returns what stands under the heading; empty if the section does not apply, which is then left out."""
+    of: type = Finished
+    """What ``content`` takes: the results of a run, or the contents of any folder."""
+
+
+def _template(name: str) -> Callable[[Contents], Markup]:
+    """Return the content of a section that is a template alone."""
+    return lambda contents: render(f"sections/{name}.html", contents=contents)
+
+
+PARTS = (
+    Part("The answer", "answer", answer.section),
+    Part("Peak rotations", "figure", peak_rotations.section),
+    Part("Every check", "checks", verdicts.section),
+    Part("Compared with published values", "references", published.section),
+    Part("Every run", "peaks", peaks.section),
+    Part("Forces", "forces", forces.section),
+    Part("The suite in each case", "suite", statistics.section),
+    Part("One record and the suite", "distribution", distribution.section),
+    Part("Intensity measures", "intensity", intensity.section),
+    Part("Code estimates, for comparison", "estimate", estimate.section),
+    Part("Fragility", "fragility", fragility.section, Contents),
+    Part("Rocking spectra and overturning", "spectrum", spectrum.section, Contents),
+    Part("What the answer depends on", "sensitivity", sensitivity.section, Contents),
+    Part("Histories", "histories", histories.section),
+    Part("What was studied", "studied", studied.section),
+    Part("The suite against its target spectrum", "target", target.section),
+    Part("Ground motions", "records", motions.section),
+    Part("Not used", "unusable", motions.unusable),
+    Part("Speed and error", "accuracy", accuracy.section),
+    Part("Notes", "notes", _template("notes"), Contents),
+    Part("How to reproduce", "reproduce", _template("reproduce")),
 )
 """Sections of one folder, from ``sections/``, in the order of the page: the answer first, then results, then inputs."""
 
-SECTIONS_OF_TWO: tuple[Callable[[Pair], Section | None], ...] = (
-    compared_answer.section,
-    checks.section,
-    inputs.section,
-    figures.section,
-    pairs.section,
-    suites.section,
-    only_in_one.section,
-    studies.section,
-    difference.section,
+ALONE = Part("The study file", "study", _template("study"), Contents)
+"""The section that stands at the end if the folder has analyses only."""
+
+PARTS_OF_TWO = (
+    Part("The answer", "answer", compared.answer),
+    Part("Does it pass", "checks", compared.checks),
+    Part("What differs in the inputs", "inputs", compared.inputs),
+    Part("Peak rotations", "figure", compared.figures),
+    Part("Every pair of runs", "peaks", compared.pairs),
+    Part("The suite in each case", "suite", compared.suites),
+    Part("Only in one", "only", compared.only_in_one),
+    Part("What is compared", "studied", compared.studies),
+    Part("How the study files differ", "difference", compared.difference),
 )
-"""Sections of two folders, from ``compared/``, in the order of the page."""
+"""Sections of two folders, from ``compared.py``, in the order of the page."""
+
+
+def sections(contents: Contents) -> list[Section]:
+    """Return the sections of one folder that apply."""
+    parts = PARTS if isinstance(contents, Finished) else (*PARTS, ALONE)
+    made = [
+        Section(part.heading, part.anchor, part.content(contents)) for part in parts if isinstance(contents, part.of)
+    ]
+    return [section for section in made if section.content]
 
 
 def page(contents: Contents) -> str:
     """Return the report of one folder as HTML."""
+    made = contents.info["rockbatch"] if isinstance(contents, Finished) else __version__
     title = contents.study["title"] or "Rocking piers"
-    made = __version__ if contents.finished is None else contents.finished.info["rockbatch"]
-    return document("Rocking response of stepping piers", title, [section(contents) for section in SECTIONS], made)
+    return document("Rocking response of stepping piers", title, sections(contents), made)
 
 
 def comparison(pair: Pair) -> str:
     """Return the page that compares two studies as HTML."""
-    a, b = (study.info["study"]["title"] or study.saved.directory.name for study in pair.studies)
-    title = f"{a} against {b}" if a != b else f"{a}: two studies"
-    sections = [section(pair) for section in SECTIONS_OF_TWO]
+    a, b = (study.study["title"] or study.directory.name for study in pair.studies)
     made = " and ".join(dict.fromkeys(study.info["rockbatch"] for study in pair.studies))
-    return document("Rocking response of stepping piers, two studies", title, sections, made)
+    shown = [Section(part.heading, part.anchor, part.content(pair)) for part in PARTS_OF_TWO]
+    title = f"{a} against {b}" if a != b else f"{a}: two studies"
+    return document("Rocking response of stepping piers, two studies", title, shown, made)

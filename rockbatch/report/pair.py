@@ -1,9 +1,7 @@
 """Two studies side by side: runs of the same record, direction, scale and case are matched by name."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from rockbatch.checks import Verdict
 from rockbatch.lazy import pd
 from rockbatch.report.finished import Finished
 from rockbatch.report.labels import quantity
@@ -33,8 +31,6 @@ class Pair:
     ----------
     studies : tuple of Finished
         Results of both studies.
-    verdicts : tuple of sequences of Verdict
-        Results of their checks.
     matched : Matched
         Runs that belong together.
     named : Finished
@@ -42,15 +38,15 @@ class Pair:
     """
 
     studies: tuple[Finished, Finished]
-    verdicts: tuple[Sequence[Verdict], Sequence[Verdict]]
     matched: Matched
     named: Finished
 
 
-def pair(studies: tuple[Finished, Finished], verdicts: tuple[Sequence[Verdict], Sequence[Verdict]]) -> Pair:
+def pair(*studies: Finished) -> Pair:
     """Match the runs of two studies."""
-    matched = match(*studies)
-    return Pair(studies, verdicts, matched, _named(studies[0], matched.keys))
+    a, b = studies
+    matched = match(a, b)
+    return Pair((a, b), matched, _named(a, matched.keys))
 
 
 def match(a: Finished, b: Finished) -> Matched:

@@ -1,8 +1,8 @@
 """Tables of the page."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import groupby
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from rockbatch.report.markup import Markup, escape, join, number, tag
 
@@ -13,12 +13,16 @@ MOST_OPEN = 60
 
 
 class Head(NamedTuple):
-    """Head of a column: its text, the format of its numbers, an explanation, and the head over several columns."""
+    """Head of a column: its text, the format of its numbers, an explanation, and the head over several columns.
+
+    ``of`` is the key of its values in the items of :func:`listed`, or a function of such an item.
+    """
 
     says: str
     form: str = WHOLE
     note: str | None = None
     over: str = ""
+    of: str | Callable[[Any], object] = ""
 
 
 def table(
@@ -60,6 +64,12 @@ def table(
     if len(rows) > MOST_OPEN:
         wide = tag("details", tag("summary", f"{name or 'Table'}: {len(rows):,} rows"), wide)
     return join(told_apart(len(rows), len(whole)), wide)
+
+
+def listed(heads: Sequence[Head], items: Iterable[Mapping[str, Any]], **options: Any) -> Markup:
+    """Return a :func:`table` with a row for each item, whose cells are what each of ``heads`` is ``of``."""
+    rows = ([item.get(head.of) if isinstance(head.of, str) else head.of(item) for head in heads] for item in items)
+    return table(heads, rows, **options)
 
 
 def _cells(kind: str, values: Iterable[object], form: str, **attributes: object) -> list[Markup]:

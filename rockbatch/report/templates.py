@@ -1,16 +1,45 @@
-"""Templates of the pages: HTML with values in it, all of which are escaped but :class:`Markup`."""
+"""Templates of the pages and their sections: HTML with values in it, all of which are escaped but :class:`Markup`."""
 
+import base64
+import hashlib
+import shlex
+from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
+from rockbatch._version import __version__
 from rockbatch.files import legible
+from rockbatch.report.drawing.svg import markers
 from rockbatch.report.labels import counted
 from rockbatch.report.markup import Markup, escape, number
 from rockbatch.report.table import THETA
 
 if TYPE_CHECKING:
     from jinja2 import Environment
+
+HERE = Path(__file__).parent
+
+
+class Section(NamedTuple):
+    """A part of the page: its heading, its anchor (the ``id`` that links go to), and what stands under the heading."""
+
+    heading: str
+    anchor: str
+    content: Markup
+
+
+def document(kind: str, title: str, sections: Iterable[Section], version: str = __version__) -> str:
+    """Return a whole page as HTML; sections without content are left out.
+
+    On paper each page has the title and ``version``, that of the rockbatch that made the results.
+    """
+    style, script = ((HERE / name).read_text(encoding="utf-8") for name in ("style.css", "script.js"))
+    return render(
+        "page.html", kind=kind, title=title, sections=[section for section in sections if section.content],
+        version=f"rockbatch {version}", digest=base64.b64encode(hashlib.sha256(script.encode()).digest()).decode(),
+        markers=markers(), style=Markup(style), script=Markup(script),
+    )  # fmt: skip
 
 
 def render(template: str, **values: object) -> Markup:
@@ -23,14 +52,10 @@ def _environment() -> "Environment":
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
     made = Environment(
-        loader=FileSystemLoader(Path(__file__).parent),
-        autoescape=True,
-        finalize=escape,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    made.filters |= {"number": number, "css": css_string, "as": lambda value, form: format(value, form)}
+        loader=FileSystemLoader(HERE), autoescape=True, finalize=escape, undefined=StrictUndefined,
+        trim_blocks=True, lstrip_blocks=True,
+    )  # fmt: skip
+    made.filters |= {"f": number, "css": css_string, "shell": shlex.join}
     made.globals |= {"counted": counted, "THETA": THETA}
     return made
 

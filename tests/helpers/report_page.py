@@ -46,6 +46,8 @@ class Page(HTMLParser):
             self.mismatched.append(tag)
 
     def handle_data(self, data: str) -> None:
+        if "pre" not in self.open:
+            data = re.sub(r" *\n *", " ", data)
         if "style" not in self.open and "script" not in self.open:
             self.words.append(data)
         if "td" in self.open or "th" in self.open:

@@ -18,10 +18,10 @@ from report_samples import FIG7, FOUNDATIONS, case_entry, response, three_piers,
 from rockbatch.errors import InputError
 from rockbatch.pier import Pier, RigidBase, YieldingBase
 from rockbatch.report import write_report
-from rockbatch.report.document import document
 from rockbatch.report.drawing.svg import COLOURS, MARKERS, curve, style_of, thin
 from rockbatch.report.finished import read
 from rockbatch.report.markup import escape, tag
+from rockbatch.report.templates import document
 
 NASTY = ["<script>alert(1)</script>", "$x_1$ & a&b", '"><img src=x onerror=alert(1)>', r"\frac{1}{2} </title></svg>"]
 

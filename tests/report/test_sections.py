@@ -4,40 +4,46 @@ import inspect
 import pkgutil
 import re
 from importlib import import_module
-from pathlib import Path
 
 import pandas as pd
 import pytest
 from report_page import Page
 from report_samples import case_entry, write_results
 
+import rockbatch.report.sections
 from rockbatch.pier import Damper, Pier, RigidBase
-from rockbatch.report import compared, sections
-from rockbatch.report.contents import Contents, read
-from rockbatch.report.document import Section, document
+from rockbatch.report import compared
+from rockbatch.report.finished import read
+from rockbatch.report.finished_analysis import Contents
 from rockbatch.report.markup import Markup
-from rockbatch.report.page import SECTIONS, SECTIONS_OF_TWO, page
+from rockbatch.report.page import PARTS, PARTS_OF_TWO, page, sections
 from rockbatch.report.sections import answer
+from rockbatch.report.templates import Section, document
 from rockbatch.results.run_json import describe_case
 from rockbatch.study import Case
 
 STUDY = {"title": "Piers & pads", "notes": "First.\n\nSecond.", "text": 'title = "Piers & pads"', "sha256": "0"}
 
 
-@pytest.mark.parametrize(
-    ("package", "listed", "told"), [(sections, SECTIONS, "contents"), (compared, SECTIONS_OF_TWO, "pair")]
-)
-def test_every_module_of_sections_has_one_door_and_stands_in_the_list_once(package, listed, told):
-    modules = [import_module(f"{package.__name__}.{each.name}") for each in pkgutil.iter_modules(package.__path__)]
+def test_every_module_of_sections_stands_in_the_list_of_the_page():
+    package = rockbatch.report.sections
+    modules = {module.name for module in pkgutil.iter_modules(package.__path__)}
     assert len(modules) >= 7
-    assert sorted(section.__module__ for section in listed) == sorted(module.__name__ for module in modules)
-    assert all(list(inspect.signature(module.section).parameters) == [told] for module in modules)
+    of_modules = [import_module(f"{package.__name__}.{name}").section for name in modules]
+    assert all(sum(part.content is section for part in PARTS) == 1 for section in of_modules)
+
+
+def test_every_public_function_on_two_studies_stands_in_the_list_of_their_page_once():
+    functions = [function for name, function in inspect.getmembers(compared, inspect.isfunction)
+                 if function.__module__ == compared.__name__ and not name.startswith("_")]  # fmt: skip
+    assert len(functions) == len(PARTS_OF_TWO) == len({part.anchor for part in PARTS_OF_TWO})
+    assert {part.content for part in PARTS_OF_TWO} == set(functions)
 
 
 def test_sections_of_a_run_stand_in_the_order_of_the_list_under_anchors_of_their_own(tmp_path):
     write_results(tmp_path)
     contents = read(tmp_path)
-    made = [made for section in SECTIONS if (made := section(contents)) is not None]
+    made = sections(contents)
     anchors = [one.anchor for one in made]
     assert len(set(anchors)) == len(anchors)
     assert anchors[:2] == ["answer", "figure"]
@@ -60,9 +66,8 @@ def test_a_folder_without_a_run_has_notes_and_the_study_file_alone(tmp_path):
 
 
 def test_a_section_that_does_not_apply_has_no_heading_and_no_link():
-    there = Section("Peaks", "peaks", Markup("<p>high</p>"))
-    assert document("kind", "title", [None, there, None]) == document("kind", "title", [there])
-    shown = Page(document("kind", "title", [None, there, None]))
+    there, nothing = Section("Peaks", "peaks", Markup("<p>high</p>")), Section("None", "none", Markup(""))
+    shown = Page(document("kind", "title", [nothing, there, nothing]))
     assert shown.headings == ["Peaks"]
     assert shown.links == {"#peaks"}
 
@@ -70,15 +75,15 @@ def test_a_section_that_does_not_apply_has_no_heading_and_no_link():
 def test_histories_verdicts_and_analyses_come_from_the_same_folder(tmp_path):
     write_results(tmp_path)
     contents = read(tmp_path, ())
-    assert contents.directory == Path(tmp_path)
-    assert contents.study["sha256"] == contents.finished.info["study"]["sha256"]
+    assert contents.directory == tmp_path
+    assert contents.study["sha256"] == contents.info["study"]["sha256"]
     assert list(contents.responses) == list(contents.verdicts) == []
     assert contents.analysis("fragility") is None
     (tmp_path / "fragility.json").write_text(
         f'{{"study": {{"sha256": "{contents.study["sha256"]}"}}, "curves": []}}', encoding="utf-8"
     )
     assert contents.analysis("fragility").info["curves"] == []
-    assert "fragility" not in [made.anchor for section in SECTIONS if (made := section(contents)) is not None]
+    assert "fragility" not in [made.anchor for made in sections(contents)]
 
 
 @pytest.mark.parametrize("run", [(0.38, 0.35), (0.35,)])
@@ -161,4 +166,4 @@ def test_the_answer_counts_runs_that_flew_apart_from_those_that_ended_so(tmp_pat
 
 
 def section_of(directory, module):
-    return module.section(read(directory, ())).content
+    return module.section(read(directory, ()))

@@ -12,7 +12,7 @@ from studies import COSINE, RIGID, SINE, study_text, write_study
 import rockbatch as rb
 from rockbatch.pier import Pier, YieldingBase
 from rockbatch.report import write_report
-from rockbatch.report.contents import read
+from rockbatch.report.finished import read
 from rockbatch.report.sections import distribution, estimate, forces, intensity, studied, target
 
 PULSES = tuple(
@@ -37,7 +37,7 @@ def asked(tmp_path_factory):
 
 
 def page_of(folder, module):
-    return Page(module.section(read(folder, ())).content)
+    return Page(module.section(read(folder, ())))
 
 
 # The distribution
@@ -46,12 +46,12 @@ def page_of(folder, module):
 def test_every_report_says_that_one_record_predicts_nothing_and_shows_the_suite(tmp_path):
     write_results(tmp_path, changes={("CPM000", "2"): {"status": "overturned"}, ("SYL360", "2"): {"status": "flight"}})
     section = distribution.section(read(tmp_path, ()))
-    page = Page(section.content)
+    page = Page(section)
     assert "predicts no earthquake" in page.text
     assert "Bachmann" in page.text
-    assert "33 % overturned, or ended by flight" in section.content
-    assert section.content.count("<figure") == 2  # the whole, and one panel
-    assert section.content.count('data-name="') == 5
+    assert "33 % overturned, or ended by flight" in section
+    assert section.count("<figure") == 2  # the whole, and one panel
+    assert section.count('data-name="') == 5
 
 
 def test_too_few_motions_have_no_distribution(tmp_path):
@@ -64,8 +64,8 @@ def test_too_few_motions_have_no_distribution(tmp_path):
 def test_more_groups_than_panels_are_told(tmp_path):
     write_results(tmp_path, scales=tuple(0.1 * i for i in range(1, 15)))
     section = distribution.section(read(tmp_path, ()))
-    assert section.content.count("<figcaption>motions scaled") == 12
-    assert "The first 12 of 14 groups are shown." in Page(section.content).text
+    assert section.count("<figcaption>motions scaled") == 12
+    assert "The first 12 of 14 groups are shown." in Page(section).text
 
 
 def test_of_more_foundations_than_can_be_told_apart_the_best_are_drawn(tmp_path):
@@ -73,7 +73,7 @@ def test_of_more_foundations_than_can_be_told_apart_the_best_are_drawn(tmp_path)
     etas = [2.0 + 0.1 * i for i in range(25)]
     cases = [case_entry("soil", {"eta": eta}, pier, YieldingBase(beta=40.0, eta=eta)) for eta in etas]
     write_results(tmp_path, cases=cases, varied=("eta",))
-    content = distribution.section(read(tmp_path, ())).content
+    content = distribution.section(read(tmp_path, ()))
     assert content.count('data-name="') == 7
     assert "The 7 best of 25 foundations are shown." in content
 
@@ -154,9 +154,9 @@ def test_without_a_block_on_rigid_ground_there_is_nothing_to_compare_estimates_w
 
 def test_the_target_is_drawn_with_every_record_and_the_mean_over_it(asked):
     section = target.section(read(asked, ()))
-    page = Page(section.content)
+    page = Page(section)
     for name in ("target", "mean of the records", *(pulse["name"] for pulse in PULSES)):
-        assert f'data-name="{name}"' in section.content
+        assert f'data-name="{name}"' in section
     saved = json.loads((asked / "run.json").read_text(encoding="utf-8"))["target"]
     over = [mean / aim for mean, aim in zip(saved["mean_sa_g"], saved["sa_g"], strict=True)]
     assert f"is {min(over):.2f} of the target at least" in page.text

@@ -2,22 +2,18 @@
 
 from collections.abc import Sequence
 
-from rockbatch.report.contents import Contents
-from rockbatch.report.document import Section, figure, paragraphs
 from rockbatch.report.drawing.accuracy import draw
 from rockbatch.report.finished import Finished
 from rockbatch.report.finished_accuracy import Level, chosen, read
 from rockbatch.report.labels import counted
-from rockbatch.report.markup import Markup, join, number, tag
+from rockbatch.report.markup import Markup, figure, join, number, paragraphs, tag
 from rockbatch.report.table import Head, table
 
 
-def section(contents: Contents) -> Section | None:
+def section(finished: Finished) -> Markup:
     """Report time and estimated errors of the runs, and the measurement of this study if any."""
-    if contents.finished is None:
-        return None
-    levels = read(contents.directory / "accuracy.csv", contents.study["sha256"])
-    return Section("Speed and error", "accuracy", join(paragraphs(_cost(contents.finished)), _measured(levels)))
+    levels = read(finished.directory / "accuracy.csv", finished.study["sha256"])
+    return join(paragraphs(_cost(finished)), _measured(levels))
 
 
 def _cost(finished: Finished) -> str:

@@ -6,8 +6,6 @@ from decimal import ROUND_UP, Decimal
 import numpy as np
 
 from rockbatch.checks.responses import RESPONSES, in_words, worst_of_all
-from rockbatch.report.contents import Contents
-from rockbatch.report.document import Section
 from rockbatch.report.finished import Finished
 from rockbatch.report.labels import counted
 from rockbatch.report.markup import Markup, join, number, tag
@@ -26,14 +24,10 @@ Facts = list[tuple[str, Markup]]
 """Headings with a sentence each."""
 
 
-def section(contents: Contents) -> Section | None:
+def section(finished: Finished) -> Markup:
     """Return the first screen; every check and every run follow further down."""
-    finished = contents.finished
-    if finished is None:
-        return None
-    passes = tag("div", verdicts.answer(contents.verdicts, finished), class_="lead")
-    content = join(passes, worst(finished), by_record(finished, contents.verdicts))
-    return Section("The answer", "answer", content)
+    passes = tag("div", verdicts.answer(finished), class_="lead")
+    return join(passes, worst(finished), by_record(finished))
 
 
 def worst(finished: Finished) -> Markup:

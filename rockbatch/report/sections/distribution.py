@@ -1,11 +1,9 @@
 """The distribution of the largest rotations over the suite, and what a single record can tell."""
 
 from rockbatch.checks.suite import counts_as
-from rockbatch.report.contents import Contents
-from rockbatch.report.document import Section, figure, paragraphs
 from rockbatch.report.drawing import distribution
 from rockbatch.report.finished import Finished
-from rockbatch.report.markup import Markup, join, tag
+from rockbatch.report.markup import Markup, figure, join, paragraphs, tag
 from rockbatch.report.overview import worst_first
 from rockbatch.report.sections.statistics import RECORDS
 
@@ -25,12 +23,11 @@ ONE_RECORD = (
 )
 
 
-def section(contents: Contents) -> Section | None:
+def section(finished: Finished) -> Markup:
     """Return the caution that belongs to every peak, and a curve for each case if there are enough records."""
-    finished = contents.finished
-    if finished is None or finished.runs.empty:
-        return None
-    return Section("One record and the suite", "distribution", join(paragraphs(ONE_RECORD), _picture(finished)))
+    if finished.runs.empty:
+        return Markup("")
+    return join(paragraphs(ONE_RECORD), _picture(finished))
 
 
 def _picture(finished: Finished) -> Markup:

@@ -6,11 +6,9 @@ from typing import Any
 import numpy as np
 
 from rockbatch.files import read_table
-from rockbatch.report.contents import Contents
-from rockbatch.report.document import Section, paragraphs
 from rockbatch.report.finished import Finished, as_dicts
 from rockbatch.report.labels import counted, heading
-from rockbatch.report.markup import Markup, join, tag
+from rockbatch.report.markup import Markup, join, paragraphs, tag
 from rockbatch.report.table import THETA_FORMAT, Head, alarm, table
 from rockbatch.results.estimate import DAMPING, ESTIMATE, START
 
@@ -39,17 +37,13 @@ WORDS = (
 )
 
 
-def section(contents: Contents) -> Section | None:
+def section(finished: Finished) -> Markup:
     """Return the estimates of every run; None if the study does not ask for them."""
-    finished = contents.finished
-    path = contents.directory / ESTIMATE
-    if finished is None or not path.exists():
-        return None
-    runs = as_dicts(read_table(path))
+    path = finished.directory / ESTIMATE
+    runs = as_dicts(read_table(path)) if path.exists() else []
     if not runs:
-        return None
-    content = join(paragraphs(*map(heading, WORDS)), _summary(finished, runs), _table(finished, runs))
-    return Section("Code estimates, for comparison", "estimate", content)
+        return Markup("")
+    return join(paragraphs(*map(heading, WORDS)), _summary(finished, runs), _table(finished, runs))
 
 
 def _summary(finished: Finished, runs: list[dict[str, Any]]) -> Markup:

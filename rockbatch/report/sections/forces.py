@@ -3,8 +3,6 @@
 import numpy as np
 
 from rockbatch.lazy import pd
-from rockbatch.report.contents import Contents
-from rockbatch.report.document import Section
 from rockbatch.report.finished import Finished, worst_first
 from rockbatch.report.labels import counted, head
 from rockbatch.report.markup import Markup, join, number, tag
@@ -19,14 +17,11 @@ _CUT_SHORT = ("flight", "failed")
 """Statuses of runs that ended early: their values are only bounds."""
 
 
-def section(contents: Contents) -> Section | None:
+def section(finished: Finished) -> Markup:
     """Report forces if the study asks for them."""
-    finished = contents.finished
-    if finished is None:
-        return None
     shown = [column for column in on_page("forces") if column.name in finished.runs]
     if not shown or finished.runs.empty:
-        return None
+        return Markup("")
     lead = tag(
         "p",
         "The greatest values of each case over its records, and below those of every run, until it ends or the pier leans beyond "
@@ -36,7 +31,7 @@ def section(contents: Contents) -> Section | None:
         "uplift, the earliest and the weakest ground are shown.",
     )
     parts = [lead, _sliding(finished), _of_frames(finished), _of_cases(finished, shown), tag("h3", "Every run")]
-    return Section("Forces", "forces", join(*parts, _every_run(finished, shown)))
+    return join(*parts, _every_run(finished, shown))
 
 
 def _of_cases(finished: Finished, shown: list[Column]) -> Markup:

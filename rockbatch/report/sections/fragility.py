@@ -6,13 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from rockbatch.report.contents import Contents
-from rockbatch.report.document import Section, figure
 from rockbatch.report.drawing.axes import Axes, Scale
 from rockbatch.report.drawing.svg import curve, key, line, marker, style_of, svg, text
-from rockbatch.report.finished_analysis import of_files
+from rockbatch.report.finished_analysis import Contents, of_files
 from rockbatch.report.labels import quantity
-from rockbatch.report.markup import Markup, join, tag
+from rockbatch.report.markup import Markup, figure, join, tag
 from rockbatch.report.table import Head, table
 
 WIDTH, HEIGHT = 300.0, 190.0
@@ -25,14 +23,14 @@ Curve = Mapping[str, Any]
 
 
 @of_files("fragility")
-def section(contents: Contents) -> Section | None:
+def section(contents: Contents) -> Markup:
     """Draw the fragility curves; None if there are none."""
     analysis = contents.analysis("fragility")
     if analysis is None or not analysis.info["curves"]:
-        return None
+        return Markup("")
     info = analysis.info
     drawn = figure(_panels(info), _caption(info))
-    return Section("Fragility", "fragility", join(_lead(info), drawn, _table(info), analysis.provenance()))
+    return join(_lead(info), drawn, _table(info), analysis.provenance())
 
 
 def _lead(info: Mapping[str, Any]) -> Markup:

@@ -6,13 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from rockbatch.report.contents import Contents
-from rockbatch.report.document import Section, figure
 from rockbatch.report.drawing.axes import Axes, Scale, spanning
 from rockbatch.report.drawing.history import LOOPS_HEIGHT, QUANTITIES, History, reduced
 from rockbatch.report.drawing.svg import Array, curve, line, lowered, marker, rectangle, svg, text
 from rockbatch.report.finished import Finished, as_dicts, worst_first
-from rockbatch.report.markup import Markup, join, tag
+from rockbatch.report.markup import Markup, figure, join, tag
 from rockbatch.results.histories_file import Responses
 from rockbatch.simulation.response import Response
 
@@ -27,13 +25,13 @@ LABELS = (QUANTITIES[0], QUANTITIES[1], QUANTITIES[2], lowered("ü", "g", "/g"))
 Row = dict[str, Any]
 
 
-def section(contents: Contents) -> Section | None:
+def section(finished: Finished) -> Markup:
     """Draw the stored histories; None if there are none."""
-    if contents.finished is None or not len(contents.responses):
-        return None
-    drawn = join(*(figure(*pair) for pair in _figures(contents.finished, contents.responses)))
+    if not len(finished.responses):
+        return Markup("")
+    drawn = join(*(figure(*pair) for pair in _figures(finished, finished.responses)))
     hint = "Point at a picture, touch it, or go through it with the arrow keys, to read values."
-    return Section("Histories", "histories", join(tag("p", hint, class_="scripted"), drawn, _others(contents.finished)))
+    return join(tag("p", hint, class_="scripted"), drawn, _others(finished))
 
 
 def _others(finished: Finished) -> Markup:

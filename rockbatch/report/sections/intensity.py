@@ -4,10 +4,8 @@ import math
 
 from rockbatch.files import read_table
 from rockbatch.lazy import pd
-from rockbatch.report.contents import Contents
-from rockbatch.report.document import Section, paragraphs
 from rockbatch.report.finished import Finished
-from rockbatch.report.markup import Markup, join, tag
+from rockbatch.report.markup import Markup, join, paragraphs, tag
 from rockbatch.report.table import Head, table
 from rockbatch.results.intensity import INTENSITY, LEAST_RUNS, MEANING, orders
 
@@ -20,15 +18,12 @@ SYMBOLS = {
 }
 
 
-def section(contents: Contents) -> Section | None:
+def section(finished: Finished) -> Markup:
     """Report the measure that orders the peaks best in each case; None if the study does not ask for measures."""
-    finished = contents.finished
-    path = contents.directory / INTENSITY
-    if finished is None or not path.exists():
-        return None
-    measures = read_table(path)
-    if measures.empty:
-        return None
+    path = finished.directory / INTENSITY
+    measures = read_table(path) if path.exists() else None
+    if measures is None or measures.empty:
+        return Markup("")
     order = orders(measures, finished.info["varied"])
     explained = (
         "How well each measure of the motion orders the largest rotations of a case: Spearman's rank correlation ρ (1: in the "
@@ -41,9 +36,7 @@ def section(contents: Contents) -> Section | None:
         "components of a station the runs are not independent of each other; with few runs ρ is little more than chance."
     )
     files = join("The measures of every run: ", tag("code", INTENSITY), f"; lines and ρ from {LEAST_RUNS} runs on.")
-    return Section(
-        "Intensity measures", "intensity", join(paragraphs(explained, counted, files), _order(finished, order))
-    )
+    return join(paragraphs(explained, counted, files), _order(finished, order))
 
 
 def _order(finished: Finished, order: "pd.DataFrame") -> Markup:

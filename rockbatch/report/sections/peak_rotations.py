@@ -4,11 +4,9 @@ import math
 from collections.abc import Sequence
 
 from rockbatch.lazy import pd
-from rockbatch.report.contents import Contents
-from rockbatch.report.document import Section, figure
 from rockbatch.report.drawing.panels import draw
 from rockbatch.report.finished import Finished, worst_first
-from rockbatch.report.markup import Markup, join, tag
+from rockbatch.report.markup import Markup, figure, join, tag
 from rockbatch.report.overview import by_foundation, ceiling
 from rockbatch.report.sections.peaks import at_a_glance
 from rockbatch.report.table import THETA
@@ -27,11 +25,10 @@ MOST_MARKS = 12_000  # on the page: a megabyte and a half
 MOST_OF_A_FIGURE = 2_000  # foundations under one record, each with its line in the legend
 
 
-def section(contents: Contents) -> Section | None:
+def section(finished: Finished) -> Markup:
     """Draw a figure for each pier and scale, with its numbers."""
-    finished = contents.finished
-    if finished is None or finished.runs.empty:
-        return None
+    if finished.runs.empty:
+        return Markup("")
     runs = finished.runs
     caption = [
         "Largest rotation over slenderness, ", THETA, ", records in order of peak ground acceleration",
@@ -39,7 +36,7 @@ def section(contents: Contents) -> Section | None:
         "; open markers and dashed lines: horizontal component reversed" if finished.both_directions else "", ".",
     ]  # fmt: skip
     if max(group["series"].nunique() for _, group in finished.groups()) > MOST_SERIES:
-        return Section("Peak rotations", "figure", by_foundation(finished))
+        return by_foundation(finished)
     drawn = figures(finished, caption)
     stood = runs[runs["status"] == "ok"]
     marks = {
@@ -52,7 +49,7 @@ def section(contents: Contents) -> Section | None:
     legend = [
         tag("p", tag("sup", mark), " ", words, class_="legend") for mark, (words, mask) in marks.items() if mask.any()
     ]
-    return Section("Peak rotations", "figure", join(drawn, *legend))
+    return join(drawn, *legend)
 
 
 def chosen(finished: Finished, runs: "pd.DataFrame", figures: int = 1) -> list[str]:

@@ -5,8 +5,6 @@ from typing import TYPE_CHECKING, Any
 
 from rockbatch.checks.suite import OTHER_LAW, creeps
 from rockbatch.lazy import pd
-from rockbatch.report.contents import Contents
-from rockbatch.report.document import Section
 from rockbatch.report.finished import Finished, as_dicts, worst_first
 from rockbatch.report.labels import counted, head, symbol
 from rockbatch.report.markup import Markup, join, number, tag
@@ -20,18 +18,17 @@ if TYPE_CHECKING:
 MOST_COLUMNS = 24
 
 
-def section(contents: Contents) -> Section | None:
+def section(finished: Finished) -> Markup:
     """Return every run in a table."""
-    finished = contents.finished
-    if finished is None or finished.runs.empty:
-        return None
+    if finished.runs.empty:
+        return Markup("")
     lead = [
         "The worst first: overturned, ended by flight, then by rotation. All of it is in ",
         tag("a", tag("code", PEAKS), href=PEAKS), ", beside this page. ",
         tag("span", "Click a heading to sort.", class_="scripted"),
     ]  # fmt: skip
     above = (tag("p", *lead), _linearised(finished), _ratcheting(finished))
-    return Section("Every run", "peaks", join(*above, _every_run(finished)))
+    return join(*above, _every_run(finished))
 
 
 def at_a_glance(finished: Finished, runs: "pd.DataFrame", records: "Sequence[str]") -> Markup:

@@ -4,8 +4,6 @@ import math
 from fnmatch import fnmatchcase
 from typing import Any
 
-from rockbatch.report.contents import Contents
-from rockbatch.report.document import Section
 from rockbatch.report.finished import Finished, as_dicts
 from rockbatch.report.labels import symbol
 from rockbatch.report.markup import Markup, join, tag
@@ -14,12 +12,9 @@ from rockbatch.report.table import THETA, THETA_FORMAT, Head, table
 from rockbatch.results.suite_statistics import NO_PEAK
 
 
-def section(contents: Contents) -> Section | None:
+def section(finished: Finished) -> Markup:
     """Compare with the references of the study; None if it has none."""
-    finished = contents.finished
-    if finished is None or not finished.info["references"]:
-        return None
-    return Section("Compared with published values", "references", _published(finished))
+    return _published(finished) if finished.info["references"] else Markup("")
 
 
 def _published(finished: Finished) -> Markup:

@@ -7,13 +7,11 @@ import numpy as np
 
 from rockbatch.checks.statistics import STATISTICS
 from rockbatch.lazy import pd
-from rockbatch.report.contents import Contents
-from rockbatch.report.document import Section, figure
 from rockbatch.report.drawing.axes import Axes, Scale, spanning
 from rockbatch.report.drawing.svg import key, line, lowered, rectangle, svg, text
-from rockbatch.report.finished_analysis import named, of_files
+from rockbatch.report.finished_analysis import Contents, named, of_files
 from rockbatch.report.labels import SYMBOLS
-from rockbatch.report.markup import Markup, join, number, tag
+from rockbatch.report.markup import Markup, figure, join, number, tag
 from rockbatch.report.table import Head, alarm, table
 
 WIDTH, LEFT, TOP, ROW = 440, 84, 20, 30
@@ -23,14 +21,14 @@ SOBOL = ("case", "parameter", "first", "first_error", "total", "total_error")
 
 
 @of_files("sensitivity")
-def section(contents: Contents) -> Section | None:
+def section(contents: Contents) -> Markup:
     """Report the inputs one at a time, and all at once; None if they were not studied."""
     analysis = contents.analysis("sensitivity")
     if analysis is None:
-        return None
+        return Markup("")
     swings, shares = analysis.table("sensitivity.csv", TORNADO), analysis.table("sobol.csv", SOBOL)
     if swings is None or shares is None:
-        return None
+        return Markup("")
     keys = ["case", *analysis.info["varied"]]
     parts = [_lead(analysis.info), _without_vertical(analysis.info)]
     for names, own in swings.groupby(keys, sort=False, dropna=False):
@@ -42,7 +40,7 @@ def section(contents: Contents) -> Section | None:
         parts.append(figure(_bars(both), f"{words}: all inputs at once over their ranges."))
         parts.append(_numbers(both))
     parts.append(analysis.provenance())
-    return Section("What the answer depends on", "sensitivity", join(*parts))
+    return join(*parts)
 
 
 def _lead(info: dict[str, Any]) -> Markup:

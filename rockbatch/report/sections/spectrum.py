@@ -3,8 +3,6 @@
 import numpy as np
 
 from rockbatch.lazy import pd
-from rockbatch.report.contents import Contents
-from rockbatch.report.document import Section, figure
 from rockbatch.report.drawing import overturning_map
 from rockbatch.report.drawing.axes import Axes, Scale
 from rockbatch.report.drawing.svg import (
@@ -19,9 +17,9 @@ from rockbatch.report.drawing.svg import (
     svg,
     text,
 )
-from rockbatch.report.finished_analysis import FinishedAnalysis, named, of_files
+from rockbatch.report.finished_analysis import Contents, FinishedAnalysis, named, of_files
 from rockbatch.report.labels import quantity, symbol
-from rockbatch.report.markup import Markup, join, tag
+from rockbatch.report.markup import Markup, figure, join, tag
 from rockbatch.report.table import sub
 
 WIDTH, HEIGHT = 420.0, 250.0
@@ -33,11 +31,11 @@ QUANTILES = {"median": "", "p16": " d2", "p84": " d1"}
 
 
 @of_files("spectrum")
-def section(contents: Contents) -> Section | None:
+def section(contents: Contents) -> Markup:
     """Draw rocking spectra and overturning maps; None if there are none."""
     analysis = contents.analysis("spectrum")
     if analysis is None:
-        return None
+        return Markup("")
     parts = []
     suite = analysis.table("spectrum_suite.csv", ("case", "scale", "alpha", "count", *QUANTILES))
     if suite is not None:
@@ -45,8 +43,7 @@ def section(contents: Contents) -> Section | None:
     regions = analysis.table("overturning_map.csv", ("map", "case", "omega_p_over_p", "outcome", "low", "high"))
     if regions is not None:
         parts += _maps(analysis, regions)
-    content = join(*parts, analysis.provenance())
-    return Section("Rocking spectra and overturning", "spectrum", content) if parts else None
+    return join(*parts, analysis.provenance()) if parts else Markup("")
 
 
 # Rocking spectra

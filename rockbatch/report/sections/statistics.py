@@ -10,8 +10,6 @@ import numpy.typing as npt
 
 from rockbatch.checks.suite import counts_as
 from rockbatch.lazy import pd
-from rockbatch.report.contents import Contents
-from rockbatch.report.document import Section
 from rockbatch.report.finished import Finished
 from rockbatch.report.labels import heading
 from rockbatch.report.markup import Markup, join, tag
@@ -33,17 +31,15 @@ WORDS = (
 )
 
 
-def section(contents: Contents) -> Section | None:
+def section(finished: Finished) -> Markup:
     """Return tables of every quantity, a row for each case; with and without the vertical component side by side."""
-    finished = contents.finished
-    if finished is None or finished.runs.empty:
-        return None
+    if finished.runs.empty:
+        return Markup("")
     runs, keys = finished.runs, ["scale", "pier", "series"]
     names, heads = rows_of(finished, runs, keys)
     shown = dict(islice(names.items(), MOST_ROWS))
     sides = {str(side): same for side, same in runs.groupby("with_vertical")}
-    content = join(told_apart(len(shown), len(names)), tables(sides, keys, shown, heads, finished.count))
-    return Section("The suite in each case", "suite", content)
+    return join(told_apart(len(shown), len(names)), tables(sides, keys, shown, heads, finished.count))
 
 
 def rows_of(finished: Finished, runs: "pd.DataFrame", keys: list[str]) -> tuple[dict[Row, list[str]], list[Head]]:

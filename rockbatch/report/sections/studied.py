@@ -5,8 +5,6 @@ from collections.abc import Mapping
 from typing import Any
 
 from rockbatch.pier.statics import lift_off_acceleration, lift_off_rotation, unstable_equilibrium
-from rockbatch.report.contents import Contents
-from rockbatch.report.document import Section
 from rockbatch.report.drawing import pier as drawing
 from rockbatch.report.finished import Finished
 from rockbatch.report.labels import counted, plain, quantity, symbol
@@ -35,14 +33,7 @@ BALANCE = (
 )
 
 
-def section(contents: Contents) -> Section | None:
-    """Describe the study."""
-    if contents.finished is None:
-        return None
-    return Section("What was studied", "studied", studied(contents.finished))
-
-
-def studied(finished: Finished, level: str = "h3") -> Markup:
+def section(finished: Finished, level: str = "h3") -> Markup:
     """Describe the pier, the foundations and the records; ``level`` is that of the headings within."""
     info, runs = finished.info, finished.runs
     piers: dict[tuple[float, ...], dict[str, float]] = {}

@@ -7,8 +7,6 @@ from rockbatch.checks import Verdict, wording
 from rockbatch.checks.answer import Line
 from rockbatch.checks.answer import answer as answered
 from rockbatch.checks.verdicts import CHECKS, DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS
-from rockbatch.report.contents import Contents
-from rockbatch.report.document import Section
 from rockbatch.report.finished import Finished
 from rockbatch.report.labels import quantity
 from rockbatch.report.markup import Markup, join, number, tag
@@ -21,11 +19,11 @@ MOST_WORST = 10
 """Rows of the worst verdicts, if there are too many to list all."""
 
 
-def section(contents: Contents) -> Section | None:
+def section(finished: Finished) -> Markup:
     """Return all checks in all cases, their demands, and all verdicts, or the worst of many; None without checks."""
-    verdicts = contents.verdicts
+    verdicts = finished.verdicts
     if not verdicts:
-        return None
+        return Markup("")
     parts: list[object] = [legend()]
     notes = wording.Notes(verdicts)
     if len(verdicts) > wording.MOST:
@@ -39,7 +37,7 @@ def section(contents: Contents) -> Section | None:
     else:
         rest = [verdict for verdict in verdicts if verdict.verdict not in (FAIL, NOT_DECIDED)]
         parts += [matrix(verdicts), tag("h3", "Every verdict"), _every([*wording.worst_first(verdicts), *rest], notes)]
-    return Section("Every check", "checks", join(*parts, tag("h3", "What the checks ask"), _asked(verdicts)))
+    return join(*parts, tag("h3", "What the checks ask"), _asked(verdicts))
 
 
 def mark(verdict: str, words: str) -> Markup:
@@ -48,8 +46,9 @@ def mark(verdict: str, words: str) -> Markup:
     return tag("span", sign, f"\u00a0{words}" if words else "", class_=CLASSES[verdict])
 
 
-def answer(verdicts: Sequence[Verdict], finished: Finished) -> Markup:
+def answer(finished: Finished) -> Markup:
     """Report the cases that pass, what fails and by how much, and what is not decided."""
+    verdicts = finished.verdicts
     if not verdicts:
         return join(
             "No limits were set: nothing here passes or fails. ", tag("code", "rockbatch check"),

@@ -1,1 +1,0 @@
-"""The sections of the page of two studies, each a function ``section(pair)``; their order is that of page.py."""

@@ -1,0 +1,99 @@
+"""The ground motions: response spectra, intensity measures, sources, and those that could not be used."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from rockbatch.report.drawing import response_spectra
+from rockbatch.report.finished import Finished
+from rockbatch.report.markup import Markup, figure, join, tag
+from rockbatch.report.table import Head, listed, table
+
+PULSE_LIKE = (
+    "by the criterion of Baker (2007), of the record before scaling; late, weak: no, because the pulse arrives late or PGV is "
+    "below 0.3 m/s"
+)
+Record = Mapping[str, Any]
+COLUMNS = (
+    Head("station", note="its components count as one record", of="station"),
+    Head("PGA [g]", ".3f", of="pga_g"),
+    Head("PGV [m/s]", ".3f", of="pgv_m_s"),
+    Head("PGD [m]", ".3f", of="pgd_m"),
+    Head("vertical PGA [g]", ".3f", of="pga_v_g"),
+    Head("Arias [m/s]", ".3f", "arias_m_s: Arias intensity", of="arias_m_s"),
+    Head("D5–95 [s]", ".1f", "d5_95_s: significant duration, from 5 to 95 % of the Arias intensity", of="d5_95_s"),
+    Head("dt [s]", of="dt_s"),
+    Head("points", of="npts"),
+    Head("length [s]", ".2f", "duration_s: from the first to the last sample", of="duration_s"),
+    Head(
+        "processed", note="whether its agency has corrected it; empty: the file does not say",
+        of=lambda record: {True: "yes", False: "no"}.get(record.get("processed", "")),
+    ),
+    Head(
+        "to check", note="what is odd about it; the notes below say more",
+        of=lambda record: ", ".join(finding["what"] for finding in record.get("findings", [])) or None,
+    ),
+    Head("azimuth [°]", note="degrees clockwise from north", of="azimuth_deg"),
+    Head("M", note="magnitude", of="magnitude"),
+    Head("distance [km]", of="distance_km"),
+    Head("factor", ".4g", "what brought the record to the study's target", of="factor"),
+    Head("pulse-like", note=PULSE_LIKE, of="pulse"),
+    Head("pulse indicator", ".2f", "pulse_indicator: above 0.85 pulse-like, below 0.15 not", of="pulse_indicator"),
+    Head("pulse [s]", ".2f", "pulse_period_s: period of the largest pulse", of="pulse_period_s"),
+)  # fmt: skip
+"""Columns of the table of ground motions; those of a name hold that value of run.json."""
+
+
+def section(finished: Finished) -> Markup:
+    """Describe the ground motions that could be used, in a table like the paper's Table 1, the weakest first."""
+    if not finished.info["records"]:
+        return Markup("")
+    caption = "before the study's scale."
+    drawn = Markup("") if "target" in finished.info else spectra(finished, caption)
+    records = sorted(finished.info["records"], key=lambda record: (record["pga_g"], record["record"]))
+    name = Head("record", of=lambda record: finished.shown(record["record"]))
+    scaled = any(record.get("factor", 1.0) != 1.0 for record in records)
+    heads = [name, *(head for head in COLUMNS if scaled or head.of != "factor")]
+    lacking = finished.info.get("without_vertical")
+    without = tag("p", f"no vertical: {'; '.join(map(finished.named, lacking))}") if lacking else ""
+    sources = [
+        name,
+        Head("horizontal from", of=lambda record: _path(record["source"])),
+        Head("vertical from", of=lambda record: _path(record["vertical_source"])),
+        Head("what was done", of=_done),
+    ]
+    return join(
+        drawn, listed(heads, records, sortable=True, name="Ground motions"), without,
+        tag("h3", "Where they come from, and what was done to them"), listed(sources, records, prose=True, name="Sources"),
+    )  # fmt: skip
+
+
+def spectra(finished: Finished, caption: str, fitted: tuple[float, float] | None = None) -> Markup:
+    """Draw the response spectra; empty if run.json has none that fit its records, as for very large suites."""
+    records, shown = finished.info["records"], finished.info.get("spectra")
+    if not shown or len(shown["sa_g"]) != len(records) or not response_spectra.drawable(shown):
+        return Markup("")
+    drawn = response_spectra.draw(shown, [finished.label(record["record"]) for record in records], fitted)
+    lead = f"Pseudo-spectral accelerations of the horizontal components, {100 * shown['damping']:g} % damped, "
+    return figure(drawn, lead, caption)
+
+
+def _path(source: str | None) -> object:
+    return source and tag("span", source, class_="path")
+
+
+def _done(record: Record) -> object:
+    return tag("ul", *(tag("li", note) for note in record["notes"])) if record["notes"] else ""
+
+
+def unusable(finished: Finished) -> Markup:
+    """List files and runs that gave no result, and files and records that were left out on purpose, with reasons."""
+    rows = [[entry["name"], "", entry["source"], entry["reason"]] for entry in finished.info["unusable"]]
+    failed = finished.runs[finished.runs["status"] == "failed"]
+    rows += [[finished.shown(run["record"]), finished.which(run), "", run["reason"]] for _, run in failed.iterrows()]
+    heads = [Head("record"), Head("case"), Head("file"), Head("why")]
+    drawn = table(heads, rows, prose=True, name="Not used") if rows else Markup("")
+    left = finished.info.get("left_out")
+    if not left:
+        return drawn
+    heads = [Head("record", of="name"), Head("file", of="source"), Head("why", of="reason")]
+    return join(drawn, tag("h3", "Left out"), listed(heads, left, prose=True, name="Left out"))
