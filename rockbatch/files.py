@@ -100,6 +100,15 @@ def sha256_of(path: Path) -> str:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
 
+def made_folder(path: Path) -> Path:
+    """Make a folder, and those that it lies in; return it. Raises ``InputError`` where a file stands in its place."""
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except (FileExistsError, NotADirectoryError) as error:
+        raise InputError(f"{path}: a file stands in the place of the folder; choose another") from error
+    return path
+
+
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
     """Yield a temporary file beside ``path`` that takes its place at the end of the ``with`` block, or is removed on an error.

@@ -50,6 +50,9 @@ class Bounds:
 POSITIVE = Bounds(LEAST, MOST)
 """Any number above 0."""
 
+NOT_NEGATIVE = Bounds(0.0, MOST, why="must be 0 or above")
+"""Any number but a negative one."""
+
 _ACCELERATION_IN_M_S2 = {
     "m/s2": 1.0,
     "cm/s2": 0.01,

@@ -8,10 +8,11 @@ from typing import ClassVar
 
 from rockbatch.analysis.error_and_time import Clock, measure, references
 from rockbatch.analysis.folder import Analysis
+from rockbatch.arguments import checked
 from rockbatch.batch.compiling import make_ready
 from rockbatch.batch.listening import Progress, listener_of
 from rockbatch.errors import InputError
-from rockbatch.files import is_plain, read_text, write_whole
+from rockbatch.files import is_plain, made_folder, read_text, write_whole
 from rockbatch.lazy import pd
 from rockbatch.report import write_report
 from rockbatch.results.columns import PEAKS
@@ -50,8 +51,7 @@ class Accuracy(Analysis):
 
         Returns the paths written. Raises ``InputError`` if the disk is full.
         """
-        directory = Path(folder)
-        directory.mkdir(parents=True, exist_ok=True)
+        directory = made_folder(Path(folder))
         path = directory / "accuracy.csv"
         write_whole(path, self.accuracy.to_csv(index=False, float_format="%.6g", lineterminator="\n"))
         return (path, write_report(directory)) if self._has_results(directory) else (path,)
@@ -67,6 +67,7 @@ class Accuracy(Analysis):
         return same and is_plain(directory / PEAKS)
 
 
+@checked
 def accuracy(
     study: str | os.PathLike[str] | Study,
     out: str | os.PathLike[str] | None = None,

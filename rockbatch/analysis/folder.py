@@ -17,6 +17,7 @@ from rockbatch.errors import InputError
 from rockbatch.files import (
     csv_text,
     is_plain,
+    made_folder,
     only_writer,
     read_table,
     read_text,
@@ -86,8 +87,7 @@ class Analysis(Shown):
 
         Raises ``InputError`` if the disk is full, or if another process is writing into the folder.
         """
-        directory = Path(folder)
-        directory.mkdir(parents=True, exist_ok=True)
+        directory = made_folder(Path(folder))
         with only_writer(directory):
             results = AnalysisFolder(directory, self.NAME, self.study)
             results.info = self.info | {"files": []}

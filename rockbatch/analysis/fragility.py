@@ -9,6 +9,7 @@ from rockbatch.analysis.folder import Analysis, analysis_folder
 from rockbatch.analysis.fragility_curves import Curve, assess, intensities, output
 from rockbatch.analysis.fragility_tables import CAPACITIES, POINTS, RUNS, capacities, described, points
 from rockbatch.analysis.waves import Waves
+from rockbatch.arguments import checked
 from rockbatch.batch.compiling import make_ready
 from rockbatch.batch.digests import digests
 from rockbatch.batch.listening import Progress, count, listener_of, once
@@ -50,6 +51,7 @@ class Fragility(Analysis):
     spec: FragilitySpec
 
 
+@checked
 def fragility(
     study: str | os.PathLike[str] | Study,
     out: str | os.PathLike[str] | None = None,

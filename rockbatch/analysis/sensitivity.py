@@ -19,6 +19,7 @@ from rockbatch.analysis import sampled
 from rockbatch.analysis.folder import Analysis, AnalysisFolder, analysis_folder
 from rockbatch.analysis.sampled import Point, Points, Suite
 from rockbatch.analysis.sobol import COLUMNS, indices
+from rockbatch.arguments import checked
 from rockbatch.batch.carrying_out import carry_out
 from rockbatch.batch.compiling import make_ready
 from rockbatch.batch.digests import digests
@@ -61,6 +62,7 @@ class Sensitivity(Analysis):
     spec: SensitivitySpec
 
 
+@checked
 def sensitivity(
     study: str | os.PathLike[str] | Study,
     out: str | os.PathLike[str] | None = None,

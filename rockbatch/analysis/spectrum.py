@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 from rockbatch.analysis import overturning_map, rocking_spectrum
 from rockbatch.analysis.folder import Analysis, AnalysisFolder, analysis_folder
 from rockbatch.analysis.waves import Waves
+from rockbatch.arguments import checked
 from rockbatch.batch.carrying_out import carry_out
 from rockbatch.batch.compiling import make_ready
 from rockbatch.batch.digests import digests
@@ -54,6 +55,7 @@ class Spectrum(Analysis):
     maps: tuple[MapSpec, ...]
 
 
+@checked
 def spectrum(
     study: str | os.PathLike[str] | Study,
     out: str | os.PathLike[str] | None = None,

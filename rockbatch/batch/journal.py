@@ -15,7 +15,7 @@ from typing import Any, NamedTuple, Self
 
 from rockbatch.batch.plan import MOST_RUNS
 from rockbatch.errors import InputError
-from rockbatch.files import csv_line, csv_lines, csv_plain, only_writer, opened, replacing, told_when_full
+from rockbatch.files import csv_line, csv_lines, csv_plain, made_folder, only_writer, opened, replacing, told_when_full
 
 ABSENT = -1
 ROWS_AT_ONCE = 1000
@@ -92,7 +92,7 @@ class Journal:
 
     def __enter__(self) -> Self:
         with ExitStack() as entered, told_when_full(self.path):
-            self.path.parent.mkdir(parents=True, exist_ok=True)
+            made_folder(self.path.parent)
             entered.enter_context(only_writer(self.path.parent))
             if self._fresh:
                 self.path.unlink(missing_ok=True)

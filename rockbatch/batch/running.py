@@ -7,6 +7,7 @@ from collections.abc import Collection, Sequence
 from pathlib import Path
 from typing import Any
 
+from rockbatch.arguments import checked
 from rockbatch.batch.carrying_out import InMemory, carry_out, to_simulate
 from rockbatch.batch.compiling import make_ready
 from rockbatch.batch.digests import study_digests
@@ -33,6 +34,7 @@ from rockbatch.study.suite import ground_motions
 from rockbatch.toml.kinds import closest
 
 
+@checked
 def run(
     study: str | os.PathLike[str] | Study,
     out: str | os.PathLike[str] | None = None,

@@ -4,6 +4,7 @@ import math
 from dataclasses import replace
 from typing import TypedDict, Unpack
 
+from rockbatch.arguments import checked
 from rockbatch.errors import InputError
 from rockbatch.motions import Motion
 from rockbatch.motions.plausible import unlikely_samples
@@ -26,6 +27,7 @@ class Steps(TypedDict, total=False):
     quiet_s: float
 
 
+@checked
 def simulate(
     pier: Pier,
     foundation: Base,

@@ -5,7 +5,7 @@ from collections.abc import Generator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass
 from types import TracebackType
-from typing import Protocol, Self
+from typing import Protocol, Self, runtime_checkable
 
 from rockbatch.batch.groups import NOTHING_MORE, groups, outcomes_of
 from rockbatch.batch.plan import PlannedRun
@@ -21,6 +21,7 @@ Outcomes = list[tuple[int, Outcome]]
 """Index and outcome of the runs of a group."""
 
 
+@runtime_checkable
 class Engine(Protocol):
     """Carries out runs; a context, within which it may be used several times. ``str`` says what it is: "2 threads"."""
 

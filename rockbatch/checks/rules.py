@@ -3,6 +3,7 @@
 import math
 from dataclasses import dataclass
 
+from rockbatch.arguments import checked
 from rockbatch.checks.demands import DEMANDS
 from rockbatch.checks.statistics import STATISTICS
 from rockbatch.errors import InputError
@@ -34,6 +35,7 @@ CONFIRMED = ("at_most", "at_least", "above")
 USUAL = {"overturned": "infinite", "flight": "unknown", "failed": "unknown"}
 
 
+@checked
 @dataclass(frozen=True)
 class Rule:
     """One check.

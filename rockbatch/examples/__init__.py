@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from rockbatch.errors import InputError
+from rockbatch.files import made_folder
 
 FIRST = "first_study"
 """The example from which a new study begins."""
@@ -96,7 +97,7 @@ def copy(name: str, to: Path, study: str) -> list[Path]:
     for path in written:
         if path.exists():
             raise InputError(f"{path} is there already; name another folder, or move it away")
-    to.mkdir(parents=True, exist_ok=True)
+    made_folder(to)
     if records:
         shutil.copytree(records, to / RECORDS)
     shutil.copyfile(chosen.path.parent / _CHECKED_IN, to / CHECKS)

@@ -11,6 +11,7 @@ from typing import Literal
 
 import numpy as np
 
+from rockbatch.arguments import checked
 from rockbatch.errors import InputError, NoRecordError, UnstatedError
 from rockbatch.motions import archives, fema_p695
 from rockbatch.motions.baseline import Offset, corrected
@@ -46,6 +47,7 @@ class _Asked:
     watch: Watch
 
 
+@checked
 def read_motions(
     paths: Paths,
     *,

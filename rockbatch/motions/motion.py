@@ -2,18 +2,22 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
 
+from rockbatch.arguments import checked
 from rockbatch.errors import InputError
+from rockbatch.lazy import pd
 from rockbatch.motions.origin import UNKNOWN_ORIGIN, Origin
+from rockbatch.motions.spectrum import PERIODS, Samples, spectral_acceleration
 from rockbatch.showing import Shown
-from rockbatch.units import GRAVITY
+from rockbatch.units import GRAVITY, acceleration_factor
 
-Samples = npt.NDArray[np.float64]
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True)
@@ -23,6 +27,7 @@ class Initial:
     velocity: float = 0.0
     displacement: float = 0.0
 
+    @checked
     def times(self, factor: float) -> "Initial":
         """That of a motion ``factor`` times as large."""
         return Initial(self.velocity * factor, self.displacement * factor)
@@ -50,7 +55,30 @@ class Finding:
     key: str = "confirm"
 
 
-@dataclass(frozen=True, repr=False)
+def _frozen(samples: object) -> Samples:
+    """Return samples as an array of ``float64`` that nobody can change; ``TypeError`` if they are no real numbers."""
+    if np.ma.is_masked(samples):
+        raise TypeError("has masked samples: fill them or leave the record out")
+    if (
+        isinstance(samples, np.ndarray)
+        and not samples.flags.writeable
+        and samples.base is None
+        and samples.dtype == float
+    ):
+        return samples
+    try:
+        values = np.asarray(samples)
+    except ValueError as error:
+        raise TypeError(f"cannot be made an array of: {error}") from error
+    if values.dtype.kind not in "iuf":
+        raise TypeError(f"has samples of type {values.dtype}: must be real numbers")
+    frozen = np.array(values, dtype=np.float64)
+    frozen.flags.writeable = False
+    return frozen
+
+
+@checked
+@dataclass(frozen=True, repr=False, eq=False)
 class Motion(Shown):
     """A ground motion in SI units, sampled evenly and linear between its samples.
 
@@ -131,6 +159,12 @@ class Motion(Shown):
         for what, samples in (("horizontal", self.horizontal), ("vertical", self.vertical)):
             if samples is None:
                 continue
+            try:
+                samples = _frozen(samples)
+            except TypeError as error:
+                wrong.append(f'motion "{self.name}": {what} acceleration {error}')
+                continue
+            object.__setattr__(self, what, samples)
             if np.ndim(samples) != 1 or len(samples) == 0:
                 wrong.append(
                     f'motion "{self.name}": {what} acceleration has shape {np.shape(samples)}: must be samples in a row'
@@ -148,6 +182,79 @@ class Motion(Shown):
             )
         if wrong:
             raise InputError(*wrong)
+
+    @classmethod
+    @checked
+    def from_array(
+        cls,
+        values: object,
+        dt: float,
+        unit: str,
+        *,
+        name: str = "motion",
+        vertical: object = None,
+        gravity: float = GRAVITY,
+    ) -> "Motion":
+        """Return a motion of samples in ``unit``.
+
+        Parameters
+        ----------
+        values : array_like, shape (npts,)
+            Horizontal ground acceleration.
+        dt : float
+            Sampling interval [s].
+        unit : str
+            Of both components: "g", "m/s2", "cm/s2", …
+        vertical : array_like, shape (npts,), optional
+        gravity : float
+            What "g" is [m/s²].
+
+        Raises ``InputError`` for samples that are no real numbers, another unit, or lengths that differ.
+
+        Examples
+        --------
+        >>> rb.Motion.from_array([0.0, 0.5, -0.3, 0.0], 0.02, "g", name="mine").pga
+        4.905
+        """
+        try:
+            factor = acceleration_factor(unit, gravity)
+        except ValueError as error:
+            raise InputError(str(error)) from error
+        motion = cls(name, dt, values, vertical)  # type: ignore[arg-type]
+        return motion if factor == 1.0 else motion.scaled(factor)
+
+    @classmethod
+    def from_obspy(cls, stream: Any, unit: str, *, name: str = "") -> "Motion":
+        """Return a motion of an ObsPy ``Stream`` of acceleration in ``unit``: a horizontal component, and a vertical one if any.
+
+        The vertical one is that whose channel ends with "Z". Raises ``InputError`` for another number of components, gaps, or
+        sampling that differs. Counts have to be freed of the instrument's response before.
+        """
+        traces = list(stream)
+        vertical = [trace for trace in traces if trace.stats.channel.upper().endswith("Z")]
+        horizontal = [trace for trace in traces if trace not in vertical]
+        if len(horizontal) != 1 or len(vertical) > 1:
+            ids = ", ".join(trace.id for trace in traces) or "none"
+            raise InputError(
+                f"stream: needs one horizontal component and one vertical one at most, not {ids}; use stream.select"
+            )
+        steps = {(trace.stats.delta, str(trace.stats.starttime)) for trace in traces}
+        if len(steps) > 1:
+            raise InputError(
+                "stream: its components differ in sampling interval or start; use stream.trim and interpolate"
+            )
+        (trace,) = horizontal
+        return cls.from_array(
+            trace.data, trace.stats.delta, unit, name=name or trace.id, vertical=vertical[0].data if vertical else None
+        )
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Motion):
+            return NotImplemented
+        return all(np.array_equal(getattr(self, each.name), getattr(other, each.name)) for each in fields(self))
+
+    def __hash__(self) -> int:
+        return hash((self.name, self.dt, self.npts))
 
     @property
     def label(self) -> str:
@@ -191,6 +298,11 @@ class Motion(Shown):
         return float(np.abs(self.horizontal).max())
 
     @property
+    def pga_g(self) -> float:
+        """Peak horizontal ground acceleration [9.81 m/s²], as tables have it."""
+        return self.pga / GRAVITY
+
+    @property
     def pga_vertical(self) -> float | None:
         """Peak vertical ground acceleration [m/s²], ``None`` without a vertical component."""
         return None if self.vertical is None else float(np.abs(self.vertical).max())
@@ -206,6 +318,47 @@ class Motion(Shown):
             "check": ", ".join(finding.what for finding in self.findings),
         }
 
+    def scaled(self, factor: float) -> "Motion":
+        """Return the motion with both components ``factor`` times as large."""
+        return self.times(factor)
+
+    def spectrum(self, periods: Samples | Sequence[float] | None = None, damping: float = 0.05) -> "pd.Series[float]":
+        """Return the elastic response spectrum of the horizontal component.
+
+        Parameters
+        ----------
+        periods : array_like, shape (n,), optional
+            Undamped periods [s]; 101 from 0.05 to 5 s by default.
+        damping : float
+            Fraction of critical damping.
+
+        Returns
+        -------
+        Series, length n
+            Pseudo-spectral acceleration ``sa_g`` [9.81 m/s²] by ``period_s``.
+
+        Raises ``InputError`` for periods and damping that cannot be.
+        """
+        at = PERIODS if periods is None else np.asarray(periods, dtype=np.float64)
+        sa = spectral_acceleration(self.horizontal, self.dt, at, damping) / GRAVITY
+        return pd.Series(sa, index=pd.Index(at, name="period_s"), name="sa_g")
+
+    def plot(self) -> "Figure":
+        """Draw the acceleration of its components against time: a matplotlib Figure."""
+        from matplotlib.figure import Figure
+
+        components = {"horizontal": self.horizontal} | ({} if self.vertical is None else {"vertical": self.vertical})
+        figure = Figure(figsize=(6.3, 1.0 + 1.4 * len(components)), layout="constrained")
+        axes = figure.subplots(len(components), sharex=True, squeeze=False)[:, 0]
+        for axis, (what, samples) in zip(axes, components.items(), strict=True):
+            axis.plot(np.arange(self.npts) * self.dt, samples / GRAVITY, color="black", linewidth=0.7)
+            axis.set(ylabel=f"{what} [g]", xlim=(0.0, self.duration))
+            axis.grid(alpha=0.3)
+        axes[0].set_title(self.label, fontsize="medium")
+        axes[-1].set_xlabel("time [s]")
+        return figure
+
+    @checked
     def times(self, factor: float, reverse: bool = False) -> "Motion":
         """The motion with both components ``factor`` times as large, the horizontal one reversed if ``reverse``."""
         along = -factor if reverse else factor

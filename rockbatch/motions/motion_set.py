@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from difflib import get_close_matches
+from numbers import Integral
 from typing import Any, overload
 
 from rockbatch.errors import InputError
@@ -98,8 +99,10 @@ class MotionSet(Shown):
     def __getitem__(self, which: slice) -> list[Motion]: ...
     def __getitem__(self, which: int | str | slice) -> Motion | list[Motion]:
         """A motion by its place or its name, or several by their places; ``InputError`` for a name that is not there."""
-        if not isinstance(which, str):
+        if isinstance(which, Integral | slice):
             return self.motions[which]
+        if not isinstance(which, str):
+            raise InputError(f"motions[{which!r}]: must be a place, a slice of places or a name")
         for motion in self.motions:
             if motion.name == which:
                 return motion

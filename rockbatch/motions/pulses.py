@@ -24,6 +24,7 @@ from collections.abc import Callable, Collection
 
 import numpy as np
 
+from rockbatch.arguments import checked
 from rockbatch.errors import InputError, remedy
 from rockbatch.motions.motion import Initial, Motion, Samples
 from rockbatch.units import GRAVITY
@@ -39,6 +40,7 @@ LEAST_SAMPLES = 5.0
 _ON_A_SAMPLE = 1e-9  # of dt: a pulse whose end falls on a sample includes it, whatever the rounding
 
 
+@checked
 def pulse(
     shape: str,
     *,

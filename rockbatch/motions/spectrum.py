@@ -9,13 +9,13 @@ linear its solution is exact (Nigam & Jennings 1969, BSSA 59(2), 909–922, in c
 """
 
 import math
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from rockbatch.errors import InputError
-from rockbatch.motions.motion import Motion, Samples
+
+Samples = npt.NDArray[np.float64]
 
 PERIODS = np.geomspace(0.05, 5.0, 101)
 """Periods of a suite's spectra [s]: fifty a decade: a curve through them has no corners that are not its own."""
@@ -76,20 +76,6 @@ def periods_over(low: float, high: float) -> npt.NDArray[np.float64]:
     before = max(0, math.ceil(50 * math.log10(PERIODS[0] / low) - 1e-9))
     after = max(0, math.ceil(50 * math.log10(high / PERIODS[-1]) - 1e-9))
     return np.asarray(PERIODS[0] * 10.0 ** (np.arange(-before, len(PERIODS) + after) / 50.0), dtype=np.float64)
-
-
-def suite_spectra(
-    motions: list[Motion], gravity: float, damping: float = 0.05, periods: npt.ArrayLike = PERIODS
-) -> dict[str, Any]:
-    """Horizontal spectra of motions, as run.json has them: ``damping``, ``period_s`` and, in the order of the motions,
-    ``sa_g``."""
-    at = np.asarray(periods, dtype=np.float64)
-    spectra = [spectral_acceleration(m.horizontal, m.dt, at, damping) / gravity for m in motions]
-    return {
-        "damping": damping,
-        "period_s": [float(f"{period:.4g}") for period in at],
-        "sa_g": [[float(f"{value:.4g}") for value in spectrum] for spectrum in spectra],
-    }
 
 
 def _peaks(a: Samples, dt: float, omega: npt.NDArray[np.float64], damping: float) -> npt.NDArray[np.float64]:

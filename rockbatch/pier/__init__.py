@@ -29,7 +29,7 @@ from rockbatch.pier.bases import (
 from rockbatch.pier.block import Part, Pier, described
 from rockbatch.pier.plausible import remedy
 from rockbatch.pier.plausible_devices import doubt, unlikely_devices
-from rockbatch.pier.restraints import Damper, DamperKind, Restraint, Tendon, offsets, recentres, symmetric
+from rockbatch.pier.restraints import Damper, DamperKind, Restraint, Tendon, fields_of, offsets, recentres, symmetric
 
 __all__ = [
     "EPSILON_AND_ZETA",
@@ -55,6 +55,7 @@ __all__ = [
     "doubt",
     "eta_of",
     "fastest",
+    "fields_of",
     "in_kilonewtons",
     "least_beta",
     "neglected",

@@ -7,6 +7,7 @@ import math
 from dataclasses import dataclass, field, fields, replace
 from typing import Any, ClassVar, Literal, Self, get_args
 
+from rockbatch.arguments import checked
 from rockbatch.errors import InputError
 from rockbatch.pier.block import Pier
 from rockbatch.pier.restraints import (
@@ -115,6 +116,7 @@ class _Traits:
         return self
 
 
+@checked
 @dataclass(frozen=True)
 class RigidBase(_Traits):
     """Ground that neither gives nor yields (Housner 1963).
@@ -150,6 +152,7 @@ class RigidBase(_Traits):
         return own | _interface(self.friction) | described_restraints(self.restraints)
 
 
+@checked
 @dataclass(frozen=True)
 class ElasticBase(_Traits):
     """Two elastic springs that take no tension.
@@ -202,6 +205,7 @@ class ElasticBase(_Traits):
         return own | _interface(self.friction) | described_restraints(self.restraints)
 
     @classmethod
+    @checked
     def from_stiffness(cls, pier: Pier, stiffness_kN_m: float, **rest: Any) -> Self:
         """Return a base from the stiffness K of one support [kN/m] under ``pier``, whose mass is known; ``rest`` as in the class.
 
@@ -210,6 +214,7 @@ class ElasticBase(_Traits):
         return cls(beta_of(pier, stiffness_kN_m), **rest)
 
 
+@checked
 @dataclass(frozen=True)
 class YieldingBase(ElasticBase):
     """Two yielding springs that take no tension (Palmeri & Makris 2007).
@@ -261,6 +266,7 @@ class YieldingBase(ElasticBase):
         return own | {"delta_y_m": yield_deflection(pier, self)}
 
     @classmethod
+    @checked
     def from_stiffness(cls, pier: Pier, stiffness_kN_m: float, yield_kN: float | None = None, **rest: Any) -> Self:
         """Return a base as :meth:`ElasticBase.from_stiffness`, with the yield force F_y of one support [kN], or with ``eta``."""
         if yield_kN is not None:

@@ -5,6 +5,7 @@ from collections.abc import Collection, Iterable
 from dataclasses import dataclass, fields, replace
 from typing import NamedTuple
 
+from rockbatch.arguments import checked
 from rockbatch.errors import InputError
 from rockbatch.pier.plausible import unlikely_sizes
 from rockbatch.units import GRAVITY, LEAST, MOST, POSITIVE, Bounds
@@ -54,6 +55,7 @@ class Part(NamedTuple):
         return cls(mass_t, 0.5 * height_m, mass_t * (width_m**2 + height_m**2) / 12.0)
 
 
+@checked
 @dataclass(frozen=True)
 class Pier:
     """A rigid block that can pivot about its two lower corners.
@@ -104,6 +106,7 @@ class Pier:
             raise InputError(*wrong)
 
     @classmethod
+    @checked
     def from_size(
         cls,
         alpha: float,
@@ -128,6 +131,7 @@ class Pier:
         return cls(alpha, math.sqrt(mu / (1 + mu) * gravity / size_m), mu, gravity, mass_t, top_m)
 
     @classmethod
+    @checked
     def rectangle(
         cls,
         width_m: float,
@@ -147,6 +151,7 @@ class Pier:
         return cls.from_size(alpha, size, 3.0, gravity, mass_t=mass_t, top_m=top_m, confirm=("top_m",))
 
     @classmethod
+    @checked
     def of_parts(
         cls,
         width_m: float,
@@ -208,6 +213,7 @@ class Pier:
         return pier if deck_height_m in (None, top) else replace(pier, deck_height_m=deck_height_m)
 
     @classmethod
+    @checked
     def with_deck(
         cls,
         width_m: float,
@@ -238,6 +244,7 @@ class Pier:
         return cls.of_parts(width_m, parts, top_m=top, deck_height_m=deck.height_m, gravity=gravity, confirm=confirmed)
 
     @classmethod
+    @checked
     def frame(cls, column: "Pier", columns: int, deck_mass_t: float) -> "Pier":
         """Return a rocking frame: equal columns, and a deck that rests on their tops and keeps level (Makris & Vassiliou 2013).
 

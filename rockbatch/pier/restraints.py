@@ -3,10 +3,12 @@
 import math
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field, replace
-from typing import Any, Literal, get_args
+from typing import Any, Literal, Self, get_args
 
+from rockbatch.arguments import checked
+from rockbatch.errors import InputError
 from rockbatch.pier.block import Pier
-from rockbatch.units import LEAST, MOST, Bounds
+from rockbatch.units import LEAST, MOST, NOT_NEGATIVE, Bounds
 
 DamperKind = Literal["friction", "viscous", "hysteretic"]
 
@@ -25,6 +27,7 @@ FIELDS = {"friction": ("f",), "hysteretic": ("f", "yield_m"), "viscous": ("nu", 
 """By kind of damper, the fields that count."""
 
 
+@checked
 @dataclass(frozen=True)
 class Damper:
     """A damper between the pier and the ground.
@@ -64,7 +67,38 @@ class Damper:
     at: float | str | None = None
     confirm: Sequence[str] = field(default=(), kw_only=True, compare=False, repr=False)
 
+    @classmethod
+    @checked
+    def friction(cls, pier: Pier, force_kN: float, **rest: Any) -> Self:
+        """Return a friction damper of the force F_d [kN] under ``pier``; ``rest``: ``at`` and ``confirm``.
 
+        Here and in the other constructors from kN, raises ``InputError`` if the mass of the pier is not known, or for values that
+        cannot be.
+        """
+        return cls("friction", **_over_weight(pier, force_kN=force_kN), **rest)
+
+    @classmethod
+    @checked
+    def hysteretic(cls, pier: Pier, force_kN: float, yield_mm: float, **rest: Any) -> Self:
+        """Return a hysteretic damper of the yield force F_d [kN] and deflection u_y [mm]; otherwise as :meth:`friction`."""
+        return cls("hysteretic", **_over_weight(pier, force_kN=force_kN, yield_mm=yield_mm), **rest)
+
+    @classmethod
+    @checked
+    def viscous(cls, pier: Pier, coefficient_kN_s_m: float, exponent: float = 1.0, **rest: Any) -> Self:
+        """Return a viscous damper of C [kN (s/m)^a] and the exponent a; otherwise as :meth:`friction`.
+
+        Examples
+        --------
+        >>> tall = rb.Pier.with_deck(width_m=8, height_m=30, mass_t=2000, deck_mass_t=1000)
+        >>> rb.Damper.viscous(tall, coefficient_kN_s_m=1500.0, exponent=0.3)
+        Damper(kind='viscous', f=0.0, nu=0.8057089065897499, yield_m=0.0, exponent=0.3, at=None)
+        """
+        values = _over_weight(pier, coefficient_kN_s_m=coefficient_kN_s_m, exponent=exponent)
+        return cls("viscous", **values, **rest)
+
+
+@checked
 @dataclass(frozen=True)
 class Tendon:
     """An unbonded tendon between the pier and the ground that takes tension only.
@@ -97,8 +131,49 @@ class Tendon:
     at: float | str = 0.0
     confirm: Sequence[str] = field(default=(), kw_only=True, compare=False, repr=False)
 
+    @classmethod
+    @checked
+    def of(
+        cls, pier: Pier, prestress_kN: float = 0.0, stiffness_kN_m: float = 0.0, yield_kN: float = math.inf, **rest: Any
+    ) -> Self:
+        """Return a tendon of the prestress P0 [kN], the stiffness k_t [kN/m] and the yield force T_y [kN] under ``pier``.
+
+        ``rest``: ``at`` and ``confirm``. Raises ``InputError`` as :meth:`Damper.friction`.
+        """
+        values = {"prestress_kN": prestress_kN, "stiffness_kN_m": stiffness_kN_m}
+        values |= {} if yield_kN == math.inf else {"yield_kN": yield_kN}
+        return cls(**_over_weight(pier, **values), **rest)
+
 
 Restraint = Damper | Tendon
+
+
+def fields_of(pier: Pier) -> dict[str, tuple[str, float]]:
+    """Return by a study's key the field of Damper or Tendon, and the key's value over the field's; those in kN if the mass is
+    known."""
+    fields = {name: (name, 1.0) for name in ("f", "nu", "exponent", "psi")}
+    fields |= {"yield_mm": ("yield_m", 1000.0), "lambda": ("lam", 1.0)}
+    if pier.mass_t is not None:
+        weight = pier.mass_t * pier.gravity
+        fields |= {
+            "force_kN": ("f", weight),
+            "coefficient_kN_s_m": ("nu", weight * pier.p / pier.gravity),
+            "prestress_kN": ("psi", weight),
+            "stiffness_kN_m": ("lam", weight * pier.size / pier.half_width**2),
+            "yield_kN": ("strength", weight),
+        }
+    return fields
+
+
+def _over_weight(pier: Pier, **values: float) -> dict[str, Any]:
+    """Return the fields of a device from the keys of a study."""
+    if pier.mass_t is None:
+        raise InputError("mass_t is missing: kN are of a pier whose mass is known")
+    wrong = [problem for name, value in values.items() for problem in NOT_NEGATIVE.problems(name, value)]
+    if wrong:
+        raise InputError(*wrong)
+    known = fields_of(pier)
+    return {known[name][0]: value / known[name][1] for name, value in values.items()}
 
 
 def holds_a_tilt(restraints: tuple[Restraint, ...]) -> bool:

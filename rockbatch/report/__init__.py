@@ -9,8 +9,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
 
+from rockbatch.arguments import checked
 from rockbatch.checks import as_table, read_verdicts
-from rockbatch.files import is_plain, read_text, write_whole
+from rockbatch.files import is_plain, made_folder, read_text, write_whole
 from rockbatch.lazy import pd
 from rockbatch.report.finished import read
 from rockbatch.report.finished_analysis import Contents
@@ -116,11 +117,11 @@ class Report:
 
     def save(self, folder: str | os.PathLike[str]) -> Path:
         """Write the page into ``folder``, under its name; return its path."""
-        directory = Path(folder)
-        directory.mkdir(parents=True, exist_ok=True)
+        directory = made_folder(Path(folder))
         return _write([open_results(folder) for folder in self.folders], directory / self.path.name)
 
 
+@checked
 def report(
     directory: str | os.PathLike[str],
     other: str | os.PathLike[str] | None = None,

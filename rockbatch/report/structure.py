@@ -4,10 +4,10 @@ from collections.abc import Mapping
 from typing import Any
 
 from rockbatch.errors import InputError
-from rockbatch.pier import Damper, Pier, Restraint, Tendon
+from rockbatch.pier import Damper, Pier, Restraint, Tendon, fields_of
 from rockbatch.pier.restraints import wrong_restraints
 from rockbatch.report.labels import plain
-from rockbatch.study.restraint_keys import KEYS_OF, fields_of
+from rockbatch.study.restraint_keys import KEYS_OF
 
 _PIER = ("alpha", "p", "mu", "gravity", "mass_t", "top_m", "deck_over_columns", "deck_height_m")
 _DAMPER = ("kind", "f", "nu", "yield_m", "exponent", "at")

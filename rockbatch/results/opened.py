@@ -7,6 +7,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rockbatch.arguments import checked
 from rockbatch.checks.suite import simulated
 from rockbatch.errors import InputError
 from rockbatch.files import read_table
@@ -158,6 +159,7 @@ class Results(Shown, Saved):
         return f"{self.directory}: no history with {name} = {shown(value)}; {hint}"
 
 
+@checked
 def open_results(directory: str | os.PathLike[str]) -> Results:
     """Open the results that ``rockbatch run`` wrote into ``directory``.
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from rockbatch.arguments import checked
 from rockbatch.errors import EditedTable, InputError, MissingColumns
 from rockbatch.files import csv_plain, legible, opened, opened_text, read_text, sha256_of
 from rockbatch.lazy import pd
@@ -56,6 +57,7 @@ class Saved:
         )
 
 
+@checked
 def read_saved(directory: Path) -> Saved:
     """Read what ``rockbatch run`` wrote into ``directory``.
 

@@ -11,11 +11,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from rockbatch.files import replacing
 from rockbatch.motions import MotionSet, measures
 from rockbatch.motions.motion import Motion
-from rockbatch.motions.spectrum import periods_over, suite_spectra
+from rockbatch.motions.spectrum import PERIODS, periods_over, spectral_acceleration
 from rockbatch.motions.spectrum_target import SpectrumTarget
 from rockbatch.motions.velocity_pulses import pulse_of
 from rockbatch.pier import Damper, Tendon, described
@@ -224,3 +225,17 @@ def write_info(directory: Path, info: Mapping[str, Any]) -> None:
 
 def _json(value: Any) -> str:
     return json.dumps(value, ensure_ascii=False)
+
+
+def suite_spectra(
+    motions: list[Motion], gravity: float, damping: float = 0.05, periods: npt.ArrayLike = PERIODS
+) -> dict[str, Any]:
+    """Return horizontal spectra of motions, as run.json has them: ``damping``, ``period_s`` and, in the order of the motions,
+    ``sa_g``."""
+    at = np.asarray(periods, dtype=np.float64)
+    spectra = [spectral_acceleration(m.horizontal, m.dt, at, damping) / gravity for m in motions]
+    return {
+        "damping": damping,
+        "period_s": [float(f"{period:.4g}") for period in at],
+        "sa_g": [[float(f"{value:.4g}") for value in spectrum] for spectrum in spectra],
+    }

@@ -9,6 +9,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from rockbatch.arguments import checked
 from rockbatch.checks.choices import unmet
 from rockbatch.checks.demands import BROUGHT
 from rockbatch.checks.plausible import implausible
@@ -139,6 +140,7 @@ class Study(Shown):
     written: bool = True
 
     @classmethod
+    @checked
     def from_toml(cls, text: str, path: str | os.PathLike[str] = "study.toml", *, motions: Motions = None) -> "Study":
         """Check a study that is the TOML ``text``, as :func:`load_study` checks a file.
 
@@ -148,6 +150,7 @@ class Study(Shown):
         return _checked(TomlFile.parse(Path(path), text), motions)
 
     @classmethod
+    @checked
     def from_dict(
         cls, tables: Mapping[str, Any], path: str | os.PathLike[str] = "study.toml", *, motions: Motions = None
     ) -> "Study":
@@ -211,6 +214,7 @@ class Study(Shown):
         }
 
 
+@checked
 def load_study(path: str | os.PathLike[str], *, motions: Motions = None) -> Study:
     """Read and check the study file ``path``.
 

@@ -7,8 +7,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
-from rockbatch.pier import Damper, Pier, Restraint
-from rockbatch.study.restraint_keys import FIELD_OF, IN_KN, KEYS_OF, fields_of
+from rockbatch.pier import Damper, Pier, Restraint, fields_of
+from rockbatch.study.restraint_keys import FIELD_OF, IN_KN, KEYS_OF
 from rockbatch.study.spec import Case
 from rockbatch.toml.kinds import shown
 

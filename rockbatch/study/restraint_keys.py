@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from rockbatch.errors import remedy
-from rockbatch.pier import Damper, Pier, Restraint, Tendon, doubt
+from rockbatch.pier import Damper, Pier, Restraint, Tendon, doubt, fields_of
 from rockbatch.pier.restraints import BOUNDS, FIELDS, wrong_device
 from rockbatch.study.lists import Chosen, Grid
 from rockbatch.study.piers import has_mass
@@ -60,22 +60,6 @@ KEYS_OF = {
     for kind in FIELDS
 } | {"tendon": tuple(name for name in TENDON if name not in _UNMEASURED)}
 """Keys with numbers of a damper of each kind, and of a tendon."""
-
-
-def fields_of(pier: Pier) -> dict[str, tuple[str, float]]:
-    """Return by key the field of Damper or Tendon, and the key's value over the field's; those in kN if the mass is known."""
-    fields = {name: (name, 1.0) for name in ("f", "nu", "exponent", "psi")}
-    fields |= {"yield_mm": ("yield_m", 1000.0), "lambda": ("lam", 1.0)}
-    if pier.mass_t is not None:
-        weight = pier.mass_t * pier.gravity
-        fields |= {
-            "force_kN": ("f", weight),
-            "coefficient_kN_s_m": ("nu", weight * pier.p / pier.gravity),
-            "prestress_kN": ("psi", weight),
-            "stiffness_kN_m": ("lam", weight * pier.size / pier.half_width**2),
-            "yield_kN": ("strength", weight),
-        }
-    return fields
 
 
 FIELD_OF = {key: name for key, (name, _) in fields_of(Pier(alpha=0.2, p=1.0, mass_t=1.0)).items()}

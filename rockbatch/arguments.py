@@ -1,0 +1,139 @@
+"""Types of the arguments of public functions and classes, checked by their annotations."""
+
+import functools
+import inspect
+import os
+import types
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from numbers import Integral, Real
+from typing import Any, Literal, TypeVar, Union, Unpack, get_args, get_origin, get_type_hints
+
+from rockbatch.errors import InputError
+
+Door = TypeVar("Door", bound=Callable[..., Any])
+
+_REFUSED = object()
+_WORDS: dict[Any, str] = {
+    float: "a number", int: "a whole number", str: "a text", bool: "True or False", os.PathLike: "a path", Callable: "a function",
+    None: "None",
+}  # fmt: skip
+
+
+def checked(door: Door) -> Door:
+    """Have a public function, or the fields of a dataclass, take arguments of their annotated types only.
+
+    Numbers of other types, as NumPy's, become ``float`` and ``int``, and lists become tuples where one is meant. Annotations in
+    quotes and arrays are not checked. Raises ``InputError`` with a sentence for each argument of another type.
+    """
+    function: Any = vars(door)["__init__"] if isinstance(door, type) else door
+    parameters = inspect.signature(function).parameters
+    kinds = {name: kinds for name, kinds in _kinds(parameters) if all(map(_is_known, kinds))}
+
+    @functools.wraps(function)
+    def call(*args: Any, **kwargs: Any) -> Any:
+        wrong: list[str] = []
+
+        def take(name: str, value: Any) -> Any:
+            if name not in kinds:
+                return value
+            taken = _first_taken(value, kinds[name])
+            if taken is _REFUSED:
+                wrong.append(f"{name} = {_shown(value)}: {_message(value, kinds[name])}")
+            return taken
+
+        args = (*map(take, parameters, args), *args[len(parameters) :])
+        kwargs = {name: take(name, value) for name, value in kwargs.items()}
+        if wrong:
+            raise InputError(*wrong)
+        return function(*args, **kwargs)
+
+    if not isinstance(door, type):
+        return call  # type: ignore[return-value]
+    door.__init__ = call  # type: ignore[misc]
+    return door
+
+
+def _kinds(parameters: Mapping[str, inspect.Parameter]) -> Iterator[tuple[str, tuple[Any, ...]]]:
+    """Yield each parameter's name and alternatives, also those of keywords whose types a TypedDict has."""
+    for name, parameter in parameters.items():
+        if get_origin(parameter.annotation) is Unpack:
+            yield from (
+                (key, _alternatives(kind)) for key, kind in get_type_hints(get_args(parameter.annotation)[0]).items()
+            )
+        elif parameter.kind not in (parameter.VAR_POSITIONAL, parameter.VAR_KEYWORD):
+            yield name, _alternatives(parameter.annotation)
+
+
+def _alternatives(annotation: Any) -> tuple[Any, ...]:
+    if get_origin(annotation) in (Union, types.UnionType):
+        return tuple(kind for part in get_args(annotation) for kind in _alternatives(part))
+    return (None if annotation is type(None) else annotation,)
+
+
+def _is_known(kind: Any) -> bool:
+    plain = get_origin(kind) or kind
+    return plain in (None, Literal) or (
+        isinstance(plain, type)
+        and plain not in (inspect.Parameter.empty, object, Any)
+        and plain.__module__ != "numpy"
+        and getattr(plain, "_is_runtime_protocol", True)
+    )
+
+
+def _first_taken(value: Any, alternatives: tuple[Any, ...]) -> Any:
+    """Return ``value`` as the first of the types that it can be taken for, or _REFUSED."""
+    return next((taken for kind in alternatives if (taken := _take(value, kind)) is not _REFUSED), _REFUSED)
+
+
+def _take(value: Any, kind: Any) -> Any:
+    plain = get_origin(kind) or kind
+    fits = False
+    if plain in (int, float):
+        if isinstance(value, Integral if plain is int else Real) and not isinstance(value, bool):
+            return plain(value)
+    elif plain in (tuple, Sequence) and isinstance(value, tuple | list):
+        return _members(value, get_args(kind))
+    elif plain is None:
+        fits = value is None
+    elif plain is Literal:
+        fits = type(value) in map(type, get_args(kind))  # which words there are is said where they are read
+    elif isinstance(value, str):
+        fits = plain is str and not _has_nul(value)
+    else:
+        fits = isinstance(value, plain) and not isinstance(value, bytes) and not _has_nul(value)
+    return value if fits else _REFUSED
+
+
+def _has_nul(value: object) -> bool:
+    return "\0" in os.fspath(value) if isinstance(value, os.PathLike) else isinstance(value, str) and "\0" in value
+
+
+def _members(values: Any, inner: tuple[Any, ...]) -> Any:
+    if len(inner) == 2 and inner[1] is not ...:
+        return tuple(values)
+    taken = tuple(_first_taken(value, _alternatives(inner[0])) for value in values)
+    return _REFUSED if any(member is _REFUSED for member in taken) else taken
+
+
+def _shown(value: Any) -> str:
+    text = " ".join(repr(value).split())
+    return text if len(text) <= 60 else f"{text[:57]}…"
+
+
+def _message(value: Any, alternatives: tuple[Any, ...]) -> str:
+    if _has_nul(value):
+        return "has a NUL character"
+    *others, last = dict.fromkeys(map(_words, alternatives))
+    must = f"must be {', '.join(others) + ' or ' if others else ''}{last}"
+    return f"is a class; {must}, such as {value.__name__}(…)" if isinstance(value, type) else must
+
+
+def _words(kind: Any) -> str:
+    plain = get_origin(kind) or kind
+    if plain is Literal:
+        return "one of " + ", ".join(map(repr, get_args(kind)))
+    if plain in (tuple, Sequence):
+        inner = " or ".join(map(_words, _alternatives(get_args(kind)[0]))) if get_args(kind) else ""
+        return f"a {'tuple' if plain is tuple else 'list'}" + (f", each {inner}" if inner else "")
+    name = getattr(plain, "__name__", str(plain))
+    return _WORDS.get(plain) or f"{'an' if name[0] in 'AEIOU' else 'a'} {name}"

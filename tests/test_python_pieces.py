@@ -1,0 +1,103 @@
+"""Pieces that are made in Python: motions from arrays and streams, dampers and tendons in kN."""
+
+import math
+
+import numpy as np
+import pytest
+from motion_files import wiggle
+from obspy import Stream, Trace, UTCDateTime
+from studies import study_text, write_study
+
+import rockbatch as rb
+
+TALL = rb.Pier.with_deck(width_m=8, height_m=30, mass_t=2000, deck_mass_t=1000)
+VALUES = wiggle(400)
+
+
+def test_a_motion_of_an_array_is_in_its_unit():
+    motion = rb.Motion.from_array(VALUES, 0.01, "g", name="mine", vertical=0.5 * VALUES)
+    np.testing.assert_array_equal(motion.horizontal, 9.81 * VALUES)
+    np.testing.assert_array_equal(motion.vertical, 9.81 * (0.5 * VALUES))
+    assert motion.pga_g == pytest.approx(np.abs(VALUES).max())
+    np.testing.assert_allclose(rb.Motion.from_array(VALUES, 0.01, "gal").horizontal, 0.01 * VALUES, rtol=1e-15)
+    with pytest.raises(rb.InputError, match='unknown acceleration unit "ft/s2"'):
+        rb.Motion.from_array(VALUES, 0.01, "ft/s2")
+
+
+def stream(*channels: str, **header: object) -> Stream:
+    return Stream([
+        Trace(VALUES * (n + 1), {"delta": 0.01, "station": "ABC", "channel": channel} | header)
+        for n, channel in enumerate(channels)
+    ])  # fmt: skip
+
+
+def test_a_motion_of_an_obspy_stream_has_its_vertical_component():
+    motion = rb.Motion.from_obspy(stream("HNZ", "HNE"), "cm/s2")
+    assert (motion.name, motion.dt) == (".ABC..HNE", 0.01)
+    np.testing.assert_allclose(motion.horizontal, 0.02 * VALUES)
+    np.testing.assert_allclose(motion.vertical, 0.01 * VALUES)
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        (stream("HNE", "HNN", "HNZ"), "one horizontal component"),
+        (stream("HNZ"), "one horizontal component"),
+        (Stream(), "not none"),
+        (stream("HNE") + stream("HNZ", delta=0.02), "differ in sampling interval"),
+        (stream("HNE") + stream("HNZ", starttime=UTCDateTime(5)), "or start"),
+    ],
+)
+def test_a_stream_of_other_components_is_refused(given, words):
+    with pytest.raises(rb.InputError, match=words):
+        rb.Motion.from_obspy(given, "g")
+
+
+def test_the_spectrum_of_a_motion_is_that_of_resonance():
+    """At its own period after n cycles the undamped oscillator's amplitude is n π a, in the limit of many."""
+    sa = rb.Motion.from_array(np.sin(2 * np.pi * np.arange(40001) / 1000), 0.001, "g").spectrum([1.0], damping=0.0)
+    assert (sa.index.name, sa.name) == ("period_s", "sa_g")
+    assert sa.loc[1.0] == pytest.approx(40 * math.pi, rel=1e-3)
+    assert len(rb.Motion.from_array(VALUES, 0.01, "g").spectrum()) == 101
+
+
+def test_a_motion_is_drawn_with_all_its_components():
+    motion = rb.Motion.from_array(VALUES, 0.01, "g", vertical=VALUES)
+    axes = motion.plot().axes
+    assert [axis.get_ylabel() for axis in axes] == ["horizontal [g]", "vertical [g]"]
+    np.testing.assert_allclose(axes[0].lines[0].get_ydata(), VALUES)
+
+
+def test_devices_in_kilonewtons_are_those_of_a_study(tmp_path):
+    """A study with the same keys, and the closed forms of THEORY.md: F/(M g), C/(M p), k b²/(M g R0)."""
+    devices = [
+        {"kind": "friction", "force_kN": 450.0, "at": "left"},
+        {"kind": "hysteretic", "force_kN": 800.0, "yield_mm": 6.0},
+        {"kind": "viscous", "coefficient_kN_s_m": 1500.0, "exponent": 0.3},
+    ]
+    tendon = {"prestress_kN": 3000.0, "stiffness_kN_m": 20e3, "yield_kN": 9000.0}
+    deck = {"width_m": 8, "height_m": 30, "mass_t": 2000, "deck_mass_t": 1000}
+    case = {"name": "tied", "base": "rigid", "damper": devices, "tendon": tendon}
+    (read,) = rb.load_study(write_study(tmp_path, study_text(pier=deck, cases=(case,)))).cases
+    made = (
+        rb.Damper.friction(TALL, 450.0, at="left"),
+        rb.Damper.hysteretic(TALL, force_kN=800.0, yield_mm=6.0),
+        rb.Damper.viscous(TALL, coefficient_kN_s_m=1500.0, exponent=0.3),
+        rb.Tendon.of(TALL, prestress_kN=3000.0, stiffness_kN_m=20e3, yield_kN=9000.0),
+    )
+    assert read.base.restraints == made
+    weight = 3000 * 9.81
+    assert made[1].f == pytest.approx(800 / weight)
+    assert made[1].yield_m == pytest.approx(0.006)
+    assert made[2].nu == pytest.approx(1500 / (3000 * TALL.p))
+    assert made[3].lam == pytest.approx(20e3 * 4.0**2 / (weight * math.hypot(4.0, TALL.height)))
+    assert rb.Tendon.of(TALL, prestress_kN=1000.0).strength == math.inf
+
+
+def test_kilonewtons_need_a_pier_whose_mass_is_known():
+    with pytest.raises(rb.InputError, match="mass_t is missing"):
+        rb.Damper.friction(rb.Pier(alpha=0.2, p=1.0), force_kN=100.0)
+    with pytest.raises(rb.InputError, match="force_kN = -1: must be 0 or above"):
+        rb.Damper.friction(TALL, force_kN=-1.0)
+    with pytest.raises(rb.InputError, match="force_kN = '100': must be a number"):
+        rb.Damper.friction(TALL, force_kN="100")
