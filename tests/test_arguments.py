@@ -45,14 +45,18 @@ OTHER_DOORS = {
 }
 
 
-@pytest.mark.parametrize("value", NO_NUMBERS, ids=repr)
+@pytest.mark.parametrize("value", NO_NUMBERS, ids=lambda value: type(value).__name__)
 @pytest.mark.parametrize("name", NUMBER_DOORS)
 def test_what_is_no_number_is_refused_by_name(name, value):
     with pytest.raises(rb.InputError, match=rf"^{name} = .*(must be a number|NUL character)"):
         NUMBER_DOORS[name](value)
 
 
-@pytest.mark.parametrize("value", [None, True, 0.2, 1j, object(), b"x", {}, np.array([0.2]), "a\0b", [0.2]], ids=repr)
+@pytest.mark.parametrize(
+    "value",
+    [None, True, 0.2, 1j, object(), b"x", {}, np.array([0.2]), "a\0b", [0.2]],
+    ids=lambda value: type(value).__name__,
+)
 @pytest.mark.parametrize("name", OTHER_DOORS)
 def test_an_object_of_another_type_is_refused_by_name(name, value):
     with pytest.raises(rb.InputError, match=rf"^{name} = "):

@@ -12,11 +12,11 @@ from threading import Thread
 import numpy as np
 
 from rockbatch.batch.groups import outcomes_of
-from rockbatch.batch.listening import Listener, if_slow
+from rockbatch.batch.listening import Listener
 from rockbatch.batch.plan import PlannedRun
 from rockbatch.batch.threads import cores
 from rockbatch.motions import Motion
-from rockbatch.simulation.models import kernel_of
+from rockbatch.simulation.compilation import kernel_of, on_compilation
 from rockbatch.study import Numerics, Output, Study
 
 Task = tuple[PlannedRun, Numerics, Output]
@@ -24,21 +24,23 @@ Task = tuple[PlannedRun, Numerics, Output]
 
 
 def make_ready(study: Study, listener: Listener) -> None:
-    """Have every kernel that ``study`` needs compiled or loaded; if that takes a while, tell ``listener``.
+    """Have every kernel that ``study`` needs compiled or loaded, and tell ``listener`` if any has to be compiled.
 
     Numba compiles one function at a time in a process. Once the first kernel turns out not to be in the cache, processes
-    on the other processors compile the last ones, and leave them in the cache.
+    on the other processors compile the last ones, and leave them there.
     """
     tasks = _tasks(study)
     waiting, assistants = deque(tasks), list[Thread]()
 
-    def slow() -> None:
+    def assist() -> None:
         listener.say("compiling the kernels (once for each kind of foundation, 10 to 30 s each)")
         for _ in range(min(cores() - 1, len(waiting))):
-            assistants.append(Thread(target=_compile_elsewhere, args=(waiting,), daemon=True))
-            assistants[-1].start()
+            assistant = Thread(target=_compile_elsewhere, args=(waiting,), daemon=True)
+            with suppress(RuntimeError):  # no more threads: this one compiles all of them
+                assistant.start()
+                assistants.append(assistant)
 
-    with if_slow(slow):
+    with on_compilation(assist):
         while task := _next(waiting.popleft):
             _compile(task)
     for assistant in assistants:

@@ -96,15 +96,10 @@ def listener_of(progress: Progress) -> Listener:
     return Bars() if progress else Listener()
 
 
-def told_if_slow(listener: Listener, words: str) -> AbstractContextManager[None]:
-    """Tell ``listener`` what is under way, if it takes a while."""
-    return if_slow(lambda: listener.say(words))
-
-
 @contextmanager
-def if_slow(action: Callable[[], object]) -> "Iterator[None]":
-    """Call ``action`` in another thread if what is under way takes more than PATIENCE_S."""
-    timer = Timer(PATIENCE_S, action)
+def told_if_slow(listener: Listener, words: str) -> "Iterator[None]":
+    """Tell ``listener`` what is under way, if it takes more than PATIENCE_S."""
+    timer = Timer(PATIENCE_S, listener.say, [words])
     timer.daemon = True
     with suppress(RuntimeError):  # of no more threads, those that carry out the runs tell
         timer.start()

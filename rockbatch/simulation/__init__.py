@@ -5,7 +5,7 @@ from typing import Any
 
 _HOMES = {
     "rockbatch.core.kernel": ("core_digest",),
-    "rockbatch.simulation.models": ("block", "first_substeps", "ground_of", "kernel_of", "least_substeps", "springs"),
+    "rockbatch.simulation.models": ("block", "first_substeps", "ground_of", "least_substeps", "springs"),
     "rockbatch.simulation.runs": ("Run", "Stop", "run_all_fixed", "run_fixed", "steps_of", "written_run"),
     "rockbatch.simulation.settling": ("run_all_to_tolerance", "run_to_tolerance"),
 }

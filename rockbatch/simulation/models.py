@@ -124,11 +124,6 @@ def kind_of(m: Block | Springs) -> Kind:
     return kind._replace(traits=kind.traits._replace(exponent=alike))
 
 
-def kernel_of(pier: Pier, base: Base) -> tuple[Kind, bool]:
-    """Return what runs of ``pier`` on ``base`` are compiled for: their kind, and whether there are devices."""
-    return kind_of(model(pier, base)), bool(base.restraints)
-
-
 def line_of(
     m: Block | Springs, timing: tuple[float, ...], readings: tuple[float, ...], prestress: float
 ) -> tuple[float, ...]:

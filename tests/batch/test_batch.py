@@ -4,6 +4,7 @@ import pickle
 import subprocess
 import threading
 
+import numba
 import numpy as np
 import pandas as pd
 import pytest
@@ -59,6 +60,7 @@ def test_processes_assist_once_a_kernel_must_be_compiled(tmp_path, monkeypatch):
 
     def compile_here(runs, *_):
         here.extend(run.case.name for run in runs)
+        numba.njit(lambda x: 2.0 * x)(1.0)
         assert assisted.wait(60)
 
     def process(_, input, **__):
@@ -66,7 +68,6 @@ def test_processes_assist_once_a_kernel_must_be_compiled(tmp_path, monkeypatch):
         if len(elsewhere) == 2:
             assisted.set()
 
-    monkeypatch.setattr("rockbatch.batch.listening.PATIENCE_S", 0.0)
     monkeypatch.setattr(rockbatch.batch.compiling, "cores", lambda: 2)
     monkeypatch.setattr(rockbatch.batch.compiling, "outcomes_of", compile_here)
     monkeypatch.setattr(subprocess, "run", process)
@@ -76,6 +77,13 @@ def test_processes_assist_once_a_kernel_must_be_compiled(tmp_path, monkeypatch):
     assert here == ["rigid", "rigid", "n 2.5", "n 5"]
     (sentence,) = said.said
     assert sentence.startswith("compiling the kernels")
+
+
+def test_of_kernels_in_the_cache_nothing_is_said(study):
+    make_ready(load_study(study), Listener())
+    said = Heard()
+    make_ready(load_study(study), said)
+    assert said.said == []
 
 
 class Heard(Listener):

@@ -1,0 +1,35 @@
+"""Compilation of kernels, which takes long and happens once for each kind of foundation."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from numba.core import event
+
+from rockbatch.core.system import Kind
+from rockbatch.pier import Base, Pier
+from rockbatch.simulation.models import kind_of, model
+
+
+def kernel_of(pier: Pier, base: Base) -> tuple[Kind, bool]:
+    """Return what runs of ``pier`` on ``base`` are compiled for: their kind, and whether there are devices."""
+    return kind_of(model(pier, base)), bool(base.restraints)
+
+
+@contextmanager
+def on_compilation(action: Callable[[], object]) -> Iterator[None]:
+    """Call ``action`` once if anything has to be compiled meanwhile, before that begins; not if kernels are in the cache."""
+
+    class FirstOnly(event.Listener):
+        waits = True
+
+        def on_start(self, _: Any) -> None:
+            if self.waits:
+                self.waits = False
+                action()
+
+        def on_end(self, _: Any) -> None:
+            pass
+
+    with event.install_listener("numba:compile", FirstOnly()):
+        yield
