@@ -1,0 +1,39 @@
+"""Files that say the same of the project in other words: recipe, workflow, citation."""
+
+import re
+import tomllib
+from pathlib import Path
+
+from rockbatch import __version__
+
+ROOT = Path(__file__).parents[1]
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+WORKFLOW = (ROOT / ".github" / "workflows" / "tests.yml").read_text(encoding="utf-8")
+RECIPE = (ROOT / "docs" / "packaging" / "meta.yaml").read_text(encoding="utf-8")
+
+
+def test_the_recipe_is_of_this_version_and_needs_what_the_package_needs():
+    assert re.search(r'set version = "(.+)"', RECIPE).group(1) == __version__
+    run = RECIPE.split("  run:\n")[1].split("\n\n")[0]
+    needs = {line.split("- ")[1].replace("matplotlib-base", "matplotlib").replace(" ", "") for line in run.splitlines()}
+    stated = {need.lower() for need in PROJECT["dependencies"]} | {"python" + PROJECT["requires-python"]}
+    assert needs == stated
+
+
+def test_the_workflow_tests_every_python_that_is_promised_on_every_system():
+    (pythons,) = re.findall(r"python: \[(.+)\]", WORKFLOW)
+    promised = {line.split(" :: ")[-1] for line in PROJECT["classifiers"] if re.search(r":: 3\.\d+$", line)}
+    assert promised
+    assert promised <= set(re.findall(r"\d\.\d+", pythons))
+    for system in ("ubuntu", "macos", "windows"):
+        assert f"{system}-latest" in WORKFLOW
+
+
+def test_the_workflow_runs_the_tests_of_make_test_and_its_linters():
+    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
+    (command,) = re.findall(r'pytest (-n auto .*"not slow")', makefile)
+    assert f"pytest {command}" in WORKFLOW
+    assert "make lint docs" in WORKFLOW
+    hooks = (ROOT / ".pre-commit-config.yaml").read_text(encoding="utf-8")
+    for linter in re.findall(r"\$\(BIN\)/(ruff \w+|mypy|lint-imports)", makefile.split("lint:")[1].split("docs:")[0]):
+        assert f".venv/bin/{linter}" in hooks
