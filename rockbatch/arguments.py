@@ -133,7 +133,11 @@ def _words(kind: Any) -> str:
     if plain is Literal:
         return "one of " + ", ".join(map(repr, get_args(kind)))
     if plain in (tuple, Sequence):
-        inner = " or ".join(map(_words, _alternatives(get_args(kind)[0]))) if get_args(kind) else ""
-        return f"a {'tuple' if plain is tuple else 'list'}" + (f", each {inner}" if inner else "")
+        inner = (
+            " or ".join(_words(part).split(" ", 1)[1] for part in _alternatives(get_args(kind)[0]))
+            if get_args(kind)
+            else ""
+        )
+        return f"a {'tuple' if plain is tuple else 'list'}" + (f" of {inner}" if inner else "")
     name = getattr(plain, "__name__", str(plain))
     return _WORDS.get(plain) or f"{'an' if name[0] in 'AEIOU' else 'a'} {name}"

@@ -88,7 +88,7 @@ def test_all_wrong_arguments_are_reported_at_once():
 def test_a_list_is_taken_for_a_tuple_and_its_members_are_checked():
     friction = rb.Damper("friction", f=0.1)
     assert rb.RigidBase(restraints=[friction]).restraints == (friction,)
-    with pytest.raises(rb.InputError, match="a tuple, each a Damper or a Tendon"):
+    with pytest.raises(rb.InputError, match="a tuple of Damper or Tendon"):
         rb.RigidBase(restraints=(friction, PIER))
 
 

@@ -284,7 +284,9 @@ def test_mistakes_are_told_before_anything_is_written(study, nowhere, name):
         door(broken, out)
     with pytest.raises(rb.InputError, match="no such file or folder"):
         door(rb.load_study(study), out, motions=nowhere / "missing")
-    with pytest.raises(rb.InputError, match='motions = "3": expected a path, a MotionSet'):
+    with pytest.raises(
+        rb.InputError, match="motions = 3: must be a text, a path, a MotionSet, a Motion, a list of Motion or None"
+    ):
         door(study, out, motions=3)
     with pytest.raises(rb.InputError, match="progress = 3"):
         door(study, out, progress=3)
