@@ -408,7 +408,7 @@ def test_a_unit_that_is_not_understood_costs_its_channel_with_the_reason(text, n
         ),
         (bhrc_text(volume=2), "x.V1", "Volume 2, whose layout is not known; take the .V1 file"),
         (bhrc_text(rate=100.0), "x.V1", "43 points in 0.215 s, line 22 100 samples per second"),
-        (bhrc_text().replace("/&", "//", 1), "x.V1", 'line 33: found "//"; expected "/& after 43 values'),
+        (bhrc_text().replace("/&", "//", 1), "x.V1", 'line 33: found "//"; expected "/&" after 43 values'),
         (bhrc_text().replace("POINTS =     43", "POINTS =     42", 1), "x.V1", "line 32: found .*expected 2 values"),
         (
             usc_text().replace("=   0.210 SEC", "=   0.310 SEC", 1),

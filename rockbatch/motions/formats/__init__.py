@@ -33,6 +33,7 @@ from rockbatch.motions.formats import (
     usc,
 )
 from rockbatch.motions.formats.record_file import LAYOUTS, ROLES, ReadOptions, RecordFile
+from rockbatch.motions.formats.recording import reader
 from rockbatch.motions.limits import HUGE, MOST_SAMPLES, STEPS, is_step
 from rockbatch.motions.motion import Unusable
 from rockbatch.motions.texts import with_legible_texts
@@ -81,20 +82,20 @@ FORMATS = (
     Format("PEER AT2", at2.SUFFIXES | columns.SUFFIXES, at2.looks_like_at2, at2.read_component),
     Format("MiniSEED", miniseed.SUFFIXES, miniseed.is_miniseed, miniseed.read_miniseed),
     Format("SAC", sac.SUFFIXES, sac.is_sac, sac.read_sac, anywhere=False),
-    Format("K-NET/KiK-net", knet.SUFFIXES, knet.is_knet, knet.read_knet),
-    Format("GeoNet V1A/V2A", geonet.SUFFIXES, geonet.is_geonet, geonet.read_geonet),
-    Format("DYNA (ESM, ITACA, AFAD)", dyna.SUFFIXES, dyna.is_dyna, dyna.read_dyna),
-    Format("COSMOS", cosmos.SUFFIXES, cosmos.is_cosmos, cosmos.read_cosmos),
-    Format("CSMIP", csmip.SUFFIXES, csmip.is_csmip, csmip.read_csmip),
-    Format("USGS SMC", smc.SUFFIXES, smc.is_smc, smc.read_smc),
-    Format("RENADIC", renadic.SUFFIXES, renadic.is_renadic, renadic.read_renadic),
-    Format("USC Volume I", usc.SUFFIXES, usc.is_usc, usc.read_usc),
-    Format("BHRC Volume 1", bhrc.SUFFIXES, bhrc.is_bhrc, bhrc.read_bhrc),
-    Format("CSMNC", csmnc.SUFFIXES, csmnc.is_csmnc, csmnc.read_csmnc),
-    Format("AFAD text", afad.SUFFIXES, afad.is_afad, afad.read_afad),
-    Format("UNAM", unam.SUFFIXES, unam.is_unam, unam.read_unam),
-    Format("RESORCE", resorce.SUFFIXES, resorce.is_resorce, resorce.read_resorce),
-    Format("CWA free field", cwa.SUFFIXES, cwa.is_cwa, cwa.read_cwa),
+    Format("K-NET/KiK-net", knet.SUFFIXES, knet.is_knet, reader(knet.parse)),
+    Format("GeoNet V1A/V2A", geonet.SUFFIXES, geonet.is_geonet, reader(geonet.parse)),
+    Format("DYNA (ESM, ITACA, AFAD)", dyna.SUFFIXES, dyna.is_dyna, reader(dyna.parse)),
+    Format("COSMOS", cosmos.SUFFIXES, cosmos.is_cosmos, reader(cosmos.parse)),
+    Format("CSMIP", csmip.SUFFIXES, csmip.is_csmip, reader(csmip.parse)),
+    Format("USGS SMC", smc.SUFFIXES, smc.is_smc, reader(smc.parse)),
+    Format("RENADIC", renadic.SUFFIXES, renadic.is_renadic, reader(renadic.parse)),
+    Format("USC Volume I", usc.SUFFIXES, usc.is_usc, reader(usc.parse)),
+    Format("BHRC Volume 1", bhrc.SUFFIXES, bhrc.is_bhrc, reader(bhrc.parse)),
+    Format("CSMNC", csmnc.SUFFIXES, csmnc.is_csmnc, reader(csmnc.parse)),
+    Format("AFAD text", afad.SUFFIXES, afad.is_afad, reader(afad.parse)),
+    Format("UNAM", unam.SUFFIXES, unam.is_unam, reader(unam.parse)),
+    Format("RESORCE", resorce.SUFFIXES, resorce.is_resorce, reader(resorce.parse)),
+    Format("CWA free field", cwa.SUFFIXES, cwa.is_cwa, reader(cwa.parse)),
     Format("PEER AT2", at2.SUFFIXES, at2.has_at2_count, at2.read_component, anywhere=False),
     Format("text columns", columns.SUFFIXES, columns.is_columns, columns.read_columns, anywhere=False),
 )

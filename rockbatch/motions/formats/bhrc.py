@@ -8,13 +8,11 @@ that of the Center's own files. What is corrected, or pairs of time and value as
 import re
 
 from rockbatch.errors import InputError
-from rockbatch.motions.component import Component, Seat
+from rockbatch.motions.component import Seat
 from rockbatch.motions.formats.fixed_width import fixed_numbers, number_in, one_after_another
-from rockbatch.motions.formats.header_lines import found, line_at, number
+from rockbatch.motions.formats.header_lines import line_at, number, past_mark, read_header
 from rockbatch.motions.formats.obspy_plugin import plugin
-from rockbatch.motions.formats.record_file import RecordFile
-from rockbatch.motions.formats.recording import Recording, to_components
-from rockbatch.motions.motion import Unusable
+from rockbatch.motions.formats.recording import Recording
 from rockbatch.motions.orientation import Orientation
 from rockbatch.motions.origin import origin_of
 
@@ -24,72 +22,57 @@ _HEADER = 27  # lines
 _RATE = 21  # line of the header at which it begins
 _WIDTH, _PER_LINE = 13, 10
 _TITLE = re.compile(r"^\* *VOL(?P<volume>[0-9])DS +FILE: *(?P<file>\S+)")
-_LABEL = re.compile(r"^COMP +(?P<label>[LVT])")
-_PLACE = re.compile(r"^(?P<name>.*?) *Station\b")
-_AZIMUTHS = re.compile(r"Azimuth +L +(?P<L>[0-9]{1,3}) +T +(?P<T>[0-9]{1,3})")
-_COUNT = re.compile(r"NO\. OF POINTS *= *(?P<npts>[0-9]{1,9}) +DURATION *= *(?P<duration>[0-9.]{1,12})")
-_UNIT = re.compile(r"UNITS ARE SEC(?:ONDS)? AND +(?P<unit>[A-Z0-9/]+)")
+_DURATION = r"DURATION *= *(?P<duration>[0-9.]{1,12})"
+_TEXT = (
+    (6, re.compile(r"^COMP +(?P<label>[LVT])"), "COMP L1"),
+    (7, re.compile(r"^(?P<name>.*?) *Station\b"), "… Station … Azimuth L 324 T 54"),
+    (7, re.compile(r"Azimuth +L +(?P<L>[0-9]{1,3}) +T +(?P<T>[0-9]{1,3})"), ""),
+    (10, re.compile(rf"NO\. OF POINTS *= *(?P<npts>[0-9]{{1,9}}) +{_DURATION}"), "NO. OF POINTS = … DURATION = …"),
+    (11, re.compile(r"UNITS ARE SEC(?:ONDS)? AND +(?P<unit>[A-Z0-9/]+)"), "UNITS ARE SECONDS AND G/10"),
+)
 
 
 def is_bhrc(head: bytes) -> bool:
-    """Whether the first bytes are the header of such a file, of whatever volume."""
+    """Return whether the first bytes are the header of such a file, of whatever volume."""
     return _TITLE.match(head[:100].decode("latin-1")) is not None
 
 
-def read_bhrc(file: RecordFile) -> list[Component | Unusable]:
-    """The components of a file in m/s², without their offsets."""
-    return to_components(file, _parse(file.text))
-
-
-def _parse(text: str) -> list[Recording]:
-    """The channels, one after the other; ``InputError`` with the line where the file is not whole."""
+def parse(text: str) -> list[Recording]:
+    """Return the channels, one after the other; ``InputError`` with the line where the file is not whole."""
     return one_after_another(text, _channel)
 
 
 def _channel(lines: list[str], at: int) -> tuple[Recording, int]:
-    """The channel whose title is ``lines[at]``, and where the next one begins."""
-    title = found(_TITLE, lines, at, "* VOL1DS FILE: …, after the last declared value")
+    """Return the channel whose title is ``lines[at]``, and where the next one begins."""
+    title = read_header(lines, at, [(0, _TITLE, "* VOL1DS FILE: …, after the last declared value")])
     if title["volume"] != "1":
         raise InputError(f"line {at + 1}: Volume {title['volume']}, whose layout is not known; take the .V1 file")
-    label = found(_LABEL, lines, at + 6, "COMP L1")["label"]
-    place = found(_PLACE, lines, at + 7, "… Station … Azimuth L 324 T 54")["name"]
-    azimuths = _AZIMUTHS.search(line_at(lines, at + 7))
-    count = found(_COUNT, lines, at + 10, "NO. OF POINTS = … DURATION = …")
-    unit = found(_UNIT, lines, at + 11, "UNITS ARE SECONDS AND G/10")["unit"]
-    npts, duration = int(count["npts"]), number(count["duration"], at + 10)
+    said = read_header(lines, at, _TEXT)
+    label, npts, duration = said["label"], int(said["npts"]), number(said["duration"], at + 10)
     rate = number_in(line_at(lines, at + _RATE)[:_WIDTH], at + _RATE)
     if npts < 2 or not 0.1 <= rate <= 1e5 or abs(npts / rate - duration) > 2 / rate:
         raise InputError(
             f"line {at + 11} says {npts} points in {duration:g} s, line {at + _RATE + 1} {rate:g} samples per second; "
             "expected them to agree"
         )
-    values = fixed_numbers(lines, at + _HEADER, npts, _WIDTH, _PER_LINE)
-    end = at + _HEADER - -npts // _PER_LINE
-    found(re.compile(r"^/&"), lines, end, f"/& after {npts} values; fetch it again")
-    station, event = place.strip(), line_at(lines, at + 2).strip()
+    values, end = fixed_numbers(lines, at + _HEADER, npts, _WIDTH, _PER_LINE)
+    station, event = said["name"].strip(), line_at(lines, at + 2).strip()
+    azimuth = float(said[label]) % 360.0 if said.get(label) else None
     recording = Recording(
         label=label,
-        orientation=_orientation(label, azimuths),
+        orientation=Orientation(label, vertical=label == "V", azimuth=azimuth),
         dt=float(f"{1.0 / rate:.12g}"),
         values=values,
-        unit=unit,
+        unit=said["unit"],
         station=f"{title['file']}, {station}, {event}",
         codes=("I1", title["file"].partition("/")[0][:5], "", label),
-        uncorrected=True,
         processed=False,
         seat=Seat(station.upper()),
         event=title["file"],
         origin=origin_of(date=event.removeprefix("Origin Time :"), station=station),
         header={"station": station, "event": event},
     )
-    return recording, end + 1
+    return recording, past_mark(lines, end, f"{npts} values")
 
 
-def _orientation(label: str, azimuths: re.Match[str] | None) -> Orientation:
-    """Up, or along the azimuth that the header has for L and T."""
-    if label == "V":
-        return Orientation(label, vertical=True)
-    return Orientation(label, azimuth=None if azimuths is None else float(azimuths[label]) % 360.0)
-
-
-is_bhrc_file, read_bhrc_stream = plugin("BHRC", is_bhrc, _parse)
+is_bhrc_file, read_bhrc_stream = plugin("BHRC", is_bhrc, parse)

@@ -9,16 +9,16 @@ the ground moved at the first sample, else real numbers 68 [cm/s] and 69 [cm] do
 """
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from rockbatch.errors import InputError, NoRecordError
-from rockbatch.motions.component import Component, Seat
+from rockbatch.motions.component import Seat
 from rockbatch.motions.formats.fixed_width import fixed_numbers, lines_of
-from rockbatch.motions.formats.header_lines import found, line_at, moment, number
+from rockbatch.motions.formats.header_lines import found, line_at, moment, number, read_header, search_lines
 from rockbatch.motions.formats.obspy_plugin import plugin
-from rockbatch.motions.formats.record_file import RecordFile
-from rockbatch.motions.formats.recording import Recording, to_components
-from rockbatch.motions.motion import Initial, Samples, Unusable
+from rockbatch.motions.formats.recording import Recording
+from rockbatch.motions.motion import Initial, Samples
 from rockbatch.motions.orientation import orientation_of
 from rockbatch.motions.origin import origin_of
 from rockbatch.units import acceleration_factor
@@ -44,9 +44,12 @@ _VALUES = re.compile(
 _END = re.compile(r"^ *(?:/&[ -]*)?End[- ]of[- ]data", re.I)
 _FORMAT = re.compile(r" *(?:\dP,?)?(?P<per_line>\d{0,2})[IFED](?P<width>\d{1,2})(?:\.\d{1,2})? *", re.I | re.A)
 _UNKNOWN = re.compile(r"unspecified: *-?\d+, *(?P<real>-?[\d.]{1,12})", re.I | re.A)
-_CODE = re.compile(r"Code: *(?P<network>[^- ]*)-(?P<station>\S*)", re.I)
-_CHANNEL = re.compile(r"^Sta Chan?:? *(?P<number>[\d?]*) *: *(?P<label>.*?) *(?:deg\b[^(]*)?(?:\(|$)", re.I)
-_LOCATION = re.compile(r"Location: *(?P<place>\S.*?) *$", re.I)
+_STATION, _SENSOR = 4, 8  # lines of the header's text
+_TEXT = (
+    (_STATION, re.compile(r"Code: *(?P<network>[^- ]*)-(?P<code>\S*)(?P<words>.*)", re.I), ""),
+    (_SENSOR, re.compile(r"^Sta Chan?:? *(?P<number>[\d?]*) *: *(?P<label>.*?) *(?:deg\b[^(]*)?(?:\(|$)", re.I), ""),
+    (_SENSOR, re.compile(r"Location: *(?P<place>\S.*?) *$", re.I), ""),
+)
 _SCNL = re.compile(r"<SCNL>(?P<station>\w*)\.(?P<channel>\w*)\.(?P<network>\w*)\.(?P<location>[\w-]*)", re.A)
 
 
@@ -55,11 +58,12 @@ class _Header:
     """The header of a channel, and the index of the first line after it.
 
     ``integers`` and ``reals`` are counted from 1 in the specification, from 0 here; ``unknown`` stands for those
-    that are unknown, and for missing values.
+    that are unknown, and for missing values. ``said`` has the groups of ``_TEXT``.
     """
 
     what: str
     text: list[str]
+    said: Mapping[str, str]
     integers: list[int]
     reals: list[float]
     comments: str
@@ -68,17 +72,12 @@ class _Header:
 
 
 def is_cosmos(head: bytes) -> bool:
-    """Whether the first bytes are the first line of a COSMOS file, of whatever kind of data."""
+    """Return whether the first bytes are the first line of a COSMOS file, of whatever kind of data."""
     return _TITLE.match(line_at(lines_of(head.decode("latin-1")), 0)) is not None
 
 
-def read_cosmos(file: RecordFile) -> list[Component | Unusable]:
-    """The channels of a file in m/s², uncorrected ones without offset."""
-    return to_components(file, _parse(file.text))
-
-
-def _parse(text: str) -> list[Recording]:
-    """The channels, one after the other; ``InputError`` with the line where the file is not whole."""
+def parse(text: str) -> list[Recording]:
+    """Return the channels, one after the other; ``InputError`` with the line where the file is not whole."""
     lines = lines_of(text)
     recordings: list[tuple[Recording, _Header]] = []
     others: list[str] = []
@@ -97,7 +96,9 @@ def _parse(text: str) -> list[Recording]:
             recordings.append((_recording(header, series, values, at), header))
         else:
             others.append(series["what"])
-            if recordings and _channel_line(recordings[-1][1]) == _channel_line(header):
+            if recordings and all(
+                line_at(recordings[-1][1].text, i) == line_at(header.text, i) for i in (_STATION, _SENSOR)
+            ):
                 recordings[-1] = (_beside(recordings[-1][0], series, values), header)
         at = end
     if not recordings:
@@ -107,13 +108,8 @@ def _parse(text: str) -> list[Recording]:
     return [recording for recording, _ in recordings]
 
 
-def _channel_line(header: _Header) -> tuple[str, str]:
-    """Return what headers of one channel share: the lines of its station and of its sensor."""
-    return line_at(header.text, 4), line_at(header.text, 8)
-
-
 def _beside(recording: Recording, series: re.Match[str], values: Samples) -> Recording:
-    """With the velocities or displacements that follow its accelerations."""
+    """Return a recording with the velocities or displacements that follow its accelerations."""
     what, given = series["what"].lower(), (values, series["unit"])
     if what.startswith("vel"):
         return replace(recording, velocities=given)
@@ -121,7 +117,7 @@ def _beside(recording: Recording, series: re.Match[str], values: Samples) -> Rec
 
 
 def _header(lines: list[str], at: int) -> _Header:
-    """The header that begins at ``lines[at]``."""
+    """Return the header that begins at ``lines[at]``."""
     title = found(_TITLE, lines, at, "Corrected acceleration    (Format v01.20 with 13 text lines)")
     if "spectr" in title["what"].lower():
         raise NoRecordError(f"line {at + 1}: spectra; expected accelerations: take the V2 file of this record")
@@ -133,24 +129,24 @@ def _header(lines: list[str], at: int) -> _Header:
         count = int(said["count"])
         if said["what"].lower() != what.lower() or count < _HEADERS:
             raise InputError(f'line {end + 1}: found "{said[0].strip()}"; expected {_HEADERS} {what}-header values')
-        width, per_line = _layout(said["format"], end)
-        numbers.append(fixed_numbers(lines, end + 1, count, width, per_line))
-        end += 1 - -count // per_line
+        values, end = fixed_numbers(lines, end + 1, count, *_layout(said["format"], end))
+        numbers.append(values)
     comments = int(found(_COMMENTS, lines, end, "… Comment line(s) follow")["count"])
-    said_unknown = next((match for line in text if (match := _UNKNOWN.search(line))), None)
+    unknown = search_lines(_UNKNOWN, text)
     return _Header(
         what=title["what"],
         text=text,
+        said=read_header(text, 0, _TEXT),
         integers=[int(value) for value in numbers[0]],
         reals=[float(value) for value in numbers[1]],
         comments="\n".join(lines[end + 1 : end + 1 + comments]),
-        unknown=number(said_unknown["real"], at + len(text) - 1) if said_unknown else -999.0,
+        unknown=number(unknown["real"], at + len(text) - 1) if unknown else -999.0,
         end=end + 1 + comments,
     )
 
 
 def _layout(text: str, at: int) -> tuple[int, int]:
-    """Width and numbers per line of a Fortran format such as 8F10.5 or 1PE15.6."""
+    """Return width and numbers per line of a Fortran format such as 8F10.5 or 1PE15.6."""
     match = _FORMAT.fullmatch(text)
     width, per_line = (int(match["width"]), int(match["per_line"] or 1)) if match else (0, 0)
     if width < 1 or per_line < 1:
@@ -159,19 +155,17 @@ def _layout(text: str, at: int) -> tuple[int, int]:
 
 
 def _values(lines: list[str], at: int, series: re.Match[str]) -> tuple[Samples, int]:
-    """The values that ``lines[at]`` declares, and where the lines after their end begin."""
+    """Return the values that ``lines[at]`` declares, and where the lines after their end begin."""
     npts = int(series["npts"])
     if npts < 1:
         raise InputError(f"line {at + 1}: found {npts} values; expected some")
-    width, per_line = _layout(series["format"], at)
-    values = fixed_numbers(lines, at + 1, npts, width, per_line)
-    end = at + 1 - -npts // per_line
+    values, end = fixed_numbers(lines, at + 1, npts, *_layout(series["format"], at))
     found(_END, lines, end, f"End-of-data … after {npts} values; fetch it again")
     return values, end + 1
 
 
 def _recording(header: _Header, series: re.Match[str], values: Samples, at: int) -> Recording:
-    """The accelerations that ``lines[at]`` declares, with what their header says; ``InputError`` for contradictions."""
+    """Return the accelerations that ``lines[at]`` declares, with what their header says; ``InputError`` if it contradicts."""
     interval = header.reals[61]
     dt = float(f"{interval / 1000:.12g}")
     seconds = int(series["seconds"])
@@ -186,50 +180,39 @@ def _recording(header: _Header, series: re.Match[str], values: Samples, at: int)
         raise InputError(
             f"{missing} of {len(values)} values are {header.unknown:g}, which marks those that are missing"
         )
-    named = _CODE.search(line_at(header.text, 4))
-    place = _LOCATION.search(line_at(header.text, 8))
-    seed = _SCNL.search(header.comments)
-    network, station = (named["network"], named["station"]) if named else ("", "")
-    location = seed["location"].strip("-") if seed else ""
-    stage = "uncorrected" if header.what.lower().startswith(("raw", "uncorr")) else "corrected"
-    where = place["place"] if place else ""
-    channel = _CHANNEL.search(line_at(header.text, 8))
+    said, seed = header.said, _SCNL.search(header.comments)
+    network, station, place = said["network"], said["code"], said["place"]
+    location, channel = (seed["location"].strip("-"), seed["channel"]) if seed else ("", "")
+    corrected = not header.what.lower().startswith(("raw", "uncorr"))
+    where = ", ".join(filter(None, [location, place, "corrected" if corrected else "uncorrected"]))
+    event = line_at(header.text, 1)
+    name = re.sub(
+        r"^[A-Z]{2}:", "", re.split(r" {2,}", said["words"].strip())[-1]
+    )  # "USGS  AK:Anchorage;R B Atwood Bld"
+    year, month, day, hour, minute = (header.integers[i] for i in (39, 41, 42, 43, 44))
     return Recording(
-        label=_label(header, seed["channel"] if seed else ""),
+        label=_label(header, channel),
         dt=dt,
         values=values,
         unit=_unit(header, series, at),
-        station=", ".join(filter(None, [f"{network}-{station}", location, where, stage])) if station else "",
-        codes=(network, station, location, seed["channel"] if seed else ""),
-        start=_start(header),
-        uncorrected=stage == "uncorrected",
-        processed=stage == "corrected",
+        station=f"{network}-{station}, {where}" if station else "",
+        codes=(network, station, location, channel),
+        start=moment(year, month, day, hour, minute, header.reals[29]),
+        processed=corrected,
         seat=Seat(
-            station,
-            network,
-            location if seed else None,
-            where.upper() if where else None,
-            (channel["number"].strip("?") or None) if channel else None,
+            station, network, location if seed else None, place.upper() or None, said["number"].strip("?") or None
         ),
-        event=line_at(header.text, 1),
-        initial=_initial(header) if stage == "corrected" else None,
-        origin=origin_of(line_at(header.text, 1), _station_name(header) or station, line_at(header.text, 3)),
+        event=event,
+        initial=_initial(header) if corrected else None,
+        origin=origin_of(event, name or station, line_at(header.text, 3)),
         stated_peak=("" if peak == header.unknown else f"{peak:.5f}", ""),
-        notes=(f"location: {where}",) if where else (),
-        header={"station": line_at(header.text, 4).strip(), "event": line_at(header.text, 1).strip()},
+        notes=(f"location: {place}",) if place else (),
+        header={"station": line_at(header.text, _STATION).strip(), "event": event.strip()},
     )
 
 
-def _station_name(header: _Header) -> str:
-    """Return the name behind number and codes: "Statn No: 02-008040 Code:NP-8040   USGS  AK:Anchorage;R B Atwood Bld"."""
-    line = line_at(header.text, 4)
-    said = _CODE.search(line)
-    words = re.split(r" {2,}", line[said.end() :].strip()) if said else []
-    return re.sub(r"^[A-Z]{2}:", "", words[-1]) if words else ""
-
-
 def _initial(header: _Header) -> Initial | None:
-    """The ground's state at the first sample, by real numbers 68 and 69; ``None`` where the first is unknown."""
+    """Return the ground's state at the first sample, by real numbers 68 and 69; ``None`` where the first is unknown."""
     velocity, displacement = header.reals[67:69]
     if velocity == header.unknown:
         return None
@@ -237,7 +220,7 @@ def _initial(header: _Header) -> Initial | None:
 
 
 def _unit(header: _Header, series: re.Match[str], at: int) -> str:
-    """Unit of the accelerations, by its code, which the header and the text must confirm."""
+    """Return the unit of the accelerations, by its code, which the header and the text must confirm."""
     code, text = int(series["code"]), series["unit"]
     unit = _UNITS.get(code)
     if unit is None:
@@ -258,21 +241,14 @@ def _unit(header: _Header, series: re.Match[str], at: int) -> str:
 
 
 def _label(header: _Header, channel: str) -> str:
-    """Direction by the header's text, else by its code for the sensor (integer 54), else by the SEED channel."""
-    said = _CHANNEL.search(line_at(header.text, 8))
-    code = header.integers[53]
+    """Return the direction by the header's text, else by its code for the sensor (integer 54), else by the SEED channel."""
+    code, said = header.integers[53], header.said["label"]
     by_code = _DIRECTIONS.get(code, str(code) if 1 <= code <= 360 else "")
-    known = [label for label in (said["label"] if said else "", by_code, channel) if orientation_of(label)]
+    known = [label for label in (said, by_code, channel) if orientation_of(label)]
     ways = {(way.vertical, way.down) for label in known if (way := orientation_of(label))}
     if len(ways) > 1:
         raise InputError(f"directions contradict each other: {' and '.join(known)}; repair the header")
-    return known[0] if known else (said["label"] if said else "")
+    return known[0] if known else said
 
 
-def _start(header: _Header) -> float | None:
-    """Time of the first sample [s since 1970], where the header has it."""
-    year, month, day, hour, minute = (header.integers[i] for i in (39, 41, 42, 43, 44))
-    return moment(year, month, day, hour, minute, header.reals[29])
-
-
-is_cosmos_file, read_cosmos_stream = plugin("COSMOS", is_cosmos, _parse)
+is_cosmos_file, read_cosmos_stream = plugin("COSMOS", is_cosmos, parse)

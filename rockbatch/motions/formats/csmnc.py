@@ -8,13 +8,11 @@ description of them; lines in between differ from year to year.
 import re
 
 from rockbatch.errors import InputError, NoRecordError
-from rockbatch.motions.component import Component, Seat
+from rockbatch.motions.component import Seat
 from rockbatch.motions.formats.fixed_width import lines_of, spaced_numbers
-from rockbatch.motions.formats.header_lines import line_with, number
+from rockbatch.motions.formats.header_lines import line_with, number, search_lines
 from rockbatch.motions.formats.obspy_plugin import plugin
-from rockbatch.motions.formats.record_file import RecordFile
-from rockbatch.motions.formats.recording import Recording, to_components
-from rockbatch.motions.motion import Unusable
+from rockbatch.motions.formats.recording import Recording
 from rockbatch.motions.origin import origin_of
 
 SUFFIXES: frozenset[str] = frozenset()
@@ -29,21 +27,17 @@ _COMPONENT = re.compile(r"^ *COMP\. *(?P<label>\S+)", re.IGNORECASE)
 _STATION = re.compile(r"^ *STATION: *(?P<code>\S+)", re.IGNORECASE)
 _POINT = re.compile(r"^ *OBSERVING POINT: *(?P<place>\S.*)", re.IGNORECASE)
 _PEAK = re.compile(r"PEAK VALUE: *(?P<peak>[-+]?[0-9.]{1,15}(?:E[-+]?[0-9]{1,3})?)", re.IGNORECASE)
+_NUMBERS = re.compile(r"\s*[-+]?[0-9.][-+0-9.E\s]*", re.IGNORECASE)
 
 
 def is_csmnc(head: bytes) -> bool:
-    """Whether the first bytes are the header of such a file."""
+    """Return whether the first bytes are the header of such a file."""
     lines = lines_of(head.decode("latin-1"))[:_MOST]
-    return all(any(pattern.search(line[:200]) for line in lines) for pattern in (_KIND, _COUNT, _COMPONENT))
+    return all(search_lines(pattern, lines) for pattern in (_KIND, _COUNT, _COMPONENT))
 
 
-def read_csmnc(file: RecordFile) -> list[Component | Unusable]:
-    """The component of a file in m/s², an uncorrected one without offset."""
-    return to_components(file, _parse(file.text))
-
-
-def _parse(text: str) -> list[Recording]:
-    """The recording of a file; ``InputError`` with the line where it is not whole."""
+def parse(text: str) -> list[Recording]:
+    """Return the recording of a file; ``InputError`` with the line where it is not whole."""
     lines = lines_of(text)
     _, kind = line_with(_KIND, lines, _MOST, "UNCORRECTED ACCELERATION UNIT: CM/SEC/SEC")
     if not kind["what"].upper().startswith("ACC"):  # the Center's own description has "ACCCELERATION"
@@ -54,8 +48,8 @@ def _parse(text: str) -> list[Recording]:
     npts, dt = int(count["npts"]), number(count["dt"], at)
     if npts < 2 or not 0 < dt < 10:
         raise InputError(f'line {at + 1}: found "{count[0].strip()}"; expected two points or more and an interval')
-    first = next((i for i in range(at + 1, min(len(lines), _MOST + 1)) if _is_data(lines[i])), at + 1)
-    peak = next((match for line in lines[at:first] if (match := _PEAK.search(line[:200]))), None)
+    first = next((i for i in range(at + 1, min(len(lines), _MOST + 1)) if _NUMBERS.fullmatch(lines[i])), at + 1)
+    peak, place = search_lines(_PEAK, lines[at:first]), search_lines(_POINT, lines[:_MOST])
     return [
         Recording(
             label=label,
@@ -63,10 +57,8 @@ def _parse(text: str) -> list[Recording]:
             values=spaced_numbers(lines, first, npts, _PER_LINE),
             unit=kind["unit"],
             station=f"{station}, {lines[1].strip()[:60]}, {'un' if kind['un'] else ''}corrected",
-            codes=("CN", "".join(c for c in station if c.isascii() and c.isalnum())[:5], "", label.upper()),
-            uncorrected=bool(kind["un"]),
             processed=not kind["un"],
-            seat=Seat(station, "CN", place=_place(lines)),
+            seat=Seat(station, "CN", place=place["place"].strip().upper() if place else None),
             event=lines[1][:60],
             origin=origin_of(lines[2], station, lines[1]),
             stated_peak=(peak["peak"] if peak else "", ""),
@@ -75,20 +67,4 @@ def _parse(text: str) -> list[Recording]:
     ]
 
 
-def _place(lines: list[str]) -> str | None:
-    """Where the sensor stands ("GROUND"); ``None`` where the header does not say."""
-    said = next((match for line in lines[:_MOST] if (match := _POINT.search(line[:200]))), None)
-    return said["place"].strip().upper() if said else None
-
-
-def _is_data(line: str) -> bool:
-    """Whether a line holds a full line of numbers, and nothing else."""
-    fields = line.split()
-    try:
-        [float(field) for field in fields]
-    except ValueError:
-        return False
-    return bool(fields)
-
-
-is_csmnc_file, read_csmnc_stream = plugin("CSMNC", is_csmnc, _parse)
+is_csmnc_file, read_csmnc_stream = plugin("CSMNC", is_csmnc, parse)

@@ -3,38 +3,34 @@
 import re
 
 from rockbatch.errors import InputError
-from rockbatch.motions.component import Component, Seat
-from rockbatch.motions.formats.header_lines import moment
+from rockbatch.motions.component import Seat
+from rockbatch.motions.formats.header_lines import moment_in
 from rockbatch.motions.formats.obspy_plugin import plugin
-from rockbatch.motions.formats.record_file import RecordFile
-from rockbatch.motions.formats.recording import Recording, to_components
+from rockbatch.motions.formats.recording import Recording
 from rockbatch.motions.formats.table import read_table
 from rockbatch.motions.formats.time_steps import on_even_steps
-from rockbatch.motions.motion import Unusable
 from rockbatch.motions.origin import origin_of
 
 SUFFIXES = frozenset({".txt", ".dat", ".acc", ".asc"})
 
 _KEY = re.compile(r"(?P<key>[^:]{1,60}?)\s*:\s*(?P<value>.*)")
 _LABEL = re.compile(r"\s*(?P<label>[A-Za-z0-9]{1,8})\(\+\)\s*")
-_MOMENT = re.compile(r"(\d{4})/(\d{1,2})/(\d{1,2})-(\d\d):(\d\d):(\d\d(?:\.\d{1,6})?)", re.ASCII)
+_MOMENT = re.compile(
+    r"(?P<year>\d{4})/(?P<month>\d{1,2})/(?P<day>\d{1,2})-(?P<hour>\d\d):(?P<minute>\d\d):(?P<second>\d\d(?:\.\d{1,6})?)",
+    re.ASCII,
+)
 _TAIPEI = 8 * 3600.0  # s ahead of UTC
 _SAME_RATE = 1e-3  # relative: what printing of the times may cost their mean step
 _WITHIN = 1.0  # s: the stated length is rounded, to whole seconds in some files
 
 
 def is_cwa(head: bytes) -> bool:
-    """Whether the first bytes are the header of a free-field file."""
+    """Return whether the first bytes are the header of a free-field file."""
     return head.lstrip(b"\xef\xbb\xbf \r\n").startswith(b"#") and b"#StationCode:" in head and b"#DataSequence:" in head
 
 
-def read_cwa(file: RecordFile) -> list[Component | Unusable]:
-    """The three components of a file in m/s²."""
-    return to_components(file, _parse(file.text))
-
-
-def _parse(text: str) -> list[Recording]:
-    """The components; ``InputError`` where header and columns do not agree."""
+def parse(text: str) -> list[Recording]:
+    """Return the three components; ``InputError`` where header and columns do not agree."""
     lines, table = read_table(text)
     header = {match["key"]: match["value"].strip() for line in lines if (match := _KEY.match(line))}
     unit, _, offset = header.get("AmplitudeUnit", "").partition(".")
@@ -44,7 +40,9 @@ def _parse(text: str) -> list[Recording]:
     dt, values, notes = on_even_steps(table[:, 0], table[:, 1:])
     _check_rate_and_length(header, dt, len(values))
     station = header.get("StationCode", "")
-    began = header.get("StartTime(GMT+08)") or header.get("StartTime", "")
+    local = header.get("StartTime(GMT+08)", "")
+    began = local or header.get("StartTime", "")
+    start = moment_in(_MOMENT, began)
     return [
         Recording(
             label=label,
@@ -53,8 +51,8 @@ def _parse(text: str) -> list[Recording]:
             unit=unit.strip(),
             station=f"{station}, {began}",
             codes=("TW", station, "", label),
-            start=_start(began, "StartTime(GMT+08)" in header),
-            uncorrected="corr" not in offset.lower(),
+            start=start - _TAIPEI if start is not None and local else start,
+            raw="corr" not in offset.lower(),
             processed=False,
             seat=Seat(station, "TW"),
             event=began,
@@ -67,7 +65,7 @@ def _parse(text: str) -> list[Recording]:
 
 
 def _labels(sequence: str) -> list[str]:
-    """Directions of the columns after time, all positive as they are named: "Time U(+); N(+); E(+)"."""
+    """Return the directions of the columns after time, all positive as they are named: "Time U(+); N(+); E(+)"."""
     time, _, rest = sequence[:200].strip().partition(" ")
     matches = [_LABEL.fullmatch(part) for part in rest.split(";")]
     if time.lower() != "time" or None in matches:
@@ -76,7 +74,7 @@ def _labels(sequence: str) -> list[str]:
 
 
 def _check_rate_and_length(header: dict[str, str], dt: float, npts: int) -> None:
-    """``InputError`` unless the stated rate and length, if given, are those of the columns."""
+    """Raise ``InputError`` unless the stated rate and length, if given as numbers, are those of the columns."""
     stated = {}
     for key in ("SampleRate(Hz)", "RecordLength(sec)"):
         try:
@@ -90,14 +88,4 @@ def _check_rate_and_length(header: dict[str, str], dt: float, npts: int) -> None
         raise InputError(f"the header says {length:g} s, but there are {npts * dt:g} s; fetch the file again")
 
 
-def _start(text: str, local: bool) -> float | None:
-    """Time of the first sample [s since 1970]; ``None`` where it is not known."""
-    match = _MOMENT.match(text)
-    if match is None:
-        return None
-    year, month, day, hour, minute = (int(match[i]) for i in range(1, 6))
-    start = moment(year, month, day, hour, minute, float(match[6]))
-    return start - _TAIPEI if start is not None and local else start
-
-
-is_cwa_file, read_cwa_stream = plugin("CWA", is_cwa, _parse)
+is_cwa_file, read_cwa_stream = plugin("CWA", is_cwa, parse)

@@ -9,13 +9,12 @@ import re
 import numpy as np
 
 from rockbatch.errors import InputError, NoRecordError
-from rockbatch.motions.component import Component, Seat
+from rockbatch.motions.component import Seat
 from rockbatch.motions.formats.fixed_width import LOOKED_AT, is_cut_short, lines_of, number_in
-from rockbatch.motions.formats.header_lines import moment
+from rockbatch.motions.formats.header_lines import moment_in
 from rockbatch.motions.formats.obspy_plugin import plugin
-from rockbatch.motions.formats.record_file import RecordFile
-from rockbatch.motions.formats.recording import Recording, to_components
-from rockbatch.motions.motion import Samples, Unusable
+from rockbatch.motions.formats.recording import Recording
+from rockbatch.motions.motion import Samples
 from rockbatch.motions.origin import TURKISH, origin_of
 
 SUFFIXES = frozenset({".asc"})
@@ -23,7 +22,11 @@ SUFFIXES = frozenset({".asc"})
 _MOST_KEYS = 200
 _TURKISH = ("TK", "TU", "KO")  # networks whose texts are in Windows-1254
 _ROUGHLY = 0.01  # relative: what the stated duration, rounded or off by a sample, may differ
-_MOMENT = re.compile(r"(\d{4})/?(\d\d)/?(\d\d)[_ T](\d\d):?(\d\d):?(\d\d(?:\.\d{1,6})?)", re.ASCII)
+_MOMENT = re.compile(
+    r"(?P<year>\d{4})/?(?P<month>\d\d)/?(?P<day>\d\d)[_ T]"
+    r"(?P<hour>\d\d):?(?P<minute>\d\d):?(?P<second>\d\d(?:\.\d{1,6})?)",
+    re.ASCII,
+)
 
 
 def is_dyna(head: bytes) -> bool:
@@ -31,12 +34,7 @@ def is_dyna(head: bytes) -> bool:
     return head.removeprefix(b"\xef\xbb\xbf").startswith(b"EVENT_NAME:") and b"SAMPLING_INTERVAL_S:" in head
 
 
-def read_dyna(file: RecordFile) -> list[Component | Unusable]:
-    """The component of a file in m/s²; the header says whether the instrument's zero is still in it."""
-    return to_components(file, _parse(file.text))
-
-
-def _parse(text: str) -> list[Recording]:
+def parse(text: str) -> list[Recording]:
     """The component, as a list of one; ``InputError`` with all that is wrong with the header, or the line."""
     lines = lines_of(text)
     header = _header(lines)
@@ -56,9 +54,8 @@ def _parse(text: str) -> list[Recording]:
             values=values,
             unit=unit,
             station=", ".join([".".join((*codes, stream[:-1])), event, header.get("PROCESSING", "")]),
-            codes=(codes[0], codes[1], codes[2], stream),
-            start=_start(header.get("DATE_TIME_FIRST_SAMPLE_YYYYMMDD_HHMMSS", "")),
-            uncorrected="NOT REMOVED" in header.get("BASELINE_CORRECTION", "").upper(),
+            start=moment_in(_MOMENT, header.get("DATE_TIME_FIRST_SAMPLE_YYYYMMDD_HHMMSS", "")),
+            raw="NOT REMOVED" in header.get("BASELINE_CORRECTION", "").upper(),
             processed=_processed(header),
             seat=Seat(codes[1], codes[0], codes[2]),
             event=event,
@@ -131,13 +128,4 @@ def _values(lines: list[str], first: int, npts: int) -> Samples:
     return np.array([number_in(lines[i], i) for i in range(first, end)])
 
 
-def _start(text: str) -> float | None:
-    """Time of the first sample [s since 1970]; ``None`` where it is not known."""
-    match = _MOMENT.match(text)
-    if match is None:
-        return None
-    year, month, day, hour, minute = (int(match[i]) for i in range(1, 6))
-    return moment(year, month, day, hour, minute, float(match[6]))
-
-
-is_dyna_file, read_dyna_stream = plugin("DYNA", is_dyna, _parse)
+is_dyna_file, read_dyna_stream = plugin("DYNA", is_dyna, parse)

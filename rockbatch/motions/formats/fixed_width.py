@@ -53,11 +53,11 @@ def one_after_another(text: str, channel: Callable[[list[str], int], tuple[T, in
     return channels
 
 
-def fixed_numbers(lines: Sequence[str], first: int, count: int, width: int, per_line: int) -> Samples:
-    """``count`` numbers from ``lines[first]`` on, ``per_line`` of ``width`` characters each, shape (count,).
+def fixed_numbers(lines: Sequence[str], first: int, count: int, width: int, per_line: int) -> tuple[Samples, int]:
+    """Return ``count`` numbers from ``lines[first]`` on, shape (count,), and where the lines after them begin.
 
-    Every line is full but the last, which holds the rest and nothing more. Raises ``InputError`` with the line
-    for anything else; nothing is allocated before the lines are there.
+    There are ``per_line`` of ``width`` characters each: every line is full but the last, which holds the rest and nothing
+    more. Raises ``InputError`` with the line for anything else; nothing is allocated before the lines are there.
     """
     needed = -(-count // per_line)
     if len(lines) - first < needed:
@@ -76,7 +76,7 @@ def fixed_numbers(lines: Sequence[str], first: int, count: int, width: int, per_
                 f"expected {expected} values of {width} characters each"
             )
         values[i * per_line : i * per_line + expected] = [number_in(field, first + i) for field in fields]
-    return values
+    return values, first + needed
 
 
 def refuse_more(lines: Sequence[str], end: int, declared: str) -> None:

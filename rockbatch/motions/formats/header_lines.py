@@ -45,8 +45,21 @@ def read_header(lines: Sequence[str], at: int, layout: Sequence[Line]) -> dict[s
     return groups
 
 
+def past_mark(lines: Sequence[str], at: int, after: str) -> int:
+    """Return where the lines behind the mark "/&" at ``lines[at]`` begin; ``InputError`` where it is not ``after`` its data."""
+    if not line_at(lines, at).startswith("/&"):
+        what = f'"{lines[at].strip()[:60]}"' if at < len(lines) else "the end of the file"
+        raise InputError(f'line {at + 1}: found {what}; expected "/&" after {after}; fetch it again')
+    return at + 1
+
+
+def search_lines(pattern: re.Pattern[str], lines: Sequence[str]) -> re.Match[str] | None:
+    """Return the match of ``pattern`` in the first of ``lines`` that it is in, as far as a header goes; ``None`` if in none."""
+    return next((match for line in lines if (match := pattern.search(line[:_LONGEST]))), None)
+
+
 def line_with(pattern: re.Pattern[str], lines: Sequence[str], most: int, expected: str) -> tuple[int, re.Match[str]]:
-    """Index and match of the first of ``most`` lines that ``pattern`` is in; ``InputError`` where it is in none."""
+    """Return index and match of the first of ``most`` lines that ``pattern`` is in; ``InputError`` where it is in none."""
     for at in range(min(most, len(lines))):
         if match := pattern.search(line_at(lines, at)):
             return at, match
@@ -71,6 +84,14 @@ def number_of(header: Mapping[str, str], key: str) -> float:
         return number_in(header[key], 0)
     except InputError:
         raise InputError(f'the header says {key}: "{header[key][:40]}"; expected a number') from None
+
+
+def count_and_step(header: Mapping[str, str], count: str, step: str) -> tuple[int, float]:
+    """Return the number of samples and the sampling interval [s] under these keys; ``InputError`` where they are none."""
+    npts, dt = number_of(header, count), number_of(header, step)
+    if npts != int(npts) or npts < 2 or not 0 < dt < 10:
+        raise InputError(f"the header says {npts:g} values every {dt:g} s; expected a whole number and an interval")
+    return int(npts), dt
 
 
 def line_at(lines: Sequence[str], at: int) -> str:
@@ -106,6 +127,12 @@ def moment_of(groups: Mapping[str, str]) -> float | None:
         return moment(year, month, day, hour, minute, float(groups["second"].replace(",", ".")))
     except (KeyError, ValueError):
         return None
+
+
+def moment_in(pattern: re.Pattern[str], text: str) -> float | None:
+    """Return the time in UTC [s since 1970] that a text begins with; ``None`` where it is none of the ``pattern``."""
+    match = pattern.match(text)
+    return moment_of(match.groupdict()) if match else None
 
 
 def moment(year: int, month: int, day: int, hour: int, minute: int, second: float) -> float | None:

@@ -5,16 +5,13 @@ the recorders, and nine hours ahead of UTC. The stated peak is that without the 
 """
 
 import re
-from dataclasses import replace
 from datetime import UTC, datetime
 
 from rockbatch.errors import InputError
-from rockbatch.motions.component import Component, Seat
+from rockbatch.motions.component import Seat
 from rockbatch.motions.formats.fixed_width import lines_of, spaced_numbers
 from rockbatch.motions.formats.header_lines import moment_of, read_header
-from rockbatch.motions.formats.record_file import RecordFile
-from rockbatch.motions.formats.recording import Recording, to_components
-from rockbatch.motions.motion import Unusable
+from rockbatch.motions.formats.recording import Recording
 from rockbatch.motions.orientation import orientation_of, unknown
 from rockbatch.motions.origin import origin_of
 
@@ -48,21 +45,16 @@ def is_knet(head: bytes) -> bool:
     return head.startswith(b"Origin Time")
 
 
-def read_knet(file: RecordFile) -> list[Component | Unusable]:
-    """Return the component of a file in m/s², of no unit of its own; KiK-net's borehole and surface are two stations."""
-    readings = to_components(file, _parse(file.text))
-    return [replace(reading, unit="") if isinstance(reading, Component) else reading for reading in readings]
-
-
-def _parse(text: str) -> list[Recording]:
+def parse(text: str) -> list[Recording]:
     """Return the recording of a file; ``InputError`` with the line where it is not whole."""
     lines = lines_of(text)
     quake, start = moment_of(read_header(lines, 0, _EVENT)), moment_of(header := read_header(lines, 0, _TEXT))
+    day = "" if quake is None else datetime.fromtimestamp(quake - _JAPAN, UTC).strftime("%Y-%m-%d %H:%M")
     station, rate, duration = header["station"], int(header["rate"]), float(header["seconds"])
     npts = round(duration * rate)
     if npts < 2 or abs(npts - duration * rate) > 1e-6:
         raise InputError(f"line 12: found {duration:g} s at {rate} Hz; expected a whole number of samples above 1")
-    counts = spaced_numbers(lines, _HEADER, npts, _PER_LINE)
+    scale = 0.01 * float(header["gal"]) / float(header["per"])
     channel = _CHANNELS.get(header["channel"], header["channel"].replace("-", ""))
     level = channel[2:]
     return [
@@ -70,20 +62,15 @@ def _parse(text: str) -> list[Recording]:
             label=channel,
             orientation=orientation_of(channel[:2]) or unknown(channel),
             dt=1.0 / rate,
-            values=counts * (0.01 * float(header["gal"]) / float(header["per"])),
+            values=spaced_numbers(lines, _HEADER, npts, _PER_LINE) * scale,
             unit="m/s2",
+            counts=True,
             station=f"{station}.{level}" if level else station,
             start=None if start is None else start - _JAPAN - _DELAY,
-            uncorrected=True,
             processed=False,
-            origin=origin_of(date=_day(quake), station=station),
+            origin=origin_of(date=day, station=station),
             seat=Seat(station, location=level, place=_PLACES.get(level)),
             stated_peak=(header["peak"], "gal"),
             notes=(_LEVELS[level],) if level in _LEVELS else (),
         )
     ]
-
-
-def _day(quake: float | None) -> str:
-    """Return the date of a time in Japan [s since 1970] in UTC; empty if it is none."""
-    return "" if quake is None else datetime.fromtimestamp(quake - _JAPAN, UTC).strftime("%Y-%m-%d %H:%M")

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 
 from rockbatch.errors import InputError
 from rockbatch.motions.formats.record_file import text_of
-from rockbatch.motions.formats.recording import Recording
+from rockbatch.motions.formats.recording import Recording, letters
 
 if TYPE_CHECKING:
     from obspy import Stream, Trace
@@ -78,7 +78,9 @@ def _trace(name: str, recording: Recording, headonly: bool) -> "Trace":
     from obspy import Trace, UTCDateTime
     from obspy.core import AttribDict
 
-    network, station, location, channel = recording.codes
+    seat = recording.seat
+    by_seat = (seat.network or "", letters(seat.station), seat.location or "", recording.label.upper())
+    network, station, location, channel = recording.codes or by_seat
     header = {
         "delta": recording.dt,
         "network": network,

@@ -1,7 +1,7 @@
 """One channel as its file has it, in its own unit, and the way from there to a component in m/s²."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -42,13 +42,13 @@ class Recording:
     orientation : Orientation or None
         Where it is not what ``label`` says.
     codes : tuple of four str
-        Network, station, location and channel, as far as the file has them.
+        Network, station, location and channel for ObsPy; by default of ``seat``, and the label.
     start : float or None
         Time of the first sample [s since 1970, UTC].
-    uncorrected : bool
-        Whether the instrument's offset may still be in the data.
     processed : bool or None
         Whether the agency has corrected them; ``None`` where the file does not say.
+    raw : bool or None
+        Whether the instrument's offset may still be in the data; ``None``: if they are not ``processed``.
     seat : Seat
         The sensor, by what the header says.
     event : str
@@ -59,6 +59,8 @@ class Recording:
         That the file has beside the accelerations.
     stated_peak : (str, str)
         Peak that the header states, as it is printed, and its unit ("" for ``unit``); its sign is not to be trusted.
+    counts : bool
+        Whether the file has counts, and their scale: no unit of its own.
     as_read : ndarray, shape (n,), or None
         Accelerations before they were interpolated, which have the stated peak.
     notes : tuple of str
@@ -75,20 +77,36 @@ class Recording:
     unit: str
     station: str = ""
     orientation: Orientation | None = None
-    codes: tuple[str, str, str, str] = ("", "", "", "")
+    codes: tuple[str, str, str, str] | None = None
     start: float | None = None
-    uncorrected: bool = False
     processed: bool | None = None
+    raw: bool | None = None
     seat: Seat = NOWHERE
     event: str = ""
     initial: Initial | None = None
     velocities: Series | None = None
     displacements: Series | None = None
     stated_peak: tuple[str, str] = ("", "")
+    counts: bool = False
     as_read: Samples | None = None
     notes: tuple[str, ...] = ()
     origin: Origin = UNKNOWN_ORIGIN
     header: dict[str, str] = field(default_factory=dict)
+
+
+def reader(parse: Callable[[str], Sequence[Recording]]) -> Callable[[RecordFile], list[Component | Unusable]]:
+    """Return the reader of a format of text: the recordings that ``parse`` makes of it, as components."""
+
+    def read(file: RecordFile) -> list[Component | Unusable]:
+        """Return the components of a file in m/s², or ``InputError`` with the line where it is not whole."""
+        return to_components(file, parse(file.text))
+
+    return read
+
+
+def letters(text: str, most: int = 5) -> str:
+    """Return the first ASCII letters and digits of a text, as a code of SEED."""
+    return "".join(c for c in text if c.isascii() and c.isalnum())[:most]
 
 
 def to_components(file: RecordFile, recordings: Sequence[Recording]) -> list[Component | Unusable]:
@@ -127,8 +145,8 @@ def _component(file: RecordFile, recording: Recording, name: str, source: str) -
         station=recording.station,
         source=source,
         start=recording.start,
-        unit=recording.unit,
-        raw=recording.uncorrected,
+        unit="" if recording.counts else recording.unit,
+        raw=recording.processed is False if recording.raw is None else recording.raw,
         seat=recording.seat,
         event=" ".join(recording.event.upper().split()),
         processed=recording.processed,

@@ -7,12 +7,10 @@ touch. The layout is that of the database's own files.
 import re
 
 from rockbatch.errors import InputError
-from rockbatch.motions.component import Component, Seat
+from rockbatch.motions.component import Seat
 from rockbatch.motions.formats.fixed_width import fixed_numbers, lines_of, refuse_more
-from rockbatch.motions.formats.header_lines import keys_of, line_with, number_of
-from rockbatch.motions.formats.record_file import RecordFile
-from rockbatch.motions.formats.recording import Recording, to_components
-from rockbatch.motions.motion import Unusable
+from rockbatch.motions.formats.header_lines import count_and_step, keys_of, line_with
+from rockbatch.motions.formats.recording import Recording
 from rockbatch.motions.origin import origin_of
 
 SUFFIXES: frozenset[str] = frozenset()
@@ -27,21 +25,14 @@ def is_resorce(head: bytes) -> bool:
     return head.startswith(b"Event Date & Time") and all(f"\n{key}".encode() in head for key in _NEEDED)
 
 
-def read_resorce(file: RecordFile) -> list[Component | Unusable]:
-    """Return the component of a file in m/s²."""
-    return to_components(file, _parse(file.text))
-
-
-def _parse(text: str) -> list[Recording]:
+def parse(text: str) -> list[Recording]:
     """Return the recording of a file; ``InputError`` with the line, or the key, where it is not whole."""
     lines = lines_of(text)
     at, unit = line_with(_UNIT, lines, 20, "Acceleration time series in m/s/s")
     header = keys_of(lines[:at])
-    npts, dt = (number_of(header, key) for key in _NEEDED[:2])
-    if npts != int(npts) or npts < 2 or not 0 < dt < 10:
-        raise InputError(f"the header says {npts:g} values every {dt:g} s; expected a whole number and an interval")
-    values, end = fixed_numbers(lines, at + 1, int(npts), _WIDTH, _PER_LINE), at + 1 - -int(npts) // _PER_LINE
-    refuse_more(lines, end, f"the {npts:.0f} declared values")
+    npts, dt = count_and_step(header, *_NEEDED[:2])
+    values, end = fixed_numbers(lines, at + 1, npts, _WIDTH, _PER_LINE)
+    refuse_more(lines, end, f"the {npts} declared values")
     if "Orientation" not in header:
         raise InputError("the header lacks Orientation")
     code, _, name = (part.strip() for part in header.get("Station Code / Name", "").partition("/"))

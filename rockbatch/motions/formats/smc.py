@@ -7,84 +7,81 @@ Source: USGS National Strong-Motion Program, "SMC-format data files" (2001).
 """
 
 import re
-from datetime import UTC, datetime, timedelta
 
 from rockbatch.errors import InputError, NoRecordError
-from rockbatch.motions.component import Component, Seat
+from rockbatch.motions.component import Seat
 from rockbatch.motions.formats.fixed_width import fixed_numbers, lines_of, number_in, refuse_more
-from rockbatch.motions.formats.header_lines import found, line_at
+from rockbatch.motions.formats.header_lines import line_at, moment, read_header
 from rockbatch.motions.formats.obspy_plugin import plugin
-from rockbatch.motions.formats.record_file import RecordFile
-from rockbatch.motions.formats.recording import Recording, to_components
+from rockbatch.motions.formats.recording import Recording, letters
 from rockbatch.motions.formats.time_steps import from_pairs
-from rockbatch.motions.motion import Samples, Unusable
+from rockbatch.motions.motion import Samples
 from rockbatch.motions.origin import origin_of
 
 SUFFIXES = frozenset({".smc"})
 
 _UNIT = "cm/s2"  # which the format prescribes
 _INTEGERS, _REALS, _COMMENTS = 11, 17, 27  # lines at which these begin
-_TITLE = re.compile(r"(?P<kind>[0-6]) (?P<what>[A-Z]+(?: [A-Z]+)*)|\*")
+_TITLE = re.compile(r"^(?:(?P<kind>[0-6]) (?P<what>[A-Z]+(?: [A-Z]+)*)|\*)\s*$")
 _KINDS = {"1": "uncorrected", "2": "corrected"}
 _EIGHT_INTEGERS = re.compile(r"(?:[- \d]{9}\d){8}\s*", re.ASCII)
 _STATION = re.compile(r"station\s*=\s*(?P<name>.*?)\s*component\s*=\s*(?P<label>\S*)")
+_TEXT = ((0, _TITLE, "2 CORRECTED ACCELEROGRAM"), (5, _STATION, "station = …, component= …"))
 _VERTICAL = {0: "Up", 180: "Down"}  # degrees from the upward vertical; 90 is horizontal
+_DAY = 86400.0  # s
 
 
 def is_smc(head: bytes) -> bool:
-    """Whether the first bytes are the header of an SMC file, of whatever kind of data."""
+    """Return whether the first bytes are the header of an SMC file, of whatever kind of data."""
     lines = head.decode("latin-1").splitlines()
     return (
         len(lines) > _INTEGERS
-        and _TITLE.fullmatch(lines[0].strip()) is not None
+        and _TITLE.match(lines[0].strip()) is not None
         and _EIGHT_INTEGERS.fullmatch(lines[_INTEGERS]) is not None
     )
 
 
-def read_smc(file: RecordFile) -> list[Component | Unusable]:
-    """The component of an SMC file in m/s², an uncorrected one without offset."""
-    return to_components(file, _parse(file.text))
-
-
-def _parse(text: str) -> list[Recording]:
-    """The recording of a file; ``InputError`` with the line where it is not whole."""
+def parse(text: str) -> list[Recording]:
+    """Return the recording of a file; ``InputError`` with the line where it is not whole."""
     lines = lines_of(text)
-    title = found(_TITLE, lines, 0, "2 CORRECTED ACCELEROGRAM")
+    title = read_header(lines, 0, _TEXT[:1])
     if title["kind"] not in _KINDS:
-        raise NoRecordError(f'line 1: found "{title[0]}"; expected accelerations: take the .smc file that has them')
-    station = found(_STATION, lines, 5, "station = …, component= …")
-    integers = [int(value) for value in fixed_numbers(lines, _INTEGERS, 48, 10, 8)]
+        what = line_at(lines, 0).strip()
+        raise NoRecordError(f'line 1: found "{what}"; expected accelerations: take the .smc file that has them')
+    said = read_header(lines, 0, _TEXT)
+    integers = [int(value) for value in fixed_numbers(lines, _INTEGERS, 48, 10, 8)[0]]
     unknown, comments, npts = integers[0], integers[15], integers[16]
-    number = str(integers[29]) if integers[29] not in (unknown, 0) else station["name"].upper()
+    name, of_station = said["name"], integers[29]
+    number = str(of_station) if of_station not in (unknown, 0) else name.upper()
     if comments < 0 or npts < 1:
         raise InputError(f"lines 13–14: found {comments} comments and {npts} values; expected counts")
-    rate = number_in(said, _REALS) if (said := _real(lines, 2)) else None
+    rate = number_in(real, _REALS) if (real := _real(lines, 2)) else None
     if rate is not None and not 0.1 <= rate <= 1e5:
         raise InputError(f"line 18: found a sampling rate of {rate:g} Hz; expected 0.1 to 100000")
-    width, per_line = (14, 5) if integers[46] == 8 else (10, 8)
-    numbers = fixed_numbers(lines, _COMMENTS + comments, npts, width, per_line)
-    refuse_more(lines, _COMMENTS + comments - -npts // per_line, f"the {npts} values that line 14 declares")
+    numbers, end = fixed_numbers(lines, _COMMENTS + comments, npts, *((14, 5) if integers[46] == 8 else (10, 8)))
+    refuse_more(lines, end, f"the {npts} values that line 14 declares")
     dt, values, notes = _on_film(numbers, number) if rate is None else (float(f"{1.0 / rate:.12g}"), numbers, ())
     year, day, hour, minute, second, ms = integers[1:7]
+    start = None if unknown in (second, ms) or not 0 <= second < 60 else moment(year, 1, 1, hour, minute, second)
     peaks = [peak for n in (30, 32) if (peak := _real(lines, n))]
+    origin_line = line_at(lines, 3)
     return [
         Recording(
-            label=_label(integers[12], integers[13], unknown, station["label"]),
+            label=_label(integers[12], integers[13], unknown, said["label"]),
             dt=dt,
             values=values,
             unit=_UNIT,
-            station=f"{station['name']} {integers[29]}, {year}-{day:03d} {hour}:{minute}, {_KINDS[title['kind']]}",
-            codes=("", "".join(c for c in line_at(lines, 2) if c.isascii() and c.isalnum())[:5], "", ""),
-            start=None if unknown in (second, ms) else _start(year, day, hour, minute, second, ms),
-            uncorrected=title["kind"] == "1",
+            station=f"{name} {of_station}, {year}-{day:03d} {hour}:{minute}, {_KINDS[title['kind']]}",
+            codes=("", letters(line_at(lines, 2)), "", ""),
+            start=None if start is None else start + _DAY * (day - 1) + ms / 1000,
             processed=title["kind"] == "2",
-            seat=Seat(number, place=station["name"].upper()),
+            seat=Seat(number, place=name.upper()),
             event="" if unknown in (year, day, hour, minute) else f"{year}-{day:03d} {hour}:{minute}",
-            origin=origin_of(line_at(lines, 3)[25:], station["name"], line_at(lines, 3)[:25]),
+            origin=origin_of(origin_line[25:], name, origin_line[:25]),
             stated_peak=(max(peaks, key=lambda peak: abs(number_in(peak, 22)), default=""), ""),
             as_read=numbers[1::2] if rate is None else None,
             notes=(*notes, *(["its header flags a problem: read its comments"] if integers[17] == 1 else [])),
-            header={"station": station["name"], "event": line_at(lines, 3)[25:].strip()},
+            header={"station": name, "event": origin_line[25:].strip()},
         )
     ]
 
@@ -108,7 +105,7 @@ def _real(lines: list[str], n: int) -> str:
 
 
 def _label(vertical: int, azimuth: int, unknown: int, text: str) -> str:
-    """Direction by the angle from the vertical and the azimuth [degrees], or as the text has it."""
+    """Return the direction by the angle from the vertical and the azimuth [degrees], or as the text has it."""
     if vertical in _VERTICAL:
         return _VERTICAL[vertical]
     if vertical not in (90, unknown):
@@ -116,13 +113,4 @@ def _label(vertical: int, azimuth: int, unknown: int, text: str) -> str:
     return str(azimuth) if vertical == 90 and 0 <= azimuth <= 360 else text
 
 
-def _start(year: int, day: int, hour: int, minute: int, second: int, ms: int) -> float | None:
-    """Time of the first sample [s since 1970] by the day of the year; ``None`` for numbers that are none."""
-    try:
-        begin = datetime(year, 1, 1, hour, minute, second, tzinfo=UTC) + timedelta(days=day - 1, milliseconds=ms)
-        return begin.timestamp()
-    except (ValueError, OverflowError):
-        return None
-
-
-is_smc_file, read_smc_stream = plugin("SMC", is_smc, _parse)
+is_smc_file, read_smc_stream = plugin("SMC", is_smc, parse)

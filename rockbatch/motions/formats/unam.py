@@ -12,13 +12,12 @@ import re
 import numpy as np
 
 from rockbatch.errors import InputError
-from rockbatch.motions.component import Component, Seat
+from rockbatch.motions.component import Seat
 from rockbatch.motions.formats.fixed_width import lines_of, number_in
 from rockbatch.motions.formats.header_lines import date_in, keys_of, line_with, moment
 from rockbatch.motions.formats.obspy_plugin import plugin
-from rockbatch.motions.formats.record_file import RecordFile
-from rockbatch.motions.formats.recording import Recording, to_components
-from rockbatch.motions.motion import Samples, Unusable
+from rockbatch.motions.formats.recording import Recording
+from rockbatch.motions.motion import Samples
 from rockbatch.motions.orientation import Orientation
 from rockbatch.motions.origin import origin_of
 
@@ -36,38 +35,75 @@ _DAY = 86400.0  # s
 
 
 def is_unam(head: bytes) -> bool:
-    """Whether the first bytes are the header of such a file."""
+    """Return whether the first bytes are the header of such a file."""
     return _TITLE in head[:1000]
 
 
-def read_unam(file: RecordFile) -> list[Component | Unusable]:
-    """Return the channels of a file in m/s², without their offsets."""
-    return to_components(file, _parse(file.text))
+class _Header(dict[str, str]):
+    """The values of a header by their keys without blanks; what stands behind a key differs: "(s)", "(Hz)"."""
+
+    def get_text(self, key: str) -> str:
+        """Return the value of the key that begins so; "" if there is none."""
+        begins = re.sub(r"\s", "", key)
+        return next((value for name, value in self.items() if name.startswith(begins)), "")
+
+    def text(self, key: str) -> str:
+        """Return the value of a key; ``InputError`` where it has none."""
+        value = self.get_text(key)
+        if not value:
+            raise InputError(f"the header lacks {key}")
+        return value
+
+    def number(self, key: str, text: str = "") -> float:
+        """Return the value of a key, or the ``text``, as a number."""
+        text = text or self.text(key)
+        try:
+            return number_in(text, 0)
+        except InputError:
+            raise InputError(f'the header says {key} : "{text[:40]}"; expected a number') from None
+
+    def each(self, key: str, count: int) -> list[str]:
+        """Return the values of all channels, between slashes."""
+        values = [part.strip() for part in self.text(key).strip("/ ").split("/")]
+        if len(values) != count:
+            raise InputError(f"the header says {count} channels, but {key} : {self.text(key)[:60]}")
+        return values
+
+    def same(self, key: str, count: int) -> float:
+        """Return the number that is the same for all channels; ``InputError`` where it is not."""
+        texts = set(self.each(key, count))
+        if len(texts) > 1:
+            raise InputError(
+                f"the header says {key} : {', '.join(sorted(texts))[:60]}; expected the same for all channels"
+            )
+        (text,) = texts
+        if not text:
+            raise InputError(f"the header lacks {key}")
+        return self.number(key, text)
 
 
-def _parse(text: str) -> list[Recording]:
+def parse(text: str) -> list[Recording]:
     """Return the channels; ``InputError`` with the line, or the key, where the file is not whole."""
     lines = lines_of(text)
     at, _ = line_with(_DATA, lines, _MOST, "DATOS DE ACELERACION:")
-    header = {re.sub(r"\s", "", key): value for key, value in keys_of(lines[:at]).items()}
-    channels = _single(header, "NUMERO DE CANALES")
+    header = _Header({re.sub(r"\s", "", key): value for key, value in keys_of(lines[:at]).items()})
+    channels = header.number("NUMERO DE CANALES")
     if not 1 <= channels <= _MOST_CHANNELS or channels != int(channels):
         raise InputError(f"the header says NUMERO DE CANALES : {channels:g}; expected 1 to {_MOST_CHANNELS}")
-    if _get(header, "FACTOR DE DECIMACION") and _single(header, "FACTOR DE DECIMACION") != 1:
+    if header.get_text("FACTOR DE DECIMACION") and header.number("FACTOR DE DECIMACION") != 1:
         raise InputError("the header says that samples were left out (FACTOR DE DECIMACION); expected 1")
     count = int(channels)
-    ways = [way.partition(";")[::2] for way in _each(header, "ORIENTACION C1-C6", count)]
-    npts, dt = (_same(header, key, count) for key in ("NUM. TOTAL DE MUESTRAS, C1-C6", "INTERVALO DE MUESTREO, C1-C6"))
+    ways = [way.partition(";")[::2] for way in header.each("ORIENTACION C1-C6", count)]
+    npts, dt = (header.same(key, count) for key in ("NUM. TOTAL DE MUESTRAS, C1-C6", "INTERVALO DE MUESTREO, C1-C6"))
     if npts != int(npts) or npts < 2 or not 0 < dt < 10:
         raise InputError(f"the header says {npts:g} samples every {dt:g} s; expected a whole number and an interval")
     first = _first(lines, at, [way.strip() for way, _ in ways])
-    values, more = _values(lines, first, int(npts), count, _value(header, "FORMATO DATOS"))
-    unit = _value(header, "UNIDADES DE LOS DATOS").partition("(")[0].strip()
-    stated = _get(header, "ACEL. MAX.(Gal), C1-C6").strip("/ ").split("/")
-    peaks = stated if len(stated) == count else [""] * count
-    station, date = _value(header, "CLAVE DE LA ESTACION"), _get(header, "FECHA DEL SISMO")
-    name, start = _get(header, "NOMBRE DE LA ESTACION"), _start(header)
-    event = f"{date} {_get(header, 'HORA EPICENTRO')}".strip()
+    values, more = _values(lines, first, int(npts), count, header.text("FORMATO DATOS"))
+    unit = header.text("UNIDADES DE LOS DATOS").partition("(")[0].strip()
+    stated = header.get_text("ACEL. MAX.(Gal), C1-C6").strip("/ ").split("/")
+    station, date = header.text("CLAVE DE LA ESTACION"), header.get_text("FECHA DEL SISMO")
+    name, start = header.get_text("NOMBRE DE LA ESTACION"), _start(header)
+    event = f"{date} {header.get_text('HORA EPICENTRO')}".strip()
     notes = (f"its header says {npts:.0f} samples, and {more} more follow, which are left out",) if more else ()
     return [
         Recording(
@@ -79,55 +115,16 @@ def _parse(text: str) -> list[Recording]:
             station=f"{station}, {event} {start}" if event else station,
             codes=("MG", station[:5], "", way.strip().upper()),
             start=start,
-            uncorrected=True,
             processed=False,
             seat=Seat(station),
             event=event,
             origin=origin_of("", name or station, date),
-            stated_peak=(peaks[i], "gal"),
+            stated_peak=(stated[i] if len(stated) == count else "", "gal"),
             notes=notes,
-            header={"station": name, "file": _get(header, "NOMBRE DEL ARCHIVO")},
+            header={"station": name, "file": header.get_text("NOMBRE DEL ARCHIVO")},
         )
         for i, (way, sign) in enumerate(ways)
     ]
-
-
-def _get(header: dict[str, str], key: str) -> str:
-    """Return the value of the key that begins so (what stands behind differs: "(s)", "(Hz)"); empty if there is none."""
-    begins = re.sub(r"\s", "", key)
-    return next((value for name, value in header.items() if name.startswith(begins)), "")
-
-
-def _value(header: dict[str, str], key: str) -> str:
-    """Return the value of a key; ``InputError`` where it has none."""
-    value = _get(header, key)
-    if not value:
-        raise InputError(f"the header lacks {key}")
-    return value
-
-
-def _each(header: dict[str, str], key: str, count: int) -> list[str]:
-    """Return the values of all channels, between slashes."""
-    values = [part.strip() for part in _value(header, key).strip("/ ").split("/")]
-    if len(values) != count:
-        raise InputError(f"the header says {count} channels, but {key} : {_value(header, key)[:60]}")
-    return values
-
-
-def _single(header: dict[str, str], key: str) -> float:
-    text = _value(header, key)
-    try:
-        return number_in(text, 0)
-    except InputError:
-        raise InputError(f'the header says {key} : "{text[:40]}"; expected a number') from None
-
-
-def _same(header: dict[str, str], key: str, count: int) -> float:
-    """Return the number that is the same for all channels; ``InputError`` where it is not."""
-    texts = set(_each(header, key, count))
-    if len(texts) > 1:
-        raise InputError(f"the header says {key} : {', '.join(sorted(texts))[:60]}; expected the same for all channels")
-    return _single({re.sub(r"\s", "", key): texts.pop()}, key)
 
 
 def _first(lines: list[str], at: int, ways: list[str]) -> int:
@@ -169,10 +166,10 @@ def _row(line: str, at: int, width: int, channels: int) -> list[float]:
     return [number_in(field, at) for field in fields]
 
 
-def _start(header: dict[str, str]) -> float | None:
+def _start(header: _Header) -> float | None:
     """Return the time of the first sample [s since 1970]: its date is that of the earthquake, or the day before or after."""
-    date = date_in(_get(header, "FECHA DEL SISMO"))
-    origin, first = (_CLOCK.match(_get(header, key)) for key in ("HORA EPICENTRO", "HORA DE LA PRIMERA MUESTRA"))
+    date = date_in(header.get_text("FECHA DEL SISMO"))
+    origin, first = (_CLOCK.match(header.get_text(key)) for key in ("HORA EPICENTRO", "HORA DE LA PRIMERA MUESTRA"))
     if date is None or first is None:
         return None
     began, quake = (
@@ -184,4 +181,4 @@ def _start(header: dict[str, str]) -> float | None:
     return began + _DAY * round((quake - began) / _DAY)
 
 
-is_unam_file, read_unam_stream = plugin("UNAM", is_unam, _parse)
+is_unam_file, read_unam_stream = plugin("UNAM", is_unam, parse)

@@ -7,14 +7,13 @@ of a blank and ten columns of 7 characters. The layout is that of the network's 
 import re
 
 from rockbatch.errors import InputError
-from rockbatch.motions.component import Component, Seat
+from rockbatch.motions.component import Seat
 from rockbatch.motions.formats.fixed_width import fixed_numbers, one_after_another
-from rockbatch.motions.formats.header_lines import found, line_at, number
+from rockbatch.motions.formats.header_lines import line_at, number, read_header
 from rockbatch.motions.formats.obspy_plugin import plugin
-from rockbatch.motions.formats.record_file import RecordFile
-from rockbatch.motions.formats.recording import Recording, to_components
+from rockbatch.motions.formats.recording import Recording
 from rockbatch.motions.formats.time_steps import from_pairs
-from rockbatch.motions.motion import Samples, Unusable
+from rockbatch.motions.motion import Samples
 from rockbatch.motions.origin import origin_of
 
 SUFFIXES: frozenset[str] = frozenset()
@@ -24,10 +23,14 @@ _WIDTH, _PER_LINE = 7, 10
 _LATE = 0.05  # s: what the stated duration may differ from the last time
 _TITLE = re.compile(r"OF UNCORRECTED ACCELEROGRAM DATA OF VOLUME I:")
 _CORRECTED = re.compile(r"(?<!UN)CORRECTED ACCELEROGRAM")
-_COMPONENT = re.compile(r"^ *COMP +(?P<label>\S+)")
-_STATION = re.compile(r"STATION USC# *(?P<code>\S+)")
-_COUNT = re.compile(r"NO\. OF POINTS *= *(?P<npts>[0-9]{1,9}) +DURATION *= *(?P<duration>[0-9.]{1,12}) *SEC")
-_UNIT = re.compile(r"UNITS ARE SEC AND +(?P<unit>[A-Z0-9/]+)")
+_DURATION = r"DURATION *= *(?P<duration>[0-9.]{1,12}) *SEC"
+_TEXT = (
+    (0, _TITLE, "FILE … OF UNCORRECTED ACCELEROGRAM DATA OF VOLUME I:, after the last declared value"),
+    (6, re.compile(r"^ *COMP +(?P<label>\S+)"), "COMP N90E"),
+    (4, re.compile(r"STATION USC# *(?P<station>\S+?),*(?:\s|$)"), "STATION USC# …"),
+    (10, re.compile(rf"NO\. OF POINTS *= *(?P<npts>[0-9]{{1,9}}) +{_DURATION}"), "NO. OF POINTS = … DURATION = … SEC"),
+    (11, re.compile(r"UNITS ARE SEC AND +(?P<unit>[A-Z0-9/]+)"), "UNITS ARE SEC AND G/10"),
+)
 
 
 def is_usc(head: bytes) -> bool:
@@ -36,13 +39,8 @@ def is_usc(head: bytes) -> bool:
     return _TITLE.search(title) is not None or (_CORRECTED.search(title) is not None and b"STATION USC#" in head[:800])
 
 
-def read_usc(file: RecordFile) -> list[Component | Unusable]:
-    """The channels of a file in m/s², without their offsets; uneven times are interpolated."""
-    return to_components(file, _parse(file.text))
-
-
-def _parse(text: str) -> list[Recording]:
-    """The channels, one after the other; ``InputError`` with the line where the file is not whole."""
+def parse(text: str) -> list[Recording]:
+    """Return the channels, one after the other, on even steps; ``InputError`` with the line where the file is not whole."""
     if _TITLE.search(text[:100]) is None and _CORRECTED.search(text[:100]):
         raise InputError(
             "line 1: Volume II, of whose layout no description is at hand; take Volume I of this record, or copy its "
@@ -52,47 +50,43 @@ def _parse(text: str) -> list[Recording]:
 
 
 def _channel(lines: list[str], at: int) -> tuple[Recording, int]:
-    """The channel whose title is ``lines[at]``, and where the next one begins."""
-    found(_TITLE, lines, at, "FILE … OF UNCORRECTED ACCELEROGRAM DATA OF VOLUME I:, after the last declared value")
-    label = found(_COMPONENT, lines, at + 6, "COMP N90E")["label"]
-    station = found(_STATION, lines, at + 4, "STATION USC# …")["code"].rstrip(",")
-    count = found(_COUNT, lines, at + 10, "NO. OF POINTS = … DURATION = … SEC")
-    unit = found(_UNIT, lines, at + 11, "UNITS ARE SEC AND G/10")["unit"]
-    npts, duration = int(count["npts"]), number(count["duration"], at + 10)
+    """Return the channel whose title is ``lines[at]``, and where the next one begins."""
+    said = read_header(lines, at, _TEXT)
+    label, npts, duration = said["label"], int(said["npts"]), number(said["duration"], at + 10)
     if npts < 2:
         raise InputError(f"line {at + 11}: found {npts} points; expected at least two")
     pairs, end = _pairs(lines, at + _HEADER, npts)
     if abs(pairs[-1, 0] - duration) > _LATE:
         raise InputError(f"line {at + 11} says {duration:g} s, but the last time is {pairs[-1, 0]:g} s")
     dt, values, notes = from_pairs(pairs, f"channel {label} from line {at + 1} on")
-    event, date = (line_at(lines, at + i)[:70].strip() for i in (1, 2))
+    event, date, name = (line_at(lines, at + i)[:70].strip() for i in (1, 2, 5))
     recording = Recording(
         label=label,
         dt=dt,
         values=values,
-        unit=unit,
-        station=f"{station}, {event}, {date}",
-        codes=("LA", station[:5], "", label.upper()),
-        uncorrected=True,
+        unit=said["unit"],
+        station=f"{said['station']}, {event}, {date}",
+        codes=("LA", said["station"][:5], "", label.upper()),
         processed=False,
-        seat=Seat(station),
+        seat=Seat(said["station"]),
         event=f"{event}, {date}",
         origin=origin_of(event, line_at(lines, at + 5)[:70], date),
         notes=notes,
-        header={"station": line_at(lines, at + 5)[:70].strip(), "event": event},
+        header={"station": name, "event": event},
     )
     return recording, end
 
 
 def _pairs(lines: list[str], first: int, npts: int) -> tuple[Samples, int]:
-    """Times [s] and values, shape (npts, 2), and where the next channel begins: some files have a line in between."""
+    """Return times [s] and values, shape (npts, 2), and where the next channel begins: some files have a line in between."""
     end = first - -2 * npts // _PER_LINE
     indented = next((i for i in range(first, min(end, len(lines))) if not lines[i].startswith(" ")), None)
     if indented is not None:
         raise InputError(f'line {indented + 1}: found "{lines[indented][:40]}"; expected a blank and ten columns')
-    body = [""] * first + [line[1:] for line in lines[first:end]]
-    pairs = fixed_numbers(body, first, 2 * npts, _WIDTH, _PER_LINE).reshape(npts, 2)
-    return pairs, end + line_at(lines, end).startswith("/&")
+    numbers, end = fixed_numbers(
+        [""] * first + [line[1:] for line in lines[first:end]], first, 2 * npts, _WIDTH, _PER_LINE
+    )
+    return numbers.reshape(npts, 2), end + line_at(lines, end).startswith("/&")
 
 
-is_usc_file, read_usc_stream = plugin("USC", is_usc, _parse)
+is_usc_file, read_usc_stream = plugin("USC", is_usc, parse)
