@@ -11,7 +11,7 @@ from rockbatch.errors import InputError, remedy
 from rockbatch.motions import Motion, MotionSet, kinds
 from rockbatch.motions.baseline import RULES, Offset
 from rockbatch.motions.formats import LAYOUTS, ROLES, ReadOptions
-from rockbatch.motions.pulses import SHAPES, pulse, unlikely
+from rockbatch.motions.pulses import SHAPES, unlikely
 from rockbatch.motions.selection import Selection
 from rockbatch.motions.turning import every
 from rockbatch.study.spec import FemaSpec, MotionSpec, PulseSpec
@@ -119,7 +119,6 @@ PULSE = Section(("motions", "pulse"), "A pulse, which needs no file. Write as ma
         only=_MP),
     **CONFIRM,
 }, many=True)  # fmt: skip
-REQUIRED_OF_PULSE = {name for name, key in PULSE.items() if key.always_required}
 _MOST_SAMPLES = 10_000_000
 
 
@@ -236,46 +235,31 @@ def _fema(file: TomlFile) -> tuple[FemaSpec, ...]:
 
 def _pulses(file: TomlFile) -> tuple[PulseSpec, ...]:
     pulses: list[PulseSpec] = []
-    names: list[str] = []
+    names: set[str] = set()
     for table in file.tables("motions", "pulse", title="name"):
         read = table.read(PULSE)
-        _check_pulse(table, read)
-        if "name" in read:
-            if read["name"] in names:
-                table.complain(f"name = {shown(read['name'])}: given twice; give each pulse its own name", "name")
-            names.append(read["name"])
-        if read.keys() >= REQUIRED_OF_PULSE:
+        if read.get("duration_s", 0.0) / read.get("dt_s", math.inf) > _MOST_SAMPLES:
+            table.complain(f"dt_s = {read['dt_s']:g}: more than {_MOST_SAMPLES:,} samples; write a larger dt_s", "dt_s")
+        elif read.keys() >= {name for name in PULSE if table.requires(PULSE, name)}:
             pulses.append(PulseSpec(**read))
+            _check_pulse(table, pulses[-1])
+        if read.get("name") in names:
+            table.complain(f"name = {shown(read['name'])}: given twice; give each pulse its own name", "name")
+        names |= {read["name"]} if "name" in read else set()
     return tuple(pulses)
 
 
-def _check_pulse(table: Table, read: dict[str, Any]) -> None:
+def _check_pulse(table: Table, spec: PulseSpec) -> None:
     """Check the keys of one pulse against each other; the pulse itself knows most of it."""
-    before = len(table.file.problems)
-    if read.get("duration_s", 0.0) / read.get("dt_s", math.inf) > _MOST_SAMPLES:
-        table.complain(f"dt_s = {read['dt_s']:g}: more than {_MOST_SAMPLES:,} samples; write a larger dt_s", "dt_s")
-    needed = REQUIRED_OF_PULSE | ({"gamma", "nu"} if read.get("shape") in _MP["shape"] else set())
-    if not table.file.is_sound_since(before) or not read.keys() >= needed:
-        return
     try:
-        pulse(
-            read["shape"],
-            name=read["name"],
-            amplitude=read["amplitude_g"] * GRAVITY,
-            period=read["period_s"],
-            dt=read["dt_s"],
-            duration=read["duration_s"],
-            gamma=read.get("gamma"),
-            nu=read.get("nu"),
-            confirm=("amplitude", "dt"),  # below, by their keys
-        )
+        spec.motion(GRAVITY)
     except InputError as error:
         for problem in error.problems:
             symbol, rest = problem.split(" ", 1)
-            name = next((key for key in (symbol, f"{symbol}_s", f"{symbol}_g") if key in read), "name")
+            name = next((key for key in (symbol, f"{symbol}_s", f"{symbol}_g") if key in table.data), "name")
             table.complain(f"{name} {rest}", name)
     else:
-        odd = unlikely(abs(read["amplitude_g"]), read["period_s"], read["dt_s"])
+        odd = unlikely(abs(spec.amplitude_g), spec.period_s, spec.dt_s)
         for name, key in (("amplitude", "amplitude_g"), ("dt", "dt_s")):
             if name in odd and key not in table.confirmed:
                 table.complain(f"{key} = {odd[name]}; {remedy(key)} in this table", key)

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
-from rockbatch.motions import MotionSet
+from rockbatch.motions import Motion, MotionSet, pulse
 from rockbatch.motions.baseline import Offset
 from rockbatch.motions.scaling import Target
 from rockbatch.motions.selection import Selection
@@ -32,6 +32,13 @@ class PulseSpec:
     duration_s: float
     gamma: float | None = None
     nu: float | None = None
+
+    def motion(self, gravity: float) -> Motion:
+        """Return the motion. Raises ``InputError`` for what it cannot be; amplitude and step are judged by the study."""
+        return pulse(
+            self.shape, name=self.name, amplitude=self.amplitude_g * gravity, period=self.period_s, dt=self.dt_s,
+            duration=self.duration_s, gamma=self.gamma, nu=self.nu, confirm=("amplitude", "dt"),
+        )  # fmt: skip
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from rockbatch.errors import InputError
-from rockbatch.motions import MotionSet, ReadOptions, pulse, read_motions
+from rockbatch.motions import MotionSet, ReadOptions, read_motions
 from rockbatch.motions.scaling import at_target
 from rockbatch.motions.selection import selected
 from rockbatch.study.load import Study
@@ -38,20 +38,7 @@ def ground_motions(study: Study) -> MotionSet:
     reasons = [f"{file.source}: {file.reason}" for file in records.unusable]
     if spec.strict and reasons:
         raise InputError(*reasons, f"{len(reasons)} of the records cannot be used, and the study is strict")
-    pulses = [
-        pulse(
-            shape.shape,
-            name=shape.name,
-            amplitude=shape.amplitude_g * gravity,
-            period=shape.period_s,
-            dt=shape.dt_s,
-            duration=shape.duration_s,
-            gamma=shape.gamma,
-            nu=shape.nu,
-            confirm=("amplitude", "dt"),  # by the study
-        )
-        for shape in spec.pulses
-    ]
+    pulses = [shape.motion(gravity) for shape in spec.pulses]
     if not records.motions and not pulses:
         reasons += [f"{file.source}: {file.reason}" for file in records.left_out]
         where = ", ".join(str(path) for path in spec.paths)

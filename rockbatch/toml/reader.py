@@ -230,11 +230,14 @@ class Table:
             usable |= {name: tuple(one.value for one in usable[name]) for name in usable if keys[name].many}
         return usable
 
+    def requires(self, keys: Mapping[str, Key], name: str) -> bool:
+        """Return whether a key has to be written beside the others."""
+        return keys[name].required and all(self.data.get(other) in values for other, values in keys[name].only.items())
+
     def _check_missing(self, keys: Mapping[str, Key]) -> None:
         """Note required keys that are missing, and keys that do not go together."""
         for name, key in keys.items():
-            applies = all(self.data.get(other) in values for other, values in key.only.items())
-            if key.required and applies and not self.has(name):
+            if self.requires(keys, name) and not self.has(name):
                 few = 1 < len(options(key)) < 6
                 choices = f"; {name} is {key.kind.words}" if few else ""
                 self.complain(f"{name} is missing; write for example {name} = {key.example}{choices}")
