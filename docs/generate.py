@@ -27,8 +27,7 @@ import rockbatch
 from rockbatch.checks.demands import DEMANDS
 from rockbatch.checks.statistics import STATISTICS
 from rockbatch.cli import COMMANDS, main
-from rockbatch.study.schema import schema_of
-from rockbatch.study.sections import FILES, MANIFEST, STUDY
+from rockbatch.study.schema import FILES, MANIFEST, STUDY, schema_of
 from rockbatch.toml.kinds import Choice, shown
 from rockbatch.toml.section import Key, Section
 

@@ -102,7 +102,7 @@ class Study(Shown):
     ``path`` and ``text`` are the file and its text, ``varied`` the names of the keys that were lists, ``checks`` the
     rules that its results are held against, ``count`` what counts as one record of its suite, one of
     :data:`rockbatch.checks.rules.COUNTS`, ``check_files`` the paths and texts of the files that its [suite] names for checks.
-    ``written`` is False if the text was made of tables, so that nobody knows its lines.
+    ``lined`` is False if the text was made of tables, so that messages give no lines.
 
     Examples
     --------
@@ -137,7 +137,7 @@ class Study(Shown):
     checks: tuple[Rule, ...] = ()
     count: str = "station"
     check_files: tuple[tuple[Path, str], ...] = ()
-    written: bool = True
+    lined: bool = True
 
     @classmethod
     @checked
@@ -158,7 +158,7 @@ class Study(Shown):
 
         Mistakes are reported as those of a file, by table and key. ``path`` and ``motions`` as for :meth:`from_toml`.
         """
-        return _checked(TomlFile.parse(Path(path), as_toml(plain(tables))), motions, written=False)
+        return _checked(TomlFile.parse(Path(path), as_toml(plain(tables)), lined=False), motions)
 
     def with_(self, *, motions: "Motions | Mapping[str, Any]" = None, **tables: Any) -> "Study":
         """Return a changed study, checked again with everything in it.
@@ -181,36 +181,30 @@ class Study(Shown):
         changes = tables | ({"motions": motions} if isinstance(motions, Mapping) else {})
         instead = self.motions.instead if motions is None or isinstance(motions, Mapping) else motions
         if not changes:
-            return _checked(self.file(), instead, written=self.written)
+            return _checked(self.file(), instead)
         before = tomllib.loads(self.text)
         after = without_lost_cases(before, changed(before, changes))
-        return _checked(TomlFile.parse(self.path, as_toml(after)), instead, written=False)
+        return _checked(TomlFile.parse(self.path, as_toml(after), lined=False), instead)
 
     def file(self) -> TomlFile:
         """Return the text, parsed again, for the tables of analyses."""
-        return _with_lines_if(self.written, TomlFile.parse(self.path, self.text))
+        return TomlFile.parse(self.path, self.text, lined=self.lined)
 
     def _told(self) -> tuple[str, dict[str, str]]:
         """See :class:`Shown`."""
-        piers = list(dict.fromkeys((case.pier.alpha, case.pier.size) for case in self.cases))
+        piers = {f"alpha {case.pier.alpha:.4g} rad, R0 {case.pier.size:.4g} m" for case in self.cases}
         names = Counter(case.name for case in self.cases)
-        instead = self.motions.instead
-        sources = (
-            [several(len(instead), "motion")] if isinstance(instead, MotionSet) else [*map(str, self.motions.paths)]
-        )
-        sources += [several(len(self.motions.fema_p695), "record"), several(len(self.motions.pulses), "pulse")]
-        step = self.numerics
+        spec, step = self.motions, self.numerics
+        own = len(spec.instead) if isinstance(spec.instead, MotionSet) else 0
+        counts = several(own, "motion"), several(len(spec.fema_p695), "record"), several(len(spec.pulses), "pulse")
+        fixed, error = f"{step.substeps} steps per sample", f"error of theta_max/alpha below {step.tolerance or 0:g}"
         return f"study {self.title!r}", {
-            "pier": f"alpha {piers[0][0]:.4g} rad, R0 {piers[0][1]:.4g} m"
-            if len(piers) == 1
-            else f"{len(piers)} piers",
-            "motions": ", ".join(filter(None, sources)),
+            "pier": piers.pop() if len(piers) == 1 else f"{len(piers)} piers",
+            "motions": ", ".join(filter(None, (*map(str, spec.paths), *counts))),
             "cases": ", ".join(name if n == 1 else f"{name} ({n})" for name, n in names.items()),
             "varied": ", ".join(self.varied),
             "checks": ", ".join(rule.name for rule in self.checks),
-            "numerics": f"{step.substeps} steps per sample"
-            if step.tolerance is None
-            else f"error of theta_max/alpha below {step.tolerance:g}",
+            "numerics": fixed if step.tolerance is None else error,
         }
 
 
@@ -246,14 +240,8 @@ def load_study(path: str | os.PathLike[str], *, motions: Motions = None) -> Stud
     return _checked(TomlFile.read(Path(path)), motions)
 
 
-def _with_lines_if(written: bool, file: TomlFile) -> TomlFile:
-    if not written:
-        file.lines.clear()
-    return file
-
-
-def _checked(file: TomlFile, motions: Motions, *, written: bool = True) -> Study:
-    _with_lines_if(written, file).homes = homes(SECTIONS)
+def _checked(file: TomlFile, motions: Motions) -> Study:
+    file.homes = homes(SECTIONS)
     top = Table(file, (), "", file.data).read(
         TOP, other=dict.fromkeys((*(section.at[0] for section in SECTIONS[1:]), *ANALYSES))
     )
@@ -265,7 +253,7 @@ def _checked(file: TomlFile, motions: Motions, *, written: bool = True) -> Study
     references = _references(file, cases, varied)
     table = file.table("output")
     output = Output(**table.read(OUTPUT)) if table else Output()
-    if len(motion_spec.polarity) > 1 and not all(_symmetric(each) for each in cases):
+    if len(motion_spec.polarity) > 1 and not all(symmetric(case.pier, case.base.restraints) for case in cases):
         message = "dampers or tendons on one side make another run of the reversed motion, not the mirror image"
         file.complain(("motions", "polarity"), f"[motions]: {message}; keep one polarity")
     if not output.forces:
@@ -279,19 +267,15 @@ def _checked(file: TomlFile, motions: Motions, *, written: bool = True) -> Study
         text=file.text,
         motions=motion_spec,
         numerics=numerics,
-        cases=tuple(Case(each.name, each.pier, each.base, _pick(varied, each.values)) for each in cases),
+        cases=tuple(Case(case.name, case.pier, case.base, _pick(varied, case.values)) for case in cases),
         references=references,
         varied=varied,
         output=output,
         checks=checks.rules,
         count=checks.counted,
         check_files=() if checks.file is None else ((checks.file.path, checks.file.text),),
-        written=written,
+        lined=bool(file.lines),
     )
-
-
-def _symmetric(case: Expanded) -> bool:
-    return symmetric(case.pier, case.base.restraints)
 
 
 def given_study(study: str | os.PathLike[str] | Study, motions: Motions = None) -> Study:
@@ -305,13 +289,13 @@ def _unfit(cases: Sequence[Expanded], motions: MotionSpec, output: Output, rule:
     """Return what a check chooses and the study does not have, and a limit that is implausible for its piers."""
     yield from unmet(
         rule,
-        cases=list(dict.fromkeys(each.name for each in cases)),
+        cases=list(dict.fromkeys(case.name for case in cases)),
         scales=motions.scale,
         polarities=motions.polarity,
-        other_law=output.both_laws or not any(each.base.ratchets for each in cases),
+        other_law=output.both_laws or not any(case.base.ratchets for case in cases),
         output=[key for key in BROUGHT if getattr(output, key)],
     )
-    rows = [{"case": each.name, "base": each.base.name, "pier": described(each.pier)} for each in cases]
+    rows = [{"case": case.name, "base": case.base.name, "pier": described(case.pier)} for case in cases]
     yield from implausible(rule, rows)
 
 
@@ -343,7 +327,7 @@ def _references(file: TomlFile, cases: Sequence[Expanded], varied: Iterable[str]
     for table in file.tables("reference", title="record"):
         read = table.read(keys)
         columns = {name: value for name, value in read.items() if name not in OF_REFERENCE}
-        alike = [each.values for each in cases if each.name == read.get("case")]
+        alike = [case.values for case in cases if case.name == read.get("case")]
         for name, value in columns.items():
             there = dict.fromkeys(values[name] for values in alike if name in values)
             if alike and value not in there:

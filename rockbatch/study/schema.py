@@ -9,11 +9,29 @@ to be wrong, and takes all that is right; what takes several keys to see, only t
 import json
 import sys
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import Any
 
-from rockbatch.study.sections import FILES
+from rockbatch.checks.reading import SUITE
+from rockbatch.checks.reading import TOP as CHECKS_TOP
+from rockbatch.checks.rules import CHECK
+from rockbatch.motions.manifest import RECORD
+from rockbatch.study import load, sensitivity
+from rockbatch.study.fragility import FRAGILITY
+from rockbatch.study.spectrum import MAP, SPECTRUM
 from rockbatch.toml.kinds import Schema
 from rockbatch.toml.section import Section, options
+
+STUDY = (*load.SECTIONS, FRAGILITY, SPECTRUM, MAP, *sensitivity.SECTIONS)
+"""A study file."""
+
+CHECKS = (CHECKS_TOP, SUITE, replace(CHECK, required=True))
+"""A file of checks, as ``rockbatch check --rules`` takes it."""
+
+MANIFEST = (Section((), "", {}), RECORD)
+"""``motions.toml``, beside the records."""
+
+FILES = {"study": STUDY, "checks": CHECKS, "manifest": MANIFEST}
 
 
 def schema_of(sections: Sequence[Section], title: str) -> Schema:

@@ -65,11 +65,14 @@ class TomlFile:
             raise InputError(f"{path}:{line}: not UTF-8 text; save the file in the encoding UTF-8") from None
 
     @classmethod
-    def parse(cls, path: Path, text: str) -> "TomlFile":
-        """Parse the text of a file, which need not be there any more. Raises :class:`InputError` as :meth:`read` does."""
+    def parse(cls, path: Path, text: str, *, lined: bool = True) -> "TomlFile":
+        """Parse the text of a file, which need not be there any more. Raises :class:`InputError` as :meth:`read` does.
+
+        A text that is not ``lined`` was not written by its user: messages do not give its lines.
+        """
         lines: dict[At, int] = {}
         try:
-            lines = key_lines(text)
+            lines = key_lines(text) if lined else {}
         except TooDeepError as error:
             raise InputError(f"{path}: {error}") from None
         except ValueError:

@@ -11,8 +11,7 @@ from jsonschema import Draft7Validator
 
 from rockbatch.cli import COMMANDS, main
 from rockbatch.study.load import load_study
-from rockbatch.study.schema import schema_of
-from rockbatch.study.sections import MANIFEST, STUDY
+from rockbatch.study.schema import MANIFEST, STUDY, schema_of
 
 ROOT = Path(__file__).parents[2]
 README = ROOT / "README.md"

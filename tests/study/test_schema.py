@@ -17,8 +17,7 @@ import rockbatch.motions
 import rockbatch.study
 from rockbatch.errors import InputError
 from rockbatch.study import load_study
-from rockbatch.study.schema import main, schema_of
-from rockbatch.study.sections import CHECKS, FILES, MANIFEST, STUDY
+from rockbatch.study.schema import CHECKS, FILES, MANIFEST, STUDY, main, schema_of
 from rockbatch.study.sensitivity import read_sensitivity
 from rockbatch.toml import kinds
 from rockbatch.toml.kinds import KindError, Text, Whole
