@@ -1,4 +1,4 @@
-"""What a sensitivity study varies, and over which ranges: [sensitivity] of a study file."""
+"""Inputs of a sensitivity study and their ranges: [sensitivity] of a study file."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
@@ -23,7 +23,7 @@ from rockbatch.study.restraint_inputs import (
 )
 from rockbatch.study.restraint_keys import DAMPER, RESTRAINTS, TENDON
 from rockbatch.study.spec import Case
-from rockbatch.toml.kinds import Choice, Number, boolean, choice, count, positive, shown
+from rockbatch.toml.kinds import Choice, Kind, Number, boolean, choice, count, positive, shown
 from rockbatch.toml.reader import Table, TomlFile
 from rockbatch.toml.section import Key, Section
 
@@ -56,7 +56,7 @@ class Input:
 
     @property
     def at(self) -> tuple[str, ...]:
-        """Where it stands under [sensitivity]."""
+        """Its place under [sensitivity]."""
         return self.spread, *self.name.split(".")
 
 
@@ -75,7 +75,7 @@ class SensitivitySpec:
 SENSITIVITY = Section(("sensitivity",), (
     "What the answer depends on, by `rockbatch sensitivity`: one input at a time, and Sobol indices of all together."
 ), {
-    "statistic": Key(choice(*(name for name, each in STATISTICS.items() if each.of and not each.code)), '"median"',
+    "statistic": Key(choice(*(name for name, statistic in STATISTICS.items() if statistic.of and not statistic.code)), '"median"',
         "How the records are summed up."),
     "overturned": Key(positive, "1.0", "The θ_max/α as which a run counts that overturned; larger ones count so too."),
     "samples": Key(Choice(tuple(2**k for k in range(2, 31)), "a power of two from 4"), "64",
@@ -86,62 +86,54 @@ SENSITIVITY = Section(("sensitivity",), (
 }, homes=(SensitivitySpec,))  # fmt: skip
 
 
-def _ranges(spread: str, keys: Mapping[str, Key], **examples: str) -> dict[str, Key]:
-    """Return some of the study's keys as ranges; of a logarithmic one the values are above 0."""
+_RANGES: dict[str, tuple[Mapping[str, Key], dict[str, str]]] = {
+    "": ({**PIER, **CASE}, {
+        "alpha": "[0.12, 0.16]", "p": "[0.3, 0.5]", "mu": "[2.5, 3.5]", "restitution": "[0.85, 0.95]", "beta": "[30, 90]",
+        "epsilon": "[0.05, 0.3]", "zeta": "[0.02, 0.1]", "eta": "[2.0, 4.0]", "n": "[2, 8]", "stiffness_kN_m": "[1e6, 4e6]",
+        "yield_kN": "[3e4, 6e4]",
+    }),
+    "damper": (DAMPER, {
+        "force_kN": "[300.0, 600.0]", "f": "[0.01, 0.05]", "yield_mm": "[3.0, 8.0]", "coefficient_kN_s_m": "[500.0, 2000.0]",
+        "nu": "[0.2, 0.8]", "exponent": "[0.3, 1.0]",
+    }),
+    "tendon": (TENDON, {
+        "prestress_kN": "[3000.0, 6000.0]", "psi": "[0.2, 0.8]", "stiffness_kN_m": "[2.0e4, 8.0e4]",
+        "yield_kN": "[8000.0, 1.2e4]", "lambda": "[0.5, 2.0]",
+    }),
+}  # fmt: skip
+"""Keys of a pier and its case, of a damper and of a tendon that have ranges, with examples."""
+
+
+def _ranges(what: str, kind: Kind | None = None) -> dict[str, Key]:
+    """Return keys of the study as ranges, of their own kind or another."""
+    keys, examples = _RANGES[what]
     return {
-        name: Key(positive if spread == "log_uniform" else keys[name].kind, example, keys[name].words, pair=True)
-        for name, example in examples.items()
+        name: Key(kind or keys[name].kind, example, keys[name].words, pair=True) for name, example in examples.items()
     }
 
 
-def _of_case(spread: str) -> dict[str, Key]:
-    return _ranges(spread, PIER, alpha="[0.12, 0.16]", p="[0.3, 0.5]", mu="[2.5, 3.5]") | _ranges(
-        spread, CASE, restitution="[0.85, 0.95]", beta="[30, 90]", epsilon="[0.05, 0.3]", zeta="[0.02, 0.1]", eta="[2.0, 4.0]",
-        n="[2, 8]", stiffness_kN_m="[1e6, 4e6]", yield_kN="[3e4, 6e4]",
-    )  # fmt: skip
+def _choice(keys: Mapping[str, Key], name: str, example: str) -> dict[str, Key]:
+    return {name: Key(keys[name].kind, example, keys[name].words, many=True)}
 
 
-def _of_devices(spread: str) -> dict[str, dict[str, Key]]:
-    return {
-        "damper": _ranges(
-            spread, DAMPER, force_kN="[300.0, 600.0]", f="[0.01, 0.05]", yield_mm="[3.0, 8.0]",
-            coefficient_kN_s_m="[500.0, 2000.0]", nu="[0.2, 0.8]", exponent="[0.3, 1.0]",
-        ),
-        "tendon": _ranges(
-            spread, TENDON, prestress_kN="[3000.0, 6000.0]", psi="[0.2, 0.8]", stiffness_kN_m="[2.0e4, 8.0e4]",
-            yield_kN="[8000.0, 1.2e4]", **{"lambda": "[0.5, 2.0]"},
-        ),
-    }  # fmt: skip
-
-
-def _choices(keys: Mapping[str, Key], **examples: str) -> dict[str, Key]:
-    return {name: Key(keys[name].kind, example, keys[name].words, many=True) for name, example in examples.items()}
-
-
-UNIFORM = Section(
-    ("sensitivity", "uniform"),
-    "Inputs of which every value in a range is as likely as another: the least and the largest value.",
-    _of_case("uniform"),
-)
-LOG_UNIFORM = Section(
-    ("sensitivity", "log_uniform"),
-    "Inputs that are as likely to be half as to be twice: the least and the largest value.",
-    _of_case("log_uniform"),
-)
-CHOICE = Section(
-    ("sensitivity", "choice"),
-    "Inputs with two values, both as likely.",
-    {
-        **_choices(CASE, kinematics='["first-order", "finite"]', spring='["bouc-wen", "epp"]'),
+SPREADS = {
+    "uniform": Section(("sensitivity", "uniform"),
+        "Inputs of which every value in a range is as likely as another: the least and the largest value.", _ranges("")),
+    "log_uniform": Section(("sensitivity", "log_uniform"),
+        "Inputs that are as likely to be half as to be twice: the least and the largest value.", _ranges("", positive)),
+    "choice": Section(("sensitivity", "choice"), "Inputs with two values, both as likely.", {
+        **_choice(CASE, "kinematics", '["first-order", "finite"]'),
+        **_choice(CASE, "spring", '["bouc-wen", "epp"]'),
         "vertical": Key(boolean, "[true, false]", "With the records' vertical components, or without.", many=True),
-        **_choices(MOTIONS, polarity='["+", "-"]'),
-    },
-)
-WITHIN: dict[str, dict[str, dict[str, Key]]] = {
-    "uniform": _of_devices("uniform"), "log_uniform": _of_devices("log_uniform"), "choice": {},
+        **_choice(MOTIONS, "polarity", '["+", "-"]'),
+    }),
 }  # fmt: skip
+WITHIN: dict[str, dict[str, dict[str, Key]]] = {
+    "uniform": {what: _ranges(what) for what in RESTRAINTS},
+    "log_uniform": {what: _ranges(what, positive) for what in RESTRAINTS},
+    "choice": {},
+}
 """Keys of tables within, such as [sensitivity.uniform.damper], or damper.f = … in [sensitivity.uniform]."""
-SPREADS = {"uniform": UNIFORM, "log_uniform": LOG_UNIFORM, "choice": CHOICE}
 SECTIONS = (SENSITIVITY, *SPREADS.values(), *(
     Section(
         ("sensitivity", spread, what),
@@ -205,12 +197,13 @@ def read_sensitivity(study: Study) -> SensitivitySpec:
         read = table.read(SENSITIVITY, other=SPREADS)
         for spread, keys in SPREADS.items():
             inputs += _inputs(file, spread, keys)
+        spreads: dict[str, list[str]] = {}
+        for parameter in inputs:
+            spreads.setdefault(parameter.name, []).append(parameter.spread)
         for name, ratio in IN_KILONEWTONS.items():
-            spreads = {each.name: each.spread for each in inputs}
             if name in spreads and ratio in spreads:
-                table.complain(f"{ratio} and {name} are given, which fix the same; keep one", spreads[name], name)
-        for name in {each.name for each in inputs}:
-            places = [each.spread for each in inputs if each.name == name]
+                table.complain(f"{ratio} and {name} are given, which fix the same; keep one", spreads[name][-1], name)
+        for name, places in spreads.items():
             if len(places) > 1:
                 table.complain(f"{name} is given under {' and '.join(places)}; keep one", places[1], *name.split("."))
         if not table.data.keys() & SPREADS.keys():
@@ -230,15 +223,15 @@ def _inputs(file: TomlFile, spread: str, keys: Mapping[str, Key]) -> list[Input]
         for other, names in SPREADS.items()
         for name in names.keys() - keys.keys()
     }
-    within = [name for name in table.data if TABLE.fullmatch(name)]
+    tables = [name for name in table.data if TABLE.fullmatch(name)]
     if not WITHIN[spread]:
-        unfit |= dict.fromkeys(within, "belongs under [sensitivity.uniform]")
-    inputs = _read(table, spread, keys, unfit=unfit, other=(*within, *RESTRAINTS) if WITHIN[spread] else ())
-    for name in within if WITHIN[spread] else ():
-        inner = file.table("sensitivity", spread, name)
-        if inner is not None:
-            of = WITHIN[spread][name.partition("_")[0]]
-            inputs += [replace(each, name=f"{name}.{each.name}") for each in _read(inner, spread, of)]
+        unfit |= dict.fromkeys(tables, "belongs under [sensitivity.uniform]")
+        return _read(table, spread, keys, unfit=unfit)
+    inputs = _read(table, spread, keys, unfit=unfit, other=(*tables, *RESTRAINTS))
+    for name in tables:
+        if inner := file.table("sensitivity", spread, name):
+            own = _read(inner, spread, WITHIN[spread][name.partition("_")[0]])
+            inputs += [replace(parameter, name=f"{name}.{parameter.name}") for parameter in own]
     return inputs
 
 
@@ -255,26 +248,24 @@ def _read(table: Table, spread: str, keys: Mapping[str, Key], **more: Any) -> li
 def _check(table: Table, inputs: Sequence[Input], study: Study) -> None:
     """Check that every input belongs to some case, that its range holds the study's value, and that every corner is possible."""
     used: set[str] = set()
-    places = {each.name: each.at for each in inputs}
+    places = {parameter.name: parameter.at for parameter in inputs}
     for case in study.cases:
         own = own_values(study, case)
-        mine = applying(inputs, case)
-        used |= {each.name for each in mine}
+        applicable = applying(inputs, case)
         wrong = unclear(places, case)
+        used |= {parameter.name for parameter in applicable} | wrong.keys()
         for name, message in wrong.items():
             table.complain(message, *places[name])
-        used |= wrong.keys()
-        for each in mine:
-            low, high = each.levels
-            value = own[each.name]
-            if each.spread != "choice" and value is not None and not low <= value <= high:
+        for parameter in applicable:
+            name, (low, high), value = parameter.name, parameter.levels, own[parameter.name]
+            if parameter.spread != "choice" and value is not None and not low <= value <= high:
                 table.complain(
-                    f'{each.name} = {shown(list(each.levels))}: does not hold the {value:g} of case "{case.name}"; '
-                    f"write {each.name} = {shown([min(low, value), max(high, value)])}",
-                    *places[each.name],
+                    f'{name} = {shown([low, high])}: does not hold the {value:g} of case "{case.name}"; '
+                    f"write {name} = {shown([min(low, value), max(high, value)])}",
+                    *places[name],
                 )
         if not wrong:
-            _check_corners(table, mine, case)
+            _check_corners(table, applicable, case)
     for name in places.keys() - used:
         table.complain(f"{name}: {_why_none(name, study)}; leave it out", *places[name])
 
@@ -285,7 +276,7 @@ def _why_none(name: str, study: Study) -> str:
         return why_none(name, study.cases)
     if name in IN_KILONEWTONS:
         return "it goes with a pier of known mass (mass_t) on springs"
-    if any(name in {each.name for each in fields(case.base)} for case in study.cases):  # ε and ζ exclude each other
+    if name in ("epsilon", "zeta") and any(case.base.on_springs for case in study.cases):
         return (
             "it goes with springs that have one; write zeta in the case" if name == "zeta" else "zeta takes its place"
         )
@@ -294,9 +285,9 @@ def _why_none(name: str, study: Study) -> str:
 
 def _check_corners(table: Table, inputs: Sequence[Input], case: Case) -> None:
     """Check the corners of all ranges: what is possible there is so between them, as no limit turns back within a range."""
-    places = {each.name: each.at for each in inputs}
+    places = {parameter.name: parameter.at for parameter in inputs}
     reported: set[str] = set()
-    for corner in product(*(each.levels for each in inputs)):
+    for corner in product(*(parameter.levels for parameter in inputs)):
         values = dict(zip(places, corner, strict=True))
         try:
             there = varied(case, values)

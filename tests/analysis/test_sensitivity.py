@@ -335,6 +335,7 @@ TWO = TIED | {"damper": [{"kind": "friction", "f": 0.05, "at": "left"}, {"kind":
             "belongs under [sensitivity.uniform]",
         ),
         ({"zeta": [0.0, 0.1]}, {}, "zeta", "zeta: no case of the study has it"),
+        ({"beta": [20.0, 60.0]}, {}, "beta", "beta: no case of the study has it"),
         (
             {"zeta": [0.0, 0.1]},
             {"cases": (PADS,)},
