@@ -22,6 +22,7 @@ from rockbatch.errors import InputError
 from rockbatch.files import legible, read_text
 from rockbatch.motions import MotionSet
 from rockbatch.report import REPORT, write_report
+from rockbatch.results.beside_peaks import SEMICOLONS
 from rockbatch.results.checking import verdicts
 from rockbatch.results.columns import PEAKS, unusable_rows
 from rockbatch.results.estimate import ESTIMATE, write_estimate
@@ -32,7 +33,7 @@ from rockbatch.results.reading import Saved, edited
 from rockbatch.results.run_json import INFO, describe, versions, write_info
 from rockbatch.study import Study
 
-OUTPUTS = (PEAKS, INFO, HISTORIES, INTENSITY, ESTIMATE, CHECKS, REPORT)
+OUTPUTS = (PEAKS, INFO, HISTORIES, INTENSITY, ESTIMATE, CHECKS, REPORT, SEMICOLONS)
 """Files that a run may leave in its folder."""
 
 

@@ -1,18 +1,28 @@
-"""Tables beside peaks.csv, with a row for each run that was simulated, in the same order and by the same names."""
+"""Tables beside peaks.csv: of each run that was simulated, by the same names, and peaks.csv again for spreadsheets."""
 
+import csv
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from rockbatch.checks.suite import simulated
-from rockbatch.files import csv_text, write_whole
+from rockbatch.files import csv_text, opened_text, replacing, write_whole
 from rockbatch.lazy import pd
 from rockbatch.motions import Motion
 from rockbatch.pier import Pier
+from rockbatch.results.columns import PEAKS, TEXTS
 from rockbatch.study import Study
 
 NAMING = ("record", "case", "polarity", "scale")
 """Columns that name a run, with those of the varied keys."""
+
+
+SEMICOLONS = "peaks_semicolon.csv"
+"""peaks.csv as spreadsheets open it where numbers have a decimal comma."""
+
+LARGEST = "9,99E+307"
+"""Written for infinity, as the largest round number with which Excel computes."""
 
 
 class Ran(NamedTuple):
@@ -25,12 +35,13 @@ class Ran(NamedTuple):
 
 
 def runs(peaks: "pd.DataFrame", study: Study, motions: Sequence[Motion]) -> Iterator[Ran]:
-    """The runs of ``peaks``, without mirror images."""
+    """Yield the runs of ``peaks``, without mirror images."""
     by_name = {motion.name: motion for motion in motions}
     piers = {_key(case.name, case.columns, study.varied): case.pier for case in study.cases}
     kept = [*NAMING, *study.varied, "status", "theta_max_over_alpha"]
     table = simulated(peaks[peaks["case"] != ""])[kept]
-    for row in ({str(name): value for name, value in each.items()} for each in table.to_dict("records")):
+    for cells in table.to_dict("records"):
+        row = {str(name): value for name, value in cells.items()}
         pier = piers[_key(row["case"], row, study.varied)]
         yield Ran(row, by_name[row["record"]], float(row["scale"]), pier)
 
@@ -41,8 +52,35 @@ def write(path: Path, rows: Sequence[Mapping[str, Any]]) -> Path:
     return path
 
 
+def write_semicolons(directory: Path) -> Path:
+    """Write peaks.csv again with semicolons between cells and decimal commas.
+
+    The file begins with a byte order mark, by which Excel recognises UTF-8. Texts stay as they are.
+    """
+    path = directory / SEMICOLONS
+    with (
+        opened_text(directory / PEAKS) as file,
+        replacing(path) as temporary,
+        temporary.open("w", encoding="utf-8-sig", newline="") as written,
+    ):
+        reader, writer = csv.reader(file), csv.writer(written, delimiter=";", lineterminator="\r\n")
+        head = next(reader)
+        writer.writerow(head)
+        for row in reader:
+            writer.writerow([cell if name in TEXTS else _comma(cell) for name, cell in zip(head, row, strict=True)])
+    return path
+
+
+def _comma(cell: str) -> str:
+    """Return a number with a decimal comma; words, of a varied key, as they are."""
+    try:
+        return LARGEST if float(cell) == math.inf else cell.replace(".", ",")
+    except ValueError:
+        return cell
+
+
 def _key(case: str, columns: Mapping[str, Any], varied: Sequence[str]) -> tuple[object, ...]:
-    """What tells a case from others; numbers as peaks.csv has them, in ten digits."""
+    """Return what distinguishes a case; numbers as peaks.csv has them, in ten digits."""
     return (case, *(_plain(columns.get(name)) for name in varied))
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from rockbatch.checks import Rule, Verdict, as_table, judge, load_rules, read_checks
-from rockbatch.checks.plausible import implausible
+from rockbatch.checks.choices import implausible
 from rockbatch.checks.reading import Checks
 from rockbatch.errors import InputError
 from rockbatch.lazy import pd
@@ -64,7 +64,7 @@ def verdicts(
     *,
     study: PathLike | Study | None = None,
 ) -> list[Verdict]:
-    """As :func:`check`, one :class:`Verdict` for each row."""
+    """Return the verdicts of :func:`check`, one for each row."""
     given = _given(rules)
     records: Mapping[str, str] | None = None
     if isinstance(results, Saved | str | os.PathLike):
@@ -97,7 +97,7 @@ def _given(rules: PathLike | Iterable[Rule] | None) -> Sequence[Rule] | None:
 
 
 def _own_checks(study: Mapping[str, Any], *, judged: bool) -> Checks:
-    """The checks of a study by its text and that of its file of checks, as run.json keeps them; sound ones if ``judged``."""
+    """Return the checks of a study by its text and that of its file of checks, as in run.json; sound ones if ``judged``."""
 
     def opened(path: Path) -> TomlFile:
         for kept in study.get("checks", ()):

@@ -1,4 +1,4 @@
-"""The columns of peaks.csv: each is one row of a table here, from which all that tells of it is made.
+"""The columns of peaks.csv: each is one row of a table here, from which all that describes it is made.
 
 The file, its types and units, the report's tables and tooltips, the comparison of two studies and docs/columns.md follow from
 :data:`COLUMNS`. A new column is a row at the end of :data:`MORE`, and a number in :class:`Outcome` for it.
@@ -28,7 +28,7 @@ ALL = ("rigid", "elastic", "yielding")
 SPRINGS = ("elastic", "yielding")
 YIELDING = ("yielding",)
 TILTS = (*SPRINGS, "held")
-"""Where a pier may rest at a tilt: on springs, or on any base where friction or hysteretic dampers hold it."""
+"""Bases on which a pier may rest at a tilt: springs, or any base if friction or hysteretic dampers hold it."""
 
 
 _BASES_IN_WORDS = {
@@ -37,9 +37,9 @@ _BASES_IN_WORDS = {
 
 
 class OnPage(NamedTuple):
-    """How a column stands in the report: under what, with its unit there; format; factor from the file's unit to the page's.
+    """A column in the report: its head with the unit there, its format, and the factor from the file's unit to the page's.
 
-    Of a word after a low line, the page makes an index: "θ_max/α". ``behind`` names the column after which it is put, where
+    The page makes an index of a word after a low line: "θ_max/α". ``behind`` names the column after which it is put, if
     that is not the one before it in the file. ``table`` is the section in whose tables it is.
     """
 
@@ -51,9 +51,9 @@ class OnPage(NamedTuple):
 
 
 class Ran(NamedTuple):
-    """A run that is finished: what it came to, in which case, and under which motion, as it was run.
+    """A finished run: its outcome, its case, and its motion as it was run.
 
-    ``mirror_of`` is the polarity of the run whose mirror image it is; None where that is not asked.
+    ``mirror_of`` is the polarity of the run whose mirror image it is; None if the study has one polarity.
     """
 
     outcome: Outcome
@@ -70,7 +70,7 @@ class Ran(NamedTuple):
 
 
 class OfSuite(NamedTuple):
-    """How the statistics of a column over a suite are called, and the format of its numbers there."""
+    """Heading of the statistics of a column over a suite, and the format of its numbers there."""
 
     heading: str
     form: str
@@ -83,31 +83,31 @@ class Column:
     Attributes
     ----------
     name : str
-        With the unit of what has one; fixed, since users' scripts read it.
+        With its unit, if any; fixed, since users' scripts read it.
     meaning : str
-        What it is, in a sentence; the same for those that are told together.
+        Its meaning, in a sentence; the same for columns that are explained together.
     of : str, function or None
-        Field of :class:`Outcome`, or function of :class:`Ran`; None for what names the run.
+        Field of :class:`Outcome`, or function of :class:`Ran`; None for names of the run.
     unit : str
         Of a number, as pint reads it; "1" is none.
     page : OnPage or None
-        How the report shows it; None: it does not.
+        Its place in the report; None: it has none.
     kind : str
         "number", "count" (a whole one) or "text".
     over_alpha : bool
-        Whether the outcome's angle is divided by the pier's α.
+        True if the outcome's angle is divided by the pier's α.
     bases : tuple of str
         Bases to which it applies; it is empty on others.
     stood : bool
-        Whether it is empty where the pier overturned, or flight ended the run.
+        True if it is empty for a pier that overturned, and a run that flight ended.
     unbounded : bool
-        Whether a number may be infinite.
+        True if a number may be infinite.
     sometimes : bool
-        Whether only some of the runs to which it applies have one: a flight, a reason.
+        True if only some of the runs to which it applies have one: a flight, a reason.
     suite : OfSuite or None
-        How its statistics are called, of what has any; two studies are compared by it, too.
+        Its statistics, if it has any; two studies are compared by it, too.
     asked : function or None
-        Whether a study asks for it; None: it is always there.
+        True for a study that asks for it; None: it is always there.
     """
 
     name: str
@@ -126,7 +126,7 @@ class Column:
 
     @property
     def where(self) -> str:
-        """To which runs it applies, in words; empty for all."""
+        """Runs to which it applies, in words; empty for all."""
         base = _BASES_IN_WORDS[self.bases]
         run = "where the pier stood" if self.stood else "if it occurs" if self.sometimes else ""
         return ", ".join(filter(None, (base, run)))
@@ -150,19 +150,19 @@ def _force(
     name: str, meaning: str, field: str, unit: str, head: str, form: str, factor: int = 1, *, per: str = "",
     behind: str = "", **more: Any,
 ) -> Column:  # fmt: skip
-    """A column of what designers size, a ``field`` of PeakForces; ``per``: over "g", or times the "mass" that is known."""
+    """Return a column of a ``field`` of PeakForces; ``per`` "g", or times the "mass" or "half the weight" if known."""
 
     def of(ran: Ran) -> float | None:
-        found = None if ran.outcome.forces is None else getattr(ran.outcome.forces, field)
+        value = None if ran.outcome.forces is None else getattr(ran.outcome.forces, field)
         times = {"g": 1.0 / ran.pier.gravity, "mass": ran.pier.mass_t, "half the weight": _half_weight(ran.pier)}
         factor = times.get(per, 1.0)
-        return None if found is None or factor is None else found * factor
+        return None if value is None or factor is None else value * factor
 
     page = OnPage(head, form, factor, behind, table="forces")
     if per in ("mass", "half the weight"):
         more["sometimes"] = True
-    told = f"{meaning}; with [output] forces = true"
-    return Column(name, told, of, unit, page, asked=lambda study: study.output.forces, **more)
+    meaning = f"{meaning}; with [output] forces = true"
+    return Column(name, meaning, of, unit, page, asked=lambda study: study.output.forces, **more)
 
 
 def _half_weight(pier: Pier) -> float | None:
@@ -308,7 +308,7 @@ MORE = (
 
 
 def _in_kilonewtons(field: str) -> Callable[[Ran], float | None]:
-    """A force of :class:`Outcome` over the weight in kN, where the pier's mass is known."""
+    """Return a force of :class:`Outcome` over the weight in kN, if the pier's mass is known."""
 
     def of(ran: Ran) -> float | None:
         force, mass = getattr(ran.outcome, field), ran.pier.mass_t
@@ -320,11 +320,10 @@ def _in_kilonewtons(field: str) -> Callable[[Ran], float | None]:
 def _device(
     name: str, meaning: str, field: str | Callable[[Ran], Any], unit: str, page: OnPage, kind: type[Restraint]
 ) -> Column:
-    """A column of studies that have dampers, or tendons."""
+    """Return a column of studies that have dampers, or tendons."""
 
     def has(study: Study) -> bool:
-        bases = (case.base for case in study.cases)
-        return any(isinstance(each, kind) for base in bases for each in base.restraints)
+        return any(isinstance(device, kind) for case in study.cases for device in case.base.restraints)
 
     number: Literal["number", "count"] = "count" if field == "tendon_slack" else "number"
     return Column(name, meaning, field, unit, page, number, sometimes=True, asked=has)
@@ -448,7 +447,7 @@ _FORCES = (
         behind="base_moment_m2_s2",
     ),
 )  # fmt: skip
-"""What designers size, until the run ends or the pier leans beyond α for good."""
+"""Forces and motions for design, until the run ends or the pier leans beyond α for good."""
 
 ASKED = (
     Column(
@@ -509,11 +508,11 @@ _read_fields = attrgetter(*_FIELDS.values())
 
 
 def cells(runs: Sequence[Ran], wanted: Container[str] = COLUMNS) -> dict[str, list[Any]]:
-    """The columns of peaks.csv of ``runs``, each shape (n,): their names, and their outcomes over α.
+    """Return the columns of peaks.csv of ``runs``, each shape (n,): their names, and their outcomes over α.
 
     Numbers that functions give are only those of ``wanted`` columns. None where a column does not apply.
     """
-    found: dict[str, list[Any]] = {
+    table: dict[str, list[Any]] = {
         "record": [ran.motion.name for ran in runs],
         "station": [ran.motion.of_station for ran in runs],
         "case": [ran.case.name for ran in runs],
@@ -522,22 +521,22 @@ def cells(runs: Sequence[Ran], wanted: Container[str] = COLUMNS) -> dict[str, li
         MIRROR_OF: [ran.mirror_of for ran in runs],
     }
     varied = dict.fromkeys(name for case in {id(ran.case): ran.case for ran in runs}.values() for name in case.columns)
-    found |= {name: [ran.case.columns.get(name) for ran in runs] for name in varied}
-    found |= zip(_FIELDS, map(list, zip(*(_read_fields(ran.outcome) for ran in runs), strict=True)), strict=True)
-    found |= {name: [of(ran) for ran in runs] for name, of in _FUNCTIONS.items() if name in wanted}
+    table |= {name: [ran.case.columns.get(name) for ran in runs] for name in varied}
+    table |= zip(_FIELDS, map(list, zip(*(_read_fields(ran.outcome) for ran in runs), strict=True)), strict=True)
+    table |= {name: [of(ran) for ran in runs] for name, of in _FUNCTIONS.items() if name in wanted}
     alpha = [ran.case.pier.alpha for ran in runs]
     for name in _OVER_ALPHA:
-        found[name] = [None if x is None else x / a for x, a in zip(found[name], alpha, strict=True)]
-    return found
+        table[name] = [None if x is None else x / a for x, a in zip(table[name], alpha, strict=True)]
+    return table
 
 
 def row(ran: Ran) -> dict[str, Any]:
-    """The row of peaks.csv of a run."""
+    """Return the row of peaks.csv of a run."""
     return {name: values[0] for name, values in cells([ran]).items()}
 
 
 def unusable_rows(motions: MotionSet) -> list[dict[str, Any]]:
-    """One row for each file that could not be used, with the reason."""
+    """Return one row for each file that could not be used, with the reason."""
     return [
         {"record": file.name, "status": "failed", "reason": f"{file.source}: {file.reason}"}
         for file in motions.unusable
@@ -545,29 +544,29 @@ def unusable_rows(motions: MotionSet) -> list[dict[str, Any]]:
 
 
 def columns(study: Study) -> list[str]:
-    """Columns of the table of ``study``: those that stay, its varied keys, more, and what it asks for."""
+    """Return the columns of the table of ``study``: those that stay, its varied keys, more, and what it asks for."""
     asked = [column for column in ASKED if column.asked and column.asked(study)]
     return [*names(STAYING), *study.varied, *names(MORE), *names(asked)]
 
 
 def names(table: Iterable[Column]) -> list[str]:
-    """Names of columns."""
+    """Return the names of columns."""
     return [column.name for column in table]
 
 
 def units(study: Study) -> dict[str, str]:
-    """Units of the numbers in the table of ``study``, but for its varied keys; "1" is none."""
+    """Return the units of the numbers in the table of ``study``, but for its varied keys; "1" is none."""
     known = (COLUMNS[name] for name in columns(study) if name in COLUMNS)
     return {column.name: column.unit for column in known if column.kind != "text"}
 
 
 def as_table(rows: Iterable[Mapping[str, Any]], study: Study) -> "pd.DataFrame":
-    """The rows of peaks.csv as a DataFrame: NaN where a number does not apply, counts that can be missing."""
+    """Return the rows of peaks.csv as a DataFrame: NaN if a number does not apply, counts that can be missing."""
     return _typed(pd.DataFrame(list(rows), columns=columns(study)), study.varied)
 
 
 def as_series(cells: Mapping[str, Any]) -> "pd.Series[Any]":
-    """A row on its own, as it stands in a table: what every table has, and of what is asked for what there is."""
+    """Return a row on its own, as it stands in a table, with those columns on request that it has."""
     there = [column for column in ASKED if cells.get(column.name) is not None]
     table = pd.DataFrame([cells], columns=names((*STAYING, *MORE, *there)))
     return _typed(table, ()).iloc[0].rename(cells["record"])
@@ -584,7 +583,7 @@ def _typed(table: "pd.DataFrame", varied: Sequence[str]) -> "pd.DataFrame":
 
 
 def in_words(name: str, value: Any) -> str:
-    """A value of a column as the report writes it, in the page's unit; empty if it has none."""
+    """Return a value of a column as the report writes it, in the page's unit; empty if it has none."""
     page = COLUMNS[name].page
     if value is None or value != value or page is None:
         return ""
@@ -592,7 +591,7 @@ def in_words(name: str, value: Any) -> str:
 
 
 def on_page(shown: str = "peaks") -> list[Column]:
-    """Columns in the report's tables of ``shown``, in their order: beside each other what is read together."""
+    """Return the columns in the report's tables of ``shown``, in their order: beside each other what is read together."""
     order: list[str] = []
     for column in COLUMNS.values():
         if column.page and column.page.table == shown:
@@ -605,7 +604,7 @@ def as_markdown() -> str:
     """Return the table of docs/columns.md; columns with one meaning share a line."""
     lines = ["| column | unit | meaning | where |", "| --- | --- | --- | --- |"]
     for meaning, same in groupby(COLUMNS.values(), key=lambda column: column.meaning):
-        told = list(same)
-        unit = "" if told[0].kind == "text" or told[0].unit == "1" else told[0].unit
-        lines.append(f"| {', '.join(names(told))} | {unit} | {meaning} | {told[0].where} |")
+        first, *others = same
+        unit = "" if first.kind == "text" or first.unit == "1" else first.unit
+        lines.append(f"| {', '.join(names([first, *others]))} | {unit} | {meaning} | {first.where} |")
     return "\n".join(lines) + "\n"

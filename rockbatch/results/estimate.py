@@ -1,4 +1,4 @@
-"""What design practice would estimate: the rocking pier as an elastic oscillator whose period grows with its rotation.
+"""Estimates of design practice: the rocking pier as an elastic oscillator whose period grows with its rotation.
 
 Priestley, Evison & Carr (1978, Bull. NZ Nat. Soc. Earthq. Eng. 11(3), 141–150) take the period of free rocking (Housner 1963),
 
@@ -38,7 +38,7 @@ START = 0.5
 
 _LEAST, _LARGEST = 1e-3, 0.999  # φ between which the spectrum is tabulated
 _PERIODS = 120
-_ITERATIONS, _SETTLED = 200, 1e-4
+_ITERATIONS, _CONVERGED = 200, 1e-4
 
 Array = npt.NDArray[np.float64]
 
@@ -58,7 +58,7 @@ _MOST_DAMPING = 0.99  # a pier so stocky is no oscillator at all
 
 
 class Estimate(NamedTuple):
-    """What an equivalent oscillator gives.
+    """The estimate by an equivalent oscillator.
 
     Attributes
     ----------
@@ -73,22 +73,22 @@ class Estimate(NamedTuple):
 
 
 def rocking_period(share: Array | float, p: float) -> Array:
-    """Period of free rocking [s] with amplitudes φ = θ/α, below 1, of a slender block (Housner 1963)."""
+    """Return the period of free rocking [s] with amplitudes φ = θ/α, below 1, of a slender block (Housner 1963)."""
     return 4.0 / p * np.arccosh(1.0 / (1.0 - np.asarray(share, dtype=np.float64)))
 
 
 def estimate(rotation: Callable[[float], float]) -> Estimate:
-    """The fixed point of ``rotation``, which gives φ of the period at another φ; begun at :data:`START`."""
+    """Return the fixed point of ``rotation``, which gives φ of the period at another φ; begun at :data:`START`."""
     share = START
     for _ in range(_ITERATIONS):
-        found = rotation(share)
-        if found >= 1.0:
+        following = rotation(share)
+        if following >= 1.0:
             return Estimate(math.nan, "overturns")
-        if found <= _LEAST:
+        if following <= _LEAST:
             return Estimate(0.0, "stays")
-        if abs(found - share) <= _SETTLED * found:
-            return Estimate(found, "rocks")
-        share = found
+        if abs(following - share) <= _CONVERGED * following:
+            return Estimate(following, "rocks")
+        share = following
     return Estimate(math.nan, "no convergence")
 
 
@@ -102,7 +102,7 @@ def _rows(peaks: "pd.DataFrame", study: Study, motions: Sequence[Motion]) -> Ite
 
     @cache
     def displacements(name: str, p: float, damping: float) -> tuple[Array, Array]:
-        """Periods [s] and spectral displacements [m] of a motion, before the study's scale."""
+        """Return periods [s] and spectral displacements [m] of a motion, before the study's scale."""
         ends = rocking_period(np.array([_LEAST, _LARGEST]), p)
         periods = np.geomspace(ends[0], ends[1], _PERIODS)
         sa = spectral_acceleration(by_name[name].horizontal, by_name[name].dt, periods, damping)
@@ -124,13 +124,8 @@ def _rows(peaks: "pd.DataFrame", study: Study, motions: Sequence[Motion]) -> Ite
         return damping, estimate(rotation)
 
     for row, motion, scale, pier in beside_peaks.runs(peaks, study, motions):
-        told = dict(row)
-        told["pga_over_g_tan_alpha"] = scale * motion.pga / (pier.gravity * math.tan(pier.alpha))
+        row["pga_over_g_tan_alpha"] = scale * motion.pga / (pier.gravity * math.tan(pier.alpha))
         for method in DAMPING:
-            damping, found = of_pier(motion.name, scale, pier, method)
-            told |= {
-                f"{method}_damping": damping,
-                f"{method}_theta_over_alpha": found.theta_over_alpha,
-                f"{method}_outcome": found.outcome,
-            }
-        yield told
+            row[f"{method}_damping"], oscillator = of_pier(motion.name, scale, pier, method)
+            row[f"{method}_theta_over_alpha"], row[f"{method}_outcome"] = oscillator
+        yield row

@@ -15,7 +15,7 @@ MOST_OF_A_TEXT = 10_000_000
 
 
 def group_in(group: "h5py.Group", name: str) -> "h5py.Group":
-    """A group that lies in ``group`` itself."""
+    """Return a group that lies in ``group`` itself."""
     found = _member(group, name)
     if not isinstance(found, h5py.Group):
         raise ValueError(f"{name} is no group")
@@ -25,7 +25,7 @@ def group_in(group: "h5py.Group", name: str) -> "h5py.Group":
 def array_in(
     group: "h5py.Group", name: str, kind: str, length: int | None = None, *, finite: bool = True
 ) -> "np.ndarray[Any, Any]":
-    """A dataset of one dimension that lies in ``group``, with its bytes: numbers of ``kind`` "f" or "i", or texts "S".
+    """Return a dataset of one dimension that lies in ``group``, with its bytes: numbers of ``kind`` "f" or "i", or texts "S".
 
     Texts come as ``str``. ``length`` is the number of values that there have to be; ``finite`` ones unless they may be infinite.
     """
@@ -45,7 +45,7 @@ def array_in(
 
 
 def attributes_of(item: "h5py.Group") -> dict[str, Any]:
-    """The attributes of a group, as Python's own numbers and texts."""
+    """Return the attributes of a group, as Python's own numbers and texts."""
     return {name: attribute(item, name) for name in item.attrs}
 
 
@@ -53,8 +53,8 @@ def attribute(item: "h5py.Group", name: str) -> Any:
     """Return one attribute, as Python's own number or text; None if it is missing."""
     if name not in item.attrs:
         return None
-    told = item.attrs.get_id(name)
-    if told.shape != () or told.dtype.kind not in "fiubO":
+    stored = item.attrs.get_id(name)
+    if stored.shape != () or stored.dtype.kind not in "fiubO":
         raise ValueError(f"the attribute {name} is neither a number nor a text")
     value = item.attrs[name]
     value = value.item() if isinstance(value, np.generic) else value

@@ -62,15 +62,22 @@ UNITS = {
 """Units of the columns of a history, in their order."""
 
 OF_SPRINGS = ("v", "z_left", "z_right", "v_left", "v_right", "force_left", "force_right")
-"""Those that only piers on springs have."""
+"""Columns of a history that only piers on springs have."""
+
+_EVENTS = {"t": "f", "kind": "S", "pivot": "S", "before": "i", "after": "i"}
+_IMPACTS = {"t": "f", "pivot": "S"} | dict.fromkeys(IMPACT_UNITS, "f")
+_BESIDE = {"restraints": (), "ledger": TERMS, "forces": tuple(FORCE_UNITS)}
+"""Tables at the rows of the history that a run may have, by their group, with their columns; () for whatever is there."""
+
+_ALL_UNITS = UNITS | FORCE_UNITS | IMPACT_UNITS | dict.fromkeys(TERMS, "J/kg")
 _OF_RUN = ("record", "case", "polarity", "scale", "status")
 _BASES = {base.name: base for base in (RigidBase, ElasticBase, YieldingBase)}
 _DAMAGE = (OSError, KeyError, ValueError, TypeError, RuntimeError, AttributeError)
-"""What h5py raises where something is missing or broken."""
+"""Exceptions of h5py for parts that are missing or broken."""
 
 
 class _NotTheseError(InputError):
-    """A sound file that is none of histories, or none of this run."""
+    """A sound file that has no histories, or those of another run."""
 
 
 def write(path: Path, responses: Iterable[Response], info: Mapping[str, Any]) -> None:
@@ -91,10 +98,8 @@ def write(path: Path, responses: Iterable[Response], info: Mapping[str, Any]) ->
 
 
 def _check_room(path: Path, response: Response) -> None:
-    """HDF5 does not survive a full disk: it may take the process with it at exit."""
-    tables = (
-        response.history, response.events, response.ledger, response.forces, response.impacts, response.restraints,
-    )  # fmt: skip
+    """Raise ``InputError`` before the disk is full, which HDF5 does not survive: it may take the process with it at exit."""
+    tables = (getattr(response, name) for name in ("history", "events", "impacts", *_BESIDE))
     needed = MARGIN + sum(int(table.memory_usage().sum()) for table in tables if table is not None)
     free = disk_usage(path.parent).free
     if free < needed:
@@ -115,35 +120,27 @@ def _write(group: "h5py.Group", response: Response) -> None:
     base = {"name": response.base.name} | asdict(response.base)
     base["restraints"] = json.dumps([asdict(each) for each in response.base.restraints])
     _set(group.create_group("base"), base)
-    rigid = not response.base.on_springs
-    for name, unit in UNITS.items():
-        if not (rigid and name in OF_SPRINGS):
-            _put(group, name, response.history[name].to_numpy(), unit)
-    events = group.create_group("events")
-    for name in EVENT_TYPES:
-        if EVENT_TYPES[name] == "str":
-            events[name] = np.array(response.events[name], dtype="S16")
+    _put(group, response.history, [name for name in UNITS if response.base.on_springs or name not in OF_SPRINGS])
+    _put(group.create_group("events"), response.events, _EVENTS)
+    if response.impacts is not None:
+        _put(group.create_group("impacts"), response.impacts, _IMPACTS)
+    for name, columns in _BESIDE.items():
+        if (table := getattr(response, name)) is not None:
+            _put(group.create_group(name), table, columns or table.columns.drop("t"))
+
+
+def _put(group: "h5py.Group", table: "pd.DataFrame", columns: Iterable[str]) -> None:
+    """Write columns of a table: texts, or numbers with their unit."""
+    for name in columns:
+        if name in ("kind", "pivot"):
+            group[name] = np.array(table[name], dtype="S16")
         else:
-            _put(events, name, response.events[name].to_numpy(), UNITS.get(name, "1"))
-    if response.restraints is not None:
-        restraints = group.create_group("restraints")
-        for name in response.restraints.columns.drop("t"):
-            _put(restraints, name, response.restraints[name].to_numpy(), "N/kg" if name.endswith("force") else "m")
-    if response.ledger is not None:
-        ledger = group.create_group("ledger")
-        for name in TERMS:
-            _put(ledger, name, response.ledger[name].to_numpy(), "J/kg")
-    if response.forces is not None and response.impacts is not None:
-        forces, impacts = group.create_group("forces"), group.create_group("impacts")
-        for name, unit in FORCE_UNITS.items():
-            _put(forces, name, response.forces[name].to_numpy(), unit)
-        for name, unit in IMPACT_UNITS.items():
-            _put(impacts, name, response.impacts[name].to_numpy(), unit)
-        impacts["pivot"] = np.array(response.impacts["pivot"], dtype="S16")
-
-
-def _put(group: "h5py.Group", name: str, values: "np.ndarray[Any, Any]", unit: str) -> None:
-    group.create_dataset(name, data=values).attrs["unit"] = unit
+            unit = (
+                ("N/kg" if name.endswith("force") else "m")
+                if group.name.endswith("restraints")
+                else _ALL_UNITS.get(name, "1")
+            )
+            group.create_dataset(name, data=table[name].to_numpy()).attrs["unit"] = unit
 
 
 def _set(group: "h5py.Group", values: Mapping[str, Any]) -> None:
@@ -153,7 +150,7 @@ def _set(group: "h5py.Group", values: Mapping[str, Any]) -> None:
 
 
 def _legible(text: str) -> str:
-    """HDF5 holds neither NUL nor what of a file's name is not Unicode; both are written as escapes."""
+    """Return ``text`` without what HDF5 cannot hold, NUL and bytes of a file's name that are not Unicode, as escapes."""
     return text.encode(errors="backslashreplace").decode().replace("\0", "\\x00")
 
 
@@ -171,7 +168,7 @@ class Responses(Sequence[Response]):
 
     @cached_property
     def runs(self) -> "pd.DataFrame":
-        """What is there, a row for each: record, case, polarity, scale, status, and the values of varied keys.
+        """Names of the runs, a row for each: record, case, polarity, scale, status, and the values of varied keys.
 
         Values are NaN where the key does not apply. No history is read for it.
         """
@@ -199,7 +196,7 @@ class Responses(Sequence[Response]):
 
     @contextmanager
     def _opened(self) -> Iterator["h5py.Group"]:
-        """The group of runs; errors on the way are told in words."""
+        """Yield the group of runs; errors on the way become ``InputError``."""
         with opened(self.path) as plain:
             try:
                 with h5py.File(plain, "r") as file:
@@ -225,41 +222,42 @@ def _read(group: "h5py.Group") -> Response:
     base = attributes_of(group_in(group, "base"))
     kind = _BASES[base.pop("name")]
     if "restraints" in base:
-        told = json.loads(base["restraints"])
-        base["restraints"] = tuple(_restraint(**each) for each in told)
+        base["restraints"] = tuple(_restraint(**values) for values in json.loads(base["restraints"]))
     t = array_in(group, "t", "f")
     if not len(t) or np.isnan(t).any() or (np.diff(t) < 0).any():
         raise ValueError("t is no rising time")
-    absent = () if kind.on_springs else OF_SPRINGS
-    columns = {
-        name: np.full(len(t), np.nan) if name in absent else array_in(group, name, "f", len(t)) for name in UNITS
-    }
-    ledger = restraints = None
-    if "restraints" in group:
-        loops = group_in(group, "restraints")
-        restraints = pd.DataFrame({"t": t} | {name: array_in(loops, name, "f", len(t)) for name in loops})
-    if "ledger" in group:
-        terms = group_in(group, "ledger")
-        ledger = pd.DataFrame({"t": t} | {name: array_in(terms, name, "f", len(t)) for name in TERMS})
-    forces = impacts = None
+    history = _table(group, {name: "f" for name in UNITS if kind.on_springs or name not in OF_SPRINGS}, len(t))
+    events = _table(group_in(group, "events"), _EVENTS)
+    places = events[["before", "after"]].to_numpy()
+    if ((places < 0) | (places >= len(t))).any():
+        raise ValueError("an event is beyond the end of the history")
+    tables: dict[str, Any] = {}
+    for name, columns in _BESIDE.items():
+        if name in group:
+            beside = group_in(group, name)
+            # Earlier versions had no base moment
+            there = [column for column in columns or beside if column in beside or column != "base_moment"]
+            tables[name] = _table(beside, dict.fromkeys(there, "f"), len(t))
+            tables[name].insert(0, "t", t)
     if "forces" in group:
-        told = group_in(group, "forces")
-        kept = (name for name in FORCE_UNITS if name in told or name != "base_moment")  # earlier versions had none
-        columns_of_forces = {name: array_in(told, name, "f", len(t), finite=name != "friction") for name in kept}
-        forces = pd.DataFrame({"t": t} | columns_of_forces)
-        impacts = _impacts(group_in(group, "impacts"))
+        tables["impacts"] = _table(group_in(group, "impacts"), _IMPACTS).astype({"pivot": "str"})
     return Response(
         **_run(group),
         columns=attributes_of(group_in(group, "varied")),
         pier=Pier(**attributes_of(group_in(group, "pier"))),
-        base=kind(**{"flight": "stop"} | base),  # as rigid ground was before it could be told
-        history=pd.DataFrame(columns),
-        events=_events(group_in(group, "events"), len(t)),
-        ledger=ledger,
-        forces=forces,
-        impacts=impacts,
-        restraints=restraints,
+        base=kind(**{"flight": "stop"} | base),  # as rigid ground was before it could be chosen
+        history=history.reindex(columns=list(UNITS)),
+        events=events.astype(EVENT_TYPES),
+        **tables,
     )
+
+
+def _table(group: "h5py.Group", kinds: Mapping[str, str], rows: int | None = None) -> "pd.DataFrame":
+    """Return a table of columns of these kinds; with as many rows as its time has, unless ``rows`` are given."""
+    rows = len(array_in(group, "t", "f")) if rows is None else rows
+    return pd.DataFrame({
+        name: array_in(group, name, kind, rows, finite=name != "friction") for name, kind in kinds.items()
+    })  # fmt: skip
 
 
 def _restraint(**values: Any) -> Restraint:
@@ -267,37 +265,18 @@ def _restraint(**values: Any) -> Restraint:
 
 
 def _row_of(response: Response, peaks: "pd.DataFrame") -> "pd.Series[Any] | None":
-    """The row of a response: that with its names, whose numbers have ten digits there."""
-    named = {name: getattr(response, name) for name in ("record", "case", "polarity", "scale")} | response.columns
+    """Return the row of a response: that with its names, whose numbers have ten digits there; None without one."""
+    names = {name: getattr(response, name) for name in ("record", "case", "polarity", "scale")} | response.columns
     same = peaks
-    for name, value in named.items():
+    for name, value in names.items():
         same = same[same[name] == (float(f"{value:.10g}") if isinstance(value, float) else value)]
     return None if same.empty else same.iloc[0].rename(response.record)
 
 
-def _impacts(group: "h5py.Group") -> "pd.DataFrame":
-    """The table of impacts."""
-    t = array_in(group, "t", "f")
-    found: dict[str, Any] = {"t": t, "pivot": array_in(group, "pivot", "S", len(t))}
-    found |= {name: array_in(group, name, "f", len(t)) for name in IMPACT_UNITS}
-    return pd.DataFrame(found).astype({"pivot": "str"})
-
-
 def _run(group: "h5py.Group") -> dict[str, Any]:
-    """Which run it is; the names are texts, the scale is a number."""
-    found = {name: attribute(group, name) for name in _OF_RUN}
-    for name, value in found.items():
+    """Return the names of a run; they are texts, but for the scale, which is a number."""
+    names = {name: attribute(group, name) for name in _OF_RUN}
+    for name, value in names.items():
         if not isinstance(value, float if name == "scale" else str):
             raise ValueError(f"the attribute {name} is missing, or of another kind")
-    return found
-
-
-def _events(group: "h5py.Group", rows: int) -> "pd.DataFrame":
-    """The table of events, whose ``before`` and ``after`` are places in a history of so many rows."""
-    length = len(array_in(group, "t", "f"))
-    kinds = {"str": "S", "int64": "i", "float64": "f"}
-    events = pd.DataFrame({name: array_in(group, name, kinds[of], length) for name, of in EVENT_TYPES.items()})
-    places = events[["before", "after"]].to_numpy()
-    if ((places < 0) | (places >= rows)).any():
-        raise ValueError("an event is beyond the end of the history")
-    return events.astype(EVENT_TYPES)
+    return names

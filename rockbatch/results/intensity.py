@@ -44,7 +44,7 @@ def _rows(peaks: "pd.DataFrame", study: Study, motions: Sequence[Motion]) -> Ite
 
     @cache
     def of_record(name: str) -> tuple[float, float, Array]:
-        """PGV [m/s], CAV [m/s] and spectral accelerations [m/s²] of a motion before the study's scale."""
+        """Return PGV [m/s], CAV [m/s] and spectral accelerations [m/s²] of a motion before the study's scale."""
         a, dt = by_name[name].horizontal, by_name[name].dt
         pgv = measures.pgv(a, dt, by_name[name].initial)
         return pgv, measures.cumulative_absolute_velocity(a, dt), spectral_acceleration(a, dt, periods)
@@ -68,7 +68,7 @@ def _column(period: float) -> str:
 
 
 class Order(NamedTuple):
-    """How well a measure orders the peaks of a case at one scale.
+    """The order in which a measure puts the peaks of a case at one scale.
 
     Attributes
     ----------
@@ -91,12 +91,12 @@ class Order(NamedTuple):
 
 
 def measures_of(table: "pd.DataFrame") -> list[str]:
-    """The columns of intensity.csv that are measures."""
+    """Return the columns of intensity.csv that are measures."""
     return [str(name) for name in table if name in MEANING or str(name).startswith("sa_")]
 
 
 def order_of(measure: Array, theta: Array, status: Sequence[str]) -> Order:
-    """How well ``measure`` orders ``theta``, shape (n,), of runs with that ``status``; failed ones do not count."""
+    """Return how well ``measure`` orders ``theta``, shape (n,), of runs with that ``status``; failed ones do not count."""
     kinds = np.asarray(status, dtype=object)
     gone = np.isin(kinds, NO_PEAK)
     peaks = np.where(gone, math.inf, theta)
@@ -108,7 +108,7 @@ def order_of(measure: Array, theta: Array, status: Sequence[str]) -> Order:
 
 
 def _spearman(x: Array, y: Array) -> float:
-    """Spearman's rank correlation: that of the ranks, of which equal values share the mean."""
+    """Return Spearman's rank correlation: that of the ranks, of which equal values share the mean."""
     if len(x) < LEAST_RUNS:
         return math.nan
     of_x, of_y = _ranks(x), _ranks(y)
@@ -123,7 +123,7 @@ def _ranks(values: Array) -> Array:
 
 
 def _line(x: Array, y: Array) -> tuple[float, float]:
-    """Slope of the line of least squares, and the standard deviation about it, by n − 2."""
+    """Return the slope of the line of least squares, and the standard deviation about it, by n − 2."""
     if len(x) < LEAST_RUNS or np.ptp(x) == 0:
         return math.nan, math.nan
     slope, intercept = np.polyfit(x, y, 1)
@@ -132,7 +132,7 @@ def _line(x: Array, y: Array) -> tuple[float, float]:
 
 
 def orders(table: "pd.DataFrame", varied: Sequence[str]) -> "pd.DataFrame":
-    """One row for each case, scale and measure of intensity.csv: its names, ``measure``, and the fields of :class:`Order`."""
+    """Return a row for each case, scale and measure of intensity.csv: names, ``measure``, and the fields of :class:`Order`."""
     keys = ["case", *varied, "scale"]
     rows = [
         {

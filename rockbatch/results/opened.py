@@ -43,7 +43,7 @@ class Results(Shown, Saved):
 
     @cached_property
     def intensity_order(self) -> "pd.DataFrame":
-        """How well each of the measures orders the peaks, a row for each case, scale and measure:
+        """The order in which each measure puts the peaks, a row for each case, scale and measure:
         :class:`rockbatch.results.intensity.Order`."""
         return orders(self.intensity, self.info["varied"])
 
@@ -118,7 +118,7 @@ class Results(Shown, Saved):
     def plot(self) -> "Figure":
         """The peaks of every run, as the paper's Fig. 7: a panel for each record, θ_max/α over the foundations, lines for the
         rigid base, a colour for each pier and scale. A matplotlib Figure: ``results.plot().savefig("peaks.pdf")``."""
-        from rockbatch.results.peak_panels import plot
+        from rockbatch.results.plots import plot
 
         return plot(self.peaks, self.info)
 
@@ -191,7 +191,7 @@ def open_results(directory: str | os.PathLike[str]) -> Results:
 
 
 def _told(fitting: "pd.DataFrame", wanted: dict[str, float | str]) -> str:
-    """The runs that fit, by what tells them apart."""
+    """Return the runs that fit, by what distinguishes them."""
     apart = [name for name in fitting.columns if name not in ("status", *wanted) and fitting[name].nunique() > 1]
     runs = fitting[apart].to_dict("records")
     return _listed(

@@ -1,21 +1,172 @@
-"""Distribution of peaks over a suite as a figure, for notebooks and papers; the report draws its own."""
+"""Figures of finished results with matplotlib, for notebooks and papers; the report draws its own.
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+The peaks as in Palmeri & Makris (2007), Fig. 7, and their distribution over a suite. Imported when one is drawn.
+"""
+
+import math
+import textwrap
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from rockbatch.checks.suite import counts_as, simulated
+from rockbatch.errors import InputError
 from rockbatch.lazy import pd
 from rockbatch.results.suite_statistics import NO_PEAK, distribution
+from rockbatch.simulation.plots import ShownFigure
+from rockbatch.study import PIER_KEYS
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+MOST_PANELS = 24
+MOST_COLUMNS = 4
+TITLE = 32
+"""Letters in a line of a panel's title."""
+
+INSTEAD = {
+    "overturned": ("X", "overturned"),
+    "flight": ("^", "left the ground"),
+    "failed": ("$?$", "failed, see reason"),
+}
+"""Markers, and their words, of runs without a largest rotation; they stand above the axis' values."""
+
+SPREAD = 0.4
+"""Of the distance of two foundations, over which the marks of different piers and scales are spread."""
+
+_LINES = ("-", "--", ":", "-.")
 
 
-def plot_cdf(peaks: "pd.DataFrame", varied: Sequence[str], count: str) -> "Figure":
+@dataclass(frozen=True)
+class _Panels:
+    """Properties that all panels share: the places of foundations, the colours of piers and scales, and the top of the axis."""
+
+    places: dict[str, int]
+    colours: dict[str, str]
+    lines: dict[str, str]
+    top: float
+
+    def draw(self, axes: Axes, runs: "pd.DataFrame") -> None:
+        """Draw the runs of one record."""
+        axes.axhspan(self.top, 1.15 * self.top, color="0.95")
+        axes.set(xlim=(-1, max(len(self.places), 1)), ylim=(0, 1.15 * self.top))
+        axes.grid(alpha=0.3)
+        axes.set_xticks(list(self.places.values()), list(self.places), rotation=90 if len(self.places) > 3 else 0)
+        axes.tick_params(labelsize="x-small")
+        for group, of_group in runs.groupby("group", sort=False):
+            colour = self.colours[str(group)]
+            beside = SPREAD * (list(self.colours).index(str(group)) / len(self.colours) - 0.5)
+            stood = of_group[of_group["status"] == "ok"]
+            springs = stood[~stood["rigid"]]
+            x, error = (
+                springs["foundation"].map(self.places) + beside,
+                springs["theta_max_error"].fillna(0.0),
+            )
+            axes.errorbar(
+                x, springs["theta_max_over_alpha"], error, fmt="o", markersize=4, color=colour, label=group or None
+            )
+            for name, theta in stood[stood["rigid"]][["foundation", "theta_max_over_alpha"]].itertuples(index=False):
+                label = ", ".join(filter(None, (name, str(group))))
+                axes.axhline(theta, color=colour, linewidth=1.0, linestyle=self.lines[name], label=label)
+            for status, (marker, words) in INSTEAD.items():
+                places = of_group["foundation"][of_group["status"] == status].map(self.places).fillna(-0.6) + beside
+                if len(places):
+                    height = [1.07 * self.top] * len(places)
+                    axes.plot(places, height, linestyle="", marker=marker, color=colour, label=words)
+
+
+def plot(peaks: "pd.DataFrame", info: Mapping[str, Any]) -> Figure:
+    """See :meth:`rockbatch.results.opened.Results.plot`, which hands over peaks.csv and run.json.
+
+    Of many records, the :data:`MOST_PANELS` with the worst runs have a panel, in order of peak ground acceleration. Raises
+    ``InputError`` without any runs.
+    """
+    runs = _runs(peaks, info)
+    if runs.empty:
+        raise InputError("there are no runs to plot: no record could be used, as the column reason of peaks.csv says")
+    records, every = _records(runs, info), runs["record"].nunique()
+    panels = _panels(runs[runs["record"].isin(records)])
+    columns = min(MOST_COLUMNS, len(records))
+    rows = math.ceil(len(records) / columns)
+    figure = ShownFigure(figsize=(1.2 + 2.2 * columns, 1.4 + 1.9 * rows), layout="constrained")
+    grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
+    labels = {record["record"]: record.get("label") for record in info["records"]}
+    for axes, name in zip(grid.flat, records, strict=False):
+        panels.draw(axes, runs[runs["record"] == name])
+        axes.set_title(textwrap.fill(labels.get(name) or name, TITLE), fontsize="small")
+    for axes in grid.flat[len(records) :]:
+        axes.set_visible(False)
+    for axes in grid.flat[max(len(records) - columns, 0) : len(records)]:
+        axes.tick_params(labelbottom=True)
+    shown = f" ({len(records)} of {every} records, the worst)" if len(records) < every else ""
+    figure.suptitle(info["study"]["title"] + shown)
+    figure.supylabel("θ$_{max}$/α")
+    _legend(figure)
+    return figure
+
+
+def _runs(peaks: "pd.DataFrame", info: Mapping[str, Any]) -> "pd.DataFrame":
+    """Return the rows that were simulated, each with its ``foundation`` in words, True for a ``rigid`` one, and its ``group``:
+    the varied values of its pier, and its scale."""
+    runs = simulated(peaks[peaks["case"] != ""])
+    varied = info["varied"]
+    rigid = {case["case"] for case in info["cases"] if case["base"] == "rigid"}
+    of_pier = [
+        name for name in (*varied, "scale") if name in PIER_KEYS or (name == "scale" and runs[name].nunique() > 1)
+    ]
+    of_base = [name for name in varied if name not in PIER_KEYS]
+    return runs.assign(
+        foundation=_words(runs, ["case", *of_base]), rigid=runs["case"].isin(rigid), group=_words(runs, of_pier)
+    )
+
+
+def _words(runs: "pd.DataFrame", names: Sequence[str]) -> list[str]:
+    """Return the values of columns ``names`` in words, for each run; those that do not apply are left out."""
+    columns = [[_named(name, value) for value in runs[name]] for name in names]
+    return [", ".join(filter(None, words)) for words in zip(*columns, strict=True)] if columns else [""] * len(runs)
+
+
+def _named(name: str, value: object) -> str:
+    """Return "beta = 40"; a case without the word, and empty for a value that does not apply."""
+    written = f"{value:g}" if isinstance(value, float) else str(value)
+    return "" if value != value else written if name == "case" else f"{name} = {written}"
+
+
+def _records(runs: "pd.DataFrame", info: Mapping[str, Any]) -> list[str]:
+    """Return the records that have a panel, in order of their PGA: all, or those with the worst runs."""
+    badness = runs["theta_max_over_alpha"].where(~runs["status"].isin(NO_PEAK), math.inf)
+    worst = badness.groupby(runs["record"]).max().sort_values(ascending=False, kind="stable")
+    pga = {record["record"]: record["pga_g"] for record in info["records"]}
+    return sorted(worst.index[:MOST_PANELS], key=lambda name: (pga.get(name, math.inf), name))
+
+
+def _panels(runs: "pd.DataFrame") -> _Panels:
+    stood = runs[runs["status"] == "ok"]
+    highest = float((stood["theta_max_over_alpha"] + stood["theta_max_error"].fillna(0.0)).max())
+    rigid = list(runs["foundation"][runs["rigid"]].unique())
+    springs = runs["foundation"][~runs["rigid"]].unique()
+    return _Panels(
+        places={str(name): place for place, name in enumerate(springs)},
+        colours={str(group): f"C{place % 10}" for place, group in enumerate(runs["group"].unique())},
+        lines={name: _LINES[place % len(_LINES)] for place, name in enumerate(rigid)},
+        top=1.1 * highest if highest > 0 else 1.0,
+    )
+
+
+def _legend(figure: Figure) -> None:
+    """Explain lines, colours and markers, once for all panels."""
+    entries: dict[str, Artist] = {}
+    for axes in figure.axes:
+        for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
+            entries.setdefault(label, handle)
+    if entries:
+        figure.legend(list(entries.values()), list(entries), loc="outside lower center", ncols=4, fontsize="small")
+
+
+def plot_cdf(peaks: "pd.DataFrame", varied: Sequence[str], count: str) -> Figure:
     """See :meth:`rockbatch.results.opened.Results.plot_cdf`, which hands over the rows of peaks.csv, the varied keys,
     and what counts as one record."""
-    from rockbatch.simulation.plots import ShownFigure
-
     figure = ShownFigure(figsize=(6.0, 4.0), layout="constrained")
     axes = figure.subplots()
     runs = simulated(peaks[peaks["case"] != ""])
@@ -28,19 +179,12 @@ def plot_cdf(peaks: "pd.DataFrame", varied: Sequence[str], count: str) -> "Figur
             same["status"].to_list(),
             counts_as(same, count)[0].to_list(),
         )
-        told = [_named(key, value) for key, value in zip(keys, values, strict=True) if value == value]
+        label = ", ".join(filter(None, map(_named, keys, values)))
         reached = [0.0, *share, share[-1] if len(share) else 0.0]
-        (drawn,) = axes.step([0.0, *theta, right], reached, where="post", linewidth=1.2, label=", ".join(told))
+        (drawn,) = axes.step([0.0, *theta, right], reached, where="post", linewidth=1.2, label=label)
         if same["status"].isin(NO_PEAK).any():
             axes.plot(right, reached[-1], "x", color=drawn.get_color(), clip_on=False)
     axes.set(xlabel="θ$_{max}$/α", ylabel="share of the records that do not exceed it", xlim=(0, right), ylim=(0, 1.01))
     axes.grid(alpha=0.3)
     axes.legend(fontsize="small")
     return figure
-
-
-def _named(key: str, value: object) -> str:
-    """A key and its value in a legend; a case goes without the word."""
-    if key == "case":
-        return str(value)
-    return f"{key} = {value:g}" if isinstance(value, float) else f"{key} = {value}"

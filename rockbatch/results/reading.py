@@ -1,4 +1,4 @@
-"""What a run left in its folder: ``peaks.csv`` and ``run.json``, read back and held against each other."""
+"""Folders of results read back: ``peaks.csv`` and ``run.json``, held against each other."""
 
 import csv
 import json
@@ -46,7 +46,7 @@ class Saved:
 
     @property
     def told_missing(self) -> str:
-        """Which columns ``peaks.csv`` lacks, in a sentence without its subject; empty where it has all."""
+        """The columns that ``peaks.csv`` lacks, in a sentence without its subject; empty if it has all."""
         if not self.missing:
             return ""
         several = len(self.missing) > 1
@@ -98,7 +98,7 @@ def read_saved(directory: Path) -> Saved:
 
 
 def edited(directory: Path, info: Mapping[str, Any]) -> str:
-    """What tells that ``peaks.csv`` is not the one that ``info`` was written with; empty where nothing does."""
+    """Return why ``peaks.csv`` is not the one that ``info`` was written with; empty if it is."""
     noted = info.get("peaks")
     if noted is None or sha256_of(directory / PEAKS) == noted["sha256"]:
         return ""
@@ -127,7 +127,7 @@ def _read_info(path: Path, problems: list[str]) -> dict[str, Any]:
 
 
 def _legible(value: Any) -> Any:
-    """``value`` of JSON with texts that can be shown, wherever they come from; those of several lines keep them."""
+    """Return ``value`` of JSON with texts that can be shown, wherever they come from; those of several lines keep them."""
     if isinstance(value, str):
         return legible(value, keep="\t\r\n")
     if isinstance(value, list):
@@ -190,7 +190,7 @@ def _read_peaks(path: Path, varied: Sequence[str], problems: list[str]) -> "pd.D
 
 
 def _bad_cells(path: Path, head: Sequence[str], numbers: Sequence[str]) -> list[str]:
-    """Every row of another length and every cell that should be a number and is not, with its line."""
+    """Return every row of another length and every cell that should be a number and is not, with its line."""
     found: list[str] = []
     try:
         with opened_text(path) as file:
@@ -230,7 +230,7 @@ def _is_number(text: str, whole: bool, unbounded: bool) -> bool:
 
 
 def _values(texts: "pd.Series[str]") -> "pd.Series[Any]":
-    """Values of a varied key: numbers, or words such as "finite"; NaN where the key does not apply."""
+    """Return the values of a varied key: numbers, or words such as "finite"; NaN if the key does not apply."""
     numbers = pd.to_numeric(texts, errors="coerce")
     words = numbers.isna() & (texts != "")
     return texts.where(texts != "") if words.any() else numbers.astype("float64")

@@ -1,4 +1,4 @@
-"""``run.json``: what was run, under which motions, with what."""
+"""``run.json``: the study, its motions, and the versions with which it was run."""
 
 import hashlib
 import json
@@ -88,7 +88,7 @@ SHAPE = {
     "count": Maybe(("station", "component")),
     "left_out": Maybe([_OF_FILE]),
 }
-"""What readers of run.json rely on; the rest of it is for people."""
+"""The part of run.json on which its readers rely; the rest is for people."""
 
 MOST_SPECTRA = 200
 """Motions whose spectra go into run.json; each takes about 10 ms."""
@@ -103,7 +103,7 @@ def versions() -> dict[str, str]:
 
 
 def describe(study: Study, motions: MotionSet) -> dict[str, Any]:
-    """What run.json says about a study and its motions."""
+    """Return what run.json says about a study and its motions."""
     gravity = study.cases[0].pier.gravity
     target = study.motions.target if isinstance(study.motions.target, SpectrumTarget) else None
     with_pulses = target is not None or study.output.intensity
@@ -116,11 +116,7 @@ def describe(study: Study, motions: MotionSet) -> dict[str, Any]:
             "sha256": hashlib.sha256(study.text.encode()).hexdigest(),
             "checks": [{"path": str(path), "text": text} for path, text in study.check_files],
         },
-        "numerics": {
-            "tolerance": study.numerics.tolerance,
-            "substeps": study.numerics.substeps,
-            "quiet_s": study.numerics.quiet_s,
-        },
+        "numerics": asdict(study.numerics),
         "varied": list(study.varied),
         "count": study.count,
         "units": units(study),
@@ -131,36 +127,27 @@ def describe(study: Study, motions: MotionSet) -> dict[str, Any]:
         **({} if target is None else {"target": target.described(motions.motions, gravity)}),
         "unusable": [asdict(file) | {"lacks": list(file.lacks)} for file in motions.unusable],
         "left_out": [asdict(file) for file in motions.left_out],
-        "references": [
-            {
-                "record": reference.record,
-                "case": reference.case,
-                "columns": reference.columns,
-                "theta_max_over_alpha": reference.theta_max_over_alpha,
-                "source": reference.source,
-            }
-            for reference in study.references
-        ],
+        "references": [asdict(reference) for reference in study.references],
     }
 
 
 def _spectra(motions: list[Motion], gravity: float, target: SpectrumTarget | None) -> dict[str, Any] | None:
-    """Response spectra of the suite, where that is soon done; with the target's damping and periods, if it has one."""
+    """Return response spectra of a suite that is not too large; with the damping and periods of its target, if any."""
     if len(motions) > MOST_SPECTRA:
         return None
     if target is None:
         return suite_spectra(motions, gravity)
-    found = suite_spectra(motions, gravity, target.spectrum.damping, periods_over(*target.range_s))
-    of_target = target.spectrum.at(np.array(found["period_s"], dtype=np.float64))
-    mean = target.mean(np.array(found["sa_g"], dtype=np.float64), motions)
-    return found | {
+    spectra = suite_spectra(motions, gravity, target.spectrum.damping, periods_over(*target.range_s))
+    of_target = target.spectrum.at(np.array(spectra["period_s"], dtype=np.float64))
+    mean = target.mean(np.array(spectra["sa_g"], dtype=np.float64), motions)
+    return spectra | {
         "mean_sa_g": [float(f"{sa:.4g}") for sa in mean],
         "target_sa_g": [None if math.isnan(sa) else float(f"{sa:.4g}") for sa in of_target],
     }
 
 
 def describe_case(case: Case) -> dict[str, Any]:
-    """What run.json says about a case."""
+    """Return what run.json says about a case."""
     pier = case.pier
     return {
         "case": case.name,
@@ -203,10 +190,10 @@ def _describe_motion(motion: Motion, gravity: float, with_pulse: bool) -> dict[s
 
 
 def _pulse(motion: Motion) -> dict[str, Any]:
-    """Whether a motion is pulse-like, by the criterion of Baker (2007)."""
-    found = pulse_of(motion)
-    period = None if math.isnan(found.period_s) else float(f"{found.period_s:.4g}")
-    return {"pulse": found.kind, "pulse_indicator": float(f"{found.indicator:.4g}"), "pulse_period_s": period}
+    """Return the pulse of a motion, by the criterion of Baker (2007)."""
+    pulse = pulse_of(motion)
+    period = None if math.isnan(pulse.period_s) else float(f"{pulse.period_s:.4g}")
+    return {"pulse": pulse.kind, "pulse_indicator": float(f"{pulse.indicator:.4g}"), "pulse_period_s": period}
 
 
 def write_info(directory: Path, info: Mapping[str, Any]) -> None:

@@ -1,8 +1,8 @@
-"""What JSON from elsewhere has to look like before anything is made of it.
+"""Shapes that JSON from elsewhere has to have before it is used.
 
 A shape is a type (``str``, ``bool``, ``int``, ``float`` for any finite number), a tuple of shapes of which one has to fit
 (``None`` among them), ``[shape]`` for a list of such, ``{str: shape}`` for an object with any keys, or an object of the keys
-that there have to be, or may be where the shape is :class:`Maybe`. Other keys are nobody's business.
+that are required, or optional if the shape is :class:`Maybe`. Other keys are not looked at.
 """
 
 import math
@@ -12,7 +12,7 @@ from itertools import islice
 from typing import Any, NamedTuple
 
 MOST = 1e30
-"""Beyond it no number of a result is one, and arithmetic with it overflows."""
+"""Bound of all numbers of results; arithmetic beyond it overflows."""
 
 _WORDS = {str: "a text", bool: "true or false", int: "a whole number", float: "a number", None: "null"}
 
@@ -25,7 +25,7 @@ class Maybe:
 
 
 class Problem(NamedTuple):
-    """What does not fit: where, and what was expected there; ``str`` says both."""
+    """A part that does not fit: its place, and what was expected there; ``str`` says both."""
 
     place: str
     expected: str
@@ -37,12 +37,12 @@ class Problem(NamedTuple):
 
 
 def unfit(value: Any, shape: Any, most: int | None = None) -> Iterator[Problem]:
-    """The first ``most`` parts of ``value`` that do not fit; none if all of it does."""
+    """Return the first ``most`` parts of ``value`` that do not fit; none if all of it does."""
     return islice(_unfit(value, shape, ""), most)
 
 
 def fits(value: Any, shape: Any) -> bool:
-    """Whether all of ``value`` fits."""
+    """Return True if all of ``value`` fits."""
     return next(unfit(value, shape), None) is None
 
 
@@ -80,7 +80,7 @@ def _unfit_object(value: Any, shape: dict[Any, Any], at: str) -> Iterator[Proble
 
 
 def _soon(value: Any, shape: Any) -> bool:
-    """Whether it takes no more than a look to see that ``value`` fits: most are single, and there are millions."""
+    """Return True if ``value`` fits at first sight: most are single, and there are millions."""
     if type(shape) is tuple:
         shape = shape[0]
     if shape is float:

@@ -1,4 +1,4 @@
-"""What a suite of runs comes to: mean and quantiles of what stood, how many overturned, flew or failed, and the distribution."""
+"""Statistics of a suite of runs: mean, quantiles and distribution of those that stood, numbers of those that did not."""
 
 import math
 from collections.abc import Sequence
@@ -47,7 +47,7 @@ class Records(NamedTuple):
 
     @property
     def known(self) -> npt.NDArray[np.bool_]:
-        """Whether each has an outcome to which the quantity applies."""
+        """True for each that has an outcome to which the quantity applies."""
         return ~self.failed & ~np.isnan(self.worst)
 
 
@@ -57,7 +57,7 @@ def records(
     counted_as: Sequence[str] | None = None,
     group: npt.NDArray[np.int64] | None = None,
 ) -> Records:
-    """The records of runs with ``values``, shape (n,), of which the magnitude counts, and the ``status`` of each.
+    """Return the records of runs with ``values``, shape (n,), of which the magnitude counts, and the ``status`` of each.
 
     Runs of one ``group`` that are ``counted_as`` one record count once, with the worst of them: overturned before flight
     before any value. Where one of them failed and none is worse than any value, the record is unknown. By default every run
@@ -71,28 +71,28 @@ def records(
         names = np.unique(np.asarray(counted_as, dtype=str), return_inverse=True)[1]
     if group is None:
         group = np.zeros(len(kinds), dtype=np.int64)
-    found, record = np.unique(group * (len(names) + 1) + names, return_inverse=True)
+    pairs, record = np.unique(group * (len(names) + 1) + names, return_inverse=True)
 
     def any_of(runs: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
-        return np.bincount(record, runs, len(found)) > 0
+        return np.bincount(record, runs, len(pairs)) > 0
 
-    worst = np.full(len(found), math.nan)
+    worst = np.full(len(pairs), math.nan)
     np.fmax.at(worst, record, magnitudes)
     over = any_of(kinds == "overturned")
     flown = any_of(kinds == "flight") & ~over
     failed = any_of(kinds == "failed") & ~over & ~flown
-    return Records(worst, over, flown, failed, found // (len(names) + 1))
+    return Records(worst, over, flown, failed, pairs // (len(names) + 1))
 
 
 def suite(values: Values, status: Sequence[str], counted_as: Sequence[str] | None = None) -> Suite:
-    """Statistics of the magnitudes of ``values``, shape (n,), over their :func:`records`; NaN does not apply."""
+    """Return statistics of the magnitudes of ``values``, shape (n,), over their :func:`records`; NaN does not apply."""
     return suites(values, status, counted_as, np.zeros(len(values), dtype=np.int64), 1)[0]
 
 
 def suites(
     values: Values, status: Sequence[str], counted_as: Sequence[str] | None, group: npt.NDArray[np.int64], groups: int
 ) -> list[Suite]:
-    """Statistics of each of ``groups`` groups of runs; ``group``, shape (n,), is the place of that of each run."""
+    """Return the statistics of each of ``groups`` groups of runs; ``group``, shape (n,), is the place of that of each run."""
     of = records(values, status, counted_as, group)
     known, which = of.worst[of.known], of.group[of.known]
     ordered = known[np.lexsort((known, which))]
@@ -108,23 +108,23 @@ def suites(
 
 
 def _quantiles(ordered: Values, first: npt.NDArray[np.int64], n: npt.NDArray[np.int64], q: float) -> Values:
-    """As :func:`rockbatch.checks.statistics.quantile`, of ``n`` values each, in order, from ``first`` on; NaN of none."""
-    found = np.full(len(n), math.nan)
-    has = n > 0
-    last = n[has] - 1
+    """Return :func:`rockbatch.checks.statistics.quantile` of ``n`` values each, in order, from ``first`` on; NaN of none."""
+    quantiles = np.full(len(n), math.nan)
+    some = n > 0
+    last = n[some] - 1
     below = np.floor(q * last).astype(np.int64)
     share = q * last - below
-    low, high = ordered[first[has] + below], ordered[first[has] + np.minimum(below + 1, last)]
+    low, high = ordered[first[some] + below], ordered[first[some] + np.minimum(below + 1, last)]
     between = share >= 1e-9  # else rounding, no reason to look at the next rank
     with np.errstate(invalid="ignore"):
-        found[has] = np.where(between, np.where(np.isinf(high), math.inf, low + share * (high - low)), low)
-    return found
+        quantiles[some] = np.where(between, np.where(np.isinf(high), math.inf, low + share * (high - low)), low)
+    return quantiles
 
 
 def distribution(
     values: Values, status: Sequence[str], counted_as: Sequence[str] | None = None
 ) -> tuple[Values, Values]:
-    """Empirical distribution of the magnitudes of ``values``, shape (n,), over their :func:`records`.
+    """Return the empirical distribution of the magnitudes of ``values``, shape (n,), over their :func:`records`.
 
     Returns
     -------

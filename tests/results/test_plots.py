@@ -4,7 +4,7 @@ import pytest
 from studies import PADS, PIER, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
-from rockbatch.results import peak_panels
+from rockbatch.results import plots
 
 STUDY = study_text(
     title="Panels",
@@ -67,7 +67,7 @@ def test_runs_without_a_peak_stand_above_the_axis_values(results):
 
 
 def test_of_many_records_the_worst_have_a_panel(results, monkeypatch):
-    monkeypatch.setattr(peak_panels, "MOST_PANELS", 1)
+    monkeypatch.setattr(plots, "MOST_PANELS", 1)
     figure = results.plot()
     assert [axes.get_title() for axes in figure.axes] == ["strong"]
     assert "1 of 2 records" in figure.get_suptitle()
@@ -75,7 +75,7 @@ def test_of_many_records_the_worst_have_a_panel(results, monkeypatch):
 
 def test_without_runs_there_is_no_figure(results):
     with pytest.raises(rb.InputError, match="no runs to plot"):
-        peak_panels.plot(results.peaks.iloc[:0], results.info)
+        plots.plot(results.peaks.iloc[:0], results.info)
 
 
 def test_results_tell_of_themselves_in_a_few_lines(results):
