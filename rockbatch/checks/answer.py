@@ -98,7 +98,7 @@ def _exempt(cases: Mapping[str, Sequence[Verdict]]) -> tuple[str, ...]:
 
 
 def _without_limit(free: Mapping[str, Sequence[Worst]], all_: int) -> Line | None:
-    """Cases that fail nothing because nothing limits what governs them."""
+    """Return the line on cases that fail nothing because nothing limits what governs them."""
     worst = worst_of_all(one for same in free.values() for one in same)
     if not worst:
         return None
@@ -111,7 +111,7 @@ def _without_limit(free: Mapping[str, Sequence[Worst]], all_: int) -> Line | Non
 def _failing(
     names: Sequence[str], cases: Mapping[str, Sequence[Verdict]], case_of: Words, record_of: Words
 ) -> Line | None:
-    """The checks that fail, each with its worst demand, and the case nearest to passing."""
+    """Return the line on checks that fail, each with its worst demand, and the case nearest to passing."""
     if not names:
         return None
     failed = {name: [one for one in cases[name] if one.verdict == FAIL] for name in names}
@@ -139,7 +139,7 @@ def _where(worst: Verdict, same: Sequence[Verdict], cases: int, case_of: Words) 
 
 
 def _told(one: Verdict, record_of: Words, where: str) -> str:
-    """A check with its demand, its limit and the record that governs it."""
+    """Return a check with its demand, its limit and the record that governs it."""
     record = record_of(one) if one.record else ""
     if one.is_ban:
         verb = DEMANDS[one.demand].verb if one.demand in DEMANDS else "is not so"
@@ -179,7 +179,7 @@ def _why(one: Verdict, record_of: Words, case: str) -> str:
 
 
 def _excess(one: Verdict) -> float:
-    """How far beyond its limit a check is; infinite for events that may not be."""
+    """Return the ratio by which a check exceeds its limit; infinite for events that may not be."""
     return math.inf if one.is_ban or math.isnan(one.ratio) else one.ratio
 
 

@@ -1,10 +1,10 @@
-"""What a rule chooses, held against what there is: cases, scales, polarity, and the other spring law."""
+"""Rules held against the study that they are about: choices that it does not offer, and limits that decide nothing."""
 
 import fnmatch
 import math
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Sequence
 
-from rockbatch.checks.demands import DEMANDS
+from rockbatch.checks.demands import DEMANDS, Case
 from rockbatch.checks.rules import Rule
 from rockbatch.toml.kinds import closest, shown
 
@@ -55,3 +55,29 @@ def unmet(
 
 def _fits(name: str, pattern: str) -> bool:
     return name == pattern or fnmatch.fnmatchcase(name, pattern)
+
+
+def implausible(rule: Rule, cases: Sequence[Case]) -> Iterator[str]:
+    """Yield messages on a limit that says nothing about the pier, probably for a wrong unit; each starts with the limit's key.
+
+    It is refused unless confirmed. ``cases`` are as in run.json, with ``case``, ``base`` and ``pier`` at least; a limit is
+    implausible if it is so for all that the rule is about.
+    """
+    key = "above" if rule.statistic == "count" else rule.sense.replace(" ", "_")
+    demand, value = DEMANDS[rule.demand], rule.above if rule.statistic == "count" else rule.limit
+    if value is None or key in rule.confirm:
+        return
+    if value < 0:
+        yield (
+            f"{key} = {value:g}: {rule.demand} is counted without its sign, so that {'nothing' if key == 'at_most' else 'all'} "
+            f'passes; check the sign; if it is right, write confirm = ["{key}"] in this table'
+        )
+    if demand.most is None:
+        return
+    mine = [case for case in cases if demand.on(case) and is_about(rule, str(case["case"]))]
+    most = max((demand.most.of(case) for case in mine), default=math.inf)
+    if value > most:
+        yield (
+            f"{key} = {value:g}: {rule.demand} above {most:.4g} {demand.most.beyond}, so the limit decides nothing; check the "
+            f'unit; if it is right, write confirm = ["{key}"] in this table'
+        )

@@ -54,7 +54,7 @@ def judge(
     cases : sequence of mappings
         ``cases`` of run.json, or some of them.
     records : mapping, optional
-        Names of all horizontal components, each with its station, empty where nobody knows it; a run that is missing counts as
+        Names of all horizontal components, each with its station, empty if it is not known; a run that is missing counts as
         failed. By default those in ``peaks``, with its column ``station``.
     count : str
         How those rules count that do not say it, one of :data:`rockbatch.checks.rules.COUNTS`.
@@ -91,37 +91,29 @@ def judge(
 
 
 def _stations(runs: "pd.DataFrame") -> dict[str, str]:
-    """The station of every record in a table; empty where it does not say."""
+    """Return the station of every record in a table; empty if it does not say."""
     known = runs["station"].fillna("").astype(str) if "station" in runs else [""] * len(runs)
     return dict(zip(runs["record"], known, strict=True))
 
 
 def _verdict(rule: Rule, suite: "pd.DataFrame", case: Case, scale: float, count: str) -> Verdict:
     demand = DEMANDS[rule.demand]
+    unknown: dict[str, Any] = dict.fromkeys(("value", "low", "high", "ratio", "margin"), math.nan)
+    of_suite: dict[str, Any] = {"statistic": "", "runs": 0, "counted": "", "count": ""}
+    if not demand.of_the_case:
+        statistic, number = rule.statistic or "max", len(suite)
+        of_suite = {"statistic": statistic, "runs": number, "counted": counted(rule, suite), "count": count}
     none = Verdict(
         check=rule.name,
         case=str(case["case"]),
         columns=dict(case["columns"]),
         scale=scale,
-        demand=rule.demand,
-        statistic="" if demand.of_the_case else rule.statistic or "max",
-        words=rule.words,
+        **{name: getattr(rule, name) for name in ("demand", "words", "sense", "limit", "basis", "reason", "counting")},
+        **of_suite,
+        **unknown,
         records=0,
-        runs=0 if demand.of_the_case else len(suite),
-        value=math.nan,
-        low=math.nan,
-        high=math.nan,
-        sense=rule.sense,
-        limit=rule.limit,
-        ratio=math.nan,
-        margin=math.nan,
         verdict=DOES_NOT_APPLY,
-        basis=rule.basis,
-        reason=rule.reason,
-        counting=rule.counting,
-        counted="" if demand.of_the_case else counted(rule, suite),
         note=f"a {case['base']} base has no {rule.demand}",
-        count="" if demand.of_the_case else count,
         unit="" if rule.statistic == "count" else demand.unit,
     )
     if not demand.on(case):
@@ -130,76 +122,83 @@ def _verdict(rule: Rule, suite: "pd.DataFrame", case: Case, scale: float, count:
         return replace(none, note=f"the pier has no {demand.device}")
     if demand.weighed and "mass_t" not in case["pier"]:
         return replace(none, note=NOT_WEIGHED)
-    if demand.of_the_case:
-        value = float(demand.of(suite, case).value[0])
-        if math.isnan(value):
-            return replace(none, note=NOT_WEIGHED)
-        verdict, note = _decide(rule, value, value)
-        ratio, margin = _against(rule, value)
-        return replace(none, value=value, low=value, high=value, ratio=ratio, margin=margin, verdict=verdict, note=note)
-    return _of_suite(rule, suite, case, none)
+    if not demand.of_the_case:
+        return _of_suite(rule, suite, case, none)
+    value = float(demand.of(suite, case).value[0])
+    if math.isnan(value):
+        return replace(none, note=NOT_WEIGHED)
+    verdict, note = _decide(rule, value, value)
+    return replace(none, **_bounded(rule, value, value, value), verdict=verdict, note=note)
+
+
+def _bounded(rule: Rule, value: float, low: float, high: float) -> dict[str, Any]:
+    """Return a value and its bounds, with its ratio and margin to the limit."""
+    over, under, margin = value, rule.limit, rule.limit - value
+    if rule.sense == "at least":
+        over, under, margin = rule.limit, value, value - rule.limit
+    if math.isnan(value):
+        ratio = margin = math.nan
+    else:
+        ratio = over / under if under else 0.0 if over == 0 else math.inf
+    return {"value": value, "low": low, "high": high, "ratio": ratio, "margin": margin}
 
 
 def _of_suite(rule: Rule, suite: "pd.DataFrame", case: Case, none: Verdict) -> Verdict:
-    """The verdict on a statistic of a suite; ``none`` is what is known of it before."""
+    """Return the verdict on a statistic of a suite; ``none`` has what is known of it before."""
     runs, kept = of_runs(rule, suite, case)
     counted_as, unknown = counts_as(suite, none.count)
     bounds = by_record(runs, kept, counted_as)
     n = len(bounds.value)
-    value, low, high = (_statistic(rule, each) for each in (bounds.value, bounds.low, bounds.high))
+    value, low, high = (_statistic(rule, values) for values in (bounds.value, bounds.low, bounds.high))
     if np.isinf(bounds.high).sum() > np.isinf(bounds.low).sum() and rule.statistic == "asce7-16":
         high = math.inf  # a response that is not known is not one of the unacceptable
-    verdict, why = _decide(rule, low, high, "component" if unknown else none.count, n)
+    count = "component" if unknown else none.count
+    verdict, why = _decide(rule, low, high, count, n)
     remark = STATISTICS[rule.statistic or "max"].remark
     at = governing(runs, kept, by_bound=verdict == NOT_DECIDED and low <= rule.limit < high)
     notes = [
         why,
         remark(bounds.high) if remark and n else "",
         unknown,
-        "" if none.count == "component" else _told_lacking(lacking(kept, counted_as)),
-        _told_laws(rule, suite, case, at),
+        "" if none.count == "component" else _directions(lacking(kept, counted_as)),
+        _laws(rule, suite, case, at),
         "" if bounds.estimated or DEMANDS[rule.demand].event else "no error estimate",
     ]
-    ratio, margin = _against(rule, value)
-    found = replace(
+    run: dict[str, Any] = {}
+    if at is not None:
+        run = {name: str(suite.iloc[at][name]) for name in ("station", "record", "polarity")}
+        run["governing"] = float(runs.value[at])
+    return replace(
         none,
+        **_bounded(rule, value, low, high),
+        **run,
         records=n,
-        value=value,
-        low=low,
-        high=high,
-        ratio=ratio,
-        margin=margin,
         verdict=verdict,
-        count="component" if unknown else none.count,
+        count=count,
         note="; ".join(filter(None, notes)),
     )
-    if at is None:
-        return found
-    run = suite.iloc[at]
-    station, record, polarity = (str(run[name]) for name in ("station", "record", "polarity"))
-    return replace(found, station=station, record=record, polarity=polarity, governing=float(runs.value[at]))
 
 
-def _told_laws(rule: Rule, suite: "pd.DataFrame", case: Case, at: int | None) -> str:
-    """That the worse of two spring laws counts, what the run ``at`` comes to by both, and how many did not go through."""
+def _laws(rule: Rule, suite: "pd.DataFrame", case: Case, at: int | None) -> str:
+    """Return the remark that the worse of two spring laws counts, with the demands of the run ``at`` by both."""
     other = by_other_law(rule, suite, case)
     if other is None:
         return ""
-    told = "the worse of two spring laws counts"
+    remark = "the worse of two spring laws counts"
     if at is not None and np.isfinite(other[at]):
         own = float(DEMANDS[rule.demand].of(suite, case).value[at])
-        told += f": {own:.4g} by that of the case, {other[at]:.4g} by the other"
+        remark += f": {own:.4g} by that of the case, {other[at]:.4g} by the other"
     missing = int((np.isnan(other) & (suite["status"] == "ok").to_numpy()).sum())
-    return told + (f"; by the other {missing} of the runs did not go through" if missing else "")
+    return remark + (f"; by the other {missing} of the runs did not go through" if missing else "")
 
 
-def _told_lacking(records: Mapping[str, tuple[int, int]]) -> str:
-    """Records whose worst direction may be one that does not count."""
+def _directions(records: Mapping[str, tuple[int, int]]) -> str:
+    """Return the remark on records whose worst direction may be one that does not count."""
     if not records:
         return ""
-    told = [f"{name} ({some} of {all_})" for name, (some, all_) in records.items()]
-    more = f" and {len(told) - MOST_NAMES} more" if len(told) > MOST_NAMES else ""
-    return f"not every direction counts, and the worst may be another: {', '.join(told[:MOST_NAMES])}{more}"
+    names = [f"{name} ({some} of {all_})" for name, (some, all_) in records.items()]
+    more = f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else ""
+    return f"not every direction counts, and the worst may be another: {', '.join(names[:MOST_NAMES])}{more}"
 
 
 def _statistic(rule: Rule, values: Values) -> float:
@@ -210,7 +209,7 @@ def _statistic(rule: Rule, values: Values) -> float:
 
 
 def _decide(rule: Rule, low: float, high: float, count: str = "", records: int | None = None) -> tuple[str, str]:
-    """The verdict on a demand within these bounds, and why there is none; ``records`` where it is a statistic of some."""
+    """Return the verdict on a demand within these bounds, and why it is not decided; ``records`` for a statistic of some."""
     within, beyond = high <= rule.limit, low > rule.limit
     if rule.sense == "at least":
         within, beyond = low >= rule.limit, high < rule.limit
@@ -225,24 +224,12 @@ def _decide(rule: Rule, low: float, high: float, count: str = "", records: int |
 
 
 def _too_few(rule: Rule, count: str, records: int) -> str:
-    """That fewer records count than have to, and who asks for more; empty where there are enough."""
+    """Return the remark that too few records count, and who asks for more; empty if there are enough."""
     statistic = STATISTICS[rule.statistic or "max"]
     least, who = statistic.least, statistic.code
     if rule.least is not None and rule.least > least:
         least, who = rule.least, "the check"
     if records >= least:
         return ""
-    told = f"1 {count} counts" if records == 1 else f"{records} {count}s count"
-    return f"{told}, {who} asks for {least}" if who else told
-
-
-def _against(rule: Rule, value: float) -> tuple[float, float]:
-    """Ratio and margin of a value to the limit."""
-    over, under, margin = value, rule.limit, rule.limit - value
-    if rule.sense == "at least":
-        over, under, margin = rule.limit, value, value - rule.limit
-    if math.isnan(value):
-        return math.nan, math.nan
-    if under == 0:
-        return (0.0 if over == 0 else math.inf), margin
-    return over / under, margin
+    counts = f"1 {count} counts" if records == 1 else f"{records} {count}s count"
+    return f"{counts}, {who} asks for {least}" if who else counts

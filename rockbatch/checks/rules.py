@@ -1,4 +1,4 @@
-"""What a check asks: a demand, how its suite is summed up, a limit, and where the limit comes from."""
+"""Rules: a demand, its statistic over the suite, a limit, and the source of the limit."""
 
 import math
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ from rockbatch.toml.section import Key, Section
 
 BASES = ("code", "literature", "judgement")
 COUNTING = ("infinite", "unknown", "value", "left out")
-"""How a run counts that did not go through to its end:
+"""Ways in which a run counts that did not go through to its end:
 
 infinite
     Worse than any limit.
@@ -24,7 +24,7 @@ left out
     Not at all; the verdict says how many.
 """
 COUNTS = ("station", "component")
-"""What counts as one record:
+"""Ways to count records:
 
 station
     All components, directions and polarities of one station in one earthquake, with the worst of them.
@@ -76,7 +76,7 @@ class Rule:
         Whether the settlement by the other spring law has to be there: where both were run the worse counts in any case, and with
         this a run that did not go through by the other one is unknown.
     confirm : tuple of str
-        Those of at_most, at_least and above that are right though nothing exceeds them (:mod:`rockbatch.checks.plausible`).
+        Those of at_most, at_least and above that are right though nothing exceeds them (:mod:`rockbatch.checks.choices`).
 
     Raises ``InputError`` with all that is wrong; each message starts with the name of its attribute.
 
@@ -116,7 +116,7 @@ class Rule:
     @property
     def limit(self) -> float:
         """The limit, whichever way it bounds."""
-        return float(next((one for one in (self.at_most, self.at_least) if one is not None), math.nan))
+        return float(next((limit for limit in (self.at_most, self.at_least) if limit is not None), math.nan))
 
     @property
     def sense(self) -> str:
@@ -130,29 +130,31 @@ class Rule:
 
     @property
     def is_ban(self) -> bool:
-        """Whether it asks that an event happens under no record."""
+        """True if it asks that an event happens under no record."""
         return is_ban(self.demand, self.statistic or "max", self.limit)
 
     @property
     def words(self) -> str:
-        """What is compared with the limit: "mean of theta_max_over_alpha"."""
+        """Name of the quantity that is compared with the limit: "mean of theta_max_over_alpha"."""
         demand = DEMANDS[self.demand]
         if demand.of_the_case:
             return self.demand
-        told = STATISTICS[self.statistic or "max"].words
+        statistic = STATISTICS[self.statistic or "max"].words
         if self.is_ban:
             return f"no record {demand.verb}"
         if self.statistic != "count":
-            return f"{told} of {self.demand}"
-        return f"{told} with {self.demand}" + ("" if demand.event and not self.above else f" above {self.above:g}")
+            return f"{statistic} of {self.demand}"
+        return f"{statistic} with {self.demand}" + ("" if demand.event and not self.above else f" above {self.above:g}")
 
     @property
     def counting(self) -> str:
-        """How runs count that do not go through, in words; empty where the demand is about nothing else."""
+        """Ways in which runs count that do not go through, in words; empty if the demand is about nothing else."""
         if not DEMANDS[self.demand].of_runs:
             return ""
         ways = dict.fromkeys(self.counts(status) for status in USUAL)
-        return "; ".join(f"{', '.join(one for one in USUAL if self.counts(one) == way)}: {way}" for way in ways)
+        return "; ".join(
+            f"{', '.join(status for status in USUAL if self.counts(status) == way)}: {way}" for way in ways
+        )
 
 
 def is_ban(demand: str, statistic: str, limit: float) -> bool:
@@ -221,7 +223,7 @@ def _misfits(rule: Rule) -> list[str]:
     least = {"eta": 2.0, "yield_kN": 4e4, "stiffness_kN_m": 2e6}.get(rule.demand)
     example = "at_most = 0.5" if least is None else f"at_least = {least:.10g}"
     counts = rule.statistic == "count"
-    with_other_law = " and ".join(name for name, each in DEMANDS.items() if each.other_law)
+    with_other_law = " and ".join(name for name, other in DEMANDS.items() if other.other_law)
     rules = [
         (both, "at_least: given beside at_most; keep one, and write the other as a check of its own"),
         (neither, f"{example.split()[0]} is missing, the limit; write for example {example}"),

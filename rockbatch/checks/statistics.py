@@ -1,7 +1,7 @@
-"""What a suite of records comes to.
+"""Statistics over a suite of records.
 
 Every statistic grows with each of its values as long as they are finite, so that it maps bounds to bounds. A code's own are by
-what is commonly said of it: ``unchecked`` tells what each rests on, as no clause's own text was at hand.
+what is commonly said of it: ``unchecked`` says what each rests on, as no clause's own text was at hand.
 """
 
 import math
@@ -18,7 +18,7 @@ MEAN_FROM = 7
 
 
 def quantile(values: Values, q: float) -> float:
-    """Quantile of ``values``, shape (n,), linear between ranks; infinite where a rank that it needs is infinite."""
+    """Return the quantile of ``values``, shape (n,), linear between ranks; infinite where a rank that it needs is infinite."""
     ordered = np.sort(values)
     place = q * (len(ordered) - 1)
     below = math.floor(place)
@@ -38,7 +38,7 @@ def _max(values: Values) -> float:
 
 
 def _asce7_16(values: Values) -> float:
-    """Infinite values are the unacceptable responses."""
+    """Return the mean by ASCE 7-16; infinite values are the unacceptable responses."""
     acceptable = values[np.isfinite(values)]
     if len(acceptable) == len(values):
         return _mean(values)

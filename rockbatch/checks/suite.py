@@ -1,4 +1,4 @@
-"""The runs of one case at one scale: what each record demands, and between which bounds."""
+"""Runs of one case at one scale: the demand of each record, and its bounds."""
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -21,16 +21,14 @@ NOT_RUN = "not run"
 
 
 def creeps(case: Case) -> bool:
-    """Whether the springs of a case creep under vibration, so that another law gives its settlement a range."""
+    """Return True if the springs of a case settle cyclically, so that another law gives its settlement a range."""
     return case["parameters"].get("spring") in RATCHETING
 
 
 class Bounds(NamedTuple):
-    """What each record, or each run, demands, shape (n,), and the bounds within which it lies.
+    """Demands of each record, or each run, shape (n,), and the bounds within which they lie, ``estimated`` if by error estimates.
 
-    ``estimated``: whether by error estimates.
-
-    Where the upper bound alone is infinite, ``value`` is the lower one.
+    If the upper bound alone is infinite, ``value`` is the lower one.
     """
 
     value: Values
@@ -40,7 +38,7 @@ class Bounds(NamedTuple):
 
 
 def simulated(runs: "pd.DataFrame") -> "pd.DataFrame":
-    """Rows of peaks.csv without mirror images, which say nothing more: each run counts once."""
+    """Return the rows of peaks.csv without mirror images, which say nothing more: each run counts once."""
     return runs[runs[MIRROR_OF] == ""] if MIRROR_OF in runs else runs
 
 
@@ -53,20 +51,20 @@ def suites(runs: "pd.DataFrame", cases: Iterable[Case]) -> "Iterator[tuple[Case,
 
 
 def _has(runs: "pd.DataFrame", columns: Mapping[str, float | str]) -> npt.NDArray[np.bool_]:
-    """Which runs have these values of the varied keys, shape (n,)."""
-    found = np.ones(len(runs), dtype=bool)
+    """Return True for each run with these values of the varied keys, shape (n,)."""
+    same = np.ones(len(runs), dtype=bool)
     for name, value in columns.items():
         if isinstance(value, str):
-            found &= (runs[name] == value).to_numpy()
+            same &= (runs[name] == value).to_numpy()
         else:  # peaks.csv has ten digits of it
-            found &= np.isclose(runs[name].to_numpy(np.float64, na_value=np.nan), value, rtol=1e-9, atol=0.0)
-    return found
+            same &= np.isclose(runs[name].to_numpy(np.float64, na_value=np.nan), value, rtol=1e-9, atol=0.0)
+    return same
 
 
 def complete(runs: "pd.DataFrame", stations: Mapping[str, str], polarities: Sequence[str]) -> "pd.DataFrame":
-    """``runs`` of a case at one scale, and a failed one for each that is missing, as after an interrupt.
+    """Return ``runs`` of a case at one scale, and a failed one for each that is missing, as after an interrupt.
 
-    ``stations`` has all records, each with its station, which is empty where nobody knows it.
+    ``stations`` has all records, each with its station, empty if it is not known.
     """
     planned = pd.MultiIndex.from_product([list(stations), polarities], names=["record", "polarity"]).to_frame(
         index=False
@@ -79,7 +77,7 @@ def complete(runs: "pd.DataFrame", stations: Mapping[str, str], polarities: Sequ
 
 
 def counts_as(runs: "pd.DataFrame", count: str) -> "tuple[pd.Series[str], str]":
-    """What each run counts as, and why that is not its station where the rule asks for it; one of ``COUNTS`` is asked."""
+    """Return the record as which each run counts, by ``count`` of ``COUNTS``; and why that is not its station if it should be."""
     if count == "component":
         return runs["record"], ""
     known = runs["station"].fillna("").astype(str)
@@ -92,26 +90,26 @@ def counts_as(runs: "pd.DataFrame", count: str) -> "tuple[pd.Series[str], str]":
 
 
 def by_record(runs: Bounds, kept: npt.NDArray[np.bool_], counted_as: "pd.Series[str]") -> Bounds:
-    """What each record demands: the worst of its runs, those that are ``kept``. Empty where every run is left out."""
+    """Return the demand of each record: the worst of its runs that are ``kept``. Empty if every run is left out."""
     names, record = np.unique(counted_as.to_numpy()[kept].astype(str), return_inverse=True)
 
     def worst(of_runs: Values) -> Values:
-        found = np.zeros(len(names))  # no demand is negative
-        np.maximum.at(found, record, of_runs[kept])
-        return found
+        of_records = np.zeros(len(names))  # no demand is negative
+        np.maximum.at(of_records, record, of_runs[kept])
+        return of_records
 
     return Bounds(worst(runs.value), worst(runs.low), worst(runs.high), runs.estimated)
 
 
 def governing(runs: Bounds, kept: npt.NDArray[np.bool_], *, by_bound: bool) -> int | None:
-    """Place of the run that demands most, ``by_bound`` of the one that may; None where nothing demands anything."""
+    """Return the place of the run that demands most, or may (``by_bound``); None if no run demands anything."""
     first, second = (runs.high, runs.value) if by_bound else (runs.value, runs.high)
     order = [i for i in np.lexsort((-second, -first)) if kept[i]]  # a stable sort: of equal ones the first
     return int(order[0]) if order and first[order[0]] > 0 else None
 
 
 def lacking(kept: npt.NDArray[np.bool_], counted_as: "pd.Series[str]") -> dict[str, tuple[int, int]]:
-    """Records with fewer runs than the others have, or than were planned: how many count, and of how many.
+    """Return records with fewer runs than the others, or than were planned: their runs that count, and of how many.
 
     Their worst direction may be the one that is missing.
     """
@@ -122,7 +120,7 @@ def lacking(kept: npt.NDArray[np.bool_], counted_as: "pd.Series[str]") -> dict[s
 
 
 def of_runs(rule: Rule, runs: "pd.DataFrame", case: Case) -> tuple[Bounds, npt.NDArray[np.bool_]]:
-    """Bounds of every run, and which of them count at all."""
+    """Return the bounds of every run, and True for those that count at all."""
     demand = DEMANDS[rule.demand]
     value, error = demand.of(runs, case)
     estimated = bool(np.isfinite(error).any())
@@ -138,16 +136,16 @@ def of_runs(rule: Rule, runs: "pd.DataFrame", case: Case) -> tuple[Bounds, npt.N
     other = by_other_law(rule, runs, case)
     if other is not None:  # the worse counts
         high = np.where(np.isnan(other) & rule.other_law, np.inf, np.fmax(high, other))
-        value, low = (np.where(np.isnan(value), np.nan, np.fmax(each, other)) for each in (value, low))
+        value, low = (np.where(np.isnan(value), np.nan, np.fmax(bound, other)) for bound in (value, low))
     unknown = np.zeros(len(runs), dtype=bool)
     for name in USUAL:
-        has, way = status == name, rule.counts(name)
+        ended, way = status == name, rule.counts(name)
         if way == "infinite":
-            value, low, high = (np.where(has, np.inf, each) for each in (value, low, high))
+            value, low, high = (np.where(ended, np.inf, bound) for bound in (value, low, high))
         elif way == "unknown":
-            unknown |= has
+            unknown |= ended
         elif way == "left out":
-            kept &= ~has
+            kept &= ~ended
     missing = np.isnan(value)  # as the residual of a run that was cut short
     unknown |= missing
     # A peak or a count is at least what it was when the run was cut short; what has not settled is nothing
@@ -157,13 +155,13 @@ def of_runs(rule: Rule, runs: "pd.DataFrame", case: Case) -> tuple[Bounds, npt.N
 
 
 def by_other_law(rule: Rule, runs: "pd.DataFrame", case: Case) -> Values | None:
-    """Values by the other spring law, shape (n,), NaN where it did not go through; None where it was not run."""
+    """Return values by the other spring law, shape (n,), NaN if it did not go through; None if it was not run."""
     other_law = DEMANDS[rule.demand].other_law
     return other_law(runs, case) if other_law and OTHER_LAW in runs and creeps(case) else None
 
 
 def counted(rule: Rule, runs: "pd.DataFrame") -> str:
-    """How many runs did not go through, and how they count: "1 overturned (infinite), 2 flight (unknown)"."""
+    """Return the number of runs that did not go through, and how they count: "1 overturned (infinite), 2 flight (unknown)"."""
     not_run = (runs["reason"] == NOT_RUN).to_numpy()
     status = np.where(not_run, NOT_RUN, runs["status"].to_numpy())
     parts = []

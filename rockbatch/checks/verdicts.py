@@ -1,4 +1,4 @@
-"""What checks came to, as rows of checks.csv."""
+"""Verdicts, and their rows in checks.csv."""
 
 import csv
 import math
@@ -19,7 +19,7 @@ CHECKS = "checks.csv"
 
 @dataclass(frozen=True)
 class Verdict:
-    """What a check came to for one case at one scale.
+    """The outcome of a check for one case at one scale.
 
     Attributes
     ----------
@@ -32,7 +32,7 @@ class Verdict:
     records, runs : int
         Number of records that count, and of all runs of the suite.
     value, low, high : float
-        The statistic, and the bounds that errors and unknown runs leave; infinite or NaN (no record) where it is so.
+        The statistic, and the bounds that errors and unknown runs leave; infinite if unknown, NaN without a record.
     sense, limit
         "at most" or "at least", and the limit.
     ratio : float
@@ -48,7 +48,7 @@ class Verdict:
     note : str
         Reason of an undecided verdict, and remarks.
     count : str
-        What counts as one record, one of :data:`rockbatch.checks.rules.COUNTS`; empty for a demand of the case.
+        The way to count records, one of :data:`rockbatch.checks.rules.COUNTS`; empty for a demand of the case.
     unit : str
         Of value, bounds, limit and margin; empty for a pure number.
     station, record, polarity : str
@@ -88,27 +88,27 @@ class Verdict:
 
     @property
     def is_ban(self) -> bool:
-        """Whether it asks that an event happens under no record, so that its numbers say no more than yes or no."""
+        """True if it asks that an event happens under no record, so that its numbers say no more than yes or no."""
         return is_ban(self.demand, self.statistic, self.limit)
 
 
-_NAMES = tuple(field.name for field in fields(Verdict))
-_LATER = tuple(field.name for field in fields(Verdict) if field.default is not MISSING)
+_KINDS: dict[str, Any] = {field.name: field.type for field in fields(Verdict)}
+_LATER = {field.name for field in fields(Verdict) if field.default is not MISSING}
 """Columns that an earlier version did not write yet."""
-_BEFORE, _AFTER = ("check", "case"), tuple(name for name in _NAMES if name not in ("check", "case", "columns"))
 
 
 def as_table(verdicts: Iterable[Verdict]) -> "pd.DataFrame":
-    """One row for each verdict; the varied values have columns of their own."""
+    """Return one row for each verdict; the varied values have columns of their own."""
     columns, rows = _table(verdicts)
     return pd.DataFrame(rows, columns=columns)
 
 
 def _table(verdicts: Iterable[Verdict]) -> tuple[list[str], list[dict[str, Any]]]:
-    """Columns and rows of checks.csv."""
+    """Return columns and rows of checks.csv."""
     rows = [asdict(verdict) for verdict in verdicts]
     varied = dict.fromkeys(name for row in rows for name in row["columns"])
-    return [*_BEFORE, *varied, *_AFTER], [row | row["columns"] for row in rows]
+    first, last = ("check", "case"), [name for name in _KINDS if name not in ("check", "case", "columns")]
+    return [*first, *varied, *last], [row | row["columns"] for row in rows]
 
 
 def write_verdicts(directory: Path, verdicts: Iterable[Verdict]) -> Path:
@@ -136,17 +136,17 @@ def read_verdicts(directory: Path) -> list[Verdict]:
 
 
 def _from_row(row: Mapping[str, str]) -> Verdict:
-    columns = {name: _value(text) for name, text in row.items() if name not in _NAMES and text != ""}
-    kinds: dict[str, Any] = {field.name: field.type for field in fields(Verdict)}
-    read: dict[str, Any] = {}
-    for name in (*_BEFORE, *_AFTER):
-        if name in _LATER and name not in row:
-            continue
-        kind = kinds[name]
-        read[name] = (float(row[name]) if row[name] else math.nan) if kind is float else kind(row[name])
-    if read["verdict"] not in (PASS, FAIL, NOT_DECIDED, DOES_NOT_APPLY) or read["sense"] not in ("at most", "at least"):
-        raise ValueError(f"{read['sense']!r}, {read['verdict']!r}: no verdict")
-    return Verdict(columns=columns, **read)
+    values: dict[str, Any] = {
+        name: kind(row[name] or ("nan" if kind is float else ""))
+        for name, kind in _KINDS.items()
+        if name != "columns" and (name in row or name not in _LATER)
+    }
+    if values["verdict"] not in (PASS, FAIL, NOT_DECIDED, DOES_NOT_APPLY) or values["sense"] not in (
+        "at most",
+        "at least",
+    ):
+        raise ValueError(f"{values['sense']!r}, {values['verdict']!r}: no verdict")
+    return Verdict(columns={name: _value(text) for name, text in row.items() if name not in _KINDS and text}, **values)
 
 
 def _value(text: str) -> float | str:

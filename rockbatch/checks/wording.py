@@ -1,4 +1,4 @@
-"""What a verdict says, in words and numbers with their units, for the terminal and the report."""
+"""Verdicts in words and numbers with their units, for the terminal and the report."""
 
 import math
 from collections import Counter
@@ -12,29 +12,31 @@ WAYS = (PASS, FAIL, NOT_DECIDED, DOES_NOT_APPLY)
 SIGNS = {PASS: "✓", FAIL: "✗", NOT_DECIDED: "?", DOES_NOT_APPLY: "–"}
 REPEATED = 3
 MOST = 30
-"""Verdicts that are all told; more are summed up, and the worst of them told."""
+"""Verdicts that are all printed; more are summed up, and the worst of them printed."""
 
 
 def worst_first(verdicts: Iterable[Verdict]) -> list[Verdict]:
-    """Those that fail, by their ratio, then those that are not decided; no others."""
+    """Return the verdicts that fail, by their ratio, then those that are not decided; no others."""
     places = {FAIL: 0, NOT_DECIDED: 1}
-    found = [one for one in verdicts if one.verdict in places]
-    return sorted(found, key=lambda one: (places[one.verdict], -one.ratio if one.ratio == one.ratio else math.inf))
+    return sorted(
+        (verdict for verdict in verdicts if verdict.verdict in places),
+        key=lambda verdict: (places[verdict.verdict], -verdict.ratio if verdict.ratio == verdict.ratio else math.inf),
+    )
 
 
 def count_of(verdicts: Iterable[Verdict]) -> dict[str, int]:
-    """How many there are of each kind, in the order of ``WAYS``."""
-    found = [one.verdict for one in verdicts]
-    return {way: found.count(way) for way in WAYS}
+    """Return the number of verdicts of each kind, in the order of ``WAYS``."""
+    count = Counter(verdict.verdict for verdict in verdicts)
+    return {way: count[way] for way in WAYS}
 
 
-def _is_open(one: Verdict) -> bool:
-    """Whether the demand may be anything above its value."""
-    return math.isinf(one.high) and math.isfinite(one.value)
+def _is_open(verdict: Verdict) -> bool:
+    """Return True if the demand may be anything above its value."""
+    return math.isinf(verdict.high) and math.isfinite(verdict.value)
 
 
 def number(value: float, beside: float = math.nan) -> str:
-    """A value in four significant digits, in more of them where it would look the same as a limit that it is not."""
+    """Return a value in four significant digits, in more if it would look the same as a limit that it is not."""
     if not math.isfinite(value):
         return "∞" if value > 0 else "-∞"
     digits = next((n for n in range(4, 10) if value == beside or f"{value:.{n}g}" != f"{beside:.{n}g}"), 10)
@@ -42,52 +44,51 @@ def number(value: float, beside: float = math.nan) -> str:
     return f"{rounded:,.10g}" if rounded == 0 or 1e-4 <= abs(rounded) < 1e7 else f"{rounded:.{digits}g}"
 
 
-def against(one: Verdict) -> str:
-    """Demand and limit with their sign and unit: "1.486 m > 0.5 m"."""
-    sign = (
-        ("≤" if one.value <= one.limit else ">") if one.sense == "at most" else "≥" if one.value >= one.limit else "<"
-    )
-    words = f"{demanded(one)} {one.unit}".strip(), f"{number(one.limit)} {one.unit}".strip()
-    return f" {sign} ".join(words).replace(" ", "\u00a0")
+def against(verdict: Verdict) -> str:
+    """Return demand and limit with their sign and unit: "1.486 m > 0.5 m"."""
+    at_most = verdict.sense == "at most"
+    signs, met = ("≤>", verdict.value <= verdict.limit) if at_most else ("≥<", verdict.value >= verdict.limit)
+    words = f"{demanded(verdict)} {verdict.unit}".strip(), f"{number(verdict.limit)} {verdict.unit}".strip()
+    return f" {signs[not met]} ".join(words).replace(" ", "\u00a0")
 
 
-def demanded(one: Verdict) -> str:
-    """The demand as a number without its unit; of an event that no record may do, whether one does."""
-    value = one.value
+def demanded(verdict: Verdict) -> str:
+    """Return the demand as a number without its unit; of an event that no record may cause, if one does."""
+    value = verdict.value
     if math.isnan(value):
         return ""
-    if not one.is_ban:
-        return f"≥\u00a0{number(value)}" if _is_open(one) else number(value, one.limit)
+    if not verdict.is_ban:
+        return f"≥\u00a0{number(value)}" if _is_open(verdict) else number(value, verdict.limit)
     if value > 0:
         return "some"
-    return "none" if one.high <= 0 else "not known"
+    return "none" if verdict.high <= 0 else "not known"
 
 
-def limit(one: Verdict, signs: Sequence[str] = ("≤", "≥")) -> str:
-    """The limit with its sign, without its unit."""
-    if one.is_ban:
+def limit(verdict: Verdict, signs: Sequence[str] = ("≤", "≥")) -> str:
+    """Return the limit with its sign, without its unit."""
+    if verdict.is_ban:
         return "none"
-    return f"{signs[one.sense != 'at most']}\u00a0{number(one.limit)}"
+    return f"{signs[verdict.sense != 'at most']}\u00a0{number(verdict.limit)}"
 
 
-def ratio(one: Verdict) -> str:
-    """Demand over limit; beside 1 with as many digits as tell the side."""
-    if math.isnan(one.ratio) or one.is_ban:
+def ratio(verdict: Verdict) -> str:
+    """Return demand over limit; beside 1 with as many digits as show the side."""
+    if math.isnan(verdict.ratio) or verdict.is_ban:
         return ""
-    if math.isinf(one.ratio):
+    if math.isinf(verdict.ratio):
         return "∞"
-    if _is_open(one):
-        return f"≥\u00a0{one.ratio:.2f}"
-    return f"{one.ratio:.4f}" if 0.995 <= one.ratio < 1.005 and one.ratio != 1 else f"{one.ratio:.2f}"
+    if _is_open(verdict):
+        return f"≥\u00a0{verdict.ratio:.2f}"
+    return f"{verdict.ratio:.4f}" if 0.995 <= verdict.ratio < 1.005 and verdict.ratio != 1 else f"{verdict.ratio:.2f}"
 
 
-def margin(one: Verdict) -> str:
-    """Distance to the limit, without its unit."""
-    if math.isnan(one.margin) or one.is_ban:
+def margin(verdict: Verdict) -> str:
+    """Return the distance to the limit, without its unit."""
+    if math.isnan(verdict.margin) or verdict.is_ban:
         return ""
-    if math.isinf(one.margin):
-        return "-∞" if one.margin < 0 else "∞"
-    return f"≤\u00a0{one.margin:.3g}" if _is_open(one) else f"{one.margin:.3g}"
+    if math.isinf(verdict.margin):
+        return "-∞" if verdict.margin < 0 else "∞"
+    return f"≤\u00a0{verdict.margin:.3g}" if _is_open(verdict) else f"{verdict.margin:.3g}"
 
 
 class Notes:
@@ -97,81 +98,85 @@ class Notes:
     """
 
     def __init__(self, verdicts: Iterable[Verdict]) -> None:
-        applied = [one for one in verdicts if one.verdict != DOES_NOT_APPLY]
+        applied = [verdict for verdict in verdicts if verdict.verdict != DOES_NOT_APPLY]
         has: dict[str, Counter[str]] = {}
-        for one in applied:
-            for part in one.note.split("; ") if one.note else ():
-                has.setdefault(part, Counter())[one.check] += 1
-        every = Counter(one.check for one in applied)
+        for verdict in applied:
+            for part in verdict.note.split("; ") if verdict.note else ():
+                has.setdefault(part, Counter())[verdict.check] += 1
+        every = Counter(verdict.check for verdict in applied)
         whole = {part: [check for check in own if own[check] == every[check]] for part, own in has.items()}
         self._common = {
             part: checks for part, checks in whole.items() if sum(every[check] for check in checks) >= REPEATED
         }
         self._counting: dict[str, dict[str, None]] = {}
-        for one in applied:
-            if one.counting:
-                self._counting.setdefault(one.counting, {})[one.check] = None
+        for verdict in applied:
+            if verdict.counting:
+                self._counting.setdefault(verdict.counting, {})[verdict.check] = None
 
-    def of(self, one: Verdict) -> str:
+    def of(self, verdict: Verdict) -> str:
         """Return the remark on this verdict alone."""
-        parts = one.note.split("; ") if one.note else []
-        return "; ".join(part for part in parts if one.check not in self._common.get(part, ()))
+        parts = verdict.note.split("; ") if verdict.note else []
+        return "; ".join(part for part in parts if verdict.check not in self._common.get(part, ()))
 
     def common(self) -> list[str]:
         """Return remarks on all verdicts of some checks, and how runs count that did not go through: a sentence each."""
-        told = [f"{', '.join(checks)}: {part}." for part, checks in self._common.items()]
+        notes = [f"{', '.join(checks)}: {part}." for part, checks in self._common.items()]
         ways = [
             f"{', '.join(checks)}: runs that do not end standing count so: {way}."
             for way, checks in self._counting.items()
         ]
-        return told + ways
+        return notes + ways
 
 
 def records_of(verdicts: Iterable[Verdict]) -> str:
-    """What they count as records: "stations", "components", or "records" where both occur."""
-    found = {one.count for one in verdicts} - {""}
-    return f"{found.pop()}s" if len(found) == 1 else "records"
+    """Return the name of the records that count: "stations", "components", or "records" if both occur."""
+    ways = {verdict.count for verdict in verdicts} - {""}
+    return f"{ways.pop()}s" if len(ways) == 1 else "records"
 
 
-def run(one: Verdict) -> str:
-    """The run that governs, by station, component and polarity: "WTMC, 20161113_110259_WTMC_20.N28W (+)"."""
-    station = f"{one.station}, " if one.station and one.station != one.record else ""
-    return f"{station}{one.record} ({one.polarity})"
+def run(verdict: Verdict) -> str:
+    """Return the run that governs, by station, component and polarity: "WTMC, 20161113_110259_WTMC_20.N28W (+)"."""
+    station = f"{verdict.station}, " if verdict.station and verdict.station != verdict.record else ""
+    return f"{station}{verdict.record} ({verdict.polarity})"
 
 
-def governing(one: Verdict) -> str:
-    """Which run governs, has the largest of several demands, or leaves open what the demand is, and what it demands."""
-    if not one.record:
+def governing(verdict: Verdict) -> str:
+    """Return the run that governs, has the largest of several demands or leaves the demand open, with its own demand."""
+    if not verdict.record:
         return ""
-    left_open = one.verdict == NOT_DECIDED and one.low <= one.limit < one.high
-    alone = one.is_ban or one.governing == one.value
-    told = f"{'left open by' if left_open else 'governs:' if alone else 'largest:'} {run(one)}"
-    if one.is_ban:
-        return told
-    if math.isinf(one.governing):
-        return f"{told}, beyond any limit"
-    return f"{told}, {number(one.governing)} {_unit_of_demand(one)}".rstrip()
+    left_open = verdict.verdict == NOT_DECIDED and verdict.low <= verdict.limit < verdict.high
+    alone = verdict.is_ban or verdict.governing == verdict.value
+    text = f"{'left open by' if left_open else 'governs:' if alone else 'largest:'} {run(verdict)}"
+    if verdict.is_ban:
+        return text
+    if math.isinf(verdict.governing):
+        return f"{text}, beyond any limit"
+    return f"{text}, {number(verdict.governing)} {_unit_of_demand(verdict)}".rstrip()
 
 
-def _unit_of_demand(one: Verdict) -> str:
-    return DEMANDS[one.demand].unit if one.demand in DEMANDS else one.unit
+def _unit_of_demand(verdict: Verdict) -> str:
+    return DEMANDS[verdict.demand].unit if verdict.demand in DEMANDS else verdict.unit
 
 
-def asked(one: Verdict) -> str:
-    """What the check asks: "design value by EN 1998-2 of top_drift_m at most 1.5 m"."""
-    return one.words if one.is_ban else f"{one.words} {one.sense} {one.limit:g} {one.unit}".rstrip()
+def asked(verdict: Verdict) -> str:
+    """Return what the check asks: "design value by EN 1998-2 of top_drift_m at most 1.5 m"."""
+    return (
+        verdict.words
+        if verdict.is_ban
+        else f"{verdict.words} {verdict.sense} {verdict.limit:g} {verdict.unit}".rstrip()
+    )
 
 
-def unchecked(one: Verdict) -> str:
-    """Of a code's own statistic: what it rests on, and that it is not the clause's own text; empty for others."""
-    return STATISTICS[one.statistic].unchecked if one.statistic in STATISTICS else ""
+def unchecked(verdict: Verdict) -> str:
+    """Return what a code's own statistic rests on, as it is not the clause's own text; empty for other statistics."""
+    return STATISTICS[verdict.statistic].unchecked if verdict.statistic in STATISTICS else ""
 
 
 def counting(verdicts: Iterable[Verdict]) -> list[str]:
-    """What the suites count as a record, a sentence for each way."""
+    """Return what a record of the suites is, a sentence for each way to count."""
     ways = {
         "station": "A record is a station: its components, angles and polarities are its directions, and the worst counts.",
         "component": "A record is a horizontal component, with the worse of its polarities: those of one station count apart.",
     }
-    found = {one.count for one in verdicts}
-    return [told for way, told in ways.items() if way in found]
+    counts = {verdict.count for verdict in verdicts}
+    return [sentence for way, sentence in ways.items() if way in counts]

@@ -10,9 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from rockbatch.arguments import checked
-from rockbatch.checks.choices import unmet
+from rockbatch.checks.choices import implausible, unmet
 from rockbatch.checks.demands import BROUGHT
-from rockbatch.checks.plausible import implausible
 from rockbatch.checks.reading import SUITE, read_checks
 from rockbatch.checks.rules import CHECK, Rule
 from rockbatch.motions import MotionSet
