@@ -21,34 +21,24 @@ if TYPE_CHECKING:
     from rockbatch.simulation.response import Response
     from rockbatch.study import Study, load_study
 
-_HOMES = {
-    "Damper": "rockbatch.pier",
-    "ElasticBase": "rockbatch.pier",
-    "InputError": "rockbatch.errors",
-    "Motion": "rockbatch.motions",
-    "MotionSet": "rockbatch.motions",
-    "Part": "rockbatch.pier",
-    "Pier": "rockbatch.pier",
-    "ReadOptions": "rockbatch.motions",
-    "Response": "rockbatch.simulation.response",
-    "RigidBase": "rockbatch.pier",
-    "Rule": "rockbatch.checks",
-    "Study": "rockbatch.study",
-    "Tendon": "rockbatch.pier",
-    "YieldingBase": "rockbatch.pier",
-    "accuracy": "rockbatch.analysis.accuracy",
-    "check": "rockbatch.results.checking",
-    "fragility": "rockbatch.analysis.fragility",
-    "load_study": "rockbatch.study",
-    "open_results": "rockbatch.results.opened",
-    "pulse": "rockbatch.motions",
-    "read_motions": "rockbatch.motions",
-    "report": "rockbatch.report",
-    "run": "rockbatch.batch.running",
-    "sensitivity": "rockbatch.analysis.sensitivity",
-    "simulate": "rockbatch.batch.single",
-    "spectrum": "rockbatch.analysis.spectrum",
+_NAMES = {
+    "analysis.accuracy": "accuracy",
+    "analysis.fragility": "fragility",
+    "analysis.sensitivity": "sensitivity",
+    "analysis.spectrum": "spectrum",
+    "batch.running": "run",
+    "batch.single": "simulate",
+    "checks": "Rule",
+    "errors": "InputError",
+    "motions": "Motion MotionSet ReadOptions pulse read_motions",
+    "pier": "Damper ElasticBase Part Pier RigidBase Tendon YieldingBase",
+    "report": "report",
+    "results.checking": "check",
+    "results.opened": "open_results",
+    "simulation.response": "Response",
+    "study": "Study load_study",
 }
+_HOMES = {name: f"rockbatch.{home}" for home, names in _NAMES.items() for name in names.split()}
 
 __all__ = [
     "Damper",
@@ -90,4 +80,4 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    return sorted([*globals(), *__all__])
+    return sorted([*__all__, *(name for name in globals() if name.startswith("__"))])

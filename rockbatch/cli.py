@@ -3,45 +3,17 @@
 
 import argparse
 import os
-import re
 import sys
 import warnings
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from difflib import get_close_matches
 from typing import Any
 
 from rockbatch._version import __version__
-from rockbatch.commands import (
-    accuracy,
-    check,
-    examples,
-    fragility,
-    init,
-    merge,
-    motions,
-    report,
-    run,
-    sensitivity,
-    spectrum,
-)
-from rockbatch.commands.messages import say
-from rockbatch.commands.streams import is_lost, open_missing
+from rockbatch.commands.arguments import COMMANDS
+from rockbatch.commands.streams import is_lost, open_missing, say
 from rockbatch.errors import AboutResults, InputError
-
-COMMANDS = {
-    "init": init,
-    "examples": examples,
-    "run": run,
-    "merge": merge,
-    "motions": motions,
-    "check": check,
-    "report": report,
-    "accuracy": accuracy,
-    "fragility": fragility,
-    "spectrum": spectrum,
-    "sensitivity": sensitivity,
-}
-
 
 EXIT_CODES = """exit codes:
   0    all is fine
@@ -52,23 +24,19 @@ EXIT_CODES = """exit codes:
 
 def parser() -> argparse.ArgumentParser:
     """Return the parser of the command line."""
-    plain = argparse.RawDescriptionHelpFormatter
-    commands = "\n".join(f"  {name:<13}{command.HELP}" for name, command in COMMANDS.items())
+    commands = "\n".join(f"  {name:<13}{command.help}" for name, command in COMMANDS.items())
     first = "first steps:\n  rockbatch init mypier\n  cd mypier\n  rockbatch run pier.toml"
     root = argparse.ArgumentParser(
         prog="rockbatch",
         usage="rockbatch [-h] [--version] COMMAND ...",
         description="Peak rotations of stepping bridge piers under a folder of ground motions.",
         epilog=f"commands:\n{commands}\n\n{first}\n\n{EXIT_CODES}",
-        formatter_class=plain,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     root.add_argument("--version", action="version", version=f"rockbatch {__version__}")
     subparsers = root.add_subparsers(dest="command", metavar="COMMAND", prog="rockbatch", help=argparse.SUPPRESS)
     for name, command in COMMANDS.items():
-        epilog = f"example:\n  {command.EXAMPLE}\n\n{EXIT_CODES}"
-        command.add_arguments(
-            subparsers.add_parser(name, description=command.HELP, epilog=epilog, formatter_class=plain)
-        )
+        command.add_to(subparsers, name, EXIT_CODES)
     return root
 
 
@@ -83,25 +51,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
             argcomplete.autocomplete(root)
     parsed, unknown = root.parse_known_args(arguments)
     if unknown:
-        root.error(f"unrecognized arguments: {' '.join(unknown)}{_meant(parsed.command, unknown)}")
+        options = COMMANDS[parsed.command].arguments if parsed.command else ()
+        words = [word.partition("=")[0] for word in unknown if word.startswith("--")]
+        meant = [match for word in words for match in get_close_matches(word, options, 1)]
+        hint = f"; did you mean {', '.join(meant)}?" if meant else ""
+        root.error(f"unrecognized arguments: {' '.join(unknown)}{hint}")
     if parsed.command is None:
         root.print_help()
         return 2
     code = _carried_out(parsed)
     return code or int(is_lost(sys.stdout))
-
-
-def _meant(command: str | None, unknown: Sequence[str]) -> str:
-    """Return which options of the command were probably meant; empty if none is like them."""
-    from rockbatch.toml.kinds import closest
-
-    if command is None:
-        return ""
-    known = argparse.ArgumentParser()
-    COMMANDS[command].add_arguments(known)
-    options = re.findall(r"--[\w-]+", known.format_usage())
-    meant = [closest(word.partition("=")[0], options) for word in unknown if word.startswith("--")]
-    return f"; did you mean {', '.join(filter(None, meant))}?" if any(meant) else ""
 
 
 def _carried_out(parsed: argparse.Namespace) -> int:
@@ -110,7 +69,7 @@ def _carried_out(parsed: argparse.Namespace) -> int:
         with warnings.catch_warnings():
             warnings.simplefilter("always", AboutResults)
             warnings.showwarning = _plainly(warnings.showwarning)
-            return COMMANDS[parsed.command].main(parsed)
+            return COMMANDS[parsed.command].carry_out(parsed)
     except InputError as error:
         for problem in error.problems:
             say(f"rockbatch: {problem}")

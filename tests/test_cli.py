@@ -14,7 +14,8 @@ from studies import RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.cli import COMMANDS, EXIT_CODES, main, parser
-from rockbatch.commands.messages import in_width
+from rockbatch.commands.streams import in_width
+from rockbatch.results.beside_peaks import write_semicolons
 
 STUDY = study_text(title="A <pulse> & a pier")
 
@@ -69,6 +70,29 @@ def test_histories_of_another_record_are_added_on_demand_and_no_run_is_repeated(
     assert sorted(response.record for response in rb.open_results(out).responses) == ["strong", "weak"]
     assert main([*command, "--history", "weka"]) == 2
     assert "--history weka: no such record; did you mean weak?" in capsys.readouterr().err
+
+
+def test_a_spreadsheet_with_decimal_commas_gets_the_same_numbers(tmp_path, capsys):
+    study = write_study(tmp_path, study_text(title="A ; B", cases=(RIGID | {"name": "1.5"},), output={"forces": True}))
+    out = tmp_path / "out"
+    assert main(["run", str(study), "--out", str(out), "--csv", "semicolon"]) == 0
+    written = out / "peaks_semicolon.csv"
+    assert capsys.readouterr().err.splitlines()[-1] == str(written)
+    assert written.read_bytes().startswith(b"\xef\xbb\xbfrecord;case;")
+    assert b".5;" not in written.read_bytes().replace(b";1.5;", b"")  # the name of a case, and no number
+    table, peaks = pd.read_csv(written, sep=";", decimal=",", dtype={"case": "str"}), rb.open_results(out).peaks
+    assert list(table) == list(peaks)
+    for name in peaks.select_dtypes("number"):
+        assert table[name].astype("float64").equals(peaks[name].astype("float64")), name
+    assert list(table["case"]) == ["1.5"]
+    assert main(["run", str(study), "--out", str(out), "--fresh"]) == 0
+    assert not written.exists()  # it would be of other runs
+
+
+def test_infinity_is_a_number_that_a_spreadsheet_computes_with(tmp_path):
+    (tmp_path / "peaks.csv").write_text("record,friction_demand,beta\ninf,inf,1e-05\n1.5,,fast\n", encoding="utf-8")
+    lines = write_semicolons(tmp_path).read_text(encoding="utf-8-sig").splitlines()
+    assert lines == ["record;friction_demand;beta", "inf;9,99E+307;1e-05", "1.5;;fast"]
 
 
 def test_the_table_is_the_same_bytes_with_any_number_of_jobs(study, tmp_path):
@@ -192,7 +216,7 @@ def test_without_a_command_all_are_listed_with_a_line_each(capsys, monkeypatch):
     assert max(map(len, lines)) <= 80
     assert lines[0] == "usage: rockbatch [-h] [--version] COMMAND ..."
     for name, command in COMMANDS.items():
-        assert [line.split(None, 1) for line in lines if line.startswith(f"  {name} ")] == [[name, command.HELP]]
+        assert [line.split(None, 1) for line in lines if line.startswith(f"  {name} ")] == [[name, command.help]]
 
 
 @pytest.mark.parametrize("name", COMMANDS)
@@ -201,7 +225,7 @@ def test_help_has_an_example_that_is_understood_and_the_exit_codes(name, capsys)
         main([name, "--help"])
     assert ended.value.code == 0
     told = capsys.readouterr().out
-    example = COMMANDS[name].EXAMPLE
+    example = COMMANDS[name].example
     assert f"example:\n  {example}\n" in told
     assert EXIT_CODES in told
     assert told.startswith(f"usage: rockbatch {name} ")
@@ -233,7 +257,7 @@ def test_progress_is_a_bar_with_the_time_left_on_a_terminal_that_has_a_size(size
     import struct
     import termios
 
-    from rockbatch.commands.progress import Progress
+    from rockbatch.commands.messages import Progress
 
     ours, theirs = pty.openpty()
     fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", *size, 0, 0))
@@ -252,13 +276,28 @@ def test_progress_is_a_bar_with_the_time_left_on_a_terminal_that_has_a_size(size
 
 def test_wide_tables_fit_the_terminal(monkeypatch):
     """On a terminal columns that do not fit go below the others; elsewhere a line is a row, for whoever reads it in."""
-    table = pd.DataFrame({f"case {i}": [0.1, 0.2] for i in range(30)}, index=["one", "other"])
-    assert len(in_width(table).splitlines()) == 3
+    head = ["", *(f"case {i}" for i in range(30))]
+    rows = [["one", *["0.1"] * 30], [f"{'long ' * 20}(other)", *["0.2"] * 30]]
+    assert len(in_width(head, rows).splitlines()) == 3
     monkeypatch.setattr("sys.stdout.isatty", lambda: True, raising=False)
     monkeypatch.setenv("COLUMNS", "60")
-    lines = in_width(table).splitlines()
+    lines = in_width(head, rows).splitlines()
     assert max(map(len, lines)) <= 60
     assert all(any(f"case {i}" in line for line in lines) for i in range(30))
+    assert "\\" not in "".join(lines)
+    assert lines[2].startswith("long lo…")
+    assert "(other)" in lines[2]
+    blocks = "\n".join(lines).split("\n\n")
+    assert all(block.splitlines()[1].split()[0] == "one" for block in blocks)  # whose numbers they are
+
+
+@pytest.mark.parametrize("name", ["run", "check", "accuracy", "fragility", "spectrum", "sensitivity", "init"])
+def test_help_says_which_files_come_out(name, capsys):
+    with pytest.raises(SystemExit):
+        main([name, "--help"])
+    told = capsys.readouterr().out
+    wanted = {"run": "peaks.csv", "check": "checks.csv", "init": "pier.toml"}.get(name, f"{name}.csv")
+    assert wanted in told.partition("\nwrites:\n")[2]
 
 
 # Whatever the terminal can print

@@ -244,7 +244,7 @@ def test_the_accuracy_is_saved_as_the_command_writes_it(study, nowhere, monkeypa
 
 def test_the_command_measures_as_many_runs_as_the_function():
     from rockbatch.analysis import accuracy
-    from rockbatch.commands.accuracy import RUNS, SECONDS
+    from rockbatch.commands.arguments import RUNS, SECONDS
 
     assert (accuracy.RUNS, accuracy.SECONDS) == (RUNS, SECONDS)
 

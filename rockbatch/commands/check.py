@@ -1,56 +1,63 @@
-"""``rockbatch check``: design checks on finished results, as a table, as checks.csv and in the report."""
+"""``rockbatch check`` and ``rockbatch report``: design checks on finished results, and the report made again."""
 
 import argparse
+import math
 import textwrap
 from collections.abc import Sequence
 from itertools import groupby
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from rockbatch.commands.messages import say, show
+from rockbatch.checks import Verdict, wording, write_verdicts
+from rockbatch.checks.answer import answer
+from rockbatch.checks.responses import RESPONSES, in_words, worst_of_all, worst_of_cases
+from rockbatch.checks.suite import simulated, suites
+from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS
+from rockbatch.checks.wording import SIGNS, Notes
+from rockbatch.commands.streams import aligned, coloured, say, show, shown, width
+from rockbatch.commands.summary import named
+from rockbatch.files import is_plain
+from rockbatch.report import report as make_report
+from rockbatch.report import write_report
+from rockbatch.results.checking import verdicts
+from rockbatch.results.opened import open_results
+from rockbatch.results.reading import Saved
 
-if TYPE_CHECKING:
-    from rockbatch.checks import Verdict
-    from rockbatch.checks.wording import Notes
-    from rockbatch.results.reading import Saved
-
-HELP = "hold finished results against design checks"
-EXAMPLE = "rockbatch check reports/pier"
 WIDTH = 100
 WORST = 10
 """Verdicts that are printed in full if there are too many for all."""
 
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("directory", type=Path, metavar="DIR", help="folder that `rockbatch run` has written")
-    parser.add_argument(
-        "--rules", type=Path, metavar="RULES.toml", help="file with [[check]] tables, instead of the study's own"
-    )
+_COLOURS = {PASS: "32", FAIL: "31", NOT_DECIDED: "33"}  # green, red, amber
+_LOUD = {FAIL: "FAIL", NOT_DECIDED: "NOT DECIDED"}
+_PLAIN = {PASS: "+", FAIL: "x", NOT_DECIDED: "?", DOES_NOT_APPLY: "-"}
+_LEFT_OUT = (5, 4, 1)
+"""Columns of the verdicts that are left out, one after the other, if the terminal is too narrow: margin, ratio, records."""
 
 
 def main(arguments: argparse.Namespace) -> int:
-    from rockbatch.checks import write_verdicts
-    from rockbatch.results.checking import verdicts
-    from rockbatch.results.opened import open_results
-
+    """Hold results against rules; print and write the verdicts, and the report again if there is one."""
     saved = open_results(arguments.directory)
     results = verdicts(saved, arguments.rules)
     if unusable := len(saved.info["unusable"]):
         say(f"files that are no usable records, and in no suite: {unusable}")
     code = tell(results, write_verdicts(arguments.directory, results), saved)
-    from rockbatch.files import is_plain
-
     if is_plain(arguments.directory / "report.html"):
-        from rockbatch.report import write_report
-
         say(str(write_report(arguments.directory, saved=saved)))
     return code
 
 
-def tell(verdicts: Sequence["Verdict"], path: Path, saved: "Saved") -> int:
-    """Print the verdicts, which are in ``path``, and the answer; return 1 if a check fails or is not decided, else 0."""
-    from rockbatch.checks import wording
+def report(arguments: argparse.Namespace) -> int:
+    """Make the report of finished results again, or of two studies side by side."""
+    say(str(make_report(arguments.directory, arguments.other, out=arguments.out).path))
+    return 0
 
+
+def mark(verdict: str) -> str:
+    """Return sign and word of a verdict: "✗ FAIL"; the signs are plain ones if the terminal cannot show the others."""
+    return f"{shown(SIGNS[verdict], _PLAIN[verdict])} {_LOUD.get(verdict, verdict)}"
+
+
+def tell(verdicts: Sequence[Verdict], path: Path, saved: Saved) -> int:
+    """Print the verdicts, which are in ``path``, and the answer; return 1 if a check fails or is not decided, else 0."""
     many = len(verdicts) > wording.MOST
     show(summed_up(verdicts) if many else table(verdicts))
     show("\n" + answered(verdicts, saved))
@@ -62,18 +69,12 @@ def tell(verdicts: Sequence["Verdict"], path: Path, saved: "Saved") -> int:
     return 0 if count["pass"] and not (count["fail"] or count["not decided"]) else 1
 
 
-def answered(verdicts: Sequence["Verdict"], saved: "Saved") -> str:
+def answered(verdicts: Sequence[Verdict], saved: Saved) -> str:
     """Return the answer as the report begins with it, and the worst responses, whatever is checked."""
-    from rockbatch.checks.answer import answer
-    from rockbatch.checks.responses import RESPONSES, in_words, worst_of_all, worst_of_cases
-    from rockbatch.checks.suite import simulated, suites
-    from rockbatch.commands.marks import coloured, mark
-    from rockbatch.commands.summary import named
-
     labels = {record["record"]: record.get("label") or record["record"] for record in saved.info["records"]}
     scaled = len({verdict.scale for verdict in verdicts}) > 1
 
-    def case_of(verdict: "Verdict") -> str:
+    def case_of(verdict: Verdict) -> str:
         values = verdict.columns | ({"scale": verdict.scale} if scaled else {})
         return f"{verdict.case} {named(values, values.values())}".rstrip()
 
@@ -82,92 +83,73 @@ def answered(verdicts: Sequence["Verdict"], saved: "Saved") -> str:
     lines = []
     for line in answer(verdicts, worst, case_of, lambda verdict: labels.get(verdict.record, verdict.record)):
         words = f"{line.says}: {line.which}." if line.which else f"{line.says}."
-        lines.append(coloured(_filled(f"{mark(line.verdict).split()[0]} {words}", 0, 2), line.verdict))
+        lines.append(_coloured(_filled(f"{mark(line.verdict).split()[0]} {words}", 0, 2), line.verdict))
         lines += [_filled(_plain(detail), 4, 6) for detail in line.details]
     if not verdicts:
         lines.append("No limits were set: nothing here passes or fails.")
     responses = {RESPONSES[name].words: response for name, response in worst_of_all(worst).items()}
-    width = max(map(len, responses), default=0)
+    longest = max(map(len, responses), default=0)
     for words, response in responses.items():
         columns = response.case["columns"]
         where = (
             f"{labels.get(response.run['record'], response.run['record'])}, {response.case['case']} "
             f"{named(columns, columns.values())}"
         )
-        lines.append(_filled(f"{words:<{width}}  {in_words(response)}: {where.rstrip()}", 2, width + 6))
+        lines.append(_filled(f"{words:<{longest}}  {in_words(response)}: {where.rstrip()}", 2, longest + 6))
     return "\n".join(lines)
 
 
-def table(verdicts: Sequence["Verdict"]) -> str:
+def table(verdicts: Sequence[Verdict]) -> str:
     """Return a block of lines for each case and scale, then what each check asks."""
-    from rockbatch.checks.wording import Notes
-
     notes = Notes(verdicts)
     return "\n\n".join([*_blocks(verdicts, notes), _checks(verdicts, notes)])
 
 
-def summed_up(verdicts: Sequence["Verdict"]) -> str:
+def summed_up(verdicts: Sequence[Verdict]) -> str:
     """Return how many verdicts of each kind every check has, the worst of them, and what each check asks."""
-    from rockbatch.checks import wording
-
     by_check: dict[str, list[Verdict]] = {}
     for verdict in verdicts:
         by_check.setdefault(verdict.check, []).append(verdict)
     rows = [(name, *map(str, wording.count_of(same).values())) for name, same in by_check.items()]
-    head = ("check", *wording.WAYS)
-    widths = [max(map(len, column)) for column in zip(head, *rows, strict=True)]
-    counts = "\n".join(
-        "  ".join([row[0].ljust(widths[0]), *(n.rjust(w) for n, w in zip(row[1:], widths[1:], strict=True))])
-        for row in (head, *rows)
-    )
-    parts = [f"{len(verdicts)} verdicts\n{counts}"]
-    notes = wording.Notes(verdicts)
+    parts = ["\n".join([f"{len(verdicts)} verdicts", *aligned([("check", *wording.WAYS), *rows])])]
+    notes = Notes(verdicts)
     if worst := wording.worst_first(verdicts)[:WORST]:
         parts += ["The worst", *_blocks(worst, notes)]
     return "\n\n".join([*parts, _checks(verdicts, notes)])
 
 
-def _blocks(verdicts: Sequence["Verdict"], notes: "Notes") -> list[str]:
-    """Return a block of lines for verdicts beside each other of one case and scale."""
-    from rockbatch.checks import wording
-    from rockbatch.commands.summary import named
-
-    head = ("check", wording.records_of(verdicts), "demand", "limit", "ratio", "margin", "unit", "verdict")
-    widths = [max(map(len, column)) for column in zip(head, *map(_cells, verdicts), strict=True)]
+def _blocks(verdicts: Sequence[Verdict], notes: Notes) -> list[str]:
+    """Return a block of lines for verdicts beside each other of one case and scale: their numbers, and remarks on them."""
+    head, *lines = _numbers(verdicts)
     many_scales = len({verdict.scale for verdict in verdicts}) > 1
     blocks = []
-    for (case, columns, scale), block in groupby(verdicts, key=lambda v: (v.case, v.columns, v.scale)):
+    of_verdicts = zip(verdicts, lines, strict=True)
+    for (case, columns, scale), block in groupby(of_verdicts, key=lambda of: (of[0].case, of[0].columns, of[0].scale)):
         values = columns | ({"scale": scale} if many_scales else {})
-        lines = [f"{case}  {named(values, values.values())}".rstrip(), _line(head, widths)]
-        for verdict in block:
-            lines += _lines(verdict, widths, notes)
-        blocks.append("\n".join(lines))
+        parts = [f"{case}  {named(values, values.values())}".rstrip(), head]
+        for verdict, line in block:
+            parts.append(_coloured(line, verdict.verdict))
+            remarks = (wording.governing(verdict), verdict.counted, notes.of(verdict))
+            if verdict.verdict != DOES_NOT_APPLY and any(remarks):
+                parts.append(_filled("; ".join(filter(None, remarks)), 6, 6))
+        blocks.append("\n".join(parts))
     return blocks
 
 
-def _lines(verdict: "Verdict", widths: list[int], notes: "Notes") -> list[str]:
-    """Return the numbers of a verdict, then remarks on them: the run that governs first."""
-    from rockbatch.checks import wording
-    from rockbatch.commands.marks import coloured
-
-    lines = [coloured(_line(_cells(verdict), widths), verdict.verdict)]
-    if verdict.verdict == "does not apply":
-        return lines
-    remarks = (wording.governing(verdict), verdict.counted, notes.of(verdict))
-    if any(remarks):
-        lines.append(_filled("; ".join(filter(None, remarks)), 6, 6))
-    return lines
-
-
-def _line(cells: Sequence[str], widths: list[int]) -> str:
-    numbers = "  ".join(cell.rjust(width) for cell, width in zip(cells[1:-2], widths[1:-2], strict=True))
-    return f"  {cells[0].ljust(widths[0])}  {numbers}  {cells[-2].ljust(widths[-2])}  {cells[-1]}"
+def _numbers(verdicts: Sequence[Verdict]) -> list[str]:
+    """Return the head, and a line for each verdict, of as many columns as the terminal has room for."""
+    head = ("check", wording.records_of(verdicts), "demand", "limit", "ratio", "margin", "unit", "verdict")
+    lines, places, edge = [head, *map(_cells, verdicts)], list(range(len(head))), width() or math.inf
+    for place in (None, *_LEFT_OUT):
+        places = [other for other in places if other != place]
+        left = [places.index(other) for other in (0, 6, 7)]
+        text = [f"  {line}".rstrip() for line in aligned([[line[i] for i in places] for line in lines], left)]
+        if max(map(len, text)) <= edge:
+            break
+    return text
 
 
-def _cells(verdict: "Verdict") -> tuple[str, ...]:
-    from rockbatch.checks import wording
-    from rockbatch.commands.marks import mark
-
+def _cells(verdict: Verdict) -> tuple[str, ...]:
     return (
         verdict.check,
         str(verdict.records) if verdict.records else "",
@@ -186,29 +168,24 @@ def _plain(text: str) -> str:
     return text
 
 
-def _checks(verdicts: Sequence["Verdict"], notes: "Notes") -> str:
+def _checks(verdicts: Sequence[Verdict], notes: Notes) -> str:
     """Return what each check asks, and why; what a record is, and the basis of the statistics of codes."""
-    from rockbatch.checks import wording
-
     first = {verdict.check: verdict for verdict in reversed(verdicts)}
-    names = dict.fromkeys(verdict.check for verdict in verdicts)
     rests = {verdict.statistic: verdict for verdict in reversed(verdicts) if wording.unchecked(verdict)}
-    lines = [_asked(first[name]) for name in names]
-    lines += [_filled(note, 2, 6) for note in (*notes.common(), *wording.counting(verdicts))]
-    lines += [_filled(f"{name}: {wording.unchecked(verdict)}.", 2, 6) for name, verdict in rests.items()]
-    return "\n".join(["Checks", *lines])
-
-
-def _asked(verdict: "Verdict") -> str:
-    """Return what a check asks, and why."""
-    from rockbatch.checks import wording
-
-    asked = f"{verdict.check}: {wording.asked(verdict)} [{verdict.basis}] {verdict.reason}"
-    return _filled(asked.rstrip(), 2, 6)
+    lines = [
+        f"{name}: {wording.asked(first[name])} [{first[name].basis}] {first[name].reason}".rstrip()
+        for name in dict.fromkeys(verdict.check for verdict in verdicts)
+    ]
+    lines += [*notes.common(), *wording.counting(verdicts)]
+    lines += [f"{name}: {wording.unchecked(verdict)}." for name, verdict in rests.items()]
+    return "\n".join(["Checks", *(_filled(line, 2, 6) for line in lines)])
 
 
 def _filled(text: str, first: int, rest: int) -> str:
-    from rockbatch.commands.marks import shown
-
-    filled = textwrap.fill(text, WIDTH, initial_indent=" " * first, subsequent_indent=" " * rest)
+    most = min(WIDTH, width() or WIDTH)
+    filled = textwrap.fill(text, most, initial_indent=" " * first, subsequent_indent=" " * rest)
     return shown(filled, filled.encode("ascii", "replace").decode())
+
+
+def _coloured(text: str, verdict: str) -> str:
+    return coloured(text, _COLOURS.get(verdict))

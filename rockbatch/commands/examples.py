@@ -1,19 +1,39 @@
-"""``rockbatch examples``: the studies that come with rockbatch."""
+"""``rockbatch init`` and ``rockbatch examples``: a new study to begin with, and those that come with rockbatch."""
 
 import argparse
+import shlex
+import shutil
+import sys
+from pathlib import Path
 
-from rockbatch.commands.messages import show
-from rockbatch.examples import examples
-
-HELP = "list the studies that come with rockbatch"
-EXAMPLE = "rockbatch examples"
+from rockbatch.commands.streams import show
+from rockbatch.examples import CHECKS, FIRST, copy, examples
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    del parser  # it has no arguments
+def init(arguments: argparse.Namespace) -> int:
+    """Write a study to begin with, and its records."""
+    study = "pier.toml" if arguments.example == FIRST else f"{arguments.example}.toml"
+    for path in copy(arguments.example, arguments.folder, study):
+        show(str(path))
+    there = "" if arguments.folder == Path() else f"cd {arguments.folder}\n    "
+    limits = f"in {CHECKS}" if arguments.example == FIRST else f"({CHECKS} has many to choose from)"
+    report = Path("reports", Path(study).stem, "report.html")
+    show(
+        f"\nNext:\n\n    {there}{_called()} run {study}\n\n"
+        f"It leaves a report in {report}. Then put the numbers of your pier and the\n"
+        f"folder of your records (path) into {study}, and agree on limits {limits}."
+    )
+    return 0
+
+
+def _called() -> str:
+    """Return what a shell needs to find rockbatch from any folder: its name, or its path if the name would not do."""
+    here = shutil.which("rockbatch", path=str(Path(sys.executable).parent))
+    return "rockbatch" if here is None or shutil.which("rockbatch") == here else shlex.quote(here)
 
 
 def main(arguments: argparse.Namespace) -> int:
+    """List the examples."""
     del arguments
     every = examples()
     width = max(len(example.name) for example in every)

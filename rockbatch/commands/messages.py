@@ -1,24 +1,33 @@
-"""Output of commands: messages on stderr, what they were asked for on stdout."""
+"""Messages of a batch on the terminal, and its progress."""
 
-import shutil
+import io
+import os
 import sys
+import time
 from contextlib import AbstractContextManager
-from typing import TYPE_CHECKING
+from types import TracebackType
+from typing import Any, Self, TextIO
 
 from rockbatch.batch.listening import Listener, Told, count
-from rockbatch.commands.streams import tell
-from rockbatch.lazy import pd
+from rockbatch.commands.streams import give_up, say, tell
+from rockbatch.motions import MotionSet
 
-if TYPE_CHECKING:
-    from rockbatch.motions import MotionSet
+SECONDS_BETWEEN_LINES = 2.0
 
 
 class Terminal(Listener):
     """Listener that prints on stderr what it hears of a batch."""
 
-    def motions(self, found: "MotionSet") -> None:
-        """See :class:`Listener`."""
-        tell_motions(found)
+    def motions(self, found: MotionSet) -> None:
+        """Print which files are not used and why, and how many are left out."""
+        for file in found.unusable:
+            say(f"not used: {file.source}: {file.reason}")
+        for first, repeat in _twice(found):
+            say(f"{first} and {repeat} have the same samples: checks count them once, curves twice; leave one out")
+        if lacking := [motion.named for motion in found.motions if motion.lacks_vertical]:
+            say(f"no vertical: {'; '.join(lacking)}")
+        if found.left_out:
+            say(f"{count(len(found.left_out), 'file')} left out: `rockbatch motions FOLDER` lists them and says why")
 
     def say(self, text: str) -> None:
         """See :class:`Listener`."""
@@ -26,45 +35,54 @@ class Terminal(Listener):
 
     def progress(self, total: int) -> AbstractContextManager[Told | None]:
         """See :class:`Listener`."""
-        from rockbatch.commands.progress import Progress
-
         return Progress(total)
 
 
-def say(text: str) -> None:
-    """Print a message on stderr, apart from what a command was asked for."""
-    tell(sys.stderr, text)
-
-
-def show(text: str) -> None:
-    """Print on stdout what a command was asked for."""
-    tell(sys.stdout, text)
-
-
-def in_width(table: "pd.DataFrame", index: bool = True) -> str:
-    """Return a table as text; on a terminal its columns go below each other rather than beyond the edge."""
-    width = shutil.get_terminal_size().columns if sys.stdout.isatty() else None
-    return table.to_string(index=index, line_width=width)
-
-
-def tell_motions(motions: "MotionSet") -> None:
-    """Print which files are not used and why, and how many are left out."""
-    for file in motions.unusable:
-        say(f"not used: {file.source}: {file.reason}")
-    for first, repeat in _twice(motions):
-        say(f"{first} and {repeat} have the same samples: checks count them once, curves twice; leave one out")
-    if lacking := [motion.named for motion in motions.motions if motion.lacks_vertical]:
-        say(f"no vertical: {'; '.join(lacking)}")
-    if motions.left_out:
-        say(f"{count(len(motions.left_out), 'file')} left out: `rockbatch motions FOLDER` lists them and says why")
-
-
-def _twice(motions: "MotionSet") -> list[tuple[str, str]]:
+def _twice(motions: MotionSet) -> list[tuple[str, str]]:
     """Return the names of motions with the same samples: the first, and each that repeats it."""
     first: dict[tuple[float, bytes], str] = {}
-    pairs = []
-    for motion in motions.motions:
-        name = first.setdefault((motion.dt, motion.horizontal.tobytes()), motion.name)
-        if name != motion.name:
-            pairs.append((name, motion.name))
-    return pairs
+    names = [(first.setdefault((m.dt, m.horizontal.tobytes()), m.name), m.name) for m in motions.motions]
+    return [(name, repeat) for name, repeat in names if name != repeat]
+
+
+class Progress:
+    """Progress of a batch: a bar with the time remaining on a terminal, plain lines elsewhere.
+
+    Call it with the number of runs that are finished since the last call; use it as a context.
+    """
+
+    def __init__(self, total: int, stream: TextIO | None = None) -> None:
+        self.total = total
+        self.done = 0
+        self.stream = stream or sys.stderr or io.StringIO()
+        self.started = self.last_line = time.monotonic()
+        self.bar: Any = None
+        # A terminal that a program makes may have no size
+        if self.stream.isatty() and min(os.get_terminal_size(self.stream.fileno())) > 0:
+            from tqdm import tqdm
+
+            self.bar = tqdm(total=total, unit="run", file=self.stream, dynamic_ncols=True, leave=False)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if self.bar is not None:
+            self.bar.close()
+
+    def __call__(self, runs: int = 1) -> None:
+        self.done += runs
+        if self.bar is not None:
+            try:
+                self.bar.update(runs)
+            except OSError as error:
+                self.bar = None
+                give_up(self.stream, error)
+            return
+        now = time.monotonic()
+        if now - self.last_line >= SECONDS_BETWEEN_LINES:
+            self.last_line = now
+            remaining = (now - self.started) * (self.total - self.done) / self.done
+            tell(self.stream, f"{self.done} of {self.total} runs, {remaining:.0f} s left")

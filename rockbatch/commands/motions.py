@@ -2,16 +2,15 @@
 
 import argparse
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from rockbatch.batch.listening import count
-from rockbatch.commands.messages import say, show
-
-if TYPE_CHECKING:
-    from rockbatch.motions import LeftOut, MotionSet, Unusable
-
-HELP = "show what is in a folder of records, and what is not used"
-EXAMPLE = "rockbatch motions records --csv records.csv"
+from rockbatch.commands.streams import in_width, say, show
+from rockbatch.errors import InputError
+from rockbatch.files import csv_text, write_whole
+from rockbatch.motions import LeftOut, MotionSet, ReadOptions, Unusable, read_motions
+from rockbatch.motions.manifest_draft import write_draft
+from rockbatch.motions.motion_set import COLUMNS, TEXTS, row
 
 _SHOWN = {  # heads of the table in the terminal, and how their numbers are written
     "record": ("record", ""),
@@ -35,33 +34,13 @@ _SHOWN = {  # heads of the table in the terminal, and how their numbers are writ
 }
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("path", type=Path, nargs="+", metavar="PATH", help="files or folders (recursive)")
-    parser.add_argument("--csv", type=Path, metavar="FILE", help="write the table to FILE too")
-    parser.add_argument("--write-manifest", action="store_true", help="draft PATH/motions.toml from what was found")
-    parser.add_argument("--strict", action="store_true", help="fail if any file cannot be used")
-    parser.add_argument("--unit", help='acceleration unit of files that do not state theirs, such as "cm/s2"')
-    parser.add_argument("--dt", type=float, help="sampling interval [s] of text columns without a time column")
-    parser.add_argument("--columns", help='names of text columns, such as "time,000,090,up"')
-    parser.add_argument("--role", choices=("horizontal",), help="what components are whose direction nothing tells")
-    parser.add_argument(
-        "--layout", choices=("columns", "wrapped"), help="wrapped: one series goes on from line to line"
-    )
-    parser.add_argument("--sensitivity", type=float, help="counts per acceleration unit")
-
-
 def main(arguments: argparse.Namespace) -> int:
-    from rockbatch.errors import InputError
-    from rockbatch.motions import ReadOptions, read_motions
-    from rockbatch.motions.motion_set import row
-
+    """Print the records of files or folders, and what is not used; write a table or a manifest if asked."""
     columns = tuple(arguments.columns.split(",")) if arguments.columns else None
     options = ReadOptions(
         arguments.unit, arguments.dt, columns, arguments.sensitivity, arguments.role, arguments.layout
     )
     if arguments.write_manifest:
-        from rockbatch.motions.manifest_draft import write_draft
-
         if len(arguments.path) > 1:
             raise InputError("--write-manifest: give one folder, which it is written into")
         say(str(write_draft(arguments.path[0], options)))
@@ -76,19 +55,16 @@ def main(arguments: argparse.Namespace) -> int:
     _list("No vertical", [(name, "none beside it that fits") for name in lacking])
     _list("Not used", [(file.source, file.reason) for file in suite.unusable])
     _list("Left out", [(file.source, file.reason) for file in suite.left_out])
-    stations = len({motion.of_station for motion in suite.motions})
-    counts = f"{len(suite.motions)} records, {len(suite.unusable)} files not used, {len(suite.left_out)} left out"
-    say(f"{counts}; {count(stations, 'station')}")
+    files = f"{count(len(suite.unusable), 'file')} not used, {len(suite.left_out)} left out"
+    stations = count(len({motion.of_station for motion in suite.motions}), "station")
+    say(f"{count(len(suite.motions), 'record')}, {files}; {stations}")
     if arguments.strict and suite.unusable:
         return 2
     return 1 if suite.unusable or not suite.motions else 0
 
 
-def _write(path: Path, rows: list[dict[str, Any]], suite: "MotionSet") -> None:
-    from rockbatch.errors import InputError
-    from rockbatch.files import csv_text, write_whole
-    from rockbatch.motions.motion_set import COLUMNS
-
+def _write(path: Path, rows: list[dict[str, Any]], suite: MotionSet) -> None:
+    """Write the table, with a row for each file that is not used."""
     files: list[Unusable | LeftOut] = [*suite.unusable, *suite.left_out]
     not_used = [{"record": file.name, "file_h": file.source, "reason": file.reason} for file in files]
     heads = list(COLUMNS)
@@ -100,25 +76,13 @@ def _write(path: Path, rows: list[dict[str, Any]], suite: "MotionSet") -> None:
 
 
 def _table(rows: list[dict[str, Any]]) -> str:
-    """Return the rows in columns of equal width; a column without a value is left out."""
-    from rockbatch.motions.motion_set import TEXTS
-
+    """Return the rows as a table; a column without a value is left out."""
     used = {key: shown for key, shown in _SHOWN.items() if key == "record" or any(row[key] is not None for row in rows)}
-    lines = [[head for head, _ in used.values()]]
-    lines += [["" if row[key] is None else format(row[key], form) for key, (_, form) in used.items()] for row in rows]
-    widths = [max(len(line[i]) for line in lines) for i in range(len(used))]
-    aligned_left = [key in TEXTS for key in used]
-    return "\n".join(
-        "  ".join(
-            cell.ljust(width) if text else cell.rjust(width)
-            for cell, width, text in zip(line, widths, aligned_left, strict=True)
-        ).rstrip()
-        for line in lines
-    )
+    cells = [["" if row[key] is None else format(row[key], form) for key, (_, form) in used.items()] for row in rows]
+    left = [place for place, key in enumerate(used) if key in TEXTS]
+    return in_width([head for head, _ in used.values()], cells, left=left)
 
 
 def _list(title: str, entries: list[tuple[str, str]]) -> None:
     if entries:
-        show(f"\n{title}")
-        for name, words in entries:
-            show(f"  {name}: {words}")
+        show("\n".join([f"\n{title}", *(f"  {name}: {words}" for name, words in entries)]))

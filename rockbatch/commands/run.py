@@ -1,59 +1,29 @@
-"""``rockbatch run``: a study file to peaks.csv, run.json and report.html."""
+"""``rockbatch run`` and ``rockbatch merge``: a study file to peaks.csv, run.json and report.html, at once or in shares."""
 
 import argparse
-import re
 import sys
-from typing import TYPE_CHECKING
 
-from rockbatch.commands.messages import Terminal, show
-from rockbatch.commands.options import add_engine, add_study, engine, folder, study_of
-
-if TYPE_CHECKING:
-    from rockbatch.study import Study
-
-HELP = "run every record on every foundation; table and report"
-EXAMPLE = "rockbatch run pier.toml --out reports/pier"
-
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    add_study(parser)
-    add_engine(parser)
-    parser.add_argument(
-        "--shard",
-        type=_shard,
-        metavar="I/N",
-        help="carry out the I-th of N shares only, in a folder of its own, for `rockbatch merge`",
-    )
-    parser.add_argument(
-        "--history",
-        action="append",
-        default=[],
-        metavar="RECORD",
-        help="keep the histories of all runs under this record, too; finished runs are not repeated for it",
-    )
-    parser.add_argument(
-        "--dry-run",
-        action="store_true",
-        help="write nothing; say how many runs there are, and how long and how much disk they will take",
-    )
+from rockbatch.batch.expecting import expected
+from rockbatch.batch.finishing import FinishedBatch
+from rockbatch.batch.listening import count
+from rockbatch.batch.merging import merge
+from rockbatch.batch.running import run_into
+from rockbatch.batch.threads import cores
+from rockbatch.checks.suite import simulated
+from rockbatch.checks.verdicts import CHECKS
+from rockbatch.commands import check
+from rockbatch.commands.messages import Terminal
+from rockbatch.commands.options import engine, folder
+from rockbatch.commands.streams import say, show
+from rockbatch.commands.summary import summary, warnings
+from rockbatch.results.beside_peaks import write_semicolons
+from rockbatch.study import Study
 
 
-def _shard(text: str) -> tuple[int, int]:
-    match = re.fullmatch(r"(\d+)/(\d+)", text, re.ASCII)
-    share, shares = map(int, match.groups()) if match else (0, 0)
-    if not 1 <= share <= shares:
-        raise argparse.ArgumentTypeError(f"{text}: must be such as 2/4, the second of four shares")
-    return share, shares
-
-
-def main(arguments: argparse.Namespace) -> int:
-    study = study_of(arguments)
+def main(arguments: argparse.Namespace, study: Study) -> int:
+    """Carry out the runs of a study, or a share of them."""
     if arguments.dry_run:
         return _expect(study, arguments.jobs)
-
-    from rockbatch.batch.running import run_into
-    from rockbatch.commands.ending import tell
-
     directory = folder(arguments)
     if arguments.shard and not arguments.out:
         share, shares = arguments.shard
@@ -62,16 +32,19 @@ def main(arguments: argparse.Namespace) -> int:
         directory, study, engine(arguments), Terminal(),
         command=sys.argv[1:], fresh=arguments.fresh, share=arguments.shard, records=arguments.history,
     )  # fmt: skip
-    return 0 if finished is None else tell(finished, study)
+    return 0 if finished is None else _finished(finished, study, arguments.csv)
 
 
-def _expect(study: "Study", jobs: int | None) -> int:
+def merge_shares(arguments: argparse.Namespace, study: Study) -> int:
+    """Join the shares of a study that several machines have carried out, as if one run had."""
+    finished = merge(folder(arguments), study, arguments.shares, Terminal(), sys.argv[1:])
+    return _finished(finished, study, arguments.csv)
+
+
+def _expect(study: Study, jobs: int | None) -> int:
     """Print the time and the disk space that the study would take."""
-    from rockbatch.batch.expecting import expected
-    from rockbatch.batch.threads import cores
-
     estimate = expected(study, jobs or cores(), Terminal())
-    threads = "1 thread" if estimate.jobs == 1 else f"{estimate.jobs} threads"
+    threads = count(estimate.jobs, "thread")
     show(estimate.what)
     show(f"{in_words(estimate.seconds)} on {threads}, as {estimate.tried} of them took; then the report")
     show(f"peaks.csv: about {estimate.table / 1e6:.2g} MB; histories: about {estimate.histories / 1e6:.2g} MB")
@@ -85,3 +58,31 @@ def in_words(seconds: float) -> str:
     if seconds < 90.0:
         return f"about {seconds:.0f} s"
     return f"about {seconds / 60.0:.0f} min" if seconds < 5400.0 else f"about {seconds / 3600.0:.1f} h"
+
+
+def _finished(finished: FinishedBatch, study: Study, separator: str | None) -> int:
+    """Print the table of peaks and the verdicts, and the paths of what is in the folder; return the exit code."""
+    saved, code = finished.saved, 0
+    if finished.without:
+        say(str(finished.without))
+        code = 1
+    peaks = simulated(saved.peaks)
+    names = {motion.name: motion.short for motion in sorted(finished.motions.motions, key=lambda motion: motion.pga)}
+    show(summary(peaks, study.varied, names))
+    for warning in warnings(peaks.assign(record=peaks["record"].map(names)), study.varied):
+        say(warning)
+    if study.checks:
+        code = max(code, check.tell(finished.verdicts, saved.directory / CHECKS, saved))
+    else:
+        show(check.answered((), saved))
+    for path in finished.files:
+        if path.name != CHECKS:  # printed with the verdicts
+            say(str(path))
+    if separator:
+        say(str(write_semicolons(saved.directory)))
+    failed = int(((peaks["status"] == "failed") & (peaks["case"] != "")).sum())
+    lost = ((failed, "run", "failed"), (len(saved.info["unusable"]), "file", "not used"))
+    if words := " and ".join(f"{count(n, noun)} {how}" for n, noun, how in lost if n):
+        say(f"{words}: the column reason of peaks.csv says why")
+        code = 1
+    return code

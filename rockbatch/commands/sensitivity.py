@@ -2,25 +2,16 @@
 
 import argparse
 
-from rockbatch.commands.analyses import asked, tell_files
-from rockbatch.commands.messages import in_width, say, show
-from rockbatch.commands.options import add_engine, add_study, study_of
+from rockbatch.analysis.sensitivity import sensitivity
+from rockbatch.commands.options import asked, tell_files
+from rockbatch.commands.streams import in_width, say, show
+from rockbatch.commands.summary import named
 from rockbatch.lazy import pd
-
-HELP = "which parameters the peak rotation depends on most"
-EXAMPLE = "rockbatch sensitivity pier.toml"
+from rockbatch.study import Study
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    add_study(parser)
-    add_engine(parser)
-
-
-def main(arguments: argparse.Namespace) -> int:
-    study = study_of(arguments)
-
-    from rockbatch.analysis.sensitivity import sensitivity
-
+def main(arguments: argparse.Namespace, study: Study) -> int:
+    """Compute what the peak rotation depends on, and print it."""
     result = sensitivity(study, **asked(arguments))
     show(shown(result.sensitivity, result.sobol, study.varied))
     ended = ", ".join(f"{number} {status}" for status, number in sorted(result.info["statuses"].items()))
@@ -32,28 +23,21 @@ def main(arguments: argparse.Namespace) -> int:
 
 def shown(swings: "pd.DataFrame", shares: "pd.DataFrame", varied: tuple[str, ...]) -> str:
     """Return both tables for a terminal, a block for each case: the answer at both ends, and the indices with their errors."""
-    from rockbatch.commands.summary import named
-
     keys = ["case", *varied]
     blocks = []
     for names, own in swings.groupby(keys, sort=False, dropna=False):
         both = own.merge(shares, on=[*keys, "parameter"])
         cells = {
             "": both["parameter"],
-            "low": both["low"].map(_value),
-            "base": both["base"].map(_value),
-            "high": both["high"].map(_value),
+            **{end: both[end].map(_value) for end in ("low", "base", "high")},
             **{f"at {end}": both[f"answer_{end}"].map("{:.4f}".format) for end in ("low", "base", "high")},
             "first-order": both["first"].map("{:z.2f}".format) + both["first_error"].map(" ± {:.2f}".format),
             "total": both["total"].map("{:z.2f}".format) + both["total_error"].map(" ± {:.2f}".format),
         }
+        table = in_width(list(cells), list(zip(*cells.values(), strict=True)))
         head = f"{names[0]} {named(varied, names[1:])}".rstrip()
-        blocks.append(f"{head}: theta_max/alpha one at a time, and Sobol indices\n{_aligned(cells)}")
+        blocks.append(f"{head}: theta_max/alpha one at a time, and Sobol indices\n{table}")
     return "\n\n".join(blocks)
-
-
-def _aligned(cells: "dict[str, pd.Series]") -> str:
-    return in_width(pd.DataFrame(cells), index=False)
 
 
 def _value(value: object) -> str:

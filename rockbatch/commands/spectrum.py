@@ -1,35 +1,24 @@
 """``rockbatch spectrum``: rocking spectra and overturning maps of a study, as tables and in the report."""
 
 import argparse
-from typing import TYPE_CHECKING
 
+import numpy as np
+
+from rockbatch.analysis.spectrum import spectrum
 from rockbatch.batch.listening import count
-from rockbatch.commands.analyses import asked, tell_files
-from rockbatch.commands.messages import in_width, say, show
-from rockbatch.commands.options import add_engine, add_study, study_of
+from rockbatch.commands.options import asked, tell_files
+from rockbatch.commands.streams import in_width, say, show
+from rockbatch.commands.summary import named
 from rockbatch.lazy import pd
+from rockbatch.study import Study
+from rockbatch.study.spectrum import SpectrumSpec
 
-if TYPE_CHECKING:
-    import numpy as np
-
-    from rockbatch.study.spectrum import SpectrumSpec
-
-HELP = "rocking spectra, and maps of the pulses that overturn"
-EXAMPLE = "rockbatch spectrum pier.toml"
 MOST_LINES = 12
 """Greatest number of lines of a table for the terminal."""
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    add_study(parser)
-    add_engine(parser)
-
-
-def main(arguments: argparse.Namespace) -> int:
-    study = study_of(arguments)
-
-    from rockbatch.analysis.spectrum import spectrum
-
+def main(arguments: argparse.Namespace, study: Study) -> int:
+    """Compute spectra and maps, and print them."""
     result = spectrum(study, **asked(arguments))
     failed = 0
     if result.spectra is not None and result.spectrum is not None and result.spectrum_suite is not None:
@@ -44,12 +33,8 @@ def main(arguments: argparse.Namespace) -> int:
     return 1 if failed or result.unusable else 0
 
 
-def shown(suite: "pd.DataFrame", spectrum: "SpectrumSpec") -> str:
+def shown(suite: "pd.DataFrame", spectrum: SpectrumSpec) -> str:
     """Return medians of θ_max/α for a terminal: a line for each value on the axis, ∞ where the pier overturns."""
-    import numpy as np
-
-    from rockbatch.commands.summary import named
-
     axis = spectrum.axis
     keys = [name for name in ("case", "scale", *spectrum.varied) if name != axis]
     labels = [name for name in keys if name != "case" and (name != "scale" or suite[name].nunique() > 1)]
@@ -61,33 +46,28 @@ def shown(suite: "pd.DataFrame", spectrum: "SpectrumSpec") -> str:
             f"{value:.4g}": "" if np.isnan(median) else "∞" if np.isinf(median) else f"{median:.4f}"
             for value, median in zip(own[axis], own["median"], strict=True)
         }
-    cells = pd.DataFrame(columns).rename_axis(axis, axis="columns").fillna("")
+    medians = dict.fromkeys(value for column in columns.values() for value in column)
+    rows = [[value, *(column.get(value, "") for column in columns.values())] for value in medians]
     total = suite[axis].nunique()
     some = f", {len(lines)} of {total} values of {axis}" if len(lines) < total else ""
-    return f"Median of theta_max/alpha{some}; ∞: overturned or ended by flight\n{in_width(cells)}"
+    return f"Median of theta_max/alpha{some}; ∞: overturned or ended by flight\n{in_width([axis, *columns], rows)}"
 
 
-def spread(values: "np.ndarray") -> "np.ndarray":
+def spread(values: np.ndarray) -> np.ndarray:
     """Return at most :data:`MOST_LINES` of ``values``, evenly, the first and the last among them."""
-    import numpy as np
-
     if len(values) <= MOST_LINES:
         return values
     return values[np.linspace(0, len(values) - 1, MOST_LINES).round().astype(int)]
 
 
-def _evenly(values: "np.ndarray") -> "np.ndarray":
+def _evenly(values: np.ndarray) -> np.ndarray:
     """Return at most :data:`MOST_LINES` of ``values``, those that are nearest to evenly spaced ones."""
-    import numpy as np
-
     wanted = np.linspace(values[0], values[-1], MOST_LINES)
     return values[np.unique(np.abs(values[:, None] - wanted).argmin(axis=0))]
 
 
 def shown_maps(table: "pd.DataFrame", varied: tuple[str, ...]) -> str:
     """Return the regions of every map for a terminal, a line for each frequency."""
-    from rockbatch.commands.summary import named
-
     blocks = []
     for names, own in table.groupby(["map", "case", *varied], sort=False, dropna=False):
         lines = [f"{names[0]}, {names[1]} {named(varied, names[2:])}".rstrip() + ": outcome by a_p/(g tan alpha)"]

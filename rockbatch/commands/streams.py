@@ -7,7 +7,9 @@ stream that takes no more, or cannot write a letter, ends nothing: the results a
 import errno
 import os
 import re
+import shutil
 import sys
+from collections.abc import Collection, Sequence
 from contextlib import suppress
 from typing import TextIO
 
@@ -24,6 +26,16 @@ def open_missing() -> None:
     for name in ("stdout", "stderr"):
         if getattr(sys, name) is None:
             setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115
+
+
+def say(text: str) -> None:
+    """Print a message on stderr, apart from what a command was asked for."""
+    tell(sys.stderr, text)
+
+
+def show(text: str) -> None:
+    """Print on stdout what a command was asked for."""
+    tell(sys.stdout, text)
 
 
 def tell(stream: TextIO | None, text: str) -> None:
@@ -51,3 +63,60 @@ def give_up(stream: TextIO, error: OSError) -> None:
 def is_lost(stream: TextIO) -> bool:
     """Return whether something could not be printed there, and forget it."""
     return _lost.pop(stream, None) is not None
+
+
+def shown(text: str, instead: str) -> str:
+    """Return ``text``, or ``instead`` if stdout cannot show it."""
+    try:
+        text.encode(sys.stdout.encoding or "ascii")
+    except (UnicodeEncodeError, LookupError):
+        return instead
+    return text
+
+
+def coloured(text: str, colour: str | None) -> str:
+    """Return ``text`` in a colour, by its number, if stdout is a terminal and colours are not declined (NO_COLOR, TERM=dumb)."""
+    plain = "NO_COLOR" in os.environ or os.environ.get("TERM") == "dumb" or not sys.stdout.isatty()
+    return text if plain or colour is None else f"\x1b[{colour}m{text}\x1b[0m"
+
+
+def width() -> int | None:
+    """Return the number of columns of the terminal; None if stdout is none."""
+    return shutil.get_terminal_size().columns if sys.stdout.isatty() else None
+
+
+def aligned(lines: Sequence[Sequence[str]], left: Collection[int] = (0,)) -> list[str]:
+    """Return lines of cells as text, in columns of equal width: those at ``left`` flush left, the others right."""
+    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
+    return [
+        "  ".join(cell.ljust(w) if i in left else cell.rjust(w) for i, (cell, w) in enumerate(zip(line, widths, strict=True)))
+        for line in lines
+    ]  # fmt: skip
+
+
+def in_width(head: Sequence[str], rows: Sequence[Sequence[str]], names: int = 1, left: Collection[int] = ()) -> str:
+    """Return a table as text: ``rows`` of cells below their heads.
+
+    The first ``names`` columns, which name a row, and those at ``left`` are flush left, all others right. On a terminal,
+    columns that do not fit stand below the others, beside the names again; these take at most half of its width.
+    """
+    edge, left = width() or sys.maxsize, {*range(names), *left}
+    lines = [
+        [*(_shortened(cell, edge // (2 * names)) for cell in line[:names]), *line[names:]] for line in (head, *rows)
+    ]
+    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
+    blocks = [list(range(names))]
+    for place in range(names, len(head)):
+        if len(blocks[-1]) > names and sum(widths[i] + 2 for i in blocks[-1]) + widths[place] > edge:
+            blocks.append(list(range(names)))
+        blocks[-1].append(place)
+    tables = [
+        aligned([[line[i] for i in block] for line in lines], [block.index(i) for i in block if i in left])
+        for block in blocks
+    ]
+    return "\n\n".join("\n".join(line.rstrip() for line in table) for table in tables)
+
+
+def _shortened(text: str, room: int) -> str:
+    """Return ``text`` with its middle left out if it is longer than ``room``; what tells names apart stands at the end."""
+    return text if len(text) <= room else f"{text[: room // 4]}…{text[room // 4 + 1 - room :]}"

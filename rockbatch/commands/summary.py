@@ -3,9 +3,12 @@
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from rockbatch.commands.messages import in_width
+import numpy as np
+
+from rockbatch.batch.listening import count
+from rockbatch.commands.streams import in_width
 from rockbatch.lazy import pd
-from rockbatch.simulation.outcome import LEANS
+from rockbatch.simulation.outcome import LEANS, LINEARISED, WOULD_SLIDE
 from rockbatch.study import PIER_KEYS
 
 MOST_RUNS = 1000
@@ -37,16 +40,42 @@ def summary(table: "pd.DataFrame", varied: tuple[str, ...], records: Mapping[str
 
 def _worst(runs: "pd.DataFrame", varied: tuple[str, ...]) -> str:
     """Return how the runs of a large study ended, and the ten with the greatest rotations."""
-    ended = ", ".join(f"{count} {status}" for status, count in runs["status"].value_counts().items())
+    ended = ", ".join(f"{n} {status}" for status, n in runs["status"].value_counts().items())
     shown = ["record", "polarity", "scale", "case", *varied, "status", "theta_max_over_alpha", "theta_max_error"]
     largest = runs.nlargest(10, "theta_max_over_alpha")[shown]
-    return f"{len(runs)} runs: {ended}\nThe largest theta_max/alpha\n{in_width(largest, index=False)}"
+    rows = [
+        ["" if x != x else x if isinstance(x, str) else f"{x:.4g}" for x in row] for row in largest.to_numpy().tolist()
+    ]
+    return f"{len(runs)} runs: {ended}\nThe largest theta_max/alpha\n{in_width(shown, rows)}"
 
 
-def other_law(table: "pd.DataFrame", varied: Sequence[str]) -> str:
+def warnings(table: "pd.DataFrame", varied: Sequence[str]) -> list[str]:
+    """Return what to know about the runs as a whole, a sentence each."""
+
+    def of(runs: "pd.Series[bool]", one: str, several: str) -> str:
+        """Return the number of these runs within one sentence or the other; empty for none."""
+        n = int(runs.sum())
+        return "" if n == 0 else one if n == 1 else several.format(n)
+
+    rotate = of(table["note"].str.contains(LINEARISED), "1 run rotates", "{} runs rotate")
+    lean = of(table["theta_max_is"] == LEANS, "of 1 run, marked lean, is", "of {} runs, marked lean, is")
+    slide = of(table["note"].str.contains(WOULD_SLIDE), "1 run asks", "{} runs ask")
+    found = [
+        _other_law(table, varied),
+        rotate and f'{rotate} further than {LINEARISED} holds; see the column note, and run kinematics = "finite"',
+        lean and (
+            f"theta_max/alpha {lean} mostly the lean of a base that has yielded; the column note has the rocking about it, and "
+            "with rocking = true under [output] so has a column, for all runs"
+        ),
+        slide and (
+            f"{slide} more friction than the interface has: the pier would slide, which is not followed; see the column note"
+        ),
+    ]  # fmt: skip
+    return [sentence for sentence in found if sentence]
+
+
+def _other_law(table: "pd.DataFrame", varied: Sequence[str]) -> str:
     """Return a warning if the settlement is a range by the spring law, of a tenth and a millimetre or more; else empty."""
-    import numpy as np
-
     if "settlement_other_law_m" not in table:
         return ""
     own, other = table["settlement_m"], table["settlement_other_law_m"]
@@ -59,61 +88,24 @@ def other_law(table: "pd.DataFrame", varied: Sequence[str]) -> str:
     which = f"{worst['record']}, {worst['case']} {named(keys, [worst[name] for name in keys])}".rstrip()
     mm = [1000 * worst[name] for name in ("settlement_m", "settlement_other_law_m")]
     law = "Bouc–Wen" if mm[0] > mm[1] else "elastic–perfectly plastic"
-    runs = "1 run" if differ.sum() == 1 else f"{int(differ.sum())} runs"
     return (
-        f"settlement is no number but a range in {runs}, by the law of the springs, the widest in {which}: "
-        f"{min(mm):z.1f} to {max(mm):z.1f} mm, the larger by the {law} law; checks take the worse"
-    )
-
-
-def linearised(table: "pd.DataFrame") -> str:
-    """Return a warning of rotations too large for linearised kinematics; empty if there are none."""
-    from rockbatch.simulation.outcome import LINEARISED
-
-    runs = int(table["note"].str.contains(LINEARISED).sum())
-    rotate = "1 run rotates" if runs == 1 else f"{runs} runs rotate"
-    return (
-        f'{rotate} further than {LINEARISED} holds; see the column note, and run kinematics = "finite"' if runs else ""
-    )
-
-
-def sliding(table: "pd.DataFrame") -> str:
-    """Return a warning if the friction demand is greater than what the interface has; else empty."""
-    from rockbatch.simulation.outcome import WOULD_SLIDE
-
-    slides = int(table["note"].str.contains(WOULD_SLIDE).sum())
-    if not slides:
-        return ""
-    runs = "1 run asks" if slides == 1 else f"{slides} runs ask"
-    return (
-        f"{runs} more friction than the interface has: the pier would slide, which is not followed; see the column note"
-    )
-
-
-def leaning(table: "pd.DataFrame") -> str:
-    """Return a warning if the greatest rotation is lean and not rocking; else empty."""
-    leans = int((table["theta_max_is"] == LEANS).sum())
-    if not leans:
-        return ""
-    runs = "of 1 run, marked lean, is" if leans == 1 else f"of {leans} runs, marked lean, is"
-    return (
-        f"theta_max/alpha {runs} mostly the lean of a base that has yielded; the column note has the rocking about it, and "
-        "with rocking = true under [output] so has a column, for all runs"
+        f"settlement is no number but a range in {count(int(differ.sum()), 'run')}, by the law of the springs, the widest in "
+        f"{which}: {min(mm):z.1f} to {max(mm):z.1f} mm, the larger by the {law} law; checks take the worse"
     )
 
 
 def _block(runs: "pd.DataFrame", rows: list[str], case_keys: list[str]) -> str:
     cells: dict[str, dict[str, str]] = {}
-    for _, run in runs.iterrows():
+    for run in runs.to_dict("records"):
         line = " ".join(f"{run[name]:g}" if name == "scale" else str(run[name]) for name in rows)
         varied = named(case_keys, [run[name] for name in case_keys])
-        cell = f"{run['theta_max_over_alpha']:.4f}"
-        if run["status"] != "ok":
-            cell = f"{run['status']} {cell}"
-        elif run["theta_max_is"]:
-            cell = f"{run['theta_max_is']} {cell}"
+        mark = run["theta_max_is"] if run["status"] == "ok" else run["status"]
+        cell = f"{mark} {run['theta_max_over_alpha']:.4f}".lstrip()
         cells.setdefault(line, {})[f"{run['case']} {varied}".strip()] = cell
-    return in_width(pd.DataFrame.from_dict(cells, orient="index").fillna(""))
+    cases = list(dict.fromkeys(case for line in cells.values() for case in line))
+    return in_width(
+        ["", *cases], [[line, *(of_line.get(case, "") for case in cases)] for line, of_line in cells.items()]
+    )
 
 
 def named(keys: Iterable[str], values: Iterable[Any]) -> str:

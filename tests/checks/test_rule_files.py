@@ -16,9 +16,10 @@ from studies import PADS, SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.checks import load_rules, read_verdicts, write_verdicts
+from rockbatch.checks.demands import DEMANDS, listed
 from rockbatch.checks.reading import CHECK
 from rockbatch.cli import main
-from rockbatch.commands import marks
+from rockbatch.commands import check
 from rockbatch.errors import InputError
 from rockbatch.results.checking import verdicts
 
@@ -309,7 +310,7 @@ def test_verdicts_are_coloured_on_a_terminal_unless_nobody_wants_it(monkeypatch,
     for name, value in asked.items():
         monkeypatch.setenv(name, value)
     monkeypatch.setattr(sys.stdout, "isatty", lambda: terminal, raising=False)
-    found = [marks.coloured("x", verdict) for verdict in ("pass", "fail", "not decided", "does not apply")]
+    found = [check._coloured("x", verdict) for verdict in ("pass", "fail", "not decided", "does not apply")]
     assert found == (["\x1b[32mx\x1b[0m", "\x1b[31mx\x1b[0m", "\x1b[33mx\x1b[0m", "x"] if colour else ["x"] * 4)
 
 
@@ -321,7 +322,7 @@ def test_verdicts_are_coloured_on_a_terminal_unless_nobody_wants_it(monkeypatch,
     ],
 )
 def test_every_verdict_has_a_sign_and_a_word_that_the_terminal_can_show(passing, encoding, expected):
-    code = "from rockbatch.commands.marks import mark\n"
+    code = "from rockbatch.commands.check import mark\n"
     code += "for way in ('pass', 'fail', 'not decided', 'does not apply'): print(mark(way))\n"
     code += f"from rockbatch.cli import main; main(['check', {str(passing)!r}])"
     environment = os.environ | {"PYTHONIOENCODING": encoding}
@@ -420,6 +421,13 @@ def test_every_limit_of_the_set_for_stepping_piers_says_where_it_comes_from():
     text = (CONFIGS / "checks/stepping_pier.toml").read_text(encoding="utf-8")
     assert {rule.basis for rule in rules} == {"code", "literature", "judgement"}
     assert text.count("\nreason = ") == len(rules)
+
+
+def test_the_example_of_checks_lists_every_demand_that_exists():
+    text = (CONFIGS / "checks/stepping_pier.toml").read_text(encoding="utf-8")
+    written = text.partition("#   demand ")[2].partition("#   statistic ")[0].replace("#", " ").split()
+    assert written == " ".join(f"{group}: {', '.join(names)}" for group, names in listed().items()).split()
+    assert sum(map(len, listed().values())) == len(DEMANDS)
 
 
 def test_the_script_that_sizes_a_foundation_prints_what_its_docstring_says(capsys):
