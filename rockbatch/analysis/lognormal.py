@@ -16,6 +16,8 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+from scipy.optimize import minimize
+from scipy.special import log_ndtr, ndtr, ndtri
 
 Values = npt.NDArray[np.float64]
 
@@ -84,14 +86,10 @@ class Lognormal:
 
     def probability(self, x: Values) -> Values:
         """Return P(x), shape of ``x``."""
-        from scipy.special import ndtr
-
         return ndtr(np.log(x / self.median) / self.dispersion)
 
     def band(self, x: Values) -> tuple[Values, Values]:
         """Return the pointwise profile-likelihood interval of P(x), each shape (n,)."""
-        from scipy.special import ndtr
-
         a, b = self.region.T
         z = a + b * np.log(x)[:, None]
         return ndtr(z.min(axis=1)), ndtr(z.max(axis=1))
@@ -187,8 +185,6 @@ class _Likelihood:
 
     def maximum(self) -> Values | None:
         """Return (a, b) over ln x at the maximum; None if b > 0 does not hold there."""
-        from scipy.optimize import minimize
-
         optimum = minimize(
             lambda ab: -self.value(ab[0], ab[1])[0],
             np.array([0.0, 1.0]),
@@ -201,8 +197,6 @@ class _Likelihood:
 
     def region(self, best: Values, confidence: float) -> Values:
         """Return the edge of the region where ℓ is within half the χ²₁ quantile of its maximum, in (a, b) over ln x."""
-        from scipy.special import ndtri
-
         centre = np.array([best[0] + best[1] * self.centre, best[1] * self.width])
         least = self.value(*centre)[0] - 0.5 * ndtri(0.5 + 0.5 * confidence) ** 2
         # Rays that would be evenly spread if ℓ were quadratic; ℓ is concave, so each leaves the region once
@@ -242,8 +236,6 @@ def _stretch(scores: Values) -> Values:
 
 def _log_difference(z1: Values, z2: Values) -> Values:
     """Return ln[Φ(z2) − Φ(z1)] without cancellation in either tail; −∞ where z2 ≤ z1."""
-    from scipy.special import log_ndtr
-
     upper = z1 > 0  # Φ(z2) − Φ(z1) = Φ(−z1) − Φ(−z2)
     small, large = log_ndtr(np.where(upper, -z2, z1)), log_ndtr(np.where(upper, -z1, z2))
     with np.errstate(divide="ignore", invalid="ignore"):
