@@ -14,7 +14,7 @@ class Shown(ABC):
     """An object whose ``repr`` and view in a notebook are made of the same few facts."""
 
     @abstractmethod
-    def _told(self) -> tuple[str, Mapping[str, str]]:
+    def _facts(self) -> tuple[str, Mapping[str, str]]:
         """Return the title, and facts by their names; those without words are left out."""
 
     def _beneath(self) -> "pd.DataFrame | None":
@@ -22,13 +22,13 @@ class Shown(ABC):
         return None
 
     def __repr__(self) -> str:
-        title, facts = self._told()
+        title, facts = self._facts()
         facts = {name: words for name, words in facts.items() if words}
         width = max(map(len, facts), default=0)
         return "\n".join([f"<{title}>", *(f"  {name:<{width}}  {words}" for name, words in facts.items())])
 
     def _repr_html_(self) -> str:
-        title, facts = self._told()
+        title, facts = self._facts()
         rows = [f"<tr><th>{escape(name)}</th><td>{escape(words)}</td></tr>" for name, words in facts.items() if words]
         shown = f"<p><strong>{escape(title)}</strong></p>" + (f"<table>{''.join(rows)}</table>" if rows else "")
         table = self._beneath()

@@ -68,7 +68,7 @@ class Analysis(Shown):
         """Return the tables that the analysis has, by their names."""
         return {name: table for name in self.TABLES if (table := getattr(self, name)) is not None}
 
-    def _told(self) -> tuple[str, dict[str, str]]:
+    def _facts(self) -> tuple[str, dict[str, str]]:
         """See :class:`Shown`."""
         tables = ", ".join(f"{name} ({count(len(table), 'row')})" for name, table in self.tables.items())
         files = several(len(self.files), "file")

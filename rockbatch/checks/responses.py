@@ -80,11 +80,11 @@ def worst_of_cases(suites: "Iterable[tuple[Case, pd.DataFrame]]") -> list[Worst]
 
 def worst_of_all(worst: Iterable[Worst]) -> dict[str, Worst]:
     """Return the worst of all cases for each demand, in the order of :data:`RESPONSES`."""
-    found: dict[str, Worst] = {}
+    greatest: dict[str, Worst] = {}
     for one in worst:
-        if one.demand not in found or one.value > found[one.demand].value:
-            found[one.demand] = one
-    return {name: found[name] for name in RESPONSES if name in found}
+        if one.demand not in greatest or one.value > greatest[one.demand].value:
+            greatest[one.demand] = one
+    return {name: greatest[name] for name in RESPONSES if name in greatest}
 
 
 def unlimited(worst: Sequence[Worst], verdicts: Sequence[Verdict]) -> list[Worst]:

@@ -99,12 +99,12 @@ class Notes:
 
     def __init__(self, verdicts: Iterable[Verdict]) -> None:
         applied = [verdict for verdict in verdicts if verdict.verdict != DOES_NOT_APPLY]
-        has: dict[str, Counter[str]] = {}
+        counts: dict[str, Counter[str]] = {}
         for verdict in applied:
             for part in verdict.note.split("; ") if verdict.note else ():
-                has.setdefault(part, Counter())[verdict.check] += 1
+                counts.setdefault(part, Counter())[verdict.check] += 1
         every = Counter(verdict.check for verdict in applied)
-        whole = {part: [check for check in own if own[check] == every[check]] for part, own in has.items()}
+        whole = {part: [check for check in own if own[check] == every[check]] for part, own in counts.items()}
         self._common = {
             part: checks for part, checks in whole.items() if sum(every[check] for check in checks) >= REPEATED
         }

@@ -60,7 +60,7 @@ def warnings(table: "pd.DataFrame", varied: Sequence[str]) -> list[str]:
     rotate = of(table["note"].str.contains(LINEARISED), "1 run rotates", "{} runs rotate")
     lean = of(table["theta_max_is"] == LEANS, "of 1 run, marked lean, is", "of {} runs, marked lean, is")
     slide = of(table["note"].str.contains(WOULD_SLIDE), "1 run asks", "{} runs ask")
-    found = [
+    sentences = [
         _other_law(table, varied),
         rotate and f'{rotate} further than {LINEARISED} holds; see the column note, and run kinematics = "finite"',
         lean and (
@@ -71,7 +71,7 @@ def warnings(table: "pd.DataFrame", varied: Sequence[str]) -> list[str]:
             f"{slide} more friction than the interface has: the pier would slide, which is not followed; see the column note"
         ),
     ]  # fmt: skip
-    return [sentence for sentence in found if sentence]
+    return [sentence for sentence in sentences if sentence]
 
 
 def _other_law(table: "pd.DataFrame", varied: Sequence[str]) -> str:

@@ -307,7 +307,7 @@ class Motion(Shown):
         """Peak vertical ground acceleration [m/s²], ``None`` without a vertical component."""
         return None if self.vertical is None else float(np.abs(self.vertical).max())
 
-    def _told(self) -> tuple[str, dict[str, str]]:
+    def _facts(self) -> tuple[str, dict[str, str]]:
         """See :class:`Shown`."""
         return f"ground motion {self.name}", {
             "record": self.origin.label,

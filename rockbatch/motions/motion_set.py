@@ -130,7 +130,7 @@ class MotionSet(Shown):
             rows[name] = rows[name].astype("float64")
         return rows.astype({"npts": "int64"})
 
-    def _told(self) -> tuple[str, dict[str, str]]:
+    def _facts(self) -> tuple[str, dict[str, str]]:
         """See :class:`Shown`."""
         pga = sorted(motion.pga / GRAVITY for motion in self.motions)
         vertical = sum(motion.vertical is not None for motion in self.motions)

@@ -14,7 +14,7 @@ from rockbatch.checks.demands import ROCKING
 from rockbatch.checks.suite import MIRROR_OF, OTHER_LAW
 from rockbatch.lazy import pd
 from rockbatch.motions import Motion, MotionSet
-from rockbatch.pier import Damper, Pier, Restraint, Tendon
+from rockbatch.pier import Damper, Pier, Tendon
 from rockbatch.simulation.outcome import TERMS, Outcome
 from rockbatch.study import Case, Study
 
@@ -318,52 +318,41 @@ def _in_kilonewtons(field: str) -> Callable[[Ran], float | None]:
 
 
 def _device(
-    name: str, meaning: str, field: str | Callable[[Ran], Any], unit: str, page: OnPage, kind: type[Restraint]
-) -> Column:
-    """Return a column of studies that have dampers, or tendons."""
+    name: str, meaning: str, of: str | Callable[[Ran], Any], unit: str, head: str, form: str, factor: int = 1, behind: str = ""
+) -> Column:  # fmt: skip
+    """Return a column of studies that have dampers, or tendons, as its name begins."""
+    kind = Damper if name.startswith("damper") else Tendon
 
     def has(study: Study) -> bool:
         return any(isinstance(device, kind) for case in study.cases for device in case.base.restraints)
 
-    number: Literal["number", "count"] = "count" if field == "tendon_slack" else "number"
-    return Column(name, meaning, field, unit, page, number, sometimes=True, asked=has)
+    number: Literal["number", "count"] = "count" if of == "tendon_slack" else "number"
+    return Column(name, meaning, of, unit, OnPage(head, form, factor, behind), number, sometimes=True, asked=has)
 
+
+_DAMPER, _TENDON = "greatest force of a damper", "greatest force of a tendon"
 
 DEVICES = (
-    _device(
-        "damper_force_over_weight", "greatest force of a damper over the pier's weight", "damper_force", "1",
-        OnPage("damper F/(M g)", ".4f"), Damper,
-    ),
-    _device(
-        "damper_stroke_m", "greatest elongation of a damper", "damper_stroke", "m",
-        OnPage("damper stroke [mm]", ".1f", 1000), Damper,
-    ),
-    _device(
-        "damper_speed_m_s", "greatest speed of a damper", "damper_speed", "m/s", OnPage("damper speed [m/s]", ".3f"),
-        Damper,
-    ),
+    _device("damper_force_over_weight", f"{_DAMPER} over the pier's weight", "damper_force", "1", "damper F/(M g)", ".4f"),
+    _device("damper_stroke_m", "greatest elongation of a damper", "damper_stroke", "m", "damper stroke [mm]", ".1f", 1000),
+    _device("damper_speed_m_s", "greatest speed of a damper", "damper_speed", "m/s", "damper speed [m/s]", ".3f"),
     _device(
         "damper_energy_J_kg", "energy that all dampers take, per unit mass of the pier", "damper_energy", "J/kg",
-        OnPage("dampers [J/kg]", ".4f"), Damper,
+        "dampers [J/kg]", ".4f",
     ),
-    _device(
-        "tendon_force_over_weight", "greatest force of a tendon over the pier's weight", "tendon_force", "1",
-        OnPage("tendon T/(M g)", ".4f"), Tendon,
-    ),
+    _device("tendon_force_over_weight", f"{_TENDON} over the pier's weight", "tendon_force", "1", "tendon T/(M g)", ".4f"),
     _device(
         "tendon_yield_m", "by how much the tendon that yielded most is longer for good", "tendon_yield", "m",
-        OnPage("tendon yield [mm]", ".2f", 1000), Tendon,
+        "tendon yield [mm]", ".2f", 1000,
+    ),
+    _device("tendon_slack", "how often tendons went slack", "tendon_slack", "1", "slack", ".0f"),
+    _device(
+        "damper_force_kN", f"{_DAMPER}, where the mass is known", _in_kilonewtons("damper_force"), "kN", "damper F [kN]", ".0f",
+        behind="damper_force_over_weight",
     ),
     _device(
-        "tendon_slack", "how often tendons went slack", "tendon_slack", "1", OnPage("slack", ".0f"), Tendon,
-    ),
-    _device(
-        "damper_force_kN", "greatest force of a damper, where the mass is known", _in_kilonewtons("damper_force"), "kN",
-        OnPage("damper F [kN]", ".0f", behind="damper_force_over_weight"), Damper,
-    ),
-    _device(
-        "tendon_force_kN", "greatest force of a tendon, where the mass is known", _in_kilonewtons("tendon_force"), "kN",
-        OnPage("tendon T [kN]", ".0f", behind="tendon_force_over_weight"), Tendon,
+        "tendon_force_kN", f"{_TENDON}, where the mass is known", _in_kilonewtons("tendon_force"), "kN", "tendon T [kN]", ".0f",
+        behind="tendon_force_over_weight",
     ),
 )  # fmt: skip
 """Of dampers and tendons."""

@@ -16,10 +16,10 @@ MOST_OF_A_TEXT = 10_000_000
 
 def group_in(group: "h5py.Group", name: str) -> "h5py.Group":
     """Return a group that lies in ``group`` itself."""
-    found = _member(group, name)
-    if not isinstance(found, h5py.Group):
+    member = _member(group, name)
+    if not isinstance(member, h5py.Group):
         raise ValueError(f"{name} is no group")
-    return found
+    return member
 
 
 def array_in(
@@ -29,16 +29,16 @@ def array_in(
 
     Texts come as ``str``. ``length`` is the number of values that there have to be; ``finite`` ones unless they may be infinite.
     """
-    found = _member(group, name)
-    if not isinstance(found, h5py.Dataset) or found.ndim != 1 or found.dtype.kind != kind:
+    member = _member(group, name)
+    if not isinstance(member, h5py.Dataset) or member.ndim != 1 or member.dtype.kind != kind:
         raise ValueError(f"{name} is no list of {'texts' if kind == 'S' else 'numbers'}")
-    if found.external or found.is_virtual or found.chunks:
+    if member.external or member.is_virtual or member.chunks:
         raise ValueError(f"the bytes of {name} are not where `rockbatch` writes them")
-    if found.id.get_storage_size() != found.nbytes or found.nbytes > _size(group):
-        raise ValueError(f"{name} has {found.size} values, and no room for them in the file")
-    if length is not None and len(found) != length:
-        raise ValueError(f"{name} has {len(found)} values instead of {length}")
-    values = found.asstr()[:] if kind == "S" else found[:]
+    if member.id.get_storage_size() != member.nbytes or member.nbytes > _size(group):
+        raise ValueError(f"{name} has {member.size} values, and no room for them in the file")
+    if length is not None and len(member) != length:
+        raise ValueError(f"{name} has {len(member)} values instead of {length}")
+    values = member.asstr()[:] if kind == "S" else member[:]
     if kind == "f" and finite and np.isinf(values).any():
         raise ValueError(f"{name} has infinite values")
     return np.asarray(values)

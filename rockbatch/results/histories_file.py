@@ -118,7 +118,7 @@ def _write(group: "h5py.Group", response: Response) -> None:
     _set(group.create_group("varied"), response.columns)
     _set(group.create_group("pier"), asdict(response.pier))
     base = {"name": response.base.name} | asdict(response.base)
-    base["restraints"] = json.dumps([asdict(each) for each in response.base.restraints])
+    base["restraints"] = json.dumps([asdict(device) for device in response.base.restraints])
     _set(group.create_group("base"), base)
     _put(group, response.history, [name for name in UNITS if response.base.on_springs or name not in OF_SPRINGS])
     _put(group.create_group("events"), response.events, _EVENTS)

@@ -104,7 +104,9 @@ class Results(Shown, Saved):
                 raise InputError(self._none(name, value, fitting))
             fitting = remaining
         if len(fitting) > 1:
-            raise InputError(f"{self.directory}: {len(fitting)} histories fit; say which: {_told(fitting, wanted)}")
+            raise InputError(
+                f"{self.directory}: {len(fitting)} histories fit; say which: {_candidates(fitting, wanted)}"
+            )
         return self.responses[int(fitting.index[0])]
 
     def history(self, record: str | None = None, case: str | None = None, **more: float | str) -> "pd.DataFrame":
@@ -122,7 +124,7 @@ class Results(Shown, Saved):
 
         return plot(self.peaks, self.info)
 
-    def _told(self) -> tuple[str, dict[str, str]]:
+    def _facts(self) -> tuple[str, dict[str, str]]:
         """See :class:`Shown`."""
         runs = simulated(self.peaks[self.peaks["case"] != ""])
         counts = runs["status"].value_counts()
@@ -190,7 +192,7 @@ def open_results(directory: str | os.PathLike[str]) -> Results:
     return Results(saved.directory, saved.info, saved.peaks, saved.missing)
 
 
-def _told(fitting: "pd.DataFrame", wanted: dict[str, float | str]) -> str:
+def _candidates(fitting: "pd.DataFrame", wanted: dict[str, float | str]) -> str:
     """Return the runs that fit, by what distinguishes them."""
     apart = [name for name in fitting.columns if name not in ("status", *wanted) and fitting[name].nunique() > 1]
     runs = fitting[apart].to_dict("records")
@@ -199,7 +201,7 @@ def _told(fitting: "pd.DataFrame", wanted: dict[str, float | str]) -> str:
     )
 
 
-def _listed(each: Iterable[str]) -> str:
-    words = list(each)
+def _listed(candidates: Iterable[str]) -> str:
+    words = list(candidates)
     more = len(words) - MOST_CANDIDATES
     return "; ".join(words[:MOST_CANDIDATES]) + (f"; and {more} more" if more > 0 else "")

@@ -118,11 +118,11 @@ def _read_info(path: Path, problems: list[str]) -> dict[str, Any]:
         line = getattr(error, "lineno", 1)
         problems.append(f"{path}:{line}: not JSON ({error}); start `rockbatch run` again")
         return {}
-    found = list(unfit(info, SHAPE, MOST_PROBLEMS))
-    missing = [problem.place for problem in found if problem.missing and problem.place in SHAPE]
+    misfits = list(unfit(info, SHAPE, MOST_PROBLEMS))
+    missing = [problem.place for problem in misfits if problem.missing and problem.place in SHAPE]
     if missing:
         problems.append(f"{path}: has no {', '.join(missing)}; start `rockbatch run` again with this version")
-    problems += [f"{path}: {one}; start `rockbatch run` again" for one in found if one.place not in missing]
+    problems += [f"{path}: {one}; start `rockbatch run` again" for one in misfits if one.place not in missing]
     return info if isinstance(info, dict) else {}
 
 
@@ -174,8 +174,8 @@ def _read_peaks(path: Path, varied: Sequence[str], problems: list[str]) -> "pd.D
         sound = table["status"].isin(STATUSES).all() and not table[finite].isin([math.inf, -math.inf]).any(axis=None)
         sound = sound and not (table["scale"].isna() & (table["case"] != "")).any()
     except (ValueError, TypeError, pd.errors.ParserWarning) as error:
-        found = _bad_cells(path, head, numbers)
-        problems += found or [f"{path}: not a table ({error}); start `rockbatch run` again"]
+        bad = _bad_cells(path, head, numbers)
+        problems += bad or [f"{path}: not a table ({error}); start `rockbatch run` again"]
         return None
     if not sound:
         problems += _bad_cells(path, head, numbers)
@@ -191,7 +191,7 @@ def _read_peaks(path: Path, varied: Sequence[str], problems: list[str]) -> "pd.D
 
 def _bad_cells(path: Path, head: Sequence[str], numbers: Sequence[str]) -> list[str]:
     """Return every row of another length and every cell that should be a number and is not, with its line."""
-    found: list[str] = []
+    bad: list[str] = []
     try:
         with opened_text(path) as file:
             reader = csv.reader(file)
@@ -199,24 +199,24 @@ def _bad_cells(path: Path, head: Sequence[str], numbers: Sequence[str]) -> list[
             for cells in reader:
                 place = f"{path}:{reader.line_num}"
                 if len(cells) != len(head):
-                    found.append(f"{place}: {len(cells)} cells: expected {len(head)}, as in the first line")
+                    bad.append(f"{place}: {len(cells)} cells: expected {len(head)}, as in the first line")
                     continue
                 row = dict(zip(head, cells, strict=True))
-                found += [
+                bad += [
                     f'{place}: {name} = "{row[name][:80]}": expected {"a whole number" if name in COUNTS else "a number"} '
                     "or nothing"
                     for name in numbers
                     if not _is_number(row[name], name in COUNTS, name in UNBOUNDED)
                 ]
                 if row["status"] not in STATUSES:
-                    found.append(f'{place}: status = "{row["status"][:80]}": expected {", ".join(STATUSES)}')
+                    bad.append(f'{place}: status = "{row["status"][:80]}": expected {", ".join(STATUSES)}')
                 if row["case"] and not row["scale"]:
-                    found.append(f"{place}: a run without scale")
-                if len(found) > MOST_PROBLEMS:
-                    return [*found[:MOST_PROBLEMS], f"{path}: and more"]
+                    bad.append(f"{place}: a run without scale")
+                if len(bad) > MOST_PROBLEMS:
+                    return [*bad[:MOST_PROBLEMS], f"{path}: and more"]
     except (UnicodeDecodeError, csv.Error) as error:
-        found.append(f"{path}: not a table ({error}); start `rockbatch run` again")
-    return found
+        bad.append(f"{path}: not a table ({error}); start `rockbatch run` again")
+    return bad
 
 
 def _is_number(text: str, whole: bool, unbounded: bool) -> bool:

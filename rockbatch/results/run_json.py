@@ -30,7 +30,9 @@ INFO = "run.json"
 _NUMBER = (float, None)
 _VALUES = {str: (float, str)}
 _NUMBERS_OF_BASE = (*BOUNDS, "beta", "omega_v", "delta_s_m", "delta_y_m", "stiffness_kN_m", "yield_kN")
-_RESTRAINT = {each.name: Maybe(_NUMBER) for each in (*fields(Damper), *fields(Tendon)) if each.name != "confirm"} | {
+_RESTRAINT = {
+    parameter.name: Maybe(_NUMBER) for parameter in (*fields(Damper), *fields(Tendon)) if parameter.name != "confirm"
+} | {
     "kind": Maybe(str),
     "at": Maybe((float, str)),
 }

@@ -103,8 +103,8 @@ def suites(
     total = np.bincount(which[stood], known[stood], groups)
     mean = np.where(standing > 0, total / np.maximum(standing, 1), math.nan)
     at = [_quantiles(ordered, first, n, q) for q in (0.16, 0.5, 0.84, 1.0)]
-    counts = [np.bincount(of.group[each], minlength=groups) for each in (of.overturned, of.flight, of.failed)]
-    return [Suite(*one) for one in zip(*(each.tolist() for each in (n, standing, mean, *at, *counts)), strict=True)]
+    counts = [np.bincount(of.group[ended], minlength=groups) for ended in (of.overturned, of.flight, of.failed)]
+    return [Suite(*row) for row in zip(*(column.tolist() for column in (n, standing, mean, *at, *counts)), strict=True)]
 
 
 def _quantiles(ordered: Values, first: npt.NDArray[np.int64], n: npt.NDArray[np.int64], q: float) -> Values:

@@ -190,7 +190,7 @@ class Response(Shown):
 
         return plot(self.history, self.events, self.pier, self.base, self._title)
 
-    def _told(self) -> tuple[str, dict[str, str]]:
+    def _facts(self) -> tuple[str, dict[str, str]]:
         """See :class:`Shown`."""
         kinds = self.events["kind"].value_counts(sort=False)
         facts = {

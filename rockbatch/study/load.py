@@ -189,7 +189,7 @@ class Study(Shown):
         """Return the text, parsed again, for the tables of analyses."""
         return TomlFile.parse(self.path, self.text, lined=self.lined)
 
-    def _told(self) -> tuple[str, dict[str, str]]:
+    def _facts(self) -> tuple[str, dict[str, str]]:
         """See :class:`Shown`."""
         piers = {f"alpha {case.pier.alpha:.4g} rad, R0 {case.pier.size:.4g} m" for case in self.cases}
         names = Counter(case.name for case in self.cases)
