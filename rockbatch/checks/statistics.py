@@ -18,15 +18,22 @@ MEAN_FROM = 7
 
 
 def quantile(values: Values, q: float) -> float:
-    """Return the quantile of ``values``, shape (n,), linear between ranks; infinite where a rank that it needs is infinite."""
-    ordered = np.sort(values)
-    place = q * (len(ordered) - 1)
-    below = math.floor(place)
-    share = place - below
-    if share < 1e-9:  # rounding, no reason to look at the next rank
-        return float(ordered[below])
-    low, high = ordered[below : below + 2]
-    return math.inf if math.isinf(high) else float(low + share * (high - low))
+    """Return the quantile of ``values``, shape (n,), linear between ranks; infinite if a rank that it needs is infinite."""
+    return float(quantiles(np.sort(values), np.array([0]), np.array([len(values)]), q)[0])
+
+
+def quantiles(ordered: Values, first: npt.NDArray[np.int64], n: npt.NDArray[np.int64], q: float) -> Values:
+    """Return a quantile of each of several groups, of ``n`` values each, in order, from ``first`` on; NaN for an empty one."""
+    of_groups = np.full(len(n), math.nan)
+    some = n > 0
+    last = n[some] - 1
+    below = np.floor(q * last).astype(np.int64)
+    share = q * last - below
+    low, high = ordered[first[some] + below], ordered[first[some] + np.minimum(below + 1, last)]
+    between = share >= 1e-9  # else rounding, no reason to look at the next rank
+    with np.errstate(invalid="ignore"):
+        of_groups[some] = np.where(between, np.where(np.isinf(high), math.inf, low + share * (high - low)), low)
+    return of_groups
 
 
 def _mean(values: Values) -> float:

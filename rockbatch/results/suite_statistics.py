@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from rockbatch.checks.statistics import Values
+from rockbatch.checks.statistics import Values, quantiles
 
 NO_PEAK = ("overturned", "flight")
 """Outcomes without a largest rotation: they count as larger than any."""
@@ -102,23 +102,9 @@ def suites(
     standing = np.bincount(which[stood], minlength=groups)
     total = np.bincount(which[stood], known[stood], groups)
     mean = np.where(standing > 0, total / np.maximum(standing, 1), math.nan)
-    at = [_quantiles(ordered, first, n, q) for q in (0.16, 0.5, 0.84, 1.0)]
+    at = [quantiles(ordered, first, n, q) for q in (0.16, 0.5, 0.84, 1.0)]
     counts = [np.bincount(of.group[ended], minlength=groups) for ended in (of.overturned, of.flight, of.failed)]
     return [Suite(*row) for row in zip(*(column.tolist() for column in (n, standing, mean, *at, *counts)), strict=True)]
-
-
-def _quantiles(ordered: Values, first: npt.NDArray[np.int64], n: npt.NDArray[np.int64], q: float) -> Values:
-    """Return :func:`rockbatch.checks.statistics.quantile` of ``n`` values each, in order, from ``first`` on; NaN of none."""
-    quantiles = np.full(len(n), math.nan)
-    some = n > 0
-    last = n[some] - 1
-    below = np.floor(q * last).astype(np.int64)
-    share = q * last - below
-    low, high = ordered[first[some] + below], ordered[first[some] + np.minimum(below + 1, last)]
-    between = share >= 1e-9  # else rounding, no reason to look at the next rank
-    with np.errstate(invalid="ignore"):
-        quantiles[some] = np.where(between, np.where(np.isinf(high), math.inf, low + share * (high - low)), low)
-    return quantiles
 
 
 def distribution(
