@@ -52,7 +52,7 @@ def _environment() -> "Environment":
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
     made = Environment(
-        loader=FileSystemLoader(HERE), autoescape=True, finalize=escape, undefined=StrictUndefined,
+        loader=FileSystemLoader(HERE), autoescape=True, finalize=lambda value: value if hasattr(value, "__html__") else escape(value), undefined=StrictUndefined,
         trim_blocks=True, lstrip_blocks=True,
     )  # fmt: skip
     made.filters |= {"f": number, "css": css_string, "shell": shlex.join}
