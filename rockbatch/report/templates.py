@@ -43,8 +43,16 @@ def document(kind: str, title: str, sections: Iterable[Section], version: str = 
 
 
 def render(template: str, **values: object) -> Markup:
-    """Return a template of this package as HTML; ``template`` is its path in the package."""
-    return Markup(_environment().get_template(template).render(values))
+    """Return a template of this package as HTML; ``template`` is its path in the package.
+
+    Raises ``KeyError`` if a value lacks what the template shows.
+    """
+    from jinja2 import UndefinedError
+
+    try:
+        return Markup(_environment().get_template(template).render(values))
+    except UndefinedError as error:
+        raise KeyError(str(error)) from error
 
 
 @cache
@@ -52,7 +60,8 @@ def _environment() -> "Environment":
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
     made = Environment(
-        loader=FileSystemLoader(HERE), autoescape=True, finalize=lambda value: value if hasattr(value, "__html__") else escape(value), undefined=StrictUndefined,
+        loader=FileSystemLoader(HERE), autoescape=True, undefined=StrictUndefined,
+        finalize=lambda value: value if hasattr(value, "__html__") else escape(value),
         trim_blocks=True, lstrip_blocks=True,
     )  # fmt: skip
     made.filters |= {"f": number, "css": css_string, "shell": shlex.join}

@@ -1,7 +1,7 @@
 """Results of ``rockbatch fragility``: for each limit points, curves and bands, and a table of medians."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -10,8 +10,9 @@ from rockbatch.report.drawing.axes import Axes, Scale
 from rockbatch.report.drawing.svg import curve, key, line, marker, style_of, svg, text
 from rockbatch.report.finished_analysis import Contents, of_files
 from rockbatch.report.labels import quantity
-from rockbatch.report.markup import Markup, figure, join, tag
-from rockbatch.report.table import Head, table
+from rockbatch.report.markup import Markup, join, tag
+from rockbatch.report.table import Head, listed
+from rockbatch.report.templates import render
 
 WIDTH, HEIGHT = 300.0, 190.0
 STRIP = 4.0
@@ -29,56 +30,13 @@ def section(contents: Contents) -> Markup:
     if analysis is None or not analysis.info["curves"]:
         return Markup("")
     info = analysis.info
-    drawn = figure(_panels(info), _caption(info))
-    return join(_lead(info), drawn, _table(info), analysis.provenance())
-
-
-def _lead(info: Mapping[str, Any]) -> Markup:
-    words = f"The probability that a limit is exceeded by a motion with a given {info['measure']}, from {info['records']} records"
-    words += " (polarity: mirror images, counted once)" if len(info["polarities"]) > 1 else ""
-    if info.get("stations", info["records"]) < info["records"]:
-        words += (
-            f", components of {info['stations']} stations: each counts by itself, though those of a station are not independent, "
-            "so that the bands are too narrow"
-        )
-    if info["method"] == "ida":
-        words += (
-            f". Incremental dynamic analysis: of each record the least intensity that exceeds the limit, bisected to "
-            f"{100 * info['tolerance']:g} %; records that never exceed it are censored. A rocking pier can overturn at one level "
-            "and stand at a higher one: the first exceedance counts"
-        )
-        words += f"; {info['looked_at']}." if info.get("looked_at") else "."
-    else:
-        words += (
-            ", all of them scaled to every level; the bands allow for that these are the same records at every level."
-        )
-    little = [f"{entry['limit_state']}, {_label(entry)}" for entry in info["curves"] if entry["says_little"]]
-    warning = (
-        tag("strong", f"Too many runs are undecided for these curves to say much: {'; '.join(little)}. ")
-        if little
-        else ""
-    )
-    return tag("p", warning, words)
-
-
-def _caption(info: Mapping[str, Any]) -> str:
-    share = f"{100 * info['confidence']:g} %"
-    points = "Markers: share of the decided records that exceed the limit at a level; bars: with the undecided ones either way. "
-    if any("open" in entry for entry in info["curves"]):
-        points += (
-            "Undecided runs count for nothing in a curve; between dotted edges: what it may be, whatever they come to. "
-        )
-    steps = (
-        "Steps: share of the records by their bisected capacities, where none is undecided. "
-        if info["method"] == "ida"
-        else ""
-    )
-    if any(entry.get("looked") for entry in info["curves"]):
-        steps += "Strips above the axes: intensities at which records were looked at; gaps were not. "
-    return (
-        f"{points}{steps}Curves: lognormal, by maximum likelihood (Baker 2015); shaded: {share} profile-likelihood "
-        "band, pointwise. Where no curve is drawn, the table says why."
-    )
+    share, curves = f"{100 * info['confidence']:g} %", info["curves"]
+    return render(
+        "sections/fragility.html", info=info, share=share, panels=_panels(info), table=_table(info, share),
+        little=[f"{entry['limit_state']}, {_label(entry)}" for entry in curves if entry["says_little"]],
+        open=any("open" in entry for entry in curves), looked=any(entry.get("looked") for entry in curves),
+        provenance=analysis.provenance(),
+    )  # fmt: skip
 
 
 def _label(entry: Curve) -> str:
@@ -178,40 +136,34 @@ def _steps(axes: Axes, capacities: Sequence[float | None]) -> tuple[np.ndarray, 
     return axes.across(x), axes.down(np.repeat(shares, 2))
 
 
-def _table(info: Mapping[str, Any]) -> Markup:
-    share = f"{100 * info['confidence']:g} %"
+def _table(info: Mapping[str, Any], share: str) -> Markup:
     heads = [
-        Head("limit"),
-        Head("case"),
-        Head(f"median [{info['unit']}]", ".3g", f"θ: the {info['measure']} that half of the motions need"),
-        Head(share, note="profile-likelihood interval of the median"),
-        Head("undecided", note="the median with all undecided runs beyond the limit, and with all within it"),
-        Head("dispersion", ".2f", "β: standard deviation of the logarithm"),
-        Head(share, note="profile-likelihood interval of the dispersion"),
-        Head("records", ".0f", "that count"),
-        Head("overturned", ".0f", "largest number of records that overturn at one level"),
-        Head("note"),
-    ]
-    rows = [
-        [
-            entry["limit_state"],
-            _label(entry),
-            entry["median"],
-            _interval(entry.get("median_interval")),
-            _interval(entry["median_undecided"]),
-            entry["dispersion"],
-            _interval(entry.get("dispersion_interval")),
-            max(point["records"] for point in entry["points"]),
-            max(point["collapsed"] for point in entry["points"]),
-            entry["note"],
-        ]
-        for entry in info["curves"]
-    ]
-    return table(heads, rows, prose=True, name="Medians and dispersions")
+        Head("limit", of="limit_state"),
+        Head("case", of=_label),
+        Head(f"median [{info['unit']}]", ".3g", f"θ: the {info['measure']} that half of the motions need", of="median"),
+        Head(share, note="profile-likelihood interval of the median", of=_interval("median_interval")),
+        Head(
+            "undecided", note="the median with all undecided runs beyond the limit, and with all within it",
+            of=_interval("median_undecided"),
+        ),
+        Head("dispersion", ".2f", "β: standard deviation of the logarithm", of="dispersion"),
+        Head(share, note="profile-likelihood interval of the dispersion", of=_interval("dispersion_interval")),
+        Head("records", ".0f", "that count", of=_most("records")),
+        Head("overturned", ".0f", "largest number of records that overturn at one level", of=_most("collapsed")),
+        Head("note", of="note"),
+    ]  # fmt: skip
+    return listed(heads, info["curves"], prose=True, name="Medians and dispersions")
 
 
-def _interval(bounds: Sequence[float | None] | None) -> Markup:
-    if bounds is None:
-        return Markup("")
-    low, high = (math.inf if bound is None else bound for bound in bounds)
-    return Markup(f"{low:.3g}\u00a0–\u2060\u00a0{'∞' if math.isinf(high) else f'{high:.3g}'}")
+def _most(name: str) -> Callable[[Curve], object]:
+    return lambda entry: max(point[name] for point in entry["points"])
+
+
+def _interval(name: str) -> Callable[[Curve], object]:
+    def written(entry: Curve) -> Markup:
+        if entry.get(name) is None:
+            return Markup("")
+        low, high = ("∞" if bound in (None, math.inf) else f"{bound:.3g}" for bound in entry[name])
+        return Markup(f"{low}\u00a0–\u2060\u00a0{high}")
+
+    return written

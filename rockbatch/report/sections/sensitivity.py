@@ -1,6 +1,6 @@
 """Pictures of ``rockbatch sensitivity``: the effect of each input alone, and Sobol's indices."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -8,11 +8,13 @@ import numpy as np
 from rockbatch.checks.statistics import STATISTICS
 from rockbatch.lazy import pd
 from rockbatch.report.drawing.axes import Axes, Scale, spanning
-from rockbatch.report.drawing.svg import key, line, lowered, rectangle, svg, text
+from rockbatch.report.drawing.svg import Entry, key, line, lowered, rectangle, svg, text
+from rockbatch.report.finished import as_dicts
 from rockbatch.report.finished_analysis import Contents, named, of_files
 from rockbatch.report.labels import SYMBOLS
-from rockbatch.report.markup import Markup, figure, join, number, tag
-from rockbatch.report.table import Head, alarm, table
+from rockbatch.report.markup import Markup, figure, join, number
+from rockbatch.report.table import Head, listed
+from rockbatch.report.templates import render
 
 WIDTH, LEFT, TOP, ROW = 440, 84, 20, 30
 BAR = 12
@@ -29,48 +31,24 @@ def section(contents: Contents) -> Markup:
     swings, shares = analysis.table("sensitivity.csv", TORNADO), analysis.table("sobol.csv", SOBOL)
     if swings is None or shares is None:
         return Markup("")
-    keys = ["case", *analysis.info["varied"]]
-    parts = [_lead(analysis.info), _without_vertical(analysis.info)]
+    info = analysis.info
+    keys = ["case", *info["varied"]]
+    varying = [name for name in keys if swings[name].nunique(dropna=False) > 1]
+    drawn = []
     for names, own in swings.groupby(keys, sort=False, dropna=False):
-        both = own.merge(shares, on=[*keys, "parameter"])
-        values = dict(zip(keys, names, strict=True))
-        varying = [name for name in keys if swings[name].nunique(dropna=False) > 1]
-        words = named(values, varying)
-        parts.append(figure(_tornado(both), f"{words}: one input at a time, all others as in the study."))
-        parts.append(figure(_bars(both), f"{words}: all inputs at once over their ranges."))
-        parts.append(_numbers(both))
-    parts.append(analysis.provenance())
-    return join(*parts)
-
-
-def _lead(info: dict[str, Any]) -> Markup:
-    runs = ", ".join(f"{count} {status}" for status, count in sorted(info["statuses"].items()))
-    return tag(
-        "p",
-        f"The answer is the {STATISTICS[info['statistic']].words} of the suite of ", _peak(),
-        ", every component by itself. A run that overturned, or was ended by flight, counts as "
-        f"{info['overturned']:g}, and so does any larger rotation; a failed one with its best value. Of all runs: {runs}. Of the "
-        "answer's variance, the first-order index is the share that goes with the input alone, the total index what would be "
-        "left if only it were unknown; the difference is its part in interactions. "
-        f"Whiskers: {100 * info['confidence']:g} % intervals.",
+        both, words = own.merge(shares, on=[*keys, "parameter"]), named(dict(zip(keys, names, strict=True)), varying)
+        drawn += [
+            figure(_tornado(both), f"{words}: one input at a time, all others as in the study."),
+            figure(_bars(both), f"{words}: all inputs at once over their ranges."),
+            _numbers(both),
+        ]
+    vertical = [motion["vertical"] for motion in info.get("under", [])]
+    return render(
+        "sections/sensitivity.html", info=info, statistic=STATISTICS[info["statistic"]].words, drawn=join(*drawn),
+        runs=[f"{count} {status}" for status, count in sorted(info["statuses"].items())],
+        idle=vertical and not any(vertical) and any(entry.get("name") == "vertical" for entry in info["inputs"]),
+        provenance=analysis.provenance(),
     )  # fmt: skip
-
-
-def _without_vertical(info: dict[str, Any]) -> Markup:
-    """Warn that the input "vertical" has no effect if no record has a vertical component."""
-    motions = info.get("under", [])
-    studied = any(entry.get("name") == "vertical" for entry in info["inputs"])
-    if not studied or not motions or any(motion["vertical"] for motion in motions):
-        return Markup("")
-    return tag(
-        "p",
-        alarm("No record has a vertical component"),
-        ": the input vertical is without effect here, whatever it would do.",
-    )
-
-
-def _peak() -> Markup:
-    return join("θ", tag("sub", "max"), "/α")
 
 
 def _symbol(name: str) -> str:
@@ -92,7 +70,7 @@ def _tornado(both: "pd.DataFrame") -> Markup:
     room = 0.12 * (high - low) or 0.1 * abs(high) or 1.0
     axes, drawn = _frame(both["parameter"].tolist(), Scale(max(0.0, low - room), high + room))
     base = float(axes.across(ends[0, 1]))
-    for place, row in enumerate(both.to_dict("records")):
+    for place, row in enumerate(as_dicts(both)):
         middle = TOP + ROW * (place + 0.5)
         for colour, end, answer in (("s1", row["low"], row["answer_low"]), ("s2", row["high"], row["answer_high"])):
             at = float(axes.across(answer))
@@ -103,13 +81,8 @@ def _tornado(both: "pd.DataFrame") -> Markup:
             drawn.append(text(at + side, middle + shift + BAR - 2, _written(end), class_=colour + anchor))
     drawn.append(line(base, TOP, base, TOP + axes.height, "edge", f"as in the study: {ends[0, 1]:.4f}"))
     drawn.append(text(LEFT - 2, 12, lowered("θ", "max", "/α"), class_="q e"))
-    entries = [
-        (rectangle(1, 3, 20, BAR, "filled s1"), "at the low end of the range, or the first choice"),
-        (rectangle(1, 3, 20, BAR, "filled s2"), "at the high end, or the second choice"),
-        (line(11, 0, 11, 14, "edge"), "as in the study"),
-    ]
-    drawing = svg(WIDTH, TOP + axes.height + 20, *drawn, description="One input at a time", class_="plot marks alone")
-    return join(drawing, key(entries))
+    ends_in_words = "at the low end of the range, or the first choice", "at the high end, or the second choice"
+    return _picture("One input at a time", drawn, axes, ends_in_words, (line(11, 0, 11, 14, "edge"), "as in the study"))
 
 
 def _bars(both: "pd.DataFrame") -> Markup:
@@ -118,7 +91,7 @@ def _bars(both: "pd.DataFrame") -> Markup:
     ends = np.concatenate([np.nan_to_num(column.to_numpy(float)) for column in whiskers])
     axes, drawn = _frame(own["parameter"].tolist(), spanning(ends))
     zero = float(axes.across(0.0))
-    for place, row in enumerate(own.to_dict("records")):
+    for place, row in enumerate(as_dicts(own)):
         for colour, name, shift in (("s1", "first", -BAR), ("s2", "total", 0)):
             if np.isnan(row[name]):
                 continue
@@ -128,33 +101,31 @@ def _bars(both: "pd.DataFrame") -> Markup:
             drawn.append(rectangle(left, y, right - left, BAR, f"filled {colour}"))
             drawn.append(line(low, y + BAR / 2, high, y + BAR / 2, "bar", f"{value:.3f} ± {error:.3f}"))
     drawn.append(line(zero, TOP, zero, TOP + axes.height, "edge"))
-    entries = [
-        (rectangle(1, 3, 20, BAR, "filled s1"), "first-order index"),
-        (rectangle(1, 3, 20, BAR, "filled s2"), "total index"),
-    ]
-    drawing = svg(WIDTH, TOP + axes.height + 20, *drawn, description="Sobol indices", class_="plot marks alone")
-    return join(drawing, key(entries))
+    return _picture("Sobol indices", drawn, axes, ("first-order index", "total index"))
+
+
+def _picture(words: str, drawn: Sequence[Markup], axes: Axes, bars: Sequence[str], *more: Entry) -> Markup:
+    """Return a picture with its legend; ``bars`` is what the first and the second bar of each input stand for."""
+    entries = [(rectangle(1, 3, 20, BAR, f"filled s{i}"), says) for i, says in enumerate(bars, 1)]
+    drawing = svg(WIDTH, TOP + axes.height + 20, *drawn, description=words, class_="plot marks alone")
+    return join(drawing, key([*entries, *more]))
 
 
 def _numbers(both: "pd.DataFrame") -> Markup:
-    heads = [
-        Head("input"),
-        *(Head(name) for name in ("low", "study", "high")),
-        *(Head(name, ".4f", over="answer at") for name in ("low", "study", "high")),
-        Head("first-order", ".3f", over="Sobol index"),
-        Head("±", ".3f", over="Sobol index"),
-        Head("total", ".3f", over="Sobol index"),
-        Head("±", ".3f", over="Sobol index"),
-    ]
-    names = (
-        "answer_low", "answer_base", "answer_high", "first", "first_error", "total", "total_error",
-    )  # fmt: skip
-    rows = [
-        [_symbol(row["parameter"]), *(_written(row[end]) for end in ("low", "base", "high")),
-         *(float(row[name]) for name in names)]
-        for row in both.to_dict("records")
-    ]  # fmt: skip
-    return table(heads, rows, name="Sensitivity in numbers")
+    ends = ("low", "base", "high"), ("low", "study", "high")
+    heads = [Head("input", of=lambda row: _symbol(row["parameter"]))]
+    heads += [Head(says, of=_end(name)) for name, says in zip(*ends, strict=True)]
+    heads += [Head(says, ".4f", over="answer at", of=f"answer_{name}") for name, says in zip(*ends, strict=True)]
+    for name, says in (("first", "first-order"), ("total", "total")):
+        heads += [
+            Head(says, ".3f", over="Sobol index", of=name),
+            Head("±", ".3f", over="Sobol index", of=f"{name}_error"),
+        ]
+    return listed(heads, as_dicts(both), name="Sensitivity in numbers")
+
+
+def _end(name: str) -> Callable[[Mapping[str, Any]], object]:
+    return lambda row: _written(row[name])
 
 
 def _written(value: object) -> str:
