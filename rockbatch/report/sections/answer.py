@@ -11,7 +11,7 @@ from rockbatch.report.labels import counted
 from rockbatch.report.markup import Markup, join, number, tag
 from rockbatch.report.overview import by_record
 from rockbatch.report.sections import verdicts
-from rockbatch.report.table import alarm
+from rockbatch.report.templates import render
 from rockbatch.results.suite_statistics import NO_PEAK
 
 MOST_REASONS = 2
@@ -32,23 +32,27 @@ def section(finished: Finished) -> Markup:
 
 def worst(finished: Finished) -> Markup:
     """Return the worst responses, and how the runs ended, first those that did not end standing."""
-    if finished.runs.empty:
-        facts = [("peaks", join("No ground motion could be used: there are no results.")), *_missing(finished)]
-    else:
-        ended = [*_overturned(finished), *_flown(finished), *_missing(finished)]
-        facts = [*ended, *_responses(finished), *_guided(finished, ended)]
-    listed = tag("dl", *(join(tag("dt", words), tag("dd", said)) for words, said in facts), class_="facts")
-    return join(tag("p", _of_all(finished), class_="of-all"), listed)
-
-
-def _of_all(finished: Finished) -> Markup:
-    """Of what the worst is told, what α is, and where other symbols are explained."""
-    alphas = {f"{math.degrees(case['pier']['alpha']):.3g}°" for case in finished.cases.values()}
-    of = f" = {alphas.pop()}" if len(alphas) == 1 else ""
-    cases = f"Worst of all {len(finished.cases)} cases, whatever" if len(finished.cases) > 1 else "Whatever"
-    told = f"{cases} is checked; at α{of} the pier alone stands on its edge on rigid ground"
-    symbols = any("=" in words for words in (*(series.label for series in finished.series), *finished.piers))
-    return join(told, join("; other symbols: ", tag("a", "What was studied", href="#studied")) if symbols else "")
+    runs = finished.runs
+    stood, failed, unread = (
+        runs[runs["status"] == "ok"],
+        runs[runs["status"] == "failed"],
+        len(finished.info["unusable"]),
+    )
+    guided = stood[stood["flight_s"].notna()]
+    lost = [f"{counted(unread, 'file')} could not be used"] if unread else []
+    return render(
+        "sections/answer.html", finished=finished, runs=runs, guided=guided,
+        alphas={f"{math.degrees(case['pier']['alpha']):.3g}°" for case in finished.cases.values()},
+        symbols=any("=" in words for words in (*(series.label for series in finished.series), *finished.piers)),
+        over=runs[runs["status"] == "overturned"],
+        flown=runs[runs["status"] == "flight"].sort_values("flight_s", kind="stable"),
+        lost=lost + ([f"{counted(len(failed), 'run')} failed"] if len(failed) else []),
+        reasons=failed["reason"].astype(str).str.split("[:;]", n=1).str[0].value_counts().head(MOST_REASONS).to_dict(),
+        responses=[] if runs.empty else [*_responses(finished), *_of_devices(finished), *_by_case(finished)],
+        went="every peak converged" if finished.info["numerics"].get("tolerance") else "none failed",
+        without_peak=runs["status"].isin(NO_PEAK).any() and len(stood),
+        height=float(guided["flight_height_m"].max()), error=_error(finished), noted=int((stood["note"] != "").sum()),
+    )  # fmt: skip
 
 
 def _responses(finished: Finished) -> Facts:
@@ -69,7 +73,7 @@ def _responses(finished: Finished) -> Facts:
     if all(one.case["base"] == "rigid" for one in finished.worst):
         held = "" if "theta_res_rad" in largest else "; nothing holds the pier at a tilt"
         facts.append(("of the supports", join(f"no settlement: the ground is rigid{held}")))
-    return [*facts, *_of_devices(finished)]
+    return facts
 
 
 def _of_devices(finished: Finished) -> Facts:
@@ -94,59 +98,6 @@ def _of_devices(finished: Finished) -> Facts:
             told.append(f"no {words}")
         facts.append((f"{device}s", join(*told)))
     return facts
-
-
-def _overturned(finished: Finished) -> Facts:
-    runs = finished.runs
-    over = runs[runs["status"] == "overturned"]
-    if over.empty:
-        return []
-    which = f"{': ' if len(over) == 1 else ', among them '}{finished.where(over.iloc[0])}."
-    return [("overturned", join(alarm(f"The pier overturns in {len(over):,} of {counted(len(runs), 'run')}"), which))]
-
-
-def _flown(finished: Finished) -> Facts:
-    """Report runs that ended when both pivots left the ground."""
-    flown = finished.runs[finished.runs["status"] == "flight"].sort_values("flight_s", kind="stable")
-    if flown.empty:
-        return []
-    stops = alarm(f"In {counted(len(flown), 'run')} both pivots leave the ground, and the analysis stops there")
-    which = f"{': ' if len(flown) == 1 else ', soonest in '}{finished.where(flown.iloc[0])}."
-    return [("left the ground", join(stops, which))]
-
-
-def _missing(finished: Finished) -> Facts:
-    """Report files and runs without a result, and the commonest reasons."""
-    failed = finished.runs[finished.runs["status"] == "failed"]
-    unread = len(finished.info["unusable"])
-    if not len(failed) and not unread:
-        return []
-    lost = [f"{counted(unread, 'file')} could not be used"] if unread else []
-    lost += [f"{counted(len(failed), 'run')} failed"] if len(failed) else []
-    sentence: list[object] = [alarm(" and ".join(lost).capitalize())]
-    reasons = failed["reason"].astype(str).str.split("[:;]", n=1).str[0].value_counts().head(MOST_REASONS)
-    if len(reasons):
-        sentence.append(f" ({'; '.join(f'{count} ×: {reason}' for reason, count in reasons.items())})")
-    return [("without a result", join(*sentence, "; see ", tag("a", "Not used", href="#unusable"), "."))]
-
-
-def _guided(finished: Finished, ended: Facts) -> Facts:
-    """Report how the other runs ended: guided flights, and the errors of the peaks."""
-    runs = finished.runs
-    stood = runs[runs["status"] == "ok"]
-    went = "every peak converged" if finished.info["numerics"].get("tolerance") else "none failed"
-    told = [counted(len(runs), "run") + ("." if ended else f": {went}, none overturned.")]
-    if runs["status"].isin(NO_PEAK).any() and len(stood):
-        told.append("The responses above are of those that end standing.")
-    guided = stood[stood["flight_s"].notna()]
-    if len(guided):
-        height = float(guided["flight_height_m"].max())
-        rose = "" if math.isnan(height) else f"; the lower pivot rose by {1000 * height:.3g} mm at most"
-        told.append(f"In {counted(len(guided), 'run')} both pivots left the ground, guided as by shear keys{rose}.")
-    noted = int((stood["note"] != "").sum())
-    have = f"{counted(noted, 'run').capitalize()} {'has a note' if noted == 1 else 'have notes'}"
-    where = join(" ", tag("a", have, href="#peaks"), ".") if noted else ""
-    return [*_by_case(finished), ("runs", join(" ".join(filter(None, (*told, _error(finished)))), where))]
 
 
 def _by_case(finished: Finished) -> Facts:

@@ -5,8 +5,9 @@ import math
 from rockbatch.files import read_table
 from rockbatch.lazy import pd
 from rockbatch.report.finished import Finished
-from rockbatch.report.markup import Markup, join, paragraphs, tag
+from rockbatch.report.markup import Markup
 from rockbatch.report.table import Head, table
+from rockbatch.report.templates import render
 from rockbatch.results.intensity import INTENSITY, LEAST_RUNS, MEANING, orders
 
 SYMBOLS = {
@@ -24,22 +25,11 @@ def section(finished: Finished) -> Markup:
     measures = read_table(path) if path.exists() else None
     if measures is None or measures.empty:
         return Markup("")
-    order = orders(measures, finished.info["varied"])
-    explained = (
-        "How well each measure of the motion orders the largest rotations of a case: Spearman's rank correlation ρ (1: in the "
-        "same order, −1: in the opposite one), and the dispersion σ, the standard deviation of ln θ about the line of least "
-        "squares on ln of the measure. A good measure has ρ near 1 and a small σ."
-    )
-    counted = (
-        "Runs that overturned, or were ended by flight, have no largest rotation: they rank above all others, alike among "
-        "themselves, and are left out of the line. So are runs that stayed (θ = 0). With both polarities or several "
-        "components of a station the runs are not independent of each other; with few runs ρ is little more than chance."
-    )
-    files = join("The measures of every run: ", tag("code", INTENSITY), f"; lines and ρ from {LEAST_RUNS} runs on.")
-    return join(paragraphs(explained, counted, files), _order(finished, order))
+    ranks, dispersions = _order(finished, orders(measures, finished.info["varied"]))
+    return render("sections/intensity.html", ranks=ranks, dispersions=dispersions, file=INTENSITY, least=LEAST_RUNS)
 
 
-def _order(finished: Finished, order: "pd.DataFrame") -> Markup:
+def _order(finished: Finished, order: "pd.DataFrame") -> tuple[Markup, Markup]:
     """Return a table of rank correlations and one of dispersions, with a row for each case and scale."""
     varied = finished.info["varied"]
     many_scales = order["scale"].nunique() > 1
@@ -61,10 +51,8 @@ def _order(finished: Finished, order: "pd.DataFrame") -> Markup:
     ]
     heads = [Head("case"), Head("scale of motions"), Head("runs", ".0f")]
     heads += [Head("without a peak", ".0f", "overturned, or ended by flight")]
-    return join(
-        tag("h3", "Rank correlation ρ with θ"),
+    return (
         table([*heads, Head("largest"), *measures], ranks, sortable=True, name="Rank correlation"),
-        tag("h3", "Dispersion σ of ln θ"),
         table([*heads, Head("least"), *measures], lines, sortable=True, name="Dispersion"),
     )
 
