@@ -217,7 +217,8 @@ def _given(text: str) -> dict[str, set[str]]:
 
 def as_dicts(runs: "pd.DataFrame") -> list[dict[str, Any]]:
     """Return the rows of ``runs``, each as a mapping from column names to values."""
-    return [{str(name): value for name, value in row.items()} for row in runs.to_dict("records")]
+    columns = {str(name): column.to_numpy(object, na_value=math.nan).tolist() for name, column in runs.items()}
+    return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
 
 
 def worst_first(runs: "pd.DataFrame", most: int) -> "pd.DataFrame":

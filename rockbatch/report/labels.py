@@ -55,6 +55,11 @@ class Series:
     rigid: bool
     index: int  # among those of its kind, rigid or not
 
+    @property
+    def keyed(self) -> str:
+        """Return the label for a legend, behind the tick if it does not begin with it."""
+        return self.label if self.rigid or self.label.split(":")[0] == self.tick else f"{self.tick} – {self.label}"
+
 
 def quantity(key: str, value: object, digits: int = 10) -> str:
     """Describe a value in words that stay on one line: "β = 40", "Fy = 45,000 kN", "kinematics finite"."""

@@ -11,7 +11,7 @@ import numpy as np
 
 from rockbatch.lazy import pd
 from rockbatch.report.drawing.axes import Scale, written
-from rockbatch.report.drawing.svg import EVENTS, Entry, key, marker, style_of, text
+from rockbatch.report.drawing.svg import NO_PEAK, Entry, ends, key, marker, sign_of, style_of, text
 from rockbatch.report.finished import as_dicts
 from rockbatch.report.labels import Series
 from rockbatch.report.markup import Markup, join, number, tag
@@ -23,7 +23,6 @@ MOST_LETTERS = 20
 """Longest list of the names of foundations without a peak; if it is longer, their number stands instead."""
 MIDDLE = 10
 """Middle of a row of 20 px [px]."""
-FAILED = {"failed": "no result: the run failed"}
 
 Run = dict[str, Any]
 
@@ -152,55 +151,34 @@ def _mark(run: Run, x: float, marks: Marks) -> Markup:
 
 
 def _without_peak(runs: "pd.DataFrame", marks: Marks) -> Markup:
-    """What had no peak: by the foundations' letters, or how many."""
-    told: list[Markup] = []
-    if (runs["status"] == "ok").all():
-        return tag("span", class_="ends")
-    for status, words in (EVENTS | FAILED).items():
+    """Draw what had no peak: by the foundations' letters, or how many."""
+    shown: list[Markup] = []
+    statuses = set(runs["status"])
+    for status, words in NO_PEAK.items() if statuses != {"ok"} else ():
         some = runs[runs["status"] == status]
-        if len(some):
+        if status in statuses:
             series = [] if marks.series is None else [marks.series[place] for place in dict.fromkeys(some["series"])]
             names = ", ".join(one.label if one.rigid else one.tick for one in series)
-            sign = tag(
-                "svg", _sign(status), class_="plot", viewBox="4 0 14 14", width=14, height=14, aria_hidden="true"
-            )
-            told.append(
-                tag(
-                    "span",
-                    sign,
-                    names if 0 < len(names) <= MOST_LETTERS else str(len(some)),
-                    title=f"{len(some)} × {words}",
-                    class_=_class(status),
-                )
-            )
-    return tag("span", *told, class_="ends")
-
-
-def _class(status: str) -> str:
-    return "undecided" if status in FAILED else "alarm"
-
-
-def _sign(status: str) -> Markup:
-    return text(11, 11, "?", class_="m none") if status in FAILED else marker(status, 11, 7, colour="alarm")
+            names = names if 0 < len(names) <= MOST_LETTERS else str(len(some))
+            sign = tag("svg", sign_of(status, 11, 7), class_="plot", viewBox="4 0 14 14", width=14, height=14,
+                       aria_hidden="true")  # fmt: skip
+            class_ = "undecided" if status == "failed" else "alarm"
+            shown.append(tag("span", sign, names, title=f"{len(some)} × {words}", class_=class_))
+    return tag("span", *shown, class_="ends")
 
 
 def _legend(drawn: "Sequence[pd.DataFrame]", marks: Marks) -> list[Entry]:
     present = {place for runs in drawn for place in runs["series"].unique().tolist()}
-    entries: list[Entry] = []
     if marks.series is None:
-        entries.append((tag("circle", cx=11, cy=7, r=3.5, class_="dot s1"), f"a {marks.kind}"))
+        entries = [(tag("circle", cx=11, cy=7, r=3.5, class_="dot s1"), f"a {marks.kind}")]
     else:
         shown = sorted((marks.series[place] for place in present), key=lambda series: (not series.rigid, series.index))
-        entries += map(_named, shown)
-    ends = {status for runs in drawn for status in runs["status"].unique().tolist()}
-    entries += [(_sign(status), words) for status, words in (EVENTS | FAILED).items() if status in ends]
-    return entries
+        entries = [(_key(series), series.keyed) for series in shown]
+    return [*entries, *ends({status for runs in drawn for status in runs["status"].unique().tolist()})]
 
 
-def _named(series: Series) -> Entry:
+def _key(series: Series) -> Markup:
     if series.rigid:
-        return tag("line", x1=11, x2=11, y1=0, y2=14, class_=f"rigid d{series.index % 4}"), series.label
+        return tag("line", x1=11, x2=11, y1=0, y2=14, class_=f"rigid d{series.index % 4}")
     shape, colour = style_of(series.index)
-    tick = series.tick
-    label = series.label if series.label.split(":")[0] == tick else f"{tick} – {series.label}"
-    return marker(shape, 11, 7, colour=f"s{colour}"), label
+    return marker(shape, 11, 7, colour=f"s{colour}")

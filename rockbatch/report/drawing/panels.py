@@ -6,7 +6,7 @@ from typing import Any
 
 from rockbatch.lazy import pd
 from rockbatch.report.drawing.axes import Axes, Scale
-from rockbatch.report.drawing.svg import EVENTS, key, line, lowered, marker, rectangle, style_of, svg, text
+from rockbatch.report.drawing.svg import ends, key, line, lowered, marker, rectangle, sign_of, style_of, svg, text
 from rockbatch.report.finished import Finished, as_dicts
 from rockbatch.report.labels import Series
 from rockbatch.report.markup import Markup, join, number, tag
@@ -16,6 +16,10 @@ from rockbatch.results.suite_statistics import NO_PEAK
 HEIGHT = 146.0  # px
 VISIBLE = 0.015  # share of the axis: shorter error bars hide behind their marker
 RIGID_LINES = 4
+DRAWN = ["record", "series", "polarity", "status", "theta_max_over_alpha", "theta_max_error", "pga"]
+"""Columns that a panel is made of."""
+
+Run = dict[str, Any]
 
 
 def draw(
@@ -23,21 +27,42 @@ def draw(
 ) -> Markup:
     """Draw panels of ``records``; ``top`` is the end of the common axis, θ_max/α."""
     runs = runs.assign(side=runs[side])
-    present = [finished.series[place] for place in sorted(runs["series"].unique())]
+    present = sorted(
+        (finished.series[place] for place in runs["series"].unique()),
+        key=lambda series: (not series.rigid, series.index),
+    )
     ticks = {series.index: series.tick for series in present if not series.rigid}
     width = min(max(166.0, 56 + 13.0 * (max(ticks, default=0) + 1)), 900.0)
     sides = sorted(runs["side"].unique())
     panel = _Panel(finished.series, top, bool(runs["status"].isin(NO_PEAK).any()), ticks, width, sides)
+    by_record: dict[str, list[Run]] = {}
+    for run in as_dicts(runs[[*DRAWN, "side"]]):
+        by_record.setdefault(run["record"], []).append(run)
     drawn = []
-    by_record = dict(list(runs.groupby("record", sort=False)))
     for name in records:
-        pga = by_record[name]["pga"].iloc[0]
+        pga = by_record[name][0]["pga"]
         peak = f"PGA = {pga:.3f} g" if math.isfinite(pga) else ""
         title = tag("figcaption", tag("span", finished.shown(name)), " ", tag("span", peak, class_="muted"))
         drawn.append(tag("figure", title, panel.draw(finished.label(name), by_record[name])))
     grid = tag("div", *drawn, class_="panels", style=f"--w:{width:.0f}px", tabindex="0", role="group",
                aria_label="Panels; arrow keys go through the values")  # fmt: skip
-    return join(grid, _legend(present, sides, runs))
+    entries = [
+        (_key(series, side in sides[1:]), series.keyed + (f" ({side})" if len(sides) > 1 else ""))
+        for series in present
+        for side in sides
+    ]
+    return join(grid, key([*entries, *ends(set(runs["status"]))]))
+
+
+def _key(series: Series, second: bool) -> Markup:
+    if series.rigid:
+        return line(0, 7, 22, 7, _rigid(series, second))
+    return _foundation(series, second, 11, 7)
+
+
+def _foundation(series: Series, second: bool, x: float, y: float, title: str | None = None) -> Markup:
+    shape, colour = style_of(series.index)
+    return marker(shape, x, y, colour=f"s{colour}" + (" open" if second else ""), title=title)
 
 
 class _Panel:
@@ -48,57 +73,47 @@ class _Panel:
     ) -> None:
         self.series, self.top, self.eventful, self.ticks, self.sides = series, top, eventful, ticks, sides
         self.size = width, HEIGHT
-        slots = max(ticks, default=0) + 1
-        across, down = Scale(0.2, slots + 0.8), Scale(0, 1.18 * top if eventful else top)
+        across, down = Scale(0.2, max(ticks, default=0) + 1.8), Scale(0, 1.18 * top if eventful else top)
         self.axes = Axes(36, 17, width - 40, HEIGHT - 36, across, down)
 
-    def draw(self, name: str, runs: "pd.DataFrame") -> Markup:
+    def draw(self, name: str, runs: list[Run]) -> Markup:
         axes = self.axes
         drawn = []
         if self.eventful:
-            y = float(axes.down(self.top))
-            drawn.append(rectangle(axes.left, axes.top, axes.width, y - axes.top, "band"))
+            drawn.append(rectangle(axes.left, axes.top, axes.width, float(axes.down(self.top)) - axes.top, "band"))
         drawn.append(axes.frame(None, [tick for tick in Scale(0, self.top).ticks(4) if tick <= self.top]))
         foot = axes.top + axes.height + 13
         every = math.ceil(20 * len(self.ticks) / axes.width)  # or names would overlap
         names = [(slot, tick) for slot, tick in self.ticks.items() if slot % every == 0]
         drawn += [text(float(axes.across(slot + 1)), foot, tick, class_="m") for slot, tick in names]
         drawn.append(text(axes.left - 2, axes.top - 4, lowered("θ", "max", "/α"), class_="q"))
-        order = runs["series"].map(lambda place: not self.series[place].rigid)
-        drawn += [self._run(run) for run in as_dicts(runs.assign(order=order).sort_values("order", kind="stable"))]
+        drawn += map(self._run, sorted(runs, key=lambda run: not self.series[run["series"]].rigid))
         return svg(*self.size, *drawn, description=f"θmax/α of every foundation under {name}", class_="plot marks")
 
-    def _second(self, run: dict[str, Any]) -> bool:
-        return len(self.sides) > 1 and bool(run["side"] == self.sides[1])
-
-    def _run(self, run: dict[str, Any]) -> Markup:
+    def _run(self, run: Run) -> Markup:
         axes, series = self.axes, self.series[run["series"]]
-        beside = 0.0 if len(self.sides) == 1 else (-0.16, 0.16)[self.sides.index(run["side"])]
-        x = float(axes.across(0.42 if series.rigid else series.index + 1 + beside))
+        both, right = len(self.sides) > 1, self.axes.left + self.axes.width
+        second = both and run["side"] == self.sides[1]
+        x = float(axes.across(0.42 if series.rigid else series.index + 1 + (0.32 * second - 0.16) * both))
         status, theta, error = run["status"], run["theta_max_over_alpha"], run["theta_max_error"]
-        said = said_of(series, run, len(self.sides) > 1)
+        said = said_of(series, run, both)
         if status in NO_PEAK:
             level = float(axes.down(1.09 * self.top))
-            over = (
-                line(axes.left, level, axes.left + axes.width, level, _rigid(series, self._second(run)))
-                if series.rigid
-                else ""
-            )
-            return join(over, marker(status, x, level, colour="alarm", title=said))
+            over = line(axes.left, level, right, level, _rigid(series, second)) if series.rigid else ""
+            return join(over, sign_of(status, x, level, said))
         if status == "failed" or math.isnan(theta):
-            return text(x, axes.top + axes.height - 4, "?", tag("title", said), class_="m none")
+            return sign_of("failed", x, axes.top + axes.height - 8, said)
         y = float(axes.down(theta))
         bar = Markup("")
         if error > VISIBLE * self.top:
             ends = float(axes.down(min(theta + error, axes.y.high))), float(axes.down(max(theta - error, 0)))
             bar = tag("path", d=f"M{x - 2.5:.1f} {ends[0]:.1f}h5m-2.5 0V{ends[1]:.1f}m-2.5 0h5", class_="bar")
         if series.rigid:
-            return join(line(axes.left, y, axes.left + axes.width, y, _rigid(series, self._second(run)), said), bar)
-        shape, colour = style_of(series.index)
-        return join(bar, marker(shape, x, y, colour=f"s{colour}" + (" open" if self._second(run) else ""), title=said))
+            return join(line(axes.left, y, right, y, _rigid(series, second), said), bar)
+        return join(bar, _foundation(series, second, x, y, said))
 
 
-def said_of(series: Series, run: dict[str, Any], both: bool) -> str:
+def said_of(series: Series, run: Run, both: bool) -> str:
     """Return the tooltip of a marker: "2: η = 3.5: 0.0617 ± 3e-07"."""
     name = series.label + (f" ({run['polarity']})" if both else "")
     if run["status"] != "ok":
@@ -111,25 +126,3 @@ def said_of(series: Series, run: dict[str, Any], both: bool) -> str:
 
 def _rigid(series: Series, second: bool) -> str:
     return f"rigid d{series.index % RIGID_LINES}" + (" reversed" if second else "")
-
-
-def _legend(present: Sequence[Series], sides: Sequence[str], runs: "pd.DataFrame") -> Markup:
-    """Draw the legend: a marker or line for each series, and its name."""
-    entries: list[tuple[Markup, str]] = []
-    for series in sorted(present, key=lambda series: (not series.rigid, series.index)):
-        named = series.rigid or series.label.split(":")[0] == series.tick
-        label = series.label if named else f"{series.tick} – {series.label}"
-        for side in sides:
-            also, second = (f" ({side})", side == sides[1]) if len(sides) > 1 else ("", False)
-            shape, colour = style_of(series.index)
-            if series.rigid:
-                drawn = line(0, 7, 22, 7, _rigid(series, second))
-            else:
-                drawn = marker(shape, 11, 7, colour=f"s{colour}" + (" open" if second else ""))
-            entries.append((drawn, label + also))
-    for status, words in EVENTS.items():
-        if (runs["status"] == status).any():
-            entries.append((marker(status, 11, 7, colour="alarm"), words))
-    if (runs["status"] == "failed").any():
-        entries.append((text(11, 11, "?", class_="m none"), "no result: the run failed"))
-    return key(entries)

@@ -1,7 +1,7 @@
 """Pictures as inline SVG: text stays text, colours come from the style sheet, and curves are in tenths of a pixel."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -12,7 +12,10 @@ Array = npt.NDArray[np.float64]
 
 FINE = 10  # steps per pixel of a curve's coordinates
 COLOURS = 7
-EVENTS = {"overturned": "overturned", "flight": "flight: both pivots off the ground"}
+NO_PEAK = {
+    "overturned": "overturned", "flight": "flight: both pivots off the ground", "failed": "no result: the run failed",
+}  # fmt: skip
+"""Statuses of runs without a largest rotation, in words."""
 
 _POLYGONS = {
     "square": (4, 4.6, 45, 1.0),
@@ -103,6 +106,18 @@ def key(entries: Sequence[Entry]) -> Markup:
         *(tag("li", shown, tag("span", says)) for shown, (_, says) in zip(pictures, entries, strict=True)),
         class_="key",
     )
+
+
+def sign_of(status: str, x: float, y: float, title: str | None = None) -> Markup:
+    """Draw the sign of a run without a largest rotation."""
+    if status == "failed":
+        return text(x, y + 4, "?", *([tag("title", title)] if title else []), class_="m none")
+    return marker(status, x, y, colour="alarm", title=title)
+
+
+def ends(statuses: Collection[str]) -> list[Entry]:
+    """Return the legend's entries of runs without a largest rotation."""
+    return [(sign_of(status, 11, 7), words) for status, words in NO_PEAK.items() if status in statuses]
 
 
 def side_by_side(drawn: Iterable[tuple[str, Markup, Sequence[Entry]]], width: float) -> Markup:

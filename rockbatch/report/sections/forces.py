@@ -23,9 +23,9 @@ def section(finished: Finished) -> Markup:
     shown = [column for column in on_page("forces") if column.name in finished.runs]
     if not shown or finished.runs.empty:
         return Markup("")
-    asked = finished.runs[["friction_demand", "impact_friction_demand"]].max(axis=1).to_numpy()
     places = zip(finished.runs["series"], finished.runs["pier"], strict=True)
     available = np.array([finished.cases[pair]["parameters"].get("friction", np.inf) for pair in places])
+    asked = finished.runs.reindex(columns=["friction_demand", "impact_friction_demand"]).max(axis=1).to_numpy()
     return render(
         "sections/forces.html", of_cases=_of_cases(finished, shown), every_run=_every_run(finished, shown),
         interfaces=bool(np.isfinite(available).any()), slides=int((asked > available).sum()),
