@@ -1,4 +1,4 @@
-"""What the site takes from the program itself and from the documents at the repository's top; a hook of MkDocs.
+"""Add to the site what comes from the program itself and from the documents at the repository's top; a hook of MkDocs.
 
 Nothing of it is kept: the study file's reference and schemas come from the reader's tables, the
 commands from their parsers, the figures of the verification from the CSV files in benchmarks/, the pictures from gallery/. The
@@ -70,7 +70,7 @@ def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Fil
 
 
 def on_page_content(html: str, page: Page, config: MkDocsConfig, files: Files) -> str:
-    """Names in docstrings without the roles of Sphinx before them."""
+    """Take the roles of Sphinx from the names in docstrings."""
     return re.sub(r":(?:attr|class|data|func|meth|mod):<code>", "<code>", html)
 
 
@@ -80,15 +80,15 @@ def on_post_build(config: MkDocsConfig) -> None:
         r'<(?:script|img|iframe)[^>]*\ssrc="?(?:https?:)?//|<link[^>]*stylesheet[^>]*href="?(?:https?:)?//'
     )
     for page in Path(config.site_dir).rglob("*.html"):
-        if found := loading.search(page.read_text(encoding="utf-8")):
-            raise PluginError(f"{page}: loads something from the network: {found.group()}")
+        if match := loading.search(page.read_text(encoding="utf-8")):
+            raise PluginError(f"{page}: loads something from the network: {match.group()}")
 
 
 # Documents of the repository
 
 
 def _included(document: str, page: str) -> str:
-    """A document as Python-Markdown wants it, with links as they are from its page.
+    """Return a document as Python-Markdown wants it, with links as they are from its page.
 
     What belongs to an item of a list is indented by four; an equation's number comes closer, so that no line is very long.
     """
@@ -108,14 +108,14 @@ def _included(document: str, page: str) -> str:
 
 
 def _on_site(link: str, document: str, page: str) -> str:
-    """Where what a document links to by a path is on the site, from its page; as it is if it is not there."""
+    """Return a link of a document as it is from its page on the site; unchanged if its target is not there."""
     target = os.path.normpath(Path(document).parent / link)
     on_site = {there: here for here, there in DOCUMENTS.items()}
-    found = on_site.get(target)
+    place = on_site.get(target)
     for folder, there in (("docs/images/", "images/"), ("docs/pages/", "")):
         if target.startswith(folder):
-            found = there + target.removeprefix(folder)
-    return os.path.relpath(found, Path(page).parent) if found else link
+            place = there + target.removeprefix(folder)
+    return os.path.relpath(place, Path(page).parent) if place else link
 
 
 # The study file
@@ -177,19 +177,19 @@ def _sections(sections: Iterable[Section]) -> Iterator[str]:
 
 
 def _only(key: Key) -> str:
-    """With which values of other keys it applies."""
-    told = [" or ".join(f"`{other} = {shown(value)}`" for value in values) for other, values in key.only.items()]
-    return f"With {', '.join(told)}: " if told else ""
+    """Return the values of other keys with which a key applies, to stand before its meaning."""
+    others = [" or ".join(f"`{other} = {shown(value)}`" for value in values) for other, values in key.only.items()]
+    return f"With {', '.join(others)}: " if others else ""
 
 
 def _value(key: Key) -> str:
     if isinstance(key.kind, Choice) and not key.kind.own_words:
-        told = "one of " + ", ".join(f"`{shown(option)}`" for option in key.kind.options)
+        words = "one of " + ", ".join(f"`{shown(option)}`" for option in key.kind.options)
         if len(key.kind.options) > 10:
-            told = "one of [these](#demands)"
+            words = "one of [these](#demands)"
     else:
-        told = f"{'a range, each end ' if key.pair else ''}{key.kind.words}, such as `{key.example}`"
-    return told + (", or a list" if key.many else "")
+        words = f"{'a range, each end ' if key.pair else ''}{key.kind.words}, such as `{key.example}`"
+    return words + (", or a list" if key.many else "")
 
 
 def _default(section: Section, name: str) -> str:
@@ -226,15 +226,15 @@ def _commands() -> str:
 
 
 def _help(command: str) -> str:
-    """What ``rockbatch COMMAND --help`` prints."""
-    told, width = io.StringIO(), os.environ.get("COLUMNS")
+    """Return what ``rockbatch COMMAND --help`` prints."""
+    printed, width = io.StringIO(), os.environ.get("COLUMNS")
     os.environ["COLUMNS"] = "84"
     try:
-        with contextlib.redirect_stdout(told), contextlib.suppress(SystemExit):
+        with contextlib.redirect_stdout(printed), contextlib.suppress(SystemExit):
             main([command, "--help"])
     finally:
         os.environ.pop("COLUMNS") if width is None else os.environ.update(COLUMNS=width)
-    return told.getvalue().rstrip()
+    return printed.getvalue().rstrip()
 
 
 def _python() -> str:
@@ -245,10 +245,9 @@ def _python() -> str:
         "",
     ]
     for name in rockbatch.__all__:
-        found = getattr(rockbatch, name)
-        home = (
-            found.__name__ if isinstance(found, ModuleType) else found.__module__
-        )  # rb.report is its package, which can be called
+        thing = getattr(rockbatch, name)
+        # rb.report is its package, which can be called
+        home = thing.__name__ if isinstance(thing, ModuleType) else thing.__module__
         parts += [f"::: {home}.{name}", ""]
     return "\n".join(parts)
 
@@ -268,12 +267,12 @@ def _picture(script: Path) -> bytes:
 
 
 def _errors() -> Iterator[str]:
-    """How true errors compare with the reported ones, base by base, from benchmarks/error_estimates.csv."""
+    """Yield a table of true errors beside the reported ones, base by base, from benchmarks/error_estimates.csv."""
     rows = _csv("error_estimates.csv")
     yield "| base | quantity | true ≤ reported | greatest true/reported | greatest true error |"
     yield "| --- | --- | --- | --- | --- |"
     for base in [*dict.fromkeys(row["base"] for row in rows), ""]:
-        for quantity, told in (("theta_max", "θ_max/α"), ("theta_res", "θ_res/α")):
+        for quantity, symbol in (("theta_max", "θ_max/α"), ("theta_res", "θ_res/α")):
             pairs = [
                 (float(row[f"{quantity}_true"]), float(row[f"{quantity}_reported"]))
                 for row in rows
@@ -283,11 +282,11 @@ def _errors() -> Iterator[str]:
                 within = sum(true <= reported for true, reported in pairs)
                 ratio = max(true / reported for true, reported in pairs)
                 worst = max(true for true, _ in pairs)
-                yield f"| {base or 'all'} | {told} | {within} of {len(pairs)} | {ratio:.2g} | {worst:.1e} |"
+                yield f"| {base or 'all'} | {symbol} | {within} of {len(pairs)} | {ratio:.2g} | {worst:.1e} |"
 
 
 def _outcomes() -> Iterator[str]:
-    """How many hard cases ended in which way, and the remarks on them, from benchmarks/outcomes.csv."""
+    """Yield a table of how hard cases ended, and of the remarks on them, from benchmarks/outcomes.csv."""
     rows = _csv("outcomes.csv")
     ways = ("ok", "overturned", "flight", "failed")
     yield from (f"| kind of case | cases | {' | '.join(ways)} | remarks |", "| --- |" + " --- |" * (len(ways) + 2))
@@ -295,8 +294,8 @@ def _outcomes() -> Iterator[str]:
         own = [row for row in rows if stratum in ("", row["stratum"])]
         counts = " | ".join(str(sum(row["status"] == way for row in own)) for way in ways)
         remarks = [row["verdict"] for row in own if row["verdict"]]
-        told = ", ".join(f"{remarks.count(remark)} {remark}" for remark in dict.fromkeys(remarks))
-        yield f"| {stratum or 'all'} | {len(own)} | {counts} | {told} |"
+        counted = ", ".join(f"{remarks.count(remark)} {remark}" for remark in dict.fromkeys(remarks))
+        yield f"| {stratum or 'all'} | {len(own)} | {counts} | {counted} |"
 
 
 def _counted(text: str) -> str:
@@ -307,7 +306,7 @@ def _counted(text: str) -> str:
 
 
 def _verification(pictures: dict[str, bytes]) -> bytes:
-    """The page of that name as a report on paper, with the sources that it cites."""
+    """Return the page of that name as a report on paper, with the sources that it cites."""
     _, heading, sources = (TOP / "THEORY.md").read_text(encoding="utf-8").partition("\n## Sources\n")
     text = _counted((HERE / "pages" / "verification.md").read_text(encoding="utf-8"))
     text += heading + sources.partition("\n### ")[0]

@@ -1,8 +1,8 @@
-"""Write docs/pages/formats.md: which layouts of each format are read, and why others are refused.
+"""Write docs/pages/formats.md: the layouts of each format that are read, and the reasons for which others are refused.
 
     python docs/layouts.py
 
-reads the files of ``tests/helpers/layouts.py``; a test compares the page with what comes of them today.
+reads the files of ``tests/helpers/layouts.py``; a test compares the page with their outcome today.
 """
 
 import sys
@@ -29,24 +29,24 @@ def page() -> str:
     sys.path.insert(0, str(HERE.parent / "tests" / "helpers"))
     from layouts import LAYOUTS
 
-    found = [(layout.format, layout.what, *_outcome(layout)) for layout in LAYOUTS]
+    outcomes = [(layout.format, layout.what, *_outcome(layout)) for layout in LAYOUTS]
     lines = [_HEAD + "| format | layouts | read | asked for | refused |", "| --- | --: | --: | --: | --: |"]
-    for form in dict.fromkeys(row[0] for row in found):
-        outcomes = [row[2] for row in found if row[0] == form]
-        counts = [outcomes.count(outcome) for outcome in ("read", "asked for", "refused")]
-        lines.append(f"| {form} | {len(outcomes)} | {' | '.join(map(str, counts))} |")
+    for form in dict.fromkeys(row[0] for row in outcomes):
+        own = [row[2] for row in outcomes if row[0] == form]
+        counts = [own.count(outcome) for outcome in ("read", "asked for", "refused")]
+        lines.append(f"| {form} | {len(own)} | {' | '.join(map(str, counts))} |")
     lines += ["", "| format | layout | outcome | why |", "| --- | --- | --- | --- |"]
-    lines += [f"| {' | '.join(row)} |" for row in found]
+    lines += [f"| {' | '.join(row)} |" for row in outcomes]
     return "\n".join([*lines, ""])
 
 
 def _outcome(layout) -> tuple[str, str]:
-    """Return whether a layout is read, and why not."""
+    """Return the outcome of reading a layout, and its reason."""
     with tempfile.TemporaryDirectory() as folder:
         (Path(folder) / layout.file).write_bytes(layout.data)
-        found = read_motions(folder, options=layout.stated)
-    reasons = [refused.reason for refused in found.unusable]
-    if found.motions and not reasons:
+        motions = read_motions(folder, options=layout.stated)
+    reasons = [refused.reason for refused in motions.unusable]
+    if motions.motions and not reasons:
         return "read", ""
     reason = reasons[0].split("; if it is right")[0]
     asked = any(word in reasons[0] for word in ("state", "write confirm"))

@@ -1,4 +1,4 @@
-"""A page of the site on paper: Markdown through HTML into Typst, which sets it as an accessible PDF (PDF/UA-1)."""
+"""Set a page of the site on paper: Markdown through HTML into Typst, which makes an accessible PDF of it (PDF/UA-1)."""
 
 import json
 import re
@@ -36,14 +36,14 @@ _NARROW = 16  # characters: columns of no more keep their width, the others shar
 
 
 def as_pdf(text: str, title: str, header: str, pictures: Mapping[str, bytes]) -> bytes:
-    """The PDF of a page.
+    """Return the PDF of a page.
 
     Parameters
     ----------
     text : str
         Markdown of the page; its first heading is left out for ``title``.
     title, header : str
-        Of the document, and what stands at the top of its sheets.
+        Of the document, and the text at the top of its sheets.
     pictures : mapping of str to bytes
         SVG by the path under which the page shows it.
     """
@@ -58,12 +58,12 @@ def as_pdf(text: str, title: str, header: str, pictures: Mapping[str, bytes]) ->
             target.write_bytes(picture)
         source = Path(folder, "page.typ")
         source.write_text(sheet + body, encoding="utf-8")
-        found: bytes = typst.compile(source, pdf_standards="ua-1", ignore_system_fonts=True)
-    return found
+        pdf: bytes = typst.compile(source, pdf_standards="ua-1", ignore_system_fonts=True)
+    return pdf
 
 
 def _block(element: Element) -> str:
-    """Typst's markup for a block of HTML."""
+    """Return Typst's markup for a block of HTML."""
     match element.tag:
         case "h2" | "h3" | "h4":
             return f"\n{'=' * (int(element.tag[1]) - 1)} {_inline(element)}\n"
@@ -82,14 +82,14 @@ def _block(element: Element) -> str:
 
 
 def _content(item: Element) -> str:
-    """What an item of a list has: text, or blocks."""
+    """Return the content of a list's item: text, or blocks."""
     blocks = any(child.tag in ("p", "ul", "ol", "pre", "table") for child in item)
     return "".join(map(_block, item)) if blocks else _inline(item)
 
 
 def _figure(image: Element) -> str:
-    told = image.get("alt", "")
-    return f"\n#figure(image({_string(image.get('src', ''))}, alt: {_string(told)}), caption: [{_text(told)}])\n"
+    caption = image.get("alt", "")
+    return f"\n#figure(image({_string(image.get('src', ''))}, alt: {_string(caption)}), caption: [{_text(caption)}])\n"
 
 
 def _table(table: Element) -> str:
@@ -116,8 +116,8 @@ def _spans(element: Element, within_table: bool) -> Iterator[str]:
     for child in element:
         match child.tag:
             case "code":
-                told = child.text or ""
-                yield f"#raw({_string(_BREAKS.sub(chr(0x200B), told) if within_table else told)})"
+                code = child.text or ""
+                yield f"#raw({_string(_BREAKS.sub(chr(0x200B), code) if within_table else code)})"
             case "em":
                 yield f"#emph[{_inline(child, within_table)}]"
             case "strong":
@@ -136,9 +136,9 @@ def _text(text: str) -> str:
     return _DOTTED.sub(_dotted, text)
 
 
-def _dotted(found: re.Match[str]) -> str:
-    accent = "dot" if found[1] == "\N{COMBINING DOT ABOVE}" else "dot.double"
-    return f"#math.equation(alt: {_string(found[0])}, $accent(upright(θ), {accent})$)"
+def _dotted(letter: re.Match[str]) -> str:
+    accent = "dot" if letter[1] == "\N{COMBINING DOT ABOVE}" else "dot.double"
+    return f"#math.equation(alt: {_string(letter[0])}, $accent(upright(θ), {accent})$)"
 
 
 def _string(text: str) -> str:

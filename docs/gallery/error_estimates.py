@@ -11,7 +11,7 @@ ROWS = Path(__file__).parents[2] / "benchmarks" / "error_estimates.csv"
 def draw() -> Figure:
     rows = pd.read_csv(ROWS)
     figure = Figure(figsize=(8.0, 4.2), layout="constrained")
-    for axes, quantity, told in zip(
+    for axes, quantity, title in zip(
         figure.subplots(1, 2, sharex=True, sharey=True), ("theta_max", "theta_res"), ("θ_max/α", "θ_res/α"), strict=True
     ):
         for i, (base, of_base) in enumerate(rows.groupby("base", sort=False)):
@@ -20,7 +20,7 @@ def draw() -> Figure:
                 reported, true = known[f"{quantity}_reported"], known[f"{quantity}_true"].clip(lower=1e-13)
                 axes.loglog(reported, true, "osD^v"[i], color=f"C{i}", label=base, mfc="none", ms=4, mew=0.7)
         axes.axline((1e-12, 1e-12), (1e-4, 1e-4), color="k", lw=0.8)
-        axes.set(title=told, xlabel="reported error", xlim=(5e-13, 2e-4), ylim=(5e-14, 2e-4))
+        axes.set(title=title, xlabel="reported error", xlim=(5e-13, 2e-4), ylim=(5e-14, 2e-4))
         axes.grid(alpha=0.3)
     figure.axes[0].set_ylabel("true error")
     figure.legend(*figure.axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=3, frameon=False)

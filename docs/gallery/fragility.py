@@ -1,6 +1,5 @@
-"""Fragility curves: how probable overturning is at a peak ground velocity, on two foundations."""
+"""Fragility curves: the probability of overturning at a peak ground velocity, on two foundations."""
 
-import tempfile
 from pathlib import Path
 from statistics import NormalDist
 
@@ -37,16 +36,13 @@ epsilon = 0.05
 
 
 def draw() -> Figure:
-    with tempfile.TemporaryDirectory() as folder:
-        study = Path(folder) / "fragility.toml"
-        study.write_text(STUDY, encoding="utf-8")
-        found = rb.fragility(study)
+    result = rb.fragility(rb.Study.from_toml(STUDY))
     figure = Figure(figsize=(7.0, 4.2), layout="constrained")
     axes = figure.subplots()
     levels = np.linspace(0.05, 4.0, 200)
-    for marker, curve in zip("os", found.curves, strict=True):
+    for marker, curve in zip("os", result.curves, strict=True):
         name = curve.case.name
-        counted = found.fragility[found.fragility["case"] == name]
+        counted = result.fragility[result.fragility["case"] == name]
         (points,) = axes.plot(counted["level"], counted["exceeded"] / counted["n"], marker, mfc="none")
         fitted = curve.fitted
         probability = [NormalDist(np.log(fitted.median), fitted.dispersion).cdf(level) for level in np.log(levels)]

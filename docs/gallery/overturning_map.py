@@ -1,7 +1,4 @@
-"""Which pulses overturn a pier: amplitude against frequency, with the safe band between the two ways to overturn."""
-
-import tempfile
-from pathlib import Path
+"""Pulses that overturn a pier: amplitude against frequency, with the safe band between the two ways to overturn."""
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -38,10 +35,7 @@ amplitudes = 19
 
 
 def draw() -> Figure:
-    with tempfile.TemporaryDirectory() as folder:
-        study = Path(folder) / "map.toml"
-        study.write_text(STUDY, encoding="utf-8")
-        regions = rb.spectrum(study).overturning_map
+    regions = rb.spectrum(rb.Study.from_toml(STUDY)).overturning_map
     figure = Figure(figsize=(7.0, 5.0), layout="constrained")
     axes = figure.subplots()
     frequencies = regions["omega_p_over_p"].unique()  # closer where boundaries begin or end

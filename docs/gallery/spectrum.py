@@ -1,6 +1,5 @@
-"""A rocking spectrum: which size of pier is safe under the records, on rigid ground and on yielding pads."""
+"""A rocking spectrum: the sizes of pier that are safe under the records, on rigid ground and on yielding pads."""
 
-import tempfile
 from pathlib import Path
 
 import numpy as np
@@ -37,18 +36,15 @@ points = 25
 
 
 def draw() -> Figure:
-    with tempfile.TemporaryDirectory() as folder:
-        study = Path(folder) / "spectrum.toml"
-        study.write_text(STUDY, encoding="utf-8")
-        found = rb.spectrum(study)
+    result = rb.spectrum(rb.Study.from_toml(STUDY))
     figure = Figure(figsize=(8.0, 4.0), layout="constrained")
-    cases = found.spectrum_suite["case"].unique()
+    cases = result.spectrum_suite["case"].unique()
     for axes, case in zip(figure.subplots(1, len(cases), sharey=True), cases, strict=True):
-        of_case = found.spectrum[found.spectrum["case"] == case]
+        of_case = result.spectrum[result.spectrum["case"] == case]
         for _, of_record in of_case.groupby("record", sort=False):
             stood = of_record["theta_max_over_alpha"].where(of_record["status"] != "overturned")
             axes.plot(of_record["two_pi_over_p_s"], stood, lw=0.7, color="0.65")
-        suite = found.spectrum_suite[found.spectrum_suite["case"] == case]
+        suite = result.spectrum_suite[result.spectrum_suite["case"] == case]
         axes.plot(suite["two_pi_over_p_s"], suite["median"].replace(np.inf, np.nan), lw=2, label="median")
         axes.set(xlabel="2π/p [s]", ylabel="θ_max/α", title=case, ylim=(0, 1.1))
         axes.label_outer()
