@@ -1,4 +1,4 @@
-"""The study file: what is asked, checked as a whole before anything runs."""
+"""The study file, checked as a whole before anything runs."""
 
 from rockbatch.study.load import Study, given_study, load_study
 from rockbatch.study.motions import Motions

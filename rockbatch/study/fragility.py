@@ -1,4 +1,4 @@
-"""What ``rockbatch fragility`` is asked: the table [fragility] of a study file."""
+"""Fragility curves in a study file: [fragility]."""
 
 import fnmatch
 from dataclasses import dataclass, replace
@@ -138,8 +138,10 @@ def _of_one_record(rule: Rule) -> Rule:
     infinite, a fragility is not.
     """
     statistic = "max" if rule.statistic == "asce7-16" else rule.statistic
-    one = replace(rule, scale=(), polarity=None, statistic=statistic)
+    limit = replace(rule, scale=(), polarity=None, statistic=statistic)
     if not DEMANDS[rule.demand].of_runs:
-        return one
-    flight, failed = ("left out" if one.counts(status) == "left out" else "unknown" for status in ("flight", "failed"))
-    return replace(one, flight=flight, failed=failed)
+        return limit
+    flight, failed = (
+        "left out" if limit.counts(status) == "left out" else "unknown" for status in ("flight", "failed")
+    )
+    return replace(limit, flight=flight, failed=failed)

@@ -123,7 +123,7 @@ _MOST_SAMPLES = 10_000_000
 
 
 Motions = str | os.PathLike[str] | MotionSet | Motion | Sequence[Motion] | None
-"""What replaces the motions of a study."""
+"""Motions that replace those of a study."""
 
 
 def as_source(motions: Motions) -> Path | MotionSet | None:

@@ -13,11 +13,11 @@ from rockbatch.study.spec import Case
 from rockbatch.toml.kinds import shown
 
 TABLE = re.compile(r"(damper|tendon)(?:_([1-9][0-9]*))?")
-"""What a table of such inputs is called: that of the only one of its kind, or with its number in the study."""
+"""Name of a table of such inputs: of the only device of its kind, or with its number in the case."""
 
 
 class Parameter(NamedTuple):
-    """Where a parameter is: of which of the base's dampers and tendons, in which field, and the key's value over the field's."""
+    """Place of a parameter: the number of the base's damper or tendon, its field, and the key's value over the field's."""
 
     place: int
     field: str
@@ -44,7 +44,7 @@ def numbered(pier: Pier, restraints: Sequence[Restraint]) -> dict[str, Parameter
 
 
 def parameters(pier: Pier, restraints: Sequence[Restraint]) -> dict[str, Parameter]:
-    """As :func:`numbered`; those that only one damper or tendon has go without a number, too."""
+    """Return :func:`numbered` ones; those that only one damper or tendon has go without a number, too."""
     by_number = numbered(pier, restraints)
     counts = Counter(map(_plain, by_number))
     return by_number | {_plain(name): where for name, where in by_number.items() if counts[_plain(name)] == 1}
@@ -79,7 +79,7 @@ def unclear(names: Iterable[str], case: Case) -> dict[str, str]:
     problems: dict[str, str] = {}
     fixed: dict[tuple[int, str], str] = {}
     for name in filter(is_of_restraint, names):
-        meant = [each for each in own if _plain(each) == name]
+        meant = [numbered_name for numbered_name in own if _plain(numbered_name) == name]
         if len(meant) > 1:
             problems[name] = f"{name}: case {shown(case.name)} has {len(meant)} of them; write {' or '.join(meant)}"
         if name in where:
@@ -95,9 +95,9 @@ def why_none(name: str, cases: Iterable[Case]) -> str:
     what, number = table.partition("_")[::2]
     most, kinds, heavy = 0, set(), False
     for case in cases:
-        mine = [each for each in case.base.restraints if isinstance(each, Damper) == (what == "damper")]
-        most, heavy = max(most, len(mine)), heavy or case.pier.mass_t is not None
-        kinds |= {each.kind if isinstance(each, Damper) else "tendon" for each in mine}
+        devices = [device for device in case.base.restraints if isinstance(device, Damper) == (what == "damper")]
+        most, heavy = max(most, len(devices)), heavy or case.pier.mass_t is not None
+        kinds |= {device.kind for device in devices if isinstance(device, Damper)}
     if not most:
         return f"no case of the study has a {what}"
     if number and int(number) > most:

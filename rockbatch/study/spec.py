@@ -1,4 +1,4 @@
-"""What a study is, once checked."""
+"""Parts of a study, once checked."""
 
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -78,7 +78,7 @@ class MotionSpec:
 
 
 LEAST_TOLERANCE = 1e-12
-"""On θ_max/α: rounding alone makes as much, and a run would never be called settled."""
+"""On θ_max/α: rounding alone makes as much, and step halving would never converge."""
 
 
 @dataclass(frozen=True)
@@ -91,12 +91,12 @@ class Numerics:
 
 
 LEAST_NORMAL_SHARE = 0.1
-"""Of the weight: the normal force below which shear keys, not friction, are what bears the base shear."""
+"""Of the weight: the normal force below which shear keys, not friction, bear the base shear."""
 
 
 @dataclass(frozen=True)
 class Output:
-    """[output]: what a study asks for beyond the peaks; each costs time; :data:`rockbatch.study.load.OUTPUT` explains them."""
+    """[output]: results beyond the peaks, each of which costs time; :data:`rockbatch.study.load.OUTPUT` explains them."""
 
     histories: str = "worst"
     histories_MB: float = 20.0  # noqa: N815 (the study's key)

@@ -22,7 +22,7 @@ from rockbatch.toml.section import Key, Section
 Range = tuple[float, float]
 
 AXES = ("two_pi_over_p_s", "p", "size_m")
-"""What a spectrum may run over: 2π/p [s], p [rad/s], or R0 [m]."""
+"""Quantities over which a spectrum may run: 2π/p [s], p [rad/s], or R0 [m]."""
 
 LEAST_TOLERANCE = 1e-9
 """Of a boundary, along either axis; halves of intervals that are shorter would soon be no numbers between their ends."""
@@ -39,7 +39,7 @@ class SpectrumSpec:
     cases : tuple of Case
         α slowest, then the value on the axis, then the bases.
     varied : tuple of str
-        Keys of ``Case.columns``: α, ``axis``, and what the study varies of its bases.
+        Keys of ``Case.columns``: α, ``axis``, and the keys of bases that the study varies.
     """
 
     axis: str
@@ -146,12 +146,12 @@ def _spectrum(table: Table, study: Study) -> SpectrumSpec | None:
     expanded, varied = read_cases(table.file, piers)
     del table.file.problems[before:]  # said below, with the slenderness to which it applies
     reported = set()
-    for each in expanded:
-        alpha = each.pier.alpha
-        for problem in problems(each.pier, each.base):
-            if (alpha, each.name) not in reported:
-                reported.add((alpha, each.name))
-                table.complain(f'alpha = {alpha:g}, case "{each.name}": {problem}', "alpha")
+    for case in expanded:
+        alpha = case.pier.alpha
+        for problem in problems(case.pier, case.base):
+            if (alpha, case.name) not in reported:
+                reported.add((alpha, case.name))
+                table.complain(f'alpha = {alpha:g}, case "{case.name}": {problem}', "alpha")
     apart = [name for name in ("mu", "mass_t") if len({values.get(name) for _, values in piers}) > 1]
     varied = ("alpha", *apart, axis, *(name for name in varied if name not in apart))
     return SpectrumSpec(

@@ -13,8 +13,8 @@ def ground_motions(study: Study) -> MotionSet:
     """Return all motions of a study: its files, packaged records and pulses, and what could not be used.
 
     Records are read, freed of their offsets, turned and paired, then selected, then scaled to the study's target;
-    its ``scale`` and ``polarity`` are left to the runs. Raises ``InputError`` where nothing is left, or in a strict
-    study where anything is unusable.
+    its ``scale`` and ``polarity`` are left to the runs. Raises ``InputError`` if nothing is left, or in a strict study if
+    anything is unusable.
     """
     spec = study.motions
     gravity = study.cases[0].pier.gravity

@@ -1,4 +1,4 @@
-"""What records are scaled to: ``target`` in [motions], one measure or a whole spectrum."""
+"""The target of records in a study file, one measure or a whole spectrum: [motions.target]."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -96,7 +96,7 @@ _UNFIT_FOR_SPECTRUM = dict.fromkeys(
 
 
 def read_target(table: Table) -> Target | SpectrumTarget | None:
-    """Return the target of [motions]; None, with the mistakes noted, where it is no target."""
+    """Return the target of [motions]; None, with the mistakes noted, if it is no target."""
     return _read_spectrum(table) if "spectrum" in table.data else _read_measure(table)
 
 

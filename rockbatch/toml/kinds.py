@@ -33,7 +33,7 @@ class Kind(Protocol):
 
     @property
     def words(self) -> str:
-        """What is expected, for messages and the reference."""
+        """The expected values in words, for messages and the reference."""
 
     def __call__(self, value: Any) -> Any:
         """Return the value as the program uses it. Raises :class:`KindError`."""

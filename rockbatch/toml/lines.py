@@ -1,4 +1,4 @@
-"""Where each key of a TOML text stands."""
+"""Lines of the keys of a TOML text."""
 
 import re
 import tomllib
@@ -66,7 +66,7 @@ class _Scan:
         return self.lines_above + 1
 
     def mark(self, at: At, line: int) -> None:
-        """Also for the tables on the way that dotted keys imply."""
+        """Note the line of a place, and of the tables on the way that dotted keys imply."""
         if len(at) > _DEEPEST:
             raise TooDeepError(f"line {line}: tables or lists within one another, more than {_DEEPEST} deep")
         for depth in range(1, len(at) + 1):

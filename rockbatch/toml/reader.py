@@ -1,4 +1,4 @@
-"""Tables read against the keys they may have; every mistake is kept and told with its line."""
+"""Tables read against the keys they may have; every mistake is kept and reported with its line."""
 
 import os
 import re
@@ -18,7 +18,7 @@ LARGEST = 4 * 2**20
 """Bytes of a study or a manifest: ten thousand records with all that can be said of them."""
 
 MOST_TOLD = 100
-"""Mistakes of a file that are told at once."""
+"""Mistakes of a file that are reported at once."""
 
 
 class Setting(NamedTuple):
@@ -30,14 +30,14 @@ class Setting(NamedTuple):
 
 @dataclass
 class TomlFile:
-    """A TOML file, its values, their lines, and the mistakes found so far."""
+    """A TOML file, its values, their lines, and its mistakes so far."""
 
     path: Path
     text: str
     data: dict[str, Any]
     lines: dict[At, int]
     homes: Mapping[str, str] = field(default_factory=dict)
-    """Where a key or table belongs, in words, for those found in another place."""
+    """Places of keys and tables, in words, for those that stand elsewhere."""
     misspelt: set[At] = field(default_factory=set)
     """Keys and tables that are probably there under a name that is not known."""
     problems: list[tuple[int, str]] = field(default_factory=list)
@@ -99,7 +99,7 @@ class TomlFile:
 
     @property
     def is_full(self) -> bool:
-        """Whether there are as many mistakes as are told at once, so that nobody need look for more."""
+        """Whether there are as many mistakes as are reported at once, so that nobody need look for more."""
         return len(self.problems) >= MOST_TOLD
 
     def is_sound_since(self, before: int) -> bool:
@@ -110,7 +110,7 @@ class TomlFile:
         """Raise :class:`InputError` with all mistakes, in the order of the file, if there are any."""
         in_order = [message for _, message in sorted(self.problems, key=lambda problem: problem[0])]
         if self.is_full:
-            in_order.append(f"{self.path}: {MOST_TOLD} mistakes are told at once; there may be more")
+            in_order.append(f"{self.path}: {MOST_TOLD} mistakes are reported at once; there may be more")
         if in_order:
             raise InputError(*in_order)
 
@@ -230,7 +230,7 @@ class Table:
         self._check_missing(keys)
         self._doubt(keys, usable)
         if not places:
-            usable |= {name: tuple(one.value for one in usable[name]) for name in usable if keys[name].many}
+            usable |= {name: tuple(setting.value for setting in usable[name]) for name in usable if keys[name].many}
         return usable
 
     def requires(self, keys: Mapping[str, Key], name: str) -> bool:

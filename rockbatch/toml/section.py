@@ -131,16 +131,16 @@ class Section(Mapping[str, Key]):
 
     @property
     def header(self) -> str:
-        """As the file has it: "[pier]", "[[motions.pulse]]"; empty for the top."""
+        """Its header in the file: "[pier]", "[[motions.pulse]]"; empty for the top."""
         name = ".".join(self.at)
         return (f"[[{name}]]" if self.many else f"[{name}]") if name else ""
 
     def default(self, name: str) -> Any:
         """Return the value of a key that is not written; None if there is none, or it follows from others."""
         for home in self.homes:
-            for each in fields(home):
-                if each.name == name and each.default not in (MISSING, None, (), ""):
-                    return each.default
+            for attribute in fields(home):
+                if attribute.name == name and attribute.default not in (MISSING, None, (), ""):
+                    return attribute.default
         return self[name].default
 
 
