@@ -214,7 +214,7 @@ class Table:
         a list the value is a tuple, or with ``places`` a list of :class:`Setting`. :attr:`confirmed` is read apart.
         """
         unfit = unfit or {}
-        usable: dict[str, Any] = {}
+        usable: dict[str, list[Setting]] = {}
         for name, value in self.data.items():
             if self.file.is_full:
                 break
@@ -225,13 +225,16 @@ class Table:
                     self._unknown(name, [*keys, *other])
             elif why := self._not_applying(keys, name):
                 self.complain(f"{name} = {shown(value)}: {why}", name)
-            elif (settings := self._checked(name, keys[name], value)) is not None:
+            elif settings := self._checked(name, keys[name], value):
                 usable[name] = settings
         self._check_missing(keys)
         self._doubt(keys, usable)
-        if not places:
-            usable |= {name: tuple(setting.value for setting in usable[name]) for name in usable if keys[name].many}
-        return usable
+        read: dict[str, Any] = {}
+        for name, settings in usable.items():
+            values = tuple(setting.value for setting in settings)
+            several = settings if places and keys[name].many else values
+            read[name] = several if keys[name].many or keys[name].pair else values[0]
+        return read
 
     def requires(self, keys: Mapping[str, Key], name: str) -> bool:
         """Return whether a key has to be written beside the others."""
@@ -264,7 +267,7 @@ class Table:
                 return f"does not apply to {other} = {' or '.join(map(shown, given))}; leave it out, or write {instead}"
         return ""
 
-    def _doubt(self, keys: Mapping[str, Key], usable: dict[str, Any]) -> None:
+    def _doubt(self, keys: Mapping[str, Key], usable: dict[str, list[Setting]]) -> None:
         """Note confirmed keys that are not there, and values larger than usual that are not confirmed."""
         if keys.get("confirm") is CONFIRM["confirm"]:
             there = [shown(name) for name in self.data if name in keys and name != "confirm"]
@@ -275,52 +278,42 @@ class Table:
                     self.complain_about(setting, message)
         for name in usable.keys() - self.confirmed:
             usual = keys[name].usual
-            if usual is None:
-                continue
-            for setting in usable[name] if keys[name].many else [Setting(usable[name], (*self.at, name))]:
-                if setting.value > usual.most:
+            for setting in usable[name]:
+                if usual is not None and setting.value > usual.most:
                     message = f"{name} = {setting.value:g}: more than {usual.most:g} {usual.words}"
                     self.complain_about(setting, f"{message}; {remedy(name)} in this table")
 
-    def _checked(self, name: str, key: Key, value: Any) -> Any:
+    def _checked(self, name: str, key: Key, value: Any) -> list[Setting]:
+        """Return the usable values of a key with their places, of a range both ends or none; note the others."""
         whole = Setting(value, (*self.at, name))
-        if key.pair:
-            return self._range(name, key, value)
-        if not key.many:
-            if isinstance(value, list):
-                self._wrong(name, key, whole, KindError("one value, not a list"))
-                return None
-            return self._converted(name, key, whole)
-        settings = [whole]
+        items = [whole]
         if isinstance(value, list):
-            settings = [Setting(item, (*whole.at, n)) for n, item in enumerate(value)]
-            if not settings:
+            items = [Setting(item, (*whole.at, n)) for n, item in enumerate(value)]
+            if not (key.many or key.pair):
+                self._wrong(name, key, whole, KindError("one value, not a list"))
+                return []
+            if key.many and not items:
                 self._wrong(name, key, whole, KindError("at least one value"))
         usable: list[Setting] = []
         seen: set[str] = set()
-        for setting in settings:
-            converted = self._converted(name, key, setting)
+        for item in items:
+            converted = self._converted(name, key, item)
             if self.file.is_full:
                 break
             if converted is None:
                 continue
-            if key.distinct and repr(converted) in seen:
-                self.complain_about(setting, f"{name} = {shown(setting.value)}: given twice; write it once")
+            if key.many and key.distinct and repr(converted) in seen:
+                self.complain_about(item, f"{name} = {shown(item.value)}: given twice; write it once")
             seen.add(repr(converted))
-            usable.append(Setting(converted, setting.at))
-        return usable or None
-
-    def _range(self, name: str, key: Key, value: Any) -> tuple[Any, Any] | None:
-        """Return the least and the largest value, in this order."""
-        written = value if isinstance(value, list) else [value]
-        ends = [self._converted(name, key, Setting(item, (*self.at, name, n))) for n, item in enumerate(written)]
-        if any(end is None for end in ends):
-            return None
-        if len(ends) == 2 and ends[0] < ends[1]:
-            return ends[0], ends[1]
+            usable.append(Setting(converted, item.at))
+        if not key.pair:
+            return usable
+        ends = [end.value for end in usable]
+        if len(ends) < len(items) or (len(ends) == 2 and ends[0] < ends[1]):
+            return usable if len(ends) == len(items) else []
         example = shown([min(ends), max(ends)]) if ends and min(ends) < max(ends) else key.example
         self.complain(f"{name} = {shown(value)}: expected a range; write for example {name} = {example}", name)
-        return None
+        return []
 
     def _converted(self, name: str, key: Key, setting: Setting) -> Any:
         try:
