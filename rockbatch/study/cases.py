@@ -25,6 +25,7 @@ from rockbatch.pier.restraints import wrong_device
 from rockbatch.study.lists import Chosen, Grid, complain_where_due, too_many
 from rockbatch.study.piers import PIER, Values, has_mass
 from rockbatch.study.restraint_keys import RESTRAINTS, Device, read_devices
+from rockbatch.study.spec import Case
 from rockbatch.toml.kinds import choice, positive, shown, text, within
 from rockbatch.toml.reader import Table, TomlFile
 from rockbatch.toml.section import CONFIRM, Clash, Key, Section
@@ -112,6 +113,11 @@ class Expanded(NamedTuple):
     pier: Pier
     base: Base
     values: Values
+
+    def case(self, varied: Iterable[str]) -> Case:
+        """Return the case, with those of the varied keys that apply to it."""
+        columns = {name: self.values[name] for name in varied if name in self.values}
+        return Case(self.name, self.pier, self.base, columns)
 
 
 def read_cases(file: TomlFile, piers: Sequence[tuple[Pier, Values]]) -> tuple[list[Expanded], tuple[str, ...]]:

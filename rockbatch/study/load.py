@@ -266,7 +266,7 @@ def _checked(file: TomlFile, motions: Motions) -> Study:
         text=file.text,
         motions=motion_spec,
         numerics=numerics,
-        cases=tuple(Case(case.name, case.pier, case.base, _pick(varied, case.values)) for case in cases),
+        cases=tuple(case.case(varied) for case in cases),
         references=references,
         varied=varied,
         output=output,
@@ -335,9 +335,5 @@ def _references(file: TomlFile, cases: Sequence[Expanded], varied: Iterable[str]
                 table.complain(f"{name} = {shown(value)}: no case {case} has it; {instead}", name)
         if read.keys() >= set(OF_REFERENCE):
             own = {name: read[name] for name in OF_REFERENCE}
-            references.append(Reference(columns=_pick(varied, columns), **own))
+            references.append(Reference(columns={name: columns[name] for name in varied if name in columns}, **own))
     return tuple(references)
-
-
-def _pick(names: Iterable[str], values: Mapping[str, float | str]) -> dict[str, float | str]:
-    return {name: values[name] for name in names if name in values}

@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from rockbatch.errors import InputError
 from rockbatch.motions.pulses import SHAPES
 from rockbatch.pier import Pier, problems
 from rockbatch.study.cases import read_cases
@@ -154,13 +153,7 @@ def _spectrum(table: Table, study: Study) -> SpectrumSpec | None:
                 table.complain(f'alpha = {alpha:g}, case "{case.name}": {problem}', "alpha")
     apart = [name for name in ("mu", "mass_t") if len({values.get(name) for _, values in piers}) > 1]
     varied = ("alpha", *apart, axis, *(name for name in varied if name not in apart))
-    return SpectrumSpec(
-        axis,
-        tuple(
-            Case(e.name, e.pier, e.base, {key: e.values[key] for key in varied if key in e.values}) for e in expanded
-        ),
-        varied,
-    )
+    return SpectrumSpec(axis, tuple(case.case(varied) for case in expanded), varied)
 
 
 def _piers(
@@ -180,19 +173,15 @@ def _piers(
     piers = []
     for n, alpha in enumerate(alphas):
         for other in others:
-            for value in values:
-                own = {"alpha": alpha, "mu": other.mu, axis: value}
-                try:
+            mass = {} if other.mass_t is None else {"mass_t": other.mass_t}
+            with table.noting("alpha", n):
+                for value in values:
                     if axis == "size_m":
                         p = Pier.from_size(alpha, value, other.mu, other.gravity).p
                     else:
                         p = value if axis == "p" else 2 * math.pi / value
-                    pier = replace(other, alpha=alpha, p=p)
-                except InputError as error:
-                    for problem in error.problems:
-                        table.complain(problem, "alpha", n)
-                    break
-                piers.append((pier, own if other.mass_t is None else own | {"mass_t": other.mass_t}))
+                    own = {"alpha": alpha, "mu": other.mu, axis: value} | mass
+                    piers.append((replace(other, alpha=alpha, p=p), own))
     return piers
 
 
