@@ -19,7 +19,7 @@ from rockbatch.motions.bounded import TooLongError
 from rockbatch.motions.component import Component
 from rockbatch.motions.formats import FORMATS, ReadOptions
 from rockbatch.motions.formats import sac as sac_format
-from rockbatch.motions.formats.before_obspy import CHECKS
+from rockbatch.motions.formats.with_obspy import CHECKS
 from rockbatch.motions.manifest_draft import write_draft
 
 

@@ -5,24 +5,21 @@ the same without the comma, ``1991 0.0100 NPTS, DT``.
 """
 
 import re
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from dataclasses import replace
 
 import numpy as np
 
 from rockbatch.errors import InputError, NoRecordError, UnstatedError
 from rockbatch.motions.component import Component, Seat
-from rockbatch.motions.formats.fixed_width import LOOKED_AT, is_cut_short
-from rockbatch.motions.formats.obspy_plugin import FileLike, first_bytes, name_and_bytes
+from rockbatch.motions.formats.lines import LOOKED_AT, is_cut_short
+from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.record_file import RecordFile
+from rockbatch.motions.formats.recording import Recording, to_components
 from rockbatch.motions.limits import MOST_SAMPLES, STEPS, is_step
-from rockbatch.motions.motion import Samples
-from rockbatch.motions.orientation import UNKNOWN, orientation_of, split_stem
+from rockbatch.motions.motion import Samples, Unusable
+from rockbatch.motions.orientation import orientation_of, split_stem
 from rockbatch.motions.origin import origin_of
 from rockbatch.units import acceleration_factor
-
-if TYPE_CHECKING:
-    from obspy import Stream
 
 SUFFIXES = frozenset({".at2"})
 
@@ -39,6 +36,7 @@ _UNIT = re.compile(r"\bUNITS?\s*(?:OF|[=:])\s*\(?\s*([A-Z0-9/*^²]+)", re.IGNORE
 _IN_G = re.compile(r"\(\s*(g)\s*\)", re.IGNORECASE)  # of El Centro 1940 as it goes from hand to hand
 _DATE = re.compile(r"\d{1,2}/\d{1,2}/\d{2,4}|\d{4}-\d{2}-\d{2}")
 _SIGNED = re.compile(rf"[-+]?{_NUMBER}", re.IGNORECASE)
+_NOT_FINITE = re.compile(r"[-+]?(?:nan|inf|infinity)", re.IGNORECASE)
 _HEADER_LINES = 10  # the count stands in line 4; a few lines of grace for hand-edited headers
 _HEADER_BYTES = 2048
 _HEADER_CHARACTERS = 8192
@@ -47,114 +45,52 @@ _PIECE = 2**20  # characters that are looked at together
 _WIDEST = 40  # characters of a number; longer ones are no numbers, and would cost the patterns long
 
 
-@dataclass(frozen=True)
-class _At2:
-    """The contents of an AT2 file; ``values`` in its own ``unit``, shape (npts,). PEER's own records are corrected ones."""
-
-    event: str
-    date: str
-    station: str
-    component: str
-    unit: str | None
-    dt: float
-    values: Samples
-    by_peer: bool
-
-
-def is_at2(filename: Any) -> bool:
-    """Whether a path or a file-like object holds a PEER AT2 file; never raises."""
-    return looks_like_at2(first_bytes(filename))
-
-
 def looks_like_at2(head: bytes) -> bool:
-    """Whether the first bytes are an AT2 header: a count with a time step, below a unit or PEER's name."""
-    lines = head[:_HEADER_BYTES].decode("latin-1").splitlines()[:_HEADER_LINES]
-    for i, line in enumerate(lines):
-        if _count_and_step(line):
-            above = " ".join(lines[:i]).upper()
-            return i > 0 and ("UNITS OF" in above or "PEER" in above)
-    return False
+    """Return whether the first bytes are an AT2 header: a count with a time step, below a unit or PEER's name."""
+    lines = _first_lines(head)
+    at = next((i for i, line in enumerate(lines) if _count_and_step(line)), 0)
+    above = " ".join(lines[:at]).upper()
+    return "UNITS OF" in above or "PEER" in above
 
 
 def has_at2_count(head: bytes) -> bool:
-    """Whether the first bytes have a count with a time step, as the header of an AT2 file: for files of that suffix."""
-    lines = head[:_HEADER_BYTES].decode("latin-1").splitlines()[:_HEADER_LINES]
-    return any(_count_and_step(line) for line in lines)
+    """Return whether the first bytes have a count with a time step, as the header of an AT2 file: for files of that suffix."""
+    return any(_count_and_step(line) for line in _first_lines(head))
 
 
-def read_at2(filename: FileLike, headonly: bool = False, **kwargs: Any) -> "Stream":
-    """Read an AT2 file into an ObsPy Stream of one Trace: ObsPy calls this for ``obspy.read("x.AT2")``.
-
-    The data stay in the file's unit; ``stats.at2`` has ``event``, ``date``, ``station``, ``component`` and
-    ``unit``. Raises ``InputError`` for a file that cannot be used, with the line, what was found and what was
-    expected.
-    """
-    from obspy import Stream, Trace
-    from obspy.core import AttribDict
-
-    place, data = name_and_bytes(filename)
-    try:
-        record = _parse(data.decode("latin-1"))
-    except InputError as error:
-        raise InputError(*(f"{place}: {problem}" for problem in error.problems)) from None
-    header = {
-        "delta": record.dt,
-        "station": "".join(c for c in record.station.upper() if c.isalnum())[:5],
-        "channel": record.component.upper(),
-        "at2": AttribDict(
-            event=record.event,
-            date=record.date,
-            station=record.station,
-            component=record.component,
-            unit=record.unit or "",
-        ),
-    }
-    if headonly:
-        return Stream([Trace(header={**header, "npts": len(record.values)})])
-    return Stream([Trace(data=record.values, header=header)])
+def _first_lines(head: bytes) -> list[str]:
+    return head[:_HEADER_BYTES].decode("latin-1").splitlines()[:_HEADER_LINES]
 
 
-def read_component(file: RecordFile) -> list[Component]:
-    """The component of an AT2 file, in m/s²; its g is the study's gravity."""
-    record = _parse(file.data.decode("latin-1"))
-    unit = record.unit or file.options.unit
+def read_component(file: RecordFile) -> list[Component | Unusable]:
+    """Return the component of an AT2 file, in m/s²; its g is the study's gravity."""
+    (recording,) = _parse(file.data.decode("latin-1"))
+    unit = recording.unit or file.options.unit
     if unit is None:
         raise UnstatedError('no unit in the header ("… IN UNITS OF G"); state it in the study, e.g. unit = "g"', "unit")
     try:
-        factor = acceleration_factor(unit, file.gravity)
+        acceleration_factor(unit, file.gravity)
     except ValueError as error:
         raise InputError(f"header: {error}") from None
-    file.options.hold_against(unit, record.dt, file.gravity)
-    orientation = orientation_of(record.component) or split_stem(file.stem)[1] or UNKNOWN
-    parts = (record.event, record.date, record.station)
-    return [
-        Component(
-            name=file.stem,
-            dt=record.dt,
-            acceleration=record.values * factor,
-            orientation=orientation,
-            station=", ".join(part.upper() for part in parts) if record.station and record.date else "",
-            source=file.source,
-            unit=unit,
-            seat=Seat(record.station.upper()),
-            event=f"{record.event} {record.date}".strip().upper() if record.date else "",
-            processed=record.by_peer or None,
-            origin=origin_of(record.event, record.station, record.date),
-        )
-    ]
+    file.options.hold_against(unit, recording.dt, file.gravity)
+    orientation = orientation_of(recording.label) or split_stem(file.stem)[1]
+    return to_components(file, [replace(recording, unit=unit, orientation=orientation)])
 
 
-def _parse(text: str) -> _At2:
-    """Return the contents of an AT2 file; ``InputError`` with the line where it cannot be used."""
+def _parse(text: str) -> list[Recording]:
+    """Return the recording of an AT2 file, of unit "" if it states none; ``InputError`` with the line if it cannot be used.
+
+    PEER's own records are corrected ones.
+    """
     lines = text[:_HEADER_CHARACTERS].splitlines(keepends=True)[:_HEADER_LINES]
     at = next((i for i, line in enumerate(lines) if _count_and_step(line)), None)
-    found = None if at is None else _count_and_step(lines[at])
-    if at is None or found is None:
+    said = None if at is None else _count_and_step(lines[at])
+    if at is None or said is None:
         raise InputError(
             f"lines 1–{len(lines)}: no number of points and time step found; "
             'expected a line such as "NPTS= 4316, DT= .0100 SEC"'
         )
-    npts, dt = int(found["npts"]), float(found["dt"].upper().replace("D", "E"))
+    npts, dt = int(said["npts"]), float(_plain(said["dt"]))
     if not 1 <= npts <= MOST_SAMPLES or not is_step(dt):
         raise InputError(
             f'line {at + 1}: found "{lines[at].strip()[:80]}"; expected a count from 1 to {MOST_SAMPLES:,}, and a time step of '
@@ -167,12 +103,24 @@ def _parse(text: str) -> _At2:
         )
     unit = _UNIT.search(header) or _IN_G.search(" ".join(lines[: at + 1]))
     event, date, station, component = _title(lines[1].strip()) if at > 1 else ("", "", "", "")
-    values = _values(text, sum(map(len, lines[: at + 1])), npts)
-    return _At2(event, date, station, component, unit[1] if unit else None, dt, values, "PEER" in header.upper())
+    return [
+        Recording(
+            label=component,
+            dt=dt,
+            values=_values(text, sum(map(len, lines[: at + 1])), npts),
+            unit=unit[1] if unit else "",
+            station=", ".join(part.upper() for part in (event, date, station)) if station and date else "",
+            seat=Seat(station.upper()),
+            event=f"{event} {date}" if date else "",
+            processed="PEER" in header.upper() or None,
+            origin=origin_of(event, station, date),
+            header={"event": event, "date": date, "station": station},
+        )
+    ]
 
 
 def _count_and_step(line: str) -> re.Match[str] | None:
-    """The groups ``npts`` and ``dt`` of a header line, in any dialect."""
+    """Return the groups ``npts`` and ``dt`` of a header line, in any dialect."""
     return next((match for pattern in _COUNT_AND_STEP if (match := pattern.search(line[:200]))), None)
 
 
@@ -231,35 +179,30 @@ def _between_blanks(text: str, start: int) -> tuple[Samples, list[str]]:
 
 def _touching_or_double(text: str, start: int, npts: int) -> tuple[Samples, list[str]]:
     """Likewise, of Fortran's columns that touch, or numbers in double precision; ``InputError`` with the line."""
-    lines = text[start:].rstrip("\x00\x1a").splitlines()
-    body = [line.rstrip() for line in lines if line.strip()]
+    lines = [line.rstrip() for line in text[start:].rstrip("\x00\x1a").splitlines()]
+    body = [line for line in lines if line]
     width = _width(body, npts)
-    if width is None:
-        first = text.count("\n", 0, start)
-        fields = ((token, first + i) for i, line in enumerate(lines) for token in line.split())
-        values = np.fromiter((_number(token, at) for token, at in fields), float)
-        return values, [token for line in body[-LOOKED_AT:] for token in line.split()][-LOOKED_AT:]
-    cells = (line[at : at + width] for line in body for at in range(0, len(line), width))
-    values = np.fromiter((float(_plain(cell)) for cell in cells), float)
-    return values, [line[at : at + width].strip() for line in body[-LOOKED_AT:] for at in range(0, len(line), width)][
-        -LOOKED_AT:
-    ]
+    first = text.count("\n", 0, start)
+
+    def fields(line: str) -> list[str]:
+        return line.split() if width is None else [line[at : at + width].strip() for at in range(0, len(line), width)]
+
+    values = (_number(field, first + i) for i, line in enumerate(lines) for field in fields(line))
+    return np.fromiter(values, float), [field for line in body[-LOOKED_AT:] for field in fields(line)][-LOOKED_AT:]
 
 
 def _plain(number: str) -> str:
-    """A number of Fortran's as Python reads it."""
-    return number.strip().upper().replace("D", "E")
+    """Return a number of Fortran's as Python reads it."""
+    return number.upper().replace("D", "E")
 
 
-def _number(token: str, at: int) -> float:
-    """``token`` of the line with index ``at`` as a number, or ``InputError``."""
-    if (len(token) <= _WIDEST and _SIGNED.fullmatch(token)) or token.lower().lstrip("+-") in (
-        "nan",
-        "inf",
-        "infinity",
-    ):
-        return float(_plain(token))
-    raise InputError(f'line {at + 1}: found "{token[:40]}"; expected numbers separated by blanks, or in equal columns')
+def _number(field: str, at: int) -> float:
+    """Return a field of the line with index ``at`` as a number, or raise ``InputError``."""
+    if not (len(field) <= _WIDEST and _SIGNED.fullmatch(field)) and not _NOT_FINITE.fullmatch(field):
+        raise InputError(
+            f'line {at + 1}: found "{field[:40]}"; expected numbers separated by blanks, or in equal columns'
+        )
+    return float(_plain(field)) if _SIGNED.fullmatch(field) else float(field)
 
 
 def _width(lines: list[str], npts: int) -> int | None:
@@ -278,3 +221,6 @@ def _width(lines: list[str], npts: int) -> int | None:
         ):
             return width
     return None
+
+
+is_at2, read_at2 = plugin("AT2", looks_like_at2, _parse)

@@ -9,8 +9,15 @@ import re
 
 from rockbatch.errors import InputError
 from rockbatch.motions.component import Seat
-from rockbatch.motions.formats.fixed_width import fixed_numbers, number_in, one_after_another
-from rockbatch.motions.formats.header_lines import line_at, number, past_mark, read_header
+from rockbatch.motions.formats.lines import (
+    fixed_numbers,
+    line_at,
+    number,
+    number_in,
+    one_after_another,
+    past_mark,
+    read_header,
+)
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording
 from rockbatch.motions.orientation import Orientation

@@ -12,7 +12,9 @@ import numpy as np
 from rockbatch.errors import InputError, NoRecordError, UnstatedError
 from rockbatch.motions.component import Component
 from rockbatch.motions.formats.column_header import (
+    SAME_STEP,
     Column,
+    StatedStep,
     columns_with_units,
     columns_without_units,
     is_acceleration,
@@ -20,12 +22,12 @@ from rockbatch.motions.formats.column_header import (
     speaks_of_spectra,
     spectrum_in,
     stated_count,
+    stated_step,
     stated_unit,
 )
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.record_file import ReadOptions, RecordFile
 from rockbatch.motions.formats.recording import Recording, to_components
-from rockbatch.motions.formats.stated_step import SAME_STEP, StatedStep, stated_step
 from rockbatch.motions.formats.table import WRAPPED, read_table
 from rockbatch.motions.formats.time_steps import grows_evenly, on_even_steps
 from rockbatch.motions.motion import Samples, Unusable

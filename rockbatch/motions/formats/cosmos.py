@@ -14,8 +14,16 @@ from dataclasses import dataclass, replace
 
 from rockbatch.errors import InputError, NoRecordError
 from rockbatch.motions.component import Seat
-from rockbatch.motions.formats.fixed_width import fixed_numbers, lines_of
-from rockbatch.motions.formats.header_lines import found, line_at, moment, number, read_header, search_lines
+from rockbatch.motions.formats.lines import (
+    fixed_numbers,
+    found,
+    line_at,
+    lines_of,
+    moment,
+    number,
+    read_header,
+    search_lines,
+)
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording
 from rockbatch.motions.motion import Initial, Samples

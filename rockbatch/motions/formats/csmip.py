@@ -11,8 +11,16 @@ import re
 
 from rockbatch.errors import InputError, NoRecordError
 from rockbatch.motions.component import Seat
-from rockbatch.motions.formats.fixed_width import fixed_numbers, one_after_another
-from rockbatch.motions.formats.header_lines import found, line_at, moment_of, number, past_mark, read_header
+from rockbatch.motions.formats.lines import (
+    fixed_numbers,
+    found,
+    line_at,
+    moment_of,
+    number,
+    one_after_another,
+    past_mark,
+    read_header,
+)
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording, Series
 from rockbatch.motions.formats.renadic import is_renadic

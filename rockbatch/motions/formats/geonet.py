@@ -8,8 +8,7 @@ import re
 
 from rockbatch.errors import InputError
 from rockbatch.motions.component import Seat
-from rockbatch.motions.formats.fixed_width import fixed_numbers, one_after_another
-from rockbatch.motions.formats.header_lines import line_at, moment, number, read_header
+from rockbatch.motions.formats.lines import fixed_numbers, line_at, moment, number, one_after_another, read_header
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording
 from rockbatch.motions.origin import origin_of

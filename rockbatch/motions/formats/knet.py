@@ -9,8 +9,7 @@ from datetime import UTC, datetime
 
 from rockbatch.errors import InputError
 from rockbatch.motions.component import Seat
-from rockbatch.motions.formats.fixed_width import lines_of, spaced_numbers
-from rockbatch.motions.formats.header_lines import moment_of, read_header
+from rockbatch.motions.formats.lines import lines_of, moment_of, read_header, spaced_numbers
 from rockbatch.motions.formats.recording import Recording
 from rockbatch.motions.orientation import orientation_of, unknown
 from rockbatch.motions.origin import origin_of

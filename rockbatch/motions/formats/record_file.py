@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from rockbatch.errors import InputError
-from rockbatch.motions.formats.stated_step import SAME_STEP
+from rockbatch.motions.formats.column_header import SAME_STEP
 from rockbatch.motions.limits import STEPS, is_step
 from rockbatch.units import GRAVITY, acceleration_factor
 

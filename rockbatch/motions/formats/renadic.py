@@ -9,8 +9,7 @@ import re
 
 from rockbatch.errors import InputError
 from rockbatch.motions.component import Seat
-from rockbatch.motions.formats.fixed_width import fixed_numbers, one_after_another
-from rockbatch.motions.formats.header_lines import moment_of, past_mark, read_header
+from rockbatch.motions.formats.lines import fixed_numbers, moment_of, one_after_another, past_mark, read_header
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording
 from rockbatch.motions.formats.time_steps import from_pairs

@@ -10,8 +10,15 @@ import re
 
 from rockbatch.errors import InputError, NoRecordError
 from rockbatch.motions.component import Seat
-from rockbatch.motions.formats.fixed_width import fixed_numbers, lines_of, number_in, refuse_more
-from rockbatch.motions.formats.header_lines import line_at, moment, read_header
+from rockbatch.motions.formats.lines import (
+    fixed_numbers,
+    line_at,
+    lines_of,
+    moment,
+    number_in,
+    read_header,
+    refuse_more,
+)
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording, letters
 from rockbatch.motions.formats.time_steps import from_pairs

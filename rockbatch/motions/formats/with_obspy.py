@@ -1,23 +1,134 @@
-"""The one door to ObsPy's readers: always with the format named.
+"""The one door to ObsPy's readers: always with the format named, and after a check of the file.
 
 Left to find the format itself, ``obspy.read`` unpickles files that look like a pickled Stream, which runs
 their code. Bytes are handed over rather than a path, so that nothing in a file's name is taken for a pattern
-or an address, and after a look at the header (``before_obspy``).
+or an address.
+
+The readers believe what a header says: an event's longitude of 1e30 is brought below 180° by subtracting 360° for
+ever, and a control header whose blockette is 0 long is read again and again. So each of them has a check here, which
+raises ``InputError`` for words that cannot be, and hands on only words that it knows.
 """
 
 import io
+import re
 import sys
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from rockbatch.errors import InputError
-from rockbatch.motions.formats.before_obspy import CHECKS
 
 if TYPE_CHECKING:
     from obspy import Stream
 
+_UNDEFINED = -12345  # of SAC; as text for its words of eight letters
+_SAC_HEADER, _FLOATS, _INTEGERS = 632, 70, 40  # bytes; words of four bytes, floats first
+_SAC_FLOATS = {  # word, the least and the largest value
+    "DELTA": (0, 1e-5, 1.0),
+    "B": (5, -1e10, 1e10),  # some count from 1970
+    "CMPAZ": (57, -360.0, 720.0),
+    "CMPINC": (58, -180.0, 180.0),
+}
+_SAC_INTEGERS = {  # likewise
+    "NZYEAR": (70, 1900, 2100),
+    "NZJDAY": (71, 1, 366),
+    "NZHOUR": (72, 0, 24),
+    "NZMIN": (73, 0, 60),
+    "NZSEC": (74, 0, 61),
+    "NZMSEC": (75, 0, 1000),
+    "NVHDR": (76, 6, 7),
+    "NPTS": (79, 1, 2**28),
+    "IFTYPE": (85, 1, 1),  # a time series; spectra and tables have other numbers
+    "LEVEN": (105, 1, 1),  # samples at even times
+}
+_SAC_NEEDED = ("DELTA", "NPTS", "NVHDR")
+_SAC_TEXTS = (0, 1, 2, 3, 20, 21)  # of 24 texts: station, event (two), hole, component, network
+
+_DATA, _CONTROL = b"DRQM", b"VAST"  # kinds of records in a SEED volume
+_FIXED = 48  # bytes of a data record's fixed header
+_LENGTHS = range(7, 21)  # of records, as powers of 2
+_LENGTH_IN = (b"005", b"008", b"010")  # the blockettes of a volume that tell the length of its records
+_BLOCKETTE = re.compile(rb"[0-9]{7}")  # three digits of type, four of length
+
+
+def sac(data: bytes) -> bytes:
+    """A binary SAC file whose other header words, such as event and distance, are undefined."""
+    if len(data) < _SAC_HEADER:
+        raise InputError(f"holds {len(data)} bytes; a SAC header alone has {_SAC_HEADER}: the file is cut")
+    at = 4 * _SAC_INTEGERS["NVHDR"][0]
+    order = "<" if int.from_bytes(data[at : at + 4], "little") in (6, 7) else ">"
+    floats = np.frombuffer(data, f"{order}f4", _FLOATS)
+    integers = np.frombuffer(data, f"{order}i4", _INTEGERS, 4 * _FLOATS)
+    texts = np.frombuffer(data, "S8", 24, 4 * (_FLOATS + _INTEGERS))
+    known = np.full_like(floats, _UNDEFINED), np.full_like(integers, _UNDEFINED), np.full_like(texts, b"-12345  ")
+    for words, limits, first, kept in (
+        (floats, _SAC_FLOATS, 0, known[0]),
+        (integers, _SAC_INTEGERS, _FLOATS, known[1]),
+    ):
+        for name, (word, least, largest) in limits.items():
+            value = words[word - first]
+            if value == _UNDEFINED and name not in _SAC_NEEDED:
+                continue
+            if not least <= float(f"{value:.7g}") <= largest:
+                raise InputError(f"SAC header: {name} = {value:g}; expected {least:g} to {largest:g}: it is damaged")
+            kept[word - first] = value
+    known[2][list(_SAC_TEXTS)] = texts[list(_SAC_TEXTS)]
+    return b"".join(words.tobytes() for words in known) + data[_SAC_HEADER:]
+
+
+def mseed(data: bytes) -> bytes:
+    """MiniSEED, or a SEED volume, whose first data record can be."""
+    start = 0
+    if data[6:7] in _CONTROL:
+        length = 2 ** _volume_exponent(data)
+        kinds = (data[at + 6 : at + 7] for at in range(0, len(data), length))
+        start = length * next((i for i, kind in enumerate(kinds) if kind and kind in _DATA), len(data))
+    _data_record(data[start : start + 2 ** max(_LENGTHS)])
+    return data
+
+
+def _volume_exponent(data: bytes) -> int:
+    """The power of 2 that is the length of a volume's records, by its first blockettes."""
+    at = 8
+    while _BLOCKETTE.match(data, at):
+        kind, length = data[at : at + 3], int(data[at + 3 : at + 7])
+        if kind in _LENGTH_IN:
+            said = data[at + 11 : at + 13]
+            if not said.isdigit() or int(said) not in _LENGTHS:
+                raise InputError(f'SEED volume: records of 2^"{said.decode("latin-1")}" bytes; expected 07 to 20')
+            return int(said)
+        if length <= 7:
+            raise InputError(f"SEED volume: a blockette of {length} bytes; expected more than 7: it is damaged")
+        at += length
+    raise InputError("SEED volume: no blockette tells the length of its records; fetch MiniSEED instead")
+
+
+def _data_record(record: bytes) -> None:
+    """``InputError`` unless this begins with a data record: its time and its chain of blockettes."""
+    if len(record) < _FIXED or record[6:7] not in _DATA:
+        raise InputError("holds no whole data record; fetch it again")
+    order = ">" if 1 <= int.from_bytes(record[22:24], "big") <= 366 else "<"
+    header = np.frombuffer(record[:_FIXED], f"{order}u2")  # of 16-bit words; bytes 24 to 27 are hour, minute, second
+    hour, minute, second = record[24:27]
+    if hour > 23 or minute > 59 or second > 60 or not 1 <= header[11] <= 366:
+        raise InputError(f"MiniSEED header: day {header[11]}, {hour}:{minute}:{second} is no time: it is damaged")
+    at, seen = int(header[23]), 0
+    while at:
+        if at < max(_FIXED, seen + 4) or at + 7 > len(record):
+            raise InputError(f"MiniSEED header: a blockette at byte {at}, after one at {seen}: it is damaged")
+        kind, following = (int(word) for word in np.frombuffer(record[at : at + 4], f"{order}u2"))
+        if kind == 1000 and record[at + 6] not in _LENGTHS:
+            raise InputError(
+                f"MiniSEED header: records of 2^{record[at + 6]} bytes; expected 2^7 to 2^20: it is damaged"
+            )
+        at, seen = following, at
+
+
+CHECKS: dict[str, Callable[[bytes], bytes]] = {"SAC": sac, "MSEED": mseed}
+"""By ObsPy's name of the format."""
 
 _OPTIONS = {"SAC": {"round_sampling_interval": False}}  # rounding a step of four bytes, ObsPy warns of 1/512 s
 
