@@ -8,7 +8,8 @@ import re
 
 from rockbatch.errors import InputError
 from rockbatch.motions.component import Seat
-from rockbatch.motions.formats.lines import count_and_step, keys_of, lines_of, moment_in, spaced_numbers
+from rockbatch.motions.formats.fixed_width import lines_of, spaced_numbers
+from rockbatch.motions.formats.header_lines import count_and_step, keys_of, moment_in
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording
 from rockbatch.motions.origin import TURKISH, origin_of

@@ -11,7 +11,7 @@ import numpy as np
 
 from rockbatch.errors import InputError, NoRecordError, UnstatedError
 from rockbatch.motions.component import Component, Seat
-from rockbatch.motions.formats.lines import LOOKED_AT, is_cut_short
+from rockbatch.motions.formats.fixed_width import LOOKED_AT, is_cut_short
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.formats.recording import Recording, to_components

@@ -9,15 +9,8 @@ import re
 
 from rockbatch.errors import InputError
 from rockbatch.motions.component import Seat
-from rockbatch.motions.formats.lines import (
-    fixed_numbers,
-    line_at,
-    number,
-    number_in,
-    one_after_another,
-    past_mark,
-    read_header,
-)
+from rockbatch.motions.formats.fixed_width import fixed_numbers, number_in, one_after_another
+from rockbatch.motions.formats.header_lines import layout, line_at, number, past_mark, read_header
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording
 from rockbatch.motions.orientation import Orientation
@@ -30,12 +23,12 @@ _RATE = 21  # line of the header at which it begins
 _WIDTH, _PER_LINE = 13, 10
 _TITLE = re.compile(r"^\* *VOL(?P<volume>[0-9])DS +FILE: *(?P<file>\S+)")
 _DURATION = r"DURATION *= *(?P<duration>[0-9.]{1,12})"
-_TEXT = (
-    (6, re.compile(r"^COMP +(?P<label>[LVT])"), "COMP L1"),
-    (7, re.compile(r"^(?P<name>.*?) *Station\b"), "… Station … Azimuth L 324 T 54"),
-    (7, re.compile(r"Azimuth +L +(?P<L>[0-9]{1,3}) +T +(?P<T>[0-9]{1,3})"), ""),
-    (10, re.compile(rf"NO\. OF POINTS *= *(?P<npts>[0-9]{{1,9}}) +{_DURATION}"), "NO. OF POINTS = … DURATION = …"),
-    (11, re.compile(r"UNITS ARE SEC(?:ONDS)? AND +(?P<unit>[A-Z0-9/]+)"), "UNITS ARE SECONDS AND G/10"),
+_TEXT = layout(
+    (6, r"^COMP +(?P<label>[LVT])", "COMP L1"),
+    (7, r"^(?P<name>.*?) *Station\b", "… Station … Azimuth L 324 T 54"),
+    (7, r"Azimuth +L +(?P<L>[0-9]{1,3}) +T +(?P<T>[0-9]{1,3})", ""),
+    (10, rf"NO\. OF POINTS *= *(?P<npts>[0-9]{{1,9}}) +{_DURATION}", "NO. OF POINTS = … DURATION = …"),
+    (11, r"UNITS ARE SEC(?:ONDS)? AND +(?P<unit>[A-Z0-9/]+)", "UNITS ARE SECONDS AND G/10"),
 )
 
 

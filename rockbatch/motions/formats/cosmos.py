@@ -14,16 +14,8 @@ from dataclasses import dataclass, replace
 
 from rockbatch.errors import InputError, NoRecordError
 from rockbatch.motions.component import Seat
-from rockbatch.motions.formats.lines import (
-    fixed_numbers,
-    found,
-    line_at,
-    lines_of,
-    moment,
-    number,
-    read_header,
-    search_lines,
-)
+from rockbatch.motions.formats.fixed_width import fixed_numbers, lines_of
+from rockbatch.motions.formats.header_lines import found, layout, line_at, moment, number, read_header, search_lines
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording
 from rockbatch.motions.motion import Initial, Samples
@@ -53,10 +45,10 @@ _END = re.compile(r"^ *(?:/&[ -]*)?End[- ]of[- ]data", re.I)
 _FORMAT = re.compile(r" *(?:\dP,?)?(?P<per_line>\d{0,2})[IFED](?P<width>\d{1,2})(?:\.\d{1,2})? *", re.I | re.A)
 _UNKNOWN = re.compile(r"unspecified: *-?\d+, *(?P<real>-?[\d.]{1,12})", re.I | re.A)
 _STATION, _SENSOR = 4, 8  # lines of the header's text
-_TEXT = (
-    (_STATION, re.compile(r"Code: *(?P<network>[^- ]*)-(?P<code>\S*)(?P<words>.*)", re.I), ""),
-    (_SENSOR, re.compile(r"^Sta Chan?:? *(?P<number>[\d?]*) *: *(?P<label>.*?) *(?:deg\b[^(]*)?(?:\(|$)", re.I), ""),
-    (_SENSOR, re.compile(r"Location: *(?P<place>\S.*?) *$", re.I), ""),
+_TEXT = layout(
+    (_STATION, r"(?i)Code: *(?P<network>[^- ]*)-(?P<code>\S*)(?P<words>.*)", ""),
+    (_SENSOR, r"(?i)^Sta Chan?:? *(?P<number>[\d?]*) *: *(?P<label>.*?) *(?:deg\b[^(]*)?(?:\(|$)", ""),
+    (_SENSOR, r"(?i)Location: *(?P<place>\S.*?) *$", ""),
 )
 _SCNL = re.compile(r"<SCNL>(?P<station>\w*)\.(?P<channel>\w*)\.(?P<network>\w*)\.(?P<location>[\w-]*)", re.A)
 

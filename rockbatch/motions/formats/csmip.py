@@ -11,16 +11,8 @@ import re
 
 from rockbatch.errors import InputError, NoRecordError
 from rockbatch.motions.component import Seat
-from rockbatch.motions.formats.lines import (
-    fixed_numbers,
-    found,
-    line_at,
-    moment_of,
-    number,
-    one_after_another,
-    past_mark,
-    read_header,
-)
+from rockbatch.motions.formats.fixed_width import fixed_numbers, one_after_another
+from rockbatch.motions.formats.header_lines import found, layout, line_at, moment_of, number, past_mark, read_header
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording, Series
 from rockbatch.motions.formats.renadic import is_renadic
@@ -39,45 +31,31 @@ _SPACING = re.compile(
 )
 _UNIT = re.compile(r"(?:\(units:|in units of|, *in) *(?P<unit>[a-z0-9/*^]+)", re.IGNORECASE)
 _FORMAT = re.compile(r"\((?P<per_line>[0-9]{1,2})f(?P<width>[0-9]{1,2})\.[0-9]{1,2}\)", re.IGNORECASE)
-_CLOCK = r"(?P<hour>[0-9]{1,2}):(?P<minute>[0-9]{2}):(?P<second>[0-9]{2}(?:\.[0-9]{1,6})?) *(?:UTC|GMT|\(GPS\)|\(Q=|$)"
-_TEXT = (  # in the lines that Volumes 1 and 2 have in common
+_DAY = r"(?P<month>\d{1,2})/(?P<day>\d{1,2})/(?P<year>\d{4}|\d{2})"
+_CLOCK = r"(?P<hour>\d{1,2}):(?P<minute>\d{2}):(?P<second>\d{2}(?:\.\d{1,6})?) *(?:UTC|GMT|\(GPS\)|\(Q=|$)"
+_TEXT = layout(  # in the lines that Volumes 1 and 2 have in common
     (
         6,
-        re.compile(r"chan +(?P<number>[0-9]{1,3}): *(?P<label>.*?) *(?:deg(?:r|rees)?\b.*)?(?:\(|location:|$)", re.I),
+        r"(?ai)chan +(?P<number>\d{1,3}): *(?P<label>.*?) *(?:deg(?:r|rees)?\b.*)?(?:\(|location:|$)",
         "Chan  1: 90 Deg",
     ),
-    (4, re.compile(r"station +(?:no|id)\. +(?P<station>\S+)", re.I), "Station No. …"),
-    (6, re.compile(r"location: *(?P<place>\S.*?) *$", re.I), ""),
-    (6, re.compile(r"sta +chn: *(?P<of_station>[0-9]{1,3})", re.I), ""),
-    (3, re.compile(r"^[0-9]+\.(?P<network>[A-Z0-9]{1,2})\.(?P<code>[A-Z0-9]{1,5})\.(?P<location>[A-Z0-9-]{2})\."), ""),
-    (
-        3,
-        re.compile(
-            rf"start time: *(?P<month>[0-9]{{1,2}})/(?P<day>[0-9]{{1,2}})/(?P<year>[0-9]{{4}}|[0-9]{{2}}),? *{_CLOCK}",
-            re.I,
-        ),
-        "",
-    ),
+    (4, r"(?i)station +(?:no|id)\. +(?P<station>\S+)", "Station No. …"),
+    (6, r"(?i)location: *(?P<place>\S.*?) *$", ""),
+    (6, r"(?ai)sta +chn: *(?P<of_station>\d{1,3})", ""),
+    (3, r"(?a)^\d+\.(?P<network>[A-Z0-9]{1,2})\.(?P<code>[A-Z0-9]{1,5})\.(?P<location>[A-Z0-9-]{2})\.", ""),
+    (3, rf"(?ai)start time: *{_DAY},? *{_CLOCK}", ""),
 )
-_AGAIN = {  # where a header says once more what declares the data: line, and what it says
-    1: (
-        (10, re.compile(r"no\. of points *= *(?P<npts>[0-9]{1,9})", re.IGNORECASE)),
-        (10, re.compile(r"at +(?P<rate>[0-9.]{1,12}) *samples/sec", re.IGNORECASE)),
+_AGAIN = {  # where a header says once more what declares the data
+    1: layout(
+        (10, r"(?ai)no\. of points *= *(?P<npts>\d{1,9})", ""), (10, r"(?ai)at +(?P<rate>[\d.]{1,12}) *samples/sec", "")
     ),
-    2: (
-        (15, re.compile(r"^ *(?P<npts>[0-9]{1,9}) +points of", re.IGNORECASE)),
-        (16, re.compile(r"intervals of +(?P<dt>[0-9.]{1,12}) *sec", re.IGNORECASE)),
+    2: layout(
+        (15, r"(?ai)^ *(?P<npts>\d{1,9}) +points of", ""), (16, r"(?ai)intervals of +(?P<dt>[\d.]{1,12}) *sec", "")
     ),
 }
 _PEAK = {  # and the peak, with its unit
-    1: ((11, re.compile(r"max *= *[-+]?(?P<peak>[0-9]*\.[0-9]+) *(?P<unit>g)\b", re.IGNORECASE), ""),),
-    2: (
-        (
-            17,
-            re.compile(r"peak acceleration *= *[-+]?(?P<peak>[0-9]*\.[0-9]+) *(?P<unit>cm/sec/sec)", re.IGNORECASE),
-            "",
-        ),
-    ),
+    1: layout((11, r"(?ai)max *= *[-+]?(?P<peak>\d*\.\d+) *(?P<unit>g)\b", "")),
+    2: layout((17, r"(?ai)peak acceleration *= *[-+]?(?P<peak>\d*\.\d+) *(?P<unit>cm/sec/sec)", "")),
 }
 
 
@@ -178,7 +156,7 @@ def _block(lines: list[str], at: int, expected: tuple[str, ...]) -> tuple[str, f
 
 def _check_again(lines: list[str], at: int, volume: int, npts: int, dt: float) -> None:
     """Raise ``InputError`` where the header's text contradicts the line that declares the data."""
-    for offset, pattern in _AGAIN[volume]:
+    for offset, pattern, _ in _AGAIN[volume]:
         said = pattern.search(line_at(lines, at + offset))
         if said is None:
             continue

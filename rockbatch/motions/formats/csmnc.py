@@ -9,7 +9,8 @@ import re
 
 from rockbatch.errors import InputError, NoRecordError
 from rockbatch.motions.component import Seat
-from rockbatch.motions.formats.lines import line_with, lines_of, number, search_lines, spaced_numbers
+from rockbatch.motions.formats.fixed_width import lines_of, spaced_numbers
+from rockbatch.motions.formats.header_lines import line_with, number, search_lines
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording
 from rockbatch.motions.origin import origin_of

@@ -10,7 +10,8 @@ import numpy as np
 
 from rockbatch.errors import InputError, NoRecordError
 from rockbatch.motions.component import Seat
-from rockbatch.motions.formats.lines import LOOKED_AT, is_cut_short, lines_of, moment_in, number_in
+from rockbatch.motions.formats.fixed_width import LOOKED_AT, is_cut_short, lines_of, number_in
+from rockbatch.motions.formats.header_lines import moment_in
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording
 from rockbatch.motions.motion import Samples

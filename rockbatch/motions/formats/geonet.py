@@ -8,7 +8,8 @@ import re
 
 from rockbatch.errors import InputError
 from rockbatch.motions.component import Seat
-from rockbatch.motions.formats.lines import fixed_numbers, line_at, moment, number, one_after_another, read_header
+from rockbatch.motions.formats.fixed_width import fixed_numbers, one_after_another
+from rockbatch.motions.formats.header_lines import layout, line_at, moment, number, read_header
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording
 from rockbatch.motions.origin import origin_of
@@ -18,19 +19,21 @@ SUFFIXES = frozenset({".v1a", ".v2a"})
 _WIDTH, _PER_LINE = 8, 10
 _INTEGERS, _REALS, _DATA = 16, 20, 26  # lines of a component's header at which these begin
 _TITLE = re.compile(r"(?P<un>un)?corrected accelerogram\s+(?P<id>\S+)", re.IGNORECASE)
-_COUNT = r"number of points\s+(?P<npts>[0-9]{1,9})\s+duration\s+(?P<duration>[0-9.]{1,15})\s*s"
-_RAW = r"raw readings in units of\s+(?P<factor>[0-9.]{1,15})\s+(?P<unit>\S+)"
-_PEAK = r"acceleration:\s+peak\s+(?P<peak>[-0-9.]{1,15})\s+(?P<of_peak>\S+)"
-_TEXT = (
-    (0, _TITLE, "(Un)corrected accelerogram …, after the last declared value"),
-    (9, re.compile(_COUNT, re.IGNORECASE), "Number of points … Duration … s"),
-    (12, re.compile(r"component\s+(?P<label>\S+)", re.IGNORECASE), "Component …"),
-    (13, re.compile(_PEAK, re.IGNORECASE), "Acceleration: peak … mm/s/s"),
-    (1, re.compile(r"site\s+(?P<site>\S+)", re.IGNORECASE), "Site …"),
-    (14, re.compile(r"^\s*velocity:\s+peak\s+[-0-9.]{1,15}\s+(?P<velocity>\S+)", re.IGNORECASE), ""),
-    (15, re.compile(r"^\s*displacement:\s+peak\s+[-0-9.]{1,15}\s+(?P<displacement>\S+)", re.IGNORECASE), ""),
+_OF_PEAK = r"peak\s+[-0-9.]{1,15}\s+"
+_TEXT = layout(
+    (0, rf"(?i){_TITLE.pattern}", "(Un)corrected accelerogram …, after the last declared value"),
+    (
+        *(9, r"(?i)number of points\s+(?P<npts>[0-9]{1,9})\s+duration\s+(?P<duration>[0-9.]{1,15})\s*s"),
+        "Number of points … Duration … s",
+    ),
+    (12, r"(?i)component\s+(?P<label>\S+)", "Component …"),
+    (13, r"(?i)acceleration:\s+peak\s+(?P<peak>[-0-9.]{1,15})\s+(?P<of_peak>\S+)", "Acceleration: peak … mm/s/s"),
+    (1, r"(?i)site\s+(?P<site>\S+)", "Site …"),
+    (14, rf"(?i)^\s*velocity:\s+{_OF_PEAK}(?P<velocity>\S+)", ""),
+    (15, rf"(?i)^\s*displacement:\s+{_OF_PEAK}(?P<displacement>\S+)", ""),
 )
-_OF_RAW = ((10, re.compile(_RAW, re.IGNORECASE), "Raw readings in units of 1.00 mm/s/s at intervals of … s"),)
+_RAW = r"(?i)raw readings in units of\s+(?P<factor>[0-9.]{1,15})\s+(?P<unit>\S+)"
+_OF_RAW = layout((10, _RAW, "Raw readings in units of 1.00 mm/s/s at intervals of … s"))
 
 
 def is_geonet(head: bytes) -> bool:

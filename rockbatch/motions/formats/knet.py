@@ -4,12 +4,12 @@ Seventeen lines of text, then eight counts to a line. The time of the first samp
 the recorders, and nine hours ahead of UTC. The stated peak is that without the offset.
 """
 
-import re
 from datetime import UTC, datetime
 
 from rockbatch.errors import InputError
 from rockbatch.motions.component import Seat
-from rockbatch.motions.formats.lines import lines_of, moment_of, read_header, spaced_numbers
+from rockbatch.motions.formats.fixed_width import lines_of, spaced_numbers
+from rockbatch.motions.formats.header_lines import layout, moment_of, read_header
 from rockbatch.motions.formats.recording import Recording
 from rockbatch.motions.orientation import orientation_of, unknown
 from rockbatch.motions.origin import origin_of
@@ -19,20 +19,16 @@ SUFFIXES = frozenset({".ew", ".ns", ".ud", ".ew1", ".ns1", ".ud1", ".ew2", ".ns2
 _HEADER, _PER_LINE = 17, 8
 _JAPAN, _DELAY = 9 * 3600.0, 15.0  # s
 _TIME = r"(?P<year>\d{4})/(?P<month>\d\d)/(?P<day>\d\d) (?P<hour>\d\d):(?P<minute>\d\d):(?P<second>\d\d)"
-_EVENT = ((0, re.compile(rf"^Origin Time +{_TIME}", re.ASCII), "Origin Time 2018/01/24 19:51:00"),)
-_TEXT = (
-    (5, re.compile(r"^Station Code +(?P<station>\w{1,7})\s*$", re.ASCII), "Station Code AOM003"),
-    (9, re.compile(rf"^Record Time +{_TIME}", re.ASCII), "Record Time 2018/01/24 19:51:38"),
-    (10, re.compile(r"^Sampling Freq\(Hz\) +(?P<rate>[1-9]\d{0,4}) *Hz", re.ASCII), "Sampling Freq(Hz) 100Hz"),
-    (11, re.compile(r"^Duration Time\(s\) +(?P<seconds>\d{1,6}(?:\.\d{1,6})?)\s*$", re.ASCII), "Duration Time(s) 128"),
-    (12, re.compile(r"^Dir\. +(?P<channel>\S+)"), "Dir. N-S"),
-    (
-        13,
-        re.compile(r"^Scale Factor +(?P<gal>\d{1,9})\(gal\)/(?P<per>[1-9]\d{0,11})\s*$", re.ASCII),
-        "Scale Factor …(gal)/…",
-    ),
-    (14, re.compile(r"^Max\. Acc\. \(gal\) +(?P<peak>-?\d{1,6}\.\d{1,6})\s*$", re.ASCII), "Max. Acc. (gal) 22.485"),
-    (16, re.compile(r"^Memo\."), "Memo."),
+_EVENT = layout((0, rf"(?a)^Origin Time +{_TIME}", "Origin Time 2018/01/24 19:51:00"))
+_TEXT = layout(
+    (5, r"(?a)^Station Code +(?P<station>\w{1,7})\s*$", "Station Code AOM003"),
+    (9, rf"(?a)^Record Time +{_TIME}", "Record Time 2018/01/24 19:51:38"),
+    (10, r"(?a)^Sampling Freq\(Hz\) +(?P<rate>[1-9]\d{0,4}) *Hz", "Sampling Freq(Hz) 100Hz"),
+    (11, r"(?a)^Duration Time\(s\) +(?P<seconds>\d{1,6}(?:\.\d{1,6})?)\s*$", "Duration Time(s) 128"),
+    (12, r"^Dir\. +(?P<channel>\S+)", "Dir. N-S"),
+    (13, r"(?a)^Scale Factor +(?P<gal>\d{1,9})\(gal\)/(?P<per>[1-9]\d{0,11})\s*$", "Scale Factor 7845(gal)/8223790"),
+    (14, r"(?a)^Max\. Acc\. \(gal\) +(?P<peak>-?\d{1,6}\.\d{1,6})\s*$", "Max. Acc. (gal) 22.485"),
+    (16, r"^Memo\.", "Memo."),
 )
 _CHANNELS = {"1": "NS1", "2": "EW1", "3": "UD1", "4": "NS2", "5": "EW2", "6": "UD2"}
 _LEVELS = {"1": "KiK-net sensor 1: in the borehole", "2": "KiK-net sensor 2: at the surface"}

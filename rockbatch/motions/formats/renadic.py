@@ -5,11 +5,10 @@ columns of 7 characters (F7.3), and a line that begins with ``/&``. Volume 1 fil
 same words in line 12, digitised from film at uneven times, are read as well.
 """
 
-import re
-
 from rockbatch.errors import InputError
 from rockbatch.motions.component import Seat
-from rockbatch.motions.formats.lines import fixed_numbers, moment_of, one_after_another, past_mark, read_header
+from rockbatch.motions.formats.fixed_width import fixed_numbers, one_after_another
+from rockbatch.motions.formats.header_lines import layout, moment_of, past_mark, read_header
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording
 from rockbatch.motions.formats.time_steps import from_pairs
@@ -25,16 +24,12 @@ _LENGTH = r"RECORD LENGTH\s*=\s*(?P<length>[0-9.]{1,12})"
 _MAX = r"(?:.*?MAX\s*=\s*(?P<peak>[-+]?[0-9]{0,5}\.[0-9]{1,6})\s+G\b)?"
 _DAY = r"(?P<month>\d{1,2})/(?P<day>\d{1,2})/(?P<year>\d{4})"
 _CLOCK = r"(?P<hour>\d{1,2}):(?P<minute>\d{2}):(?P<second>\d{2}(?:\.\d{1,6})?)"
-_TEXT = (
-    (0, re.compile(r"UNCORRECTED ACCELEROGRAM DATA"), "UNCORRECTED ACCELEROGRAM DATA, after the last declared value"),
-    (6, re.compile(r"CHAN\s+[0-9]{1,3}:\s*(?P<label>[^(]*?)\s*(?:\(|$)"), "CHAN  1: L"),
-    (
-        10,
-        re.compile(rf"NO\. OF POINTS\s*=\s*(?P<npts>[0-9]{{1,9}})\s+{_LENGTH}"),
-        "NO. OF POINTS = … RECORD LENGTH = … SEC",
-    ),
-    (11, re.compile(rf"{_PAIRS}\s+(?P<unit>[A-Z0-9/]+){_MAX}"), f"{_PAIRS} G/10"),
-    (3, re.compile(rf"TRIGGER TIME:\s*{_DAY}\s+{_CLOCK}", re.ASCII), ""),
+_TEXT = layout(
+    (0, r"UNCORRECTED ACCELEROGRAM DATA", "UNCORRECTED ACCELEROGRAM DATA, after the last declared value"),
+    (6, r"CHAN\s+[0-9]{1,3}:\s*(?P<label>[^(]*?)\s*(?:\(|$)", "CHAN  1: L"),
+    (10, rf"NO\. OF POINTS\s*=\s*(?P<npts>[0-9]{{1,9}})\s+{_LENGTH}", "NO. OF POINTS = … RECORD LENGTH = … SEC"),
+    (11, rf"{_PAIRS}\s+(?P<unit>[A-Z0-9/]+){_MAX}", f"{_PAIRS} G/10"),
+    (3, rf"(?a)TRIGGER TIME:\s*{_DAY}\s+{_CLOCK}", ""),
 )
 _NOT_SET = "1980-1-1"  # the date of a recorder whose clock nobody set
 

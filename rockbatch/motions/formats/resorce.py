@@ -8,7 +8,8 @@ import re
 
 from rockbatch.errors import InputError
 from rockbatch.motions.component import Seat
-from rockbatch.motions.formats.lines import count_and_step, fixed_numbers, keys_of, line_with, lines_of, refuse_more
+from rockbatch.motions.formats.fixed_width import fixed_numbers, lines_of, refuse_more
+from rockbatch.motions.formats.header_lines import count_and_step, keys_of, line_with
 from rockbatch.motions.formats.recording import Recording
 from rockbatch.motions.origin import origin_of
 

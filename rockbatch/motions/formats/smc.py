@@ -10,15 +10,8 @@ import re
 
 from rockbatch.errors import InputError, NoRecordError
 from rockbatch.motions.component import Seat
-from rockbatch.motions.formats.lines import (
-    fixed_numbers,
-    line_at,
-    lines_of,
-    moment,
-    number_in,
-    read_header,
-    refuse_more,
-)
+from rockbatch.motions.formats.fixed_width import fixed_numbers, lines_of, number_in, refuse_more
+from rockbatch.motions.formats.header_lines import layout, line_at, moment, read_header
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording, letters
 from rockbatch.motions.formats.time_steps import from_pairs
@@ -32,8 +25,10 @@ _INTEGERS, _REALS, _COMMENTS = 11, 17, 27  # lines at which these begin
 _TITLE = re.compile(r"^(?:(?P<kind>[0-6]) (?P<what>[A-Z]+(?: [A-Z]+)*)|\*)\s*$")
 _KINDS = {"1": "uncorrected", "2": "corrected"}
 _EIGHT_INTEGERS = re.compile(r"(?:[- \d]{9}\d){8}\s*", re.ASCII)
-_STATION = re.compile(r"station\s*=\s*(?P<name>.*?)\s*component\s*=\s*(?P<label>\S*)")
-_TEXT = ((0, _TITLE, "2 CORRECTED ACCELEROGRAM"), (5, _STATION, "station = …, component= …"))
+_TEXT = layout(
+    (0, _TITLE.pattern, "2 CORRECTED ACCELEROGRAM"),
+    (5, r"station\s*=\s*(?P<name>.*?)\s*component\s*=\s*(?P<label>\S*)", "station = …, component= …"),
+)
 _VERTICAL = {0: "Up", 180: "Down"}  # degrees from the upward vertical; 90 is horizontal
 _DAY = 86400.0  # s
 

@@ -13,7 +13,8 @@ import numpy as np
 
 from rockbatch.errors import InputError
 from rockbatch.motions.component import Seat
-from rockbatch.motions.formats.lines import date_in, keys_of, line_with, lines_of, moment, number_in
+from rockbatch.motions.formats.fixed_width import lines_of, number_in
+from rockbatch.motions.formats.header_lines import date_in, keys_of, line_with, moment
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording
 from rockbatch.motions.motion import Samples

@@ -8,7 +8,8 @@ import re
 
 from rockbatch.errors import InputError
 from rockbatch.motions.component import Seat
-from rockbatch.motions.formats.lines import fixed_numbers, line_at, number, one_after_another, read_header
+from rockbatch.motions.formats.fixed_width import fixed_numbers, one_after_another
+from rockbatch.motions.formats.header_lines import layout, line_at, number, read_header
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording
 from rockbatch.motions.formats.time_steps import from_pairs
@@ -23,12 +24,12 @@ _LATE = 0.05  # s: what the stated duration may differ from the last time
 _TITLE = re.compile(r"OF UNCORRECTED ACCELEROGRAM DATA OF VOLUME I:")
 _CORRECTED = re.compile(r"(?<!UN)CORRECTED ACCELEROGRAM")
 _DURATION = r"DURATION *= *(?P<duration>[0-9.]{1,12}) *SEC"
-_TEXT = (
-    (0, _TITLE, "FILE … OF UNCORRECTED ACCELEROGRAM DATA OF VOLUME I:, after the last declared value"),
-    (6, re.compile(r"^ *COMP +(?P<label>\S+)"), "COMP N90E"),
-    (4, re.compile(r"STATION USC# *(?P<station>\S+?),*(?:\s|$)"), "STATION USC# …"),
-    (10, re.compile(rf"NO\. OF POINTS *= *(?P<npts>[0-9]{{1,9}}) +{_DURATION}"), "NO. OF POINTS = … DURATION = … SEC"),
-    (11, re.compile(r"UNITS ARE SEC AND +(?P<unit>[A-Z0-9/]+)"), "UNITS ARE SEC AND G/10"),
+_TEXT = layout(
+    (0, _TITLE.pattern, "FILE … OF UNCORRECTED ACCELEROGRAM DATA OF VOLUME I:, after the last declared value"),
+    (6, r"^ *COMP +(?P<label>\S+)", "COMP N90E"),
+    (4, r"STATION USC# *(?P<station>\S+?),*(?:\s|$)", "STATION USC# …"),
+    (10, rf"NO\. OF POINTS *= *(?P<npts>[0-9]{{1,9}}) +{_DURATION}", "NO. OF POINTS = … DURATION = … SEC"),
+    (11, r"UNITS ARE SEC AND +(?P<unit>[A-Z0-9/]+)", "UNITS ARE SEC AND G/10"),
 )
 
 

@@ -1,0 +1,140 @@
+"""Numbers in the fixed columns of Fortran programs, which need no blank between them: ``-11024.7-9733.1``.
+
+And in lines of numbers between blanks whose count is known.
+"""
+
+from collections.abc import Callable, Sequence
+from typing import TypeVar
+
+import numpy as np
+
+from rockbatch.errors import InputError
+from rockbatch.motions.limits import HUGE
+from rockbatch.motions.motion import Samples
+
+T = TypeVar("T")
+_LONGEST = 10**6  # characters of a line
+_MANY = 100  # numbers that do not have the same number of decimals by chance
+LOOKED_AT = 1000
+"""How many numbers at the end of a file ``is_cut_short`` needs."""
+
+
+def lines_of(text: str) -> list[str]:
+    """Lines of a file with any of the three line ends, less what old programs write after the last one.
+
+    ``str.splitlines`` would also break at the control characters that Latin-1 texts may hold. Raises ``InputError`` for
+    a line that is longer than any of numbers, whose words would take thirty times its size.
+    """
+    lines = text.rstrip("\x00\x1a\r\n").replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    too_long = next((i for i, line in enumerate(lines) if len(line) > _LONGEST), None)
+    if too_long is not None:
+        raise InputError(f"line {too_long + 1} has {len(lines[too_long]):,} characters; expected {_LONGEST:,} at most")
+    return lines
+
+
+def one_after_another(text: str, channel: Callable[[list[str], int], tuple[T, int]]) -> list[T]:
+    """The channels of a file: ``channel`` reads the one that begins at a line, and tells where it ends.
+
+    Raises ``InputError`` for a file without any.
+    """
+    lines = lines_of(text)
+    channels = []
+    at = 0
+    while at < len(lines):
+        if lines[at].strip():
+            one, at = channel(lines, at)
+            channels.append(one)
+        else:
+            at += 1
+    if not channels:
+        raise InputError("the file is empty")
+    return channels
+
+
+def fixed_numbers(lines: Sequence[str], first: int, count: int, width: int, per_line: int) -> tuple[Samples, int]:
+    """Return ``count`` numbers from ``lines[first]`` on, shape (count,), and where the lines after them begin.
+
+    There are ``per_line`` of ``width`` characters each: every line is full but the last, which holds the rest and nothing
+    more. Raises ``InputError`` with the line for anything else; nothing is allocated before the lines are there.
+    """
+    needed = -(-count // per_line)
+    if len(lines) - first < needed:
+        raise InputError(
+            f"{count} values from line {first + 1} on take {needed} lines, but the file ends with line {len(lines)}: "
+            "it is cut; fetch it again"
+        )
+    values = np.empty(count)
+    for i in range(needed):
+        line = lines[first + i].rstrip()
+        expected = min(per_line, count - i * per_line)
+        fields = [line[at : at + width] for at in range(0, len(line), width)]
+        if len(line) != expected * width:
+            raise InputError(
+                f'line {first + i + 1}: found "{line[:40]}…", {len(line)} characters; '
+                f"expected {expected} values of {width} characters each"
+            )
+        values[i * per_line : i * per_line + expected] = [number_in(field, first + i) for field in fields]
+    return values, first + needed
+
+
+def refuse_more(lines: Sequence[str], end: int, declared: str) -> None:
+    """Raise ``InputError`` for text from ``lines[end]`` on, after what a header has ``declared``: "the 40 values"."""
+    after = next((i for i in range(end, len(lines)) if lines[i].strip()), None)
+    if after is not None:
+        raise InputError(f'line {after + 1}: found "{lines[after][:40]}" after {declared}')
+
+
+def spaced_numbers(lines: Sequence[str], first: int, count: int, per_line: int) -> Samples:
+    """``count`` numbers between blanks from ``lines[first]`` to the end of the file, shape (count,).
+
+    Every line has ``per_line`` of them but the last, which has the rest. Raises ``InputError`` with the line for
+    anything else; nothing is allocated before the lines are there.
+    """
+    needed = -(-count // per_line)
+    end = next((i for i in range(len(lines), first, -1) if lines[i - 1].strip()), first)
+    if end - first != needed:
+        raise InputError(
+            f"the header says {count} values, {needed} lines from line {first + 1} on, but there are {end - first}; "
+            "fetch the file again"
+        )
+    values = np.empty(count)
+    tokens: list[str] = []
+    for i in range(first, end):
+        fields = lines[i].split()
+        at = (i - first) * per_line
+        expected = min(per_line, count - at)
+        if len(fields) != expected:
+            raise InputError(f"line {i + 1}: found {len(fields)} numbers; expected {expected}")
+        values[at : at + expected] = [number_in(field, i) for field in fields]
+        tokens = [*tokens, *fields][-LOOKED_AT:] if i >= end - LOOKED_AT else fields
+    if is_cut_short(tokens):
+        raise InputError(f'line {end}: found "{tokens[-1][:40]}", shorter than all others: the file is cut')
+    return values
+
+
+def number_in(field: str, at: int) -> float:
+    """The number in a field of the line with index ``at``, Fortran's D exponents included; else ``InputError``."""
+    try:
+        if "_" in field:  # Python would read 1_0 as ten
+            raise ValueError
+        value = float(field.upper().replace("D", "E"))
+    except ValueError:
+        value = np.nan
+    if not abs(value) < HUGE:
+        raise InputError(f'line {at + 1}: found "{field.strip()[:40]}"; expected a number')
+    return value
+
+
+def is_cut_short(tokens: Sequence[str]) -> bool:
+    """Whether the last number has fewer characters after its point than the others before it, which agree.
+
+    A file that was cut within it has all its values, and the last one wrong.
+    """
+
+    def tail(token: str) -> int:
+        return len(token) - token.rfind(".")
+
+    if len(tokens) < _MANY or "." not in tokens[-2]:
+        return False
+    usual = tail(tokens[-2])
+    return tail(tokens[-1]) < usual and all(tail(token) == usual for token in tokens[-LOOKED_AT:-1])
