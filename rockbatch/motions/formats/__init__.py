@@ -1,6 +1,6 @@
 """Formats of records: which reader reads a file, by its own header, whatever its name.
 
-A format is a module with ``SUFFIXES``, a check of the first bytes and a reader that gives components; it
+A format is a module with a check of the first bytes and a parser or reader; it
 joins by a line in ``FORMATS``. Formats whose header does not tell them from all others (SAC, columns of numbers)
 are read in files of their suffixes only, and ObsPy is never left to guess (see ``with_obspy``).
 """
@@ -32,6 +32,7 @@ from rockbatch.motions.formats import (
     unam,
     usc,
 )
+from rockbatch.motions.formats.obspy_plugin import HEAD
 from rockbatch.motions.formats.record_file import LAYOUTS, ROLES, ReadOptions, RecordFile
 from rockbatch.motions.formats.recording import reader
 from rockbatch.motions.limits import HUGE, MOST_SAMPLES, STEPS, is_step
@@ -51,9 +52,6 @@ __all__ = [
     "read_record",
     "usable",
 ]
-
-HEAD = 4096
-"""Bytes that a format is known by."""
 
 _FOREIGN = {  # first bytes of files that hold records, but are not read
     b"MS\x03": "MiniSEED 3: fetch it as MiniSEED 2",
@@ -78,32 +76,38 @@ class Format:
     anywhere: bool = True
 
 
+def _names(suffixes: str) -> frozenset[str]:
+    return frozenset(suffixes.split())
+
+
 FORMATS = (
-    Format("PEER AT2", at2.SUFFIXES | columns.SUFFIXES, at2.looks_like_at2, at2.read_component),
-    Format("MiniSEED", miniseed.SUFFIXES, miniseed.is_miniseed, miniseed.read_miniseed),
-    Format("SAC", sac.SUFFIXES, sac.is_sac, sac.read_sac, anywhere=False),
-    Format("K-NET/KiK-net", knet.SUFFIXES, knet.is_knet, reader(knet.parse)),
-    Format("GeoNet V1A/V2A", geonet.SUFFIXES, geonet.is_geonet, reader(geonet.parse)),
-    Format("DYNA (ESM, ITACA, AFAD)", dyna.SUFFIXES, dyna.is_dyna, reader(dyna.parse)),
-    Format("COSMOS", cosmos.SUFFIXES, cosmos.is_cosmos, reader(cosmos.parse)),
-    Format("CSMIP", csmip.SUFFIXES, csmip.is_csmip, reader(csmip.parse)),
-    Format("USGS SMC", smc.SUFFIXES, smc.is_smc, reader(smc.parse)),
-    Format("RENADIC", renadic.SUFFIXES, renadic.is_renadic, reader(renadic.parse)),
-    Format("USC Volume I", usc.SUFFIXES, usc.is_usc, reader(usc.parse)),
-    Format("BHRC Volume 1", bhrc.SUFFIXES, bhrc.is_bhrc, reader(bhrc.parse)),
-    Format("CSMNC", csmnc.SUFFIXES, csmnc.is_csmnc, reader(csmnc.parse)),
-    Format("AFAD text", afad.SUFFIXES, afad.is_afad, reader(afad.parse)),
-    Format("UNAM", unam.SUFFIXES, unam.is_unam, reader(unam.parse)),
-    Format("RESORCE", resorce.SUFFIXES, resorce.is_resorce, reader(resorce.parse)),
-    Format("CWA free field", cwa.SUFFIXES, cwa.is_cwa, reader(cwa.parse)),
-    Format("PEER AT2", at2.SUFFIXES, at2.has_at2_count, at2.read_component, anywhere=False),
-    Format("text columns", columns.SUFFIXES, columns.is_columns, columns.read_columns, anywhere=False),
+    Format("PEER AT2", _names(".at2 .txt .csv .dat .bbp .acc"), at2.looks_like_at2, at2.read_component),
+    Format("MiniSEED", _names(".mseed .ms .miniseed"), miniseed.is_miniseed, miniseed.read_miniseed),
+    Format("SAC", _names(".sac"), sac.is_sac, sac.read_sac, anywhere=False),
+    Format("K-NET/KiK-net", _names(".ew .ns .ud .ew1 .ns1 .ud1 .ew2 .ns2 .ud2"), knet.is_knet, reader(knet.parse)),
+    Format("GeoNet V1A/V2A", _names(".v1a .v2a"), geonet.is_geonet, reader(geonet.parse)),
+    Format("DYNA (ESM, ITACA, AFAD)", _names(".asc"), dyna.is_dyna, reader(dyna.parse)),
+    Format("COSMOS", _names(".v0 .v1 .v2 .v3 .v0c .v1c .v2c .v3c"), cosmos.is_cosmos, reader(cosmos.parse)),
+    Format("CSMIP", _names(".v1 .v2 .v3 .raw"), csmip.is_csmip, reader(csmip.parse)),
+    Format("USGS SMC", _names(".smc"), smc.is_smc, reader(smc.parse)),
+    Format("RENADIC", _names(".v1 .raw"), renadic.is_renadic, reader(renadic.parse)),
+    Format("USC Volume I", _names(""), usc.is_usc, reader(usc.parse)),
+    Format("BHRC Volume 1", _names(""), bhrc.is_bhrc, reader(bhrc.parse)),
+    Format("CSMNC", _names(""), csmnc.is_csmnc, reader(csmnc.parse)),
+    Format("AFAD text", _names(""), afad.is_afad, reader(afad.parse)),
+    Format("UNAM", _names(""), unam.is_unam, reader(unam.parse)),
+    Format("RESORCE", _names(""), resorce.is_resorce, reader(resorce.parse)),
+    Format("CWA free field", _names(".txt .dat .acc .asc"), cwa.is_cwa, reader(cwa.parse)),
+    Format("PEER AT2", _names(".at2"), at2.has_at2_count, at2.read_component, anywhere=False),
+    Format(
+        "text columns", _names(".txt .csv .dat .bbp .acc"), columns.is_columns, columns.read_columns, anywhere=False
+    ),
 )
 """In the order in which they are tried: an AT2 file saved as .txt is AT2, other text is columns."""
 
 
 def is_usual(suffix: str) -> bool:
-    """Whether records of some format usually have this suffix (with its dot, any case)."""
+    """Return whether records of some format usually have this suffix (with its dot, any case)."""
     return any(suffix.lower() in known.suffixes for known in FORMATS)
 
 

@@ -14,8 +14,6 @@ from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording
 from rockbatch.motions.origin import TURKISH, origin_of
 
-SUFFIXES: frozenset[str] = frozenset()
-
 _MOST = 40  # lines of header
 _TITLE = b"STRONG GROUND MOTION RECORDS OF TURKIYE"
 _PEAKS = re.compile(r"PGA VALUES *\((?P<unit>[^)]{1,20})\)", re.IGNORECASE)

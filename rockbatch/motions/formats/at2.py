@@ -21,8 +21,6 @@ from rockbatch.motions.orientation import orientation_of, split_stem
 from rockbatch.motions.origin import origin_of
 from rockbatch.units import acceleration_factor
 
-SUFFIXES = frozenset({".at2"})
-
 _NUMBER = r"(?:\d+\.?\d*|\.\d+)(?:[ED][-+]?\d+)?"
 _COUNT_AND_STEP = tuple(
     re.compile(pattern, re.IGNORECASE)

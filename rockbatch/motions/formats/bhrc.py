@@ -10,13 +10,11 @@ import re
 from rockbatch.errors import InputError
 from rockbatch.motions.component import Seat
 from rockbatch.motions.formats.fixed_width import fixed_numbers, number_in, one_after_another
-from rockbatch.motions.formats.header_lines import layout, line_at, number, past_mark, read_header
+from rockbatch.motions.formats.header_lines import layout, line_at, past_mark, read_header
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording
 from rockbatch.motions.orientation import Orientation
 from rockbatch.motions.origin import origin_of
-
-SUFFIXES: frozenset[str] = frozenset()
 
 _HEADER = 27  # lines
 _RATE = 21  # line of the header at which it begins
@@ -48,7 +46,7 @@ def _channel(lines: list[str], at: int) -> tuple[Recording, int]:
     if title["volume"] != "1":
         raise InputError(f"line {at + 1}: Volume {title['volume']}, whose layout is not known; take the .V1 file")
     said = read_header(lines, at, _TEXT)
-    label, npts, duration = said["label"], int(said["npts"]), number(said["duration"], at + 10)
+    label, npts, duration = said["label"], int(said["npts"]), number_in(said["duration"], at + 10)
     rate = number_in(line_at(lines, at + _RATE)[:_WIDTH], at + _RATE)
     if npts < 2 or not 0.1 <= rate <= 1e5 or abs(npts / rate - duration) > 2 / rate:
         raise InputError(

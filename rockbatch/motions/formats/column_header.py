@@ -70,23 +70,23 @@ class Column:
 
     @property
     def is_time(self) -> bool:
-        """Whether it holds times."""
+        """Return whether it holds times."""
         key = re.sub(r"[^a-z]", "", self.label.lower())
         return key in _TIMES or (key in ("t", "ts") and seconds_in(self.unit or "") is not None)
 
     @property
     def may_be_time(self) -> bool:
-        """Whether it is headed by a T without a unit: time, or the transverse component."""
+        """Return whether it is headed by a T without a unit: time, or the transverse component."""
         return self.unit is None and self.label.lower() in ("t", "ts")
 
     @property
     def is_abscissa(self) -> bool:
-        """Whether it holds the periods or frequencies of a spectrum."""
+        """Return whether it holds the periods or frequencies of a spectrum."""
         return bool((_PERIODS | _FREQUENCIES) & self._words) or (self.unit or "").lower() in _PER_SECOND
 
     @property
     def is_ordinate(self) -> bool:
-        """Whether it holds the values of a spectrum: Sa, PSA, Fourier amplitude."""
+        """Return whether it holds the values of a spectrum: Sa, PSA, Fourier amplitude."""
         return any(_ORDINATE.fullmatch(word) for word in self._words)
 
     @property
@@ -178,7 +178,7 @@ def stated_unit(header: Sequence[str]) -> str | None:
 
 
 def is_acceleration(unit: str) -> bool:
-    """Whether a unit is one of acceleration."""
+    """Return whether a unit is one of acceleration."""
     try:
         acceleration_factor(unit)
     except ValueError:
@@ -225,12 +225,12 @@ def stated_step(header: Sequence[str]) -> StatedStep | None:
 
 
 def states_a_step(line: str) -> bool:
-    """Whether a line has a sampling interval or rate in it, of whatever data."""
+    """Return whether a line has a sampling interval or rate in it, of whatever data."""
     return _STEP.search(line) is not None
 
 
 def _of_another(match: re.Match[str]) -> bool:
-    """Whether a statement is about data that these were made of."""
+    """Return whether a statement is about data that these were made of."""
     return _OF_ANOTHER.search(match.string[: match.start()]) is not None
 
 

@@ -33,18 +33,16 @@ from rockbatch.motions.formats.time_steps import grows_evenly, on_even_steps
 from rockbatch.motions.motion import Samples, Unusable
 from rockbatch.motions.orientation import orientation_in, same_azimuth, split_stem
 
-SUFFIXES = frozenset({".txt", ".csv", ".dat", ".bbp", ".acc"})
-
 _GROWING = 0.9  # of the steps of a column of time; those of an acceleration grow half the time
 
 
 def is_columns(head: bytes) -> bool:
-    """Whether the first bytes may be text."""
+    """Return whether the first bytes may be text."""
     return head.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)) or b"\x00" not in head
 
 
 def is_bbp(head: bytes) -> bool:
-    """Whether the first bytes are comments that declare time and three accelerations, each with its unit."""
+    """Return whether the first bytes are comments that declare time and three accelerations, each with its unit."""
     lines = [line.lstrip("# \t") for line in head.decode("latin-1").splitlines() if line.startswith("#")]
     columns = columns_with_units(lines, 4) or []
     return (

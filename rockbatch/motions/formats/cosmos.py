@@ -14,16 +14,14 @@ from dataclasses import dataclass, replace
 
 from rockbatch.errors import InputError, NoRecordError
 from rockbatch.motions.component import Seat
-from rockbatch.motions.formats.fixed_width import fixed_numbers, lines_of
-from rockbatch.motions.formats.header_lines import found, layout, line_at, moment, number, read_header, search_lines
+from rockbatch.motions.formats.fixed_width import fixed_numbers, lines_of, number_in
+from rockbatch.motions.formats.header_lines import found, layout, line_at, moment, read_header, search_lines
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording
 from rockbatch.motions.motion import Initial, Samples
 from rockbatch.motions.orientation import orientation_of
 from rockbatch.motions.origin import origin_of
 from rockbatch.units import acceleration_factor
-
-SUFFIXES = frozenset({".v0", ".v1", ".v2", ".v3", ".v0c", ".v1c", ".v2c", ".v3c"})
 
 _UNITS = {2: "g", 4: "cm/s2", 10: "gal"}  # the specification's unit codes of accelerations
 _DIRECTIONS = {400: "Up", 401: "Down", 402: "Vert", 600: "Long", 601: "Tran", 700: "H1", 701: "H2"}  # beyond azimuths
@@ -140,7 +138,7 @@ def _header(lines: list[str], at: int) -> _Header:
         integers=[int(value) for value in numbers[0]],
         reals=[float(value) for value in numbers[1]],
         comments="\n".join(lines[end + 1 : end + 1 + comments]),
-        unknown=number(unknown["real"], at + len(text) - 1) if unknown else -999.0,
+        unknown=number_in(unknown["real"], at + len(text) - 1) if unknown else -999.0,
         end=end + 1 + comments,
     )
 

@@ -11,14 +11,12 @@ import re
 
 from rockbatch.errors import InputError, NoRecordError
 from rockbatch.motions.component import Seat
-from rockbatch.motions.formats.fixed_width import fixed_numbers, one_after_another
-from rockbatch.motions.formats.header_lines import found, layout, line_at, moment_of, number, past_mark, read_header
+from rockbatch.motions.formats.fixed_width import fixed_numbers, number_in, one_after_another
+from rockbatch.motions.formats.header_lines import found, layout, line_at, moment_of, past_mark, read_header
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording, Series
 from rockbatch.motions.formats.renadic import is_renadic
 from rockbatch.motions.origin import origin_of
-
-SUFFIXES = frozenset({".v1", ".v2", ".v3", ".raw"})
 
 _DATA = {1: 27, 2: 45}  # lines of a channel's header, by volume
 _PER_LINE = 8
@@ -138,7 +136,7 @@ def _block(lines: list[str], at: int, expected: tuple[str, ...]) -> tuple[str, f
     what = (line["what"] or "accel").lower()
     unit, layout = _UNIT.search(line["rest"]), _FORMAT.search(line["rest"])
     npts = int(line["npts"])
-    step = number(line["rate"] or line["dt"], at)
+    step = number_in(line["rate"] or line["dt"], at)
     if what not in expected or unit is None or npts < 1 or not 1e-6 < step < 1e6:
         raise InputError(
             f'line {at + 1}: found "{line[0].strip()[:75]}"; expected a count, an interval and a unit of '
@@ -162,7 +160,7 @@ def _check_again(lines: list[str], at: int, volume: int, npts: int, dt: float) -
             continue
         key, text = next(iter(said.groupdict().items()))
         declared = {"npts": npts, "rate": 1.0 / dt, "dt": dt}[key]
-        if abs(number(text, at + offset) - declared) > 1e-6 * declared:
+        if abs(number_in(text, at + offset) - declared) > 1e-6 * declared:
             raise InputError(
                 f'line {at + offset + 1}: "{said[0].strip()}" contradicts line {at + _DATA[volume] + 1}: '
                 f"{npts} points at intervals of {dt:g} s"

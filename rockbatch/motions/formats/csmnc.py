@@ -9,13 +9,11 @@ import re
 
 from rockbatch.errors import InputError, NoRecordError
 from rockbatch.motions.component import Seat
-from rockbatch.motions.formats.fixed_width import lines_of, spaced_numbers
-from rockbatch.motions.formats.header_lines import line_with, number, search_lines
+from rockbatch.motions.formats.fixed_width import lines_of, number_in, spaced_numbers
+from rockbatch.motions.formats.header_lines import line_with, search_lines
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording
 from rockbatch.motions.origin import origin_of
-
-SUFFIXES: frozenset[str] = frozenset()
 
 _MOST = 30  # lines of header
 _PER_LINE = 8
@@ -45,7 +43,7 @@ def parse(text: str) -> list[Recording]:
     label = line_with(_COMPONENT, lines, _MOST, "COMP. EW")[1]["label"]
     station = line_with(_STATION, lines, _MOST, "STATION: …")[1]["code"]
     at, count = line_with(_COUNT, lines, _MOST, "NO. OF POINTS: … EQUALLY SPACED INTERVALS OF: … SEC")
-    npts, dt = int(count["npts"]), number(count["dt"], at)
+    npts, dt = int(count["npts"]), number_in(count["dt"], at)
     if npts < 2 or not 0 < dt < 10:
         raise InputError(f'line {at + 1}: found "{count[0].strip()}"; expected two points or more and an interval')
     first = next((i for i in range(at + 1, min(len(lines), _MOST + 1)) if _NUMBERS.fullmatch(lines[i])), at + 1)

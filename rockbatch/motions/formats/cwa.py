@@ -11,8 +11,6 @@ from rockbatch.motions.formats.table import read_table
 from rockbatch.motions.formats.time_steps import on_even_steps
 from rockbatch.motions.origin import origin_of
 
-SUFFIXES = frozenset({".txt", ".dat", ".acc", ".asc"})
-
 _KEY = re.compile(r"(?P<key>[^:]{1,60}?)\s*:\s*(?P<value>.*)")
 _LABEL = re.compile(r"\s*(?P<label>[A-Za-z0-9]{1,8})\(\+\)\s*")
 _MOMENT = re.compile(

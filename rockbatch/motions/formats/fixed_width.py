@@ -63,18 +63,29 @@ def fixed_numbers(lines: Sequence[str], first: int, count: int, width: int, per_
             f"{count} values from line {first + 1} on take {needed} lines, but the file ends with line {len(lines)}: "
             "it is cut; fetch it again"
         )
-    values = np.empty(count)
-    for i in range(needed):
-        line = lines[first + i].rstrip()
-        expected = min(per_line, count - i * per_line)
-        fields = [line[at : at + width] for at in range(0, len(line), width)]
+
+    def fields(line: str, at: int, expected: int) -> list[str]:
+        line = line.rstrip()
         if len(line) != expected * width:
             raise InputError(
-                f'line {first + i + 1}: found "{line[:40]}…", {len(line)} characters; '
+                f'line {at + 1}: found "{line[:40]}…", {len(line)} characters; '
                 f"expected {expected} values of {width} characters each"
             )
-        values[i * per_line : i * per_line + expected] = [number_in(field, first + i) for field in fields]
-    return values, first + needed
+        return [line[k : k + width] for k in range(0, len(line), width)]
+
+    return _numbers(lines[first : first + needed], first, count, per_line, fields), first + needed
+
+
+def _numbers(
+    lines: Sequence[str], first: int, count: int, per_line: int, fields: Callable[[str, int, int], list[str]]
+) -> Samples:
+    """Return the numbers of lines that begin with number ``first``; ``fields`` takes a line, its index, and how many it has."""
+    values = np.empty(count)
+    for i, line in enumerate(lines):
+        at = i * per_line
+        row = fields(line, first + i, min(per_line, count - at))
+        values[at : at + per_line] = [number_in(field, first + i) for field in row]
+    return values
 
 
 def refuse_more(lines: Sequence[str], end: int, declared: str) -> None:
@@ -85,7 +96,7 @@ def refuse_more(lines: Sequence[str], end: int, declared: str) -> None:
 
 
 def spaced_numbers(lines: Sequence[str], first: int, count: int, per_line: int) -> Samples:
-    """``count`` numbers between blanks from ``lines[first]`` to the end of the file, shape (count,).
+    """Return ``count`` numbers between blanks from ``lines[first]`` to the end of the file, shape (count,).
 
     Every line has ``per_line`` of them but the last, which has the rest. Raises ``InputError`` with the line for
     anything else; nothing is allocated before the lines are there.
@@ -97,17 +108,16 @@ def spaced_numbers(lines: Sequence[str], first: int, count: int, per_line: int) 
             f"the header says {count} values, {needed} lines from line {first + 1} on, but there are {end - first}; "
             "fetch the file again"
         )
-    values = np.empty(count)
-    tokens: list[str] = []
-    for i in range(first, end):
-        fields = lines[i].split()
-        at = (i - first) * per_line
-        expected = min(per_line, count - at)
-        if len(fields) != expected:
-            raise InputError(f"line {i + 1}: found {len(fields)} numbers; expected {expected}")
-        values[at : at + expected] = [number_in(field, i) for field in fields]
-        tokens = [*tokens, *fields][-LOOKED_AT:] if i >= end - LOOKED_AT else fields
-    if is_cut_short(tokens):
+
+    def fields(line: str, at: int, expected: int) -> list[str]:
+        row = line.split()
+        if len(row) != expected:
+            raise InputError(f"line {at + 1}: found {len(row)} numbers; expected {expected}")
+        return row
+
+    values = _numbers(lines[first:end], first, count, per_line, fields)
+    tokens = [field for line in lines[max(first, end - LOOKED_AT) : end] for field in line.split()]
+    if is_cut_short(tokens[-LOOKED_AT:]):
         raise InputError(f'line {end}: found "{tokens[-1][:40]}", shorter than all others: the file is cut')
     return values
 
@@ -126,7 +136,7 @@ def number_in(field: str, at: int) -> float:
 
 
 def is_cut_short(tokens: Sequence[str]) -> bool:
-    """Whether the last number has fewer characters after its point than the others before it, which agree.
+    """Return whether the last number has fewer characters after its point than the others before it, which agree.
 
     A file that was cut within it has all its values, and the last one wrong.
     """

@@ -8,13 +8,11 @@ import re
 
 from rockbatch.errors import InputError
 from rockbatch.motions.component import Seat
-from rockbatch.motions.formats.fixed_width import fixed_numbers, one_after_another
-from rockbatch.motions.formats.header_lines import layout, line_at, moment, number, read_header
+from rockbatch.motions.formats.fixed_width import fixed_numbers, number_in, one_after_another
+from rockbatch.motions.formats.header_lines import layout, line_at, moment, read_header
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording
 from rockbatch.motions.origin import origin_of
-
-SUFFIXES = frozenset({".v1a", ".v2a"})
 
 _WIDTH, _PER_LINE = 8, 10
 _INTEGERS, _REALS, _DATA = 16, 20, 26  # lines of a component's header at which these begin
@@ -61,7 +59,7 @@ def _component(lines: list[str], at: int) -> tuple[Recording, int]:
     said = read_header(lines, at, _TEXT)
     integers = [int(n) for n in fixed_numbers(lines, at + _INTEGERS, 40, _WIDTH, _PER_LINE)[0]]
     reals, _ = fixed_numbers(lines, at + _REALS + 2, 10, _WIDTH, _PER_LINE)
-    npts, duration, dt = int(said["npts"]), number(said["duration"], at + 9), float(reals[5])
+    npts, duration, dt = int(said["npts"]), number_in(said["duration"], at + 9), float(reals[5])
     counts = integers[33:36]
     if npts < 1 or counts[0] != npts or min(counts) < 0:
         raise InputError(
@@ -75,7 +73,7 @@ def _component(lines: list[str], at: int) -> tuple[Recording, int]:
     factor, unit = 1.0, said["of_peak"]
     if said["un"]:
         raw = read_header(lines, at, _OF_RAW)
-        factor, unit = number(raw["factor"], at + 10), raw["unit"]
+        factor, unit = number_in(raw["factor"], at + 10), raw["unit"]
     blocks, end = [], at + _DATA
     for n in counts:
         block, end = fixed_numbers(lines, end, n, _WIDTH, _PER_LINE)

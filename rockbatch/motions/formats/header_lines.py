@@ -106,14 +106,6 @@ def line_at(lines: Sequence[str], at: int) -> str:
     return lines[at][:_LONGEST_OF_HEADER] if at < len(lines) else ""
 
 
-def number(text: str, at: int) -> float:
-    """A number of digits and a point in the line with index ``at``; ``InputError`` for "1.2.3"."""
-    try:
-        return float(text)
-    except ValueError:
-        raise InputError(f'line {at + 1}: found "{text}"; expected a number') from None
-
-
 def date_in(text: str) -> tuple[int, int, int] | None:
     """Return year, month and day of a date such as "2000/07/21", "21/JUL/2000" or "21 de julio de 2000"; ``None`` if none.
 

@@ -14,8 +14,6 @@ from rockbatch.motions.formats.recording import Recording
 from rockbatch.motions.orientation import orientation_of, unknown
 from rockbatch.motions.origin import origin_of
 
-SUFFIXES = frozenset({".ew", ".ns", ".ud", ".ew1", ".ns1", ".ud1", ".ew2", ".ns2", ".ud2"})
-
 _HEADER, _PER_LINE = 17, 8
 _JAPAN, _DELAY = 9 * 3600.0, 15.0  # s
 _TIME = r"(?P<year>\d{4})/(?P<month>\d\d)/(?P<day>\d\d) (?P<hour>\d\d):(?P<minute>\d\d):(?P<second>\d\d)"

@@ -18,15 +18,13 @@ from rockbatch.units import acceleration_factor
 if TYPE_CHECKING:
     from obspy import Trace
 
-SUFFIXES = frozenset({".mseed", ".ms", ".miniseed"})
-
 _YEARS = 1900, 2100
 _TOLD = 5  # of the .xml files that could not be read
 _APART, _LEAST_APART = 3.0, 60.0  # times the longest piece of a channel, and seconds: more lies between two events
 
 
 def is_miniseed(head: bytes) -> bool:
-    """Whether the first bytes are those of a MiniSEED 2 record, or of a SEED volume, which has control headers before."""
+    """Return whether the first bytes are those of a MiniSEED 2 record, or of a SEED volume, which has control headers before."""
     if re.match(rb"[0-9]{6}V 0(?:05|08|10)[0-9]{4}", head):
         return True
     if re.match(rb"[0-9 ]{6}[DRQM][ \x00][ -~]{12}", head) is None:  # sequence number, quality, codes

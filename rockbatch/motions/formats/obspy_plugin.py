@@ -56,7 +56,7 @@ def plugin(
     """
 
     def is_format(filename: Any) -> bool:
-        """Whether a path or a file-like object holds a file of this format; never raises."""
+        """Return whether a path or a file-like object holds a file of this format; never raises."""
         return matches(first_bytes(filename))
 
     def read_format(filename: FileLike, headonly: bool = False, **kwargs: Any) -> "Stream":

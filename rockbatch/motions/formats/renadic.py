@@ -15,8 +15,6 @@ from rockbatch.motions.formats.time_steps import from_pairs
 from rockbatch.motions.orientation import is_clock
 from rockbatch.motions.origin import origin_of
 
-SUFFIXES = frozenset({".v1", ".raw"})
-
 _HEADER = 27  # lines
 _WIDTH, _PER_LINE = 7, 10
 _PAIRS = "UNITS OF UNCOR ACCEL ARE SEC AND"

@@ -13,8 +13,6 @@ from rockbatch.motions.formats.header_lines import count_and_step, keys_of, line
 from rockbatch.motions.formats.recording import Recording
 from rockbatch.motions.origin import origin_of
 
-SUFFIXES: frozenset[str] = frozenset()
-
 _WIDTH, _PER_LINE = 14, 5
 _UNIT = re.compile(r"acc\w* time series in +(?P<unit>\S+)", re.IGNORECASE)
 _NEEDED = ("Number of Data", "Time Increment (s)", "Orientation")

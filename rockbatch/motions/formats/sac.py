@@ -16,8 +16,6 @@ from rockbatch.units import acceleration_factor
 if TYPE_CHECKING:
     from obspy.core.trace import Stats
 
-SUFFIXES = frozenset({".sac"})
-
 _LEVEL = 10.0  # degrees that a horizontal component may be off the horizontal
 _KIND_AT = 86 * 4  # header word IDEP
 _KINDS = {6: "displacements (IDEP 6)", 7: "velocities (IDEP 7)"}
@@ -25,7 +23,7 @@ _VERSION_AT = 76 * 4  # header word NVHDR, 6 or 7
 
 
 def is_sac(head: bytes) -> bool:
-    """Whether the first bytes are a binary SAC header, in either byte order."""
+    """Return whether the first bytes are a binary SAC header, in either byte order."""
     word = head[_VERSION_AT : _VERSION_AT + 4]
     return len(word) == 4 and any(int.from_bytes(word, order) in (6, 7) for order in ("little", "big"))
 

@@ -18,8 +18,6 @@ from rockbatch.motions.formats.time_steps import from_pairs
 from rockbatch.motions.motion import Samples
 from rockbatch.motions.origin import origin_of
 
-SUFFIXES = frozenset({".smc"})
-
 _UNIT = "cm/s2"  # which the format prescribes
 _INTEGERS, _REALS, _COMMENTS = 11, 17, 27  # lines at which these begin
 _TITLE = re.compile(r"^(?:(?P<kind>[0-6]) (?P<what>[A-Z]+(?: [A-Z]+)*)|\*)\s*$")

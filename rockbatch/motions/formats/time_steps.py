@@ -15,7 +15,7 @@ _GROWTH = 20  # how many times more samples an even grid may take
 
 
 def grows_evenly(t: Samples) -> bool:
-    """Whether times are samples of one interval, as far as their printing tells; shape (npts,), any unit."""
+    """Return whether times are samples of one interval, as far as their printing tells; shape (npts,), any unit."""
     return len(t) > 1 and _is_growing(t) and _on_grid(t, np.arange(len(t), dtype=float)) is not None
 
 
@@ -75,7 +75,7 @@ def from_pairs(pairs: Samples, channel: str) -> tuple[float, Samples, tuple[str,
 
 
 def _is_growing(t: Samples) -> bool:
-    """Whether every time is later than the one before."""
+    """Return whether every time is later than the one before."""
     return len(t) > 1 and bool((np.diff(t) > 0).all())
 
 

@@ -21,8 +21,6 @@ from rockbatch.motions.motion import Samples
 from rockbatch.motions.orientation import Orientation
 from rockbatch.motions.origin import origin_of
 
-SUFFIXES: frozenset[str] = frozenset()
-
 _MOST = 200  # lines of header
 _MOST_CHANNELS = 6
 _MOST_MORE = 2  # lines beyond the declared ones

@@ -8,15 +8,13 @@ import re
 
 from rockbatch.errors import InputError
 from rockbatch.motions.component import Seat
-from rockbatch.motions.formats.fixed_width import fixed_numbers, one_after_another
-from rockbatch.motions.formats.header_lines import layout, line_at, number, read_header
+from rockbatch.motions.formats.fixed_width import fixed_numbers, number_in, one_after_another
+from rockbatch.motions.formats.header_lines import layout, line_at, read_header
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording
 from rockbatch.motions.formats.time_steps import from_pairs
 from rockbatch.motions.motion import Samples
 from rockbatch.motions.origin import origin_of
-
-SUFFIXES: frozenset[str] = frozenset()
 
 _HEADER = 27  # lines
 _WIDTH, _PER_LINE = 7, 10
@@ -52,7 +50,7 @@ def parse(text: str) -> list[Recording]:
 def _channel(lines: list[str], at: int) -> tuple[Recording, int]:
     """Return the channel whose title is ``lines[at]``, and where the next one begins."""
     said = read_header(lines, at, _TEXT)
-    label, npts, duration = said["label"], int(said["npts"]), number(said["duration"], at + 10)
+    label, npts, duration = said["label"], int(said["npts"]), number_in(said["duration"], at + 10)
     if npts < 2:
         raise InputError(f"line {at + 11}: found {npts} points; expected at least two")
     pairs, end = _pairs(lines, at + _HEADER, npts)
