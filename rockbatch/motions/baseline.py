@@ -19,17 +19,12 @@ RULES = ("as needed", "keep", "mean", "pre-event")
 class Offset:
     """The offset that is taken off every component.
 
-    Attributes
-    ----------
-    rule : str
-        "as needed": the mean over the record where the format leaves the instrument's zero in it (K-NET, counts),
-        nothing elsewhere; "keep": nothing; "mean": the mean over the record; "pre-event": the mean over ``window_s``.
-    window_s : tuple of two float, or None
-        Start and end of the time before the event [s], both from the first sample; for "pre-event" only.
+    "as needed": the mean over the record where the format leaves the instrument's zero in it (K-NET, counts), nothing
+    elsewhere; "keep": nothing; "mean": the mean over the record; "pre-event": the mean over ``window_s``.
     """
 
     rule: str = "as needed"
-    window_s: tuple[float, float] | None = None
+    window_s: tuple[float, float] | None = None  # from and to [s from the first sample], for "pre-event" only
 
     def __post_init__(self) -> None:
         if self.rule not in RULES:

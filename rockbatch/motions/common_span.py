@@ -17,25 +17,13 @@ _CLOCK = 1e-6  # s: times since 1970 are no better than this
 
 @dataclass(frozen=True)
 class Common:
-    """Two components on common samples.
+    """Two components on common samples."""
 
-    Attributes
-    ----------
-    dt : float
-        Sampling interval [s].
-    first, second : ndarray, shape (npts,)
-        Accelerations [m/s²].
-    begins : tuple of two float
-        The time in each component at which the common samples begin [s after its first one].
-    notes : list of str
-        What was done.
-    """
-
-    dt: float
-    first: Samples
+    dt: float  # sampling interval [s]
+    first: Samples  # accelerations [m/s²], shape (npts,)
     second: Samples
-    begins: tuple[float, float]
-    notes: list[str]
+    begins: tuple[float, float]  # where the common samples begin in each component [s after its first one]
+    notes: list[str]  # what was done
 
 
 def overlap(a: Component, b: Component) -> bool:

@@ -15,22 +15,13 @@ FIRST_YEAR = 365 * 86400.0
 
 @dataclass(frozen=True)
 class Seat:
-    """Where a sensor stands, as far as the header says it.
+    """Where a sensor stands, as far as the header says it; empty or None where it does not."""
 
-    Attributes
-    ----------
-    station : str
-        Code, number or name of the station; empty where it is unknown.
-    network, location, place, channel : str or None
-        Of the network; of the sensor in the station, as in SEED; in words ("Roof"); of the recorder. ``None`` where the
-        format does not say.
-    """
-
-    station: str = ""
+    station: str = ""  # code, number or name
     network: str | None = None
-    location: str | None = None
-    place: str | None = None
-    channel: str | None = None
+    location: str | None = None  # of the sensor in the station, as in SEED
+    place: str | None = None  # in words: "Roof"
+    channel: str | None = None  # of the recorder
 
     @property
     def number(self) -> str:
@@ -54,13 +45,8 @@ class Seat:
         return bool(self.network) and self.network == other.network
 
     def _differs(self, other: "Seat") -> bool:
-        pairs = (
-            (self.network, other.network),
-            (self.location, other.location),
-            (self.place, other.place),
-            (self.channel, other.channel),
-        )
-        return not all(one is None or two is None or _bare(one) == _bare(two) for one, two in pairs)
+        mine, others = ((seat.network, seat.location, seat.place, seat.channel) for seat in (self, other))
+        return any(None not in (a, b) and _bare(str(a)) != _bare(str(b)) for a, b in zip(mine, others, strict=True))
 
 
 def _bare(text: str) -> str:
@@ -79,79 +65,35 @@ NOWHERE = Seat()
 
 @dataclass(frozen=True)
 class Component:
-    """One component of a record in m/s².
+    """One component of a record in m/s²."""
 
-    Attributes
-    ----------
-    name : str
-        Name of the motion that it makes as a horizontal component.
-    dt : float
-        Sampling interval [s].
-    acceleration : ndarray, shape (npts,)
-        [m/s²], positive as the file has it: a DWN component is positive down.
-    orientation : Orientation
-        Which way it points.
-    station : str
-        What the components of one station in one event share; empty where the format does not say.
-    folder : str
-        Folder that the file lies in: components are paired within it. Empty for those of a package.
-    source : str
-        Where it came from, for people.
-    start : float or None
-        Time of the first sample [s since 1970, UTC], where the format has it.
-    site : str
-        What the components of one station share by the names of their files; empty where these are not to tell.
-    unit : str
-        Unit that the file's numbers were read in; empty where the format has a scale of its own (counts).
-    raw : bool
-        Whether the instrument's zero is still in it, so that an offset is to be expected (see ``baseline``).
-    magnitude, distance_km : float or None
-        Of the event, and the site's distance from it [km], where a manifest has them.
-    confirmed : tuple of str
-        What a manifest confirms: "confirm", "confirm_pga" (see ``motion.Finding``).
-    wanted : bool
-        Whether a manifest says that it is used, whatever else there is of the same recording.
-    seat : Seat
-        The sensor that it comes from.
-    event : str
-        What the header says of the event, to tell recordings of one sensor apart where ``start`` is not known.
-    processed : bool or None
-        Whether the agency has corrected it (filter, baseline, instrument); ``None`` where the file does not say.
-    initial : Initial or None
-        The ground's state at the first sample, where the file tells it.
-    origin : Origin
-        What the header calls event and station.
-    notes : tuple of str
-        What was done to the data.
-    odd : tuple of Finding
-        What its header, or copies of it which are left out, have otherwise.
-    number : int
-        Of the component in its file, from 1.
-    """
-
-    name: str
-    dt: float
-    acceleration: Samples
+    name: str  # of the motion that it makes as a horizontal component
+    dt: float  # sampling interval [s]
+    acceleration: Samples  # [m/s²], shape (npts,), positive as the file has it: a DWN component is positive down
     orientation: Orientation = UNKNOWN
-    station: str = ""
-    folder: str = ""
-    source: str = ""
-    start: float | None = None
-    site: str = ""
-    unit: str = ""
-    raw: bool = False
-    magnitude: float | None = None
-    distance_km: float | None = None
-    confirmed: tuple[str, ...] = ()
-    wanted: bool = False
+    station: str = ""  # what the components of one station in one event share; empty where the format does not say
+    folder: str = ""  # that the file lies in, within which components are paired; empty for those of a package
+    source: str = ""  # where it came from, for people
+    start: float | None = None  # time of the first sample [s since 1970, UTC], where the format has it
+    site: str = (
+        ""  # what the components of one station share by the names of their files; empty where these do not tell
+    )
+    unit: str = ""  # that the file's numbers were read in; empty where the format has a scale of its own (counts)
+    raw: bool = (
+        False  # whether the instrument's zero is still in it, so that an offset is to be expected (see baseline)
+    )
+    magnitude: float | None = None  # of the event, where a manifest has it
+    distance_km: float | None = None  # of the site from the event, likewise
+    confirmed: tuple[str, ...] = ()  # what a manifest confirms: "confirm", "confirm_pga" (see motion.Finding)
+    wanted: bool = False  # whether a manifest says that it is used, whatever else there is of the same recording
     seat: Seat = NOWHERE
-    event: str = ""
-    processed: bool | None = None
-    initial: Initial | None = None
+    event: str = ""  # what the header says of it, to tell recordings of one sensor apart where start is not known
+    processed: bool | None = None  # whether the agency has corrected it; None where the file does not say
+    initial: Initial | None = None  # the ground's state at the first sample, where the file has it
     origin: Origin = UNKNOWN_ORIGIN
-    notes: tuple[str, ...] = ()
-    odd: tuple[Finding, ...] = ()
-    number: int = 0
+    notes: tuple[str, ...] = ()  # what was done to the data
+    odd: tuple[Finding, ...] = ()  # what copies of it, which are left out, have otherwise
+    number: int = 0  # of the component in its file, from 1
 
     @property
     def dated(self) -> bool:

@@ -26,35 +26,17 @@ SETS = ("farfield", "nearfield_pulse", "nearfield_no_pulse")
 
 @dataclass(frozen=True)
 class Station:
-    """One station in one event.
+    """One station in one event."""
 
-    Attributes
-    ----------
-    rsn : int
-        PEER's record sequence number.
-    event, code : str
-        As in the component's name: "NORTHR" and "SYL".
-    title, quake : str
-        The station's name, and the event's with its year, in words.
-    set : str
-        Which of ``SETS`` it belongs to.
-    labels : tuple of two str
-        The components' own part of their names: ("_032", "_122") or ("000", "090").
-    steps : tuple of two float
-        The components' sampling intervals [s].
-    index : int
-        Its number within the set.
-    """
-
-    rsn: int
-    event: str
-    code: str
-    title: str
-    quake: str
-    set: str
-    labels: tuple[str, str]
-    steps: tuple[float, float]
-    index: int
+    rsn: int  # PEER's record sequence number
+    event: str  # as in the component's name: "NORTHR"
+    code: str  # likewise: "SYL"
+    title: str  # the station's name in words
+    quake: str  # the event's, with its year
+    set: str  # which of SETS it belongs to
+    labels: tuple[str, str]  # the components' own part of their names: ("_032", "_122") or ("000", "090")
+    steps: tuple[float, float]  # the components' sampling intervals [s]
+    index: int  # within the set
 
     @property
     def name(self) -> str:

@@ -12,61 +12,28 @@ from rockbatch.motions import archives
 MANIFESTS = ("motions.toml", "motions.csv")
 
 _COMPANIONS = {
-    "text about the records": (
-        *(
-            ".json",
-            ".md",
-            ".rst",
-            ".pdf",
-            ".doc",
-            ".docx",
-            ".htm",
-            ".html",
-            ".log",
-            ".toml",
-            ".yml",
-            ".yaml",
-            ".bib",
-            ".tex",
-        ),
-        *(".geojson", ".kml", ".kmz", ".url", ".cff", ".ini", ".cfg"),
-    ),
-    "a spreadsheet, which is not opened; if it holds records, save its sheets as CSV (UTF-8)": (
-        *(".xls", ".xlsx", ".xlsm", ".ods"),
-    ),
-    "a picture": (".png", ".jpg", ".jpeg", ".gif", ".svg", ".tif", ".tiff", ".ps", ".eps"),
-    "a program": (".py", ".m", ".ipynb", ".r", ".sh"),
-    "the velocity of a record": (".vt2", ".vel"),
-    "the displacement of a record": (".dt2", ".disp", ".dis"),
+    "text about the records": ".json .md .rst .pdf .doc .docx .htm .html .log .toml .yml .yaml .bib .tex .geojson .kml .kmz .url "
+    ".cff .ini .cfg",
+    "a spreadsheet, which is not opened; if it holds records, save its sheets as CSV (UTF-8)": ".xls .xlsx .xlsm .ods",
+    "a picture": ".png .jpg .jpeg .gif .svg .tif .tiff .ps .eps",
+    "a program": ".py .m .ipynb .r .sh",
+    "the velocity of a record": ".vt2 .vel",
+    "the displacement of a record": ".dt2 .disp .dis",
 }
-_BY_SUFFIX = {suffix: what for what, suffixes in _COMPANIONS.items() for suffix in suffixes}
+_BY_SUFFIX = {suffix: what for what, suffixes in _COMPANIONS.items() for suffix in suffixes.split()}
 _NAMES = {"license", "licence", "copying", "notice", "authors", "citation", "contributing", "changelog", "index"}
 _SEARCH_RESULTS = "_searchresults.csv"  # that PEER's database puts beside the records
 
 
 @dataclass(frozen=True)
 class Found:
-    """A file of a folder, or of an archive in it.
+    """A file of a folder, or of an archive in it."""
 
-    Attributes
-    ----------
-    path : Path
-        In an archive, it goes on within that (see ``archives``).
-    source : str
-        Its short path for people.
-    refusal : str
-        Why it is not to be opened; empty where it may be a record.
-    companion : str
-        What it is instead of a record; empty where it may be one.
-    root : Path or None
-        Where links may lead: the folder that was given, or that of a file that was.
-    """
-
-    path: Path
-    source: str
-    refusal: str = ""
-    companion: str = ""
-    root: Path | None = None
+    path: Path  # in an archive, it goes on within that (see archives)
+    source: str  # its short path for people
+    refusal: str = ""  # why it is not to be opened; empty where it may be a record
+    companion: str = ""  # what it is instead of a record; empty where it may be one
+    root: Path | None = None  # where links may lead: the folder that was given, or that of a file that was
 
 
 def files_of(given: Sequence[Path]) -> Iterator[Found]:

@@ -35,24 +35,12 @@ class Initial:
 
 @dataclass(frozen=True)
 class Finding:
-    """An oddity of a motion.
+    """An oddity of a motion."""
 
-    Attributes
-    ----------
-    what : str
-        In a word or two, for tables.
-    text : str
-        In a sentence, with what to do.
-    gross : bool
-        Whether the motion is not used until somebody confirms it.
-    key : str
-        The key that confirms it, under [motions] and in manifests; ``confirm`` does so for all findings.
-    """
-
-    what: str
-    text: str
-    gross: bool = False
-    key: str = "confirm"
+    what: str  # in a word or two, for tables
+    text: str  # in a sentence, with what to do
+    gross: bool = False  # whether the motion is not used until somebody confirms it
+    key: str = "confirm"  # that confirms it, under [motions] and in manifests; "confirm" does so for all findings
 
 
 def _frozen(samples: object) -> Samples:

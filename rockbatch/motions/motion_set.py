@@ -1,6 +1,6 @@
 """Everything that was found in files and folders: motions in order, and what is none."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from numbers import Integral
@@ -13,37 +13,38 @@ from rockbatch.motions.motion import LeftOut, Motion, Unusable
 from rockbatch.showing import Shown, several
 from rockbatch.units import GRAVITY
 
-COLUMNS = (
-    "record",
-    "file_h",
-    "file_v",
-    "dt_s",
-    "npts",
-    "duration_s",
-    "pga_h_g",
-    "pga_v_g",
-    "pgv_h_m_s",
-    "pgd_h_m",
-    "arias_m_s",
-    "d5_95_s",
-    "azimuth_deg",
-    "magnitude",
-    "distance_km",
-    "processed",
-    "check",
-    "processing",
-    "event",
-    "station_name",
-    "direction",
-    "station",
-)
+_COLUMNS: dict[str, tuple[type, Callable[[Motion], Any]]] = {
+    "record": (str, lambda m: m.name),
+    "file_h": (str, lambda m: m.source),
+    "file_v": (str, lambda m: m.vertical_source),
+    "dt_s": (float, lambda m: m.dt),
+    "npts": (int, lambda m: m.npts),
+    "duration_s": (float, lambda m: m.duration),
+    "pga_h_g": (float, lambda m: m.pga / GRAVITY),
+    "pga_v_g": (float, lambda m: None if m.pga_vertical is None else m.pga_vertical / GRAVITY),
+    "pgv_h_m_s": (float, lambda m: measures.pgv(m.horizontal, m.dt, m.initial)),
+    "pgd_h_m": (float, measures.believable_pgd),
+    "arias_m_s": (float, lambda m: measures.arias_intensity(m.horizontal, m.dt)),
+    "d5_95_s": (float, lambda m: measures.significant_duration(m.horizontal, m.dt)),
+    "azimuth_deg": (float, lambda m: m.azimuth),
+    "magnitude": (float, lambda m: m.magnitude),
+    "distance_km": (float, lambda m: m.distance_km),
+    "processed": (str, lambda m: {None: None, True: "yes", False: "no"}[m.processed]),
+    "check": (str, lambda m: ", ".join(finding.what for finding in m.findings) or None),
+    "processing": (str, lambda m: "; ".join(m.notes)),
+    "event": (str, lambda m: m.origin.event or None),
+    "station_name": (str, lambda m: m.origin.station or None),
+    "direction": (str, lambda m: m.origin.direction or None),
+    "station": (str, lambda m: m.of_station),
+}
+
+COLUMNS = tuple(_COLUMNS)
 """Of :meth:`MotionSet.table`, and keys of :func:`row`."""
 
-TEXTS = (
-    "record", "file_h", "file_v", "processed", "check", "processing", "event", "station_name", "direction", "station",
-)  # fmt: skip
+TEXTS = tuple(name for name, (kind, _) in _COLUMNS.items() if kind is str)
 """Those of them that hold words; the others hold numbers."""
 
+_DTYPES = {str: "str", float: "float64", int: "int64"}
 _AT_A_GLANCE = ["record", "event", "station_name", "direction", "dt_s", "duration_s", "pga_h_g", "pga_v_g", "pgv_h_m_s"]
 
 
@@ -124,11 +125,9 @@ class MotionSet(Shown):
             count as one record share. Missing words are "" and missing numbers NaN.
         """
         rows = pd.DataFrame([row(motion) for motion in self.motions], columns=list(COLUMNS))
-        texts = list(TEXTS)
-        rows[texts] = rows[texts].fillna("").astype("str")
-        for name in rows.columns.difference([*texts, "npts"]):
-            rows[name] = rows[name].astype("float64")
-        return rows.astype({"npts": "int64"})
+        return rows.fillna(dict.fromkeys(TEXTS, "")).astype(
+            {name: _DTYPES[kind] for name, (kind, _) in _COLUMNS.items()}
+        )
 
     def _facts(self) -> tuple[str, dict[str, str]]:
         """See :class:`Shown`."""
@@ -150,31 +149,7 @@ class MotionSet(Shown):
 
 def row(motion: Motion) -> dict[str, Any]:
     """Return the row of a motion in :meth:`MotionSet.table`; None without remarks."""
-    a, dt, vertical = motion.horizontal, motion.dt, motion.pga_vertical
-    return {
-        "record": motion.name,
-        "file_h": motion.source,
-        "file_v": motion.vertical_source,
-        "dt_s": dt,
-        "npts": motion.npts,
-        "duration_s": motion.duration,
-        "pga_h_g": motion.pga / GRAVITY,
-        "pga_v_g": None if vertical is None else vertical / GRAVITY,
-        "pgv_h_m_s": measures.pgv(a, dt, motion.initial),
-        "pgd_h_m": measures.believable_pgd(motion),
-        "arias_m_s": measures.arias_intensity(a, dt),
-        "d5_95_s": measures.significant_duration(a, dt),
-        "azimuth_deg": motion.azimuth,
-        "magnitude": motion.magnitude,
-        "distance_km": motion.distance_km,
-        "processed": None if motion.processed is None else ("yes" if motion.processed else "no"),
-        "check": ", ".join(finding.what for finding in motion.findings) or None,
-        "processing": "; ".join(motion.notes),
-        "event": motion.origin.event or None,
-        "station_name": motion.origin.station or None,
-        "direction": motion.origin.direction or None,
-        "station": motion.of_station,
-    }
+    return {name: value(motion) for name, (_, value) in _COLUMNS.items()}
 
 
 def _listed(motions: Sequence[Motion]) -> str:

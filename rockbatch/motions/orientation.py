@@ -11,27 +11,13 @@ from itertools import combinations
 
 @dataclass(frozen=True)
 class Orientation:
-    """Direction of a component.
+    """Direction of a component."""
 
-    Attributes
-    ----------
-    label : str
-        As the file has it: "228", "NS", "DWN", "HNZ"; empty where it says nothing.
-    vertical : bool
-        Whether it is the vertical component.
-    azimuth : float or None
-        Of a horizontal component [degrees clockwise from north, 0 ≤ azimuth < 360]; ``None`` where unknown.
-    down : bool
-        Whether a vertical component is positive down.
-    known : bool
-        Whether it is known at all that it is horizontal or vertical.
-    """
-
-    label: str
+    label: str  # as the file has it: "228", "NS", "DWN", "HNZ"; empty where it says nothing
     vertical: bool = False
-    azimuth: float | None = None
-    down: bool = False
-    known: bool = True
+    azimuth: float | None = None  # of a horizontal one [degrees clockwise from north, 0 ≤ azimuth < 360], where known
+    down: bool = False  # whether a vertical component is positive down
+    known: bool = True  # whether it is known at all that it is horizontal or vertical
 
 
 def unknown(label: str = "") -> Orientation:

@@ -21,21 +21,11 @@ _CODE = 5  # letters that a word in capitals may have and be a code
 
 @dataclass(frozen=True)
 class Origin:
-    """Where a record comes from, in words, as far as its header says it; empty where it does not.
+    """Where a record comes from, in words, as far as its header says it; empty where it does not."""
 
-    Attributes
-    ----------
-    event : str
-        Name and year of the event, or its date: "Imperial Valley 1979".
-    station : str
-        "Meloland".
-    direction : str
-        Of the horizontal component, as the header has it: "270", "N28W", "HNE".
-    """
-
-    event: str = ""
-    station: str = ""
-    direction: str = ""
+    event: str = ""  # name and year of the event, or its date: "Imperial Valley 1979"
+    station: str = ""  # "Meloland"
+    direction: str = ""  # of the horizontal component, as the header has it: "270", "N28W", "HNE"
 
     @property
     def label(self) -> str:

@@ -54,23 +54,12 @@ _STRUCTURE = re.compile(
 
 @dataclass(frozen=True)
 class Judged:
-    """A motion, and what it is judged by.
-
-    Attributes
-    ----------
-    motion : Motion
-    component : Component
-        Its horizontal component.
-    peaks : sequence of (Component, float)
-        The horizontal components of its station, as recorded, and their PGAs [m/s²].
-    gravity : float
-        [m/s²]
-    """
+    """A motion, and what it is judged by."""
 
     motion: Motion
-    component: Component
-    peaks: Sequence[tuple[Component, float]]
-    gravity: float
+    component: Component  # its horizontal component
+    peaks: Sequence[tuple[Component, float]]  # the horizontal components of its station, and their PGAs [m/s²]
+    gravity: float  # [m/s²]
 
 
 def unlikely_peak(judged: Judged) -> Finding | None:

@@ -39,24 +39,12 @@ Array = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class VelocityPulse:
-    """What the criterion says of a record.
+    """What the criterion says of a record."""
 
-    Attributes
-    ----------
-    indicator : float
-        PI, 0..1.
-    period_s : float
-        Of the pulse [s]; NaN for a record without motion.
-    pgv : float
-        Of the record [m/s].
-    early : bool
-        Whether the pulse arrives early, as those of forward directivity do.
-    """
-
-    indicator: float
-    period_s: float
-    pgv: float
-    early: bool
+    indicator: float  # PI, 0..1
+    period_s: float  # of the pulse [s]; NaN for a record without motion
+    pgv: float  # of the record [m/s]
+    early: bool  # whether the pulse arrives early, as those of forward directivity do
 
     @property
     def kind(self) -> str:
