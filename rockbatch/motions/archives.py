@@ -35,12 +35,12 @@ ValueError for places in the file that cannot be."""
 
 
 def is_zip(path: Path) -> bool:
-    """Whether a path has the name of an archive that is read as a folder."""
+    """Return whether a path has the name of an archive that is read as a folder."""
     return path.suffix.lower() == ".zip"
 
 
 def not_read(path: Path) -> str:
-    """Why an archive is not opened, and what to do; empty for what is read, or no archive."""
+    """Return why an archive is not opened, and what to do; empty for what is read, or no archive."""
     inner = bare(path).suffix.lower() if path.suffix.lower() == ".gz" else path.suffix.lower()
     if inner in _PACKED and not is_zip(path):
         return "an archive that is not read (.zip is, and .gz of one record); unpack it"
@@ -48,7 +48,7 @@ def not_read(path: Path) -> str:
 
 
 def bare(path: Path) -> Path:
-    """The path of a record as if it were not packed: without .gz."""
+    """Return the path of a record as if it were not packed: without .gz."""
     return path.with_suffix("") if path.suffix.lower() == ".gz" else path
 
 
@@ -62,7 +62,7 @@ class Member:
 
 
 def members(archive: Path) -> Iterator[Member]:
-    """The files of an archive in order of their names, but hidden and read-me files, as in folders.
+    """Return the files of an archive in order of their names, but hidden and read-me files, as in folders.
 
     Raises ``InputError`` for what is no archive, or too large.
     """
@@ -88,7 +88,7 @@ def members(archive: Path) -> Iterator[Member]:
 
 
 def is_member(path: Path) -> bool:
-    """Whether a path leads to a file in an archive."""
+    """Return whether a path leads to a file in an archive."""
     archive = archive_of(path)
     try:
         return archive is not None and path in _paths_in(archive, archive.stat().st_mtime_ns)
@@ -98,17 +98,17 @@ def is_member(path: Path) -> bool:
 
 @lru_cache(maxsize=8)
 def _paths_in(archive: Path, mtime_ns: int) -> frozenset[Path]:
-    """Paths of the files in an archive; ``mtime_ns`` keeps a new one from being taken for the old one."""
+    """Return paths of the files in an archive; ``mtime_ns`` keeps a new one from being taken for the old one."""
     return frozenset(member.path for member in members(archive))
 
 
 def archive_of(path: Path) -> Path | None:
-    """The archive that a path goes on within; ``None`` for a path of the disk."""
+    """Return the archive that a path goes on within; ``None`` for a path of the disk."""
     return next((above for above in path.parents if is_zip(above) and above.is_file()), None)
 
 
 def files_in(folder: Path) -> list[Path]:
-    """Paths of the regular files in a folder, or in a folder of an archive, in order; those that may be opened."""
+    """Return paths of the regular files in a folder, or in a folder of an archive, in order; those that may be opened."""
     archive = folder if is_zip(folder) and folder.is_file() else archive_of(folder)
     if archive is None:
         return sorted(path for path in folder.iterdir() if path.is_file())
@@ -116,7 +116,7 @@ def files_in(folder: Path) -> list[Path]:
 
 
 def content(path: Path, first: int | None = None) -> bytes:
-    """What a file holds, or its ``first`` bytes, unpacked where it is a .gz or lies in an archive.
+    """Return what a file holds, or its ``first`` bytes, unpacked where it is a .gz or lies in an archive.
 
     Raises ``InputError`` for what is damaged, or larger than allowed, ``OSError`` for what cannot be read.
     """
@@ -163,7 +163,7 @@ def _from_zip(archive: Path, path: Path, first: int | None) -> bytes:
 
 
 def _opened(archive: Path) -> zipfile.ZipFile:
-    """A .zip, after a look at how much it lists; ``InputError`` where it is too much, or no .zip."""
+    """Return a .zip, after a look at how much it lists; ``InputError`` where it is too much, or no .zip."""
     size = archive.stat().st_size
     if not size:
         raise InputError("the file is empty")
@@ -190,7 +190,7 @@ def _opened(archive: Path) -> zipfile.ZipFile:
 
 
 def _refusal(info: zipfile.ZipInfo) -> str:
-    """Why a file of an archive is not to be opened; empty where it may be."""
+    """Return why a file of an archive is not to be opened; empty where it may be."""
     name = PurePosixPath(_name(info))
     if name.is_absolute() or not name.parts or ".." in name.parts or ":" in name.parts[0]:
         return "its name leads out of the archive; unpack it where that does no harm"
@@ -213,11 +213,11 @@ def _too_large(packed: int, most: int) -> str:
 
 
 def _name(info: zipfile.ZipInfo) -> str:
-    """The name in an archive, with / between folders as some programs for Windows do not write it."""
+    """Return the name in an archive, with / between folders as some programs for Windows do not write it."""
     return info.filename.replace("\\", "/")
 
 
 def _within(info: zipfile.ZipInfo) -> PurePosixPath:
-    """A name in the archive that does not lead out of it."""
+    """Return a name in the archive that does not lead out of it."""
     inside = [part for part in PurePosixPath(_name(info)).parts if part not in ("/", "//", "..")]
     return PurePosixPath(*inside) if inside else PurePosixPath("?")

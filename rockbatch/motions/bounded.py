@@ -4,10 +4,8 @@ import ctypes
 import math
 import threading
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
-from types import TracebackType
-from typing import Self
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager
 
 from rockbatch.errors import starting_threads
 
@@ -19,49 +17,44 @@ class TooLongError(BaseException):
     """Ends the reading of a file; no ``Exception``, so that no reader takes it for a fault of the file that it knows."""
 
 
-class Watch:
-    """Ends the reading of a file by ``TooLongError`` after 20 s, and 2 s per MiB of it, of computing time.
+@contextmanager
+def watch() -> Iterator[Callable[[int], AbstractContextManager[None]]]:
+    """Yield a context for a file's size [bytes]; reading in it is ended by ``TooLongError`` after 20 s, and 2 s per MiB.
 
-    Time of the process counts, not of the clock: a computer may sleep, or a disk be slow. The exception comes between two
-    steps of Python's; one call of a library in C is not ended, and those that are used here end by themselves.
+    Computing time of the process counts, not that of the clock: a computer may sleep, or a disk be slow. The exception comes
+    between two steps of Python's; one call of a library in C is not ended, and those that are used here end by themselves.
 
-    A context, within which one thread looks at the clock for all files, one after another: whether it can be started does not
-    decide over one file and not over the next. Raises ``InputError`` where it cannot.
+    One thread looks at the clock for all files, one after another: whether it can be started does not decide over one file and
+    not over the next. Raises ``InputError`` if it cannot.
     """
-
-    def __init__(self) -> None:
-        self._lock, self._ended = threading.Lock(), threading.Event()
-        self._reader, self._until = 0, math.inf
-        self._thread = threading.Thread(target=self._look, name="rockbatch-bounded", daemon=True)
-
-    def __enter__(self) -> Self:
-        with starting_threads():
-            self._thread.start()
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self._ended.set()
-        self._thread.join()  # where few are allowed, the next one may need its place
+    lock, ended = threading.Lock(), threading.Event()
+    reader, until = 0, math.inf
 
     @contextmanager
-    def bounded(self, size: int) -> Iterator[None]:
-        """Bound what is done within, with a file of ``size`` [bytes]."""
-        with self._lock:
-            self._reader = threading.get_ident()
-            self._until = time.process_time() + _LEAST + _PER_MIB * size / 2**20
+    def bounded(size: int) -> Iterator[None]:
+        nonlocal reader, until
+        with lock:
+            reader = threading.get_ident()
+            until = time.process_time() + _LEAST + _PER_MIB * size / 2**20
         try:
             yield
         finally:
-            with self._lock:
-                self._until = math.inf
+            with lock:
+                until = math.inf
 
-    def _look(self) -> None:
-        while not self._ended.wait(_LOOKS):
-            with self._lock:
-                if time.process_time() > self._until:
-                    self._until = math.inf  # once is enough
-                    ctypes.pythonapi.PyThreadState_SetAsyncExc(
-                        ctypes.c_ulong(self._reader), ctypes.py_object(TooLongError)
-                    )
+    def look() -> None:
+        nonlocal until
+        while not ended.wait(_LOOKS):
+            with lock:
+                if time.process_time() > until:
+                    until = math.inf  # once is enough
+                    ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(reader), ctypes.py_object(TooLongError))
+
+    thread = threading.Thread(target=look, name="rockbatch-bounded", daemon=True)
+    with starting_threads():
+        thread.start()
+    try:
+        yield bounded
+    finally:
+        ended.set()
+        thread.join()  # where few are allowed, the next one may need its place

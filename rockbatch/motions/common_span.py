@@ -27,14 +27,14 @@ class Common:
 
 
 def overlap(a: Component, b: Component) -> bool:
-    """Whether two components have a time in common, as far as is known."""
+    """Return whether two components have a time in common, as far as is known."""
     if a.start is None or b.start is None:
         return True
     return a.start < b.start + b.duration and b.start < a.start + a.duration
 
 
 def too_unlike(a: Component, b: Component) -> str:
-    """Why two components cannot be brought to common samples; empty where they can."""
+    """Return why two components cannot be brought to common samples; empty where they can."""
     if max(a.dt, b.dt) > MOST_STEPS * min(a.dt, b.dt):
         return f"dt = {b.dt:g} s beside {a.dt:g} s of {a.name}, more than {MOST_STEPS} times apart"
     if min(a.duration, b.duration) > MOST_SAMPLES * min(a.dt, b.dt):
@@ -43,14 +43,14 @@ def too_unlike(a: Component, b: Component) -> str:
 
 
 def _parts(first: Component, second: Component) -> int:
-    """In how many parts a step of the first component is cut so that it is no coarser than that of the second."""
+    """Return in how many parts a step of the first component is cut so that it is no coarser than that of the second."""
     if abs(first.dt - second.dt) <= _SAME_STEP * first.dt:
         return 1
     return math.ceil(first.dt / second.dt * (1 - _SAME_STEP))
 
 
 def on_common_samples(first: Component, second: Component, names: tuple[str, str]) -> Common:
-    """Both components on common samples, over their common time, with notes with their ``names``.
+    """Return both components on common samples, over their common time, with notes with their ``names``.
 
     Components without absolute times start together. Where samples do not coincide, the first component keeps
     its own, with as many between them as make it no coarser than the second one, and both are interpolated

@@ -15,7 +15,7 @@ FIRST_YEAR = 365 * 86400.0
 
 @dataclass(frozen=True)
 class Seat:
-    """Where a sensor stands, as far as the header says it; empty or None where it does not."""
+    """The place of a sensor, as far as the header says it; empty or None where it does not."""
 
     station: str = ""  # code, number or name
     network: str | None = None
@@ -29,11 +29,11 @@ class Seat:
         return self.station.lstrip("0")
 
     def is_that_of(self, other: "Seat") -> bool:
-        """Whether both may be the same sensor, of a station that both name."""
+        """Return whether both may be the same sensor, of a station that both name."""
         return bool(self.number) and self.number == other.number and not self._differs(other)
 
     def is_other(self, other: "Seat") -> bool:
-        """Whether both are other sensors, of one station or of one network; stations may be called otherwise elsewhere.
+        """Return whether both are other sensors, of one station or of one network; stations may be called otherwise elsewhere.
 
         Where a channel has a number, the words for its place, which differ from format to format, do not matter.
         """
@@ -50,12 +50,12 @@ class Seat:
 
 
 def _bare(text: str) -> str:
-    """A text without blanks and signs: "Free-field" is "FREEFIELD"."""
+    """Return a text without blanks and signs: "Free-field" is "FREEFIELD"."""
     return re.sub(r"[\W_]+", "", text).upper()
 
 
 def file_of(source: str) -> str:
-    """The file of a component's source, which has a label behind where the file holds several: "x.V1 (NS)"."""
+    """Return the file of a component's source, which has a label behind where the file holds several: "x.V1 (NS)"."""
     return re.sub(r" \([^()]*\)$", "", source)
 
 
@@ -97,7 +97,7 @@ class Component:
 
     @property
     def dated(self) -> bool:
-        """Whether ``start`` is a date, and not only a time from which the components of one file set are counted."""
+        """Return whether ``start`` is a date, and not only a time from which the components of one file set are counted."""
         return self.start is not None and self.start >= FIRST_YEAR
 
     @property

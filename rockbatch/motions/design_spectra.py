@@ -14,7 +14,7 @@ Array = npt.NDArray[np.float64]
 
 
 class Spectrum(Protocol):
-    """What every one of them can tell."""
+    """Interface of all spectra."""
 
     @property
     def damping(self) -> float:
@@ -25,7 +25,7 @@ class Spectrum(Protocol):
         """Least and largest period [s] for which it is defined."""
 
     def at(self, periods: Array) -> Array:
-        """Spectral acceleration [g] at periods [s], shape (n,); NaN where it is not defined."""
+        """Return the spectral acceleration [g] at periods [s], shape (n,); NaN where it is not defined."""
 
 
 class Shape(NamedTuple):
@@ -140,7 +140,7 @@ class TableSpectrum:
 
 
 def read_spectrum(path: Path, damping: float = 0.05) -> TableSpectrum:
-    """A table of a text file: a period [s] and a spectral acceleration [g] on each line, perhaps under a header.
+    """Return a table of a text file: a period [s] and a spectral acceleration [g] on each line, perhaps under a header.
 
     Raises ``InputError`` with the line that is no such pair.
     """

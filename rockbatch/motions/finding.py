@@ -37,7 +37,7 @@ class Found:
 
 
 def files_of(given: Sequence[Path]) -> Iterator[Found]:
-    """Files and folders in order, each file once: what lies below a folder, without hidden and read-me files."""
+    """Return files and folders in order, each file once: what lies below a folder, without hidden and read-me files."""
     seen: set[Path] = set()
     for root in given:
         prefix = f"{root.absolute().name}/" if len(given) > 1 and root.is_dir() else ""
@@ -61,17 +61,16 @@ def files_of(given: Sequence[Path]) -> Iterator[Found]:
 
 
 def _of_archive(path: Path, source: str) -> Iterator[Found]:
-    """The files of an archive, or why there are none."""
+    """Return the files of an archive, or why there are none."""
     try:
         members = list(archives.members(path))
+        why = "" if members else "an archive without files"
     except InputError as error:
-        yield Found(path, source, "; ".join(error.problems))
-        return
+        members, why = [], "; ".join(error.problems)
     except OSError as error:
-        yield Found(path, source, f"cannot be read: {error.strerror or error}")
-        return
-    if not members:
-        yield Found(path, source, "an archive without files")
+        members, why = [], f"cannot be read: {error.strerror or error}"
+    if why:
+        yield Found(path, source, why)
     for member in members:
         name = f"{source}/{legible(member.name)}"
         if member.refusal:
@@ -94,7 +93,7 @@ def _regular(path: Path, source: str) -> Found:
 
 
 def _below(folder: Path) -> Iterator[Path]:
-    """Everything in a folder and below it that may be a record, and the folders that are not gone into."""
+    """Return everything in a folder and below it that may be a record, and the folders that are not gone into."""
     closed: list[Path] = []
     for where, folders, files in os.walk(folder, onerror=lambda error: closed.append(Path(error.filename))):
         folders[:] = [name for name in folders if not name.startswith(".")]

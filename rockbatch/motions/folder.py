@@ -4,7 +4,8 @@ import difflib
 import os
 import re
 import sys
-from collections.abc import Container, Iterable, Sequence
+from collections.abc import Callable, Container, Iterable, Sequence
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal
@@ -15,12 +16,13 @@ from rockbatch.arguments import checked
 from rockbatch.errors import InputError, NoRecordError, UnstatedError
 from rockbatch.motions import archives, fema_p695
 from rockbatch.motions.baseline import Offset, corrected
-from rockbatch.motions.bounded import TooLongError, Watch
+from rockbatch.motions.bounded import TooLongError, watch
 from rockbatch.motions.component import Component, file_of
 from rockbatch.motions.doubles import without_doubles
 from rockbatch.motions.finding import MANIFESTS, Found, files_of
 from rockbatch.motions.formats import HEAD, ReadOptions, RecordFile, format_of, read_record, usable
-from rockbatch.motions.manifest import Entry, Manifest, described, is_manifest, options_of
+from rockbatch.motions.grouping import grouped
+from rockbatch.motions.manifest import Manifest, described, is_manifest, options_of
 from rockbatch.motions.motion import LeftOut, Unusable
 from rockbatch.motions.motion_set import MotionSet
 from rockbatch.motions.orientation import counted, is_clock, split_stem, unknown
@@ -44,7 +46,7 @@ class _Asked:
     gravity: float
     offset: Offset
     numbered: Container[Path]
-    watch: Watch
+    bounded: Callable[[int], AbstractContextManager[None]]
 
 
 @checked
@@ -122,8 +124,13 @@ def read_motions(
 
 def _packaged(given: Sequence[Path], fema: Sequence[tuple[str, float]], gravity: float) -> list[Component]:
     """Return the components of the package; ``InputError`` for its unknown stations and for missing paths, all at once."""
-    problems = [_missing(path) for path in given if not path.exists()]
-    packaged = []
+    problems, packaged = [], []
+    for path in given:
+        if not path.exists():
+            beside = [entry.name for entry in path.parent.iterdir()] if path.parent.is_dir() else []
+            close = difflib.get_close_matches(path.name, beside, 1)
+            hint = f"; did you mean {path.parent / close[0]}?" if close else ""
+            problems.append(f"{path}: no such file or folder (looked for {path.absolute()}){hint}")
     for station, azimuth in fema:
         try:
             packaged.append(fema_p695.rotated(station, azimuth, gravity))
@@ -141,7 +148,7 @@ def read_files(
     gravity: float = GRAVITY,
     offset: Offset | None = None,
 ) -> tuple[list[Reading], dict[str, Path]]:
-    """Components of all files, before they are paired, and what is none; with the path of each source.
+    """Return components of all files, before they are paired, and what is none; with the path of each source.
 
     Raises ``InputError`` with every mistake in the manifests.
     """
@@ -151,8 +158,8 @@ def read_files(
     manifests = [path for path in [*manifests, *beside] if path.is_file() and is_manifest(path)]
     manifest = Manifest.read({Path(os.path.realpath(path)): path for path in manifests}.values())
     readings: list[Reading] = []
-    with Watch() as watch:
-        asked = _Asked(manifest, options or ReadOptions(), gravity, offset or Offset(), _numbered(found), watch)
+    with watch() as bounded:
+        asked = _Asked(manifest, options or ReadOptions(), gravity, offset or Offset(), _numbered(found), bounded)
         for file in _with_progress(found):
             if file.path not in manifests:
                 readings += _readings(file, asked)
@@ -187,10 +194,14 @@ def _folder(reading: Reading) -> str:
 
 
 def _without_renamed(readings: Sequence[Reading], found: Sequence[Found]) -> list[Reading]:
-    """With files left out that no reader takes by their names, but are copies, byte for byte, of one that is a record."""
+    """Return the readings with files left out that no reader takes by their names, but are copies of a record to the byte."""
     refused = {reading.source for reading in readings if isinstance(reading, Unusable)}
     records = {file_of(reading.source) for reading in readings if isinstance(reading, Component)}
-    unknown_ones = [file for file in found if file.source in refused and not file.refusal and _is_unknown(file)]
+    unknown_ones = [
+        file for file in found
+        if file.source in refused and not file.refusal
+        and format_of(archives.bare(file.path).suffix, _content(file, HEAD)) is None
+    ]  # fmt: skip
     heads = {_content(file, HEAD) for file in unknown_ones}
     alike = [file for file in found if heads and file.source in records and _content(file, HEAD) in heads]
     by_content = {content: file.source for file in alike if (content := _content(file))}
@@ -203,11 +214,6 @@ def _without_renamed(readings: Sequence[Reading], found: Sequence[Found]) -> lis
     ]
 
 
-def _is_unknown(file: Found) -> bool:
-    """Whether a file is of no format that its suffix and first bytes tell."""
-    return format_of(archives.bare(file.path).suffix, _content(file, HEAD)) is None
-
-
 def _content(file: Found, first: int | None = None) -> bytes:
     """Return the bytes of a file, or its ``first`` ones; none if it cannot be read."""
     try:
@@ -216,19 +222,9 @@ def _content(file: Found, first: int | None = None) -> bytes:
         return b""
 
 
-def _missing(path: Path) -> str:
-    """Return the message on a path that does not exist."""
-    beside = [entry.name for entry in path.parent.iterdir()] if path.parent.is_dir() else []
-    close = difflib.get_close_matches(path.name, beside, 1)
-    hint = f"; did you mean {path.parent / close[0]}?" if close else ""
-    return f"{path}: no such file or folder (looked for {path.absolute()}){hint}"
-
-
 def _numbered(found: Sequence[Found]) -> set[Path]:
-    """Files whose names end in a number that is no azimuth, as those beside them tell."""
-    folders: dict[Path, list[Path]] = {}
-    for file in found:
-        folders.setdefault(file.path.parent, []).append(archives.bare(file.path))
+    """Return files whose names end in a number that is no azimuth, as those beside them tell."""
+    folders = grouped((archives.bare(file.path) for file in found), lambda path: path.parent)
     numbers = {folder: counted(path.stem for path in paths) for folder, paths in folders.items()}
     return {file.path for file in found if archives.bare(file.path).stem in numbers[file.path.parent]}
 
@@ -265,48 +261,43 @@ def _used(file: Found, asked: _Asked) -> list[Reading]:
     path = archives.bare(file.path)
     entries = asked.manifest.of(file.path)
     if any(not entry.use and entry.component is None for entry in entries):
-        return [LeftOut(path.stem, file.source, f"use = false in {entries[0].table.file.path.name}")]
+        return [LeftOut(path.stem, file.source, entries[0].unused)]
     if file.companion:
         return [LeftOut(path.stem, file.source, f"no record: {file.companion}")]
     if file.refusal:
         return [Unusable(path.stem, file.source, file.refusal)]
     read = [replace(r, number=i) for i, r in enumerate(_read(file, options_of(entries, asked.options), asked), start=1)]
     others = [reading for reading in read if isinstance(reading, Unusable)]
-    readings: list[Reading] = [_left_out(reading, entries) or reading for reading in others]
+    readings: list[Reading] = []
+    for other in others:
+        unwanted = [entry for entry in entries if not entry.use and entry.is_for(other)]
+        if is_clock(other.label):
+            readings.append(LeftOut(other.name, other.source, f"no record: {other.label}, the recorder's clock"))
+        else:
+            readings.append(LeftOut(other.name, other.source, unwanted[0].unused) if unwanted else other)
     components = [
         _placed(reading, path, file.path in asked.numbered) for reading in read if isinstance(reading, Component)
     ]
     for component, used in described(components, entries, asked.gravity, others):
         if used:
-            readings.append(usable(_without_offset(_directed(component, asked.options.role), asked.offset)))
+            readings.append(_finished(component, asked))
         else:
-            where = entries[0].table.file.path.name
-            readings.append(LeftOut(component.name, component.source, f"use = false in {where}"))
+            readings.append(LeftOut(component.name, component.source, entries[0].unused))
     return readings
 
 
-def _left_out(unusable: Unusable, entries: Sequence[Entry]) -> LeftOut | None:
-    """A component that cannot be used, but is not missed: its manifest leaves it out, or it is no ground motion."""
-    if is_clock(unusable.label):
-        return LeftOut(unusable.name, unusable.source, f"no record: {unusable.label}, the recorder's clock")
-    entry = next((entry for entry in entries if not entry.use and entry.is_for(unusable)), None)
-    if entry is None:
-        return None
-    return LeftOut(unusable.name, unusable.source, f"use = false in {entry.table.file.path.name}")
-
-
 def _read(file: Found, options: ReadOptions, asked: _Asked) -> Sequence[Component | Unusable]:
-    """Components of one file, read within a bound."""
+    """Return components of one file, read within a bound."""
     path = archives.bare(file.path)
     data = archives.content(file.path, HEAD)
     if format_of(path.suffix, data) is not None:  # else its first bytes are enough to say what it is not
         data = archives.content(file.path)
-    with asked.watch.bounded(len(data)):
+    with asked.bounded(len(data)):
         return read_record(RecordFile(path, file.source, data, options, asked.gravity, file.root))
 
 
 def _placed(component: Component, path: Path, numbered: bool) -> Component:
-    """With its folder, and what its file's name says of its station; without an azimuth that is a file's number."""
+    """Return a component with its folder, and its station by its file's name; without an azimuth that is a file's number."""
     rsn = _RSN.match(path.stem)
     site, by_name = split_stem(path.stem)
     if numbered:
@@ -317,16 +308,14 @@ def _placed(component: Component, path: Path, numbered: bool) -> Component:
     return replace(component, site=site, folder=path.parent.absolute().as_posix())
 
 
-def _directed(component: Component, role: str | None) -> Component:
-    """With the ``role`` that is stated for all components of unknown direction: "horizontal"."""
-    if component.orientation.known or role is None:
-        return component
-    note = f"direction not known: {role}, as stated"
-    return replace(component, orientation=replace(component.orientation, known=True), notes=(*component.notes, note))
-
-
-def _without_offset(component: Component, offset: Offset) -> Component | Unusable:
+def _finished(component: Component, asked: _Asked) -> Component | Unusable:
+    """Return a component without its offset, and with the role that is stated for all of unknown direction: "horizontal"."""
+    role = asked.options.role
+    if not component.orientation.known and role is not None:
+        known = replace(component.orientation, known=True)
+        notes = (*component.notes, f"direction not known: {role}, as stated")
+        component = replace(component, orientation=known, notes=notes)
     try:
-        return corrected(component, offset)
+        return usable(corrected(component, asked.offset))
     except InputError as error:
         return Unusable(component.name, component.source, str(error))

@@ -14,7 +14,7 @@ HUGE = 1e30
 
 
 def is_step(dt: float) -> bool:
-    """Whether ``dt`` [s] may be the sampling interval of a record."""
+    """Return whether ``dt`` [s] may be the sampling interval of a record."""
     return SHORTEST_STEP <= dt <= LONGEST_STEP
 
 

@@ -70,11 +70,16 @@ class Entry:
 
     @property
     def use(self) -> bool:
-        """Whether the file or component shall be used."""
+        """Return whether the file or component shall be used."""
         return bool(self.values.get("use", True))
 
+    @property
+    def unused(self) -> str:
+        """Reason for which its file or component is left out."""
+        return f"use = false in {self.table.file.path.name}"
+
     def is_for(self, unusable: Unusable) -> bool:
-        """Whether it is for this one component, which cannot be used."""
+        """Return whether it is for this one component, which cannot be used."""
         return self.component is not None and self.component in (unusable.label, unusable.name, unusable.number or None)
 
 
@@ -92,7 +97,7 @@ class Manifest:
         manifest = cls({}, [], [])
         for path in paths:
             try:
-                file = _open(path)
+                file = TomlFile.read(path) if path.suffix == ".toml" else _from_csv(path)
             except InputError as error:
                 manifest.refused += error.problems
             else:
@@ -125,7 +130,7 @@ class Manifest:
                 self.entries.setdefault(path, []).append(Entry(path, table, values))
 
     def of(self, path: Path) -> list[Entry]:
-        """Entries of a file, those of the whole file first; those of its archive where it has none of its own."""
+        """Return entries of a file, those of the whole file first; those of its archive where it has none of its own."""
         real = Path(os.path.realpath(path))
         archive = archive_of(real)
         found = self.entries.get(real) or (self.entries.get(archive, []) if archive else [])
@@ -144,7 +149,7 @@ class Manifest:
 
 
 def _is_there(path: Path) -> bool:
-    """Whether there is such a file, on the disk or in an archive."""
+    """Return whether there is such a file, on the disk or in an archive."""
     try:
         return path.is_file() or is_member(path)
     except OSError:  # a name that is too long, a folder that is closed
@@ -173,7 +178,7 @@ def options_of(entries: Sequence[Entry], options: ReadOptions) -> ReadOptions:
 def described(
     components: Sequence[Component], entries: Sequence[Entry], gravity: float, others: Sequence[Unusable] = ()
 ) -> list[tuple[Component, bool]]:
-    """Components of a file as its entries want them, and whether each is to be used; mistakes are noted.
+    """Return components of a file as its entries want them, and whether each is to be used; mistakes are noted.
 
     ``others`` are the components of the file that cannot be used, which entries may be for too.
     """
@@ -264,13 +269,8 @@ def _orientation(found: Orientation, entry: Entry) -> Orientation:
     return Orientation(found.label, azimuth=azimuth)
 
 
-def _open(path: Path) -> TomlFile:
-    """The manifest as TOML, whichever of the two it is."""
-    return TomlFile.read(path) if path.suffix == ".toml" else _from_csv(path)
-
-
 def is_manifest(path: Path) -> bool:
-    """Whether a file of a manifest's name is one: a ``motions.csv`` may be a record, if none of its columns is "file"."""
+    """Return whether a file of a manifest's name is one: a ``motions.csv`` may be a record, if none of its columns is "file"."""
     if path.suffix == ".toml":
         return True
     try:
@@ -293,46 +293,34 @@ def _delimiter(head: str) -> str:
 
 
 def _from_csv(path: Path) -> TomlFile:
-    """A ``motions.csv`` as if it were TOML, with any of the three line ends; empty cells are keys that are not there."""
+    """Return a ``motions.csv`` as if it were TOML, with any of the three line ends; empty cells are keys that are not there."""
     content = TomlFile.text_of(path)
     delimiter = _delimiter(_first_line(content))
-    reader = csv.reader(io.StringIO(content, newline=""), delimiter=delimiter)
+    rows = csv.reader(io.StringIO(content, newline=""), delimiter=delimiter)
     records: list[dict[str, Any]] = []
-    file = TomlFile(path, content, {"record": records}, {})
+    file = TomlFile(path, content, {"record": records}, {("header",): 1})
     try:
-        _take_rows(file, reader, records, delimiter)
+        names = [name.strip() for name in next(rows)]
+        for name in names:
+            if name not in RECORD and not file.is_full:
+                meant = closest(name, RECORD)
+                instead = f"did you mean {meant}?" if meant else "write one of " + ", ".join(RECORD)
+                file.complain(("header",), f"{shown(name)}: unknown column; {instead}")
+        for cells in rows:
+            at: tuple[str | int, ...] = ("record", len(records))
+            given = {name: cell.strip() for name, cell in zip(names, cells, strict=False) if cell.strip()}
+            if any(cell.strip() for cell in cells):
+                file.lines.update({key: rows.line_num for key in (at, *((*at, name) for name in given))})
+                if len(cells) > len(names):
+                    file.complain(at, f"found {len(cells)} cells; the first line names {len(names)} columns")
+                records.append({name: _value(name, given[name], delimiter) for name in given if name in RECORD})
     except csv.Error as error:
-        raise InputError(f"{path}:{reader.line_num}: not a line of a CSV file: {error}") from None
+        raise InputError(f"{path}:{rows.line_num}: not a line of a CSV file: {error}") from None
     return file
 
 
-def _take_rows(file: TomlFile, reader: Any, records: list[dict[str, Any]], delimiter: str) -> None:
-    """Put a table for each row of the CSV ``reader`` into ``records``, and note the lines, and mistakes, in ``file``."""
-    names = [name.strip() for name in next(reader)]
-    file.lines[("header",)] = 1
-    for name in names:
-        if file.is_full:
-            break
-        if name not in RECORD:
-            meant = closest(name, RECORD)
-            instead = f"did you mean {meant}?" if meant else "write one of " + ", ".join(RECORD)
-            file.complain(("header",), f"{shown(name)}: unknown column; {instead}")
-    for cells in reader:
-        at: tuple[str | int, ...] = ("record", len(records))
-        if not any(cell.strip() for cell in cells):
-            continue
-        file.lines[at] = reader.line_num
-        if len(cells) > len(names):
-            file.complain(at, f"found {len(cells)} cells; the first line names {len(names)} columns")
-        given = {
-            name: cell.strip() for name, cell in zip(names, cells, strict=False) if name in RECORD and cell.strip()
-        }
-        file.lines.update({(*at, name): reader.line_num for name in given})
-        records.append({name: _value(name, cell, delimiter) for name, cell in given.items()})
-
-
 def _value(name: str, cell: str, delimiter: str) -> Any:
-    """A cell as TOML would have it; a text where it is neither number nor truth value, which the key then refuses."""
+    """Return a cell as TOML would have it; a text where it is neither number nor truth value, which the key then refuses."""
     if name in _TEXTS or (name == "component" and not _COUNTED.fullmatch(cell)):
         return cell
     if name == "component":

@@ -1,7 +1,7 @@
 """A manifest drafted from what was found in a folder, to be completed by hand."""
 
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +11,7 @@ from rockbatch.motions.component import Component
 from rockbatch.motions.doubles import without_doubles
 from rockbatch.motions.folder import Reading, read_files
 from rockbatch.motions.formats import ReadOptions
+from rockbatch.motions.grouping import grouped
 from rockbatch.motions.motion import Unusable
 from rockbatch.motions.plausible import gross_findings
 from rockbatch.motions.stations import by_station
@@ -55,46 +56,31 @@ def draft(folder: Path, options: ReadOptions | None = None) -> str:
     doubles = {(double.name, double.source): double.reason for double in without_doubles(components)[1]}
     stations = {id(c): station[0].station or station[0].site for station in by_station(components) for c in station}
     stated = options is not None and options.sensitivity is not None  # a unit alone would not say the sensitivity
-    labels: dict[str, list[tuple[str, str]]] = {}
-    for reading in readings:
-        labels.setdefault(_file_of(reading, paths), []).append((_label_of(reading), reading.name))
     blocks = [_HEAD]
-    for reading in readings:
-        file = _file_of(reading, paths)
-        name = paths[file].relative_to(folder).as_posix()
-        if legible(name) != name:
-            blocks.append(f"# {legible(name)}: give it a name without control or invisible characters first\n")
-        elif isinstance(reading, Component):
-            double = doubles.get((reading.name, reading.source), "")
-            called = _called(reading, labels[file])
-            blocks.append(_table(reading, name, called, stations[id(reading)], double, with_unit=not stated))
-        elif isinstance(reading, Unusable) and reading.lacks:
-            blocks.append(_question(name, reading))
-        elif isinstance(reading, Unusable):
-            blocks.append(_remark(name, legible(reading.reason)))
+    for source, of_file in grouped(
+        readings, lambda r: r.source if r.source in paths else r.source.rpartition(" (")[0]
+    ).items():
+        name = paths[source].relative_to(folder).as_posix()
+        for reading in of_file:
+            if legible(name) != name:
+                blocks.append(f"# {legible(name)}: give it a name without control characters first\n")
+            elif isinstance(reading, Component):
+                double = doubles.get((reading.name, reading.source), "")
+                called = _called(reading, of_file)
+                blocks.append(_table(reading, name, called, stations[id(reading)], double, with_unit=not stated))
+            elif isinstance(reading, Unusable):
+                blocks.append(_remark(name, reading))
     return "\n".join(blocks)
 
 
-def _file_of(reading: Reading, paths: Iterable[str]) -> str:
-    """Return the source of the file that a reading came from; a component's has its label behind."""
-    return reading.source if reading.source in paths else reading.source.rpartition(" (")[0]
-
-
-def _label_of(reading: Reading) -> str:
-    if isinstance(reading, Component):
-        return reading.orientation.label
-    return reading.label if isinstance(reading, Unusable) else ""
-
-
-def _called(component: Component, beside: Sequence[tuple[str, str]]) -> str | int | None:
-    """Return the label, name or number that no other component of the file has; ``None`` where it is alone.
-
-    ``beside`` are the labels and names of all of the file.
-    """
-    if len(beside) == 1:
+def _called(component: Component, of_file: Sequence[Reading]) -> str | int | None:
+    """Return the label, name or number that no other component of the file has; ``None`` if it is alone."""
+    if len(of_file) == 1:
         return None
-    own = [text for text in (component.orientation.label, component.name) if text]
-    return next((text for text in own if sum(text in both for both in beside) == 1), component.number)
+    labels = [r.orientation.label if isinstance(r, Component) else getattr(r, "label", "") for r in of_file]
+    texts = [{label, reading.name} for label, reading in zip(labels, of_file, strict=True)]
+    own = (text for text in (component.orientation.label, component.name) if text)
+    return next((text for text in own if sum(text in both for both in texts) == 1), component.number)
 
 
 def _table(
@@ -123,16 +109,14 @@ def _table(
     return text + f"# station = {_written(station)}\n# magnitude =\n# distance_km =\n"
 
 
-def _question(name: str, unusable: Unusable) -> str:
-    """A table that states nothing yet, with a line to fill in for each key that its file lacks."""
-    lines = [f"# {key} =   # {_ASKED[key]}\n" for key in unusable.lacks]
-    return f"# Not used: {legible(unusable.reason)}\n[[record]]\nfile = {_written(name)}\n{''.join(lines)}"
-
-
-def _remark(name: str, reason: str) -> str:
-    return f"# Not used: {reason}\n# [[record]]\n# file = {_written(name)}\n# use = false\n"
+def _remark(name: str, unusable: Unusable) -> str:
+    """Return the remark on a file that is not used, or a table with a line to fill in for each key that it lacks."""
+    said, file = f"# Not used: {legible(unusable.reason)}\n", _written(name)
+    if not unusable.lacks:
+        return f"{said}# [[record]]\n# file = {file}\n# use = false\n"
+    return f"{said}[[record]]\nfile = {file}\n" + "".join(f"# {key} =   # {_ASKED[key]}\n" for key in unusable.lacks)
 
 
 def _written(value: Any) -> str:
-    """A value as TOML writes it; a text without what neither TOML nor a terminal takes, such as the character DEL."""
+    """Return a value as TOML writes it; a text without what neither TOML nor a terminal takes, such as the character DEL."""
     return json.dumps(legible(value), ensure_ascii=False) if isinstance(value, str) else f"{value:g}"

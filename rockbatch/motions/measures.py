@@ -17,13 +17,13 @@ _BELONG = 0.2  # of its peak: what a file's velocity may scatter about the integ
 
 
 def velocity(acceleration: Samples, dt: float, initial: Initial | None = None) -> Samples:
-    """Ground velocity [m/s] at the samples, shape (npts,), of an acceleration [m/s²]; ``dt`` in s."""
+    """Return the ground velocity [m/s] at the samples, shape (npts,), of an acceleration [m/s²]; ``dt`` in s."""
     increments = 0.5 * dt * (acceleration[:-1] + acceleration[1:])
     return (initial or _REST).velocity + np.concatenate(([0.0], np.cumsum(increments)))
 
 
 def displacement(acceleration: Samples, dt: float, initial: Initial | None = None) -> Samples:
-    """Ground displacement [m] at the samples, shape (npts,), of an acceleration [m/s²]; ``dt`` in s."""
+    """Return the ground displacement [m] at the samples, shape (npts,), of an acceleration [m/s²]; ``dt`` in s."""
     v = velocity(acceleration, dt, initial)
     increments = dt * v[:-1] + dt**2 / 6.0 * (2.0 * acceleration[:-1] + acceleration[1:])
     return (initial or _REST).displacement + np.concatenate(([0.0], np.cumsum(increments)))
@@ -32,7 +32,7 @@ def displacement(acceleration: Samples, dt: float, initial: Initial | None = Non
 def initial_of(
     acceleration: Samples, dt: float, velocities: Samples | None, displacements: Samples | None
 ) -> Initial | None:
-    """The state at the first sample, of a record whose file has velocities [m/s], and perhaps displacements [m], too.
+    """Return the state at the first sample, of a record whose file has velocities [m/s], and perhaps displacements [m], too.
 
     It is the mean, over the record, of what they differ by from the integral from rest: a file's first values are
     rounded, and accelerations that were thinned out after their integration drift from there. ``None`` where the
@@ -50,7 +50,7 @@ def initial_of(
 
 
 def state_at(acceleration: Samples, dt: float, initial: Initial, time: float) -> Initial:
-    """Velocity and displacement at ``time`` [s] after the first sample, before the last."""
+    """Return the velocity and displacement at ``time`` [s] after the first sample, before the last."""
     k = min(int(time / dt), len(acceleration) - 2)
     rest = time - k * dt
     v, d = (float(series(acceleration, dt, initial)[k]) for series in (velocity, displacement))
@@ -62,22 +62,22 @@ def state_at(acceleration: Samples, dt: float, initial: Initial, time: float) ->
 
 
 def pga(acceleration: Samples) -> float:
-    """Peak ground acceleration [m/s²]."""
+    """Return the peak ground acceleration [m/s²]."""
     return float(np.abs(acceleration).max())
 
 
 def pgv(acceleration: Samples, dt: float, initial: Initial | None = None) -> float:
-    """Peak ground velocity [m/s], at the samples."""
+    """Return the peak ground velocity [m/s], at the samples."""
     return float(np.abs(velocity(acceleration, dt, initial)).max())
 
 
 def pgd(acceleration: Samples, dt: float, initial: Initial | None = None) -> float:
-    """Peak ground displacement [m], at the samples."""
+    """Return the peak ground displacement [m], at the samples."""
     return float(np.abs(displacement(acceleration, dt, initial)).max())
 
 
 def runs_away(displacements: Samples) -> bool:
-    """Whether a displacement is little but a straight line from its first sample on, and so is not the ground's.
+    """Return whether a displacement is little but a straight line from its first sample on, and so is not the ground's.
 
     That is, a constant velocity takes its peak down to less than 1/2.5. A lasting displacement does not count as one.
     """
@@ -99,7 +99,7 @@ def arias_intensity(acceleration: Samples, dt: float, gravity: float = GRAVITY) 
 
 
 def significant_duration(acceleration: Samples, dt: float, start: float = 0.05, end: float = 0.95) -> float:
-    """Time [s] in which ∫a² dt grows from ``start`` to ``end`` of its final value; D5–95 (Trifunac & Brady 1975).
+    """Return the time [s] in which ∫a² dt grows from ``start`` to ``end`` of its final value; D5–95 (Trifunac & Brady 1975).
 
     Between samples the integral is taken to grow evenly. 0 for a record without any acceleration.
     """
@@ -128,7 +128,7 @@ def cumulative_absolute_velocity(acceleration: Samples, dt: float) -> float:
 
 
 def bracketed_duration(acceleration: Samples, dt: float, threshold: float) -> float:
-    """Time [s] from the first to the last exceedance of ``threshold`` [m/s²] by |a| (Bolt 1973); 0 without any."""
+    """Return the time [s] from the first to the last exceedance of ``threshold`` [m/s²] by |a| (Bolt 1973); 0 without any."""
     above = np.flatnonzero(np.abs(acceleration) > threshold)
     if len(above) == 0:
         return 0.0
@@ -147,7 +147,7 @@ def bracketed_duration(acceleration: Samples, dt: float, threshold: float) -> fl
 
 
 def uniform_duration(acceleration: Samples, dt: float, threshold: float) -> float:
-    """Time [s] during which |a| exceeds ``threshold`` [m/s²], all exceedances together (Bolt 1973)."""
+    """Return the time [s] during which |a| exceeds ``threshold`` [m/s²], all exceedances together (Bolt 1973)."""
 
     def above(a: Samples) -> float:
         least, largest = np.minimum(a[:-1], a[1:]), np.maximum(a[:-1], a[1:])

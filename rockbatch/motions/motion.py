@@ -262,7 +262,7 @@ class Motion(Shown):
 
     @property
     def files(self) -> str:
-        """Where its components came from."""
+        """Return where its components came from."""
         return ", ".join(source for source in (self.source, self.vertical_source) if source)
 
     @property
@@ -348,7 +348,7 @@ class Motion(Shown):
 
     @checked
     def times(self, factor: float, reverse: bool = False) -> "Motion":
-        """The motion with both components ``factor`` times as large, the horizontal one reversed if ``reverse``."""
+        """Return the motion with both components ``factor`` times as large, the horizontal one reversed if ``reverse``."""
         along = -factor if reverse else factor
         return replace(
             self,

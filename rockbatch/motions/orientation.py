@@ -1,4 +1,4 @@
-"""Which way a component points, from the many labels that agencies give it.
+"""Direction of a component, from the many labels that agencies give it.
 
 What no label tells stays unknown: a vertical component would otherwise be run as a horizontal one.
 """
@@ -7,6 +7,8 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import combinations
+
+from rockbatch.motions.grouping import grouped
 
 
 @dataclass(frozen=True)
@@ -21,7 +23,7 @@ class Orientation:
 
 
 def unknown(label: str = "") -> Orientation:
-    """Of a component whose ``label`` does not tell: neither horizontal nor vertical until somebody says so."""
+    """Return an orientation of which the ``label`` says nothing: neither horizontal nor vertical until somebody says so."""
     return Orientation(label, known=False)
 
 
@@ -62,7 +64,7 @@ _NOISE = re.compile(
 
 
 def orientation_of(label: str) -> Orientation | None:
-    """Orientation that ``label`` stands for: "UP", "DWN", "S62W", "21", "N-S", "HNZ"; ``None`` if none.
+    """Return the orientation that ``label`` stands for: "UP", "DWN", "S62W", "21", "N-S", "HNZ"; ``None`` if none.
 
     A number of one or two digits behind a word is none: "COMP 3" is the third component, not 3°.
     """
@@ -93,7 +95,7 @@ def orientation_of(label: str) -> Orientation | None:
 
 
 def orientation_in(label: str) -> Orientation:
-    """Orientation of a column, perhaps with its station in front: "Z", "CCC_HNZ"; unknown if it does not tell.
+    """Return the orientation of a column, perhaps with its station in front: "Z", "CCC_HNZ"; unknown if it does not tell.
 
     A bare number is an azimuth with three digits, or where it is one that nobody counts to.
     """
@@ -130,7 +132,7 @@ _PROCESSING = re.compile(
 
 
 def split_stem(stem: str) -> tuple[str, Orientation | None]:
-    """The station's part of a file's stem and the orientation at its end, before words such as "corrected".
+    """Return the station's part of a file's stem and the orientation at its end, before words such as "corrected".
 
     "RSN1063_NORTHR_RRS228" gives "RSN1063_NORTHR_RRS" and 228°, "ABBAR--V" gives "ABBAR" and vertical. Numbers count
     as azimuths only with three digits, and not where they are dates, times, stations or files counted from 001. Names
@@ -158,18 +160,18 @@ def split_stem(stem: str) -> tuple[str, Orientation | None]:
 
 
 def _channels(stem: str) -> list[Orientation]:
-    """Orientations of the channel codes anywhere in a name: "CCM.BHZ.00.D"."""
+    """Return orientations of the channel codes anywhere in a name: "CCM.BHZ.00.D"."""
     parts = [part for part in re.split(r"[-_. ]+", stem) if _CHANNEL_IN_NAME.fullmatch(part.upper())]
     return [found for part in parts if (found := orientation_of(part))]
 
 
 def _contradicted(found: Orientation, stem: str) -> bool:
-    """Whether a name has a vertical channel's code beside a horizontal direction."""
+    """Return whether a name has a vertical channel's code beside a horizontal direction."""
     return not found.vertical and any(channel.vertical for channel in _channels(stem))
 
 
 def _is_number(before: str, label: str, stem: str) -> bool:
-    """Whether the digits at the end of a name are no azimuth: a date or time, a station's number, or that of a file."""
+    """Return whether the digits at the end of a name are no azimuth: a date or time, a station's number, or that of a file."""
     if not label.isdigit():
         return False
     if _STATION.search(stem) or _CHANNELS.search(stem):
@@ -184,13 +186,9 @@ def _is_number(before: str, label: str, stem: str) -> bool:
 
 
 def counted(stems: Iterable[str]) -> set[str]:
-    """Stems that end in a number of a series: GM_010, GM_011 … are no azimuths, which are square to each other."""
-    numbered: dict[str, list[str]] = {}
-    for stem in stems:
-        if re.fullmatch(r".*\d{3}", stem):
-            numbered.setdefault(stem[:-3], []).append(stem)
+    """Return stems that end in a number of a series: GM_010, GM_011 … are no azimuths, which are square to each other."""
     found: set[str] = set()
-    for group in numbered.values():
+    for group in grouped((stem for stem in stems if re.fullmatch(r".*\d{3}", stem)), lambda stem: stem[:-3]).values():
         azimuths = {int(stem[-3:]) for stem in group}
         if any(0 < abs((a - b + 90) % 180 - 90) < 45 for a, b in combinations(azimuths, 2)):
             found.update(group)
@@ -220,5 +218,5 @@ def not_acceleration(channel: str) -> str:
 
 
 def is_clock(label: str) -> bool:
-    """Whether a channel's label is that of the recorder's clock, such as "INTC", or SEED's "LCQ": no ground motion."""
+    """Return whether a channel's label is that of the recorder's clock, such as "INTC", or SEED's "LCQ": no ground motion."""
     return _CLOCKS.fullmatch(re.sub(r"[^A-Z]", "", label.upper())) is not None

@@ -21,7 +21,7 @@ _CODE = 5  # letters that a word in capitals may have and be a code
 
 @dataclass(frozen=True)
 class Origin:
-    """Where a record comes from, in words, as far as its header says it; empty where it does not."""
+    """Event, station and direction of a record in words, as far as its header says it; empty where it does not."""
 
     event: str = ""  # name and year of the event, or its date: "Imperial Valley 1979"
     station: str = ""  # "Meloland"
@@ -53,12 +53,12 @@ UNKNOWN_ORIGIN = Origin()
 
 
 def origin_of(event: str = "", station: str = "", date: str = "") -> Origin:
-    """Of the words of a header: what it calls the event and the station, and the line that the event's date stands in."""
+    """Return the origin by the words of a header: of the event and the station, and the line with the event's date."""
     return Origin(_event(event[:_LONGEST], date[:_LONGEST]), _in_words(station[:_LONGEST]))
 
 
 def directed(origin: Origin, orientation: Orientation) -> Origin:
-    """With the direction of a component: its label, three digits of an azimuth, or nothing."""
+    """Return ``origin`` with the direction of a component: its label, three digits of an azimuth, or nothing."""
     label = re.sub(r"\s*deg(?:rees)?\.?$", "", orientation.label.strip(), flags=re.IGNORECASE)
     if label.isdecimal():
         label = f"{int(label):03d}"
@@ -68,7 +68,7 @@ def directed(origin: Origin, orientation: Orientation) -> Origin:
 
 
 def _event(text: str, date: str) -> str:
-    """The name of an event with its year, without what all headers say of all events; the date where it has no name."""
+    """Return the name of an event with its year, without what all headers say of all events; the date where it has no name."""
     year = _year(date) or _year(text)
     name = _CLOCK.sub("", _QUAKE.sub("", _RECORD_OF.sub("", " ".join(text.split())))).strip(" ,-")
     name = _in_words(_STATE.sub("", name))
@@ -80,7 +80,7 @@ def _event(text: str, date: str) -> str:
 
 
 def _year(text: str) -> str:
-    """The year of a date: four digits, or the last two of 10/15/79."""
+    """Return the year of a date: four digits, or the last two of 10/15/79."""
     if found := _YEAR.search(text):
         return found[0]
     short = _SHORT_YEAR.search(text)
@@ -92,7 +92,7 @@ TURKISH = str.maketrans("ÐÝÞðýþ", "ĞİŞğış")
 
 
 def _in_words(text: str) -> str:
-    """A text without capitals throughout: "El Centro - Hwy 8/Meloland Overpass"; a code stays: "LGPC", "NP.8040"."""
+    """Return a text without capitals throughout: "El Centro - Hwy 8/Meloland Overpass"; a code stays: "LGPC", "NP.8040"."""
     text = " ".join(unescape(text).split()).strip(" ,-")
     if not text.isupper() or (" " not in text and (len(text) <= _CODE or not text.isalpha())):
         return text

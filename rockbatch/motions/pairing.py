@@ -11,6 +11,7 @@ import numpy as np
 
 from rockbatch.motions.common_span import on_common_samples, overlap, too_unlike
 from rockbatch.motions.component import Component
+from rockbatch.motions.grouping import distinct, grouped
 from rockbatch.motions.measures import state_at
 from rockbatch.motions.motion import Finding, Motion, Unusable
 from rockbatch.motions.motion_set import MotionSet
@@ -18,7 +19,7 @@ from rockbatch.motions.orientation import same_azimuth
 from rockbatch.motions.origin import directed
 from rockbatch.motions.plausible import ANY, Judged, doubt, findings, fits
 from rockbatch.motions.stations import by_station, station_names
-from rockbatch.motions.turning import turn_pairs
+from rockbatch.motions.turning import turned_to
 from rockbatch.toml.kinds import shown
 from rockbatch.units import GRAVITY
 
@@ -48,24 +49,23 @@ def to_motions(
     required, and those that are grossly odd and whose name no pattern in ``confirmed`` fits (nor in ``confirmed_pga``,
     for their PGA), come back as unusable with the reason.
     """
-    asked = [
+    unusable = [
         Unusable(c.name, c.source, _question(c), c.orientation.label) for c in components if not c.orientation.known
     ]
-    components = [c for c in components if c.orientation.known]
-    kept, replaced = _without_doubles([c for c in components if not c.orientation.vertical], packaged)
-    stations = by_station([*components, *(c for c in kept if not c.folder)])
+    components = _with_packaged([c for c in components if c.orientation.known], packaged)
+    stations = by_station(components)
     number = {id(c): i for i, station in enumerate(stations) for c in station}
     known_as = station_names(stations)
     verticals = [[c for c in station if c.orientation.vertical] for station in stations]
-    unusable: list[Unusable] = []
-    horizontals = [(number[id(c)], c) for c in kept]
+    horizontals = [(number[id(c)], c) for c in components if not c.orientation.vertical]
     if azimuths:
-        horizontals, unusable = _turned(horizontals, azimuths)
+        horizontals, refused_ones = _turned(horizontals, azimuths)
+        unusable += refused_ones
 
     used: set[int] = set()
     motions: list[Motion] = []
     for station, component in horizontals:
-        notes = [*component.notes, *replaced.get(id(component), [])]
+        notes = [*component.notes]
         partner = None
         if vertical:
             together = [v for v in _candidates(component, station, verticals) if overlap(component, v)]
@@ -81,18 +81,18 @@ def to_motions(
         left = [v for group in verticals for v in group if id(v) not in used]
         unusable += [Unusable(v.name, v.source, f"{reason} ({v.station or v.site})") for v in left]
     peaks = [[(c, c.pga) for c in station if not c.orientation.vertical] for station in stations]
-    named = _distinct(motions, [c.folder for _, c in horizontals])
+    named = _named(motions, [c.folder for _, c in horizontals])
     judged = [
         Judged(motion, component, peaks[station], gravity)
         for motion, (station, component) in zip(named, horizontals, strict=True)
     ]
     patterns = {"confirm": confirmed, "confirm_pga": confirmed_pga}
     found = _believed(judged, patterns, required=vertical == "required")
-    return replace(found, unusable=sorted([*asked, *unusable, *found.unusable], key=lambda u: u.source))
+    return replace(found, unusable=sorted([*unusable, *found.unusable], key=lambda u: u.source))
 
 
 def _believed(judged: Iterable[Judged], patterns: Mapping[str, Sequence[str]], required: bool) -> MotionSet:
-    """Motions with what is odd about them in their notes; those that have to be confirmed, or to have a vertical that
+    """Return motions with what is odd about them in their notes; those that have to be confirmed, or to have a vertical that
     is ``required``, as unusable. ``patterns``: of the names that each key confirms."""
     motions: list[Motion] = []
     unusable: list[Unusable] = []
@@ -121,39 +121,37 @@ def _question(component: Component) -> str:
     )
 
 
-def _without_doubles(
-    files: Sequence[Component], packaged: Sequence[Component]
-) -> tuple[list[Component], dict[int, list[str]]]:
-    """Horizontals without those of the package that a file has too, and notes for these files."""
-    kept = list(files)
-    notes: dict[int, list[str]] = {}
+def _with_packaged(files: Sequence[Component], packaged: Sequence[Component]) -> list[Component]:
+    """Return components of files, and those of a package that no file has; files say in whose place they are used."""
+    components, added = list(files), []
     for component in packaged:
         azimuth = component.orientation.azimuth
         same = [
-            file for file in files if file.site == component.site and same_azimuth(file.orientation.azimuth, azimuth)
-        ]
-        if not same:
-            kept.append(component)
-        for file in same:
-            notes.setdefault(id(file), []).append(f"used instead of {component.name} of {component.source}")
-    return kept, notes
+            i for i, file in enumerate(components)
+            if file.site == component.site and same_azimuth(file.orientation.azimuth, azimuth)
+        ]  # fmt: skip
+        added += [] if same else [component]
+        for i in same:
+            note = f"used instead of {component.name} of {component.source}"
+            components[i] = replace(components[i], notes=(*components[i].notes, note))
+    return components + added
 
 
 def _turned(
     horizontals: Sequence[tuple[int, Component]], azimuths: Sequence[float]
 ) -> tuple[list[tuple[int, Component]], list[Unusable]]:
-    """Horizontals of files with the numbers of their stations, turned; a package's are as they were asked for."""
-    grouped: dict[int, list[Component]] = {}
-    for station, component in horizontals:
-        if component.folder:
-            grouped.setdefault(station, []).append(component)
-    turned, unusable = turn_pairs(grouped.values(), azimuths)
-    of_files = [(station, c) for station, group in zip(grouped, turned, strict=True) for c in group]
-    return of_files + [(station, c) for station, c in horizontals if not c.folder], unusable
+    """Return horizontals of files with the numbers of their stations, turned; a package's are as they were asked for."""
+    turned: list[tuple[int, Component]] = []
+    unusable: list[Unusable] = []
+    for station, group in grouped([pair for pair in horizontals if pair[1].folder], lambda pair: pair[0]).items():
+        along, refused = turned_to([component for _, component in group], azimuths)
+        turned += [(station, component) for component in along]
+        unusable += refused
+    return turned + [pair for pair in horizontals if not pair[1].folder], unusable
 
 
 def _candidates(horizontal: Component, station: int, verticals: Sequence[Sequence[Component]]) -> Sequence[Component]:
-    """Vertical components of the horizontal one's station; a package's takes those of the first folder with its RSN."""
+    """Return vertical components of the horizontal one's station; a package's takes those of the first folder with its RSN."""
     if horizontal.folder or not horizontal.site:
         return verticals[station]
     of_site = [v for group in verticals for v in group if v.site == horizontal.site]
@@ -162,7 +160,7 @@ def _candidates(horizontal: Component, station: int, verticals: Sequence[Sequenc
 
 
 def _partner(h: Component, together: Sequence[Component]) -> tuple[Component | None, list[tuple[Component, str]]]:
-    """Which of the vertical components of its station and time goes with a horizontal one; the others, and why not."""
+    """Return which of the vertical components of its station and time goes with a horizontal one; the others, and why not."""
     refused = [(v, why) for v in together if (why := too_unlike(h, v))]
     fitting = [v for v in together if not too_unlike(h, v)]
     if len(fitting) < 2:
@@ -173,7 +171,7 @@ def _partner(h: Component, together: Sequence[Component]) -> tuple[Component | N
 
 
 def _motion(h: Component, v: Component | None, notes: Iterable[str]) -> Motion:
-    """The motion of a horizontal component and its vertical one."""
+    """Return the motion of a horizontal component and its vertical one."""
     said = list(notes)
     dt, horizontal, vertical, initial = h.dt, h.acceleration, None, h.initial
     if v is not None:
@@ -209,25 +207,18 @@ def _motion(h: Component, v: Component | None, notes: Iterable[str]) -> Motion:
     )
 
 
-def _distinct(motions: list[Motion], folders: list[str]) -> list[Motion]:
-    """Motions of the same name get the suffix of their files, then their folder, then a number."""
+def _named(motions: Sequence[Motion], folders: Sequence[str]) -> list[Motion]:
+    """Return motions of which those of one name get the suffix of their files, then their folder, then a number."""
+    in_folder = Counter((folder, motion.name) for folder, motion in zip(folders, motions, strict=True))
 
     def with_suffix(i: int, name: str) -> str:
         first = motions[i].source.partition(" + ")[0]  # of a pair that was turned
         file = PurePosixPath(re.sub(r"(?i)(\.gz)?( \(.*\))?$", "", first))
-        return file.name + name[len(file.stem) :] if name.startswith(file.stem) else name
+        clashes = in_folder[folders[i], name] > 1 and name.startswith(file.stem)
+        return file.name + name[len(file.stem) :] if clashes else name
 
     def with_folder(i: int, name: str) -> str:
         return f"{folders[i].rsplit('/', 1)[-1]}/{name}" if folders[i] else name
 
-    names = [motion.name for motion in motions]
-    in_folder = Counter(zip(folders, names, strict=True))
-    names = [with_suffix(i, name) if in_folder[folders[i], name] > 1 else name for i, name in enumerate(names)]
-    count = Counter(names)
-    names = [with_folder(i, name) if count[name] > 1 else name for i, name in enumerate(names)]
-    seen: Counter[str] = Counter()
-    for i, name in enumerate(names):
-        seen[name] += 1
-        if seen[name] > 1:
-            names[i] = f"{name} ({seen[name]})"
+    names = distinct([motion.name for motion in motions], with_suffix, with_folder)
     return [replace(motion, name=name) for motion, name in zip(motions, names, strict=True)]

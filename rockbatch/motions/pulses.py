@@ -53,7 +53,7 @@ def pulse(
     nu: float | None = None,
     confirm: Collection[str] = (),
 ) -> Motion:
-    """A pulse, sampled: its formula at t_i = i·dt up to its end, then zeros up to ``duration``.
+    """Return a pulse, sampled: its formula at t_i = i·dt up to its end, then zeros up to ``duration``.
 
     Parameters
     ----------
@@ -136,7 +136,7 @@ def _problems(
     gamma: float | None,
     nu: float | None,
 ) -> list[str]:
-    """What is wrong about the values of a pulse, one sentence each."""
+    """Return what is wrong about the values of a pulse, one sentence each."""
     wrong = [
         f"{name} = {value:g}: must be a number above 0 [s]"
         for name, value in (("period", period), ("dt", dt), ("duration", duration))
@@ -169,7 +169,7 @@ def _problems(
 def _formula(
     shape: str, a: float, period: float, gamma: float | None, nu: float | None
 ) -> tuple[Callable[[Samples], Samples], float]:
-    """Acceleration [m/s²] as a function of time [s], and how long it lasts [s]."""
+    """Return the acceleration [m/s²] as a function of time [s], and how long it lasts [s]."""
     omega = 2.0 * math.pi / period
     if shape == "sine":
         return lambda t: a * np.sin(omega * t), period
@@ -199,7 +199,7 @@ def _mavroeidis_papageorgiou(cycles: Samples, gamma: float, nu: float) -> Sample
 
 
 def _peak(gamma: float, nu: float) -> float:
-    """Largest absolute value of the dimensionless pulse, to 1e-9: a grid, and a finer one at its peak."""
+    """Return the largest absolute value of the dimensionless pulse, to 1e-9: a grid, and a finer one at its peak."""
     cycles = np.linspace(0.0, gamma, math.ceil(2000 * gamma) + 1)
     i = int(np.abs(_mavroeidis_papageorgiou(cycles, gamma, nu)).argmax())
     fine = np.linspace(cycles[max(i - 1, 0)], cycles[min(i + 1, len(cycles) - 1)], 2001)

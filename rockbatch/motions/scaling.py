@@ -15,7 +15,7 @@ from rockbatch.motions.spectrum_target import SpectrumTarget
 
 @dataclass(frozen=True)
 class Target:
-    """What the horizontal component of every record is scaled to; the vertical one goes with it.
+    """Target that the horizontal component of every record is scaled to; the vertical one goes with it.
 
     Attributes
     ----------
@@ -42,7 +42,7 @@ class Target:
         return f"PGA = {self.pga_g:g} g" if self.pga_g is not None else f"PGV = {self.pgv_m_s:g} m/s"
 
     def factors_of(self, motions: Sequence[Motion], gravity: float) -> list[float]:
-        """What brings each of ``motions`` to the target; infinite for one without motion."""
+        """Return what brings each of ``motions`` to the target; infinite for one without motion."""
         return [self._factor(motion, gravity) for motion in motions]
 
     def _factor(self, motion: Motion, gravity: float) -> float:
@@ -65,7 +65,7 @@ MOST_FACTOR = 4.0
 def at_target(
     found: MotionSet, target: Target | SpectrumTarget, gravity: float, confirmed: Sequence[str] = ()
 ) -> MotionSet:
-    """All motions scaled to ``target``, with the factor noted; one without motion is unusable.
+    """Return all motions scaled to ``target``, with the factor noted; one without motion is unusable.
 
     So is one that takes more than :data:`MOST_FACTOR` to meet a spectrum, unless its name fits a pattern in ``confirmed``.
     """
@@ -79,7 +79,8 @@ def at_target(
         elif factor == 1.0:
             motions.append(motion)
         else:
-            motions.append(_scaled(motion, factor, f"scaled by {factor:.4g} to {target}"))
+            notes = (*motion.notes, f"scaled by {factor:.4g} to {target}")
+            motions.append(replace(motion.times(factor), factor=motion.factor * factor, notes=notes))
     return replace(found, motions=motions, unusable=[*found.unusable, *unusable])
 
 
@@ -90,7 +91,3 @@ def _too_weak(motion: Motion, factor: float, target: SpectrumTarget, gravity: fl
         f"{MOST_FACTOR:g} times a weak record is not what a strong one would be; choose others, or, if it is right, write "
         f'confirm = ["{motion.name}"] under [motions] in the study'
     )
-
-
-def _scaled(motion: Motion, factor: float, note: str) -> Motion:
-    return replace(motion.times(factor), factor=motion.factor * factor, notes=(*motion.notes, note))

@@ -1,6 +1,7 @@
-"""Which records of a suite are used: by PGA, PGV, length, significant duration and magnitude."""
+"""Selection of the records of a suite by PGA, PGV, length, significant duration and magnitude."""
 
-from dataclasses import dataclass, fields, replace
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 from rockbatch.motions import measures
 from rockbatch.motions.motion import LeftOut, Motion, Unusable
@@ -25,34 +26,34 @@ class Selection:
     magnitude: Range | None = None
 
 
+_MEASURES: dict[str, Callable[[Motion, float], float | None]] = {
+    "pga_g": lambda m, gravity: m.pga / gravity,
+    "pgv_m_s": lambda m, _: measures.pgv(m.horizontal, m.dt, m.initial),
+    "duration_s": lambda m, _: m.duration,
+    "d5_95_s": lambda m, _: measures.significant_duration(m.horizontal, m.dt),
+    "magnitude": lambda m, _: m.magnitude,
+}
+
+
 def selected(found: MotionSet, selection: Selection, gravity: float) -> MotionSet:
-    """The motions within ``selection``; others are left out, and those of unknown magnitude unusable, if it counts."""
+    """Return the motions within ``selection``; others are left out, and those of unknown magnitude unusable, if it counts."""
     kept: list[Motion] = []
     unusable: list[Unusable] = []
     left_out: list[LeftOut] = []
+    ranges = {key: limits for key in _MEASURES if (limits := getattr(selection, key)) is not None}
     for motion in found.motions:
-        if selection.magnitude is not None and motion.magnitude is None:
+        if "magnitude" in ranges and motion.magnitude is None:
             reason = "selected by magnitude, which is not known; write magnitude in motions.toml"
             unusable.append(Unusable(motion.name, motion.files, reason))
-        elif outside := _outside(motion, selection, gravity):
+            continue
+        values = {key: _MEASURES[key](motion, gravity) for key in ranges}
+        outside = [
+            f"{key} = {value:.4g} is not within {ranges[key][0]:g}..{ranges[key][1]:g}"
+            for key, value in values.items()
+            if value is not None and not ranges[key][0] <= value <= ranges[key][1]
+        ]
+        if outside:
             left_out.append(LeftOut(motion.name, motion.files, f"not selected: {', '.join(outside)}"))
         else:
             kept.append(motion)
     return replace(found, motions=kept, unusable=[*found.unusable, *unusable], left_out=[*found.left_out, *left_out])
-
-
-def _outside(motion: Motion, selection: Selection, gravity: float) -> list[str]:
-    """Measures that lie outside their range, in words."""
-    values = {
-        "pga_g": motion.pga / gravity,
-        "pgv_m_s": measures.pgv(motion.horizontal, motion.dt, motion.initial) if selection.pgv_m_s else None,
-        "duration_s": motion.duration,
-        "d5_95_s": measures.significant_duration(motion.horizontal, motion.dt) if selection.d5_95_s else None,
-        "magnitude": motion.magnitude,
-    }
-    outside = []
-    for key in fields(selection):
-        limits, value = getattr(selection, key.name), values[key.name]
-        if limits is not None and value is not None and not limits[0] <= value <= limits[1]:
-            outside.append(f"{key.name} = {value:.4g} is not within {limits[0]:g}..{limits[1]:g}")
-    return outside

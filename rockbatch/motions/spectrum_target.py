@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from rockbatch.errors import InputError
 from rockbatch.motions.design_spectra import Spectrum
+from rockbatch.motions.grouping import grouped
 from rockbatch.motions.motion import Motion
 from rockbatch.motions.spectrum import spectral_acceleration
 
@@ -74,7 +75,7 @@ class SpectrumTarget:
 
     @property
     def share(self) -> float:
-        """What the mean is to reach of the target, everywhere in the range."""
+        """Return what the mean is to reach of the target, everywhere in the range."""
         return PAIRS[self.pairs] if self.at_least is None else self.at_least
 
     def __str__(self) -> str:
@@ -88,7 +89,7 @@ class SpectrumTarget:
         return np.geomspace(low, high, 1 + max(1, math.ceil(_A_DECADE * math.log10(high / low))))
 
     def factors_of(self, motions: Sequence[Motion], gravity: float) -> list[float]:
-        """What each motion is to be multiplied by; infinite for one without motion."""
+        """Return what each motion is to be multiplied by; infinite for one without motion."""
         if self.factors == "none" or not motions:
             return [1.0] * len(motions)
         spectra = self._spectra(motions, gravity)
@@ -107,17 +108,17 @@ class SpectrumTarget:
         return [float(factor) for factor in factors]
 
     def mean(self, spectra: Array, motions: Sequence[Motion]) -> Array:
-        """The mean, shape (periods,), of the ``spectra`` of ``motions``, shape (motions, periods)."""
+        """Return the mean, shape (periods,), of the ``spectra`` of ``motions``, shape (motions, periods)."""
         return np.asarray(self._combined(spectra, _stations(motions)).mean(axis=0))
 
     def _combined(self, spectra: Array, stations: Sequence[Sequence[int]]) -> Array:
-        """A row for each component of the stations, or for each station."""
+        """Return a row for each component of the stations, or for each station."""
         if self.pairs == "apart":
             return spectra[[i for station in stations for i in station]]
         return np.array([np.sqrt((spectra[list(station)] ** 2).sum(axis=0)) for station in stations])
 
     def described(self, motions: Sequence[Motion], gravity: float) -> dict[str, Any]:
-        """What run.json says of it: the target, and the mean of the spectra of ``motions`` as they are used."""
+        """Return what run.json says of it: the target, and the mean of the spectra of ``motions`` as they are used."""
         mean = self.mean(self._spectra(motions, gravity), motions) if motions else self.periods * math.nan
         return {
             "spectrum": str(self.spectrum),
@@ -133,18 +134,15 @@ class SpectrumTarget:
         }
 
     def _spectra(self, motions: Sequence[Motion], gravity: float) -> Array:
-        """Spectral accelerations [g], shape (motions, periods)."""
+        """Return spectral accelerations [g], shape (motions, periods)."""
         periods, damping = self.periods, self.spectrum.damping
         return np.array([spectral_acceleration(m.horizontal, m.dt, periods, damping) / gravity for m in motions])
 
 
 def _stations(motions: Sequence[Motion], among: npt.NDArray[np.bool_] | None = None) -> list[list[int]]:
-    """Places of the motions, ``among`` some of them, that are components of one station in one earthquake."""
-    places: dict[str, list[int]] = {}
-    for i, motion in enumerate(motions):
-        if among is None or among[i]:
-            places.setdefault(motion.of_station, []).append(i)
-    return list(places.values())
+    """Return places of the motions, ``among`` some of them, that are components of one station in one earthquake."""
+    places = [i for i in range(len(motions)) if among is None or among[i]]
+    return list(grouped(places, lambda i: motions[i].of_station).values())
 
 
 def _short(values: Array) -> list[float]:

@@ -1,4 +1,4 @@
-"""Which components are of one station and recording, and which of these count as one record.
+"""Components of one station and recording, and those that count as one record.
 
 :func:`by_station` finds a vertical for a horizontal within a folder. :func:`station_names` is about records: files in
 several folders or formats, the parts of a long recording, and scaled copies are one record. What says nothing of its event
@@ -15,18 +15,19 @@ import numpy as np
 
 from rockbatch.motions.common_span import overlap
 from rockbatch.motions.component import Component, file_of
+from rockbatch.motions.grouping import distinct, grouped
 
 _NUMBERED = re.compile(r"RSN\d+")
 _SAME_SHAPE = 1e-4  # of the peak: what printing a scaled copy may cost a sample
 
 
 def is_numbered(site: str) -> bool:
-    """Whether a site is PEER's number of a record, which no other record has."""
+    """Return whether a site is PEER's number of a record, which no other record has."""
     return _NUMBERED.fullmatch(site) is not None
 
 
 def in_one_event(a: Component, b: Component) -> bool:
-    """Whether two components of one sensor or station are of one event: by their times, or by what they say of it."""
+    """Return whether two components of one sensor or station are of one event: by their times, or by what they say of it."""
     return overlap(a, b) if a.dated and b.dated else bool(a.event) and a.event == b.event
 
 
@@ -37,9 +38,7 @@ def by_station(components: Iterable[Component]) -> list[list[Component]]:
     of which one has no header that tells its station. Several files of one station that each hold a vertical and a
     horizontal, such as the parts of a long recording, are as many sets.
     """
-    by_header: dict[tuple[str, str | int], list[Component]] = {}
-    for component in components:
-        by_header.setdefault((component.folder, component.station or id(component)), []).append(component)
+    by_header = grouped(components, lambda c: (c.folder, c.station or id(c)))
     stations: list[list[Component]] = []
     known: dict[tuple[str, str, bool], list[Component]] = {}
     for group in (part for whole in by_header.values() for record in _by_time(whole) for part in _by_file(record)):
@@ -65,16 +64,13 @@ def _by_time(group: list[Component]) -> list[list[Component]]:
     Where times and events are not known, a direction that comes again is that of another recording: then each file, or
     each name of a station, is one.
     """
-    records: dict[object, list[Component]] = {}
     if not all(component.dated for component in group):
         ways = {(c.orientation.vertical, c.orientation.azimuth, c.orientation.label) for c in group}
         if all(component.event for component in group) or len(ways) == len(group):
             return [group]
         files = Counter(file_of(component.source) for component in group)
-        for component in group:
-            file = file_of(component.source)
-            records.setdefault((file, "") if files[file] > 1 else ("", component.site), []).append(component)
-        return list(records.values())
+        return list(grouped(group, lambda c: (f, "") if files[f := file_of(c.source)] > 1 else ("", c.site)).values())
+    records: dict[int, list[Component]] = {}
     end, place = -math.inf, {id(component): i for i, component in enumerate(group)}
     for component in sorted(group, key=lambda component: component.start or 0.0):
         start = component.start or 0.0
@@ -86,9 +82,7 @@ def _by_time(group: list[Component]) -> list[list[Component]]:
 
 def _by_file(record: list[Component]) -> Iterator[list[Component]]:
     """Return one set for each file that holds a whole one, where several do, and one of the rest; else all together."""
-    files: dict[str, list[Component]] = {}
-    for component in record:
-        files.setdefault(file_of(component.source), []).append(component)
+    files = grouped(record, lambda c: file_of(c.source))
     whole = [components for components in files.values() if _is_whole(components)]
     if len(whole) < 2:
         yield record
@@ -100,14 +94,14 @@ def _by_file(record: list[Component]) -> Iterator[list[Component]]:
 
 
 def _may_join(station: Sequence[Component], group: Sequence[Component]) -> bool:
-    """Whether two sets of one name may be one: not if both are whole, nor if they share no time."""
+    """Return whether two sets of one name may be one: not if both are whole, nor if they share no time."""
     if _is_whole(station) and _is_whole(group):
         return False
     return any(overlap(one, other) for one in station for other in group)
 
 
 def _is_whole(station: Sequence[Component]) -> bool:
-    """Whether there are both a vertical and a horizontal component."""
+    """Return whether there are both a vertical and a horizontal component."""
     return len({component.orientation.vertical for component in station}) == 2
 
 
@@ -134,9 +128,15 @@ def station_names(stations: Sequence[Sequence[Component]]) -> list[str]:
             low, high = sorted((first_of(i), first_of(j)))
             if low != high and (_together(a, b) or _copies(a, b)):
                 root[high] = low
-    firsts = dict.fromkeys(first_of(i) for i in range(len(stations)))
-    names = dict(zip(firsts, _distinct([stations[i] for i in firsts]), strict=True))
-    return [names[first_of(i)] for i in range(len(stations))]
+    records = list(dict.fromkeys(map(first_of, root)))
+    firsts = [stations[i][0] for i in records]
+    names = distinct(
+        [c.site if is_numbered(c.site) else c.seat.station.strip() or c.site or c.station or c.name for c in firsts],
+        lambda i, name: f"{name} {firsts[i].event}".strip(),
+        lambda i, name: f"{name} {firsts[i].folder.rsplit('/', 1)[-1]}".strip(),
+    )
+    name_of = dict(zip(records, names, strict=True))
+    return [name_of[first_of(i)] for i in range(len(stations))]
 
 
 def _keys(component: Component) -> Iterator[Hashable]:
@@ -151,7 +151,7 @@ def _keys(component: Component) -> Iterator[Hashable]:
 
 
 def _together(a: Component, b: Component) -> bool:
-    """Whether headers, or PEER's numbers, say that both are of one station in one earthquake; sensor and stage do not matter."""
+    """Return whether headers, or PEER's numbers, say that both are of one station and earthquake, whatever sensor and stage."""
     if is_numbered(a.site) and is_numbered(b.site):
         return a.site == b.site
     if a.station and (a.folder, a.station) == (b.folder, b.station):
@@ -163,7 +163,7 @@ def _together(a: Component, b: Component) -> bool:
 
 
 def _copies(a: Component, b: Component) -> bool:
-    """Whether the samples of both are the same but for a factor."""
+    """Return whether the samples of both are the same but for a factor."""
     one, two = a.acceleration, b.acceleration
     if len(one) != len(two) or abs(a.dt - b.dt) > 1e-6 * a.dt:
         return False
@@ -171,26 +171,3 @@ def _copies(a: Component, b: Component) -> bool:
     if one[i] == 0 or two[i] == 0:
         return False
     return bool(np.abs(one / one[i] - two / two[i]).max() <= _SAME_SHAPE)
-
-
-def _distinct(records: Sequence[Sequence[Component]]) -> list[str]:
-    """Return a name for each record: that of its station, and of several of one station what tells them apart."""
-    names = [_name(record[0]) for record in records]
-    for more in (lambda c: c.event, lambda c: c.folder.rsplit("/", 1)[-1]):
-        count = Counter(names)
-        names = [
-            f"{name} {more(record[0])}".strip() if count[name] > 1 else name
-            for name, record in zip(names, records, strict=True)
-        ]
-    seen: Counter[str] = Counter()
-    for i, name in enumerate(names):
-        seen[name] += 1
-        if seen[name] > 1:
-            names[i] = f"{name} ({seen[name]})"
-    return names
-
-
-def _name(component: Component) -> str:
-    if is_numbered(component.site):
-        return component.site
-    return component.seat.station.strip() or component.site or component.station or component.name

@@ -9,14 +9,14 @@ T = TypeVar("T")
 
 
 def with_legible_texts(found: T) -> T:
-    """A dataclass with every text in it ``legible``, also those of tuples and of dataclasses within."""
+    """Return a dataclass with every text in it ``legible``, also those of tuples and of dataclasses within."""
     values = {field.name: getattr(found, field.name) for field in fields(cast(Any, found))}
     changed = {name: new for name, value in values.items() if (new := _legible(value)) is not value}
     return cast(T, replace(cast(Any, found), **changed)) if changed else found
 
 
 def _legible(value: Any) -> Any:
-    """The value itself where nothing in it had to be changed."""
+    """Return the value itself where nothing in it had to be changed."""
     if isinstance(value, str):
         shown = legible(value)
         return value if shown == value else shown

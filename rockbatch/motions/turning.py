@@ -5,7 +5,7 @@ a₁ cos(φ − φ₁) + a₂ cos(φ − φ₂), whichever of the two lies to th
 """
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 from rockbatch.motions.common_span import Common, on_common_samples, overlap, too_unlike
@@ -18,41 +18,34 @@ _SQUARE = 1.0  # degree: what two components may lack of a right angle, as agenc
 
 
 def resolved(first: Samples, azimuth1: float, second: Samples, azimuth2: float, azimuth: float) -> Samples:
-    """Acceleration along ``azimuth`` [degrees] of two components square to each other, shape (npts,)."""
+    """Return the acceleration along ``azimuth`` [degrees] of two components square to each other, shape (npts,)."""
     return first * math.cos(math.radians(azimuth - azimuth1)) + second * math.cos(math.radians(azimuth - azimuth2))
 
 
 def every(step: float) -> tuple[float, ...]:
-    """Azimuths 0, step, 2 step … below 180°: half a turn reverses a component, which is what a polarity is for."""
+    """Return azimuths 0, step, 2 step … below 180°: half a turn reverses a component, which is what a polarity is for."""
     return tuple(i * step for i in range(math.ceil(180.0 / step - 1e-9)))
 
 
-def turn_pairs(
-    stations: Iterable[Sequence[Component]], azimuths: Sequence[float]
-) -> tuple[list[list[Component]], list[Unusable]]:
-    """Horizontal components along ``azimuths`` [degrees] in place of those of each station, and what cannot be turned.
+def turned_to(horizontals: Sequence[Component], azimuths: Sequence[float]) -> tuple[list[Component], list[Unusable]]:
+    """Return components along ``azimuths`` [degrees] in place of the horizontals of a station, and what cannot be turned.
 
-    Each station's components are its horizontal ones. Two that are square to each other are turned; a single one goes
-    on as it is where it points along the only azimuth asked for.
+    Two that are square to each other are turned; a single one goes on as it is if it points along the only azimuth asked for.
     """
-    turned: list[list[Component]] = []
-    unusable: list[Unusable] = []
-    for horizontals in stations:
-        why = _obstacle(horizontals)
-        if not why:
-            turned.append([_turned(horizontals[0], horizontals[1], azimuth) for azimuth in azimuths])
-            continue
-        turned.append([])
-        for component in horizontals:
-            if len(azimuths) == 1 and same_azimuth(component.orientation.azimuth, azimuths[0]):
-                turned[-1].append(component)
-            else:
-                unusable.append(Unusable(component.name, component.source, f"cannot be turned: {why}"))
-    return turned, unusable
+    why = _obstacle(horizontals)
+    if not why:
+        return [_turned(horizontals[0], horizontals[1], azimuth) for azimuth in azimuths], []
+    stay = [len(azimuths) == 1 and same_azimuth(c.orientation.azimuth, azimuths[0]) for c in horizontals]
+    refused = [
+        Unusable(c.name, c.source, f"cannot be turned: {why}")
+        for c, is_so in zip(horizontals, stay, strict=True)
+        if not is_so
+    ]
+    return [c for c, is_so in zip(horizontals, stay, strict=True) if is_so], refused
 
 
 def _obstacle(horizontals: Sequence[Component]) -> str:
-    """Why these components of one station are no pair that can be turned; empty where they are."""
+    """Return why these components of one station are no pair that can be turned; empty where they are."""
     for component in horizontals:
         if component.orientation.azimuth is None:
             return f"the azimuth of {component.name} is not known; write it in motions.toml"
@@ -76,17 +69,15 @@ def _azimuth(component: Component) -> float:
 
 def _initial(first: Component, second: Component, common: Common, azimuth: float) -> Initial | None:
     """State along ``azimuth`` at the first common sample; ``None`` where one of the two is not known."""
-    states = [
-        part.initial
-        and state_at(part.acceleration, part.dt, part.initial, begin).times(
-            math.cos(math.radians(azimuth - _azimuth(part)))
-        )
-        for part, begin in zip((first, second), common.begins, strict=True)
-    ]
-    known = [state for state in states if state is not None]
-    if len(known) < 2:
+    if first.initial is None or second.initial is None:
         return None
-    return Initial(sum(state.velocity for state in known), sum(state.displacement for state in known))
+    velocity = displacement = 0.0
+    for part, begin in zip((first, second), common.begins, strict=True):
+        assert part.initial is not None
+        state = state_at(part.acceleration, part.dt, part.initial, begin)
+        share = math.cos(math.radians(azimuth - _azimuth(part)))
+        velocity, displacement = velocity + state.velocity * share, displacement + state.displacement * share
+    return Initial(velocity, displacement)
 
 
 def _turned(first: Component, second: Component, azimuth: float) -> Component:

@@ -1,4 +1,4 @@
-"""Which records are pulse-like: the wavelet criterion of Baker (2007) for one horizontal component.
+"""Pulse-like records: the wavelet criterion of Baker (2007) for one horizontal component.
 
 Baker, J. W. (2007). Quantitative classification of near-fault ground motions using wavelet analysis. BSSA 97(5), 1486–1501.
 The largest coefficient of the continuous transform of the ground velocity with the Daubechies wavelet of order 4 gives
@@ -39,7 +39,7 @@ Array = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class VelocityPulse:
-    """What the criterion says of a record."""
+    """Result of the criterion for a record."""
 
     indicator: float  # PI, 0..1
     period_s: float  # of the pulse [s]; NaN for a record without motion
@@ -57,13 +57,13 @@ class VelocityPulse:
 
 
 def pulse_of(motion: Motion) -> VelocityPulse:
-    """The pulse in the horizontal component of a motion as it was recorded, before it was brought to a target."""
+    """Return the pulse in the horizontal component of a motion as it was recorded, before it was brought to a target."""
     recorded = velocity(motion.horizontal, motion.dt, motion.initial) / motion.factor
     return velocity_pulse(recorded, motion.dt)
 
 
 def velocity_pulse(v: Samples, dt: float) -> VelocityPulse:
-    """The pulse in a ground velocity.
+    """Return the pulse in a ground velocity.
 
     Parameters
     ----------
@@ -97,7 +97,7 @@ def _largest(v: Samples, dt: float) -> tuple[float, int]:
 
 
 def _extracted(v: Samples, scale: float, place: int) -> Array:
-    """The pulse: ten wavelets of one scale near ``place``."""
+    """Return the pulse: ten wavelets of one scale near ``place``."""
     near = math.ceil(_NEAR * scale)
     window = slice(max(place - near, 0), place + near + 1)
     wavelet = _wavelet(scale)
@@ -127,20 +127,20 @@ class _Transform:
         return np.roll(np.fft.irfft(product, self.padded), len(wavelet) // 2)[: self.length]
 
     def largest(self, scale: float) -> tuple[float, int]:
-        """The largest of them, without its sign, and where it is."""
+        """Return the largest of them, without its sign, and where it is."""
         coefficients = np.abs(self.at(scale))
         place = int(np.argmax(coefficients))
         return float(coefficients[place]), place
 
 
 def _reaches(v: Samples, share: float) -> int:
-    """The first sample at which ∫v² dt has grown to a share of its final value."""
+    """Return the first sample at which ∫v² dt has grown to a share of its final value."""
     energy = np.cumsum(v * v)
     return int(np.searchsorted(energy, share * energy[-1]))
 
 
 def _wavelet(scale: float) -> Array:
-    """The wavelet of a scale [samples] at an odd number of samples, in the middle of which its support has its own."""
+    """Return the wavelet of a scale [samples] at an odd number of samples, in the middle of which its support has its own."""
     half = math.ceil(0.5 * _SUPPORT * scale)
     x, psi = _daubechies()
     places = np.arange(-half, half + 1) / scale + 0.5 * _SUPPORT
@@ -149,7 +149,7 @@ def _wavelet(scale: float) -> Array:
 
 @cache
 def _daubechies() -> tuple[Array, Array]:
-    """The Daubechies wavelet of order 4, ∫ψ² dx = 1, tabulated on its support 0..7.
+    """Return the Daubechies wavelet of order 4, ∫ψ² dx = 1, tabulated on its support 0..7.
 
     The scaling function φ(x) = √2 Σ h_k φ(2x − k) is known at the whole numbers as an eigenvector, and with every use of that
     equation on a grid of half the step; then ψ(x) = √2 Σ (−1)^k h_{7−k} φ(2x − k) (Daubechies 1992, 5.1 and 6.5).

@@ -113,7 +113,7 @@ def test_a_bound_ends_the_thread_that_it_is_in_and_leaves_nothing_behind():
 
     def reader() -> None:
         try:
-            with bounded.Watch() as watch, watch.bounded(0):
+            with bounded.watch() as limit, limit(0):
                 while True:
                     pass
         except TooLongError:
@@ -125,7 +125,7 @@ def test_a_bound_ends_the_thread_that_it_is_in_and_leaves_nothing_behind():
         thread.start()
         thread.join(20)
         assert ended == [True]
-        with bounded.Watch() as watch, watch.bounded(0):
+        with bounded.watch() as limit, limit(0):
             pass
         time.sleep(0.5)  # nothing comes after its end
     assert not [each for each in threading.enumerate() if each.name == "rockbatch-bounded"]

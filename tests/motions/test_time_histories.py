@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 from motion_files import RECORDS, needs_records, wiggle, write_at2
 
-from rockbatch.motions import Motion, ReadOptions, fema_p695, read_motions, zero_line
+from rockbatch.motions import Motion, ReadOptions, fema_p695, read_motions
+from rockbatch.motions.component import Component
+from rockbatch.motions.plausible import FARTHEST_MEAN, Judged, no_zero_line
 
 T = np.arange(80) * 0.05
 SPECTRUM = np.where(T < 0.1, 0.4 + 6 * T, np.where(T < 0.5, 1.0, 0.5 / np.maximum(T, 0.5)))  # a code's, in g
@@ -133,15 +135,15 @@ def test_an_instruments_offset_that_its_format_leaves_in_the_data_is_taken_off_b
     from agency_files import knet_text
 
     text, counts = knet_text("E-W")
-    assert abs(counts.mean()) > zero_line.FARTHEST_MEAN * np.abs(counts).max()
+    assert abs(counts.mean()) > FARTHEST_MEAN * np.abs(counts).max()
     (tmp_path / "TST.EW").write_text(text)
     assert len(read_motions(tmp_path).motions) == 1
 
 
 def test_few_samples_and_silence_tell_nothing():
     for samples in (np.array([0.1, 0.2, 0.3]), np.zeros(100)):
-        motion = Motion("m", 0.01, samples)
-        assert zero_line.never_changes_sign(motion) == zero_line.mean_far_from_zero(motion) == ""
+        motion, component = Motion("m", 0.01, samples), Component("m", 0.01, samples)
+        assert no_zero_line(Judged(motion, component, (), 9.81)) is None
 
 
 @needs_records
@@ -157,8 +159,8 @@ def test_every_real_record_swings_about_zero_by_a_wide_margin():
         for samples in (motion.horizontal, motion.vertical)
         if samples is not None
     ]
-    assert max(shares) < zero_line.FARTHEST_MEAN / 100
-    assert not any(zero_line.never_changes_sign(motion) for motion in motions)
+    assert max(shares) < FARTHEST_MEAN / 100
+    assert not any(finding.what == "zero line" for motion in motions for finding in motion.findings)
 
 
 def test_motions_made_in_python_are_nobodys_business(tmp_path):
