@@ -111,7 +111,7 @@ def _numbers(line: str, between: str, decimal: str) -> list[float] | None:
         line = line.replace(between, " ")
     if decimal:
         line = line.replace(decimal, ".")
-    if _TOUCHING.fullmatch(line):
+    if _SIGN.search(line) and _TOUCHING.fullmatch(line):  # few lines get to the second, which is slower
         line = _SIGN.sub(r" \g<0>", line)
     try:
         return [float(token) for token in line.split()]
