@@ -4,7 +4,8 @@ import csv
 import json
 import math
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -70,9 +71,12 @@ def read_saved(directory: Path) -> Saved:
             f"{directory}: a file, not a folder of results; write the folder, such as {Path('reports') / directory.stem}"
         )
     problems: list[str] = []
-    info = _read_info(directory / INFO, problems)
-    peaks = _read_peaks(directory / PEAKS, [] if problems else info["varied"], problems)
-    if problems or peaks is None:
+    info: dict[str, Any] = {}
+    with _noting(problems):
+        info = _read_info(directory / INFO)
+    with _noting(problems):
+        peaks = _read_peaks(directory / PEAKS, info.get("varied", []))
+    if problems:
         raise InputError(*problems)
     if unknown := {name for case in info["cases"] for name in case["columns"]} - set(info["varied"]):
         raise InputError(
@@ -105,25 +109,40 @@ def edited(directory: Path, info: Mapping[str, Any]) -> str:
     return f"not as `rockbatch run` wrote it, with {noted['rows']} rows: it was edited, or is damaged"
 
 
-def _read_info(path: Path, problems: list[str]) -> dict[str, Any]:
+@contextmanager
+def _noting(problems: list[str]) -> Iterator[None]:
+    """Add the problems of an ``InputError`` to those of the other file."""
     try:
-        info = _legible(json.loads(read_text(path)))
-    except FileNotFoundError:
-        problems.append(f"{path}: not there; give a folder that `rockbatch run` has written")
-        return {}
+        yield
     except InputError as error:
         problems += error.problems
-        return {}
-    except (ValueError, RecursionError) as error:
-        line = getattr(error, "lineno", 1)
-        problems.append(f"{path}:{line}: not JSON ({error}); start `rockbatch run` again")
-        return {}
+
+
+@contextmanager
+def _again(path: Path, line: str, kind: str, *damages: type[Exception]) -> Iterator[None]:
+    """Raise ``InputError`` for a file that is missing, or damaged so that it is no ``kind``."""
+    try:
+        yield
+    except FileNotFoundError:
+        raise InputError(f"{path}: not there; give a folder that `rockbatch run` has written") from None
+    except InputError:
+        raise
+    except damages as error:
+        line = f":{error.lineno}" if isinstance(error, json.JSONDecodeError) else line
+        raise InputError(f"{path}{line}: not {kind} ({error}); start `rockbatch run` again") from None
+
+
+def _read_info(path: Path) -> dict[str, Any]:
+    with _again(path, ":1", "JSON", ValueError, RecursionError):
+        info: Any = _legible(json.loads(read_text(path)))
     misfits = list(unfit(info, SHAPE, MOST_PROBLEMS))
     missing = [problem.place for problem in misfits if problem.missing and problem.place in SHAPE]
+    problems = [f"{path}: {misfit}; start `rockbatch run` again" for misfit in misfits if misfit.place not in missing]
     if missing:
-        problems.append(f"{path}: has no {', '.join(missing)}; start `rockbatch run` again with this version")
-    problems += [f"{path}: {one}; start `rockbatch run` again" for one in misfits if one.place not in missing]
-    return info if isinstance(info, dict) else {}
+        problems.insert(0, f"{path}: has no {', '.join(missing)}; start `rockbatch run` again with this version")
+    if problems:
+        raise InputError(*problems)
+    return dict(info)
 
 
 def _legible(value: Any) -> Any:
@@ -135,27 +154,14 @@ def _legible(value: Any) -> Any:
     return {_legible(key): _legible(item) for key, item in value.items()} if isinstance(value, dict) else value
 
 
-def _read_peaks(path: Path, varied: Sequence[str], problems: list[str]) -> "pd.DataFrame | None":
-    try:
-        with opened_text(path) as file:
-            head = next(csv.reader(file), [])
-    except FileNotFoundError:
-        problems.append(f"{path}: not there; give a folder that `rockbatch run` has written")
-        return None
-    except InputError as error:
-        problems += error.problems
-        return None
-    except (UnicodeDecodeError, csv.Error) as error:
-        problems.append(f"{path}:1: not a table ({error}); start `rockbatch run` again")
-        return None
-    missing = [name for name in (*names(STAYING), *varied) if name not in head]
-    if missing:
-        problems.append(f"{path}:1: has no column {', '.join(missing)}; start `rockbatch run` again")
-        return None
+def _read_peaks(path: Path, varied: Sequence[str]) -> "pd.DataFrame":
+    with _again(path, ":1", "a table", UnicodeDecodeError, csv.Error), opened_text(path) as file:
+        head = next(csv.reader(file), [])
+    if missing := [name for name in (*names(STAYING), *varied) if name not in head]:
+        raise InputError(f"{path}:1: has no column {', '.join(missing)}; start `rockbatch run` again")
     if len(set(head)) < len(head) or "" in head:
         which = "without a name" if "" in head else "twice"
-        problems.append(f"{path}:1: has a column {which}; start `rockbatch run` again")
-        return None
+        raise InputError(f"{path}:1: has a column {which}; start `rockbatch run` again")
     texts = [name for name in head if name in TEXTS or name in varied or name == "vertical"]
     numbers = [name for name in head if name not in texts]
     try:
@@ -175,11 +181,9 @@ def _read_peaks(path: Path, varied: Sequence[str], problems: list[str]) -> "pd.D
         sound = sound and not (table["scale"].isna() & (table["case"] != "")).any()
     except (ValueError, TypeError, pd.errors.ParserWarning) as error:
         bad = _bad_cells(path, head, numbers)
-        problems += bad or [f"{path}: not a table ({error}); start `rockbatch run` again"]
-        return None
+        raise InputError(*(bad or [f"{path}: not a table ({error}); start `rockbatch run` again"])) from None
     if not sound:
-        problems += _bad_cells(path, head, numbers)
-        return None
+        raise InputError(*_bad_cells(path, head, numbers))
     for name in texts:
         meant = {cell: legible(csv_plain(cell), keep="\t\r\n") for cell in table[name].unique()}
         if any(cell != text for cell, text in meant.items()):
