@@ -119,7 +119,7 @@ def references(
     clock = clock or Clock()
     runs = Plan(study, motions)
     chosen = spread(runs, most)
-    listener.say(f"{len(chosen)} of {len(runs)} runs: their references, with ever smaller steps")
+    listener.say(f"{len(chosen)} of {count(len(runs), 'run')}: their references, with ever smaller steps")
     converged: dict[int, Reference] = {}
     tried = 0
     with listener.progress(len(chosen)) as advance:

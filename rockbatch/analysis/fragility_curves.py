@@ -13,6 +13,7 @@ import numpy.typing as npt
 from rockbatch.analysis.ida import Bracket, Capacity, Looks, bisect, capacity, hunt
 from rockbatch.analysis.limit_states import EXCEEDED, LEFT_OUT, UNDECIDED, WITHSTOOD, applies, states
 from rockbatch.analysis.lognormal import Capacities, Lognormal, Values, fit
+from rockbatch.batch.listening import count
 from rockbatch.batch.plan import PlannedRun, Runs, scaled
 from rockbatch.checks.demands import DEMANDS
 from rockbatch.checks.rules import Rule
@@ -100,7 +101,7 @@ class Undecided(NamedTuple):
         """Return "12 of 400 runs undecided: 10 flew, 2 failed"; empty if there are none."""
         kinds = {"flew": self.flight, "failed": self.failed, "too near to the limit, or counted as unknown": self.other}
         parts = ", ".join(f"{number} {kind}" for kind, number in kinds.items() if number)
-        return f"{self.number} of {self.runs} runs undecided: {parts}" if parts else ""
+        return f"{self.number} of {count(self.runs, 'run')} undecided: {parts}" if parts else ""
 
 
 class Readings(NamedTuple):

@@ -15,7 +15,7 @@ from rockbatch.lazy import pd
 from rockbatch.pier import MOST_ETA, tilt_over_residual
 
 MOST_DUCTILITY = 100.0
-"""Of a support, greatest over yield deflection: soils bear some 2 to 10."""
+"""Greatest over yield deflection of a support: soils bear some 2 to 10."""
 
 Case = Mapping[str, Any]
 """A case as run.json has it: ``case``, ``columns``, ``pier``, ``base``, ``parameters``."""

@@ -86,7 +86,7 @@ def read_checks(
 def _rules(
     file: TomlFile, unmet: Callable[[Rule], Iterable[str]] | None, counted: str | None, names: set[str]
 ) -> list[Rule]:
-    """The usable [[check]] tables; their names join ``names``, and those that do not say how they count do as ``counted``."""
+    """Return the rules of usable [[check]] tables, ``counted`` unless they say otherwise; their names join ``names``."""
     rules: list[Rule] = []
     for table in file.tables("check", title="name"):
         before = len(file.problems)

@@ -39,7 +39,7 @@ RESPONSES = {
 residual rotation follows from the tilt."""
 
 _HELD = 1e-4
-"""Of α: a residual rotation on rigid ground that counts."""
+"""Least residual rotation over α on rigid ground that counts."""
 
 
 class Worst(NamedTuple):

@@ -85,4 +85,4 @@ class Progress:
         if now - self.last_line >= SECONDS_BETWEEN_LINES:
             self.last_line = now
             remaining = (now - self.started) * (self.total - self.done) / self.done
-            tell(self.stream, f"{self.done} of {self.total} runs, {remaining:.0f} s left")
+            tell(self.stream, f"{self.done} of {count(self.total, 'run')}, {remaining:.0f} s left")

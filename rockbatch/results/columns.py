@@ -355,7 +355,7 @@ DEVICES = (
         behind="tendon_force_over_weight",
     ),
 )  # fmt: skip
-"""Of dampers and tendons."""
+"""Columns of dampers and tendons."""
 _ITSELF = "the same, not over the mass, where that is known"
 _PIVOT = "greatest force of each support over half the weight, its dashpot's included; of a rigid base, where it bears all of N"
 _GAP = "heel gap: greatest height of each pivot above where its support waits, the stroke of a key or damper"

@@ -94,7 +94,7 @@ def write(path: Path, responses: Iterable[Response], info: Mapping[str, Any]) ->
         for number, response in enumerate(responses):
             _check_room(path, response)
             _write(runs.create_group(_name(number)), response)
-            file.flush()  # what HDF5 could not write is told here, and forgotten when it closes a dataset
+            file.flush()  # raises what HDF5 could not write, which it forgets when it closes a dataset
 
 
 def _check_room(path: Path, response: Response) -> None:

@@ -53,7 +53,7 @@ class Results(Shown, Saved):
         return self._beside(ESTIMATE, "estimate")
 
     def plot_cdf(self) -> "Figure":
-        """The distribution of θ_max/α over the records, a curve for each case, pier and scale: a matplotlib Figure.
+        """Draw the distribution of θ_max/α over the records, a curve for each case, pier and scale, as a matplotlib Figure.
 
         A station counts as one record, with the worst of its components, unless the study counts them apart. Records under
         which the pier overturned, or that were ended by flight, are what a curve lacks of 1 at its right end, where a cross
@@ -72,7 +72,7 @@ class Results(Shown, Saved):
         return read_table(path)
 
     def response(self, record: str | None = None, case: str | None = None, **more: float | str) -> Response:
-        """The response of one run.
+        """Return the response of one run.
 
         Parameters
         ----------
@@ -110,16 +110,16 @@ class Results(Shown, Saved):
         return self.responses[int(fitting.index[0])]
 
     def history(self, record: str | None = None, case: str | None = None, **more: float | str) -> "pd.DataFrame":
-        """:attr:`Response.history` of one run, chosen as for :meth:`response`."""
+        """Return :attr:`Response.history` of one run, chosen as for :meth:`response`."""
         return self.response(record, case, **more).history
 
     def events(self, record: str | None = None, case: str | None = None, **more: float | str) -> "pd.DataFrame":
-        """:attr:`Response.events` of one run, chosen as for :meth:`response`."""
+        """Return :attr:`Response.events` of one run, chosen as for :meth:`response`."""
         return self.response(record, case, **more).events
 
     def plot(self) -> "Figure":
-        """The peaks of every run, as the paper's Fig. 7: a panel for each record, θ_max/α over the foundations, lines for the
-        rigid base, a colour for each pier and scale. A matplotlib Figure: ``results.plot().savefig("peaks.pdf")``."""
+        """Draw the peaks of every run, as the paper's Fig. 7: a panel for each record, θ_max/α over the foundations, lines for
+        the rigid base, a colour for each pier and scale. A matplotlib Figure: ``results.plot().savefig("peaks.pdf")``."""
         from rockbatch.results.plots import plot
 
         return plot(self.peaks, self.info)

@@ -33,7 +33,7 @@ INSTEAD = {
 """Markers, and their words, of runs without a largest rotation; they stand above the axis' values."""
 
 SPREAD = 0.4
-"""Of the distance of two foundations, over which the marks of different piers and scales are spread."""
+"""Share of the distance of two foundations, over which marks of different piers and scales are spread."""
 
 _LINES = ("-", "--", ":", "-.")
 
