@@ -50,7 +50,7 @@ def answer(verdicts: Sequence[Verdict], worst: Sequence[Worst], case_of: Words, 
         every.passing([name for name in meeting if not free[name]]),
         every.without_limit({name: free[name] for name in meeting if free[name]}),
         every.failing(failing),
-        every.open(open_, failing),
+        every.undecided(open_, failing),
     ]
     return [line for line in lines if line]
 
@@ -133,15 +133,15 @@ class _Cases:
             record = f"at most {wording.number(verdict.governing)} {verdict.unit}".rstrip() + f" in {record}"
         return ", ".join(filter(None, (f"{verdict.check}: {wording.against(verdict)}", record, where))) + "."
 
-    def open(self, names: Sequence[str], failing: Sequence[str]) -> Line | None:
+    def undecided(self, names: Sequence[str], failing: Sequence[str]) -> Line | None:
         """Return the line on cases that are not decided, and why; in cases that fail anyway it does not matter."""
         idle = ", ".join(dict.fromkeys(verdict.check for verdict in self._of(failing, NOT_DECIDED)))
         if not names:
             return Line(NOT_DECIDED, "Left undecided", f"{idle}, in cases that fail anyway", ()) if idle else None
-        undecided = self._of(names, NOT_DECIDED)
-        details = [self._doubt(verdict) for verdict in undecided[:MOST_CHECKS]]
-        if len(undecided) > MOST_CHECKS:
-            details.append(f"and {len(undecided) - MOST_CHECKS} more.")
+        verdicts = self._of(names, NOT_DECIDED)
+        details = [self._doubt(verdict) for verdict in verdicts[:MOST_CHECKS]]
+        if len(verdicts) > MOST_CHECKS:
+            details.append(f"and {len(verdicts) - MOST_CHECKS} more.")
         if idle:
             details.append(f"{idle}: not decided in cases that fail anyway.")
         return Line(NOT_DECIDED, _capital(f"{self._among(names)} cannot be decided"), _listed(names), tuple(details))
