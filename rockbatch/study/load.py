@@ -159,7 +159,8 @@ class Study(Shown):
         """
         return _checked(TomlFile.parse(Path(path), as_toml(plain(tables)), lined=False), motions)
 
-    def with_(self, *, motions: "Motions | Mapping[str, Any]" = None, **tables: Any) -> "Study":
+    @checked
+    def with_(self, *, motions: Motions | Mapping[str, Any] = None, **tables: Any) -> "Study":
         """Return a changed study, checked again with everything in it.
 
         Parameters

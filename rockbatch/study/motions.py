@@ -127,28 +127,20 @@ Motions = str | os.PathLike[str] | MotionSet | Motion | Sequence[Motion] | None
 
 
 def as_source(motions: Motions) -> Path | MotionSet | None:
-    """Return a path or a set of motions with different names; ``InputError`` for anything else."""
+    """Return a path, or a set of motions. Raises ``InputError`` if it has none, or several of one name."""
     if motions is None:
         return None
     if isinstance(motions, str | os.PathLike):
         return Path(motions)
-    if isinstance(motions, Motion):
-        motions = [motions]
-    try:
-        motion_set = motions if isinstance(motions, MotionSet) else MotionSet(list(motions))
-    except TypeError:
-        motion_set = MotionSet()
-    if not motion_set.motions or not all(isinstance(motion, Motion) for motion in motion_set.motions):
+    if not isinstance(motions, MotionSet):
+        motions = MotionSet([motions] if isinstance(motions, Motion) else list(motions))
+    names = Counter(motion.name for motion in motions)
+    wrong = [f"motions: {n} are called {shown(name)}; give each its own name" for name, n in names.items() if n > 1]
+    if wrong or not names:
         raise InputError(
-            f"motions = {shown(repr(motions))}: expected a path, a MotionSet that is not empty, or motions; "
-            "write for example motions = rb.read_motions(folder)"
+            *wrong or ["motions: there is none in it; write for example motions = rb.read_motions(folder)"]
         )
-    names = Counter(motion.name for motion in motion_set.motions)
-    if twice := [
-        f"motions: {n} are called {shown(name)}; give each its own name" for name, n in names.items() if n > 1
-    ]:
-        raise InputError(*twice)
-    return motion_set
+    return motions
 
 
 def read_motions_table(file: TomlFile, replaced_by: Path | MotionSet | None = None) -> MotionSpec:

@@ -33,8 +33,10 @@ def plain(value: Any, *place: str) -> Any:
         return [plain(item, *place, str(n)) for n, item in enumerate(value)]
     if isinstance(value, os.PathLike):
         return os.fspath(value)
+    if isinstance(value, int) and value.bit_length() > 64:
+        raise InputError(f"{where}: a whole number of more than 64 bits, which TOML has not")
     if not isinstance(value, _VALUES):
-        raise InputError(f"{where}: expected a number, a text, a list or a table, not an object {type(value).__name__}")
+        raise InputError(f"{where}: expected a number, a text, a list or a table, not {type(value).__name__}")
     return value
 
 
@@ -46,11 +48,11 @@ def changed(old: Any, new: Any, *place: str) -> Any:
     """
     if isinstance(old, dict) and isinstance(new, Mapping):
         result = dict(old)
-        for key, item in new.items():
+        for key, item in ((str(key), item) for key, item in new.items()):
             if item is None:
                 result.pop(key, None)
             else:
-                result[key] = changed(old.get(key), item, *place, str(key))
+                result[key] = changed(old.get(key), item, *place, key)
         return result
     if are_tables(old):
         names = [new] if isinstance(new, str) else new
@@ -129,13 +131,18 @@ def as_toml(tables: Mapping[str, Any], *place: str) -> str:
 
 
 def _key(name: str) -> str:
-    return name if _BARE.fullmatch(name) else _written(name)
+    return name if _BARE.fullmatch(name) else _basic(name)
+
+
+def _basic(text: str) -> str:
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", r"\u007f")  # TOML's basic strings are JSON's
 
 
 def _written(value: Any) -> str:
+    if isinstance(value, str) and "\n" in value:
+        return '"""\n' + "\n".join(_basic(line)[1:-1] for line in value.split("\n")) + '"""'
     if isinstance(value, str):
-        lines = [json.dumps(line, ensure_ascii=False)[1:-1].replace("\x7f", r"\u007f") for line in value.split("\n")]
-        return f'"{lines[0]}"' if len(lines) == 1 else '"""\n' + "\n".join(lines) + '"""'
+        return _basic(value)
     if isinstance(value, dict):
         return "{ " + ", ".join(f"{_key(key)} = {_written(item)}" for key, item in value.items()) + " }"
     if isinstance(value, list):

@@ -59,8 +59,12 @@ def test_mistakes_of_tables_name_table_and_key_and_those_of_a_text_its_line():
     (problem,) = problems(rb.Study.from_toml, study_text().replace("alpha", "alhpa"), "towers/pier4.toml")
     assert problem == "towers/pier4.toml:3: [pier]: alhpa: unknown key; did you mean alpha?"
     assert problems(rb.Study.from_dict, {"pier": {"alpha": object()}}) == [
-        "pier.alpha: expected a number, a text, a list or a table, not an object object"
+        "pier.alpha: expected a number, a text, a list or a table, not object"
     ]
+    assert problems(rb.Study.from_dict, {"title": 10**5000}) == [
+        "title: a whole number of more than 64 bits, which TOML has not"
+    ]
+    assert 'study.toml: "a\\n\\"": unknown key' in "".join(problems(rb.Study.from_dict, TABLES | {'a\n"': 3}))
     nested = {}
     nested["pier"] = nested
     assert problems(rb.Study.from_dict, nested) == [
@@ -115,8 +119,11 @@ def test_one_case_is_changed_by_its_name_and_a_list_replaces_all(pier4):
         ({"case": {"pads": {"damper": {"first": {}}}}}, 'case.pads.damper = "first": there is none of this name; there is none'),
         ({"case": {"pads": {"bta": 3}}}, 'study.toml: [[case]] "pads": bta: unknown key; did you mean beta?'),
         ({"case": 3}, "study.toml: case: expected a list of tables"),
+        ({"pier": {1: 2}}, 'study.toml: [pier]: "1": unknown key'),
+        ({"motions": "\0"}, "has a NUL character"),
         ({"peir": {"height_m": 3}}, "study.toml: peir: unknown section; did you mean pier?"),
-        ({"motions": []}, "expected a path, a MotionSet that is not empty, or motions"),
+        ({"motions": []}, "motions: there is none in it; write for example motions = rb.read_motions(folder)"),
+        ({"motions": 3}, "motions = 3: must be"),
     ],
 )  # fmt: skip
 def test_a_change_is_checked_as_a_file_is(pier4, change, message):
