@@ -112,7 +112,7 @@ def is_usual(suffix: str) -> bool:
 
 
 def format_of(suffix: str, head: bytes) -> Format | None:
-    """The format of a file with this suffix (with its dot, any case) and these first bytes; ``None`` if none."""
+    """Return the format of a file with this suffix (with its dot, any case) and these first bytes; ``None`` if none."""
     return next(
         (
             known
@@ -124,7 +124,7 @@ def format_of(suffix: str, head: bytes) -> Format | None:
 
 
 def read_record(file: RecordFile) -> Sequence[Component | Unusable]:
-    """Components of a file, their texts made legible, or ``InputError`` with the reason why there are none."""
+    """Return the components of a file, their texts made legible, or ``InputError`` with the reason why there are none."""
     known = format_of(file.path.suffix, file.data)
     if known is None:
         raise InputError(_not_recognised(file))
@@ -133,7 +133,7 @@ def read_record(file: RecordFile) -> Sequence[Component | Unusable]:
 
 
 def usable(reading: Component | Unusable) -> Component | Unusable:
-    """A component that a motion can be made of, or what is wrong with it."""
+    """Return a component that a motion can be made of, or what is wrong with it."""
     if isinstance(reading, Unusable):
         return reading
     if len(reading.acceleration) < 2:

@@ -123,7 +123,7 @@ def _count_and_step(line: str) -> re.Match[str] | None:
 
 
 def _title(line: str) -> tuple[str, str, str, str]:
-    """Event, date, station and component of header line 2; empty where it does not say.
+    """Return event, date, station and component of header line 2; empty where it does not say.
 
     "Duzce Turkey, 11/12/1999, Lamont 362, E" and "CAPE MENDOCINO 04/25/92 1806, CAPE MENDOCINO, 000 (CDMG
     …)".
@@ -141,7 +141,7 @@ def _title(line: str) -> tuple[str, str, str, str]:
 
 
 def _values(text: str, start: int, npts: int) -> Samples:
-    """The ``npts`` numbers from the character ``start`` on, or ``InputError``: never one more or less."""
+    """Return the ``npts`` numbers from the character ``start`` on, or ``InputError``: never one more or less."""
     try:
         values, last = _between_blanks(text, start)
     except ValueError:
@@ -157,7 +157,7 @@ def _values(text: str, start: int, npts: int) -> Samples:
 
 
 def _between_blanks(text: str, start: int) -> tuple[Samples, list[str]]:
-    """The numbers from ``start`` on, and the last of them as they are written; ``ValueError`` where one is none.
+    """Return the numbers from ``start`` on, and the last of them as they are written; ``ValueError`` where one is none.
 
     A piece of the file after the other: its words as Python's objects would take thirty times its size.
     """
@@ -176,7 +176,7 @@ def _between_blanks(text: str, start: int) -> tuple[Samples, list[str]]:
 
 
 def _touching_or_double(text: str, start: int, npts: int) -> tuple[Samples, list[str]]:
-    """Likewise, of Fortran's columns that touch, or numbers in double precision; ``InputError`` with the line."""
+    """Return the numbers likewise, of Fortran's touching columns, or in double precision; ``InputError`` with the line."""
     lines = [line.rstrip() for line in text[start:].rstrip("\x00\x1a").splitlines()]
     body = [line for line in lines if line]
     width = _width(body, npts)
@@ -204,7 +204,7 @@ def _number(field: str, at: int) -> float:
 
 
 def _width(lines: list[str], npts: int) -> int | None:
-    """Width of Fortran columns whose values touch, such as 5E15.7; ``None`` unless they come to ``npts`` numbers.
+    """Return the width of Fortran columns whose values touch, such as 5E15.7; ``None`` unless they come to ``npts`` numbers.
 
     The count tells how many fields a full line has, and so how wide they are.
     """

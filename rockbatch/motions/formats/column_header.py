@@ -91,7 +91,7 @@ class Column:
 
     @property
     def other(self) -> str:
-        """The quantity that it holds other than acceleration: "velocity", "displacement"; empty if it says none."""
+        """Return the quantity that it holds other than acceleration: "velocity", "displacement"; empty if it says none."""
         return next((_OTHERS[word] for word in sorted(self._words) if word in _OTHERS), "")
 
     @property
@@ -113,12 +113,12 @@ def spectrum_in(columns: Sequence[Column]) -> str:
 
 
 def seconds_in(unit: str) -> float | None:
-    """How many seconds a unit of time has; ``None`` where it is none."""
+    """Return the seconds that a unit of time has; ``None`` where it is none."""
     return SECONDS.get(unit.strip().lower().rstrip("."))
 
 
 def columns_with_units(header: Sequence[str], width: int) -> list[Column] | None:
-    """Columns of which the header tells label and unit; ``None`` where it does not for all of them.
+    """Return columns of which the header tells label and unit; ``None`` where it does not for all of them.
 
     ``Column 2: North-south acceleration (cm/s/s)``, or in one line ``time(sec) N-S(cm/s/s) …``.
     """
@@ -133,7 +133,7 @@ def columns_with_units(header: Sequence[str], width: int) -> list[Column] | None
 
 
 def columns_without_units(header: Sequence[str], width: int) -> list[Column] | None:
-    """Columns of which the header tells the labels, and units of some at most: ``t, NS, UD``.
+    """Return columns of which the header tells the labels, and units of some at most: ``t, NS, UD``.
 
     The first is time, or what a spectrum is drawn over, or all are directions or time: other lines of as many words are
     text, as are those with a value in them.
@@ -158,11 +158,11 @@ def columns_without_units(header: Sequence[str], width: int) -> list[Column] | N
 
 
 def _labels_of(line: str) -> list[list[Column]]:
-    """The columns that a line may name: one for each word, or one between commas, semicolons or tabs."""
+    """Return the columns that a line may name: one for each word, or one between commas, semicolons or tabs."""
     words = [Column(_tidy(match["label"]), match["unit"]) for match in _WORD.finditer(line)]
     fields = [match for field in re.split(r"[,;\t]", line) if (match := _FIELD.fullmatch(field.strip()))]
-    found = [] if _WORD.sub("", line).strip(" \t,;") else [words]
-    return [*found, [Column(_tidy(match["label"]), match["unit"]) for match in fields]]
+    by_words = [] if _WORD.sub("", line).strip(" \t,;") else [words]
+    return [*by_words, [Column(_tidy(match["label"]), match["unit"]) for match in fields]]
 
 
 def speaks_of_spectra(header: Sequence[str]) -> str:
@@ -171,7 +171,7 @@ def speaks_of_spectra(header: Sequence[str]) -> str:
 
 
 def stated_unit(header: Sequence[str]) -> str | None:
-    """The unit of a line ``unit: cm/s2``, or else such as ``acceleration in units of cm/s/s``."""
+    """Return the unit of a line ``unit: cm/s2``, or else such as ``acceleration in units of cm/s/s``."""
     stated = next((match["unit"].rstrip(".,;") for line in header if (match := _STATED.match(line))), None)
     said = (match["unit"].rstrip(".") for line in header if not _PEAK.search(line) for match in _SAID.finditer(line))
     return stated or next((unit for unit in said if is_acceleration(unit)), None)
@@ -187,12 +187,12 @@ def is_acceleration(unit: str) -> bool:
 
 
 def stated_count(header: Sequence[str]) -> int | None:
-    """The number of samples of a line such as ``NPTS = 4000``."""
+    """Return the number of samples of a line such as ``NPTS = 4000``."""
     return next((int(match["npts"]) for line in header if (match := _COUNT.search(line))), None)
 
 
 def _tidy(label: str) -> str:
-    """A column's label for names and tables: "N-S" and "North-south acceleration" give "NS"."""
+    """Return a column's label for names and tables: "N-S" and "North-south acceleration" give "NS"."""
     label = label.strip('"')
     bare = re.sub(r"(?i)\s*(?:ground\s*)?acc(?:eleration|el)?\b\.?\s*", " ", label).strip()
     key = re.sub(r"[^A-Z]", "", bare.upper())
@@ -210,18 +210,18 @@ class StatedStep:
 
 
 def stated_step(header: Sequence[str]) -> StatedStep | None:
-    """The interval of a line such as ``dt = 0.01 s``, ``Sampling rate: 200 Hz`` or ``NPTS= 4000, DT= .0050 SEC``.
+    """Return the interval of a line such as ``dt = 0.01 s``, ``Sampling rate: 200 Hz`` or ``NPTS= 4000, DT= .0050 SEC``.
 
     Raises ``InputError`` where a header states two, and for numbers that are no intervals.
     """
-    found = [_step(match) for line in header for match in _STEP.finditer(line) if not _of_another(match)]
-    for other in found[1:]:
-        if abs(other.dt - found[0].dt) > SAME_STEP * found[0].dt:
+    steps = [_step(match) for line in header for match in _STEP.finditer(line) if not _of_another(match)]
+    for other in steps[1:]:
+        if abs(other.dt - steps[0].dt) > SAME_STEP * steps[0].dt:
             raise InputError(
-                f'the header says "{found[0].words}" and "{other.words}", {found[0].dt:g} s and {other.dt:g} s; '
+                f'the header says "{steps[0].words}" and "{other.words}", {steps[0].dt:g} s and {other.dt:g} s; '
                 "correct the one that is wrong"
             )
-    return found[0] if found else None
+    return steps[0] if steps else None
 
 
 def states_a_step(line: str) -> bool:

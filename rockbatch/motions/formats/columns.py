@@ -51,7 +51,7 @@ def is_bbp(head: bytes) -> bool:
 
 
 def read_columns(file: RecordFile) -> list[Component | Unusable]:
-    """One component per column of acceleration, in m/s².
+    """Return one component per column of acceleration, in m/s².
 
     What the columns are comes from the header (``# time(sec) N-S(cm/s/s) …``, or ``# Column 2: North-south
     acceleration (cm/s/s)``); the study's ``columns``, ``unit`` and ``dt`` say what it does not. Nothing is assumed
@@ -71,7 +71,7 @@ def read_columns(file: RecordFile) -> list[Component | Unusable]:
 
 
 def _parse(text: str, options: ReadOptions) -> list[Recording]:
-    """The columns of acceleration; ``InputError`` where they are not known, or have no unit."""
+    """Return the columns of acceleration; ``InputError`` where they are not known, or have no unit."""
     header, table = read_table(text, wrapped=options.layout == "wrapped")
     if len(table) < 2:
         raise InputError("found one row of numbers; expected at least two samples")
@@ -91,8 +91,8 @@ def _parse(text: str, options: ReadOptions) -> list[Recording]:
             *(("unit", "dt") if untimed else ("unit",)),
         )
     if not wanted:
-        found = " and ".join(columns[i].other for i in others)
-        raise NoRecordError(f"found {found or 'a column of time and no other'}; expected accelerations")
+        quantities = " and ".join(columns[i].other for i in others)
+        raise NoRecordError(f"found {quantities or 'a column of time and no other'}; expected accelerations")
     left = tuple(f"{_called(i, columns[i])} left out: a {columns[i].other}" for i in others)
     dt, values, moved = _sampled(columns, table, header, options)
     return [
@@ -131,7 +131,7 @@ def _columns(header: list[str], options: ReadOptions, table: Samples) -> tuple[l
 
 
 def _completed(i: int, said: Column, stated: str) -> Column:
-    """A column of the header with what the study states about it where the header says nothing.
+    """Return a column of the header with what the study states about it where the header says nothing.
 
     ``InputError`` where the two contradict each other.
     """
@@ -140,9 +140,9 @@ def _completed(i: int, said: Column, stated: str) -> Column:
     by_header, by_study = orientation_in(said.label), orientation_in(stated)
     study = Column(stated)
     if said.is_time or said.is_abscissa or said.is_ordinate:
-        agree, found = said.is_time == (study.is_time or study.may_be_time), said
+        agree, column = said.is_time == (study.is_time or study.may_be_time), said
     elif study.is_time or (study.may_be_time and said.may_be_time):
-        agree, found = said.may_be_time or not said.label, Column("time", said.unit)
+        agree, column = said.may_be_time or not said.label, Column("time", said.unit)
     else:
         agree = not (by_header.known and by_study.known) or (
             by_header.vertical == by_study.vertical
@@ -150,13 +150,13 @@ def _completed(i: int, said: Column, stated: str) -> Column:
             and (None in (by_header.azimuth, by_study.azimuth) or same_azimuth(by_header.azimuth, by_study.azimuth))
         )
         settled = by_header.vertical or by_header.azimuth is not None or not by_study.known
-        found = said if by_header.known and settled else Column(stated, said.unit)
+        column = said if by_header.known and settled else Column(stated, said.unit)
     if not agree:
         raise InputError(
             f'column {i + 1}: the header says "{said.label}", but columns states "{stated}"; what a file says goes '
             "first: leave columns out, or correct the header"
         )
-    return found
+    return column
 
 
 def _with_time(columns: list[Column], table: Samples) -> list[Column]:
@@ -170,7 +170,7 @@ def _with_time(columns: list[Column], table: Samples) -> list[Column]:
 
 
 def _guessed(header: list[str], table: Samples) -> tuple[list[Column], tuple[str, ...]]:
-    """The only column, or time and acceleration."""
+    """Return the only column, or time and acceleration."""
     width = table.shape[1]
     if width == 1:
         return [Column("")], ()
@@ -192,7 +192,7 @@ def _guessed(header: list[str], table: Samples) -> tuple[list[Column], tuple[str
 def _sampled(
     columns: list[Column], table: Samples, header: list[str], options: ReadOptions
 ) -> tuple[float, Samples, tuple[str, ...]]:
-    """Sampling interval [s], from the time column or as stated, the table on even times, and notes."""
+    """Return the sampling interval [s], from the time column or as stated, the table on even times, and notes."""
     times = [i for i, column in enumerate(columns) if column.is_time]
     if len(times) > 1:
         raise InputError(f"found {len(times)} columns of time; expected one")
@@ -216,8 +216,8 @@ def _sampled(
 
 
 def _check_step(said: StatedStep, dt: float, usual: float) -> None:
-    """``InputError`` where the header's interval is neither that of the samples nor that of most of them [s]."""
-    if all(abs(said.dt - found) > SAME_STEP * found for found in (dt, usual)):
+    """Raise ``InputError`` where the header's interval is neither that of the samples nor that of most of them [s]."""
+    if all(abs(said.dt - step) > SAME_STEP * step for step in (dt, usual)):
         raise InputError(
             f'the header says "{said.words}", {said.dt:g} s, but time grows by {usual:g} s; correct the one that is '
             "wrong, or write dt = … for this file in motions.toml"
@@ -225,7 +225,7 @@ def _check_step(said: StatedStep, dt: float, usual: float) -> None:
 
 
 def _called(i: int, column: Column) -> str:
-    """A column for messages."""
+    """Return what a column is called in messages."""
     return f'column {i + 1} ("{column.label}")' if column.label else f"column {i + 1}"
 
 

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 from rockbatch.errors import InputError, NoRecordError
 from rockbatch.motions.component import Seat
 from rockbatch.motions.formats.fixed_width import fixed_numbers, lines_of, number_in
-from rockbatch.motions.formats.header_lines import found, layout, line_at, moment, read_header, search_lines
+from rockbatch.motions.formats.header_lines import layout, line_at, match_line, moment, read_header, search_lines
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording
 from rockbatch.motions.motion import Initial, Samples
@@ -88,7 +88,7 @@ def parse(text: str) -> list[Recording]:
         if header is None or _TITLE.match(line_at(lines, at)):
             header = _header(lines, at)
             at = header.end
-        series = found(_VALUES, lines, at, "… acceleration pts, approx … secs, units=cm/sec2(04),Format=(8F10.5)")
+        series = match_line(_VALUES, lines, at, "… acceleration pts, approx … secs, units=cm/sec2(04),Format=(8F10.5)")
         values, end = _values(lines, at, series)
         if series["what"].lower().startswith("accel"):
             recordings.append((_recording(header, series, values, at), header))
@@ -116,20 +116,20 @@ def _beside(recording: Recording, series: re.Match[str], values: Samples) -> Rec
 
 def _header(lines: list[str], at: int) -> _Header:
     """Return the header that begins at ``lines[at]``."""
-    title = found(_TITLE, lines, at, "Corrected acceleration    (Format v01.20 with 13 text lines)")
+    title = match_line(_TITLE, lines, at, "Corrected acceleration    (Format v01.20 with 13 text lines)")
     if "spectr" in title["what"].lower():
         raise NoRecordError(f"line {at + 1}: spectra; expected accelerations: take the V2 file of this record")
     end = at + int(title["lines"])
     text = [line_at(lines, i) for i in range(at, end)]
     numbers = []
     for what in ("Integer", "Real"):
-        said = found(_NUMBERS, lines, end, f"100 {what}-header values follow on … lines, Format= …")
+        said = match_line(_NUMBERS, lines, end, f"100 {what}-header values follow on … lines, Format= …")
         count = int(said["count"])
         if said["what"].lower() != what.lower() or count < _HEADERS:
             raise InputError(f'line {end + 1}: found "{said[0].strip()}"; expected {_HEADERS} {what}-header values')
         values, end = fixed_numbers(lines, end + 1, count, *_layout(said["format"], end))
         numbers.append(values)
-    comments = int(found(_COMMENTS, lines, end, "… Comment line(s) follow")["count"])
+    comments = int(match_line(_COMMENTS, lines, end, "… Comment line(s) follow")["count"])
     unknown = search_lines(_UNKNOWN, text)
     return _Header(
         what=title["what"],
@@ -158,7 +158,7 @@ def _values(lines: list[str], at: int, series: re.Match[str]) -> tuple[Samples, 
     if npts < 1:
         raise InputError(f"line {at + 1}: found {npts} values; expected some")
     values, end = fixed_numbers(lines, at + 1, npts, *_layout(series["format"], at))
-    found(_END, lines, end, f"End-of-data … after {npts} values; fetch it again")
+    match_line(_END, lines, end, f"End-of-data … after {npts} values; fetch it again")
     return values, end + 1
 
 

@@ -12,7 +12,7 @@ import re
 from rockbatch.errors import InputError, NoRecordError
 from rockbatch.motions.component import Seat
 from rockbatch.motions.formats.fixed_width import fixed_numbers, number_in, one_after_another
-from rockbatch.motions.formats.header_lines import found, layout, line_at, moment_of, past_mark, read_header
+from rockbatch.motions.formats.header_lines import layout, line_at, match_line, moment_of, past_mark, read_header
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording, Series
 from rockbatch.motions.formats.renadic import is_renadic
@@ -132,7 +132,7 @@ def _block(lines: list[str], at: int, expected: tuple[str, ...]) -> tuple[str, f
 
     Raises ``InputError`` where it is not one of those ``expected``.
     """
-    line = found(_SPACING, lines, at, "… points of accel data equally spaced at … sec. (units: …)")
+    line = match_line(_SPACING, lines, at, "… points of accel data equally spaced at … sec. (units: …)")
     what = (line["what"] or "accel").lower()
     unit, layout = _UNIT.search(line["rest"]), _FORMAT.search(line["rest"])
     npts = int(line["npts"])

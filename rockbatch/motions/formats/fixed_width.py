@@ -20,7 +20,7 @@ LOOKED_AT = 1000
 
 
 def lines_of(text: str) -> list[str]:
-    """Lines of a file with any of the three line ends, less what old programs write after the last one.
+    """Return the lines of a file with any of the three line ends, less what old programs write after the last one.
 
     ``str.splitlines`` would also break at the control characters that Latin-1 texts may hold. Raises ``InputError`` for
     a line that is longer than any of numbers, whose words would take thirty times its size.
@@ -33,7 +33,7 @@ def lines_of(text: str) -> list[str]:
 
 
 def one_after_another(text: str, channel: Callable[[list[str], int], tuple[T, int]]) -> list[T]:
-    """The channels of a file: ``channel`` reads the one that begins at a line, and tells where it ends.
+    """Return the channels of a file: ``channel`` reads the one that begins at a line, and tells where it ends.
 
     Raises ``InputError`` for a file without any.
     """
@@ -123,7 +123,7 @@ def spaced_numbers(lines: Sequence[str], first: int, count: int, per_line: int) 
 
 
 def number_in(field: str, at: int) -> float:
-    """The number in a field of the line with index ``at``, Fortran's D exponents included; else ``InputError``."""
+    """Return the number in a field of the line with index ``at``, Fortran's D exponents included; else ``InputError``."""
     try:
         if "_" in field:  # Python would read 1_0 as ten
             raise ValueError

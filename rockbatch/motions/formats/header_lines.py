@@ -17,8 +17,8 @@ _MONTHS = {name: i for i, names in enumerate(
 ) for name in names.split()}  # fmt: skip
 
 
-def found(pattern: re.Pattern[str], lines: Sequence[str], at: int, expected: str) -> re.Match[str]:
-    """The match of ``pattern`` in ``lines[at]``; ``InputError`` where the line is another one, or none."""
+def match_line(pattern: re.Pattern[str], lines: Sequence[str], at: int, expected: str) -> re.Match[str]:
+    """Return the match of ``pattern`` in ``lines[at]``; ``InputError`` where the line is another one, or none."""
     line = line_at(lines, at)
     match = pattern.search(line)
     if match is None:
@@ -46,7 +46,9 @@ def read_header(lines: Sequence[str], at: int, layout: Sequence[Line]) -> dict[s
     groups: dict[str, str] = {}
     for offset, pattern, expected in layout:
         match = (
-            found(pattern, lines, at + offset, expected) if expected else pattern.search(line_at(lines, at + offset))
+            match_line(pattern, lines, at + offset, expected)
+            if expected
+            else pattern.search(line_at(lines, at + offset))
         )
         groups |= {name: (match[name] or "" if match else "") for name in pattern.groupindex}
     return groups
@@ -102,7 +104,7 @@ def count_and_step(header: Mapping[str, str], count: str, step: str) -> tuple[in
 
 
 def line_at(lines: Sequence[str], at: int) -> str:
-    """``lines[at]`` as far as a header goes; empty after the last line."""
+    """Return ``lines[at]`` as far as a header goes; empty after the last line."""
     return lines[at][:_LONGEST_OF_HEADER] if at < len(lines) else ""
 
 
@@ -112,11 +114,11 @@ def date_in(text: str) -> tuple[int, int, int] | None:
     The day stands before the month where the year is last. Months may be English or Spanish.
     """
     text = " ".join(text[:_LONGEST_OF_HEADER].upper().split())
-    found = _YEAR_FIRST.match(text) or _DAY_FIRST.match(text)
-    if found is None:
+    match = _YEAR_FIRST.match(text) or _DAY_FIRST.match(text)
+    if match is None:
         return None
-    month = int(found["month"]) if found["month"].isdecimal() else _MONTHS.get(found["month"][:3], 0)
-    return (int(found["year"]), month, int(found["day"])) if 1 <= month <= 12 else None
+    month = int(match["month"]) if match["month"].isdecimal() else _MONTHS.get(match["month"][:3], 0)
+    return (int(match["year"]), month, int(match["day"])) if 1 <= month <= 12 else None
 
 
 def moment_of(groups: Mapping[str, str]) -> float | None:
@@ -135,7 +137,7 @@ def moment_in(pattern: re.Pattern[str], text: str) -> float | None:
 
 
 def moment(year: int, month: int, day: int, hour: int, minute: int, second: float) -> float | None:
-    """A time in UTC [s since 1970]; ``None`` where the numbers are none, as headers have it that do not know."""
+    """Return a time in UTC [s since 1970]; ``None`` where the numbers are none, as headers have it that do not know."""
     try:
         whole = datetime(year, month, day, hour, minute, tzinfo=UTC).timestamp()
     except (ValueError, OverflowError):

@@ -34,7 +34,7 @@ def is_miniseed(head: bytes) -> bool:
 
 
 def read_miniseed(file: RecordFile) -> list[Component | Unusable]:
-    """One component per channel and event; a channel that cannot be used is an ``Unusable`` beside the others.
+    """Return one component per channel and event; a channel that cannot be used is an ``Unusable`` beside the others.
 
     A gap of more than a minute, and of three times the longest piece of a channel, lies between two events; a
     shorter one is a fault, as are overlaps.
@@ -69,7 +69,7 @@ def read_miniseed(file: RecordFile) -> list[Component | Unusable]:
 
 
 def _events(traces: list["Trace"]) -> list[list["Trace"]]:
-    """The pieces of a channel by record: a gap far longer than the longest piece lies between two events."""
+    """Return the pieces of a channel by record: a gap far longer than the longest piece lies between two events."""
     ordered = sorted(traces, key=lambda trace: trace.stats.starttime.timestamp)
     longest = max(trace.stats.endtime - trace.stats.starttime for trace in ordered)
     events = [[ordered[0]]]
@@ -85,7 +85,7 @@ def _events(traces: list["Trace"]) -> list[list["Trace"]]:
 def _component(
     name: str, source: str, file: RecordFile, trace: "Trace", known: list[stationxml.Channel], unread: str
 ) -> Component:
-    """One channel as a component, by its StationXML entry or by what the study states; ``unread``: which were not read."""
+    """Return one channel as a component, by its StationXML entry or by what the study states; ``unread``: which were not read."""
     stats = trace.stats
     if not np.issubdtype(trace.data.dtype, np.number):
         raise InputError(f"{trace.id} holds text, not samples")
@@ -142,7 +142,7 @@ def _component(
 
 
 def _oriented(channel_id: str, by_code: Orientation, entry: stationxml.Channel) -> Orientation:
-    """Orientation by azimuth and dip, where StationXML has them; else by the channel's code."""
+    """Return the orientation by azimuth and dip, where StationXML has them; else by the channel's code."""
     if entry.dip is None:
         return by_code
     if abs(entry.dip) > 80:

@@ -22,7 +22,7 @@ FileLike = str | os.PathLike[str] | BinaryIO
 
 
 def first_bytes(filename: Any) -> bytes:
-    """The first bytes of a path or file-like object, which stays where it is; none of anything else.
+    """Return the first bytes of a path or file-like object, which stays where it is; none of anything else.
 
     Never raises: ObsPy hands over whatever it got while it looks for a format.
     """
@@ -40,7 +40,7 @@ def first_bytes(filename: Any) -> bytes:
 
 
 def name_and_bytes(filename: FileLike) -> tuple[str, bytes]:
-    """Name for messages, and contents, of a path or file-like object."""
+    """Return the name for messages, and contents, of a path or file-like object."""
     if isinstance(filename, str | os.PathLike):
         return str(filename), Path(filename).read_bytes()
     return str(getattr(filename, "name", "data")), filename.read()
@@ -49,7 +49,7 @@ def name_and_bytes(filename: FileLike) -> tuple[str, bytes]:
 def plugin(
     name: str, matches: Callable[[bytes], bool], parse: Callable[[str], Sequence[Recording]]
 ) -> tuple[Callable[[Any], bool], Callable[..., "Stream"]]:
-    """ObsPy's ``isFormat`` and ``readFormat`` of the format ``name``, by its check and its parser.
+    """Return ObsPy's ``isFormat`` and ``readFormat`` of the format ``name``, by its check and its parser.
 
     ``readFormat`` raises ``InputError``, with the file's name in front, for files that cannot be used. Data stay
     in the file's unit, which stands in ``stats`` under the format's name beside what else the header says.
@@ -74,7 +74,7 @@ def plugin(
 
 
 def _trace(name: str, recording: Recording, headonly: bool) -> "Trace":
-    """One channel as ObsPy has it."""
+    """Return one channel as ObsPy has it."""
     from obspy import Trace, UTCDateTime
     from obspy.core import AttribDict
 

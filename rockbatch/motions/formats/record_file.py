@@ -90,7 +90,7 @@ class ReadOptions:
             raise InputError(*wrong)
 
     def hold_against(self, unit: str, dt: float, gravity: float) -> None:
-        """``InputError`` where a file with a header of free text says another ``unit`` or ``dt`` [s] than is stated.
+        """Raise ``InputError`` where a file with a header of free text says another ``unit`` or ``dt`` [s] than is stated.
 
         What a manifest states is for this very file, and replaces what it says afterwards; ``gravity`` [m/s²].
         """
@@ -123,17 +123,17 @@ class RecordFile:
 
     @property
     def stem(self) -> str:
-        """File name without its suffix."""
+        """Return the file name without its suffix."""
         return self.path.stem
 
     @property
     def text(self) -> str:
-        """The bytes as text (``text_of``)."""
+        """Return the bytes as text (``text_of``)."""
         return text_of(self.data)
 
 
 def text_of(data: bytes) -> str:
-    """Text of a file: UTF-16 where it begins with that mark (Excel's "Unicode text"), UTF-8, or else Latin-1."""
+    """Return the text of a file: UTF-16 where it begins with that mark (Excel's "Unicode text"), UTF-8, or else Latin-1."""
     if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         try:
             return data.decode("utf-16")

@@ -127,7 +127,7 @@ def to_components(file: RecordFile, recordings: Sequence[Recording]) -> list[Com
 
 
 def _component(file: RecordFile, recording: Recording, name: str, source: str) -> Component:
-    """One channel as a component; ``InputError`` for a clock's, and for a unit that is not understood."""
+    """Return one channel as a component; ``InputError`` for a clock's, and for a unit that is not understood."""
     if is_clock(recording.label):
         raise InputError(f'component "{recording.label}": the recorder\'s clock, no ground motion')
     orientation = recording.orientation or orientation_of(recording.label) or unknown(recording.label)
@@ -158,7 +158,7 @@ def _component(file: RecordFile, recording: Recording, name: str, source: str) -
 
 
 def _in_metres(series: Series | None) -> Samples | None:
-    """Velocities in m/s, displacements in m; ``None`` for what there is not, or in a unit that is none."""
+    """Return velocities in m/s, displacements in m; ``None`` for what there is not, or in a unit that is none."""
     if series is None or (factor := length_factor(series[1])) is None:
         return None
     return series[0] * factor

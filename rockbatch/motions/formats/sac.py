@@ -29,7 +29,7 @@ def is_sac(head: bytes) -> bool:
 
 
 def read_sac(file: RecordFile) -> list[Component | Unusable]:
-    """The component of a SAC file, in the unit that the study states: data / sensitivity × unit.
+    """Return the component of a SAC file, in the unit that the study states: data / sensitivity × unit.
 
     SAC's own entry for the kind of data (IDEP) says no unit: files in g that claim nm/s² are common. Velocities and
     displacements are refused by it, and by the channel of a seismometer, unless a manifest states the file's unit.
@@ -81,13 +81,13 @@ def _kind(data: bytes) -> int:
 
 
 def _origin(stats: "Stats", start: float) -> Origin:
-    """By the header's name of the event (KEVNM), or the day of the record."""
+    """Return the origin by the header's name of the event (KEVNM), or the day of the record."""
     day = stats.starttime.strftime("%Y-%m-%d") if start >= FIRST_YEAR else ""
     return origin_of(str(stats.sac.get("kevnm", "")), f"{stats.network}.{stats.station}".strip("."), day)
 
 
 def _by_angles(sac: dict[str, float]) -> Orientation | None:
-    """Orientation by CMPAZ (from north) and CMPINC (from upward vertical) [degrees], where both are set and it is one."""
+    """Return the orientation by CMPAZ (from north) and CMPINC (from upward vertical) [degrees], if both are set and it is one."""
     if "cmpinc" not in sac or "cmpaz" not in sac:
         return None
     azimuth, inclination = float(sac["cmpaz"]), float(sac["cmpinc"])

@@ -41,11 +41,11 @@ class Channel:
 
 
 def channels_beside(folder: Path, root: Path | None = None) -> tuple[list[Channel], list[str]]:
-    """Channels of all StationXML files in ``folder``, of the disk or of an archive, and which of them were not read, why.
+    """Return the channels of all StationXML files in ``folder``, of the disk or of an archive, and those that were not read, why.
 
     Links are followed that stay within ``root``, or within the folder. Other .xml files have no channels.
     """
-    found: list[Channel] = []
+    channels: list[Channel] = []
     refused: list[str] = []
     inside = Path(os.path.realpath(root or folder))
     for path in archives.files_in(folder):
@@ -55,17 +55,17 @@ def channels_beside(folder: Path, root: Path | None = None) -> tuple[list[Channe
         try:
             if not real.is_relative_to(inside):
                 raise InputError("a link that leads out of the folder")
-            found += _channels(path, real.stat().st_mtime_ns)
+            channels += _channels(path, real.stat().st_mtime_ns)
         except InputError as error:
             refused.append(f"{path.name}: {error}")
         except OSError as error:
             refused.append(f"{path.name}: {error.strerror or error}")
-    return found, refused
+    return channels, refused
 
 
 @lru_cache(maxsize=64)
 def _channels(path: Path, mtime_ns: int) -> list[Channel]:
-    """Channels of one file; ``mtime_ns`` keeps an edited file from being taken for the old one.
+    """Return the channels of one file; ``mtime_ns`` keeps an edited file from being taken for the old one.
 
     Raises ``InputError`` for a file that is too large, damaged, or in an encoding that nobody knows.
     """

@@ -23,7 +23,7 @@ _NUMERIC = re.compile(r'[-+.,;"\s]*[0-9][-+0-9.,;eEdD"\s]*')
 
 
 def read_table(text: str, wrapped: bool = False) -> tuple[list[str], Samples]:
-    """Header lines, without their comment sign, and the table of numbers, shape (npts, columns).
+    """Return the header lines, without their comment sign, and the table of numbers, shape (npts, columns).
 
     Columns stand between blanks, tabs, commas or semicolons. Decimal commas are understood where they cannot
     be anything else: between semicolons, tabs or blanks in a file without a decimal point. Raises
@@ -102,7 +102,7 @@ def _separators(lines: list[str]) -> tuple[str, str]:
 
 
 def _numbers(line: str, between: str, decimal: str) -> list[float] | None:
-    """The numbers of a line, ``None`` if it holds anything else."""
+    """Return the numbers of a line, ``None`` if it holds anything else."""
     if "_" in line:  # Python would read 1_0 as ten
         return None
     if '"' in line:

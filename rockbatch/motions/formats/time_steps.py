@@ -20,7 +20,7 @@ def grows_evenly(t: Samples) -> bool:
 
 
 def on_even_steps(t: Samples, values: Samples) -> tuple[float, Samples, tuple[str, ...]]:
-    """Sampling interval, in the unit of ``t``, values on it, and notes on what was done to them.
+    """Return the sampling interval, in the unit of ``t``, values on it, and notes on what was done to them.
 
     ``t`` has shape (npts,), ``values`` shape (npts, channels). Uneven times get an even grid that keeps every
     sample, of a part of their usual step (lost samples) or of their greatest common step (film, digitised in
@@ -80,7 +80,7 @@ def _is_growing(t: Samples) -> bool:
 
 
 def _candidates(t: Samples, usual: float) -> list[float]:
-    """Steps, from coarse to fine, of which times may be multiples: parts of the usual one, and what is printed."""
+    """Return steps, from coarse to fine, of which times may be multiples: parts of the usual one, and what is printed."""
     steps = [usual / parts for parts in range(1, _FINEST + 1)]
     printed = _resolution(t)
     if printed > 0 and np.abs(t).max() < _WHOLE * printed:
@@ -89,7 +89,7 @@ def _candidates(t: Samples, usual: float) -> list[float]:
 
 
 def _on_grid(t: Samples, at: Samples) -> float | None:
-    """Step of the even grid on which sample i has the number at[i]; ``None`` where the times are off it."""
+    """Return the step of the even grid on which sample i has the number at[i]; ``None`` where the times are off it."""
     dt = float(t[-1] - t[0]) / float(at[-1])
     printed = _resolution(t)
     allowed = _EVEN * dt if printed > _COARSEST * dt else max(_EVEN * dt, printed)
@@ -108,10 +108,10 @@ def _resolution(t: Samples) -> float:
 
 
 def _interpolated(where: Samples, at: Samples, values: Samples) -> Samples:
-    """``values`` of samples ``at``, linearly at ``where``, channel by channel."""
+    """Return ``values`` of samples ``at``, linearly at ``where``, channel by channel."""
     return np.column_stack([np.interp(where, at, channel) for channel in values.T])
 
 
 def _said(shortest: float, longest: float, dt: float, effect: str) -> str:
-    """The note on uneven times."""
+    """Return the note on uneven times."""
     return f"uneven times (steps of {shortest:g} to {longest:g}) interpolated linearly to dt = {dt:g}; {effect}"

@@ -14,7 +14,7 @@ import numpy as np
 from rockbatch.errors import InputError
 from rockbatch.motions.component import Seat
 from rockbatch.motions.formats.fixed_width import lines_of, number_in
-from rockbatch.motions.formats.header_lines import date_in, keys_of, line_with, moment
+from rockbatch.motions.formats.header_lines import count_and_step, date_in, keys_of, line_with, moment, number_of
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording
 from rockbatch.motions.motion import Samples
@@ -30,6 +30,15 @@ _BEHIND = 10  # lines after that one, within which the first sample stands
 _FORMAT = re.compile(r"\(?(?P<per_line>[0-9]{1,2})[FEDG](?P<width>[0-9]{1,2})\.[0-9]{1,2}\)?", re.IGNORECASE)
 _CLOCK = re.compile(r"(\d{1,2}):(\d{1,2}):(\d{1,2}(?:[.,]\d{1,6})?)", re.ASCII)
 _DAY = 86400.0  # s
+_COUNT, _STEP, _DECIMATION = "NUM. TOTAL DE MUESTRAS, C1-C6", "INTERVALO DE MUESTREO, C1-C6", "FACTOR DE DECIMACION"
+_NEEDED = (
+    *("NUMERO DE CANALES", "ORIENTACION C1-C6", _COUNT, _STEP, "FORMATO DATOS", "UNIDADES DE LOS DATOS"),
+    "CLAVE DE LA ESTACION",
+)
+_ELSE = (
+    *(_DECIMATION, "ACEL. MAX.(Gal), C1-C6", "FECHA DEL SISMO", "HORA EPICENTRO", "HORA DE LA PRIMERA MUESTRA"),
+    *("NOMBRE DE LA ESTACION", "NOMBRE DEL ARCHIVO"),
+)
 
 
 def is_unam(head: bytes) -> bool:
@@ -37,79 +46,32 @@ def is_unam(head: bytes) -> bool:
     return _TITLE in head[:1000]
 
 
-class _Header(dict[str, str]):
-    """The values of a header by their keys without blanks; what stands behind a key differs: "(s)", "(Hz)"."""
-
-    def get_text(self, key: str) -> str:
-        """Return the value of the key that begins so; "" if there is none."""
-        begins = re.sub(r"\s", "", key)
-        return next((value for name, value in self.items() if name.startswith(begins)), "")
-
-    def text(self, key: str) -> str:
-        """Return the value of a key; ``InputError`` where it has none."""
-        value = self.get_text(key)
-        if not value:
-            raise InputError(f"the header lacks {key}")
-        return value
-
-    def number(self, key: str, text: str = "") -> float:
-        """Return the value of a key, or the ``text``, as a number."""
-        text = text or self.text(key)
-        try:
-            return number_in(text, 0)
-        except InputError:
-            raise InputError(f'the header says {key} : "{text[:40]}"; expected a number') from None
-
-    def each(self, key: str, count: int) -> list[str]:
-        """Return the values of all channels, between slashes."""
-        values = [part.strip() for part in self.text(key).strip("/ ").split("/")]
-        if len(values) != count:
-            raise InputError(f"the header says {count} channels, but {key} : {self.text(key)[:60]}")
-        return values
-
-    def same(self, key: str, count: int) -> float:
-        """Return the number that is the same for all channels; ``InputError`` where it is not."""
-        texts = set(self.each(key, count))
-        if len(texts) > 1:
-            raise InputError(
-                f"the header says {key} : {', '.join(sorted(texts))[:60]}; expected the same for all channels"
-            )
-        (text,) = texts
-        if not text:
-            raise InputError(f"the header lacks {key}")
-        return self.number(key, text)
-
-
 def parse(text: str) -> list[Recording]:
     """Return the channels; ``InputError`` with the line, or the key, where the file is not whole."""
     lines = lines_of(text)
     at, _ = line_with(_DATA, lines, _MOST, "DATOS DE ACELERACION:")
-    header = _Header({re.sub(r"\s", "", key): value for key, value in keys_of(lines[:at]).items()})
-    channels = header.number("NUMERO DE CANALES")
+    header = _header(lines[:at])
+    channels = number_of(header, "NUMERO DE CANALES")
     if not 1 <= channels <= _MOST_CHANNELS or channels != int(channels):
-        raise InputError(f"the header says NUMERO DE CANALES : {channels:g}; expected 1 to {_MOST_CHANNELS}")
-    if header.get_text("FACTOR DE DECIMACION") and header.number("FACTOR DE DECIMACION") != 1:
-        raise InputError("the header says that samples were left out (FACTOR DE DECIMACION); expected 1")
+        raise InputError(f"the header says NUMERO DE CANALES: {channels:g}; expected 1 to {_MOST_CHANNELS}")
+    if header[_DECIMATION] and number_of(header, _DECIMATION) != 1:
+        raise InputError(f"the header says that samples were left out ({_DECIMATION}); expected 1")
     count = int(channels)
-    ways = [way.partition(";")[::2] for way in header.each("ORIENTACION C1-C6", count)]
-    npts, dt = (header.same(key, count) for key in ("NUM. TOTAL DE MUESTRAS, C1-C6", "INTERVALO DE MUESTREO, C1-C6"))
-    if npts != int(npts) or npts < 2 or not 0 < dt < 10:
-        raise InputError(f"the header says {npts:g} samples every {dt:g} s; expected a whole number and an interval")
+    ways = [way.partition(";")[::2] for way in _each(header, "ORIENTACION C1-C6", count)]
+    npts, dt = count_and_step({key: _same(header, key, count) for key in (_COUNT, _STEP)}, _COUNT, _STEP)
     first = _first(lines, at, [way.strip() for way, _ in ways])
-    values, more = _values(lines, first, int(npts), count, header.text("FORMATO DATOS"))
-    unit = header.text("UNIDADES DE LOS DATOS").partition("(")[0].strip()
-    stated = header.get_text("ACEL. MAX.(Gal), C1-C6").strip("/ ").split("/")
-    station, date = header.text("CLAVE DE LA ESTACION"), header.get_text("FECHA DEL SISMO")
-    name, start = header.get_text("NOMBRE DE LA ESTACION"), _start(header)
-    event = f"{date} {header.get_text('HORA EPICENTRO')}".strip()
-    notes = (f"its header says {npts:.0f} samples, and {more} more follow, which are left out",) if more else ()
+    values, more = _values(lines, first, npts, count, header["FORMATO DATOS"])
+    peaks = header["ACEL. MAX.(Gal), C1-C6"].strip("/ ").split("/")
+    station, date, name = (header[key] for key in ("CLAVE DE LA ESTACION", "FECHA DEL SISMO", "NOMBRE DE LA ESTACION"))
+    start, event = _start(header), f"{date} {header['HORA EPICENTRO']}".strip()
+    notes = (f"its header says {npts} samples, and {more} more follow, which are left out",) if more else ()
     return [
         Recording(
             label=way.strip(),
             orientation=Orientation(way.strip(), vertical=True, down=True) if (way[:1], sign) == ("V", "-") else None,
             dt=dt,
             values=values[:, i],
-            unit=unit,
+            unit=header["UNIDADES DE LOS DATOS"].partition("(")[0].strip(),
             station=f"{station}, {event} {start}" if event else station,
             codes=("MG", station[:5], "", way.strip().upper()),
             start=start,
@@ -117,12 +79,42 @@ def parse(text: str) -> list[Recording]:
             seat=Seat(station),
             event=event,
             origin=origin_of("", name or station, date),
-            stated_peak=(stated[i] if len(stated) == count else "", "gal"),
+            stated_peak=(peaks[i] if len(peaks) == count else "", "gal"),
             notes=notes,
-            header={"station": name, "file": header.get_text("NOMBRE DEL ARCHIVO")},
+            header={"station": name, "file": header["NOMBRE DEL ARCHIVO"]},
         )
         for i, (way, sign) in enumerate(ways)
     ]
+
+
+def _header(lines: list[str]) -> dict[str, str]:
+    """Return the values of ``_NEEDED`` and ``_ELSE``; what stands behind a key differs: "(s)", "(Hz)", and so do blanks in it."""
+    said = {re.sub(r"\s", "", key): value for key, value in keys_of(lines).items()}
+
+    def value_of(name: str) -> str:
+        begins = re.sub(r"\s", "", name)
+        return next((value for key, value in said.items() if key.startswith(begins)), "")
+
+    header = {name: value_of(name) for name in (*_NEEDED, *_ELSE)}
+    if lacking := [name for name in _NEEDED if not header[name]]:
+        raise InputError(f"the header lacks {', '.join(lacking)}")
+    return header
+
+
+def _each(header: dict[str, str], key: str, count: int) -> list[str]:
+    """Return the values of all channels, between slashes."""
+    values = [part.strip() for part in header[key].strip("/ ").split("/")]
+    if len(values) != count:
+        raise InputError(f"the header says {count} channels, but {key}: {header[key][:60]}")
+    return values
+
+
+def _same(header: dict[str, str], key: str, count: int) -> str:
+    """Return the value that is the same for all channels; ``InputError`` where it is not."""
+    texts = set(_each(header, key, count))
+    if len(texts) > 1:
+        raise InputError(f"the header says {key}: {', '.join(sorted(texts))[:60]}; expected the same for all channels")
+    return texts.pop()
 
 
 def _first(lines: list[str], at: int, ways: list[str]) -> int:
@@ -164,19 +156,17 @@ def _row(line: str, at: int, width: int, channels: int) -> list[float]:
     return [number_in(field, at) for field in fields]
 
 
-def _start(header: _Header) -> float | None:
+def _start(header: dict[str, str]) -> float | None:
     """Return the time of the first sample [s since 1970]: its date is that of the earthquake, or the day before or after."""
-    date = date_in(header.get_text("FECHA DEL SISMO"))
-    origin, first = (_CLOCK.match(header.get_text(key)) for key in ("HORA EPICENTRO", "HORA DE LA PRIMERA MUESTRA"))
+    date = date_in(header["FECHA DEL SISMO"])
+    origin, first = (_CLOCK.match(header[key]) for key in ("HORA EPICENTRO", "HORA DE LA PRIMERA MUESTRA"))
     if date is None or first is None:
         return None
     began, quake = (
         moment(*date, int(clock[1]), int(clock[2]), float(clock[3].replace(",", ".")))
         for clock in (first, origin or first)
     )
-    if began is None or quake is None:
-        return None
-    return began + _DAY * round((quake - began) / _DAY)
+    return None if began is None or quake is None else began + _DAY * round((quake - began) / _DAY)
 
 
 is_unam_file, read_unam_stream = plugin("UNAM", is_unam, parse)

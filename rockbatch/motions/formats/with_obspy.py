@@ -55,7 +55,7 @@ _BLOCKETTE = re.compile(rb"[0-9]{7}")  # three digits of type, four of length
 
 
 def sac(data: bytes) -> bytes:
-    """A binary SAC file whose other header words, such as event and distance, are undefined."""
+    """Return a binary SAC file whose other header words, such as event and distance, are undefined."""
     if len(data) < _SAC_HEADER:
         raise InputError(f"holds {len(data)} bytes; a SAC header alone has {_SAC_HEADER}: the file is cut")
     at = 4 * _SAC_INTEGERS["NVHDR"][0]
@@ -80,7 +80,7 @@ def sac(data: bytes) -> bytes:
 
 
 def mseed(data: bytes) -> bytes:
-    """MiniSEED, or a SEED volume, whose first data record can be."""
+    """Return MiniSEED, or a SEED volume, whose first data record can be."""
     start = 0
     if data[6:7] in _CONTROL:
         length = 2 ** _volume_exponent(data)
@@ -91,7 +91,7 @@ def mseed(data: bytes) -> bytes:
 
 
 def _volume_exponent(data: bytes) -> int:
-    """The power of 2 that is the length of a volume's records, by its first blockettes."""
+    """Return the power of 2 that is the length of a volume's records, by its first blockettes."""
     at = 8
     while _BLOCKETTE.match(data, at):
         kind, length = data[at : at + 3], int(data[at + 3 : at + 7])
@@ -107,7 +107,7 @@ def _volume_exponent(data: bytes) -> int:
 
 
 def _data_record(record: bytes) -> None:
-    """``InputError`` unless this begins with a data record: its time and its chain of blockettes."""
+    """Raise ``InputError`` unless this begins with a data record: its time and its chain of blockettes."""
     if len(record) < _FIXED or record[6:7] not in _DATA:
         raise InputError("holds no whole data record; fetch it again")
     order = ">" if 1 <= int.from_bytes(record[22:24], "big") <= 366 else "<"
@@ -135,18 +135,18 @@ _OPTIONS = {"SAC": {"round_sampling_interval": False}}  # rounding a step of fou
 
 @contextmanager
 def _unraisable() -> Iterator[list[str]]:
-    """Collects errors that ObsPy's callbacks from C cannot raise; Python would print them on the terminal."""
-    found: list[str] = []
+    """Collect errors that ObsPy's callbacks from C cannot raise; Python would print them on the terminal."""
+    errors: list[str] = []
     before = sys.unraisablehook
-    sys.unraisablehook = lambda unraised: found.append(f"{type(unraised.exc_value).__name__}: {unraised.exc_value}")
+    sys.unraisablehook = lambda unraised: errors.append(f"{type(unraised.exc_value).__name__}: {unraised.exc_value}")
     try:
-        yield found
+        yield errors
     finally:
         sys.unraisablehook = before
 
 
 def read_stream(data: bytes, name: str) -> "Stream":
-    """ObsPy's reading of ``data`` in the format ``name``; ``InputError`` where its header cannot be, or ObsPy complains."""
+    """Return ObsPy's reading of ``data`` in the format ``name``; ``InputError`` if its header cannot be, or ObsPy complains."""
     data = CHECKS[name](data)
     with warnings.catch_warnings(record=True) as caught, _unraisable() as unraised:
         warnings.simplefilter("always")
