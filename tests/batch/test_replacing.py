@@ -60,19 +60,28 @@ def test_a_study_that_has_moved_is_known_by_its_title(finished, tmp_path, capsys
     assert '"Pier 4"' in capsys.readouterr().err
 
 
-def test_a_folder_called_like_an_output_is_noticed_before_the_first_run(tmp_path, capsys):
-    study = write_study(tmp_path, study_text(fragility={"measure": "PGA", "levels_g": [0.2, 0.4]}), "pier.toml")
-    of_run = ("peaks.csv", "run.json", "histories.h5", "intensity.csv", "checks.csv", "estimate.csv", "report.html")
-    for command, names in (("run", of_run), ("fragility", ("fragility_runs.csv", "fragility.json", "report.html"))):
-        for name in names:
-            out = tmp_path / command / name.replace(".", "_")
-            (out / name).mkdir(parents=True)
-            assert main([command, str(study), "--out", str(out)]) == 2
-            told = capsys.readouterr().err
-            assert (
-                told == f"rockbatch: {out / name}: a folder, where a file of this name is to be written; move it away\n"
-            )
-            assert [path.name for path in out.iterdir()] == [name]
+OUTPUTS = {
+    "run": ("peaks.csv", "run.json", "histories.h5", "intensity.csv", "checks.csv", "estimate.csv", "report.html"),
+    "fragility": ("fragility_runs.csv", "fragility.json", "report.html"),
+    "spectrum": ("spectrum_suite.csv", "overturning_map.csv"),
+    "sensitivity": ("sobol.csv",),
+    "accuracy": ("accuracy.csv", "accuracy.json"),
+}
+
+
+@pytest.mark.parametrize(("command", "name"), [(command, name) for command, names in OUTPUTS.items() for name in names])
+def test_a_folder_called_like_an_output_is_noticed_before_the_first_run(tmp_path, capsys, command, name):
+    text = study_text(
+        fragility={"measure": "PGA", "levels_g": [0.2, 0.4]},
+        spectrum={"alpha": 0.2, "p": [1.0, 2.0]},
+        sensitivity={"uniform": {"alpha": [0.1, 0.3]}},
+    )
+    study, out = write_study(tmp_path, text, "pier.toml"), tmp_path / "out"
+    (out / name).mkdir(parents=True)
+    assert main([command, str(study), "--out", str(out)]) == 2
+    message = f"{out / name}: a folder, where a file of this name is to be written; move it away\n"
+    assert capsys.readouterr().err == f"rockbatch: {message}"
+    assert [path.name for path in out.iterdir()] == [name]
 
 
 def test_a_folder_called_like_an_unfinished_file_stops_nothing_and_stays(finished, capsys):
