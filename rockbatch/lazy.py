@@ -14,6 +14,7 @@ class _Lazy(ModuleType):
 
 if TYPE_CHECKING:
     import h5py as h5py
+    import obspy as obspy
     import pandas as pd
 else:
-    h5py, pd = _Lazy("h5py"), _Lazy("pandas")
+    h5py, obspy, pd = map(_Lazy, ("h5py", "obspy", "pandas"))

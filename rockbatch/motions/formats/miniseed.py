@@ -1,11 +1,11 @@
 """MiniSEED: counts, which a StationXML file in the same folder, or the study, turns into accelerations."""
 
 import re
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rockbatch.errors import InputError
+from rockbatch.lazy import obspy
 from rockbatch.motions.component import Component, Seat
 from rockbatch.motions.formats import stationxml
 from rockbatch.motions.formats.record_file import RecordFile
@@ -14,9 +14,6 @@ from rockbatch.motions.motion import Unusable
 from rockbatch.motions.orientation import Orientation, is_clock, not_acceleration, orientation_of, unknown
 from rockbatch.motions.origin import origin_of
 from rockbatch.units import acceleration_factor
-
-if TYPE_CHECKING:
-    from obspy import Trace
 
 _YEARS = 1900, 2100
 _TOLD = 5  # of the .xml files that could not be read
@@ -45,7 +42,7 @@ def read_miniseed(file: RecordFile) -> list[Component | Unusable]:
         raise InputError(
             f"{len(file.data)} bytes are not a whole number of its records of {length} bytes: the file is cut"
         )
-    segments: dict[str, list[Trace]] = {}
+    segments: dict[str, list[obspy.Trace]] = {}
     for trace in stream:
         segments.setdefault(trace.id, []).append(trace)
     known, refused = stationxml.channels_beside(file.path.parent, file.root)
@@ -68,7 +65,7 @@ def read_miniseed(file: RecordFile) -> list[Component | Unusable]:
     return readings
 
 
-def _events(traces: list["Trace"]) -> list[list["Trace"]]:
+def _events(traces: "list[obspy.Trace]") -> "list[list[obspy.Trace]]":
     """Return the pieces of a channel by record: a gap far longer than the longest piece lies between two events."""
     ordered = sorted(traces, key=lambda trace: trace.stats.starttime.timestamp)
     longest = max(trace.stats.endtime - trace.stats.starttime for trace in ordered)
@@ -83,7 +80,7 @@ def _events(traces: list["Trace"]) -> list[list["Trace"]]:
 
 
 def _component(
-    name: str, source: str, file: RecordFile, trace: "Trace", known: list[stationxml.Channel], unread: str
+    name: str, source: str, file: RecordFile, trace: "obspy.Trace", known: list[stationxml.Channel], unread: str
 ) -> Component:
     """Return one channel as a component, by its StationXML entry or by what the study states; ``unread``: which were not read."""
     stats = trace.stats

@@ -6,14 +6,12 @@ A format's module makes its two entry points by ``is_x, read_x = plugin("X", …
 import os
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, BinaryIO
+from typing import Any, BinaryIO
 
 from rockbatch.errors import InputError
+from rockbatch.lazy import obspy
 from rockbatch.motions.formats.record_file import text_of
 from rockbatch.motions.formats.recording import Recording, letters
-
-if TYPE_CHECKING:
-    from obspy import Stream, Trace
 
 HEAD = 4096
 """Bytes that a format is known by."""
@@ -48,7 +46,7 @@ def name_and_bytes(filename: FileLike) -> tuple[str, bytes]:
 
 def plugin(
     name: str, matches: Callable[[bytes], bool], parse: Callable[[str], Sequence[Recording]]
-) -> tuple[Callable[[Any], bool], Callable[..., "Stream"]]:
+) -> tuple[Callable[[Any], bool], Callable[..., "obspy.Stream"]]:
     """Return ObsPy's ``isFormat`` and ``readFormat`` of the format ``name``, by its check and its parser.
 
     ``readFormat`` raises ``InputError``, with the file's name in front, for files that cannot be used. Data stay
@@ -59,25 +57,20 @@ def plugin(
         """Return whether a path or a file-like object holds a file of this format; never raises."""
         return matches(first_bytes(filename))
 
-    def read_format(filename: FileLike, headonly: bool = False, **kwargs: Any) -> "Stream":
+    def read_format(filename: FileLike, headonly: bool = False, **kwargs: Any) -> "obspy.Stream":
         """Read a file of this format into an ObsPy Stream, one Trace per channel."""
-        from obspy import Stream
-
         place, data = name_and_bytes(filename)
         try:
             recordings = parse(text_of(data))
         except InputError as error:
             raise InputError(*(f"{place}: {problem}" for problem in error.problems)) from None
-        return Stream([_trace(name, recording, headonly) for recording in recordings])
+        return obspy.Stream([_trace(name, recording, headonly) for recording in recordings])
 
     return is_format, read_format
 
 
-def _trace(name: str, recording: Recording, headonly: bool) -> "Trace":
+def _trace(name: str, recording: Recording, headonly: bool) -> "obspy.Trace":
     """Return one channel as ObsPy has it."""
-    from obspy import Trace, UTCDateTime
-    from obspy.core import AttribDict
-
     seat = recording.seat
     by_seat = (seat.network or "", letters(seat.station), seat.location or "", recording.label.upper())
     network, station, location, channel = recording.codes or by_seat
@@ -87,10 +80,10 @@ def _trace(name: str, recording: Recording, headonly: bool) -> "Trace":
         "station": station,
         "location": location,
         "channel": channel,
-        name.lower(): AttribDict({**recording.header, "unit": recording.unit, "component": recording.label}),
+        name.lower(): obspy.core.AttribDict({**recording.header, "unit": recording.unit, "component": recording.label}),
     }
     if recording.start is not None:
-        header["starttime"] = UTCDateTime(recording.start)
+        header["starttime"] = obspy.UTCDateTime(recording.start)
     if headonly:
-        return Trace(header={**header, "npts": len(recording.values)})
-    return Trace(data=recording.values, header=header)
+        return obspy.Trace(header={**header, "npts": len(recording.values)})
+    return obspy.Trace(data=recording.values, header=header)

@@ -1,10 +1,11 @@
 """SAC (binary): one component, in a unit that its header does not tell reliably."""
 
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 
 from rockbatch.errors import InputError, UnstatedError
+from rockbatch.lazy import obspy
 from rockbatch.motions.component import FIRST_YEAR, Component, Seat
 from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.formats.with_obspy import read_stream
@@ -12,9 +13,6 @@ from rockbatch.motions.motion import Unusable
 from rockbatch.motions.orientation import Orientation, is_clock, not_acceleration, orientation_of, split_stem, unknown
 from rockbatch.motions.origin import Origin, origin_of
 from rockbatch.units import acceleration_factor
-
-if TYPE_CHECKING:
-    from obspy.core.trace import Stats
 
 _LEVEL = 10.0  # degrees that a horizontal component may be off the horizontal
 _KIND_AT = 86 * 4  # header word IDEP
@@ -80,7 +78,7 @@ def _kind(data: bytes) -> int:
     return int.from_bytes(data[_KIND_AT : _KIND_AT + 4], order, signed=True)
 
 
-def _origin(stats: "Stats", start: float) -> Origin:
+def _origin(stats: "obspy.core.trace.Stats", start: float) -> Origin:
     """Return the origin by the header's name of the event (KEVNM), or the day of the record."""
     day = stats.starttime.strftime("%Y-%m-%d") if start >= FIRST_YEAR else ""
     return origin_of(str(stats.sac.get("kevnm", "")), f"{stats.network}.{stats.station}".strip("."), day)

@@ -15,14 +15,11 @@ import sys
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rockbatch.errors import InputError
-
-if TYPE_CHECKING:
-    from obspy import Stream
+from rockbatch.lazy import obspy
 
 _UNDEFINED = -12345  # of SAC; as text for its words of eight letters
 _SAC_HEADER, _FLOATS, _INTEGERS = 632, 70, 40  # bytes; words of four bytes, floats first
@@ -145,15 +142,15 @@ def _unraisable() -> Iterator[list[str]]:
         sys.unraisablehook = before
 
 
-def read_stream(data: bytes, name: str) -> "Stream":
+def read_stream(data: bytes, name: str) -> "obspy.Stream":
     """Return ObsPy's reading of ``data`` in the format ``name``; ``InputError`` if its header cannot be, or ObsPy complains."""
     data = CHECKS[name](data)
     with warnings.catch_warnings(record=True) as caught, _unraisable() as unraised:
         warnings.simplefilter("always")
-        from obspy import read  # which warns of its own use of the standard library
-
         try:
-            stream = read(io.BytesIO(data), format=name, check_compression=False, **_OPTIONS.get(name, {}))
+            stream = obspy.read(  # warns of its own use of the standard library when it is loaded
+                io.BytesIO(data), format=name, check_compression=False, **_OPTIONS.get(name, {})
+            )
         except Exception as error:  # ObsPy's readers raise all sorts of types on damaged files
             raise InputError(f"ObsPy's {name} reader refuses it: {type(error).__name__}: {error}") from None
     complaints = [str(w.message) for w in caught if not issubclass(w.category, DeprecationWarning | FutureWarning)]
