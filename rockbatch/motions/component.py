@@ -92,7 +92,7 @@ class Component:
     initial: Initial | None = None  # the ground's state at the first sample, where the file has it
     origin: Origin = UNKNOWN_ORIGIN
     notes: tuple[str, ...] = ()  # what was done to the data
-    odd: tuple[Finding, ...] = ()  # what copies of it, which are left out, have otherwise
+    odd: tuple[Finding, ...] = ()  # what its header, or copies of it that are left out, have otherwise
     number: int = 0  # of the component in its file, from 1
 
     @property

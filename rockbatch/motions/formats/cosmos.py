@@ -53,20 +53,16 @@ _SCNL = re.compile(r"<SCNL>(?P<station>\w*)\.(?P<channel>\w*)\.(?P<network>\w*)\
 
 @dataclass(frozen=True)
 class _Header:
-    """The header of a channel, and the index of the first line after it.
-
-    ``integers`` and ``reals`` are counted from 1 in the specification, from 0 here; ``unknown`` stands for those
-    that are unknown, and for missing values. ``said`` has the groups of ``_TEXT``.
-    """
+    """The header of a channel."""
 
     what: str
     text: list[str]
-    said: Mapping[str, str]
-    integers: list[int]
-    reals: list[float]
+    said: Mapping[str, str]  # by the groups of _TEXT
+    integers: list[int]  # counted from 1 in the specification, from 0 here
+    reals: list[float]  # likewise
     comments: str
-    unknown: float
-    end: int
+    unknown: float  # what stands for numbers that are unknown, and for missing values
+    end: int  # index of the first line after it
 
 
 def is_cosmos(head: bytes) -> bool:

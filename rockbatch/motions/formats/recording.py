@@ -25,73 +25,29 @@ Series = tuple[Samples, str]
 
 @dataclass(frozen=True)
 class Recording:
-    """One channel of a file.
+    """One channel of a file."""
 
-    Attributes
-    ----------
-    label : str
-        Its direction, as the file has it: "N10E", "Up", "HNZ".
-    dt : float
-        Sampling interval [s].
-    values : ndarray, shape (npts,)
-        Accelerations in ``unit``.
-    unit : str
-        As ``units.acceleration_factor`` understands it.
-    station : str
-        What the channels of one station share, other versions of the same record not included.
-    orientation : Orientation or None
-        Where it is not what ``label`` says.
-    codes : tuple of four str
-        Network, station, location and channel for ObsPy; by default of ``seat``, and the label.
-    start : float or None
-        Time of the first sample [s since 1970, UTC].
-    processed : bool or None
-        Whether the agency has corrected them; ``None`` where the file does not say.
-    raw : bool or None
-        Whether the instrument's offset may still be in the data; ``None``: if they are not ``processed``.
-    seat : Seat
-        The sensor, by what the header says.
-    event : str
-        What the header says of the event.
-    initial : Initial or None
-        The ground's state at the first sample, where the header tells it.
-    velocities, displacements : Series or None
-        That the file has beside the accelerations.
-    stated_peak : (str, str)
-        Peak that the header states, as it is printed, and its unit ("" for ``unit``); its sign is not to be trusted.
-    counts : bool
-        Whether the file has counts, and their scale: no unit of its own.
-    as_read : ndarray, shape (n,), or None
-        Accelerations before they were interpolated, which have the stated peak.
-    notes : tuple of str
-        What was done to the data.
-    origin : Origin
-        What the header calls event and station.
-    header : dict
-        What else the header says.
-    """
-
-    label: str
-    dt: float
-    values: Samples
-    unit: str
-    station: str = ""
-    orientation: Orientation | None = None
-    codes: tuple[str, str, str, str] | None = None
-    start: float | None = None
-    processed: bool | None = None
-    raw: bool | None = None
-    seat: Seat = NOWHERE
-    event: str = ""
-    initial: Initial | None = None
-    velocities: Series | None = None
-    displacements: Series | None = None
-    stated_peak: tuple[str, str] = ("", "")
-    counts: bool = False
-    as_read: Samples | None = None
-    notes: tuple[str, ...] = ()
-    origin: Origin = UNKNOWN_ORIGIN
-    header: dict[str, str] = field(default_factory=dict)
+    label: str  # its direction, as the file has it: "N10E", "Up", "HNZ"
+    dt: float  # sampling interval [s]
+    values: Samples  # accelerations in unit, shape (npts,)
+    unit: str  # as units.acceleration_factor understands it
+    station: str = ""  # what the channels of one station share, other versions of the same record not included
+    orientation: Orientation | None = None  # where it is not what the label says
+    codes: tuple[str, str, str, str] | None = None  # network, station, location, channel for ObsPy; else of the seat
+    start: float | None = None  # time of the first sample [s since 1970, UTC]
+    processed: bool | None = None  # whether the agency has corrected it; None where the file does not say
+    raw: bool | None = None  # whether the instrument's offset may still be in it; None: if it is not processed
+    seat: Seat = NOWHERE  # the sensor, by what the header says
+    event: str = ""  # what the header says of it
+    initial: Initial | None = None  # the ground's state at the first sample, where the header has it
+    velocities: Series | None = None  # beside the accelerations
+    displacements: Series | None = None  # likewise
+    stated_peak: tuple[str, str] = ("", "")  # of the header, as it is printed, of any sign; its unit, "" for unit
+    counts: bool = False  # whether the file has counts, and their scale: no unit of its own
+    as_read: Samples | None = None  # accelerations before they were interpolated, which have the stated peak
+    notes: tuple[str, ...] = ()  # what was done to the data
+    origin: Origin = UNKNOWN_ORIGIN  # what the header calls event and station
+    header: dict[str, str] = field(default_factory=dict)  # what else it says, for ObsPy
 
 
 def reader(parse: Callable[[str], Sequence[Recording]]) -> Callable[[RecordFile], list[Component | Unusable]]:

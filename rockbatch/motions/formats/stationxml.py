@@ -24,20 +24,15 @@ _DEEPEST = 50  # elements within one another; the format has 9
 
 @dataclass(frozen=True)
 class Channel:
-    """One channel in one of its epochs.
-
-    ``sensitivity`` is in counts per ``unit`` (as the file writes it, such as "M/S**2"); ``azimuth`` in
-    degrees from north, ``dip`` in degrees down from the horizontal (−90: positive up); ``start`` and ``end``
-    in s since 1970.
-    """
+    """One channel in one of its epochs."""
 
     id: str
-    start: float
+    start: float  # [s since 1970]
     end: float
-    sensitivity: float | None
-    unit: str
-    azimuth: float | None
-    dip: float | None
+    sensitivity: float | None  # counts per unit
+    unit: str  # as the file writes it, such as "M/S**2"
+    azimuth: float | None  # degrees from north
+    dip: float | None  # degrees down from the horizontal (−90: positive up)
 
 
 def channels_beside(folder: Path, root: Path | None = None) -> tuple[list[Channel], list[str]]:
