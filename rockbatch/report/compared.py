@@ -112,7 +112,7 @@ def checks(pair: Pair) -> Markup:
     for name, study in zip(SIDES, pair.studies, strict=True):
         parts += [tag("h3", name), tag("div", verdicts.answer(study))]
         if study.verdicts:
-            parts += [verdicts.legend(), verdicts.matrix(study.verdicts)]
+            parts += [verdicts.LEGEND, verdicts.matrix(study.verdicts)]
     return join(*parts)
 
 

@@ -2,15 +2,10 @@
 
 import csv
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 
 from rockbatch.files import opened_text
-
-NUMBERS = (
-    "substeps", "tolerance", "runs", "error_median", "error_95", "error_max", "seconds_per_run", "status_differs",
-    "reference_change",
-)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -38,6 +33,9 @@ class Level:
         return f"{value:.0f}" if value >= 100 else f"{value:.3g}"
 
 
+NUMBERS = fields(Level)[2:]
+
+
 def read(path: Path, study: str) -> list[Level]:
     """Return the levels of ``accuracy.csv`` measured for the study with the SHA-256 ``study``.
 
@@ -48,7 +46,7 @@ def read(path: Path, study: str) -> list[Level]:
             rows = list(csv.DictReader(file))
         if any(row["study"] != study for row in rows):
             return []
-        return [Level(row["method"], row["machine"], *(_number(row[name]) for name in NUMBERS)) for row in rows]
+        return [Level(row["method"], row["machine"], *(_number(row[field.name]) for field in NUMBERS)) for row in rows]
     except (OSError, KeyError, TypeError, ValueError):
         return []
 

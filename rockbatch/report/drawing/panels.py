@@ -7,7 +7,7 @@ from typing import Any
 from rockbatch.lazy import pd
 from rockbatch.report.drawing.axes import Axes, Scale
 from rockbatch.report.drawing.svg import ends, key, line, lowered, marker, rectangle, sign_of, style_of, svg, text
-from rockbatch.report.finished import Finished, as_dicts
+from rockbatch.report.finished import Finished, as_dicts, grouped
 from rockbatch.report.labels import Series
 from rockbatch.report.markup import Markup, join, number, tag
 from rockbatch.report.table import THETA_FORMAT
@@ -35,9 +35,7 @@ def draw(
     width = min(max(166.0, 56 + 13.0 * (max(ticks, default=0) + 1)), 900.0)
     sides = sorted(runs["side"].unique())
     panel = _Panel(finished.series, top, bool(runs["status"].isin(NO_PEAK).any()), ticks, width, sides)
-    by_record: dict[str, list[Run]] = {}
-    for run in as_dicts(runs[[*DRAWN, "side"]]):
-        by_record.setdefault(run["record"], []).append(run)
+    by_record = grouped(as_dicts(runs[[*DRAWN, "side"]]), lambda run: run["record"])
     drawn = []
     for name in records:
         pga = by_record[name][0]["pga"]

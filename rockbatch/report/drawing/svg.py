@@ -1,6 +1,5 @@
 """Pictures as inline SVG: text stays text, colours come from the style sheet, and curves are in tenths of a pixel."""
 
-import math
 from collections.abc import Collection, Iterable, Sequence
 
 import numpy as np
@@ -17,21 +16,21 @@ NO_PEAK = {
 }  # fmt: skip
 """Statuses of runs without a largest rotation, in words."""
 
-_POLYGONS = {
-    "square": (4, 4.6, 45, 1.0),
-    "up": (3, 5.4, 90, 1.0),
-    "diamond": (4, 5.0, 0, 1.0),
-    "down": (3, 5.4, -90, 1.0),
-    "star": (5, 5.8, 90, 0.42),
-    "left": (3, 5.4, 180, 1.0),
-    "right": (3, 5.4, 0, 1.0),
-    "hexagon": (6, 4.6, 0, 1.0),
-}  # corners, radius, direction of the first, and radius of the corners between them
-_CROSS = "M-1.5-4.5h3v3h3v3h-3v3h-3v-3h-3v-3h3z"
-_DISC = "M-4 0a4 4 0 1 0 8 0a4 4 0 1 0-8 0z"
-_SALTIRE = "M-4.5-2.5l2-2 2.5 2.5 2.5-2.5 2 2L2 0l2.5 2.5-2 2L0 2l-2.5 2.5-2-2L-2 0z"
-_ARROW = "M-1.7 5v-5h-3.3l5-5 5 5h-3.3v5z"
-
+SHAPES = {
+    "disc": "M-4 0a4 4 0 1 0 8 0a4 4 0 1 0-8 0z",
+    "cross": "M-1.5-4.5h3v3h3v3h-3v3h-3v-3h-3v-3h3z",
+    "overturned": "M-4.5-2.5l2-2 2.5 2.5 2.5-2.5 2 2L2 0l2.5 2.5-2 2L0 2l-2.5 2.5-2-2L-2 0z",
+    "flight": "M-1.7 5v-5h-3.3l5-5 5 5h-3.3v5z",
+    "square": "M3.3 -3.3L-3.3 -3.3L-3.3 3.3L3.3 3.3z",
+    "up": "M0.0 -5.4L-4.7 2.7L4.7 2.7z",
+    "diamond": "M5.0 -0.0L0.0 -5.0L-5.0 -0.0L-0.0 5.0z",
+    "down": "M0.0 5.4L4.7 -2.7L-4.7 -2.7z",
+    "star": "M0.0 -5.8L-1.4 -2.0L-5.5 -1.8L-2.3 0.8L-3.4 4.7L-0.0 2.4L3.4 4.7L2.3 0.8L5.5 -1.8L1.4 -2.0z",
+    "left": "M-5.4 -0.0L2.7 4.7L2.7 -4.7z",
+    "right": "M5.4 -0.0L-2.7 -4.7L-2.7 4.7z",
+    "hexagon": "M4.6 -0.0L2.3 -4.0L-2.3 -4.0L-4.6 -0.0L-2.3 4.0L2.3 4.0z",
+}
+"""Outlines of the markers around (0, 0) [px]."""
 MARKERS = ("disc", "square", "up", "diamond", "down", "cross", "star", "left", "right", "hexagon")
 
 
@@ -40,21 +39,9 @@ def style_of(index: int) -> tuple[str, int]:
     return MARKERS[index % len(MARKERS)], index % COLOURS + 1
 
 
-def _polygon(corners: int, radius: float, start: float, waist: float) -> str:
-    points = []
-    for i in range(corners * (2 if waist < 1 else 1)):
-        steps = corners * (2 if waist < 1 else 1)
-        angle = math.radians(start + 360 * i / steps)
-        r = radius * (waist if waist < 1 and i % 2 else 1)
-        points.append(f"{r * math.cos(angle):.1f} {-r * math.sin(angle):.1f}")
-    return f"M{'L'.join(points)}z"
-
-
 def markers() -> Markup:
     """Return the definitions of all markers, once for the page."""
-    shapes = {"disc": _DISC, "cross": _CROSS, "overturned": _SALTIRE, "flight": _ARROW}
-    shapes |= {name: _polygon(*form) for name, form in _POLYGONS.items()}
-    paths = [tag("path", id=f"m-{name}", d=d) for name, d in shapes.items()]
+    paths = [tag("path", id=f"m-{name}", d=d) for name, d in SHAPES.items()]
     return tag("svg", tag("defs", *paths), width=0, height=0, class_="markers", aria_hidden="true")
 
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from rockbatch.report.drawing.axes import Axes, Scale
 from rockbatch.report.drawing.svg import curve, key, line, marker, style_of, svg, text
+from rockbatch.report.finished import grouped
 from rockbatch.report.finished_analysis import Contents, of_files
 from rockbatch.report.labels import quantity
 from rockbatch.report.markup import Markup, join, tag
@@ -45,12 +46,9 @@ def _label(entry: Curve) -> str:
 
 
 def _panels(info: Mapping[str, Any]) -> Markup:
-    limits: dict[str, list[Curve]] = {}
-    for entry in info["curves"]:
-        limits.setdefault(entry["limit_state"], []).append(entry)
     styles = {label: style_of(i) for i, label in enumerate(dict.fromkeys(map(_label, info["curves"])))}
     drawn = []
-    for name, curves in limits.items():
+    for name, curves in grouped(info["curves"], lambda entry: entry["limit_state"]).items():
         for first in range(0, len(curves), CASES_OF_A_PANEL):
             some = curves[first : first + CASES_OF_A_PANEL]
             title = tag("figcaption", tag("span", name), " ", tag("span", some[0]["words"], class_="muted"))

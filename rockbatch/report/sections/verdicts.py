@@ -7,9 +7,9 @@ from rockbatch.checks import Verdict, wording
 from rockbatch.checks.answer import Line
 from rockbatch.checks.answer import answer as answered
 from rockbatch.checks.verdicts import CHECKS, DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS
-from rockbatch.report.finished import Finished
+from rockbatch.report.finished import Finished, grouped
 from rockbatch.report.labels import quantity
-from rockbatch.report.markup import Markup, join, number, tag
+from rockbatch.report.markup import Markup, join, number, paragraphs, tag
 from rockbatch.report.table import Head, table
 
 BASIS = {"code": "code clause", "literature": "literature", "judgement": "engineering judgement"}
@@ -24,7 +24,7 @@ def section(finished: Finished) -> Markup:
     verdicts = finished.verdicts
     if not verdicts:
         return Markup("")
-    parts: list[object] = [legend()]
+    parts: list[object] = [LEGEND]
     notes = wording.Notes(verdicts)
     if len(verdicts) > wording.MOST:
         every = tag("summary", f"All {len(verdicts)} verdicts, a row for each case")
@@ -67,10 +67,7 @@ def _line(line: Line) -> Markup:
 
 def _by_case(verdicts: Sequence[Verdict]) -> dict[str, list[Verdict]]:
     scaled = len({verdict.scale for verdict in verdicts}) > 1
-    cases: dict[str, list[Verdict]] = {}
-    for verdict in verdicts:
-        cases.setdefault(_case(verdict, scaled), []).append(verdict)
-    return cases
+    return grouped(verdicts, lambda verdict: _case(verdict, scaled))
 
 
 def _case(verdict: Verdict, scaled: bool) -> str:
@@ -79,13 +76,13 @@ def _case(verdict: Verdict, scaled: bool) -> str:
     return verdict.case + (f" ({', '.join(words)})" if words else "")
 
 
-def legend() -> Markup:
-    """Return the legend of :func:`matrix`."""
-    words = (
-        "Demand over limit; above 1 is too much; of events, whether there are any. ✓ passes, ✗ fails, ? not decided: the bounds "
-        "of the demand straddle the limit, or records are missing; – does not apply."
-    )
-    return tag("p", words, class_="legend")
+LEGEND = tag(
+    "p",
+    "Demand over limit; above 1 is too much; of events, whether there are any. ✓ passes, ✗ fails, ? not decided: the bounds "
+    "of the demand straddle the limit, or records are missing; – does not apply.",
+    class_="legend",
+)
+"""Legend of :func:`matrix`."""
 
 
 def matrix(verdicts: Sequence[Verdict]) -> Markup:
@@ -104,33 +101,21 @@ def _cell(verdict: Verdict) -> Markup:
 
 def _counts(verdicts: Sequence[Verdict]) -> Markup:
     """Return a row for each check: the number of verdicts of each kind."""
-    by_check: dict[str, list[Verdict]] = {}
-    for verdict in verdicts:
-        by_check.setdefault(verdict.check, []).append(verdict)
     rows = [
         [name, *(mark(way, str(n)) if n else "" for way, n in wording.count_of(same).items())]
-        for name, same in by_check.items()
+        for name, same in grouped(verdicts, lambda verdict: verdict.check).items()
     ]
-    return table([Head("check"), *(Head(way) for way in wording.WAYS)], rows, name="Verdicts of each kind")
+    return table([Head("check"), *map(Head, wording.WAYS)], rows, name="Verdicts of each kind")
 
 
 def _asked(verdicts: Sequence[Verdict]) -> Markup:
-    heads = [
-        Head("check"),
-        Head("asks"),
-        Head("limit from"),
-        Head("reason"),
-    ]
-    first = {row.check: row for row in reversed(verdicts)}
-    asked = [first[name] for name in dict.fromkeys(row.check for row in verdicts)]
+    asked = [same[0] for same in grouped(verdicts, lambda verdict: verdict.check).values()]
     rows = [[row.check, wording.asked(row), BASIS.get(row.basis, row.basis), row.reason] for row in asked]
     rests = {row.statistic: wording.unchecked(row) for row in asked}
-    sentences = [
-        *wording.Notes(verdicts).common(),
-        *wording.counting(verdicts),
-        *(f"{name}: {words}." for name, words in rests.items() if words),
-    ]
-    return join(table(heads, rows, prose=True, name="What the checks ask"), *(tag("p", words) for words in sentences))
+    heads = map(Head, ("check", "asks", "limit from", "reason"))
+    rest = (f"{name}: {words}." for name, words in rests.items() if words)
+    drawn = table([*heads], rows, prose=True, name="What the checks ask")
+    return join(drawn, paragraphs(*wording.Notes(verdicts).common(), *wording.counting(verdicts), *rest))
 
 
 def _every(verdicts: Sequence[Verdict], notes: wording.Notes) -> Markup:
