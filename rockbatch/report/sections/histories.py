@@ -9,8 +9,9 @@ import numpy as np
 from rockbatch.report.drawing.axes import Axes, Scale, spanning
 from rockbatch.report.drawing.history import LOOPS_HEIGHT, QUANTITIES, History, reduced
 from rockbatch.report.drawing.svg import Array, curve, line, lowered, marker, rectangle, svg, text
-from rockbatch.report.finished import Finished, as_dicts, worst_first
-from rockbatch.report.markup import Markup, figure, join, tag
+from rockbatch.report.finished import Finished, as_dicts, grouped, worst_first
+from rockbatch.report.markup import Markup, join, tag
+from rockbatch.report.templates import render
 from rockbatch.results.histories_file import Responses
 from rockbatch.simulation.response import Response
 
@@ -29,22 +30,12 @@ def section(finished: Finished) -> Markup:
     """Draw the stored histories; None if there are none."""
     if not len(finished.responses):
         return Markup("")
-    drawn = join(*(figure(*pair) for pair in _figures(finished, finished.responses)))
-    hint = "Point at a picture, touch it, or go through it with the arrow keys, to read values."
-    return join(tag("p", hint, class_="scripted"), drawn, _others(finished))
-
-
-def _others(finished: Finished) -> Markup:
-    """Give the command that stores other histories."""
     command = shlex.join([*map(str, finished.info["command"]), "--history", "RECORD"])
-    return tag(
-        "p", "Histories of the runs under another record: ", tag("code", command), " with its name for RECORD; "
-        "finished runs are not repeated.", class_="legend",
-    )  # fmt: skip
+    return render("sections/histories.html", pictures=_pictures(finished, finished.responses), command=command)
 
 
-def _figures(finished: Finished, responses: Sequence[Response]) -> list[tuple[Markup, Markup]]:
-    """Draw a figure with its caption for each pier: a column for every response, or for the worst of many."""
+def _pictures(finished: Finished, responses: Sequence[Response]) -> list[dict[str, Any]]:
+    """Draw a picture for each pier: a column for every response, or for the worst of many; with what its caption depends on."""
     kept = _kept(finished, responses)
     numbers = _chosen(finished, kept)
     behind = {number: _behind(kept, number) for number in numbers}
@@ -52,32 +43,28 @@ def _figures(finished: Finished, responses: Sequence[Response]) -> list[tuple[Ma
     columns = [number for number in numbers if number not in behind.values()]
     there = {number for number in (*columns, *behind.values()) if number is not None}
     drawn = {number: reduced(responses[number], LEFT, WIDTH) for number in sorted(there)}
-    figures = []
-    for pier in dict.fromkeys(kept[number]["pier"] for number in columns):
-        same = [number for number in columns if kept[number]["pier"] == pier]
+    pictures = []
+    for pier, same in grouped(columns, lambda number: kept[number]["pier"]).items():
         same.sort(key=lambda number: (not kept[number]["rigid"], kept[number]["index"]))
         seen = [drawn[number] for column in same for number in (column, behind[column]) if number is not None]
         scales = [_scale(seen, row) for row in range(len(QUANTITIES))]
         # As many loops below each column, so that columns beside each other line up
         shown = [drawn[number] for number in same]
-        feet = [0] if any(history.loops for history in shown) else []
-        feet += range(1, 1 + max(len(history.devices) for history in shown))
+        devices = max(len(history.devices) for history in shown)
+        loops = any(history.loops for history in shown)
+        feet = [*([0] if loops else []), *range(1, 1 + devices)]
         cells = []
         for number in same:
-            back = behind[number]
-            title = _title(finished, kept[number])
-            drawing = picture(
-                drawn[number],
-                None if back is None else drawn[back],
-                scales,
-                finished.label(kept[number]["record"]),
-                feet,
-            )
-            cells.append(tag("figure", tag("figcaption", title), drawing))
+            back, record = behind[number], finished.label(kept[number]["record"])
+            drawing = picture(drawn[number], None if back is None else drawn[back], scales, record, feet)
+            cells.append(tag("figure", tag("figcaption", _title(finished, kept[number])), drawing))
         grid = tag("div", *cells, class_="histories", style=f"--w:{LEFT + WIDTH + 6:.0f}px")
-        lines = any(behind[number] is not None for number in same)
-        figures.append((grid, _caption(finished.piers[pier], [drawn[number] for number in same], lines)))
-    return figures
+        pictures.append({
+            "pier": finished.piers[pier], "grid": grid, "loops": loops, "devices": devices,
+            "flights": any(len(history.flights) for history in shown), "bands": any(history.band for history in shown),
+            "lines": any(behind[number] is not None for number in same),
+        })  # fmt: skip
+    return pictures
 
 
 def _kept(finished: Finished, responses: Sequence[Response]) -> list[Row]:
@@ -194,24 +181,3 @@ def _events(axes: Axes, own: History) -> Markup:
         end = float(axes.across(own.end[0])), float(axes.down(np.clip(own.end[1], axes.y.low, axes.y.high)))
         marks.append(marker(own.status, *end, colour="alarm"))
     return join(*marks)
-
-
-def _caption(pier: str, shown: Sequence[History], lines: bool) -> Markup:
-    said = [
-        tag("strong", f"{pier}. ") if pier else "",
-        "Rotation, angular velocity, energy relative to the start, and ground acceleration, against time. "
-        "In the first panel: the largest rotation with its value; strokes at the foot for impacts, at the top for separations",
-        "; dashed: both pivots off the ground" if any(len(history.flights) for history in shown) else "",
-        "; thin line: rigid base" if lines else "",
-        "; shaded: rotations at which both supports stay loaded in weak rocking"
-        if any(history.band for history in shown)
-        else "",
-        ".",
-        " At the foot, force against deflection of the left (L) and right (R) spring over their values at yield."
-        if any(history.loops for history in shown)
-        else "",
-        " At the foot, force against elongation of dampers and tendons; of a pair, the one at the right pivot is paler."
-        if any(history.devices for history in shown)
-        else "",
-    ]
-    return join(*said)

@@ -46,9 +46,9 @@ def section(finished: Finished) -> Markup:
             stood["theta_max_is"] == LEANS,
         ),
     }
-    legend = [
+    legend = (
         tag("p", tag("sup", mark), " ", words, class_="legend") for mark, (words, mask) in marks.items() if mask.any()
-    ]
+    )
     return join(drawn, *legend)
 
 

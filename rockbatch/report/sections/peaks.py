@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING, Any
 from rockbatch.checks.suite import OTHER_LAW, creeps
 from rockbatch.lazy import pd
 from rockbatch.report.finished import Finished, as_dicts, worst_first
-from rockbatch.report.labels import counted, head, symbol
+from rockbatch.report.labels import head, symbol
 from rockbatch.report.markup import Markup, join, number, tag
 from rockbatch.report.table import MOST_ROWS, THETA_FORMAT, Head, alarm, table, told_apart
+from rockbatch.report.templates import render
 from rockbatch.results.columns import COLUMNS, PEAKS, on_page
 from rockbatch.simulation.outcome import LINEARISED
 
@@ -20,15 +21,17 @@ MOST_COLUMNS = 24
 
 def section(finished: Finished) -> Markup:
     """Return every run in a table."""
-    if finished.runs.empty:
+    runs = finished.runs
+    if runs.empty:
         return Markup("")
-    lead = [
-        "The worst first: overturned, ended by flight, then by rotation. All of it is in ",
-        tag("a", tag("code", PEAKS), href=PEAKS), ", beside this page. ",
-        tag("span", "Click a heading to sort.", class_="scripted"),
-    ]  # fmt: skip
-    above = (tag("p", *lead), _linearised(finished), _ratcheting(finished))
-    return join(*above, _every_run(finished))
+    gap = (runs["settlement_m"] - runs[OTHER_LAW]).abs() if OTHER_LAW in runs else None
+    widest = None if gap is None or gap.isna().all() else runs.iloc[int(gap.argmax())]
+    return render(
+        "sections/peaks.html", file=PEAKS, runs=runs, finished=finished, table=_every_run(finished), widest=widest,
+        linearised=LINEARISED, far=int(runs["note"].str.contains(LINEARISED).sum()), one_law=gap is None,
+        ratchets=any(map(creeps, finished.info["cases"])),
+        range=[] if widest is None else sorted(1000 * widest[name] for name in ("settlement_m", OTHER_LAW)),
+    )  # fmt: skip
 
 
 def at_a_glance(finished: Finished, runs: "pd.DataFrame", records: "Sequence[str]") -> Markup:
@@ -100,10 +103,9 @@ def _every_run(finished: Finished) -> Markup:
         ]
         for run in as_dicts(shown)
     ]
-    warning = tag("p", alarm(f"{PEAKS} {finished.saved.told_missing}"), ".") if finished.saved.missing else ""
     heads = [*names.values(), *columns.values()]
     drawn = table(heads, rows, sortable=True, name="Every run")
-    return join(warning, told_apart(len(shown), len(runs), "worst"), drawn)
+    return join(told_apart(len(shown), len(runs), "worst"), drawn)
 
 
 def _cell(name: str, value: Any) -> object:
@@ -127,40 +129,3 @@ def on_scale(name: str, value: float | None) -> float | None:
     column = COLUMNS.get(name)
     factor = column.page.factor if column and column.page else 1
     return None if value is None or value != value else factor * float(value)
-
-
-def _linearised(finished: Finished) -> Markup:
-    """Report how many runs rotate beyond the range of first-order kinematics."""
-    far = int(finished.runs["note"].str.contains(LINEARISED).sum())
-    if not far:
-        return Markup("")
-    warning = f"{counted(far, 'run')} of {len(finished.runs)}: rotations too large for {LINEARISED}. "
-    return tag(
-        "p",
-        alarm(warning),
-        "What they neglect is in the notes of the runs; kinematics = ",
-        tag("code", '"finite"'),
-        " keeps it.",
-    )
-
-
-def _ratcheting(finished: Finished) -> Markup:
-    """State that settlement depends on the spring law, with its widest range if both were run."""
-    if not any(map(creeps, finished.info["cases"])):
-        return Markup("")
-    told = "Bouc–Wen springs ratchet: they settle a little with every small cycle, springs by the other laws do not. "
-    runs = finished.runs
-    if OTHER_LAW not in runs:
-        told += (
-            "Settlement and residual rotation depend on that; [output] both_laws = true in the study shows how much."
-        )
-        return tag("p", told)
-    gap = (runs["settlement_m"] - runs[OTHER_LAW]).abs()
-    if gap.notna().any():
-        run = runs.iloc[int(gap.argmax())]
-        both = sorted(1000 * run[name] for name in ("settlement_m", OTHER_LAW))
-        told += (
-            f"Settlement is the range between both laws, the widest in {finished.where(run)}: {both[0]:z.1f} to "
-            f"{both[1]:z.1f} mm. Checks take the worse."
-        )
-    return tag("p", told)

@@ -13,40 +13,27 @@ from rockbatch.results.suite_statistics import NO_PEAK
 
 
 def section(finished: Finished) -> Markup:
-    """Compare with the references of the study; None if it has none."""
-    return _published(finished) if finished.info["references"] else Markup("")
-
-
-def _published(finished: Finished) -> Markup:
-    """Return every run that matches a reference's record pattern, case and columns."""
-    runs = finished.runs
-    more = [key for key in ("polarity", "scale") if runs[key].nunique() > 1]
-    keys = [*finished.info["varied"], *more]
+    """Compare with the references of the study: every run that matches a record pattern, case and columns; empty without any."""
+    runs, references = finished.runs, finished.info["references"]
+    if not references:
+        return Markup("")
+    keys = [*finished.info["varied"], *(key for key in ("polarity", "scale") if runs[key].nunique() > 1)]
     heads = [Head("record"), Head("case"), *(Head(symbol(key)) for key in keys)]
     heads += [Head(join(THETA, ", ours"), THETA_FORMAT), Head(join(THETA, ", published"))]
     heads += [Head("difference [%]", "+.1f"), Head("source")]
     rows: list[list[object]] = []
-    for reference in finished.info["references"]:
-        name, case, theirs = reference["record"], reference["case"], reference["theta_max_over_alpha"]
+    for reference in references:
+        case, theirs, source = reference["case"], reference["theta_max_over_alpha"], reference["source"]
         fits = [run for run in as_dicts(runs[runs["case"] == case]) if _fits(run, reference)]
         for run in fits:
             ours = run["theta_max_over_alpha"] if run["status"] not in (*NO_PEAK, "failed") else None
             difference = 100 * (ours / theirs - 1) if ours is not None and theirs else None
-            rows.append(
-                [
-                    finished.shown(run["record"]),
-                    case,
-                    *(run[key] for key in keys),
-                    outcome(run),
-                    theirs,
-                    difference,
-                    reference["source"],
-                ]
-            )
+            values = [run[key] for key in keys]
+            rows.append([finished.shown(run["record"]), case, *values, outcome(run), theirs, difference, source])
         if not fits:
             values = [reference["columns"].get(key, "") for key in keys]
             nothing = tag("span", "no such run", class_="muted")
-            rows.append([name, case, *values, nothing, theirs, None, reference["source"]])
+            rows.append([reference["record"], case, *values, nothing, theirs, None, source])
     return table(heads, rows, name="Compared with published values")
 
 
