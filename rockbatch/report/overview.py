@@ -22,6 +22,7 @@ MOST_NAMED = 12
 MOST_FOUNDATIONS = 300
 SHOWN = ["record", "series", "polarity", "status", "theta_max_over_alpha", "theta_max_error"]
 """Columns that the dots and their words are made of."""
+CAPTION = join("Largest rotation over slenderness, ", THETA, ", a row for each ")
 MOST_STRETCH = 2.0
 """Largest factor on the axis, so that a limit far above all peaks does not crowd them at one end."""
 
@@ -34,21 +35,18 @@ def by_record(finished: Finished) -> Markup:
     columns = _columns(finished)
     names = worst_first(runs, "record")
     single = names if len(names) <= MOST_ROWS else names[: MOST_ROWS - 1]
-    split = _split(columns, "record")
-    rows = [_row_of_record(finished, str(name), split) for name in single]
-    if len(single) < len(names):
-        rows.append(_others(columns, "record", single, len(names)))
-    series = finished.series if len(finished.series) <= MOST_NAMED else None
-    marks = dots.Marks(
-        series,
-        lambda run: (
-            f"{finished.label(run['record'])}\n{said_of(finished.series[run['series']], run, finished.both_directions)}"
-        ),
-        "foundation",
-    )
-    caption = join(
-        "Largest rotation over slenderness, ", THETA, ", a row for each record, the worst first", _all(finished)
-    )
+
+    def label(name: str) -> tuple[str, str, str]:
+        words, comma, end = finished.label(name).rpartition(", ")  # the direction always stays
+        return (words, comma + end, finished.named(name)) if words else (end, "", finished.named(name))
+
+    def said(run: dots.Run) -> str:
+        words = said_of(finished.series[run["series"]], run, finished.both_directions)
+        return f"{finished.label(run['record'])}\n{words}"
+
+    rows = _rows(columns, "record", single, label, len(names))
+    marks = dots.Marks(finished.series if len(finished.series) <= MOST_NAMED else None, said, "foundation")
+    caption = join(CAPTION, "record, the worst first", _all(finished))
     limits = [_limits(finished, own) for _, own in columns]
     top = ceiling(runs)
     within = [limit.theta for own in limits for limit in own if limit.theta < MOST_STRETCH * top]
@@ -82,24 +80,24 @@ def by_foundation(finished: Finished) -> Markup:
     """Draw a row for each of the best foundations and one for the others; below, folded, a row for every one."""
     runs, columns = finished.runs, _columns(finished)
     best = worst_first(runs, "series")[::-1]
-    split = _split(columns, "series")
-    rows = [_row_of_foundation(finished, int(place), split) for place in best[: MOST_ROWS - 1]]
-    rows.append(_others(columns, "series", best[: MOST_ROWS - 1], len(best)))
-    marks = dots.Marks(
-        None,
-        lambda run: said_of(finished.series[run["series"]], run, True) + f", {finished.label(run['record'])}",
-        "record",
-    )
     top, words = ceiling(runs), [words for words, _ in columns]
-    order = ", a row for each foundation, the best first: those that overturn, fly or fail the least often, then by their peaks"
-    caption = join("Largest rotation over slenderness, ", THETA, order, _all(finished))
     every = sorted(best)[:MOST_FOUNDATIONS]
-    drawn = dots.draw([_row_of_foundation(finished, int(place), split) for place in every], words, top, marks)
+
+    def label(place: int) -> tuple[str, str, str]:
+        return finished.series[place].label, "", finished.series[place].label
+
+    def said(run: dots.Run) -> str:
+        return said_of(finished.series[run["series"]], run, True) + f", {finished.label(run['record'])}"
+
+    marks = dots.Marks(None, said, "record")
+    order = "foundation, the best first: those that overturn, fly or fail the least often, then by their peaks"
     first = "All" if len(every) == len(best) else f"The first {len(every)} of"
+    summary = tag("summary", f"{first} {len(best):,} foundations, in the order of the study")
+    rows = _rows(columns, "series", best[: MOST_ROWS - 1], label, len(best), always=True)
+    drawn = dots.draw(_rows(columns, "series", every, label, len(every)), words, top, marks)
     return join(
-        figure(dots.draw(rows, words, top, marks), caption),
-        tag("details", tag("summary", f"{first} {len(best):,} foundations, in the order of the study"), drawn),
-    )  # fmt: skip
+        figure(dots.draw(rows, words, top, marks), join(CAPTION, order, _all(finished))), tag("details", summary, drawn)
+    )
 
 
 def ceiling(runs: "pd.DataFrame") -> float:
@@ -127,32 +125,19 @@ def worst_first(runs: "pd.DataFrame", by: str) -> list[Any]:
     return sorted(stood.index, key=lambda row: (*(-int(count[row]) for count in ended), -float(stood[row]), row))
 
 
-def _split(columns: "Sequence[tuple[str, pd.DataFrame]]", by: str) -> "list[Callable[[object], pd.DataFrame]]":
-    """Of each column what gives the runs of one record or foundation."""
-
-    def of(runs: "pd.DataFrame") -> "Callable[[object], pd.DataFrame]":
-        places = runs.groupby(by).indices
-        return lambda one: runs.iloc[places.get(one, [])]
-
-    return [of(own[SHOWN]) for _, own in columns]
-
-
-def _row_of_record(finished: Finished, name: str, columns: "Sequence[Callable[[object], pd.DataFrame]]") -> dots.Row:
-    """Of the label the direction, at the end, always stays."""
-    words, comma, end = finished.label(name).rpartition(", ")
-    words, end = (words, comma + end) if words else (end, "")
-    return dots.Row(words, end, finished.named(name), [own(name) for own in columns])
-
-
-def _row_of_foundation(
-    finished: Finished, place: int, columns: "Sequence[Callable[[object], pd.DataFrame]]"
-) -> dots.Row:
-    label = finished.series[place].label
-    return dots.Row(label, "", label, [own(place) for own in columns])
-
-
-def _others(columns: "Sequence[tuple[str, pd.DataFrame]]", by: str, single: Sequence[object], every: int) -> dots.Row:
-    """Return the row of all that have no row of their own."""
-    what = {"record": "records", "series": "foundations"}[by]
-    rest = [own.loc[~own[by].isin(single), SHOWN] for _, own in columns]
-    return dots.Row(f"the other {every - len(single):,} {what}", "", "", rest)
+def _rows(
+    columns: "Sequence[tuple[str, pd.DataFrame]]",
+    by: str,
+    single: Sequence[Any],
+    label: Callable[[Any], tuple[str, str, str]],
+    all_: int,
+    always: bool = False,
+) -> list[dots.Row]:
+    """Return a row for each record or foundation in ``single``, and one for those of ``all_`` that have none of their own."""
+    places = [(runs[SHOWN], runs.groupby(by).indices) for _, runs in columns]
+    rows = [dots.Row(*label(one), [runs.iloc[index.get(one, [])] for runs, index in places]) for one in single]
+    if len(single) < all_ or always:
+        what = {"record": "records", "series": "foundations"}[by]
+        rest = [runs.loc[~runs[by].isin(single), SHOWN] for _, runs in columns]
+        rows.append(dots.Row(f"the other {all_ - len(single):,} {what}", "", "", rest))
+    return rows

@@ -46,14 +46,10 @@ def section(contents: Contents) -> Markup:
     return join(*parts, analysis.provenance()) if parts else Markup("")
 
 
-# Rocking spectra
-
-
 def _spectra(analysis: FinishedAnalysis, suite: "pd.DataFrame") -> list[Markup]:
-    axis = analysis.info["axis"]
+    axis, many = analysis.info["axis"], bool((suite["count"] > 1).any())
     apart = [name for name in ("case", "scale", *analysis.info["varied"]) if name not in ("alpha", axis)]
-    varying = [name for name in apart if name in ("case",) or suite[name].nunique(dropna=False) > 1]
-    many = bool((suite["count"] > 1).any())
+    varying = [name for name in apart if name == "case" or suite[name].nunique(dropna=False) > 1]
     lead = "Largest rotation over slenderness against the size of the pier, a curve for each slenderness. "
     if many:
         lead += (
@@ -64,10 +60,7 @@ def _spectra(analysis: FinishedAnalysis, suite: "pd.DataFrame") -> list[Markup]:
         (named(dict(zip(apart, names, strict=True)), varying), *_curves(runs, axis, many))
         for names, runs in suite.groupby(apart, sort=False, dropna=False)
     ]
-    return [
-        tag("p", lead),
-        tag("figure", side_by_side(drawn, WIDTH), class_="whole"),
-    ]
+    return [tag("p", lead), tag("figure", side_by_side(drawn, WIDTH), class_="whole")]
 
 
 def _curves(points: "pd.DataFrame", axis: str, many: bool) -> tuple[Markup, list[Entry]]:
@@ -104,9 +97,6 @@ def _curves(points: "pd.DataFrame", axis: str, many: bool) -> tuple[Markup, list
     if np.isinf(points["median"].to_numpy(float)).any():
         entries.append((marker("overturned", 11, 7, colour="ink"), "overturned or ended by flight" + ", median" * many))
     return svg(WIDTH, height, *drawn, description="Rocking spectrum", class_="plot marks"), entries
-
-
-# Overturning maps
 
 
 def _maps(analysis: FinishedAnalysis, regions: "pd.DataFrame") -> list[Markup]:
