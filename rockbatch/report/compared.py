@@ -39,7 +39,7 @@ NUMERICS = {"tolerance": "tolerance", "substeps": "steps per sample", "quiet_s":
 
 def answer(pair: Pair) -> Markup:
     """Report the better study, the difference and the governing records, from the runs that both have."""
-    in_common = zip(pair.studies, pair.matched.runs, strict=True)
+    in_common = zip(pair.studies, pair.runs, strict=True)
     studies = [replace(study, runs=study.runs.loc[runs.index]) for study, runs in in_common]
     if studies[0].runs.empty:
         return tag("p", "The two studies have no run in common.")
@@ -75,7 +75,7 @@ def _change(first: float, second: float) -> float:
 
 def _pairs(pair: Pair) -> str:
     """Report in how many pairs of runs the rotation is smaller, and the greatest changes either way."""
-    a, b = pair.matched.runs
+    a, b = pair.runs
     first, second = (runs["theta_max_over_alpha"].where(runs["status"] == "ok").to_numpy(float) for runs in (a, b))
     both = (first > 0) & (second >= 0)
     if not both.any():
@@ -167,11 +167,11 @@ def _shown(values: Sequence[object], both: Iterable[object]) -> str:
 
 def figures(pair: Pair) -> Markup:
     """Draw panels with the markers of both studies; of both directions, the worse one."""
-    named, matched = pair.named, pair.matched
-    if matched.runs[0].empty:
+    named = pair.named
+    if pair.runs[0].empty:
         return Markup("")
     worse = []
-    for name, runs in zip(SIDES, matched.runs, strict=True):
+    for name, runs in zip(SIDES, pair.runs, strict=True):
         kept = worst_first(runs, len(runs)).drop_duplicates(["record", "series", "pier", "scale", "with_vertical"])
         worse.append(kept.assign(side=name))
     both = replace(named, runs=pd.concat(worse, ignore_index=True))
@@ -179,14 +179,14 @@ def figures(pair: Pair) -> Markup:
     caption = [
         "Largest rotation over slenderness, ", THETA, ": filled markers A, open markers B",
         "; lines: rigid base, B dashed" if lines else "",
-        "; the worse direction of each motion" if matched.runs[0]["polarity"].nunique() > 1 else "", ".",
+        "; the worse direction of each motion" if pair.runs[0]["polarity"].nunique() > 1 else "", ".",
     ]  # fmt: skip
     return peak_rotations.figures(both, caption, side="side")
 
 
 def pairs(pair: Pair) -> Markup:
     """Return a row for each pair of runs, the worst first."""
-    a, b = pair.matched.runs
+    a, b = pair.runs
     if a.empty:
         return Markup("")
     worse = a["theta_max_over_alpha"].fillna(0).to_numpy() < b["theta_max_over_alpha"].fillna(0).to_numpy()
@@ -194,7 +194,7 @@ def pairs(pair: Pair) -> Markup:
     rank = ("ok", "failed", "flight", "overturned").index
     worst["status"] = [max(both, key=rank) for both in zip(a["status"], b["status"], strict=True)]
     order = a.index.get_indexer(worst_first(worst, MOST_ROWS).index)
-    names = [key for key in pair.matched.keys if key in ("record", "case") or a[key].nunique() > 1]
+    names = [key for key in pair.keys if key in ("record", "case") or a[key].nunique() > 1]
     more = [
         column
         for column in COLUMNS.values()
@@ -214,15 +214,15 @@ def pairs(pair: Pair) -> Markup:
 
 def suites(pair: Pair) -> Markup:
     """Return statistics over the runs that both have, since another suite would give other statistics."""
-    if pair.matched.runs[0].empty:
+    if pair.runs[0].empty:
         return Markup("")
     vertical = [any(record["pga_v_g"] is not None for record in study.info["records"]) for study in pair.studies]
     sides = list(SIDES)
     if vertical[0] != vertical[1]:
         sides = [f"{name}, {'with' if own else 'without'} vertical" for name, own in zip(SIDES, vertical, strict=True)]
     keys = ["scale", "pier", "series", "with_vertical"]
-    names, heads = statistics.rows_of(pair.named, pair.matched.runs[0], keys)
-    runs = dict(zip(sides, pair.matched.runs, strict=True))
+    names, heads = statistics.rows_of(pair.named, pair.runs[0], keys)
+    runs = dict(zip(sides, pair.runs, strict=True))
     drawn = statistics.tables(runs, keys, names, heads, pair.studies[0].count)
     return join(tag("p", "Over the pairs of runs only."), drawn)
 
@@ -230,7 +230,7 @@ def suites(pair: Pair) -> Markup:
 def only_in_one(pair: Pair) -> Markup:
     """Return a row for each case that has runs without a counterpart; empty if all have one."""
     rows: list[list[object]] = []
-    for name, study, runs in zip(SIDES, pair.studies, pair.matched.only, strict=True):
+    for name, study, runs in zip(SIDES, pair.studies, pair.only, strict=True):
         for _, same in runs.groupby(["series", "pier", "scale", "polarity", "with_vertical"], sort=False):
             rows.append([name, study.which(same.iloc[0]), len(same), _first(list(dict.fromkeys(same["record"])), 6)])
     heads = [Head("study"), Head("case"), Head("runs"), Head("records")]
@@ -244,7 +244,7 @@ def _first(names: Sequence[str], most: int) -> str:
 def studies(pair: Pair) -> Markup:
     """Describe both studies."""
     parts: list[object] = [
-        tag("p", f"{counted(len(pair.matched.runs[0]), 'pair')} of runs with the same ground motion and case name.")
+        tag("p", f"{counted(len(pair.runs[0]), 'pair')} of runs with the same ground motion and case name.")
     ]
     for name, study in zip(SIDES, pair.studies, strict=True):
         title = tag("h3", f"{name}: {study.study['title'] or ''} ", tag("code", study.directory))

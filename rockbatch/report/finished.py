@@ -21,7 +21,8 @@ from rockbatch.results.reading import Saved
 from rockbatch.simulation.response import Response
 from rockbatch.study import PIER_KEYS
 
-T, K = TypeVar("T"), TypeVar("K")
+T = TypeVar("T")
+K = TypeVar("K")
 
 
 @dataclass(frozen=True, eq=False)

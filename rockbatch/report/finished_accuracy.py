@@ -1,6 +1,7 @@
 """Results of ``rockbatch accuracy`` in a folder."""
 
 import csv
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
@@ -25,12 +26,14 @@ class Level:
     reference_change: float | None
 
     @property
+    def time(self) -> float:
+        """Return the time per run [ms]; NaN if it was not measured."""
+        return 1000 * (self.seconds_per_run or math.nan)
+
+    @property
     def milliseconds(self) -> str:
         """Return the time per run [ms] as text; empty if it was not measured."""
-        if self.seconds_per_run is None:
-            return ""
-        value = 1000 * self.seconds_per_run
-        return f"{value:.0f}" if value >= 100 else f"{value:.3g}"
+        return "" if self.seconds_per_run is None else f"{self.time:.0f}" if self.time >= 100 else f"{self.time:.3g}"
 
 
 NUMBERS = fields(Level)[2:]

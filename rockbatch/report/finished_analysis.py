@@ -3,11 +3,11 @@
 import hashlib
 import json
 import warnings
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import wraps
 from pathlib import Path
-from typing import Any, ParamSpec, TypeVar
+from typing import Any
 
 from rockbatch.errors import EditedTable, InputError
 from rockbatch.files import read_table, read_text, sha256_of
@@ -16,9 +16,6 @@ from rockbatch.report.labels import counted, quantity
 from rockbatch.report.markup import Markup, tag
 
 MOST_NAMES = 60
-
-P = ParamSpec("P")
-T = TypeVar("T")
 
 _DAMAGE = (KeyError, IndexError, TypeError, ValueError, AttributeError, ArithmeticError)
 """Exceptions that drawing raises if the file of an analysis does not hold what its command writes."""
@@ -105,25 +102,18 @@ def _warn_edited(path: Path) -> None:
     warnings.warn(message, EditedTable, stacklevel=3)
 
 
-def of_files(name: str) -> Callable[[Callable[P, T]], Callable[P, T]]:
-    """Wrap a section drawn from NAME.json and its tables: if they do not fit each other, raise ``InputError``."""
-
-    def decorated(section: Callable[P, T]) -> Callable[P, T]:
-        @wraps(section)
-        def checked(*args: P.args, **more: P.kwargs) -> T:
-            try:
-                return section(*args, **more)
-            except InputError:
-                raise
-            except _DAMAGE as error:
-                what = f"{type(error).__name__}: {error}"
-                raise InputError(
-                    f"{name}.json and its tables do not fit each other, or are damaged ({what}); start `rockbatch {name}` again"
-                ) from error
-
-        return checked
-
-    return decorated
+@contextmanager
+def of_files(name: str) -> Iterator[None]:
+    """Raise ``InputError`` if NAME.json and its tables, of which a section is drawn, do not fit each other; a decorator, too."""
+    try:
+        yield
+    except InputError:
+        raise
+    except _DAMAGE as error:
+        what = f"{type(error).__name__}: {error}"
+        raise InputError(
+            f"{name}.json and its tables do not fit each other, or are damaged ({what}); start `rockbatch {name}` again"
+        ) from error
 
 
 def named(values: Mapping[str, Any], shown: Sequence[str]) -> str:

@@ -14,7 +14,7 @@ from rockbatch.cli import main
 from rockbatch.pier import Pier, YieldingBase
 from rockbatch.report import write_comparison
 from rockbatch.report.finished import read
-from rockbatch.report.pair import match
+from rockbatch.report.pair import pair
 
 PIER = Pier(alpha=0.13, p=0.38)
 
@@ -68,11 +68,11 @@ def test_values_that_both_vary_are_matched_and_those_that_one_varies_are_not_gue
     grid = [case_entry("soil", {"eta": eta}, PIER, YieldingBase(beta=40.0, eta=eta)) for eta in (2.5, 3.5)]
     lone = [case_entry("soil", {}, PIER, YieldingBase(beta=40.0, eta=2.5))]
     a, b = two(tmp_path, {"cases": grid, "varied": ("eta",)}, {"cases": grid[1:], "varied": ("eta",)})
-    matched = match(read(a), read(b))
+    matched = pair(read(a), read(b))
     assert set(matched.runs[0]["eta"]) == {3.5}
     assert set(matched.only[0]["eta"]) == {2.5}
     write_results(b, cases=lone)
-    matched = match(read(a), read(b))
+    matched = pair(read(a), read(b))
     assert matched.runs[0].empty  # two runs of A would fit every run of B
     assert (len(matched.only[0]), len(matched.only[1])) == (12, 6)
     assert "Every pair" not in Page(write_comparison(a, b).read_text(encoding="utf-8")).headings
@@ -80,7 +80,7 @@ def test_values_that_both_vary_are_matched_and_those_that_one_varies_are_not_gue
 
 def test_piers_of_both_are_matched_by_their_values(tmp_path):
     a, b = two(tmp_path, {"cases": three_piers(), "varied": ("p",)}, {"cases": three_piers()[10:], "varied": ("p",)})
-    first, second = match(read(a), read(b)).runs
+    first, second = pair(read(a), read(b)).runs
     assert set(first["p"]) == {0.35}
     pd.testing.assert_series_equal(first["pier"], second["pier"], check_index=False)
 

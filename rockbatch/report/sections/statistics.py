@@ -6,7 +6,6 @@ from itertools import islice
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from rockbatch.checks.suite import counts_as
 from rockbatch.lazy import pd
@@ -43,26 +42,18 @@ def section(finished: Finished) -> Markup:
 
 
 def rows_of(finished: Finished, runs: "pd.DataFrame", keys: list[str]) -> tuple[dict[Row, list[str]], list[Head]]:
-    """Texts of the first cells of each row, and their heads; ``keys`` are columns of ``runs`` that tell rows apart."""
+    """Return the texts of the first cells of each row, and their heads; ``keys`` are columns of ``runs`` that tell rows apart."""
     many_scales = runs["scale"].nunique() > 1
-    words: dict[str, Callable[[Any], str]] = {
-        "series": lambda place: finished.series[place].label,
-        "pier": lambda place: finished.piers[place],
-        "scale": lambda scale: f"{scale:g}" if many_scales else "",
-        "with_vertical": str,
+    columns: dict[str, tuple[str, Callable[[Any], str]]] = {
+        "series": ("case", lambda place: finished.series[place].label),
+        "pier": ("pier", lambda place: finished.piers[place]),
+        "scale": ("scale of motions", lambda scale: f"{scale:g}" if many_scales else ""),
+        "with_vertical": ("vertical", str),
     }
-    heads = {
-        "series": Head("case"),
-        "pier": Head("pier"),
-        "scale": Head("scale of motions"),
-        "with_vertical": Head("vertical"),
-    }
-    shown = [name for name in heads if name in keys]
-    names: dict[Row, list[str]] = {}
-    for key in runs[keys].drop_duplicates().sort_values(keys).itertuples(index=False, name=None):
-        values = dict(zip(keys, key, strict=True))
-        names[key] = [words[name](values[name]) for name in shown]
-    return names, [heads[name] for name in shown]
+    shown = {keys.index(name): column for name, column in columns.items() if name in keys}
+    rows = runs[keys].drop_duplicates().sort_values(keys).itertuples(index=False, name=None)
+    names = {key: [words(key[place]) for place, (_, words) in shown.items()] for key in rows}
+    return names, [Head(says) for says, _ in shown.values()]
 
 
 def tables(
@@ -86,7 +77,9 @@ def tables(
         What counts as one record, one of :data:`rockbatch.checks.rules.COUNTS`.
     """
     drawn = [tag("p", RECORDS[count] + WORDS)]
-    grouped = [_by_row(runs, keys, names) for runs in sides.values()]
+    index = pd.MultiIndex.from_tuples(list(names), names=keys)
+    placed = [(runs, index.get_indexer(pd.MultiIndex.from_frame(runs[keys]))) for runs in sides.values()]
+    grouped = [(runs[place >= 0], place[place >= 0].astype(np.int64)) for runs, place in placed]
     counted_as = [counts_as(runs, count)[0].to_list() for runs, _ in grouped]
     for column in COLUMNS.values():
         there = all(column.name in runs for runs, _ in grouped)
@@ -99,21 +92,17 @@ def tables(
             has = np.bincount(rows, ~np.isnan(values), len(names)) > 0
             of_rows = suites(values, runs["status"].to_list(), records, rows, len(names))
             found.append([suite if any_ else None for suite, any_ in zip(of_rows, has, strict=True)])
-        cells = [[*words, *_cells(own, form)] for words, *own in zip(names.values(), *found, strict=True) if any(own)]
+        cells = [
+            [*words, *(_cell(suite, name, form) for name in _COLUMNS for suite in own)]
+            for words, *own in zip(names.values(), *found, strict=True)
+            if any(own)
+        ]
         if cells:
             drawn += [
                 tag("h3", says),
                 table([*heads, *_heads(list(sides), form)], cells, name=f"Suite: {column.suite.heading}"),
             ]
     return join(*drawn)
-
-
-def _by_row(
-    runs: "pd.DataFrame", keys: list[str], names: Mapping[Row, object]
-) -> "tuple[pd.DataFrame, npt.NDArray[np.int64]]":
-    """The runs that are in one of the rows ``names``, and the place of its row of each."""
-    place = pd.MultiIndex.from_tuples(list(names), names=keys).get_indexer(pd.MultiIndex.from_frame(runs[keys]))
-    return runs[place >= 0], place[place >= 0].astype(np.int64)
 
 
 _COLUMNS = {
@@ -130,24 +119,16 @@ _COLUMNS = {
 
 
 def _heads(sides: Sequence[str], form: str) -> list[Head]:
-    several = len(sides) > 1
-    return [
-        Head(
-            side if several else says,
-            form if name in ("mean", "median", "low", "high", "largest") else ".0f",
-            note,
-            says if several else "",
-        )
-        for name, (says, note) in _COLUMNS.items()
-        for side in sides
-    ]
+    heads = []
+    for name, (says, note) in _COLUMNS.items():
+        own = form if name in ("mean", "median", "low", "high", "largest") else ".0f"
+        heads += [Head(side, own, note, says) if len(sides) > 1 else Head(says, own, note) for side in sides]
+    return heads
 
 
-def _cells(suites: Sequence[Suite | None], form: str) -> list[object]:
-    return [None if own is None else _cell(own, name, form) for name in _COLUMNS for own in suites]
-
-
-def _cell(own: Suite, name: str, form: str) -> object:
+def _cell(own: Suite | None, name: str, form: str) -> object:
+    if own is None:
+        return None
     value = getattr(own, name)
     if name in ("overturned", "flight", "failed"):
         return alarm(str(value)) if value else value
