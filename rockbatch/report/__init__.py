@@ -33,7 +33,7 @@ def write_report(
     out: Path | None = None,
     saved: Results | None = None,
 ) -> Path:
-    """Write ``report.html`` beside the results it tells of.
+    """Write ``report.html`` beside its results.
 
     Parameters
     ----------
@@ -163,14 +163,14 @@ def report(
     folders = (Path(directory),) if other is None else (Path(directory), Path(other))
     saved = [open_results(folder) for folder in folders]
     path = _write(saved, None if out is None else Path(out))
-    tables = [(one.peaks, as_table(read_verdicts(one.directory))) for one in saved]
+    tables = [(results.peaks, as_table(read_verdicts(results.directory))) for results in saved]
     peaks, checks = (_beside(own) for own in zip(*tables, strict=True))
     return Report(path, folders, peaks, checks)
 
 
 def _write(saved: Sequence[Results], out: Path | None) -> Path:
     if len(saved) > 1:
-        return write_comparison(*(one.directory for one in saved), out=out)
+        return write_comparison(*(results.directory for results in saved), out=out)
     return write_report(saved[0].directory, out=out, saved=saved[0])
 
 

@@ -14,7 +14,7 @@ from rockbatch.report.pair import SIDES, Pair
 from rockbatch.report.sections import peak_rotations, statistics, studied, verdicts
 from rockbatch.report.sections.answer import worst
 from rockbatch.report.sections.peaks import on_scale, outcome
-from rockbatch.report.table import MOST_ROWS, THETA, THETA_FORMAT, Head, table, told_apart
+from rockbatch.report.table import MOST_ROWS, THETA, THETA_FORMAT, Head, shown_of, table
 from rockbatch.results.columns import COLUMNS
 from rockbatch.results.suite_statistics import NO_PEAK
 
@@ -209,7 +209,7 @@ def pairs(pair: Pair) -> Markup:
         ratio = second / first if first > 0 and second == second else None
         others = (on_scale(column.name, run[column.name]) for column in more for run in both)
         rows.append([*(both[0][name] for name in names), *map(outcome, both), ratio, *others])
-    return join(told_apart(len(order), len(a), "worst"), table(heads, rows, sortable=True, name="Pairs of runs"))
+    return join(shown_of(len(order), len(a), "worst"), table(heads, rows, sortable=True, name="Pairs of runs"))
 
 
 def suites(pair: Pair) -> Markup:

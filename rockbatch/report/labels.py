@@ -116,14 +116,18 @@ def named(
     ``cases`` are those of run.json, one for each pier on which the foundation was run; ``given`` holds the keys that the
     study gives for each case, by its name.
     """
-    constants = {key: _as_given(_constants(same), given.get(str(key[0]), ())) for key, same in cases.items()}
-    rigid = {key for key, same in cases.items() if _is_reference(same[0])}
+    constants = {key: _constants(same, given.get(str(key[0]), ())) for key, same in cases.items()}
+    # The rocking block itself, drawn as a line: on rigid ground and without devices
+    rigid = {
+        key for key, (case, *_) in cases.items() if case["base"] == "rigid" and not case["parameters"].get("restraints")
+    }
+    shown = dict.fromkeys((*BASE_KEYS, *varied))
+    values = {kind: [constants[key] for key in cases if (key in rigid) is kind] for kind in (True, False)}
     differing = {
-        kind: _differing([constants[key] for key in cases if (key in rigid) is kind], varied) for kind in (True, False)
+        kind: [name for name in shown if len({str(own.get(name)) for own in of_kind}) > 1]
+        for kind, of_kind in values.items()
     }
-    digits = {
-        name: digits_that_tell(values.get(name) for values in constants.values()) for name in {*BASE_KEYS, *varied}
-    }
+    digits = {name: digits_that_tell(own.get(name) for own in constants.values()) for name in shown}
     names = [key[0] for key in cases if key not in rigid]
     short = len(set(names)) == len(names) and all(len(str(name)) <= 3 for name in names)
     series: dict[Key, Series] = {}
@@ -140,29 +144,15 @@ def named(
     return series
 
 
-def _is_reference(case: Mapping[str, Any]) -> bool:
-    """Return whether a case is the rocking block itself, drawn as a line: on rigid ground and without devices."""
-    return case["base"] == "rigid" and not case["parameters"].get("restraints")
+def _constants(cases: Sequence[dict[str, Any]], given: Collection[str]) -> dict[str, object]:
+    """Return the values that a foundation keeps on every pier, without the keys that repeat a ``given`` one in other units.
 
-
-def _differing(constants: Sequence[dict[str, object]], varied: Sequence[str]) -> list[str]:
-    keys = dict.fromkeys((*BASE_KEYS, *varied))
-    return [name for name in keys if len({str(values.get(name)) for values in constants}) > 1]
-
-
-def _constants(cases: Sequence[dict[str, Any]]) -> dict[str, object]:
-    """Return the values that a foundation keeps on every pier; β of a given stiffness, for example, follows the pier."""
-    first = {**cases[0]["parameters"], **cases[0]["columns"]}
+    β of a given stiffness, for example, follows the pier.
+    """
+    first, *others = [case["parameters"] | case["columns"] for case in cases]
+    omitted = {free if unit in given else unit for free, unit in SAME.items()}.union(PIER_KEYS)
     return {
         key: value
         for key, value in first.items()
-        if key not in PIER_KEYS
-        and value is not None
-        and all({**case["parameters"], **case["columns"]}.get(key) == value for case in cases)
+        if key not in omitted and value is not None and all(other.get(key) == value for other in others)
     }
-
-
-def _as_given(constants: dict[str, object], given: Collection[str]) -> dict[str, object]:
-    """Return ``constants`` without the keys that repeat a given one in other units."""
-    unsaid = {free if unit in given else unit for free, unit in SAME.items()}
-    return {key: value for key, value in constants.items() if key not in unsaid}

@@ -63,7 +63,7 @@ def table(
     )
     if len(rows) > MOST_OPEN:
         wide = tag("details", tag("summary", f"{name or 'Table'}: {len(rows):,} rows"), wide)
-    return join(told_apart(len(rows), len(whole)), wide)
+    return join(shown_of(len(rows), len(whole)), wide)
 
 
 def listed(heads: Sequence[Head], items: Iterable[Mapping[str, Any]], **options: Any) -> Markup:
@@ -73,7 +73,7 @@ def listed(heads: Sequence[Head], items: Iterable[Mapping[str, Any]], **options:
 
 
 def _cells(kind: str, values: Iterable[object], form: str, **attributes: object) -> list[Markup]:
-    """The cells of a column."""
+    """Return the cells of a column."""
     start, end = tag(kind, _HERE, **attributes).split(_HERE)
     return [
         Markup(f"{start}{escape(value if isinstance(value, Markup) else number(value, form))}{end}") for value in values
@@ -83,7 +83,7 @@ def _cells(kind: str, values: Iterable[object], form: str, **attributes: object)
 _HERE = Markup("\0")
 
 
-def told_apart(shown: int, all_: int, which: str = "first") -> Markup:
+def shown_of(shown: int, all_: int, which: str = "first") -> Markup:
     """Return the sentence that not all rows are shown; empty if they are."""
     if shown >= all_:
         return Markup("")

@@ -97,11 +97,10 @@ def draw(
 def _of_limits(limits: Sequence[Sequence[Limit]], top: float) -> list[Entry]:
     """Return the legend's entry of each limit, once; with its value if it lies beyond the axis."""
     drawn: dict[str, Markup] = {}
-    for place, one in ((place, one) for own in limits for place, one in enumerate(own)):
-        words = one.words if one.theta <= top else f"{one.words}: beyond the axis, at θ/α = {one.theta:.3g}"
-        drawn.setdefault(
-            words, tag("path", d="M11 0v14M7 0h8M7 14h8", class_=_dash(place))
-        )  # a rigid base is a stroke, too
+    for place, limit in (numbered for own in limits for numbered in enumerate(own)):
+        words = limit.words if limit.theta <= top else f"{limit.words}: beyond the axis, at θ/α = {limit.theta:.3g}"
+        # Serifs, since a rigid base is a stroke, too
+        drawn.setdefault(words, tag("path", d="M11 0v14M7 0h8M7 14h8", class_=_dash(place)))
     return [(line, words) for words, line in drawn.items()]
 
 
@@ -119,7 +118,7 @@ def _line(x: float, class_: str, *content: object, low: int = 20, high: int = 0)
 
 
 def _strip(runs: "pd.DataFrame", top: float, grid: Sequence[Markup], marks: Marks, words: str) -> Markup:
-    """One row in one column."""
+    """Draw the peaks of a row in one column."""
     peaks = runs["theta_max_over_alpha"].to_numpy(dtype=np.float64)
     order = np.argsort(-peaks, kind="stable")
     order = order[((runs["status"] == "ok").to_numpy() & ~np.isnan(peaks))[order]]

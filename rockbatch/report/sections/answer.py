@@ -60,24 +60,24 @@ def _responses(finished: Finished) -> Facts:
     largest = worst_of_all(finished.worst)
     facts: Facts = []
     first: dict[object, str] = {}
-    for name, one in largest.items():
-        words, run = RESPONSES[name].words, one.run
-        when = f", at t = {number(float(run['t_max_s']))} s" if name == "theta_max_over_alpha" else ""
+    for name, worst in largest.items():
+        words, run = RESPONSES[name].words, worst.run
+        rotation = name == "theta_max_over_alpha"
+        when = f", at t = {number(float(run['t_max_s']))} s" if rotation else ""
         where = f": {finished.label(run['record'])}, case {finished.which(run)}{when}"
         if first.setdefault(run.name, words) != words:
             where = f", in the run of the greatest {first[run.name]}"
-        leans = name == "theta_max_over_alpha" and run["theta_max_is"]
-        lean = " (mostly the lean of a base that has yielded)" if leans else ""
+        lean = " (mostly the lean of a base that has yielded)" if rotation and run["theta_max_is"] else ""
         of = {"top_drift_m": ", of a rigid shaft", "heel_uplift_m": ", above the toe"}.get(name, "")
-        facts.append((words, join(tag("strong", in_words(one)), lean, of, where)))
-    if all(one.case["base"] == "rigid" for one in finished.worst):
+        facts.append((words, join(tag("strong", in_words(worst)), lean, of, where)))
+    if all(worst.case["base"] == "rigid" for worst in finished.worst):
         held = "" if "theta_res_rad" in largest else "; nothing holds the pier at a tilt"
         facts.append(("of the supports", join(f"no settlement: the ground is rigid{held}")))
     return facts
 
 
 def _of_devices(finished: Finished) -> Facts:
-    """Greatest force of dampers and tendons, in kN where the mass is known, and the greatest stroke, or yield, with its run."""
+    """Return the greatest force of dampers and tendons, in kN if the mass is known, and the greatest stroke or yield."""
     runs = finished.runs[finished.runs["status"] == "ok"]
     facts: Facts = []
     for device, way, words in (
@@ -88,29 +88,25 @@ def _of_devices(finished: Finished) -> Facts:
             continue
         weighed = f"{device}_force_kN" in runs and runs[f"{device}_force_kN"].notna().any()
         forces = runs[f"{device}_force_kN" if weighed else f"{device}_force_over_weight"]
-        hardest, longest = (runs.iloc[int(np.nanargmax(each))] for each in (forces, runs[way]))
+        hardest, longest = (runs.iloc[int(np.nanargmax(values))] for values in (forces, runs[way]))
         force = f"{forces.max():,.0f} kN" if weighed else f"{forces.max():.3g} of the pier's weight"
-        told: list[object] = ["force of one at most ", tag("strong", force), f" ({finished.which(hardest)}); "]
+        moved = join(f"no {words}")
         if longest[way] > 0.0:
-            told += [f"{words} at most ", tag("strong", f"{1000 * longest[way]:,.3g} mm")]
-            told.append(f": {finished.label(longest['record'])}, case {finished.which(longest)}")
-        else:
-            told.append(f"no {words}")
-        facts.append((f"{device}s", join(*told)))
+            where = f": {finished.label(longest['record'])}, case {finished.which(longest)}"
+            moved = join(f"{words} at most ", tag("strong", f"{1000 * longest[way]:,.3g} mm"), where)
+        bears = join("force of one at most ", tag("strong", force), f" ({finished.which(hardest)}); ")
+        facts.append((f"{device}s", join(bears, moved)))
     return facts
 
 
 def _by_case(finished: Finished) -> Facts:
-    """The greatest rotation of each of a few cases, where all runs stood: what a study that compares them asks for."""
-    rotations = [one for one in finished.worst if one.demand == "theta_max_over_alpha"]
-    if (
-        not 1 < len(rotations) <= MOST_COMPARED
-        or len(rotations) < len(finished.cases)
-        or (finished.runs["status"] != "ok").any()
-    ):
+    """Return the greatest rotation of each of a few cases if all runs stood, for studies that compare cases."""
+    rotations = [worst for worst in finished.worst if worst.demand == "theta_max_over_alpha"]
+    stood = len(rotations) == len(finished.cases) and (finished.runs["status"] == "ok").all()
+    if not stood or not 1 < len(rotations) <= MOST_COMPARED:
         return []
-    each = (f"{one.value:.4f} α ({finished.which(one.run)})" for one in rotations)
-    return [("rotation by case", join("; ".join(each)))]
+    words = (f"{worst.value:.4f} α ({finished.which(worst.run)})" for worst in rotations)
+    return [("rotation by case", join("; ".join(words)))]
 
 
 def _error(finished: Finished) -> str:

@@ -7,7 +7,7 @@ from rockbatch.report.finished import Finished, worst_first
 from rockbatch.report.labels import head
 from rockbatch.report.markup import Markup, join, number
 from rockbatch.report.sections.peaks import on_scale
-from rockbatch.report.table import MOST_ROWS, Head, alarm, table, told_apart
+from rockbatch.report.table import MOST_ROWS, Head, alarm, shown_of, table
 from rockbatch.report.templates import render
 from rockbatch.results.columns import Column, on_page
 
@@ -74,4 +74,4 @@ def _every_run(finished: Finished, shown: list[Column]) -> Markup:
     ]
     heads = [Head("record"), Head("case"), *map(head, shown)]
     drawn = table(heads, rows, sortable=True, name="Forces of every run")
-    return join(told_apart(len(runs), len(finished.runs), "worst"), drawn)
+    return join(shown_of(len(runs), len(finished.runs), "worst"), drawn)

@@ -8,7 +8,7 @@ from rockbatch.lazy import pd
 from rockbatch.report.finished import Finished, as_dicts, worst_first
 from rockbatch.report.labels import head, symbol
 from rockbatch.report.markup import Markup, join, number, tag
-from rockbatch.report.table import MOST_ROWS, THETA_FORMAT, Head, alarm, table, told_apart
+from rockbatch.report.table import MOST_ROWS, THETA_FORMAT, Head, alarm, shown_of, table
 from rockbatch.report.templates import render
 from rockbatch.results.columns import COLUMNS, PEAKS, on_page
 from rockbatch.simulation.outcome import LINEARISED
@@ -105,7 +105,7 @@ def _every_run(finished: Finished) -> Markup:
     ]
     heads = [*names.values(), *columns.values()]
     drawn = table(heads, rows, sortable=True, name="Every run")
-    return join(told_apart(len(shown), len(runs), "worst"), drawn)
+    return join(shown_of(len(shown), len(runs), "worst"), drawn)
 
 
 def _cell(name: str, value: Any) -> object:

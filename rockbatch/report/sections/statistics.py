@@ -12,7 +12,7 @@ from rockbatch.lazy import pd
 from rockbatch.report.finished import Finished
 from rockbatch.report.labels import heading
 from rockbatch.report.markup import Markup, join, tag
-from rockbatch.report.table import MOST_ROWS, Head, alarm, table, told_apart
+from rockbatch.report.table import MOST_ROWS, Head, alarm, shown_of, table
 from rockbatch.results.columns import COLUMNS
 from rockbatch.results.suite_statistics import Suite, suites
 
@@ -38,7 +38,7 @@ def section(finished: Finished) -> Markup:
     names, heads = rows_of(finished, runs, keys)
     shown = dict(islice(names.items(), MOST_ROWS))
     sides = {str(side): same for side, same in runs.groupby("with_vertical")}
-    return join(told_apart(len(shown), len(names)), tables(sides, keys, shown, heads, finished.count))
+    return join(shown_of(len(shown), len(names)), tables(sides, keys, shown, heads, finished.count))
 
 
 def rows_of(finished: Finished, runs: "pd.DataFrame", keys: list[str]) -> tuple[dict[Row, list[str]], list[Head]]:
@@ -86,15 +86,15 @@ def tables(
         if column.suite is None or column.page is None or not there:
             continue
         says, form = heading(column.suite.heading), column.suite.form
-        found = []
+        of_sides = []
         for (runs, rows), records in zip(grouped, counted_as, strict=True):
             values = column.page.factor * runs[column.name].to_numpy(dtype=np.float64)
             has = np.bincount(rows, ~np.isnan(values), len(names)) > 0
             of_rows = suites(values, runs["status"].to_list(), records, rows, len(names))
-            found.append([suite if any_ else None for suite, any_ in zip(of_rows, has, strict=True)])
+            of_sides.append([suite if any_ else None for suite, any_ in zip(of_rows, has, strict=True)])
         cells = [
             [*words, *(_cell(suite, name, form) for name in _COLUMNS for suite in own)]
-            for words, *own in zip(names.values(), *found, strict=True)
+            for words, *own in zip(names.values(), *of_sides, strict=True)
             if any(own)
         ]
         if cells:
