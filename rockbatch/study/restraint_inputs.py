@@ -12,6 +12,9 @@ from rockbatch.study.restraint_keys import FIELD_OF, IN_KN, KEYS_OF
 from rockbatch.study.spec import Case
 from rockbatch.toml.kinds import shown
 
+IN_KILONEWTONS = {"stiffness_kN_m": "beta", "yield_kN": "eta"}
+"""Inputs that a pier of known mass turns into ratios, and which."""
+
 TABLE = re.compile(r"(damper|tendon)(?:_([1-9][0-9]*))?")
 """Name of a table of such inputs: of the only device of its kind, or with its number in the case."""
 
@@ -75,17 +78,14 @@ def with_values(pier: Pier, restraints: Sequence[Restraint], values: Mapping[str
 def unclear(names: Iterable[str], case: Case) -> dict[str, str]:
     """Return by name what is ambiguous about inputs of dampers and tendons in this case, and what to write instead."""
     own = numbered(case.pier, case.base.restraints)
-    where = parameters(case.pier, case.base.restraints)
     problems: dict[str, str] = {}
     fixed: dict[tuple[int, str], str] = {}
     for name in filter(is_of_restraint, names):
-        meant = [numbered_name for numbered_name in own if _plain(numbered_name) == name]
+        meant = [number for number in own if name in (number, _plain(number))]
         if len(meant) > 1:
             problems[name] = f"{name}: case {shown(case.name)} has {len(meant)} of them; write {' or '.join(meant)}"
-        if name in where:
-            other = fixed.setdefault(where[name][:2], name)
-            if other != name:
-                problems[name] = f"{other} and {name} are given, which fix the same; keep one"
+        elif meant and (other := fixed.setdefault(own[meant[0]][:2], name)) != name:
+            problems[name] = f"{other} and {name} are given, which fix the same; keep one"
     return problems
 
 
@@ -111,15 +111,14 @@ def why_none(name: str, cases: Iterable[Case]) -> str:
     return f"no {what} of that number has it"
 
 
-def problem_in_words(problem: str, values: Mapping[str, Any]) -> tuple[str, str]:
-    """Return a problem of a device, "damper: f = …", in terms of the input that it is about, and its name; "" if none is."""
+def in_words(problem: str, values: Mapping[str, Any]) -> tuple[str, str]:
+    """Return a problem, "eta = …" or "damper: f = …", in terms of the input that it is about, and the input's name."""
     what, _, message = problem.partition(": ")
     mine = [name for name in values if is_of_restraint(name) and name.startswith(what)]
-    if not mine:
-        return problem, ""
-    key = message.partition(" = ")[0]
-    if same := next((name for name in mine if name.endswith(f".{key}")), ""):
-        return message.replace(key, same, 1), same
-    field_of = FIELD_OF | {"lambda": "lambda", "stiffness_kN_m": "lambda"}
-    name = next((name for name in mine if field_of[name.partition(".")[2]] == key), mine[0])
-    return f"{name} = {values[name]:g} means {problem}", name
+    symbol = (message if mine else problem).partition(" = ")[0]
+    if same := next((name for name in mine if name.endswith(f".{symbol}")), ""):
+        return message.replace(symbol, same, 1), same
+    symbols = IN_KILONEWTONS | {name: FIELD_OF[name.partition(".")[2]].replace("lam", "lambda") for name in mine}
+    fitting = [name for name in mine or values if symbols.get(name) == symbol]
+    name = next(iter(fitting or mine), symbol)
+    return (problem if name == symbol else f"{name} = {values[name]:g} means {problem}"), name

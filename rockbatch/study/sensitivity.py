@@ -13,9 +13,10 @@ from rockbatch.study.load import Study
 from rockbatch.study.motions import MOTIONS
 from rockbatch.study.piers import PIER
 from rockbatch.study.restraint_inputs import (
+    IN_KILONEWTONS,
     TABLE,
+    in_words,
     is_of_restraint,
-    problem_in_words,
     unclear,
     values_of_devices,
     why_none,
@@ -30,9 +31,6 @@ from rockbatch.toml.section import Key, Section
 OF_PIER = ("alpha", "p", "mu")
 OF_MOTION = ("vertical", "polarity")
 """Factors of the whole suite."""
-
-IN_KILONEWTONS = {"stiffness_kN_m": "beta", "yield_kN": "eta"}
-"""Inputs that a pier of known mass turns into ratios, and which."""
 
 Value = float | str | bool
 
@@ -295,7 +293,7 @@ def _check_corners(table: Table, inputs: Sequence[Input], case: Case) -> None:
         except InputError as error:
             wrong = error.problems
         for problem in wrong:
-            problem, name = _in_words(problem, values)
+            problem, name = in_words(problem, values)
             if name in reported:
                 continue
             reported.add(name)
@@ -303,13 +301,3 @@ def _check_corners(table: Table, inputs: Sequence[Input], case: Case) -> None:
             which = ", ".join(f"{key} = {shown(values[key])}" for key in OF_PIER if key in values)
             where = f" (at {which})" if which and name not in OF_PIER else ""
             table.complain(f'case "{case.name}"{where}: {problem}', *(places[at] if at else ()))
-
-
-def _in_words(problem: str, values: Mapping[str, Any]) -> tuple[str, str]:
-    """Return a problem of the structure, "eta = …", at a corner, in terms of the input that it is about, and its name."""
-    problem, name = problem_in_words(problem, values)
-    if name:
-        return problem, name
-    name = problem.split(" = ")[0]
-    written = next((key for key, ratio in IN_KILONEWTONS.items() if ratio == name and key in values), name)
-    return (problem if written == name else f"{written} = {values[written]:g} means {problem}"), written

@@ -251,7 +251,7 @@ def test_the_table_is_a_csv_too_with_a_row_for_every_file(tmp_path, capsys):
     assert "not a PEER AT2 file" in bad["reason"]
     assert companion["reason"] == "no record: text about the records"
     shown = capsys.readouterr()
-    assert "1 records, 1 files not used, 1 left out" in shown.err
+    assert "1 record, 1 file not used, 1 left out" in shown.err
     assert "Arias [m/s]" in shown.out
     assert "length [s]" in shown.out
     assert "D5-95 [s]" in shown.out
