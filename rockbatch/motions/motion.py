@@ -331,20 +331,11 @@ class Motion(Shown):
         sa = spectral_acceleration(self.horizontal, self.dt, at, damping) / GRAVITY
         return pd.Series(sa, index=pd.Index(at, name="period_s"), name="sa_g")
 
-    def plot(self) -> "Figure":
-        """Draw the acceleration of its components against time: a matplotlib Figure."""
-        from matplotlib.figure import Figure
+    def plot(self, width_mm: float = 160.0) -> "Figure":
+        """Draw the acceleration of its components against time: a matplotlib Figure of this width."""
+        from rockbatch.motions.plots import plot
 
-        components = {"horizontal": self.horizontal} | ({} if self.vertical is None else {"vertical": self.vertical})
-        figure = Figure(figsize=(6.3, 1.0 + 1.4 * len(components)), layout="constrained")
-        axes = figure.subplots(len(components), sharex=True, squeeze=False)[:, 0]
-        for axis, (what, samples) in zip(axes, components.items(), strict=True):
-            axis.plot(np.arange(self.npts) * self.dt, samples / GRAVITY, color="black", linewidth=0.7)
-            axis.set(ylabel=f"{what} [g]", xlim=(0.0, self.duration))
-            axis.grid(alpha=0.3)
-        axes[0].set_title(self.label, fontsize="medium")
-        axes[-1].set_xlabel("time [s]")
-        return figure
+        return plot(self, width_mm)
 
     @checked
     def times(self, factor: float, reverse: bool = False) -> "Motion":

@@ -52,8 +52,8 @@ class Results(Shown, Saved):
         """``estimate.csv``: the estimates of design practice beside the peaks ([output] estimate = true)."""
         return self._beside(ESTIMATE, "estimate")
 
-    def plot_cdf(self) -> "Figure":
-        """Draw the distribution of θ_max/α over the records, a curve for each case, pier and scale, as a matplotlib Figure.
+    def plot_cdf(self, width_mm: float = 160.0) -> "Figure":
+        """Draw the distribution of θ_max/α over the records, a curve for each case, pier and scale: a matplotlib Figure.
 
         A station counts as one record, with the worst of its components, unless the study counts them apart. Records under
         which the pier overturned, or that were ended by flight, are what a curve lacks of 1 at its right end, where a cross
@@ -61,7 +61,7 @@ class Results(Shown, Saved):
         """
         from rockbatch.results.plots import plot_cdf
 
-        return plot_cdf(self.peaks, self.info["varied"], str(self.info.get("count", "station")))
+        return plot_cdf(self.peaks, self.info["varied"], str(self.info.get("count", "station")), width_mm)
 
     def _beside(self, name: str, key: str) -> "pd.DataFrame":
         path = self.directory / name
@@ -117,12 +117,12 @@ class Results(Shown, Saved):
         """Return :attr:`Response.events` of one run, chosen as for :meth:`response`."""
         return self.response(record, case, **more).events
 
-    def plot(self) -> "Figure":
+    def plot(self, width_mm: float = 160.0) -> "Figure":
         """Draw the peaks of every run, as the paper's Fig. 7: a panel for each record, θ_max/α over the foundations, lines for
         the rigid base, a colour for each pier and scale. A matplotlib Figure: ``results.plot().savefig("peaks.pdf")``."""
         from rockbatch.results.plots import plot
 
-        return plot(self.peaks, self.info)
+        return plot(self.peaks, self.info, width_mm)
 
     def _facts(self) -> tuple[str, dict[str, str]]:
         """See :class:`Shown`."""

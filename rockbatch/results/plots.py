@@ -15,15 +15,17 @@ from matplotlib.figure import Figure
 
 from rockbatch.checks.suite import counts_as, simulated
 from rockbatch.errors import InputError
+from rockbatch.figures import figure, line, marks, styled
 from rockbatch.lazy import pd
 from rockbatch.results.suite_statistics import NO_PEAK, distribution
-from rockbatch.simulation.plots import ShownFigure
 from rockbatch.study import PIER_KEYS
 
 MOST_PANELS = 24
-MOST_COLUMNS = 4
-TITLE = 32
-"""Letters in a line of a panel's title."""
+PANEL_MM = 42.0
+"""Least width of a panel, and its height [mm]."""
+
+TITLE = 0.52
+"""Letters in a line of a title or of the axis, for each millimetre of a panel."""
 
 INSTEAD = {
     "overturned": ("X", "overturned"),
@@ -35,48 +37,47 @@ INSTEAD = {
 SPREAD = 0.4
 """Share of the distance of two foundations, over which marks of different piers and scales are spread."""
 
-_LINES = ("-", "--", ":", "-.")
-
 
 @dataclass(frozen=True)
 class _Panels:
-    """Properties that all panels share: the places of foundations, the colours of piers and scales, and the top of the axis."""
+    """Properties that all panels share: places of foundations, piers and scales, rigid bases with lines, the top of the axis."""
 
     places: dict[str, int]
-    colours: dict[str, str]
-    lines: dict[str, str]
+    groups: list[str]
+    lines: list[str]
     top: float
+    without_peak: bool
+    crowded: bool
 
     def draw(self, axes: Axes, runs: "pd.DataFrame") -> None:
         """Draw the runs of one record."""
-        axes.axhspan(self.top, 1.15 * self.top, color="0.95")
-        axes.set(xlim=(-1, max(len(self.places), 1)), ylim=(0, 1.15 * self.top))
-        axes.grid(alpha=0.3)
-        axes.set_xticks(list(self.places.values()), list(self.places), rotation=90 if len(self.places) > 3 else 0)
-        axes.tick_params(labelsize="x-small")
+        if self.without_peak:
+            axes.axhspan(self.top, 1.15 * self.top, color="0.9", label="no greatest rotation")
+        axes.set(xlim=(-0.7, len(self.places) - 0.3), ylim=(0, (1.15 if self.without_peak else 1.0) * self.top))
+        axes.set_xticks(list(self.places.values()), list(self.places), rotation=90 if self.crowded else 0)
         for group, of_group in runs.groupby("group", sort=False):
-            colour = self.colours[str(group)]
-            beside = SPREAD * (list(self.colours).index(str(group)) / len(self.colours) - 0.5)
+            place = self.groups.index(str(group))
+            beside = SPREAD * ((place + 0.5) / len(self.groups) - 0.5)
+            look = marks(place)
             stood = of_group[of_group["status"] == "ok"]
             springs = stood[~stood["rigid"]]
             x, error = (
                 springs["foundation"].map(self.places) + beside,
                 springs["theta_max_error"].fillna(0.0),
             )
-            axes.errorbar(
-                x, springs["theta_max_over_alpha"], error, fmt="o", markersize=4, color=colour, label=group or None
-            )
+            axes.errorbar(x, springs["theta_max_over_alpha"], error, label=group or None, **look)
             for name, theta in stood[stood["rigid"]][["foundation", "theta_max_over_alpha"]].itertuples(index=False):
                 label = ", ".join(filter(None, (name, str(group))))
-                axes.axhline(theta, color=colour, linewidth=1.0, linestyle=self.lines[name], label=label)
+                axes.axhline(theta, label=label, **line(self.lines.index(name) * len(self.groups) + place))
             for status, (marker, words) in INSTEAD.items():
                 places = of_group["foundation"][of_group["status"] == status].map(self.places).fillna(-0.6) + beside
                 if len(places):
                     height = [1.07 * self.top] * len(places)
-                    axes.plot(places, height, linestyle="", marker=marker, color=colour, label=words)
+                    axes.plot(places, height, **look | {"marker": marker}, label=words)
 
 
-def plot(peaks: "pd.DataFrame", info: Mapping[str, Any]) -> Figure:
+@styled
+def plot(peaks: "pd.DataFrame", info: Mapping[str, Any], width_mm: float) -> Figure:
     """See :meth:`rockbatch.results.opened.Results.plot`, which hands over peaks.csv and run.json.
 
     Of many records, the :data:`MOST_PANELS` with the worst runs have a panel, in order of peak ground acceleration. Raises
@@ -86,24 +87,24 @@ def plot(peaks: "pd.DataFrame", info: Mapping[str, Any]) -> Figure:
     if runs.empty:
         raise InputError("there are no runs to plot: no record could be used, as the column reason of peaks.csv says")
     records, every = _records(runs, info), runs["record"].nunique()
-    panels = _panels(runs[runs["record"].isin(records)])
-    columns = min(MOST_COLUMNS, len(records))
+    columns = max(1, min(int(width_mm / PANEL_MM), len(records)))
+    panels = _panels(runs[runs["record"].isin(records)], width_mm / columns)
     rows = math.ceil(len(records) / columns)
-    figure = ShownFigure(figsize=(1.2 + 2.2 * columns, 1.4 + 1.9 * rows), layout="constrained")
-    grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
+    drawn = figure(width_mm, 24.0 + PANEL_MM * rows)
+    grid = drawn.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
     labels = {record["record"]: record.get("label") for record in info["records"]}
     for axes, name in zip(grid.flat, records, strict=False):
         panels.draw(axes, runs[runs["record"] == name])
-        axes.set_title(textwrap.fill(labels.get(name) or name, TITLE), fontsize="small")
+        axes.set_title(textwrap.fill(labels.get(name) or name, int(TITLE * width_mm / columns)), fontsize=7.0)
     for axes in grid.flat[len(records) :]:
         axes.set_visible(False)
     for axes in grid.flat[max(len(records) - columns, 0) : len(records)]:
         axes.tick_params(labelbottom=True)
     shown = f" ({len(records)} of {every} records, the worst)" if len(records) < every else ""
-    figure.suptitle(info["study"]["title"] + shown)
-    figure.supylabel("θ$_{max}$/α")
-    _legend(figure)
-    return figure
+    drawn.suptitle(info["study"]["title"] + shown)
+    drawn.supylabel(r"$\theta_{\max}/\alpha$")
+    _legend(drawn, columns)
+    return drawn
 
 
 def _runs(peaks: "pd.DataFrame", info: Mapping[str, Any]) -> "pd.DataFrame":
@@ -112,6 +113,8 @@ def _runs(peaks: "pd.DataFrame", info: Mapping[str, Any]) -> "pd.DataFrame":
     runs = simulated(peaks[peaks["case"] != ""])
     varied = info["varied"]
     rigid = {case["case"] for case in info["cases"] if case["base"] == "rigid"}
+    if len(rigid) == len({case["case"] for case in info["cases"]}):
+        rigid = set()  # no springs to compare with: they are foundations like others
     of_pier = [
         name for name in (*varied, "scale") if name in PIER_KEYS or (name == "scale" and runs[name].nunique() > 1)
     ]
@@ -141,39 +144,42 @@ def _records(runs: "pd.DataFrame", info: Mapping[str, Any]) -> list[str]:
     return sorted(worst.index[:MOST_PANELS], key=lambda name: (pga.get(name, math.inf), name))
 
 
-def _panels(runs: "pd.DataFrame") -> _Panels:
+def _panels(runs: "pd.DataFrame", panel_mm: float) -> _Panels:
     stood = runs[runs["status"] == "ok"]
     highest = float((stood["theta_max_over_alpha"] + stood["theta_max_error"].fillna(0.0)).max())
-    rigid = list(runs["foundation"][runs["rigid"]].unique())
-    springs = runs["foundation"][~runs["rigid"]].unique()
+    foundations = [str(name) for name in runs["foundation"][~runs["rigid"]].unique()]
     return _Panels(
-        places={str(name): place for place, name in enumerate(springs)},
-        colours={str(group): f"C{place % 10}" for place, group in enumerate(runs["group"].unique())},
-        lines={name: _LINES[place % len(_LINES)] for place, name in enumerate(rigid)},
+        places={name: place for place, name in enumerate(foundations)},
+        groups=[str(group) for group in runs["group"].unique()],
+        lines=list(runs["foundation"][runs["rigid"]].unique()),
         top=1.1 * highest if highest > 0 else 1.0,
+        without_peak=bool(runs["status"].isin(INSTEAD).any()),
+        crowded=TITLE * panel_mm < sum(map(len, foundations)),
     )
 
 
-def _legend(figure: Figure) -> None:
+def _legend(figure: Figure, columns: int) -> None:
     """Explain lines, colours and markers, once for all panels."""
     entries: dict[str, Artist] = {}
     for axes in figure.axes:
         for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
             entries.setdefault(label, handle)
     if entries:
-        figure.legend(list(entries.values()), list(entries), loc="outside lower center", ncols=4, fontsize="small")
+        figure.legend(list(entries.values()), list(entries), loc="outside lower center", ncols=columns)
 
 
-def plot_cdf(peaks: "pd.DataFrame", varied: Sequence[str], count: str) -> Figure:
+@styled
+def plot_cdf(peaks: "pd.DataFrame", varied: Sequence[str], count: str, width_mm: float) -> Figure:
     """See :meth:`rockbatch.results.opened.Results.plot_cdf`, which hands over the rows of peaks.csv, the varied keys,
     and what counts as one record."""
-    figure = ShownFigure(figsize=(6.0, 4.0), layout="constrained")
-    axes = figure.subplots()
     runs = simulated(peaks[peaks["case"] != ""])
     keys = [name for name in ("case", *varied, "scale") if name == "case" or runs[name].nunique() > 1]
+    groups = runs.groupby(keys, sort=False, dropna=False)
+    drawn = figure(width_mm, 0.5 * width_mm + 12.0 + 3.6 * math.ceil(len(groups) / 2))
+    axes = drawn.subplots()
     largest = float(runs["theta_max_over_alpha"].where(runs["status"] == "ok").max())
     right = 1.06 * largest if largest > 0 else 1.0
-    for values, same in runs.groupby(keys, sort=False, dropna=False):
+    for place, (values, same) in enumerate(groups):
         theta, share = distribution(
             same["theta_max_over_alpha"].to_numpy(dtype=float),
             same["status"].to_list(),
@@ -181,10 +187,11 @@ def plot_cdf(peaks: "pd.DataFrame", varied: Sequence[str], count: str) -> Figure
         )
         label = ", ".join(filter(None, map(_named, keys, values)))
         reached = [0.0, *share, share[-1] if len(share) else 0.0]
-        (drawn,) = axes.step([0.0, *theta, right], reached, where="post", linewidth=1.2, label=label)
+        look = line(place)
+        axes.step([0.0, *theta, right], reached, where="post", label=label, **look)
         if same["status"].isin(NO_PEAK).any():
-            axes.plot(right, reached[-1], "x", color=drawn.get_color(), clip_on=False)
-    axes.set(xlabel="θ$_{max}$/α", ylabel="share of the records that do not exceed it", xlim=(0, right), ylim=(0, 1.01))
-    axes.grid(alpha=0.3)
-    axes.legend(fontsize="small")
-    return figure
+            axes.plot(right, reached[-1], "x", color=look["color"], clip_on=False)
+    share_of = "share of the records\nthat do not exceed it"
+    axes.set(xlabel=r"$\theta_{\max}/\alpha$", ylabel=share_of, xlim=(0, right), ylim=(0, 1.01))
+    drawn.legend(loc="outside lower center", ncols=2)
+    return drawn

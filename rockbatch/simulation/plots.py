@@ -1,53 +1,70 @@
-"""Figures that notebooks show as they are, and that of a run. Loads matplotlib: imported where one is drawn."""
+"""The figure of a run. Loads matplotlib: imported where it is drawn."""
 
 import math
-from io import BytesIO
 from typing import TYPE_CHECKING, Any
 
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from rockbatch.pier import Base, Pier
+from rockbatch.figures import COLOURS, figure, line, styled
+from rockbatch.pier import YieldingBase
 
 if TYPE_CHECKING:
-    import pandas as pd
+    from rockbatch.simulation.response import Response
+
+_ROWS_MM, _LOOPS_MM = 30.0, 48.0
+_NARROW_MM = 120.0  # below it the loops stand below each other
 
 
-class ShownFigure(Figure):
-    """A matplotlib Figure that is not pyplot's, and shows itself in a notebook nevertheless, also without ``%matplotlib``."""
-
-    def _repr_png_(self) -> bytes:
-        picture = BytesIO()
-        self.savefig(picture, format="png")
-        return picture.getvalue()
-
-
-def plot(history: "pd.DataFrame", events: "pd.DataFrame", pier: Pier, base: Base, title: str) -> Figure:
-    """See :meth:`rockbatch.Response.plot`, which hands over its tables ``history`` and ``events``."""
-    loops = base.on_springs
-    figure = ShownFigure(figsize=(7.0, 9.0 if loops else 7.0), layout="constrained")
-    names: list[Any] = [["rotation"] * 2, ["velocity"] * 2, ["energy"] * 2, ["ground"] * 2]
-    axes = figure.subplot_mosaic([*names, ["left", "right"]] if loops else names)
+@styled
+def plot(response: "Response", title: str, width_mm: float) -> Figure:
+    """See :meth:`rockbatch.Response.plot`."""
+    history, pier, base = response.history, response.pier, response.base
+    devices = (
+        []
+        if response.restraints is None
+        else [name[:-6] for name in map(str, response.restraints) if name.endswith(" force")]
+    )
+    loops = (["left", "right"] if base.on_springs else []) + devices
+    times = ["rotation", "velocity", "energy", "ground"]
+    columns = 2 if width_mm >= _NARROW_MM else 1
+    rows = [loops[i : i + columns] for i in range(0, len(loops), columns)]
+    mosaic: list[Any] = [[name] * columns for name in times] + [row + ["."] * (columns - len(row)) for row in rows]
+    drawn = figure(width_mm, _ROWS_MM * len(times) + _LOOPS_MM * len(rows) + 8.0)
+    axes = drawn.subplot_mosaic(mosaic, height_ratios=[_ROWS_MM] * len(times) + [_LOOPS_MM] * len(rows))
     t = history["t"].to_numpy()
     for name, values, label in (
-        ("rotation", history["theta"] / pier.alpha, "θ/α"),
-        ("velocity", history["omega"] / (pier.alpha * pier.p), "θ̇/(αp)"),
-        ("energy", history["energy"], "E [J/kg]"),
-        ("ground", history["ag_h"] / pier.gravity, "üg/g"),
+        ("rotation", history["theta"] / pier.alpha, r"$\theta/\alpha$"),
+        ("velocity", history["omega"] / (pier.alpha * pier.p), r"$\dot\theta/(\alpha p)$"),
+        ("energy", history["energy"], "energy [J/kg]"),
+        ("ground", history["ag_h"] / pier.gravity, r"$\ddot u_g/g$"),
     ):
-        axes[name].plot(t, values, linewidth=0.9)
+        axes[name].plot(t, values, color=COLOURS[0], linewidth=0.7)
         axes[name].set(ylabel=label, xlim=(t[0], t[-1]))
-        axes[name].grid(alpha=0.3)
         if name != "rotation":
             axes[name].sharex(axes["rotation"])
-    for impact in events["t"][events["kind"] == "impact"]:
-        axes["rotation"].axvline(impact, ymax=0.04, color="gray", linewidth=0.7)
-    axes["ground"].set_xlabel("t [s]")
-    if loops:
-        for side in ("left", "right"):
-            force, position = history[f"force_{side}"] / pier.gravity, history[f"v_{side}"]
-            loaded = force < 0
-            axes[side].plot(1000 * position.where(loaded, math.nan), force.where(loaded, math.nan), linewidth=0.8)
-            axes[side].set(xlabel=f"v of the {side} pivot [mm]", ylabel="F/(Mg)")
-            axes[side].grid(alpha=0.3)
-    figure.suptitle(title)
-    return figure
+        axes[name].tick_params(labelbottom=name == "ground")
+    for impact in response.events["t"][response.events["kind"] == "impact"]:
+        axes["rotation"].axvline(impact, ymax=0.04, color="0.4", linewidth=0.6)
+    axes["ground"].set_xlabel("time [s]")
+    for side in loops[: 2 * base.on_springs]:
+        _support(axes[side], side, response)
+    for name in devices:
+        assert response.restraints is not None
+        extension, force = response.restraints[f"{name} elongation"], response.restraints[f"{name} force"]
+        axes[name].plot(1000.0 * extension, force / pier.gravity, color=COLOURS[0], linewidth=0.7)
+        axes[name].set(xlabel="elongation [mm]", ylabel=r"$F/(Mg)$", title=name)
+    drawn.suptitle(title)
+    return drawn
+
+
+def _support(axes: Axes, side: str, response: "Response") -> None:
+    """Draw the force of a support over its deflection, while loaded, and its yield force."""
+    force = response.history[f"force_{side}"] / response.pier.gravity
+    loaded = force < 0
+    position = 1000.0 * response.history[f"v_{side}"].where(loaded, math.nan)
+    axes.plot(position, force.where(loaded, math.nan), color=COLOURS[0], linewidth=0.7)
+    if isinstance(response.base, YieldingBase):
+        axes.axhline(-0.5 * response.base.eta, **line(1), linewidth=0.8, label=r"$-F_y$")
+        axes.legend(loc="upper left")
+    axes.set(xlabel=r"$v$ of the pivot [mm]", ylabel=r"$F/(Mg)$", title=f"{side} support")

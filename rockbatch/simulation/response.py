@@ -183,12 +183,12 @@ class Response(Shown):
         """Total energy per unit mass [J/kg], relative to the start, shape (n,)."""
         return self._history("energy")
 
-    def plot(self) -> "Figure":
-        """Rotation, angular velocity, energy and ground motion against time, impacts as strokes, and the loops of both
-        springs: a matplotlib Figure, ``response.plot().savefig("pier.pdf")``."""
+    def plot(self, width_mm: float = 160.0) -> "Figure":
+        """Draw rotation, angular velocity, energy and ground motion against time, impacts as strokes, and the loops of supports,
+        dampers and tendons: a matplotlib Figure of this width, ``response.plot().savefig("pier.pdf")``."""
         from rockbatch.simulation.plots import plot
 
-        return plot(self.history, self.events, self.pier, self.base, self._title)
+        return plot(self, self._title, width_mm)
 
     def _facts(self) -> tuple[str, dict[str, str]]:
         """See :class:`Shown`."""
