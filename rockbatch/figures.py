@@ -24,7 +24,7 @@ _MARKERS = "osD^vP*"
 _STYLE: Any = {
     "font.size": 8.0, "axes.titlesize": 8.0, "axes.labelsize": 8.0, "figure.titlesize": 9.0, "figure.labelsize": 8.0,
     "legend.fontsize": 7.0, "xtick.labelsize": 7.0, "ytick.labelsize": 7.0, "legend.frameon": False,
-    "axes.grid": True, "grid.alpha": 0.3, "lines.linewidth": 1.0, "lines.markersize": 4.0, "axes.titlelocation": "left",
+    "axes.grid": True, "grid.alpha": 0.3, "lines.linewidth": 1.0, "lines.markersize": 4.0,
 }  # fmt: skip
 
 

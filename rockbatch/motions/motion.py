@@ -335,7 +335,8 @@ class Motion(Shown):
         """Draw the acceleration of its components against time: a matplotlib Figure of this width."""
         from rockbatch.motions.plots import plot
 
-        return plot(self, width_mm)
+        components = {"horizontal": self.horizontal} | ({} if self.vertical is None else {"vertical": self.vertical})
+        return plot(components, self.dt, self.label, width_mm)
 
     @checked
     def times(self, factor: float, reverse: bool = False) -> "Motion":

@@ -188,7 +188,7 @@ class Response(Shown):
         dampers and tendons: a matplotlib Figure of this width, ``response.plot().savefig("pier.pdf")``."""
         from rockbatch.simulation.plots import plot
 
-        return plot(self, self._title, width_mm)
+        return plot((self.history, self.events, self.restraints), self.pier, self.base, self._title, width_mm)
 
     def _facts(self) -> tuple[str, dict[str, str]]:
         """See :class:`Shown`."""

@@ -1,5 +1,7 @@
 """The figure of the peaks, and what opened results tell of themselves."""
 
+import numpy as np
+import pandas as pd
 import pytest
 from studies import PADS, PIER, RIGID, SINE, study_text, write_study
 
@@ -46,6 +48,8 @@ def test_marks_and_lines_are_the_rows_of_the_table(results):
         x, y = marks.lines[0].get_data()
         assert y == pytest.approx(pads["theta_max_over_alpha"])
         assert x.astype(float).round().tolist() == [0, 1]
+    beside = np.array([marks.lines[0].get_xdata().astype(float) for marks in axes.containers]) % 1.0
+    assert np.mean((beside + 0.5) % 1.0 - 0.5) == pytest.approx(0.0, abs=1e-12)  # as far left as right of the ticks
     rigid = {line.get_label(): line.get_ydata()[0] for line in axes.lines if line.get_label().startswith("rock")}
     expected = rows[rows["case"] == "rock"].set_index("p")["theta_max_over_alpha"]
     assert rigid == {f"rock, p = {p:g}": pytest.approx(theta) for p, theta in expected.items()}
@@ -66,6 +70,24 @@ def test_runs_without_a_peak_stand_above_the_axis_values(results):
     assert len(legend) == len(set(legend))
 
 
+def test_a_study_of_rigid_bases_alone_has_its_cases_on_the_axis(tmp_path):
+    cases = [RIGID | {"name": name, "restitution": e} for name, e in (("hard", 0.9), ("soft", 0.6))]
+    rb.run(write_study(tmp_path, study_text(pulses=[SINE], cases=cases)), tmp_path / "out")
+    (axes,) = rb.open_results(tmp_path / "out").plot().axes
+    assert [tick.get_text() for tick in axes.get_xticklabels()] == ["hard", "soft"]
+    assert len(axes.containers[0].lines[0].get_xdata()) == 2
+
+
+def test_fifteen_distributions_differ_in_colour_or_dashes_and_the_legend_is_beside_them(results):
+    cases = pd.concat([results.peaks.assign(case=f"case {n}") for n in range(15)])
+    figure = plots.plot_cdf(cases, [], "station", 88.0)
+    (axes,) = figure.axes
+    looks = {(step.get_color(), step.get_linestyle()) for step in axes.lines if step.get_label().startswith("case")}
+    assert len(looks) == 15
+    figure.draw_without_rendering()
+    assert figure.legends[0].get_window_extent().y1 <= axes.get_window_extent().y0
+
+
 def test_of_many_records_the_worst_have_a_panel(results, monkeypatch):
     monkeypatch.setattr(plots, "MOST_PANELS", 1)
     figure = results.plot()
@@ -75,7 +97,7 @@ def test_of_many_records_the_worst_have_a_panel(results, monkeypatch):
 
 def test_without_runs_there_is_no_figure(results):
     with pytest.raises(rb.InputError, match="no runs to plot"):
-        plots.plot(results.peaks.iloc[:0], results.info)
+        plots.plot(results.peaks.iloc[:0], results.info, 160.0)
 
 
 def test_results_tell_of_themselves_in_a_few_lines(results):

@@ -88,17 +88,32 @@ def test_an_impossible_pier_is_refused_with_the_limit():
 def test_a_plot_shows_the_histories_over_their_units_and_each_loop_while_its_spring_is_loaded(response, tmp_path):
     figure = response.plot()
     axes = {ax.get_ylabel(): ax for ax in figure.axes}
-    assert list(axes)[:4] == ["θ/α", "θ̇/(αp)", "E [J/kg]", "üg/g"]
-    t, rotation = axes["θ/α"].lines[0].get_data()
+    assert list(axes)[:4] == [r"$\theta/\alpha$", r"$\dot\theta/(\alpha p)$", "energy [J/kg]", r"$\ddot u_g/g$"]
+    t, rotation = figure.axes[0].lines[0].get_data()
     assert (t == response.t).all()
     assert rotation == pytest.approx(response.theta / PIER.alpha)
-    assert len(axes["θ/α"].lines) == 1 + (response.events["kind"] == "impact").sum()
+    assert len(figure.axes[0].lines) == 1 + (response.events["kind"] == "impact").sum()
     loops = figure.axes[4:]
     assert len(loops) == (0 if isinstance(response.base, rb.RigidBase) else 2)
     for ax in loops:
         assert np.nanmax(ax.lines[0].get_ydata()) < 0
+        least = [line.get_ydata()[0] for line in ax.lines if line.get_label() == "$-F_y$"]
+        assert least == ([-0.5 * response.base.eta] if isinstance(response.base, rb.YieldingBase) else [])
     figure.savefig(tmp_path / "response.png")
     assert (tmp_path / "response.png").stat().st_size > 10_000
+
+
+@pytest.mark.parametrize("width", [160.0, 88.0])
+def test_a_plot_shows_the_loop_of_every_damper_and_tendon(width):
+    devices = (rb.Damper("hysteretic", f=0.05, yield_m=0.005), rb.Tendon(psi=0.2, lam=0.3))
+    response = rb.simulate(PIER, rb.RigidBase(restraints=devices), PULSE)
+    figure = response.plot(width)
+    loops = {axes.get_title(): axes.lines[0].get_data() for axes in figure.axes[4:]}
+    assert list(loops) == ["damper 1 left", "damper 1 right", "tendon 1"]
+    elongation, force = loops["tendon 1"]
+    assert elongation == pytest.approx(1000.0 * response.restraints["tendon 1 elongation"])
+    assert force == pytest.approx(response.restraints["tendon 1 force"] / PIER.gravity)
+    assert figure.get_figwidth() == pytest.approx(width / 25.4)
 
 
 STUDY = study_text(
