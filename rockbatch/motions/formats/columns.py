@@ -102,7 +102,6 @@ def _parse(text: str, options: ReadOptions) -> list[Recording]:
             dt=dt,
             values=values[:, i],
             unit=columns[i].unit or unit or "",
-            codes=("", "", "", columns[i].label),
             notes=(*notes, *left, *moved),
         )
         for i in wanted

@@ -9,7 +9,7 @@ import re
 from rockbatch.errors import InputError, NoRecordError
 from rockbatch.motions.component import Seat
 from rockbatch.motions.formats.fixed_width import lines_of, spaced_numbers
-from rockbatch.motions.formats.header_lines import count_and_step, moment_in, number_of
+from rockbatch.motions.formats.header_lines import count_and_step, moment_in, number_if_any
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording
 from rockbatch.motions.origin import TURKISH, origin_of
@@ -84,11 +84,8 @@ def _header(lines: list[str]) -> dict[str, str]:
 def _count_and_step(header: dict[str, str]) -> tuple[int, float]:
     """Return the number of values and the sampling interval [s], which must agree with the stated duration, if any."""
     npts, dt = count_and_step(header, "NDATA", "SAMPLING_INTERVAL_S")
-    try:
-        duration = number_of(header, "DURATION_S")
-    except InputError:
-        return npts, dt
-    if duration > 0 and abs(npts * dt - duration) > max(2 * dt, _ROUGHLY * duration):
+    duration = number_if_any(header, "DURATION_S")
+    if duration and duration > 0 and abs(npts * dt - duration) > max(2 * dt, _ROUGHLY * duration):
         raise InputError(f"the header says {npts} values every {dt:g} s, but also {duration:g} s in all")
     return npts, dt
 

@@ -19,12 +19,15 @@ _MONTHS = {name: i for i, names in enumerate(
 
 def match_line(pattern: re.Pattern[str], lines: Sequence[str], at: int, expected: str) -> re.Match[str]:
     """Return the match of ``pattern`` in ``lines[at]``; ``InputError`` where the line is another one, or none."""
-    line = line_at(lines, at)
-    match = pattern.search(line)
+    match = pattern.search(line_at(lines, at))
     if match is None:
-        what = f'"{line.strip()[:60]}"' if at < len(lines) else "the end of the file"
-        raise InputError(f'line {at + 1}: found {what}; expected "{expected}"')
+        raise _other(lines, at, f'"{expected}"')
     return match
+
+
+def _other(lines: Sequence[str], at: int, expected: str) -> InputError:
+    what = f'"{line_at(lines, at).strip()[:60]}"' if at < len(lines) else "the end of the file"
+    return InputError(f"line {at + 1}: found {what}; expected {expected}")
 
 
 Line = tuple[int, re.Pattern[str], str]
@@ -57,8 +60,7 @@ def read_header(lines: Sequence[str], at: int, layout: Sequence[Line]) -> dict[s
 def past_mark(lines: Sequence[str], at: int, after: str) -> int:
     """Return where the lines behind the mark "/&" at ``lines[at]`` begin; ``InputError`` where it is not ``after`` its data."""
     if not line_at(lines, at).startswith("/&"):
-        what = f'"{lines[at].strip()[:60]}"' if at < len(lines) else "the end of the file"
-        raise InputError(f'line {at + 1}: found {what}; expected "/&" after {after}; fetch it again')
+        raise _other(lines, at, f'"/&" after {after}; fetch it again')
     return at + 1
 
 
@@ -93,6 +95,14 @@ def number_of(header: Mapping[str, str], key: str) -> float:
         return number_in(header[key], 0)
     except InputError:
         raise InputError(f'the header says {key}: "{header[key][:40]}"; expected a number') from None
+
+
+def number_if_any(header: Mapping[str, str], key: str) -> float | None:
+    """Return the number that a header states under ``key``; ``None`` where it has none."""
+    try:
+        return number_of(header, key)
+    except InputError:
+        return None
 
 
 def count_and_step(header: Mapping[str, str], count: str, step: str) -> tuple[int, float]:
