@@ -30,6 +30,14 @@ def count_of(verdicts: Iterable[Verdict]) -> dict[str, int]:
     return {way: count[way] for way in WAYS}
 
 
+def count_by_check(verdicts: Iterable[Verdict]) -> dict[str, dict[str, int]]:
+    """Return the number of verdicts of each kind by the name of their check."""
+    by_check: dict[str, list[Verdict]] = {}
+    for verdict in verdicts:
+        by_check.setdefault(verdict.check, []).append(verdict)
+    return {name: count_of(same) for name, same in by_check.items()}
+
+
 def _is_open(verdict: Verdict) -> bool:
     """Return True if the demand may be anything above its value."""
     return math.isinf(verdict.high) and math.isfinite(verdict.value)

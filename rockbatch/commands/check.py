@@ -107,10 +107,7 @@ def table(verdicts: Sequence[Verdict]) -> str:
 
 def summed_up(verdicts: Sequence[Verdict]) -> str:
     """Return how many verdicts of each kind every check has, the worst of them, and what each check asks."""
-    by_check: dict[str, list[Verdict]] = {}
-    for verdict in verdicts:
-        by_check.setdefault(verdict.check, []).append(verdict)
-    rows = [(name, *map(str, wording.count_of(same).values())) for name, same in by_check.items()]
+    rows = [(name, *map(str, count.values())) for name, count in wording.count_by_check(verdicts).items()]
     parts = ["\n".join([f"{len(verdicts)} verdicts", *aligned([("check", *wording.WAYS), *rows])])]
     notes = Notes(verdicts)
     if worst := wording.worst_first(verdicts)[:WORST]:

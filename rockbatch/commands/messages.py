@@ -6,7 +6,7 @@ import sys
 import time
 from contextlib import AbstractContextManager
 from types import TracebackType
-from typing import Any, Self, TextIO
+from typing import Any, TextIO
 
 from rockbatch.batch.listening import Listener, Told, count
 from rockbatch.commands.streams import give_up, say, tell
@@ -45,7 +45,7 @@ def _twice(motions: MotionSet) -> list[tuple[str, str]]:
     return [(name, repeat) for name, repeat in names if name != repeat]
 
 
-class Progress:
+class Progress(AbstractContextManager["Progress"]):
     """Progress of a batch: a bar with the time remaining on a terminal, plain lines elsewhere.
 
     Call it with the number of runs that are finished since the last call; use it as a context.
@@ -62,9 +62,6 @@ class Progress:
             from tqdm import tqdm
 
             self.bar = tqdm(total=total, unit="run", file=self.stream, dynamic_ncols=True, leave=False)
-
-    def __enter__(self) -> Self:
-        return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None

@@ -17,7 +17,7 @@ from rockbatch.checks.suite import counts_as, simulated
 from rockbatch.errors import InputError
 from rockbatch.figures import figure, line, marks, styled
 from rockbatch.lazy import pd
-from rockbatch.results.suite_statistics import NO_PEAK, distribution
+from rockbatch.results.suite_statistics import NO_PEAK, distribution, worst_records
 from rockbatch.study import PIER_KEYS
 
 MOST_PANELS = 24
@@ -138,10 +138,8 @@ def _named(name: str, value: object) -> str:
 
 def _records(runs: "pd.DataFrame", info: Mapping[str, Any]) -> list[str]:
     """Return the records that have a panel, in order of their PGA: all, or those with the worst runs."""
-    badness = runs["theta_max_over_alpha"].where(~runs["status"].isin(NO_PEAK), math.inf)
-    worst = badness.groupby(runs["record"]).max().sort_values(ascending=False, kind="stable")
     pga = {record["record"]: record["pga_g"] for record in info["records"]}
-    return sorted(worst.index[:MOST_PANELS], key=lambda name: (pga.get(name, math.inf), name))
+    return sorted(worst_records(runs, MOST_PANELS), key=lambda name: (pga.get(name, math.inf), name))
 
 
 def _panels(runs: "pd.DataFrame", panel_mm: float) -> _Panels:

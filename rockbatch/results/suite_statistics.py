@@ -9,9 +9,17 @@ import numpy as np
 import numpy.typing as npt
 
 from rockbatch.checks.statistics import Values, quantiles
+from rockbatch.lazy import pd
 
 NO_PEAK = ("overturned", "flight")
 """Outcomes without a largest rotation: they count as larger than any."""
+
+
+def worst_records(runs: "pd.DataFrame", most: int) -> list[str]:
+    """Return the records with the worst runs, ``most`` of them at most: those without a largest rotation first."""
+    badness = runs["theta_max_over_alpha"].where(~runs["status"].isin(NO_PEAK), math.inf)
+    worst = badness.groupby(runs["record"]).max().sort_values(ascending=False, kind="stable")
+    return list(worst.index[:most])
 
 
 @dataclass(frozen=True)

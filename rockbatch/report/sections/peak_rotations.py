@@ -10,7 +10,7 @@ from rockbatch.report.markup import Markup, figure, join, tag
 from rockbatch.report.overview import by_foundation, ceiling
 from rockbatch.report.sections.peaks import at_a_glance
 from rockbatch.report.table import THETA
-from rockbatch.results.suite_statistics import NO_PEAK
+from rockbatch.results.suite_statistics import NO_PEAK, worst_records
 from rockbatch.simulation.outcome import LEANS
 
 MOST_RECORDS = 60
@@ -56,11 +56,7 @@ def chosen(finished: Finished, runs: "pd.DataFrame", figures: int = 1) -> list[s
     """Return the records that have a panel, by PGA: all of them, or of many those with the worst runs."""
     names = list(runs["record"].unique())
     room = max(1, min(MOST_RECORDS, MOST_MARKS * len(names) // max(1, len(runs) * figures)))
-    if len(names) > room:
-        badness = runs["theta_max_over_alpha"].where(~runs["status"].isin(NO_PEAK), math.inf)
-        worst = badness.groupby(runs["record"]).max().sort_values(ascending=False, kind="stable")
-        names = list(worst.index[:room])
-    return finished.by_pga(names)
+    return finished.by_pga(worst_records(runs, room) if len(names) > room else names)
 
 
 def _quiet(runs: "pd.DataFrame", records: Sequence[str], top: float) -> list[str]:

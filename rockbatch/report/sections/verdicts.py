@@ -102,8 +102,8 @@ def _cell(verdict: Verdict) -> Markup:
 def _counts(verdicts: Sequence[Verdict]) -> Markup:
     """Return a row for each check: the number of verdicts of each kind."""
     rows = [
-        [name, *(mark(way, str(n)) if n else "" for way, n in wording.count_of(same).items())]
-        for name, same in grouped(verdicts, lambda verdict: verdict.check).items()
+        [name, *(mark(way, str(n)) if n else "" for way, n in count.items())]
+        for name, count in wording.count_by_check(verdicts).items()
     ]
     return table([Head("check"), *map(Head, wording.WAYS)], rows, name="Verdicts of each kind")
 
