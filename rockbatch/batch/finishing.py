@@ -22,12 +22,12 @@ from rockbatch.errors import InputError
 from rockbatch.files import legible, read_text
 from rockbatch.motions import MotionSet
 from rockbatch.report import REPORT, write_report
-from rockbatch.results.beside_peaks import SEMICOLONS
+from rockbatch.results.beside_peaks import SEMICOLONS, write
 from rockbatch.results.checking import verdicts
 from rockbatch.results.columns import PEAKS, unusable_rows
-from rockbatch.results.estimate import ESTIMATE, write_estimate
+from rockbatch.results.estimate import ESTIMATE, estimates
 from rockbatch.results.histories_file import HISTORIES
-from rockbatch.results.intensity import INTENSITY, write_intensity
+from rockbatch.results.intensity import INTENSITY, intensities
 from rockbatch.results.opened import open_results
 from rockbatch.results.reading import Saved, edited
 from rockbatch.results.run_json import INFO, describe, versions, write_info
@@ -163,11 +163,15 @@ def finish(
 
 def _beside_peaks(saved: Saved, study: Study, motions: MotionSet) -> list[Path]:
     """Write the tables that the study asks for beside the peaks, and take away those of another time."""
-    asked = ((INTENSITY, study.output.intensity, write_intensity), (ESTIMATE, study.output.estimate, write_estimate))
-    for name, wanted, _ in asked:
-        if not wanted:
+    written = []
+    for name, wanted, rows in (
+        (INTENSITY, study.output.intensity, intensities), (ESTIMATE, study.output.estimate, estimates)
+    ):  # fmt: skip
+        if wanted:
+            written.append(write(saved.directory / name, rows(saved.peaks, study, motions.motions)))
+        else:
             (saved.directory / name).unlink(missing_ok=True)
-    return [write(saved.directory, saved.peaks, study, motions.motions) for _, wanted, write in asked if wanted]
+    return written
 
 
 def _keep_histories(

@@ -2,7 +2,7 @@
 
 import csv
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -46,8 +46,9 @@ def runs(peaks: "pd.DataFrame", study: Study, motions: Sequence[Motion]) -> Iter
         yield Ran(row, by_name[row["record"]], float(row["scale"]), pier)
 
 
-def write(path: Path, rows: Sequence[Mapping[str, Any]]) -> Path:
-    """Write ``rows``, which have the same names, as a CSV; whole or not at all."""
+def write(path: Path, table: Iterable[Mapping[str, Any]]) -> Path:
+    """Write rows, which have the same names, as a CSV; whole or not at all."""
+    rows = list(table)
     write_whole(path, csv_text(list(rows[0]) if rows else list(NAMING), rows))
     return path
 

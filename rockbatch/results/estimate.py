@@ -18,7 +18,6 @@ comes out here is there to be compared, not to design by. None of these formulas
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cache
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -92,30 +91,25 @@ def estimate(rotation: Callable[[float], float]) -> Estimate:
     return Estimate(math.nan, "no convergence")
 
 
-def write_estimate(directory: Path, peaks: "pd.DataFrame", study: Study, motions: Sequence[Motion]) -> Path:
-    """Write estimate.csv beside ``peaks``, with a row for each run that was simulated."""
-    return beside_peaks.write(directory / ESTIMATE, list(_rows(peaks, study, motions)))
-
-
-def _rows(peaks: "pd.DataFrame", study: Study, motions: Sequence[Motion]) -> Iterator[dict[str, Any]]:
-    by_name = {motion.name: motion for motion in motions}
+def estimates(peaks: "pd.DataFrame", study: Study, motions: Sequence[Motion]) -> Iterator[dict[str, Any]]:
+    """Yield the rows of estimate.csv, one for each run of ``peaks`` that was simulated."""
 
     @cache
-    def displacements(name: str, p: float, damping: float) -> tuple[Array, Array]:
+    def displacements(motion: Motion, p: float, damping: float) -> tuple[Array, Array]:
         """Return periods [s] and spectral displacements [m] of a motion, before the study's scale."""
         ends = rocking_period(np.array([_LEAST, _LARGEST]), p)
         periods = np.geomspace(ends[0], ends[1], _PERIODS)
-        sa = spectral_acceleration(by_name[name].horizontal, by_name[name].dt, periods, damping)
+        sa = spectral_acceleration(motion.horizontal, motion.dt, periods, damping)
         return periods, sa * (periods / (2.0 * math.pi)) ** 2
 
     @cache
-    def of_pier(name: str, scale: float, pier: Pier, method: str) -> tuple[float, Estimate]:
+    def of_pier(motion: Motion, scale: float, pier: Pier, method: str) -> tuple[float, Estimate]:
         damping = DAMPING[method](pier)
-        if scale * by_name[name].pga <= pier.gravity * math.tan(pier.alpha):
+        if scale * motion.pga <= pier.gravity * math.tan(pier.alpha):
             return damping, Estimate(0.0, "stays")
         if damping > _MOST_DAMPING:
             return damping, Estimate(math.nan, "no convergence")
-        periods, moved = displacements(name, pier.p, damping)
+        periods, moved = displacements(motion, pier.p, damping)
 
         def rotation(share: float) -> float:
             period = float(rocking_period(min(share, _LARGEST), pier.p))
@@ -126,6 +120,6 @@ def _rows(peaks: "pd.DataFrame", study: Study, motions: Sequence[Motion]) -> Ite
     for row, motion, scale, pier in beside_peaks.runs(peaks, study, motions):
         row["pga_over_g_tan_alpha"] = scale * motion.pga / (pier.gravity * math.tan(pier.alpha))
         for method in DAMPING:
-            row[f"{method}_damping"], oscillator = of_pier(motion.name, scale, pier, method)
+            row[f"{method}_damping"], oscillator = of_pier(motion, scale, pier, method)
             row[f"{method}_theta_over_alpha"], row[f"{method}_outcome"] = oscillator
         yield row

@@ -3,7 +3,6 @@
 import math
 from collections.abc import Iterator, Sequence
 from functools import cache
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -33,31 +32,26 @@ LEAST_RUNS = 3
 Array = npt.NDArray[np.float64]
 
 
-def write_intensity(directory: Path, peaks: "pd.DataFrame", study: Study, motions: Sequence[Motion]) -> Path:
-    """Write intensity.csv beside ``peaks``, with a row for each run that was simulated."""
-    return beside_peaks.write(directory / INTENSITY, list(_rows(peaks, study, motions)))
-
-
-def _rows(peaks: "pd.DataFrame", study: Study, motions: Sequence[Motion]) -> Iterator[dict[str, Any]]:
+def intensities(peaks: "pd.DataFrame", study: Study, motions: Sequence[Motion]) -> Iterator[dict[str, Any]]:
+    """Yield the rows of intensity.csv, one for each run of ``peaks`` that was simulated."""
     periods = study.output.sa_periods_s
-    by_name = {motion.name: motion for motion in motions}
 
     @cache
-    def of_record(name: str) -> tuple[float, float, Array]:
+    def of_record(motion: Motion) -> tuple[float, float, Array]:
         """Return PGV [m/s], CAV [m/s] and spectral accelerations [m/s²] of a motion before the study's scale."""
-        a, dt = by_name[name].horizontal, by_name[name].dt
-        pgv = measures.pgv(a, dt, by_name[name].initial)
+        a, dt = motion.horizontal, motion.dt
+        pgv = measures.pgv(a, dt, motion.initial)
         return pgv, measures.cumulative_absolute_velocity(a, dt), spectral_acceleration(a, dt, periods)
 
     @cache
-    def durations(name: str, threshold: float) -> tuple[float, float]:
-        a, dt = by_name[name].horizontal, by_name[name].dt
+    def durations(motion: Motion, threshold: float) -> tuple[float, float]:
+        a, dt = motion.horizontal, motion.dt
         return measures.bracketed_duration(a, dt, threshold), measures.uniform_duration(a, dt, threshold)
 
     for row, motion, scale, pier in beside_peaks.runs(peaks, study, motions):
         uplift = pier.gravity * math.tan(pier.alpha)
-        pgv, cav, sa = of_record(motion.name)
-        bracketed, uniform = durations(motion.name, uplift / scale)
+        pgv, cav, sa = of_record(motion)
+        bracketed, uniform = durations(motion, uplift / scale)
         values = (scale * motion.pga / uplift, pier.p * scale * pgv / uplift, bracketed, uniform, scale * cav)
         of_spectrum = {_column(period): scale * float(s) / pier.gravity for period, s in zip(periods, sa, strict=True)}
         yield {**row, **dict(zip(MEANING, values, strict=True)), **of_spectrum}
