@@ -9,6 +9,7 @@ from rockbatch.checks import wording
 from rockbatch.checks.demands import DEMANDS
 from rockbatch.checks.responses import RESPONSES, Worst, in_words, unlimited, worst_of_all
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, Verdict
+from rockbatch.grouping import grouped
 
 MOST_NAMES = 6
 MOST_CHECKS = 3
@@ -37,9 +38,7 @@ def answer(verdicts: Sequence[Verdict], worst: Sequence[Worst], case_of: Words, 
     case_of, record_of : function
         Of a verdict: the name of its case, and of the record that governs it.
     """
-    cases: dict[str, list[Verdict]] = {}
-    for verdict in verdicts:
-        cases.setdefault(case_of(verdict), []).append(verdict)
+    cases = grouped(verdicts, case_of)
     ways = {name: {verdict.verdict for verdict in own} for name, own in cases.items()}
     failing = [name for name, own in ways.items() if FAIL in own]
     open_ = [name for name, own in ways.items() if NOT_DECIDED in own and FAIL not in own]
@@ -104,9 +103,7 @@ class _Cases:
         """Return the line on checks that fail, each with its worst demand, and the case nearest to passing."""
         if not names:
             return None
-        checks: dict[str, list[Verdict]] = {}
-        for verdict in self._of(names, FAIL):
-            checks.setdefault(verdict.check, []).append(verdict)
+        checks = grouped(self._of(names, FAIL), lambda verdict: verdict.check)
         worst = sorted((max(same, key=_excess) for same in checks.values()), key=_excess, reverse=True)
         details = [self._failure(verdict, len(checks[verdict.check]) - 1) for verdict in worst[:MOST_CHECKS]]
         if rest := [verdict.check for verdict in worst[MOST_CHECKS:]]:
@@ -154,13 +151,11 @@ class _Cases:
 
     def _exempt(self, names: Sequence[str]) -> tuple[str, ...]:
         """Return which checks do not apply to which cases, a sentence for each set of checks."""
-        exempt: dict[tuple[str, ...], list[str]] = {}
-        for name in names:
-            if checks := tuple(verdict.check for verdict in self._of([name], DOES_NOT_APPLY)):
-                exempt.setdefault(checks, []).append(name)
+        exempt = grouped(names, lambda name: tuple(verdict.check for verdict in self._of([name], DOES_NOT_APPLY)))
         return tuple(
             f"Not asked of {_listed(cases)}: {', '.join(checks)}, which do{'es' * (len(checks) == 1)} not apply there."
             for checks, cases in exempt.items()
+            if checks
         )
 
     def _of(self, names: Sequence[str], way: str = "") -> list[Verdict]:

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from rockbatch.checks.statistics import Values
+from rockbatch.grouping import grouped
 from rockbatch.lazy import pd
 from rockbatch.pier import MOST_ETA, tilt_over_residual
 
@@ -376,14 +377,15 @@ DEMANDS = {
 
 def listed() -> dict[str, list[str]]:
     """Return the names of all demands by that on which they depend, in words: the list in the example of checks."""
-    groups: dict[str, list[str]] = {}
-    for name, demand in DEMANDS.items():
-        group = (
+
+    def group(name: str) -> str:
+        demand = DEMANDS[name]
+        return (
             "yes or no, 1 or 0" if demand.event
             else "of the foundation, and not of a run" if demand.of_the_case
             else f"with [output] {demand.needs} = true" if demand.needs
             else f"of a {demand.device}" if demand.device
             else "of every run"
         )  # fmt: skip
-        groups.setdefault(group, []).append(name)
-    return groups
+
+    return grouped(DEMANDS, group)

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from rockbatch.checks.demands import DEMANDS
 from rockbatch.checks.statistics import STATISTICS
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, Verdict
+from rockbatch.grouping import grouped
 
 WAYS = (PASS, FAIL, NOT_DECIDED, DOES_NOT_APPLY)
 SIGNS = {PASS: "✓", FAIL: "✗", NOT_DECIDED: "?", DOES_NOT_APPLY: "–"}
@@ -32,10 +33,7 @@ def count_of(verdicts: Iterable[Verdict]) -> dict[str, int]:
 
 def count_by_check(verdicts: Iterable[Verdict]) -> dict[str, dict[str, int]]:
     """Return the number of verdicts of each kind by the name of their check."""
-    by_check: dict[str, list[Verdict]] = {}
-    for verdict in verdicts:
-        by_check.setdefault(verdict.check, []).append(verdict)
-    return {name: count_of(same) for name, same in by_check.items()}
+    return {name: count_of(same) for name, same in grouped(verdicts, lambda verdict: verdict.check).items()}
 
 
 def _is_open(verdict: Verdict) -> bool:

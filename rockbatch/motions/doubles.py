@@ -15,10 +15,10 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from rockbatch.grouping import grouped
 from rockbatch.motions.archives import bare
 from rockbatch.motions.component import NOWHERE, Component, file_of
 from rockbatch.motions.formats import is_usual
-from rockbatch.motions.grouping import grouped
 from rockbatch.motions.motion import Finding, LeftOut, Samples
 from rockbatch.motions.orientation import SAME_AZIMUTH, UNKNOWN
 from rockbatch.motions.plausible import gross_findings, in_a_borehole

@@ -14,9 +14,9 @@ from functools import cache
 from pathlib import Path
 
 from rockbatch.errors import InputError
+from rockbatch.grouping import grouped
 from rockbatch.lazy import h5py
 from rockbatch.motions.component import Component
-from rockbatch.motions.grouping import grouped
 from rockbatch.motions.orientation import Orientation, orientation_of
 from rockbatch.motions.origin import Origin
 from rockbatch.motions.turning import resolved

@@ -14,6 +14,7 @@ import numpy as np
 
 from rockbatch.arguments import checked
 from rockbatch.errors import InputError, NoRecordError, UnstatedError
+from rockbatch.grouping import grouped
 from rockbatch.motions import archives, fema_p695
 from rockbatch.motions.baseline import Offset, corrected
 from rockbatch.motions.bounded import TooLongError, watch
@@ -21,7 +22,6 @@ from rockbatch.motions.component import Component, file_of
 from rockbatch.motions.doubles import without_doubles
 from rockbatch.motions.finding import MANIFESTS, Found, files_of
 from rockbatch.motions.formats import HEAD, ReadOptions, RecordFile, format_of, read_record, usable
-from rockbatch.motions.grouping import grouped
 from rockbatch.motions.manifest import Manifest, described, is_manifest, options_of
 from rockbatch.motions.motion import LeftOut, Unusable
 from rockbatch.motions.motion_set import MotionSet

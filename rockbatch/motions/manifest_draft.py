@@ -7,11 +7,11 @@ from typing import Any
 
 from rockbatch.errors import InputError
 from rockbatch.files import legible, write_whole
+from rockbatch.grouping import grouped
 from rockbatch.motions.component import Component
 from rockbatch.motions.doubles import without_doubles
 from rockbatch.motions.folder import Reading, read_files
 from rockbatch.motions.formats import ReadOptions
-from rockbatch.motions.grouping import grouped
 from rockbatch.motions.motion import Unusable
 from rockbatch.motions.plausible import gross_findings
 from rockbatch.motions.stations import by_station

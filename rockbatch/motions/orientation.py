@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import combinations
 
-from rockbatch.motions.grouping import grouped
+from rockbatch.grouping import grouped
 
 
 @dataclass(frozen=True)

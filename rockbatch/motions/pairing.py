@@ -9,9 +9,9 @@ from typing import Literal
 
 import numpy as np
 
+from rockbatch.grouping import distinct, grouped
 from rockbatch.motions.common_span import on_common_samples, overlap, too_unlike
 from rockbatch.motions.component import Component
-from rockbatch.motions.grouping import distinct, grouped
 from rockbatch.motions.measures import state_at
 from rockbatch.motions.motion import Finding, Motion, Unusable
 from rockbatch.motions.motion_set import MotionSet

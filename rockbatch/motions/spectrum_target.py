@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from rockbatch.errors import InputError
+from rockbatch.grouping import grouped
 from rockbatch.motions.design_spectra import Spectrum
-from rockbatch.motions.grouping import grouped
 from rockbatch.motions.motion import Motion
 from rockbatch.motions.spectrum import spectral_acceleration
 

@@ -13,9 +13,9 @@ from itertools import combinations
 
 import numpy as np
 
+from rockbatch.grouping import distinct, grouped
 from rockbatch.motions.common_span import overlap
 from rockbatch.motions.component import Component, file_of
-from rockbatch.motions.grouping import distinct, grouped
 
 _NUMBERED = re.compile(r"RSN\d+")
 _SAME_SHAPE = 1e-4  # of the peak: what printing a scaled copy may cost a sample

@@ -2,11 +2,11 @@
 
 import math
 import tomllib
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 from rockbatch.checks import Verdict, read_verdicts
 from rockbatch.checks.responses import Worst, worst_of_cases
@@ -20,9 +20,6 @@ from rockbatch.results.opened import Results, open_results
 from rockbatch.results.reading import Saved
 from rockbatch.simulation.response import Response
 from rockbatch.study import PIER_KEYS
-
-T = TypeVar("T")
-K = TypeVar("K")
 
 
 @dataclass(frozen=True, eq=False)
@@ -222,14 +219,6 @@ def as_dicts(runs: "pd.DataFrame") -> list[dict[str, Any]]:
     """Return the rows of ``runs``, each as a mapping from column names to values."""
     columns = {str(name): column.to_numpy(object, na_value=math.nan).tolist() for name, column in runs.items()}
     return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
-
-
-def grouped(items: Iterable[T], key: Callable[[T], K]) -> dict[K, list[T]]:
-    """Return the items by their keys, in the order of the first of each."""
-    groups: dict[K, list[T]] = {}
-    for item in items:
-        groups.setdefault(key(item), []).append(item)
-    return groups
 
 
 def worst_first(runs: "pd.DataFrame", most: int) -> "pd.DataFrame":

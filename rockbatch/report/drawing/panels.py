@@ -4,10 +4,11 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
+from rockbatch.grouping import grouped
 from rockbatch.lazy import pd
 from rockbatch.report.drawing.axes import Axes, Scale
 from rockbatch.report.drawing.svg import ends, key, line, lowered, marker, rectangle, sign_of, style_of, svg, text
-from rockbatch.report.finished import Finished, as_dicts, grouped
+from rockbatch.report.finished import Finished, as_dicts
 from rockbatch.report.labels import Series
 from rockbatch.report.markup import Markup, join, number, tag
 from rockbatch.report.table import THETA_FORMAT

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from rockbatch.grouping import grouped
 from rockbatch.report.drawing.axes import Axes, Scale
 from rockbatch.report.drawing.svg import curve, key, line, marker, style_of, svg, text
-from rockbatch.report.finished import grouped
 from rockbatch.report.finished_analysis import Contents, of_files
 from rockbatch.report.labels import quantity
 from rockbatch.report.markup import Markup, join, tag

@@ -6,10 +6,11 @@ from typing import Any
 
 import numpy as np
 
+from rockbatch.grouping import grouped
 from rockbatch.report.drawing.axes import Axes, Scale, spanning
 from rockbatch.report.drawing.history import LOOPS_HEIGHT, QUANTITIES, History, reduced
 from rockbatch.report.drawing.svg import Array, curve, line, lowered, marker, rectangle, svg, text
-from rockbatch.report.finished import Finished, as_dicts, grouped, worst_first
+from rockbatch.report.finished import Finished, as_dicts, worst_first
 from rockbatch.report.markup import Markup, join, tag
 from rockbatch.report.templates import render
 from rockbatch.results.histories_file import Responses
