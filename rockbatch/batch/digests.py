@@ -12,7 +12,7 @@ from rockbatch.study import Study
 PACKAGES = ("pier", "core", "simulation", "motions", "study", "checks", "toml", "results", "batch", "analysis")
 """Packages that decide what a row says, or which runs come next. The others only show it: commands, report."""
 
-MODULES = ("units.py", "files.py", "errors.py", "showing.py", "lazy.py", "arguments.py", "grouping.py")
+MODULES = ("units.py", "files.py", "errors.py", "showing.py", "lazy.py", "arguments.py", "grouping.py", "figures.py")
 """Those at the top that do."""
 
 _TOP = Path(__file__).parents[1]
