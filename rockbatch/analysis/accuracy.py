@@ -4,7 +4,7 @@ import json
 import os
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 from rockbatch.analysis.error_and_time import Clock, measure, references
 from rockbatch.analysis.folder import Analysis
@@ -19,6 +19,9 @@ from rockbatch.results.columns import PEAKS
 from rockbatch.results.run_json import INFO
 from rockbatch.study import Motions, Study, given_study
 from rockbatch.study.suite import ground_motions
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 RUNS = 24
 """Default number of runs that are measured."""
@@ -45,6 +48,12 @@ class Accuracy(Analysis):
 
     accuracy: "pd.DataFrame"
     records: tuple[str, ...]
+
+    def plot(self, width_mm: float = 160.0) -> "Figure":
+        """Draw the error that 95 % of the runs stay below, over the time of a run: a matplotlib Figure of this width."""
+        from rockbatch.analysis import plots
+
+        return plots.accuracy(self.accuracy, width_mm)
 
     def save(self, folder: str | os.PathLike[str]) -> tuple[Path, ...]:
         """Write ``accuracy.csv``, and the report again where the folder holds results of this very study.

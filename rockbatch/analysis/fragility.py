@@ -3,7 +3,7 @@
 import os
 import time
 from dataclasses import dataclass, replace
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 from rockbatch.analysis.folder import Analysis, analysis_folder
 from rockbatch.analysis.fragility_curves import Curve, assess, intensities, output
@@ -19,6 +19,9 @@ from rockbatch.results.columns import columns
 from rockbatch.study import Motions, Study, given_study
 from rockbatch.study.fragility import FragilitySpec, read_fragility
 from rockbatch.study.suite import ground_motions
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -49,6 +52,12 @@ class Fragility(Analysis):
     fragility_runs: "pd.DataFrame"
     curves: tuple[Curve, ...]
     spec: FragilitySpec
+
+    def plot(self, width_mm: float = 160.0) -> "Figure":
+        """Draw the share of records that exceed each limit, and the fitted curves: a matplotlib Figure of this width."""
+        from rockbatch.analysis import plots
+
+        return plots.fragility(self.fragility, self.curves, width_mm)
 
 
 @checked

@@ -11,7 +11,7 @@ from array import array
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -32,6 +32,9 @@ from rockbatch.motions import MotionSet
 from rockbatch.study import Motions, Study, given_study
 from rockbatch.study.sensitivity import Input, SensitivitySpec, Value, read_sensitivity
 from rockbatch.study.suite import ground_motions
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 ONE_AT_A_TIME, SOBOL = "sensitivity.csv", "sobol.csv"
 TORNADO_COLUMNS = ("parameter", "low", "base", "high", "answer_low", "answer_base", "answer_high", "swing")
@@ -60,6 +63,12 @@ class Sensitivity(Analysis):
     sensitivity: "pd.DataFrame"
     sobol: "pd.DataFrame"
     spec: SensitivitySpec
+
+    def plot(self, width_mm: float = 160.0) -> "Figure":
+        """Draw the answer over the range of each input, the greatest swing on top, and Sobol's indices: a matplotlib Figure."""
+        from rockbatch.analysis import plots
+
+        return plots.sensitivity(self.sensitivity, self.sobol, width_mm)
 
 
 @checked

@@ -4,7 +4,7 @@ import os
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from rockbatch.analysis import overturning_map, rocking_spectrum
 from rockbatch.analysis.folder import Analysis, AnalysisFolder, analysis_folder
@@ -23,6 +23,9 @@ from rockbatch.results.columns import columns
 from rockbatch.study import Motions, Study, given_study
 from rockbatch.study.spectrum import MapSpec, SpectrumSpec, read_spectrum
 from rockbatch.study.suite import ground_motions
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -53,6 +56,12 @@ class Spectrum(Analysis):
     overturning_runs: "pd.DataFrame | None"
     spectra: SpectrumSpec | None
     maps: tuple[MapSpec, ...]
+
+    def plot(self, width_mm: float = 160.0) -> "Figure":
+        """Draw the spectrum of each case, with its median over the records, and the maps: a matplotlib Figure of this width."""
+        from rockbatch.analysis import plots
+
+        return plots.spectrum(self.spectrum, self.spectrum_suite, self.overturning_map, width_mm)
 
 
 @checked

@@ -1,0 +1,158 @@
+"""Figures of the analyses, for notebooks and papers; the report draws its own. Loads matplotlib: imported where one is drawn."""
+
+import math
+from collections.abc import Sequence
+from statistics import NormalDist
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from rockbatch.analysis.fragility_curves import Curve
+from rockbatch.analysis.lognormal import Lognormal
+from rockbatch.figures import COLOURS, figure, line, marks, styled
+from rockbatch.lazy import pd
+
+_OUTCOMES = {"safe": "0.93", "overturned with impact": "#E69F00", "overturned without impact": "#D55E00"}
+_OTHER = "#999999"  # "undecided" and what a map may have besides
+
+
+@styled
+def fragility(table: "pd.DataFrame", curves: Sequence[Curve], width_mm: float) -> Figure:
+    """See :meth:`rockbatch.analysis.fragility.Fragility.plot`."""
+    limits = list(dict.fromkeys(curve.limit.name for curve in curves))
+    drawn, grid = _panels(len(limits), width_mm)
+    levels = np.linspace(0.0, table["level"].max(), 201)[1:]
+    for axes, limit in zip(grid, limits, strict=True):
+        for place, curve in enumerate(curve for curve in curves if curve.limit.name == limit):
+            name = ", ".join([curve.case.name, *(f"{key} = {value}" for key, value in curve.case.columns.items())])
+            rows = table[(table["case"] == curve.case.name) & (table["limit_state"] == limit)]
+            for key, value in curve.case.columns.items():
+                rows = rows[rows[key] == value]
+            fitted = curve.fitted
+            axes.plot(
+                rows["level"],
+                rows["exceeded"] / rows["n"],
+                **marks(place),
+                label="" if isinstance(fitted, Lognormal) else name,
+            )
+            if isinstance(fitted, Lognormal):
+                normal = NormalDist(math.log(fitted.median), fitted.dispersion)
+                axes.plot(levels, [normal.cdf(math.log(level)) for level in levels], label=name, **line(place))
+        axes.set(xlabel=f"{table['measure'].iloc[0]} [{table['unit'].iloc[0]}]", ylim=(0, 1.01), title=limit)
+    grid[0].set_ylabel("probability that it is exceeded")
+    return _with_legend(drawn, grid)
+
+
+@styled
+def spectrum(
+    spectra: "pd.DataFrame | None", suite: "pd.DataFrame | None", maps: "pd.DataFrame | None", width_mm: float
+) -> Figure:
+    """See :meth:`rockbatch.analysis.spectrum.Spectrum.plot`."""
+    panels = (
+        []
+        if suite is None
+        else [("spectrum", *key) for key in suite[["case", "alpha"]].drop_duplicates().to_numpy().tolist()]
+    )
+    panels += (
+        [] if maps is None else [("map", *key) for key in maps[["map", "case"]].drop_duplicates().to_numpy().tolist()]
+    )
+    drawn, grid = _panels(len(panels), width_mm)
+    for axes, (kind, first, second) in zip(grid, panels, strict=True):
+        if kind == "map":
+            assert maps is not None
+            _map(axes, maps[(maps["map"] == first) & (maps["case"] == second)])
+            axes.set_title(f"{first}, {second}")
+        else:
+            assert spectra is not None
+            assert suite is not None
+            _spectrum(axes, *(rows[(rows["case"] == first) & (rows["alpha"] == second)] for rows in (spectra, suite)))
+            axes.set_title(rf"{first}, $\alpha$ = {second:g}")
+    return _with_legend(drawn, grid)
+
+
+def _spectrum(axes: Axes, spectra: "pd.DataFrame", suite: "pd.DataFrame") -> None:
+    """Draw a line for each record, which ends where the pier overturns, and the median."""
+    for _, of_record in spectra.groupby(["record", "polarity", "scale"], sort=False):
+        stood = of_record["theta_max_over_alpha"].where(of_record["status"] == "ok")
+        axes.plot(of_record["two_pi_over_p_s"], stood, color="0.65", linewidth=0.6, label="each record")
+    axes.plot(suite["two_pi_over_p_s"], suite["median"].replace(math.inf, math.nan), **line(0), label="median")
+    axes.set(xlabel=r"$2\pi/p$ [s]", ylabel=r"$\theta_{\max}/\alpha$", ylim=(0, 1.1))
+
+
+def _map(axes: Axes, regions: "pd.DataFrame") -> None:
+    """Draw regions of one outcome over the pulse's frequency, each to the middle between two frequencies."""
+    frequencies = np.sort(regions["omega_p_over_p"].unique())
+    edges = np.concatenate([frequencies[:1], (frequencies[1:] + frequencies[:-1]) / 2, frequencies[-1:]])
+    for outcome, rows in regions.groupby("outcome", sort=False):
+        place = np.searchsorted(frequencies, rows["omega_p_over_p"])
+        colour = _OUTCOMES.get(str(outcome), _OTHER)
+        axes.bar(
+            edges[place], rows["high"] - rows["low"], edges[place + 1] - edges[place], bottom=rows["low"], align="edge",
+            color=colour, edgecolor=colour, linewidth=0.2, label=str(outcome),
+        )  # fmt: skip
+    low, high = regions["low"].min(), regions["high"].max()
+    axes.set(xlabel=r"$\omega_p/p$", ylabel=r"$a_p/(g\,\tan\alpha)$", xlim=(edges[0], edges[-1]), ylim=(low, high))
+    axes.grid(False)
+
+
+@styled
+def sensitivity(swings: "pd.DataFrame", sobol: "pd.DataFrame", width_mm: float) -> Figure:
+    """See :meth:`rockbatch.analysis.sensitivity.Sensitivity.plot`."""
+    cases = list(swings["case"].unique())
+    drawn = figure(width_mm, 16.0 + (12.0 + 5.0 * swings["parameter"].nunique()) * len(cases))
+    for (tornado, shares), case in zip(drawn.subplots(len(cases), 2, squeeze=False), cases, strict=True):
+        bars = swings[swings["case"] == case].drop_duplicates("parameter")[::-1]
+        tornado.barh(
+            bars["parameter"], bars["answer_high"] - bars["answer_low"], left=bars["answer_low"], color=COLOURS[0]
+        )
+        tornado.axvline(bars["answer_base"].iloc[0], color="black", linewidth=0.8)
+        tornado.set(title=case, xlabel=r"$\theta_{\max}/\alpha$, one at a time")
+        own = (
+            sobol[sobol["case"] == case]
+            .drop_duplicates("parameter")
+            .set_index("parameter")
+            .reindex(bars["parameter"])
+            .dropna()
+        )
+        for place, (index, label) in enumerate((("total", "total"), ("first", "first order"))):
+            shares.errorbar(own[index], own.index, xerr=own[f"{index}_error"], label=label, **marks(place))
+        shares.set(
+            title=case, xlabel="Sobol index", xlim=(min(-0.05, *shares.get_xlim()), max(1.05, *shares.get_xlim()))
+        )
+    return _with_legend(drawn, [shares])
+
+
+@styled
+def accuracy(table: "pd.DataFrame", width_mm: float) -> Figure:
+    """See :meth:`rockbatch.analysis.accuracy.Accuracy.plot`."""
+    drawn = figure(width_mm, 0.65 * width_mm + 12.0)
+    axes = drawn.subplots()
+    for place, (method, rows) in enumerate(table.groupby("method", sort=False)):
+        look = marks(place) | {"linestyle": line(place)["linestyle"]}
+        axes.loglog(1000.0 * rows["seconds_per_run"], rows["error_95"].clip(lower=1e-16), label=str(method), **look)
+        for steps, seconds, error in rows[["substeps", "seconds_per_run", "error_95"]].dropna().to_numpy().tolist():
+            axes.annotate(
+                f"{steps:g}", (1000.0 * seconds, error), xytext=(4, 4), textcoords="offset points", fontsize=6.0
+            )
+    axes.set(xlabel="time of a run [ms]; numbers: steps per sample", ylabel=r"error of $\theta_{\max}/\alpha$, 95 %")
+    return _with_legend(drawn, [axes])
+
+
+def _panels(count: int, width_mm: float) -> tuple[Figure, list[Axes]]:
+    columns = max(1, min(count, int(width_mm / 70.0)))
+    rows = math.ceil(count / columns)
+    drawn = figure(width_mm, 10.0 + 60.0 * rows)
+    grid = drawn.subplots(rows, columns, squeeze=False).ravel().tolist()
+    for axes in grid[count:]:
+        axes.set_visible(False)
+    return drawn, grid[:count]
+
+
+def _with_legend(drawn: Figure, panels: Sequence[Axes]) -> Figure:
+    """Return the figure with one legend of all panels below."""
+    entries = {
+        label: handle for axes in panels for handle, label in zip(*axes.get_legend_handles_labels(), strict=True)
+    }
+    drawn.legend(list(entries.values()), list(entries), loc="outside lower center", ncols=3)
+    return drawn
