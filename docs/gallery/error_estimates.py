@@ -12,7 +12,10 @@ def draw() -> Figure:
     rows = pd.read_csv(ROWS)
     figure = Figure(figsize=(8.0, 4.2), layout="constrained")
     for axes, quantity, title in zip(
-        figure.subplots(1, 2, sharex=True, sharey=True), ("theta_max", "theta_res"), ("θ_max/α", "θ_res/α"), strict=True
+        figure.subplots(1, 2, sharex=True, sharey=True),
+        ("theta_max", "theta_res"),
+        (r"$\theta_{\max}/\alpha$", r"$\theta_{res}/\alpha$"),
+        strict=True,
     ):
         for i, (base, of_base) in enumerate(rows.groupby("base", sort=False)):
             known = of_base.dropna(subset=[f"{quantity}_reported", f"{quantity}_true"])

@@ -24,6 +24,6 @@ def draw() -> Figure:
         above.plot(history["t"], history["theta"] / PIER.alpha, lw=1.1, label=name)
     below.plot(history["t"], history["ag_h"] / PIER.gravity, lw=0.8, color="0.4")
     above.legend(frameon=False)
-    above.set(ylabel="θ/α", title="Meloland, Imperial Valley 1979; p = 0.76 rad/s", xlim=(0, 30))
-    below.set(xlabel="t [s]", ylabel="üg/g")
+    above.set(ylabel=r"$\theta/\alpha$", title="Meloland, Imperial Valley 1979; p = 0.76 rad/s", xlim=(0, 30))
+    below.set(xlabel="t [s]", ylabel=r"$\ddot u_g/g$")
     return figure

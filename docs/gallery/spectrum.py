@@ -2,7 +2,6 @@
 
 from pathlib import Path
 
-import numpy as np
 from matplotlib.figure import Figure
 
 import rockbatch as rb
@@ -36,18 +35,4 @@ points = 25
 
 
 def draw() -> Figure:
-    result = rb.spectrum(rb.Study.from_toml(STUDY))
-    figure = Figure(figsize=(8.0, 4.0), layout="constrained")
-    cases = result.spectrum_suite["case"].unique()
-    for axes, case in zip(figure.subplots(1, len(cases), sharey=True), cases, strict=True):
-        of_case = result.spectrum[result.spectrum["case"] == case]
-        for _, of_record in of_case.groupby("record", sort=False):
-            stood = of_record["theta_max_over_alpha"].where(of_record["status"] != "overturned")
-            axes.plot(of_record["two_pi_over_p_s"], stood, lw=0.7, color="0.65")
-        suite = result.spectrum_suite[result.spectrum_suite["case"] == case]
-        axes.plot(suite["two_pi_over_p_s"], suite["median"].replace(np.inf, np.nan), lw=2, label="median")
-        axes.set(xlabel="2π/p [s]", ylabel="θ_max/α", title=case, ylim=(0, 1.1))
-        axes.label_outer()
-        axes.grid(alpha=0.3)
-    figure.axes[0].legend(frameon=False)
-    return figure
+    return rb.spectrum(rb.Study.from_toml(STUDY)).plot()

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from statistics import NormalDist
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -21,27 +22,26 @@ _OTHER = "#999999"  # "undecided" and what a map may have besides
 def fragility(table: "pd.DataFrame", curves: Sequence[Curve], width_mm: float) -> Figure:
     """See :meth:`rockbatch.analysis.fragility.Fragility.plot`."""
     limits = list(dict.fromkeys(curve.limit.name for curve in curves))
+    names = list(dict.fromkeys(map(_case, curves)))
     drawn, grid = _panels(len(limits), width_mm)
     levels = np.linspace(0.0, table["level"].max(), 201)[1:]
+    for curve in curves:
+        axes, place = grid[limits.index(curve.limit.name)], names.index(_case(curve))
+        chosen = {"case": curve.case.name, "limit_state": curve.limit.name} | curve.case.columns
+        rows = table[(table[list(chosen)] == pd.Series(chosen)).all(axis=1)]
+        share = rows["exceeded"] / (rows["n"] - rows["undecided"])
+        axes.plot(rows["level"], share, **marks(place), label=f"{names[place]}, records")
+        if isinstance(curve.fitted, Lognormal):
+            normal = NormalDist(math.log(curve.fitted.median), curve.fitted.dispersion)
+            axes.plot(levels, [normal.cdf(math.log(level)) for level in levels], label=names[place], **line(place))
     for axes, limit in zip(grid, limits, strict=True):
-        for place, curve in enumerate(curve for curve in curves if curve.limit.name == limit):
-            name = ", ".join([curve.case.name, *(f"{key} = {value}" for key, value in curve.case.columns.items())])
-            rows = table[(table["case"] == curve.case.name) & (table["limit_state"] == limit)]
-            for key, value in curve.case.columns.items():
-                rows = rows[rows[key] == value]
-            fitted = curve.fitted
-            axes.plot(
-                rows["level"],
-                rows["exceeded"] / rows["n"],
-                **marks(place),
-                label="" if isinstance(fitted, Lognormal) else name,
-            )
-            if isinstance(fitted, Lognormal):
-                normal = NormalDist(math.log(fitted.median), fitted.dispersion)
-                axes.plot(levels, [normal.cdf(math.log(level)) for level in levels], label=name, **line(place))
         axes.set(xlabel=f"{table['measure'].iloc[0]} [{table['unit'].iloc[0]}]", ylim=(0, 1.01), title=limit)
     grid[0].set_ylabel("probability that it is exceeded")
     return _with_legend(drawn, grid)
+
+
+def _case(curve: Curve) -> str:
+    return ", ".join([curve.case.name, *(f"{key} = {value}" for key, value in curve.case.columns.items())])
 
 
 @styled
@@ -49,25 +49,18 @@ def spectrum(
     spectra: "pd.DataFrame | None", suite: "pd.DataFrame | None", maps: "pd.DataFrame | None", width_mm: float
 ) -> Figure:
     """See :meth:`rockbatch.analysis.spectrum.Spectrum.plot`."""
-    panels = (
-        []
-        if suite is None
-        else [("spectrum", *key) for key in suite[["case", "alpha"]].drop_duplicates().to_numpy().tolist()]
-    )
-    panels += (
-        [] if maps is None else [("map", *key) for key in maps[["map", "case"]].drop_duplicates().to_numpy().tolist()]
-    )
-    drawn, grid = _panels(len(panels), width_mm)
-    for axes, (kind, first, second) in zip(grid, panels, strict=True):
-        if kind == "map":
-            assert maps is not None
-            _map(axes, maps[(maps["map"] == first) & (maps["case"] == second)])
-            axes.set_title(f"{first}, {second}")
-        else:
-            assert spectra is not None
-            assert suite is not None
-            _spectrum(axes, *(rows[(rows["case"] == first) & (rows["alpha"] == second)] for rows in (spectra, suite)))
-            axes.set_title(rf"{first}, $\alpha$ = {second:g}")
+    of_spectra: list[Any] = []
+    if spectra is not None and suite is not None:
+        lines = dict(list(spectra.groupby(["case", "alpha"], sort=False)))
+        of_spectra = [(key, lines[key], median) for key, median in suite.groupby(["case", "alpha"], sort=False)]
+    of_maps: list[Any] = [] if maps is None else list(maps.groupby(["map", "case"], sort=False))
+    drawn, grid = _panels(len(of_spectra) + len(of_maps), width_mm)
+    for axes, ((case, alpha), lines_of_case, median) in zip(grid, of_spectra, strict=False):
+        _spectrum(axes, lines_of_case, median)
+        axes.set_title(rf"{case}, $\alpha$ = {alpha:g}")
+    for axes, ((name, case), regions) in zip(grid[len(of_spectra) :], of_maps, strict=True):
+        _map(axes, regions)
+        axes.set_title(f"{name}, {case}")
     return _with_legend(drawn, grid)
 
 
