@@ -9,7 +9,7 @@ import math
 import re
 from collections import Counter
 from collections.abc import Hashable, Iterable, Iterator, Sequence
-from itertools import combinations
+from itertools import combinations, pairwise
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from rockbatch.motions.common_span import overlap
 from rockbatch.motions.component import Component, file_of
 
 _NUMBERED = re.compile(r"RSN\d+")
+_HOUR = 3600.0  # s
 _SAME_SHAPE = 1e-4  # of the peak: what printing a scaled copy may cost a sample
 
 
@@ -118,16 +119,15 @@ def station_names(stations: Sequence[Sequence[Component]]) -> list[str]:
             root[i] = i = root[root[i]]
         return i
 
-    alike: dict[Hashable, list[tuple[int, Component]]] = {}
-    for i, station in enumerate(stations):
-        for component in station:
-            for key in _keys(component):
-                alike.setdefault(key, []).append((i, component))
-    for same in alike.values():
-        for (i, a), (j, b) in combinations(same, 2):
-            low, high = sorted((first_of(i), first_of(j)))
-            if low != high and (_together(a, b) or _copies(a, b)):
-                root[high] = low
+    keyed = [(key, (i, c)) for i, station in enumerate(stations) for c in station for key in _keys(c)]
+    for group in grouped(keyed, lambda pair: pair[0]).values():
+        same = [of_station for _, of_station in group]
+        for pairs in (pairwise(same), combinations(same, 2)):  # neighbours first: mostly, that is all
+            if len({first_of(i) for i, _ in same}) > 1:
+                for (i, a), (j, b) in pairs:
+                    low, high = sorted((first_of(i), first_of(j)))
+                    if low != high and (_together(a, b) or _copies(a, b)):
+                        root[high] = low
     records = list(dict.fromkeys(map(first_of, root)))
     firsts = [stations[i][0] for i in records]
     names = distinct(
@@ -140,13 +140,22 @@ def station_names(stations: Sequence[Sequence[Component]]) -> list[str]:
 
 
 def _keys(component: Component) -> Iterator[Hashable]:
-    """Return what components of one record may have in common: those that share nothing of it need not be compared."""
+    """Return what components of one record may have in common: those that share nothing of it need not be compared.
+
+    At a station that is an event, or an hour, in which both recorded, or their file.
+    """
+    places: list[Hashable] = [(component.folder, component.station)] if component.station else []
+    places += [component.seat.number.upper()] if component.seat.number else []
+    for place in places:
+        if component.event:
+            yield place, component.event
+        if component.dated and component.start is not None:
+            hours = (component.start // _HOUR, (component.start + component.duration) // _HOUR)
+            yield from ((place, hour) for hour in range(int(hours[0]), int(hours[1]) + 1))
+        if component.source:
+            yield place, component.folder, file_of(component.source)
     if is_numbered(component.site):
         yield component.site
-    if component.station:
-        yield component.folder, component.station
-    if component.seat.number:
-        yield "seat", component.seat.number.upper()
     yield len(component.acceleration), int(np.abs(component.acceleration).argmax())
 
 
@@ -169,5 +178,8 @@ def _copies(a: Component, b: Component) -> bool:
         return False
     i = int(np.abs(one).argmax())
     if one[i] == 0 or two[i] == 0:
+        return False
+    few = slice(i + 1, i + 9)  # tell nearly all others apart
+    if not (np.abs(one[few] / one[i] - two[few] / two[i]) <= _SAME_SHAPE).all():
         return False
     return bool(np.abs(one / one[i] - two / two[i]).max() <= _SAME_SHAPE)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import rockbatch as rb
-from rockbatch.motions import ReadOptions
+from rockbatch.motions import ReadOptions, stations
 from rockbatch.motions.component import Component, Seat
 from rockbatch.motions.orientation import Orientation
 from rockbatch.motions.stations import station_names
@@ -93,6 +93,16 @@ def test_two_formats_of_one_recording_are_one_record_by_their_headers():
 def test_what_headers_and_names_say_decides(more, stations):
     found = station_names([[component(f"c{i}", **each)] for i, each in enumerate(more)])
     assert len(set(found)) == stations
+
+
+@pytest.mark.parametrize("when", [lambda i: {"event": f"E{i}"}, lambda i: {"start": 1e9 + 86400.0 * i}, lambda i: {}])
+def test_records_of_one_station_in_many_earthquakes_are_not_all_compared_to_each_other(monkeypatch, when):
+    compared = []
+    together = stations._together
+    monkeypatch.setattr(stations, "_together", lambda a, b: compared.append(1) or together(a, b))
+    records = [[component(f"c{i}", station="S", folder="/a", seat=Seat("7"), **when(i))] for i in range(200)]
+    assert len(set(station_names(records))) == 200
+    assert len(compared) < 1000
 
 
 def test_several_records_of_one_station_are_told_apart_by_event_or_folder():
