@@ -265,7 +265,8 @@ class _Table:
         """
         if self.sensor[i] < 0:
             return []
-        j = i + 1 + np.flatnonzero(self.sensor[i + 1 :] == self.sensor[i])
+        near = (self.event[i + 1 :] == self.event[i]) | self.dated[i + 1 :]
+        j = i + 1 + np.flatnonzero(near & (self.sensor[i + 1 :] == self.sensor[i]))
         same_event = (self.event[i] >= 0) & (self.event[j] == self.event[i])
         same_event = np.where(self.dated[i] & self.dated[j], self._overlap(i, j), same_event)
         other = (self.file[j] == self.file[i]) | self._differ(self.numbered, i, j)

@@ -171,12 +171,10 @@ def _formula(
 ) -> tuple[Callable[[Samples], Samples], float]:
     """Return the acceleration [m/s²] as a function of time [s], and how long it lasts [s]."""
     omega = 2.0 * math.pi / period
-    if shape == "sine":
-        return lambda t: a * np.sin(omega * t), period
+    if shape in ("sine", "half-sine"):
+        return lambda t: a * np.sin(omega * t), period if shape == "sine" else period / 2
     if shape == "cosine":
         return lambda t: a * np.cos(omega * t), period
-    if shape == "half-sine":
-        return lambda t: a * np.sin(omega * t), period / 2
     if shape == "ricker":
         t0 = 4.0 * period / 3.0
 
