@@ -281,7 +281,7 @@ def test_one_line_in_the_study_or_one_option_speaks_for_a_folder_of_files(tmp_pa
     assert main(["motions", str(records)]) == 1
     assert "0 records, 8 files not used" in capsys.readouterr().err
     assert main(["motions", str(records), "--role", "horizontal"]) == 1
-    assert "7 records, 1 files not used" in capsys.readouterr().err
+    assert "7 records, 1 file not used" in capsys.readouterr().err
 
 
 def test_a_study_cannot_say_that_all_unknown_components_are_vertical(tmp_path):
