@@ -16,7 +16,7 @@ from rockbatch.batch.plan import Made, PlannedRun
 from rockbatch.batch.threads import Threads
 from rockbatch.motions.pulses import pulse_length
 from rockbatch.pier import Pier, RigidBase
-from rockbatch.report.drawing.overturning_map import outcome_at, strips
+from rockbatch.report.drawing.overturning_map import strips
 from rockbatch.results.columns import as_table
 from rockbatch.study import Case, Numerics, Study
 from rockbatch.study.spec import MotionSpec
@@ -48,7 +48,8 @@ class Shown:
         self.strips = strips(pd.DataFrame(maps.rows(maps.find(carry_out)), columns=columns(())))
 
     def at(self, point):
-        return outcome_at(self.strips, *point)
+        own = next((strip for strip in self.strips if point[0] <= strip.frequencies[-1]), self.strips[-1])
+        return own.outcome(*point)
 
 
 def outcomes(runs):

@@ -137,4 +137,8 @@ def test_a_wheel_has_them(tmp_path):
     assert len(list((tmp_path / "mine" / "records").rglob("*.V2*"))) == 7
     names = {path.stem for path in (installed / "rockbatch" / "examples" / "configs").glob("*.toml")}
     assert names == set(NAMES)
-    assert (installed / "rockbatch" / "report" / "style.css").exists()
+    report = installed / "rockbatch" / "report"
+    assert {"style.css", "script.js", "page.html"} <= {path.name for path in report.iterdir()}
+    assert len(list((report / "sections").glob("*.html"))) == len(
+        list((CHECKOUT / "rockbatch/report/sections").glob("*.html"))
+    )

@@ -113,12 +113,6 @@ def _nearest(height: float, kind: tuple[str, ...], other: Strip, edges: Array) -
     return min(same, key=lambda i: abs(edges[i] - height), default=0)
 
 
-def outcome_at(drawn: Sequence[Strip], frequency: float, amplitude: float) -> str:
-    """Return the outcome that a map shows at a point."""
-    own = next((strip for strip in drawn if frequency <= strip.frequencies[-1]), drawn[-1])
-    return own.outcome(frequency, amplitude)
-
-
 def draw(own: "pd.DataFrame") -> tuple[Markup, list[Entry]]:
     """Draw one map; return the picture and its legend."""
     drawn = strips(own)

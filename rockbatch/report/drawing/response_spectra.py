@@ -18,15 +18,11 @@ LABELLED = COLOURS
 def drawable(spectra: Mapping[str, Any]) -> bool:
     """Return whether periods rise, and every spectrum has a value for each; run.json may come from anybody."""
     periods, more = spectra["period_s"], [spectra[name] for name in ("mean_sa_g", "target_sa_g") if name in spectra]
+    shown = [*spectra["sa_g"], *more]
     rising = len(periods) > 1 and all(a < b for a, b in pairwise([0.0, *periods]))
-    both = len(more) != 1
-    there = all(len(spectrum) == len(periods) for spectrum in [*spectra["sa_g"], *more])
-    return (
-        rising
-        and both
-        and there
-        and all(value is None or value >= 0 for spectrum in [*spectra["sa_g"], *more] for value in spectrum)
-    )
+    values = (value for spectrum in shown for value in spectrum)
+    fitting = len(more) != 1 and all(len(spectrum) == len(periods) for spectrum in shown)
+    return rising and fitting and all(value is None or value >= 0 for value in values)
 
 
 def draw(spectra: dict[str, Any], names: Sequence[str], fitted: tuple[float, float] | None = None) -> Markup:

@@ -24,7 +24,7 @@ OUTCOMES = {
 
 
 def section(finished: Finished) -> Markup:
-    """Return the estimates of every run; None if the study does not ask for them."""
+    """Return the estimates of every run; empty if the study does not ask for them."""
     path = finished.directory / ESTIMATE
     runs = as_dicts(read_table(path)) if path.exists() else []
     if not runs:

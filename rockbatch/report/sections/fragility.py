@@ -26,7 +26,7 @@ Curve = Mapping[str, Any]
 
 @of_files("fragility")
 def section(contents: Contents) -> Markup:
-    """Draw the fragility curves; None if there are none."""
+    """Draw the fragility curves; empty if there are none."""
     analysis = contents.analysis("fragility")
     if analysis is None or not analysis.info["curves"]:
         return Markup("")

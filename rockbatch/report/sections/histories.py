@@ -2,6 +2,7 @@
 
 import shlex
 from collections.abc import Sequence
+from operator import itemgetter
 from typing import Any
 
 import numpy as np
@@ -28,7 +29,7 @@ Row = dict[str, Any]
 
 
 def section(finished: Finished) -> Markup:
-    """Draw the stored histories; None if there are none."""
+    """Draw the stored histories; empty if there are none."""
     if not len(finished.responses):
         return Markup("")
     command = shlex.join([*map(str, finished.info["command"]), "--history", "RECORD"])
@@ -39,7 +40,9 @@ def _pictures(finished: Finished, responses: Sequence[Response]) -> list[dict[st
     """Draw a picture for each pier: a column for every response, or for the worst of many; with what its caption depends on."""
     kept = _kept(finished, responses)
     numbers = _chosen(finished, kept)
-    behind = {number: _behind(kept, number) for number in numbers}
+    same_motion = itemgetter("record", "polarity", "scale", "pier")
+    rigid = {same_motion(run): number for number, run in reversed([*enumerate(kept)]) if run["rigid"]}
+    behind = {number: None if kept[number]["rigid"] else rigid.get(same_motion(kept[number])) for number in numbers}
     # A rigid base drawn behind another column needs none of its own
     columns = [number for number in numbers if number not in behind.values()]
     there = {number for number in (*columns, *behind.values()) if number is not None}
@@ -96,15 +99,6 @@ def _chosen(finished: Finished, kept: Sequence[Row]) -> list[int]:
             seen.add(key[3:])
             numbers.append(number_of[key])
     return numbers[:MOST_COLUMNS]
-
-
-def _behind(kept: Sequence[Row], number: int) -> int | None:
-    """Return the number of the same motion and pier on the rigid base; None if it was not stored."""
-    run = kept[number]
-    names = ("record", "polarity", "scale", "pier")
-    if run["rigid"]:
-        return None
-    return next((i for i, other in enumerate(kept) if other["rigid"] and all(other[n] == run[n] for n in names)), None)
 
 
 def _scale(shown: Sequence[History], row: int) -> Scale:

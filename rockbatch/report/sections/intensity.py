@@ -20,7 +20,7 @@ SYMBOLS = {
 
 
 def section(finished: Finished) -> Markup:
-    """Report the measure that orders the peaks best in each case; None if the study does not ask for measures."""
+    """Report the measure that orders the peaks best in each case; empty if the study does not ask for measures."""
     path = finished.directory / INTENSITY
     measures = read_table(path) if path.exists() else None
     if measures is None or measures.empty:

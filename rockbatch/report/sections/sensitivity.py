@@ -24,7 +24,7 @@ SOBOL = ("case", "parameter", "first", "first_error", "total", "total_error")
 
 @of_files("sensitivity")
 def section(contents: Contents) -> Markup:
-    """Report the inputs one at a time, and all at once; None if they were not studied."""
+    """Report the inputs one at a time, and all at once; empty if they were not studied."""
     analysis = contents.analysis("sensitivity")
     if analysis is None:
         return Markup("")

@@ -32,7 +32,7 @@ QUANTILES = {"median": "", "p16": " d2", "p84": " d1"}
 
 @of_files("spectrum")
 def section(contents: Contents) -> Markup:
-    """Draw rocking spectra and overturning maps; None if there are none."""
+    """Draw rocking spectra and overturning maps; empty if there are none."""
     analysis = contents.analysis("spectrum")
     if analysis is None:
         return Markup("")

@@ -21,7 +21,7 @@ MOST_WORST = 10
 
 
 def section(finished: Finished) -> Markup:
-    """Return all checks in all cases, their demands, and all verdicts, or the worst of many; None without checks."""
+    """Return all checks in all cases, their demands, and all verdicts, or the worst of many; empty without checks."""
     verdicts = finished.verdicts
     if not verdicts:
         return Markup("")
