@@ -127,7 +127,7 @@ class Finished(Contents):
             groups.append((", ".join(filter(None, words)), runs))
         return groups
 
-    def which(self, run: "pd.Series[Any]") -> str:
+    def which(self, run: "pd.Series[Any] | dict[str, Any]") -> str:
         """Describe a run among those of the same record: its foundation, and whatever else identifies it."""
         also = [self.piers[run["pier"]], f"scale {number(float(run['scale']))}" if run["scale"] != 1 else ""]
         also += ["reversed" if run["polarity"] == "-" else "", run["with_vertical"]]
@@ -150,7 +150,7 @@ class Finished(Contents):
             return join(label)
         return tag("span", label, " ", tag("span", record, class_="muted path"), class_="record")
 
-    def where(self, run: "pd.Series[Any]") -> str:
+    def where(self, run: "pd.Series[Any] | dict[str, Any]") -> str:
         """Describe a run by its record and case."""
         return f"{self.named(run['record'])}, case {self.which(run)}"
 

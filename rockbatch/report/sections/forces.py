@@ -1,13 +1,15 @@
 """Quantities for design: the greatest forces, gaps and velocities of every case, and those of every run."""
 
+from typing import Any
+
 import numpy as np
 
 from rockbatch.lazy import pd
-from rockbatch.report.finished import Finished, worst_first
+from rockbatch.report.finished import Finished
 from rockbatch.report.labels import head
 from rockbatch.report.markup import Markup, join, number
-from rockbatch.report.sections.peaks import on_scale
-from rockbatch.report.table import MOST_ROWS, Head, alarm, shown_of, table
+from rockbatch.report.sections.peaks import every_run, on_scale
+from rockbatch.report.table import Head, alarm, table
 from rockbatch.report.templates import render
 from rockbatch.results.columns import Column, on_page
 
@@ -23,11 +25,17 @@ def section(finished: Finished) -> Markup:
     shown = [column for column in on_page("forces") if column.name in finished.runs]
     if not shown or finished.runs.empty:
         return Markup("")
+
+    def cells(run: dict[str, Any]) -> list[object]:
+        return [finished.which(run), *(on_scale(column.name, run[column.name]) for column in shown)]
+
+    heads = [Head("record"), Head("case"), *map(head, shown)]
     places = zip(finished.runs["series"], finished.runs["pier"], strict=True)
     available = np.array([finished.cases[pair]["parameters"].get("friction", np.inf) for pair in places])
     asked = finished.runs.reindex(columns=["friction_demand", "impact_friction_demand"]).max(axis=1).to_numpy()
     return render(
-        "sections/forces.html", of_cases=_of_cases(finished, shown), every_run=_every_run(finished, shown),
+        "sections/forces.html", of_cases=_of_cases(finished, shown),
+        every_run=every_run(finished, heads, cells, "Forces of every run"),
         interfaces=bool(np.isfinite(available).any()), slides=int((asked > available).sum()),
         known=int((np.isfinite(available) & ~np.isnan(asked)).sum()),
         frames=any("deck_over_columns" in case["pier"] for case in finished.info["cases"]),
@@ -60,18 +68,3 @@ def _worst(column: Column, runs: "pd.DataFrame", cut_short: bool) -> object:
     value = on_scale(column.name, float(values.min() if least else values.max()))
     shown = number(value, head(column).form)
     return join(f"{'≤' if least else '≥'}\u00a0", shown) if cut_short else value
-
-
-def _every_run(finished: Finished, shown: list[Column]) -> Markup:
-    runs = worst_first(finished.runs, MOST_ROWS)
-    rows = [
-        [
-            finished.shown(run["record"]),
-            finished.which(run),
-            *(on_scale(column.name, run[column.name]) for column in shown),
-        ]
-        for _, run in runs.iterrows()
-    ]
-    heads = [Head("record"), Head("case"), *map(head, shown)]
-    drawn = table(heads, rows, sortable=True, name="Forces of every run")
-    return join(shown_of(len(runs), len(finished.runs), "worst"), drawn)

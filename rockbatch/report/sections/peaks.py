@@ -14,7 +14,7 @@ from rockbatch.results.columns import COLUMNS, PEAKS, on_page
 from rockbatch.simulation.outcome import LINEARISED
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
 MOST_COLUMNS = 24
 
@@ -80,10 +80,8 @@ def _every_run(finished: Finished) -> Markup:
     runs, varied = finished.runs, finished.info["varied"]
     # Shown only if they vary
     also = {"polarity": finished.both_directions, "scale": runs["scale"].nunique() > 1}
-    names = {"record": head(COLUMNS["record"])}
-    if (runs["station"] != "").any() and (runs["station"] != runs["record"]).any():
-        names["station"] = head(COLUMNS["station"])
-    names["case"] = head(COLUMNS["case"])
+    has_stations = (runs["station"] != "").any() and (runs["station"] != runs["record"]).any()
+    names = {name: head(COLUMNS[name]) for name in (("station", "case") if has_stations else ("case",))}
     names |= {key: Head(symbol(key), note=key) for key in varied}
     names |= {name: head(COLUMNS[name]) for name, changes in also.items() if changes}
     if runs["with_vertical"].nunique() > 1:
@@ -94,18 +92,24 @@ def _every_run(finished: Finished) -> Markup:
         for name in map(str, finished.saved.peaks)
         if name not in COLUMNS and name not in ("vertical", *varied)
     }
-    shown = worst_first(runs, MOST_ROWS)
-    rows = [
-        [
-            finished.shown(run["record"]),
-            *(run[name] for name in names if name != "record"),
+
+    def cells(run: dict[str, Any]) -> list[object]:
+        return [
+            *(run[name] for name in names),
             *(_settlement(run) if name == "settlement_m" else _cell(name, run[name]) for name in columns),
         ]
-        for run in as_dicts(shown)
-    ]
-    heads = [*names.values(), *columns.values()]
-    drawn = table(heads, rows, sortable=True, name="Every run")
-    return join(shown_of(len(shown), len(runs), "worst"), drawn)
+
+    return every_run(finished, [head(COLUMNS["record"]), *names.values(), *columns.values()], cells, "Every run")
+
+
+def every_run(
+    finished: Finished, heads: "Sequence[Head]", cells: "Callable[[dict[str, Any]], Sequence[object]]", name: str
+) -> Markup:
+    """Return a table with a row for each run, the worst first; ``cells`` returns those behind the record."""
+    runs = worst_first(finished.runs, MOST_ROWS)
+    rows = ([finished.shown(run["record"]), *cells(run)] for run in as_dicts(runs))
+    drawn = table(heads, rows, sortable=True, name=name)
+    return join(shown_of(len(runs), len(finished.runs), "worst"), drawn)
 
 
 def _cell(name: str, value: Any) -> object:
