@@ -66,11 +66,6 @@ def _line(line: Line) -> Markup:
     return tag("li", tag("strong", mark(line.verdict, line.says)), which, details)
 
 
-def _by_case(verdicts: Sequence[Verdict]) -> dict[str, list[Verdict]]:
-    scaled = len({verdict.scale for verdict in verdicts}) > 1
-    return grouped(verdicts, lambda verdict: _case(verdict, scaled))
-
-
 def _case(verdict: Verdict, scaled: bool) -> str:
     words = [quantity(key, value) for key, value in verdict.columns.items()]
     words += [f"motions scaled by {verdict.scale:g}"] if scaled else []
@@ -90,7 +85,8 @@ def matrix(verdicts: Sequence[Verdict]) -> Markup:
     """Return a row for each case, a column for each check: demand over limit, and the verdict."""
     checks = list(dict.fromkeys(verdict.check for verdict in verdicts))
     rows = []
-    for case, same in _by_case(verdicts).items():
+    scaled = len({verdict.scale for verdict in verdicts}) > 1
+    for case, same in grouped(verdicts, lambda verdict: _case(verdict, scaled)).items():
         by_check = {verdict.check: verdict for verdict in same}
         rows.append([case, *(_cell(by_check[name]) if name in by_check else "" for name in checks)])
     return table([Head("case"), *(Head(name) for name in checks)], rows, name="Checks of every case")
