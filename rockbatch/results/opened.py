@@ -77,7 +77,8 @@ class Results(Shown, Saved):
         Parameters
         ----------
         record, case : str, optional
-            Of which ground motion and case; whatever the kept histories leave no choice about can be left out.
+            Of which ground motion and case, or how the name of one of them begins; whatever the kept histories leave no
+            choice about can be left out.
         **more
             Its ``polarity``, ``scale`` and values of the study's varied keys, where that takes a choice.
 
@@ -100,6 +101,9 @@ class Results(Shown, Saved):
         fitting = index
         for name, value in wanted.items():
             remaining = fitting[fitting[name] == value]
+            if remaining.empty and name in ("record", "case"):
+                begun = fitting[fitting[name].str.startswith(str(value))]
+                remaining = begun if begun[name].nunique() == 1 else remaining
             if remaining.empty:
                 raise InputError(self._none(name, value, fitting))
             fitting = remaining

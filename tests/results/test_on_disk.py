@@ -467,6 +467,16 @@ def test_without_histories_it_says_how_to_get_them(tmp_path):
         results.history("weak", "rigid")
 
 
+def test_a_name_may_be_begun_where_one_alone_begins_so(results):
+    row = {"case": "pads", "polarity": "-", "alpha": 0.25, "spring": "epp"}
+    assert results.response("stro", **row).record == "strong"
+    assert results.response("strong", **row | {"case": "pa"}).case == "pads"
+    with pytest.raises(rb.InputError):
+        results.response("trong", **row)
+    with pytest.raises(rb.InputError):
+        results.response("", **row)
+
+
 def test_a_folder_without_results_is_told():
     with pytest.raises(rb.InputError, match=r"run\.json: not there"):
         rb.open_results("nowhere")
