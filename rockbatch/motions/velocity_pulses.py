@@ -63,15 +63,7 @@ def pulse_of(motion: Motion) -> VelocityPulse:
 
 
 def velocity_pulse(v: Samples, dt: float) -> VelocityPulse:
-    """Return the pulse in a ground velocity.
-
-    Parameters
-    ----------
-    v : ndarray, shape (npts,)
-        Ground velocity [m/s] at the samples.
-    dt : float
-        Sampling interval [s].
-    """
+    """Return the pulse in a ground velocity [m/s], shape (npts,), sampled every ``dt`` [s]."""
     pgv = float(np.abs(v).max())
     if pgv == 0:
         return VelocityPulse(0.0, math.nan, 0.0, False)
