@@ -3,16 +3,21 @@
 import hashlib
 import json
 import os
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
-from dataclasses import dataclass
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, nullcontext
+from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any, ClassVar
+from typing import Any, ClassVar, TypeVar
 
 from rockbatch._version import __version__
+from rockbatch.batch.carrying_out import carry_out
+from rockbatch.batch.compiling import make_ready
 from rockbatch.batch.journal import Journal
-from rockbatch.batch.listening import Listener, count
+from rockbatch.batch.listening import Listener, Progress, count, listener_of
+from rockbatch.batch.plan import PlannedRun, Runs
+from rockbatch.batch.threads import Engine, Threads, engine_of
 from rockbatch.errors import InputError
 from rockbatch.files import (
     csv_text,
@@ -26,12 +31,17 @@ from rockbatch.files import (
     write_whole,
 )
 from rockbatch.lazy import pd
-from rockbatch.motions import Motion, Unusable
+from rockbatch.motions import MotionSet, Unusable
 from rockbatch.report import REPORT, write_analyses
 from rockbatch.report.finished_analysis import digest_of
 from rockbatch.results.run_json import versions
 from rockbatch.showing import Shown, several
-from rockbatch.study import Study
+from rockbatch.simulation.outcome import Outcome
+from rockbatch.study import Case, Motions, Study, given_study
+from rockbatch.study.suite import ground_motions
+
+A = TypeVar("A", bound="Analysis")
+Spec = TypeVar("Spec")
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -100,19 +110,19 @@ class Analysis(Shown):
 
 
 class AnalysisFolder:
-    """Folder of an analysis: its tables, and NAME.json, which describes them.
+    """Folder of an analysis: its tables, and NAME.json, which describes them; and what carries out its runs.
 
     ``info`` is the content of NAME.json: what was done, in which ``files`` it is, and of which runs, by their digests; the
     analysis adds its own. It is written as soon as a table is, so that a later command takes the table as it is if this one is
-    killed. A folder that is ``passing`` has no report.
+    killed. A folder that is ``passing`` has no report. ``suite`` are the ground motions that were read.
     """
 
     def __init__(
         self, directory: Path, name: str, study: Study, *, fresh: bool = False, listener: Listener | None = None,
-        passing: bool = False,
+        engine: Engine | None = None, passing: bool = False,
     ) -> None:  # fmt: skip
         self.directory, self.study, self.fresh, self.passing = directory, study, fresh, passing
-        self.listener = listener or Listener()
+        self.listener, self.engine, self.suite = listener or Listener(), engine or Threads(1), MotionSet()
         self.path = directory / f"{name}.json"
         sha256 = hashlib.sha256(study.text.encode()).hexdigest()
         of_study = {
@@ -126,11 +136,34 @@ class AnalysisFolder:
         self.info |= {"files": [], "digests": {}}
         self._earlier = {} if fresh else _earlier(self.path)
 
-    def under(self, motions: Sequence[Motion]) -> None:
-        """Note the ground motions, for the report to name them."""
+    def read_motions(self, study: Study) -> MotionSet:
+        """Return the ground motions of ``study``; announce them, and note them for the report to name."""
+        self.suite = ground_motions(study)
+        self.listener.motions(self.suite)
         self.info["under"] = [
-            {"record": m.name, "label": m.label, "vertical": m.pga_vertical is not None} for m in motions
+            {"record": m.name, "label": m.label, "vertical": m.pga_vertical is not None} for m in self.suite.motions
         ]
+        return self.suite
+
+    def carry_out(
+        self,
+        file: str,
+        columns: Sequence[str],
+        digest: Mapping[str, str],
+        runs: Runs,
+        cases: Sequence[Case],
+        row: Callable[[PlannedRun, Outcome], Mapping[str, Any]],
+    ) -> None:
+        """Write the ``row`` of each of ``runs`` into ``file``, unless it holds them already; ``cases`` need all their kernels."""
+        if self.has(file, digest):
+            self.keep(file, digest)
+            return
+        make_ready(replace(self.study, cases=tuple(cases)), self.listener)
+        with self.journal(file, columns, digest) as journal:
+            with self.listener.progress(len(runs) - len(journal)) as progress:
+                carry_out(runs, self.study.numerics, journal, self.engine, row=row, progress=progress)
+            journal.write_in_order(self.directory / file)
+            self.keep(file, digest)
 
     def has(self, file: str, digest: Mapping[str, str]) -> bool:
         """Return whether ``file`` holds the runs with that digest already; raises ``InputError`` if it was edited."""
@@ -193,17 +226,35 @@ class AnalysisFolder:
         write_whole(self.path, json.dumps(content, indent=1, ensure_ascii=False) + "\n")
 
 
-@contextmanager
-def analysis_folder(
-    out: str | os.PathLike[str] | None, kind: type[Analysis], study: Study, fresh: bool, listener: Listener
-) -> Iterator[AnalysisFolder]:
-    """Yield the folder of an analysis; without ``out`` a temporary one, removed with all that is in it."""
+def analysed(
+    kind: type[A],
+    read: Callable[[Study], Spec],
+    work: Callable[[AnalysisFolder, Spec], dict[str, Any]],
+    study: str | os.PathLike[str] | Study,
+    out: str | os.PathLike[str] | None,
+    motions: Motions,
+    jobs: int | Engine | None,
+    fresh: bool,
+    progress: Progress,
+) -> A:
+    """Return an analysis of ``study``: ``work`` writes its tables into ``out``, and returns its other attributes.
+
+    ``read`` returns the settings of the study that ``work`` takes. Without ``out`` the folder is a temporary one, removed with
+    all that is in it. The others as for :func:`rockbatch.run`.
+    """
+    started = time.monotonic()
+    asked, listener, engine = given_study(study, motions), listener_of(progress), engine_of(jobs)
+    spec = read(asked)
     if out is not None:
         kind.refuse_folders(Path(out))
-        yield AnalysisFolder(Path(out), kind.NAME, study, fresh=fresh, listener=listener)
-        return
-    with TemporaryDirectory(prefix="rockbatch-") as directory:
-        yield AnalysisFolder(Path(directory), kind.NAME, study, listener=listener, passing=True)
+    with nullcontext(out) if out is not None else TemporaryDirectory(prefix="rockbatch-") as directory, engine:
+        results = AnalysisFolder(
+            Path(directory), kind.NAME, asked, fresh=fresh, listener=listener, engine=engine, passing=out is None
+        )
+        own = work(results, spec)
+        files = results.end(wall_s=round(time.monotonic() - started, 3))
+        unusable, content = tuple(results.suite.unusable), results.tables(kind.TABLES) | own
+        return kind(study=results.study, info=results.info, unusable=unusable, files=files, **content)
 
 
 def _earlier(path: Path) -> dict[str, Any]:

@@ -1,24 +1,22 @@
 """Fragility of a study: the analysis and its tables."""
 
 import os
-import time
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
-from rockbatch.analysis.folder import Analysis, analysis_folder
+from rockbatch.analysis.folder import Analysis, AnalysisFolder, analysed
 from rockbatch.analysis.fragility_curves import Curve, assess, intensities, output
 from rockbatch.analysis.fragility_tables import CAPACITIES, POINTS, RUNS, capacities, described, points
 from rockbatch.analysis.waves import Waves
 from rockbatch.arguments import checked
 from rockbatch.batch.compiling import make_ready
 from rockbatch.batch.digests import digests
-from rockbatch.batch.listening import Progress, count, listener_of, once
-from rockbatch.batch.threads import Engine, engine_of
+from rockbatch.batch.listening import Progress, count, once
+from rockbatch.batch.threads import Engine
 from rockbatch.lazy import pd
 from rockbatch.results.columns import columns
-from rockbatch.study import Motions, Study, given_study
+from rockbatch.study import Motions, Study
 from rockbatch.study.fragility import FragilitySpec, read_fragility
-from rockbatch.study.suite import ground_motions
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -101,13 +99,12 @@ def fragility(
     >>> [path.name for path in result.save("reports/fragility")]
     ['fragility.csv', 'fragility_runs.csv', 'fragility.json', 'analyses.html']
     """
-    started = time.monotonic()
-    asked, listener, carrier = given_study(study, motions), listener_of(progress), engine_of(jobs)
-    spec = read_fragility(asked)
-    asked = replace(asked, output=output(spec, asked.output))
-    suite = ground_motions(asked)
-    listener.motions(suite)
-    records = suite.motions
+    return analysed(Fragility, read_fragility, _carry_out, study, out, motions, jobs, fresh, progress)
+
+
+def _carry_out(results: AnalysisFolder, spec: FragilitySpec) -> dict[str, Any]:
+    asked = results.study = replace(results.study, output=output(spec, results.study.output))
+    listener, records = results.listener, results.read_motions(asked).motions
     unscaled = intensities(records, spec, asked.cases[0].pier.gravity)
     if asked.motions.scale != (1.0,):
         listener.say("scale of [motions] is not used: the levels of [fragility] take its place")
@@ -118,15 +115,10 @@ def fragility(
         numerics=(asked.numerics, asked.output),
         fragility=replace(spec, confidence=0.0),  # which no run depends on
     )
-    with (
-        analysis_folder(out, Fragility, asked, fresh, listener) as results,
-        results.journal(RUNS, columns(asked), digest) as journal,
-        carrier,
-    ):
-        results.under(records)
-        listener.say(f"{_planned(spec, asked, len(records))} on {carrier}{_afterwards(spec)}")
+    with results.journal(RUNS, columns(asked), digest) as journal:
+        listener.say(f"{_planned(spec, asked, len(records))} on {results.engine}{_afterwards(spec)}")
         make_ready(asked, listener)
-        waves = Waves(asked, journal, carrier, listener.progress)
+        waves = Waves(asked, journal, results.engine, listener.progress)
         curves = assess(asked, spec, records, waves)
         results.info |= described(curves, spec, asked, len(records))
         results.info["stations"] = len({motion.of_station for motion in records})
@@ -138,16 +130,8 @@ def fragility(
             results.drop(CAPACITIES)
         journal.write_in_order(results.directory / RUNS)
         results.keep(RUNS, digest)
-        files = results.end(runs=waves.finished, wall_s=round(time.monotonic() - started, 3))
-        return Fragility(
-            study=asked,
-            info=results.info,
-            unusable=tuple(suite.unusable),
-            files=files,
-            **results.tables(Fragility.TABLES),
-            curves=tuple(curves),
-            spec=spec,
-        )
+        results.info["runs"] = waves.finished
+    return {"curves": tuple(curves), "spec": spec}
 
 
 def _planned(spec: FragilitySpec, study: Study, records: int) -> str:

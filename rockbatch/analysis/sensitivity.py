@@ -6,7 +6,6 @@ indices.
 
 import csv
 import os
-import time
 from array import array
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
@@ -16,22 +15,18 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from rockbatch.analysis import sampled
-from rockbatch.analysis.folder import Analysis, AnalysisFolder, analysis_folder
+from rockbatch.analysis.folder import Analysis, AnalysisFolder, analysed
 from rockbatch.analysis.sampled import Point, Points, Suite
 from rockbatch.analysis.sobol import COLUMNS, indices
 from rockbatch.arguments import checked
-from rockbatch.batch.carrying_out import carry_out
-from rockbatch.batch.compiling import make_ready
 from rockbatch.batch.digests import digests
-from rockbatch.batch.listening import Progress, count, listener_of, once
-from rockbatch.batch.threads import Engine, engine_of
+from rockbatch.batch.listening import Progress, count, once
+from rockbatch.batch.threads import Engine
 from rockbatch.checks.statistics import STATISTICS, Values
 from rockbatch.files import opened_text
 from rockbatch.lazy import pd
-from rockbatch.motions import MotionSet
-from rockbatch.study import Motions, Study, given_study
+from rockbatch.study import Motions, Study
 from rockbatch.study.sensitivity import Input, SensitivitySpec, Value, read_sensitivity
-from rockbatch.study.suite import ground_motions
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -112,44 +107,20 @@ def sensitivity(
     1   pads     alpha
     2   pads       eta
     """
-    started = time.monotonic()
-    asked, listener, carrier = given_study(study, motions), listener_of(progress), engine_of(jobs)
-    spec = read_sensitivity(asked)
-    wanted = asked
+    return analysed(Sensitivity, read_sensitivity, _carry_out, study, out, motions, jobs, fresh, progress)
+
+
+def _carry_out(results: AnalysisFolder, spec: SensitivitySpec) -> dict[str, Any]:
+    """Write the runs at all points, unless they exist already, and the tables."""
+    study = wanted = results.study
     if any(parameter.name == "vertical" for parameter in spec.inputs):  # read it, whatever the study does with it
-        wanted = replace(asked, motions=replace(asked.motions, vertical=asked.motions.vertical or True))
-    suite = ground_motions(wanted)
-    listener.motions(suite)
-    points = Points(asked, spec)
-    with analysis_folder(out, Sensitivity, asked, fresh, listener) as results:
-        results.under(suite.motions)
-        results.info |= {
-            "varied": list(asked.varied),
-            **{name: value for name, value in asdict(spec).items() if name != "inputs"},
-            "inputs": [asdict(parameter) for parameter in spec.inputs],
-        }
-        with carrier:
-            _carry_out(results, points, suite, carrier)
-            engine = str(carrier)
-        with opened_text(results.directory / sampled.RUNS) as rows:
-            results.info["statuses"], values = values_of(csv.DictReader(rows), len(points), spec.overturned)
-        swings, shares = tables(asked, spec, points, values)
-        results.keep_table(ONE_AT_A_TIME, swings)
-        results.keep_table(SOBOL, shares)
-        files = results.end(engine=engine, wall_s=round(time.monotonic() - started, 3))
-        return Sensitivity(
-            study=asked,
-            info=results.info,
-            unusable=tuple(suite.unusable),
-            files=files,
-            **results.tables(Sensitivity.TABLES),
-            spec=spec,
-        )
-
-
-def _carry_out(results: AnalysisFolder, points: Points, motions: MotionSet, carrier: Engine) -> None:
-    """Write the runs at all points, unless they exist already."""
-    study, listener, file = results.study, results.listener, sampled.RUNS
+        wanted = replace(study, motions=replace(study.motions, vertical=study.motions.vertical or True))
+    motions, points = results.read_motions(wanted), Points(study, spec)
+    results.info |= {
+        "varied": list(study.varied),
+        **{name: value for name, value in asdict(spec).items() if name != "inputs"},
+        "inputs": [asdict(parameter) for parameter in spec.inputs],
+    }
     suite = Suite(study, points, motions.motions)
     runs = suite.runs()
     digest = digests(
@@ -161,16 +132,15 @@ def _carry_out(results: AnalysisFolder, points: Points, motions: MotionSet, carr
     )
     results.info["motions"] = len(suite.members)
     many = f"{count(len(points), 'point')} × {count(len(suite.members), 'motion')} = {len(runs)} runs{once(study)}"
-    listener.say(f"{many} on {carrier}")
-    if results.has(file, digest):
-        results.keep(file, digest)
-        return
-    make_ready(replace(study, cases=suite.some_cases()), listener)
-    with results.journal(file, sampled.COLUMNS, digest) as journal:
-        with listener.progress(len(runs) - len(journal)) as progress:
-            carry_out(runs, study.numerics, journal, carrier, row=sampled.row_of, progress=progress)
-        journal.write_in_order(results.directory / file)
-        results.keep(file, digest)
+    results.listener.say(f"{many} on {results.engine}")
+    results.carry_out(sampled.RUNS, sampled.COLUMNS, digest, runs, suite.some_cases(), sampled.row_of)
+    with opened_text(results.directory / sampled.RUNS) as rows:
+        results.info["statuses"], values = values_of(csv.DictReader(rows), len(points), spec.overturned)
+    swings, shares = tables(study, spec, points, values)
+    results.keep_table(ONE_AT_A_TIME, swings)
+    results.keep_table(SOBOL, shares)
+    results.info["engine"] = str(results.engine)
+    return {"spec": spec}
 
 
 def counted_as(status: str, theta_max_over_alpha: float, overturned: float) -> float:

@@ -1,28 +1,24 @@
 """Rocking spectra and overturning maps of a study: the analysis and its tables."""
 
 import os
-import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from rockbatch.analysis import overturning_map, rocking_spectrum
-from rockbatch.analysis.folder import Analysis, AnalysisFolder, analysis_folder
+from rockbatch.analysis.folder import Analysis, AnalysisFolder, analysed
 from rockbatch.analysis.waves import Waves
 from rockbatch.arguments import checked
-from rockbatch.batch.carrying_out import carry_out
 from rockbatch.batch.compiling import make_ready
 from rockbatch.batch.digests import digests
 from rockbatch.batch.groups import NOTHING_MORE
-from rockbatch.batch.listening import Progress, count, listener_of, once
-from rockbatch.batch.threads import Engine, engine_of
+from rockbatch.batch.listening import Progress, count, once
+from rockbatch.batch.threads import Engine
 from rockbatch.files import is_plain, read_table
 from rockbatch.lazy import pd
-from rockbatch.motions import MotionSet
 from rockbatch.results.columns import columns
-from rockbatch.study import Motions, Study, given_study
+from rockbatch.study import Motions, Study
 from rockbatch.study.spectrum import MapSpec, SpectrumSpec, read_spectrum
-from rockbatch.study.suite import ground_motions
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -106,34 +102,22 @@ def spectrum(
     1   pads              3.0           2
     2  rigid              5.5           0
     """
-    started = time.monotonic()
-    asked, carrier = given_study(study, motions), engine_of(jobs)
-    spectra, maps = read_spectrum(asked)
-    listener = listener_of(progress)
-    suite = MotionSet()
-    with analysis_folder(out, Spectrum, asked, fresh, listener) as results, carrier:
-        if spectra is not None:
-            suite = ground_motions(asked)
-            listener.motions(suite)
-            results.under(suite.motions)
-            _carry_out_spectra(results, spectra, suite, carrier)
-        if maps:
-            _carry_out_maps(results, maps, carrier)
-        files = results.end(engine=str(carrier), wall_s=round(time.monotonic() - started, 3))
-        return Spectrum(
-            study=asked,
-            info=results.info,
-            unusable=tuple(suite.unusable),
-            files=files,
-            **results.tables(Spectrum.TABLES),
-            spectra=spectra,
-            maps=maps,
-        )
+    return analysed(Spectrum, read_spectrum, _carry_out, study, out, motions, jobs, fresh, progress)
 
 
-def _carry_out_spectra(results: AnalysisFolder, spectra: SpectrumSpec, motions: MotionSet, carrier: Engine) -> None:
+def _carry_out(results: AnalysisFolder, spec: tuple[SpectrumSpec | None, tuple[MapSpec, ...]]) -> dict[str, Any]:
+    spectra, maps = spec
+    if spectra is not None:
+        _carry_out_spectra(results, spectra)
+    if maps:
+        _carry_out_maps(results, maps)
+    results.info["engine"] = str(results.engine)
+    return {"spectra": spectra, "maps": maps}
+
+
+def _carry_out_spectra(results: AnalysisFolder, spectra: SpectrumSpec) -> None:
     """Write the rocking spectra, unless they exist already, and the statistics of the suite."""
-    study, listener, file = results.study, results.listener, rocking_spectrum.FILE
+    study, file, motions = results.study, rocking_spectrum.FILE, results.read_motions(results.study)
     runs = rocking_spectrum.plan(study, spectra, motions)
     digest = digests(
         motions.motions,
@@ -142,22 +126,14 @@ def _carry_out_spectra(results: AnalysisFolder, spectra: SpectrumSpec, motions: 
         numerics=study.numerics,
     )
     many = f"{count(len(motions.motions), 'motion')}, {count(len(runs), 'run')}{once(study)}"
-    listener.say(f"spectra: {many} on {carrier}")
+    results.listener.say(f"spectra: {many} on {results.engine}")
     results.info |= {"axis": spectra.axis, "varied": list(spectra.varied), "motions": len(motions.motions)}
-    if results.has(file, digest):
-        results.keep(file, digest)
-    else:
-        make_ready(replace(study, cases=spectra.cases), listener)
-        with results.journal(file, rocking_spectrum.columns(spectra), digest) as journal:
-            with listener.progress(len(runs) - len(journal)) as progress:
-                carry_out(runs, study.numerics, journal, carrier, row=rocking_spectrum.row_of, progress=progress)
-            journal.write_in_order(results.directory / file)
-            results.keep(file, digest)
+    results.carry_out(file, rocking_spectrum.columns(spectra), digest, runs, spectra.cases, rocking_spectrum.row_of)
     suite = rocking_spectrum.of_suite(read_table(results.directory / file), spectra.varied)
     results.keep_table(rocking_spectrum.SUITE, suite)
 
 
-def _carry_out_maps(results: AnalysisFolder, maps: Sequence[MapSpec], carrier: Engine) -> None:
+def _carry_out_maps(results: AnalysisFolder, maps: Sequence[MapSpec]) -> None:
     """Write the overturning maps, unless they exist already."""
     study, listener = replace(results.study, output=NOTHING_MORE), results.listener
     file, of_runs = overturning_map.FILE, overturning_map.RUNS
@@ -172,11 +148,11 @@ def _carry_out_maps(results: AnalysisFolder, maps: Sequence[MapSpec], carrier: E
     rows: list[Any] = []
     make_ready(study, listener)
     with results.journal(of_runs, columns(study), digest) as journal:
-        waves = Waves(study, journal, carrier, listener.progress)
+        waves = Waves(study, journal, results.engine, listener.progress)
         for spec in maps:
             own, before = overturning_map.Maps(spec, study.cases), waves.finished
             grid = _grid(spec, len(study.cases))
-            listener.say(f"map {spec.name}: {grid} on {carrier}; then what changes is looked at more closely")
+            listener.say(f"map {spec.name}: {grid} on {results.engine}; then what changes is looked at more closely")
             by_case = own.find(waves)
             rows += own.rows(by_case)
             listener.say(f"map {spec.name}: {sum(map(len, by_case))} frequencies, {waves.finished - before} runs")
