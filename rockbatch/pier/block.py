@@ -1,4 +1,7 @@
-"""The pier: a rigid block, with what it carries, and the rocking frame as its equivalent block."""
+"""The pier: a rigid block, with what it carries, and the rocking frame as its equivalent block.
+
+Implausible sizes, as of a wrong unit or of two values exchanged, are refused until ``confirm`` names them.
+"""
 
 import math
 from collections.abc import Collection, Iterable
@@ -6,8 +9,7 @@ from dataclasses import dataclass, fields, replace
 from typing import NamedTuple
 
 from rockbatch.arguments import checked
-from rockbatch.errors import InputError
-from rockbatch.pier.plausible import unlikely_sizes
+from rockbatch.errors import InputError, remedy
 from rockbatch.units import GRAVITY, LEAST, MOST, POSITIVE, Bounds
 
 
@@ -31,9 +33,32 @@ BOUNDS = {
 """Possible values of a pier, far beyond any that exists: p = 0.001 rad/s is one of 7000 km. Beyond them a run would never end."""
 
 
+LOWEST, HIGHEST = 0.25, 2.5
+"""Bounds of the heights of deck and drift, over the pier's height."""
+
+
 def out_of_bounds(**values: float | None) -> list[str]:
     """Return a message for each of the named values that is given and not within its :data:`BOUNDS`."""
     return [problem for name, value in values.items() for problem in BOUNDS[name].problems(name, value)]
+
+
+def _refuse(wrong: list[str]) -> None:
+    if wrong:
+        raise InputError(*wrong)
+
+
+def _unlikely_sizes(width_m: float, height_m: float, confirm: Collection[str], **heights: float | None) -> list[str]:
+    """Return what is odd about a pier's width and height [m] and its other ``heights``, except those in ``confirm``."""
+    odd = {}
+    if width_m > height_m:
+        odd["width_m"] = (
+            f"width_m = {width_m:g}: more than the height, {height_m:g} m: such a block lifts off at {width_m / height_m:.2g} g "
+            "only, and slides before; width and height may be exchanged"
+        )
+    for name, value in heights.items():
+        if value is not None and not LOWEST * height_m <= value <= HIGHEST * height_m:
+            odd[name] = f"{name} = {value:g}: {value / height_m:.2g} times the height of the pier, {height_m:g} m"
+    return [f"{text}; {remedy(name)}" for name, text in odd.items() if name not in confirm]
 
 
 class Part(NamedTuple):
@@ -101,9 +126,7 @@ class Pier:
     deck_height_m: float | None = None
 
     def __post_init__(self) -> None:
-        wrong = out_of_bounds(**{each.name: getattr(self, each.name) for each in fields(self)})
-        if wrong:
-            raise InputError(*wrong)
+        _refuse(out_of_bounds(**{each.name: getattr(self, each.name) for each in fields(self)}))
 
     @classmethod
     @checked
@@ -123,11 +146,10 @@ class Pier:
         Here and in the other constructors from lengths, ``confirm`` names values that are right though unusual: "width_m",
         "top_m", "deck_height_m". Raises ``InputError`` for what is impossible or not confirmed.
         """
-        wrong = out_of_bounds(size_m=size_m, mu=mu)
-        if not wrong:
-            wrong = unlikely_sizes(0.0, 2 * size_m * math.cos(alpha), confirm, top_m=top_m)
-        if wrong:
-            raise InputError(*wrong)
+        _refuse(
+            out_of_bounds(size_m=size_m, mu=mu)
+            or _unlikely_sizes(0.0, 2 * size_m * math.cos(alpha), confirm, top_m=top_m)
+        )
         return cls(alpha, math.sqrt(mu / (1 + mu) * gravity / size_m), mu, gravity, mass_t, top_m)
 
     @classmethod
@@ -144,9 +166,7 @@ class Pier:
     ) -> "Pier":
         """Return a solid rectangular block; its width and height [m] give α, R0 and μ = 3. ``confirm``: see :meth:`from_size`."""
         wrong = out_of_bounds(width_m=width_m, height_m=height_m)
-        wrong = wrong or unlikely_sizes(width_m, height_m, confirm, top_m=top_m)
-        if wrong:
-            raise InputError(*wrong)
+        _refuse(wrong or _unlikely_sizes(width_m, height_m, confirm, top_m=top_m))
         alpha, size = math.atan2(width_m, height_m), math.hypot(width_m, height_m) / 2
         return cls.from_size(alpha, size, 3.0, gravity, mass_t=mass_t, top_m=top_m, confirm=("top_m",))
 
@@ -196,16 +216,14 @@ class Pier:
                     wrong.append(f"part_{n}_{name} = {value:g}: must be 0 or a number above it, to {MOST:g}")
         if not parts:
             wrong.append("parts: there are none; a pier has one at least")
-        if wrong:
-            raise InputError(*wrong)
+        _refuse(wrong)
         mass = math.fsum(part.mass_t for part in parts)
         height = math.fsum(part.mass_t * part.height_m for part in parts) / mass
         inertia = math.fsum(part.inertia_t_m2 + part.mass_t * (part.height_m - height) ** 2 for part in parts)
         if height == 0 or inertia == 0:
             lack = "no height" if height == 0 else "no rotary inertia about their common centre"
             raise InputError(f"parts: they have {lack}; a shaft has m (width² + height²)/12 at half its height")
-        if wrong := unlikely_sizes(width_m, 2 * height, confirm, top_m=top_m, deck_height_m=deck_height_m):
-            raise InputError(*wrong)
+        _refuse(_unlikely_sizes(width_m, 2 * height, confirm, top_m=top_m, deck_height_m=deck_height_m))
         size = math.hypot(0.5 * width_m, height)
         top = max(part.height_m for part in parts) if top_m is None else top_m
         alpha = math.atan2(0.5 * width_m, height)
@@ -234,9 +252,7 @@ class Pier:
         higher of shaft and deck. See :meth:`of_parts`, and :meth:`from_size` for ``confirm``.
         """
         wrong = out_of_bounds(width_m=width_m, height_m=height_m, mass_t=mass_t, deck_mass_t=deck_mass_t)
-        wrong = wrong or unlikely_sizes(width_m, height_m, confirm, deck_height_m=deck_height_m, top_m=top_m)
-        if wrong:
-            raise InputError(*wrong)
+        _refuse(wrong or _unlikely_sizes(width_m, height_m, confirm, deck_height_m=deck_height_m, top_m=top_m))
         deck = Part(deck_mass_t, height_m if deck_height_m is None else deck_height_m, deck_inertia_t_m2)
         top = max(height_m, deck.height_m) if top_m is None else top_m
         parts = [Part.shaft(width_m, height_m, mass_t), deck]
