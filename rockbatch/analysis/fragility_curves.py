@@ -14,7 +14,7 @@ from rockbatch.analysis.ida import Bracket, Capacity, Looks, bisect, capacity, h
 from rockbatch.analysis.limit_states import EXCEEDED, LEFT_OUT, UNDECIDED, WITHSTOOD, applies, states
 from rockbatch.analysis.lognormal import Capacities, Lognormal, Values, fit
 from rockbatch.batch.listening import count
-from rockbatch.batch.plan import PlannedRun, Runs, scaled
+from rockbatch.batch.plan import Made, PlannedRun, scaled
 from rockbatch.checks.demands import DEMANDS
 from rockbatch.checks.rules import Rule
 from rockbatch.errors import InputError
@@ -35,7 +35,7 @@ class Point(NamedTuple):
     case: int
 
 
-class ScaledRuns(Runs):
+class ScaledRuns(Made):
     """The runs of some points in one polarity; ``unscaled`` are the intensities of the motions."""
 
     def __init__(
@@ -46,21 +46,15 @@ class ScaledRuns(Runs):
         cases: Sequence[Case],
         polarity: str,
     ) -> None:
-        self.points, self.motions, self.unscaled, self.cases = points, motions, unscaled, cases
-        self.polarity = polarity
-        self._moved = lru_cache(maxsize=1)(self._move)  # neighbours share their motion
+        self.points = points
+        moved = lru_cache(maxsize=1)(lambda motion, scale: scaled(motions[motion], scale, polarity))  # of neighbours
 
-    def __len__(self) -> int:
-        return len(self.points)
+        def make(number: int) -> PlannedRun:
+            motion, intensity, case = points[number]
+            scale = intensity / unscaled[motion]
+            return PlannedRun(moved(motion, scale), polarity, scale, cases[case], motions[motion])
 
-    def run(self, number: int) -> PlannedRun:
-        """See :class:`rockbatch.batch.plan.Runs`."""
-        motion, intensity, case = self.points[number]
-        scale = intensity / self.unscaled[motion]
-        return PlannedRun(self._moved(motion, scale), self.polarity, scale, self.cases[case], self.motions[motion])
-
-    def _move(self, motion: int, scale: float) -> Motion:
-        return scaled(self.motions[motion], scale, self.polarity)
+        super().__init__(len(points), make)
 
 
 Simulate = Callable[[ScaledRuns], "pd.DataFrame"]

@@ -45,23 +45,14 @@ class Capacities:
     of_record: Values | None = None
 
     @classmethod
-    def of_stripes(cls, levels: Values, records: Values, exceeded: Values) -> "Capacities":
-        """Return those of fresh records at each level, by their number, shape (n,), and by how many ``exceeded`` the limit."""
-        return cls._one_sided(levels, np.concatenate((exceeded, records - exceeded)).astype(np.float64))
-
-    @classmethod
     def of_same_records(cls, levels: Values, within: Values, beyond: Values) -> "Capacities":
         """Return those of m records, each ``within`` or ``beyond`` the limit at each level, shape (m, n), or neither."""
         of_record = np.hstack((beyond, within)).astype(np.float64)
-        return cls._one_sided(levels, of_record.sum(axis=0), of_record[of_record.any(axis=1)])
-
-    @classmethod
-    def _one_sided(cls, levels: Values, count: Values, of_record: Values | None = None) -> "Capacities":
-        n = len(levels)
-        low = np.concatenate((np.zeros(n), levels))
-        high = np.concatenate((levels, np.full(n, np.inf)))
-        used = count > 0
-        return cls(low[used], high[used], count[used], None if of_record is None else of_record[:, used])
+        low = np.concatenate((np.zeros(len(levels)), levels))
+        high = np.concatenate((levels, np.full(len(levels), np.inf)))
+        used = of_record.any(axis=0)
+        of_record = of_record[of_record.any(axis=1)][:, used]
+        return cls(low[used], high[used], of_record.sum(axis=0), of_record)
 
 
 @dataclass(frozen=True)

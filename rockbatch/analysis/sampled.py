@@ -68,7 +68,9 @@ class Suite:
         polarity = "+" if turned else study.motions.simulated
         self.members = [(number, polarity, scale) for number in range(len(motions)) for scale in study.motions.scale]
         self._motions = {True: motions, False: [replace(motion, vertical=None) for motion in motions]}
-        self._moved = lru_cache(maxsize=8)(self._move)
+        self._moved = lru_cache(maxsize=8)(
+            lambda number, polarity, scale, vertical: scaled(self._motions[vertical][number], scale, polarity)
+        )
 
     def runs(self) -> Made:
         """Return every motion at every point, the points running fastest: neighbours share their motion."""
@@ -90,9 +92,6 @@ class Suite:
     def some_cases(self) -> tuple[Case, ...]:
         """Return cases all over the design, which between them need every kernel that the others need."""
         return tuple(map(self.case, self.points.all[:: 1 + len(self.points) // 64]))
-
-    def _move(self, number: int, polarity: str, scale: float, vertical: bool) -> Motion:
-        return scaled(self._motions[vertical][number], scale, polarity)
 
 
 def row_of(run: PlannedRun, outcome: Outcome) -> dict[str, Any]:

@@ -7,7 +7,7 @@ from typing import Any
 
 from rockbatch.batch.groups import NOTHING_MORE
 from rockbatch.batch.journal import Journal
-from rockbatch.batch.plan import MOST_RUNS, Chosen, PlannedRun, Runs
+from rockbatch.batch.plan import MOST_RUNS, PlannedRun, Runs, some_of
 from rockbatch.batch.threads import Engine
 from rockbatch.errors import InputError
 from rockbatch.results.columns import cells, row
@@ -60,7 +60,7 @@ def carry_out(
     """
     wanted = range(len(runs)) if among is None else among
     left = to_simulate(runs, wanted, journal, first)
-    with closing(engine.outcomes(Chosen(runs, left), numerics, output)) as groups:
+    with closing(engine.outcomes(some_of(runs, left), numerics, output)) as groups:
         for group in groups:
             images = (each for place, outcome in group for each in _images(runs, left[place], outcome))
             news = [one for one in images if one[0] in wanted and first + one[0] not in journal]

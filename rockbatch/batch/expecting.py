@@ -11,7 +11,7 @@ from rockbatch.batch.compiling import make_ready
 from rockbatch.batch.groups import outcomes_of
 from rockbatch.batch.kept_histories import history_bytes
 from rockbatch.batch.listening import Listener
-from rockbatch.batch.plan import Chosen, Plan, PlannedRun
+from rockbatch.batch.plan import Plan, PlannedRun, some_of
 from rockbatch.batch.running import told
 from rockbatch.errors import starting_threads
 from rockbatch.results.columns import columns
@@ -66,7 +66,7 @@ def expected(study: Study, jobs: int, listener: Listener) -> Expected:
     motions = ground_motions(study)
     listener.motions(motions)
     plan = Plan(study, motions)
-    simulated = Chosen(plan, to_simulate(plan, range(len(plan))))
+    simulated = some_of(plan, to_simulate(plan, range(len(plan))))
     steps = [_steps(study, run) for run in simulated]
     make_ready(study, listener)
     started = time.perf_counter()

@@ -97,7 +97,9 @@ class Plan(Runs):
         self._of_one = len(self.scale) * len(self.cases)  # runs of a motion in one polarity
         self._simulated_first = sorted(range(len(self.polarity)), key=lambda i: self.polarity[i] != self.simulated)
         self._length = len(self.motions) * len(self.polarity) * self._of_one
-        self._moved = lru_cache(maxsize=2)(self._move)
+        self._moved = lru_cache(maxsize=2)(
+            lambda motion, scale, sign: scaled(self.motions[motion], self.scale[scale], sign)
+        )
 
     def __len__(self) -> int:
         return self._length
@@ -107,9 +109,8 @@ class Plan(Runs):
         rest, case = divmod(number, len(self.cases))
         rest, scale = divmod(rest, len(self.scale))
         motion, polarity = divmod(rest, len(self.polarity))
-        moved = self._moved(motion, scale, polarity)
         sign = self.polarity[polarity]
-        mirror_of = "" if sign == self.simulated else self.simulated
+        moved, mirror_of = self._moved(motion, scale, sign), "" if sign == self.simulated else self.simulated
         return PlannedRun(moved, sign, self.scale[scale], self.cases[case], self.motions[motion], mirror_of)
 
     def images(self, number: int) -> Sequence[int]:
@@ -119,9 +120,6 @@ class Plan(Runs):
         group, rest = divmod(number, self._of_one)
         first = group - group % len(self.polarity)
         return [(first + place) * self._of_one + rest for place in self._simulated_first]
-
-    def _move(self, motion: int, scale: int, polarity: int) -> Motion:
-        return scaled(self.motions[motion], self.scale[scale], self.polarity[polarity])
 
 
 class Made(Runs):
@@ -138,15 +136,6 @@ class Made(Runs):
         return self._make(number)
 
 
-class Chosen(Runs):
-    """Some of ``runs``, by their indices."""
-
-    def __init__(self, runs: Sequence[PlannedRun], indices: Sequence[int]) -> None:
-        self.runs, self.indices = runs, indices
-
-    def __len__(self) -> int:
-        return len(self.indices)
-
-    def run(self, number: int) -> PlannedRun:
-        """See :class:`Runs`."""
-        return self.runs[self.indices[number]]
+def some_of(runs: Sequence[PlannedRun], indices: Sequence[int]) -> Made:
+    """Return some of ``runs``, by their ``indices``."""
+    return Made(len(indices), lambda number: runs[indices[number]])

@@ -16,7 +16,16 @@ from rockbatch.analysis.lognormal import Capacities, Lognormal, fit
 LEVELS = np.array([0.2, 0.3, 0.4, 0.6, 0.7, 0.8, 0.9, 1.0])
 RECORDS = np.full(8, 40.0)
 EXCEEDED = np.array([0, 0, 0, 4, 6, 13, 12, 16])
-STRIPES = Capacities.of_stripes(LEVELS, RECORDS, EXCEEDED)
+
+
+def fresh_records(levels, records, exceeded):
+    """Capacities of fresh records at each level, by their number and by how many exceeded the limit."""
+    low, high = np.r_[np.zeros(len(levels)), levels], np.r_[levels, np.full(len(levels), np.inf)]
+    count = np.r_[exceeded, records - exceeded].astype(float)
+    return Capacities(low[count > 0], high[count > 0], count[count > 0])
+
+
+STRIPES = fresh_records(LEVELS, RECORDS, EXCEEDED)
 
 
 def fitted(capacities, confidence=0.95):
@@ -90,13 +99,13 @@ def test_a_curve_is_recovered_from_many_records():
     rng = np.random.default_rng(3)
     levels = np.linspace(0.4, 1.6, 7)
     exceeded = rng.binomial(20_000, norm.cdf(np.log(levels / 0.9) / 0.45))
-    found = fitted(Capacities.of_stripes(levels, np.full(7, 20_000), exceeded))
+    found = fitted(fresh_records(levels, np.full(7, 20_000), exceeded))
     assert found.median == pytest.approx(0.9, abs=0.016)
     assert found.dispersion == pytest.approx(0.45, abs=0.016)
 
 
 def test_the_unit_of_the_levels_does_not_matter():
-    scaled = fitted(Capacities.of_stripes(981.0 * LEVELS, RECORDS, EXCEEDED))
+    scaled = fitted(fresh_records(981.0 * LEVELS, RECORDS, EXCEEDED))
     found = fitted(STRIPES)
     assert scaled.median == pytest.approx(981.0 * found.median, rel=1e-9)
     assert scaled.median_interval == pytest.approx([981.0 * bound for bound in found.median_interval], rel=1e-9)
@@ -150,7 +159,7 @@ def test_the_same_records_at_every_level_keep_the_curve_and_do_not_count_as_many
     held = np.zeros(2)
     for _ in range(100):
         beyond = np.exp(rng.normal(0.0, 0.5, (30, 1))) <= levels
-        fresh = fitted(Capacities.of_stripes(levels, np.full(12, 30), beyond.sum(axis=0)))
+        fresh = fitted(fresh_records(levels, np.full(12, 30), beyond.sum(axis=0)))
         same = fitted(Capacities.of_same_records(levels, ~beyond, beyond))
         assert (same.median, same.dispersion) == (fresh.median, fresh.dispersion)
         held += [one.median_interval[0] <= 1.0 <= one.median_interval[1] for one in (fresh, same)]
@@ -165,7 +174,7 @@ def test_records_that_are_fresh_at_every_level_are_not_stretched():
     own = np.repeat(np.eye(8, dtype=bool), 3000, axis=0)
     exceeded = own & beyond.reshape(-1)[:, None]
     same = fitted(Capacities.of_same_records(LEVELS, own & ~exceeded, exceeded))
-    fresh = fitted(Capacities.of_stripes(LEVELS, np.full(8, 3000), beyond.sum(axis=1)))
+    fresh = fitted(fresh_records(LEVELS, np.full(8, 3000), beyond.sum(axis=1)))
     assert np.ptp(same.median_interval) == pytest.approx(np.ptp(fresh.median_interval), rel=0.05)
     assert np.ptp(same.dispersion_interval) == pytest.approx(np.ptp(fresh.dispersion_interval), rel=0.05)
 
@@ -196,7 +205,7 @@ def test_a_confidence_that_is_higher_gives_wider_intervals_around_the_same_curve
     ],
 )
 def test_data_without_a_maximum_are_told_in_words(exceeded, words):
-    found = fit(Capacities.of_stripes(np.array([0.1, 0.2, 0.3]), np.full(3, 5), np.array(exceeded)))
+    found = fit(fresh_records(np.array([0.1, 0.2, 0.3]), np.full(3, 5), np.array(exceeded)))
     assert isinstance(found, str)
     assert words in found
 
@@ -210,6 +219,6 @@ def test_capacities_that_lie_in_one_bracket_are_told_in_words():
 
 def test_intervals_that_the_data_leave_open_are_infinite():
     """One exceedance of 15, in the middle: β, and with it θ, may be as large as one likes."""
-    found = fitted(Capacities.of_stripes(np.array([0.1, 0.2, 0.3]), np.full(3, 5), np.array([0, 1, 1])))
+    found = fitted(fresh_records(np.array([0.1, 0.2, 0.3]), np.full(3, 5), np.array([0, 1, 1])))
     assert found.median_interval[1] == found.dispersion_interval[1] == math.inf
     assert 0 < found.median_interval[0] < found.median
