@@ -81,14 +81,9 @@ def _with_other_law(
     for i, other in zip(creeping, others, strict=True):
         outcome = outcomes[i]
         assert outcome is not None
-        outcomes[i] = other and _beside(outcome, other)
+        failed = f"by the other spring law: {other.reason}" if other and other.status == "failed" else ""
+        outcomes[i] = other and outcome.noted(failed, settlement_other_law=other.settlement)
     return outcomes
-
-
-def _beside(outcome: Outcome, other: Outcome) -> Outcome:
-    failed = f"by the other spring law: {other.reason}" if other.status == "failed" else ""
-    note = "; ".join(filter(None, (outcome.note, failed)))
-    return outcome.changed(settlement_other_law=other.settlement, note=note)
 
 
 def _observed(run: Run, outcome: Outcome, numerics: Numerics, output: Output, stop: Stop) -> Outcome | None:

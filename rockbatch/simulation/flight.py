@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from rockbatch.motions.motion import Motion
+from rockbatch.simulation.models import acceleration_at
 
 _ADVICE = 'flight = "guided" goes on, for a pier whose shear keys hold it'
 _DAMP = f"see zeta, the damping of the supports; or {_ADVICE}"
@@ -29,9 +30,8 @@ def cause_of_flight(
     opening = f"both pivots left the ground at {t_flight:.3f} s: "
     peak, down = 0.0, 0.0
     if motion.vertical is not None:
-        samples = np.append(motion.vertical, 0.0)
-        down = float(np.interp(t_flight, np.arange(len(samples)) * motion.dt, samples)) / gravity
-        peak = float(np.abs(samples[: math.floor(t_flight / motion.dt) + 1]).max()) / gravity
+        down = float(acceleration_at(motion.vertical, motion.dt, t_flight)) / gravity
+        peak = float(np.abs(motion.vertical[: math.floor(t_flight / motion.dt) + 1]).max()) / gravity
     if omega_v is None or down <= -1.0 + 1e-9:
         return f"{opening}the ground fell away under the pier, with a vertical acceleration of {down:.2f} g"
     if t_flight - t_impact <= math.pi / omega_v:

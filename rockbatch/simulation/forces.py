@@ -8,16 +8,16 @@ from typing import NamedTuple
 import numpy as np
 
 from rockbatch.core import types
-from rockbatch.core.devices.laws import ELEMENT, FRICTION
+from rockbatch.core.devices.laws import FRICTION
 from rockbatch.core.observe.forces import FORCES, Body, Forces, Hold, Outline
-from rockbatch.core.observe.peaks import NEVER, NOTED, Limits, Noted, RecordedDevices, forces_of_run
+from rockbatch.core.observe.peaks import NEVER, NOTED, Limits, Noted, forces_of_run
 from rockbatch.lazy import pd
 from rockbatch.motions.motion import Samples
 from rockbatch.pier import Pier, RigidBase, YieldingBase
-from rockbatch.simulation.models import block, elements, ground_of, model
+from rockbatch.simulation.models import acceleration_at, block, elements, ground_of, model
 from rockbatch.simulation.outcome import WOULD_SLIDE, PeakForces
 from rockbatch.simulation.response import FORCE_UNITS, IMPACT_UNITS
-from rockbatch.simulation.restraints import apart
+from rockbatch.simulation.restraints import apart, recorded
 from rockbatch.simulation.runs import Run
 
 _UPLIFTS = (types.SEPARATION_LEFT, types.SEPARATION_RIGHT, types.LIFT_OFF)
@@ -65,19 +65,10 @@ def _observe(run: Run, rows: np.recarray, least_normal: float, forces: np.recarr
     limits = Limits(math.inf if base.friction is None else float(base.friction), least_normal * float(pier.gravity))
     body = Body(_outline(pier), _hold(pier, base)) if isinstance(base, RigidBase) else float(pier.deck)
     plain, pulls = apart(base, rows)
+    devices = recorded(pier, base, rows) if base.restraints else None
     ground, dt = ground_of(run.motion), float(run.motion.dt)
-    forces_of_run(
-        model(pier, base), body, plain, pulls, _devices(run, rows), ground, dt, limits, forces, extremes, noted
-    )  # fmt: skip
+    forces_of_run(model(pier, base), body, plain, pulls, devices, ground, dt, limits, forces, extremes, noted)
     return noted[0]
-
-
-def _devices(run: Run, rows: np.recarray) -> RecordedDevices | None:
-    """Return the dampers and tendons of a run, with their states at its ``rows``; None without any."""
-    if not run.base.restraints:
-        return None
-    laws = np.array([tuple(device) for device in elements(run.pier, run.base)], ELEMENT).view(np.recarray)
-    return RecordedDevices(laws, rows.state.copy(), float(rows.v[0]))
 
 
 def _hold(pier: Pier, base: RigidBase) -> Hold:
@@ -203,9 +194,8 @@ def _first_uplift(run: Run, rows: np.recarray) -> dict[str, float]:
     lifted = _events(rows, _UPLIFTS)
     if len(lifted) == 0:
         return {}
-    t, samples = float(rows.t[lifted[0]]), np.append(run.motion.horizontal, 0.0)
-    acceleration = float(np.interp(t, np.arange(len(samples)) * run.motion.dt, samples))
-    return {"first_uplift": t, "uplift_ground": abs(acceleration)}
+    t = float(rows.t[lifted[0]])
+    return {"first_uplift": t, "uplift_ground": abs(float(acceleration_at(run.motion.horizontal, run.motion.dt, t)))}
 
 
 def _not_followed(run: Run, noted: Noted, peaks: PeakForces, least_normal: float) -> str:

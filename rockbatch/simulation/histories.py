@@ -1,7 +1,5 @@
 """Histories of one run: the rows that the core wrote, with names, units and derived quantities."""
 
-from dataclasses import replace
-
 import numpy as np
 
 from rockbatch.core import types
@@ -13,7 +11,7 @@ from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase
 from rockbatch.simulation import restraints
 from rockbatch.simulation.forces import at_rows, forces_table, impacts_table, peak_forces, with_error
 from rockbatch.simulation.leaning import apart, may_lean, with_error_of_rocking, with_rocking
-from rockbatch.simulation.models import block, ground_of, springs
+from rockbatch.simulation.models import acceleration_at, block, ground_of, springs
 from rockbatch.simulation.outcome import TERMS, Outcome
 from rockbatch.simulation.response import EVENT_TYPES, Response
 from rockbatch.simulation.runs import Run, written_run
@@ -82,8 +80,8 @@ def told_apart(run: Run, outcome: Outcome, quiet_s: float, wanted: bool = False,
     if not outcome.was_run or not (wanted or may_lean(outcome)):
         return outcome
     if not isinstance(run.base, YieldingBase) or outcome.status == "overturned":
-        error = outcome.theta_max_error
-        return replace(outcome, theta_rocking=outcome.theta_max, theta_rocking_error=error) if wanted else outcome
+        rocking = {"theta_rocking": outcome.theta_max, "theta_rocking_error": outcome.theta_max_error}
+        return outcome.changed(**rocking) if wanted else outcome
     if not wanted and outcome.t_max <= run.motion.duration + quiet_s:
         rows = written(run, outcome, quiet_s, every_step=False, wait=False)
         if not apart(run.pier, run.base, rows).leans:
@@ -92,12 +90,8 @@ def told_apart(run: Run, outcome: Outcome, quiet_s: float, wanted: bool = False,
     outcome = with_rocking(outcome, parts, run.pier.alpha)
     if not wanted or outcome.theta_max_error is None or outcome.substeps % 2:
         return outcome
-    rows = written(run, _of_twice_the_step(outcome), quiet_s, every_step=False, wait=wait)
+    rows = written(run, outcome.changed(substeps=outcome.substeps // 2), quiet_s, every_step=False, wait=wait)
     return with_error_of_rocking(outcome, parts, apart(run.pier, run.base, rows))
-
-
-def _of_twice_the_step(outcome: Outcome) -> Outcome:
-    return replace(outcome, substeps=outcome.substeps // 2)
 
 
 def with_observed(
@@ -122,17 +116,16 @@ def with_observed(
     if ledger:
         terms = energies(run, rows)
         at_end = dict(zip(TERMS, map(float, terms[-1]), strict=True))
-        outcome = replace(outcome, energies=at_end | {"remainder": float(abs(terms[:, -1]).max())})
+        outcome = outcome.changed(energies=at_end | {"remainder": float(abs(terms[:, -1]).max())})
     if least_normal is not None:
-        notes = [outcome.note]
         peaks, note = peak_forces(run, rows, least_normal)
-        notes.append(note)
+        outcome = outcome.noted(note)
         if error and outcome.substeps % 2 == 0:
             del rows  # a history of every step may be large
-            rows = written(run, _of_twice_the_step(outcome), quiet_s, every_step=True, wait=wait)
+            rows = written(run, outcome.changed(substeps=outcome.substeps // 2), quiet_s, every_step=True, wait=wait)
             peaks, note = with_error(peaks, peak_forces(run, rows, least_normal)[0], run.pier)
-            notes.append(note)
-        outcome = replace(outcome, forces=peaks, note="; ".join(filter(None, notes)))
+            outcome = outcome.noted(note)
+        outcome = outcome.changed(forces=peaks)
     return outcome
 
 
@@ -169,8 +162,9 @@ def histories(
     devices = restraints.loops(pier, base, rows) if base.restraints else None
     state = _rigid_state(pier, base, rows) if isinstance(base, RigidBase) else _springs_state(pier, base, rows)
     t = rows.t.copy()
-    vertical = np.zeros(len(t)) if motion.vertical is None else _ground(motion.vertical, motion.dt, t)
-    history = pd.DataFrame({"t": t, **state, "ag_h": _ground(motion.horizontal, motion.dt, t), "ag_v": vertical})
+    vertical = np.zeros(len(t)) if motion.vertical is None else acceleration_at(motion.vertical, motion.dt, t)
+    horizontal = acceleration_at(motion.horizontal, motion.dt, t)
+    history = pd.DataFrame({"t": t, **state, "ag_h": horizontal, "ag_v": vertical})
     events = pd.DataFrame(_events(rows, outcome.t_flight), columns=list(EVENT_TYPES)).astype(EVENT_TYPES)
     return Response(
         motion.name, case, columns, pier, base, outcome.status, history, events, table, polarity, scale, demands, impacts,
@@ -190,12 +184,6 @@ def _events(rows: np.recarray, t_flight: float | None) -> list[tuple[float, str,
         events.append((t_flight, "flight", "", last, last))
         events.sort(key=lambda event: event[0])
     return events
-
-
-def _ground(acceleration: Samples, dt: float, t: Samples) -> Samples:
-    """Return the ground acceleration at times ``t``: linear between samples, zero from the sample after the last."""
-    samples = np.append(acceleration, 0.0)
-    return np.interp(t, np.arange(len(samples)) * dt, samples)
 
 
 def _rigid_state(pier: Pier, base: RigidBase, rows: np.recarray) -> dict[str, Samples]:

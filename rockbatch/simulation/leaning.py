@@ -1,6 +1,5 @@
 """Rocking and lean of a pier: rotation about where it would rest on its base (THEORY.md, Results of a run)."""
 
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -79,22 +78,20 @@ def _last_borne(unstressed: Samples, borne: Samples) -> Samples:
 
 def with_rocking(outcome: Outcome, parts: Apart, alpha: float) -> Outcome:
     """Return ``outcome`` with rocking and lean, and a note if the peak is lean; angles in the note are over ``alpha``."""
-    outcome = replace(
-        outcome, theta_rocking=parts.rocking, theta_lean=None if outcome.status == "flight" else parts.lean
-    )
+    lean = None if outcome.status == "flight" else parts.lean
+    outcome = outcome.changed(theta_rocking=parts.rocking, theta_lean=lean)
     if outcome.status != "ok" or not parts.leans:
         return outcome
     remark = (
         f"theta_max is mostly lean: the base leaned by {parts.lean / alpha:.4f} alpha then, about which the pier rocked by "
         f"{parts.rocking_then / alpha:.4f} alpha, and by {parts.rocking / alpha:.4f} alpha at most, at {parts.t:.2f} s"
     )
-    return replace(outcome, theta_max_is=LEANS, note="; ".join(filter(None, (outcome.note, remark))))
+    return outcome.noted(remark, theta_max_is=LEANS)
 
 
 def with_error_of_rocking(outcome: Outcome, fine: Apart, coarse: Apart) -> Outcome:
     """Return ``outcome`` with the errors of rocking and lean: what halving the step from ``coarse`` to ``fine`` changed."""
-    return replace(
-        outcome,
+    return outcome.changed(
         theta_rocking_error=abs(fine.rocking - coarse.rocking),
         theta_lean_error=None if outcome.theta_lean is None else abs(fine.lean - coarse.lean),
     )

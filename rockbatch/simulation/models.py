@@ -3,6 +3,8 @@
 import math
 from functools import lru_cache
 
+import numpy as np
+
 from rockbatch.core.block import lanes as block_lanes
 from rockbatch.core.block.model import Block
 from rockbatch.core.devices.laws import FRICTION, HYSTERETIC, TENDON, VISCOUS, Element
@@ -204,6 +206,11 @@ def ground_of(motion: Motion) -> Samples:
     """Return a motion as the core takes it, shape (npts, 4); see :func:`rockbatch.core.ground.ground_rows`."""
     vertical = () if motion.vertical is None else motion.vertical
     return ground_rows(motion.horizontal, vertical, float(motion.dt))
+
+
+def acceleration_at(samples: Samples, dt: float, t: Samples | float) -> Samples:
+    """Return the ground acceleration at times ``t``: linear between ``samples``, zero from the sample after the last."""
+    return np.interp(t, np.arange(len(samples) + 1) * dt, np.append(samples, 0.0))
 
 
 def first_substeps(pier: Pier, base: Base, dt: float) -> int:

@@ -213,6 +213,10 @@ class Outcome:
         vars(other).update(vars(self), **fields)
         return other
 
+    def noted(self, *remarks: str, **fields: Any) -> "Outcome":
+        """Return the outcome with those ``remarks`` that are not empty behind its note, and other ``fields``."""
+        return self.changed(note="; ".join(filter(None, (self.note, *remarks))), **fields)
+
     def mirrored(self) -> "Outcome":
         """What the same run comes to with the horizontal motion reversed, where pier and foundation are symmetric."""
         return self.changed(

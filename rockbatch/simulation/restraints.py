@@ -4,13 +4,18 @@ import math
 
 import numpy as np
 
-from rockbatch.core.devices.laws import FRICTION, HYSTERETIC, TENDON, Element
+from rockbatch.core.devices.elongation import attitude, gap
+from rockbatch.core.devices.laws import ELEMENT, FRICTION, HYSTERETIC, STICKS, TAUT, TENDON, Element, force
+from rockbatch.core.devices.laws import stored as stored_in
+from rockbatch.core.kernel import entry
 from rockbatch.core.observe.ledger import LEDGER
+from rockbatch.core.observe.peaks import RecordedDevices
+from rockbatch.core.observe.rows import state_of
 from rockbatch.core.types import Result
 from rockbatch.lazy import pd
 from rockbatch.motions.motion import Samples
 from rockbatch.pier import Base, Damper, ElasticBase, Pier, RigidBase, offsets
-from rockbatch.simulation.models import elements, prestress, springs
+from rockbatch.simulation.models import elements, model, prestress, springs
 
 AT_REST = 1e-9
 """In units of R0 α p: velocity that counts as none in a history."""
@@ -39,55 +44,51 @@ def apart(base: Base, rows: np.recarray) -> tuple[np.recarray, Samples]:
     return plain, rows.pull.copy()
 
 
-def _elongation(law: Element, pier: Pier, base: Base, rows: np.recarray) -> tuple[Samples, Samples]:
-    """Return elongation [m] and its rate [m/s]: u/cos(θ/2), where u is the rise of the place; first-order u itself."""
-    theta, s, h, rise = rows.theta, law.offset, pier.height, rows.v - rows.v[0]
-    if base.kinematics != "finite":
-        return rise - s * theta, rows.v_rate - s * rows.omega
-    up = rise - s * np.sin(theta) + h * (1.0 - np.cos(theta))
-    speed = rows.v_rate + (h * np.sin(theta) - s * np.cos(theta)) * rows.omega
-    cosine = np.cos(0.5 * theta)
-    return up / cosine, (speed + 0.5 * up * np.tan(0.5 * theta) * rows.omega) / cosine
+def recorded(pier: Pier, base: Base, rows: np.recarray) -> RecordedDevices:
+    """Return the dampers and tendons of ``base``, with their states at the ``rows`` of a history."""
+    laws = np.array([tuple(law) for law in elements(pier, base)], ELEMENT).view(np.recarray)
+    return RecordedDevices(laws, rows.state.copy(), float(rows.v[0]))
 
 
-def _force(law: Element, pier: Pier, base: Base, rows: np.recarray, j: int) -> Samples:
-    """Return the force [N/kg], positive in tension; 0 for friction while the pier does not move."""
-    elongation, speed = _elongation(law, pier, base, rows)
-    state = rows.state[:, j]
-    if law.kind == FRICTION:
-        moves = np.abs(speed) > AT_REST * pier.size * pier.alpha * pier.p
-        return np.where(moves, law.strength * np.sign(speed), 0.0)
-    if law.kind == HYSTERETIC:
-        return law.strength * state
-    if law.kind == TENDON:
-        return np.clip(law.prestress + law.stiffness * (elongation - state), 0.0, law.strength)
-    size = np.abs(speed)
-    return np.where(size < law.linear_below, law.slope * speed, law.coefficient * np.sign(speed) * size**law.exponent)
+@entry
+def _follow(m, devices, rows, moves, elongation, pull, energy):  # type: ignore[no-untyped-def]
+    """Write elongation [m], force [N/kg] and stored energy [J/kg] of each device at each row, all of shape (rows, devices).
+
+    A force is positive in tension; that of friction is 0 below the speed ``moves`` [m/s].
+    """
+    for i in range(len(rows)):
+        y = state_of(m, rows[i])
+        at = attitude(m, y, devices.level)
+        for j in range(len(devices.elements)):
+            law, state = devices.elements[j], devices.states[i, j]
+            here = gap(m, law.offset, at, y)
+            goes = math.copysign(1.0, here.speed) if abs(here.speed) > moves else STICKS
+            taut = force(law, here.elongation, here.speed, state, TAUT, goes)
+            pull[i, j] = min(max(taut, 0.0), law.strength) if law.kind == TENDON else taut
+            elongation[i, j], energy[i, j] = here.elongation, stored_in(law, here.elongation, state)
+
+
+def _followed(pier: Pier, base: Base, rows: np.recarray) -> tuple[Samples, Samples, Samples]:
+    """Return elongation, force and stored energy of each device at each row; see :func:`_follow`."""
+    devices = recorded(pier, base, rows)
+    elongation, pull, energy = (np.zeros((len(rows), len(devices.elements))) for _ in range(3))
+    moves = AT_REST * pier.size * pier.alpha * pier.p
+    _follow(model(pier, base), devices, apart(base, rows)[0], float(moves), elongation, pull, energy)
+    return elongation, pull, energy
 
 
 def loops(pier: Pier, base: Base, rows: np.recarray) -> "pd.DataFrame":
     """Return the force [N/kg] and elongation [m] of every device at every row."""
+    elongation, pull, _ = _followed(pier, base, rows)
     table = {"t": rows.t}
-    for j, (law, name) in enumerate(zip(elements(pier, base), names(pier, base), strict=True)):
-        table[f"{name} elongation"] = _elongation(law, pier, base, rows)[0]
-        table[f"{name} force"] = _force(law, pier, base, rows, j)
+    for j, name in enumerate(names(pier, base)):
+        table |= {f"{name} elongation": elongation[:, j], f"{name} force": pull[:, j]}
     return pd.DataFrame(table)
 
 
-def _stored(law: Element, pier: Pier, base: Base, rows: np.recarray, j: int) -> Samples:
-    """Return the energy [J/kg] that a tendon gives back until it is slack."""
-    if law.stiffness == 0.0:
-        return law.prestress * _elongation(law, pier, base, rows)[0]
-    pull = _force(law, pier, base, rows, j)
-    return 0.5 * pull * pull / law.stiffness
-
-
 def stored(pier: Pier, base: Base, rows: np.recarray) -> Samples:
-    """Return the energy [J/kg] that all tendons store, relative to the start."""
-    laws = elements(pier, base)
-    energy = sum(
-        (_stored(law, pier, base, rows, j) for j, law in enumerate(laws) if law.kind == TENDON), np.zeros(len(rows))
-    )
+    """Return the energy [J/kg] that all tendons give back until they are slack, relative to the start."""
+    energy = _followed(pier, base, rows)[2].sum(axis=1)
     return energy - energy[0]
 
 

@@ -2,30 +2,19 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from rockbatch.core import types
 from rockbatch.core.clock import ON_ITS_SIDE
 from rockbatch.core.devices.laws import STICKS, TENDON
 from rockbatch.core.devices.pull import Devices, devices_of
 from rockbatch.core.history import MOMENT
 from rockbatch.core.run import NO_ROWS, march
 from rockbatch.core.system import Kind
-from rockbatch.core.types import (
-    CHATTER,
-    FLIGHT,
-    GROWING,
-    LATE_FLIGHT,
-    NOT_FINITE,
-    OVERTURNED,
-    RESTLESS,
-    RUNNING,
-    SURVIVED,
-    UNDECIDED,
-    Result,
-)
+from rockbatch.core.types import Result
 from rockbatch.motions.motion import Motion, Samples
 from rockbatch.pier import (
     MOST_NEGLECTED,
@@ -42,7 +31,7 @@ from rockbatch.simulation.models import (
     elements,
     first_substeps,
     ground_of,
-    kind_of,
+    kernel_of,
     least_substeps,
     line_of,
     model,
@@ -57,22 +46,22 @@ MOST_STEPS = 1e8
 """Greatest number of steps of a run, about a quarter of a minute of work."""
 
 _STATUS = {
-    SURVIVED: ("ok", ""),
-    RESTLESS: ("ok", ""),
-    LATE_FLIGHT: ("ok", ""),
-    OVERTURNED: ("overturned", ""),
-    FLIGHT: ("flight", ""),
-    CHATTER: ("failed", "more than 20,000 contact events within one sample; use more substeps"),
-    NOT_FINITE: ("failed", "the integration blew up; use more substeps, or look for a spike in the record"),
-    UNDECIDED: ("failed", "left alone after the record, the pier stays where it may yet overturn"),
-    GROWING: (
+    types.SURVIVED: ("ok", ""),
+    types.RESTLESS: ("ok", ""),
+    types.LATE_FLIGHT: ("ok", ""),
+    types.OVERTURNED: ("overturned", ""),
+    types.FLIGHT: ("flight", ""),
+    types.CHATTER: ("failed", "more than 20,000 contact events within one sample; use more substeps"),
+    types.NOT_FINITE: ("failed", "the integration blew up; use more substeps, or look for a spike in the record"),
+    types.UNDECIDED: ("failed", "left alone after the record, the pier stays where it may yet overturn"),
+    types.GROWING: (
         "failed",
         "left alone after the record, the pier leans further and further: yielding springs ratchet on vibration that "
         'nothing damps; spring = "epp" and "hardening" do so least',
     ),
 }
 
-LEFT_ALONE = tuple(_STATUS[code][1] for code in (UNDECIDED, GROWING))
+LEFT_ALONE = tuple(_STATUS[code][1] for code in (types.UNDECIDED, types.GROWING))
 """Reasons of runs that failed because the longest tail did not decide them, which smaller steps do not change."""
 
 NOTED_TILT = 1e-4
@@ -145,7 +134,7 @@ def written_run(
     wait: bool = True,
 ) -> tuple[Result, np.recarray]:
     """Return one run, and its history of at most ``rows`` rows; with ``every_step`` also between samples."""
-    kind, devices = kind_of(model(run.pier, run.base)), devices_of(elements(run.pier, run.base))
+    kind, devices = kernel_of(run.pier, run.base)[0], devices_of(elements(run.pier, run.base))
     columns = _row_type(kind, 0 if devices is None else len(devices.elements))
     written = np.zeros((rows, columns.itemsize // 8))
     lines, ground = [_line(run, substeps, quiet_s, 0, wait)], ground_of(run.motion)
@@ -203,15 +192,14 @@ def try_all(
 ) -> list[Trial | None]:
     """Run as :func:`run_all_fixed`, and return the trajectories in short, too."""
     trials: list[Trial | None] = [_refused(run, steps, quiet_s) for run, steps in zip(runs, substeps, strict=True)]
-    alike: dict[tuple[Kind, int], list[int]] = {}
+    alike: dict[tuple[Kind, int, int | None], list[int]] = {}
     for i, run in enumerate(runs):
-        if trials[i] is not None or stop:
-            continue
-        if run.base.restraints:
-            trials[i] = _with_devices(run, substeps[i], quiet_s, stop, locate, wait)
-        else:
-            alike.setdefault((kind_of(model(run.pier, run.base)), substeps[i]), []).append(i)
-    for (kind, steps), members in alike.items():
+        if trials[i] is None:
+            kind, with_devices = kernel_of(run.pier, run.base)
+            alike.setdefault((kind, substeps[i], i if with_devices else None), []).append(i)  # each of them alone
+    for (kind, steps, alone), members in alike.items():
+        if stop:
+            break
         first_rows: dict[int, int] = {}
         grounds: list[Samples] = []
         lines = []
@@ -222,23 +210,16 @@ def try_all(
                 grounds.append(ground_of(motion))
             lines.append(_line(runs[i], steps, quiet_s, first_rows[id(motion)], wait))
         ground = grounds[0] if len(grounds) == 1 else np.concatenate(grounds)
-        for i, record in zip(members, march(kind, lines, ground, stop.flag, steps, locate), strict=True):
-            if record.status != RUNNING:
-                trials[i] = Trial(_outcome(runs[i], steps, _result(record)), record.extremes)
+        devices = None if alone is None else devices_of(elements(runs[alone].pier, runs[alone].base))
+        records = march(kind, lines, ground, stop.flag, steps, locate, False, NO_ROWS, devices)
+        for i, record in zip(members, records, strict=True):
+            if record.status != types.RUNNING:
+                result = _result(record)
+                outcome = _outcome(runs[i], steps, result)
+                if devices is not None:
+                    outcome = _held_at_rest(runs[i], result, devices, outcome).changed(**_use(runs[i], devices.use))
+                trials[i] = Trial(outcome, record.extremes)
     return trials
-
-
-def _with_devices(run: Run, substeps: int, quiet_s: float, stop: Stop, locate: bool, wait: bool) -> Trial | None:
-    """Run once with dampers and tendons, and return the trial with their demands; ``None`` if it was stopped."""
-    devices = devices_of(elements(run.pier, run.base))
-    assert devices is not None
-    kind, lines = kind_of(model(run.pier, run.base)), [_line(run, substeps, quiet_s, 0, wait)]
-    record = march(kind, lines, ground_of(run.motion), stop.flag, substeps, locate, False, NO_ROWS, devices)[0]
-    if record.status == RUNNING:
-        return None
-    result = _result(record)
-    outcome = _held_at_rest(run, result, devices, _outcome(run, substeps, result))
-    return Trial(replace(outcome, **_use(run, devices.use)), record.extremes)
 
 
 def _held_at_rest(run: Run, result: Result, devices: Devices, outcome: Outcome) -> Outcome:
@@ -254,9 +235,8 @@ def _held_at_rest(run: Run, result: Result, devices: Devices, outcome: Outcome) 
     else:
         rotation = 0.0 if not math.isnan(result.t_rest) else rests_on_rigid_base(pier, base, result, states, holds)
         remark = f"dampers hold the pier at a rotation of {rotation:.3g} rad"
-    if abs(rotation - (outcome.theta_res or 0.0)) > NOTED_TILT * pier.alpha:
-        outcome = replace(outcome, note="; ".join(filter(None, (outcome.note, remark))))
-    return replace(outcome, theta_res=rotation)
+    changed = abs(rotation - (outcome.theta_res or 0.0)) > NOTED_TILT * pier.alpha
+    return outcome.noted(remark if changed else "", theta_res=rotation)
 
 
 def _use(run: Run, use: np.recarray) -> dict[str, Any]:
@@ -294,6 +274,10 @@ def _refused(run: Run, substeps: int, quiet_s: float) -> Trial | None:
     return None
 
 
+_UNCHANGED = ("t_max", "impacts", "flights", "flight_duration", "flight_height", "t_end")
+"""Fields of the core's Result that an Outcome takes over."""
+
+
 def _outcome(run: Run, substeps: int, result: Result) -> Outcome:
     """Return the Outcome of a run from the core's ``result``."""
     pier, base = run.pier, run.base
@@ -303,12 +287,12 @@ def _outcome(run: Run, substeps: int, result: Result) -> Outcome:
     if isinstance(base, ElasticBase):
         more = _of_springs(pier, base, result, survived=status == "ok")
         omega_v, zeta = vertical_frequency(pier, base), base.zeta or 0.0
-    if result.status == FLIGHT:
+    if result.status == types.FLIGHT:
         reason = cause_of_flight(run.motion, omega_v, pier.gravity, result.t_flight, result.t_impact, zeta)
     notes = []
-    if result.status == RESTLESS:
+    if result.status == types.RESTLESS:
         notes.append(_RESTLESS.format(seconds=result.t_end - run.motion.duration))
-    elif result.status == LATE_FLIGHT:
+    elif result.status == types.LATE_FLIGHT:
         notes.append(_LATE_FLIGHT.format(t=result.t_end))
     share = neglected(pier, result.theta_max) if base.kinematics == "first-order" else 0.0
     if share > MOST_NEGLECTED and status != "overturned":
@@ -319,16 +303,11 @@ def _outcome(run: Run, substeps: int, result: Result) -> Outcome:
         status=status,
         reason=reason,
         theta_max=min(result.theta_max, ON_ITS_SIDE),
-        t_max=result.t_max,
-        impacts=result.impacts,
         separations=result.uplifts,
         t_flight=None if math.isnan(result.t_flight) else result.t_flight,
-        flights=result.flights,
-        flight_duration=result.flight_duration,
-        flight_height=result.flight_height,
-        t_end=result.t_end,
         substeps=substeps,
         note="; ".join(notes),
+        **{name: getattr(result, name) for name in _UNCHANGED},
         **more,
     )
 

@@ -131,8 +131,7 @@ def _look_for_chaos(
             chaos = (
                 f"the peak is chaotic, under a motion {CHANGE:g} stronger the pier {becomes}: no error of it is claimed"
             )
-            note = "; ".join(filter(None, (now.note, chaos)))
-            outcomes[i] = now.changed(theta_max_error=None, note=note)
+            outcomes[i] = now.noted(chaos, theta_max_error=None)
 
 
 def _steps_of_next(run: Run, levels: Sequence[Trial], quiet_s: float) -> float:
@@ -214,8 +213,7 @@ def _noted(fine: Trial, coarse: Trial, extent: Agreement, tolerance: float, peak
     If rotations before the peak have not converged, no error is claimed: the peak depends on digits that no record has, and two
     runs that agree on it agree by chance.
     """
-    now, before = fine.outcome, coarse.outcome
-    notes = [now.note] if now.note else []
+    now, before, notes = fine.outcome, coarse.outcome, list[str]()
     differs = np.abs(fine.extremes - coarse.extremes) > tolerance
     if extent < Agreement.THROUGHOUT and differs.any():
         greatest = np.nanmax(np.fmax(fine.extremes, coarse.extremes)[differs])
@@ -232,7 +230,7 @@ def _noted(fine: Trial, coarse: Trial, extent: Agreement, tolerance: float, peak
         if not abs(times[1] - times[0]) <= 1e-3:
             moments = [f"at {t:.3f} s" if t == t else "none" for t in times]
             notes.append(f"first flight not settled: {moments[0]} or {moments[1]}")
-    return now.changed(note="; ".join(notes))
+    return now.noted(*notes)
 
 
 def _not_converged(pier: Pier, levels: Sequence[Trial], tolerance: float, more: str) -> Outcome:

@@ -14,7 +14,7 @@ import numpy as np
 from rockbatch.core import system
 from rockbatch.core.kernel import kernel
 from rockbatch.core.springs.lanes import static_contact, static_state
-from rockbatch.core.springs.model import State
+from rockbatch.core.springs.model import Springs, State
 from rockbatch.core.springs.transitions import handle
 from rockbatch.core.system import at_rest, event_functions
 from rockbatch.core.types import Ground
@@ -39,6 +39,39 @@ def event_values(m, y, contact, supports, rest, horizontal, vertical):  # type: 
 
 class OutOfTimeError(Exception):
     """A solver that did not finish in the time that it was given."""
+
+
+class _SmoothPart:
+    """Right-hand side and event functions between two events, for SciPy: functions of time [s] and state."""
+
+    def __init__(self, m: Springs, motion: Motion, until: float) -> None:
+        self.m, self.rest, self.until = m, at_rest(m), until
+        self.horizontal = _ground(motion.horizontal, float(motion.dt))
+        self.vertical = _ground(motion.vertical, float(motion.dt))
+        self.state = static_state(m, m.gravity)
+        self.contact, self.supports = static_contact(m, self.state)
+
+    def rates(self, t: float, y: Any) -> Any:
+        if time.monotonic() > self.until:
+            raise OutOfTimeError
+        return rates(self.m, State(*y.tolist()), self.contact, self.horizontal(t), self.vertical(t))
+
+    def values(self, t: float, state: State) -> Any:
+        ground = self.horizontal(t), self.vertical(t)
+        return event_values(self.m, state, self.contact, self.supports, self.rest, *ground)
+
+    def event(self, i: int) -> Any:
+        def event(t: float, y: Any) -> float:
+            value = float(self.values(t, State(*y.tolist()))[i])
+            return value if abs(value) > self.rest else self.rest  # rounding does not cross
+
+        return _terminal(event)
+
+    def handle(self, t: float, number: int) -> None:
+        """Go on behind an event."""
+        ground = self.horizontal(t), self.vertical(t)
+        now = handle(self.m, self.state, self.contact, self.supports, number, self.rest, *ground)
+        self.state, self.contact, self.supports, _ = now
 
 
 def solve(
@@ -70,54 +103,28 @@ def solve(
     """
     from scipy.integrate import solve_ivp
 
-    m = springs(pier, base)
-    rest = at_rest(m)
-    dt = float(motion.dt)
+    m, dt, omega_v = springs(pier, base), float(motion.dt), vertical_frequency(pier, base)
     end = (motion.npts - 1 + math.ceil(quiet_s / dt - 1e-9)) * dt
-    horizontal, vertical = _ground(motion.horizontal, dt), _ground(motion.vertical, dt)
-    omega_v = vertical_frequency(pier, base)
     scale = [m.yield_deflection, pier.alpha, m.yield_deflection * omega_v, pier.alpha * pier.p, 1.0, 1.0]
-    tolerances = {"rtol": tolerance, "atol": tolerance * np.array(scale)}
-
-    t, y = 0.0, static_state(m, m.gravity)
-    contact, supports = static_contact(m, y)
-
-    until = time.monotonic() + seconds
-
-    def rhs(s: float, y: Any) -> Any:
-        if time.monotonic() > until:
-            raise OutOfTimeError
-        return rates(m, State(*y.tolist()), contact, horizontal(s), vertical(s))
-
-    def values(s: float, state: State) -> Any:
-        return event_values(m, state, contact, supports, rest, horizontal(s), vertical(s))
-
-    def event_function(i: int) -> Any:
-        def event(s: float, y: Any) -> float:
-            value = float(values(s, State(*y.tolist()))[i])
-            return value if abs(value) > rest else rest  # rounding does not cross
-
-        return _terminal(event)
-
-    events = [*(event_function(i) for i in range(4)), _terminal(_upright), _velocity_reversal]
-    theta_max = 0.0
+    settings = {"method": method, "max_step": dt, "rtol": tolerance, "atol": tolerance * np.array(scale)}
+    part = _SmoothPart(m, motion, time.monotonic() + seconds)
+    events = [*(part.event(i) for i in range(4)), _terminal(_upright), _velocity_reversal]
+    t, theta_max = 0.0, 0.0
     for _ in range(MOST_EVENTS):
         # An impact at one pivot may reverse the other's velocity: that is an event before the next step
-        number = next((i for i, value in enumerate(values(t, y)) if value < -rest), None)
+        number = next((i for i, value in enumerate(part.values(t, part.state)) if value < -part.rest), None)
         if number is None:
-            solution = solve_ivp(rhs, (t, end), np.array(y), method=method, max_step=dt, events=events, **tolerances)
-            reversals = solution.y_events[-1]
-            reached = [theta_max, *np.abs(solution.y[1]), *(np.abs(reversals[:, 1]) if len(reversals) else ())]
+            solution = solve_ivp(part.rates, (t, end), np.array(part.state), events=events, **settings)
+            reached = [theta_max, *np.abs(solution.y[1]), *(abs(y[1]) for y in solution.y_events[-1])]
             theta_max = float(max(reached))
-            if solution.status < 0 or not math.isfinite(theta_max):
-                return "failed", theta_max
-            if solution.status == 0:
-                return "ok", theta_max
+            if solution.status <= 0 or not math.isfinite(theta_max):
+                return "ok" if solution.status == 0 and math.isfinite(theta_max) else "failed", theta_max
             number = next(i for i, times in enumerate(solution.t_events) if len(times))
             if number == 4:
                 return "overturned", theta_max
-            t, y = float(solution.t[-1]), State(*solution.y[:, -1].tolist())
-        y, contact, supports, _ = handle(m, y, contact, supports, number, rest, horizontal(t), vertical(t))
+            t, part.state = float(solution.t[-1]), State(*solution.y[:, -1].tolist())
+        part.handle(t, number)
+        y, contact = part.state, part.contact
         if contact.left == contact.right == contact.held == 0 and not m.guided:
             beyond = abs(y.theta) >= pier.alpha and y.theta * y.omega > 0.0
             return "overturned" if beyond else "flight", theta_max
