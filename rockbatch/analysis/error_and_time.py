@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from rockbatch.batch.groups import outcomes_of
-from rockbatch.batch.listening import Listener, Told, count
+from rockbatch.batch.listening import Advance, Listener, count, silent
 from rockbatch.batch.plan import Plan, PlannedRun
 from rockbatch.batch.threads import cores
 from rockbatch.errors import InputError
@@ -130,8 +130,7 @@ def references(
             refined = reference(chosen[i], study.numerics.quiet_s, remaining)
             converged |= {} if refined is None else {i: refined}
             tried += 1
-            if advance is not None:
-                advance(1)
+            advance(1)
     if not converged:
         raise InputError(
             f"{study.path}: no run settles with ever smaller steps, so there is nothing to measure errors against; "
@@ -210,8 +209,7 @@ def _of_steps(study: Study, references: Sequence[Reference], listener: Listener,
             until = clock.left(REFERENCES + share * (STEPS - REFERENCES))
             rows.append(setting | _measured(references, simulate, REPEATS, until))
             took = time.monotonic() - started
-            if advance is not None:
-                advance(len(references))
+            advance(len(references))
     order = ("located", "not located", "study")
     return sorted(rows, key=lambda row: order.index(row["method"]))
 
@@ -232,12 +230,11 @@ def _of_scipy(references: Sequence[Reference], listener: Listener, clock: Clock)
 
     after = {id(ref.run): ref.outcome.t_end - ref.run.motion.duration for ref in chosen}
 
-    def solver(method: str, tolerance: float, advance: Told | None = None) -> Simulate:
+    def solver(method: str, tolerance: float, advance: Advance = silent) -> Simulate:
         def solved(run: PlannedRun) -> tuple[str, float]:
             pier, base, seconds = run.case.pier, run.case.base, 0.5 * clock.left()
             outcome = solve(pier, base, run.motion, method, tolerance, after[id(run)], seconds)  # type: ignore[arg-type]
-            if advance is not None:
-                advance(1)
+            advance(1)
             return outcome
 
         return lambda runs: list(map(solved, runs))

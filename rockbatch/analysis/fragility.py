@@ -118,7 +118,7 @@ def _carry_out(results: AnalysisFolder, spec: FragilitySpec) -> dict[str, Any]:
     with results.journal(RUNS, columns(asked), digest) as journal:
         listener.say(f"{_planned(spec, asked, len(records))} on {results.engine}{_afterwards(spec)}")
         make_ready(asked, listener)
-        waves = Waves(asked, journal, results.engine, listener.progress)
+        waves = Waves(asked, journal, results.engine, listener)
         curves = assess(asked, spec, records, waves)
         results.info |= described(curves, spec, asked, len(records))
         results.info["stations"] = len({motion.of_station for motion in records})

@@ -148,7 +148,7 @@ def _carry_out_maps(results: AnalysisFolder, maps: Sequence[MapSpec]) -> None:
     rows: list[Any] = []
     make_ready(study, listener)
     with results.journal(of_runs, columns(study), digest) as journal:
-        waves = Waves(study, journal, results.engine, listener.progress)
+        waves = Waves(study, journal, results.engine, listener)
         for spec in maps:
             own, before = overturning_map.Maps(spec, study.cases), waves.finished
             grid = _grid(spec, len(study.cases))

@@ -1,11 +1,12 @@
 """Runs in waves, each of which depends on the results of the one before; all of them in one journal."""
 
-from collections.abc import Callable, Mapping
-from contextlib import AbstractContextManager, nullcontext
+from collections.abc import Mapping
+from contextlib import nullcontext
 from typing import Any
 
 from rockbatch.batch.carrying_out import carry_out
 from rockbatch.batch.journal import Journal
+from rockbatch.batch.listening import Listener, silent
 from rockbatch.batch.plan import Runs
 from rockbatch.batch.threads import Engine
 from rockbatch.lazy import pd
@@ -20,24 +21,17 @@ class Waves:
     was killed goes on where it stopped. Rows always come from the journal, with its ten digits, so that nothing depends on
     whether they were there already.
 
-    ``progress`` takes the number of runs that a wave has left, and returns a context that is called with the number of
-    those that are finished.
+    The ``listener`` follows the progress of each wave that has runs left.
     """
 
-    def __init__(
-        self,
-        study: Study,
-        journal: Journal,
-        engine: Engine,
-        progress: Callable[[int], AbstractContextManager[Callable[[int], object] | None]] | None = None,
-    ) -> None:
-        self.study, self.journal, self.engine, self.progress = study, journal, engine, progress
+    def __init__(self, study: Study, journal: Journal, engine: Engine, listener: Listener | None = None) -> None:
+        self.study, self.journal, self.engine, self.listener = study, journal, engine, listener or Listener()
         self.finished = 0
 
     def __call__(self, runs: Runs) -> "pd.DataFrame":
         first, self.finished = self.finished, self.finished + len(runs)
         pending = sum(number not in self.journal for number in range(first, self.finished))
-        with self.progress(pending) if self.progress and pending else nullcontext() as progress:
+        with self.listener.progress(pending) if pending else nullcontext(silent) as progress:
             carry_out(
                 runs, self.study.numerics, self.journal, self.engine, self.study.output, first=first, progress=progress
             )

@@ -7,6 +7,7 @@ from typing import Any
 
 from rockbatch.batch.groups import NOTHING_MORE
 from rockbatch.batch.journal import Journal
+from rockbatch.batch.listening import Advance, silent
 from rockbatch.batch.plan import MOST_RUNS, PlannedRun, Runs, some_of
 from rockbatch.batch.threads import Engine
 from rockbatch.errors import InputError
@@ -22,11 +23,11 @@ class InMemory(dict[int, Mapping[str, Any]]):
         self.columns = columns
 
     def add_all(self, rows: Mapping[int, Mapping[str, Any]]) -> None:
-        """As :meth:`Journal.add_all`."""
+        """Add rows as :meth:`Journal.add_all`."""
         self.update(rows)
 
     def add_columns(self, numbers: Sequence[int], columns: Mapping[str, Sequence[Any]]) -> None:
-        """As :meth:`Journal.add_columns`."""
+        """Add rows as :meth:`Journal.add_columns`."""
         rows = zip(*columns.values(), strict=True)
         self.update((number, dict(zip(columns, row, strict=True))) for number, row in zip(numbers, rows, strict=True))
 
@@ -41,7 +42,7 @@ def carry_out(
     first: int = 0,
     among: range | None = None,
     row: Callable[[PlannedRun, Outcome], Mapping[str, Any]] | None = None,
-    progress: Callable[[int], object] | None = None,
+    progress: Advance = silent,
 ) -> None:
     """Carry out those runs that are not in ``journal``, and write each into it as soon as its group is finished.
 
@@ -62,19 +63,18 @@ def carry_out(
     left = to_simulate(runs, wanted, journal, first)
     with closing(engine.outcomes(some_of(runs, left), numerics, output)) as groups:
         for group in groups:
-            images = (each for place, outcome in group for each in _images(runs, left[place], outcome))
-            news = [one for one in images if one[0] in wanted and first + one[0] not in journal]
+            images = (image for place, outcome in group for image in _images(runs, left[place], outcome))
+            news = [image for image in images if image[0] in wanted and first + image[0] not in journal]
             if row is not None:
                 journal.add_all({first + i: row(run, outcome) for i, run, outcome in news})
             elif news:
-                found = cells([run.ran(outcome) for _, run, outcome in news], journal.columns)
-                journal.add_columns([first + i for i, _, _ in news], found)
-            if progress is not None:
-                progress(len(group))
+                columns = cells([run.ran(outcome) for _, run, outcome in news], journal.columns)
+                journal.add_columns([first + i for i, _, _ in news], columns)
+            progress(len(group))
 
 
 def to_simulate(runs: Runs, wanted: range, journal: Container[int] = (), first: int = 0) -> "array[int]":
-    """Indices of the runs that give all those that are ``wanted`` and not in ``journal``, themselves or their mirror images.
+    """Return the indices of the runs that give all that are ``wanted`` and not in ``journal``, or mirror images of them.
 
     Raises ``InputError`` for more than :data:`MOST_RUNS`.
     """
@@ -89,21 +89,19 @@ def to_simulate(runs: Runs, wanted: range, journal: Container[int] = (), first: 
 
     if not runs.mirrored:
         return array("q", filter(is_left, wanted))
-    found = array("q")
-    for index in filter(is_left, wanted):
-        simulated = runs.images(index)[0]
-        if simulated == index or not is_left(simulated):  # else it has its own turn
-            found.append(simulated)
-    return found
+    firsts = ((index, runs.images(index)[0]) for index in filter(is_left, wanted))
+    return array(
+        "q", (first for index, first in firsts if first == index or not is_left(first))
+    )  # else in its own turn
 
 
 def _images(runs: Runs, index: int, outcome: Outcome) -> Iterator[tuple[int, PlannedRun, Outcome]]:
-    """Index, run and outcome of a run that was simulated, and of its mirror image."""
+    """Yield index, run and outcome of a run that was simulated, and of its mirror image."""
     for image in runs.images(index):
         run = runs[image]
         yield image, run, outcome.mirrored() if run.mirror_of else outcome
 
 
 def row_of(run: PlannedRun, outcome: Outcome) -> dict[str, Any]:
-    """Row of peaks.csv of a run that is finished."""
+    """Return the row of peaks.csv of a run that is finished."""
     return row(run.ran(outcome))

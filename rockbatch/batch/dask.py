@@ -6,7 +6,7 @@ import threading
 import time
 from collections.abc import Generator, Iterable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass
+from functools import cache
 from importlib.util import find_spec
 from types import TracebackType
 from typing import TYPE_CHECKING, Self
@@ -30,13 +30,13 @@ MOST_RUNS_OF_A_TASK = 16 * 1024
 """A task is to take about a second: what the scheduler spends on each is then nothing."""
 
 PATIENCE_S = 60
-"""How long the scheduler and its first worker may take to appear, and how long there may be no worker later on."""
+"""Time [s] that the scheduler and its first worker may take to appear, and for which there may be no worker later on."""
 
 GONE_S = 10
-"""How long a scheduler that was there may not answer."""
+"""Time [s] for which a scheduler may not answer."""
 
 GLANCE_S = 1.0
-"""How often it is looked whether scheduler and workers are still there."""
+"""Time [s] between two looks at scheduler and workers."""
 
 
 class Dask:
@@ -94,9 +94,9 @@ class Dask:
         return self
 
     def _check_workers(self, client: "Client") -> None:
-        """Workers without rockbatch end at the first message about it, and whoever waits for them waits for ever."""
-        found = client.run(find_spec, "rockbatch", on_error="return")
-        without = [address for address, spec in found.items() if spec is None or isinstance(spec, Exception)]
+        """Refuse workers without rockbatch: they end at the first message about it, and would be waited for for ever."""
+        specs = client.run(find_spec, "rockbatch", on_error="return")
+        without = [address for address, spec in specs.items() if spec is None or isinstance(spec, Exception)]
         if without:
             self.__exit__(None, None, None)
             raise InputError(
@@ -118,7 +118,7 @@ class Dask:
 
     @property
     def jobs(self) -> int:
-        """Threads of all workers that there are now."""
+        """Return the number of threads of all workers at present."""
         there = self._client is not None and self._client.status == "running"
         return sum(self._client.nthreads().values()) if self._client and there else 0
 
@@ -187,20 +187,14 @@ class Dask:
 
 
 def _kept(pending: "dict[Future, range]") -> Iterator[Outcomes]:
-    """Of the groups that were handed out, those that are finished."""
+    """Yield those of the groups that were handed out that are finished."""
     for future, group in pending.items():
         if future.status == "finished":
             yield finished(group, future.result())
 
 
-@dataclass(frozen=True)
-class Member:
-    """A run of a group without its motion: which of the group's records, and what is made of it."""
-
-    record: int
-    polarity: str
-    scale: float
-    case: Case
+Member = tuple[int, str, float, Case]
+"""A run of a group without its motion: the number of its record in the group, polarity, scale and case."""
 
 
 class Records:
@@ -225,7 +219,7 @@ class Records:
                 motion, polarity, scale = run.motion, "+", 1.0
             if id(motion) not in records:
                 records[id(motion)] = self._record(motion, keep=run.recorded is not None)
-            members.append(Member(list(records).index(id(motion)), polarity, scale, run.case))
+            members.append((list(records).index(id(motion)), polarity, scale, run.case))
         return self.client.submit(simulate, list(records.values()), members, numerics, output, program(), pure=False)
 
     def _record(self, motion: Motion, keep: bool) -> "Future":
@@ -239,7 +233,7 @@ class Records:
 
 @contextmanager
 def _quiet() -> Iterator[None]:
-    """What distributed logs of connections that are lost is told in a sentence of our own."""
+    """Silence what distributed logs of lost connections: they are reported in one sentence instead."""
     names = [name for name in logging.root.manager.loggerDict if name.partition(".")[0] == "distributed"]
     levels = {logging.getLogger(name): logging.getLogger(name).level for name in names}
     for logger in levels:
@@ -253,7 +247,7 @@ def _quiet() -> Iterator[None]:
 
 @contextmanager
 def _deaf_to_interrupts() -> Iterator[None]:
-    """Processes that are started meanwhile leave Ctrl-C, which a terminal sends to all of them, to this one."""
+    """Leave Ctrl-C, which a terminal sends to all processes, to this one: those started meanwhile ignore it."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
@@ -271,16 +265,11 @@ def _held(motion: Motion) -> Motion:
 def simulate(
     records: Sequence[Motion], members: Sequence[Member], numerics: Numerics, output: Output, wanted: str
 ) -> list[Outcome | None]:
-    """What a worker does: the outcomes of a group, by the same ``program`` as where the batch began."""
+    """Return the outcomes of a group, on a worker, which has to run the ``program`` that is ``wanted``."""
     if program() != wanted:
         raise InputError(
             f"a worker runs another rockbatch or another Numba ({program()}, not {wanted}): install the same everywhere"
         )
-    motions: dict[tuple[int, str, float], Motion] = {}
-    runs = []
-    for member in members:
-        variant = member.record, member.polarity, member.scale
-        if variant not in motions:
-            motions[variant] = scaled(records[member.record], member.scale, member.polarity)
-        runs.append(PlannedRun(motions[variant], member.polarity, member.scale, member.case))
+    moved = cache(lambda record, sign, scale: scaled(records[record], scale, sign))
+    runs = [PlannedRun(moved(record, sign, scale), sign, scale, case) for record, sign, scale, case in members]
     return outcomes_of(runs, numerics, output)

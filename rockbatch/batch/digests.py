@@ -1,4 +1,4 @@
-"""What rows depend on, as digests: those of an earlier process count where all of them are the same."""
+"""Digests of all that rows depend on: those of an earlier process count if all of them are the same."""
 
 import hashlib
 from collections.abc import Iterable, Iterator
@@ -13,24 +13,24 @@ PACKAGES = ("pier", "core", "simulation", "motions", "study", "checks", "toml", 
 """Packages that decide what a row says, or which runs come next. The others only show it: commands, report."""
 
 MODULES = ("units.py", "files.py", "errors.py", "showing.py", "lazy.py", "arguments.py", "grouping.py", "figures.py")
-"""Those at the top that do."""
+"""Modules at the top that do."""
 
 _TOP = Path(__file__).parents[1]
 
 
 def digests(motions: Iterable[Motion], **settings: object) -> dict[str, str]:
-    """What rows depend on, as a :class:`Journal` wants it: motions, settings (by their ``repr``), and the program."""
-    found = {name: hashlib.sha256(repr(value).encode()) for name, value in settings.items()}
-    found["motions"] = hashlib.sha256()
+    """Return digests for a :class:`Journal`: of motions, settings (by their ``repr``), and the program."""
+    hashes = {name: hashlib.sha256(repr(value).encode()) for name, value in settings.items()}
+    hashes["motions"] = hashlib.sha256()
     for motion in motions:
-        found["motions"].update(repr((motion.name, motion.station, motion.dt, motion.npts, motion.initial)).encode())
+        hashes["motions"].update(repr((motion.name, motion.station, motion.dt, motion.npts, motion.initial)).encode())
         for samples in (motion.horizontal, motion.vertical):
-            found["motions"].update(b"none" if samples is None else samples.tobytes())
-    return {name: each.hexdigest()[:16] for name, each in found.items()} | {"program": program()}
+            hashes["motions"].update(b"none" if samples is None else samples.tobytes())
+    return {name: each.hexdigest()[:16] for name, each in hashes.items()} | {"program": program()}
 
 
 def study_digests(study: Study, motions: MotionSet) -> dict[str, str]:
-    """What the rows of a study depend on; not its title, its checks or its comments."""
+    """Return digests of all that the rows of a study depend on; not its title, its checks or its comments."""
     return digests(
         motions.motions,
         cases=study.cases,
@@ -43,7 +43,7 @@ def study_digests(study: Study, motions: MotionSet) -> dict[str, str]:
 
 
 def sources() -> Iterator[Path]:
-    """The modules that take part in what a row says, in a fixed order."""
+    """Yield the modules that take part in what a row says, in a fixed order."""
     for name in MODULES:
         yield _TOP / name
     for package in PACKAGES:
@@ -52,7 +52,7 @@ def sources() -> Iterator[Path]:
 
 @cache
 def program() -> str:
-    """Digest of what outcomes depend on beside their runs: the modules that take part, and the compiler."""
+    """Return the digest of what outcomes depend on beside their runs: the modules that take part, and the compiler."""
     digest = hashlib.sha256(core_digest().encode())
     for path in sources():
         digest.update(path.relative_to(_TOP).as_posix().encode() + b"\0" + path.read_bytes() + b"\0")

@@ -1,4 +1,4 @@
-"""What a batch would take: how many runs, how long, how much disk; found by running a few of them."""
+"""Estimate of what a batch would take: runs, time and disk, from running a few of them."""
 
 import time
 from collections.abc import Sequence
@@ -12,7 +12,7 @@ from rockbatch.batch.groups import outcomes_of
 from rockbatch.batch.kept_histories import history_bytes
 from rockbatch.batch.listening import Listener
 from rockbatch.batch.plan import Plan, PlannedRun, some_of
-from rockbatch.batch.running import told
+from rockbatch.batch.running import described
 from rockbatch.errors import starting_threads
 from rockbatch.results.columns import columns
 from rockbatch.simulation.models import first_substeps
@@ -36,7 +36,7 @@ BYTES_OF_A_CELL = 9.0
 
 @dataclass(frozen=True)
 class Expected:
-    """What a batch would take.
+    """Estimate of what a batch would take.
 
     Attributes
     ----------
@@ -78,11 +78,11 @@ def expected(study: Study, jobs: int, listener: Listener) -> Expected:
         study.output.histories, min(len(study.cases) * size, 1e6 * study.output.histories_MB)
     )
     table = len(plan) * len(columns(study)) * BYTES_OF_A_CELL
-    return Expected(told(study, motions), len(simulated), len(tried), seconds, jobs, table, histories)
+    return Expected(described(study, motions), len(simulated), len(tried), seconds, jobs, table, histories)
 
 
 def _steps(study: Study, run: PlannedRun) -> float:
-    """Steps of a run that settles at once."""
+    """Return the steps of a run that converges at once."""
     substeps = study.numerics.substeps or 3 * first_substeps(run.case.pier, run.case.base, run.motion.dt)
     return steps_of(run.motion, substeps, study.numerics.quiet_s)
 
@@ -91,7 +91,7 @@ def _tried(
     study: Study, runs: Sequence[PlannedRun], chosen: Sequence[int], jobs: int, listener: Listener
 ) -> dict[int, Outcome]:
     """Return outcomes of ``chosen`` runs by their indices: first a run for each thread, then twice as many, until time is up."""
-    found: dict[int, Outcome | None] = {}
+    outcomes: dict[int, Outcome | None] = {}
     stop, begun = Stop(), 0
 
     def carried_out(share: Sequence[int]) -> list[Outcome | None]:
@@ -104,19 +104,18 @@ def _tried(
                 wave = chosen[begun : 2 * begun + jobs]
                 shares = [wave[i::jobs] for i in range(min(jobs, len(wave)))]
                 with starting_threads(", or write --jobs 1" * (jobs > 1)):
-                    outcomes = pool.map(carried_out, shares)
-                for share, own in zip(shares, outcomes, strict=True):
-                    found |= zip(share, own, strict=True)
+                    groups = pool.map(carried_out, shares)
+                for share, own in zip(shares, groups, strict=True):
+                    outcomes |= zip(share, own, strict=True)
                 begun += len(wave)
-                if progress is not None:
-                    progress(len(wave))
+                progress(len(wave))
         finally:
             stop.set()
-    return {i: outcome for i, outcome in found.items() if outcome is not None}
+    return {i: outcome for i, outcome in outcomes.items() if outcome is not None}
 
 
 def _spread(steps: Sequence[float]) -> list[int]:
-    """Indices of runs spread evenly over all, at least one, with not more steps than :data:`STEPS_TRIED` together."""
+    """Return indices of runs spread evenly over all, at least one, with not more steps than :data:`STEPS_TRIED` together."""
     number = min(TRIED, len(steps))
     chosen = [round((i + 0.5) * len(steps) / number - 0.5) for i in range(number)]
     chosen = sorted(chosen, key=lambda i: (i * 7919) % len(steps))  # so that what is cut off is spread, too

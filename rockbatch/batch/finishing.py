@@ -1,4 +1,4 @@
-"""What makes a folder of results: from finished runs to the table, what was run, histories, checks and the report."""
+"""Writing of a folder of results: from finished runs to the table, run.json, histories, checks and the report."""
 
 import datetime
 import json
@@ -39,7 +39,7 @@ OUTPUTS = (PEAKS, INFO, HISTORIES, INTENSITY, ESTIMATE, CHECKS, REPORT, SEMICOLO
 
 @dataclass(frozen=True, eq=False)
 class FinishedBatch:
-    """What was left in a folder.
+    """Results that were written into a folder.
 
     Attributes
     ----------
@@ -65,7 +65,7 @@ class FinishedBatch:
 def what_was_run(
     study: Study, motions: MotionSet, runs: Plan, digest: dict[str, str], command: Sequence[str]
 ) -> dict[str, Any]:
-    """What run.json says, but for what the runs cost; ``command`` are the words after ``rockbatch`` that do it again."""
+    """Return the content of run.json but for the cost; ``command`` are the words after ``rockbatch`` that do it again."""
     return {
         "rockbatch": __version__,
         "created": datetime.datetime.now().astimezone().isoformat(timespec="seconds"),
@@ -79,7 +79,7 @@ def what_was_run(
 
 
 def cost_of_finished(directory: Path, info: dict[str, Any]) -> dict[str, Any] | None:
-    """What the runs in ``directory`` cost, if they are those of ``info``, all of them; else None.
+    """Return the cost of the runs in ``directory``, if they are those of ``info``, all of them; else None.
 
     Raises ``InputError`` where they are, and their table is not as it was written: it is nobody's to write over.
     """
@@ -186,8 +186,8 @@ def _keep_histories(
             f"exceed [output] histories_MB = {study.output.histories_MB:g}"
         )
     try:
-        with listener.progress(len(chosen.numbers)) as told:
-            path = keep_histories(saved, study, runs, None if told is None else lambda: told(1), records)
+        with listener.progress(len(chosen.numbers)) as progress:
+            path = keep_histories(saved, study, runs, progress, records)
     except InputError as error:
         return None, error
     if path is None:

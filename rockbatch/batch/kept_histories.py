@@ -1,13 +1,14 @@
 """The runs whose histories are kept beside the peaks: run once more, and written down."""
 
 import math
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from rockbatch.batch.listening import Advance, silent
 from rockbatch.batch.plan import PlannedRun
 from rockbatch.checks.demands import FORCES
 from rockbatch.errors import InputError
@@ -25,8 +26,7 @@ LEDGER = "energy_input_J_kg"
 """A column of every run with an energy ledger."""
 
 BYTES_OF_A_DATASET = 2500.0
-"""What HDF5 takes for a dataset beside its numbers, with its share of the groups."""
-
+"""Bytes of a dataset in HDF5 beside its numbers, with its share of the groups."""
 
 BYTES_OF_AN_EVENT = 56.0
 """In the table of events: three numbers and two words."""
@@ -36,7 +36,7 @@ def keep_histories(
     saved: Saved,
     study: Study,
     runs: Sequence[PlannedRun],
-    progress: Callable[[], object] | None = None,
+    progress: Advance = silent,
     records: Collection[str] = (),
 ) -> Path | None:
     """Write ``histories.h5`` beside finished results: the histories that the study asks for.
@@ -75,8 +75,7 @@ def keep_histories(
                 yield _response(study, runs[number], table.iloc[number])
             except InputError as error:
                 too_long.extend(error.problems)
-            if progress is not None:
-                progress()
+            progress(1)
 
     write(path, responses(), saved.info)
     if too_long:
@@ -118,8 +117,8 @@ def kept(study: Study, runs: Sequence[PlannedRun], table: "pd.DataFrame", record
 
 
 def history_bytes(run: PlannedRun, row: "Mapping[str, Any] | pd.Series") -> float:
-    """What the history of a run takes on disk, about, or up to a third more: eight bytes for each number of each sample and
-    side of an event.
+    """Return the bytes that the history of a run takes on disk, up to a third too many: eight for each number of each sample
+    and side of an event.
     """
     pier, base = run.case.pier, run.case.base
     columns = len(UNITS) - (0 if base.on_springs else len(OF_SPRINGS))
@@ -141,13 +140,13 @@ def _reversals(pier: Pier, base: Base) -> float:
 
 
 def _has(row: "Mapping[str, Any] | pd.Series", column: str) -> bool:
-    """Whether the row has a number there: what was asked for, and very long runs have not."""
-    told = row.get(column)
-    return told is not None and told == told
+    """Return whether the row has a number there: it was asked for, and the run is not very long."""
+    value = row.get(column)
+    return value is not None and value == value
 
 
 def worst(table: "pd.DataFrame", cases: int) -> list[int]:
-    """Number of the worst run of each case, in the order of the cases; none for a case that only failed.
+    """Return the number of the worst run of each case, in the order of the cases; none for a case that only failed.
 
     An overturned pier is worse than any rotation, and the earlier the worse. Flight that ended a run counts by the
     rotation until then. Of equals the first is taken.

@@ -1,4 +1,4 @@
-"""What whoever waits for a batch hears of it: its motions, what is under way, and how far that is."""
+"""Messages and progress of a batch for whoever waits for it."""
 
 import sys
 import warnings
@@ -16,38 +16,41 @@ if TYPE_CHECKING:
     from rockbatch.study import Study
 
 PATIENCE_S = 1.5
-"""What takes longer is told."""
+"""Time [s] after which a listener is told what is under way."""
 
-Told = Callable[[int], object]
+Advance = Callable[[int], object]
 """Called with the number of things that are done since the last call."""
 
-
 SHORT = 1.0
-"""What takes less [s] has no bar that nobody asked for."""
+"""Time [s] within which no bar appears, unless one was asked for."""
+
+
+def silent(done: int) -> None:
+    """Do nothing about things that are done."""
 
 
 class Listener:
-    """Hears of a batch while it goes on; this one keeps it to itself."""
+    """Receiver of the messages of a batch; this one keeps them to itself."""
 
     def motions(self, found: "MotionSet") -> None:
-        """Which motions were read, and which files could not be used."""
+        """Receive the motions that were read, and the files that could not be used."""
 
     def say(self, text: str) -> None:
-        """A sentence about what begins, or is there already."""
+        """Receive a sentence about what begins, or is there already."""
 
-    def progress(self, total: int) -> AbstractContextManager[Told | None]:
-        """A context for ``total`` things that begin, called with the number of those that are done."""
-        return nullcontext()
+    def progress(self, total: int) -> AbstractContextManager[Advance]:
+        """Return a context for ``total`` things that begin, called with the number of those that are done."""
+        return nullcontext(silent)
 
 
 class Bars(Listener):
-    """A bar for whatever is under way, in a terminal or a notebook, once it has taken ``delay`` [s]."""
+    """Listener that shows a bar for whatever is under way, in a terminal or a notebook, once it has taken ``delay`` [s]."""
 
     def __init__(self, delay: float = 0.0) -> None:
         self.delay = delay
 
     @contextmanager
-    def progress(self, total: int) -> "Iterator[Told]":
+    def progress(self, total: int) -> "Iterator[Advance]":
         """See :class:`Listener`."""
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of a notebook without widgets, which gets a bar in characters
@@ -58,32 +61,32 @@ class Bars(Listener):
 
 
 class Calls(Listener):
-    """Calls a function with the number of things that are done, and of all."""
+    """Listener that calls a function with the number of things that are done, and of all."""
 
     def __init__(self, function: Callable[[int, int], object]) -> None:
         self.function = function
 
     @contextmanager
-    def progress(self, total: int) -> "Iterator[Told]":
+    def progress(self, total: int) -> "Iterator[Advance]":
         """See :class:`Listener`."""
         done = 0
 
-        def told(more: int) -> None:
+        def advance(more: int) -> None:
             nonlocal done
             done += more
             self.function(done, total)
 
-        yield told
+        yield advance
 
 
 Progress = bool | Callable[[int, int], object] | Listener | None
-"""What functions take as ``progress``."""
+"""Values of the argument ``progress``."""
 
 
 def listener_of(progress: Progress) -> Listener:
-    """Who hears of a batch: a bar (True), nobody (False), a function of what is done and of all, or a listener as it is.
+    """Return the listener for ``progress``: a bar (True), none (False), a function of what is done and of all, or as it is.
 
-    Without a word (None), a bar where stderr is a terminal, and nobody elsewhere.
+    None stands for a bar if stderr is a terminal, and for none elsewhere.
     """
     if progress is None:
         return Bars(SHORT) if sys.stderr is not None and sys.stderr.isatty() else Listener()
@@ -112,10 +115,10 @@ def told_if_slow(listener: Listener, words: str) -> "Iterator[None]":
 
 
 def once(study: "Study") -> str:
-    """Why there are no more runs, where a study asks for both polarities."""
+    """Return why there are no more runs if a study asks for both polarities, else nothing."""
     return " (polarity: mirror images, counted once)" if len(study.motions.polarity) > 1 else ""
 
 
 def count(n: int, noun: str) -> str:
-    """A number of things: "1 run", "2 runs"."""
+    """Return a number of things: "1 run", "2 runs"."""
     return f"{n} {noun}" if n == 1 else f"{n} {noun}s"

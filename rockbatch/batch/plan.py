@@ -1,4 +1,4 @@
-"""Which runs a study consists of, in the order of its table, each made when it is asked for."""
+"""Runs of a study, in the order of its table, each made when it is asked for."""
 
 from abc import abstractmethod
 from collections.abc import Callable, Iterator, Sequence
@@ -30,7 +30,7 @@ class PlannedRun:
 
     @property
     def run(self) -> Run:
-        """What is simulated: the pier of the case on its base, under the motion."""
+        """Return what is simulated: the pier of the case on its base, under the motion."""
         return Run(self.case.pier, self.case.base, self.motion)
 
     def ran(self, outcome: Outcome) -> Ran:
@@ -39,7 +39,7 @@ class PlannedRun:
 
 
 def scaled(motion: Motion, scale: float, polarity: str) -> Motion:
-    """A motion times ``scale``; with polarity "-" its horizontal component is reversed."""
+    """Return a motion times ``scale``; with polarity "-" its horizontal component is reversed."""
     if scale == 1.0 and polarity == "+":
         return motion
     return motion.times(scale, reverse=polarity == "-")
@@ -49,14 +49,14 @@ class Runs(Sequence[PlannedRun]):
     """Runs that are made when they are asked for, so that memory does not grow with their number."""
 
     mirrored = False
-    """Whether some are mirror images of others."""
+    """True if some are mirror images of others."""
 
     @abstractmethod
     def run(self, number: int) -> PlannedRun:
-        """Run ``number``, from 0."""
+        """Return run ``number``, from 0."""
 
     def images(self, number: int) -> Sequence[int]:
-        """The numbers of a run and of its mirror image, if there is one: the first is simulated for both."""
+        """Return the numbers of a run and of its mirror image, if it has one: the first is simulated for both."""
         return (number,)
 
     @overload

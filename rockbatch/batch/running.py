@@ -1,9 +1,9 @@
-"""From a study to its table of peaks, in memory or in a folder of results, which is gone on with where it was left."""
+"""From a study to its table of peaks: in memory, in a folder that may hold a part of it, or joined from shares."""
 
 import math
 import os
 import time
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -93,10 +93,13 @@ def run(
     asked, listener, engine = given_study(study, motions), listener_of(progress), engine_of(jobs)
     if out is None:
         return _in_memory(asked, engine, listener)
-    told = ["run", str(asked.path), "--out", os.fspath(out)]
+    command = ["run", str(asked.path), "--out", os.fspath(out)]
     if motions is not None:
-        told += ["--motions", os.fspath(motions) if isinstance(motions, str | os.PathLike) else "(motions from Python)"]
-    finished = run_into(Path(out), asked, engine, listener, command=told, fresh=fresh)
+        command += [
+            "--motions",
+            os.fspath(motions) if isinstance(motions, str | os.PathLike) else "(motions from Python)",
+        ]
+    finished = run_into(Path(out), asked, engine, listener, command=command, fresh=fresh)
     assert finished is not None  # no share is asked for
     if finished.without:
         raise finished.without
@@ -104,12 +107,12 @@ def run(
 
 
 def _in_memory(study: Study, engine: Engine, listener: Listener) -> "pd.DataFrame":
-    found = ground_motions(study)
-    listener.motions(found)
-    runs, rows = Plan(study, found), InMemory(columns(study))
+    motions = ground_motions(study)
+    listener.motions(motions)
+    runs, rows = Plan(study, motions), InMemory(columns(study))
     with engine, listener.progress(len(to_simulate(runs, range(len(runs))))) as progress:
         carry_out(runs, study.numerics, rows, engine, study.output, progress=progress)
-    return as_table([*(rows[i] for i in sorted(rows)), *unusable_rows(found)], study)
+    return as_table([*(rows[i] for i in sorted(rows)), *unusable_rows(motions)], study)
 
 
 def run_into(
@@ -155,7 +158,7 @@ def run_into(
     with Journal(directory / PART, columns(study), digest, fresh, runs=len(runs), tell=listener.say) as journal:
         cost = None if fresh or len(journal) else cost_of_finished(directory, info)
         if cost is not None:
-            what = f"{told(study, motions)} are finished in {directory}"
+            what = f"{described(study, motions)} are finished in {directory}"
             listener.say(f"{what}; nothing is left to run (--fresh runs them again)")
             return finish(directory, study, motions, runs, info | cost, listener, records)
         replaced = None if fresh or share else to_be_replaced(directory, study)
@@ -164,7 +167,7 @@ def run_into(
         of_share = f"; share {share[0]} of {share[1]} is {{}}" if share else ""
         with engine:
             every = count(len(to_simulate(runs, wanted)), "run")
-            listener.say(f"{told(study, motions)} on {engine}{of_share.format(every)}")
+            listener.say(f"{described(study, motions)} on {engine}{of_share.format(every)}")
             cost = _carry_out_left(study, runs, wanted, journal, engine, listener)
         if share:
             listener.say(
@@ -173,6 +176,51 @@ def run_into(
             return None
         cost |= {"peaks": write_peaks(journal, motions), "wall_s": round(time.monotonic() - started, 3)}
         return finish(directory, study, motions, runs, info | cost, listener, records)
+
+
+def merge(
+    directory: Path, study: Study, shares: Iterable[Path], listener: Listener, command: Sequence[str]
+) -> FinishedBatch:
+    """Join the journals in the folders ``shares``, and write the results into ``directory``.
+
+    ``command`` as in :func:`run_into`. Raises ``InputError`` with all that is wrong with the shares,
+    or missing; what could be joined stays, so that it can be carried out there.
+    """
+    motions = ground_motions(study)
+    listener.motions(motions)
+    runs = Plan(study, motions)
+    digest = study_digests(study, motions)
+    with Journal(directory / PART, columns(study), digest, runs=len(runs), tell=listener.say) as journal:
+        problems = []
+        for share in shares:
+            try:
+                journal.add_from(share / PART)
+            except FileNotFoundError:
+                problems.append(f"{share / PART}: not there; give folders that `rockbatch run --shard` has written")
+            except InputError as error:
+                problems += error.problems
+        left = [number for number in range(len(runs)) if number not in journal]
+        if left and not problems:
+            problems.append(
+                f"{len(left)} of {len(runs)} rows are in none of these folders: {_ranges(left)}; finish their shares "
+                f"and merge again, or carry them out here: rockbatch run {study.path} --out {directory}"
+            )
+        if problems:
+            raise InputError(*problems)
+        info = what_was_run(study, motions, runs, digest, command)
+        info |= {"peaks": write_peaks(journal, motions), "jobs": 0, "wall_s": 0.0, "kept": info["runs"]}
+        return finish(directory, study, motions, runs, info, listener)
+
+
+def _ranges(numbers: Sequence[int], most: int = 5) -> str:
+    """Return numbers, counted from 1, as ranges: "1 to 12, 17"."""
+    starts = [i for i, number in enumerate(numbers) if i == 0 or number != numbers[i - 1] + 1]
+    ends = [i - 1 for i in starts[1:]] + [len(numbers) - 1]
+    ranges = [
+        f"{numbers[a] + 1} to {numbers[b] + 1}" if b > a else str(numbers[a] + 1)
+        for a, b in zip(starts, ends, strict=True)
+    ]
+    return ", ".join(ranges[:most]) + (", …" if len(ranges) > most else "")
 
 
 def _check_records(records: Collection[str], motions: MotionSet) -> None:
@@ -217,8 +265,8 @@ def _carry_out_left(
     return {"jobs": engine.jobs, "kept": kept}
 
 
-def told(study: Study, motions: MotionSet) -> str:
-    """How many runs there are, and why: "2 records × 5 cases = 10 runs"."""
+def described(study: Study, motions: MotionSet) -> str:
+    """Return how many runs there are, and why: "2 records × 5 cases = 10 runs"."""
     factors = {
         "record": len(motions.motions),
         "scale": len(study.motions.scale),

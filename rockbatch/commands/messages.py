@@ -8,7 +8,7 @@ from contextlib import AbstractContextManager
 from types import TracebackType
 from typing import Any, TextIO
 
-from rockbatch.batch.listening import Listener, Told, count
+from rockbatch.batch.listening import Advance, Listener, count
 from rockbatch.commands.streams import give_up, say, tell
 from rockbatch.motions import MotionSet
 
@@ -33,7 +33,7 @@ class Terminal(Listener):
         """See :class:`Listener`."""
         say(text)
 
-    def progress(self, total: int) -> AbstractContextManager[Told | None]:
+    def progress(self, total: int) -> AbstractContextManager[Advance]:
         """See :class:`Listener`."""
         return Progress(total)
 

@@ -20,6 +20,7 @@ from rockbatch.batch.dask import Dask, Records, simulate
 from rockbatch.batch.digests import program
 from rockbatch.batch.groups import NOTHING_MORE, outcomes_of
 from rockbatch.batch.journal import Journal
+from rockbatch.batch.listening import silent
 from rockbatch.batch.plan import Plan, PlannedRun
 from rockbatch.batch.threads import Threads
 from rockbatch.cli import main
@@ -53,7 +54,7 @@ def runs(study):
     return Plan(study, ground_motions(study))
 
 
-def table(folder, study, runs, engine, progress=None):
+def table(folder, study, runs, engine, progress=silent):
     """Bytes of peaks.csv as an engine carries out the runs."""
     with engine, Journal(folder / "peaks.csv.part", columns(study), {}, fresh=True) as journal:
         carry_out(runs, study.numerics, journal, engine, study.output, progress=progress)

@@ -404,7 +404,7 @@ def test_a_history_too_long_for_memory_is_told_and_the_others_are_there(tmp_path
 def test_progress_is_told_after_every_run_that_is_kept(tmp_path):
     saved, study, runs = carried_out(tmp_path)
     calls = []
-    keep_histories(saved, study, runs, lambda: calls.append(None))
+    keep_histories(saved, study, runs, calls.append)
     assert len(calls) == len(kept(study, runs, saved.peaks).numbers)
 
 
