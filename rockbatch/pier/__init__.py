@@ -1,41 +1,39 @@
 """The pier and its base: a rigid block on three kinds of base (Palmeri & Makris 2007)."""
 
-from rockbatch.pier.bases import (
-    EPSILON_AND_ZETA,
-    LEAST_ETA,
-    MOST_ETA,
-    MOST_NEGLECTED,
-    WITH_EXPONENT,
-    Base,
-    ElasticBase,
-    Flight,
-    Kinematics,
-    RigidBase,
-    SpringLaw,
-    YieldingBase,
-    beta_of,
-    eta_of,
-    fastest,
-    in_kilonewtons,
-    least_beta,
-    neglected,
-    problems,
-    rocking_frequency,
-    static_deflection,
-    tilt_over_residual,
-    vertical_frequency,
-    yield_deflection,
-)
-from rockbatch.pier.block import Part, Pier, described
-from rockbatch.pier.restraints import (
-    Damper,
-    DamperKind,
-    Restraint,
-    Tendon,
-    doubt,
-    fields_of,
-    offsets,
-    recentres,
-    symmetric,
-    unlikely_devices,
-)
+from rockbatch.pier.bases import EPSILON_AND_ZETA as EPSILON_AND_ZETA
+from rockbatch.pier.bases import LEAST_ETA as LEAST_ETA
+from rockbatch.pier.bases import MOST_ETA as MOST_ETA
+from rockbatch.pier.bases import MOST_NEGLECTED as MOST_NEGLECTED
+from rockbatch.pier.bases import WITH_EXPONENT as WITH_EXPONENT
+from rockbatch.pier.bases import Base as Base
+from rockbatch.pier.bases import ElasticBase as ElasticBase
+from rockbatch.pier.bases import Flight as Flight
+from rockbatch.pier.bases import Kinematics as Kinematics
+from rockbatch.pier.bases import RigidBase as RigidBase
+from rockbatch.pier.bases import SpringLaw as SpringLaw
+from rockbatch.pier.bases import YieldingBase as YieldingBase
+from rockbatch.pier.bases import beta_of as beta_of
+from rockbatch.pier.bases import eta_of as eta_of
+from rockbatch.pier.bases import fastest as fastest
+from rockbatch.pier.bases import in_kilonewtons as in_kilonewtons
+from rockbatch.pier.bases import least_beta as least_beta
+from rockbatch.pier.bases import neglected as neglected
+from rockbatch.pier.bases import problems as problems
+from rockbatch.pier.bases import rocking_frequency as rocking_frequency
+from rockbatch.pier.bases import static_deflection as static_deflection
+from rockbatch.pier.bases import tilt_over_residual as tilt_over_residual
+from rockbatch.pier.bases import vertical_frequency as vertical_frequency
+from rockbatch.pier.bases import yield_deflection as yield_deflection
+from rockbatch.pier.block import Part as Part
+from rockbatch.pier.block import Pier as Pier
+from rockbatch.pier.block import described as described
+from rockbatch.pier.restraints import Damper as Damper
+from rockbatch.pier.restraints import DamperKind as DamperKind
+from rockbatch.pier.restraints import Restraint as Restraint
+from rockbatch.pier.restraints import Tendon as Tendon
+from rockbatch.pier.restraints import doubt as doubt
+from rockbatch.pier.restraints import fields_of as fields_of
+from rockbatch.pier.restraints import offsets as offsets
+from rockbatch.pier.restraints import recentres as recentres
+from rockbatch.pier.restraints import symmetric as symmetric
+from rockbatch.pier.restraints import unlikely_devices as unlikely_devices
