@@ -116,7 +116,14 @@ def _carry_out(results: AnalysisFolder, spec: FragilitySpec) -> dict[str, Any]:
         fragility=replace(spec, confidence=0.0),  # which no run depends on
     )
     with results.journal(RUNS, columns(asked), digest) as journal:
-        listener.say(f"{_planned(spec, asked, len(records))} on {results.engine}{_afterwards(spec)}")
+        runs = count(len(records) * len(spec.levels) * len(asked.cases), "run")
+        levels = f"{count(len(records), 'record')} at {len(spec.levels)} levels of {spec.label}"
+        search = (
+            f"; then first exceedances are hunted for and bisected to {spec.tolerance:g}"
+            if spec.method == "ida"
+            else ""
+        )
+        listener.say(f"{levels}: {runs}{once(asked)} on {results.engine}{search}")
         make_ready(asked, listener)
         waves = Waves(asked, journal, results.engine, listener)
         curves = assess(asked, spec, records, waves)
@@ -132,13 +139,3 @@ def _carry_out(results: AnalysisFolder, spec: FragilitySpec) -> dict[str, Any]:
         results.keep(RUNS, digest)
         results.info["runs"] = waves.finished
     return {"curves": tuple(curves), "spec": spec}
-
-
-def _planned(spec: FragilitySpec, study: Study, records: int) -> str:
-    runs = records * len(spec.levels) * len(study.cases)
-    levels = f"{count(records, 'record')} at {len(spec.levels)} levels of {spec.label}"
-    return f"{levels}: {count(runs, 'run')}{once(study)}"
-
-
-def _afterwards(spec: FragilitySpec) -> str:
-    return f"; then first exceedances are hunted for and bisected to {spec.tolerance:g}" if spec.method == "ida" else ""

@@ -151,7 +151,8 @@ def _carry_out_maps(results: AnalysisFolder, maps: Sequence[MapSpec]) -> None:
         waves = Waves(study, journal, results.engine, listener)
         for spec in maps:
             own, before = overturning_map.Maps(spec, study.cases), waves.finished
-            grid = _grid(spec, len(study.cases))
+            grid = f"{spec.frequencies} frequencies × {spec.amplitudes} amplitudes"
+            grid += f" × {count(len(study.cases), 'case')}" if len(study.cases) > 1 else ""
             listener.say(f"map {spec.name}: {grid} on {results.engine}; then what changes is looked at more closely")
             by_case = own.find(waves)
             rows += own.rows(by_case)
@@ -159,8 +160,3 @@ def _carry_out_maps(results: AnalysisFolder, maps: Sequence[MapSpec]) -> None:
         results.keep_table(file, pd.DataFrame(rows, columns=overturning_map.columns(study.varied)))
         journal.write_in_order(results.directory / of_runs)
         results.keep(of_runs, digest)
-
-
-def _grid(spec: MapSpec, cases: int) -> str:
-    grid = f"{spec.frequencies} frequencies × {spec.amplitudes} amplitudes"
-    return f"{grid} × {count(cases, 'case')}" if cases > 1 else grid

@@ -41,7 +41,7 @@ class Journal:
     line for each finished run, in whatever order they finish: its number, and its cells as they will be in the table.
     Before each line stands a checksum (CRC-32), which of a row covers the first line too, so that a row counts for its
     own study only. What a crash has left of a last line is dropped by whoever goes on; other lines that are damaged are
-    told and dropped, each alone, and their runs are carried out again. Memory holds only where each row stands.
+    reported and dropped, each alone, and their runs are carried out again. Memory holds only where each row stands.
 
     Use it as a context; meanwhile no other process can write into its folder. At the end of the context the file goes
     if the table was written or no run is finished; else it stays.
@@ -119,25 +119,25 @@ class Journal:
                 self.path.unlink()
 
     def __len__(self) -> int:
-        """Number of finished runs."""
+        """Return the number of finished runs."""
         return self._count
 
     def __contains__(self, number: object) -> bool:
         return isinstance(number, int) and 0 <= number < len(self._starts) and self._starts[number] != ABSENT
 
     def __iter__(self) -> Iterator[int]:
-        """Numbers of the finished runs, from the lowest."""
+        """Yield the numbers of the finished runs, from the lowest."""
         return (number for number, start in enumerate(self._starts) if start != ABSENT)
 
     def __getitem__(self, number: int) -> dict[str, str]:
-        """Cells of a finished run, as the table will have them: texts, "" where a column does not apply."""
+        """Return the cells of a finished run, as the table will have them: texts, "" where a column does not apply."""
         if number not in self:
             raise KeyError(number)
         (cells,) = csv.reader(io.StringIO(self._row(number).decode(), newline=""))
         return dict(zip(self.columns, map(csv_plain, cells), strict=True))
 
     def rows(self) -> Iterator[tuple[int, dict[str, str]]]:
-        """Number and cells of every finished run, from the lowest number."""
+        """Yield number and cells of every finished run, from the lowest number."""
         return ((number, self[number]) for number in self)
 
     def add_all(self, rows: Mapping[int, Mapping[str, Any]]) -> None:
@@ -145,7 +145,7 @@ class Journal:
         self.add_columns(list(rows), {name: [row.get(name) for row in rows.values()] for name in self.columns})
 
     def add_columns(self, numbers: Sequence[int], columns: Mapping[str, Sequence[Any]]) -> None:
-        """As :meth:`add_all`: the columns of the rows of runs ``numbers``, each shape (n,); those that lack are empty."""
+        """Write down, as :meth:`add_all`, the columns of the rows of runs ``numbers``, each shape (n,), empty if missing."""
         self._add(zip(numbers, self._lines(len(numbers), columns), strict=True))
 
     def add_from(self, path: Path) -> None:
@@ -225,7 +225,7 @@ class Journal:
         self._starts[number], self._sizes[number] = start, size
 
     def _recover(self) -> int:
-        """Find the rows that an earlier process has finished; returns how many lines are damaged.
+        """Find the rows that an earlier process has finished; return how many lines are damaged.
 
         Raises ``InputError`` for rows of another study, or if nothing says of which study they are.
         """
@@ -255,7 +255,7 @@ class Journal:
         return damaged
 
     def _number(self, body: bytes | None) -> int | None:
-        """Number of the run whose row ``body`` is; None where it is no row of this table."""
+        """Return the number of the run whose row ``body`` is; None where it is no row of this table."""
         found = _NUMBER.match(body or b"")
         if body is None or not found or int(found[1]) >= self.runs:
             return None
@@ -266,7 +266,7 @@ class Journal:
         return int(found[1]) if len(cells) == len(self.columns) + 1 else None
 
     def _write_whole_rows_only(self) -> None:
-        """Leave out what is damaged, so that it is told once."""
+        """Leave out what is damaged, so that it is reported once."""
         with replacing(self.path) as temporary, temporary.open("wb") as file:
             file.write(_sealed(self._first))
             file.writelines(_sealed(b"%d," % number + self._row(number)[:-1], self._seed) for number in self)
@@ -275,7 +275,7 @@ class Journal:
         self._recover()
 
     def _refuse_rows_of(self, first: bytes, lines: Iterator[tuple[int, bytes]]) -> None:
-        """Tell what has changed since a journal with another first line, unless it has no rows."""
+        """Report what has changed since a journal with another first line, unless it has no rows."""
         seed = zlib.crc32(first)
         there = sum(_unsealed(line, seed) is not None for _, line in lines)
         self._forget()
@@ -294,7 +294,7 @@ _NUMBER = re.compile(rb"(\d{1,15}),")
 
 
 def _whole_lines(file: io.FileIO) -> Iterator[tuple[int, bytes]]:
-    """The byte after each line, and the line; one that is too long to be a row comes empty, a last one without an end not."""
+    """Yield the byte after each line, and the line: empty if it is too long for a row; a last one without an end is left out."""
     end, whole = 0, True
     with os.fdopen(os.dup(file.fileno()), "rb") as buffered:
         buffered.seek(0)
@@ -307,13 +307,13 @@ def _whole_lines(file: io.FileIO) -> Iterator[tuple[int, bytes]]:
 
 
 def _sealed(body: bytes, seed: int = 0) -> bytes:
-    """A line of the file: a checksum, and ``body`` on one line, whatever line breaks its cells hold."""
+    """Return a line of the file: a checksum, and ``body`` on one line, whatever line breaks its cells hold."""
     folded = body.replace(b"\\", b"\\\\").replace(b"\n", b"\\n")
     return b"%08x %b\n" % (zlib.crc32(folded, seed), folded)
 
 
 def _unsealed(line: bytes, seed: int = 0) -> bytes | None:
-    """What was sealed; None where the line is damaged."""
+    """Return what was sealed; None if the line is damaged."""
     folded = line[9:-1]
     return _unfolded(folded) if line[:9] == b"%08x " % zlib.crc32(folded, seed) else None
 
@@ -325,7 +325,7 @@ def _unfolded(body: bytes) -> bytes:
 
 
 def _size_of_cells(line: bytes) -> int:
-    """Bytes of a line behind its number."""
+    """Return the bytes of a line behind its number."""
     return len(line) - line.index(b",") - 1
 
 

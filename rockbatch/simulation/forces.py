@@ -35,13 +35,6 @@ class Impacts(NamedTuple):
     vertical: Samples
 
 
-class Greatest(NamedTuple):
-    """Greatest magnitudes of the forces of a run, |V|/N counted while N is above a limit, and what else was noted."""
-
-    forces: Forces
-    noted: Noted
-
-
 def at_rows(run: Run, rows: np.recarray) -> np.recarray:
     """Return the forces (core.observe.forces.Forces) at every row of a run that has both sides of every event."""
     forces = np.recarray(len(rows), FORCES)
@@ -49,14 +42,11 @@ def at_rows(run: Run, rows: np.recarray) -> np.recarray:
     return forces
 
 
-def greatest(run: Run, rows: np.recarray, least_normal: float) -> Greatest:
-    """Return the greatest forces of a run whose ``rows`` are all its steps; friction counts where N > ``least_normal`` M g."""
-    extremes = np.zeros(len(Forces._fields))
-    noted = _observe(run, rows, least_normal, np.recarray(0, FORCES), extremes)
-    return Greatest(Forces(*extremes.tolist()), Noted(*noted.tolist()))
-
-
 def _observe(run: Run, rows: np.recarray, least_normal: float, forces: np.recarray, extremes: Samples) -> np.record:
+    """Fill ``forces`` at the rows, or the ``extremes`` of all, of a run whose ``rows`` are then every step; return a Noted.
+
+    Friction counts where N > ``least_normal`` M g.
+    """
     noted = np.zeros(1, NOTED).view(np.recarray)
     noted.slides = noted.pulls = NEVER
     if len(rows) == 0:
@@ -137,8 +127,9 @@ def peak_forces(run: Run, rows: np.recarray, least_normal: float) -> tuple[PeakF
     pier = run.pier
     standing = np.flatnonzero(np.abs(rows.theta) <= pier.alpha)
     rows = rows[: standing[-1] + 1].view(np.recarray)
-    whole = greatest(run, rows, least_normal)
-    most, noted = whole.forces, whole.noted
+    extremes = np.zeros(len(Forces._fields))
+    noted = Noted(*_observe(run, rows, least_normal, np.recarray(0, FORCES), extremes).tolist())
+    most = Forces(*extremes.tolist())
     events = rows[(rows.kind > 0.0) | (rows.kind == types.BEFORE_EVENT)].view(np.recarray)
     landings = impacts(events, at_rows(run, events))
     # Yield is located to rounding; a dashpot adds to what the spring bears

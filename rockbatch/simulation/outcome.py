@@ -1,4 +1,4 @@
-"""What one run comes to."""
+"""Results of one run, without its histories."""
 
 import math
 from collections.abc import Mapping
@@ -32,7 +32,7 @@ TERMS = (
 
 @dataclass(frozen=True)
 class PeakForces:
-    """What a run asks of the design, until it ends or the pier leans beyond α for good; SI units, per unit mass of the pier.
+    """Demands of a run on the design, until it ends or the pier leans beyond α for good; SI units, per unit mass of the pier.
 
     Magnitudes; ``None`` where it does not apply (THEORY.md, Results of a run).
 
@@ -90,7 +90,7 @@ class PeakForces:
     error: float | None = None
 
     def mirrored(self) -> "PeakForces":
-        """Those of the mirror image."""
+        """Return the demands of the mirror image."""
         return replace(
             self,
             pivot_left=self.pivot_right,
@@ -104,7 +104,7 @@ class PeakForces:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a run comes to. SI units, angles in radians; ``None`` where it does not apply.
+    """Results of a run. SI units, angles in radians; ``None`` where it does not apply.
 
     Attributes
     ----------
@@ -113,14 +113,14 @@ class Outcome:
     reason : str
         Why it failed, or what made it fly; empty otherwise.
     note : str
-        What else there is to know of a run that is right: counts that have not settled, say; empty otherwise.
+        Remarks on a valid run, e.g. counts that did not converge; empty otherwise.
     theta_max, t_max : float
         Greatest rotation |θ| [rad] until the end of the run, and its time [s].
     theta_max_is : str
         "lean" where ``theta_max`` is mostly the lean of a base that has yielded; empty where the pier rocks.
     theta_rocking, theta_lean : float or None
         Greatest rotation about where the pier would rest on its base as it then was, and where it would at ``t_max`` [rad, to
-        the side of the peak]; where it was asked for.
+        the side of the peak]; if asked for.
     theta_max_error, theta_res_error : float or None
         Estimated errors of ``theta_max`` and ``theta_res`` [rad], the latter with what it went on changing by while it was
         read; ``None`` with a fixed step.
@@ -150,15 +150,15 @@ class Outcome:
     substeps : int
         Steps per sample.
     settlement_other_law : float or None
-        Settlement [m] of Bouc–Wen springs by the elastic–perfectly plastic law, where it was asked for.
+        Settlement [m] of Bouc–Wen springs by the elastic–perfectly plastic law, if asked for.
     damper_force, damper_stroke, damper_speed, damper_energy : float or None
         Of dampers: greatest force over M g, elongation [m] and speed [m/s] of any; energy of all [J/kg].
     tendon_force, tendon_yield, tendon_slack : float or None
         Of tendons: greatest force over M g and plastic elongation [m] of any; how often they went slack.
     energies : mapping of str to float, or None
-        Energy ledger at the end [J/kg], and the greatest ``remainder`` on the way, where it was asked for.
+        Energy ledger at the end [J/kg], and the greatest ``remainder`` on the way, if asked for.
     forces : PeakForces or None
-        What it asks of the design, where it was asked for.
+        Its demands on the design, if asked for.
     """
 
     status: str
@@ -204,7 +204,7 @@ class Outcome:
 
     @property
     def was_run(self) -> bool:
-        """Whether there is anything but a reason: a run that would blow up or take too long is not begun."""
+        """True unless the run was refused with a reason: it would blow up or take too long."""
         return not math.isnan(self.theta_max)
 
     def changed(self, **fields: Any) -> "Outcome":
@@ -218,7 +218,7 @@ class Outcome:
         return self.changed(note="; ".join(filter(None, (self.note, *remarks))), **fields)
 
     def mirrored(self) -> "Outcome":
-        """What the same run comes to with the horizontal motion reversed, where pier and foundation are symmetric."""
+        """Return the outcome under the reversed horizontal motion, of a symmetric pier on a symmetric foundation."""
         return self.changed(
             theta_res=_reversed(self.theta_res),
             base_tilt=_reversed(self.base_tilt),

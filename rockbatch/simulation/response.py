@@ -1,4 +1,4 @@
-"""What a simulation returns: the histories of one record on one foundation."""
+"""Result of a simulation: the histories of one record on one foundation."""
 
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -40,7 +40,7 @@ EVENT_TYPES = {"t": "float64", "kind": "str", "pivot": "str", "before": "int64",
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Response(Shown):
-    """What one run came to, and its histories. SI units; angles in radians; energy per unit mass.
+    """Results of one run, and its histories. SI units; angles in radians; energy per unit mass.
 
     Attributes
     ----------
@@ -145,7 +145,7 @@ class Response(Shown):
 
     @property
     def note(self) -> str:
-        """What else there is to know of a run that is right; empty otherwise."""
+        """Remarks on a valid run; empty otherwise."""
         return str(self._of_row()["note"])
 
     @property
