@@ -12,6 +12,7 @@ from rockbatch.pier import Base, Pier, problems, unlikely_devices
 from rockbatch.results.columns import Ran, as_series, row
 from rockbatch.simulation.histories import histories, told_apart, with_observed
 from rockbatch.simulation.models import least_substeps
+from rockbatch.simulation.outcome import Outcome
 from rockbatch.simulation.response import Response
 from rockbatch.simulation.runs import Run, run_fixed
 from rockbatch.simulation.settling import run_to_tolerance
@@ -89,20 +90,25 @@ def simulate(
     """
     numerics, run = Numerics(**steps), Run(pier, foundation, motion)
     _check(run, numerics, least_normal_share, wait)
-    if numerics.substeps is None:
-        outcome = run_to_tolerance(pier, foundation, motion, numerics.tolerance or 0.0, numerics.quiet_s)
-    else:
-        outcome = run_fixed(pier, foundation, motion, numerics.substeps, numerics.quiet_s, wait=wait)
-    if not outcome.was_run:
-        raise InputError(f"{motion.name}: {outcome.reason}")
-    name = case or foundation.name
-    outcome = told_apart(run, outcome, numerics.quiet_s, wait=wait)
+    name, outcome = case or foundation.name, _outcome(run, numerics, wait)
     response = histories(run, outcome, numerics.quiet_s, name, {}, ledger=ledger, forces=forces, wait=wait)
     outcome = with_observed(
         run, outcome, numerics.quiet_s, ledger=ledger, least_normal=least_normal_share if forces else None,
         error=numerics.substeps is None, wait=wait,
     )  # fmt: skip
     return replace(response, row=as_series(row(Ran(outcome, motion, "+", 1.0, Case(name, pier, foundation, {})))))
+
+
+def _outcome(run: Run, numerics: Numerics, wait: bool) -> Outcome:
+    """Return the outcome of a run, with rocking and lean; raise ``InputError`` if it is refused."""
+    quiet_s, settings = numerics.quiet_s, (run.pier, run.base, run.motion)
+    if numerics.substeps is None:
+        outcome = run_to_tolerance(*settings, numerics.tolerance or 0.0, quiet_s)
+    else:
+        outcome = run_fixed(*settings, numerics.substeps, quiet_s, wait=wait)
+    if not outcome.was_run:
+        raise InputError(f"{run.motion.name}: {outcome.reason}")
+    return told_apart(run, outcome, quiet_s, wait=wait)
 
 
 def _check(run: Run, numerics: Numerics, least_normal_share: float, wait: bool) -> None:

@@ -195,12 +195,15 @@ def holds_a_tilt(restraints: tuple[Restraint, ...]) -> bool:
 
 def described_restraints(restraints: tuple[Restraint, ...]) -> dict[str, Any]:
     """Return dampers and tendons by the keys of run.json; empty without any."""
-    return {"restraints": [_described(device) for device in restraints]} if restraints else {}
-
-
-def _described(restraint: Restraint) -> dict[str, Any]:
-    values = {name: value for name, value in asdict(restraint).items() if value is not None and name != "confirm"}
-    return {name: None if value == math.inf else value for name, value in values.items()}
+    devices = [
+        {
+            name: None if value == math.inf else value
+            for name, value in asdict(device).items()
+            if value is not None and name != "confirm"
+        }
+        for device in restraints
+    ]
+    return {"restraints": devices} if devices else {}
 
 
 def offsets(pier: Pier, restraint: Restraint) -> tuple[float, ...]:
@@ -220,14 +223,12 @@ def prestress_over_weight(pier: Pier, restraints: tuple[Restraint, ...]) -> floa
 
 def wrong_on_springs(pier: Pier, restraints: tuple[Restraint, ...]) -> list[str]:
     """Return what is impossible about dampers and tendons of a pier on springs: one sentence each; empty if nothing."""
-    wrong = []
-    tendons = tuple(device for device in restraints if isinstance(device, Tendon))
-    if not symmetric(pier, tendons):
-        wrong.append(
-            "tendon: on springs a tendon off the axis needs its like on the other side, or it leans the pier before any "
-            "earthquake; write a second one with the opposite at, or leave at out"
-        )
-    return wrong
+    if symmetric(pier, tuple(device for device in restraints if isinstance(device, Tendon))):
+        return []
+    return [
+        "tendon: on springs a tendon off the axis needs its like on the other side, or it leans the pier before any "
+        "earthquake; write a second one with the opposite at, or leave at out"
+    ]
 
 
 def wrong_restraints(pier: Pier, restraints: tuple[Restraint, ...]) -> list[str]:
