@@ -26,12 +26,12 @@ from rockbatch.pier import (
     vertical_frequency,
     yield_deflection,
 )
+from rockbatch.simulation.compilation import kernel_of
 from rockbatch.simulation.flight import cause_of_flight
 from rockbatch.simulation.models import (
     elements,
     first_substeps,
     ground_of,
-    kernel_of,
     least_substeps,
     line_of,
     model,
