@@ -16,8 +16,7 @@ import numpy as np
 
 from rockbatch.analysis import sampled
 from rockbatch.analysis.folder import Analysis, AnalysisFolder, analysed
-from rockbatch.analysis.sampled import Point, Points, Suite
-from rockbatch.analysis.sobol import COLUMNS, indices
+from rockbatch.analysis.sampled import INDICES, Point, Points, Suite, indices
 from rockbatch.arguments import checked
 from rockbatch.batch.digests import digests
 from rockbatch.batch.listening import Progress, count, once
@@ -216,5 +215,5 @@ def tables(
             shares.append(indices(inputs, results[many], spec.confidence, spec.seed).assign(**own))
     return (
         pd.DataFrame(swings, columns=["case", *study.varied, *TORNADO_COLUMNS]),
-        pd.concat(shares, ignore_index=True)[["case", *study.varied, *COLUMNS]],
+        pd.concat(shares, ignore_index=True)[["case", *study.varied, *INDICES]],
     )

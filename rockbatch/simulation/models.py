@@ -147,12 +147,8 @@ def elements(pier: Pier, base: Base) -> list[Element]:
             else:
                 soft = 1.0 / device.yield_m if device.kind == "hysteretic" else 0.0
                 law = (DAMPERS[device.kind], g * device.f, soft, device.nu * pier.p, device.exponent, 0.0)
-            kind, strength, stiffness, coefficient, exponent, pretension = law
-            numbers.append(Element(
-                kind, float(strength), float(stiffness), float(coefficient),
-                float(exponent), float(pretension), float(offset),
-                *_linear_part(pier, base, offset, float(coefficient), float(exponent)),
-            ))  # fmt: skip
+            linear = _linear_part(pier, base, offset, coefficient=float(law[3]), exponent=float(law[4]))
+            numbers.append(Element._make((*map(float, law), float(offset), *linear)))
     return numbers
 
 

@@ -12,9 +12,8 @@ import pytest
 from studies import PADS, PIER, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
-from rockbatch.analysis.sampled import Point, Points, Suite, low_base_high
+from rockbatch.analysis.sampled import Point, Points, Suite, design, indices, low_base_high
 from rockbatch.analysis.sensitivity import answers, counted_as, tornado, values_of
-from rockbatch.analysis.sobol import design, indices
 from rockbatch.batch.threads import Threads
 from rockbatch.cli import main
 from rockbatch.errors import EditedTable, InputError

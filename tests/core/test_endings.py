@@ -18,7 +18,7 @@ from rockbatch.core.springs.transitions import handle
 from rockbatch.motions.motion import Motion
 from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase, least_beta, problems, rocking_frequency
 from rockbatch.simulation import run_fixed, run_to_tolerance, springs
-from rockbatch.simulation.flight import cause_of_flight
+from rockbatch.simulation.runs import cause_of_flight
 
 
 def half_sine(amplitude_g: float, period: float, duration: float) -> Motion:
