@@ -1,4 +1,4 @@
-"""Runs side by side: which go into a group, and what a group comes to."""
+"""Groups of runs that are simulated side by side, and their outcomes."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -13,10 +13,10 @@ from rockbatch.simulation.settling import run_all_to_tolerance
 from rockbatch.study import Numerics, Output
 
 MOST_STEPS_OF_A_LEDGER = 1_000_000
-"""Longer runs have no ledger in the table: each is written down whole, 100 bytes a step, and its energies beside it."""
+"""Longer runs have no energy balance in the table: each is recorded whole, 100 bytes a step, and its energies beside it."""
 
 MOST_STEPS_OF_FORCES = 5_000_000
-"""Longer runs have no forces in the table: each is written down whole, half a gigabyte."""
+"""Longer runs have no forces in the table: each is recorded whole, half a gigabyte."""
 
 LEAST_GROUP, MOST_GROUP = 32, 1024
 """Runs in a group: enough to fill the lanes; few enough that little is lost when the last ones leave them empty."""
@@ -28,7 +28,7 @@ NOTHING_MORE = Output(both_laws=False)
 
 
 def groups(runs: Sequence[PlannedRun], numerics: Numerics, jobs: int, most: int = MOST_GROUP) -> Iterator[range]:
-    """Consecutive runs to be simulated side by side, in order: a share for every thread, a second's work at most.
+    """Yield consecutive runs to simulate side by side, in order: a share for every thread, a second's work at most.
 
     ``most`` is the greatest number of runs in a group.
     """
@@ -71,7 +71,7 @@ def _run_all(runs: list[Run], numerics: Numerics, stop: Stop) -> list[Outcome | 
 def _with_other_law(
     runs: list[Run], outcomes: list[Outcome | None], numerics: Numerics, stop: Stop
 ) -> list[Outcome | None]:
-    """With the settlement of springs that creep by the other law too; a note where that has not settled."""
+    """Return ``outcomes`` with the settlement of ratcheting springs by the other law too; with a note unless that converged."""
     creeping = {
         i: replace(run, base=run.base.by_other_law())
         for i, (run, outcome) in enumerate(zip(runs, outcomes, strict=True))
@@ -87,7 +87,7 @@ def _with_other_law(
 
 
 def _observed(run: Run, outcome: Outcome, numerics: Numerics, output: Output, stop: Stop) -> Outcome | None:
-    """With what observers make of the run, written down: lean, ledger and forces; unless it is very long or was refused."""
+    """Return ``outcome`` with what observers make of the recorded run: lean, energy balance, forces; unless it is very long."""
     if stop:
         return None
     steps = steps_of(run.motion, outcome.substeps, numerics.quiet_s)

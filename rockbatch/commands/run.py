@@ -6,8 +6,7 @@ import sys
 from rockbatch.batch.expecting import expected
 from rockbatch.batch.finishing import FinishedBatch
 from rockbatch.batch.listening import count
-from rockbatch.batch.running import merge
-from rockbatch.batch.running import run_into
+from rockbatch.batch.running import merge, run_into
 from rockbatch.batch.threads import cores
 from rockbatch.checks.suite import simulated
 from rockbatch.checks.verdicts import CHECKS
