@@ -12,11 +12,10 @@ from tempfile import TemporaryDirectory
 from typing import Any, ClassVar, TypeVar
 
 from rockbatch._version import __version__
-from rockbatch.batch.carrying_out import carry_out
+from rockbatch.batch.carrying_out import RowOf, Runs, carry_out
 from rockbatch.batch.compiling import make_ready
 from rockbatch.batch.journal import Journal
 from rockbatch.batch.listening import Listener, Progress, count, listener_of
-from rockbatch.batch.plan import PlannedRun, Runs
 from rockbatch.batch.threads import Engine, Threads, engine_of
 from rockbatch.errors import InputError
 from rockbatch.files import (
@@ -36,7 +35,6 @@ from rockbatch.report import REPORT, write_analyses
 from rockbatch.report.finished_analysis import digest_of
 from rockbatch.results.run_json import versions
 from rockbatch.showing import Shown, several
-from rockbatch.simulation.outcome import Outcome
 from rockbatch.study import Case, Motions, Study, given_study
 from rockbatch.study.suite import ground_motions
 
@@ -152,7 +150,7 @@ class AnalysisFolder:
         digest: Mapping[str, str],
         runs: Runs,
         cases: Sequence[Case],
-        row: Callable[[PlannedRun, Outcome], Mapping[str, Any]],
+        row: RowOf,
     ) -> None:
         """Write the ``row`` of each of ``runs`` into ``file``, unless it holds them already; ``cases`` need all their kernels."""
         if self.has(file, digest):

@@ -15,6 +15,9 @@ from rockbatch.results.columns import cells, row
 from rockbatch.simulation.outcome import Outcome
 from rockbatch.study import Numerics, Output
 
+RowOf = Callable[[PlannedRun, Outcome], Mapping[str, Any]]
+"""From a run and its outcome to its row of a table."""
+
 
 class InMemory(dict[int, Mapping[str, Any]]):
     """Rows of finished runs by their numbers, with some ``columns``, in place of a journal where nothing is kept on disk."""
@@ -41,7 +44,7 @@ def carry_out(
     *,
     first: int = 0,
     among: range | None = None,
-    row: Callable[[PlannedRun, Outcome], Mapping[str, Any]] | None = None,
+    row: RowOf | None = None,
     progress: Advance = silent,
 ) -> None:
     """Carry out those runs that are not in ``journal``, and write each into it as soon as its group is finished.
