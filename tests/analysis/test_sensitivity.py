@@ -478,8 +478,12 @@ def test_another_statistic_of_finished_runs_takes_no_run(folder, tmp_path, monke
     out = tmp_path / "out"
     shutil.copytree(folder, out)
     path = written(tmp_path, STUDY.replace('"max"', '"mean"').replace("samples", "overturned = 0.5\nsamples"))
+
+    def refused(*_):
+        raise TypeError("no run is wanted")
+
     with monkeypatch.context() as patch:
-        patch.setattr(Threads, "outcomes", None)
+        patch.setattr(Threads, "outcomes", refused)
         assert main(["sensitivity", str(path), "--out", str(out)]) == 0
         with pytest.raises(TypeError):  # other runs: they would be carried out
             main(["sensitivity", str(written(tmp_path, STUDY.replace("= 8", "= 16"))), "--out", str(out)])
