@@ -78,6 +78,11 @@ def _carried_out(parsed: argparse.Namespace) -> int:
         place = f"{error.filename}: " if error.filename else ""
         say(f"rockbatch: {place}{error.strerror or error}; choose another place, or make this one usable")
         return 2
+    except MemoryError as error:
+        say(
+            f"rockbatch: {str(error) or 'no memory is left: run fewer at a time (--jobs), keep fewer histories, or allow more'}"
+        )
+        return 2
     except KeyboardInterrupt:
         say("rockbatch: interrupted")
         return 130

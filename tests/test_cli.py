@@ -383,3 +383,14 @@ sys.exit(main(["run", sys.argv[1]]))
     assert "kernels-" in done.stdout
     assert not os.path.exists(done.stdout.strip())
     assert 'path = "~/records": there is no home folder here; write the whole path' in done.stderr
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="limits of memory are those of Linux")
+def test_too_little_memory_ends_in_a_sentence(tmp_path):
+    """Beyond it the compiler would end the process without one."""
+    study = write_study(tmp_path, study_text())
+    command = f"ulimit -v 400000; exec {sys.executable} -m rockbatch run {study} --out {tmp_path / 'out'}"
+    done = subprocess.run(["bash", "-c", command], capture_output=True, text=True, timeout=60)
+    assert done.returncode == 2
+    assert "the memory of this process is limited to 410 MB" in done.stderr
+    assert "Traceback" not in done.stderr
