@@ -102,7 +102,7 @@ def accuracy(
         How long it may take [s], once the kernels are compiled. What there is no time for is left out: runs, the longest of
         the fixed steps, repetitions, the tightest of SciPy's tolerances.
     scipy : bool
-        Measure SciPy's solvers too; they are slow.
+        Measure SciPy's solvers too, on springs without dampers and tendons; they are slow.
 
     Returns
     -------

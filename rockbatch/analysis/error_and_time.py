@@ -222,7 +222,14 @@ def _of_scipy(references: Sequence[Reference], listener: Listener, clock: Clock)
     """Return rows of SciPy's solvers, from the loosest tolerance on; one that takes half of the time left goes no further."""
     from rockbatch.simulation.yardstick import OutOfTimeError, solve
 
-    chosen = [ref for ref in references if ref.run.case.base.on_springs and ref.outcome.status == "ok"]
+    bases = [ref.run.case.base for ref in references]
+    if any(base.restraints for base in bases):
+        listener.say("SciPy's solvers know no dampers and tendons: runs with them are left out there")
+    chosen = [
+        ref
+        for ref, base in zip(references, bases, strict=True)
+        if base.on_springs and not base.restraints and ref.outcome.status == "ok"
+    ]
     if len(chosen) > SCIPY_RUNS:  # from the middle of the study's halves
         chosen = [chosen[(2 * i + 1) * len(chosen) // (2 * SCIPY_RUNS)] for i in range(SCIPY_RUNS)]
     if not chosen:

@@ -311,3 +311,13 @@ def test_runs_that_never_settle_are_told(study_file, tmp_path, capsys, monkeypat
     assert main(["accuracy", str(study_file), "--out", str(tmp_path / "out"), "--runs", "1"]) == 2
     assert "settles" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
+
+
+def test_solvers_that_know_no_dampers_are_asked_for_the_runs_without(tmp_path, capsys, brief):
+    tied = PADS | {"name": "tied", "damper": [{"kind": "friction", "f": 0.1}]}
+    study = write_study(tmp_path, study_text(pulses=[SINE], cases=[tied]))
+    assert main(["accuracy", str(study), "--runs", "1", "--seconds", "2", "--out", str(tmp_path / "out")]) == 0
+    assert "know no dampers and tendons" in capsys.readouterr().err
+    with open(tmp_path / "out" / "accuracy.csv", newline="", encoding="utf-8") as file:
+        methods = {row["method"] for row in csv.DictReader(file)}
+    assert methods == {"located", "not located", "study"}
