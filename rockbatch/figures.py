@@ -1,4 +1,4 @@
-"""How pictures look that matplotlib draws, for notebooks and papers; the report draws its own. Loads matplotlib.
+"""Style of the pictures that matplotlib draws, for notebooks and papers; the report draws its own. Loads matplotlib.
 
 Lines differ in colour and in dashes, marks in colour and shape, so that they differ in grey and for the colour-blind
 (colours of Okabe & Ito 2008). Letters have the size in which they are printed, whatever the width of the picture.

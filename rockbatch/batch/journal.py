@@ -281,8 +281,8 @@ class Journal:
         self._forget()
         if not there:
             return
-        told = first.decode(errors="replace").partition(",")[0]
-        digests = dict(part.partition(":")[::2] for part in told.split())
+        head = first.decode(errors="replace").partition(",")[0]
+        digests = dict(part.partition(":")[::2] for part in head.split())
         others = [name for name, digest in self.digest.items() if digests.get(name) != digest] or ["columns"]
         raise InputError(
             f"{self.path}: holds {there} finished runs, but since then something has changed ({', '.join(others)}); "

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from rockbatch.study import Study
 
 PATIENCE_S = 1.5
-"""Time [s] after which a listener is told what is under way."""
+"""Time [s] after which a listener hears what is under way."""
 
 Advance = Callable[[int], object]
 """Called with the number of things that are done since the last call."""

@@ -124,7 +124,7 @@ def _check(run: Run, numerics: Numerics, least_normal_share: float, wait: bool) 
     if substeps is not None and (isinstance(substeps, bool) or not isinstance(substeps, int)):
         wrong.append(f"substeps = {substeps}: must be a whole number")
     if substeps is None and not wait:
-        wrong.append("wait = False: the error of a run that is cut off cannot be told; give substeps")
+        wrong.append("wait = False: a run that is cut off has no error estimate; give substeps")
     if substeps is not None and not wrong and substeps < (least := least_substeps(pier, base, motion.dt)):
         wrong.append(f"substeps = {substeps}: must be a whole number of at least {least} for this pier and motion")
     if not 0.0 < least_normal_share < 1.0:

@@ -1,4 +1,4 @@
-"""What carries out the runs of a batch: threads of this process, or a cluster (rockbatch.batch.dask)."""
+"""Engines that carry out the runs of a batch: threads of this process, or a cluster (rockbatch.batch.dask)."""
 
 import os
 from collections.abc import Generator, Sequence
@@ -51,7 +51,7 @@ def cores() -> int:
 
 
 def engine_of(jobs: int | Engine | None) -> Engine:
-    """What carries out the runs: so many threads, all processors by default, or an engine as it is."""
+    """Return the engine that carries out the runs: so many threads, all processors by default, or an engine as it is."""
     if jobs is None:
         return Threads(cores())
     if not isinstance(jobs, int):
@@ -96,8 +96,8 @@ class Threads:
                     return
                 done, _ = wait(pending, return_when=FIRST_COMPLETED)
                 for future in done:
-                    found = future.result()
-                    yield finished(pending.pop(future), found)
+                    outcomes = future.result()
+                    yield finished(pending.pop(future), outcomes)
         except (KeyboardInterrupt, Exception):  # what is finished by then is not lost
             stop.set()
             pool.shutdown(wait=True, cancel_futures=True)

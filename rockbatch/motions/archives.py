@@ -30,7 +30,7 @@ _PACKED = {".zip", ".gz", ".tar", ".tgz", ".bz2", ".xz", ".7z", ".rar", ".tbz", 
 _MAGIC = (b"PK\x03\x04", b"\x1f\x8b", b"BZh", b"\xfd7zXZ", b"7z\xbc\xaf", b"Rar!")
 _READ_METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
 _DAMAGED = (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, ValueError)
-"""What the standard library raises on damaged files: RuntimeError where bits ask for a password or a method that it lacks,
+"""Errors of the standard library on damaged files: RuntimeError where bits ask for a password or a method that it lacks,
 ValueError for places in the file that cannot be."""
 
 

@@ -134,13 +134,13 @@ def _stations(which: str) -> tuple[Station, ...]:
     """Return the stations of one set, from its tables."""
     with _open(which) as store:
         rows = store["groundmotions/table"][:]
-        told = {int(row["index"]): row for row in store["records/table"][:]}
+        events = {int(row["index"]): row for row in store["records/table"][:]}
     found = []
     for index, pair in grouped(rows, lambda row: int(row["RecordID"])).items():  # component a comes before component b
         (event, code, first), (*_, second) = (_split_name(row["values_block_0"][0].decode()) for row in pair)
         dt_first, dt_second = (float(row["values_block_1"][0]) for row in pair)
-        quake, title = (text.decode() for text in told[index]["values_block_2"][:2])
-        title_of_event, rsn = f"{quake} {int(told[index]['values_block_1'][1])}", int(pair[1]["values_block_2"][1])
+        quake, title = (text.decode() for text in events[index]["values_block_2"][:2])
+        title_of_event, rsn = f"{quake} {int(events[index]['values_block_1'][1])}", int(pair[1]["values_block_2"][1])
         steps = (dt_first, dt_second)
         found.append(Station(rsn, event, code, title, title_of_event, which, (first, second), steps, index))
     return tuple(found)

@@ -4,7 +4,7 @@ SHORTEST_STEP, LONGEST_STEP = 1e-5, 1.0
 """Sampling interval [s]: recorders take 20 to 1000 samples a second; digitised film and simulations stay within, too."""
 
 MOST_STEPS = 20
-"""How many times finer the sampling of one component of a record may be than that of another."""
+"""Greatest ratio of the sampling intervals of two components of a record."""
 
 MOST_SAMPLES = 2 * 10**7
 """Of a component, also after its times were made even: a day at 200 Hz has 17 million."""

@@ -20,7 +20,7 @@ FACTORS = ("both", "each", "suite", "none")
 """See :class:`SpectrumTarget`."""
 
 PAIRS = {"apart": 0.9, "srss": 1.3}
-"""How the components of a station count, and the usual share of the target for each: EN 1998-1, 3.2.3.1.2 (4), and EN 1998-2,
+"""Rules by which components of a station count, and the usual share of the target: EN 1998-1, 3.2.3.1.2 (4), and EN 1998-2,
 3.2.3 (3), as they are commonly quoted."""
 
 _A_DECADE = 20  # periods

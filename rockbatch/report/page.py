@@ -40,7 +40,7 @@ class Part(NamedTuple):
     content: Callable[[Any], Markup]
     """Function that returns what stands under the heading; empty if the section does not apply, which is then left out."""
     of: type = Finished
-    """What ``content`` takes: the results of a run, or the contents of any folder."""
+    """Argument of ``content``: the results of a run, or the contents of any folder."""
 
 
 def _template(name: str) -> Callable[[Contents], Markup]:

@@ -99,7 +99,7 @@ class TomlFile:
 
     @property
     def is_full(self) -> bool:
-        """Whether there are as many mistakes as are reported at once, so that nobody need look for more."""
+        """Return whether there are as many mistakes as are reported at once, so that nobody need look for more."""
         return len(self.problems) >= MOST_TOLD
 
     def is_sound_since(self, before: int) -> bool:

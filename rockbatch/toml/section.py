@@ -57,7 +57,7 @@ class Key:
 
     @property
     def always_required(self) -> bool:
-        """Whether it has to be written whatever the other keys are."""
+        """Return whether it has to be written whatever the other keys are."""
         return self.required and not self.only
 
 

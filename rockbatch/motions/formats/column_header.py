@@ -1,4 +1,4 @@
-"""What the header of a table says, in the ways that people and programs write it: columns, units, count, interval."""
+"""Header of a table, in the ways that people and programs write it: columns, units, count, interval."""
 
 import re
 from collections.abc import Sequence

@@ -16,7 +16,7 @@ T = TypeVar("T")
 _LONGEST = 10**6  # characters of a line
 _MANY = 100  # numbers that do not have the same number of decimals by chance
 LOOKED_AT = 1000
-"""How many numbers at the end of a file ``is_cut_short`` needs."""
+"""Numbers at the end of a file that ``is_cut_short`` needs."""
 
 
 def lines_of(text: str) -> list[str]:
