@@ -10,7 +10,7 @@ import numpy as np
 from agency_files import BBP, cwa_text, dyna_text, geonet_text, knet_text, renadic_text, resorce_text
 from fixed_column_files import cosmos_text, csmip_channel, csmip_text, film_text, smc_text
 from motion_files import at2_text, wiggle
-from national_files import afad_text, bhrc_text, csmnc_text, unam_text, usc_text
+from national_files import afad_text, bhrc_text, csmnc_text, unam_text, usc_corrected_text, usc_text
 from obspy import Stream, Trace
 
 from rockbatch.motions import ReadOptions
@@ -109,13 +109,7 @@ def _layouts() -> list[Layout]:
         ("USGS SMC", "from film, pairs of time and value", "x.smc", film_text(), ReadOptions()),
         ("RENADIC", "pairs of time and value", "x.V1", renadic_text(), ReadOptions()),
         ("USC", "Volume I", "x.s0a", usc_text(), ReadOptions()),
-        (
-            "USC",
-            "Volume II",
-            "x.s0a",
-            usc_text().replace("UNCORRECTED", "CORRECTED").replace("I:", "II:"),
-            ReadOptions(),
-        ),
+        ("USC", "Volume II", "x.s0a", usc_corrected_text(), ReadOptions()),
         ("RESORCE", "`.cor.acc`, 5E14.7", "1_N.cor.acc", resorce_text(), ReadOptions()),
         ("BHRC", "Volume 1", "x.V1", bhrc_text(), ReadOptions()),
         ("BHRC", "Volume 2", "x.V2", bhrc_text(volume=2), ReadOptions()),

@@ -177,3 +177,40 @@ def usc_channel(label: str, values, times=None, mark: tuple[str, ...] = ()) -> l
 def usc_text(**header) -> str:
     parts = [usc_channel(label, x / 100, **header) for label, x in (("N90E", A), ("UP", C), ("N00E", B))]
     return "\n".join(line for part in parts for line in part) + "\n"
+
+
+def usc_corrected_channel(label: str, values) -> list[str]:
+    """Return one channel of Volume II; ``values`` in cm/s², on steps of 0.02 s."""
+    npts = len(values)
+    velocities, displacements = np.full(npts, 0.8344), np.full(npts, -0.1515)
+    velocities[1:] += np.cumsum(values[1:] + values[:-1]) * 0.01
+    displacements[1:] += np.cumsum(velocities[1:] + velocities[:-1]) * 0.01
+    spaced = f"EQUALLY SPACED AT {0.02:6.3f} SEC.  IN UNITS"
+    return [
+        f"CORRECTED ACCELEROGRAM  IIBB101  94.160.0 COMP {label:6} FILE   0  CORRESPONDING T ",
+        *usc_channel(label, np.zeros(4))[:13],
+        "ACCELEROGRAM IS BAND-PASS FILTERED BETWEEN  .225- .325 AND 25.00-27.00 HZ.      ",
+        f"{npts:6d}  INSTRUMENT AND BASELINE CORRECTED DATA                                  ",
+        "AT EQUALLY-SPACED INTERVALS OF    .020  SEC.                                    ",
+        f"PEAK ACCELERATION = {-np.abs(values).max():11.5f}  CMS/SEC/SEC AT    4.580   SEC.                 ",
+        "PEAK   VELOCITY   =    12.05681    CMS/SEC   AT    4.500   SEC.                 ",
+        "PEAK DISPLACEMENT =     1.42006      CMS     AT    4.580   SEC.                 ",
+        "INITIAL VELOCITY  =      .8344  CMS/SEC;  INITIAL DISPLACEMENT =    -.1515  CMS ",
+        "MADE UP EARTHQUAKE   JAN 17, 1994 -1230 GMT                                     ",
+        "MAGNITUDE =  6.7    EPICENTRAL DISTANCE =  29.76 KM    M.M.I. =  8.             ",
+        f"IIBB101  94.160.0   700 N, FARING RD., LOS ANGELES, CA                  COMP {label[:3]}",
+        f"{label[3:]:80}",
+        *in_columns([0] * 100, "5.0f", 16),
+        *in_columns([0.0] * 100, "10.3f", 8),
+        f"{npts:6d} POINTS OF ACC DATA {spaced} CM/SEC/SEC",
+        *in_columns(values, "10.3f", 8),
+        f"{npts:6d} POINTS OF VEL DATA {spaced} CM/SEC",
+        *in_columns(velocities, "10.3f", 8),
+        f"{npts:6d} POINTS OF DIS DATA {spaced} CM",
+        *in_columns(displacements, "10.3f", 8),
+    ]
+
+
+def usc_corrected_text() -> str:
+    parts = [usc_corrected_channel(label, x) for label, x in (("N90E", A), ("UP", C), ("N00E", B))]
+    return "\n".join(line for part in parts for line in part) + "\n"

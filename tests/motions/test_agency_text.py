@@ -33,6 +33,7 @@ from national_files import (
     csmnc_text,
     unam_text,
     usc_channel,
+    usc_corrected_text,
     usc_text,
 )
 
@@ -318,10 +319,27 @@ def test_a_file_of_that_database_that_is_not_whole_is_refused(text, message):
         read(text, "x.cor.acc")
 
 
-def test_of_uscs_second_volume_it_is_said_what_to_do():
-    text = usc_text().replace("UNCORRECTED", "CORRECTED").replace("I:", "II:")
-    with pytest.raises(InputError, match=r'Volume II, .*take Volume I .*layout = "wrapped"'):
-        read(text, "x.y0a")
+def test_uscs_second_volume_has_corrected_samples_with_the_peak_and_the_initial_velocity_of_its_series():
+    east, up, north = read(usc_corrected_text(), "x.s0a")
+    assert [c.orientation.label for c in (east, up, north)] == ["N90E", "UP", "N00E"]
+    assert (east.dt, east.processed, east.raw, east.odd) == (0.02, True, False, ())
+    for component, values in ((east, A), (up, C), (north, B)):
+        np.testing.assert_allclose(component.acceleration, values / 100, atol=5.1e-6)
+    assert east.initial.velocity == pytest.approx(0.008344, abs=6e-6)
+    (before,) = {component.station for component in read(usc_text(), "x.s0a")}
+    assert (east.station, east.seat, east.event) == (f"{before}, Volume II", *seat_and_event(usc_text()))
+
+
+def seat_and_event(text: str):
+    component = read(text, "x.s0a")[0]
+    return component.seat, component.event
+
+
+def test_a_second_volume_of_usc_with_another_peak_is_not_used():
+    text = usc_corrected_text()
+    peak = next(line for line in text.splitlines() if line.startswith("PEAK ACCELERATION"))
+    east = read(text.replace(peak, peak.replace("-", "-1", 1)), "x.s0a")[0]
+    assert [finding.gross for finding in east.odd] == [True]
 
 
 @pytest.mark.parametrize("case", CASES[-6:-1], ids=lambda case: case.name)
@@ -416,6 +434,17 @@ def test_a_unit_that_is_not_understood_costs_its_channel_with_the_reason(text, n
             "line 11 says 0.31 s, but the last time is 0.21 s",
         ),
         (usc_text().replace("\n   0.000", "\n0.000  ", 1), "x.s0a", "line 28: .*expected a blank and ten columns"),
+        (
+            usc_corrected_text().replace("  .020  SEC", "  .010  SEC", 1),
+            "x.s0a",
+            "lines 16 and 17 say 43 points at .010 s, but line 46 43 at",
+        ),
+        (
+            usc_corrected_text().replace(f"{NPTS:6d} POINTS OF ACC", f"{NPTS + 8:6d} POINTS OF ACC", 1),
+            "x.s0a",
+            "line 52: ",
+        ),
+        (usc_corrected_text().replace("POINTS OF ACC", "POINTS OF VEL", 1), "x.s0a", "line 46: .*unit of accel"),
         (cwa_text(**{"SampleRate(Hz)": "100"}), "x.txt", "the header says 100 Hz, but time grows by 0.005 s"),
         (cwa_text(**{"RecordLength(sec)": "90"}), "x.txt", "the header says 90 s, but there are 0.215 s"),
         (cwa_text(DataSequence="Time U(+); N(+)"), "x.txt", "found 4 columns; the header says time and U, N"),

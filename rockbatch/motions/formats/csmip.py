@@ -11,24 +11,16 @@ import re
 
 from rockbatch.errors import InputError, NoRecordError
 from rockbatch.motions.component import Seat
-from rockbatch.motions.formats.fixed_width import fixed_numbers, number_in, one_after_another
-from rockbatch.motions.formats.header_lines import layout, line_at, match_line, moment_of, past_mark, read_header
+from rockbatch.motions.formats.declared_series import declared_series
+from rockbatch.motions.formats.fixed_width import number_in, one_after_another
+from rockbatch.motions.formats.header_lines import layout, line_at, moment_of, past_mark, read_header
 from rockbatch.motions.formats.obspy_plugin import plugin
-from rockbatch.motions.formats.recording import Recording, Series
+from rockbatch.motions.formats.recording import Recording
 from rockbatch.motions.formats.renadic import is_renadic
 from rockbatch.motions.origin import origin_of
 
 _DATA = {1: 27, 2: 45}  # lines of a channel's header, by volume
-_PER_LINE = 8
 _TITLE = re.compile(r"\s*uncorrected accelerogram data\b", re.IGNORECASE)
-_SPACING = re.compile(
-    r"\s*(?P<npts>[0-9]{1,9}) +"
-    r"(?:points of (?P<what>accel|veloc|displ)[a-z]*\.? data equally spaced at +(?P<dt>[0-9.]{1,12}) *sec"
-    r"|accelerogram points at +(?P<rate>[0-9.]{1,12}) *pts/sec)\b(?P<rest>.*)",
-    re.IGNORECASE,
-)
-_UNIT = re.compile(r"(?:\(units:|in units of|, *in) *(?P<unit>[a-z0-9/*^]+)", re.IGNORECASE)
-_FORMAT = re.compile(r"\((?P<per_line>[0-9]{1,2})f(?P<width>[0-9]{1,2})\.[0-9]{1,2}\)", re.IGNORECASE)
 _DAY = r"(?P<month>\d{1,2})/(?P<day>\d{1,2})/(?P<year>\d{4}|\d{2})"
 _CLOCK = r"(?P<hour>\d{1,2}):(?P<minute>\d{2}):(?P<second>\d{2}(?:\.\d{1,6})?) *(?:UTC|GMT|\(GPS\)|\(Q=|$)"
 _TEXT = layout(  # in the lines that Volumes 1 and 2 have in common
@@ -86,12 +78,9 @@ def _channel(lines: list[str], at: int) -> tuple[Recording, int]:
     station, place, coded = said["station"], said["place"], bool(said["code"])
     location = said["location"].strip("-")
     record = line_at(lines, header + 3).split("  ")[0].strip()
-    _, dt, (values, unit), end = _block(lines, at + _DATA[volume], ("accel",))
+    dt, series, end = declared_series(lines, at + _DATA[volume])
+    values, unit = series["acc"]
     _check_again(lines, at, volume, len(values), dt)
-    others: dict[str, Series] = {}
-    while volume == 2 and _SPACING.match(line_at(lines, end)):
-        what, _, others_series, end = _block(lines, end, ("veloc", "displ"))
-        others[what] = others_series
     event, date, name = (line_at(lines, header + i) for i in (1, 2, 5))
     return (
         Recording(
@@ -112,8 +101,8 @@ def _channel(lines: list[str], at: int) -> tuple[Recording, int]:
             ),
             event=f"{event} {date.partition('(')[0]}",
             origin=origin_of(_left(event), _left(name) or station, _left(date)),
-            velocities=others.get("veloc"),  # the header's initial velocity has the wrong sign in files of the USGS
-            displacements=others.get("displ"),
+            velocities=series.get("vel"),  # the header's initial velocity has the wrong sign in files of the USGS
+            displacements=series.get("dis"),
             stated_peak=(peak["peak"], peak["unit"]),
             notes=(f"channel {said['number']}: {place}",) if place else (),
             header={"station": name.strip(), "record": record},
@@ -125,31 +114,6 @@ def _channel(lines: list[str], at: int) -> tuple[Recording, int]:
 def _left(line: str) -> str:
     """Return the left half of a line, whose right half is about the recorder in some files."""
     return re.split(r"   |\(", line)[0]
-
-
-def _block(lines: list[str], at: int, expected: tuple[str, ...]) -> tuple[str, float, Series, int]:
-    """Return what the series that ``lines[at]`` declares is, its interval [s], the values with their unit, and its end.
-
-    Raises ``InputError`` where it is not one of those ``expected``.
-    """
-    line = match_line(_SPACING, lines, at, "… points of accel data equally spaced at … sec. (units: …)")
-    what = (line["what"] or "accel").lower()
-    unit, layout = _UNIT.search(line["rest"]), _FORMAT.search(line["rest"])
-    npts = int(line["npts"])
-    step = number_in(line["rate"] or line["dt"], at)
-    if what not in expected or unit is None or npts < 1 or not 1e-6 < step < 1e6:
-        raise InputError(
-            f'line {at + 1}: found "{line[0].strip()[:75]}"; expected a count, an interval and a unit of '
-            f"{' or '.join(expected)}"
-        )
-    if layout:
-        per_line, width = int(layout["per_line"]), int(layout["width"])
-    else:  # before formats were declared: 8F9.6 or 8F10.3, which the first line tells
-        per_line, width = _PER_LINE, len(line_at(lines, at + 1).rstrip()) // min(_PER_LINE, npts)
-    if per_line < 1 or width < 2:
-        raise InputError(f'line {at + 2}: found "{line_at(lines, at + 1)[:40]}"; expected numbers in equal columns')
-    values, end = fixed_numbers(lines, at + 1, npts, width, per_line)
-    return what, float(f"{1.0 / step:.12g}") if line["rate"] else step, (values, unit["unit"]), end
 
 
 def _check_again(lines: list[str], at: int, volume: int, npts: int, dt: float) -> None:

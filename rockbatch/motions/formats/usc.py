@@ -1,13 +1,17 @@
-"""USC files (University of Southern California, Los Angeles network), Volume I: uncorrected, digitised from film.
+"""USC files (University of Southern California, Los Angeles network), digitised from film; Volume II is corrected.
 
-Each channel has 13 lines of text, 7 of integers and 7 of real numbers, then pairs of time and value, five to a line
-of a blank and ten columns of 7 characters. The layout is that of the network's own files.
+Each channel of Volume I has 13 lines of text, 7 of integers and 7 of real numbers, then pairs of time and value, five to a
+line of a blank and ten columns of 7 characters. Volume II has a title before these 13 lines, 11 on what was done after them,
+7 of integers and 13 of real numbers, then accelerations, velocities and displacements on even steps. The layouts are those of
+the network's own files.
 """
 
 import re
+from typing import Any
 
 from rockbatch.errors import InputError
 from rockbatch.motions.component import Seat
+from rockbatch.motions.formats.declared_series import declared_series
 from rockbatch.motions.formats.fixed_width import fixed_numbers, number_in, one_after_another
 from rockbatch.motions.formats.header_lines import layout, line_at, read_header
 from rockbatch.motions.formats.obspy_plugin import plugin
@@ -16,7 +20,7 @@ from rockbatch.motions.formats.time_steps import from_pairs
 from rockbatch.motions.motion import Samples
 from rockbatch.motions.origin import origin_of
 
-_HEADER = 27  # lines
+_HEADER = {1: 27, 2: 45}  # lines, by volume
 _WIDTH, _PER_LINE = 7, 10
 _LATE = 0.05  # s: what the stated duration may differ from the last time
 _TITLE = re.compile(r"OF UNCORRECTED ACCELEROGRAM DATA OF VOLUME I:")
@@ -29,6 +33,15 @@ _TEXT = layout(
     (10, rf"NO\. OF POINTS *= *(?P<npts>[0-9]{{1,9}}) +{_DURATION}", "NO. OF POINTS = … DURATION = … SEC"),
     (11, r"UNITS ARE SEC AND +(?P<unit>[A-Z0-9/]+)", "UNITS ARE SEC AND G/10"),
 )
+_AGAIN = layout(  # what Volume II says of its own series
+    (15, r"^ *(?P<npts>[0-9]{1,9}) +INSTRUMENT AND BASELINE CORRECTED", "… INSTRUMENT AND BASELINE CORRECTED DATA"),
+    (16, r"INTERVALS OF +(?P<dt>[0-9.]{1,12}) *SEC", "AT EQUALLY-SPACED INTERVALS OF … SEC."),
+    (
+        17,
+        r"PEAK ACCELERATION *= *[-+]?(?P<peak>[0-9]*\.[0-9]+) +(?P<unit>CMS?/SEC/SEC)",
+        "PEAK ACCELERATION = … CMS/SEC/SEC",
+    ),
+)
 
 
 def is_usc(head: bytes) -> bool:
@@ -39,40 +52,56 @@ def is_usc(head: bytes) -> bool:
 
 def parse(text: str) -> list[Recording]:
     """Return the channels, one after the other, on even steps; ``InputError`` with the line where the file is not whole."""
-    if _TITLE.search(text[:100]) is None and _CORRECTED.search(text[:100]):
-        raise InputError(
-            "line 1: Volume II, of whose layout no description is at hand; take Volume I of this record, or copy its "
-            'accelerations into a .txt file and write layout = "wrapped", unit and dt for it in motions.toml'
-        )
     return one_after_another(text, _channel)
 
 
 def _channel(lines: list[str], at: int) -> tuple[Recording, int]:
     """Return the channel whose title is ``lines[at]``, and where the next one begins."""
-    said = read_header(lines, at, _TEXT)
-    label, npts, duration = said["label"], int(said["npts"]), number_in(said["duration"], at + 10)
-    if npts < 2:
-        raise InputError(f"line {at + 11}: found {npts} points; expected at least two")
-    pairs, end = _pairs(lines, at + _HEADER, npts)
-    if abs(pairs[-1, 0] - duration) > _LATE:
-        raise InputError(f"line {at + 11} says {duration:g} s, but the last time is {pairs[-1, 0]:g} s")
-    dt, values, notes = from_pairs(pairs, f"channel {label} from line {at + 1} on")
-    event, date, name = (line_at(lines, at + i)[:70].strip() for i in (1, 2, 5))
+    corrected = _CORRECTED.search(line_at(lines, at)) is not None
+    header = at + corrected
+    said = read_header(lines, header, _TEXT)
+    series, end = (_corrected if corrected else _uncorrected)(lines, at, said)
+    event, date, name = (line_at(lines, header + i)[:70].strip() for i in (1, 2, 5))
     recording = Recording(
-        label=label,
-        dt=dt,
-        values=values,
-        unit=said["unit"],
-        station=f"{said['station']}, {event}, {date}",
-        codes=("LA", said["station"][:5], "", label.upper()),
-        processed=False,
+        label=said["label"],
+        station=", ".join([said["station"], event, date, *(["Volume II"] if corrected else [])]),
+        codes=("LA", said["station"][:5], "", said["label"].upper()),
+        processed=corrected,
         seat=Seat(said["station"]),
         event=f"{event}, {date}",
-        origin=origin_of(event, line_at(lines, at + 5)[:70], date),
-        notes=notes,
+        origin=origin_of(event, name, date),
         header={"station": name, "event": event},
+        **series,
     )
-    return recording, end
+    return recording, end + line_at(lines, end).startswith("/&")
+
+
+def _uncorrected(lines: list[str], at: int, said: dict[str, str]) -> tuple[dict[str, Any], int]:
+    """Return the samples of a channel of Volume I as fields of its recording, and where they end."""
+    npts, duration = int(said["npts"]), number_in(said["duration"], at + 10)
+    if npts < 2:
+        raise InputError(f"line {at + 11}: found {npts} points; expected at least two")
+    pairs, end = _pairs(lines, at + _HEADER[1], npts)
+    if abs(pairs[-1, 0] - duration) > _LATE:
+        raise InputError(f"line {at + 11} says {duration:g} s, but the last time is {pairs[-1, 0]:g} s")
+    dt, values, notes = from_pairs(pairs, f"channel {said['label']} from line {at + 1} on")
+    return {"dt": dt, "values": values, "unit": said["unit"], "notes": notes}, end
+
+
+def _corrected(lines: list[str], at: int, _said: dict[str, str]) -> tuple[dict[str, Any], int]:
+    """Return likewise those of Volume II, which its text has to agree with."""
+    again = read_header(lines, at, _AGAIN)
+    dt, series, end = declared_series(lines, at + _HEADER[2])
+    values, unit = series["acc"]
+    if int(again["npts"]) != len(values) or abs(number_in(again["dt"], at + 16) - dt) > 1e-6 * dt:
+        raise InputError(
+            f"lines {at + 16} and {at + 17} say {again['npts']} points at {again['dt']} s, but line {at + _HEADER[2] + 1} "
+            f"{len(values)} at {dt:g} s"
+        )
+    velocities, displacements = series.get("vel"), series.get("dis")
+    peak = (again["peak"], again["unit"].replace("CMS", "CM"))
+    fields = {"velocities": velocities, "displacements": displacements, "stated_peak": peak}
+    return {"dt": dt, "values": values, "unit": unit} | fields, end
 
 
 def _pairs(lines: list[str], first: int, npts: int) -> tuple[Samples, int]:
@@ -84,7 +113,7 @@ def _pairs(lines: list[str], first: int, npts: int) -> tuple[Samples, int]:
     numbers, end = fixed_numbers(
         [""] * first + [line[1:] for line in lines[first:end]], first, 2 * npts, _WIDTH, _PER_LINE
     )
-    return numbers.reshape(npts, 2), end + line_at(lines, end).startswith("/&")
+    return numbers.reshape(npts, 2), end
 
 
 is_usc_file, read_usc_stream = plugin("USC", is_usc, parse)
