@@ -91,7 +91,7 @@ FORMATS = (
     Format("CSMIP", _names(".v1 .v2 .v3 .raw"), csmip.is_csmip, reader(csmip.parse)),
     Format("USGS SMC", _names(".smc"), smc.is_smc, reader(smc.parse)),
     Format("RENADIC", _names(".v1 .raw"), renadic.is_renadic, reader(renadic.parse)),
-    Format("USC Volume I", _names(""), usc.is_usc, reader(usc.parse)),
+    Format("USC", _names(""), usc.is_usc, reader(usc.parse)),
     Format("BHRC Volume 1", _names(""), bhrc.is_bhrc, reader(bhrc.parse)),
     Format("CSMNC", _names(""), csmnc.is_csmnc, reader(csmnc.parse)),
     Format("AFAD text", _names(""), afad.is_afad, reader(afad.parse)),
