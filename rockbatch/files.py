@@ -115,7 +115,7 @@ def replacing(path: Path) -> Iterator[Path]:
 
     A reader finds the earlier file or the new one, never a part.
     """
-    with told_when_full(path):
+    with naming_full_disk(path):
         handle, name = tempfile.mkstemp(prefix=f".{path.name}-", suffix=UNFINISHED, dir=path.parent)
         os.close(handle)
         temporary = Path(name)
@@ -149,7 +149,7 @@ def write_whole(path: Path, text: str) -> None:
 
 
 @contextmanager
-def told_when_full(path: Path, kept: str = "what was finished before is kept") -> Iterator[None]:
+def naming_full_disk(path: Path, kept: str = "what was finished before is kept") -> Iterator[None]:
     """Turn the operating system's error for a full disk, or a quota, into an ``InputError`` about ``path``."""
     try:
         yield

@@ -146,9 +146,9 @@ class Dask:
                 for future in self._finished_of(self._client, pending):
                     group = pending[future]
                     with starting_threads():  # of a worker that lacks them; its error comes as it was there
-                        found = future.result()
+                        outcomes = future.result()
                     del pending[future]
-                    yield finished(group, found)
+                    yield finished(group, outcomes)
                     hand_out()
         except KeyboardInterrupt:
             yield from _kept(pending)

@@ -13,7 +13,7 @@ from rockbatch._version import __version__
 from rockbatch.batch.carrying_out import to_simulate
 from rockbatch.batch.journal import Journal
 from rockbatch.batch.kept_histories import keep_histories, kept
-from rockbatch.batch.listening import Listener, told_if_slow
+from rockbatch.batch.listening import Listener, announced_if_slow
 from rockbatch.batch.plan import Plan
 from rockbatch.batch.threads import cores
 from rockbatch.checks import Verdict, write_verdicts
@@ -147,15 +147,15 @@ def finish(
 
     ``info`` is what run.json is to say: :func:`what_was_run`, ``jobs``, ``wall_s`` and ``kept``.
     """
-    with told_if_slow(listener, f"writing {INFO}"):
+    with announced_if_slow(listener, f"writing {INFO}"):
         write_info(directory, info)
         saved = open_results(directory)
     histories, without = _keep_histories(saved, study, runs, listener, records)
-    with told_if_slow(listener, f"holding {len(study.checks)} checks against {len(study.cases)} cases"):
+    with announced_if_slow(listener, f"holding {len(study.checks)} checks against {len(study.cases)} cases"):
         judged = verdicts(saved) if study.checks else []
         checks = write_verdicts(directory, judged) if study.checks else None
     beside = _beside_peaks(saved, study, motions)
-    with told_if_slow(listener, f"writing {REPORT}"):
+    with announced_if_slow(listener, f"writing {REPORT}"):
         report = write_report(directory, saved=saved)
     written = (directory / PEAKS, directory / INFO, *beside, histories, checks, report)
     return FinishedBatch(saved, motions, judged, tuple(path for path in written if path), without)

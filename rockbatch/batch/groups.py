@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from rockbatch.batch.plan import PlannedRun
 from rockbatch.errors import InputError
-from rockbatch.simulation.histories import told_apart, with_observed
+from rockbatch.simulation.histories import rocking_from_lean, with_observed
 from rockbatch.simulation.models import first_substeps
 from rockbatch.simulation.outcome import Outcome
 from rockbatch.simulation.runs import Run, Stop, run_all_fixed, steps_of
@@ -94,7 +94,7 @@ def _observed(run: Run, outcome: Outcome, numerics: Numerics, output: Output, st
     ledger = output.ledger and steps <= MOST_STEPS_OF_A_LEDGER
     sized = output.forces and steps <= MOST_STEPS_OF_FORCES
     try:
-        outcome = told_apart(run, outcome, numerics.quiet_s, output.rocking)
+        outcome = rocking_from_lean(run, outcome, numerics.quiet_s, output.rocking)
         if not outcome.was_run:
             return outcome
         least = output.least_normal_share if sized else None

@@ -15,7 +15,16 @@ from typing import Any, NamedTuple, Self
 
 from rockbatch.batch.plan import MOST_RUNS
 from rockbatch.errors import InputError
-from rockbatch.files import csv_line, csv_lines, csv_plain, made_folder, only_writer, opened, replacing, told_when_full
+from rockbatch.files import (
+    csv_line,
+    csv_lines,
+    csv_plain,
+    made_folder,
+    naming_full_disk,
+    only_writer,
+    opened,
+    replacing,
+)
 
 ABSENT = -1
 ROWS_AT_ONCE = 1000
@@ -91,7 +100,7 @@ class Journal:
         self._end = 0
 
     def __enter__(self) -> Self:
-        with ExitStack() as entered, told_when_full(self.path):
+        with ExitStack() as entered, naming_full_disk(self.path):
             made_folder(self.path.parent)
             entered.enter_context(only_writer(self.path.parent))
             if self._fresh:
@@ -209,7 +218,7 @@ class Journal:
             self._remember(*place)
 
     def _append(self, block: bytes | bytearray) -> None:
-        with told_when_full(self.path, f"the {self._count} runs that are finished are kept"):
+        with naming_full_disk(self.path, f"the {self._count} runs that are finished are kept"):
             self._file.seek(self._end)
             rest = memoryview(block)
             while rest:  # of a disk that is almost full, a write may take a part
@@ -256,14 +265,14 @@ class Journal:
 
     def _number(self, body: bytes | None) -> int | None:
         """Return the number of the run whose row ``body`` is; None where it is no row of this table."""
-        found = _NUMBER.match(body or b"")
-        if body is None or not found or int(found[1]) >= self.runs:
+        match = _NUMBER.match(body or b"")
+        if body is None or not match or int(match[1]) >= self.runs:
             return None
         try:
             (cells,) = csv.reader([body.decode()], strict=True)
         except (csv.Error, UnicodeDecodeError, ValueError):
             return None
-        return int(found[1]) if len(cells) == len(self.columns) + 1 else None
+        return int(match[1]) if len(cells) == len(self.columns) + 1 else None
 
     def _write_whole_rows_only(self) -> None:
         """Leave out what is damaged, so that it is reported once."""

@@ -32,7 +32,7 @@ def silent(done: int) -> None:
 class Listener:
     """Receiver of the messages of a batch; this one keeps them to itself."""
 
-    def motions(self, found: "MotionSet") -> None:
+    def motions(self, motion_set: "MotionSet") -> None:
         """Receive the motions that were read, and the files that could not be used."""
 
     def say(self, text: str) -> None:
@@ -100,7 +100,7 @@ def listener_of(progress: Progress) -> Listener:
 
 
 @contextmanager
-def told_if_slow(listener: Listener, words: str) -> "Iterator[None]":
+def announced_if_slow(listener: Listener, words: str) -> "Iterator[None]":
     """Tell ``listener`` what is under way, if it takes more than PATIENCE_S."""
     timer = Timer(PATIENCE_S, listener.say, [words])
     timer.daemon = True

@@ -10,7 +10,7 @@ from rockbatch.motions import Motion
 from rockbatch.motions.plausible import unlikely_samples
 from rockbatch.pier import Base, Pier, problems, unlikely_devices
 from rockbatch.results.columns import Ran, as_series, row
-from rockbatch.simulation.histories import histories, told_apart, with_observed
+from rockbatch.simulation.histories import histories, rocking_from_lean, with_observed
 from rockbatch.simulation.models import least_substeps
 from rockbatch.simulation.outcome import Outcome
 from rockbatch.simulation.response import Response
@@ -108,7 +108,7 @@ def _outcome(run: Run, numerics: Numerics, wait: bool) -> Outcome:
         outcome = run_fixed(*settings, numerics.substeps, quiet_s, wait=wait)
     if not outcome.was_run:
         raise InputError(f"{run.motion.name}: {outcome.reason}")
-    return told_apart(run, outcome, quiet_s, wait=wait)
+    return rocking_from_lean(run, outcome, quiet_s, wait=wait)
 
 
 def _check(run: Run, numerics: Numerics, least_normal_share: float, wait: bool) -> None:

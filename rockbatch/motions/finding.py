@@ -56,8 +56,8 @@ def files_of(given: Sequence[Path]) -> Iterator[Found]:
             elif not real.is_file():
                 yield Found(path, source, "not a regular file")
             elif path.suffix.lower() != ".xml":  # StationXML goes with the records beside it
-                found = _of_archive(path, source) if archives.is_zip(path) else [_regular(path, source)]
-                yield from (replace(file, root=inside) for file in found)
+                files = _of_archive(path, source) if archives.is_zip(path) else [_regular(path, source)]
+                yield from (replace(file, root=inside) for file in files)
 
 
 def _of_archive(path: Path, source: str) -> Iterator[Found]:

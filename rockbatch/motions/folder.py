@@ -116,10 +116,10 @@ def read_motions(
     readings, _ = read_files(given, options=options, gravity=gravity, offset=offset)
     components, doubles = without_doubles([reading for reading in readings if isinstance(reading, Component)])
     confirming = {"confirmed": confirmed, "confirmed_pga": confirmed_pga}
-    found = to_motions(components, packaged, vertical=vertical, gravity=gravity, azimuths=azimuths, **confirming)
-    unusable = [*(reading for reading in readings if isinstance(reading, Unusable)), *found.unusable]
+    paired = to_motions(components, packaged, vertical=vertical, gravity=gravity, azimuths=azimuths, **confirming)
+    unusable = [*(reading for reading in readings if isinstance(reading, Unusable)), *paired.unusable]
     left_out = [*(reading for reading in readings if isinstance(reading, LeftOut)), *doubles]
-    return MotionSet(found.motions, sorted(unusable, key=lambda u: u.source), left_out)
+    return MotionSet(paired.motions, sorted(unusable, key=lambda u: u.source), left_out)
 
 
 def _packaged(given: Sequence[Path], fema: Sequence[tuple[str, float]], gravity: float) -> list[Component]:
@@ -152,28 +152,28 @@ def read_files(
 
     Raises ``InputError`` with every mistake in the manifests.
     """
-    found = list(files_of(given))
+    files = list(files_of(given))
     beside = [path.parent / name for path in given if path.is_file() for name in MANIFESTS]
-    manifests = [file.path for file in found if not file.refusal and file.path.name in MANIFESTS]
+    manifests = [file.path for file in files if not file.refusal and file.path.name in MANIFESTS]
     manifests = [path for path in [*manifests, *beside] if path.is_file() and is_manifest(path)]
     manifest = Manifest.read({Path(os.path.realpath(path)): path for path in manifests}.values())
     readings: list[Reading] = []
     with watch() as bounded:
-        asked = _Asked(manifest, options or ReadOptions(), gravity, offset or Offset(), _numbered(found), bounded)
-        for file in _with_progress(found):
+        asked = _Asked(manifest, options or ReadOptions(), gravity, offset or Offset(), _numbered(files), bounded)
+        for file in _with_progress(files):
             if file.path not in manifests:
                 readings += _readings(file, asked)
     manifest.finish()
-    return _without_companions(_without_renamed(readings, found)), {file.source: file.path for file in found}
+    return _without_companions(_without_renamed(readings, files)), {file.source: file.path for file in files}
 
 
-def _with_progress(found: Sequence[Found]) -> Iterable[Found]:
+def _with_progress(files: Sequence[Found]) -> Iterable[Found]:
     """Return the files, with a bar in a terminal if there are many and they take more than a second."""
-    if len(found) < _MANY or sys.stderr is None or not sys.stderr.isatty():
-        return found
+    if len(files) < _MANY or sys.stderr is None or not sys.stderr.isatty():
+        return files
     from tqdm import tqdm
 
-    return tqdm(found, unit="file", leave=False, delay=1.0)
+    return tqdm(files, unit="file", leave=False, delay=1.0)
 
 
 def _without_companions(readings: Sequence[Reading]) -> list[Reading]:
@@ -193,17 +193,17 @@ def _folder(reading: Reading) -> str:
     return file_of(reading.source).rpartition("/")[0]
 
 
-def _without_renamed(readings: Sequence[Reading], found: Sequence[Found]) -> list[Reading]:
+def _without_renamed(readings: Sequence[Reading], files: Sequence[Found]) -> list[Reading]:
     """Return the readings with files left out that no reader takes by their names, but are copies of a record to the byte."""
     refused = {reading.source for reading in readings if isinstance(reading, Unusable)}
     records = {file_of(reading.source) for reading in readings if isinstance(reading, Component)}
     unknown_ones = [
-        file for file in found
+        file for file in files
         if file.source in refused and not file.refusal
         and format_of(archives.bare(file.path).suffix, _content(file, HEAD)) is None
     ]  # fmt: skip
     heads = {_content(file, HEAD) for file in unknown_ones}
-    alike = [file for file in found if heads and file.source in records and _content(file, HEAD) in heads]
+    alike = [file for file in files if heads and file.source in records and _content(file, HEAD) in heads]
     by_content = {content: file.source for file in alike if (content := _content(file))}
     copies = {file.source: by_content.get(_content(file)) for file in unknown_ones} if by_content else {}
     return [
@@ -222,11 +222,11 @@ def _content(file: Found, first: int | None = None) -> bytes:
         return b""
 
 
-def _numbered(found: Sequence[Found]) -> set[Path]:
+def _numbered(files: Sequence[Found]) -> set[Path]:
     """Return files whose names end in a number that is no azimuth, as those beside them tell."""
-    folders = grouped((archives.bare(file.path) for file in found), lambda path: path.parent)
+    folders = grouped((archives.bare(file.path) for file in files), lambda path: path.parent)
     numbers = {folder: counted(path.stem for path in paths) for folder, paths in folders.items()}
-    return {file.path for file in found if archives.bare(file.path).stem in numbers[file.path.parent]}
+    return {file.path for file in files if archives.bare(file.path).stem in numbers[file.path.parent]}
 
 
 def _readings(file: Found, asked: _Asked) -> list[Reading]:
@@ -239,8 +239,8 @@ def _readings(file: Found, asked: _Asked) -> list[Reading]:
     companion = None
     try:
         with np.errstate(over="ignore", invalid="ignore"):  # what becomes of absurd numbers is looked at
-            found = _used(file, asked)
-        return [with_legible_texts(reading) for reading in found]
+            readings = _used(file, asked)
+        return [with_legible_texts(reading) for reading in readings]
     except InputError as error:
         reason = "; ".join(error.problems)
         lacks = error.keys if isinstance(error, UnstatedError) else ()

@@ -133,8 +133,8 @@ class Manifest:
         """Return entries of a file, those of the whole file first; those of its archive where it has none of its own."""
         real = Path(os.path.realpath(path))
         archive = archive_of(real)
-        found = self.entries.get(real) or (self.entries.get(archive, []) if archive else [])
-        return sorted(found, key=lambda entry: entry.component is not None)
+        entries = self.entries.get(real) or (self.entries.get(archive, []) if archive else [])
+        return sorted(entries, key=lambda entry: entry.component is not None)
 
     def finish(self) -> None:
         """Raise :class:`InputError` with all mistakes of all manifests, if there are any."""
@@ -256,17 +256,17 @@ def _unit_factor(component: Component, entry: Entry, gravity: float) -> float:
     return 1.0 if abs(ratio - 1.0) <= _SAME else ratio
 
 
-def _orientation(found: Orientation, entry: Entry) -> Orientation:
+def _orientation(orientation: Orientation, entry: Entry) -> Orientation:
     values = entry.values
     if not values.keys() & {"role", "azimuth"}:
-        return found
-    role = values.get("role", "vertical" if found.vertical else "horizontal")
+        return orientation
+    role = values.get("role", "vertical" if orientation.vertical else "horizontal")
     if role == "vertical":
         if "azimuth" in values:
             entry.table.complain('azimuth: it is a vertical component; write role = "horizontal" if not', "azimuth")
-        return Orientation(found.label or role, vertical=True, down=found.down)
-    azimuth = values["azimuth"] % 360.0 if "azimuth" in values else found.azimuth
-    return Orientation(found.label, azimuth=azimuth)
+        return Orientation(orientation.label or role, vertical=True, down=orientation.down)
+    azimuth = values["azimuth"] % 360.0 if "azimuth" in values else orientation.azimuth
+    return Orientation(orientation.label, azimuth=azimuth)
 
 
 def is_manifest(path: Path) -> bool:

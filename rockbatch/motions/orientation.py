@@ -102,8 +102,10 @@ def orientation_in(label: str) -> Orientation:
     bare = label.strip()
     if re.fullmatch(r"\d{1,2}", bare) and bare not in ("0", "00", "90"):
         return unknown(bare)
-    found = orientation_of(bare) or split_stem(bare)[1]
-    return Orientation(bare, found.vertical, found.azimuth, found.down) if found else unknown(bare)
+    orientation = orientation_of(bare) or split_stem(bare)[1]
+    return (
+        Orientation(bare, orientation.vertical, orientation.azimuth, orientation.down) if orientation else unknown(bare)
+    )
 
 
 _PART = r"(?P<site>.*[^-_. ])[-_. ]+"
@@ -147,27 +149,27 @@ def split_stem(stem: str) -> tuple[str, Orientation | None]:
             match = end.fullmatch(rest)
             if match is None or _is_number(match["site"], match["label"], rest):
                 continue
-            if found := orientation_of(match["label"]):
-                return (stem, None) if _contradicted(found, stem) else (match["site"] + behind, found)
+            if orientation := orientation_of(match["label"]):
+                return (stem, None) if _contradicted(orientation, stem) else (match["site"] + behind, orientation)
         processing = _PROCESSING.fullmatch(rest)
         if processing is None:
             break
         rest, behind = processing["site"], rest[len(processing["site"]) :] + behind
-    for found in reversed(_channels(stem)):
-        if not _contradicted(found, stem):
-            return re.sub(rf"(^|[-_. ]+){re.escape(found.label)}(?=[-_. ])", "", stem, count=1), found
+    for orientation in reversed(_channels(stem)):
+        if not _contradicted(orientation, stem):
+            return re.sub(rf"(^|[-_. ]+){re.escape(orientation.label)}(?=[-_. ])", "", stem, count=1), orientation
     return stem, None
 
 
 def _channels(stem: str) -> list[Orientation]:
     """Return orientations of the channel codes anywhere in a name: "CCM.BHZ.00.D"."""
     parts = [part for part in re.split(r"[-_. ]+", stem) if _CHANNEL_IN_NAME.fullmatch(part.upper())]
-    return [found for part in parts if (found := orientation_of(part))]
+    return [orientation for part in parts if (orientation := orientation_of(part))]
 
 
-def _contradicted(found: Orientation, stem: str) -> bool:
+def _contradicted(orientation: Orientation, stem: str) -> bool:
     """Return whether a name has a vertical channel's code beside a horizontal direction."""
-    return not found.vertical and any(channel.vertical for channel in _channels(stem))
+    return not orientation.vertical and any(channel.vertical for channel in _channels(stem))
 
 
 def _is_number(before: str, label: str, stem: str) -> bool:
@@ -187,12 +189,12 @@ def _is_number(before: str, label: str, stem: str) -> bool:
 
 def counted(stems: Iterable[str]) -> set[str]:
     """Return stems that end in a number of a series: GM_010, GM_011 … are no azimuths, which are square to each other."""
-    found: set[str] = set()
+    numbered: set[str] = set()
     for group in grouped((stem for stem in stems if re.fullmatch(r".*\d{3}", stem)), lambda stem: stem[:-3]).values():
         azimuths = {int(stem[-3:]) for stem in group}
         if any(0 < abs((a - b + 90) % 180 - 90) < 45 for a, b in combinations(azimuths, 2)):
-            found.update(group)
-    return found
+            numbered.update(group)
+    return numbered
 
 
 SAME_AZIMUTH = 1.0

@@ -81,8 +81,8 @@ def _event(text: str, date: str) -> str:
 
 def _year(text: str) -> str:
     """Return the year of a date: four digits, or the last two of 10/15/79."""
-    if found := _YEAR.search(text):
-        return found[0]
+    if year := _YEAR.search(text):
+        return year[0]
     short = _SHORT_YEAR.search(text)
     return f"{19 if int(short[1]) >= _CENTURY else 20}{short[1]}" if short else ""
 

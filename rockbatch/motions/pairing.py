@@ -87,8 +87,8 @@ def to_motions(
         for motion, (station, component) in zip(named, horizontals, strict=True)
     ]
     patterns = {"confirm": confirmed, "confirm_pga": confirmed_pga}
-    found = _believed(judged, patterns, required=vertical == "required")
-    return replace(found, unusable=sorted([*unusable, *found.unusable], key=lambda u: u.source))
+    paired = _believed(judged, patterns, required=vertical == "required")
+    return replace(paired, unusable=sorted([*unusable, *paired.unusable], key=lambda u: u.source))
 
 
 def _believed(judged: Iterable[Judged], patterns: Mapping[str, Sequence[str]], required: bool) -> MotionSet:

@@ -139,14 +139,14 @@ def alternating(samples: Samples) -> float:
 def displacement(judged: Judged) -> Finding | None:
     """Find a displacement that no ground has, gross for a corrected record, or beyond ``ABSURD``; or one that runs away."""
     motion = judged.motion
-    found = measures.pgd(motion.horizontal, motion.dt, motion.initial)
-    if found > FARTHEST:
-        text = f"its displacement reaches {found:.3g} m, more than {FARTHEST:g} m: check its baseline"
-        return Finding("PGD", text, gross=motion.processed is True or found > ABSURD)
+    pgd = measures.pgd(motion.horizontal, motion.dt, motion.initial)
+    if pgd > FARTHEST:
+        text = f"its displacement reaches {pgd:.3g} m, more than {FARTHEST:g} m: check its baseline"
+        return Finding("PGD", text, gross=motion.processed is True or pgd > ABSURD)
     if measures.believable_pgd(motion) is not None:
         return None
     text = (
-        f"no PGD: from rest its displacement runs away, to {found:.3g} m; it is unprocessed, or its file does not tell "
+        f"no PGD: from rest its displacement runs away, to {pgd:.3g} m; it is unprocessed, or its file does not tell "
         "the velocity that it begins with"
     )
     return Finding("no PGD", text)
@@ -208,8 +208,8 @@ JUDGES: tuple[Callable[[Judged], Finding | None], ...] = (
 
 def findings(judged: Judged) -> tuple[Finding, ...]:
     """Return all that is odd about a motion."""
-    found = (judge(judged) for judge in JUDGES)
-    return tuple(finding for finding in found if finding is not None)
+    findings_or_none = (judge(judged) for judge in JUDGES)
+    return tuple(finding for finding in findings_or_none if finding is not None)
 
 
 def gross_findings(component: Component) -> list[Finding]:

@@ -47,15 +47,15 @@ class Target:
 
     def _factor(self, motion: Motion, gravity: float) -> float:
         if self.pga_g is not None:
-            wanted, found = self.pga_g * gravity, motion.pga
+            wanted, present = self.pga_g * gravity, motion.pga
         elif self.pgv_m_s is not None:
-            wanted, found = self.pgv_m_s, measures.pgv(motion.horizontal, motion.dt, motion.initial)
+            wanted, present = self.pgv_m_s, measures.pgv(motion.horizontal, motion.dt, motion.initial)
         else:
             assert self.sa_g is not None
             assert self.period_s is not None
             wanted = self.sa_g * gravity
-            found = float(spectral_acceleration(motion.horizontal, motion.dt, [self.period_s], self.damping)[0])
-        return wanted / found if found > 0 else math.inf
+            present = float(spectral_acceleration(motion.horizontal, motion.dt, [self.period_s], self.damping)[0])
+        return wanted / present if present > 0 else math.inf
 
 
 MOST_FACTOR = 4.0
@@ -63,7 +63,7 @@ MOST_FACTOR = 4.0
 
 
 def at_target(
-    found: MotionSet, target: Target | SpectrumTarget, gravity: float, confirmed: Sequence[str] = ()
+    motion_set: MotionSet, target: Target | SpectrumTarget, gravity: float, confirmed: Sequence[str] = ()
 ) -> MotionSet:
     """Return all motions scaled to ``target``, with the factor noted; one without motion is unusable.
 
@@ -71,7 +71,7 @@ def at_target(
     """
     motions: list[Motion] = []
     unusable: list[Unusable] = []
-    for motion, factor in zip(found.motions, target.factors_of(found.motions, gravity), strict=True):
+    for motion, factor in zip(motion_set.motions, target.factors_of(motion_set.motions, gravity), strict=True):
         if math.isinf(factor):
             unusable.append(Unusable(motion.name, motion.files, f"has no motion that can be scaled to {target}"))
         elif isinstance(target, SpectrumTarget) and factor > MOST_FACTOR and not fits(motion.name, confirmed):
@@ -81,7 +81,7 @@ def at_target(
         else:
             notes = (*motion.notes, f"scaled by {factor:.4g} to {target}")
             motions.append(replace(motion.times(factor), factor=motion.factor * factor, notes=notes))
-    return replace(found, motions=motions, unusable=[*found.unusable, *unusable])
+    return replace(motion_set, motions=motions, unusable=[*motion_set.unusable, *unusable])
 
 
 def _too_weak(motion: Motion, factor: float, target: SpectrumTarget, gravity: float) -> str:

@@ -35,13 +35,13 @@ _MEASURES: dict[str, Callable[[Motion, float], float | None]] = {
 }
 
 
-def selected(found: MotionSet, selection: Selection, gravity: float) -> MotionSet:
+def selected(motion_set: MotionSet, selection: Selection, gravity: float) -> MotionSet:
     """Return the motions within ``selection``; others are left out, and those of unknown magnitude unusable, if it counts."""
     kept: list[Motion] = []
     unusable: list[Unusable] = []
     left_out: list[LeftOut] = []
     ranges = {key: limits for key in _MEASURES if (limits := getattr(selection, key)) is not None}
-    for motion in found.motions:
+    for motion in motion_set.motions:
         if "magnitude" in ranges and motion.magnitude is None:
             reason = "selected by magnitude, which is not known; write magnitude in motions.toml"
             unusable.append(Unusable(motion.name, motion.files, reason))
@@ -56,4 +56,6 @@ def selected(found: MotionSet, selection: Selection, gravity: float) -> MotionSe
             left_out.append(LeftOut(motion.name, motion.files, f"not selected: {', '.join(outside)}"))
         else:
             kept.append(motion)
-    return replace(found, motions=kept, unusable=[*found.unusable, *unusable], left_out=[*found.left_out, *left_out])
+    return replace(
+        motion_set, motions=kept, unusable=[*motion_set.unusable, *unusable], left_out=[*motion_set.left_out, *left_out]
+    )

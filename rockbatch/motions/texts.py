@@ -8,11 +8,11 @@ from rockbatch.files import legible
 T = TypeVar("T")
 
 
-def with_legible_texts(found: T) -> T:
+def with_legible_texts(record: T) -> T:
     """Return a dataclass with every text in it ``legible``, also those of tuples and of dataclasses within."""
-    values = {field.name: getattr(found, field.name) for field in fields(cast(Any, found))}
+    values = {field.name: getattr(record, field.name) for field in fields(cast(Any, record))}
     changed = {name: new for name, value in values.items() if (new := _legible(value)) is not value}
-    return cast(T, replace(cast(Any, found), **changed)) if changed else found
+    return cast(T, replace(cast(Any, record), **changed)) if changed else record
 
 
 def _legible(value: Any) -> Any:

@@ -25,7 +25,7 @@ LARGEST = "9,99E+307"
 """Written for infinity, as the largest round number with which Excel computes."""
 
 
-class Ran(NamedTuple):
+class SimulatedRun(NamedTuple):
     """A run that was simulated: its names and its peak as in peaks.csv, its motion before ``scale``, and its pier."""
 
     row: dict[str, Any]
@@ -34,7 +34,7 @@ class Ran(NamedTuple):
     pier: Pier
 
 
-def runs(peaks: "pd.DataFrame", study: Study, motions: Sequence[Motion]) -> Iterator[Ran]:
+def runs(peaks: "pd.DataFrame", study: Study, motions: Sequence[Motion]) -> Iterator[SimulatedRun]:
     """Yield the runs of ``peaks``, without mirror images."""
     by_name = {motion.name: motion for motion in motions}
     piers = {_key(case.name, case.columns, study.varied): case.pier for case in study.cases}
@@ -43,7 +43,7 @@ def runs(peaks: "pd.DataFrame", study: Study, motions: Sequence[Motion]) -> Iter
     for cells in table.to_dict("records"):
         row = {str(name): value for name, value in cells.items()}
         pier = piers[_key(row["case"], row, study.varied)]
-        yield Ran(row, by_name[row["record"]], float(row["scale"]), pier)
+        yield SimulatedRun(row, by_name[row["record"]], float(row["scale"]), pier)
 
 
 def write(path: Path, table: Iterable[Mapping[str, Any]]) -> Path:

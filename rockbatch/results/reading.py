@@ -46,7 +46,7 @@ class Saved:
     missing: tuple[str, ...] = ()
 
     @property
-    def told_missing(self) -> str:
+    def missing_in_words(self) -> str:
         """The columns that ``peaks.csv`` lacks, in a sentence without its subject; empty if it has all."""
         if not self.missing:
             return ""
@@ -97,7 +97,7 @@ def read_saved(directory: Path) -> Saved:
         peaks[name] = "" if name in TEXTS else math.nan
     saved = Saved(directory, info, peaks, missing)
     if missing:
-        warnings.warn(f"{directory / PEAKS}: {saved.told_missing}", MissingColumns, stacklevel=2)
+        warnings.warn(f"{directory / PEAKS}: {saved.missing_in_words}", MissingColumns, stacklevel=2)
     return saved
 
 

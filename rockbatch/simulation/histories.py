@@ -70,7 +70,7 @@ def energies(run: Run, rows: np.recarray) -> Samples:
     return restraints.with_devices(pier, base, rows, terms) if base.restraints else terms
 
 
-def told_apart(run: Run, outcome: Outcome, quiet_s: float, wanted: bool = False, wait: bool = True) -> Outcome:
+def rocking_from_lean(run: Run, outcome: Outcome, quiet_s: float, wanted: bool = False, wait: bool = True) -> Outcome:
     """Return ``outcome`` with rocking and lean apart, if ``wanted`` or the peak may be lean; on yielding springs by one more
     run, and if ``wanted`` and the step was chosen by a tolerance by one of twice the step, which gives their error.
 
