@@ -10,7 +10,7 @@ from motion_files import at2_text, wiggle
 
 from rockbatch.errors import InputError
 from rockbatch.motions import ReadOptions, Unusable, read_motions
-from rockbatch.motions.formats import RecordFile, read_record
+from rockbatch.motions.formats import RecordFile, read_record, table
 
 T = np.arange(60) * 0.005
 NS, EW, UD = (wiggle(60, seed, 100.0) for seed in (1, 2, 3))
@@ -288,3 +288,28 @@ def test_any_text_ends_in_motions_or_reasons(tmp_path, content):
     with contextlib.suppress(InputError):
         for reading in read_record(RecordFile(path, path.name, data, ReadOptions(unit="g", dt=0.01))):
             assert isinstance(reading, Unusable) or np.isfinite(reading.acceleration).all()
+
+
+WORDS = st.sampled_from(("0.1", "-2.50", "1e3", "1D-2", "1_0", "nan", "1e999", "x", "#", '"3.5"', "1,5", "1.0-2.0", ".5", "٣"))
+ROWS = st.lists(st.lists(WORDS | st.sampled_from(("0.25", "-1.75")), min_size=0, max_size=4), min_size=1, max_size=12)
+
+
+@settings(max_examples=400, deadline=None)
+@given(ROWS | st.lists(st.lists(st.sampled_from(("0.25", "-1.75", "3.00")), min_size=2, max_size=2), min_size=4),
+       st.sampled_from((" ", "\t", ";", ",", ", ", "\xa0")), st.booleans())  # fmt: skip
+def test_rows_that_are_read_at_once_are_those_read_one_by_one(rows, separator, wrapped):
+    """To the bit, and with the same words about the same line."""
+    text = "time NS\n" + "\n".join(map(separator.join, rows))
+
+    def read():
+        try:
+            header, numbers = table.read_table(text, wrapped)
+        except InputError as error:
+            return type(error), error.problems
+        return header, numbers.shape, numbers.tobytes()
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(table, "_PIECE", 3)
+        at_once = read()
+        patch.setattr(table, "_even_rows", lambda *_: [])
+        assert read() == at_once

@@ -77,6 +77,14 @@ def test_a_blockette_that_leads_back_is_refused(tmp_path):
     assert "blockette" in told.reason
 
 
+def test_the_words_of_a_reader_are_the_same_each_time(tmp_path):
+    """A finished folder is known again by the reasons for which files could not be used."""
+    (tmp_path / "x.mseed").write_bytes(traced("MSEED")[:128])
+    (file,) = read_motions(tmp_path).unusable
+    assert "refuses it" in file.reason
+    assert "0x" not in file.reason
+
+
 def test_every_format_that_obspy_reads_has_a_check_before(monkeypatch):
     from rockbatch.motions.formats import with_obspy
 

@@ -151,7 +151,7 @@ def _values(text: str, start: int, npts: int) -> Samples:
     if not np.isfinite(values).all():
         i = int(np.flatnonzero(~np.isfinite(values))[0])
         raise InputError(f'value {i + 1} of {npts} is "{values[i]}"; expected finite numbers')
-    if is_cut_short(last):
+    if is_cut_short(reversed(last)):
         raise InputError(f'the last value is "{last[-1]}", shorter than all others: the file is cut; fetch it again')
     return values
 

@@ -3,7 +3,8 @@
 And in lines of numbers between blanks whose count is known.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from itertools import islice
 from typing import TypeVar
 
 import numpy as np
@@ -26,8 +27,7 @@ def lines_of(text: str) -> list[str]:
     a line that is longer than any of numbers, whose words would take thirty times its size.
     """
     lines = text.rstrip("\x00\x1a\r\n").replace("\r\n", "\n").replace("\r", "\n").split("\n")
-    too_long = next((i for i, line in enumerate(lines) if len(line) > _LONGEST), None)
-    if too_long is not None:
+    if len(text) > _LONGEST and (too_long := next((i for i, line in enumerate(lines) if len(line) > _LONGEST), -1)) >= 0:
         raise InputError(f"line {too_long + 1} has {len(lines[too_long]):,} characters; expected {_LONGEST:,} at most")
     return lines
 
@@ -116,9 +116,10 @@ def spaced_numbers(lines: Sequence[str], first: int, count: int, per_line: int) 
         return row
 
     values = _numbers(lines[first:end], first, count, per_line, fields)
-    tokens = [field for line in lines[max(first, end - LOOKED_AT) : end] for field in line.split()]
-    if is_cut_short(tokens[-LOOKED_AT:]):
-        raise InputError(f'line {end}: found "{tokens[-1][:40]}", shorter than all others: the file is cut')
+    if is_cut_short(field for at in range(end - 1, first - 1, -1) for field in reversed(lines[at].split())):
+        raise InputError(
+            f'line {end}: found "{lines[end - 1].split()[-1][:40]}", shorter than all others: the file is cut'
+        )
     return values
 
 
@@ -135,16 +136,21 @@ def number_in(field: str, at: int) -> float:
     return value
 
 
-def is_cut_short(tokens: Sequence[str]) -> bool:
+def is_cut_short(backwards: Iterable[str]) -> bool:
     """Return whether the last number has fewer characters after its point than the others before it, which agree.
 
-    A file that was cut within it has all its values, and the last one wrong.
+    A file that was cut within it has all its values, and the last one wrong. The numbers come ``backwards``, and few of them
+    are looked at unless the last one is short.
     """
-
-    def tail(token: str) -> int:
-        return len(token) - token.rfind(".")
-
-    if len(tokens) < _MANY or "." not in tokens[-2]:
+    tokens = islice(backwards, LOOKED_AT)
+    last, before = next(tokens, ""), next(tokens, "")
+    usual = _tail(before)
+    if "." not in before or _tail(last) >= usual:
         return False
-    usual = tail(tokens[-2])
-    return tail(tokens[-1]) < usual and all(tail(token) == usual for token in tokens[-LOOKED_AT:-1])
+    others = list(map(_tail, tokens))
+    return len(others) + 2 >= _MANY and set(others) == {usual}
+
+
+def _tail(token: str) -> int:
+    """Return the characters of a number from its point on."""
+    return len(token) - token.rfind(".")

@@ -2,12 +2,14 @@
 
 import re
 from array import array
+from collections.abc import Sequence
+from itertools import chain
 
 import numpy as np
 
 from rockbatch.errors import InputError, NoRecordError
 from rockbatch.motions.formats.column_header import columns_with_units, columns_without_units, stated_count
-from rockbatch.motions.formats.fixed_width import LOOKED_AT, is_cut_short, lines_of
+from rockbatch.motions.formats.fixed_width import is_cut_short, lines_of
 from rockbatch.motions.limits import HUGE
 from rockbatch.motions.motion import Samples
 
@@ -17,6 +19,7 @@ WRAPPED = (
     "motions.toml"
 )
 _LONGEST, _MOST_HEADER = 300, 300  # characters of a header line, and lines, that are looked at
+_PIECE = 10_000  # lines that are read at once
 _TOUCHING = re.compile(r"\s*(?:[-+]?\d*\.\d+(?:[EDed][-+]?\d+)?\s*)+")  # with points, unlike a date such as 2010-11-14
 _SIGN = re.compile(r"(?<=[\d])-(?=[\d.])")
 _NUMERIC = re.compile(r'[-+.,;"\s]*[0-9][-+0-9.,;eEdD"\s]*')
@@ -33,17 +36,21 @@ def read_table(text: str, wrapped: bool = False) -> tuple[list[str], Samples]:
     """
     header: list[str] = []
     rest: list[float] = []
-    rows, at, width = array("d"), array("q"), 0
+    rows, at, width, end = array("d"), array("q"), 0, 0
     lines = lines_of(text)
-    separators = _separators(lines)
+    separators = _separators(text, lines)
     for i, line in enumerate(lines):
+        if i < end:  # of the rows that were read at once
+            continue
         stripped = line.strip()
         comment = stripped.startswith(_COMMENT)
         row = None if comment else _numbers(stripped, *separators)
         if row and len(row) == (width or len(row)):
+            block = [] if width else _even_rows(lines[i + 1 : -1], len(row), *separators)
             width = len(row)
-            rows.extend(row)
-            at.append(i)
+            end = i + 1 + len(block) // width
+            rows.extend(chain(row, block))
+            at.extend(range(i, end))
         elif row and len(row) < width and not any(map(str.strip, lines[i + 1 :])):
             rest = row
         elif row:
@@ -65,7 +72,7 @@ def read_table(text: str, wrapped: bool = False) -> tuple[list[str], Samples]:
     if wild.any():
         i = at[int(wild.argmax())]
         raise InputError(f'line {i + 1}: found "{lines[i].strip()[:60]}"; expected finite numbers')
-    if is_cut_short([lines[i].split()[-1].replace(",", ".") for i in at[-LOOKED_AT:]]):
+    if is_cut_short(lines[i].split()[-1].replace(",", ".") for i in reversed(at)):
         raise InputError(
             f"line {at[-1] + 1}: its last number is shorter than all others: the file is cut; fetch it again"
         )
@@ -79,12 +86,14 @@ def _refused(lines: list[str], why: str) -> InputError:
     return InputError(why) if 2 * numbers >= len(written) else NoRecordError(why)
 
 
-def _separators(lines: list[str]) -> tuple[str, str]:
+def _separators(text: str, lines: list[str]) -> tuple[str, str]:
     """Return the characters between columns besides blanks, and the decimal comma, "" without one."""
-    if not any("," in line and _NUMERIC.fullmatch(line) for line in lines):
+    if not _in_numbers(",", text, lines):
         return ";", ""
+    semicolon, point, tab = (_in_numbers(sign, text, lines) for sign in ";.\t")
+    if point and not (semicolon or tab):  # most are; one look more at each line tells the others apart
+        return ",", ""
     body = [line for line in lines if _NUMERIC.fullmatch(line)]
-    semicolon, point, tab = (any(sign in line for line in body) for sign in ";.\t")
     if semicolon or (tab and any("," in field.strip(" ,") for line in body for field in line.split("\t"))):
         if point:
             raise InputError(
@@ -99,6 +108,33 @@ def _separators(lines: list[str]) -> tuple[str, str]:
         f'found "{next(line for line in body if "," in line).strip()[:40]}": a comma may be decimal or between '
         'columns; write points in numbers, or ";" between columns'
     )
+
+
+def _in_numbers(sign: str, text: str, lines: list[str]) -> bool:
+    """Return whether a character stands in one of the lines that hold numbers only."""
+    return sign in text and any(sign in line and _NUMERIC.fullmatch(line) for line in lines)
+
+
+def _even_rows(lines: Sequence[str], width: int, between: str, decimal: str) -> "array[float]":
+    """Return the numbers of the first ``lines``, as far as all hold ``width`` of them, as plainly written as most are.
+
+    They are those that :func:`_numbers` gives. A piece after the other: all words at once would take thirty times their size.
+    """
+    rows = array("d")
+    for first in range(0, len(lines), _PIECE):
+        text = "\n".join(lines[first : first + _PIECE]).replace('"', " ")
+        if between:
+            text = text.replace(between, " ")
+        if decimal:
+            text = text.replace(decimal, ".")
+        words = [line.split() for line in text.split("\n")]
+        if "_" in text or set(map(len, words)) != {width}:
+            break
+        try:
+            rows.extend(list(map(float, chain.from_iterable(words))))
+        except ValueError:
+            break
+    return rows
 
 
 def _numbers(line: str, between: str, decimal: str) -> list[float] | None:

@@ -21,6 +21,7 @@ import numpy as np
 from rockbatch.errors import InputError
 from rockbatch.lazy import obspy
 
+_ADDRESS = re.compile(r"<[\w.]+ object at 0x[0-9a-fA-F]+>")  # another one each time
 _UNDEFINED = -12345  # of SAC; as text for its words of eight letters
 _SAC_HEADER, _FLOATS, _INTEGERS = 632, 70, 40  # bytes; words of four bytes, floats first
 _SAC_FLOATS = {  # word, the least and the largest value
@@ -152,7 +153,8 @@ def read_stream(data: bytes, name: str) -> "obspy.Stream":
                 io.BytesIO(data), format=name, check_compression=False, **_OPTIONS.get(name, {})
             )
         except Exception as error:  # ObsPy's readers raise all sorts of types on damaged files
-            raise InputError(f"ObsPy's {name} reader refuses it: {type(error).__name__}: {error}") from None
+            said = _ADDRESS.sub("the file", str(error))
+            raise InputError(f"ObsPy's {name} reader refuses it: {type(error).__name__}: {said}") from None
     complaints = [str(w.message) for w in caught if not issubclass(w.category, DeprecationWarning | FutureWarning)]
     complaints += unraised
     if complaints:
