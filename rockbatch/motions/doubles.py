@@ -27,6 +27,7 @@ from rockbatch.motions.stations import in_one_event, is_numbered
 _CORRECTED = {True: 0, None: 1, False: 2}
 _ALIKE = 0.7  # correlation: real files of one recording have 0.98 and more, other records 0.63 at most, halves 0.46
 _CERTAIN = 0.95  # correlation that decides where headers do not
+_SIGNIFICANT = 4.0  # standard deviations of Fisher's transform of it: random walks have 3 at most, real files of one recording 27
 _SAME_STEP = 1e-3  # relative
 _SAME_SHAPE = 1e-3  # of the peak: what printing a scaled copy may cost a sample
 _NO_FACTOR, _GROSS_FACTOR = 0.005, 0.05  # relative: values of g, and rounding; what has to be confirmed
@@ -341,9 +342,37 @@ def _are_parts(a: Component, b: Component) -> bool:
 
 
 def _correlate(a: Component, b: Component) -> bool:
-    """Return whether the samples of two components, brought to one step, are those of one recording."""
+    """Return whether the samples of two components, brought to one step, are those of one recording.
+
+    A few waves of one period look alike whoever recorded them: of n independent values, the inverse hyperbolic tangent of a
+    correlation by chance has a standard deviation of 1/√(n − 3) (Fisher), and what is found has to be far above that.
+    """
     coarse, fine = sorted((a, b), key=lambda c: -c.dt)
-    return correlation(coarse.acceleration, _at_step(fine, coarse.dt)) >= _CERTAIN
+    one, two = coarse.acceleration, _at_step(fine, coarse.dt)
+    found = correlation(one, two)
+    if found < _CERTAIN:
+        return False
+    n = _independent_values(one, two)
+    return n > 3.0 and math.atanh(min(found, 1.0 - 1e-12)) * math.sqrt(n - 3.0) >= _SIGNIFICANT
+
+
+def _independent_values(one: Samples, two: Samples) -> float:
+    """Return how many independent values two series of one step have in common: 2BT.
+
+    B is the bandwidth of their power spectra S₁ and S₂, ∫S₁df ∫S₂df / ∫S₁S₂df; T is the shorter of the times in which 5 to
+    95% of ∫a² dt grow, over 0.9.
+    """
+    n = 1 << (len(one) + len(two)).bit_length()
+    first, second = (np.square(np.abs(np.fft.rfft(x - x.mean(), n))) for x in (one, two))
+    bandwidth = float(first.sum() * second.sum()) / (float(first @ second) or 1.0) / n
+    return 2.0 * bandwidth * min(map(_strong_samples, (one, two))) / 0.9
+
+
+def _strong_samples(values: Samples) -> int:
+    """Return the number of samples in which 5 to 95% of the sum of their squares grow."""
+    energy = np.cumsum(np.square(values))
+    first, last = np.searchsorted(energy, [0.05 * energy[-1], 0.95 * energy[-1]])
+    return int(last - first)
 
 
 def _at_step(component: Component, dt: float) -> Samples:

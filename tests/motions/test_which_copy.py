@@ -1,5 +1,7 @@
 """Of several copies of a recording one is used, as a whole set, and nothing counts twice: on files made here."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from fixed_column_files import A, B, C, cosmos_text, csmip_channel, smc_text
@@ -11,6 +13,7 @@ from rockbatch.motions import ReadOptions, doubles, read_motions
 from rockbatch.motions.component import Component
 from rockbatch.motions.orientation import Orientation
 
+NEAR_FAULT = Path(__file__).parents[2] / "motions" / "near_fault"
 DATE = "FECHA DEL SISMO [GMT]"
 
 
@@ -140,6 +143,29 @@ def test_records_that_only_look_alike_stay_two(tmp_path):
         text = cosmos_text(A + 0.01 * i * B, clock=(2018, 11, 30, hour, 29))
         (tmp_path / f"{i}.v1c").write_text(text, encoding="latin-1")
     assert len(read_motions(tmp_path).motions) == 2
+
+
+@pytest.mark.parametrize("seconds", [4, 40])
+def test_waves_of_a_few_long_periods_are_no_copies_of_each_other(tmp_path, seconds):
+    """Random walks have four independent values, whatever their length: of 300, several correlate by 0.95 and more."""
+    rng, t = np.random.default_rng(5), np.linspace(0.0, seconds, 401)[:-1]
+    walks = np.cumsum(rng.standard_normal((300, len(t))), axis=1)
+    walks -= walks.mean(axis=1, keepdims=True)
+    for i, walk in enumerate(walks):
+        rows = "".join(f"{x:.2f} {a:.6f}\n" for x, a in zip(t, walk / np.abs(walk).max(), strict=True))
+        (tmp_path / f"r{i}_NS.txt").write_text("time(s) a(m/s2)\n" + rows)
+    assert len(read_motions(tmp_path, confirmed=["*"]).motions) == 300
+
+
+def test_a_copy_of_a_record_of_one_period_is_found_without_a_header(tmp_path):
+    """Soft soil near Christchurch swung at 0.5 Hz: 7 independent values, the fewest of the records at hand."""
+    (soil,) = (m for m in read_motions(NEAR_FAULT).motions if "NBLC" in m.name and "N00E" in m.name)
+    noise = 0.05 * soil.horizontal.std() * np.random.default_rng(1).standard_normal(soil.npts)
+    for name, values in (("a", soil.horizontal), ("b", soil.horizontal + noise)):
+        rows = "".join(f"{i * soil.dt:.3f} {a:.6f}\n" for i, a in enumerate(values))
+        (tmp_path / f"{name}_NS.txt").write_text("time(s) a(m/s2)\n" + rows)
+    found = read_motions(tmp_path)
+    assert (len(found.motions), len(found.left_out)) == (1, 1)
 
 
 # Whole sets
