@@ -36,12 +36,21 @@ _PLAIN_ONLY = sum(getattr(os, flag, 0) for flag in ("O_NOFOLLOW", "O_NONBLOCK", 
 _FORMULA_AHEAD = r"(?='*[=+\-@＝＋－＠\t\r\n].)"
 _FORMULA = re.compile(rf"(?:\A|(?<=;)){_FORMULA_AHEAD}", re.DOTALL)
 _SAVED_FORMULA = re.compile(rf"(?:\A|(?<=;))'{_FORMULA_AHEAD}", re.DOTALL)
+_JOINING = (
+    r"\u0620\u0626\u0628\u062a-\u062e\u0633-\u063f\u0641-\u0647\u0649\u064a"  # Arabic letters that join the next one
+    r"\u0678-\u0687\u069a-\u06bf\u06c1\u06c2\u06cc\u06ce\u06d0\u06d1"
+)
+_VIRAMAS = r"\u094d\u09cd\u0a4d\u0acd\u0b4d\u0bcd\u0c4d\u0ccd\u0d4d\u0dca"
+_EMOJI = r"\u2600-\u27bf\U0001f300-\U0001faff"
 _UNPRINTABLE = re.compile(
+    # what joins or parts letters of Persian and Indian scripts and emoji is seen there (as in RFC 5892, appendix A), and stays
+    rf"(?!(?<=[{_JOINING}])\u200c[\u0620\u0622-\u064a\u0671-\u0673\u0675-\u06d3]|(?<=[{_VIRAMAS}])[\u200c\u200d][\u0904-\u0dff]"
+    rf"|(?<=[{_EMOJI}\ufe0f])\u200d[{_EMOJI}]|(?<=[{_EMOJI}])\ufe0f)"
     r"[\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff"  # controls, line breaks, bytes that are no text
     r"\xad\u034f\u061c\u115f\u1160\u17b4\u17b5\u180b-\u180f\u200b-\u200f\u202a-\u202e\u2060-\u206f\u3164\ufe00-\ufe0f"
     r"\ufeff\uffa0\ufff0-\ufffb\U0001bca0-\U0001bca3\U0001d173-\U0001d17a\U000e0000-\U000e0fff]"
 )
-"""Characters that are obeyed or not seen: the second and third lines are Unicode's Default_Ignorable_Code_Point."""
+"""Characters that are obeyed or not seen: the last two lines are Unicode's Default_Ignorable_Code_Point."""
 
 
 def opened(path: Path, mode: Literal["rb", "r+b"] = "rb") -> io.FileIO:

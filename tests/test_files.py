@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rockbatch.files import csv_lines, csv_plain, csv_safe, csv_text, legible
+from rockbatch.toml import kinds
 
 FORMULAS = ["=1+1", "+1", "-2+3", "@SUM(A1)", "\t=1", "\r=1", '=HYPERLINK("http://x")', "＝1+1", "＋1", "－2", "＠A1"]
 
@@ -60,6 +61,26 @@ def test_no_character_that_is_not_seen_makes_two_names_look_alike(hidden):
     written = hidden.encode("ascii", "backslashreplace").decode()
     assert legible(f"TA{hidden}Z") == f"TA{written}Z"
     assert legible(f"TA{hidden}Z", keep="\t\r\n") == csv_text(("a",), [{"a": f"TA{hidden}Z"}]).split()[1]
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["نرم\u200cافزار", "می\u200cشود", "क्\u200dष", "ക്\u200cഷ", "❤\ufe0f", "👩\u200d🔬", "🏗\ufe0f", "❤\ufe0f\u200d🔥"],
+)
+def test_joiners_and_selectors_stay_where_they_are_seen(name):
+    assert legible(name) == name
+    assert kinds.text(name) == name
+    assert csv_text(("a",), [{"a": name}]).split("\n")[1] == name
+
+
+@pytest.mark.parametrize(
+    "name", ["a\u200cb", "م\u200c", "\u200cم", "د\u200cا", "م\u200c\u200cم", "م\u200c9", "👩\u200d",
+    "👩\u200da", "1\ufe0f", "❤\ufe0f\ufe0f", "क\u200dष", "नी\u200c"]
+)  # fmt: skip
+def test_joiners_that_change_nothing_are_written_out(name):
+    assert "\\u" in legible(name)
+    with pytest.raises(kinds.KindError, match="invisible"):
+        kinds.text(name)
 
 
 def test_all_format_characters_are_written_out_but_those_that_are_seen():

@@ -29,6 +29,7 @@ from rockbatch.files import refuse_folders
 from rockbatch.lazy import pd
 from rockbatch.motions import MotionSet
 from rockbatch.results.columns import PART, as_table, columns, unusable_rows
+from rockbatch.results.run_json import FROM_PYTHON
 from rockbatch.study import Motions, Study, given_study
 from rockbatch.study.suite import ground_motions
 from rockbatch.toml.kinds import closest
@@ -93,11 +94,11 @@ def run(
     asked, listener, engine = given_study(study, motions), listener_of(progress), engine_of(jobs)
     if out is None:
         return _in_memory(asked, engine, listener)
-    command = ["run", str(asked.path), "--out", os.fspath(out)]
+    command = ["run", str(asked.path) if asked.in_file else f"(study {FROM_PYTHON}", "--out", os.fspath(out)]
     if motions is not None:
         command += [
             "--motions",
-            os.fspath(motions) if isinstance(motions, str | os.PathLike) else "(motions from Python)",
+            os.fspath(motions) if isinstance(motions, str | os.PathLike) else f"(motions {FROM_PYTHON}",
         ]
     finished = run_into(Path(out), asked, engine, listener, command=command, fresh=fresh)
     assert finished is not None  # no share is asked for

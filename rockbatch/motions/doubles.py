@@ -27,7 +27,9 @@ from rockbatch.motions.stations import in_one_event, is_numbered
 _CORRECTED = {True: 0, None: 1, False: 2}
 _ALIKE = 0.7  # correlation: real files of one recording have 0.98 and more, other records 0.63 at most, halves 0.46
 _CERTAIN = 0.95  # correlation that decides where headers do not
-_SIGNIFICANT = 4.0  # standard deviations of Fisher's transform of it: random walks have 3 at most, real files of one recording 27
+_SIGNIFICANT = (
+    4.0  # standard deviations of Fisher's transform of it: random walks have 3 at most, real files of one recording 27
+)
 _SAME_STEP = 1e-3  # relative
 _SAME_SHAPE = 1e-3  # of the peak: what printing a scaled copy may cost a sample
 _NO_FACTOR, _GROSS_FACTOR = 0.005, 0.05  # relative: values of g, and rounding; what has to be confirmed

@@ -195,7 +195,7 @@ def described(
             said = f"component = {shown(entry.component)}: the file has {known}"
             entry.table.complain(f"{said}; write one of these, or its number in the file", "component")
         if len(meant) > 1:
-            for key in {"azimuth", "role"} & entry.values.keys():
+            for key in (key for key in ("azimuth", "role") if key in entry.values):
                 entry.table.complain(
                     f"{key}: the file has {len(meant)} components; write component = "
                     f"{shown(components[0].orientation.label)} with it, and a table for each",

@@ -26,6 +26,8 @@ from rockbatch.results.shape import Maybe
 from rockbatch.study import Case, Study
 
 INFO = "run.json"
+FROM_PYTHON = "from Python)"
+"""End of a word of the command that stands for what no file holds: "(study from Python)"."""
 
 _NUMBER = (float, None)
 _VALUES = {str: (float, str)}

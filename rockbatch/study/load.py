@@ -14,6 +14,7 @@ from rockbatch.checks.choices import implausible, unmet
 from rockbatch.checks.demands import BROUGHT
 from rockbatch.checks.reading import SUITE, read_checks
 from rockbatch.checks.rules import CHECK, Rule
+from rockbatch.errors import InputError
 from rockbatch.motions import MotionSet
 from rockbatch.pier import described, symmetric
 from rockbatch.showing import Shown, several
@@ -185,6 +186,14 @@ class Study(Shown):
         before = tomllib.loads(self.text)
         after = without_lost_cases(before, changed(before, changes))
         return _checked(TomlFile.parse(self.path, as_toml(after), lined=False), instead)
+
+    @property
+    def in_file(self) -> bool:
+        """Return whether the file at ``path`` holds this study as it is, so that a command can read it again."""
+        try:
+            return TomlFile.text_of(self.path) == self.text
+        except InputError:
+            return False
 
     def file(self) -> TomlFile:
         """Return the text, parsed again, for the tables of analyses."""

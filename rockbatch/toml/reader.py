@@ -276,7 +276,7 @@ class Table:
                     instead = f"write one of {', '.join(there)}" if there else "leave it out"
                     message = f"confirm = {shown(setting.value)}: this table has no such key; {instead}"
                     self.complain_about(setting, message)
-        for name in usable.keys() - self.confirmed:
+        for name in (name for name in usable if name not in self.confirmed):
             usual = keys[name].usual
             for setting in usable[name]:
                 if usual is not None and setting.value > usual.most:

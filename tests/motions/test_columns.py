@@ -290,7 +290,9 @@ def test_any_text_ends_in_motions_or_reasons(tmp_path, content):
             assert isinstance(reading, Unusable) or np.isfinite(reading.acceleration).all()
 
 
-WORDS = st.sampled_from(("0.1", "-2.50", "1e3", "1D-2", "1_0", "nan", "1e999", "x", "#", '"3.5"', "1,5", "1.0-2.0", ".5", "٣"))
+WORDS = st.sampled_from(
+    ("0.1", "-2.50", "1e3", "1D-2", "1_0", "nan", "1e999", "x", "#", '"3.5"', "1,5", "1.0-2.0", ".5", "٣")
+)
 ROWS = st.lists(st.lists(WORDS | st.sampled_from(("0.25", "-1.75")), min_size=0, max_size=4), min_size=1, max_size=12)
 
 

@@ -165,6 +165,23 @@ def test_runs_of_motions_from_python_are_those_of_their_files(tmp_path):
     assert rb.open_results(tmp_path / "out").info["command"][-2:] == ["--motions", "(motions from Python)"]
 
 
+@pytest.mark.parametrize("way", ["tables", "changed"])
+def test_a_study_that_no_file_holds_names_none_in_what_repeats_it(tmp_path, way):
+    """A file of that name may be another study; the report says how to have more histories without a command."""
+    path = write_study(tmp_path, study_text(cases=[RIGID]))
+    study = rb.load_study(path)
+    rb.run(study, tmp_path / "file")
+    other = study.with_(title="Other", output={"histories": "worst"})
+    if way == "tables":
+        other = rb.Study.from_toml(other.text, tmp_path / "gone.toml")
+    rb.run(other, tmp_path / "out")
+    assert rb.open_results(tmp_path / "file").info["command"][:3] == ["rockbatch", "run", str(path)]
+    assert rb.open_results(tmp_path / "out").info["command"][:3] == ["rockbatch", "run", "(study from Python)"]
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert "Histories of the runs under another record" in page
+    assert "--history" not in page
+
+
 def test_a_study_is_shown_in_a_few_lines(tmp_path, pier4):
     assert repr(pier4).splitlines() == [
         "<study 'Pier 4'>",

@@ -27,7 +27,10 @@ def lines_of(text: str) -> list[str]:
     a line that is longer than any of numbers, whose words would take thirty times its size.
     """
     lines = text.rstrip("\x00\x1a\r\n").replace("\r\n", "\n").replace("\r", "\n").split("\n")
-    if len(text) > _LONGEST and (too_long := next((i for i, line in enumerate(lines) if len(line) > _LONGEST), -1)) >= 0:
+    if (
+        len(text) > _LONGEST
+        and (too_long := next((i for i, line in enumerate(lines) if len(line) > _LONGEST), -1)) >= 0
+    ):
         raise InputError(f"line {too_long + 1} has {len(lines[too_long]):,} characters; expected {_LONGEST:,} at most")
     return lines
 

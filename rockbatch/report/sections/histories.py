@@ -15,6 +15,7 @@ from rockbatch.report.finished import Finished, as_dicts, worst_first
 from rockbatch.report.markup import Markup, join, tag
 from rockbatch.report.templates import render
 from rockbatch.results.histories_file import Responses
+from rockbatch.results.run_json import FROM_PYTHON
 from rockbatch.simulation.response import Response
 
 MOST_COLUMNS = 40
@@ -32,7 +33,9 @@ def section(finished: Finished) -> Markup:
     """Draw the stored histories; empty if there are none."""
     if not len(finished.responses):
         return Markup("")
-    command = shlex.join([*map(str, finished.info["command"]), "--history", "RECORD"])
+    words = list(map(str, finished.info["command"]))
+    again = not any(word.endswith(FROM_PYTHON) for word in words)
+    command = shlex.join([*words, "--history", "RECORD"]) if again else ""
     return render("sections/histories.html", pictures=_pictures(finished, finished.responses), command=command)
 
 
