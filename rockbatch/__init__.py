@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from rockbatch.batch.single import simulate
     from rockbatch.checks import Rule
     from rockbatch.errors import InputError
-    from rockbatch.motions import Motion, MotionSet, ReadOptions, pulse, read_motions
+    from rockbatch.motions import Motion, MotionSet, ReadOptions, pulse, read_motions, sequence
     from rockbatch.pier import Damper, ElasticBase, Part, Pier, RigidBase, Tendon, YieldingBase
     from rockbatch.report import report
     from rockbatch.results.checking import check
@@ -30,7 +30,7 @@ _NAMES = {
     "batch.single": "simulate",
     "checks": "Rule",
     "errors": "InputError",
-    "motions": "Motion MotionSet ReadOptions pulse read_motions",
+    "motions": "Motion MotionSet ReadOptions pulse read_motions sequence",
     "pier": "Damper ElasticBase Part Pier RigidBase Tendon YieldingBase",
     "report": "report",
     "results.checking": "check",
@@ -65,6 +65,7 @@ __all__ = [
     "report",
     "run",
     "sensitivity",
+    "sequence",
     "simulate",
     "spectrum",
 ]

@@ -25,7 +25,7 @@ from rockbatch.lazy import pd
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 LOCK = "rockbatch.lock"
 UNFINISHED = ".unfinished"
-NAMES = ("record", "case", "polarity", "status", "reason", "mirror_of", "map", "limit")
+NAMES = ("record", "case", "polarity", "status", "reason", "mirror_of", "map", "limit", "shock_record", "shock_status")
 """Columns of tables that hold words from elsewhere."""
 MOST_TEXT = 1 << 30
 """Most bytes of a file that is read as a whole: run.json of the largest study takes a third of it."""

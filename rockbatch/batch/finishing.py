@@ -15,6 +15,7 @@ from rockbatch.batch.journal import Journal
 from rockbatch.batch.kept_histories import keep_histories, kept
 from rockbatch.batch.listening import Listener, announced_if_slow
 from rockbatch.batch.plan import Plan
+from rockbatch.batch.shocks import rows_by_shock, sequences_of
 from rockbatch.batch.threads import cores
 from rockbatch.checks import Verdict, write_verdicts
 from rockbatch.checks.verdicts import CHECKS
@@ -31,9 +32,10 @@ from rockbatch.results.intensity import INTENSITY, intensities
 from rockbatch.results.opened import open_results
 from rockbatch.results.reading import Saved, edited
 from rockbatch.results.run_json import INFO, describe, versions, write_info
+from rockbatch.results.shocks import SHOCKS
 from rockbatch.study import Study
 
-OUTPUTS = (PEAKS, INFO, HISTORIES, INTENSITY, ESTIMATE, CHECKS, REPORT, SEMICOLONS)
+OUTPUTS = (PEAKS, INFO, HISTORIES, INTENSITY, ESTIMATE, SHOCKS, CHECKS, REPORT, SEMICOLONS)
 """Files that a run may leave in its folder."""
 
 
@@ -154,7 +156,7 @@ def finish(
     with announced_if_slow(listener, f"holding {len(study.checks)} checks against {len(study.cases)} cases"):
         judged = verdicts(saved) if study.checks else []
         checks = write_verdicts(directory, judged) if study.checks else None
-    beside = _beside_peaks(saved, study, motions)
+    beside = [*_beside_peaks(saved, study, motions), *_shocks(saved, study, motions, runs, listener)]
     with announced_if_slow(listener, f"writing {REPORT}"):
         report = write_report(directory, saved=saved)
     written = (directory / PEAKS, directory / INFO, *beside, histories, checks, report)
@@ -172,6 +174,17 @@ def _beside_peaks(saved: Saved, study: Study, motions: MotionSet) -> list[Path]:
         else:
             (saved.directory / name).unlink(missing_ok=True)
     return written
+
+
+def _shocks(saved: Saved, study: Study, motions: MotionSet, runs: Plan, listener: Listener) -> list[Path]:
+    """Write the table of shocks if some motions are sequences, and take away that of another time."""
+    path = saved.directory / SHOCKS
+    if not any(motion.shocks for motion in motions.motions):
+        path.unlink(missing_ok=True)
+        return []
+    with listener.progress(len(sequences_of(runs))) as progress:
+        jobs = min(int(saved.info["jobs"]) or cores(), cores())
+        return [write(path, rows_by_shock(study, runs, saved.peaks, jobs, progress))]
 
 
 def _keep_histories(

@@ -10,12 +10,14 @@ from rockbatch.motions import Motion
 from rockbatch.motions.plausible import unlikely_samples
 from rockbatch.pier import Base, Pier, problems, unlikely_devices
 from rockbatch.results.columns import Ran, as_series, row
+from rockbatch.results.shocks import as_table, shock_rows
 from rockbatch.simulation.histories import histories, rocking_from_lean, with_observed
 from rockbatch.simulation.models import least_substeps
 from rockbatch.simulation.outcome import Outcome
 from rockbatch.simulation.response import Response
 from rockbatch.simulation.runs import Run, run_fixed
 from rockbatch.simulation.settling import run_to_tolerance
+from rockbatch.simulation.shocks import by_shock
 from rockbatch.study import Case, Numerics
 from rockbatch.study.spec import LEAST_NORMAL_SHARE, LEAST_TOLERANCE
 
@@ -96,6 +98,9 @@ def simulate(
         run, outcome, numerics.quiet_s, ledger=ledger, least_normal=least_normal_share if forces else None,
         error=numerics.substeps is None, wait=wait,
     )  # fmt: skip
+    if motion.shocks:
+        outcomes = by_shock(run, outcome, numerics.quiet_s, error=numerics.substeps is None, wait=wait)
+        response = replace(response, shocks=as_table(shock_rows(motion, pier, outcomes)))
     return replace(response, row=as_series(row(Ran(outcome, motion, "+", 1.0, Case(name, pier, foundation, {})))))
 
 

@@ -5,5 +5,6 @@ from rockbatch.motions.formats import ReadOptions
 from rockbatch.motions.motion import LeftOut, Motion, Unusable
 from rockbatch.motions.motion_set import MotionSet
 from rockbatch.motions.pulses import pulse
+from rockbatch.motions.sequences import sequence
 
-__all__ = ["LeftOut", "Motion", "MotionSet", "ReadOptions", "Unusable", "pulse", "read_motions"]
+__all__ = ["LeftOut", "Motion", "MotionSet", "ReadOptions", "Unusable", "pulse", "read_motions", "sequence"]

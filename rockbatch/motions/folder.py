@@ -27,6 +27,7 @@ from rockbatch.motions.motion import LeftOut, Unusable
 from rockbatch.motions.motion_set import MotionSet
 from rockbatch.motions.orientation import counted, is_clock, split_stem, unknown
 from rockbatch.motions.pairing import to_motions
+from rockbatch.motions.sequences import ShockSequence, with_sequences
 from rockbatch.motions.texts import with_legible_texts
 from rockbatch.units import GRAVITY
 
@@ -113,13 +114,16 @@ def read_motions(
     """
     given = [Path(paths)] if isinstance(paths, str | os.PathLike) else [Path(path) for path in paths]
     packaged = _packaged(given, fema, gravity)
-    readings, _ = read_files(given, options=options, gravity=gravity, offset=offset)
+    readings, _, sequences = read_files(given, options=options, gravity=gravity, offset=offset)
     components, doubles = without_doubles([reading for reading in readings if isinstance(reading, Component)])
     confirming = {"confirmed": confirmed, "confirmed_pga": confirmed_pga}
     paired = to_motions(components, packaged, vertical=vertical, gravity=gravity, azimuths=azimuths, **confirming)
     unusable = [*(reading for reading in readings if isinstance(reading, Unusable)), *paired.unusable]
     left_out = [*(reading for reading in readings if isinstance(reading, LeftOut)), *doubles]
-    return MotionSet(paired.motions, sorted(unusable, key=lambda u: u.source), left_out)
+    motions = MotionSet(paired.motions, sorted(unusable, key=lambda u: u.source), left_out)
+    for manifest, of_manifest in grouped(sequences, lambda pair: pair[0]).items():
+        motions = with_sequences(motions, [sequence for _, sequence in of_manifest], where=manifest)[0]
+    return motions
 
 
 def _packaged(given: Sequence[Path], fema: Sequence[tuple[str, float]], gravity: float) -> list[Component]:
@@ -147,8 +151,9 @@ def read_files(
     options: ReadOptions | None = None,
     gravity: float = GRAVITY,
     offset: Offset | None = None,
-) -> tuple[list[Reading], dict[str, Path]]:
-    """Return components of all files, before they are paired, and what is none; with the path of each source.
+) -> tuple[list[Reading], dict[str, Path], list[tuple[str, ShockSequence]]]:
+    """Return components of all files, before they are paired, and what is none; with the path of each source, and the sequences
+    of each manifest.
 
     Raises ``InputError`` with every mistake in the manifests.
     """
@@ -164,7 +169,8 @@ def read_files(
             if file.path not in manifests:
                 readings += _readings(file, asked)
     manifest.finish()
-    return _without_companions(_without_renamed(readings, files)), {file.source: file.path for file in files}
+    companions = _without_companions(_without_renamed(readings, files))
+    return companions, {file.source: file.path for file in files}, manifest.sequences
 
 
 def _with_progress(files: Sequence[Found]) -> Iterable[Found]:

@@ -9,7 +9,7 @@ import io
 import os
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +20,7 @@ from rockbatch.motions.component import Component
 from rockbatch.motions.formats import LAYOUTS, ReadOptions
 from rockbatch.motions.motion import Unusable
 from rockbatch.motions.orientation import Orientation
+from rockbatch.motions.sequences import ShockSequence, read_sequences
 from rockbatch.toml.kinds import boolean, choice, closest, not_negative, number, positive, shown, text
 from rockbatch.toml.reader import Table, TomlFile
 from rockbatch.toml.section import Key, Section
@@ -90,6 +91,7 @@ class Manifest:
     entries: dict[Path, list[Entry]]
     files: list[TomlFile]
     refused: list[str]
+    sequences: list[tuple[str, ShockSequence]] = field(default_factory=list)  # with the manifest of each
 
     @classmethod
     def read(cls, paths: Iterable[Path]) -> "Manifest":
@@ -106,7 +108,8 @@ class Manifest:
 
     def _take(self, file: TomlFile) -> None:
         self.files.append(file)
-        Table(file, (), "", file.data).read({}, other=("record",))
+        Table(file, (), "", file.data).read({}, other=("record", "sequence"))
+        self.sequences += [(str(file.path), each) for each in read_sequences(file, "sequence")]
         folder = Path(os.path.realpath(file.path.parent))
         seen: set[tuple[Path, str | None]] = set()
         for table in file.tables("record", title="file"):

@@ -51,7 +51,7 @@ def draft(folder: Path, options: ReadOptions | None = None) -> str:
 
     As long as it is not edited it changes no name and no number.
     """
-    readings, paths = read_files([folder], options=options)
+    readings, paths, _ = read_files([folder], options=options)
     components = [reading for reading in readings if isinstance(reading, Component)]
     doubles = {(double.name, double.source): double.reason for double in without_doubles(components)[1]}
     stations = {id(c): station[0].station or station[0].site for station in by_station(components) for c in station}

@@ -34,6 +34,17 @@ class Initial:
 
 
 @dataclass(frozen=True)
+class Shock:
+    """A record within a sequence of shocks: its name, the times of its first and last sample in the sequence [s], and when the
+    next one begins; behind the last one a pause, too."""
+
+    name: str
+    start: float
+    end: float
+    until: float
+
+
+@dataclass(frozen=True)
 class Finding:
     """An oddity of a motion."""
 
@@ -106,6 +117,8 @@ class Motion(Shown):
         What the components of one station in one earthquake share, which count as one record; empty for a record of its own.
     confirm : sequence of str
         "pga", if it is right though no earthquake has had such a one; else :func:`rockbatch.simulate` refuses it.
+    shocks : tuple of Shock
+        Records of which it is a sequence, in their order; empty for a record of its own.
 
     Raises ``InputError`` for samples that are no numbers and components of different lengths.
 
@@ -139,6 +152,7 @@ class Motion(Shown):
     lacks_vertical: bool = False
     station: str = ""
     confirm: Sequence[str] = ()
+    shocks: tuple[Shock, ...] = ()
 
     def __post_init__(self) -> None:
         wrong = []
@@ -247,7 +261,8 @@ class Motion(Shown):
     @property
     def label(self) -> str:
         """Its name for people: "Imperial Valley 1979, Meloland, 270"; its file where the header tells nothing."""
-        return self.origin.label or (self.name if self.source in ("", "pulse") else self.source)
+        by_name = self.source in ("", "pulse") or len(self.shocks) > 1
+        return self.origin.label or (self.name if by_name else self.source)
 
     @property
     def named(self) -> str:

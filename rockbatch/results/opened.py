@@ -17,6 +17,7 @@ from rockbatch.results.estimate import ESTIMATE
 from rockbatch.results.histories_file import HISTORIES, Responses
 from rockbatch.results.intensity import INTENSITY, orders
 from rockbatch.results.reading import Saved, read_saved
+from rockbatch.results.shocks import SHOCKS, read_shocks
 from rockbatch.showing import Shown, several
 from rockbatch.simulation.response import Response
 from rockbatch.toml.kinds import closest, shown
@@ -51,6 +52,16 @@ class Results(Shown, Saved):
     def estimate(self) -> "pd.DataFrame":
         """``estimate.csv``: the estimates of design practice beside the peaks ([output] estimate = true)."""
         return self._beside(ESTIMATE, "estimate")
+
+    @cached_property
+    def shocks(self) -> "pd.DataFrame":
+        """``shocks.csv``: what each shock does, where some motions are sequences ([[motions.sequence]])."""
+        path = self.directory / SHOCKS
+        if not path.exists():
+            raise InputError(
+                f"{path}: not there; write a [[motions.sequence]] in the study, and start `rockbatch run` again"
+            )
+        return read_shocks(path, self.info["varied"])
 
     def plot_cdf(self, width_mm: float = 160.0) -> "Figure":
         """Draw the distribution of θ_max/α over the records, a curve for each case, pier and scale: a matplotlib Figure.

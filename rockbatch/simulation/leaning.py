@@ -42,23 +42,35 @@ def apart(pier: Pier, base: ElasticBase, rows: np.recarray) -> Apart:
     """Separate rocking from lean in the ``rows`` of a run, at samples and both sides of events."""
     theta, lean, t = rows.theta, lean_of(pier, base, rows), rows.t
     swing = theta - lean
+    peak = int(np.abs(theta).argmax())
+    side = np.sign(theta[peak])
+    return Apart(*greatest_swing(t, theta, rows.omega, swing), float(side * lean[peak]), float(side * swing[peak]))
+
+
+def greatest_swing(t: Samples, theta: Samples, omega: Samples, swing: Samples) -> tuple[float, float]:
+    """Return the greatest |``swing``| [rad], θ less what is straight between rows, and its time, which may lie between rows."""
     h = np.diff(t)
     most, when = float(np.abs(swing).max()), float(t[np.abs(swing).argmax()])
-    first, last = (h * omega - np.diff(theta) for omega in (rows.omega[:-1], rows.omega[1:]))
+    first, last = (h * rate - np.diff(theta) for rate in (omega[:-1], omega[1:]))
     bound = np.maximum(np.abs(swing[:-1]), np.abs(swing[1:])) + np.maximum(np.abs(first), np.abs(last))
     near = np.flatnonzero(bound > most)
-    for s in np.arange(1, PARTS) / PARTS:  # θ is cubic between rows, and the lean straight
+    for s in np.arange(1, PARTS) / PARTS:  # θ is cubic between rows
         between = (1.0 - s) * swing[near] + s * swing[near + 1]
         rocking = np.abs(between + s * (1.0 - s) * ((1.0 - s) * first[near] - s * last[near]))
         if len(rocking) and rocking.max() > most:
             most, when = float(rocking.max()), float(t[near[rocking.argmax()]] + s * h[near[rocking.argmax()]])
-    peak = int(np.abs(theta).argmax())
-    side = np.sign(theta[peak])
-    return Apart(most, when, float(side * lean[peak]), float(side * swing[peak]))
+    return most, when
 
 
 def lean_of(pier: Pier, base: ElasticBase, rows: np.recarray) -> Samples:
     """Return the rotation [rad] at which the pier would rest on its base as it is at every row (THEORY.md, eq. 20)."""
+    left, right = unstressed(pier, base, rows)
+    b = pier.half_width
+    return 0.5 * (left - right) / b / tilt_over_residual(pier.gravity, pier.height, b, vertical_frequency(pier, base))
+
+
+def unstressed(pier: Pier, base: ElasticBase, rows: np.recarray) -> tuple[Samples, Samples]:
+    """Return the unstressed positions of the left and the right support at every row [m], up from those at the start."""
     b, h, theta = pier.half_width, pier.height, rows.theta
     rise, drop = b * theta, 0.0
     if base.kinematics == "finite":
@@ -66,8 +78,7 @@ def lean_of(pier: Pier, base: ElasticBase, rows: np.recarray) -> Samples:
     deflection = yield_deflection(pier, base)
     left = _last_borne(rows.v + rise + drop - deflection * rows.z_left, rows.left != 0.0)
     right = _last_borne(rows.v - rise + drop - deflection * rows.z_right, rows.right != 0.0)
-    tilt = 0.5 * (left - right) / b
-    return tilt / tilt_over_residual(pier.gravity, h, b, vertical_frequency(pier, base))
+    return left, right
 
 
 def _last_borne(unstressed: Samples, borne: Samples) -> Samples:

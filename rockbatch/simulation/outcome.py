@@ -231,5 +231,35 @@ class Outcome:
         )
 
 
+@dataclass(frozen=True)
+class ShockOutcome:
+    """What a shock does; SI units, angles in radians, NaN where it does not apply.
+
+    Attributes
+    ----------
+    status : str
+        "ok"; "overturned" or "flight" if the run ended so before the next shock began; "not reached"; or "failed".
+    theta_max, t_max : float
+        Greatest rotation |θ| from its first sample until the next shock begins, or the run ends, and its time.
+    theta_max_error : float
+        By how much halving the step still changed it; NaN with a fixed step.
+    theta_res : float
+        Rotation at which the pier would rest when the next shock begins, static on the deformed base; with dampers or tendons
+        the middle of the extremes of θ in the last quarter of the pause. Behind the last shock a pause counts, too.
+    settlement : float
+        Mean settlement of the supports since the start, at the same time.
+    moving : float
+        Half the range of θ in the last quarter of the pause.
+    """
+
+    status: str
+    theta_max: float = math.nan
+    t_max: float = math.nan
+    theta_max_error: float = math.nan
+    theta_res: float = math.nan
+    settlement: float = math.nan
+    moving: float = math.nan
+
+
 def _reversed(angle: float | None) -> float | None:
     return None if angle is None else 0.0 - angle  # never a negative zero

@@ -87,6 +87,9 @@ class Response(Shown):
     row : Series or None
         What the run came to: its row of ``peaks.csv``, by the names and in the units of its columns; NaN, or "", where one
         does not apply.
+    shocks : DataFrame or None
+        What each shock of a sequence does, in the columns of ``shocks.csv`` that are not names of the run; ``None`` for a
+        motion that is none.
 
     Examples
     --------
@@ -117,6 +120,7 @@ class Response(Shown):
     impacts: "pd.DataFrame | None" = field(default=None, repr=False)
     restraints: "pd.DataFrame | None" = field(default=None, repr=False)
     row: "pd.Series[Any] | None" = None
+    shocks: "pd.DataFrame | None" = field(default=None, repr=False)
 
     @property
     def theta_max(self) -> float:

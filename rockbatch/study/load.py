@@ -16,6 +16,7 @@ from rockbatch.checks.reading import SUITE, read_checks
 from rockbatch.checks.rules import CHECK, Rule
 from rockbatch.errors import InputError
 from rockbatch.motions import MotionSet
+from rockbatch.motions.sequences import SEQUENCE
 from rockbatch.pier import described, symmetric
 from rockbatch.showing import Shown, several
 from rockbatch.study.cases import BASE_KEYS, CASE, Expanded, read_cases
@@ -88,7 +89,8 @@ OF_REFERENCE = ("record", "case", "theta_max_over_alpha", "source")
 """Keys of a reference itself; the others tell its case from its siblings."""
 
 SECTIONS = (
-    TOP, PIER, PART, MOTIONS, SELECT, TARGET, PULSE, FEMA, CASE, DAMPER, TENDON, NUMERICS, OUTPUT, SUITE, CHECK, REFERENCE,
+    TOP, PIER, PART, MOTIONS, SELECT, TARGET, PULSE, FEMA, SEQUENCE, CASE, DAMPER, TENDON, NUMERICS, OUTPUT, SUITE, CHECK,
+    REFERENCE,
 )  # fmt: skip
 """Tables that are read with the study, outer ones before inner; those of analyses are read by their own commands."""
 

@@ -13,6 +13,7 @@ from rockbatch.motions.baseline import RULES, Offset
 from rockbatch.motions.formats import LAYOUTS, ROLES, ReadOptions
 from rockbatch.motions.pulses import SHAPES, unlikely
 from rockbatch.motions.selection import Selection
+from rockbatch.motions.sequences import read_sequences
 from rockbatch.motions.turning import every
 from rockbatch.study.spec import FemaSpec, MotionSpec, PulseSpec
 from rockbatch.study.target import read_target
@@ -149,6 +150,7 @@ def read_motions_table(file: TomlFile, replaced_by: Path | MotionSet | None = No
     read = _read_motions(table) if table else {}
     fema = _fema(file)
     pulses = _pulses(file)
+    read["sequences"] = read_sequences(file, "motions", "sequence")
     paths = read.pop("path", ())
     if isinstance(replaced_by, MotionSet):
         return MotionSpec(instead=replaced_by, **read)
@@ -169,7 +171,7 @@ def read_motions_table(file: TomlFile, replaced_by: Path | MotionSet | None = No
 
 def _read_motions(table: Table) -> dict[str, Any]:
     """Return the fields of a ``MotionSpec`` that are keys of [motions], and "path" as it is written."""
-    read = table.read(MOTIONS, other=SOURCES[1:])
+    read = table.read(MOTIONS, other=(*SOURCES[1:], "sequence"))
     if "columns" in read:
         with table.noting("columns"):
             ReadOptions(columns=read["columns"])

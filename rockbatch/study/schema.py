@@ -16,6 +16,7 @@ from rockbatch.checks.reading import SUITE
 from rockbatch.checks.reading import TOP as CHECKS_TOP
 from rockbatch.checks.rules import CHECK
 from rockbatch.motions.manifest import RECORD
+from rockbatch.motions.sequences import SEQUENCE
 from rockbatch.study import load, sensitivity
 from rockbatch.study.fragility import FRAGILITY
 from rockbatch.study.spectrum import MAP, SPECTRUM
@@ -28,7 +29,7 @@ STUDY = (*load.SECTIONS, FRAGILITY, SPECTRUM, MAP, *sensitivity.SECTIONS)
 CHECKS = (CHECKS_TOP, SUITE, replace(CHECK, required=True))
 """A file of checks, as ``rockbatch check --rules`` takes it."""
 
-MANIFEST = (Section((), "", {}), RECORD)
+MANIFEST = (Section((), "", {}), RECORD, replace(SEQUENCE, at=("sequence",)))
 """``motions.toml``, beside the records."""
 
 FILES = {"study": STUDY, "checks": CHECKS, "manifest": MANIFEST}

