@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from rockbatch.checks import Rule
     from rockbatch.errors import InputError
     from rockbatch.motions import Motion, MotionSet, ReadOptions, pulse, read_motions, sequence
+    from rockbatch.motions.hazard import HazardCurve
     from rockbatch.pier import Damper, ElasticBase, Part, Pier, RigidBase, Tendon, YieldingBase
     from rockbatch.report import report
     from rockbatch.results.checking import check
@@ -31,6 +32,7 @@ _NAMES = {
     "checks": "Rule",
     "errors": "InputError",
     "motions": "Motion MotionSet ReadOptions pulse read_motions sequence",
+    "motions.hazard": "HazardCurve",
     "pier": "Damper ElasticBase Part Pier RigidBase Tendon YieldingBase",
     "report": "report",
     "results.checking": "check",
@@ -43,6 +45,7 @@ _HOMES = {name: f"rockbatch.{home}" for home, names in _NAMES.items() for name i
 __all__ = [
     "Damper",
     "ElasticBase",
+    "HazardCurve",
     "InputError",
     "Motion",
     "MotionSet",

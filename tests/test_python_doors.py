@@ -63,6 +63,10 @@ levels_g = [0.4, 0.8, 1.6, 3.2]
 method = "ida"
 tolerance = 0.2
 
+[fragility.hazard]
+levels_g = [0.2, 0.6]
+rate_per_year = [0.01, 0.001]
+
 [spectrum]
 alpha = [0.15]
 two_pi_over_p_s = [3.0, 8.0]
@@ -86,7 +90,7 @@ alpha = [0.18, 0.22]
 eta = [2.2, 3.0]
 """
 ANALYSES = {
-    "fragility": ("fragility", "fragility_capacities", "fragility_runs"),
+    "fragility": tuple(f"fragility{part}" for part in ("", "_capacities", "_risk", "_deaggregation", "_runs")),
     "spectrum": ("spectrum", "spectrum_suite", "overturning_map", "overturning_runs"),
     "sensitivity": ("sensitivity_runs", "sensitivity", "sobol"),
 }

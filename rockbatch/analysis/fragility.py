@@ -1,22 +1,28 @@
 """Fragility of a study: the analysis and its tables."""
 
+import math
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from rockbatch.analysis.folder import Analysis, AnalysisFolder, analysed
 from rockbatch.analysis.fragility_curves import Curve, assess, intensities, output
 from rockbatch.analysis.fragility_tables import CAPACITIES, POINTS, RUNS, capacities, described, points
+from rockbatch.analysis.risk import DEAGGREGATION, RISK, Risk, deaggregation_table, risk_table, risks
 from rockbatch.analysis.waves import Waves
 from rockbatch.arguments import checked
 from rockbatch.batch.compiling import make_ready
 from rockbatch.batch.digests import digests
 from rockbatch.batch.listening import Progress, count, once
 from rockbatch.batch.threads import Engine
+from rockbatch.errors import InputError
 from rockbatch.lazy import pd
+from rockbatch.motions.hazard import HazardCurve
 from rockbatch.results.columns import columns
 from rockbatch.study import Motions, Study
 from rockbatch.study.fragility import FragilitySpec, read_fragility
+from rockbatch.study.hazard import YEARS, Dispersion, Hazard
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -36,6 +42,11 @@ class Fragility(Analysis):
         the limit, in the unit of the levels and as a scale of the record.
     fragility_runs : DataFrame
         All runs, as rows of peaks.csv.
+    fragility_risk : DataFrame or None
+        Of a study with [fragility.hazard]: a row for each curve, with the mean annual rate of exceedance, its interval, and the
+        probability in the years asked about.
+    fragility_deaggregation : DataFrame or None
+        Likewise: which intensities these rates come from.
     curves : tuple of Curve
         Medians, dispersions and their intervals, or why there are none.
     spec : FragilitySpec
@@ -43,11 +54,15 @@ class Fragility(Analysis):
     """
 
     NAME: ClassVar[str] = "fragility"
-    TABLES: ClassVar[tuple[str, ...]] = ("fragility", "fragility_capacities", "fragility_runs")
+    TABLES: ClassVar[tuple[str, ...]] = (
+        "fragility", "fragility_capacities", "fragility_risk", "fragility_deaggregation", "fragility_runs",
+    )  # fmt: skip
 
     fragility: "pd.DataFrame"
     fragility_capacities: "pd.DataFrame | None"
     fragility_runs: "pd.DataFrame"
+    fragility_risk: "pd.DataFrame | None" = None
+    fragility_deaggregation: "pd.DataFrame | None" = None
     curves: tuple[Curve, ...]
     spec: FragilitySpec
 
@@ -56,6 +71,38 @@ class Fragility(Analysis):
         from rockbatch.analysis import plots
 
         return plots.fragility(self.fragility, self.curves, width_mm)
+
+    @checked
+    def risk(
+        self, hazard: HazardCurve | None = None, *, years: Sequence[float] | None = None, added: float | None = None
+    ) -> "pd.DataFrame":
+        """Return annual rates and probabilities as ``fragility_risk`` has them, under another hazard; nothing is run.
+
+        Parameters
+        ----------
+        hazard : HazardCurve, optional
+            In the unit of the levels; that of the study if it is not given.
+        years : list of float, optional
+            Periods for the probabilities; those of the study, or 50.
+        added : float, optional
+            Dispersion added to that of the records; what the study adds if it is not given.
+
+        Raises ``InputError`` without any hazard, and for periods or a dispersion that are negative or not finite.
+        """
+        own = self.spec.hazard
+        if hazard is None and own is None:
+            raise InputError("hazard: the study has no hazard; give a HazardCurve, or write [fragility.hazard]")
+        wrong = [f"years = {t:g}: must be above 0" for t in years or () if not 0 < t < math.inf]
+        if added is not None and not 0 <= added < math.inf:
+            wrong.append(f"added = {added:g}: must be 0 or above")
+        if wrong:
+            raise InputError(*wrong)
+        periods = tuple(years) if years else own.years if own else YEARS
+        curve = hazard or (own.curve if own else None)
+        spec = replace(self.spec, hazard=Hazard(curve, periods)) if curve else self.spec
+        if added is not None:
+            spec = replace(spec, dispersions=(Dispersion("added", added),) if added else ())
+        return risk_table(self.curves, risks(self.curves, spec), spec, self.study.varied)
 
 
 @checked
@@ -83,7 +130,8 @@ def fragility(
     Returns
     -------
     Fragility
-        With the tables ``fragility``, ``fragility_capacities`` and ``fragility_runs``, as their CSV files have them.
+        With the tables ``fragility``, ``fragility_capacities``, ``fragility_runs``, ``fragility_risk`` and
+        ``fragility_deaggregation``, as their CSV files have them.
 
     Raises
     ------
@@ -113,7 +161,7 @@ def _carry_out(results: AnalysisFolder, spec: FragilitySpec) -> dict[str, Any]:
         cases=asked.cases,
         polarity=asked.motions.simulated,
         numerics=(asked.numerics, asked.output),
-        fragility=replace(spec, confidence=0.0),  # which no run depends on
+        fragility=spec.of_runs,
     )
     with results.journal(RUNS, columns(asked), digest) as journal:
         runs = count(len(records) * len(spec.levels) * len(asked.cases), "run")
@@ -127,7 +175,8 @@ def _carry_out(results: AnalysisFolder, spec: FragilitySpec) -> dict[str, Any]:
         make_ready(asked, listener)
         waves = Waves(asked, journal, results.engine, listener)
         curves = assess(asked, spec, records, waves)
-        results.info |= described(curves, spec, asked, len(records))
+        rates = risks(curves, spec)
+        results.info |= described(curves, spec, asked, len(records), rates)
         results.info["stations"] = len({motion.of_station for motion in records})
         results.keep_table(POINTS, points(curves, spec, asked.varied))
         if spec.method == "ida":
@@ -135,7 +184,18 @@ def _carry_out(results: AnalysisFolder, spec: FragilitySpec) -> dict[str, Any]:
             results.keep_table(CAPACITIES, capacities(curves, spec, asked.varied, names, unscaled))
         else:
             results.drop(CAPACITIES)
+        _keep_risk(results, spec, curves, rates)
         journal.write_in_order(results.directory / RUNS)
         results.keep(RUNS, digest)
         results.info["runs"] = waves.finished
     return {"curves": tuple(curves), "spec": spec}
+
+
+def _keep_risk(results: AnalysisFolder, spec: FragilitySpec, curves: list[Curve], rates: list[Risk]) -> None:
+    """Write the tables of annual rates; of a study without a hazard, remove those of an earlier one."""
+    for file in (RISK, DEAGGREGATION):
+        results.drop(file)
+    if spec.hazard is not None:
+        results.keep_table(RISK, risk_table(curves, rates, spec, results.study.varied))
+    if rates:
+        results.keep_table(DEAGGREGATION, deaggregation_table(rates, spec, results.study.varied))

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import asdict
 from itertools import pairwise
 from typing import Any
 
@@ -11,6 +12,8 @@ from rockbatch.analysis.fragility_curves import Curve
 from rockbatch.analysis.ida import Capacity
 from rockbatch.analysis.limit_states import words
 from rockbatch.analysis.lognormal import Lognormal, Values
+from rockbatch.analysis.risk import Risk, described_hazard
+from rockbatch.analysis.risk import described as described_risk
 from rockbatch.lazy import pd
 from rockbatch.study import Study
 from rockbatch.study.fragility import FragilitySpec
@@ -24,11 +27,14 @@ def points(curves: Sequence[Curve], spec: FragilitySpec, varied: Sequence[str]) 
     """Return fragility.csv: a row for each curve and level, with the counts of :class:`Stripe` as columns.
 
     ``p`` is the curve there; it is between ``p_low`` and ``p_high``, whatever the undecided runs of all levels come to.
+    ``p_total`` is the curve with the dispersion that the study adds, if it does.
     """
     rows: list[dict[str, Any]] = []
     for curve in curves:
         own = {"measure": spec.label, "unit": spec.unit}
         p = _probabilities(curve, np.array(spec.levels))
+        if spec.added:
+            p["p_total"] = _total(curve, spec, np.array(spec.levels))
         rows += [
             _which(curve, varied) | own | stripe._asdict() | {name: float(values[i]) for name, values in p.items()}
             for i, stripe in enumerate(curve.stripes)
@@ -41,6 +47,12 @@ def _probabilities(curve: Curve, x: Values) -> dict[str, Values]:
     p = curve.fitted.probability(x) if isinstance(curve.fitted, Lognormal) else np.full(len(x), np.nan)
     low, high = curve.readings.probability(x) if curve.readings else (p, p)
     return {"p": p, "p_low": np.fmin(low, p), "p_high": np.fmax(high, p)}
+
+
+def _total(curve: Curve, spec: FragilitySpec, x: Values) -> Values:
+    """Return P(x) with the added dispersion; NaN without a curve."""
+    fitted = curve.fitted
+    return np.full(len(x), np.nan) if isinstance(fitted, str) else fitted.widened(spec.added).probability(x)
 
 
 def capacities(
@@ -88,8 +100,11 @@ def _state(cap: Capacity) -> str:
     return "below the lowest level" if cap.decided.low == 0 else "exceeded"
 
 
-def described(curves: Sequence[Curve], spec: FragilitySpec, study: Study, records: int) -> dict[str, Any]:
+def described(
+    curves: Sequence[Curve], spec: FragilitySpec, study: Study, records: int, risks: Sequence[Risk] = ()
+) -> dict[str, Any]:
     """Return the content of fragility.json: what was asked, and every curve; an open bound of an interval is null."""
+    of_curves = {id(risk.curve): described_risk(risk, spec) for risk in risks}
     return {
         "method": spec.method,
         "measure": spec.label,
@@ -100,7 +115,9 @@ def described(curves: Sequence[Curve], spec: FragilitySpec, study: Study, record
         "records": records,
         "polarities": study.motions.polarity,
         "looked_at": looked_at(curves, spec),
-        "curves": [_described(curve, spec) for curve in curves],
+        "dispersions": [asdict(each) for each in spec.dispersions],
+        "hazard": described_hazard(spec),
+        "curves": [_described(curve, spec) | {"risk": of_curves.get(id(curve))} for curve in curves],
     }
 
 
@@ -162,6 +179,10 @@ def _described(curve: Curve, spec: FragilitySpec) -> dict[str, Any]:
             "dispersion_interval": _finite(fitted.dispersion_interval),
             "curve": _rounded(drawn),
         }
+        if spec.added:
+            total = fitted.widened(spec.added)
+            content["dispersion_total"] = total.dispersion
+            content["total"] = _rounded({"x": x, "p": total.probability(x)})
     return content
 
 

@@ -12,7 +12,7 @@ interval: there is one maximum at most.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -84,6 +84,24 @@ class Lognormal:
         a, b = self.region.T
         z = a + b * np.log(x)[:, None]
         return ndtr(z.min(axis=1)), ndtr(z.max(axis=1))
+
+    def widened(self, added: float) -> "Lognormal":
+        """Return the curve with a dispersion ``added`` to its own, independent of it, by the root of the squares."""
+        if added == 0:
+            return self
+        own = self.region / np.sqrt(1.0 + (added * self.region[:, 1:]) ** 2)
+        low, high = (math.hypot(bound, added) for bound in self.dispersion_interval)
+        return replace(self, dispersion=math.hypot(self.dispersion, added), dispersion_interval=(low, high), region=own)
+
+    def rate(self, x: Values, rates: Values) -> tuple[float, float, float]:
+        """Return Σ P(x) times the annual ``rates`` of motions about each x, shape (n,), and its profile-likelihood interval.
+
+        It rises with a everywhere, so that its extremes over the region are on the edge; the upper bound is infinite where
+        the data leave the dispersion open.
+        """
+        a, b = self.region.T
+        sums = ndtr(a[:, None] + b[:, None] * np.log(x)) @ rates
+        return float(self.probability(x) @ rates), float(sums.min()), float(sums.max()) if (b > 0).all() else math.inf
 
 
 def fit(capacities: Capacities, confidence: float = 0.95) -> Lognormal | str:

@@ -9,6 +9,8 @@ from rockbatch.analysis.fragility_curves import Curve
 from rockbatch.analysis.fragility_tables import RUNS, looked_at, note
 from rockbatch.analysis.limit_states import words
 from rockbatch.analysis.lognormal import Lognormal
+from rockbatch.analysis.risk import Risk, probability, risks
+from rockbatch.analysis.risk import note as note_on_risk
 from rockbatch.batch.listening import count
 from rockbatch.commands.options import asked, folder, tell_files
 from rockbatch.commands.streams import in_width, say, show
@@ -21,6 +23,8 @@ def main(arguments: argparse.Namespace, study: Study) -> int:
     """Fit fragility curves, and print them."""
     result = fragility(study, **asked(arguments))
     show(table(result.curves, result.spec))
+    if result.spec.hazard is not None:
+        show(f"\n{risk_lines(risks(result.curves, result.spec), result.spec)}")
     tell_files(result)
     failed = any(stripe.failed for curve in result.curves for stripe in curve.stripes)
     if failed:
@@ -32,7 +36,7 @@ def table(curves: Sequence[Curve], spec: FragilitySpec) -> str:
     """Return medians and dispersions with their intervals, a line for each limit and case, and what to know about them."""
     rows, notes = [], []
     for curve in curves:
-        case = f"{curve.case.name} {named(curve.case.columns, curve.case.columns.values())}".strip()
+        case = _case(curve)
         fitted = curve.fitted if isinstance(curve.fitted, Lognormal) else None
         rows.append([
             curve.limit.name,
@@ -54,8 +58,51 @@ def table(curves: Sequence[Curve], spec: FragilitySpec) -> str:
     if little := sum(curve.says_little for curve in curves):
         some = f"{little} of {count(len(curves), 'curve')} {'says' if little == 1 else 'say'} little"
         title += f"; {some}: too many runs are undecided"
-    lines = [title, in_width(heads, rows, names=2), *limits, looked_at(curves, spec), *notes]
+    lines = [title, in_width(heads, rows, names=2), *limits, looked_at(curves, spec), *notes, added(spec)]
     return "\n".join(line for line in lines if line)
+
+
+def added(spec: FragilitySpec) -> str:
+    """Return the dispersion that the study adds, in words; empty if it adds none."""
+    parts = ", ".join(f"{each.name} {each.value:g}" for each in spec.dispersions)
+    return f"added to the dispersion of the records, for rates: {parts}; together {spec.added:.3g}" if parts else ""
+
+
+def risk_lines(rates: Sequence[Risk], spec: FragilitySpec) -> str:
+    """Return annual rates and probabilities with their intervals, a line for each limit and case, and what they rest on."""
+    years = spec.hazard.years if spec.hazard else ()
+    level = f"{100 * spec.confidence:g} %"
+    heads = [
+        "limit",
+        "case",
+        "dispersion",
+        "rate per year",
+        level,
+        *(f"in {t:g} years" for t in years),
+        "90 % come from",
+    ]
+    rows, notes = [], []
+    for risk in rates:
+        chances = [_chance(risk, t) for t in years]
+        rate = f"{risk.rate:.2e}"
+        interval = " – ".join(f"{bound:.2e}" if math.isfinite(bound) else "∞" for bound in risk.interval)
+        rows.append([
+            risk.curve.limit.name, _case(risk.curve), f"{risk.total.dispersion:.2f}", rate, interval, *chances,
+            f"{risk.contributing[0]:.2g} – {risk.contributing[1]:.2g} {spec.unit}",
+        ])  # fmt: skip
+        if remark := note_on_risk(risk, spec):
+            notes.append(f"{risk.curve.limit.name}, {_case(risk.curve)}: {remark}")
+    about = "Mean annual rates of exceedance; intervals are those that the fit leaves, with the hazard taken as known"
+    return "\n".join([about, in_width(heads, rows, names=2), *notes])
+
+
+def _chance(risk: Risk, years: float) -> str:
+    low, high = (probability(bound, years) for bound in risk.interval)
+    return f"{100 * risk.probability(years):.2g} % ({100 * low:.2g} – {100 * high:.2g})"
+
+
+def _case(curve: Curve) -> str:
+    return f"{curve.case.name} {named(curve.case.columns, curve.case.columns.values())}".strip()
 
 
 def _interval(bounds: tuple[float, float]) -> str:

@@ -8,6 +8,7 @@ from typing import Any
 from rockbatch.checks.demands import DEMANDS
 from rockbatch.checks.rules import Rule
 from rockbatch.pier import Base
+from rockbatch.study.hazard import Dispersion, Hazard, read_dispersions, read_hazard, root_of_squares
 from rockbatch.study.load import Study
 from rockbatch.toml.kinds import Number, choice, closest, positive, shown, text
 from rockbatch.toml.reader import Table
@@ -42,6 +43,18 @@ class FragilitySpec:
     tolerance: float = 0.01
     confidence: float = 0.95
     hunt_step: float | None = None
+    hazard: Hazard | None = None
+    dispersions: tuple[Dispersion, ...] = ()
+
+    @property
+    def of_runs(self) -> "FragilitySpec":
+        """The settings on which runs depend, with the others as they are by default."""
+        return replace(self, confidence=0.95, hazard=None, dispersions=())
+
+    @property
+    def added(self) -> float:
+        """Dispersion added to that of the records, the root of the squares of all; 0 without any."""
+        return root_of_squares(self.dispersions)
 
     def step_on(self, base: Base) -> float | None:
         """Return the relative steps of the hunt between the levels on ``base``; None where it is the levels alone."""
@@ -92,11 +105,14 @@ def read_fragility(study: Study) -> FragilitySpec:
     """
     file = study.file()
     table = file.table("fragility", required='[fragility] with measure = "PGV" and levels_m_s = [0.25, 0.5, 1.0, 1.5]')
-    read = table.read(FRAGILITY) if table else {}
+    read = table.read(FRAGILITY, other=("hazard", "dispersion")) if table else {}
     limits = _limits(table, study.checks, read.pop("checks", None)) if table else ()
     levels = _levels(table, read) if table else ()
+    hazard = read_hazard(file, LEVELS[read["measure"]]) if "measure" in read else None
+    dispersions = read_dispersions(file)
     file.finish()
-    return FragilitySpec(levels=levels, limits=(OVERTURNING, *limits), **{"method": "stripes"} | read)
+    given = {"method": "stripes", "hazard": hazard, "dispersions": dispersions} | read
+    return FragilitySpec(levels=levels, limits=(OVERTURNING, *limits), **given)
 
 
 def _levels(table: Table, read: dict[str, Any]) -> tuple[float, ...]:

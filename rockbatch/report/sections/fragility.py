@@ -34,19 +34,19 @@ def section(contents: Contents) -> Markup:
     share, curves = f"{100 * info['confidence']:g} %", info["curves"]
     return render(
         "sections/fragility.html", info=info, share=share, panels=_panels(info), table=_table(info, share),
-        little=[f"{entry['limit_state']}, {_label(entry)}" for entry in curves if entry["says_little"]],
+        little=[f"{entry['limit_state']}, {label(entry)}" for entry in curves if entry["says_little"]],
         open=any("open" in entry for entry in curves), looked=any(entry.get("looked") for entry in curves),
         provenance=analysis.provenance(),
     )  # fmt: skip
 
 
-def _label(entry: Curve) -> str:
+def label(entry: Curve) -> str:
     words = [quantity(name, value) for name, value in entry["columns"].items()]
     return f"{entry['case']}: {', '.join(words)}" if words else entry["case"]
 
 
 def _panels(info: Mapping[str, Any]) -> Markup:
-    styles = {label: style_of(i) for i, label in enumerate(dict.fromkeys(map(_label, info["curves"])))}
+    styles = {label: style_of(i) for i, label in enumerate(dict.fromkeys(map(label, info["curves"])))}
     drawn = []
     for name, curves in grouped(info["curves"], lambda entry: entry["limit_state"]).items():
         for first in range(0, len(curves), CASES_OF_A_PANEL):
@@ -70,9 +70,9 @@ def _panel(info: Mapping[str, Any], curves: Sequence[Curve], styles: Mapping[str
     )
     drawn = [axes.frame(axes.x.ticks(6), axes.y.ticks(5)), *_strips(axes, curves, styles)]
     for entry in curves:
-        drawn += _band(axes, entry, styles[_label(entry)][1])
+        drawn += _band(axes, entry, styles[label(entry)][1])
     for entry in curves:
-        drawn += _drawn(axes, entry, *styles[_label(entry)])
+        drawn += _drawn(axes, entry, *styles[label(entry)])
     drawn.append(text(axes.left + axes.width / 2, HEIGHT - 6, f"{info['measure']} [{info['unit']}]", class_="m q"))
     drawn.append(text(axes.left - 26, 11, "probability", class_="q"))
     said = f"Probability of {curves[0]['limit_state']} over {info['measure']}"
@@ -86,7 +86,7 @@ def _strips(axes: Axes, curves: Sequence[Curve], styles: Mapping[str, tuple[str,
         y = axes.top - STRIP * (len(looked) - place)
         for low, high in entry["looked"]:
             first, last = float(axes.across(low)), float(axes.across(high))
-            yield line(first - 1, y, last + 1, y, f"level s{styles[_label(entry)][1]}")
+            yield line(first - 1, y, last + 1, y, f"level s{styles[label(entry)][1]}")
 
 
 def _band(axes: Axes, entry: Curve, colour: int) -> Iterator[Markup]:
@@ -102,6 +102,9 @@ def _drawn(axes: Axes, entry: Curve, shape: str, colour: int) -> Iterator[Markup
     if "curve" in entry:
         x, p = (np.array(entry["curve"][name]) for name in ("x", "p"))
         yield curve(axes.across(x), axes.down(p), f"level {class_}")
+    if "total" in entry:
+        x, p = (np.array(entry["total"][name]) for name in ("x", "p"))
+        yield curve(axes.across(x), axes.down(p), f"level total {class_}")
     if entry["capacities"] and "open" not in entry:  # a share of the records needs all of them
         yield curve(*_steps(axes, [high for _, high in entry["capacities"]]), f"level {class_} d2")
     for point in entry["points"]:
@@ -120,7 +123,7 @@ def _drawn(axes: Axes, entry: Curve, shape: str, colour: int) -> Iterator[Markup
 def _said(entry: Curve, point: Mapping[str, Any]) -> str:
     ends = [f"{point[name]} {words}" for name, words in (("collapsed", "overturned"), ("flight", "flew"), ("failed", "failed"))
             if point[name]]  # fmt: skip
-    counts = f"{_label(entry)}, {point['level']:g}: {point['exceeded']} of {point['records']} records exceed the limit"
+    counts = f"{label(entry)}, {point['level']:g}: {point['exceeded']} of {point['records']} records exceed the limit"
     undecided = [f"{point['undecided']} undecided"] if point["undecided"] else []
     return "; ".join([counts, *undecided, *ends])
 
@@ -137,7 +140,7 @@ def _steps(axes: Axes, capacities: Sequence[float | None]) -> tuple[np.ndarray, 
 def _table(info: Mapping[str, Any], share: str) -> Markup:
     heads = [
         Head("limit", of="limit_state"),
-        Head("case", of=_label),
+        Head("case", of=label),
         Head(f"median [{info['unit']}]", ".3g", f"θ: the {info['measure']} that half of the motions need", of="median"),
         Head(share, note="profile-likelihood interval of the median", of=_interval("median_interval")),
         Head(
@@ -146,6 +149,8 @@ def _table(info: Mapping[str, Any], share: str) -> Markup:
         ),
         Head("dispersion", ".2f", "β: standard deviation of the logarithm", of="dispersion"),
         Head(share, note="profile-likelihood interval of the dispersion", of=_interval("dispersion_interval")),
+        Head("with added", ".2f", "β with the dispersions that the study adds, by the root of the squares",
+             of="dispersion_total"),
         Head("records", ".0f", "that count", of=_most("records")),
         Head("overturned", ".0f", "largest number of records that overturn at one level", of=_most("collapsed")),
         Head("note", of="note"),
