@@ -17,7 +17,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from functools import lru_cache
 from pathlib import Path
-from typing import Literal
+from typing import BinaryIO, Literal
 
 from rockbatch.errors import InputError
 from rockbatch.lazy import pd
@@ -30,7 +30,10 @@ NAMES = ("record", "case", "polarity", "status", "reason", "mirror_of", "map", "
 MOST_TEXT = 1 << 30
 """Most bytes of a file that is read as a whole: run.json of the largest study takes a third of it."""
 
-_PLAIN_ONLY = sum(getattr(os, flag, 0) for flag in ("O_NOFOLLOW", "O_NONBLOCK", "O_CLOEXEC", "O_BINARY"))
+CHANGED = "changed while it was read; read it again when nothing writes into it any more"
+
+_AT_ONCE = sum(getattr(os, flag, 0) for flag in ("O_NONBLOCK", "O_CLOEXEC", "O_BINARY"))
+_PLAIN_ONLY = _AT_ONCE | getattr(os, "O_NOFOLLOW", 0)
 """A link is not followed, and a pipe does not keep whoever opens it waiting."""
 
 _FORMULA_AHEAD = r"(?='*[=+\-@＝＋－＠\t\r\n].)"
@@ -73,6 +76,44 @@ def opened(path: Path, mode: Literal["rb", "r+b"] = "rb") -> io.FileIO:
         os.close(handle)
         raise _not_plain(path, "a file with several names" if stat.S_ISREG(status.st_mode) else "no plain file")
     return io.FileIO(handle, mode)
+
+
+def opened_input(path: Path) -> io.FileIO:
+    """Open a file that a user or a folder of records names, without a buffer; links are followed.
+
+    A named pipe that nobody writes into is empty, instead of keeping whoever opens it waiting for ever.
+    """
+    handle = os.open(path, os.O_RDONLY | _AT_ONCE)
+    if hasattr(os, "O_NONBLOCK"):
+        os.set_blocking(handle, True)  # of a pipe with a writer, as of `<(…)` in a shell, all is read
+    try:
+        return io.FileIO(handle)
+    except OSError:  # of a folder
+        os.close(handle)
+        raise
+
+
+@contextmanager
+def whole_input(path: Path) -> Iterator[tuple[BinaryIO, int]]:
+    """Yield a regular file, opened as by :func:`opened_input`, and its size [bytes].
+
+    Raises ``InputError`` for a pipe, a device, or a file into which something is written meanwhile.
+    """
+    with io.BufferedReader(opened_input(path)) as file:
+        before = os.fstat(file.fileno())
+        if not stat.S_ISREG(before.st_mode):
+            raise InputError("not a regular file")
+        yield file, before.st_size
+        if state_of(os.fstat(file.fileno())) != state_of(before):
+            raise InputError(CHANGED)
+
+
+def state_of(status: os.stat_result) -> tuple[int, ...]:
+    """Return what tells a file from another of its name, and from itself after something was written into it.
+
+    A time alone would not: files are copied with theirs, and clocks are set back.
+    """
+    return status.st_ino, status.st_dev, status.st_size, status.st_mtime_ns
 
 
 def _not_plain(path: Path, what: str) -> InputError:

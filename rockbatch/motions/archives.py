@@ -11,16 +11,19 @@ import stat
 import zipfile
 import zlib
 from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path, PurePosixPath
 
 from rockbatch.errors import InputError
+from rockbatch.files import state_of, whole_input
 
 LARGEST = 256 * 2**20
 """Bytes of a file, packed or unpacked; a day of three channels at 200 Hz has a fifth of it."""
 
 _MOST_FILES = 2000
+_TOO_MANY = f"lists more than {_MOST_FILES} files; unpack it"
 _MOST_UNPACKED = 2**30  # bytes that the files of one archive come to
 _GROWTH = 100  # how many times its packed size a file may have: records of text have 3 to 10 times
 _NEVER_TOO_LARGE = 2**20  # bytes
@@ -91,20 +94,28 @@ def is_member(path: Path) -> bool:
     """Return whether a path leads to a file in an archive."""
     archive = archive_of(path)
     try:
-        return archive is not None and path in _paths_in(archive, archive.stat().st_mtime_ns)
+        return archive is not None and path in _paths_in(archive, state_of(archive.stat()))
     except (InputError, OSError):
         return False
 
 
 @lru_cache(maxsize=8)
-def _paths_in(archive: Path, mtime_ns: int) -> frozenset[Path]:
-    """Return paths of the files in an archive; ``mtime_ns`` keeps a new one from being taken for the old one."""
+def _paths_in(archive: Path, state: tuple[int, ...]) -> frozenset[Path]:
+    """Return paths of the files in an archive; its ``state`` keeps a new one from being taken for the old one."""
     return frozenset(member.path for member in members(archive))
 
 
 def archive_of(path: Path) -> Path | None:
     """Return the archive that a path goes on within; ``None`` for a path of the disk."""
     return next((above for above in path.parents if is_zip(above) and above.is_file()), None)
+
+
+def state(path: Path) -> tuple[int, ...]:
+    """Return the :func:`state_of` the file of the disk that a path leads to, or goes on within; none if it is gone."""
+    try:
+        return state_of((archive_of(path) or path).stat())
+    except OSError:
+        return ()
 
 
 def files_in(folder: Path) -> list[Path]:
@@ -123,13 +134,12 @@ def content(path: Path, first: int | None = None) -> bytes:
     archive = archive_of(path)
     if archive is not None:
         return _from_zip(archive, path, first)
-    size = path.stat().st_size
-    if size > LARGEST:
-        raise InputError(f"larger than {LARGEST // 2**20} MiB")
-    with path.open("rb") as file:
-        if path.suffix.lower() == ".gz":
-            return _from_gzip(file.read(size), first)
-        return file.read(size if first is None else min(first, size))  # what is asked for is allocated
+    packed = path.suffix.lower() == ".gz"
+    with whole_input(path) as (file, size):
+        if size > LARGEST:
+            raise InputError(f"larger than {LARGEST // 2**20} MiB")
+        data = file.read(size if first is None or packed else min(first, size))  # what is asked for is allocated
+    return _from_gzip(data, first) if packed else data
 
 
 def _from_gzip(data: bytes, first: int | None) -> bytes:
@@ -162,31 +172,33 @@ def _from_zip(archive: Path, path: Path, first: int | None) -> bytes:
     return data
 
 
-def _opened(archive: Path) -> zipfile.ZipFile:
-    """Return a .zip, after a look at how much it lists; ``InputError`` where it is too much, or no .zip."""
-    size = archive.stat().st_size
-    if not size:
-        raise InputError("the file is empty")
-    if size > LARGEST:
-        raise InputError(f"larger than {LARGEST // 2**20} MiB; unpack it")
-    with archive.open("rb") as file:
+@contextmanager
+def _opened(archive: Path) -> Iterator[zipfile.ZipFile]:
+    """Yield a .zip, after a look at how much it lists; ``InputError`` where it is too much, or no .zip."""
+    with whole_input(archive) as (file, size):
+        if not size:
+            raise InputError("the file is empty")
+        if size > LARGEST:
+            raise InputError(f"larger than {LARGEST // 2**20} MiB; unpack it")
         file.seek(max(0, size - _END_SIZE - _LONGEST_COMMENT))
-        tail = file.read()
+        _refuse_long_lists(file.read(_END_SIZE + _LONGEST_COMMENT))
+        try:
+            opened = zipfile.ZipFile(file)
+        except _DAMAGED:
+            raise InputError("not a zip archive, or a damaged one; fetch it again") from None
+        if len(opened.infolist()) > _MOST_FILES:
+            raise InputError(_TOO_MANY)
+        yield opened
+
+
+def _refuse_long_lists(tail: bytes) -> None:
+    """Raise ``InputError`` where the end of an archive says that it lists more than any of records does, or is none."""
     at = tail.rfind(_END)
     if at < 0:
         raise InputError("not a zip archive, or a cut one; fetch it again")
     listing = int.from_bytes(tail[at + 12 : at + 16], "little")
-    too_many = InputError(f"lists more than {_MOST_FILES} files; unpack it")
     if listing > _LISTING or _END_64 in tail[max(0, at - 20) : at]:
-        raise too_many
-    try:
-        opened = zipfile.ZipFile(archive)
-    except _DAMAGED:
-        raise InputError("not a zip archive, or a damaged one; fetch it again") from None
-    if len(opened.infolist()) > _MOST_FILES:
-        opened.close()
-        raise too_many
-    return opened
+        raise InputError(_TOO_MANY)
 
 
 def _refusal(info: zipfile.ZipInfo) -> str:

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from rockbatch.errors import InputError
+from rockbatch.toml.reader import TomlFile
 
 Array = npt.NDArray[np.float64]
 
@@ -147,8 +148,8 @@ def read_spectrum(path: Path, damping: float = 0.05) -> TableSpectrum:
     periods: list[float] = []
     values: list[float] = []
     try:
-        lines = path.read_text(encoding="utf-8-sig").splitlines()
-    except (OSError, UnicodeDecodeError) as error:
+        lines = TomlFile.text_of(path).splitlines()
+    except InputError as error:
         raise InputError(f"{path}: cannot be read as a spectrum: {error}") from None
     for number, line in enumerate(lines, 1):
         cells = line.replace(",", " ").replace(";", " ").split()

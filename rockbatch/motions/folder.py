@@ -14,6 +14,7 @@ import numpy as np
 
 from rockbatch.arguments import checked
 from rockbatch.errors import InputError, NoRecordError, UnstatedError
+from rockbatch.files import CHANGED
 from rockbatch.grouping import grouped
 from rockbatch.motions import archives, fema_p695
 from rockbatch.motions.baseline import Offset, corrected
@@ -162,15 +163,22 @@ def read_files(
     manifests = [file.path for file in files if not file.refusal and file.path.name in MANIFESTS]
     manifests = [path for path in [*manifests, *beside] if path.is_file() and is_manifest(path)]
     manifest = Manifest.read({Path(os.path.realpath(path)): path for path in manifests}.values())
-    readings: list[Reading] = []
     with watch() as bounded:
         asked = _Asked(manifest, options or ReadOptions(), gravity, offset or Offset(), _numbered(files), bounded)
-        for file in _with_progress(files):
-            if file.path not in manifests:
-                readings += _readings(file, asked)
+        records = (file for file in _with_progress(files) if file.path not in manifests)
+        read = [(file, archives.state(file.path), _readings(file, asked)) for file in records]
     manifest.finish()
+    readings = [reading for file, state, own in read for reading in _unless_changed(own, file, state)]
     companions = _without_companions(_without_renamed(readings, files))
     return companions, {file.source: file.path for file in files}, manifest.sequences
+
+
+def _unless_changed(readings: list[Reading], file: Found, state: tuple[int, ...]) -> list[Reading]:
+    """Return the readings of a file, but no records of one that was in another ``state`` before: it is being written."""
+    records = any(isinstance(reading, Component) for reading in readings)
+    if not records or archives.state(file.path) in (state, ()):
+        return readings
+    return [Unusable(archives.bare(file.path).stem, file.source, CHANGED)]
 
 
 def _with_progress(files: Sequence[Found]) -> Iterable[Found]:

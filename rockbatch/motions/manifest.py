@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from rockbatch.errors import InputError
+from rockbatch.files import opened_input
 from rockbatch.motions import kinds
 from rockbatch.motions.archives import archive_of, is_member
 from rockbatch.motions.component import Component
@@ -277,7 +278,7 @@ def is_manifest(path: Path) -> bool:
     if path.suffix == ".toml":
         return True
     try:
-        with path.open("rb") as file:
+        with opened_input(path) as file:
             head = _first_line(file.read(_LONGEST_HEAD).decode("utf-8-sig", "replace"))
     except OSError:
         return True  # which is reported with the other mistakes

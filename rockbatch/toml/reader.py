@@ -1,5 +1,6 @@
 """Tables read against the keys they may have; every mistake is kept and reported with its line."""
 
+import io
 import os
 import re
 import tomllib
@@ -10,12 +11,13 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from rockbatch.errors import InputError, remedy
+from rockbatch.files import opened_input
 from rockbatch.toml.kinds import KindError, closest, shown
 from rockbatch.toml.lines import At, TooDeepError, key_lines
 from rockbatch.toml.section import CONFIRM, Key, Section, options
 
 LARGEST = 4 * 2**20
-"""Bytes of a study or a manifest: ten thousand records with all that can be said of them."""
+"""Bytes of a study, a manifest or a table of a spectrum: ten thousand records with all that can be said of them."""
 
 MOST_TOLD = 100
 """Mistakes of a file that are reported at once."""
@@ -52,12 +54,14 @@ class TomlFile:
     def text_of(path: Path) -> str:
         """Return the text of a file. Raises :class:`InputError` where it cannot be read, is too large or no UTF-8."""
         try:
-            with path.open("rb") as opened:
+            with io.BufferedReader(opened_input(path)) as opened:
                 content = opened.read(LARGEST + 1)
         except OSError as error:
             raise InputError(_unreadable(path, error)) from None
         if len(content) > LARGEST:
-            raise InputError(f"{path}: larger than {LARGEST // 2**20} MiB, which no study and no manifest is")
+            raise InputError(
+                f"{path}: larger than {LARGEST // 2**20} MiB, which no study, manifest or table of a spectrum is"
+            )
         try:
             return content.decode("utf-8-sig")
         except UnicodeDecodeError as error:

@@ -9,6 +9,7 @@ from functools import lru_cache
 from pathlib import Path
 
 from rockbatch.errors import InputError
+from rockbatch.files import state_of
 from rockbatch.motions import archives
 
 LARGEST = 64 * 2**20
@@ -50,7 +51,7 @@ def channels_beside(folder: Path, root: Path | None = None) -> tuple[list[Channe
         try:
             if not real.is_relative_to(inside):
                 raise InputError("a link that leads out of the folder")
-            channels += _channels(path, real.stat().st_mtime_ns)
+            channels += _channels(path, state_of(real.stat()))
         except InputError as error:
             refused.append(f"{path.name}: {error}")
         except OSError as error:
@@ -59,8 +60,8 @@ def channels_beside(folder: Path, root: Path | None = None) -> tuple[list[Channe
 
 
 @lru_cache(maxsize=64)
-def _channels(path: Path, mtime_ns: int) -> list[Channel]:
-    """Return the channels of one file; ``mtime_ns`` keeps an edited file from being taken for the old one.
+def _channels(path: Path, state: tuple[int, ...]) -> list[Channel]:
+    """Return the channels of one file; its ``state`` keeps an edited file from being taken for the old one.
 
     Raises ``InputError`` for a file that is too large, damaged, or in an encoding that nobody knows.
     """

@@ -1,0 +1,139 @@
+"""Files that are written, replaced or removed while they are read: nothing waits for ever, and no half of a file is a record."""
+
+import os
+import threading
+import zipfile
+from pathlib import Path
+
+import pytest
+from motion_files import at2_text, wiggle, write_at2
+from studies import study_text, write_study
+
+import rockbatch as rb
+from rockbatch.errors import InputError
+from rockbatch.motions import archives, folder, read_motions
+from rockbatch.motions.formats import stationxml
+from rockbatch.toml.reader import LARGEST, TomlFile
+
+needs_pipes = pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no named pipes here")
+
+
+def meanwhile(monkeypatch, change):
+    """Call ``change`` with the path of each file just after it was read."""
+    plain = folder.read_record
+
+    def read(file):
+        found = plain(file)
+        change(file)
+        return found
+
+    monkeypatch.setattr(folder, "read_record", read)
+
+
+def grown(path: Path) -> None:
+    path.write_bytes(path.read_bytes() + b"0.5\n")
+
+
+def replaced(path: Path) -> None:
+    was, new = path.stat(), path.with_suffix(".new")
+    new.write_text(at2_text(wiggle(60, 2)))
+    os.utime(new, ns=(was.st_atime_ns, was.st_mtime_ns))
+    new.replace(path)
+
+
+@pytest.mark.parametrize("change", [grown, replaced, lambda path: os.truncate(path, 200)])
+def test_a_file_that_changes_while_its_folder_is_read_is_no_record(tmp_path, monkeypatch, change):
+    for name in ("a.AT2", "b.AT2"):
+        write_at2(tmp_path, name, wiggle(60, len(name)), title="nothing, 000")
+    meanwhile(monkeypatch, lambda file: change(tmp_path / "a.AT2") if file.source == "b.AT2" else None)
+    found = read_motions(tmp_path)
+    assert [motion.source for motion in found.motions] == ["b.AT2"]
+    assert [file.reason for file in found.unusable] == [
+        "changed while it was read; read it again when nothing writes into it any more"
+    ]
+
+
+def test_so_are_the_records_of_an_archive(tmp_path, monkeypatch):
+    with zipfile.ZipFile(tmp_path / "a.zip", "w") as archive:
+        archive.writestr("a.AT2", at2_text(wiggle(60)))
+    meanwhile(monkeypatch, lambda _: grown(tmp_path / "a.zip"))
+    (file,) = read_motions(tmp_path).unusable
+    assert file.reason.startswith("changed while it was read")
+
+
+def test_a_file_that_is_gone_once_it_was_read_is_a_record(tmp_path, monkeypatch):
+    write_at2(tmp_path, "a.AT2", wiggle(60))
+    meanwhile(monkeypatch, lambda _: (tmp_path / "a.AT2").unlink())
+    assert len(read_motions(tmp_path).motions) == 1
+
+
+def test_what_is_written_between_two_looks_at_a_file_is_noticed(tmp_path):
+    path = write_at2(tmp_path, "a.AT2", wiggle(60))
+    with pytest.raises(InputError, match="changed while it was read"), rb.files.whole_input(path):
+        grown(path)
+
+
+@needs_pipes
+def test_a_pipe_that_takes_the_place_of_a_file_keeps_nobody_waiting(tmp_path):
+    for name in ("x.AT2", "x.zip", "x.gz", "motions.csv"):
+        os.mkfifo(tmp_path / name)
+        with pytest.raises(InputError, match="not a regular file"):
+            archives.content(tmp_path / name)
+    with pytest.raises(InputError, match="not a regular file"):
+        list(archives.members(tmp_path / "x.zip"))
+    assert not folder.is_manifest(tmp_path / "motions.csv")
+    assert TomlFile.text_of(tmp_path / "motions.csv") == ""
+
+
+@pytest.mark.skipif(not Path("/dev/fd").is_dir(), reason="no open files under their numbers here")
+def test_a_study_may_come_through_a_pipe():
+    """As ``rockbatch run <(…)`` has it: all that is written there is read."""
+    text = study_text() + "#" * 200_000 + "\n"
+    end, start = os.pipe()
+
+    def write() -> None:
+        with open(start, "w") as file:
+            file.write(text)
+
+    writer = threading.Thread(target=write)
+    writer.start()
+    try:
+        assert TomlFile.text_of(Path(f"/dev/fd/{end}")) == text
+    finally:
+        os.close(end)
+        writer.join()
+
+
+def test_the_table_of_a_spectrum_is_read_up_to_a_size(tmp_path):
+    (tmp_path / "sa.csv").write_bytes(b"0.1 0.5\n" * (LARGEST // 8 + 1))
+    target = {"spectrum": "sa.csv", "period_range_s": [0.2, 2.0]}
+    study = rb.load_study(write_study(tmp_path, study_text()))
+    with pytest.raises(InputError, match="larger than 4 MiB"):
+        study.with_(motions={"target": target})
+
+
+@pytest.mark.parametrize("kind", ["archive", "StationXML"])
+def test_a_file_in_the_place_of_another_with_its_time_is_not_taken_for_it(tmp_path, kind):
+    """Copies keep times, and clocks are set back: a time alone tells no file from another."""
+    path = tmp_path / ("x.zip" if kind == "archive" else "x.xml")
+
+    def write(name: str) -> None:
+        new = tmp_path / "new"
+        if kind == "archive":
+            with zipfile.ZipFile(new, "w") as archive:
+                archive.writestr(name, "text")
+        else:
+            new.write_text(f"<{name}/>")
+        os.utime(new, (1e9, 1e9))
+        new.replace(path)
+
+    if kind == "archive":
+        write("a.txt")
+        assert archives.is_member(path / "a.txt")
+        write("b.txt")
+        assert (archives.is_member(path / "a.txt"), archives.is_member(path / "b.txt")) == (False, True)
+    else:
+        write("FDSNStationXML")
+        assert stationxml.channels_beside(tmp_path) == ([], [])
+        write("FDSNStationXML><")
+        assert stationxml.channels_beside(tmp_path)[1] != []
