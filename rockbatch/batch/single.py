@@ -41,6 +41,7 @@ def simulate(
     forces: bool = False,
     least_normal_share: float = LEAST_NORMAL_SHARE,
     wait: bool = True,
+    initial_rotation_rad: float | None = None,
     **steps: Unpack[Steps],
 ) -> Response:
     """Simulate one run, and return its results, as a row of peaks.csv, and its histories.
@@ -58,6 +59,8 @@ def simulate(
     least_normal_share : float
         With the forces: share of the weight that the normal force has to exceed for friction to count, above 0 and below 1; as
         ``[output] least_normal_share`` of a study, which :func:`rockbatch.run` takes.
+    initial_rotation_rad : float, optional
+        Rotation at which the pier is held and let go [rad], instead of its own; see :class:`rockbatch.Pier`.
     tolerance : float, default 1e-4
         On θ_max/α; the steps per sample are chosen to meet it.
     substeps : int, optional
@@ -90,6 +93,8 @@ def simulate(
       events   1 × lift-off, 3 × impact
     >>> response.plot().savefig("one-sine.pdf")
     """
+    if initial_rotation_rad is not None:
+        pier = replace(pier, initial_rotation_rad=initial_rotation_rad)
     numerics, run = Numerics(**steps), Run(pier, foundation, motion)
     _check(run, numerics, least_normal_share, wait)
     name, outcome = case or foundation.name, _outcome(run, numerics, wait)

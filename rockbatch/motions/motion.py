@@ -54,6 +54,20 @@ class Finding:
     key: str = "confirm"  # that confirms it, under [motions] and in manifests; "confirm" does so for all findings
 
 
+MOST_SAMPLES = 10_000_000
+"""Greatest number of samples of a motion that is no record."""
+
+
+def _check_still(duration: float, dt: float) -> None:
+    """Raise ``InputError`` for a duration and a step [s] of still ground that cannot be."""
+    numbers = (("duration_s", duration), ("dt", dt))
+    wrong = [f"{name} = {value:g}: must be a number above 0 [s]" for name, value in numbers if not 0 < value < math.inf]
+    if not wrong and duration / dt > MOST_SAMPLES:
+        wrong.append(f"dt = {dt:g}: more than {MOST_SAMPLES:,} samples in {duration:g} s; take a larger dt")
+    if wrong:
+        raise InputError(*wrong)
+
+
 def _frozen(samples: object) -> Samples:
     """Return samples as an array of ``float64`` that nobody can change; ``TypeError`` if they are no real numbers."""
     if np.ma.is_masked(samples):
@@ -224,6 +238,23 @@ class Motion(Shown):
             raise InputError(str(error)) from error
         motion = cls(name, dt, values, vertical)  # type: ignore[arg-type]
         return motion if factor == 1.0 else motion.scaled(factor)
+
+    @classmethod
+    @checked
+    def still(cls, duration_s: float, dt: float = 0.005, *, name: str = "still") -> "Motion":
+        """Return ground that does not move for ``duration_s`` [s], sampled every ``dt`` [s]: for a pier that is let go.
+
+        Raises ``InputError`` unless both are above 0 and there are 10 million samples at most.
+
+        Examples
+        --------
+        >>> pier = rb.Pier(alpha=0.2, p=2.0, initial_rotation_rad=0.1)
+        >>> response = rb.simulate(pier, rb.RigidBase(restitution=0.9), rb.Motion.still(duration_s=20.0))
+        >>> float(response.theta[0]), float(response.theta[-1])
+        (0.1, 0.0)
+        """
+        _check_still(duration_s, dt)
+        return cls(name, dt, np.zeros(round(duration_s / dt) + 1), source="still", initial=Initial())
 
     @classmethod
     def from_obspy(cls, stream: Any, unit: str, *, name: str = "") -> "Motion":

@@ -5,7 +5,7 @@ Implausible sizes, as of a wrong unit or of two values exchanged, are refused un
 
 import math
 from collections.abc import Collection, Iterable
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from typing import NamedTuple
 
 from rockbatch.arguments import checked
@@ -19,6 +19,10 @@ def _slenderness(alpha: float) -> str:
     return f"must be below π/2 = 1.5708 rad; if it is in degrees, write {math.radians(alpha):.4g}"
 
 
+def _rotation(theta: float) -> str:
+    return f"must be between −π/2 and π/2 rad; if it is in degrees, write {math.radians(theta):.4g}"
+
+
 _LENGTH, _MASS = Bounds(LEAST, MOST, " [m]"), Bounds(LEAST, MOST, " [t]")
 
 BOUNDS = {
@@ -29,6 +33,7 @@ BOUNDS = {
     **dict.fromkeys(("size_m", "width_m", "height_m", "top_m", "deck_height_m"), _LENGTH),
     **dict.fromkeys(("mass_t", "deck_mass_t"), _MASS),
     "deck_over_columns": POSITIVE,
+    "initial_rotation_rad": Bounds(-math.pi / 2, math.pi / 2, why=_rotation),
 }
 """Possible values of a pier, far beyond any that exists: p = 0.001 rad/s is one of 7000 km. Beyond them a run would never end."""
 
@@ -40,6 +45,17 @@ LOWEST, HIGHEST = 0.25, 2.5
 def out_of_bounds(**values: float | None) -> list[str]:
     """Return a message for each of the named values that is given and not within its :data:`BOUNDS`."""
     return [problem for name, value in values.items() for problem in BOUNDS[name].problems(name, value)]
+
+
+def _falls(alpha: float, theta: float) -> list[str]:
+    """Return that a pier of slenderness ``alpha`` let go at ``theta`` [rad] does not come back; empty if it does."""
+    if abs(theta) < alpha:
+        return []
+    degrees = f"; if it is in degrees, write {math.radians(theta):.4g}" if abs(theta) > 0.5 else ""
+    return [
+        f"initial_rotation_rad = {theta:g}: must be below alpha = {alpha:.4g} rad in magnitude, beyond which a pier that is "
+        f"let go falls{degrees}"
+    ]
 
 
 def _refuse(wrong: list[str]) -> None:
@@ -103,6 +119,9 @@ class Pier:
         γ = m_d/(N m_c) of a rocking frame, whose equivalent block this is; see :meth:`frame`.
     deck_height_m : float, optional
         Height above the pivots of the deck's centre [m], whose acceleration is computed; the top by default.
+    initial_rotation_rad : float, default 0
+        θ0 [rad], positive to the right, below α: the pier is pulled there slowly, held, and let go at the first sample of the
+        motion, at rest (THEORY.md, Release from a rotation).
 
     Raises ``InputError`` with every impossible value.
 
@@ -124,9 +143,11 @@ class Pier:
     top_m: float | None = None
     deck_over_columns: float | None = None
     deck_height_m: float | None = None
+    initial_rotation_rad: float = field(default=0.0, kw_only=True)
 
     def __post_init__(self) -> None:
-        _refuse(out_of_bounds(**{each.name: getattr(self, each.name) for each in fields(self)}))
+        wrong = out_of_bounds(**{each.name: getattr(self, each.name) for each in fields(self)})
+        _refuse(wrong or _falls(self.alpha, self.initial_rotation_rad))
 
     @classmethod
     @checked
@@ -361,7 +382,7 @@ class Pier:
 
 
 def described(pier: Pier) -> dict[str, float]:
-    """Return a pier by the names and units of run.json; mass, top, γ and deck only if it has them."""
+    """Return a pier by the names and units of run.json; mass, top, γ and deck only if it has them, θ0 unless it is 0."""
     optional = ("mass_t", "top_m", "deck_over_columns", "deck_height_m")
     given = {name: getattr(pier, name) for name in optional}
     return {
@@ -373,4 +394,5 @@ def described(pier: Pier) -> dict[str, float]:
         "half_width_m": pier.half_width,
         "height_m": pier.height,
         **{name: value for name, value in given.items() if value is not None},
+        **({"initial_rotation_rad": pier.initial_rotation_rad} if pier.initial_rotation_rad else {}),
     }

@@ -286,7 +286,7 @@ def recentres(pier: Pier, restraints: tuple[Restraint, ...]) -> bool:
 
 
 def symmetric(pier: Pier, restraints: tuple[Restraint, ...]) -> bool:
-    """Return whether a run is the mirror image of that under the reversed motion: each device has its like on the other side."""
+    """Return whether each device has its like on the other side."""
     placed = [(offset, replace(device, at=0.0)) for device in restraints for offset in offsets(pier, device)]
     return all(placed.count((-offset, device)) == placed.count((offset, device)) for offset, device in placed)
 

@@ -9,7 +9,7 @@ from rockbatch.pier.restraints import wrong_restraints
 from rockbatch.report.labels import plain
 from rockbatch.study.restraint_keys import KEYS_OF
 
-_PIER = ("alpha", "p", "mu", "gravity", "mass_t", "top_m", "deck_over_columns", "deck_height_m")
+_PIER = ("alpha", "p", "mu", "gravity", "mass_t", "top_m", "deck_over_columns", "deck_height_m", "initial_rotation_rad")
 _DAMPER = ("kind", "f", "nu", "yield_m", "exponent", "at")
 _TENDON = ("psi", "lam", "strength", "at")
 _PREFERRED = {"f": "force_kN", "nu": "coefficient_kN_s_m", "psi": "prestress_kN", "lambda": "stiffness_kN_m"}

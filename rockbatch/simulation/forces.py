@@ -19,6 +19,7 @@ from rockbatch.simulation.outcome import WOULD_SLIDE, PeakForces
 from rockbatch.simulation.response import FORCE_UNITS, IMPACT_UNITS
 from rockbatch.simulation.restraints import apart, recorded
 from rockbatch.simulation.runs import Run
+from rockbatch.simulation.starting import start_of
 
 _UPLIFTS = (types.SEPARATION_LEFT, types.SEPARATION_RIGHT, types.LIFT_OFF)
 _LANDINGS = (types.IMPACT_LEFT, types.IMPACT_RIGHT, types.IMPACT_BOTH, types.REST)
@@ -52,7 +53,8 @@ def _observe(run: Run, rows: np.recarray, least_normal: float, forces: np.recarr
     if len(rows) == 0:
         return noted[0]
     pier, base = run.pier, run.base
-    limits = Limits(math.inf if base.friction is None else float(base.friction), least_normal * float(pier.gravity))
+    most = math.inf if base.friction is None else float(base.friction)
+    limits = Limits(most, least_normal * float(pier.gravity), start_of(pier, base).unstressed)
     body = Body(_outline(pier), _hold(pier, base)) if isinstance(base, RigidBase) else float(pier.deck)
     plain, pulls = apart(base, rows)
     devices = recorded(pier, base, rows) if base.restraints else None

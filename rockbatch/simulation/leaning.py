@@ -7,6 +7,7 @@ import numpy as np
 from rockbatch.motions.motion import Samples
 from rockbatch.pier import ElasticBase, Pier, tilt_over_residual, vertical_frequency, yield_deflection
 from rockbatch.simulation.outcome import LEANS, Outcome
+from rockbatch.simulation.starting import start_of
 
 MOSTLY = 0.5
 """Least share of lean in θ_max, and share of the greatest rocking above that at the peak, for the peak to count as lean."""
@@ -76,15 +77,16 @@ def unstressed(pier: Pier, base: ElasticBase, rows: np.recarray) -> tuple[Sample
     if base.kinematics == "finite":
         rise, drop = b * np.sin(theta), h * (1.0 - np.cos(theta))
     deflection = yield_deflection(pier, base)
-    left = _last_borne(rows.v + rise + drop - deflection * rows.z_left, rows.left != 0.0)
-    right = _last_borne(rows.v - rise + drop - deflection * rows.z_right, rows.right != 0.0)
+    at_first = start_of(pier, base).unstressed
+    left = _last_borne(rows.v + rise + drop - deflection * rows.z_left, rows.left != 0.0, at_first)
+    right = _last_borne(rows.v - rise + drop - deflection * rows.z_right, rows.right != 0.0, at_first)
     return left, right
 
 
-def _last_borne(unstressed: Samples, borne: Samples) -> Samples:
-    """Return the unstressed position of a support, which stays where it was while its pivot is away."""
-    last = np.maximum.accumulate(np.where(borne, np.arange(len(borne)), 0))
-    return unstressed[last]
+def _last_borne(unstressed: Samples, borne: Samples, at_first: float) -> Samples:
+    """Return the unstressed position of a support, which stays where it was, ``at_first`` [m], while its pivot is away."""
+    last = np.maximum.accumulate(np.where(borne, np.arange(len(borne)), -1))
+    return np.where(last < 0, at_first, unstressed[last])
 
 
 def with_rocking(outcome: Outcome, parts: Apart, alpha: float) -> Outcome:

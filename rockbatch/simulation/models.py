@@ -2,6 +2,7 @@
 
 import math
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
@@ -56,6 +57,23 @@ LAWS: dict[SpringLaw, float] = {"bouc-wen": BOUC_WEN, "epp": EPP, "hardening": H
 
 DAMPERS: dict[DamperKind, float] = {"friction": FRICTION, "viscous": VISCOUS, "hysteretic": HYSTERETIC}
 """The core's codes of dampers."""
+
+
+class Start(NamedTuple):
+    """State in which a pier is held before it is let go; of one that stands in its static state all is 0.
+
+    ``v`` of the centre of mass above unstressed springs [m], ``theta`` [rad], forces of the springs over F_y, states of all
+    devices, ``level``, v of the pier before it was pulled [m], NaN where it stands, and where its supports were then
+    ``unstressed`` [m].
+    """
+
+    v: float = 0.0
+    theta: float = 0.0
+    z_left: float = 0.0
+    z_right: float = 0.0
+    states: tuple[float, ...] = ()
+    level: float = math.nan
+    unstressed: float = 0.0
 
 
 @lru_cache(maxsize=4096)
@@ -127,12 +145,12 @@ def kind_of(m: Block | Springs) -> Kind:
 
 
 def line_of(
-    m: Block | Springs, timing: tuple[float, ...], readings: tuple[float, ...], prestress: float
+    m: Block | Springs, timing: tuple[float, ...], readings: tuple[float, ...], prestress: float, start: Start
 ) -> tuple[float, ...]:
     """Return a run as the core takes it: the model's numbers, then ``timing`` from ``dt`` to ``patience``."""
     if isinstance(m, Block):
-        return block_lanes.line_of(m, 0.0, 0.0, *timing)
-    return spring_lanes.line_of(m, *timing, *readings, prestress)
+        return block_lanes.line_of(m, start.theta, 0.0, *timing)
+    return spring_lanes.line_of(m, *timing, *readings, prestress, start.v, start.theta, start.z_left, start.z_right)
 
 
 def elements(pier: Pier, base: Base) -> list[Element]:

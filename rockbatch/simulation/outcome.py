@@ -11,6 +11,9 @@ WOULD_SLIDE = "would slide"
 LINEARISED = "linearised kinematics"
 """Words of a note on a run whose rotations are too large for them."""
 
+RELEASED = "theta_max is the rotation from which the pier was let go, beyond which it has not turned"
+"""A note on a run whose greatest rotation says nothing that was not given."""
+
 LEANS = "lean"
 """Kind of a greatest rotation at which the pier hardly rocks, on a base that has yielded."""
 

@@ -16,6 +16,7 @@ from rockbatch.lazy import pd
 from rockbatch.motions.motion import Samples
 from rockbatch.pier import Base, Damper, ElasticBase, Pier, RigidBase, offsets
 from rockbatch.simulation.models import elements, model, prestress, springs
+from rockbatch.simulation.starting import start_of
 
 AT_REST = 1e-9
 """In units of R0 α p: velocity that counts as none in a history."""
@@ -47,7 +48,8 @@ def apart(base: Base, rows: np.recarray) -> tuple[np.recarray, Samples]:
 def recorded(pier: Pier, base: Base, rows: np.recarray) -> RecordedDevices:
     """Return the dampers and tendons of ``base``, with their states at the ``rows`` of a history."""
     laws = np.array([tuple(law) for law in elements(pier, base)], ELEMENT).view(np.recarray)
-    return RecordedDevices(laws, rows.state.copy(), float(rows.v[0]))
+    level = start_of(pier, base).level
+    return RecordedDevices(laws, rows.state.copy(), float(rows.v[0]) if math.isnan(level) else level)
 
 
 @entry

@@ -39,8 +39,9 @@ from rockbatch.simulation.models import (
     prestress,
     readings,
 )
-from rockbatch.simulation.outcome import LINEARISED, Outcome
+from rockbatch.simulation.outcome import LINEARISED, RELEASED, Outcome
 from rockbatch.simulation.restraints import rests_at, rests_on_rigid_base
+from rockbatch.simulation.starting import start_of
 
 MOST_STEPS = 1e8
 """Greatest number of steps of a run, about a quarter of a minute of work."""
@@ -123,7 +124,13 @@ def _line(run: Run, substeps: int, quiet_s: float, first_row: int, wait: bool) -
     dt = float(motion.dt)
     timing = (dt, substeps, quiet_samples(quiet_s, dt), first_row, motion.npts, patience(pier, dt) if wait else 0)
     read = readings(pier, base, dt) if wait else (0, 0)
-    return line_of(model(pier, base), timing, read, prestress(pier, base))
+    return line_of(model(pier, base), timing, read, prestress(pier, base), start_of(pier, base))
+
+
+def _devices(pier: Pier, base: Base) -> Devices | None:
+    """Return the devices of a run at its start."""
+    start = start_of(pier, base)
+    return devices_of(elements(pier, base), start.states, start.level)
 
 
 def written_run(
@@ -136,7 +143,7 @@ def written_run(
     wait: bool = True,
 ) -> tuple[Result, np.recarray]:
     """Return one run, and its history of at most ``rows`` rows; with ``every_step`` also between samples."""
-    kind, devices = kernel_of(run.pier, run.base)[0], devices_of(elements(run.pier, run.base))
+    kind, devices = kernel_of(run.pier, run.base)[0], _devices(run.pier, run.base)
     columns = _row_type(kind, 0 if devices is None else len(devices.elements))
     written = np.zeros((rows, columns.itemsize // 8))
     lines, ground = [_line(run, substeps, quiet_s, 0, wait)], ground_of(run.motion)
@@ -212,7 +219,7 @@ def try_all(
                 grounds.append(ground_of(motion))
             lines.append(_line(runs[i], steps, quiet_s, first_rows[id(motion)], wait))
         ground = grounds[0] if len(grounds) == 1 else np.concatenate(grounds)
-        devices = None if alone is None else devices_of(elements(runs[alone].pier, runs[alone].base))
+        devices = None if alone is None else _devices(runs[alone].pier, runs[alone].base)
         records = march(kind, lines, ground, stop.flag, steps, locate, False, NO_ROWS, devices)
         for i, record in zip(members, records, strict=True):
             if record.status != types.RUNNING:
@@ -299,6 +306,8 @@ def _outcome(run: Run, substeps: int, result: Result) -> Outcome:
     share = neglected(pier, result.theta_max) if base.kinematics == "first-order" else 0.0
     if share > MOST_NEGLECTED and status != "overturned":
         notes.append(_LARGE.format(theta=result.theta_max, words=LINEARISED, share=share))
+    if pier.initial_rotation_rad and result.t_max == 0.0 and status == "ok":
+        notes.append(RELEASED)
     if 1000.0 * result.flight_height > base.flight_limit_mm:
         notes.append(_HIGH.format(height=1000.0 * result.flight_height, limit=base.flight_limit_mm))
     return Outcome(

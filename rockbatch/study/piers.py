@@ -1,7 +1,7 @@
 """The piers of a study file, with every combination of listed values: [pier] and [[pier.part]]."""
 
 from collections.abc import Callable, Collection
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from typing import Any
 
 from rockbatch.errors import InputError
@@ -46,6 +46,9 @@ PIER = Section(("pier",), (
         usual=_LENGTH),
     "columns": Key(Whole(2, "a whole number, 2 or above (a single column is a pier with a deck)"), "4",
         "Number of equal columns of a rocking frame under one deck, on a rigid base only.", many=True),
+    "initial_rotation_rad": Key(within(BOUNDS["initial_rotation_rad"]), "0.05",
+        "Rotation at which the pier is held, and let go at the first sample of the motion; positive to the right, below α. A "
+        "still ground, `still_s` of [motions], makes it a release test.", many=True),
     **CONFIRM,
 }, required=True, homes=(Pier,), clashes=(
     Clash(("part",), "[[pier.part]]: needs width_m, between the pivots, and no other size; write width_m = 4.0",
@@ -115,6 +118,7 @@ def read_piers(file: TomlFile) -> tuple[list[tuple[Pier, Values]], tuple[str, ..
         values = {name: setting.value for name, setting in chosen.items()}
         try:
             pier = _pier(values, len(parts), table.confirmed)
+            pier = replace(pier, initial_rotation_rad=values.get("initial_rotation_rad", 0.0))
         except InputError as error:
             for problem in error.problems:
                 where = " in this table" if "write confirm" in problem else ""

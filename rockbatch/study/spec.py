@@ -71,6 +71,7 @@ class MotionSpec:
     fema_p695: tuple[FemaSpec, ...] = ()
     pulses: tuple[PulseSpec, ...] = ()
     sequences: tuple[ShockSequence, ...] = ()
+    still_s: float | None = None
     instead: Path | MotionSet | None = None
 
     @property

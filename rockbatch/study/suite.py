@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from rockbatch.errors import InputError
-from rockbatch.motions import MotionSet, ReadOptions, read_motions
+from rockbatch.motions import Motion, MotionSet, ReadOptions, read_motions
 from rockbatch.motions.scaling import at_target
 from rockbatch.motions.selection import selected
 from rockbatch.motions.sequences import with_sequences
@@ -41,6 +41,8 @@ def ground_motions(study: Study) -> MotionSet:
     reasons = [f"{file.source}: {file.reason}" for file in records.unusable]
     if spec.strict and reasons:
         raise InputError(*reasons, f"{len(reasons)} of the records cannot be used, and the study is strict")
+    if spec.still_s is not None and spec.instead is None:
+        pulses.append(Motion.still(spec.still_s))
     if not records.motions and not pulses:
         reasons += [f"{file.source}: {file.reason}" for file in records.left_out]
         where = ", ".join(str(path) for path in spec.paths)

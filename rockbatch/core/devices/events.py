@@ -238,11 +238,12 @@ def after_contact(m, devices, y, contact, rest, ground):
 
 @inlined
 def start_devices(m, devices, y, contact, rest, ground):
-    """Put devices without permanent elongation in state ``y``, its lower pivot where it rests: level, directions and modes."""
+    """Choose directions and modes of the devices in state ``y``; unless the level is known, the lower pivot is where it rests."""
     if devices is None:
         return
-    lies = attitude(m, y, 0.0)
-    devices.level[0] = lies.rise - m.half_width * abs(lies.sine)
+    if math.isnan(devices.level[0]):
+        lies = attitude(m, y, 0.0)
+        devices.level[0] = lies.rise - m.half_width * abs(lies.sine)
     at = attitude(m, y, devices.level[0])
     for j in range(len(devices.elements)):
         of = devices.elements[j]

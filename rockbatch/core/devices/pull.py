@@ -69,17 +69,23 @@ class Devices(NamedTuple):
     use: np.recarray  # of Use
 
 
-def devices_of(elements):
-    """Return Devices for a sequence of Element, at rest; None without any."""
+def devices_of(elements, states=(), level=math.nan):
+    """Return Devices for a sequence of Element, at rest or with the ``states`` in which they are held; None without any.
+
+    ``level`` is v of the pier at rest [m], where that of the start is another one.
+    """
     n = len(elements)
     if n == 0:
         return None
     size = 2 * n + 2
     rows = np.array([tuple(element) for element in elements], ELEMENT).view(np.recarray)
     x, stage, end = np.zeros(size), np.zeros(size), np.zeros(size)
+    x[: len(states)] = states
     use = np.zeros(n, USE).view(np.recarray)
     gaps = np.zeros((6, n), GAP).view(np.recarray)
-    return Devices(rows, np.zeros(1), np.zeros(n), np.zeros(n), x, stage, end, np.zeros((6, size)), gaps, use)
+    return Devices(
+        rows, np.full(1, float(level)), np.zeros(n), np.zeros(n), x, stage, end, np.zeros((6, size)), gaps, use
+    )
 
 
 @inner

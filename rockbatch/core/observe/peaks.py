@@ -43,6 +43,7 @@ class Limits(NamedTuple):
 
     friction: float  # coefficient of the interface, infinite where it is not known
     normal: float  # N/M below which friction counts for nothing [m/s²]
+    unstressed: float  # where the supports of pivots that are free at the start wait [m]
 
 
 class Noted(NamedTuple):
@@ -243,7 +244,7 @@ def forces_of_run(m, body, rows, pulls, devices, ground, dt, limits, out, greate
     noted : recarray of Noted, shape (1,)
         Filled beside ``greatest``.
     """
-    supports, aloft = Supports(0.0 * dt, 0.0 * dt, -1.0, -1.0), 0.0
+    supports, aloft = Supports(limits.unstressed, limits.unstressed, -1.0, -1.0), 0.0
     was = contact_of(m, rows[0])
     under = pulled(m, pulls[0, 0], pulls[0, 1])
     before = forces_at(under, body, state_of(m, rows[0]), was, supports, ground[0, 0], ground[0, 2])

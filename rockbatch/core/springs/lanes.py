@@ -11,7 +11,7 @@ from rockbatch.core.rk4 import rk4
 from rockbatch.core.roots import lowest_within
 from rockbatch.core.springs import events, transitions  # noqa: F401  answers of the springs
 from rockbatch.core.springs.ending import Waiting, base_of
-from rockbatch.core.springs.laws import curved, deflection, yield_point
+from rockbatch.core.springs.laws import branch_when_pressed, curved, deflection, yield_point
 from rockbatch.core.springs.loading import Loading, branches, close_left, close_right
 from rockbatch.core.springs.model import NUMBERS, Contact, Numbers, Springs, SpringTraits, State, Supports
 from rockbatch.core.springs.passing import News
@@ -40,6 +40,10 @@ LINE = (
     ("read_after", float),  # samples from the end of the record to the earliest moment at which residuals are read
     ("read_wait", float),  # from there to the second reading, which tells how they drift; 0: once the peak is decided
     ("prestress", float),  # of tendons, over the mass [m/s²]
+    ("v", float),  # where the pier is held at the start [m], if it is held at a rotation
+    ("theta", float),  # [rad]; 0 for the static state
+    ("z_left", float),
+    ("z_right", float),
 )  # fmt: skip
 """Fields of a run as it is asked for."""
 
@@ -94,17 +98,38 @@ def static_contact(m, y):
     return Contact(1.0, 1.0, branch, branch, 0.0), Supports(0.0, 0.0, point, point)
 
 
+@kernel
+def held_contact(m, y, z_static, plastic):
+    """Return contacts and supports as the pier is let go in state ``y``, to which it was pulled from the static one.
+
+    The side that was lifted is pressed next, and the one that was pressed is unloaded; a support without its pivot waits where it
+    is unstressed, at ``plastic`` [m].
+    """
+    pressed, left, right = branch_when_pressed(m.law), y.z_left < 0.0, y.z_right < 0.0
+    left_yields = pressed if left and y.theta > 0.0 else 0.0
+    right_yields = pressed if right and y.theta < 0.0 else 0.0
+    point = yield_point(m.law, 0.0, z_static)
+    supports = Supports(plastic, plastic, yield_point(m.law, point, y.z_left), yield_point(m.law, point, y.z_right))
+    return Contact(1.0 if left else 0.0, 1.0 if right else 0.0, left_yields, right_yields, 0.0), supports
+
+
 @system.begin.of(SpringTraits)
 def begin(traits, lanes, i, run):
-    """Put the model of ``run`` into lane ``i``, in its static state."""
+    """Put the model of ``run`` into lane ``i``, in its static state or where it is held at a rotation."""
     put(lanes.model, i, taken(run, Numbers))
     pier = model(traits, lanes, i)
     y = static_state(pier, run.gravity + run.prestress)
-    plastic = y.v - run.yield_deflection * y.z_left
+    level, plastic = y.v, y.v - run.yield_deflection * y.z_left
     contact, supports = static_contact(pier, y)
+    if run.theta != 0.0:
+        z_static, y = y.z_left, State(run.v, run.theta, 0.0, 0.0, run.z_left, run.z_right)
+        contact, supports = held_contact(pier, y, z_static, plastic)
+    left, right = pivots(pier, y)
+    unstressed_left = left.position - run.yield_deflection * y.z_left
+    unstressed_right = right.position - run.yield_deflection * y.z_right
     put_moment(traits, lanes, i, y, contact, supports)
-    put(lanes.loading, i, Loading(plastic, y.z_left, 0.0, plastic, y.z_right, 0.0))
-    put(lanes.lowest, i, Lowest(y.v, y.v, plastic))
+    put(lanes.loading, i, Loading(unstressed_left, y.z_left, 0.0, unstressed_right, y.z_right, 0.0))
+    put(lanes.lowest, i, Lowest(min(level, left.position), min(level, right.position), plastic))
     lanes.news.watched[i] = 1.0
 
 
