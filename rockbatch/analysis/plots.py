@@ -13,6 +13,7 @@ from rockbatch.analysis.fragility_curves import Curve
 from rockbatch.analysis.lognormal import Lognormal
 from rockbatch.figures import COLOURS, figure, line, marks, styled
 from rockbatch.lazy import pd
+from rockbatch.study.spectrum import INTENSITY, SELF_SIMILAR
 
 _OUTCOMES = {"safe": "0.93", "overturned with impact": "#E69F00", "overturned without impact": "#D55E00"}
 _OTHER = "#999999"  # "undecided" and what a map may have besides
@@ -46,31 +47,52 @@ def _case(curve: Curve) -> str:
 
 @styled
 def spectrum(
-    spectra: "pd.DataFrame | None", suite: "pd.DataFrame | None", maps: "pd.DataFrame | None", width_mm: float
+    spectra: "pd.DataFrame | None",
+    suite: "pd.DataFrame | None",
+    maps: "pd.DataFrame | None",
+    axis: str,
+    width_mm: float,
 ) -> Figure:
     """See :meth:`rockbatch.analysis.spectrum.Spectrum.plot`."""
     of_spectra: list[Any] = []
+    apart = INTENSITY if axis == SELF_SIMILAR else "alpha"
     if spectra is not None and suite is not None:
-        lines = dict(list(spectra.groupby(["case", "alpha"], sort=False)))
-        of_spectra = [(key, lines[key], median) for key, median in suite.groupby(["case", "alpha"], sort=False)]
+        lines = dict(list(spectra.groupby(["case", apart], sort=False)))
+        of_spectra = [(key, lines[key], median) for key, median in suite.groupby(["case", apart], sort=False)]
     of_maps: list[Any] = [] if maps is None else list(maps.groupby(["map", "case"], sort=False))
     drawn, grid = _panels(len(of_spectra) + len(of_maps), width_mm)
-    for axes, ((case, alpha), lines_of_case, median) in zip(grid, of_spectra, strict=False):
-        _spectrum(axes, lines_of_case, median)
-        axes.set_title(rf"{case}, $\alpha$ = {alpha:g}")
+    for axes, ((case, value), lines_of_case, median) in zip(grid, of_spectra, strict=False):
+        _spectrum(axes, lines_of_case, median, axis)
+        axes.set_title(rf"{case}, {SYMBOLS[apart]} = {value:g}")
     for axes, ((name, case), regions) in zip(grid[len(of_spectra) :], of_maps, strict=True):
         _map(axes, regions)
         axes.set_title(f"{name}, {case}")
     return _with_legend(drawn, grid)
 
 
-def _spectrum(axes: Axes, spectra: "pd.DataFrame", suite: "pd.DataFrame") -> None:
-    """Draw a line for each record, which ends where the pier overturns, and the median."""
-    for _, of_record in spectra.groupby(["record", "polarity", "scale"], sort=False):
-        stood = of_record["theta_max_over_alpha"].where(of_record["status"] == "ok")
-        axes.plot(of_record["two_pi_over_p_s"], stood, color="0.65", linewidth=0.6, label="each record")
-    axes.plot(suite["two_pi_over_p_s"], suite["median"].replace(math.inf, math.nan), **line(0), label="median")
-    axes.set(xlabel=r"$2\pi/p$ [s]", ylabel=r"$\theta_{\max}/\alpha$", ylim=(0, 1.1))
+SYMBOLS = {
+    "two_pi_over_p_s": r"$2\pi/p$ [s]", "p": "$p$ [rad/s]", "size_m": "$R_0$ [m]", "alpha": r"$\alpha$",
+    SELF_SIMILAR: r"$\omega_g/p$,  $\omega_g$ = PGA/PGV", INTENSITY: r"PGA/($g\,\tan\alpha$)",
+}  # fmt: skip
+"""Axes and parameters of spectra as matplotlib writes them."""
+
+
+def _spectrum(axes: Axes, spectra: "pd.DataFrame", suite: "pd.DataFrame", axis: str) -> None:
+    """Draw a line for each record, which ends where the pier overturns, and the median, one for each slenderness."""
+    several = suite["alpha"].nunique() > 1
+    for place, (alpha, median) in enumerate(suite.groupby("alpha", sort=False)):
+        of_alpha = spectra[spectra["alpha"] == alpha]
+        for _, of_record in of_alpha.groupby(["record", "polarity", *_scale(axis)], sort=False):
+            stood = of_record["theta_max_over_alpha"].where(of_record["status"] == "ok")
+            axes.plot(of_record[axis], stood, color="0.65", linewidth=0.6, label="each record")
+        name = rf"median, $\alpha$ = {alpha:g}" if several else "median"
+        axes.plot(median[axis], median["median"].replace(math.inf, math.nan), **line(place), label=name)
+    axes.set(xlabel=SYMBOLS[axis], ylabel=r"$\theta_{\max}/\alpha$", ylim=(0, 1.1))
+
+
+def _scale(axis: str) -> list[str]:
+    """Return the column "scale" where a curve has one scale, which in a self-similar spectrum follows from the slenderness."""
+    return [] if axis == SELF_SIMILAR else ["scale"]
 
 
 def _map(axes: Axes, regions: "pd.DataFrame") -> None:

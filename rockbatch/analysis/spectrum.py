@@ -14,11 +14,12 @@ from rockbatch.batch.digests import digests
 from rockbatch.batch.groups import NOTHING_MORE
 from rockbatch.batch.listening import Progress, count, once
 from rockbatch.batch.threads import Engine
+from rockbatch.errors import InputError
 from rockbatch.files import is_plain, read_table
 from rockbatch.lazy import pd
 from rockbatch.results.columns import columns
 from rockbatch.study import Motions, Study
-from rockbatch.study.spectrum import MapSpec, SpectrumSpec, read_spectrum
+from rockbatch.study.spectrum import AXES, SELF_SIMILAR, MapSpec, SpectrumSpec, read_spectrum
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -34,7 +35,7 @@ class Spectrum(Analysis):
         A row for each motion, slenderness, size and base: θ_max/α and how the run ended.
     spectrum_suite : DataFrame or None
         A row for each slenderness, size and base: 16, 50 and 84 % quantiles of θ_max/α over the motions, infinite where
-        the pier overturns.
+        the pier overturns. In a self-similar spectrum the size and the scale are the record's own, and a row has their ends.
     overturning_map : DataFrame or None
         A row for each region of amplitudes a_p/(g tan α) with one outcome, at each frequency ω_p/p of each map.
     overturning_runs : DataFrame or None
@@ -53,11 +54,22 @@ class Spectrum(Analysis):
     spectra: SpectrumSpec | None
     maps: tuple[MapSpec, ...]
 
-    def plot(self, width_mm: float = 160.0) -> "Figure":
-        """Draw the spectrum of each case, with its median over the records, and the maps: a matplotlib Figure of this width."""
+    @checked
+    def plot(self, width_mm: float = 160.0, axis: str | None = None) -> "Figure":
+        """Draw the spectrum of each case, with its median over the records, and the maps: a matplotlib Figure of this width.
+
+        ``axis`` is "two_pi_over_p_s", which it is unless given, "p" or "size_m"; a self-similar spectrum has "omega_g_over_p"
+        alone, over which all its slendernesses share a panel. Raises ``InputError`` for another.
+        """
         from rockbatch.analysis import plots
 
-        return plots.spectrum(self.spectrum, self.spectrum_suite, self.overturning_map, width_mm)
+        self_similar = self.spectra is not None and self.spectra.axis == SELF_SIMILAR
+        axes = (SELF_SIMILAR,) if self_similar else tuple(name for name in AXES if name != SELF_SIMILAR)
+        if axis is not None and axis not in axes:
+            asked = f"; for {SELF_SIMILAR} write it as the range in [spectrum]" if axis == SELF_SIMILAR else ""
+            raise InputError(f'axis = "{axis}": must be {" or ".join(axes)} in this spectrum{asked}')
+        tables = (self.spectrum, self.spectrum_suite, self.overturning_map)
+        return plots.spectrum(*tables, axis or axes[0], width_mm)
 
 
 @checked
@@ -122,7 +134,7 @@ def _carry_out_spectra(results: AnalysisFolder, spectra: SpectrumSpec) -> None:
     digest = digests(
         motions.motions,
         cases=spectra.cases,
-        scales=(study.motions.polarity, study.motions.scale),
+        scales=(study.motions.polarity, study.motions.scale, *spectra.intensities),
         numerics=study.numerics,
     )
     many = f"{count(len(motions.motions), 'motion')}, {count(len(runs), 'run')}{once(study)}"

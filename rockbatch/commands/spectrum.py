@@ -4,6 +4,7 @@ import argparse
 
 import numpy as np
 
+from rockbatch.analysis.rocking_spectrum import OWN, groups
 from rockbatch.analysis.spectrum import spectrum
 from rockbatch.batch.listening import count
 from rockbatch.commands.options import asked, tell_files
@@ -11,7 +12,7 @@ from rockbatch.commands.streams import in_width, say, show
 from rockbatch.commands.summary import named
 from rockbatch.lazy import pd
 from rockbatch.study import Study
-from rockbatch.study.spectrum import SpectrumSpec
+from rockbatch.study.spectrum import SELF_SIMILAR, SpectrumSpec
 
 MOST_LINES = 12
 """Greatest number of lines of a table for the terminal."""
@@ -36,7 +37,7 @@ def main(arguments: argparse.Namespace, study: Study) -> int:
 def shown(suite: "pd.DataFrame", spectrum: SpectrumSpec) -> str:
     """Return medians of θ_max/α for a terminal: a line for each value on the axis, ∞ where the pier overturns."""
     axis = spectrum.axis
-    keys = [name for name in ("case", "scale", *spectrum.varied) if name != axis]
+    keys = [name for name in groups(spectrum.varied) if name != axis]
     labels = [name for name in keys if name != "case" and (name != "scale" or suite[name].nunique() > 1)]
     lines = spread(suite[axis].unique())
     columns: dict[str, dict[str, str]] = {}
@@ -50,7 +51,11 @@ def shown(suite: "pd.DataFrame", spectrum: SpectrumSpec) -> str:
     rows = [[value, *(column.get(value, "") for column in columns.values())] for value in medians]
     total = suite[axis].nunique()
     some = f", {len(lines)} of {total} values of {axis}" if len(lines) < total else ""
-    return f"Median of theta_max/alpha{some}; ∞: overturned or ended by flight\n{in_width([axis, *columns], rows)}"
+    said = f"Median of theta_max/alpha{some}; ∞: overturned or ended by flight\n{in_width([axis, *columns], rows)}"
+    if axis == SELF_SIMILAR and len(suite):
+        sizes, scales = (f"{suite[f'least_{name}'].min():.3g} to {suite[f'greatest_{name}'].max():.3g}" for name in OWN)
+        said += f"\nomega_g = PGA/PGV of each record; piers with R0 = {sizes} m, motions scaled by {scales}"
+    return said
 
 
 def spread(values: np.ndarray) -> np.ndarray:

@@ -32,6 +32,8 @@ SYMBOLS = {
     "deck_height_m": ("deck height", "m"),
     "deck_inertia_t_m2": ("deck inertia", "t m²"),
     "top_m": ("top", "m"),
+    "omega_g_over_p": ("ω_g/p", ""),
+    "pga_over_g_tan_alpha": ("PGA/(g tan α)", ""),
 }
 BASE_KEYS = (
     "beta", "stiffness_kN_m", "eta", "yield_kN", "epsilon", "zeta", "spring", "n", "kinematics", "flight", "restitution",

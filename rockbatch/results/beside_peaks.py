@@ -37,12 +37,12 @@ class SimulatedRun(NamedTuple):
 def runs(peaks: "pd.DataFrame", study: Study, motions: Sequence[Motion]) -> Iterator[SimulatedRun]:
     """Yield the runs of ``peaks``, without mirror images."""
     by_name = {motion.name: motion for motion in motions}
-    piers = {_key(case.name, case.columns, study.varied): case.pier for case in study.cases}
+    piers = {case_key(case.name, case.columns, study.varied): case.pier for case in study.cases}
     kept = [*NAMING, *study.varied, "status", "theta_max_over_alpha"]
     table = simulated(peaks[peaks["case"] != ""])[kept]
     for cells in table.to_dict("records"):
         row = {str(name): value for name, value in cells.items()}
-        pier = piers[_key(row["case"], row, study.varied)]
+        pier = piers[case_key(row["case"], row, study.varied)]
         yield SimulatedRun(row, by_name[row["record"]], float(row["scale"]), pier)
 
 
@@ -80,7 +80,7 @@ def _comma(cell: str) -> str:
         return cell
 
 
-def _key(case: str, columns: Mapping[str, Any], varied: Sequence[str]) -> tuple[object, ...]:
+def case_key(case: str, columns: Mapping[str, Any], varied: Sequence[str]) -> tuple[object, ...]:
     """Return what distinguishes a case; numbers as peaks.csv has them, in ten digits."""
     return (case, *(_plain(columns.get(name)) for name in varied))
 

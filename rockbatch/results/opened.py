@@ -132,12 +132,21 @@ class Results(Shown, Saved):
         """Return :attr:`Response.events` of one run, chosen as for :meth:`response`."""
         return self.response(record, case, **more).events
 
-    def plot(self, width_mm: float = 160.0) -> "Figure":
-        """Draw the peaks of every run, as the paper's Fig. 7: a panel for each record, θ_max/α over the foundations, lines for
-        the rigid base, a colour for each pier and scale. A matplotlib Figure: ``results.plot().savefig("peaks.pdf")``."""
-        from rockbatch.results.plots import plot
+    @checked
+    def plot(self, width_mm: float = 160.0, axes: str = "records") -> "Figure":
+        """Draw the peaks of every run, a matplotlib Figure: ``results.plot().savefig("peaks.pdf")``.
 
-        return plot(self.peaks, self.info, width_mm)
+        With ``axes="records"`` as the paper's Fig. 7: a panel for each record, θ_max/α over the foundations, lines for the rigid
+        base, a colour for each pier and scale. With ``axes="self-similar"`` a panel for each foundation, and in it each run of
+        every pier, record and scale at PGA/(g tan α) over ω_g/p with ω_g = PGA/PGV, in the colour of its θ_max/α: on these axes
+        slender blocks of all sizes and slendernesses are one (Dimitrakopoulos & DeJong 2012). Raises ``InputError`` for others.
+        """
+        from rockbatch.results import plots
+
+        if axes not in ("records", "self-similar"):
+            raise InputError(f'axes = "{axes}": must be "records" or "self-similar"')
+        draw = plots.plot if axes == "records" else plots.plot_self_similar
+        return draw(self.peaks, self.info, width_mm)
 
     def _facts(self) -> tuple[str, dict[str, str]]:
         """See :class:`Shown`."""

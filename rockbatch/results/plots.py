@@ -11,12 +11,16 @@ from typing import Any
 
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogFormatter
 
 from rockbatch.checks.suite import counts_as, simulated
 from rockbatch.errors import InputError
 from rockbatch.figures import figure, line, marks, styled
 from rockbatch.lazy import pd
+from rockbatch.results.beside_peaks import case_key
 from rockbatch.results.suite_statistics import NO_PEAK, distribution, worst_records
 from rockbatch.study import PIER_KEYS
 
@@ -193,3 +197,72 @@ def plot_cdf(peaks: "pd.DataFrame", varied: Sequence[str], count: str, width_mm:
     axes.set(xlabel=r"$\theta_{\max}/\alpha$", ylabel=share_of, xlim=(0, right), ylim=(0, 1.01))
     drawn.legend(loc="outside lower center", ncols=2)
     return drawn
+
+
+@styled
+def plot_self_similar(peaks: "pd.DataFrame", info: Mapping[str, Any], width_mm: float) -> Figure:
+    """See :meth:`rockbatch.results.opened.Results.plot`, which hands over peaks.csv and run.json.
+
+    Raises ``InputError`` without any runs under ground that moves.
+    """
+    runs = _with_groups(_runs(peaks, info), info)
+    if runs.empty:
+        raise InputError("there are no runs to plot: no record could be used, as the column reason of peaks.csv says")
+    names = list(runs["foundation"].unique())
+    columns = max(1, min(int(width_mm / (1.5 * PANEL_MM)), len(names)))
+    rows = math.ceil(len(names) / columns)
+    drawn = figure(width_mm, 24.0 + 1.3 * PANEL_MM * rows)
+    grid = drawn.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
+    moved = runs[(runs["status"] == "ok") & (runs["theta_max_over_alpha"] > 0)]["theta_max_over_alpha"]
+    norm = LogNorm(*((moved.min(), max(moved.max(), 1.001 * moved.min())) if len(moved) else (0.1, 1.0)))
+    for axes, name in zip(grid.flat, names, strict=False):
+        _scatter(axes, runs[runs["foundation"] == name], norm)
+        axes.set_title(textwrap.fill(name, int(TITLE * width_mm / columns)), fontsize=7.0)
+    for axes in grid.flat[len(names) :]:
+        axes.set_visible(False)
+    for axes in grid.flat[max(len(names) - columns, 0) : len(names)]:
+        axes.tick_params(which="both", labelbottom=True)
+        axes.set_xlabel(r"$\omega_g/p$,  $\omega_g$ = PGA/PGV")
+    drawn.suptitle(info["study"]["title"])
+    drawn.supylabel(r"PGA/($g\,\tan\alpha$)")
+    if len(moved):
+        drawn.colorbar(ScalarMappable(norm, "cividis"), ax=list(grid.flat), label=r"$\theta_{\max}/\alpha$")
+    _legend(drawn, columns)
+    return drawn
+
+
+def _scatter(axes: Axes, runs: "pd.DataFrame", norm: LogNorm) -> None:
+    """Draw the runs of one foundation."""
+    axes.axhline(1.0, color="0.5", linewidth=0.8, linestyle="--", label="lifts a pier off rigid ground")
+    stood = runs["status"] == "ok"
+    still = stood & ~(runs["theta_max_over_alpha"] > 0)
+    moved = runs[stood & ~still]
+    axes.scatter(moved["frequency"], moved["intensity"], 14.0, moved["theta_max_over_alpha"], norm=norm, cmap="cividis")
+    if still.any():
+        axes.plot(
+            runs["frequency"][still], runs["intensity"][still], "o", color="0.6", mfc="none", label="did not move"
+        )
+    for status, (marker, words) in INSTEAD.items():
+        own = runs[runs["status"] == status]
+        if len(own):
+            axes.plot(own["frequency"], own["intensity"], marker, color="#D55E00", label=words)
+    axes.set(xscale="log", yscale="log")
+    for along in (axes.xaxis, axes.yaxis):
+        along.set_major_formatter(LogFormatter(labelOnlyBase=False))
+        along.set_minor_formatter(LogFormatter(minor_thresholds=(1.5, 0.8)))
+
+
+def _with_groups(runs: "pd.DataFrame", info: Mapping[str, Any]) -> "pd.DataFrame":
+    """Return the runs with ω_g/p (``frequency``) and PGA/(g tan α) (``intensity``), of those under ground that moves."""
+    varied = info["varied"]
+    piers = {case_key(case["case"], case["columns"], varied): case["pier"] for case in info["cases"]}
+    ground = {record["record"]: (record["pga_g"], record["pgv_m_s"]) for record in info["records"]}
+    frequency, intensity = [], []
+    for cells in runs[["case", "record", "scale", *varied]].to_dict("records"):
+        row = {str(name): value for name, value in cells.items()}
+        pier = piers[case_key(row["case"], row, varied)]
+        pga, pgv = ground[row["record"]]
+        frequency.append(pga * pier["gravity"] / (pgv * pier["p"]) if pgv else math.nan)
+        intensity.append(row["scale"] * pga / math.tan(pier["alpha"]))
+    table = runs.assign(frequency=frequency, intensity=intensity)
+    return table[table["frequency"] > 0]

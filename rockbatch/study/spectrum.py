@@ -16,12 +16,15 @@ from rockbatch.study.piers import has_mass
 from rockbatch.study.spec import Case
 from rockbatch.toml.kinds import Number, Whole, choice, number, positive, text
 from rockbatch.toml.reader import Table, TomlFile
-from rockbatch.toml.section import Key, Section
+from rockbatch.toml.section import Clash, Key, Section
 
 Range = tuple[float, float]
 
-AXES = ("two_pi_over_p_s", "p", "size_m")
-"""Quantities over which a spectrum may run: 2π/p [s], p [rad/s], or R0 [m]."""
+SELF_SIMILAR, INTENSITY = "omega_g_over_p", "pga_over_g_tan_alpha"
+"""Axes of a self-similar spectrum (Dimitrakopoulos & DeJong 2012): ω_g/p with ω_g = PGA/PGV of a record, and PGA/(g tan α)."""
+
+AXES = ("two_pi_over_p_s", "p", "size_m", SELF_SIMILAR)
+"""Quantities over which a spectrum may run: 2π/p [s], p [rad/s], R0 [m], or ω_g/p."""
 
 LEAST_TOLERANCE = 1e-9
 """Of a boundary, along either axis; halves of intervals that are shorter would soon be no numbers between their ends."""
@@ -36,14 +39,19 @@ class SpectrumSpec:
     axis : str
         One of :data:`AXES`.
     cases : tuple of Case
-        α slowest, then the value on the axis, then the bases.
+        α slowest, then the value on the axis, then the bases. Piers of a self-similar spectrum are those of a record with
+        ω_g = 1 rad/s.
     varied : tuple of str
-        Keys of ``Case.columns``: α, ``axis``, and the keys of bases that the study varies.
+        Keys of ``Case.columns``: α, ``axis``, and the keys of bases that the study varies; of a self-similar spectrum
+        :data:`INTENSITY` too.
+    intensities : tuple of float
+        Values of :data:`INTENSITY` of a self-similar spectrum.
     """
 
     axis: str
     cases: tuple[Case, ...]
     varied: tuple[str, ...]
+    intensities: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -77,15 +85,25 @@ _POINTS = Whole(2, "a whole number, 2 or above: the ends of the range are among 
 _WIDTH = Number(f"a number, {LEAST_TOLERANCE:g} or above", low=LEAST_TOLERANCE)
 SPECTRUM = Section(("spectrum",), (
     "Rocking spectra, by `rockbatch spectrum`: the greatest rotation over the size of the pier. "
-    "One of the three ranges is given."
+    "One of the four ranges is given."
 ), {
     "alpha": Key(positive, "[0.10, 0.15, 0.20]", "Slendernesses [rad], a curve for each.", many=True),
     "two_pi_over_p_s": Key(positive, "[2, 16]", "Range of 2π/p.", pair=True),
     "p": Key(positive, "[0.4, 3]", "Range of p [rad/s].", pair=True),
     "size_m": Key(positive, "[1, 60]", "Range of the size R0.", pair=True),
+    SELF_SIMILAR: Key(positive, "[1, 8]",
+        "Range of ω_g/p, with ω_g = PGA/PGV of each record: under each record the pier has sizes of its own.", pair=True),
+    INTENSITY: Key(positive, "[2, 4]",
+        "PGA/(g tan α) to which every motion is scaled, with `omega_g_over_p`: a spectrum for each. 1 just lifts the pier.",
+        many=True),
     "points": Key(_POINTS, "41", "Number of values along the range.", default=41),
     "spacing": Key(choice("linear", "log"), '"log"', "How the values are spaced.", default="linear"),
-})  # fmt: skip
+}, clashes=(
+    Clash((SELF_SIMILAR,), f"{INTENSITY} is missing beside {SELF_SIMILAR}; write for example {INTENSITY} = [2, 4]",
+        lacking=(INTENSITY,)),
+    Clash((INTENSITY,), f"{INTENSITY} = {{value}}: goes with {SELF_SIMILAR} = [1, 8]; write that as the range, or leave it out",
+        lacking=(SELF_SIMILAR,)),
+))  # fmt: skip
 MAP = Section(("spectrum", "map"), "A map of the pulses that overturn the pier, for every case. Write as many as are wanted.", {
     "name": Key(text, '"one-sine"', "Its name in the report.", required=True),
     "shape": Key(choice(*SHAPES), '"sine"', "Formula of the pulse.", required=True),
@@ -143,7 +161,15 @@ def _spectrum(table: Table, study: Study) -> SpectrumSpec | None:
     piers = _piers(table, read["alpha"], axis, values, study)
     before = len(table.file.problems)
     expanded, varied = read_cases(table.file, piers)
+    larger = (
+        read_cases(table.file, [(replace(pier, p=0.5 * pier.p), own) for pier, own in piers])[0]
+        if axis == SELF_SIMILAR
+        else []
+    )
     del table.file.problems[before:]  # said below, with the slenderness to which it applies
+    _without_size(
+        table, study, [case.name for case, other in zip(expanded, larger, strict=False) if case.base != other.base]
+    )
     reported = set()
     for case in expanded:
         alpha = case.pier.alpha
@@ -152,8 +178,27 @@ def _spectrum(table: Table, study: Study) -> SpectrumSpec | None:
                 reported.add((alpha, case.name))
                 table.complain(f'alpha = {alpha:g}, case "{case.name}": {problem}', "alpha")
     apart = [name for name in ("mu", "mass_t") if len({values.get(name) for _, values in piers}) > 1]
-    varied = ("alpha", *apart, axis, *(name for name in varied if name not in apart))
-    return SpectrumSpec(axis, tuple(case.case(varied) for case in expanded), varied)
+    intensities = read.get(INTENSITY, ()) if axis == SELF_SIMILAR else ()
+    of_axis = (INTENSITY, axis) if intensities else (axis,)
+    varied = ("alpha", *apart, *of_axis, *(name for name in varied if name not in apart))
+    return SpectrumSpec(axis, tuple(case.case(varied) for case in expanded), varied, intensities)
+
+
+def _without_size(table: Table, study: Study, names: Sequence[str]) -> None:
+    """Note what a self-similar spectrum cannot have: cases ``names`` whose base depends on the pier's size, and scales."""
+    if not table.has(SELF_SIMILAR):
+        return
+    for name in dict.fromkeys(names):
+        table.complain(
+            f'{SELF_SIMILAR}: the pier has another size under each record, and case "{name}" has another base for each size; '
+            "give its ratios: beta, eta, nu instead of stiffness_kN_m, yield_kN, coefficient_kN_s_m",
+            SELF_SIMILAR,
+        )
+    if study.motions.scale != (1.0,):
+        table.complain(
+            f"{SELF_SIMILAR}: every motion is scaled to {INTENSITY}, whatever scale says in [motions]; leave scale out",
+            SELF_SIMILAR,
+        )
 
 
 def _piers(
@@ -176,13 +221,17 @@ def _piers(
             mass = {} if other.mass_t is None else {"mass_t": other.mass_t}
             with table.noting("alpha", n):
                 for value in values:
-                    if axis == "size_m":
-                        p = Pier.from_size(alpha, value, other.mu, other.gravity).p
-                    else:
-                        p = value if axis == "p" else 2 * math.pi / value
+                    p = _p(axis, alpha, value, other)
                     own = {"alpha": alpha, "mu": other.mu, axis: value} | mass
                     piers.append((replace(other, alpha=alpha, p=p), own))
     return piers
+
+
+def _p(axis: str, alpha: float, value: float, pier: Pier) -> float:
+    """Return p [rad/s] at a value on the axis, of a pier with all else as ``pier``; of a self-similar one for ω_g = 1 rad/s."""
+    if axis == "size_m":
+        return Pier.from_size(alpha, value, pier.mu, pier.gravity).p
+    return {"p": value, "two_pi_over_p_s": 2 * math.pi / value, SELF_SIMILAR: 1.0 / value}[axis]
 
 
 def _maps(file: TomlFile) -> list[MapSpec]:

@@ -18,7 +18,7 @@ from rockbatch.report.drawing.svg import (
     text,
 )
 from rockbatch.report.finished_analysis import Contents, FinishedAnalysis, named, of_files
-from rockbatch.report.labels import quantity, symbol
+from rockbatch.report.labels import heading, plain, quantity, symbol
 from rockbatch.report.markup import Markup, figure, join, tag
 from rockbatch.report.table import sub
 
@@ -26,7 +26,7 @@ WIDTH, HEIGHT = 420.0, 250.0
 ROW = 10.0
 """Height of a row of marks of overturned runs [px]: one for each slenderness, or they would hide each other."""
 
-ACROSS = {"two_pi_over_p_s": "2π/p [s]"}
+ACROSS = {"two_pi_over_p_s": "2π/p [s]", "omega_g_over_p": lowered("ω", "g", "/p")}
 QUANTILES = {"median": "", "p16": " d2", "p84": " d1"}
 
 
@@ -37,7 +37,7 @@ def section(contents: Contents) -> Markup:
     if analysis is None:
         return Markup("")
     parts = []
-    suite = analysis.table("spectrum_suite.csv", ("case", "scale", "alpha", "count", *QUANTILES))
+    suite = analysis.table("spectrum_suite.csv", ("case", "alpha", "count", *QUANTILES))
     if suite is not None:
         parts += _spectra(analysis, suite)
     regions = analysis.table("overturning_map.csv", ("map", "case", "omega_p_over_p", "outcome", "low", "high"))
@@ -48,9 +48,13 @@ def section(contents: Contents) -> Markup:
 
 def _spectra(analysis: FinishedAnalysis, suite: "pd.DataFrame") -> list[Markup]:
     axis, many = analysis.info["axis"], bool((suite["count"] > 1).any())
-    apart = [name for name in ("case", "scale", *analysis.info["varied"]) if name not in ("alpha", axis)]
+    self_similar = axis == "omega_g_over_p"
+    keys = ("case", *(() if self_similar else ("scale",)), *analysis.info["varied"])
+    apart = [name for name in keys if name not in ("alpha", axis)]
     varying = [name for name in apart if name == "case" or suite[name].nunique(dropna=False) > 1]
     lead = "Largest rotation over slenderness against the size of the pier, a curve for each slenderness. "
+    if self_similar:
+        lead = _of_self_similar(suite)
     if many:
         lead += (
             "Solid: median of the suite; dashed and dotted: 84 % and 16 % quantiles; every component counts by itself. "
@@ -60,7 +64,21 @@ def _spectra(analysis: FinishedAnalysis, suite: "pd.DataFrame") -> list[Markup]:
         (named(dict(zip(apart, names, strict=True)), varying), *_curves(runs, axis, many))
         for names, runs in suite.groupby(apart, sort=False, dropna=False)
     ]
-    return [tag("p", lead), tag("figure", side_by_side(drawn, WIDTH), class_="whole")]
+    return [tag("p", heading(lead)), tag("figure", side_by_side(drawn, WIDTH), class_="whole")]
+
+
+def _of_self_similar(suite: "pd.DataFrame") -> str:
+    """Return what the axes of self-similar spectra are, and which piers and scales are behind them."""
+    size, scale = (
+        f"{plain(suite[f'least_{name}'].min(), 3)} to {plain(suite[f'greatest_{name}'].max(), 3)}"
+        for name in ("size_m", "scale")
+    )
+    return (
+        "Self-similar spectra: largest rotation over slenderness against ω_g/p, with ω_g = PGA/PGV of each record. Each record "
+        f"is scaled to the PGA/(g tan α) of the picture, by {scale}, and acts on piers of its own sizes, R0 from {size} m. "
+        "Slender piers on rigid ground with one restitution and without vertical motion share one curve: what parts the curves "
+        "of several slendernesses is restitution, vertical motion, large rotations, and springs. "
+    )
 
 
 def _curves(points: "pd.DataFrame", axis: str, many: bool) -> tuple[Markup, list[Entry]]:
