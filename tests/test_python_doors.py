@@ -90,7 +90,9 @@ alpha = [0.18, 0.22]
 eta = [2.2, 3.0]
 """
 ANALYSES = {
-    "fragility": tuple(f"fragility{part}" for part in ("", "_capacities", "_risk", "_deaggregation", "_runs")),
+    "fragility": tuple(
+        f"fragility{part}" for part in ("_scales", "", "_capacities", "_risk", "_deaggregation", "_runs")
+    ),
     "spectrum": ("spectrum", "spectrum_suite", "overturning_map", "overturning_runs"),
     "sensitivity": ("sensitivity_runs", "sensitivity", "sobol"),
 }

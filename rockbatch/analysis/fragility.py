@@ -7,9 +7,10 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from rockbatch.analysis.folder import Analysis, AnalysisFolder, analysed
-from rockbatch.analysis.fragility_curves import Curve, assess, intensities, output
+from rockbatch.analysis.fragility_curves import Curve, assess, level_plan, output
 from rockbatch.analysis.fragility_tables import CAPACITIES, POINTS, RUNS, capacities, described, points
 from rockbatch.analysis.risk import DEAGGREGATION, RISK, Risk, deaggregation_table, risk_table, risks
+from rockbatch.analysis.scale_factors import SCALES, described_scales, scales
 from rockbatch.analysis.waves import Waves
 from rockbatch.arguments import checked
 from rockbatch.batch.compiling import make_ready
@@ -42,6 +43,8 @@ class Fragility(Analysis):
         the limit, in the unit of the levels and as a scale of the record.
     fragility_runs : DataFrame
         All runs, as rows of peaks.csv.
+    fragility_scales : DataFrame
+        A row for each record and level, with the factor on the record, and whether it is within the limits of the study.
     fragility_risk : DataFrame or None
         Of a study with [fragility.hazard]: a row for each curve, with the mean annual rate of exceedance, its interval, and the
         probability in the years asked about.
@@ -55,12 +58,14 @@ class Fragility(Analysis):
 
     NAME: ClassVar[str] = "fragility"
     TABLES: ClassVar[tuple[str, ...]] = (
-        "fragility", "fragility_capacities", "fragility_risk", "fragility_deaggregation", "fragility_runs",
+        "fragility_scales", "fragility", "fragility_capacities", "fragility_risk", "fragility_deaggregation",
+        "fragility_runs",
     )  # fmt: skip
 
     fragility: "pd.DataFrame"
     fragility_capacities: "pd.DataFrame | None"
     fragility_runs: "pd.DataFrame"
+    fragility_scales: "pd.DataFrame"
     fragility_risk: "pd.DataFrame | None" = None
     fragility_deaggregation: "pd.DataFrame | None" = None
     curves: tuple[Curve, ...]
@@ -130,8 +135,8 @@ def fragility(
     Returns
     -------
     Fragility
-        With the tables ``fragility``, ``fragility_capacities``, ``fragility_runs``, ``fragility_risk`` and
-        ``fragility_deaggregation``, as their CSV files have them.
+        With the tables ``fragility``, ``fragility_capacities``, ``fragility_runs``, ``fragility_scales``,
+        ``fragility_risk`` and ``fragility_deaggregation``, as their CSV files have them.
 
     Raises
     ------
@@ -143,9 +148,9 @@ def fragility(
     >>> result = rb.fragility("pier4.toml")
     >>> result
     <fragility of 'Pier 4'>
-      tables  fragility (16 rows), fragility_runs (16 rows)
+      tables  fragility_scales (8 rows), fragility (16 rows), fragility_runs (16 rows)
     >>> [path.name for path in result.save("reports/fragility")]
-    ['fragility.csv', 'fragility_runs.csv', 'fragility.json', 'analyses.html']
+    ['fragility_scales.csv', 'fragility.csv', 'fragility_runs.csv', 'fragility.json', 'analyses.html']
     """
     return analysed(Fragility, read_fragility, _carry_out, study, out, motions, jobs, fresh, progress)
 
@@ -153,7 +158,7 @@ def fragility(
 def _carry_out(results: AnalysisFolder, spec: FragilitySpec) -> dict[str, Any]:
     asked = results.study = replace(results.study, output=output(spec, results.study.output))
     listener, records = results.listener, results.read_motions(asked).motions
-    unscaled = intensities(records, spec, asked.cases[0].pier.gravity)
+    plan = level_plan(asked, spec, records)
     if asked.motions.scale != (1.0,):
         listener.say("scale of [motions] is not used: the levels of [fragility] take its place")
     digest = digests(
@@ -164,7 +169,7 @@ def _carry_out(results: AnalysisFolder, spec: FragilitySpec) -> dict[str, Any]:
         fragility=spec.of_runs,
     )
     with results.journal(RUNS, columns(asked), digest) as journal:
-        runs = count(len(records) * len(spec.levels) * len(asked.cases), "run")
+        runs = count(sum(map(len, plan.used)) * len(asked.cases), "run")
         levels = f"{count(len(records), 'record')} at {len(spec.levels)} levels of {spec.label}"
         search = (
             f"; then first exceedances are hunted for and bisected to {spec.tolerance:g}"
@@ -174,14 +179,16 @@ def _carry_out(results: AnalysisFolder, spec: FragilitySpec) -> dict[str, Any]:
         listener.say(f"{levels}: {runs}{once(asked)} on {results.engine}{search}")
         make_ready(asked, listener)
         waves = Waves(asked, journal, results.engine, listener)
-        curves = assess(asked, spec, records, waves)
+        curves = assess(asked, spec, records, waves, plan)
         rates = risks(curves, spec)
         results.info |= described(curves, spec, asked, len(records), rates)
         results.info["stations"] = len({motion.of_station for motion in records})
+        names = [motion.name for motion in records]
+        results.keep_table(SCALES, scales(plan, spec, names))
+        results.info["scales"] = described_scales(plan, spec, names)
         results.keep_table(POINTS, points(curves, spec, asked.varied))
         if spec.method == "ida":
-            names = [motion.name for motion in records]
-            results.keep_table(CAPACITIES, capacities(curves, spec, asked.varied, names, unscaled))
+            results.keep_table(CAPACITIES, capacities(curves, spec, asked.varied, names, plan.unscaled))
         else:
             results.drop(CAPACITIES)
         _keep_risk(results, spec, curves, rates)

@@ -25,6 +25,7 @@ from rockbatch.motions.spectrum import spectral_acceleration
 from rockbatch.results.run_json import describe_case
 from rockbatch.study import Case, Output, Study
 from rockbatch.study.fragility import FragilitySpec
+from rockbatch.study.stripes import members
 
 
 class Point(NamedTuple):
@@ -57,12 +58,55 @@ class ScaledRuns(Made):
         super().__init__(len(points), make)
 
 
+class LevelPlan(NamedTuple):
+    """Levels at which each motion is run.
+
+    ``unscaled`` are the intensities of the motions as they come, and ``earlier`` the factors by which the study has scaled them
+    to its target before. ``used`` has the intensity at each level at which a motion is run, by the level: the level itself, or
+    what a given factor comes to; ``not_used`` those at which its factor is beyond the limits of the study.
+    """
+
+    unscaled: list[float]
+    earlier: list[float]
+    used: list[dict[float, float]]
+    not_used: list[dict[float, float]]
+
+    def factor(self, motion: int, level: float) -> float:
+        """Return the factor at a level on a motion as it was recorded."""
+        intensity = (self.used[motion] | self.not_used[motion])[level]
+        return self.earlier[motion] * intensity / self.unscaled[motion]
+
+
+def level_plan(study: Study, spec: FragilitySpec, motions: Sequence[Motion]) -> LevelPlan:
+    """Return the levels of every motion; raises ``InputError`` if there is no run at all, or a stripe names no record."""
+    unscaled = intensities(motions, spec, study.cases[0].pier.gravity)
+    plan = LevelPlan(unscaled, [motion.factor for motion in motions], [{} for _ in motions], [{} for _ in motions])
+    own = members(study.file(), spec.stripes, [motion.name for motion in motions])
+    for i, level in enumerate(spec.levels):
+        given = own[i] if own else dict.fromkeys(range(len(motions)))
+        for m, scale in given.items():
+            intensity = level if scale is None else scale * unscaled[m] / motions[m].factor
+            factor = motions[m].factor * intensity / unscaled[m]
+            within = spec.least_scale <= factor * (1 + 1e-9) and factor <= spec.most_scale * (1 + 1e-9)
+            (plan.used if within else plan.not_used)[m][level] = intensity
+    if not any(plan.used):
+        limits = f"least_scale = {spec.least_scale:g} and most_scale = {spec.most_scale:g}"
+        raise InputError(
+            f"{study.path}: [fragility]: {limits}: no record reaches a level with such a factor; widen them"
+        )
+    return plan
+
+
 Simulate = Callable[[ScaledRuns], "pd.DataFrame"]
 """From runs to their rows of peaks.csv, in their order."""
 
 
 class Stripe(NamedTuple):
-    """All records at one level: how many count, exceed the limit, or are undecided; overturn, fly or fail."""
+    """All records at one level: how many count, exceed the limit, or are undecided; overturn, fly or fail.
+
+    ``not_used`` are those whose factor would be beyond the limits of the study; the others are scaled by factors from
+    ``scale_least`` to ``scale_most``.
+    """
 
     level: float
     records: int
@@ -71,6 +115,10 @@ class Stripe(NamedTuple):
     collapsed: int
     flight: int
     failed: int
+    not_used: int = 0
+    scale_least: float = math.nan
+    scale_median: float = math.nan
+    scale_most: float = math.nan
 
 
 class Undecided(NamedTuple):
@@ -192,18 +240,21 @@ def intensities(motions: Iterable[Motion], spec: FragilitySpec, gravity: float) 
     return measures
 
 
-def assess(study: Study, spec: FragilitySpec, motions: Sequence[Motion], simulate: Simulate) -> list[Curve]:
+def assess(
+    study: Study, spec: FragilitySpec, motions: Sequence[Motion], simulate: Simulate, plan: LevelPlan | None = None
+) -> list[Curve]:
     """Return the fragility curves of every case for every limit that applies to it.
 
-    Every record is scaled to every level; with method "ida" the first exceedance of every record is then sought below that on
-    the levels, in one wave, and bisected, in more of them.
+    Every record is run at the levels of ``plan``, at all of them if it is not given; with method "ida" the first exceedance
+    of every record is then sought below that on the levels, in one wave, and bisected, in more of them.
 
     ``simulate`` is called once for the levels and once for every wave, each depending on the rows before.
     """
-    runs = _Runs(study, motions, intensities(motions, spec, study.cases[0].pier.gravity), simulate)
+    plan = plan or level_plan(study, spec, motions)
+    runs = _Runs(study, motions, plan, simulate)
     cases = [describe_case(case) for case in study.cases]
     asked = [(c, rule) for rule in spec.limits for c, case in enumerate(cases) if applies(rule, case)]
-    runs.carry_out(Point(m, x, c) for m in range(len(motions)) for x in spec.levels for c in range(len(cases)))
+    runs.carry_out(Point(m, x, c) for m, own in enumerate(plan.used) for x in own.values() for c in range(len(cases)))
 
     def states_of(wanted: Sequence[tuple[_Key, float]]) -> list[int]:
         points = [(rule, Point(m, x, c)) for (c, rule, m), x in wanted]
@@ -211,8 +262,8 @@ def assess(study: Study, spec: FragilitySpec, motions: Sequence[Motion], simulat
         return runs.states(points)
 
     keys = [(c, rule, m) for c, rule in asked for m in range(len(motions))]
-    on_levels = iter(runs.states([(rule, Point(m, x, c)) for c, rule, m in keys for x in spec.levels]))
-    looks = {key: {x: next(on_levels) for x in spec.levels} for key in keys}
+    on_levels = iter(runs.states([(rule, Point(m, x, c)) for c, rule, m in keys for x in plan.used[m].values()]))
+    looks = {key: {level: next(on_levels) for level in plan.used[key[2]]} for key in keys}
     if spec.method == "ida":
         looks = hunt(looks, spec.levels, lambda key: spec.step_on(study.cases[key[0]].base), states_of)
         looks = bisect(looks, spec.levels, spec.tolerance, states_of)
@@ -226,8 +277,8 @@ _Key = tuple[int, Rule, int]
 class _Runs:
     """All runs of an analysis, each once, with their rows."""
 
-    def __init__(self, study: Study, motions: Sequence[Motion], unscaled: Sequence[float], simulate: Simulate) -> None:
-        self.study, self.motions, self.unscaled, self.simulate = study, motions, unscaled, simulate
+    def __init__(self, study: Study, motions: Sequence[Motion], plan: LevelPlan, simulate: Simulate) -> None:
+        self.study, self.motions, self.plan, self.simulate = study, motions, plan, simulate
         self.cases = [describe_case(case) for case in study.cases]
         self.status: dict[Point, str] = {}
         self._last: tuple[dict[Point, int], pd.DataFrame]
@@ -236,9 +287,13 @@ class _Runs:
         """Carry out one wave of runs."""
         points = sorted({*wanted})  # what shares a motion stands together
         polarity = self.study.motions.simulated
-        table = self.simulate(ScaledRuns(points, self.motions, self.unscaled, self.study.cases, polarity))
+        table = self.simulate(ScaledRuns(points, self.motions, self.plan.unscaled, self.study.cases, polarity))
         self.status |= dict(zip(points, table["status"], strict=True))
         self._last = {point: i for i, point in enumerate(points)}, table
+
+    def status_at(self, motion: int, level: float, case: int) -> str:
+        """Return the status of the run of a motion at a level, or at an intensity between the levels."""
+        return self.status[Point(motion, self.plan.used[motion].get(level, level), case)]
 
     def states(self, asked: Sequence[tuple[Rule, Point]]) -> list[int]:
         """Return the states of runs of the last wave with respect to limits."""
@@ -256,7 +311,7 @@ class _Runs:
 
 def _curve(runs: _Runs, spec: FragilitySpec, case: int, rule: Rule, looks: Sequence[Looks]) -> Curve:
     """Return the curve through the states of every motion."""
-    on_levels = np.array([[own[x] for x in spec.levels] for own in looks], dtype=np.int8)
+    on_levels = np.array([[own.get(x, LEFT_OUT) for x in spec.levels] for own in looks], dtype=np.int8)
     undecided = _undecided(runs, case, looks)
     capacities: tuple[tuple[int, Capacity], ...] = ()
     if spec.method == "ida":
@@ -270,18 +325,24 @@ def _curve(runs: _Runs, spec: FragilitySpec, case: int, rule: Rule, looks: Seque
 
 
 def _undecided(runs: _Runs, case: int, looks: Sequence[Looks]) -> Undecided:
-    counted = [(Point(m, x, case), state) for m, own in enumerate(looks) for x, state in own.items()]
-    status = Counter(runs.status[point] for point, state in counted if state == UNDECIDED)
+    counted = [(m, x, state) for m, own in enumerate(looks) for x, state in own.items()]
+    status = Counter(runs.status_at(m, x, case) for m, x, state in counted if state == UNDECIDED)
     flight, failed = status.pop("flight", 0), status.pop("failed", 0)
-    return Undecided(sum(state != LEFT_OUT for _, state in counted), flight, failed, status.total())
+    return Undecided(sum(state != LEFT_OUT for _, _, state in counted), flight, failed, status.total())
 
 
 def _stripes(observed: npt.NDArray[np.int8], levels: Sequence[float], runs: _Runs, case: int) -> tuple[Stripe, ...]:
-    stripes = []
+    stripes, plan = [], runs.plan
     for x, row in zip(levels, observed.T, strict=True):
-        ended = Counter(runs.status[Point(m, x, case)] for m in range(len(row)))
-        counts = (int(np.count_nonzero(which)) for which in (row != LEFT_OUT, row == EXCEEDED, row == UNDECIDED))
-        stripes.append(Stripe(x, *counts, *(ended[status] for status in ("overturned", "flight", "failed"))))
+        used = [m for m, own in enumerate(plan.used) if x in own]
+        ended = Counter(runs.status_at(m, x, case) for m in used)
+        counts = [int(np.count_nonzero(which)) for which in (row != LEFT_OUT, row == EXCEEDED, row == UNDECIDED)]
+        ends = [ended[status] for status in ("overturned", "flight", "failed")]
+        factors = [plan.factor(m, x) for m in used]
+        least, middle, most = np.quantile(factors, [0.0, 0.5, 1.0]).tolist() if factors else 3 * [math.nan]
+        not_used = sum(x in own for own in plan.not_used)
+        stripe = Stripe(x, *counts, *ends)
+        stripes.append(stripe._replace(not_used=not_used, scale_least=least, scale_median=middle, scale_most=most))
     return tuple(stripes)
 
 

@@ -92,7 +92,8 @@ def hunt(
     for key, looks in states.items():
         step, first = step_of(key), capacity(looks, levels)
         if step is not None and first is not None:
-            wanted += [(key, x) for x in _between(levels, step) if x < first.decided.high]
+            lowest, highest = min(looks), max(looks)
+            wanted += [(key, x) for x in _between(levels, step) if lowest < x < min(highest, first.decided.high)]
     _take(states, wanted, states_of)
     return states
 

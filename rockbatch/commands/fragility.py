@@ -23,6 +23,7 @@ def main(arguments: argparse.Namespace, study: Study) -> int:
     """Fit fragility curves, and print them."""
     result = fragility(study, **asked(arguments))
     show(table(result.curves, result.spec))
+    show(result.info["scales"]["said"])
     if result.spec.hazard is not None:
         show(f"\n{risk_lines(risks(result.curves, result.spec), result.spec)}")
     tell_files(result)

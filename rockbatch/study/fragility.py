@@ -1,6 +1,8 @@
 """Fragility curves in a study file: [fragility]."""
 
 import fnmatch
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
@@ -10,6 +12,7 @@ from rockbatch.checks.rules import Rule
 from rockbatch.pier import Base
 from rockbatch.study.hazard import Dispersion, Hazard, read_dispersions, read_hazard, root_of_squares
 from rockbatch.study.load import Study
+from rockbatch.study.stripes import StripeRecords, read_stripes
 from rockbatch.toml.kinds import Number, choice, closest, positive, shown, text
 from rockbatch.toml.reader import Table
 from rockbatch.toml.section import Key, Section
@@ -32,6 +35,7 @@ class FragilitySpec:
 
     :data:`FRAGILITY` says what each key means. ``levels`` rise, in :attr:`unit`; ``limits`` are overturning, then the checks,
     each held against every record by itself, with runs that flew or failed undecided unless the check leaves them out.
+    ``stripes`` are those with records of their own, one for each level.
     """
 
     method: str
@@ -45,6 +49,9 @@ class FragilitySpec:
     hunt_step: float | None = None
     hazard: Hazard | None = None
     dispersions: tuple[Dispersion, ...] = ()
+    least_scale: float = 0.0
+    most_scale: float = math.inf
+    stripes: tuple[StripeRecords, ...] = ()
 
     @property
     def of_runs(self) -> "FragilitySpec":
@@ -82,10 +89,14 @@ FRAGILITY = Section(("fragility",), (
     "measure": Key(choice(*MEASURES), '"PGV"', "Intensity measure of the horizontal component.", required=True),
     "period_s": Key(positive, "1.0", "Period of the oscillator of Sa.", required=True, only=_SA),
     "damping": Key(_BELOW_ONE, "0.05", "Damping of the oscillator of Sa, as a fraction of critical damping.", only=_SA),
-    "levels_g": Key(positive, "[0.2, 0.4, 0.6, 0.8]", "Levels of PGA or Sa.", required=True, many=True,
-        only={"measure": ("PGA", "Sa")}),
-    "levels_m_s": Key(positive, "[0.25, 0.5, 1.0, 1.5]", "Levels of PGV.", required=True, many=True,
-        only={"measure": ("PGV",)}),
+    "levels_g": Key(positive, "[0.2, 0.4, 0.6, 0.8]",
+        "Levels of PGA or Sa; each [[fragility.stripe]] has its own instead.", many=True, only={"measure": ("PGA", "Sa")}),
+    "levels_m_s": Key(positive, "[0.25, 0.5, 1.0, 1.5]",
+        "Levels of PGV; each [[fragility.stripe]] has its own instead.", many=True, only={"measure": ("PGV",)}),
+    "least_scale": Key(positive, "0.25",
+        "Least factor on a record, as it was recorded: at levels that take a smaller one it is not used."),
+    "most_scale": Key(positive, "4.0",
+        "Greatest factor on a record, as it was recorded: at levels that take a larger one it is not used."),
     "tolerance": Key(Number("a number from 1e-6 to 1", low=1e-6, high=1.0), "0.01",
         "Relative width to which the least intensity is narrowed down.", only=_IDA),
     "hunt_step": Key(Number("a number from 0.001 to 1", low=1e-3, high=1.0), "0.02",
@@ -105,22 +116,37 @@ def read_fragility(study: Study) -> FragilitySpec:
     """
     file = study.file()
     table = file.table("fragility", required='[fragility] with measure = "PGV" and levels_m_s = [0.25, 0.5, 1.0, 1.5]')
-    read = table.read(FRAGILITY, other=("hazard", "dispersion")) if table else {}
+    read = table.read(FRAGILITY, other=("hazard", "dispersion", "stripe")) if table else {}
     limits = _limits(table, study.checks, read.pop("checks", None)) if table else ()
-    levels = _levels(table, read) if table else ()
+    stripes = read_stripes(file, LEVELS[read["measure"]]) if "measure" in read else ()
+    levels = _levels(table, read, stripes) if table else ()
     hazard = read_hazard(file, LEVELS[read["measure"]]) if "measure" in read else None
     dispersions = read_dispersions(file)
     file.finish()
-    given = {"method": "stripes", "hazard": hazard, "dispersions": dispersions} | read
+    given = {"method": "stripes", "hazard": hazard, "dispersions": dispersions, "stripes": stripes} | read
     return FragilitySpec(levels=levels, limits=(OVERTURNING, *limits), **given)
 
 
-def _levels(table: Table, read: dict[str, Any]) -> tuple[float, ...]:
-    """Return the levels in the unit of the measure; what belongs to another measure is noted."""
+def _levels(table: Table, read: dict[str, Any], stripes: Sequence[StripeRecords]) -> tuple[float, ...]:
+    """Return the levels in the unit of the measure, those of ``stripes`` if there are any; mistakes are noted."""
     given = {name: read.pop(name, ()) for name in ("levels_g", "levels_m_s")}
+    if read.get("least_scale", 0.0) > read.get("most_scale", math.inf):
+        table.complain(
+            f"least_scale = {read['least_scale']:g}: more than most_scale; no record is between", "least_scale"
+        )
     if "measure" not in read:
         return ()
     own = LEVELS[read["measure"]]
+    if table.file.has((*table.at, "stripe")):
+        if given[own]:
+            table.complain(f"{own}: each [[fragility.stripe]] has its level; leave {own} out", own)
+        if read.get("method", "stripes") != "stripes":
+            table.complain(
+                f'method = {shown(read["method"])}: records of their own are for "stripes"; leave it out', "method"
+            )
+        return tuple(stripe.level for stripe in stripes)
+    if not table.has(own):
+        table.complain(f"{own} is missing; write for example {own} = {FRAGILITY[own].example}")
     levels = given[own]
     for n, (before, level) in enumerate(pairwise(levels), 1):
         if level < before:

@@ -12,7 +12,7 @@ from rockbatch.report.drawing.svg import curve, key, line, marker, style_of, svg
 from rockbatch.report.finished_analysis import Contents, of_files
 from rockbatch.report.labels import quantity
 from rockbatch.report.markup import Markup, join, tag
-from rockbatch.report.table import Head, listed
+from rockbatch.report.table import Head, listed, table
 from rockbatch.report.templates import render
 
 WIDTH, HEIGHT = 300.0, 190.0
@@ -36,6 +36,7 @@ def section(contents: Contents) -> Markup:
         "sections/fragility.html", info=info, share=share, panels=_panels(info), table=_table(info, share),
         little=[f"{entry['limit_state']}, {label(entry)}" for entry in curves if entry["says_little"]],
         open=any("open" in entry for entry in curves), looked=any(entry.get("looked") for entry in curves),
+        factors=_factors(info), own=any(None in row for row in info.get("scales", {}).get("factors", ())),
         provenance=analysis.provenance(),
     )  # fmt: skip
 
@@ -156,6 +157,29 @@ def _table(info: Mapping[str, Any], share: str) -> Markup:
         Head("note", of="note"),
     ]  # fmt: skip
     return listed(heads, info["curves"], prose=True, name="Medians and dispersions")
+
+
+def _factors(info: Mapping[str, Any]) -> Markup:
+    """Return a folded table of the factors on every record at every level; those that are not used in brackets."""
+    scales = info.get("scales")
+    if not scales:
+        return Markup("")
+    heads = [
+        Head("record"),
+        *(Head(f"{level:g}", over=f"{info['measure']} [{info['unit']}]") for level in info["levels"]),
+    ]
+    rows = [
+        [name, *(_factor(factor, use) for factor, use in zip(factors, used, strict=True))]
+        for name, factors, used in zip(scales["records"], scales["factors"], scales["used"], strict=True)
+    ]
+    words = "Factors on the records as they were recorded; in brackets: beyond the limits, not used"
+    return tag("details", tag("summary", words), table(heads, rows, name="Factors on the records"))
+
+
+def _factor(factor: float | None, used: bool) -> str:
+    if factor is None:
+        return ""
+    return f"{factor:.2f}" if used else f"({factor:.2f})"
 
 
 def _most(name: str) -> Callable[[Curve], object]:

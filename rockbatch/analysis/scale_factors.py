@@ -1,0 +1,68 @@
+"""Factors on the records of a fragility: which one each record takes at each level, and which are beyond the study's limits."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from rockbatch.analysis.fragility_curves import LevelPlan
+from rockbatch.batch.listening import count
+from rockbatch.lazy import pd
+from rockbatch.study.fragility import FragilitySpec
+
+SCALES = "fragility_scales.csv"
+
+FAR = 0.1
+"""Relative distance of an intensity from its level from which a remark says so."""
+
+
+def scales(plan: LevelPlan, spec: FragilitySpec, names: Sequence[str]) -> "pd.DataFrame":
+    """Return fragility_scales.csv: a row for each record and level that it is meant for.
+
+    ``scale`` is the factor on the record as it was recorded, also what the study's target has done, ``unscaled`` its intensity
+    then, and ``intensity`` what it comes to; ``used`` is False where the factor is beyond the limits of the study.
+    """
+    rows = [
+        {"record": name, "measure": spec.label, "unit": spec.unit, "unscaled": plan.unscaled[m] / plan.earlier[m]}
+        | {"level": level, "intensity": intensity, "scale": plan.factor(m, level), "used": level in plan.used[m]}
+        for m, name in enumerate(names)
+        for level, intensity in sorted((plan.used[m] | plan.not_used[m]).items())
+    ]
+    return pd.DataFrame(rows)
+
+
+def described_scales(plan: LevelPlan, spec: FragilitySpec, names: Sequence[str]) -> dict[str, Any]:
+    """Return the factors for fragility.json: for each record those at all levels, None where it is not meant for one."""
+    factors, used = [], []
+    for m in range(len(names)):
+        meant = plan.used[m] | plan.not_used[m]
+        factors.append([plan.factor(m, x) if x in meant else None for x in spec.levels])
+        used.append([x in plan.used[m] for x in spec.levels])
+    limits = [spec.least_scale or None, spec.most_scale if np.isfinite(spec.most_scale) else None]
+    return {"records": list(names), "factors": factors, "used": used, "limits": limits, "said": said(plan, spec)}
+
+
+def said(plan: LevelPlan, spec: FragilitySpec) -> str:
+    """Return in words how far records are scaled, and how many are left at each level."""
+    factors = [plan.factor(m, x) for m, own in enumerate(plan.used) for x in own]
+    parts = [f"records are scaled by {min(factors):.2g} to {max(factors):.2g} (median {np.median(factors):.2g})"]
+    beyond = {x: sum(x in own for own in plan.not_used) for x in spec.levels}
+    if any(beyond.values()):
+        limits = f"{spec.least_scale:g} to {spec.most_scale:g}" if spec.least_scale else f"up to {spec.most_scale:g}"
+        left = [
+            f"{sum(x in own for own in plan.used)} of {count(sum(x in own for own in plan.used) + n, 'record')} at {x:g}"
+            for x, n in beyond.items()
+            if n
+        ]
+        parts.append(f"factors {limits} are allowed, which leaves {', '.join(left)} {spec.unit}")
+    far = [
+        f"{min(own):.3g} to {max(own):.3g} at {x:g}"
+        for x in spec.levels
+        if (own := [given[x] for given in plan.used if x in given]) and max(abs(y / x - 1.0) for y in own) > FAR
+    ]
+    if far:
+        parts.append(
+            f"the given factors bring records to intensities away from their levels, {', '.join(far)} {spec.unit}: is "
+            f"{spec.label} the measure of the selection?"
+        )
+    return "; ".join(parts)
