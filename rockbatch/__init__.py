@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from rockbatch.errors import InputError
     from rockbatch.motions import Motion, MotionSet, ReadOptions, pulse, read_motions, sequence
     from rockbatch.motions.hazard import HazardCurve
-    from rockbatch.pier import Damper, ElasticBase, Part, Pier, RigidBase, Tendon, YieldingBase
+    from rockbatch.pier import Damper, ElasticBase, Part, Pier, RigidBase, Stop, Tendon, YieldingBase
     from rockbatch.report import report
     from rockbatch.results.checking import check
     from rockbatch.results.opened import open_results
@@ -33,7 +33,7 @@ _NAMES = {
     "errors": "InputError",
     "motions": "Motion MotionSet ReadOptions pulse read_motions sequence",
     "motions.hazard": "HazardCurve",
-    "pier": "Damper ElasticBase Part Pier RigidBase Tendon YieldingBase",
+    "pier": "Damper ElasticBase Part Pier RigidBase Stop Tendon YieldingBase",
     "report": "report",
     "results.checking": "check",
     "results.opened": "open_results",
@@ -55,6 +55,7 @@ __all__ = [
     "Response",
     "RigidBase",
     "Rule",
+    "Stop",
     "Study",
     "Tendon",
     "YieldingBase",

@@ -14,6 +14,7 @@ from rockbatch.checks.statistics import Values
 from rockbatch.grouping import grouped
 from rockbatch.lazy import pd
 from rockbatch.pier import MOST_ETA, tilt_over_residual
+from rockbatch.pier.restraints import KINDS, what_of
 
 MOST_DUCTILITY = 100.0
 """Greatest over yield deflection of a support: soils bear some 2 to 10."""
@@ -67,7 +68,7 @@ class Demand:
         Key of [output] that brings the columns it takes.
     weighed : bool
         True if it takes the mass of the pier.
-    device : "", "damper" or "tendon"
+    device : "", "damper", "tendon" or "stop"
         Device that the pier has to have.
     held : bool
         True if it applies on every base to a pier that dampers may hold at a tilt.
@@ -238,12 +239,12 @@ def _in_kilonewtons(device: str) -> Demand:
 
 
 def has_device(case: Case, device: str) -> bool:
-    """Return True if the pier has a damper, or a tendon; a damper has a kind."""
-    return any(("kind" in restraint) == (device == "damper") for restraint in _devices(case))
+    """Return True if the pier has a device of this kind."""
+    return any(what_of(restraint) == device for restraint in _devices(case))
 
 
 def _devices(case: Case) -> Iterable[Mapping[str, Any]]:
-    """Return dampers and tendons of a case, as its file has them."""
+    """Return the devices of a case, as its file has them."""
     return case["parameters"].get("restraints", ()) if "parameters" in case else ()
 
 
@@ -309,13 +310,21 @@ _OF_DEVICES: dict[str, str | Demand] = {
     "tendon_force_kN": _in_kilonewtons("tendon"),
     "tendon_yield_m": "by how much a tendon is longer for good [m]",
     "tendon_slack": "how often tendons go slack",
+    "stop_force_over_weight": "greatest force of a stop over the pier's weight",
+    "stop_force_kN": _in_kilonewtons("stop"),
+    "stop_deflection_m": "greatest deflection of a stop beyond its gap [m]",
+    "stop_deflection_mm": Demand(
+        "greatest deflection of a stop beyond its gap [mm]", _largest("stop_deflection_m", times=_always(1000.0))
+    ),
+    "stop_blows": "how often stops are met",
+    "stop_energy_J_kg": "energy that all stops take, over the pier's mass [J/kg]",
 }
-"""Demands on dampers and tendons, likewise."""
+"""Demands on devices, likewise."""
 
 
 def _with_device(name: str, demand: str | Demand) -> Demand:
     demand = Demand(demand, _largest(name)) if isinstance(demand, str) else demand
-    return replace(demand, device=name.partition("_")[0])
+    return replace(demand, device=next(device for device in KINDS if name.startswith(f"{device}_")))
 
 
 DEMANDS = {

@@ -1,12 +1,12 @@
-"""Devices between a pier and the ground: dampers and tendons (THEORY.md, Dampers and tendons).
+"""Devices between a pier and the ground (THEORY.md, Dampers and tendons, Stops and deck springs).
 
 Implausible ones, as of a wrong unit, are refused until their ``confirm`` names the value.
 """
 
 import math
-from collections.abc import Sequence
-from dataclasses import asdict, dataclass, field, replace
-from typing import Any, Literal, NamedTuple, Self, get_args
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, field, fields, replace
+from typing import Any, ClassVar, Literal, NamedTuple, Self, get_args
 
 from rockbatch.arguments import checked
 from rockbatch.errors import InputError, remedy
@@ -22,18 +22,27 @@ BOUNDS = {
     "yield_m": Bounds(LEAST, MOST, why="a hysteretic damper yields at a deflection above 0 m"),
     "psi": Bounds(0.0, 10.0, why="its prestress over the weight must be within 0..10"),
     "lam": Bounds(0.0, MOST, why="must be 0 or above"),
+    "gap_m": Bounds(0.0, MOST, why="must be 0 or above"),
+    "restitution": Bounds(0.1, 1.0, why="must be within 0.1 and 1, the speed after a blow over that before"),
 }
-"""Values of dampers and tendons. Beyond ten times the weight a wrong unit is likelier than the device; fluid dampers have
+"""Values of devices. Beyond ten times the weight a wrong unit is likelier than the device; fluid dampers have
 exponents of 0.15 to 1, and one of 0 is friction."""
 
-FIELDS = {"friction": ("f",), "hysteretic": ("f", "yield_m"), "viscous": ("nu", "exponent")}
+DAMPERS = {"friction": ("f",), "hysteretic": ("f", "yield_m"), "viscous": ("nu", "exponent")}
 """By kind of damper, the fields that count."""
+
+FIELDS = DAMPERS | {"tendon": ("psi", "lam"), "stop": ("gap_m", "lam", "restitution")}
+"""Of other devices too, but for a tendon's yield force."""
 
 SPEED = 0.1
 """Speed of a viscous damper [m/s] at which it has less than the pier's weight; heels of piers that step reach 0.1 to 1 m/s."""
 
 THINNEST, WIDEST = 2.5e-5, 0.5
 """Yield deflection of a hysteretic damper [m]; steel ones have 1 to 20 mm."""
+
+FIRMEST = 2e-5
+"""Least deflection of a stop under the weight of the whole pier [m]: a steel block of a metre gives way by a tenth of a
+millimetre."""
 
 MOST_LAMBDA = 100.0
 """Greatest λ of a tendon, by which it adds the pier's weight at a hundredth of α; strands have 0.1 to 10."""
@@ -70,6 +79,8 @@ class Damper:
     >>> response.status
     'ok'
     """
+
+    what: ClassVar[str] = "damper"
 
     kind: DamperKind
     f: float = 0.0
@@ -137,6 +148,8 @@ class Tendon:
     ['tendon 1 elongation', 'tendon 1 force']
     """
 
+    what: ClassVar[str] = "tendon"
+
     psi: float = 0.0
     lam: float = 0.0
     strength: float = math.inf
@@ -157,14 +170,79 @@ class Tendon:
         return cls(**_over_weight(pier, **values), **rest)
 
 
-Restraint = Damper | Tendon
+@checked
+@dataclass(frozen=True)
+class Stop:
+    """A stop that limits how far the base may lift: a spring that is met when its place has risen by a gap.
+
+    While it is pressed in for the first time it takes F = k δ; on its way back, and pressed in again up to the greatest δ of the
+    blow, it follows a line of the slope k/e². So it gives back e² of what it has taken, and a mass that hits nothing else leaves
+    it at e times its speed. Before the next blow it has its shape back.
+
+    Attributes
+    ----------
+    gap_m : float
+        By how much its place rises until it is met [m].
+    lam : float
+        λ = k b²/(M g R0), its stiffness.
+    restitution : float
+        e, 0.1 to 1; 1 takes no energy.
+    at : float, "left", "right" or None
+        Offset from the centre of the base [m], positive to the right; None: one at each pivot.
+    confirm : sequence of str
+        "gap_m" or "lam", if the value is right though unusual.
+
+    Examples
+    --------
+    >>> base = rb.RigidBase(restraints=(rb.Stop(gap_m=0.1, lam=20.0, restitution=0.6),))
+    >>> motion = rb.pulse("sine", name="one-sine", amplitude=9.81, period=0.5, dt=0.005, duration=2.0)
+    >>> free, stopped = (rb.simulate(rb.Pier(alpha=0.2, p=1.0), each, motion) for each in (rb.RigidBase(), base))
+    >>> stopped.theta_max < free.theta_max
+    True
+    """
+
+    what: ClassVar[str] = "stop"
+
+    gap_m: float
+    lam: float = 0.0
+    restitution: float = 1.0
+    at: float | str | None = None
+    confirm: Sequence[str] = field(default=(), kw_only=True, compare=False, repr=False)
+
+    @classmethod
+    @checked
+    def of(cls, pier: Pier, gap_mm: float, stiffness_kN_m: float, restitution: float = 1.0, **rest: Any) -> Self:
+        """Return a stop with a gap [mm] and the stiffness k [kN/m] under ``pier``; ``rest``: ``at`` and ``confirm``.
+
+        Raises ``InputError`` as :meth:`Damper.friction`.
+        """
+        values = {"gap_mm": gap_mm, "stiffness_kN_m": stiffness_kN_m, "restitution": restitution}
+        return cls(**_over_weight(pier, **values), **rest)
+
+
+Restraint = Damper | Tendon | Stop
+
+
+KINDS: dict[str, type[Damper | Tendon | Stop]] = {kind.what: kind for kind in (Damper, Tendon, Stop)}
+"""Devices by the names of their tables in a study."""
+
+
+def what_of(values: Mapping[str, Any]) -> str:
+    """Return the kind of device, one of :data:`KINDS`, that has these fields in run.json."""
+    return "damper" if "kind" in values else "stop" if "gap_m" in values else "tendon"
+
+
+def restraint_of(values: Mapping[str, Any]) -> Restraint:
+    """Return the device with these fields, as run.json and histories have them; None is a value that is not given."""
+    kind = KINDS[what_of(values)]
+    names = {each.name for each in fields(kind)}
+    return kind(**{name: value for name, value in values.items() if name in names and value is not None})
 
 
 def fields_of(pier: Pier) -> dict[str, tuple[str, float]]:
-    """Return by a study's key the field of Damper or Tendon, and the key's value over the field's; those in kN if the mass is
-    known."""
-    fields = {name: (name, 1.0) for name in ("f", "nu", "exponent", "psi")}
-    fields |= {"yield_mm": ("yield_m", 1000.0), "lambda": ("lam", 1.0)}
+    """Return by a study's key the field of a device, and the key's value over the field's; those in kN if the mass is known."""
+    fields = {name: (name, 1.0) for name in ("f", "nu", "exponent", "psi", "restitution")}
+    fields |= {"yield_mm": ("yield_m", 1000.0), "lambda": ("lam", 1.0), "gap_mm": ("gap_m", 1000.0)}
     if pier.mass_t is not None:
         weight = pier.mass_t * pier.gravity
         fields |= {
@@ -194,7 +272,7 @@ def holds_a_tilt(restraints: tuple[Restraint, ...]) -> bool:
 
 
 def described_restraints(restraints: tuple[Restraint, ...]) -> dict[str, Any]:
-    """Return dampers and tendons by the keys of run.json; empty without any."""
+    """Return devices by the keys of run.json; empty without any."""
     devices = [
         {
             name: None if value == math.inf else value
@@ -221,6 +299,14 @@ def prestress_over_weight(pier: Pier, restraints: tuple[Restraint, ...]) -> floa
     return sum(tendon.psi * len(offsets(pier, tendon)) for tendon in restraints if isinstance(tendon, Tendon))
 
 
+def static_force(pier: Pier, device: Tendon | Stop, elongation: float) -> float:
+    """Return the force over the weight at rest at an ``elongation`` [m], until then never exceeded."""
+    stiffness = device.lam * pier.size / pier.half_width**2
+    if isinstance(device, Stop):
+        return max(stiffness * (elongation - device.gap_m), 0.0)
+    return min(max(device.psi + stiffness * elongation, 0.0), device.strength)
+
+
 def wrong_on_springs(pier: Pier, restraints: tuple[Restraint, ...]) -> list[str]:
     """Return what is impossible about dampers and tendons of a pier on springs: one sentence each; empty if nothing."""
     if symmetric(pier, tuple(device for device in restraints if isinstance(device, Tendon))):
@@ -232,31 +318,30 @@ def wrong_on_springs(pier: Pier, restraints: tuple[Restraint, ...]) -> list[str]
 
 
 def wrong_restraints(pier: Pier, restraints: tuple[Restraint, ...]) -> list[str]:
-    """Return what is impossible about dampers and tendons under ``pier``: one sentence each; empty if nothing."""
+    """Return what is impossible about devices under ``pier``: one sentence each; empty if nothing."""
     wrong = []
     if restraints and pier.deck_over_columns is not None:
-        wrong.append("columns: dampers and tendons of a rocking frame are not solved; leave them or columns out")
+        wrong.append("columns: dampers, tendons and stops of a rocking frame are not solved; leave them or columns out")
     for each in restraints:
         wrong += wrong_device(pier, each)
     return wrong + ([] if wrong else _wrong_friction(pier, restraints))
 
 
 def wrong_device(pier: Pier, device: Restraint) -> list[str]:
-    """Return what is impossible about one damper or tendon under ``pier``, a sentence each; empty if nothing is."""
-    name = "tendon" if isinstance(device, Tendon) else "damper"
+    """Return what is impossible about one device under ``pier``, a sentence each; empty if nothing is."""
     wrong = []
     if isinstance(device.at, str) and device.at not in ("left", "right"):
         wrong.append(f'at = "{device.at}": must be "left", "right" or an offset in m')
     elif isinstance(device.at, float | int) and not abs(device.at) <= 2.0 * pier.half_width:
         wrong.append(f"at = {device.at:g}: must be within the base's width either side, {2 * pier.half_width:.4g} m")
-    if isinstance(device, Damper) and device.kind not in FIELDS:
+    if isinstance(device, Damper) and device.kind not in DAMPERS:
         wrong.append(f'kind = "{device.kind}": must be ' + " or ".join(f'"{kind}"' for kind in get_args(DamperKind)))
-    for field_ in ("psi", "lam") if isinstance(device, Tendon) else FIELDS.get(device.kind, ()):
+    for field_ in DAMPERS.get(device.kind, ()) if isinstance(device, Damper) else FIELDS[device.what]:
         wrong += BOUNDS[field_].problems(field_.replace("lam", "lambda"), getattr(device, field_))
     if isinstance(device, Tendon) and not device.strength > device.psi:
         strength = f"its yield force over the weight, {device.strength:g}"
         wrong.append(f"{strength}, must be above its prestress, {device.psi:g}")
-    return [f"{name}: {problem}" for problem in wrong]
+    return [f"{device.what}: {problem}" for problem in wrong]
 
 
 def _wrong_friction(pier: Pier, restraints: tuple[Restraint, ...]) -> list[str]:
@@ -299,17 +384,19 @@ class Doubt(NamedTuple):
 
 
 def doubt(pier: Pier, device: Restraint) -> Doubt | None:
-    """Return what is odd about a damper or tendon of ``pier``; None if nothing is, or if it is confirmed."""
-    odd = _of_tendon(pier, device) if isinstance(device, Tendon) else _of_damper(pier, device)
+    """Return what is odd about a device of ``pier``; None if nothing is, or if it is confirmed."""
+    if isinstance(device, Damper):
+        odd = _of_damper(pier, device)
+    else:
+        odd = _of_tendon(pier, device) if isinstance(device, Tendon) else _of_stop(pier, device)
     return None if odd is None or odd.name in device.confirm else odd
 
 
 def unlikely_devices(pier: Pier, devices: tuple[Restraint, ...]) -> list[str]:
-    """Return what is odd about dampers and tendons of ``pier``, a sentence each, except what they confirm."""
+    """Return what is odd about devices of ``pier``, a sentence each, except what they confirm."""
     doubts = [(device, doubt(pier, device)) for device in devices]
     return [
-        f"{'tendon' if isinstance(device, Tendon) else 'damper'}: {odd.name} = {getattr(device, odd.name):g}: {odd.meaning}; "
-        f"{remedy(odd.name)}"
+        f"{device.what}: {odd.name} = {getattr(device, odd.name):g}: {odd.meaning}; {remedy(odd.name)}"
         for device, odd in doubts
         if odd is not None
     ]
@@ -337,4 +424,17 @@ def _of_tendon(pier: Pier, tendon: Tendon) -> Doubt | None:
         return Doubt(
             "psi", "with no prestress and no stiffness the tendon is not there; give one, or leave the tendon out"
         )
+    return None
+
+
+def _of_stop(pier: Pier, stop: Stop) -> Doubt | None:
+    if stop.lam == 0.0:
+        return Doubt("lam", "with no stiffness the stop is not there; give one, or leave the stop out")
+    deflection = pier.half_width**2 / (stop.lam * pier.size)  # under the weight
+    if deflection < FIRMEST:
+        return Doubt("lam", f"it bears the pier's weight at a deflection of {1000.0 * deflection:.2g} mm")
+    if stop.gap_m > 2.0 * pier.half_width:
+        return Doubt("gap_m", f"it is met at a rise of {stop.gap_m:.3g} m, more than the pier is wide")
+    if 0.0 < stop.gap_m < 5e-4:
+        return Doubt("gap_m", f"it is met at a rise of {1000.0 * stop.gap_m:.2g} mm already")
     return None

@@ -6,7 +6,7 @@ All quasi-static, THEORY.md (10), (14), (15) and (17). Viscous and hysteretic da
 import math
 
 from rockbatch.pier.block import Pier
-from rockbatch.pier.restraints import Restraint, Tendon, offsets, prestress_over_weight
+from rockbatch.pier.restraints import Damper, Restraint, Stop, Tendon, offsets, prestress_over_weight, static_force
 
 POINTS = 900
 """Rotations up to a right angle among which a loss of balance is sought."""
@@ -35,33 +35,37 @@ def lift_off_acceleration(pier: Pier, restraints: tuple[Restraint, ...] = (), st
             for offset in offsets(pier, device):
                 if isinstance(device, Tendon):
                     moment += device.psi * abs(offset - pivot)
-                elif device.kind == "friction":  # on springs the pier turns about its middle
+                elif (
+                    isinstance(device, Damper) and device.kind == "friction"
+                ):  # on springs the pier turns about its middle
                     moment += device.f * abs(offset if on_springs else offset - pivot)
         least = min(least, math.tan(pier.alpha) + moment / pier.height)
     return least - lean
 
 
 def unstable_equilibrium(pier: Pier, restraints: tuple[Restraint, ...] = ()) -> float | None:
-    """Return the rotation beyond which weight and tendons do not bring the pier back [rad].
+    """Return the rotation beyond which weight, tendons and stops do not bring the pier back [rad].
 
-    Of a pier that rocks about a pivot on rigid ground: α without tendons. None where tendons hold it at any rotation.
+    Of a pier that rocks about a pivot on rigid ground: α without them. None where they hold it at any rotation.
     """
-    tendons = [
-        (tendon, offset) for tendon in restraints if isinstance(tendon, Tendon) for offset in offsets(pier, tendon)
+    holding = [
+        (device, offset)
+        for device in restraints
+        if isinstance(device, Tendon | Stop)
+        for offset in offsets(pier, device)
     ]
-    rotations = [_loses_balance(pier, tendons, side) for side in ((1.0, -1.0) if tendons else (1.0,))]
+    rotations = [_loses_balance(pier, holding, side) for side in ((1.0, -1.0) if holding else (1.0,))]
     return min((theta for theta in rotations if theta is not None), default=None)
 
 
-def _loses_balance(pier: Pier, tendons: list[tuple[Tendon, float]], side: float) -> float | None:
+def _loses_balance(pier: Pier, holding: list[tuple[Tendon | Stop, float]], side: float) -> float | None:
     def righting(theta: float) -> float:
         """Return the moment about the pivot over M g R0."""
         moment = math.sin(pier.alpha - theta)
-        for tendon, offset in tendons:
+        for device, offset in holding:
             arm = pier.half_width + side * offset
             stretch = 2.0 * arm * math.sin(0.5 * theta)
-            force = tendon.psi + tendon.lam * pier.size / pier.half_width**2 * stretch
-            moment += min(max(force, 0.0), tendon.strength) * arm * math.cos(0.5 * theta) / pier.size
+            moment += static_force(pier, device, stretch) * arm * math.cos(0.5 * theta) / pier.size
         return moment
 
     step = 0.5 * math.pi / POINTS

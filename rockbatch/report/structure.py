@@ -1,24 +1,25 @@
-"""The structure of a case: its pier, dampers and tendons from run.json, and their numbers in words."""
+"""The structure of a case: its pier and devices from run.json, and their numbers in words."""
 
 from collections.abc import Mapping
 from typing import Any
 
 from rockbatch.errors import InputError
-from rockbatch.pier import Damper, Pier, Restraint, Tendon, fields_of
+from rockbatch.pier import Damper, Pier, Restraint, fields_of, restraint_of
 from rockbatch.pier.restraints import wrong_restraints
 from rockbatch.report.labels import plain
 from rockbatch.study.restraint_keys import KEYS_OF
 
 _PIER = ("alpha", "p", "mu", "gravity", "mass_t", "top_m", "deck_over_columns", "deck_height_m", "initial_rotation_rad")
-_DAMPER = ("kind", "f", "nu", "yield_m", "exponent", "at")
-_TENDON = ("psi", "lam", "strength", "at")
 _PREFERRED = {"f": "force_kN", "nu": "coefficient_kN_s_m", "psi": "prestress_kN", "lambda": "stiffness_kN_m"}
 """Keys without units, and the equivalent ones with units, for a pier whose mass is known."""
 _WORDS = {
     "f": ("f", ""), "force_kN": ("F", "kN"), "yield_mm": ("uy", "mm"), "nu": ("ν", ""), "coefficient_kN_s_m": ("C", ""),
     "exponent": ("a", ""), "psi": ("ψ", ""), "prestress_kN": ("P0", "kN"), "lambda": ("λ", ""),
-    "stiffness_kN_m": ("kt", "kN/m"), "yield_kN": ("Ty", "kN"),
+    "stiffness_kN_m": ("kt", "kN/m"), "yield_kN": ("Ty", "kN"), "gap_mm": ("gap", "mm"), "restitution": ("e", ""),
 }  # fmt: skip
+
+_NAMED = {"stop": "lift stop"}
+_OF_STOP = {"stiffness_kN_m": ("k", "kN/m")}
 
 
 def pier_of(case: Mapping[str, Any]) -> Pier | None:
@@ -30,26 +31,20 @@ def pier_of(case: Mapping[str, Any]) -> Pier | None:
 
 
 def restraints_of(case: Mapping[str, Any]) -> tuple[Restraint, ...]:
-    """Return the dampers and tendons of a case; empty if their values are impossible."""
+    """Return the devices of a case; empty if their values are impossible."""
     described, pier = case["parameters"].get("restraints"), pier_of(case)
     if not isinstance(described, list) or pier is None:
         return ()
     try:
-        restraints = tuple(map(_restraint, described))
+        restraints = tuple(map(restraint_of, described))
         return () if wrong_restraints(pier, restraints) else restraints
     except (TypeError, ValueError):
         return ()
 
 
-def _restraint(values: Mapping[str, Any]) -> Restraint:
-    if "kind" in values:
-        return Damper(**{name: values[name] for name in _DAMPER if name in values})
-    return Tendon(**{name: values[name] for name in _TENDON if values.get(name) is not None})
-
-
 def in_words(pier: Pier, restraint: Restraint) -> str:
-    """Describe a damper or tendon, in kN if the mass is known: "friction damper at each pivot, F = 450 kN"."""
-    kind = restraint.kind if isinstance(restraint, Damper) else "tendon"
+    """Describe a device, in kN if the mass is known: "friction damper at each pivot, F = 450 kN"."""
+    kind = restraint.kind if isinstance(restraint, Damper) else restraint.what
     fields = fields_of(pier)
     values = {}
     for key in KEYS_OF[kind]:
@@ -57,14 +52,14 @@ def in_words(pier: Pier, restraint: Restraint) -> str:
             field, divisor = fields[key]
             values[key] = getattr(restraint, field) * divisor
     power = values.pop("exponent", 1.0) if "coefficient_kN_s_m" in values else 1.0
-    words = f"{kind} damper" if isinstance(restraint, Damper) else kind
-    numbers = [_number(key, value, power) for key, value in values.items() if value < float("inf")]
+    words = f"{kind} damper" if isinstance(restraint, Damper) else _NAMED.get(kind, kind)
+    names = _WORDS | _OF_STOP if restraint.what == "stop" else _WORDS
+    numbers = [_number(*names[key], value, power) for key, value in values.items() if value < float("inf")]
     return ", ".join([f"{words} {_where(restraint)}", *numbers])
 
 
-def _number(key: str, value: float, power: float) -> str:
-    symbol, unit = _WORDS[key]
-    if key == "coefficient_kN_s_m":
+def _number(symbol: str, unit: str, value: float, power: float) -> str:
+    if symbol == "C":
         unit = "kN s/m" if power == 1.0 else f"kN (s/m)^{power:g}"
     return f"{symbol} = {plain(value, 4)} {unit}".strip().replace(" ", "\u00a0")
 

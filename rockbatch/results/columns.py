@@ -14,7 +14,7 @@ from rockbatch.checks.demands import ROCKING
 from rockbatch.checks.suite import MIRROR_OF, OTHER_LAW
 from rockbatch.lazy import pd
 from rockbatch.motions import Motion, MotionSet
-from rockbatch.pier import Damper, Pier, Tendon
+from rockbatch.pier import Pier
 from rockbatch.simulation.outcome import TERMS, Outcome
 from rockbatch.study import Case, Study
 
@@ -320,17 +320,16 @@ def _in_kilonewtons(field: str) -> Callable[[Ran], float | None]:
 def _device(
     name: str, meaning: str, of: str | Callable[[Ran], Any], unit: str, head: str, form: str, factor: int = 1, behind: str = ""
 ) -> Column:  # fmt: skip
-    """Return a column of studies that have dampers, or tendons, as its name begins."""
-    kind = Damper if name.startswith("damper") else Tendon
+    """Return a column of studies that have devices of the kind with which its name begins."""
 
     def has(study: Study) -> bool:
-        return any(isinstance(device, kind) for case in study.cases for device in case.base.restraints)
+        return any(name.startswith(f"{device.what}_") for case in study.cases for device in case.base.restraints)
 
-    number: Literal["number", "count"] = "count" if of == "tendon_slack" else "number"
+    number: Literal["number", "count"] = "count" if of in ("tendon_slack", "stop_blows") else "number"
     return Column(name, meaning, of, unit, OnPage(head, form, factor, behind), number, sometimes=True, asked=has)
 
 
-_DAMPER, _TENDON = "greatest force of a damper", "greatest force of a tendon"
+_DAMPER, _TENDON, _STOP = (f"greatest force of a {device}" for device in ("damper", "tendon", "stop"))
 
 DEVICES = (
     _device("damper_force_over_weight", f"{_DAMPER} over the pier's weight", "damper_force", "1", "damper F/(M g)", ".4f"),
@@ -354,8 +353,22 @@ DEVICES = (
         "tendon_force_kN", f"{_TENDON}, where the mass is known", _in_kilonewtons("tendon_force"), "kN", "tendon T [kN]", ".0f",
         behind="tendon_force_over_weight",
     ),
+    _device("stop_force_over_weight", f"{_STOP} over the pier's weight", "stop_force", "1", "stop F/(M g)", ".4f"),
+    _device(
+        "stop_deflection_m", "by how much the stop that was pressed in most was, beyond its gap", "stop_depth", "m",
+        "stop deflection [mm]", ".1f", 1000,
+    ),
+    _device("stop_blows", "how often stops were met", "stop_blows", "1", "blows", ".0f"),
+    _device(
+        "stop_energy_J_kg", "energy that all stops take and do not give back, per unit mass of the pier", "stop_energy", "J/kg",
+        "stops [J/kg]", ".4f",
+    ),
+    _device(
+        "stop_force_kN", f"{_STOP}, where the mass is known", _in_kilonewtons("stop_force"), "kN", "stop F [kN]", ".0f",
+        behind="stop_force_over_weight",
+    ),
 )  # fmt: skip
-"""Columns of dampers and tendons."""
+"""Columns of devices."""
 _ITSELF = "the same, not over the mass, where that is known"
 _PIVOT = "greatest force of each support over half the weight, its dashpot's included; of a rigid base, where it bears all of N"
 _GAP = "heel gap: greatest height of each pivot above where its support waits, the stroke of a key or damper"

@@ -31,7 +31,7 @@ import numpy as np
 from rockbatch.errors import InputError
 from rockbatch.files import opened, replacing
 from rockbatch.lazy import h5py, pd
-from rockbatch.pier import Damper, ElasticBase, Pier, Restraint, RigidBase, Tendon, YieldingBase
+from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase, restraint_of
 from rockbatch.results.hdf5 import array_in, attribute, attributes_of, group_in
 from rockbatch.simulation.outcome import TERMS
 from rockbatch.simulation.response import EVENT_TYPES, FORCE_UNITS, IMPACT_UNITS, Response
@@ -222,7 +222,7 @@ def _read(group: "h5py.Group") -> Response:
     base = attributes_of(group_in(group, "base"))
     kind = _BASES[base.pop("name")]
     if "restraints" in base:
-        base["restraints"] = tuple(_restraint(**values) for values in json.loads(base["restraints"]))
+        base["restraints"] = tuple(map(restraint_of, json.loads(base["restraints"])))
     t = array_in(group, "t", "f")
     if not len(t) or np.isnan(t).any() or (np.diff(t) < 0).any():
         raise ValueError("t is no rising time")
@@ -258,10 +258,6 @@ def _table(group: "h5py.Group", kinds: Mapping[str, str], rows: int | None = Non
     return pd.DataFrame({
         name: array_in(group, name, kind, rows, finite=name != "friction") for name, kind in kinds.items()
     })  # fmt: skip
-
-
-def _restraint(**values: Any) -> Restraint:
-    return Damper(**values) if "kind" in values else Tendon(**values)
 
 
 def _row_of(response: Response, peaks: "pd.DataFrame") -> "pd.Series[Any] | None":

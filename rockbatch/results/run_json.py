@@ -19,7 +19,7 @@ from rockbatch.motions.motion import Motion
 from rockbatch.motions.spectrum import PERIODS, periods_over, spectral_acceleration
 from rockbatch.motions.spectrum_target import SpectrumTarget
 from rockbatch.motions.velocity_pulses import pulse_of
-from rockbatch.pier import Damper, Tendon, described
+from rockbatch.pier import Damper, Stop, Tendon, described
 from rockbatch.pier.bases import BOUNDS, WORDS
 from rockbatch.results.columns import units
 from rockbatch.results.shape import Maybe
@@ -33,7 +33,9 @@ _NUMBER = (float, None)
 _VALUES = {str: (float, str)}
 _NUMBERS_OF_BASE = (*BOUNDS, "beta", "omega_v", "delta_s_m", "delta_y_m", "stiffness_kN_m", "yield_kN")
 _RESTRAINT = {
-    parameter.name: Maybe(_NUMBER) for parameter in (*fields(Damper), *fields(Tendon)) if parameter.name != "confirm"
+    parameter.name: Maybe(_NUMBER)
+    for parameter in (*fields(Damper), *fields(Tendon), *fields(Stop))
+    if parameter.name != "confirm"
 } | {
     "kind": Maybe(str),
     "at": Maybe((float, str)),

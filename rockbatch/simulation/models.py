@@ -8,7 +8,7 @@ import numpy as np
 
 from rockbatch.core.block import lanes as block_lanes
 from rockbatch.core.block.model import Block
-from rockbatch.core.devices.laws import FRICTION, HYSTERETIC, TENDON, VISCOUS, Element
+from rockbatch.core.devices.laws import CONTACT, FRICTION, HYSTERETIC, TENDON, VISCOUS, Element
 from rockbatch.core.ground import ground_rows
 from rockbatch.core.powers import LARGEST_WHOLE
 from rockbatch.core.springs import lanes as spring_lanes
@@ -17,12 +17,14 @@ from rockbatch.core.system import Kind
 from rockbatch.motions.motion import Motion, Samples
 from rockbatch.pier import (
     Base,
+    Damper,
     DamperKind,
     ElasticBase,
     Pier,
+    Restraint,
     RigidBase,
     SpringLaw,
-    Tendon,
+    Stop,
     YieldingBase,
     fastest,
     offsets,
@@ -57,6 +59,12 @@ LAWS: dict[SpringLaw, float] = {"bouc-wen": BOUC_WEN, "epp": EPP, "hardening": H
 
 DAMPERS: dict[DamperKind, float] = {"friction": FRICTION, "viscous": VISCOUS, "hysteretic": HYSTERETIC}
 """The core's codes of dampers."""
+
+IDLE = Element(
+    kind=VISCOUS, strength=0.0, stiffness=0.0, coefficient=0.0, exponent=1.0, prestress=0.0, offset=0.0, linear_below=0.0,
+    slope=0.0, give=0.0, start=0.0, returned=1.0, quickest=0.0, height=0.0, swing=0.0, way=1.0,
+)  # fmt: skip
+"""An element without force in the middle of the base, from which others differ."""
 
 
 class Start(NamedTuple):
@@ -154,20 +162,36 @@ def line_of(
 
 
 def elements(pier: Pier, base: Base) -> list[Element]:
-    """Return the core's numbers for the dampers and tendons of ``base``: plain floats, per unit mass."""
-    numbers = []
-    b, g = pier.half_width, pier.gravity
-    for device in base.restraints:
-        for offset in offsets(pier, device):
-            if isinstance(device, Tendon):
-                stiffness = device.lam * g * pier.size / b**2
-                law = (TENDON, g * device.strength, stiffness, 0.0, 1.0, g * device.psi)
-            else:
-                soft = 1.0 / device.yield_m if device.kind == "hysteretic" else 0.0
-                law = (DAMPERS[device.kind], g * device.f, soft, device.nu * pier.p, device.exponent, 0.0)
-            linear = _linear_part(pier, base, offset, coefficient=float(law[3]), exponent=float(law[4]))
-            numbers.append(Element._make((*map(float, law), float(offset), *linear)))
-    return numbers
+    """Return the core's numbers for the devices of ``base``: plain floats, per unit mass."""
+    return [
+        _element(pier, base, device, float(offset)) for device in base.restraints for offset in offsets(pier, device)
+    ]
+
+
+def _element(pier: Pier, base: Base, device: Restraint, offset: float) -> Element:
+    at_base = IDLE._replace(offset=offset)
+    if isinstance(device, Damper):
+        return _damper(pier, base, device, at_base)
+    stiffness = float(device.lam * pier.gravity * pier.size / pier.half_width**2)
+    if isinstance(device, Stop):
+        returned = float(device.restitution**2)
+        quickest = math.sqrt(_lever(pier, base, offset) * stiffness / returned)
+        return at_base._replace(
+            kind=CONTACT, stiffness=stiffness, start=float(device.gap_m), returned=returned, quickest=quickest
+        )
+    strength, prestress = float(pier.gravity * device.strength), float(pier.gravity * device.psi)
+    return at_base._replace(kind=TENDON, strength=strength, stiffness=stiffness, prestress=prestress)
+
+
+def _damper(pier: Pier, base: Base, damper: Damper, at: Element) -> Element:
+    """Return the Element of a damper where ``at`` is."""
+    force, coefficient = float(pier.gravity * damper.f), float(damper.nu * pier.p)
+    soft = float(1.0 / damper.yield_m) if damper.kind == "hysteretic" else 0.0
+    linear_below, slope = _linear_part(pier, base, at.offset, coefficient, float(damper.exponent))
+    return at._replace(
+        kind=DAMPERS[damper.kind], strength=force, stiffness=soft, coefficient=coefficient, exponent=float(damper.exponent),
+        linear_below=linear_below, slope=slope,
+    )  # fmt: skip
 
 
 def _linear_part(pier: Pier, base: Base, offset: float, coefficient: float, exponent: float) -> tuple[float, float]:

@@ -158,6 +158,8 @@ class Outcome:
         Of dampers: greatest force over M g, elongation [m] and speed [m/s] of any; energy of all [J/kg].
     tendon_force, tendon_yield, tendon_slack : float or None
         Of tendons: greatest force over M g and plastic elongation [m] of any; how often they went slack.
+    stop_force, stop_depth, stop_blows, stop_energy : float or None
+        Of stops: greatest force over M g and deflection [m] of any; how often they were met; energy that all took [J/kg].
     energies : mapping of str to float, or None
         Energy ledger at the end [J/kg], and the greatest ``remainder`` on the way, if asked for.
     forces : PeakForces or None
@@ -193,6 +195,10 @@ class Outcome:
     tendon_force: float | None = None
     tendon_yield: float | None = None
     tendon_slack: int | None = None
+    stop_force: float | None = None
+    stop_depth: float | None = None
+    stop_blows: int | None = None
+    stop_energy: float | None = None
     energies: Mapping[str, float] | None = None
     forces: PeakForces | None = None
     note: str = ""

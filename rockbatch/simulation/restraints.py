@@ -1,20 +1,30 @@
 """Devices of a recorded run: forces, elongations, and the energy balance with them."""
 
 import math
+from collections import Counter
 
 import numpy as np
 
-from rockbatch.core.devices.elongation import attitude, gap
-from rockbatch.core.devices.laws import ELEMENT, FRICTION, HYSTERETIC, STICKS, TAUT, TENDON, Element, force
+from rockbatch.core.devices.elongation import attitude, gap_of
+from rockbatch.core.devices.laws import (
+    CONTACT,
+    ELEMENT,
+    FRICTION,
+    HYSTERETIC,
+    STICKS,
+    TENDON,
+    Element,
+    stop_force,
+)
 from rockbatch.core.devices.laws import stored as stored_in
 from rockbatch.core.kernel import entry
 from rockbatch.core.observe.ledger import LEDGER
-from rockbatch.core.observe.peaks import RecordedDevices
+from rockbatch.core.observe.peaks import RecordedDevices, recorded_force
 from rockbatch.core.observe.rows import state_of
 from rockbatch.core.types import Result
 from rockbatch.lazy import pd
 from rockbatch.motions.motion import Samples
-from rockbatch.pier import Base, Damper, ElasticBase, Pier, RigidBase, offsets
+from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, offsets
 from rockbatch.simulation.models import elements, model, prestress, springs
 from rockbatch.simulation.starting import start_of
 
@@ -24,13 +34,12 @@ AT_REST = 1e-9
 
 def names(pier: Pier, base: Base) -> list[str]:
     """Return the names of all devices, in their order: "damper 1 left", "damper 1 right", "tendon 1"."""
-    labels, counts = [], {"damper": 0, "tendon": 0}
+    labels, counts = list[str](), Counter[str]()
     for device in base.restraints:
-        kind = "damper" if isinstance(device, Damper) else "tendon"
-        counts[kind] += 1
+        counts[device.what] += 1
         places = offsets(pier, device)
         sides = [""] if len(places) == 1 else [" left", " right"]
-        labels += [f"{kind} {counts[kind]}{side}" for side in sides]
+        labels += [f"{device.what} {counts[device.what]}{side}" for side in sides]
     return labels
 
 
@@ -63,10 +72,9 @@ def _follow(m, devices, rows, moves, elongation, pull, energy):  # type: ignore[
         at = attitude(m, y, devices.level)
         for j in range(len(devices.elements)):
             law, state = devices.elements[j], devices.states[i, j]
-            here = gap(m, law.offset, at, y)
+            here = gap_of(m, law, at, y)
             goes = math.copysign(1.0, here.speed) if abs(here.speed) > moves else STICKS
-            taut = force(law, here.elongation, here.speed, state, TAUT, goes)
-            pull[i, j] = min(max(taut, 0.0), law.strength) if law.kind == TENDON else taut
+            pull[i, j] = recorded_force(law, here, state, goes)
             elongation[i, j], energy[i, j] = here.elongation, stored_in(law, here.elongation, state)
 
 
@@ -156,7 +164,8 @@ def rests_on_rigid_base(pier: Pier, base: RigidBase, result: Result, states: Sam
             distance = b - side * law.offset
             now, then = 2.0 * distance * math.sin(0.5 * tilt), 2.0 * distance * math.sin(0.5 * abs(theta))
             force, gives = _at_rest(law, then, state, 0.0)
-            righting += (force + gives * (now - then)) * distance * math.cos(0.5 * tilt)
+            force = stop_force(law, now, state) if law.kind == CONTACT else force + gives * (now - then)
+            righting += force * distance * math.cos(0.5 * tilt)
         return righting
 
     low, high = 0.0, abs(theta)
@@ -175,6 +184,9 @@ def _at_rest(law: Element, elongation: float, state: float, support: float) -> t
         return 0.0, 1e6 * support
     if law.kind == HYSTERETIC:
         return law.strength * state, law.strength * law.stiffness
+    if law.kind == CONTACT:
+        force = stop_force(law, elongation, state)
+        return force, law.stiffness / law.returned if force > 0.0 else 0.0
     if law.kind != TENDON:
         return 0.0, 0.0
     pull = law.prestress + law.stiffness * (elongation - state)

@@ -9,7 +9,7 @@ import numpy as np
 
 from rockbatch.core import types
 from rockbatch.core.clock import ON_ITS_SIDE
-from rockbatch.core.devices.laws import STICKS, TENDON
+from rockbatch.core.devices.laws import STICKS
 from rockbatch.core.devices.pull import Devices, devices_of
 from rockbatch.core.history import MOMENT
 from rockbatch.core.run import NO_ROWS, march
@@ -22,6 +22,7 @@ from rockbatch.pier import (
     ElasticBase,
     Pier,
     neglected,
+    offsets,
     tilt_over_residual,
     vertical_frequency,
     yield_deflection,
@@ -249,9 +250,9 @@ def _held_at_rest(run: Run, result: Result, devices: Devices, outcome: Outcome) 
 
 
 def _use(run: Run, use: np.recarray) -> dict[str, Any]:
-    """Return the demands on dampers and tendons by the fields of Outcome, of the kinds that the base has."""
-    kinds = np.array([element.kind for element in elements(run.pier, run.base)])
-    dampers, tendons = use[kinds != TENDON].view(np.recarray), use[kinds == TENDON].view(np.recarray)
+    """Return the demands on devices by the fields of Outcome, of the kinds that the base has."""
+    what = np.array([device.what for device in run.base.restraints for _ in offsets(run.pier, device)])
+    dampers, tendons, stops = (use[what == each].view(np.recarray) for each in ("damper", "tendon", "stop"))
     demands: dict[str, Any] = {}
     if len(dampers):
         demands["damper_force"] = float(np.maximum(dampers.most, -dampers.least).max()) / run.pier.gravity
@@ -261,7 +262,13 @@ def _use(run: Run, use: np.recarray) -> dict[str, Any]:
     if len(tendons):
         demands["tendon_force"] = float(tendons.most.max()) / run.pier.gravity
         demands["tendon_yield"] = float(tendons.yielded.max())
-        demands["tendon_slack"] = int(tendons.slack.sum())
+        demands["tendon_slack"] = int(tendons.times.sum())
+    if len(stops):
+        demands["stop_force"] = float(stops.most.max()) / run.pier.gravity
+        stiffness = np.array([law.stiffness for law in elements(run.pier, run.base)])[what == "stop"]
+        demands["stop_depth"] = float((stops.most / stiffness).max())  # first loading is straight
+        demands["stop_blows"] = int(stops.times.sum())
+        demands["stop_energy"] = float(stops.lost.sum())
     return demands
 
 

@@ -10,7 +10,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from rockbatch.core.devices.laws import FRICTION, HYSTERETIC, TENDON, Element
+from rockbatch.core.devices.laws import CONTACT, FRICTION, HYSTERETIC, SPRING, TENDON, Element
 from rockbatch.pier import Base, ElasticBase, Pier, YieldingBase
 from rockbatch.simulation.models import Start, elements, prestress, springs
 
@@ -38,7 +38,8 @@ def start_of(pier: Pier, base: Base) -> Start:
     states = []
     for law in elements(pier, base):  # about a corner: the chord of the device's way
         distance = pier.half_width - math.copysign(law.offset, theta * law.offset)
-        states.append(_held(law, 2.0 * distance * math.sin(0.5 * abs(theta)))[1])
+        chord = 2.0 * distance * math.sin(0.5 * abs(theta))
+        states.append(_held(law, chord if law.height == 0.0 else _on_deck(law, theta, True))[1])
     return Start(theta=theta, states=tuple(states), level=0.0)
 
 
@@ -62,11 +63,16 @@ def _on_springs(pier: Pier, base: ElasticBase) -> Start:
 
     def devices(v: float) -> list[tuple[float, float]]:
         up = v - level + drop
-        return [_held(law, by_v * (up - side * tilt * law.offset)) for law in laws]
+        return [
+            _held(law, _on_deck(law, theta, m.finite is not None))
+            if law.height != 0.0
+            else _held(law, by_v * (up - side * tilt * law.offset))
+            for law in laws
+        ]
 
     def excess(parameter: float) -> float:
         v, pressed, lifted = state(parameter)
-        pull = by_v * sum(force for force, _ in devices(v))
+        pull = by_v * sum(force for (force, _), law in zip(devices(v), laws, strict=True) if law.height == 0.0)
         return m.yield_force * (pressed + lifted) - m.gravity - pull
 
     v, pressed, lifted = state(_root(excess))
@@ -84,9 +90,30 @@ def _held(law: Element, elongation: float) -> tuple[float, float]:
     if law.kind == FRICTION:
         return math.copysign(law.strength, elongation) if elongation else 0.0, 0.0
     if law.kind == HYSTERETIC:
-        z = math.copysign(_solved(_bouc_wen(_DAMPER_EXPONENT), 0, abs(elongation) * law.stiffness)[1], elongation)
+        z = math.copysign(_solved(_braced(law.give), 0, abs(elongation) * law.stiffness)[1], elongation)
         return law.strength * z, z
-    return 0.0, 0.0  # viscous
+    if law.kind == CONTACT:
+        return max(law.stiffness * (elongation - law.start), 0.0), 0.0
+    return law.stiffness * elongation if law.kind == SPRING else 0.0, 0.0  # viscous
+
+
+def _braced(give: float) -> Curve:
+    """Return the curve of a hysteretic damper with its brace, which gives by ``give`` times its yield deflection at its force."""
+    steel = _bouc_wen(_DAMPER_EXPONENT)
+
+    def curve(w: float) -> tuple[float, float]:
+        deflection, z = steel(w)
+        return deflection + give * z, z
+
+    return curve
+
+
+def _on_deck(law: Element, theta: float, finite: bool) -> float:
+    """Return the elongation of a device at the deck [m]."""
+    if not finite:
+        return law.way * law.height * theta
+    swing = math.copysign(law.swing, theta)
+    return law.way * (law.height * math.sin(theta) + swing * (1.0 - math.cos(theta)))
 
 
 def _curve(base: ElasticBase) -> Curve:

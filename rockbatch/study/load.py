@@ -22,7 +22,7 @@ from rockbatch.showing import Shown, several
 from rockbatch.study.cases import BASE_KEYS, CASE, Expanded, read_cases
 from rockbatch.study.motions import FEMA, MOTIONS, PULSE, SELECT, Motions, as_source, read_motions_table
 from rockbatch.study.piers import PART, PIER, read_piers
-from rockbatch.study.restraint_keys import DAMPER, TENDON
+from rockbatch.study.restraint_keys import DEVICES
 from rockbatch.study.spec import LEAST_TOLERANCE, Case, MotionSpec, Numerics, Output, Reference
 from rockbatch.study.tables import as_toml, changed, plain, without_lost_cases
 from rockbatch.study.target import TARGET
@@ -73,6 +73,9 @@ OUTPUT = Section(("output",), "What is kept beyond the table of peaks.", {
     "estimate": Key(boolean, "true",
         "Whether what the equivalent oscillators of design practice give is written beside the peaks."),
 }, homes=(Output,))  # fmt: skip
+_OF_TABLES = "|".join(rf"^{what}_[1-9][0-9]*_({'|'.join(keys)})$" for what, keys in {"part": PART, **DEVICES}.items())
+"""Keys of tables in a list, by their numbers: "damper_1_f"."""
+
 REFERENCE = Section(("reference",), (
     "A published value to print beside the results. Keys that the study varies tell the case from its siblings."
 ), {
@@ -84,12 +87,12 @@ REFERENCE = Section(("reference",), (
         name: Key(key.kind, key.example, "The value that the case has, where the study varies this key.")
         for name, key in {**PIER, **BASE_KEYS}.items() if name != "confirm"
     },
-}, many=True, free=rf"^(part|damper|tendon)_[1-9][0-9]*_({'|'.join({**PART, **DAMPER, **TENDON})})$")  # fmt: skip
+}, many=True, free=_OF_TABLES)  # fmt: skip
 OF_REFERENCE = ("record", "case", "theta_max_over_alpha", "source")
 """Keys of a reference itself; the others tell its case from its siblings."""
 
 SECTIONS = (
-    TOP, PIER, PART, MOTIONS, SELECT, TARGET, PULSE, FEMA, SEQUENCE, CASE, DAMPER, TENDON, NUMERICS, OUTPUT, SUITE, CHECK,
+    TOP, PIER, PART, MOTIONS, SELECT, TARGET, PULSE, FEMA, SEQUENCE, CASE, *DEVICES.values(), NUMERICS, OUTPUT, SUITE, CHECK,
     REFERENCE,
 )  # fmt: skip
 """Tables that are read with the study, outer ones before inner; those of analyses are read by their own commands."""
@@ -266,7 +269,7 @@ def _checked(file: TomlFile, motions: Motions) -> Study:
     table = file.table("output")
     output = Output(**table.read(OUTPUT)) if table else Output()
     if len(motion_spec.polarity) > 1 and not all(symmetric(case.pier, case.base.restraints) for case in cases):
-        message = "dampers or tendons on one side make another run of the reversed motion, not the mirror image"
+        message = "devices on one side make another run of the reversed motion, not the mirror image"
         file.complain(("motions", "polarity"), f"[motions]: {message}; keep one polarity")
     if len(motion_spec.polarity) > 1 and any(pier.initial_rotation_rad for pier, _ in piers):
         message = "a pier that is let go from a rotation has another run of the reversed motion, not the mirror image"

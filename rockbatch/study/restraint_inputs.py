@@ -1,4 +1,4 @@
-"""Parameters of dampers and tendons as inputs of a sensitivity study: damper.f, or damper_2.f where several have one."""
+"""Parameters of devices as inputs of a sensitivity study: damper.f, or damper_2.f where several have one."""
 
 import math
 import re
@@ -8,19 +8,19 @@ from dataclasses import replace
 from typing import Any, NamedTuple
 
 from rockbatch.pier import Damper, Pier, Restraint, fields_of
-from rockbatch.study.restraint_keys import FIELD_OF, IN_KN, KEYS_OF
+from rockbatch.study.restraint_keys import FIELD_OF, IN_KN, KEYS_OF, RESTRAINTS
 from rockbatch.study.spec import Case
 from rockbatch.toml.kinds import shown
 
 IN_KILONEWTONS = {"stiffness_kN_m": "beta", "yield_kN": "eta"}
 """Inputs that a pier of known mass turns into ratios, and which."""
 
-TABLE = re.compile(r"(damper|tendon)(?:_([1-9][0-9]*))?")
+TABLE = re.compile(rf"({'|'.join(RESTRAINTS)})(?:_([1-9][0-9]*))?")
 """Name of a table of such inputs: of the only device of its kind, or with its number in the case."""
 
 
 class Parameter(NamedTuple):
-    """Place of a parameter: the number of the base's damper or tendon, its field, and the key's value over the field's."""
+    """Place of a parameter: the number of the base's device, its field, and the key's value over the field's."""
 
     place: int
     field: str
@@ -28,17 +28,17 @@ class Parameter(NamedTuple):
 
 
 def is_of_restraint(name: str) -> bool:
-    """Return whether an input is one of a damper or tendon."""
+    """Return whether an input is one of a device."""
     return "." in name
 
 
 def numbered(pier: Pier, restraints: Sequence[Restraint]) -> dict[str, Parameter]:
-    """Return all parameters of dampers and tendons that have a value, by names with numbers: "damper_1.f"."""
+    """Return all parameters of devices that have a value, by names with numbers: "damper_1.f"."""
     parameters_by_name: dict[str, Parameter] = {}
     counts: Counter[str] = Counter()
     given_by = fields_of(pier)
     for place, device in enumerate(restraints):
-        what, kind = ("damper", device.kind) if isinstance(device, Damper) else ("tendon", "tendon")
+        what, kind = device.what, device.kind if isinstance(device, Damper) else device.what
         counts[what] += 1
         for key in KEYS_OF[kind]:
             if key in given_by and getattr(device, given_by[key][0]) != math.inf:
@@ -66,7 +66,7 @@ def values_of_devices(pier: Pier, restraints: Sequence[Restraint]) -> dict[str, 
 
 
 def with_values(pier: Pier, restraints: Sequence[Restraint], values: Mapping[str, float]) -> tuple[Restraint, ...]:
-    """Return the dampers and tendons with other values of such parameters, under the pier as it is at that point."""
+    """Return the devices with other values of such parameters, under the pier as it is at that point."""
     where, changed = parameters(pier, restraints), list(restraints)
     for name, value in values.items():
         place, field, divisor = where[name]
@@ -76,7 +76,7 @@ def with_values(pier: Pier, restraints: Sequence[Restraint], values: Mapping[str
 
 
 def unclear(names: Iterable[str], case: Case) -> dict[str, str]:
-    """Return by name what is ambiguous about inputs of dampers and tendons in this case, and what to write instead."""
+    """Return by name what is ambiguous about inputs of devices in this case, and what to write instead."""
     own = numbered(case.pier, case.base.restraints)
     problems: dict[str, str] = {}
     fixed: dict[tuple[int, str], str] = {}
@@ -90,17 +90,18 @@ def unclear(names: Iterable[str], case: Case) -> dict[str, str]:
 
 
 def why_none(name: str, cases: Iterable[Case]) -> str:
-    """Return why no case has this parameter of a damper or tendon."""
+    """Return why no case has this parameter of a device."""
     table, key = name.split(".")
-    what, number = table.partition("_")[::2]
+    match = TABLE.fullmatch(table)
+    what, number = match.groups() if match else (table, None)
     most, kinds, heavy = 0, set(), False
     for case in cases:
-        devices = [device for device in case.base.restraints if isinstance(device, Damper) == (what == "damper")]
+        devices = [device for device in case.base.restraints if device.what == what]
         most, heavy = max(most, len(devices)), heavy or case.pier.mass_t is not None
         kinds |= {device.kind for device in devices if isinstance(device, Damper)}
     if not most:
         return f"no case of the study has a {what}"
-    if number and int(number) > most:
+    if number is not None and int(number) > most:
         return f"no case of the study has a {what} {number}"
     if key in IN_KN and not heavy:
         return "it goes with a pier of known mass (mass_t)"

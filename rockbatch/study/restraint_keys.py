@@ -1,11 +1,11 @@
-"""Dampers and tendons of a case: [[case.damper]], and [case.tendon] or [[case.tendon]]."""
+"""Devices of a case: [[case.damper]], [case.tendon] or [[case.tendon]], and [[case.stop]]."""
 
 from dataclasses import dataclass, replace
 from typing import Any
 
 from rockbatch.errors import remedy
-from rockbatch.pier import Damper, Pier, Restraint, Tendon, doubt, fields_of
-from rockbatch.pier.restraints import BOUNDS, FIELDS, wrong_device
+from rockbatch.pier import Pier, Restraint, Stop, doubt, fields_of
+from rockbatch.pier.restraints import BOUNDS, DAMPERS, KINDS, wrong_device
 from rockbatch.study.lists import Chosen, Grid
 from rockbatch.study.piers import has_mass
 from rockbatch.toml.kinds import Choice, choice, not_negative, number, positive, within
@@ -16,7 +16,7 @@ _PLACE = Choice(("left", "right"), '"left", "right" or an offset from the middle
 _FORCE, _VISCOUS = {"kind": ("friction", "hysteretic")}, {"kind": ("viscous",)}
 
 DAMPER = Section(("case", "damper"), "A damper between the pier and the ground. Write as many as there are.", {
-    "kind": Key(choice(*FIELDS), '"friction"',
+    "kind": Key(choice(*DAMPERS), '"friction"',
         "What its force depends on: the direction of the motion, a yielding displacement, or the speed.", required=True),
     "force_kN": Key(positive, "450.0",
         "Force of a friction or hysteretic damper, for a pier whose mass is known; or give `f`.", many=True, only=_FORCE),
@@ -49,7 +49,23 @@ TENDON = Section(
     Clash(("prestress_kN", "psi"), "prestress_kN and psi are given, which fix the same; keep one", at="psi"),
     Clash(("stiffness_kN_m", "lambda"), "stiffness_kN_m and lambda are given, which fix the same; keep one", at="lambda"),
 ))  # fmt: skip
-RESTRAINTS = ("damper", "tendon")
+STOP = Section(
+    ("case", "stop"), "A stop that limits how far the base lifts: a spring that is met when its place has risen by a gap.", {
+    "gap_mm": Key(not_negative, "100.0", "By how much its place rises until it is met.", required=True, many=True),
+    "stiffness_kN_m": Key(positive, "5.0e5", "Its stiffness k, for a pier whose mass is known; or give `lambda`.", many=True),
+    "lambda": Key(not_negative, "20.0", "Stiffness as λ = k b²/(M g R0).", many=True),
+    "restitution": Key(within(BOUNDS["restitution"]), "0.6",
+        "What it gives back: the speed after a blow over that before, of a mass that hits it alone.", many=True),
+    "at": Key(_PLACE, '"left"',
+        "Where it is: a pivot, or an offset [m] from the middle of the base; one at each pivot if it is not given."),
+    **CONFIRM,
+}, many=True, single=True, homes=(Stop,), clashes=(
+    Clash(("stiffness_kN_m", "lambda"), "stiffness_kN_m and lambda are given, which fix the same; keep one", at="lambda"),
+))  # fmt: skip
+DEVICES: dict[str, Section] = {"damper": DAMPER, "tendon": TENDON, "stop": STOP}
+"""Tables of a case's devices, by their names."""
+
+RESTRAINTS = tuple(DEVICES)
 
 IN_KN = ("force_kN", "coefficient_kN_s_m", "prestress_kN", "stiffness_kN_m", "yield_kN")
 _UNMEASURED = ("kind", "at", "confirm")
@@ -57,21 +73,28 @@ KEYS_OF = {
     kind: tuple(
         name for name, key in DAMPER.items() if name not in _UNMEASURED and kind in key.only.get("kind", (kind,))
     )
-    for kind in FIELDS
-} | {"tendon": tuple(name for name in TENDON if name not in _UNMEASURED)}
-"""Keys with numbers of a damper of each kind, and of a tendon."""
+    for kind in DAMPERS
+} | {
+    what: tuple(name for name in keys if name not in _UNMEASURED) for what, keys in DEVICES.items() if what != "damper"
+}
+"""Keys with numbers of a damper of each kind, and of each other device."""
 
 
 FIELD_OF = {key: name for key, (name, _) in fields_of(Pier(alpha=0.2, p=1.0, mass_t=1.0)).items()}
-"""The field of Damper or Tendon, by key."""
+"""The field of a device, by key."""
 
 
 @dataclass(frozen=True)
 class Device:
-    """A damper or tendon of a case as it is written: its table, and its name among the keys of the case, "damper_1"."""
+    """A device of a case as it is written: its table, and its name among the keys of the case, "damper_1"."""
 
     table: Table
     name: str
+
+    @property
+    def what(self) -> str:
+        """Return the name of its table, one of :data:`DEVICES`."""
+        return self.name.rpartition("_")[0]
 
     def values(self, chosen: Chosen) -> Chosen:
         """Return those of the chosen values that are its own, by their keys."""
@@ -84,11 +107,11 @@ class Device:
         own: dict[str, Any] = {name: values[name] for name in ("kind", "at") if name in values}
         own |= {field: values[key] / over for key, (field, over) in fields_of(pier).items() if key in values}
         own["confirm"] = tuple(FIELD_OF.get(name, name) for name in sorted(self.table.confirmed))
-        if "kind" not in values:
-            return Tendon(**own)
-        if values["kind"] == "hysteretic":
+        if values.get("kind") == "hysteretic":
             own.setdefault("yield_m", 0.001)  # missing, which is noted: a possible value lets the rest be checked
-        return Damper(**own)
+        if self.what == "stop":
+            own.setdefault("gap_m", 0.0)
+        return KINDS[self.what](**own)
 
     def complain(self, pier: Pier, chosen: Chosen, device: Restraint) -> None:
         """Note what is impossible about it, or far from usual and not confirmed, each at its key."""
@@ -104,24 +127,20 @@ class Device:
         odd = doubt(pier, device)
         if odd is not None and odd.name in keys and not problems:
             key = keys[odd.name]
-            message = (
-                f"{key} = {values[key].value:g}: {odd.meaning}; {remedy(key)} in [[case.{self.name.partition('_')[0]}]]"
-            )
+            message = f"{key} = {values[key].value:g}: {odd.meaning}; {remedy(key)} in [[case.{self.what}]]"
             self.table.complain_about(values[key], message)
 
 
 def read_devices(case: Table) -> tuple[list[Device], Grid]:
-    """Return the dampers and tendons of a case, and the values of their keys: those of the first damper as "damper_1_f"."""
+    """Return the devices of a case, and the values of their keys: those of the first damper as "damper_1_f"."""
     devices: list[Device] = []
     grid = Grid()
-    for what, keys in (("damper", DAMPER), ("tendon", TENDON)):
+    for what, keys in DEVICES.items():
         for n, table in enumerate(_tables(case, what), 1):
             own = Grid.of(table, keys, f"{what}_{n}_")
-            kind = (
-                "tendon"
-                if what == "tendon"
-                else next((s.value for s in own.settings.get(f"damper_{n}_kind", ())), None)
-            )
+            kind: str | None = what
+            if what == "damper":
+                kind = next((s.value for s in own.settings.get(f"damper_{n}_kind", ())), None)
             if kind is not None:
                 devices.append(Device(table, f"{what}_{n}"))
                 _check_given(table, kind)
@@ -143,15 +162,15 @@ def _tables(case: Table, what: str) -> list[Table]:
 
 _NEEDED = {
     "friction": ("force_kN", "f"), "hysteretic": ("force_kN", "f"), "viscous": ("coefficient_kN_s_m", "nu"),
-    "tendon": ("prestress_kN", "psi", "stiffness_kN_m", "lambda"),
+    "tendon": ("prestress_kN", "psi", "stiffness_kN_m", "lambda"), "stop": ("stiffness_kN_m", "lambda"),
 }  # fmt: skip
 
 
 def _check_given(table: Table, kind: str) -> None:
-    """Note a damper without a force, or a tendon without prestress and stiffness."""
+    """Note a damper without a force, a tendon without prestress and stiffness, or another device without a stiffness."""
     first, other, *_ = _NEEDED[kind]
     if not any(map(table.has, _NEEDED[kind])):
-        example = f"write for example {first} = {(TENDON if kind == 'tendon' else DAMPER)[first].example}, or"
+        example = f"write for example {first} = {DEVICES.get(kind, DAMPER)[first].example}, or"
         if kind == "tendon":
             message = "it has neither prestress nor stiffness, so that it is not there"
             table.complain(f"{message}; {example} leave the table out")

@@ -22,7 +22,7 @@ from rockbatch.study.restraint_inputs import (
     why_none,
     with_values,
 )
-from rockbatch.study.restraint_keys import DAMPER, RESTRAINTS, TENDON
+from rockbatch.study.restraint_keys import DEVICES, RESTRAINTS
 from rockbatch.study.spec import Case
 from rockbatch.toml.kinds import Choice, Kind, Number, boolean, choice, count, positive, shown
 from rockbatch.toml.reader import Table, TomlFile
@@ -42,7 +42,7 @@ class Input:
     Attributes
     ----------
     name : str
-        Key of the study file; of a damper or tendon "damper.f", "tendon_2.psi".
+        Key of the study file; of a device "damper.f", "tendon_2.psi".
     spread : "uniform", "log_uniform" or "choice"
     levels : tuple of two
         Ends of the range, or the two choices.
@@ -90,16 +90,19 @@ _RANGES: dict[str, tuple[Mapping[str, Key], dict[str, str]]] = {
         "epsilon": "[0.05, 0.3]", "zeta": "[0.02, 0.1]", "eta": "[2.0, 4.0]", "n": "[2, 8]", "stiffness_kN_m": "[1e6, 4e6]",
         "yield_kN": "[3e4, 6e4]",
     }),
-    "damper": (DAMPER, {
+    "damper": (DEVICES["damper"], {
         "force_kN": "[300.0, 600.0]", "f": "[0.01, 0.05]", "yield_mm": "[3.0, 8.0]", "coefficient_kN_s_m": "[500.0, 2000.0]",
         "nu": "[0.2, 0.8]", "exponent": "[0.3, 1.0]",
     }),
-    "tendon": (TENDON, {
+    "tendon": (DEVICES["tendon"], {
         "prestress_kN": "[3000.0, 6000.0]", "psi": "[0.2, 0.8]", "stiffness_kN_m": "[2.0e4, 8.0e4]",
         "yield_kN": "[8000.0, 1.2e4]", "lambda": "[0.5, 2.0]",
     }),
+    "stop": (DEVICES["stop"], {
+        "gap_mm": "[80.0, 120.0]", "stiffness_kN_m": "[2.0e5, 1.0e6]", "lambda": "[10.0, 40.0]", "restitution": "[0.4, 0.8]",
+    }),
 }  # fmt: skip
-"""Keys of a pier and its case, of a damper and of a tendon that have ranges, with examples."""
+"""Keys of a pier and its case, and of its devices, that have ranges, with examples."""
 
 
 def _ranges(what: str, kind: Kind | None = None) -> dict[str, Key]:
@@ -141,7 +144,7 @@ SECTIONS = (SENSITIVITY, *SPREADS.values(), *(
         numbered=True,
     )
     for spread, within in WITHIN.items()
-    for (what, keys), first in zip(within.items(), ("f", "psi"), strict=False)
+    for (what, keys), first in zip(within.items(), ("f", "psi", "gap_mm"), strict=False)
 ))  # fmt: skip
 
 

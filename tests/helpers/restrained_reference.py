@@ -9,9 +9,10 @@ from collections.abc import Sequence
 
 import numpy as np
 from reference_solver import OM, TH, VD, TwoSprings, V
+from stop_reference import Memory
 
 from rockbatch.motions.motion import Motion
-from rockbatch.pier import Damper, ElasticBase, Pier, Tendon, offsets
+from rockbatch.pier import Damper, ElasticBase, Pier, Stop, Tendon, offsets
 
 FIRST = 11
 """Index of the first device's state, behind those of the springs."""
@@ -35,6 +36,8 @@ class TiedTwoSprings(TwoSprings):
         for j, (device, _) in enumerate(self.elements):
             if isinstance(device, Tendon) and device.psi == 0.0:
                 self.state[j] = "slack"
+        scale = self.g * self.size / self.b**2
+        self.stops = {j: Memory(d, d.lam * scale) for j, (d, _) in enumerate(self.elements) if isinstance(d, Stop)}
 
     def shape(self, j: int, y: Sequence[float]) -> tuple[float, ...]:
         """Return the elongation e, ∂e/∂v, ∂e/∂θ, and what ë has beside v̈ ∂e/∂v + θ̈ ∂e/∂θ.
@@ -87,6 +90,8 @@ class TiedTwoSprings(TwoSprings):
     def pull(self, j: int, y: Sequence[float]) -> float:
         """Return the force over the mass, in tension."""
         device, _ = self.elements[j]
+        if j in self.stops:
+            return self.stops[j].force(self.elongation(j, y))
         if self.rubs(j):
             return self.way[j] * device.f * self.g if self.way[j] else self.hold[j]
         speed = self.speed(j, y)
@@ -160,7 +165,12 @@ class TiedTwoSprings(TwoSprings):
             return self.elements[j][0].f * self.g - abs(self.hold[j])
 
         for j, (device, _) in enumerate(self.elements):
-            if self.rubs(j) and not self.way[j]:
+            if j in self.stops:
+                own = self.stops[j].surfaces(
+                    lambda y, j=j: self.elongation(j, y), lambda y, j=j: self.speed(j, y), still, 1e-14 * self.dy
+                )
+                surfaces += [(g, tiny, j, kind) for g, tiny, kind in own]
+            elif self.rubs(j) and not self.way[j]:
                 surfaces.append((lambda t, y, j=j: bears(t, y, j), slight, j, "slips"))
             elif isinstance(device, Damper):
                 surfaces.append((lambda t, y, j=j: self.way[j] * self.speed(j, y), still, j, "turns"))
@@ -183,12 +193,16 @@ class TiedTwoSprings(TwoSprings):
             self.settle_friction(ah, av)
         elif kind in after:
             self.state[i] = after[kind]
+        elif kind in ("turns back", "goes on", "leaves", "recovers", "meets"):
+            self.stops[i].fire(kind, self.elongation(i, self.y))
         else:
             super()._fire(t, i, kind, ah, av)
             for j in range(len(self.elements)):  # velocities may have jumped
                 speed = self.speed(j, self.y)
                 if speed != 0.0 and not self.rubs(j):
                     self.way[j] = math.copysign(1.0, speed)
+                if j in self.stops:
+                    self.stops[j].after_jump(self.elongation(j, self.y), speed)
             self.settle_friction(ah, av)
 
     def settle_friction(self, ah: float, av: float) -> None:

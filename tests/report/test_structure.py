@@ -61,7 +61,9 @@ def test_devices_stand_with_their_numbers_beside_lift_off_and_balance(studied):
 def test_the_deck_and_the_devices_are_drawn_to_scale():
     """Read heights and places back from the picture: they are in the ratio of the pier's."""
     pier = {"alpha": 0.2, "half_width_m": 4.0, "height_m": 20.0, "top_m": 30.0, "deck_m": 33.0}
-    (drawn,) = drawing.piers([pier | {"devices": (("tendon", -2.0), ("viscous", 4.0))}], {"rigid"})
+    (drawn,) = drawing.piers(
+        [pier | {"devices": (("tendon", -2.0), ("viscous damper", 4.0), ("stop", -4.0))}], {"rigid"}
+    )
     svg = ET.fromstring(re.search("<svg.*</svg>", str(drawn))[0])
     left, ground, top, right = map(float, re.search(r'd="M([\d.]+) ([\d.]+)V([\d.]+)H([\d.]+)', str(drawn)).groups())
     scale = (ground - top) / 30.0
@@ -73,6 +75,7 @@ def test_the_deck_and_the_devices_are_drawn_to_scale():
     assert float(tendon.get("y2")) == pytest.approx(top, abs=0.2)
     damper = next(node for node in svg if node.get("class") == "damper s3")
     assert float(damper.get("x")) + 3.0 == pytest.approx(right + drawing.ASIDE, abs=0.2)
+    assert "with tendon and viscous damper and stop" in str(drawn)
 
 
 @pytest.mark.parametrize(

@@ -205,6 +205,45 @@ def test_devices_that_a_wrong_unit_explains_are_refused_until_they_are_confirmed
     assert problems_of(written_with(tmp_path, case=f'{case}confirm = ["{key}"]\n')) == ()
 
 
+@pytest.mark.parametrize(
+    ("keys", "key", "said"),
+    [
+        ("gap_mm = 0.1\nstiffness_kN_m = 5e5", "gap_mm", "gap_mm = 0.1: it is met at a rise of 0.1 mm already"),
+        ("gap_mm = 1e5\nstiffness_kN_m = 5e5", "gap_mm", "gap_mm = 100000: it is met at a rise of 100 m, more than"),
+        ("gap_mm = 100\nstiffness_kN_m = 5e9", "stiffness_kN_m", "it bears the pier's weight at a deflection of 0.0059 mm"),
+        ("gap_mm = 100\nlambda = 0.0", "lambda", "lambda = 0: with no stiffness the stop is not there"),
+    ],
+)  # fmt: skip
+def test_stops_that_a_wrong_unit_explains_are_refused_until_they_are_confirmed(tmp_path, keys, key, said):
+    case = f'[[case]]\nname = "a"\nbase = "rigid"\n[[case.stop]]\n{keys}\n'
+    (problem,) = problems_of(written_with(tmp_path, case=case))
+    assert '[[case]] "a", stop 1: ' in problem
+    assert said in problem
+    assert problem.endswith(f'if it is right, write confirm = ["{key}"] in [[case.stop]]')
+    assert problems_of(written_with(tmp_path, case=f'{case}confirm = ["{key}"]\n')) == ()
+
+
+@pytest.mark.parametrize(
+    ("keys", "said"),
+    [
+        ("gap_mm = 100", "stiffness_kN_m is missing; write for example stiffness_kN_m = 5.0e5, or lambda"),
+        ("lambda = 20", "gap_mm is missing"),
+        (
+            "gap_mm = 100\nlambda = 20\nstiffness_kN_m = 1e5",
+            "stiffness_kN_m and lambda are given, which fix the same; keep one",
+        ),
+        ("gap_mm = 100\nlambda = 20\nrestitution = 60", "restitution = 60: must be within 0.1 and 1"),
+        ('gap_mm = 100\nlambda = 20\nat = "top"', 'at = "top"'),
+        ("gap_m = 0.1\nlambda = 20", "gap_m"),
+    ],
+)
+def test_what_is_wrong_about_a_stop_is_said(tmp_path, keys, said):
+    problems = problems_of(
+        written_with(tmp_path, case=f'[[case]]\nname = "a"\nbase = "rigid"\n[[case.stop]]\n{keys}\n')
+    )
+    assert any(said in problem for problem in problems), problems
+
+
 def test_a_viscous_damper_in_newtons_is_a_thousand_times_that_in_kilonewtons():
     """By hand: 5e6 N s/m on 3,000 t have 1.7 % of the weight at 0.1 m/s; taken for kN s/m 17 times it."""
     for factor, refused in ((1, False), (1000, True)):

@@ -13,14 +13,14 @@ from rockbatch.errors import InputError
 from rockbatch.motions.baseline import Offset
 from rockbatch.motions.scaling import Target
 from rockbatch.motions.selection import Selection
-from rockbatch.pier import Damper, ElasticBase, Pier, RigidBase, Tendon, YieldingBase
+from rockbatch.pier import Damper, ElasticBase, Pier, RigidBase, Stop, Tendon, YieldingBase
 from rockbatch.study import FemaSpec, Numerics, Output, PulseSpec, Reference, Study, load_study
 from rockbatch.study.cases import BASE_KEYS, CASE
 from rockbatch.study.load import NUMERICS, REFERENCE, TOP
 from rockbatch.study.motions import FEMA, MOTIONS
 from rockbatch.study.motions import PULSE as PULSE_KEYS
 from rockbatch.study.piers import PIER as PIER_KEYS
-from rockbatch.study.restraint_keys import DAMPER, TENDON
+from rockbatch.study.restraint_keys import DEVICES
 from rockbatch.toml.reader import MOST_TOLD
 
 CONFIGS = Path(__file__).parents[2] / "configs"
@@ -659,7 +659,17 @@ def test_fig7_has_the_paper_s_parameters_and_all_three_of_its_p():
 def test_the_example_s_comments_name_every_key_there_is():
     """A newcomer copies it: what it does not show does not exist."""
     text = (CONFIGS / "example.toml").read_text()
-    for key in [*TOP, *PIER_KEYS, *MOTIONS, *FEMA, *PULSE_KEYS, *NUMERICS, *CASE, *BASE_KEYS, *DAMPER, *TENDON]:
+    for key in [
+        *TOP,
+        *PIER_KEYS,
+        *MOTIONS,
+        *FEMA,
+        *PULSE_KEYS,
+        *NUMERICS,
+        *CASE,
+        *BASE_KEYS,
+        *(key for keys in DEVICES.values() for key in keys),
+    ]:
         assert re.search(rf"\b{key}\b", text), key
 
 
@@ -669,13 +679,13 @@ def test_the_devices_in_comments_of_a_study_to_begin_with_have_all_their_keys_an
     (block,) = re.findall(
         r"(?:^#     .*\n|^#\n)+(?=\n# (?:What|---))", (CONFIGS / f"{name}.toml").read_text(), re.MULTILINE
     )
-    assert set(re.findall(r"(\w+) = ", block)) == {*DAMPER, *TENDON} - {"confirm"}
+    assert set(re.findall(r"(\w+) = ", block)) == {key for keys in DEVICES.values() for key in keys} - {"confirm"}
     devices = block.replace("#     ", "").replace("#\n", "\n")
     heavy = "[pier]\nwidth_m = 8.0\nheight_m = 30.0\nmass_t = 2000.0\n"
     (only,) = Study.from_toml(heavy + PULSE + RIGID + devices).cases
-    assert [type(device) for device in only.base.restraints] == [Damper, Damper, Tendon]
+    assert [type(device) for device in only.base.restraints] == [Damper, Damper, Tendon, Stop]
     ratios = re.sub(r"(?m)^\w+ = [^#\n]*#.*\bor (\w+ = [\d.]+).*$", r"\1", devices).replace("yield_kN", "# yield_kN")
-    hysteretic, viscous, tendon = Study.from_toml(PIER + PULSE + RIGID + ratios).cases[0].base.restraints
+    hysteretic, viscous, tendon, stop = Study.from_toml(PIER + PULSE + RIGID + ratios).cases[0].base.restraints
     assert (hysteretic.f, hysteretic.yield_m, hysteretic.at, viscous.nu, viscous.exponent) == (
         0.02,
         0.005,
@@ -684,6 +694,7 @@ def test_the_devices_in_comments_of_a_study_to_begin_with_have_all_their_keys_an
         0.5,
     )
     assert (tendon.psi, tendon.lam, tendon.strength) == (0.5, 1.0, math.inf)
+    assert (stop.gap_m, stop.lam, stop.restitution, stop.at) == (0.1, 20.0, 0.6, "left")
 
 
 def test_what_the_example_leaves_out_in_comments_can_be_put_in(tmp_path):

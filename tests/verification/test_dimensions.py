@@ -17,7 +17,7 @@ from rockbatch.core.block import events as block_events
 from rockbatch.core.block.model import Block, Rocker, Rocking, Stance, Tilt
 from rockbatch.core.devices import elongation, pull
 from rockbatch.core.devices import laws as device_laws
-from rockbatch.core.devices.laws import FRICTION, HYSTERETIC, TENDON, VISCOUS, Element
+from rockbatch.core.devices.laws import CONTACT, FRICTION, HYSTERETIC, MAXWELL, SPRING, TENDON, VISCOUS, Element
 from rockbatch.core.observe import forces
 from rockbatch.core.springs import equations, events, impact, laws, recovery
 from rockbatch.core.springs.model import BOUC_WEN, ELASTIC, EPP, HARDENING, Contact, Geometry, Springs, State, Supports
@@ -39,7 +39,24 @@ UNITS = {  # of the fields, by the tuples' own comments
     Pull: (ACCELERATION, M * ACCELERATION),
     elongation.Gap: (M, SPEED, ONE, M, ACCELERATION, M),
     Supports: (M, M),
-    Element: (ONE, ACCELERATION, 1 / S**2, ACCELERATION / SPEED, ONE, ACCELERATION, M, SPEED, 1 / S),  # of a tendon
+    Element: (  # of a tendon
+        ONE,
+        ACCELERATION,
+        1 / S**2,
+        ACCELERATION / SPEED,
+        ONE,
+        ACCELERATION,
+        M,
+        SPEED,
+        1 / S,
+        ONE,
+        M,
+        ONE,
+        1 / S,
+        M,
+        M,
+        ONE,
+    ),
 }
 RATES = (SPEED, RAD / S, ACCELERATION, RAD / S**2, 1 / S, 1 / S)
 
@@ -48,7 +65,7 @@ MOVING = (-0.004, 0.02, -0.01, 0.15, -0.3, -0.6)
 SHAKING = (2.0, -30.0, -1.0, 12.0)
 BLOCK = (1.5, 7.2, 18.0, 9.81, 0.2, 1.0, 0.9, 0.3, 1.0, 0.0138)
 ROCKS = (0.07, 0.05, -0.15, -0.1)
-DEVICE = (2.0, 3.0, 40.0, 1.0, 0.5, 0.5, 0.01, 400.0)  # an Element after its kind
+DEVICE = (2.0, 3.0, 40.0, 1.0, 0.5, 0.5, 0.01, 400.0, 0.3, 0.01, 0.5, 9.0, 0.0, 1.5, 1.0)  # an Element after its kind
 
 BOTH = Contact(1.0, 1.0, 1.0, 0.0, 0)
 ON_RIGHT, IN_AIR = Stance(0.0, 1.0, 1.0), Stance(0.0, 0.0, 1.0)
@@ -262,17 +279,31 @@ def test_a_device_has_an_elongation_in_metres(finite):
     assert_units([elongation.lifted(found, 0.3 * ACCELERATION, 0.2 * RAD / S**2)], [ACCELERATION])
 
 
-@pytest.mark.parametrize(("kind", "unit"), [(FRICTION, ONE), (VISCOUS, ONE), (HYSTERETIC, 1 / S), (TENDON, SPEED)])
+@pytest.mark.parametrize(("kind", "unit"), [
+    (FRICTION, ONE), (VISCOUS, ONE), (HYSTERETIC, 1 / S), (TENDON, SPEED), (MAXWELL, JERK), (CONTACT, ONE), (SPRING, ONE),
+])  # fmt: skip
 def test_a_device_has_a_force_and_the_rate_of_its_state(kind, unit):
     of = Element(*quantities(Element, (kind, *DEVICE)))
     of = of._replace(stiffness=40.0 / M) if kind == HYSTERETIC else of
-    inner = 0.001 * M if kind == TENDON else 0.4 * ONE
+    inner = {TENDON: 0.001 * M, CONTACT: 0.001 * M, SPRING: 0.0 * M, MAXWELL: 0.4 * ACCELERATION}.get(kind, 0.4 * ONE)
     for mode in (device_laws.TAUT, device_laws.YIELDING):
         one = device_laws.force(of, 0.02 * M, 0.1 * SPEED, inner, mode, 1.0)
         rate = device_laws.state_rate(of, 0.1 * SPEED, inner, mode, 1.0)
         assert_units([one], [ACCELERATION])
         assert rate == 0.0 or U.Quantity(rate).check(unit)
-        assert_units([device_laws.loss_rate(of, 0.1 * SPEED, one, device_laws.YIELDING)], [ACCELERATION * SPEED])
+        lost = device_laws.loss_rate(of, 0.1 * SPEED, one, device_laws.YIELDING)
+        assert kind == SPRING or U.Quantity(lost).check(ACCELERATION * SPEED)
+        kept = device_laws.stored(of, 0.02 * M, inner)
+        assert kept == 0.0 or U.Quantity(kept).check(ACCELERATION * M)
+
+
+@KINEMATICS
+def test_the_deck_moves_in_metres(finite):
+    m, of = pier(finite), Element(*quantities(Element, (SPRING, *DEVICE)))._replace(height=31.0 * M)
+    found = elongation.gap_of(m, of, elongation.attitude(m, state(), 0.001 * M), state())
+    assert found.by_v == 0.0
+    assert finite or found.bend == 0.0
+    assert_units(found._replace(by_v=0.0 * ONE, bend=found.bend or 0.0 * ACCELERATION), UNITS[elongation.Gap])
 
 
 FORCES = (

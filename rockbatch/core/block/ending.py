@@ -6,8 +6,8 @@ from rockbatch.core import system
 from rockbatch.core.block.equations import on_pivot, side_of
 from rockbatch.core.block.model import BlockTraits
 from rockbatch.core.clock import ground_rests
-from rockbatch.core.devices.elongation import attitude, gap
-from rockbatch.core.devices.laws import HYSTERETIC, TENDON, stored
+from rockbatch.core.devices.elongation import attitude, gap_of
+from rockbatch.core.devices.laws import HYSTERETIC, MAXWELL, stored
 from rockbatch.core.devices.pull import sticking
 from rockbatch.core.kernel import inlined, kernel
 from rockbatch.core.system import model, moment
@@ -26,15 +26,17 @@ def reach_of(theta, omega, alpha, p):
 
 @inlined
 def _stored(m, devices, y):
-    """Return the energy [J/kg] that tendons store in state ``y``, and what hysteretic dampers may give back."""
-    tendons, back, at = 0.0, 0.0, attitude(m, y, devices.level[0])
+    """Return the energy [J/kg] that tendons, stops and springs store in state ``y``, and what dampers may give back."""
+    kept, back, at = 0.0, 0.0, attitude(m, y, devices.level[0])
     for j in range(len(devices.elements)):
         of = devices.elements[j]
-        if of.kind == TENDON:
-            tendons += stored(of, gap(m, of.offset, at, y).elongation, devices.x[j])
-        elif of.kind == HYSTERETIC:
-            back += 0.5 * of.strength * devices.x[j] * devices.x[j] / of.stiffness
-    return tendons, back
+        if of.kind == HYSTERETIC:
+            back += 0.5 * of.strength * devices.x[j] * devices.x[j] * (1.0 + of.give) / of.stiffness
+        elif of.kind == MAXWELL:
+            back += stored(of, 0.0, devices.x[j])
+        else:
+            kept += stored(of, gap_of(m, of, at, y).elongation, devices.x[j])
+    return kept, back
 
 
 @inlined
@@ -48,12 +50,13 @@ def _at(m, y, theta):
 def _cannot_reach(m, devices, y, peak):
     """Return whether the energy of this moment does not suffice to turn beyond ``peak`` [rad] to either side.
 
-    Weight and tendons have a potential; dampers only take, but for what a hysteretic one has stored.
+    Weight, tendons and springs have a potential, stops take more than they give back, and dampers only take, but for what
+    hysteretic ones and braces have stored.
     """
     limit, inertia = min(peak, m.alpha), 1.0 / m.quickness
     level = inertia * m.p * m.p
-    tendons, back = _stored(m, devices, y)
-    energy = 0.5 * inertia * y.omega * y.omega + level * math.cos(m.alpha - abs(y.theta)) + tendons + back
+    kept, back = _stored(m, devices, y)
+    energy = 0.5 * inertia * y.omega * y.omega + level * math.cos(m.alpha - abs(y.theta)) + kept + back
     least = math.inf
     for side in (-1.0, 1.0):
         there, _ = _stored(m, devices, _at(m, y, side * limit))

@@ -1,8 +1,8 @@
-"""Elongations of dampers and tendons from the motion of the base (THEORY.md, Dampers and tendons).
+"""Elongations of devices from the motion of the base (THEORY.md, Dampers and tendons, Stops and deck springs).
 
 A device at the offset s from the middle of the base has the elongation e = u/cos(θ/2), where u is the rise of its place
 above that at rest. While a block turns about a point of the ground at the distance d that is 2 d sin(θ/2), the chord of the
-place's way. In first-order kinematics e = u.
+place's way. In first-order kinematics e = u. A device on the deck lengthens by the deck's way over the ground.
 """
 
 import math
@@ -66,6 +66,25 @@ def gap(m, s, at, y):
     twist = curve + tangent * arm + up * (0.25 + 0.5 * tangent * tangent)  # cos(θ/2) ∂²e/∂θ²
     bend = by_v * y.omega * (tangent * y.v_rate + twist * y.omega)
     return Gap(by_v * up, by_v * y.v_rate + by_theta * y.omega, by_v, by_theta, bend, by_theta)
+
+
+@inlined
+def across(m, of, at, y):
+    """Return the Gap of a device ``of`` the deck: h_d sin θ and, where the pier turns about its pivots, b (1 − cos θ) away."""
+    if m.finite is None:
+        by_theta = of.way * of.height
+        return Gap(by_theta * y.theta, by_theta * y.omega, 0.0, by_theta, 0.0, by_theta)
+    swing = math.copysign(of.swing, at.sine)
+    by_theta = of.way * (of.height * at.cosine + swing * at.sine)
+    way = of.way * at.sine * (of.height + swing * at.tangent)
+    bend = of.way * (swing * at.cosine - of.height * at.sine) * y.omega * y.omega
+    return Gap(way, by_theta * y.omega, 0.0, by_theta, bend, by_theta)
+
+
+@inlined
+def gap_of(m, of, at, y):
+    """Return the Gap of the device ``of`` in state ``y``, whose Attitude is ``at``."""
+    return gap(m, of.offset, at, y) if of.height == 0.0 else across(m, of, at, y)
 
 
 @inlined

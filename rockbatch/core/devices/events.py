@@ -1,15 +1,18 @@
-"""Events of devices: an elongation turns, a friction damper lets go, a tendon goes slack or taut, or yields.
+"""Events of devices: an elongation turns, a friction damper lets go, a tendon goes slack or taut, or yields, a stop is met.
 
 Behind the event functions of the pier there are three of each device: it turns, it goes slack or taut again, it yields or
-lets go.
+lets go. A stop turns while it is pressed in for the first time, is met or left, and passes the point up to which it was
+pressed in before or, left, recovers.
 """
 
 import math
 
-from rockbatch.core.devices.elongation import attitude, gap, lifted
+from rockbatch.core.devices.elongation import attitude, gap, gap_of, lifted
 from rockbatch.core.devices.laws import (
     CLOSES,
+    CONTACT,
     FRICTION,
+    MAXWELL,
     OPENS,
     SLACK,
     STICKS,
@@ -17,6 +20,8 @@ from rockbatch.core.devices.laws import (
     TENDON,
     YIELDING,
     mode_of,
+    past_release,
+    state_rate,
     tension,
 )
 from rockbatch.core.devices.pull import BESIDE, START, device_rates, sticking, under_devices, way_of_opening
@@ -46,6 +51,34 @@ WAYS = (
 """Directions that two friction dampers without velocity can take."""
 
 
+@inlined
+def _crossing(value, slope, speed, rest, rounding):
+    """Return an event function of an elongation, and its slope: one that has just changed, or hangs on zero, is above it."""
+    if abs(value) > rounding:
+        return value, slope
+    return (rounding, slope if abs(speed) > rest else 0.0) if slope > 0.0 or abs(speed) <= rest else (value, slope)
+
+
+@inner
+def _of_stop(devices, j, at, deepest, acceleration, rest, rounding, values, slopes):
+    """Write the three event functions of stop ``j``, and their slopes."""
+    of, mode = devices.elements[j], devices.modes[j]
+    turns = OF_PIER + PER_DEVICE * j + TURNS
+    slackens, gives = turns + SLACKENS, turns + GIVES
+    rate, past = surely(at.speed, acceleration, rest), past_release(of, at.elongation, deepest)
+    if mode == YIELDING:
+        starts = abs(at.speed) <= rest and acceleration >= 0.0
+        values[turns], slopes[turns] = rest if starts else at.speed, acceleration
+    elif mode == TAUT:
+        depth = at.elongation - of.start
+        values[slackens], slopes[slackens] = _crossing(past, rate, at.speed, rest, rounding)
+        values[gives], slopes[gives] = _crossing(deepest - depth, -rate, at.speed, rest, rounding)
+    else:
+        values[slackens], slopes[slackens] = _crossing(-past, -rate, at.speed, rest, rounding)
+        if deepest > 0.0:
+            values[gives], slopes[gives] = _crossing(at.elongation - of.start, rate, at.speed, rest, rounding)
+
+
 @inner
 def _of_device(devices, j, at, state, acceleration, rest, rounding, values, slopes):
     """Write the three event functions of device ``j``, and their slopes, but for a friction damper that does not move."""
@@ -55,6 +88,15 @@ def _of_device(devices, j, at, state, acceleration, rest, rounding, values, slop
     values[turns] = values[slackens] = values[gives] = 1.0
     slopes[turns] = slopes[slackens] = slopes[gives] = 0.0
     if of.linear_below == math.inf or (of.kind == FRICTION and goes == STICKS):
+        return
+    if of.kind == CONTACT:
+        _of_stop(devices, j, at, state, acceleration, rest, rounding, values, slopes)
+        return
+    if of.kind == MAXWELL:
+        rate = goes * state_rate(of, at.speed, state, TAUT, goes)
+        values[turns], slopes[turns] = goes * state, rate
+        if abs(state) <= of.stiffness * rounding and rate >= 0.0:
+            values[turns] = of.stiffness * rounding
         return
     if of.kind != TENDON or mode == YIELDING:
         way = OPENS if of.kind == TENDON else goes
@@ -172,6 +214,23 @@ def change_tendon(mode, limit):
 
 
 @inner
+def _stop_event(devices, j, depth, what):
+    """Change the mode of stop ``j``, pressed in by ``depth`` [m]; left, it recovers when the pier is where it first met it."""
+    mode = devices.modes[j]
+    if mode == YIELDING:
+        devices.modes[j], devices.x[j] = TAUT, depth
+    elif mode == TAUT:
+        devices.modes[j] = SLACK if what == SLACKENS else YIELDING
+        if what == SLACKENS and devices.elements[j].returned == 1.0:
+            devices.x[j] = 0.0
+    elif what == GIVES:
+        devices.x[j] = 0.0
+    else:
+        devices.modes[j] = TAUT if devices.x[j] > 0.0 else YIELDING
+        devices.use[j].times += 1.0 if devices.x[j] == 0.0 else 0.0
+
+
+@inner
 def _let_go(m, devices, y, contact, ground, h, j):
     """Let friction damper ``j`` go, and perhaps others with it: what they do a moment later decides.
 
@@ -194,16 +253,22 @@ def device_event(m, devices, y, contact, ground, h, rest, which):
     """Let the event ``which`` of a device happen in state ``y``: its mode or direction changes."""
     j, what = (which - OF_PIER) // PER_DEVICE, (which - OF_PIER) % PER_DEVICE
     of = devices.elements[j]
+    if of.kind == CONTACT:
+        at = attitude(m, y, devices.level[0])
+        _stop_event(devices, j, gap_of(m, of, at, y).elongation - of.start, what)
+        return
     if of.kind == TENDON:
         devices.modes[j] = TAUT if what == TURNS else change_tendon(devices.modes[j], what == GIVES)
         if devices.modes[j] == SLACK and (of.prestress > 0.0 or devices.x[j] > 0.0):
-            devices.use[j].slack += 1.0
+            devices.use[j].times += 1.0
         return
     if of.kind == FRICTION and what == GIVES:
         _let_go(m, devices, y, contact, ground, h, j)
         return
     if of.kind != FRICTION or of.strength == 0.0:
         devices.goes[j] = -devices.goes[j]
+        if of.kind == MAXWELL:
+            return
     under, _, _ = under_devices(m, devices, y, devices.x, contact, ground)
     v_acceleration, theta_acceleration = accelerations(under, y, contact, ground.horizontal, ground.vertical)
     for i in range(len(devices.elements)):  # friction that comes to rest at the same time may hold, too
@@ -220,12 +285,20 @@ def after_contact(m, devices, y, contact, rest, ground):
     at = attitude(m, y, devices.level[0])
     for j in range(len(devices.elements)):
         of = devices.elements[j]
-        here = gap(m, of.offset, at, y)
+        here = gap_of(m, of, at, y)
         if abs(here.speed) <= rest:
             if of.kind == FRICTION and of.strength > 0.0:
                 devices.goes[j] = STICKS
             continue
-        if of.kind != TENDON:
+        if of.kind == CONTACT:
+            depth = here.elongation - of.start
+            if devices.modes[j] == YIELDING and here.speed < 0.0:
+                devices.modes[j], devices.x[j] = TAUT, depth
+            elif devices.modes[j] == TAUT and here.speed > 0.0 and depth >= devices.x[j]:
+                devices.modes[j] = YIELDING
+        elif of.kind == MAXWELL:
+            continue
+        elif of.kind != TENDON:
             devices.goes[j] = OPENS if here.speed > 0.0 else CLOSES
         elif devices.modes[j] == YIELDING and here.speed < 0.0:
             devices.modes[j] = TAUT
@@ -248,7 +321,7 @@ def start_devices(m, devices, y, contact, rest, ground):
     for j in range(len(devices.elements)):
         of = devices.elements[j]
         devices.goes[j] = STICKS if of.kind == FRICTION and of.strength > 0.0 else OPENS
-        devices.modes[j] = mode_of(of, gap(m, of.offset, at, y).elongation, devices.x[j], OPENS)
+        devices.modes[j] = mode_of(of, gap_of(m, of, at, y).elongation, devices.x[j], OPENS)
     after_contact(m, devices, y, contact, rest, ground)
 
 
@@ -261,4 +334,4 @@ def leave_rest(m, devices, y, side):
     for j in range(len(devices.elements)):
         of, way = devices.elements[j], way_of_opening(m, devices.elements[j], side)
         devices.goes[j] = way if way != STICKS or of.kind == FRICTION else OPENS
-        devices.modes[j] = mode_of(of, gap(m, of.offset, at, y).elongation, devices.x[j], way)
+        devices.modes[j] = mode_of(of, gap_of(m, of, at, y).elongation, devices.x[j], way)

@@ -1,4 +1,4 @@
-"""Constitutive models of dampers and tendons, by their elongation and its rate (THEORY.md, Dampers and tendons).
+"""Constitutive models of devices, by their elongation and its rate (THEORY.md, Dampers and tendons, Stops and deck springs).
 
 Forces are positive in tension, over the pier's mass [m/s²].
 """
@@ -15,8 +15,11 @@ FRICTION = 0.0
 VISCOUS = 1.0
 HYSTERETIC = 2.0
 TENDON = 3.0
+MAXWELL = 4.0  # a viscous damper behind a spring, its brace
+CONTACT = 5.0  # a stop
+SPRING = 6.0
 
-# Modes of a tendon
+# Modes of a tendon; of a stop: on its elastic line, open, on its first-loading line
 TAUT = 0.0
 SLACK = 1.0
 YIELDING = 2.0
@@ -28,17 +31,24 @@ STICKS = 0.0
 
 
 class Element(NamedTuple):
-    """One damper or tendon, per unit mass of the pier."""
+    """One device, per unit mass of the pier."""
 
     kind: float
     strength: float  # F_d of friction and hysteretic dampers, yield force of a tendon, inf without [m/s²]
-    stiffness: float  # 1/u_y of a hysteretic damper [1/m]; k of a tendon [1/s²]
+    stiffness: float  # 1/u_y of a hysteretic damper [1/m]; k of a tendon, a spring, a stop or a brace [1/s²]
     coefficient: float  # C of a viscous damper [m/s² over (m/s)^exponent]
     exponent: float
     prestress: float  # of a tendon [m/s²]
     offset: float  # from the centre of the base, positive to the right [m]
     linear_below: float  # speed [m/s] up to which a viscous damper is linear: |ė|^a would rise without bound in slope
     slope: float  # of its force there [1/s]
+    give: float  # of the brace of a hysteretic damper over that of the damper
+    start: float  # elongation at which a stop is met [m]
+    returned: float  # e², share of the energy that a stop gives back
+    quickest: float  # rate of vibration against a stop on its elastic line, or of relaxation of a braced damper at 1 m/s [1/s]
+    height: float  # at which a device acts on the deck, horizontally [m]; 0 of one at the base
+    swing: float  # b where the pier turns about its pivots [m]
+    way: float  # 1, or −1 of a device that lengthens as the deck moves to the left
 
 
 class Use(NamedTuple):
@@ -50,7 +60,7 @@ class Use(NamedTuple):
     speed: float
     lost: float
     yielded: float  # by how much a tendon has been lengthened for good [m]
-    slack: float  # how often it has gone slack
+    times: float  # how often a tendon has gone slack, or a stop been met
 
 
 ELEMENT = record(Element)
@@ -64,8 +74,31 @@ def tension(of, elongation, slack):
 
 
 @kernel
+def past_release(of, elongation, deepest):
+    """Return by how much a stop is pressed in beyond where it lets go again [m], once pressed in by ``deepest`` [m]."""
+    return elongation - of.start - deepest * (1.0 - of.returned)
+
+
+@kernel
+def stop_force(of, elongation, deepest):
+    """Return the force of a stop at any elongation: k δ on first loading, k/e² beyond the point of release after it."""
+    first = of.stiffness * (elongation - of.start)
+    return max(min(first, of.stiffness / of.returned * past_release(of, elongation, deepest)), 0.0)
+
+
+@kernel
+def slip_rate(of, pull):
+    """Return the rate [m/s] at which a braced viscous damper itself lengthens under the force ``pull`` [m/s²]."""
+    return math.copysign((abs(pull) / of.coefficient) ** (1.0 / of.exponent), pull)
+
+
+@kernel
 def force(of, elongation, speed, state, mode, goes):
-    """Return the force [m/s²] of an element that ``goes`` out or in; ``state``: z of a hysteretic damper, u_0 [m] of a tendon."""
+    """Return the force [m/s²] of an element that ``goes`` out or in.
+
+    ``state``: z of a hysteretic damper, u_0 [m] of a tendon, the force [m/s²] of a braced viscous damper, by how much a stop has
+    been pressed in [m].
+    """
     if of.kind == FRICTION:
         return of.strength * goes
     if of.kind == VISCOUS and abs(speed) < of.linear_below:
@@ -74,6 +107,12 @@ def force(of, elongation, speed, state, mode, goes):
         return math.copysign(of.coefficient * abs(speed) ** of.exponent, speed) if speed != 0.0 else 0.0
     if of.kind == HYSTERETIC:
         return of.strength * state
+    if of.kind == MAXWELL:
+        return state
+    if of.kind == CONTACT:
+        if mode == TAUT:
+            return of.stiffness / of.returned * past_release(of, elongation, state)
+        return 0.0 if mode == SLACK else of.stiffness * (elongation - of.start)
     if mode == TAUT:
         return tension(of, elongation, state)
     return 0.0 if mode == SLACK else of.strength
@@ -81,22 +120,39 @@ def force(of, elongation, speed, state, mode, goes):
 
 @kernel
 def state_rate(of, speed, state, mode, goes):
-    """Return the rate of an element's state [1/s or m/s]: two-sided Bouc–Wen, n = 5; a tendon lengthens while it yields."""
+    """Return the rate of an element's state: two-sided Bouc–Wen, n = 5 [1/s]; a tendon lengthens while it yields [m/s]; the
+    force of a damper and its brace [m/s³]."""
     if of.kind == HYSTERETIC:
         loads = goes * state > 0.0
-        return speed * of.stiffness * (1.0 - (power(min(abs(state), 1.0), None) if loads else 0.0))
+        share = 1.0 - (power(min(abs(state), 1.0), None) if loads else 0.0)
+        return speed * of.stiffness * share / (1.0 + of.give * share)
+    if of.kind == MAXWELL:
+        return of.stiffness * (speed - slip_rate(of, state))
     return speed if of.kind == TENDON and mode == YIELDING else 0.0
 
 
 @kernel
 def loss_rate(of, speed, pull, mode):
-    """Return the power [W/kg] that goes into an element and is not stored in a tendon."""
+    """Return the power [W/kg] that goes into an element and is not stored in a tendon, a spring, a stop or a brace."""
+    if of.kind == SPRING:
+        return 0.0
+    if of.kind == CONTACT:
+        return (1.0 - of.returned) * pull * speed if mode == YIELDING else 0.0
+    if of.kind == MAXWELL:
+        return pull * slip_rate(of, pull)
     return 0.0 if of.kind == TENDON and mode != YIELDING else pull * speed
 
 
 @kernel
 def stored(of, elongation, state):
-    """Return the energy [J/kg] that a tendon gives back when it goes slack; 0 of dampers."""
+    """Return the energy [J/kg] that a device gives back until it bears nothing; 0 of dampers without a brace."""
+    if of.kind == CONTACT:
+        pull = stop_force(of, elongation, state)
+        return 0.5 * pull * pull * of.returned / of.stiffness
+    if of.kind == MAXWELL:
+        return 0.5 * state * state / of.stiffness
+    if of.kind == SPRING:
+        return 0.5 * of.stiffness * elongation * elongation
     if of.kind != TENDON:
         return 0.0
     pull = min(max(tension(of, elongation, state), 0.0), of.strength)
@@ -105,7 +161,10 @@ def stored(of, elongation, state):
 
 @kernel
 def mode_of(of, elongation, state, goes):
-    """Return the mode of a tendon at this elongation that goes on out or in."""
+    """Return the mode of a tendon or a stop at this elongation that goes on out or in."""
+    if of.kind == CONTACT:
+        depth = elongation - of.start
+        return SLACK if depth < 0.0 or (depth == 0.0 and goes != OPENS) else YIELDING
     if of.kind != TENDON:
         return TAUT
     pull = tension(of, elongation, state)

@@ -1,4 +1,4 @@
-"""Dampers and tendons on a pier: their force and moment, the rates of their states (THEORY.md, Dampers and tendons).
+"""Devices on a pier: their force and moment, the rates of their states (THEORY.md, Dampers and tendons, Stops and deck springs).
 
 The force F of a device with the elongation e acts on v and θ by ∂e/∂v and ∂e/∂θ.
 
@@ -11,19 +11,23 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rockbatch.core.devices.elongation import GAP, attitude, gap, lifted, put_gap
+from rockbatch.core.devices.elongation import GAP, attitude, gap_of, lifted, put_gap
 from rockbatch.core.devices.laws import (
     CLOSES,
+    CONTACT,
     ELEMENT,
     FRICTION,
     HYSTERETIC,
+    MAXWELL,
     OPENS,
+    SLACK,
     STICKS,
     USE,
     VISCOUS,
     force,
     loss_rate,
     mode_of,
+    slip_rate,
     state_rate,
 )
 from rockbatch.core.ground import later
@@ -46,6 +50,9 @@ TRAVEL = 0.5
 GROWTH = 0.5
 """By which share of itself the speed of a viscous damper may grow or fall in a step: |ė|^a has no Taylor series at 0."""
 
+FINE = 0.2
+"""Of 1/rate: the longest step while a pier vibrates against a stop, or a braced damper relaxes."""
+
 NEAREST = 1e-3
 """Of a step: the shortest that this asks for, from a velocity reversal or to it."""
 
@@ -59,7 +66,7 @@ class Devices(NamedTuple):
 
     elements: np.recarray  # of Element
     level: np.ndarray  # shape (1,), v of the pier at rest [m]
-    modes: np.ndarray  # of tendons: TAUT, SLACK or YIELDING
+    modes: np.ndarray  # of tendons and stops: TAUT, SLACK or YIELDING
     goes: np.ndarray  # OPENS, CLOSES or, of friction, STICKS
     x: np.ndarray  # states, energies taken, work of the ground, P–Δ
     stage: np.ndarray  # of a Runge–Kutta step
@@ -159,7 +166,7 @@ def device_rates(m, devices, y, x, contact, horizontal, vertical, place):
     total, moment = 0.0, 0.0
     for j in range(n):
         of = devices.elements[j]
-        here = gap(m, of.offset, at, y)
+        here = gap_of(m, of, at, y)
         put_gap(devices.gaps[place, j], here)
         k[j], k[n + j] = 0.0, 0.0
         if of.kind == FRICTION and devices.goes[j] == STICKS:
@@ -231,7 +238,7 @@ def _devices_hold(devices, m, y, side, sense):
     total, moment, at = 0.0, 0.0, attitude(m, y, devices.level[0])
     for j in range(len(devices.elements)):
         of = devices.elements[j]
-        here, way = gap(m, of.offset, at, y), sense * way_of_opening(m, of, side)
+        here, way = gap_of(m, of, at, y), sense * way_of_opening(m, of, side)
         pull = force(of, here.elongation, 0.0, devices.x[j], mode_of(of, here.elongation, devices.x[j], way), way)
         total += pull * here.by_v
         moment += pull * here.arm
@@ -243,6 +250,8 @@ def way_of_opening(m, of, side):
     """Return where a device goes when the pier begins to turn about its pivot on ``side``, or to rise on NEITHER."""
     if side == 0.0:
         return OPENS
+    if of.height != 0.0:
+        return OPENS if side * of.way > 0.0 else CLOSES
     distance = m.half_width - side * of.offset
     return OPENS if distance > 0.0 else (CLOSES if distance < 0.0 else STICKS)
 
@@ -272,7 +281,7 @@ def advance_states(devices, h):
 @inner
 def resolved(m, devices, y, contact, ground, h, dt):
     """Return the longest step [s], ``h`` at most, that resolves the laws of dampers: of a hysteretic one that is not plastic all
-    along it, and of a viscous one with an exponent below 1 near a velocity reversal.
+    along it, of a viscous one with an exponent below 1 near a velocity reversal or behind a brace, and of a stop that is met.
 
     It is shorter by one and the same factor for all ``h``, so that a run with half the step halves these steps too: what it
     changes goes on telling the error.
@@ -283,14 +292,20 @@ def resolved(m, devices, y, contact, ground, h, dt):
     for j in range(len(devices.elements)):
         of = devices.elements[j]
         asked = asked or (of.kind == HYSTERETIC and devices.goes[j] * devices.x[j] < 1.0) or _is_steep(of)
+        asked = asked or (of.kind == MAXWELL and of.exponent < 1.0)
+        if of.kind == CONTACT and devices.modes[j] != SLACK:
+            share = min(share, FINE / (of.quickest * dt))
     if not asked:
-        return h
+        return share * h
     under, _, _ = under_devices(m, devices, y, devices.x, contact, ground)
     end = later(ground, h)  # where a pier lifts off it has no acceleration yet
     v_now, theta_now = accelerations(under, y, contact, ground.horizontal, ground.vertical)
     v_end, theta_end = accelerations(under, y, contact, end.horizontal, end.vertical)
     for j in range(len(devices.elements)):
         of, here = devices.elements[j], devices.gaps[BESIDE, j]
+        if of.kind == MAXWELL and of.exponent < 1.0:
+            slips = max(abs(slip_rate(of, devices.x[j])), abs(here.speed))
+            share = min(share, FINE / (of.quickest * slips ** (1.0 - of.exponent) * dt)) if slips > 0.0 else share
         soft = of.kind == HYSTERETIC and devices.goes[j] * devices.x[j] < 1.0
         if not (_is_steep(of) or soft):
             continue

@@ -10,8 +10,18 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rockbatch.core.devices.elongation import attitude, gap
-from rockbatch.core.devices.laws import FRICTION, HYSTERETIC, TAUT, TENDON, force, state_rate
+from rockbatch.core.devices.elongation import attitude, gap_of
+from rockbatch.core.devices.laws import (
+    CONTACT,
+    FRICTION,
+    HYSTERETIC,
+    MAXWELL,
+    TAUT,
+    TENDON,
+    force,
+    state_rate,
+    stop_force,
+)
 from rockbatch.core.kernel import entry, kernel, question
 from rockbatch.core.observe.forces import LIFTED, Body, Forces, fastest_heels, forces_at, waiting
 from rockbatch.core.observe.rows import (
@@ -59,23 +69,32 @@ NOTED = record(Noted)
 
 
 class RecordedDevices(NamedTuple):
-    """Dampers and tendons of a recorded run."""
+    """Devices of a recorded run."""
 
     elements: np.recarray  # of Element
-    states: np.ndarray  # shape (rows, elements): z of a hysteretic damper, by how much a tendon has yielded [m]
+    states: np.ndarray  # shape (rows, elements): as ``laws.force`` takes them
     level: float  # v of the pier at rest [m]
 
 
 @kernel
 def _state_within(m, of, was, now, level, step, s):
     """Return the state of an element at the share ``s`` of a step, from its states ``was`` and ``now`` at the ends."""
-    if of.kind != HYSTERETIC:
+    if of.kind not in (HYSTERETIC, MAXWELL):
         return was + s * (now - was)
-    speed = gap(m, of.offset, attitude(m, step.start, level), step.start).speed
-    speed_end = gap(m, of.offset, attitude(m, step.end, level), step.end).speed
+    speed = gap_of(m, of, attitude(m, step.start, level), step.start).speed
+    speed_end = gap_of(m, of, attitude(m, step.end, level), step.end).speed
     rate = state_rate(of, speed, was, TAUT, math.copysign(1.0, speed))
     rate_end = state_rate(of, speed_end, now, TAUT, math.copysign(1.0, speed_end))
     return cubic(was, rate, now, rate_end, step.length, s)
+
+
+@kernel
+def recorded_force(of, here, state, goes):
+    """Return the force [m/s²] of an element whose Gap is ``here``, in the mode that its elongation and state ask for."""
+    if of.kind == CONTACT:
+        return stop_force(of, here.elongation, state)
+    pull = force(of, here.elongation, here.speed, state, TAUT, goes)
+    return min(max(pull, 0.0), of.strength) if of.kind == TENDON else pull
 
 
 @kernel
@@ -86,11 +105,9 @@ def _by_laws(m, devices, i, step, y, s):
         of = devices.elements[j]
         if of.kind == FRICTION:
             continue
-        here = gap(m, of.offset, at, y)
+        here = gap_of(m, of, at, y)
         x = _state_within(m, of, devices.states[i - 1, j], devices.states[i, j], devices.level, step, s)
-        pull = force(of, here.elongation, here.speed, x, TAUT, 0.0)
-        if of.kind == TENDON:
-            pull = min(max(pull, 0.0), of.strength)
+        pull = recorded_force(of, here, x, 0.0)
         total += pull * here.by_v
         moment += pull * here.arm
     return Pull(total, moment)
@@ -119,6 +136,62 @@ def _with_devices(devices, m, pulls, i, step, y, s):
     return pulled(m, now.force + rubs + s * (rubs_end - rubs), now.moment + turns + s * (turns_end - turns))
 
 
+@kernel
+def _with_across(forces, gravity, shear, moment):
+    """Return the Forces with a ``shear`` [m/s²] and a ``moment`` [m²/s²] that the deck's neighbours take, not the base."""
+    base = forces.shear + shear
+    friction = abs(base) / forces.normal if forces.normal > LIFTED * gravity else math.inf
+    return Forces(
+        base, forces.normal, forces.moment - moment, forces.left, forces.right, forces.gap_left, forces.gap_right,
+        forces.speed_left, forces.speed_right, forces.deck, forces.along, forces.up, forces.omega, friction, forces.clearance,
+    )  # fmt: skip
+
+
+@question
+def _at_base(devices, m, forces, i, y):
+    """Return the Forces at row ``i`` in state ``y`` without what devices on the deck take."""
+
+
+@_at_base.of(type(None))
+def _all_at_base(devices, m, forces, i, y):
+    return forces
+
+
+@_at_base.of(RecordedDevices)
+def _less_deck(devices, m, forces, i, y):
+    shear, moment, at, some = 0.0, 0.0, attitude(m, y, devices.level), False
+    for j in range(len(devices.elements)):
+        of = devices.elements[j]
+        if of.height != 0.0:
+            here, some = gap_of(m, of, at, y), True
+            pull = recorded_force(of, here, devices.states[i, j], 0.0)
+            shear, moment = shear + of.way * pull, moment + pull * here.by_theta
+    return _with_across(forces, m.gravity, shear, moment) if some else forces
+
+
+@question
+def _at_base_within(devices, m, forces, i, step, y, s):
+    """Return the Forces in state ``y`` at the share ``s`` of the step to row ``i``, without what devices on the deck take."""
+
+
+@_at_base_within.of(type(None))
+def _all_within(devices, m, forces, i, step, y, s):
+    return forces
+
+
+@_at_base_within.of(RecordedDevices)
+def _less_deck_within(devices, m, forces, i, step, y, s):
+    shear, moment, at, some = 0.0, 0.0, attitude(m, y, devices.level), False
+    for j in range(len(devices.elements)):
+        of = devices.elements[j]
+        if of.height != 0.0:
+            here, some = gap_of(m, of, at, y), True
+            x = _state_within(m, of, devices.states[i - 1, j], devices.states[i, j], devices.level, step, s)
+            pull = recorded_force(of, here, x, 0.0)
+            shear, moment = shear + of.way * pull, moment + pull * here.by_theta
+    return _with_across(forces, m.gravity, shear, moment) if some else forces
+
+
 class Stretch(NamedTuple):
     """All that the forces within the step to row ``i`` follow from."""
 
@@ -136,7 +209,8 @@ def _moment(of, s):
     """Return the Forces at the share ``s`` of a Stretch."""
     y, (horizontal, vertical) = within(of.m, of.step, s), ground_within(of.step, s)
     under = _under_devices(of.devices, of.m, of.pulls, of.i, of.step, y, s)
-    return forces_at(under, of.body, y, of.step.contact, of.supports, horizontal, vertical)
+    forces = forces_at(under, of.body, y, of.step.contact, of.supports, horizontal, vertical)
+    return _at_base_within(of.devices, of.m, forces, of.i, of.step, y, s)
 
 
 @kernel
@@ -248,6 +322,7 @@ def forces_of_run(m, body, rows, pulls, devices, ground, dt, limits, out, greate
     was = contact_of(m, rows[0])
     under = pulled(m, pulls[0, 0], pulls[0, 1])
     before = forces_at(under, body, state_of(m, rows[0]), was, supports, ground[0, 0], ground[0, 2])
+    before = _at_base(devices, m, before, 0, state_of(m, rows[0]))
     for i in range(len(rows)):
         y, contact, t = state_of(m, rows[i]), contact_of(m, rows[i]), rows[i].t
         supports = waiting(m, y, was, contact, supports)
@@ -255,7 +330,7 @@ def forces_of_run(m, body, rows, pulls, devices, ground, dt, limits, out, greate
         t_start = rows[i - 1].t if i > 0 else t
         ah, av = ground_at(ground, dt, 0.5 * (t_start + t), t)
         under_start, under = under, pulled(m, pulls[i, 0], pulls[i, 1])
-        now = forces_at(under, body, y, contact, supports, ah, av)
+        now = _at_base(devices, m, forces_at(under, body, y, contact, supports, ah, av), i, y)
         if len(out) > 0:
             _put(out, i, now)
         if len(greatest) == 0:

@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 from rockbatch.core import system
 from rockbatch.core.clock import UNSET, ground_rests
-from rockbatch.core.devices.elongation import attitude, gap
-from rockbatch.core.devices.laws import HYSTERETIC, TENDON, force, stored
+from rockbatch.core.devices.elongation import attitude, gap_of
+from rockbatch.core.devices.laws import CONTACT, HYSTERETIC, SPRING, TENDON, force, stored
 from rockbatch.core.kernel import inner
 from rockbatch.core.springs.equations import geometry
 from rockbatch.core.springs.free_vibration import (
@@ -22,7 +22,7 @@ from rockbatch.core.springs.free_vibration import (
     unstable_equilibrium,
 )
 from rockbatch.core.springs.laws import ratchets
-from rockbatch.core.springs.model import SpringTraits, Supports
+from rockbatch.core.springs.model import SpringTraits, State, Supports
 from rockbatch.core.system import model, moment
 from rockbatch.core.types import GROWING, RESTLESS, RUNNING, SURVIVED, UNDECIDED
 
@@ -155,11 +155,23 @@ def _include_in_mean(lanes, i, m, y, contact, supports):
 
 
 @inner
+def _in_deck(m, devices, y):
+    """Return the energy [J/kg] that springs and stops at the deck store in state ``y``, which depends on θ alone."""
+    energy, at = 0.0, attitude(m, y, devices.level[0])
+    for j in range(len(devices.elements)):
+        of = devices.elements[j]
+        if of.height != 0.0 and of.kind in (CONTACT, SPRING):
+            energy += stored(of, gap_of(m, of, at, y).elongation, devices.x[j])
+    return energy
+
+
+@inner
 def _in_devices(lanes, i, m, devices, y, contact, supports):
     """Note the load [m/s²] that supports carry at rest, and the energy [J/kg] that devices may give back beyond its work.
 
     A tendon's force falls with its elongation or stays: its energy lies above the tangent at any elongation, and that where
-    the base has come to is as good as any. Hysteretic dampers give back what they have stored elastically.
+    the base has come to is as good as any. Others give back what they have stored elastically, less what springs and stops at
+    the deck store at the peak.
     """
     if devices is None:
         return
@@ -170,16 +182,21 @@ def _in_devices(lanes, i, m, devices, y, contact, supports):
     for j in range(len(devices.elements)):
         of, plastic = devices.elements[j], devices.x[j]
         if of.kind == HYSTERETIC:
-            beyond += 0.5 * of.strength * plastic * plastic / of.stiffness
+            beyond += 0.5 * of.strength * plastic * plastic * (1.0 + of.give) / of.stiffness
+        elif of.kind != TENDON:
+            beyond += stored(of, gap_of(m, of, at, y).elongation, plastic)
         if of.kind != TENDON:
             continue
         pull = min(max(force(of, sunk, 0.0, plastic, 0.0, 0.0), 0.0), of.strength)
-        now = gap(m, of.offset, at, y).elongation
+        now = gap_of(m, of, at, y).elongation
         beyond += stored(of, now, plastic) - stored(of, sunk, plastic) - pull * (now - sunk)
         load += pull
         turning += pull * of.offset
     lanes.waiting.load[i] = load
-    lanes.waiting.stored[i] = max(beyond, 0.0) + abs(turning) * (abs(y.theta) + lanes.peak.theta[i])
+    limit = min(lanes.peak.theta[i], unstable_equilibrium(m, load))
+    right, left = State(y.v, limit, 0.0, 0.0, 0.0, 0.0), State(y.v, -limit, 0.0, 0.0, 0.0, 0.0)
+    at_limit = min(_in_deck(m, devices, right), _in_deck(m, devices, left))
+    lanes.waiting.stored[i] = max(beyond, 0.0) + abs(turning) * (abs(y.theta) + lanes.peak.theta[i]) - at_limit
 
 
 @system.over.of(SpringTraits)

@@ -37,9 +37,9 @@ def piers(all_of_them: Sequence[Mapping[str, Any]], bases: Collection[str]) -> l
 
 
 def devices(pier: Pier, restraints: Sequence[Restraint]) -> tuple[tuple[str, float], ...]:
-    """Return kinds and places of dampers and tendons, as offsets from the axis [m]."""
+    """Return kinds and places of devices, as offsets from the axis [m]."""
     return tuple(
-        (restraint.kind if isinstance(restraint, Damper) else "tendon", offset)
+        (f"{restraint.kind} damper" if isinstance(restraint, Damper) else restraint.what, offset)
         for restraint in restraints
         for offset in offsets(pier, restraint)
     )
@@ -95,8 +95,7 @@ def _pier(pier: Mapping[str, Any], scale: float, springs: bool) -> Markup:
         f"The pier to scale on {what}: {2.0 * pier['half_width_m']:.3g} m between its pivots, centre of mass "
         f"{pier['height_m']:.3g} m above them, slenderness {pier['alpha']:.3g} rad"
     )
-    kinds = dict.fromkeys(kind if kind == "tendon" else f"{kind} damper" for kind, _ in pier.get("devices", ()))
-    if kinds:
+    if kinds := dict.fromkeys(kind for kind, _ in pier.get("devices", ())):
         said += f", with {' and '.join(kinds)}"
     named = tag("figcaption", pier["name"]) if pier.get("name") else ""
     return tag("figure", named, svg(width, height, *drawn, description=said), style=f"width:{width:.0f}px")
@@ -115,14 +114,17 @@ def _deck(pier: Mapping[str, Any], middle: float, b: float, ground: float, scale
 
 
 def _device(kind: str, middle: float, at: float, ground: float, top: float) -> list[Markup]:
-    """Draw a tendon up to the top, or a damper between the base and the ground, outside the support there."""
+    """Draw a tendon up to the top, a stop above the base, or a damper between it and the ground, outside the support there."""
     if kind == "tendon":
         return [line(middle + at, ground + SPRING, middle + at, ground - top, "tendon s2", kind)]
     x = middle + at + math.copysign(ASIDE, at)
+    if kind == "stop":
+        over = ground - ASIDE
+        return [line(x, ground + SPRING, x, over, "rigid", kind), line(x, over, middle + at, over, "rigid")]
     body = rectangle(x - 3.0, ground + 5.0, 6.0, 9.0, "damper s3")
     return [
         line(middle + at, ground, x, ground, "tendon s3"),
-        line(x, ground, x, ground + SPRING, "tendon s3", f"{kind} damper"),
+        line(x, ground, x, ground + SPRING, "tendon s3", kind),
         body,
     ]
 

@@ -77,12 +77,13 @@ def _responses(finished: Finished) -> Facts:
 
 
 def _of_devices(finished: Finished) -> Facts:
-    """Return the greatest force of dampers and tendons, in kN if the mass is known, and the greatest stroke or yield."""
+    """Return the greatest force of devices, in kN if the mass is known, and the greatest stroke, yield or deflection."""
     runs = finished.runs[finished.runs["status"] == "ok"]
     facts: Facts = []
     for device, way, words in (
         ("damper", "damper_stroke_m", "stroke"),
         ("tendon", "tendon_yield_m", "plastic elongation"),
+        ("stop", "stop_deflection_m", "deflection"),
     ):
         if way not in runs or runs[way].isna().all():
             continue
