@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from rockbatch.batch.single import simulate
     from rockbatch.checks import Rule
     from rockbatch.errors import InputError
-    from rockbatch.motions import Motion, MotionSet, ReadOptions, pulse, read_motions, sequence
+    from rockbatch.motions import Motion, MotionSet, ReadOptions, pair_spectrum, pulse, read_motions, sequence
     from rockbatch.motions.hazard import HazardCurve
     from rockbatch.pier import Damper, ElasticBase, Part, Pier, RigidBase, Stop, Tendon, YieldingBase
     from rockbatch.report import report
@@ -31,7 +31,7 @@ _NAMES = {
     "batch.single": "simulate",
     "checks": "Rule",
     "errors": "InputError",
-    "motions": "Motion MotionSet ReadOptions pulse read_motions sequence",
+    "motions": "Motion MotionSet ReadOptions pair_spectrum pulse read_motions sequence",
     "motions.hazard": "HazardCurve",
     "pier": "Damper ElasticBase Part Pier RigidBase Stop Tendon YieldingBase",
     "report": "report",
@@ -64,6 +64,7 @@ __all__ = [
     "fragility",
     "load_study",
     "open_results",
+    "pair_spectrum",
     "pulse",
     "read_motions",
     "report",

@@ -57,11 +57,19 @@ EUROCODE = {
 """Recommended values by type of spectrum and ground type; national annexes have their own."""
 
 
+VERTICAL_SHAPE = Shape(1.0, 0.05, 0.15, 1.0)
+"""Of the vertical spectrum of EN 1998-1, for both types and all grounds."""
+
+VERTICAL_RATIO = {1: 0.9, 2: 0.45}
+"""a_vg/a_g by type of spectrum: recommended values of EN 1998-1, Table 3.4, as later literature quotes them."""
+
+
 @dataclass(frozen=True)
 class EurocodeSpectrum:
-    """Horizontal elastic spectrum of EN 1998-1:2004, 3.2.2.2, eqs. (3.2) to (3.6), up to 4 s.
+    """Elastic spectrum of EN 1998-1:2004, horizontal by 3.2.2.2, eqs. (3.2) to (3.6), vertical by 3.2.2.3, up to 4 s.
 
-    ``ag_g`` is a_g = γ_I a_gR on ground type A [g]; η = √(10/(5 + ξ)) ≥ 0.55 follows from ``damping`` (ξ in percent).
+    ``ag_g`` is a_g = γ_I a_gR on ground type A [g], or a_vg; η = √(10/(5 + ξ)) ≥ 0.55 follows from ``damping`` (ξ in percent).
+    The plateau is ``amplification`` η times the ground acceleration: 2.5, and 3 of the vertical one.
     """
 
     ag_g: float
@@ -69,15 +77,17 @@ class EurocodeSpectrum:
     damping: float = 0.05
     name: str = "EN 1998-1"
     limits: tuple[float, float] = (0.0, 4.0)
+    amplification: float = 2.5
 
     def __str__(self) -> str:
-        return f"{self.name}, a_g = {self.ag_g:g} g, {100 * self.damping:g} %"
+        symbol = "a_vg" if self.shape == VERTICAL_SHAPE else "a_g"
+        return f"{self.name}, {symbol} = {self.ag_g:g} g, {100 * self.damping:g} %"
 
     def at(self, periods: Array) -> Array:
         """See :class:`Spectrum`."""
         s, tb, tc, td = self.shape
         eta = max(math.sqrt(10.0 / (5.0 + 100.0 * self.damping)), 0.55)
-        plateau = 2.5 * eta
+        plateau = self.amplification * eta
         t = np.maximum(periods, 1e-12)
         rising = 1.0 + t / tb * (plateau - 1.0)
         falling = plateau * np.select([t <= tc, t <= td], [1.0, tc / t], tc * td / t**2)
@@ -104,6 +114,86 @@ class AsceSpectrum:
         t = np.maximum(periods, 1e-12)
         falling = np.where(t <= self.tl_s, self.sd1_g / t, self.sd1_g * self.tl_s / t**2)
         return np.select([t < t0, t <= ts], [self.sds_g * (0.4 + 0.6 * t / t0), self.sds_g], falling)
+
+
+@dataclass(frozen=True)
+class AashtoSpectrum:
+    """Three-point design spectrum of AASHTO, by A_s at 0 s, S_DS and S_D1, for 5 % damping; by the formulas that programs and
+    handbooks have, not compared with the articles (LRFD 3.10.4, Guide Specifications 3.4.1 before the 3rd edition)."""
+
+    as_g: float
+    sds_g: float
+    sd1_g: float
+    damping: float = 0.05
+    limits: tuple[float, float] = (0.0, math.inf)
+
+    def __str__(self) -> str:
+        return f"AASHTO, A_s = {self.as_g:g} g, S_DS = {self.sds_g:g} g, S_D1 = {self.sd1_g:g} g, 5 %"
+
+    def at(self, periods: Array) -> Array:
+        """See :class:`Spectrum`."""
+        ts = self.sd1_g / self.sds_g
+        t0 = 0.2 * ts
+        t = np.maximum(periods, 1e-12)
+        return np.select([t < t0, t <= ts], [self.as_g + (self.sds_g - self.as_g) * t / t0, self.sds_g], self.sd1_g / t)
+
+
+class SubsoilShape(NamedTuple):
+    """Spectral shape C_h of NZS 1170.5 for a subsoil: at 0 s, on the plateau from 0.1 s on, and its branches beyond it,
+    a (b/T)^0.75 until 1.5 s, c/T until 3 s and 3 c/T² then."""
+
+    start: float
+    plateau: float
+    a: float
+    b: float
+    c: float
+
+
+NZS_1170_5 = {
+    "A": SubsoilShape(1.00, 2.35, 1.6, 0.50, 1.05),
+    "B": SubsoilShape(1.00, 2.35, 1.6, 0.50, 1.05),
+    "C": SubsoilShape(1.33, 2.93, 2.0, 0.50, 1.32),
+    "D": SubsoilShape(1.12, 3.00, 2.4, 0.75, 2.14),
+    "E": SubsoilShape(1.12, 3.00, 3.0, 1.00, 3.32),
+}
+"""Shapes for response spectra and time histories by site subsoil class, as several programs have them."""
+
+FAR_KM = 20.0
+"""Distance from a major fault beyond which NZS 1170.5 has no near-fault factor."""
+
+
+@dataclass(frozen=True)
+class NzsSpectrum:
+    """Elastic site spectrum C(T) = C_h(T) Z R N(T, D) of NZS 1170.5:2004 for 5 % damping, up to 4.5 s; by the numbers that
+    several programs agree on, not compared with the standard.
+
+    ``fault_km`` is the distance D from the nearest major fault of the standard's list; N counts for R above 0.75.
+    """
+
+    subsoil: str
+    hazard_factor: float
+    return_period_factor: float = 1.0
+    fault_km: float = math.inf
+    damping: float = 0.05
+    limits: tuple[float, float] = (0.0, 4.5)
+
+    def __str__(self) -> str:
+        near = f", D = {self.fault_km:g} km" if self.fault_km < FAR_KM else ""
+        return f"NZS 1170.5 subsoil {self.subsoil}, Z = {self.hazard_factor:g}, R = {self.return_period_factor:g}{near}, 5 %"
+
+    def at(self, periods: Array) -> Array:
+        """See :class:`Spectrum`."""
+        start, plateau, a, b, c = NZS_1170_5[self.subsoil]
+        t = np.maximum(periods, 1e-12)
+        falling = np.select([t <= 1.5, t <= 3.0], [a * (b / t) ** 0.75, c / t], 3.0 * c / t**2)
+        shape = np.where(t < 0.1, start + (plateau - start) * t / 0.1, np.minimum(plateau, falling))
+        values = shape * self.hazard_factor * self.return_period_factor * self._near(t)
+        return _within(self.limits, periods, values)
+
+    def _near(self, t: Array) -> Array:
+        """Return the near-fault factor N(T, D)."""
+        share = min(1.0, max(0.0, (FAR_KM - self.fault_km) / 18.0)) if self.return_period_factor > 0.75 else 0.0
+        return 1.0 + share * (np.interp(t, [1.5, 4.0, 5.0], [1.0, 1.6, 1.72]) - 1.0)
 
 
 @dataclass(frozen=True)

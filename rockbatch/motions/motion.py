@@ -133,6 +133,11 @@ class Motion(Shown):
         "pga", if it is right though no earthquake has had such a one; else :func:`rockbatch.simulate` refuses it.
     shocks : tuple of Shock
         Records of which it is a sequence, in their order; empty for a record of its own.
+    start : float or None
+        Time of the first sample [s since 1970, UTC], or counted within its station alone; ``None`` where unknown.
+    across : ndarray, shape (npts,), or None
+        Horizontal acceleration square to it [m/s²], which is not simulated, for spectra of the pair; ``None`` if that is a motion
+        of its own, or there is none.
 
     Raises ``InputError`` for samples that are no numbers and components of different lengths.
 
@@ -167,6 +172,8 @@ class Motion(Shown):
     station: str = ""
     confirm: Sequence[str] = ()
     shocks: tuple[Shock, ...] = ()
+    start: float | None = None
+    across: Samples | None = None
 
     def __post_init__(self) -> None:
         wrong = []
@@ -392,6 +399,7 @@ class Motion(Shown):
             self,
             horizontal=self.horizontal * along,
             vertical=None if self.vertical is None else self.vertical * factor,
+            across=None if self.across is None else self.across * factor,
             initial=None if self.initial is None else self.initial.times(along),
         )
 

@@ -173,7 +173,7 @@ def _partner(h: Component, together: Sequence[Component]) -> tuple[Component | N
 def _motion(h: Component, v: Component | None, notes: Iterable[str]) -> Motion:
     """Return the motion of a horizontal component and its vertical one."""
     said = list(notes)
-    dt, horizontal, vertical, initial = h.dt, h.acceleration, None, h.initial
+    dt, horizontal, vertical, initial, start = h.dt, h.acceleration, None, h.initial, h.start
     if v is not None:
         common = on_common_samples(h, replace(v, acceleration=v.upward), ("horizontal", "vertical"))
         if len(common.first) < 2 or np.abs(common.first).max() < _MOST_OF_IT * h.pga:
@@ -182,6 +182,7 @@ def _motion(h: Component, v: Component | None, notes: Iterable[str]) -> Motion:
         else:
             dt, horizontal, vertical = common.dt, common.first, common.second
             initial = h.initial and state_at(h.acceleration, h.dt, h.initial, common.begins[0])
+            start = h.start if h.start is None else h.start + common.begins[0]
             said += common.notes
     odd: tuple[Finding, ...] = ()
     if v is not None:
@@ -204,6 +205,7 @@ def _motion(h: Component, v: Component | None, notes: Iterable[str]) -> Motion:
         processed=h.processed,
         findings=odd,
         origin=directed(h.origin, h.orientation),
+        start=start,
     )
 
 

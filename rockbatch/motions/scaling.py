@@ -5,9 +5,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from rockbatch.errors import InputError
+from rockbatch.grouping import grouped
 from rockbatch.motions import measures
 from rockbatch.motions.motion import Motion, Unusable
 from rockbatch.motions.motion_set import MotionSet
+from rockbatch.motions.pairs import DIRECTIONS, WORDS, station_spectrum, unpaired
 from rockbatch.motions.plausible import fits
 from rockbatch.motions.spectrum import spectral_acceleration
 from rockbatch.motions.spectrum_target import SpectrumTarget
@@ -23,6 +25,9 @@ class Target:
         Exactly one of them: PGA [g], PGV [m/s], or pseudo-spectral acceleration [g] ...
     period_s, damping : float
         ... of an oscillator of this period [s], required with ``sa_g``, and this fraction of critical damping.
+    pairs : str
+        With ``sa_g``: "apart", every component has it, or one of :data:`rockbatch.motions.pairs.DIRECTIONS`, by which a station
+        has it, whose components then have one factor.
     """
 
     pga_g: float | None = None
@@ -30,20 +35,41 @@ class Target:
     sa_g: float | None = None
     period_s: float | None = None
     damping: float = 0.05
+    pairs: str = "apart"
 
     def __post_init__(self) -> None:
         given = [value for value in (self.pga_g, self.pgv_m_s, self.sa_g) if value is not None]
         if len(given) != 1 or not given[0] > 0 or (self.sa_g is None) != (self.period_s is None):
             raise InputError("a target is one of pga_g, pgv_m_s, or sa_g with period_s, above 0")
+        if self.pairs != "apart" and (self.sa_g is None or self.pairs not in DIRECTIONS):
+            raise InputError(
+                f'pairs = "{self.pairs}": must be one of {", ".join(("apart", *DIRECTIONS))}, and is for sa_g'
+            )
 
     def __str__(self) -> str:
         if self.sa_g is not None:
-            return f"SA({self.period_s:g} s, {100 * self.damping:g} %) = {self.sa_g:g} g"
+            of = "" if self.pairs == "apart" else f" of {WORDS[self.pairs]}"
+            return f"SA({self.period_s:g} s, {100 * self.damping:g} %){of} = {self.sa_g:g} g"
         return f"PGA = {self.pga_g:g} g" if self.pga_g is not None else f"PGV = {self.pgv_m_s:g} m/s"
 
     def factors_of(self, motions: Sequence[Motion], gravity: float) -> list[float]:
-        """Return what brings each of ``motions`` to the target; infinite for one without motion."""
-        return [self._factor(motion, gravity) for motion in motions]
+        """Return what brings each of ``motions`` to the target; infinite for one without motion.
+
+        Raises ``InputError`` if the rule takes pairs, and a station has none (:func:`rockbatch.motions.pairs.unpaired`).
+        """
+        if self.pairs == "apart":
+            return [self._factor(motion, gravity) for motion in motions]
+        assert self.sa_g is not None
+        assert self.period_s is not None
+        stations = grouped(motions, lambda motion: motion.of_station)
+        measured = {
+            name: station_spectrum(each, [self.period_s], self.damping, self.pairs)[0]
+            for name, each in stations.items()
+        }
+        return [
+            self.sa_g * gravity / float(sa) if (sa := measured[motion.of_station]) > 0 else math.inf
+            for motion in motions
+        ]
 
     def _factor(self, motion: Motion, gravity: float) -> float:
         if self.pga_g is not None:
@@ -70,8 +96,10 @@ def at_target(
     So is one that takes more than :data:`MOST_FACTOR` to meet a spectrum, unless its name fits a pattern in ``confirmed``.
     """
     motions: list[Motion] = []
-    unusable: list[Unusable] = []
-    for motion, factor in zip(motion_set.motions, target.factors_of(motion_set.motions, gravity), strict=True):
+    unusable = _lone(motion_set.motions, target)
+    lone = {each.name for each in unusable}
+    paired = [motion for motion in motion_set.motions if motion.name not in lone]
+    for motion, factor in zip(paired, target.factors_of(paired, gravity), strict=True):
         if math.isinf(factor):
             unusable.append(Unusable(motion.name, motion.files, f"has no motion that can be scaled to {target}"))
         elif isinstance(target, SpectrumTarget) and factor > MOST_FACTOR and not fits(motion.name, confirmed):
@@ -82,6 +110,23 @@ def at_target(
             notes = (*motion.notes, f"scaled by {factor:.4g} to {target}")
             motions.append(replace(motion.times(factor), factor=motion.factor * factor, notes=notes))
     return replace(motion_set, motions=motions, unusable=[*motion_set.unusable, *unusable])
+
+
+def _lone(motions: Sequence[Motion], target: Target | SpectrumTarget) -> list[Unusable]:
+    """Return what cannot be used because the target takes both horizontal components of a station."""
+    if target.pairs not in DIRECTIONS or (isinstance(target, SpectrumTarget) and target.factors == "none"):
+        return []
+    stations, lacks = grouped(motions, lambda motion: motion.of_station), f'no pair for pairs = "{target.pairs}"'
+    return [
+        Unusable(
+            motion.name,
+            motion.files,
+            f'{lacks}: {why}; write pairs = "apart", or leave it out',
+        )
+        for of_station in stations.values()
+        if (why := unpaired(of_station))
+        for motion in of_station
+    ]
 
 
 def _too_weak(motion: Motion, factor: float, target: SpectrumTarget, gravity: float) -> str:

@@ -167,7 +167,7 @@ def sequence(
     initial = [part.initial or Initial() for part in parts]
     horizontal = _joined([part.horizontal for part in parts], initial, dt, rest, name, said)
     return _described(parts, name, replace(
-        parts[0], name=name, dt=dt, horizontal=horizontal, vertical=vertical, notes=tuple(said),
+        parts[0], name=name, dt=dt, across=None, horizontal=horizontal, vertical=vertical, notes=tuple(said),
         shocks=tuple(
             Shock(part.name, i * dt, (i + part.npts - 1) * dt, (i + part.npts - 1 + rest) * dt)
             for i, part in zip(map(int, starts), parts, strict=True)

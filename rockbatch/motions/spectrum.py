@@ -9,6 +9,7 @@ linear its solution is exact (Nigam & Jennings 1969, BSSA 59(2), 909–922, in c
 """
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 import numpy.typing as npt
@@ -21,6 +22,7 @@ PERIODS = np.geomspace(0.05, 5.0, 101)
 """Periods of a suite's spectra [s]: fifty a decade: a curve through them has no corners that are not its own."""
 
 _BLOCK = 64  # samples that are gone through one after the other; the blocks side by side
+_TOGETHER = 16  # oscillators whose histories are held at a time
 _PER_PERIOD = 20  # samples a period at least, so that a peak between them is missed by less than 1.3 %
 
 
@@ -52,6 +54,36 @@ def spectral_acceleration(
         For periods and damping that are out of range.
     """
     periods = np.asarray(periods, dtype=np.float64)
+    peaks = np.empty(len(periods))
+    for among, finer, step in _sampled(acceleration, dt, periods, damping):
+        peaks[among] = _peaks(finer, step, 2.0 * math.pi / periods[among], damping)
+    return peaks
+
+
+def responses(acceleration: Samples, dt: float, periods: npt.ArrayLike, damping: float = 0.05) -> list[Samples]:
+    """Return ω² u(t) [m/s²] of an oscillator of each period, as :func:`spectral_acceleration` has it, from which its peak is.
+
+    Each has the sampling interval that its period takes, the same for every record of this ``dt``.
+    """
+    periods = np.asarray(periods, dtype=np.float64)
+    every: dict[int, Samples] = {}
+    for among, finer, step in _sampled(acceleration, dt, periods, damping):
+        places = np.flatnonzero(among)
+        for some in np.array_split(places, -(-len(places) // _TOGETHER)):
+            omega = 2.0 * math.pi / periods[some]
+            blocks = np.stack(list(_march(finer, step, omega, damping, whole=True)), axis=1)
+            histories = blocks.reshape(-1, len(some))[: len(finer)] * (omega / math.sqrt(1.0 - damping**2))
+            every |= zip(map(int, some), np.ascontiguousarray(histories.T), strict=True)
+    return [every[i] for i in range(len(periods))]
+
+
+def _sampled(
+    acceleration: Samples, dt: float, periods: npt.NDArray[np.float64], damping: float
+) -> Iterator[tuple[npt.NDArray[np.bool_], Samples, float]]:
+    """Yield which periods belong together, and for these the acceleration with as many samples a period as they take, and its dt.
+
+    Raises ``InputError`` for periods and damping that are out of range.
+    """
     wrong = [f"period = {period:g}: must be a number above 0 [s]" for period in periods if not 0 < period < math.inf]
     if not 0 <= damping < 1:
         wrong.append(f"damping = {damping:g}: must be within 0 ≤ damping < 1")
@@ -60,15 +92,12 @@ def spectral_acceleration(
     parts = np.ones(len(periods), dtype=int)
     while (few := periods < _PER_PERIOD * dt / parts * (1 - 1e-9)).any():
         parts[few] *= 2
-    peaks = np.empty(len(periods))
     for count in np.unique(parts):
-        among = parts == count
         finer = acceleration
         if count > 1:
             at = np.arange((len(acceleration) - 1) * count + 1) / count
             finer = np.interp(at, np.arange(len(acceleration)), acceleration)
-        peaks[among] = _peaks(finer, dt / count, 2.0 * math.pi / periods[among], damping)
-    return peaks
+        yield parts == count, finer, dt / count
 
 
 def periods_over(low: float, high: float) -> npt.NDArray[np.float64]:
@@ -79,7 +108,18 @@ def periods_over(low: float, high: float) -> npt.NDArray[np.float64]:
 
 
 def _peaks(a: Samples, dt: float, omega: npt.NDArray[np.float64], damping: float) -> npt.NDArray[np.float64]:
-    """ω² max|u| at the samples, shape (n,), of oscillators of ``omega`` [rad/s], shape (n,).
+    """ω² max|u| at the samples, shape (n,), of oscillators of ``omega`` [rad/s], shape (n,)."""
+    largest = np.zeros(len(omega))
+    for u in _march(a, dt, omega, damping):
+        np.maximum(largest, np.abs(u, out=u).max(axis=0, initial=0.0), out=largest)
+    return largest * omega**2 / (omega * math.sqrt(1.0 - damping**2))
+
+
+def _march(
+    a: Samples, dt: float, omega: npt.NDArray[np.float64], damping: float, whole: bool = False
+) -> Iterator[npt.NDArray[np.float64]]:
+    """Yield ω_d u at the k-th sample of every block, shape (blocks, n), for k from 0 on; ``whole``: of the last block beyond the
+    last sample, too.
 
     With w = z + c₁a the recursion has one term of load, w(t + Δ) = λ w(t) − (c₀ + λc₁) a(t). It is gone through in
     blocks side by side: first what each block leaves to the next, then every block from there.
@@ -100,11 +140,8 @@ def _peaks(a: Samples, dt: float, omega: npt.NDArray[np.float64], damping: float
     for block in range(1, blocks):
         state[block] = left[block - 1] + factor**_BLOCK * state[block - 1]
 
-    largest = np.zeros(len(omega))
     for k in range(_BLOCK):
-        if k == in_last:
+        if k == in_last and not whole:
             state, loads = state[:-1], loads[:-1]
-        u = load.imag * state.real + load.real * state.imag + c1.imag * loads[:, k, None]
-        np.maximum(largest, np.abs(u, out=u).max(axis=0, initial=0.0), out=largest)
+        yield load.imag * state.real + load.real * state.imag + c1.imag * loads[:, k, None]
         state = factor * state + loads[:, k, None]
-    return largest * omega**2 / omega_d

@@ -12,6 +12,7 @@ from rockbatch.errors import InputError
 from rockbatch.grouping import grouped
 from rockbatch.motions.design_spectra import Spectrum
 from rockbatch.motions.motion import Motion
+from rockbatch.motions.pairs import DIRECTIONS, station_spectrum, unpaired
 from rockbatch.motions.spectrum import spectral_acceleration
 
 Array = npt.NDArray[np.float64]
@@ -19,9 +20,9 @@ Array = npt.NDArray[np.float64]
 FACTORS = ("both", "each", "suite", "none")
 """See :class:`SpectrumTarget`."""
 
-PAIRS = {"apart": 0.9, "srss": 1.3}
-"""Rules by which components of a station count, and the usual share of the target: EN 1998-1, 3.2.3.1.2 (4), and EN 1998-2,
-3.2.3 (3), as they are commonly quoted."""
+PAIRS = {"apart": 0.9, "srss": 1.3, "geomean": 1.0, "rotd50": 1.0, "rotd100": 0.9}
+"""Rules by which components of a station count, and the usual share of the target: EN 1998-1, 3.2.3.1.2 (4), EN 1998-2,
+3.2.3 (3), and of maximum directions ASCE 7-16, 16.2.3.2, as they are commonly quoted; of the others all of it."""
 
 _A_DECADE = 20  # periods
 
@@ -42,7 +43,8 @@ class SpectrumTarget:
         target. "both": each, and then one for all where that mean is below still. "none": as they are, for comparison.
     pairs : str
         "apart": every horizontal component has a spectrum of its own, of which the mean is formed. "srss": a station's two
-        make one, the square root of the sum of their squares.
+        make one, the square root of the sum of their squares. "geomean", "rotd50", "rotd100": likewise their geometric mean,
+        and the median and the greatest over all directions; these take both components of a station.
     at_least : float, optional
         Share of the target; by default that of :data:`PAIRS`.
 
@@ -89,59 +91,86 @@ class SpectrumTarget:
         return np.geomspace(low, high, 1 + max(1, math.ceil(_A_DECADE * math.log10(high / low))))
 
     def factors_of(self, motions: Sequence[Motion], gravity: float) -> list[float]:
-        """Return what each motion is to be multiplied by; infinite for one without motion."""
-        if self.factors == "none" or not motions:
-            return [1.0] * len(motions)
-        spectra = self._spectra(motions, gravity)
-        moves = np.all(spectra > 0, axis=1)
+        """Return what each motion is to be multiplied by; infinite for one without motion.
+
+        Raises ``InputError`` if the rule takes pairs, and a station has none (:func:`unpaired`).
+        """
+        factors = np.array([1.0 if self.factors == "none" or motion.pga > 0 else math.inf for motion in motions])
+        moving = [i for i, motion in enumerate(motions) if motion.pga > 0]
+        if self.factors == "none" or not moving:
+            return factors.tolist()
+        stations = _stations(motions, moving)
+        members = self._members(stations)
+        rows = np.array(self._rows(motions, members, self.periods, gravity))
         target = self.spectrum.at(self.periods)
-        factors = np.where(moves, 1.0, math.inf)
         if self.factors != "suite":
-            for together in _stations(motions, moves):
-                rows = self._combined(spectra, [together])
-                factors[together] = math.exp(float(np.log(target / rows).mean()))
-        if self.factors != "each" and moves.any():
-            scaled = np.where(moves, factors, 1.0)[:, None] * spectra
-            mean = self._combined(scaled, _stations(motions, moves)).mean(axis=0)
-            common = float((self.share * target / mean).max())
-            factors[moves] *= common if self.factors == "suite" else max(1.0, common)
-        return [float(factor) for factor in factors]
+            row_of = {place: row for row, places in enumerate(members) for place in places}
+            for station in stations:
+                own = rows[sorted({row_of[place] for place in station})]
+                factors[station] = math.exp(float(np.log(target / own).mean()))
+        if self.factors != "each":
+            scaled = rows * np.array([factors[places[0]] for places in members])[:, None]
+            common = float((self.share * target / scaled.mean(axis=0)).max())
+            factors[moving] *= common if self.factors == "suite" else max(1.0, common)
+        return factors.tolist()
 
-    def mean(self, spectra: Array, motions: Sequence[Motion]) -> Array:
-        """Return the mean, shape (periods,), of the ``spectra`` of ``motions``, shape (motions, periods)."""
-        return np.asarray(self._combined(spectra, _stations(motions)).mean(axis=0))
+    def mean(self, motions: Sequence[Motion], periods: Array, gravity: float, spectra: Array | None = None) -> Array:
+        """Return the mean [g] of what counts of ``motions``, shape (periods,), at these ``periods`` [s]; NaN without any.
 
-    def _combined(self, spectra: Array, stations: Sequence[Sequence[int]]) -> Array:
-        """Return a row for each component of the stations, or for each station."""
+        ``spectra``, shape (motions, periods), are those of the components, if they are at hand.
+        """
+        stations = _stations(motions)
+        if self.pairs in DIRECTIONS:
+            stations = [station for station in stations if not unpaired([motions[i] for i in station])]
+        if not stations:
+            return np.full(len(periods), math.nan)
+        rows = self._rows(motions, self._members(stations), periods, gravity, spectra)
+        return np.asarray(np.mean(rows, axis=0))
+
+    def _members(self, stations: Sequence[Sequence[int]]) -> list[list[int]]:
+        """Return the places of the motions that make each spectrum: one component, or those of a station."""
+        return [[i] for station in stations for i in station] if self.pairs == "apart" else [list(s) for s in stations]
+
+    def _rows(
+        self, motions: Sequence[Motion], members: Sequence[Sequence[int]], periods: Array, gravity: float,
+        spectra: Array | None = None,
+    ) -> list[Array]:  # fmt: skip
+        """Return a spectrum [g] for each of ``members``, shape (periods,)."""
+
+        def of(i: int) -> Array:
+            if spectra is not None:
+                return spectra[i]
+            return spectral_acceleration(motions[i].horizontal, motions[i].dt, periods, self.spectrum.damping) / gravity
+
         if self.pairs == "apart":
-            return spectra[[i for station in stations for i in station]]
-        return np.array([np.sqrt((spectra[list(station)] ** 2).sum(axis=0)) for station in stations])
+            return [of(i) for (i,) in members]
+        if self.pairs == "srss":
+            return [np.sqrt((np.array([of(i) for i in places]) ** 2).sum(axis=0)) for places in members]
+        return [station_spectrum([motions[i] for i in places], periods, self.spectrum.damping, self.pairs) / gravity
+                for places in members]  # fmt: skip
+
+    def _is_alone(self, station: Sequence[Motion]) -> bool:
+        return bool(unpaired(station)) if self.pairs in DIRECTIONS else len(station) != 2
 
     def described(self, motions: Sequence[Motion], gravity: float) -> dict[str, Any]:
         """Return what run.json says of it: the target, and the mean of the spectra of ``motions`` as they are used."""
-        mean = self.mean(self._spectra(motions, gravity), motions) if motions else self.periods * math.nan
         return {
             "spectrum": str(self.spectrum),
             "damping": self.spectrum.damping,
             "range_s": list(self.range_s),
             "factors": self.factors,
             "pairs": self.pairs,
-            "alone": sum(len(station) != 2 for station in _stations(motions)),
+            "alone": sum(self._is_alone([motions[i] for i in station]) for station in _stations(motions)),
             "at_least": self.share,
             "period_s": _short(self.periods),
             "sa_g": _short(self.spectrum.at(self.periods)),
-            "mean_sa_g": _short(mean),
+            "mean_sa_g": _short(self.mean(motions, self.periods, gravity)),
         }
 
-    def _spectra(self, motions: Sequence[Motion], gravity: float) -> Array:
-        """Return spectral accelerations [g], shape (motions, periods)."""
-        periods, damping = self.periods, self.spectrum.damping
-        return np.array([spectral_acceleration(m.horizontal, m.dt, periods, damping) / gravity for m in motions])
 
-
-def _stations(motions: Sequence[Motion], among: npt.NDArray[np.bool_] | None = None) -> list[list[int]]:
+def _stations(motions: Sequence[Motion], among: Sequence[int] | None = None) -> list[list[int]]:
     """Return places of the motions, ``among`` some of them, that are components of one station in one earthquake."""
-    places = [i for i in range(len(motions)) if among is None or among[i]]
+    places = range(len(motions)) if among is None else among
     return list(grouped(places, lambda i: motions[i].of_station).values())
 
 

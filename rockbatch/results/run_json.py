@@ -17,7 +17,7 @@ from rockbatch.files import replacing
 from rockbatch.motions import MotionSet, measures
 from rockbatch.motions.motion import Motion
 from rockbatch.motions.spectrum import PERIODS, periods_over, spectral_acceleration
-from rockbatch.motions.spectrum_target import SpectrumTarget
+from rockbatch.motions.spectrum_target import PAIRS, SpectrumTarget
 from rockbatch.motions.velocity_pulses import pulse_of
 from rockbatch.pier import Damper, Stop, Tendon, described
 from rockbatch.pier.bases import BOUNDS, WORDS
@@ -46,7 +46,7 @@ _SPECTRA = {
     "target_sa_g": Maybe([_NUMBER]),
 }  # fmt: skip
 _TARGET = {
-    "spectrum": str, "range_s": [float], "factors": ("each", "suite", "both", "none"), "pairs": ("apart", "srss"),
+    "spectrum": str, "range_s": [float], "factors": ("each", "suite", "both", "none"), "pairs": tuple(PAIRS),
     "alone": int, "at_least": float, "period_s": [float], "sa_g": [float], "mean_sa_g": [float],
 }  # fmt: skip
 
@@ -145,9 +145,10 @@ def _spectra(motions: list[Motion], gravity: float, target: SpectrumTarget | Non
         return suite_spectra(motions, gravity)
     spectra = suite_spectra(motions, gravity, target.spectrum.damping, periods_over(*target.range_s))
     of_target = target.spectrum.at(np.array(spectra["period_s"], dtype=np.float64))
-    mean = target.mean(np.array(spectra["sa_g"], dtype=np.float64), motions)
+    periods = np.array(spectra["period_s"], dtype=np.float64)
+    mean = target.mean(motions, periods, gravity, np.array(spectra["sa_g"], dtype=np.float64))
     return spectra | {
-        "mean_sa_g": [float(f"{sa:.4g}") for sa in mean],
+        "mean_sa_g": [None if math.isnan(sa) else float(f"{sa:.4g}") for sa in mean],
         "target_sa_g": [None if math.isnan(sa) else float(f"{sa:.4g}") for sa in of_target],
     }
 

@@ -4,10 +4,12 @@ from dataclasses import replace
 
 from rockbatch.errors import InputError
 from rockbatch.motions import Motion, MotionSet, ReadOptions, read_motions
+from rockbatch.motions.pairs import DIRECTIONS
 from rockbatch.motions.scaling import at_target
 from rockbatch.motions.selection import selected
 from rockbatch.motions.sequences import with_sequences
 from rockbatch.study.load import Study
+from rockbatch.study.spec import MotionSpec
 
 
 def ground_motions(study: Study) -> MotionSet:
@@ -29,10 +31,11 @@ def ground_motions(study: Study) -> MotionSet:
             options=ReadOptions(spec.unit, spec.dt, spec.columns, spec.sensitivity, spec.role, spec.layout),
             fema=[(record.station, record.azimuth) for record in spec.fema_p695],
             offset=spec.offset,
-            azimuths=spec.azimuths,
+            azimuths=_azimuths(spec),
             confirmed=spec.confirm,
             confirmed_pga=spec.confirm_pga,
         )
+        records = _along_the_axis(records, spec)
     pulses = [shape.motion(gravity) for shape in spec.pulses]
     records, pulses = with_sequences(records, spec.sequences, pulses)
     records = selected(records, spec.select, gravity)
@@ -48,6 +51,27 @@ def ground_motions(study: Study) -> MotionSet:
         where = ", ".join(str(path) for path in spec.paths)
         raise InputError(f"{where}: no ground motion that can be used; `rockbatch motions PATH` shows why", *reasons)
     return replace(records, motions=[*records.motions, *pulses])
+
+
+def _azimuths(spec: MotionSpec) -> tuple[float, ...]:
+    """Return the directions that pairs are turned to: for a target of pairs along the pier's axis and across it."""
+    if spec.target is None or spec.target.pairs not in DIRECTIONS or len(spec.azimuths) != 1:
+        return spec.azimuths
+    return spec.azimuths[0], (spec.azimuths[0] + 90.0) % 360.0
+
+
+def _along_the_axis(motions: MotionSet, spec: MotionSpec) -> MotionSet:
+    """Return motions with those across the pier's axis within those along it, where a target takes both."""
+    azimuths = _azimuths(spec)
+    if azimuths == spec.azimuths:
+        return motions
+    across = {motion.of_station: motion for motion in motions if motion.name.endswith(f"_az{azimuths[1]:03g}")}
+    along = [motion for motion in motions if across.get(motion.of_station) is not motion]
+    for i, motion in enumerate(along):
+        other = across.get(motion.of_station)
+        if other is not None and other.npts == motion.npts:
+            along[i] = replace(motion, across=other.horizontal)
+    return replace(motions, motions=along)
 
 
 def _as_given(motions: MotionSet, vertical: bool | str) -> MotionSet:

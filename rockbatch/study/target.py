@@ -7,20 +7,28 @@ from typing import Any
 from rockbatch.errors import InputError
 from rockbatch.motions.design_spectra import (
     EUROCODE,
+    NZS_1170_5,
+    VERTICAL_RATIO,
+    VERTICAL_SHAPE,
+    AashtoSpectrum,
     AsceSpectrum,
     EurocodeSpectrum,
+    NzsSpectrum,
     Spectrum,
     TableSpectrum,
     read_spectrum,
 )
+from rockbatch.motions.pairs import DIRECTIONS
 from rockbatch.motions.scaling import Target
 from rockbatch.motions.spectrum_target import FACTORS, PAIRS, SpectrumTarget
-from rockbatch.toml.kinds import Choice, KindError, Number, Other, choice, closest, positive, shown, text
+from rockbatch.toml.kinds import Choice, KindError, Number, Other, choice, closest, not_negative, positive, shown, text
 from rockbatch.toml.reader import Table
 from rockbatch.toml.section import CONFIRM, Key, Section, Usual
 
-CODES = ("EN 1998-1", "ASCE 7")
-_ALSO_CALLED = {"ec8": CODES[0], "en1998": CODES[0], "eurocode": CODES[0], "asce": CODES[1]}
+CODES = ("EN 1998-1", "ASCE 7", "AASHTO", "NZS 1170.5", "EN 1998-1 vertical")
+_ALSO_CALLED = {
+    "ec8": CODES[0], "en1998": CODES[0], "eurocode": CODES[0], "asce": CODES[1], "aashto": CODES[2], "nzs": CODES[3],
+}  # fmt: skip
 
 
 def _entry(value: Any) -> Any:
@@ -48,6 +56,7 @@ _MEASURE = {
     "damping": Key(Number("a fraction of critical damping, within 0..1", low=0.0, high=1.0, below=True), "0.05",
         "Damping of the oscillators, as a fraction of critical damping."),
 }  # fmt: skip
+_PAIRS_OF_SA = {"pairs": Key(choice("apart", *DIRECTIONS), '"rotd100"', "")}
 _EUROCODE = {
     "type": Key(Choice((1, 2), "1 or 2, the type of spectrum"), "1", "Type of the spectrum of EN 1998-1."),
     "ground": Key(choice(*EUROCODE[1]), '"B"', "Ground type of EN 1998-1."),
@@ -58,29 +67,55 @@ _EUROCODE = {
     "tc_s": Key(positive, "0.5", "Period T_C of EN 1998-1; that of the ground type if it is not given."),
     "td_s": Key(positive, "2.0", "Period T_D of EN 1998-1; that of the ground type if it is not given."),
 }  # fmt: skip
-_ASCE = {
-    "sds_g": Key(positive, "1.0", "Design spectral acceleration S_DS of ASCE 7, at short periods.",
+_SHORT_AND_1_S = {
+    "sds_g": Key(positive, "1.0", "Design spectral acceleration S_DS of ASCE 7 or AASHTO, at short periods.",
         required=True, usual=Usual(5.0, "g: codes have 0.1 to 3 g")),
-    "sd1_g": Key(positive, "0.6", "Design spectral acceleration S_D1 of ASCE 7, at 1 s.",
+    "sd1_g": Key(positive, "0.6", "Design spectral acceleration S_D1 of ASCE 7 or AASHTO, at 1 s.",
         required=True, usual=Usual(5.0, "g: codes have 0.05 to 2 g")),
-    "tl_s": Key(positive, "8.0", "Long-period transition period T_L of ASCE 7.", required=True),
 }  # fmt: skip
+_ASCE = {
+    **_SHORT_AND_1_S,
+    "tl_s": Key(positive, "8.0", "Long-period transition period T_L of ASCE 7.", required=True),
+}
+_AASHTO = {
+    "as_g": Key(positive, "0.4", "Acceleration A_s of AASHTO at 0 s; this spectrum is not compared with its articles.",
+        required=True, usual=Usual(2.0, "g: codes have 0.05 to 1 g")),
+    **_SHORT_AND_1_S,
+}  # fmt: skip
+_NZS = {
+    "subsoil": Key(choice(*NZS_1170_5), '"C"',
+        "Site subsoil class of NZS 1170.5; this spectrum is not compared with the standard.", required=True),
+    "hazard_factor": Key(positive, "0.4", "Hazard factor Z of NZS 1170.5.", required=True,
+        usual=Usual(1.0, "(New Zealand has 0.13 to 0.6)")),
+    "return_period_factor": Key(positive, "1.3", "Return period factor R of NZS 1170.5, 1 at 500 years.",
+        usual=Usual(2.0, "(2,500 years have 1.8)"), default=1.0),
+    "fault_km": Key(not_negative, "8.0",
+        "Distance from the nearest major fault of NZS 1170.5, for its near-fault factor; beyond 20 km if it is not given."),
+}  # fmt: skip
+_VERTICAL = {name: _EUROCODE[name] for name in ("type", "ag_g")} | {
+    "avg_over_ag": Key(
+        positive, "0.9", "Ratio a_vg/a_g of EN 1998-1 for its vertical spectrum; that of the type if not given."
+    ),
+}
 _SPECTRUM = {
     "spectrum": Key(_ENTRY, '"EN 1998-1"',
-        'Target spectrum: "EN 1998-1", "ASCE 7", a file with periods [s] and spectral accelerations [g], or a list of such '
-        "pairs.", required=True, many=True, distinct=False),
+        'Target spectrum: "EN 1998-1", "ASCE 7", "AASHTO", "NZS 1170.5", "EN 1998-1 vertical", a file with periods [s] and '
+        "spectral accelerations [g], or a list of such pairs.", required=True, many=True, distinct=False),
     "period_range_s": Key(positive, "[0.4, 4.0]",
         "Periods between which the records are fitted to the spectrum.", required=True, pair=True),
     "factors": Key(choice(*FACTORS), '"both"',
         'What is scaled to the spectrum: "each" record, the whole "suite" by one factor, "both", one after the other, or '
         '"none", only to compare.'),
     "pairs": Key(choice(*PAIRS), '"srss"',
-        'Whether each component has its own spectrum, "apart", or each station one of both components, "srss", as in EN '
-        "1998-2."),
+        'Whether each component has its own spectrum, "apart", or each station one of both components: "srss" as in EN 1998-2, '
+        '"geomean", "rotd50" (median direction), or "rotd100" (maximum direction, as in ASCE 7). With `sa_g`, what of a pair '
+        "that is; not srss."),
     "at_least": Key(positive, "0.9", "Share of the target that the mean of the suite has to reach everywhere in the range."),
     "damping": _MEASURE["damping"],
 }  # fmt: skip
-_OF_ANY_SPECTRUM = {name: replace(key, required=False) for name, key in (_SPECTRUM | _EUROCODE | _ASCE).items()}
+_OWN = {"EN 1998-1": _EUROCODE, "ASCE 7": _ASCE, "AASHTO": _AASHTO, "NZS 1170.5": _NZS, "EN 1998-1 vertical": _VERTICAL}
+_OF_ANY_CODE = _VERTICAL | _NZS | _AASHTO | _ASCE | _EUROCODE
+_OF_ANY_SPECTRUM = {name: replace(key, required=False) for name, key in (_SPECTRUM | _OF_ANY_CODE).items()}
 TARGET = Section(("motions", "target"), (
     "What records are scaled to, by one factor on all components of each: one measure (`pga_g`, `pgv_m_s`, or `sa_g` with "
     "`period_s`), or a `spectrum` over `period_range_s`. The keys of a code's spectrum go with that code only."
@@ -89,7 +124,6 @@ TARGET = Section(("motions", "target"), (
 }, homes=(Target, SpectrumTarget))  # fmt: skip
 """Every key that a target may have, of one measure or of a spectrum."""
 
-_OWN = {"EN 1998-1": _EUROCODE, "ASCE 7": _ASCE}
 _UNFIT_FOR_SPECTRUM = dict.fromkeys(
     ("pga_g", "pgv_m_s", "sa_g", "period_s"), "is for a target of one measure, not for a spectrum; leave it out"
 )
@@ -103,8 +137,8 @@ def read_target(table: Table) -> Target | SpectrumTarget | None:
 def _read_measure(table: Table) -> Target | None:
     before = len(table.file.problems)
     read = table.read(
-        _MEASURE | CONFIRM,
-        unfit=dict.fromkeys((*_SPECTRUM, *_EUROCODE, *_ASCE), "is for a target with spectrum = …"),
+        _MEASURE | _PAIRS_OF_SA | CONFIRM,
+        unfit=dict.fromkeys((*_SPECTRUM, *_OF_ANY_CODE), "is for a target with spectrum = …"),
     )
     measures = [name for name in ("pga_g", "pgv_m_s", "sa_g") if name in table.data]
     if len(measures) != 1:
@@ -113,7 +147,7 @@ def _read_measure(table: Table) -> Target | None:
     elif measures == ["sa_g"] and "period_s" not in table.data:
         table.complain("period_s is missing beside sa_g; write for example period_s = 1.0", "sa_g")
     elif measures != ["sa_g"]:
-        for name in ("period_s", "damping"):
+        for name in ("period_s", "damping", "pairs"):
             if name in table.data:
                 table.complain(f"{name}: is for sa_g only; leave it out", name)
     return Target(**read) if table.file.is_sound_since(before) else None
@@ -127,9 +161,8 @@ def _read_spectrum(table: Table) -> SpectrumTarget | None:
     if not code and isinstance(written, str) and not _is_there(table.file.path.parent / written):
         own = _OF_ANY_SPECTRUM | _SPECTRUM  # the name is what is wrong
     unfit = {
-        name: f"is for spectrum = {shown(other)}; leave it out"
-        for other, keys in _OWN.items()
-        for name in keys.keys() - own.keys()
+        name: f"is for spectrum = {' or '.join(shown(other) for other, keys in _OWN.items() if name in keys)}; leave it out"
+        for name in _OF_ANY_CODE.keys() - own.keys()
     }
     read = table.read(_SPECTRUM | own | CONFIRM, unfit=unfit | _UNFIT_FOR_SPECTRUM)
     limits = read.get("period_range_s")
@@ -155,10 +188,12 @@ def _spectrum(table: Table, code: str, read: dict[str, Any]) -> Spectrum | None:
     damping = read.get("damping", 0.05)
     if code == "EN 1998-1":
         return _eurocode(table, read, damping)
-    if code == "ASCE 7":
+    if code == "EN 1998-1 vertical":
+        return _vertical(table, read, damping)
+    if code:
         if damping != 0.05:
-            table.complain("damping: the spectrum of ASCE 7 is for 5 %; leave it out", "damping")
-        return _asce(table, read)
+            table.complain(f"damping: the spectrum of {code} is for 5 %; leave it out", "damping")
+        return {"ASCE 7": _asce, "AASHTO": _aashto, "NZS 1170.5": _nzs}[code](table, read)
     entries = read["spectrum"]
     with table.noting("spectrum"):
         if len(entries) == 1 and isinstance(entries[0], str):
@@ -217,3 +252,28 @@ def _asce(table: Table, read: dict[str, Any]) -> AsceSpectrum | None:
         table.complain("tl_s must be above sd1_g/sds_g, where the plateau ends", "tl_s")
         return None
     return AsceSpectrum(**values)
+
+
+def _aashto(table: Table, read: dict[str, Any]) -> AashtoSpectrum | None:
+    if not _AASHTO.keys() <= read.keys():
+        return None
+    values = {name: read[name] for name in _AASHTO}
+    if not values["as_g"] <= values["sds_g"]:
+        table.complain("as_g must not be above sds_g, that of the plateau", "as_g")
+        return None
+    return AashtoSpectrum(**values)
+
+
+def _nzs(table: Table, read: dict[str, Any]) -> NzsSpectrum | None:
+    if not {"subsoil", "hazard_factor"} <= read.keys():
+        return None
+    return NzsSpectrum(**{name: read[name] for name in _NZS if name in read})
+
+
+def _vertical(table: Table, read: dict[str, Any], damping: float) -> EurocodeSpectrum | None:
+    if "type" not in table.data and "avg_over_ag" not in table.data:
+        table.complain("type is missing; write for example type = 1, or avg_over_ag = 0.9")
+    if "ag_g" not in read or not {"type", "avg_over_ag"} & read.keys():
+        return None
+    ratio = read.get("avg_over_ag") or VERTICAL_RATIO[read["type"]]
+    return EurocodeSpectrum(ratio * read["ag_g"], VERTICAL_SHAPE, damping, "EN 1998-1 vertical", amplification=3.0)

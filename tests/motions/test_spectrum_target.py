@@ -9,7 +9,15 @@ from studies import study_text, write_study
 
 from rockbatch.errors import InputError
 from rockbatch.motions import Motion, MotionSet
-from rockbatch.motions.design_spectra import EUROCODE, AsceSpectrum, EurocodeSpectrum, TableSpectrum, read_spectrum
+from rockbatch.motions.design_spectra import (
+    EUROCODE,
+    AashtoSpectrum,
+    AsceSpectrum,
+    EurocodeSpectrum,
+    NzsSpectrum,
+    TableSpectrum,
+    read_spectrum,
+)
 from rockbatch.motions.scaling import at_target
 from rockbatch.motions.spectrum import PERIODS, periods_over, spectral_acceleration
 from rockbatch.motions.spectrum_target import SpectrumTarget
@@ -221,7 +229,7 @@ def test_a_study_names_codes_tables_and_files(tmp_path):
         (EUROCODE_KEYS | {"sds_g": 1.0}, 'sds_g = 1.0: is for spectrum = "ASCE 7"'),
         (EUROCODE_KEYS | {"pga_g": 1.0}, "is for a target of one measure"),
         (EUROCODE_KEYS | {"factors": "every"}, 'factors = "every": expected one of'),
-        (EUROCODE_KEYS | {"pairs": "rotd100"}, 'pairs = "rotd100": expected one of'),
+        (EUROCODE_KEYS | {"pairs": "rotd10"}, 'pairs = "rotd10": expected one of'),
         ({"spectrum": "EN1998", "period_range_s": [0.4, 4]}, 'no such file.*did you mean "EN 1998-1"'),
         ({"spectrum": "asce 7", "period_range_s": [0.4, 4]}, "sds_g is missing"),
         ({"spectrum": [[1.0, 0.1], [0.5, 0.2]], "period_range_s": [0.6, 0.9]}, "periods must grow"),
@@ -231,5 +239,90 @@ def test_a_study_names_codes_tables_and_files(tmp_path):
     ],
 )
 def test_what_is_wrong_about_a_target_is_told(tmp_path, target, said):
+    with pytest.raises(InputError, match=said):
+        study_with(tmp_path, target)
+
+
+# AASHTO, NZS 1170.5, and the vertical spectrum of EN 1998-1
+
+TABLE_OF_NZS = {
+    "A": "1.00 2.35 2.35 2.35 - 1.60 1.40 1.24 1.12 1.03 0.95 0.70 0.53 0.42 0.35 0.26 0.20 0.16",
+    "C": "1.33 2.93 2.93 2.93 - 2.00 1.74 1.55 1.41 1.29 1.19 0.88 0.66 0.53 0.44 0.32 0.25 0.20",
+    "D": "1.12 3.00 3.00 3.00 3.00 3.00 2.84 2.53 2.29 2.09 1.93 1.43 1.07 0.86 0.71 0.52 0.40 0.32",
+    "E": "1.12 3.00 3.00 3.00 3.00 3.00 3.00 3.00 3.00 3.00 3.00 2.21 1.66 1.33 1.11 0.81 0.62 0.49",
+}
+"""Shapes for modal analyses and time histories as a table of a public program has them, to two decimals (Table 3.1 there); at
+0.4 s its rows for rock and class C have the values of the other column, for equivalent static analyses."""
+
+
+@pytest.mark.parametrize("subsoil", ["A", "B", "C", "D", "E"])
+def test_the_shapes_of_nzs_1170_5_are_those_of_its_table(subsoil):
+    periods = np.array([0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5])
+    cells = TABLE_OF_NZS["A" if subsoil == "B" else subsoil].split()
+    listed = np.array([math.nan if cell == "-" else float(cell) for cell in cells])
+    shape = NzsSpectrum(subsoil, 1.0).at(periods)
+    known = ~np.isnan(listed)
+    np.testing.assert_allclose(shape[known], listed[known], atol=0.0075)
+    assert np.isnan(NzsSpectrum(subsoil, 1.0).at(np.array([4.6]))).all()
+
+
+def test_hazard_return_period_and_near_faults_multiply_the_shape():
+    t = np.array([0.5, 1.5, 2.0, 3.0, 4.0, 4.5])
+    plain = NzsSpectrum("C", 1.0).at(t)
+    np.testing.assert_allclose(NzsSpectrum("C", 0.4, 1.3).at(t), 0.52 * plain)
+    near = NzsSpectrum("C", 0.4, 1.3, 2.0).at(t) / (0.52 * plain)
+    np.testing.assert_allclose(near, [1.0, 1.0, 1.12, 1.36, 1.60, 1.66])
+    np.testing.assert_allclose(
+        NzsSpectrum("C", 0.4, 1.3, 11.0).at(t) / (0.52 * plain) - 1.0, 0.5 * (near - 1.0), atol=1e-12
+    )
+    np.testing.assert_allclose(NzsSpectrum("C", 0.4, 1.3, 25.0).at(t), 0.52 * plain)
+    np.testing.assert_allclose(NzsSpectrum("C", 0.4, 0.75, 2.0).at(t), 0.3 * plain)
+
+
+def test_the_aashto_spectrum_meets_its_corner_values_and_falls_without_end():
+    spectrum = AashtoSpectrum(as_g=0.35, sds_g=1.0, sd1_g=0.6)
+    t = np.array([0.0, 0.06, 0.12, 0.6, 1.2, 6.0, 12.0])
+    assert spectrum.at(t) == pytest.approx([0.35, 0.675, 1.0, 1.0, 0.5, 0.1, 0.05])
+
+
+def test_the_vertical_eurocode_spectrum_meets_its_corner_values(tmp_path):
+    keys = {"spectrum": "EN 1998-1 vertical", "type": 1, "ag_g": 0.3, "period_range_s": [0.1, 2.0]}
+    spectrum = study_with(tmp_path, keys).spectrum
+    t = np.array([0.0, 0.05, 0.15, 1.0, 4.0])
+    top = 0.9 * 0.3 * 3.0
+    assert spectrum.at(t) == pytest.approx([0.27, top, top, top * 0.15, top * 0.15 / 16.0])
+    assert str(spectrum) == "EN 1998-1 vertical, a_vg = 0.27 g, 5 %"
+    other = study_with(tmp_path, {name: value for name, value in keys.items() if name != "type"} | {"avg_over_ag": 0.7})
+    assert float(other.spectrum.at(np.array([0.1]))[0]) == pytest.approx(0.63)
+    assert study_with(tmp_path, keys | {"type": 2}).spectrum.ag_g == pytest.approx(0.135)
+
+
+AASHTO_KEYS = {"spectrum": "AASHTO", "as_g": 0.4, "sds_g": 1.0, "sd1_g": 0.6, "period_range_s": [0.4, 4.0]}
+NZS_KEYS = {"spectrum": "NZS 1170.5", "subsoil": "C", "hazard_factor": 0.4, "period_range_s": [0.4, 4.0]}
+
+
+def test_a_study_names_the_further_codes(tmp_path):
+    assert study_with(tmp_path, AASHTO_KEYS).spectrum == AashtoSpectrum(0.4, 1.0, 0.6)
+    assert study_with(tmp_path, NZS_KEYS | {"spectrum": "nzs1170.5"}).spectrum == NzsSpectrum("C", 0.4)
+    near = study_with(tmp_path, NZS_KEYS | {"return_period_factor": 1.8, "fault_km": 6})
+    assert str(near.spectrum) == "NZS 1170.5 subsoil C, Z = 0.4, R = 1.8, D = 6 km, 5 %"
+
+
+@pytest.mark.parametrize(
+    ("target", "said"),
+    [
+        (AASHTO_KEYS | {"tl_s": 8.0}, 'tl_s = 8.0: is for spectrum = "ASCE 7"; leave it out'),
+        (AASHTO_KEYS | {"as_g": 1.1}, "as_g must not be above sds_g"),
+        (AASHTO_KEYS | {"damping": 0.02}, "damping: the spectrum of AASHTO is for 5 %"),
+        ({name: value for name, value in AASHTO_KEYS.items() if name != "as_g"}, "as_g is missing"),
+        (NZS_KEYS | {"subsoil": "F"}, 'subsoil = "F": expected one of "A", "B", "C", "D", "E"'),
+        (NZS_KEYS | {"hazard_factor": 4.0}, "hazard_factor = 4: more than 1 .New Zealand has 0.13 to 0.6.; "),
+        (NZS_KEYS | {"period_range_s": [0.4, 5.0]}, "defined from 0 s to 4.5 s"),
+        (NZS_KEYS | {"sds_g": 1.0}, 'sds_g = 1.0: is for spectrum = "ASCE 7" or "AASHTO"; leave it out'),
+        ({"spectrum": "EN 1998-1 vertical", "ag_g": 0.3, "period_range_s": [0.1, 2.0]}, "type is missing"),
+        ({"spectrum": "NZS", "period_range_s": [0.4, 4]}, 'no such file.*did you mean "NZS 1170.5"'),
+    ],
+)
+def test_mistakes_about_the_further_codes_are_answered(tmp_path, target, said):
     with pytest.raises(InputError, match=said):
         study_with(tmp_path, target)

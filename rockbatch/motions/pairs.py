@@ -1,0 +1,175 @@
+"""Spectra of pairs of horizontal components: RotD50, RotD100, the geometric mean and the root of the sum of squares.
+
+An oscillator is linear: with u₁(t) and u₂(t) its responses to two components square to each other, that to the component along
+φ is u₁ cos φ + u₂ sin φ. RotDnn is the nn-th percentile over φ of ω² max_t |u(t, φ)| (Boore 2010, BSSA 100(4), 1830–1835),
+which does not depend on how the instrument was turned: RotD50 is the median over the directions, RotD100 the greatest.
+"""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from rockbatch.arguments import checked
+from rockbatch.errors import InputError
+from rockbatch.lazy import pd
+from rockbatch.motions.motion import Motion
+from rockbatch.motions.spectrum import PERIODS, Samples, responses
+from rockbatch.units import GRAVITY
+
+Array = npt.NDArray[np.float64]
+
+ANGLES = np.radians(np.arange(180.0))
+"""Directions that count [rad]: a degree apart, of half a turn, which reverses a component."""
+
+SQUARE = 1.0
+"""What two components may lack of a right angle [degrees], as agencies round their azimuths."""
+
+_JITTER = 0.1  # of dt: starts that differ by less from a whole number of samples count as simultaneous
+
+
+PAIR_RULES = ("srss", "geomean", "rotd50", "rotd100")
+"""Measures of a pair: the root of the sum of squares, the geometric mean, and the median and greatest over all directions."""
+
+
+WORDS = {
+    "srss": "the root of the sum of squares", "geomean": "the geometric mean", "rotd50": "RotD50", "rotd100": "RotD100",
+}  # fmt: skip
+"""Them in words."""
+
+DIRECTIONS = ("geomean", "rotd50", "rotd100")
+"""Those of them that take both components."""
+
+
+def measured(first: Array, second: Array) -> dict[str, float]:
+    """Return the measures of a pair by the histories of both oscillators, shape (n,), in their unit."""
+    a, b = _most(first), _most(second)
+    directions = _greatest(first, second)
+    values = (math.hypot(a, b), math.sqrt(a * b), float(np.median(directions)), float(directions.max()))
+    return dict(zip(PAIR_RULES, values, strict=True))
+
+
+def _most(u: Array) -> float:
+    return float(np.abs(u).max())
+
+
+def _greatest(first: Array, second: Array) -> Array:
+    """Return the greatest |u₁ cos φ + u₂ sin φ| in each of the directions ANGLES, shape (180,).
+
+    Only points outside a circle count whose radius is exceeded in every direction: mostly a hundredth of all.
+    """
+    radius = np.hypot(first, second)
+    far = np.argpartition(radius, -min(len(radius), 64))[-64:]
+    directions = np.stack((np.cos(ANGLES), np.sin(ANGLES)))
+    bound = np.abs(np.column_stack((first[far], second[far])) @ directions).max(axis=0).min()
+    counts = radius >= bound * (1.0 - 1e-12)
+    return np.asarray(
+        np.abs(np.column_stack((first[counts], second[counts])) @ directions).max(axis=0), dtype=np.float64
+    )
+
+
+def aligned(first: Motion, second: Motion) -> tuple[Samples, Samples]:
+    """Return the horizontal accelerations of two motions over their common time, shape (n,) each.
+
+    Motions without absolute times start together. Raises ``InputError`` for azimuths that are not square to each other, other
+    sampling intervals, starts that no whole number of samples lies between, and no time in common.
+    """
+    names = f"{first.name} and {second.name}"
+    if first.azimuth is not None and second.azimuth is not None:
+        between = abs((second.azimuth - first.azimuth + 180.0) % 360.0 - 180.0)
+        if abs(between - 90.0) > SQUARE:
+            raise InputError(f"{names} are {between:g}° apart, not square to each other")
+    if abs(first.dt - second.dt) > 1e-6 * first.dt:
+        raise InputError(f"{names} are sampled at {first.dt:g} s and {second.dt:g} s")
+    late = 0.0 if first.start is None or second.start is None else (second.start - first.start) / first.dt
+    shift = round(late)
+    if abs(late - shift) > _JITTER:
+        raise InputError(f"{names} start {abs(late):.2f} samples apart, which is no whole number")
+    if any(abs(a.start - b.start) > first.dt for a, b in zip(first.shocks, second.shocks, strict=False)):
+        raise InputError(f"{names} are sequences whose shocks begin at different times")
+    begin, end = max(0, shift), min(first.npts, second.npts + shift)
+    if end - begin < 2:
+        raise InputError(f"{names} have no time in common")
+    return first.horizontal[begin:end], second.horizontal[begin - shift : end - shift]
+
+
+def square_pair(motions: Sequence[Motion]) -> tuple[Motion, Motion]:
+    """Return two motions of a station that are square to each other; of more, turned to many directions, the first such two.
+
+    Raises ``InputError`` for a station that has none, with the reason.
+    """
+    if len(motions) < 2:
+        raise InputError("its station has one horizontal component, and two are needed")
+    problems: tuple[str, ...] = ()
+    for i, first in enumerate(motions):
+        for second in motions[i + 1 :]:
+            try:
+                aligned(first, second)
+            except InputError as error:
+                problems = problems or error.problems
+            else:
+                return first, second
+    raise InputError(*problems)
+
+
+def unpaired(motions: Sequence[Motion]) -> str:
+    """Return why motions of a station have no two that are square to each other; empty if they have."""
+    if motions[0].across is not None:
+        return ""
+    try:
+        square_pair(motions)
+    except InputError as error:
+        return "; ".join(error.problems)
+    return ""
+
+
+def station_spectrum(motions: Sequence[Motion], periods: npt.ArrayLike, damping: float, rule: str) -> Array:
+    """Return the spectral accelerations [m/s²] of a station by one of PAIR_RULES, shape (periods,).
+
+    Raises ``InputError`` as :func:`square_pair`, and for periods and damping that are out of range.
+    """
+    lone = motions[0]
+    samples = aligned(*square_pair(motions)) if lone.across is None else (lone.horizontal, lone.across)
+    both = (responses(a, lone.dt, periods, damping) for a in samples)
+    return np.array([measured(u, v)[rule] for u, v in zip(*both, strict=True)])
+
+
+@checked
+def pair_spectrum(
+    first: Motion, second: Motion, periods: Samples | Sequence[float] | None = None, damping: float = 0.05
+) -> "pd.DataFrame":
+    """Return elastic response spectra of the horizontal components of two motions that are square to each other.
+
+    Parameters
+    ----------
+    first, second : Motion
+        Both components of a station. Their azimuths, where both are known, have to be square to each other within a degree.
+    periods : array_like, shape (n,), optional
+        Undamped periods [s]; 101 from 0.05 to 5 s by default.
+    damping : float
+        Fraction of critical damping.
+
+    Returns
+    -------
+    DataFrame, shape (n, 6)
+        Pseudo-spectral accelerations [9.81 m/s²] by ``period_s``: ``first_g``, ``second_g``, the components; ``srss_g``, the root
+        of the sum of their squares; ``geomean_g``, their geometric mean; ``rotd50_g`` and ``rotd100_g``, the median and the
+        greatest over all directions (Boore 2010).
+
+    Raises ``InputError`` for components that are no such pair, and periods and damping that cannot be.
+
+    Examples
+    --------
+    >>> motions = rb.read_motions("motions/near_fault")
+    >>> rb.pair_spectrum(motions["CHAN15"], motions["CHAN24"], [0.5, 1.0]).round(3)
+              first_g  second_g  srss_g  geomean_g  rotd50_g  rotd100_g
+    period_s
+    0.5         0.589     0.641   0.871      0.615     0.666      0.763
+    1.0         0.419     0.365   0.556      0.391     0.392      0.547
+    """
+    at = PERIODS if periods is None else np.asarray(periods, dtype=np.float64)
+    histories = [responses(a, first.dt, at, damping) for a in aligned(first, second)]
+    rows = [[_most(u), _most(v), *measured(u, v).values()] for u, v in zip(*histories, strict=True)]
+    names = [f"{name}_g" for name in ("first", "second", *PAIR_RULES)]
+    return pd.DataFrame(np.array(rows) / GRAVITY, columns=names, index=pd.Index(at, name="period_s"))
