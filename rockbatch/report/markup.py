@@ -48,6 +48,11 @@ def _attribute(key: str) -> str:
     return f" {key.rstrip('_').replace('_', '-')}"
 
 
+def interval(low: str, high: str) -> Markup:
+    """Return two written numbers with a dash between that no line ends at."""
+    return Markup(f"{low}\u00a0–\u2060\u00a0{high}")
+
+
 def number(value: object, form: str = ".4g") -> str:
     """Return a float in the given format, anything else as text; empty for None and NaN."""
     if value is None or (isinstance(value, float) and math.isnan(value)):

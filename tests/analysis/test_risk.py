@@ -225,6 +225,7 @@ def test_the_command_writes_rates_and_what_they_come_from(tmp_path, capsys):
     assert page.headings[:2] == ["Fragility", "Annual rates"]
     assert "of the rate comes from above the hazard's highest point" in page.text
     assert "made up" in page.text
+    assert "\\u" not in page.text  # nothing of our own is shown as an escape
 
 
 def test_without_a_hazard_there_are_no_rates_and_the_points_are_as_they_were(tmp_path):

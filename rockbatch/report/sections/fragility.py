@@ -11,7 +11,7 @@ from rockbatch.report.drawing.axes import Axes, Scale
 from rockbatch.report.drawing.svg import curve, key, line, marker, style_of, svg, text
 from rockbatch.report.finished_analysis import Contents, of_files
 from rockbatch.report.labels import quantity
-from rockbatch.report.markup import Markup, join, tag
+from rockbatch.report.markup import Markup, interval, join, tag
 from rockbatch.report.table import Head, listed, table
 from rockbatch.report.templates import render
 
@@ -191,6 +191,6 @@ def _interval(name: str) -> Callable[[Curve], object]:
         if entry.get(name) is None:
             return Markup("")
         low, high = ("∞" if bound in (None, math.inf) else f"{bound:.3g}" for bound in entry[name])
-        return Markup(f"{low}\u00a0–\u2060\u00a0{high}")
+        return interval(low, high)
 
     return written

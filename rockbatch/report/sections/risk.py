@@ -10,7 +10,7 @@ from rockbatch.grouping import grouped
 from rockbatch.report.drawing.axes import Axes, Scale
 from rockbatch.report.drawing.svg import curve, key, line, marker, style_of, svg, text
 from rockbatch.report.finished_analysis import Contents, of_files
-from rockbatch.report.markup import Markup, join, tag
+from rockbatch.report.markup import Markup, interval, join, tag
 from rockbatch.report.sections.fragility import label
 from rockbatch.report.table import Head, listed
 from rockbatch.report.templates import render
@@ -126,26 +126,22 @@ _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def _pair(low: str, high: str) -> Callable[[Curve], object]:
-    def written(entry: Curve) -> str:
+    def written(entry: Curve) -> Markup:
         bounds = [entry["risk"][name] for name in (low, high)]
         if bounds == [None, None]:
-            return ""
-        return _between(*("∞" if bound is None else _power(bound) for bound in bounds))
+            return Markup("")
+        return interval(*("∞" if bound is None else _power(bound) for bound in bounds))
 
     return written
-
-
-def _between(low: str, high: str) -> str:
-    return f"{low}\u00a0–\u2060\u00a0{high}"
 
 
 def _chance(name: str) -> Callable[[Curve], object]:
-    def written(entry: Curve) -> str:
+    def written(entry: Curve) -> Markup:
         value, low, high = (f"{100.0 * entry['risk'][which]:.2g}" for which in (name, f"{name}_low", f"{name}_high"))
-        return f"{value}\u00a0% ({_between(low, high)})"
+        return Markup(f"{value}\u00a0% ({interval(low, high)})")
 
     return written
 
 
-def _contributing(entry: Curve) -> str:
-    return _between(*(f"{entry['risk'][name]:.2g}" for name in ("contributing_from", "contributing_to")))
+def _contributing(entry: Curve) -> Markup:
+    return interval(*(f"{entry['risk'][name]:.2g}" for name in ("contributing_from", "contributing_to")))
