@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from rockbatch.motions import Motion, MotionSet, ReadOptions, pair_spectrum, pulse, read_motions, sequence
     from rockbatch.motions.hazard import HazardCurve
     from rockbatch.pier import Damper, ElasticBase, Part, Pier, RigidBase, Stop, Tendon, YieldingBase
+    from rockbatch.pier.statics import Statics, statics
     from rockbatch.report import report
     from rockbatch.results.checking import check
     from rockbatch.results.opened import open_results
@@ -34,6 +35,7 @@ _NAMES = {
     "motions": "Motion MotionSet ReadOptions pair_spectrum pulse read_motions sequence",
     "motions.hazard": "HazardCurve",
     "pier": "Damper ElasticBase Part Pier RigidBase Stop Tendon YieldingBase",
+    "pier.statics": "Statics statics",
     "report": "report",
     "results.checking": "check",
     "results.opened": "open_results",
@@ -55,6 +57,7 @@ __all__ = [
     "Response",
     "RigidBase",
     "Rule",
+    "Statics",
     "Stop",
     "Study",
     "Tendon",
@@ -73,6 +76,7 @@ __all__ = [
     "sequence",
     "simulate",
     "spectrum",
+    "statics",
 ]
 
 

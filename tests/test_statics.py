@@ -1,45 +1,91 @@
-"""What a pier bears before it moves, against the closed forms of THEORY.md and a balance of moments."""
+"""The statics sheet: closed forms of THEORY.md, balances of moments by other solvers, limits, and what it refuses."""
 
+import dataclasses
 import math
+import re
 
+import numpy as np
+import pandas as pd
 import pytest
+from scipy.integrate import quad, solve_ivp
 from scipy.optimize import brentq
+from studies import study_text, write_study
 
-from rockbatch.pier import Damper, ElasticBase, Pier, Tendon, static_deflection
-from rockbatch.pier.statics import lift_off_acceleration, lift_off_rotation, unstable_equilibrium
+import rockbatch as rb
+from rockbatch.cli import main
+from rockbatch.core.springs.laws import static_deflection as series
+from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase, least_beta, rocking_frequency, static_deflection
+from rockbatch.pier.equilibrium import SlowTurn, deflection_under, first_loading
+from rockbatch.pier.free_rocking import FreeRocking
+from rockbatch.pier.statics import FACTS
 
 PIER = Pier(alpha=0.2, p=1.0, mu=4.0)
-FRICTION, TENDON = Damper("friction", f=0.05), Tendon(psi=0.3, lam=0.2)
+FRICTION, TENDON = rb.Damper("friction", f=0.05), rb.Tendon(psi=0.3, lam=0.2)
+TALL = Pier.with_deck(width_m=8, height_m=30, mass_t=2000, deck_mass_t=1000)
+
+
+def on_rigid(*restraints):
+    return rb.statics(PIER, RigidBase(restraints=restraints))
 
 
 def test_a_bare_pier_on_rigid_ground_lifts_off_at_tan_alpha_and_balances_at_alpha():
-    assert lift_off_acceleration(PIER) == pytest.approx(math.tan(0.2))
-    assert lift_off_rotation(PIER, (), 0.0) == 0.0
-    assert unstable_equilibrium(PIER) == pytest.approx(0.2)
+    sheet = on_rigid()
+    assert sheet.lift_off_g == sheet.strength_g == pytest.approx(math.tan(0.2))
+    assert sheet.lift_off_rad == sheet.strength_rad == 0.0
+    assert sheet.unstable_rad == pytest.approx(0.2)
+    assert sheet.moment_over_weight_m == pytest.approx(PIER.half_width)
+    assert (
+        sheet.settlement_m is sheet.vertical_period_s is sheet.full_contact_period_s is sheet.stress_at_rest_MPa is None
+    )
+
+
+def test_the_curve_of_a_bare_pier_is_tan_of_what_is_left_to_alpha():
+    curve = on_rigid().curve
+    assert curve["acceleration_g"].to_numpy() == pytest.approx(np.tan(0.2 - curve["theta_rad"].to_numpy()), abs=1e-9)
+    assert curve["moment_over_weight_m"].to_numpy() == pytest.approx(
+        PIER.size * np.sin(0.2 - curve["theta_rad"].to_numpy()), abs=1e-8
+    )
 
 
 def test_friction_at_both_pivots_and_a_tendon_on_the_axis_raise_the_lift_off():
-    """THEORY.md: tan α (1 + 2f) g, and (g + P0/M) tan α."""
-    assert lift_off_acceleration(PIER, (FRICTION,)) == pytest.approx(math.tan(0.2) * 1.1)
-    assert lift_off_acceleration(PIER, (TENDON,)) == pytest.approx(math.tan(0.2) * 1.3)
-    assert lift_off_acceleration(PIER, (Damper("viscous", nu=1.0), Damper("hysteretic", f=0.1, yield_m=0.01))) == (
-        lift_off_acceleration(PIER)
-    )
+    """THEORY.md: tan α (1 + 2f) g, and (g + P0/M) tan α; dampers without a force at rest leave it."""
+    assert on_rigid(FRICTION).lift_off_g == pytest.approx(math.tan(0.2) * 1.1)
+    assert on_rigid(TENDON).lift_off_g == pytest.approx(math.tan(0.2) * 1.3)
+    others = on_rigid(rb.Damper("viscous", nu=1.0), rb.Damper("hysteretic", f=0.1, yield_m=0.01))
+    assert others.lift_off_g == pytest.approx(math.tan(0.2))
+    assert others.strength_g > 1.1 * math.tan(0.2)  # the hysteretic one has yielded by then
 
 
 def test_of_two_directions_the_weaker_counts():
     """A tendon at the left pivot has no arm about it, and the base's width about the right one."""
-    assert lift_off_acceleration(PIER, (Tendon(psi=0.3, at="left"),)) == pytest.approx(math.tan(0.2))
+    sheet = on_rigid(rb.Tendon(psi=0.3, at="left"))
+    assert sheet.lift_off_g == pytest.approx(math.tan(0.2))
+    assert sheet.towards == "left"
+    assert sheet.swings["period_s"].isna().all()  # its swings are uneven
+    assert on_rigid(TENDON).towards == "either"
 
 
-def test_springs_let_go_at_the_rotation_of_eq_10_when_the_other_carries_all():
-    base = ElasticBase(beta=30.0)
-    deflection = static_deflection(PIER, base)
-    lean = (1 + PIER.mu) / (PIER.mu * 30.0**2 * math.sin(0.2))
-    assert lift_off_rotation(PIER, (), deflection) == pytest.approx(lean)
-    # All the weight on one pivot: M a h = M g (b - h θ)
-    held = (PIER.half_width - PIER.height * lean) / PIER.height
-    assert lift_off_acceleration(PIER, (), deflection) == pytest.approx(held)
+@pytest.mark.parametrize("kinematics", ["first-order", "finite"])
+def test_springs_let_go_at_the_rotation_of_eq_10_when_the_other_carries_all(kinematics):
+    """M a h = M g (b − h θ), or M g (b cos θ − h sin θ) = M a h cos θ."""
+    base = ElasticBase(beta=30.0, kinematics=kinematics)
+    sheet = rb.statics(PIER, base)
+    ratio = static_deflection(PIER, base) / PIER.half_width
+    assert ratio == pytest.approx((1 + PIER.mu) / (PIER.mu * 30.0**2 * math.sin(0.2)))
+    lean = math.asin(ratio) if kinematics == "finite" else ratio
+    assert sheet.lift_off_rad == pytest.approx(lean)
+    assert sheet.lift_off_g == pytest.approx(math.tan(0.2) - (math.tan(lean) if kinematics == "finite" else lean))
+    assert sheet.unstable_rad == pytest.approx(0.2 if kinematics == "finite" else math.tan(0.2))
+    assert sheet.settlement_m == pytest.approx(static_deflection(PIER, base))
+
+
+def test_friction_and_prestress_on_springs_are_those_on_rigid_ground_less_the_lean():
+    for devices, share in (((FRICTION,), 1.1), ((rb.Tendon(psi=0.3),), 1.3), ((FRICTION, rb.Tendon(psi=0.3)), 1.4)):
+        sheet = rb.statics(PIER, ElasticBase(beta=30.0, restraints=devices))
+        lean = sheet.lift_off_rad
+        assert sheet.lift_off_g == pytest.approx(share * math.tan(0.2) - lean, rel=1e-7)
+        prestress = 1.3 if len(devices) == 2 or isinstance(devices[0], rb.Tendon) else 1.0
+        assert lean == pytest.approx(prestress * sheet.settlement_m / prestress / PIER.half_width, rel=1e-7)
 
 
 def test_a_tendon_moves_the_unstable_equilibrium_out_and_a_stiff_one_takes_it_away():
@@ -48,11 +94,239 @@ def test_a_tendon_moves_the_unstable_equilibrium_out_and_a_stiff_one_takes_it_aw
     def brace(theta):
         return math.sin(0.2 - theta) + 0.2 * math.sin(theta) + 0.3 * math.sin(0.2) * math.cos(theta / 2)
 
-    assert unstable_equilibrium(PIER, (TENDON,)) == pytest.approx(brentq(brace, 0.2, 1.5), abs=1e-9)
-    assert unstable_equilibrium(PIER, (Tendon(psi=0.3, lam=1.01),)) is None
+    assert on_rigid(TENDON).unstable_rad == pytest.approx(brentq(brace, 0.2, 1.5), abs=1e-9)
+    assert on_rigid(rb.Tendon(psi=0.3, lam=1.01)).unstable_rad is None
+    stiff = on_rigid(rb.Tendon(psi=0.3, lam=3.0))
+    assert stiff.unstable_rad is stiff.strength_g is stiff.moment_over_weight_m is None
+    assert "rises with the rotation" in repr(stiff)
 
 
 def test_a_tendon_that_yields_rights_the_pier_by_its_strength_alone():
-    weak = Tendon(psi=0.3, lam=5.0, strength=0.3000001)
+    weak = rb.Tendon(psi=0.3, lam=5.0, strength=0.3000001)
     level = brentq(lambda t: math.sin(0.2 - t) + 0.3 * math.sin(0.2) * math.cos(t / 2), 0.2, 1.5)
-    assert unstable_equilibrium(PIER, (weak,)) == pytest.approx(level, abs=1e-6)
+    assert on_rigid(weak).unstable_rad == pytest.approx(level, abs=1e-6)
+
+
+@pytest.mark.parametrize("eta", [1.2, 1.7, 2.5])
+def test_supports_that_cannot_bear_all_never_let_go_and_topple_at_the_summit(eta):
+    """THEORY.md, When a run is over: tan θ = min(1, η − 1) tan α; the strength is less by the lean."""
+    base = YieldingBase(beta=30.0, eta=eta, spring="epp", kinematics="finite")
+    sheet, share = rb.statics(PIER, base), min(1.0, eta - 1.0)
+    assert (sheet.lift_off_g is None) == (eta < 2.0)
+    assert math.tan(sheet.unstable_rad) == pytest.approx(share * math.tan(0.2))
+    lean = math.asin(share * sheet.settlement_m / PIER.half_width)
+    assert sheet.strength_g == pytest.approx(share * math.tan(0.2) - math.tan(lean), rel=1e-5)
+    assert "yields before" in repr(sheet) if eta < 2.0 else "yields" not in repr(sheet).splitlines()[2]
+
+
+@pytest.mark.parametrize("n", [1.0, 2.5, 5.0, 40.0])
+def test_the_first_loading_of_bouc_wen_is_that_of_the_core(n):
+    """Another algorithm, the series of rockbatch/core/springs/laws.py."""
+    for force in (0.1, 0.4, 0.8, 0.97):
+        deflection = deflection_under(force, n)
+        assert deflection == pytest.approx(series(force, n), rel=1e-8)
+        assert first_loading(np.array([deflection]), n) == pytest.approx([force], rel=1e-9)
+
+
+@pytest.mark.parametrize("eta", [1.5, 2.5])
+def test_bouc_wen_supports_are_balanced_as_another_solver_balances_them(eta):
+    """Vertical balance and moments of three rotations, with SciPy's quadrature and root finding on the law."""
+    base = YieldingBase(beta=30.0, eta=eta, n=5.0)
+    turn, settled = SlowTurn(PIER, base), rb.statics(PIER, base).settlement_m
+    delta_y, b, h = eta * static_deflection(PIER, base), PIER.half_width, PIER.height
+
+    def deflection(z):
+        return delta_y * quad(lambda s: 1.0 / (1.0 - s**5), 0.0, z, epsabs=1e-14)[0]
+
+    assert settled == pytest.approx(deflection(1.0 / eta), rel=1e-9)
+    for theta in (0.002, 0.005) if eta < 2.0 else (0.002, 0.005, 0.05):
+
+        def excess(z, theta=theta):
+            risen = settled - deflection(z) + 2.0 * b * theta
+            return z + max(1.0 / eta - risen / delta_y, 0.0) - 2.0 / eta  # over F_y
+
+        z = brentq(excess, 1.0 / eta - 1e-9, 1.0 - 1e-9)
+        toe = 0.5 * eta * z
+        here = turn.at(np.array([theta]))
+        assert here.toe == pytest.approx([toe], rel=1e-6)
+        assert here.moment == pytest.approx([toe * (b - h * theta) - (1.0 - toe) * (b + h * theta)], rel=1e-6)
+
+
+def test_a_hysteretic_damper_between_middle_and_toe_unloads_at_lift_off():
+    """It is pushed in before lift-off and drawn out after it: F follows Bouc–Wen's law along that way (DOP853)."""
+    place, f, u = 1.0, 0.1, 0.002
+    base = ElasticBase(beta=30.0, restraints=(rb.Damper("hysteretic", f=f, yield_m=u, at=place),))
+    turn = SlowTurn(PIER, base)
+    thetas = np.unique([*np.linspace(1e-4, 0.05, 40), turn.lift_off])
+    here = turn.at(thetas)
+    rises = turn.settled - here.depth + (PIER.half_width - place) * thetas
+
+    def law(e, z, way):
+        return [way / u * (1.0 - (abs(z[0]) ** 5 if z[0] * way > 0.0 else 0.0))]
+
+    z, e, forces = 0.0, 0.0, []
+    for goal in rises:
+        way = math.copysign(1.0, goal - e)
+        if goal != e:
+            z = solve_ivp(lambda s, y, way=way: law(s, y, way), (0.0, abs(goal - e)), [z], rtol=1e-10, atol=1e-12).y[
+                0, -1
+            ]
+        e = goal
+        forces.append(f * z)
+    assert rises.min() < -0.5 * u < 0.0 < rises[-1]
+    assert here.dampers == pytest.approx(np.array(forces) * (PIER.half_width - place), abs=2e-3 * f)
+
+
+def test_stiff_springs_are_rigid_ground():
+    for devices in ((), (FRICTION, TENDON), (rb.Damper("hysteretic", f=0.1, yield_m=0.01),)):
+        rigid, stiff = (
+            rb.statics(PIER, base)
+            for base in (RigidBase(restraints=devices), ElasticBase(beta=3e4, kinematics="finite", restraints=devices))
+        )
+        for name in ("lift_off_g", "strength_g", "moment_over_weight_m", "unstable_rad"):
+            assert getattr(stiff, name) == pytest.approx(getattr(rigid, name), rel=1e-5), name
+        assert stiff.swings["period_s"].to_numpy() == pytest.approx(rigid.swings["period_s"].to_numpy(), rel=1e-4)
+
+
+def test_small_amplitudes_on_springs_have_the_linear_period_and_slender_blocks_housners():
+    base = ElasticBase(beta=20.0, kinematics="finite")
+    linear = 2.0 * math.pi / rocking_frequency(PIER, base)
+    assert rb.statics(PIER, base).full_contact_period_s == pytest.approx(linear)
+    assert FreeRocking(PIER, base).periods(np.array([1e-4])) == pytest.approx([linear], rel=1e-6)
+    slender = Pier(alpha=1e-3, p=2.0)
+    swings = rb.statics(slender, RigidBase()).swings
+    share = swings["amplitude_over_alpha"].to_numpy()
+    assert swings["period_s"].to_numpy() == pytest.approx(2.0 * np.arccosh(1.0 / (1.0 - share)), rel=1e-6)
+
+
+def test_damping_by_impacts_is_the_decrement_of_housners_decay():
+    """1 − √(1 − r² (1 − (1 − φ)²)) after two impacts (Housner 1963, slender), and −ln(r)/π for small amplitudes."""
+    slender, e = Pier(alpha=1e-3, p=2.0), 0.9
+    swings = rb.statics(slender, RigidBase(restitution=e)).swings
+    share = swings["amplitude_over_alpha"].to_numpy()
+    after = 1.0 - np.sqrt(1.0 - e**4 * (1.0 - (1.0 - share) ** 2))
+    assert swings["impact_damping"].to_numpy() == pytest.approx(np.log(share / after) / (2.0 * math.pi), rel=1e-5)
+    small = FreeRocking(slender, RigidBase()).impact_damping(np.array([1e-6]), e)
+    assert small == pytest.approx([-math.log(e**2) / math.pi], rel=1e-3)
+    assert np.isinf(rb.statics(PIER, RigidBase(restitution=0.0)).swings["impact_damping"]).all()
+    assert rb.statics(PIER, ElasticBase(beta=30.0)).swings["impact_damping"].isna().all()
+
+
+def test_a_frame_lifts_off_as_its_columns_do_and_swings_with_its_own_p():
+    frame = Pier.frame(Pier.rectangle(1.0, 7.0, mass_t=20.0), 4, 200.0)
+    sheet = rb.statics(frame, RigidBase())
+    assert sheet.strength_g == pytest.approx(math.tan(frame.alpha))
+    assert sheet.swings["period_s"][2] == pytest.approx(4.0 / frame.p * math.acosh(1.0 / 0.9), rel=2e-3)
+
+
+def test_stresses_are_the_weight_over_the_areas_and_need_a_mass():
+    base = ElasticBase.from_stiffness(TALL, 2e6, area_m2=6.0, restraints=(rb.Tendon.of(TALL, prestress_kN=3000.0),))
+    sheet = rb.statics(TALL, base)
+    total = 3000.0 * 9.81 + 3000.0
+    assert sheet.weight_kN == pytest.approx(3000.0 * 9.81)
+    assert sheet.stress_at_rest_MPa == pytest.approx(total / 2.0 / 6.0 / 1000.0)
+    assert sheet.stress_on_one_MPa == pytest.approx(total / 6.0 / 1000.0, rel=1e-6)
+    assert sheet.vertical_period_s == pytest.approx(2.0 * math.pi * math.sqrt(3000.0 / 4e6))
+    assert rb.statics(PIER, RigidBase(area_m2=6.0)).stress_at_rest_MPa is None
+
+
+def test_the_flexural_period_is_held_against_rocking_and_nothing_else_changes():
+    """T_f/T above a third: the bending of a series of springs has more than a ninth of the drift."""
+    base = RigidBase()
+    period = rb.statics(TALL, base).row["period_s"]
+    for share, words in ((0.2, "4%"), (0.5, "not rigid")):
+        sheet = rb.statics(dataclasses.replace(TALL, flexural_period_s=share * period), base)
+        assert sheet.flexural_over_rocking == pytest.approx(share)
+        assert words in repr(sheet)
+    assert "fixed at its base" not in repr(rb.statics(TALL, base))
+
+
+def test_rows_have_every_fact_and_the_tables_their_columns():
+    sheet = rb.statics(TALL, ElasticBase.from_stiffness(TALL, 2e6))
+    assert list(sheet.row) == [fact.name for fact in FACTS]
+    assert sheet.row["moment_kN_m"] == pytest.approx(sheet.moment_over_weight_m * sheet.weight_kN)
+    assert sheet.curve["theta_rad"].is_monotonic_increasing
+    assert sheet.curve["theta_rad"][0] == 0.0
+    assert sheet.curve["toe_over_weight"][0] == pytest.approx(0.5)
+    assert "moment_kN_m" in sheet.curve
+    assert "moment_kN_m" not in on_rigid().curve
+    assert sheet.plot(88.0).axes[0].get_ylabel() == "moment [MN m]"
+    assert "<table>" in sheet._repr_html_()
+
+
+def test_impossible_piers_are_refused_with_the_limit():
+    soft = ElasticBase(beta=0.9 * least_beta(PIER, ElasticBase(beta=30.0)))
+    with pytest.raises(rb.InputError, match="beta must be above"):
+        rb.statics(PIER, soft)
+    with pytest.raises(rb.InputError, match="foundation"):
+        rb.statics(PIER, "rigid")
+    with pytest.raises(rb.InputError, match=r"yield_m .* write confirm"):
+        rb.statics(PIER, RigidBase(restraints=(rb.Damper("hysteretic", f=0.1, yield_m=1e-6),)))
+    with pytest.raises(rb.InputError, match="flexural_period_s = -1"):
+        dataclasses.replace(PIER, flexural_period_s=-1.0)
+    with pytest.raises(rb.InputError, match=r"area_m2 = 0: .*m²"):
+        rb.statics(PIER, RigidBase(area_m2=0.0))
+
+
+BRIDGE = {"width_m": 8.0, "height_m": 30.0, "mass_t": 2000.0, "deck_mass_t": 1000.0}
+PADS = {"name": "pads", "base": "elastic", "stiffness_kN_m": [1e6, 2e6], "zeta": 0.05, "area_m2": 6.0}
+
+
+def test_the_command_prints_and_writes_what_python_has_without_records(tmp_path, capsys):
+    motions = {"path": "nowhere"}
+    study = write_study(
+        tmp_path, study_text(pier=BRIDGE, motions=motions, pulses=(), cases=({"name": "rock", "base": "rigid"}, PADS))
+    )
+    sheet, curves = tmp_path / "sheet.csv", tmp_path / "curves.csv"
+    assert main(["statics", str(study), "--csv", str(sheet), "--curves", str(curves)]) == 0
+    printed = capsys.readouterr().out
+    assert "static strength [g]" in printed
+    assert "pads stiffness_kN_m=2e+06" in printed
+    table = pd.read_csv(sheet)
+    assert list(table)[:2] == ["case", "stiffness_kN_m"]
+    for row, base in zip(
+        table.to_dict("records"),
+        (RigidBase(), *(ElasticBase.from_stiffness(TALL, k, zeta=0.05, area_m2=6.0) for k in PADS["stiffness_kN_m"])),
+        strict=True,
+    ):
+        mine = rb.statics(TALL, base).row
+        assert [row[name] for name in mine] == pytest.approx(
+            [np.nan if v is None else v for v in mine.values()], rel=1e-9, nan_ok=True
+        )
+    points = pd.read_csv(curves)
+    last = points[points["stiffness_kN_m"] == 2e6]
+    assert last["moment_kN_m"].max() == pytest.approx(table["moment_kN_m"].iloc[-1])
+
+
+def test_a_pier_that_is_not_rigid_is_warned_of_by_the_sheet_and_by_a_run(tmp_path, capsys):
+    pier = BRIDGE | {"flexural_period_s": [0.3, 2.0]}
+    study = write_study(tmp_path, study_text(pier=pier, cases=({"name": "rock", "base": "rigid"},)))
+    for command in (["statics", str(study)], ["run", str(study), "--out", str(tmp_path / "out")]):
+        assert main(command) == 0
+        warned = [line for line in capsys.readouterr().err.splitlines() if "not rigid" in line]
+        assert len(warned) == 1
+        assert warned[0].startswith("rock flexural_period_s=2: fixed at its base the pier has 0.66 of")
+
+
+@pytest.mark.parametrize(
+    ("pier", "case", "words"),
+    [
+        (BRIDGE | {"flexural_period_s": 600.0}, {}, "bridge piers have 0.1 to 3; check the unit; if it is right, write confirm"),
+        (BRIDGE | {"flexural_period_s": 0.0}, {}, "flexural_period_s = 0"),
+        (BRIDGE, {"area_m2": 60000.0}, "area_m2 = 60000"),
+        (BRIDGE, {"area_m2": -6.0}, "area_m2 = -6"),
+        ({"alpha": 0.2, "p": 1.0}, {"area_m2": 6.0}, "stresses are of a pier whose mass is known; write mass_t in [pier]"),
+    ],
+)  # fmt: skip
+def test_wrong_areas_and_periods_are_refused_with_line_and_remedy(tmp_path, capsys, pier, case, words):
+    study = write_study(tmp_path, study_text(pier=pier, cases=({"base": "rigid", **case},)))
+    assert main(["statics", str(study)]) == 2
+    message = capsys.readouterr().err
+    assert words in message
+    assert re.search(r"study\.toml:\d+", message)
+
+
+def test_a_sheet_that_cannot_be_written_is_an_input_error(tmp_path, capsys):
+    study = write_study(tmp_path, study_text())
+    assert main(["statics", str(study), "--csv", str(tmp_path / "no" / "sheet.csv")]) == 2
+    assert "cannot be written" in capsys.readouterr().err

@@ -185,6 +185,15 @@ COMMANDS = {
         "  pier.toml      the study\n  checks.toml    design checks\n  records        a folder of records, if the study has one",
     ),
     "examples": Command("list the studies that come with rockbatch", "rockbatch examples", "examples.main", {}),
+    "statics": Command(
+        "show what each pier bears and how it swings, without a run", "rockbatch statics pier.toml --csv statics.csv",
+        "statics.main",
+        {
+            "file": _value(Path, "STUDY.toml", "the study file; its records are not read, and need not be there"),
+            "--csv": _value(Path, "FILE", "write the sheet to FILE too, a row for each case"),
+            "--curves": _value(Path, "FILE", "write the moment-rotation curves to FILE, a row for each rotation"),
+        },
+    ),
     "run": Command(
         "run every record on every foundation; table and report", "rockbatch run pier.toml --out reports/pier", "run.main",
         {**_STUDY, **_ENGINE, **_RUN, **_CSV}, _FILES,

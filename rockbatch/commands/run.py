@@ -14,7 +14,7 @@ from rockbatch.commands import check
 from rockbatch.commands.messages import Terminal
 from rockbatch.commands.options import engine, folder
 from rockbatch.commands.streams import say, show
-from rockbatch.commands.summary import summary, warnings
+from rockbatch.commands.summary import flexible, summary, warnings
 from rockbatch.results.beside_peaks import write_semicolons
 from rockbatch.study import Study
 
@@ -69,6 +69,8 @@ def _finished(finished: FinishedBatch, study: Study, separator: str | None) -> i
     names = {motion.name: motion.short for motion in sorted(finished.motions.motions, key=lambda motion: motion.pga)}
     show(summary(peaks, study.varied, names))
     for warning in warnings(peaks.assign(record=peaks["record"].map(names)), study.varied):
+        say(warning)
+    for warning in flexible(study):
         say(warning)
     if study.checks:
         code = max(code, check.tell(finished.verdicts, saved.directory / CHECKS, saved))

@@ -9,7 +9,7 @@ from rockbatch.batch.listening import count
 from rockbatch.commands.streams import in_width
 from rockbatch.lazy import pd
 from rockbatch.simulation.outcome import LEANS, LINEARISED, WOULD_SLIDE
-from rockbatch.study import PIER_KEYS
+from rockbatch.study import PIER_KEYS, Study
 
 MOST_RUNS = 1000
 """Runs of a study beyond which its worst runs are printed instead of all."""
@@ -72,6 +72,22 @@ def warnings(table: "pd.DataFrame", varied: Sequence[str]) -> list[str]:
         ),
     ]  # fmt: skip
     return [sentence for sentence in sentences if sentence]
+
+
+def flexible(study: Study) -> list[str]:
+    """Return a warning about each case whose pier is not rigid by its flexural period; the period is compared only if given."""
+    given = [case for case in study.cases if case.pier.flexural_period_s is not None]
+    if not given:
+        return []
+    from rockbatch.pier.statics import MOST_FLEXURE, flexure, sheet_of
+
+    sheets = [(case, sheet_of(case.pier, case.base)) for case in given]
+    return [
+        f"{case.name} {named(case.columns, case.columns.values())}".rstrip()
+        + f": {flexure(sheet)}".replace("α", "alpha")
+        for case, sheet in sheets
+        if (sheet.flexural_over_rocking or 0.0) > MOST_FLEXURE
+    ]
 
 
 def _other_law(table: "pd.DataFrame", varied: Sequence[str]) -> str:

@@ -65,6 +65,7 @@ BOUNDS = {
     "restitution": Bounds(0.0, 1.0, why="must be within 0..1 (leave it out for Housner's value)"),
     "friction": Bounds(LEAST, MOST, ", the coefficient of the interface"),
     "flight_limit_mm": Bounds(LEAST, MOST, " [mm], a height of flight"),
+    "area_m2": Bounds(LEAST, MOST, " [m²], the area of one support"),
     "zeta": Bounds(0.0, 1.0, why="damping of the supports, as a share of critical, must be within 0..1"),
     "epsilon": Bounds(0.0, 1.0, why="the landing pivot's restitution must be within 0..1"),
     "eta": Bounds(LEAST_ETA, MOST, why=_strength),
@@ -125,7 +126,7 @@ class RigidBase(_Traits):
     e = 1 − 2μ/(1+μ) sin²α, which conserves the angular momentum about the new pivot, or 0 where that is negative.
     ``restraints`` are dampers and tendons between the pier and the ground.
     ``friction``, if known, is the coefficient of the interface: a run reports where its forces need more (THEORY.md, Forces).
-    ``flight`` and ``flight_limit_mm`` are as on springs (:class:`ElasticBase`).
+    ``flight``, ``flight_limit_mm`` and ``area_m2`` are as on springs (:class:`ElasticBase`).
 
     Examples
     --------
@@ -138,6 +139,7 @@ class RigidBase(_Traits):
     friction: float | None = field(default=None, kw_only=True)
     flight: Flight = field(default="guided", kw_only=True)
     flight_limit_mm: float = field(default=FLIGHT_LIMIT_MM, kw_only=True)
+    area_m2: float | None = field(default=None, kw_only=True)
 
     name = "rigid"
     kinematics: ClassVar[Kinematics] = "finite"
@@ -149,7 +151,7 @@ class RigidBase(_Traits):
         of_frame = None if pier.deck_over_columns is None else pier.restitution  # None stands for Housner's
         own: dict[str, Any] = {"restitution": of_frame if self.restitution is None else self.restitution}
         own |= {"flight": self.flight, "flight_limit_mm": self.flight_limit_mm}
-        return own | _interface(self.friction) | described_restraints(self.restraints)
+        return own | _interface(self) | described_restraints(self.restraints)
 
 
 @checked
@@ -176,6 +178,8 @@ class ElasticBase(_Traits):
         Coefficient of the interface, if known: a run reports where its forces need more, and goes on (THEORY.md, Forces).
     restraints : tuple of Damper and Tendon
         Devices between the pier and the ground beside its springs (THEORY.md, Dampers and tendons).
+    area_m2 : float, optional
+        Area of one support [m²], for bearing stresses (:func:`rockbatch.statics`).
 
     Examples
     --------
@@ -191,6 +195,7 @@ class ElasticBase(_Traits):
     friction: float | None = field(default=None, kw_only=True)
     restraints: tuple[Restraint, ...] = field(default=(), kw_only=True)
     flight_limit_mm: float = field(default=FLIGHT_LIMIT_MM, kw_only=True)
+    area_m2: float | None = field(default=None, kw_only=True)
 
     name = "elastic"
     on_springs = True
@@ -202,7 +207,7 @@ class ElasticBase(_Traits):
         own |= {"flight": self.flight, "flight_limit_mm": self.flight_limit_mm}
         own |= {"omega_v": vertical_frequency(pier, self), "delta_s_m": static_deflection(pier, self)}
         own |= in_kilonewtons(pier, self)
-        return own | _interface(self.friction) | described_restraints(self.restraints)
+        return own | _interface(self) | described_restraints(self.restraints)
 
     @classmethod
     @checked
@@ -277,8 +282,10 @@ class YieldingBase(ElasticBase):
 Base = RigidBase | ElasticBase | YieldingBase
 
 
-def _interface(friction: float | None) -> dict[str, float]:
-    return {} if friction is None else {"friction": friction}
+def _interface(base: Base) -> dict[str, float]:
+    """Return friction and area of the interface by the keys of run.json, if they are known."""
+    known = {"friction": base.friction, "area_m2": base.area_m2}
+    return {name: value for name, value in known.items() if value is not None}
 
 
 def beta_of(pier: Pier, stiffness_kN_m: float) -> float:

@@ -32,6 +32,7 @@ BOUNDS = {
     "gravity": Bounds(1e-3, 1e3, " [m/s²]"),
     **dict.fromkeys(("size_m", "width_m", "height_m", "top_m", "deck_height_m"), _LENGTH),
     **dict.fromkeys(("mass_t", "deck_mass_t"), _MASS),
+    "flexural_period_s": Bounds(LEAST, MOST, " [s]"),
     "deck_over_columns": POSITIVE,
     "initial_rotation_rad": Bounds(-math.pi / 2, math.pi / 2, why=_rotation),
 }
@@ -122,6 +123,9 @@ class Pier:
     initial_rotation_rad : float, default 0
         θ0 [rad], positive to the right, below α: the pier is pulled there slowly, held, and let go at the first sample of the
         motion, at rest (THEORY.md, Release from a rotation).
+    flexural_period_s : float, optional
+        First period of the pier, with its deck, fixed at its base [s]. The pier is rigid whatever it is: it is held against the
+        period of rocking (:func:`rockbatch.statics`). ``dataclasses.replace(pier, flexural_period_s=0.6)`` adds it.
 
     Raises ``InputError`` with every impossible value.
 
@@ -144,6 +148,7 @@ class Pier:
     deck_over_columns: float | None = None
     deck_height_m: float | None = None
     initial_rotation_rad: float = field(default=0.0, kw_only=True)
+    flexural_period_s: float | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
         wrong = out_of_bounds(**{each.name: getattr(self, each.name) for each in fields(self)})
@@ -382,8 +387,8 @@ class Pier:
 
 
 def described(pier: Pier) -> dict[str, float]:
-    """Return a pier by the names and units of run.json; mass, top, γ and deck only if it has them, θ0 unless it is 0."""
-    optional = ("mass_t", "top_m", "deck_over_columns", "deck_height_m")
+    """Return a pier by the names and units of run.json; mass, top, γ, deck, period only if it has them, θ0 unless it is 0."""
+    optional = ("mass_t", "top_m", "deck_over_columns", "deck_height_m", "flexural_period_s")
     given = {name: getattr(pier, name) for name in optional}
     return {
         "alpha": pier.alpha,

@@ -299,14 +299,6 @@ def prestress_over_weight(pier: Pier, restraints: tuple[Restraint, ...]) -> floa
     return sum(tendon.psi * len(offsets(pier, tendon)) for tendon in restraints if isinstance(tendon, Tendon))
 
 
-def static_force(pier: Pier, device: Tendon | Stop, elongation: float) -> float:
-    """Return the force over the weight at rest at an ``elongation`` [m], until then never exceeded."""
-    stiffness = device.lam * pier.size / pier.half_width**2
-    if isinstance(device, Stop):
-        return max(stiffness * (elongation - device.gap_m), 0.0)
-    return min(max(device.psi + stiffness * elongation, 0.0), device.strength)
-
-
 def wrong_on_springs(pier: Pier, restraints: tuple[Restraint, ...]) -> list[str]:
     """Return what is impossible about dampers and tendons of a pier on springs: one sentence each; empty if nothing."""
     if symmetric(pier, tuple(device for device in restraints if isinstance(device, Tendon))):

@@ -1,79 +1,357 @@
-"""Statics of a pier before it moves: the ground acceleration and rotation at which it lifts off, and where it loses its balance.
-
-All quasi-static, THEORY.md (10), (14), (15) and (17). Viscous and hysteretic dampers bear nothing at rest and are left out.
-"""
+"""The statics sheet of a pier on a base: what it bears and how it swings, before any earthquake (THEORY.md, Statics)."""
 
 import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
+
+from rockbatch.arguments import checked
+from rockbatch.errors import InputError
+from rockbatch.lazy import pd
+from rockbatch.pier.bases import Base, ElasticBase, problems, rocking_frequency, vertical_frequency
 from rockbatch.pier.block import Pier
-from rockbatch.pier.restraints import Damper, Restraint, Stop, Tendon, offsets, prestress_over_weight, static_force
+from rockbatch.pier.equilibrium import ONSET, Array, Equilibria, SlowTurn, without_dampers
+from rockbatch.pier.free_rocking import FreeRocking, Swings
+from rockbatch.pier.restraints import symmetric, unlikely_devices
+from rockbatch.showing import Shown
 
-POINTS = 900
-"""Rotations up to a right angle among which a loss of balance is sought."""
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+AMPLITUDES = (0.02, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9)
+"""Amplitudes of free rocking, over α."""
+
+COMPARED = 0.1
+"""Amplitude over α at which the flexural period is compared with that of rocking."""
+
+MOST_FLEXURE = 1.0 / 3.0
+"""Flexural over rocking period above which a pier is not rigid: its bending has then a ninth of the displacement, or more."""
 
 
-def lift_off_rotation(pier: Pier, restraints: tuple[Restraint, ...], static_deflection: float) -> float:
-    """Return the rotation at which elastic supports let go of the first pivot [rad]; 0 on rigid ground.
+class Fact(NamedTuple):
+    """A number of the sheet: its name, which ends in its unit, its heading, its format, and its meaning."""
 
-    ``static_deflection`` is that under the weight alone [m]; prestress adds to it.
+    name: str
+    heading: str
+    form: str
+    meaning: str
+
+    def written(self, value: float | None) -> str:
+        """Return a value as the sheet shows it; empty for none."""
+        return "" if value is None else format(value, self.form)
+
+
+FACTS = (
+    Fact("weight_kN", "weight [kN]", ",.0f", "of all that rocks"),
+    Fact("settlement_m", "settlement at rest [m]", ".3g", "of both supports, under weight and prestress"),
+    Fact("stress_at_rest_MPa", "bearing stress at rest [MPa]", ".3g", "under each support, with the prestress"),
+    Fact("stress_on_one_MPa", "bearing stress on one support [MPa]", ".3g", "when the other lifts off; impacts come on top"),
+    Fact("lift_off_g", "lift-off [g]", ".4f", "steady horizontal ground acceleration that lifts the first pivot"),
+    Fact("lift_off_over_alpha", "lift-off, θ/α", ".3g", "rotation at which it lifts off"),
+    Fact("strength_g", "static strength [g]", ".4f", "greatest steady horizontal ground acceleration that the pier withstands"),
+    Fact("strength_over_alpha", "static strength, θ/α", ".3g", "rotation at which it is reached"),
+    Fact("moment_over_weight_m", "greatest moment over weight [m]", ".4g", "righting moment about the pivot that bears more"),
+    Fact("moment_kN_m", "greatest moment [kN m]", ",.0f", "the same with the weight"),
+    Fact("unstable_over_alpha", "unstable equilibrium, θ/α", ".4g", "of weight, supports, tendons and stops, without dampers"),
+    Fact("vertical_period_s", "vertical period [s]", ".3g", "of both supports, elastic"),
+    Fact("full_contact_period_s", "rocking period on both supports [s]", ".3g", "before lift-off, elastic"),
+    Fact("period_s", "rocking period at 0.1 α [s]", ".3g", "of free rocking with that amplitude; it grows with it"),
+    Fact("restitution", "restitution e", ".4f", "factor on the angular velocity at an impact on rigid ground"),
+    Fact("impact_damping", "damping by impacts at 0.1 α", ".2%", "viscous damping ratio of the same decay; on rigid ground only"),
+    Fact("flexural_over_rocking", "flexural over rocking period", ".2f", "of the pier fixed at its base over that at 0.1 α"),
+)  # fmt: skip
+"""Numbers of the sheet, in the order in which it is read."""
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Statics(Shown):
+    """What a pier on its base bears and how it swings, all quasi-static or by the energy of free rocking.
+
+    Of devices that are not alike on both sides the weaker direction counts, ``towards``. Accelerations are steady and horizontal,
+    without a vertical one; forces are over the weight, and moments about the pivot that bears more. Viscous dampers bear nothing.
+
+    Attributes
+    ----------
+    pier, base
+        What was asked for.
+    towards : "right", "left" or "either"
+        Where the pier turns.
+    lift_off_g, lift_off_rad : float or None
+        Acceleration [g] and rotation [rad] at which the first pivot lifts off; None if the other support yields before.
+    strength_g, strength_rad : float or None
+        The greatest acceleration that does not overturn the pier [g], its static lateral strength, and the rotation there [rad].
+        An earthquake may exceed it many times over for moments: it tips the pier and does not overturn it. None if tendons
+        that never yield, or stops, let it rise without end.
+    moment_over_weight_m : float or None
+        The greatest righting moment, devices included, over the weight [m]; None likewise.
+    unstable_rad : float or None
+        Unstable equilibrium of weight, supports, tendons and stops, without dampers [rad]; None if they hold the pier.
+    settlement_m : float or None
+        Of both supports at rest [m]; None on rigid ground.
+    vertical_period_s, full_contact_period_s : float or None
+        Periods of small vertical vibration and of small rocking on both supports, elastic ones [s]; None on rigid ground.
+    stress_at_rest_MPa, stress_on_one_MPa : float or None
+        Bearing stress under a support at rest, and under that which bears all at lift-off; None without ``area_m2`` and a mass.
+    equilibria : Equilibria
+        The pier turned slowly up to overturning: :attr:`curve` as arrays.
+    swings_at : Swings
+        Free rocking over its amplitude: :attr:`swings` as arrays.
+
+    Examples
+    --------
+    >>> tall = rb.Pier.with_deck(width_m=8, height_m=30, mass_t=2000, deck_mass_t=1000)
+    >>> pads = rb.ElasticBase.from_stiffness(tall, stiffness_kN_m=2e6, zeta=0.05)
+    >>> sheet = rb.statics(tall, pads)
+    >>> f"{sheet.lift_off_g:.3f} g at {sheet.lift_off_rad:.5f} rad, {sheet.vertical_period_s:.3f} s"
+    '0.198 g at 0.00184 rad, 0.172 s'
     """
-    return static_deflection * (1.0 + prestress_over_weight(pier, restraints)) / pier.half_width
+
+    pier: Pier
+    base: Base
+    towards: str
+    lift_off_g: float | None
+    lift_off_rad: float | None
+    strength_g: float | None
+    strength_rad: float | None
+    moment_over_weight_m: float | None
+    unstable_rad: float | None
+    settlement_m: float | None
+    vertical_period_s: float | None
+    full_contact_period_s: float | None
+    stress_at_rest_MPa: float | None  # noqa: N815 (units as in the columns of a table)
+    stress_on_one_MPa: float | None  # noqa: N815
+    equilibria: Equilibria
+    swings_at: Swings
+
+    @property
+    def weight_kN(self) -> float | None:  # noqa: N802
+        """Return the weight [kN]; None if the mass is not known."""
+        return None if self.pier.mass_t is None else self.pier.mass_t * self.pier.gravity
+
+    @property
+    def restitution(self) -> float | None:
+        """Return the factor e on the angular velocity at an impact on rigid ground; None on springs."""
+        if isinstance(self.base, ElasticBase):
+            return None
+        return self.pier.restitution if self.base.restitution is None else self.base.restitution
+
+    @property
+    def flexural_over_rocking(self) -> float | None:
+        """Return the flexural period over that of rocking at θ/α = 0.1; None if one is not known."""
+        period = self._at_amplitude(self.swings_at.period)
+        return None if period is None or self.pier.flexural_period_s is None else self.pier.flexural_period_s / period
+
+    @property
+    def row(self) -> dict[str, float | None]:
+        """Return the numbers of the sheet by the names of :data:`FACTS`, all over α, the weight or in the unit of the name."""
+        alpha, weight = self.pier.alpha, self.weight_kN
+        mine: dict[str, float | None] = {fact.name: getattr(self, fact.name, None) for fact in FACTS}
+        for name in ("lift_off", "strength", "unstable"):
+            rotation = getattr(self, f"{name}_rad")
+            mine[f"{name}_over_alpha"] = None if rotation is None else rotation / alpha
+        moment = self.moment_over_weight_m
+        mine["moment_kN_m"] = None if weight is None or moment is None else moment * weight
+        mine["period_s"] = self._at_amplitude(self.swings_at.period)
+        mine["impact_damping"] = self._at_amplitude(self.swings_at.impact_damping)
+        return mine
+
+    @property
+    def curve(self) -> "pd.DataFrame":
+        """Return the moment–rotation curve as a table, a row for each rotation up to overturning.
+
+        ``theta_rad``, ``theta_over_alpha``; ``acceleration_g`` that holds the pier there; ``moment_over_weight_m``, and in it
+        the shares of weight with supports, of tendons with stops, and of dampers; ``toe_over_weight`` and ``heel_over_weight``,
+        the forces of the two supports; ``moment_kN_m`` if the mass is known.
+        """
+        at = self.equilibria
+        columns = {
+            "theta_rad": at.theta,
+            "theta_over_alpha": at.theta / self.pier.alpha,
+            "acceleration_g": at.acceleration,
+            "moment_over_weight_m": at.moment,
+            "of_weight_m": at.weight,
+            "of_tendons_m": at.tendons,
+            "of_dampers_m": at.dampers,
+            "toe_over_weight": at.toe,
+            "heel_over_weight": at.heel,
+        }
+        if self.weight_kN is not None:
+            columns["moment_kN_m"] = at.moment * self.weight_kN
+        return pd.DataFrame({name: np.round(values, 9) for name, values in columns.items()})
+
+    @property
+    def swings(self) -> "pd.DataFrame":
+        """Return free rocking over its amplitude as a table.
+
+        ``amplitude_rad``, ``amplitude_over_alpha``; ``period_s`` of a swing to both sides that loses nothing, NaN where tendons
+        on one side make it uneven; ``impact_damping``, the viscous damping ratio of the same decay as by impacts, NaN where it
+        has no closed form: on springs, on which landings lose what ε, ζ and vertical vibration take.
+        """
+        at = self.swings_at
+        return pd.DataFrame({
+            "amplitude_rad": at.amplitude, "amplitude_over_alpha": at.amplitude / self.pier.alpha,
+            "period_s": at.period, "impact_damping": at.impact_damping,
+        })  # fmt: skip
+
+    def plot(self, width_mm: float = 160.0) -> "Figure":
+        """Return the moment–rotation curve and the periods as a matplotlib figure ``width_mm`` wide."""
+        from rockbatch.pier import plots
+
+        return plots.statics(self.pier, self.equilibria, self.swings_at, width_mm)
+
+    def _at_amplitude(self, values: Array) -> float | None:
+        """Return the value at :data:`COMPARED`; None if there is none."""
+        there = values[np.isclose(self.swings_at.amplitude, COMPARED * self.pier.alpha)]
+        return float(there[0]) if len(there) and not math.isnan(there[0]) else None
+
+    def _facts(self) -> tuple[str, dict[str, str]]:
+        """See :class:`Shown`."""
+        return f"statics of a pier, base {self.base.name}", in_words(self)
 
 
-def lift_off_acceleration(pier: Pier, restraints: tuple[Restraint, ...] = (), static_deflection: float = 0.0) -> float:
-    """Return the least steady horizontal ground acceleration that lifts a pivot [g], without a vertical one.
+def in_words(sheet: Statics) -> dict[str, str]:
+    """Return the sheet in a few lines by their names; empty ones do not apply."""
+    alpha, weight, swings = sheet.pier.alpha, sheet.weight_kN, sheet.swings_at
 
-    Weight and tendons right the pier about the pivot that stays, friction holds it, and the lean at lift-off takes its share.
-    Where devices stand unsymmetrically, the weaker direction counts.
+    def held(value: float | None, rotation: float | None, otherwise: str) -> str:
+        if value is None or rotation is None:
+            return otherwise
+        return f"{value:.4g} g, at θ/α = {rotation / alpha:.3g}"
+
+    rest = [f"weighs {weight:,.0f} kN" if weight else ""]
+    rest += [f"settles {1000.0 * sheet.settlement_m:.3g} mm" if sheet.settlement_m else ""]
+    if sheet.stress_at_rest_MPa is not None:
+        rest.append(
+            f"{sheet.stress_at_rest_MPa:.3g} MPa on each support, {sheet.stress_on_one_MPa:.3g} MPa on one alone"
+        )
+    moment = "" if sheet.moment_over_weight_m is None else f"{sheet.moment_over_weight_m:.4g} m × weight"
+    if weight and sheet.moment_over_weight_m is not None:
+        moment += f" = {sheet.moment_over_weight_m * weight:,.0f} kN m"
+    small = {"vertical": sheet.vertical_period_s, "rocking on both supports": sheet.full_contact_period_s}
+    periods = [f"{name} {period:.3g} s" for name, period in small.items() if period is not None]
+    shown = [i for i, share in enumerate(swings.amplitude / alpha) if np.isclose(share, (0.1, 0.5, 0.9)).any()]
+    shares = [f"{swings.amplitude[i] / alpha:.1f} α" for i in shown]
+    periods += [f"{share} {t:.3g} s" for share, t in zip(shares, swings.period[shown], strict=True) if t > 0.0]
+    damping = [f"{share} {z:.2%}" for share, z in zip(shares, swings.impact_damping[shown], strict=True) if z >= 0.0]
+    if np.isinf(swings.impact_damping).any():
+        damping = ["without end: the pier stops at the first one"]
+    balance = "none: tendons or stops hold the pier at any rotation"
+    return {
+        "at rest": ", ".join(filter(None, rest)),
+        "lift-off": held(sheet.lift_off_g, sheet.lift_off_rad, "never: the support that bears more yields before"),
+        "strength": held(
+            sheet.strength_g, sheet.strength_rad, "rises with the rotation, as tendons or stops hold the pier"
+        ),
+        "moment": moment,
+        "balance": balance if sheet.unstable_rad is None else f"θ/α = {sheet.unstable_rad / alpha:.4g}",
+        "direction": "" if sheet.towards == "either" else f"to the {sheet.towards}, the weaker one",
+        "periods": ", ".join(periods),
+        "impacts": f"as viscous damping {', '.join(damping)}" if damping else "",
+        "flexure": flexure(sheet),
+    }
+
+
+def flexure(sheet: Statics) -> str:
+    """Return a sentence on the flexural period, which says whether the pier is rigid; empty if it is not known."""
+    ratio = sheet.flexural_over_rocking
+    if ratio is None:
+        return ""
+    words = f"fixed at its base the pier has {ratio:.2f} of the period of rocking at {COMPARED:g} α"
+    return (
+        f"{words}: {'not rigid, ' if ratio > MOST_FLEXURE else ''}bending adds some {ratio**2:.0%} to the drift there"
+    )
+
+
+@checked
+def statics(pier: Pier, foundation: Base) -> Statics:
+    """Return the statics sheet of a pier on a foundation, with its devices: nothing is simulated.
+
+    Parameters
+    ----------
+    pier : Pier
+        Its ``mass_t`` gives kN, its ``flexural_period_s`` a comparison with the period of rocking.
+    foundation : RigidBase, ElasticBase or YieldingBase
+        Its ``restraints`` are the devices, its ``area_m2`` gives bearing stresses.
+
+    Returns
+    -------
+    Statics
+        Numbers, a moment–rotation ``curve`` up to overturning, the period and the damping of free ``swings``, and ``plot()``.
+
+    Raises
+    ------
+    InputError
+        If the pier cannot stand on the foundation, or a device is implausible and not named in its ``confirm``.
+
+    Examples
+    --------
+    >>> rb.statics(rb.Pier(alpha=0.13, p=0.38), rb.RigidBase())
+    <statics of a pier, base rigid>
+      lift-off  0.1307 g, at θ/α = 0
+      strength  0.1307 g, at θ/α = 0
+      moment    6.605 m × weight
+      balance   θ/α = 1
+      periods   0.1 α 4.92 s, 0.5 α 13.9 s, 0.9 α 31.5 s
+      impacts   as viscous damping 0.1 α 1.71%, 0.5 α 2.33%, 0.9 α 4.59%
     """
-    on_springs = static_deflection > 0.0
-    lean = lift_off_rotation(pier, restraints, static_deflection)
-    least = math.inf
-    for pivot in (-pier.half_width, pier.half_width):
-        moment = 0.0
-        for device in restraints:
-            for offset in offsets(pier, device):
-                if isinstance(device, Tendon):
-                    moment += device.psi * abs(offset - pivot)
-                elif (
-                    isinstance(device, Damper) and device.kind == "friction"
-                ):  # on springs the pier turns about its middle
-                    moment += device.f * abs(offset if on_springs else offset - pivot)
-        least = min(least, math.tan(pier.alpha) + moment / pier.height)
-    return least - lean
+    wrong = problems(pier, foundation) or unlikely_devices(pier, foundation.restraints)
+    if wrong:
+        raise InputError(*wrong)
+    return sheet_of(pier, foundation)
 
 
-def unstable_equilibrium(pier: Pier, restraints: tuple[Restraint, ...] = ()) -> float | None:
-    """Return the rotation beyond which weight, tendons and stops do not bring the pier back [rad].
+def sheet_of(pier: Pier, foundation: Base) -> Statics:
+    """Return the statics sheet of a pier that can stand on its foundation; see :func:`statics`, which checks that."""
+    even = symmetric(pier, foundation.restraints)
+    sides = [_Side.of(pier, foundation, side) for side in ((1.0,) if even else (1.0, -1.0))]
+    weaker, first = min(sides, key=lambda side: side.strength[0]), min(sides, key=lambda side: side.lift_off[0])
+    balance = min(side.unstable for side in sides)
+    springs = foundation if isinstance(foundation, ElasticBase) else None
+    stress = math.nan
+    if foundation.area_m2 is not None and pier.mass_t is not None:
+        stress = pier.mass_t * pier.gravity / foundation.area_m2 / 1000.0
+    amplitudes = pier.alpha * np.array(AMPLITUDES)
+    free = FreeRocking(pier, foundation)
+    return Statics(
+        pier, foundation, "either" if even else "right" if weaker is sides[0] else "left",
+        lift_off_g=_finite(first.lift_off[0]), lift_off_rad=_finite(first.lift_off[1]),
+        strength_g=_finite(weaker.strength[0]), strength_rad=_finite(weaker.strength[1]),
+        moment_over_weight_m=_finite(weaker.moment),
+        unstable_rad=_finite(balance), settlement_m=None if springs is None else weaker.turn.settled,
+        vertical_period_s=None if springs is None else 2.0 * math.pi / vertical_frequency(pier, springs),
+        full_contact_period_s=None if springs is None else 2.0 * math.pi / rocking_frequency(pier, springs),
+        stress_at_rest_MPa=_finite(stress * weaker.turn.at_rest), stress_on_one_MPa=_finite(stress * weaker.borne_alone),
+        equilibria=weaker.curve, swings_at=free.swings(amplitudes[amplitudes < 0.999 * balance]),
+    )  # fmt: skip
 
-    Of a pier that rocks about a pivot on rigid ground: α without them. None where they hold it at any rotation.
-    """
-    holding = [
-        (device, offset)
-        for device in restraints
-        if isinstance(device, Tendon | Stop)
-        for offset in offsets(pier, device)
-    ]
-    rotations = [_loses_balance(pier, holding, side) for side in ((1.0, -1.0) if holding else (1.0,))]
-    return min((theta for theta in rotations if theta is not None), default=None)
+
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None
 
 
-def _loses_balance(pier: Pier, holding: list[tuple[Tendon | Stop, float]], side: float) -> float | None:
-    def righting(theta: float) -> float:
-        """Return the moment about the pivot over M g R0."""
-        moment = math.sin(pier.alpha - theta)
-        for device, offset in holding:
-            arm = pier.half_width + side * offset
-            stretch = 2.0 * arm * math.sin(0.5 * theta)
-            moment += static_force(pier, device, stretch) * arm * math.cos(0.5 * theta) / pier.size
-        return moment
+class _Side(NamedTuple):
+    """A pier that is turned to one side. Infinite is what never happens."""
 
-    step = 0.5 * math.pi / POINTS
-    first = next((i for i in range(1, POINTS + 1) if righting(i * step) < 0.0), None)
-    if first is None:
-        return None
-    low, high = (first - 1) * step, first * step
-    for _ in range(50):
-        middle = 0.5 * (low + high)
-        low, high = (low, middle) if righting(middle) < 0.0 else (middle, high)
-    return low
+    turn: SlowTurn
+    curve: Equilibria
+    unstable: float
+    lift_off: tuple[float, float]  # acceleration [g] and rotation [rad]
+    strength: tuple[float, float]
+    moment: float
+    borne_alone: float  # by the toe at lift-off, or the most that it bears
+
+    @classmethod
+    def of(cls, pier: Pier, base: Base, side: float) -> "_Side":
+        turn = SlowTurn(pier, base, side=side)
+        unstable = SlowTurn(pier, base, without_dampers(base.restraints), side).unstable
+        curve = turn.curve(min(2.0 * pier.alpha, 0.5 * math.pi) if unstable is None else unstable)
+        lift_off, alone = (math.inf, math.inf), float(curve.toe.max())
+        if turn.lift_off is not None:
+            there = turn.at(np.array([max(turn.lift_off, ONSET)]))
+            lift_off, alone = (float(there.acceleration[0]), turn.lift_off), float(there.toe[0])
+        strength, moment = (turn.strongest(quantity, curve) for quantity in ("acceleration", "moment"))
+        if unstable is None:  # what still rises at the end of the curve has no greatest value
+            ends = (math.inf, math.inf)
+            strength, moment = (ends if best[1] == curve.theta[-1] else best for best in (strength, moment))
+        return cls(turn, curve, math.inf if unstable is None else unstable, lift_off, strength, moment[0], alone)

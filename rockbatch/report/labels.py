@@ -34,10 +34,12 @@ SYMBOLS = {
     "top_m": ("top", "m"),
     "omega_g_over_p": ("ω_g/p", ""),
     "pga_over_g_tan_alpha": ("PGA/(g tan α)", ""),
+    "flexural_period_s": ("flexural period", "s"),
+    "area_m2": ("area", "m²"),
 }
 BASE_KEYS = (
     "beta", "stiffness_kN_m", "eta", "yield_kN", "epsilon", "zeta", "spring", "n", "kinematics", "flight", "restitution",
-    "flight_limit_mm", "friction",
+    "flight_limit_mm", "friction", "area_m2",
 )  # fmt: skip
 SAME = {"beta": "stiffness_kN_m", "eta": "yield_kN"}
 """Equivalent keys, without and with units: a foundation is described by the one that its study gives."""

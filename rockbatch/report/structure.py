@@ -1,15 +1,30 @@
 """The structure of a case: its pier and devices from run.json, and their numbers in words."""
 
 from collections.abc import Mapping
+from dataclasses import fields, replace
 from typing import Any
 
 from rockbatch.errors import InputError
-from rockbatch.pier import Damper, Pier, Restraint, fields_of, restraint_of
+from rockbatch.pier import (
+    Base,
+    Damper,
+    ElasticBase,
+    Pier,
+    Restraint,
+    RigidBase,
+    YieldingBase,
+    fields_of,
+    problems,
+    restraint_of,
+)
 from rockbatch.pier.restraints import wrong_restraints
 from rockbatch.report.labels import plain
 from rockbatch.study.restraint_keys import KEYS_OF
 
-_PIER = ("alpha", "p", "mu", "gravity", "mass_t", "top_m", "deck_over_columns", "deck_height_m", "initial_rotation_rad")
+_PIER = (
+    "alpha", "p", "mu", "gravity", "mass_t", "top_m", "deck_over_columns", "deck_height_m", "flexural_period_s",
+    "initial_rotation_rad",
+)  # fmt: skip
 _PREFERRED = {"f": "force_kN", "nu": "coefficient_kN_s_m", "psi": "prestress_kN", "lambda": "stiffness_kN_m"}
 """Keys without units, and the equivalent ones with units, for a pier whose mass is known."""
 _WORDS = {
@@ -40,6 +55,18 @@ def restraints_of(case: Mapping[str, Any]) -> tuple[Restraint, ...]:
         return () if wrong_restraints(pier, restraints) else restraints
     except (TypeError, ValueError):
         return ()
+
+
+def base_of(case: Mapping[str, Any], pier: Pier) -> Base | None:
+    """Return the base of a case with its devices; None if its values are impossible under ``pier``."""
+    kind: type[Base] = {kind.name: kind for kind in (RigidBase, ElasticBase, YieldingBase)}[case["base"]]
+    values, names = case["parameters"], [each.name for each in fields(kind) if each.name != "restraints"]
+    try:
+        base = kind(**{name: values[name] for name in names if values.get(name) is not None})
+        base = replace(base, restraints=restraints_of(case))
+    except (InputError, TypeError, ValueError):
+        return None
+    return None if problems(pier, base) else base
 
 
 def in_words(pier: Pier, restraint: Restraint) -> str:

@@ -28,7 +28,7 @@ from rockbatch.study.restraint_keys import RESTRAINTS, Device, read_devices
 from rockbatch.study.spec import Case
 from rockbatch.toml.kinds import choice, positive, shown, text, within
 from rockbatch.toml.reader import Table, TomlFile
-from rockbatch.toml.section import CONFIRM, Clash, Key, Section
+from rockbatch.toml.section import CONFIRM, Clash, Key, Section, Usual
 
 _BASES: dict[str, type[Base]] = {"rigid": RigidBase, "elastic": ElasticBase, "yielding": YieldingBase}
 _ON_SPRINGS = {"base": tuple(name for name, base in _BASES.items() if base.on_springs)}
@@ -70,6 +70,9 @@ BASE_KEYS = {
     "friction": Key(within(BOUNDS["friction"]), "0.5",
         "Coefficient of friction of the interface, for runs with `forces = true` under `[output]`: those that would slide "
         "say so.", many=True),
+    "area_m2": Key(within(BOUNDS["area_m2"]), "6.0",
+        "Area of one support, for the bearing stresses of the statics sheet; no run depends on it.", many=True,
+        usual=Usual(1000.0, "m²: the largest footings of bridge piers have some 500")),
 }  # fmt: skip
 """Keys that describe a base; in a list each value is a case."""
 CASE = Section(("case",), (
@@ -233,6 +236,10 @@ def _case(table: Table) -> _Read:
                 f"mass_t is missing beside {absolute}; write for example mass_t = {example}, here or in [pier]",
                 absolute,
             )
+    if table.has("area_m2") and not (weighed or table.has("mass_t")):
+        table.complain(
+            "area_m2: stresses are of a pier whose mass is known; write mass_t in [pier], or leave it out", "area_m2"
+        )
     devices, of_devices = read_devices(table)
     return _Read(table, name or base, base, devices, grid + of_devices)
 

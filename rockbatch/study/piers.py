@@ -44,6 +44,10 @@ PIER = Section(("pier",), (
     "top_m": Key(within(BOUNDS["top_m"]), "31.5",
         "Height above the pivots at which drift is read; the highest point that is known if it is not given.", many=True,
         usual=_LENGTH),
+    "flexural_period_s": Key(within(BOUNDS["flexural_period_s"]), "0.6",
+        "First period of the pier with its deck, fixed at its base. The pier is rigid in every run; the statics sheet holds this "
+        "against the period of rocking, to see whether it is.", many=True,
+        usual=Usual(10.0, "s: bridge piers have 0.1 to 3")),
     "columns": Key(Whole(2, "a whole number, 2 or above (a single column is a pier with a deck)"), "4",
         "Number of equal columns of a rocking frame under one deck, on a rigid base only.", many=True),
     "initial_rotation_rad": Key(within(BOUNDS["initial_rotation_rad"]), "0.05",
@@ -118,7 +122,11 @@ def read_piers(file: TomlFile) -> tuple[list[tuple[Pier, Values]], tuple[str, ..
         values = {name: setting.value for name, setting in chosen.items()}
         try:
             pier = _pier(values, len(parts), table.confirmed)
-            pier = replace(pier, initial_rotation_rad=values.get("initial_rotation_rad", 0.0))
+            pier = replace(
+                pier,
+                flexural_period_s=values.get("flexural_period_s"),
+                initial_rotation_rad=values.get("initial_rotation_rad", 0.0),
+            )
         except InputError as error:
             for problem in error.problems:
                 where = " in this table" if "write confirm" in problem else ""

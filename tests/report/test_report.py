@@ -391,8 +391,8 @@ def test_sections_come_in_the_order_in_which_they_are_asked_for(tmp_path):
     page = Page(report(tmp_path, *responses, references=[reference], unusable=unusable, **results))
     assert page.headings == [
         "The answer", "Peak rotations", "Compared with published values", "Every run", "The suite in each case",
-        "One record and the suite", "Histories", "What was studied", "Ground motions", "Not used", "Speed and error", "Notes",
-        "How to reproduce",
+        "One record and the suite", "Histories", "What was studied", "Statics", "Ground motions", "Not used", "Speed and error",
+        "Notes", "How to reproduce",
     ]  # fmt: skip
     assert "rockbatch run configs/fig7.toml --jobs 2" in page.text
     assert '[[case]]\nname = "rigid"' in page.text

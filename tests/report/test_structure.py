@@ -1,4 +1,4 @@
-"""The section on the study shows the structure: masses, deck, devices with their numbers, lift-off and balance; to scale."""
+"""The sections on the study and its statics show the structure: masses, deck, devices with their numbers; to scale."""
 
 import re
 import xml.etree.ElementTree as ET
@@ -10,7 +10,9 @@ from studies import study_text, write_study
 import rockbatch as rb
 from rockbatch.pier import described
 from rockbatch.report.drawing import pier as drawing
-from rockbatch.report.structure import restraints_of
+from rockbatch.report.structure import base_of, restraints_of
+from rockbatch.results.run_json import describe_case
+from rockbatch.study import Case
 
 BRIDGE = {
     "width_m": 7.0, "height_m": 30.0, "mass_t": 1800.0, "deck_mass_t": 1200.0, "deck_height_m": 31.5, "top_m": 30.0,
@@ -27,35 +29,53 @@ CASES = (
 
 
 @pytest.fixture(scope="module")
-def studied(tmp_path_factory):
+def report(tmp_path_factory):
     folder = tmp_path_factory.mktemp("bridge")
-    text = study_text(pier=BRIDGE, cases=CASES, output={"histories": "none"})
+    text = study_text(pier=BRIDGE | {"flexural_period_s": 1.5}, cases=CASES, output={"histories": "none"})
     rb.run(write_study(folder, text), out=folder / "out")
-    page = (folder / "out/report.html").read_text(encoding="utf-8")
-    return '<section id="studied">' + page.split('<section id="studied">')[1].split("</section>")[0] + "</section>"
+    return (folder / "out/report.html").read_text(encoding="utf-8")
 
 
-def test_masses_deck_and_heights_stand_in_the_units_of_the_study(studied):
-    text = Page(studied).text
+def part(report: str, anchor: str) -> str:
+    return report.split(f'<section id="{anchor}">')[1].split("</section>")[0]
+
+
+def test_masses_deck_and_heights_stand_in_the_units_of_the_study(report):
+    text = Page(part(report, "studied")).text
     assert "mass 3000 t" in text
     given = "between the pivots 7 m, height 30 m, shaft 1800 t, deck 1200 t, centre of the deck at 31.5 m, drift read at 30 m"
     assert f"As given: {given}." in text
 
 
-def test_devices_stand_with_their_numbers_beside_lift_off_and_balance(studied):
-    rows = [[cell.replace("\u00a0", " ") for cell in row] for row in Page(studied).tables["studied"]]
-    bare, oil, tied = rows[-3:]
-    pier = rb.Pier.with_deck(**{key: value for key, value in BRIDGE.items()})
-    assert bare[-1] == "none"
-    assert oil[-1] == "viscous damper at each pivot, C = 2000 kN (s/m)^0.3"
-    assert tied[-1] == (
-        "hysteretic damper at the left pivot, F = 2000 kN, uy = 5 mm; tendon on the axis, P0 = 5000 kN, kt = 20,000 kN/m"
-    )
+def test_the_statics_of_all_cases_stand_beside_each_other_with_their_devices(report):
+    page = Page(f'<section id="statics">{part(report, "statics")}</section>')
+    rows = {row[0]: [cell.replace("\u00a0", " ") for cell in row[1:-1]] for row in page.tables["statics"]}
+    assert rows[""] == ["bare", "oil", "tied"]
+    assert rows["dampers and tendons"] == [
+        "",
+        "viscous damper at each pivot, C = 2000 kN (s/m)^0.3",
+        "hysteretic damper at the left pivot, F = 2000 kN, uy = 5 mm; tendon on the axis, P0 = 5000 kN, kt = 20,000 kN/m",
+    ]
+    pier = rb.Pier.with_deck(**BRIDGE)
     tan = pier.half_width / pier.height
-    assert [row[1] for row in (bare, tied)] == [f"{tan:.3f}", f"{tan * (1 + 5000 / (3000 * 9.81)):.3f}"]
-    assert [row[3] for row in (bare, oil)] == ["1", "1"]
-    assert float(tied[3]) > 1.0
-    assert [row[4] for row in (bare, tied)] == [f"{pier.restitution:.4f}", "0.9000"]
+    assert rows["lift-off [g]"] == [f"{tan:.4f}", f"{tan:.4f}", f"{tan * (1 + 5000 / (3000 * 9.81)):.4f}"]
+    assert rows["unstable equilibrium, θ/α"][:2] == ["1", "1"]
+    assert float(rows["unstable equilibrium, θ/α"][2]) > 1.0
+    assert rows["restitution e"] == [f"{pier.restitution:.4f}", f"{pier.restitution:.4f}", "0.9000"]
+    assert rows["weight [kN]"] == ["29,430"] * 3
+    assert rows["direction"] == ["", "", "to the left"]
+    assert not {"settlement at rest [m]", "vertical period [s]"} & set(rows)
+    assert page.text.count("not rigid, bending adds") == 3
+
+
+def test_a_base_that_cannot_be_has_no_statics():
+    """Change run.json, which may come from anybody."""
+    pier = rb.Pier(alpha=0.2, p=1.0)
+    base = rb.YieldingBase(beta=30.0, eta=2.5, restraints=(rb.Tendon(psi=0.1, strength=0.2),))
+    entry = describe_case(Case("pads", pier, base, {}))
+    assert base_of(entry, pier) == base
+    for wrong in ({"beta": 0.1}, {"eta": None}, {"spring": "steel"}, {"n": "much"}):
+        assert base_of(entry | {"parameters": entry["parameters"] | wrong}, pier) is None
 
 
 def test_the_deck_and_the_devices_are_drawn_to_scale():

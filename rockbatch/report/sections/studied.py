@@ -4,13 +4,12 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from rockbatch.pier.statics import lift_off_acceleration, lift_off_rotation, unstable_equilibrium
 from rockbatch.report.drawing import pier as drawing
 from rockbatch.report.finished import Finished
-from rockbatch.report.labels import plain, quantity, symbol
+from rockbatch.report.labels import plain, symbol
 from rockbatch.report.markup import Markup, join
-from rockbatch.report.structure import in_words, pier_of, restraints_of
-from rockbatch.report.table import THETA_FORMAT, Head, sub, table
+from rockbatch.report.structure import pier_of, restraints_of
+from rockbatch.report.table import Head, sub, table
 from rockbatch.report.templates import render
 from rockbatch.study import PIER_KEYS
 
@@ -50,7 +49,7 @@ def section(finished: Finished, level: str = "h3") -> Markup:
         drawn=_drawn(finished), vertical=_vertical(finished),
         scales=sorted(finished.runs["scale"].unique().astype(float)) if len(finished.runs) else [],
         scaled="as recorded" if as_recorded else f"scaled to the target by {' to '.join(ends)}",
-        foundations=_foundations(finished), balance=_balance(finished),
+        foundations=_foundations(finished),
         springs=any(case["base"] != "rigid" for case in cases),
     )  # fmt: skip
 
@@ -95,42 +94,6 @@ def _vertical(finished: Finished) -> str:
     if vertical in (0, len(records)):
         return "with the vertical component" if vertical else "horizontal component only"
     return f"{vertical} with the vertical component"
-
-
-def _balance(finished: Finished) -> Markup:
-    """Report acceleration and rotation at lift-off, the unstable equilibrium and the devices of each case."""
-    varied_pier = [key for key in finished.info["varied"] if key in PIER_KEYS]
-    heads = [
-        Head("case"),
-        *(Head(symbol(key)) for key in varied_pier),
-        Head("lift-off [g]", ".3f", "steady horizontal ground acceleration"),
-        Head("lift-off, θ/α", THETA_FORMAT),
-        Head(
-            "balance, θ/α", ".3g", "unstable equilibrium of a pier on rigid ground, beyond which it does not come back"
-        ),
-        Head("e", ".4f", "factor on the angular velocity at an impact on rigid ground"),
-        Head("dampers and tendons"),
-    ]
-    rows = []
-    for case in finished.info["cases"]:
-        pier = pier_of(case)
-        if pier is None:
-            continue
-        devices, rigid, given = restraints_of(case), case["base"] == "rigid", case["parameters"]
-        deflection = 0.0 if rigid else float(given.get("delta_s_m") or 0.0)
-        edge = unstable_equilibrium(pier, devices)
-        given_e = given.get("restitution")
-        own = [quantity(key, value) for key, value in case["columns"].items() if key not in PIER_KEYS]
-        rows.append([
-            " ".join([str(case["case"]), *own]),
-            *(case["columns"].get(key) for key in varied_pier),
-            lift_off_acceleration(pier, devices, deflection),
-            lift_off_rotation(pier, devices, deflection) / pier.alpha,
-            "never: the tendons hold it" if edge is None else edge / pier.alpha,
-            (pier.restitution if given_e is None else float(given_e)) if rigid else None,
-            "; ".join(in_words(pier, device) for device in devices) or "none",
-        ])  # fmt: skip
-    return table(heads, rows, prose=True, name="Lift-off, balance and devices")
 
 
 def _foundations(finished: Finished) -> Markup:

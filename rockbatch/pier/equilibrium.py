@@ -1,0 +1,411 @@
+"""Equilibrium of a pier that is turned slowly on its base, from rest up to overturning (THEORY.md, Statics).
+
+Forces are over the weight M g, moments about the pivot that bears more over M g [m]. The pier turns to the right; its mirror
+image stands for the other direction.
+"""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import cache, cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from rockbatch.pier.bases import Base, ElasticBase, YieldingBase, static_deflection
+from rockbatch.pier.block import Pier
+from rockbatch.pier.restraints import Damper, Restraint, Stop, Tendon, offsets, prestress_over_weight
+
+Array = npt.NDArray[np.float64]
+
+EXPONENT = 5.0
+"""Bouc–Wen exponent of hysteretic dampers."""
+
+MOST_STEPS, NEAR = 64, 1e-8
+"""Steps of the vertical balance, and the bracket at which it ends, over the deflection under the whole weight."""
+
+BALANCED = 1e-14
+"""Excess of vertical force over the weight that is rounding."""
+
+ONSET = 1e-12
+"""Rotation [rad] that stands for the first one, at which friction has its full force and stiffnesses have added nothing."""
+
+
+@cache
+def _curve(exponent: float) -> tuple[Array, Array, Array]:
+    """Return deflections, forces and stiffnesses of the first loading ∫ dz/(1 − zⁿ), in ever smaller steps towards z = 1."""
+    left = np.unique(np.concatenate((np.geomspace(1.0, 1e-15, 1200), np.linspace(1.0, 0.1, 300))))[::-1]
+    nodes, weights = np.polynomial.legendre.leggauss(8)
+    half, middle = 0.5 * -np.diff(left), 0.5 * (left[1:] + left[:-1])
+
+    def stiffness(left: Array) -> Array:
+        with np.errstate(divide="ignore"):
+            return -np.expm1(exponent * np.log1p(-left))
+
+    steps = half * (weights / stiffness(middle[:, None] + half[:, None] * nodes)).sum(axis=1)
+    return np.concatenate(([0.0], np.cumsum(steps))), 1.0 - left, stiffness(left)
+
+
+def first_loading(deflection: Array, exponent: float) -> Array:
+    """Return F/F_y at a ``deflection``/δ_y ≥ 0 of a Bouc–Wen spring that is loaded for the first time."""
+    x, z, slope = _curve(exponent)
+    i = np.clip(np.searchsorted(x, deflection, side="right") - 1, 0, len(x) - 2)
+    step = x[i + 1] - x[i]
+    s = np.clip((deflection - x[i]) / step, 0.0, 1.0)
+    rise, start, end = z[i + 1] - z[i], slope[i] * step, slope[i + 1] * step
+    return z[i] + s * (start + s * (3.0 * rise - 2.0 * start - end + s * (start + end - 2.0 * rise)))
+
+
+def deflection_under(force: float, exponent: float) -> float:
+    """Return the deflection/δ_y of a Bouc–Wen spring that is first loaded to ``force``/F_y < 1."""
+    x, z, slope = _curve(exponent)
+    i = int(np.searchsorted(z, force, side="right")) - 1
+    deflection = float(x[i] + (force - z[i]) / slope[i])
+    for _ in range(20):  # Newton's method, from the side on which the curve is concave
+        at = float(first_loading(np.array([deflection]), exponent)[0])
+        deflection += (force - at) / -math.expm1(exponent * math.log(at))
+    return deflection
+
+
+@dataclass(frozen=True)
+class Spring:
+    """A support: stiffness [1/m] and strength over the weight; the Bouc–Wen exponent of its first loading if it has one."""
+
+    stiffness: float
+    strength: float = math.inf
+    exponent: float | None = None
+
+    def force(self, depth: Array) -> Array:
+        """Return the force at a ``depth`` [m] of the pivot below its unstressed place, in first loading; 0 above it."""
+        elastic = self.stiffness * np.maximum(depth, 0.0)
+        if self.exponent is None:
+            return np.minimum(elastic, self.strength)
+        return self.strength * first_loading(elastic / self.strength, self.exponent)
+
+    def depth(self, force: float) -> float:
+        """Return the depth [m] under a ``force`` below the strength, in first loading."""
+        if self.exponent is None:
+            return force / self.stiffness
+        return deflection_under(force / self.strength, self.exponent) * self.strength / self.stiffness
+
+
+def _bracketed(excess: Callable[[Array], Array], low: Array, high: Array, near: float) -> tuple[Array, Array, Array]:
+    """Return a bracket of the depth at which ``excess`` passes 0, and where in it that lies, as a share of the way.
+
+    By turns the bracket is halved and cut by its chord; friction makes ``excess`` jump, which the bracket then encloses.
+    """
+    below, above = excess(low), excess(high)
+    for step in range(MOST_STEPS):
+        done = (np.minimum(np.abs(below), np.abs(above)) < BALANCED) | (high - low < near)
+        if done.all():
+            break
+        share = _share(below, above) if step % 2 else 0.5
+        middle = low + share * (high - low)
+        there = excess(middle)
+        up = there > 0.0
+        low, below = np.where(up, low, middle), np.where(up, below, there)
+        high, above = np.where(up, middle, high), np.where(up, there, above)
+    return low, high, _share(below, above)
+
+
+def _share(low: Array, high: Array) -> Array:
+    """Return the share of the way from values ``low`` to ``high`` at which 0 lies on the straight line between them."""
+    gap = high - low
+    return np.where(gap > 0.0, np.clip(-low / np.where(gap > 0.0, gap, 1.0), 0.0, 1.0), 0.5)
+
+
+def without_dampers(restraints: tuple[Restraint, ...]) -> tuple[Restraint, ...]:
+    """Return tendons and stops, whose forces depend on the rotation alone."""
+    return tuple(device for device in restraints if not isinstance(device, Damper))
+
+
+def spring_of(pier: Pier, base: ElasticBase) -> Spring:
+    """Return a support of ``base`` under ``pier``."""
+    stiffness = 0.5 / static_deflection(pier, base)
+    if not isinstance(base, YieldingBase):
+        return Spring(stiffness)
+    return Spring(stiffness, 0.5 * base.eta, base.n if base.has_exponent else None)
+
+
+@dataclass(frozen=True)
+class Place:
+    """A device at one place: its ``offset`` [m] from the middle of the base towards the pivot that bears more."""
+
+    device: Restraint
+    offset: float
+    stiffness: float  # of a tendon or stop, over the weight [1/m]
+
+    def pull(self, elongation: Array, since: float) -> Array:
+        """Return its tension at an ``elongation`` [m] reached steadily from ``since``, and that from 0.
+
+        Friction has its whole force in the direction of the way since then.
+        """
+        device = self.device
+        if isinstance(device, Tendon):
+            return np.clip(device.psi + self.stiffness * elongation, 0.0, device.strength)
+        if isinstance(device, Stop):
+            return self.stiffness * np.maximum(elongation - device.gap_m, 0.0)
+        if device.kind == "friction":
+            return device.f * np.sign(elongation - since)
+        total = elongation / device.yield_m
+        start = math.copysign(float(first_loading(np.array([abs(since) / device.yield_m]), EXPONENT)[0]), since)
+        back = start + (elongation - since) / device.yield_m
+        turned = (elongation - since) * since < 0.0
+        x = np.where(turned, back, total)
+        loaded = np.sign(x) * first_loading(np.abs(x), EXPONENT)
+        return device.f * np.where(turned & (back * start > 0.0), back, loaded)  # unloading is elastic
+
+
+@dataclass(frozen=True)
+class Equilibria:
+    """The pier in equilibrium at rotations ``theta`` [rad]; all arrays of the shape of ``theta``.
+
+    Attributes
+    ----------
+    weight, tendons, dampers : ndarray
+        Their shares of the righting moment about the pivot that bears more, over the weight [m]; the P–Δ moment is in ``weight``,
+        and what stops bear in ``tendons``.
+    lever : ndarray
+        Height by which a horizontal ground acceleration turns the pier [m].
+    toe, heel : ndarray
+        Forces of the support that bears more and of the other, over the weight.
+    depth : ndarray
+        Of the toe below its unstressed place [m].
+    """
+
+    theta: Array
+    weight: Array
+    tendons: Array
+    dampers: Array
+    lever: Array
+    toe: Array
+    heel: Array
+    depth: Array
+
+    @property
+    def moment(self) -> Array:
+        """Return the righting moment over the weight [m]."""
+        return self.weight + self.tendons + self.dampers
+
+    @property
+    def acceleration(self) -> Array:
+        """Return the steady horizontal ground acceleration that holds the pier there [g]."""
+        return self.moment / self.lever
+
+
+class SlowTurn:
+    """A pier on a base that is turned slowly from rest, to the right (``side`` 1) or to the left (−1).
+
+    ``restraints`` are those that act: all of the base by default. Raises nothing: what is impossible is refused before.
+    """
+
+    def __init__(
+        self, pier: Pier, base: Base, restraints: tuple[Restraint, ...] | None = None, side: float = 1.0
+    ) -> None:
+        devices = base.restraints if restraints is None else restraints
+        self.pier, self.finite = pier, base.kinematics == "finite"
+        self.b, self.h = pier.size * math.sin(pier.alpha), pier.height
+        self.places = [
+            Place(
+                device,
+                side * offset,
+                0.0 if isinstance(device, Damper) else device.lam * pier.size / pier.half_width**2,
+            )
+            for device in devices
+            if not (isinstance(device, Damper) and device.kind == "viscous")  # which bear nothing
+            for offset in offsets(pier, device)
+        ]
+        self.spring = spring_of(pier, base) if isinstance(base, ElasticBase) else None
+        self.at_rest = 0.5 * (1.0 + prestress_over_weight(pier, devices))
+        """Force of each support at rest, over the weight."""
+        self.settled = 0.0 if self.spring is None else self.spring.depth(self.at_rest)
+        """Depth of both pivots at rest [m]."""
+
+    # Geometry: of any rotation, or linearised
+
+    def _rise(self, theta: Array) -> Array:
+        """Return by what each pivot has gone up or down about the middle of the base [m]."""
+        return self.b * (np.sin(theta) if self.finite else theta)
+
+    def elongation(self, place: Place, theta: Array, depth: Array) -> Array:
+        """Return the elongation of a device [m], of a pier whose toe is at a ``depth`` [m]."""
+        if not self.finite:
+            return self.settled - depth + (self.b - place.offset) * theta
+        return (self.settled - depth + (self.b - place.offset) * np.sin(theta)) / np.cos(0.5 * theta)
+
+    def _by_v(self, theta: Array) -> Array:
+        return 1.0 / np.cos(0.5 * theta) if self.finite else np.ones_like(theta)
+
+    def _arm(self, place: Place, theta: Array, elongation: Array) -> Array:
+        """Return the arm of a device's tension about the toe [m]."""
+        distance = self.b - place.offset
+        if not self.finite:
+            return np.full_like(theta, distance)
+        return distance * np.cos(theta) / np.cos(0.5 * theta) + 0.5 * np.tan(0.5 * theta) * elongation
+
+    def _toe_arm(self, theta: Array) -> Array:
+        """Return the arm of the weight about the toe [m]."""
+        if not self.finite:
+            return self.b - self.h * theta
+        return self.b * np.cos(theta) - self.h * np.sin(theta)
+
+    # Balance of the vertical forces
+
+    def _heel(self, theta: Array, depth: Array) -> Array:
+        """Return the force of the support that is unloaded."""
+        if self.spring is None:
+            return np.zeros_like(theta)
+        risen = self.settled - depth + 2.0 * self._rise(theta)
+        return np.clip(self.at_rest - self.spring.stiffness * risen, 0.0, self.spring.strength)
+
+    def _pulls(self, theta: Array, depth: Array, since: list[float]) -> list[Array]:
+        return [
+            place.pull(self.elongation(place, theta, depth), start)
+            for place, start in zip(self.places, since, strict=True)
+        ]
+
+    def _excess(self, theta: Array, depth: Array, pulls: list[Array], heel: Array) -> Array:
+        """Return by what the supports press upwards more than weight and devices press down."""
+        assert self.spring is not None
+        down = 1.0 + self._by_v(theta) * sum(pulls, start=np.zeros_like(theta))
+        return self.spring.force(depth) + heel - down
+
+    @cached_property
+    def lift_off(self) -> float | None:
+        """The rotation at which the heel leaves its support [rad]: 0 on rigid ground, None if the toe yields before."""
+        return None if self._lift_off is None else self._lift_off[0]
+
+    @cached_property
+    def _lift_off(self) -> tuple[float, list[float]] | None:
+        """Rotation of lift-off, and the elongations of the devices then."""
+        if self.spring is None:
+            return 0.0, [0.0] * len(self.places)
+        spring, risen = self.spring, self.at_rest / self.spring.stiffness
+
+        def theta_of(depth: Array) -> Array:
+            rise = 0.5 * (depth - self.settled + risen)
+            return np.arcsin(np.clip(rise / self.b, -1.0, 1.0)) if self.finite else rise / self.b
+
+        def excess(depth: Array) -> Array:
+            theta = theta_of(depth)
+            pulls = self._pulls(theta, depth, [0.0] * len(self.places))
+            return self._excess(theta, depth, pulls, np.zeros_like(theta))
+
+        limit = self.settled - risen + 2.0 * self.b * (1.0 if self.finite else 0.5 * math.pi)
+        if spring.exponent is None and not self.places:
+            depth = 1.0 / spring.stiffness if spring.strength >= 1.0 else math.inf
+        else:
+            start, near = np.array([self.settled - risen]), NEAR / spring.stiffness
+            low, high, share = _bracketed(excess, start, np.array([limit]), near)
+            depth = float((low + share * (high - low))[0])
+            depth = depth if float(excess(np.array([limit]))[0]) > 0.0 else math.inf
+        if not depth < limit:
+            return None
+        at, theta = np.array([depth]), theta_of(np.array([depth]))
+        return float(theta[0]), [float(self.elongation(place, theta, at)[0]) for place in self.places]
+
+    def _balanced(self, theta: Array, since: list[float], heel: bool) -> tuple[Array, list[Array], Array]:
+        """Return depth, pulls and the heel's force; where friction holds, its force is what the balance leaves."""
+        assert self.spring is not None
+
+        def heel_at(depth: Array) -> Array:
+            return self._heel(theta, depth) if heel else np.zeros_like(theta)
+
+        def excess(depth: Array) -> Array:
+            return self._excess(theta, depth, self._pulls(theta, depth, since), heel_at(depth))
+
+        room = self.settled + 4.0 * np.abs(self._rise(theta)) + 1.0 / self.spring.stiffness
+        low, high, share = _bracketed(excess, -room, room, NEAR / self.spring.stiffness)
+
+        def between(a: Array, b: Array) -> Array:
+            return (1.0 - share) * a + share * b
+
+        ends = zip(self._pulls(theta, low, since), self._pulls(theta, high, since), strict=True)
+        return between(low, high), [between(*pulls) for pulls in ends], between(heel_at(low), heel_at(high))
+
+    def _parts(self, theta: Array, on_both: bool) -> Equilibria:
+        """Return the equilibria before lift-off (``on_both``) or after it."""
+        since = [0.0] * len(self.places) if on_both or self._lift_off is None else self._lift_off[1]
+        if self.spring is None:
+            depth, heel = np.zeros_like(theta), np.zeros_like(theta)
+            pulls = self._pulls(theta, depth, since)
+        elif not self.places and self.spring.strength == math.inf:
+            heel = np.maximum(0.5 - self.spring.stiffness * self._rise(theta), 0.0) if on_both else np.zeros_like(theta)
+            depth, pulls = (1.0 - heel) / self.spring.stiffness, []
+        else:
+            depth, pulls, heel = self._balanced(theta, since, on_both)
+        of_tendons, of_dampers = np.zeros_like(theta), np.zeros_like(theta)
+        down = np.ones_like(theta)
+        for place, pull in zip(self.places, pulls, strict=True):
+            moment = pull * self._arm(place, theta, self.elongation(place, theta, depth))
+            if isinstance(place.device, Damper):
+                of_dampers += moment
+            else:
+                of_tendons += moment
+            down += pull * self._by_v(theta)
+        width = 2.0 * self.b * (np.cos(theta) if self.finite else 1.0)
+        level = self.h * np.cos(theta) if self.finite else np.full_like(theta, self.h)
+        lever = level if on_both and self.spring is not None else level + self._rise(theta)
+        of_weight = self._toe_arm(theta) - heel * width
+        return Equilibria(theta, of_weight, of_tendons, of_dampers, lever, down - heel, heel, depth)
+
+    def at(self, theta: Array) -> Equilibria:
+        """Return the equilibria at rotations ``theta`` > 0 [rad]; at that of lift-off the pier still stands on both supports."""
+        if self.spring is None:
+            return self._parts(theta, False)
+        before = theta <= (math.inf if self.lift_off is None else self.lift_off)
+        if before.all() or not before.any():
+            return self._parts(theta, bool(before.all()))
+        first, second = self._parts(theta[before], True), self._parts(theta[~before], False)
+        joined = {name: np.empty_like(theta) for name in vars(first)}
+        for name, values in joined.items():
+            values[before], values[~before] = getattr(first, name), getattr(second, name)
+        return Equilibria(**joined)
+
+    # Where something changes
+
+    @cached_property
+    def unstable(self) -> float | None:
+        """The rotation from which on the righting moment is negative [rad]; None if there is none up to π/2."""
+        if not self.places:  # the toe is plastic beyond it if it cannot bear the weight alone
+            share = 1.0 if self.spring is None else min(1.0, 2.0 * self.spring.strength - 1.0)
+            tangent = share * math.tan(self.pier.alpha)
+            return math.atan(tangent) if self.finite else min(tangent, 0.5 * math.pi)
+        low, high, parts = 0.0, 0.5 * math.pi, 96
+        for _ in range(5):
+            grid = np.linspace(low, high, parts + 1)[1:]
+            moments = self.at(grid).moment
+            negative = np.flatnonzero(moments < 0.0)
+            if len(negative) == 0:
+                return None
+            i, step, parts = int(negative[0]), (high - low) / parts, 16
+            low, high = float(grid[i]) - step, float(grid[i])
+            before = float(moments[i - 1]) if i else math.inf
+        return high - step * float(moments[i] / (moments[i] - before))
+
+    def curve(self, until: float, before: int = 12, after: int = 100) -> Equilibria:
+        """Return the equilibria from the first rotation to ``until`` [rad], and on both sides of lift-off."""
+        start = min(self.lift_off or 0.0, until)
+        grid = [ONSET, start, float(np.nextafter(start, 2.0)), *np.linspace(0.0, start, before + 1)[1:]]
+        grid += [*(start + (until - start) * np.linspace(0.0, 1.0, after + 1) ** 2)[1:]]
+        return self._from_rest(grid)
+
+    def _from_rest(self, grid: Sequence[float]) -> Equilibria:
+        """Return the equilibria at rotations in order, each once, of which the first may be 0."""
+        at = self.at(np.unique(np.maximum(grid, ONSET)))
+        return replace(at, theta=np.where(at.theta > ONSET, at.theta, 0.0))
+
+    def strongest(self, quantity: str, curve: Equilibria) -> tuple[float, float]:
+        """Return the greatest value of "moment" or "acceleration" along the curve, and the rotation there [rad]."""
+        corners = (0.0, self.lift_off)
+        for _ in range(5):
+            values = getattr(curve, quantity)
+            i = int(np.argmax(values))
+            beside = max(i - 1, 0), min(i + 1, len(values) - 1)
+            if curve.theta[i] in corners or min(values[j] for j in beside) > (1.0 - 1e-7) * values[i]:
+                break
+            low, high = (float(curve.theta[j]) for j in beside)
+            curve = self._from_rest([*np.linspace(low, high, 17), curve.theta[i]])
+        values = getattr(curve, quantity)
+        i = int(np.argmax(values))
+        return float(values[i]), float(curve.theta[i])

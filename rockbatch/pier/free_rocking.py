@@ -1,0 +1,151 @@
+"""Period of free rocking over its amplitude, and the damping that stands for impacts (THEORY.md, Statics).
+
+Both by the energy integral of the pier under weight, springs, tendons and stops: dampers take part in neither. Springs are elastic ones
+here, as yielding springs are between landings, and their vertical vibration is left out: the pier's height follows its rotation.
+"""
+
+import math
+from functools import cached_property
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from rockbatch.pier.bases import Base, ElasticBase, RigidBase
+from rockbatch.pier.block import Pier
+from rockbatch.pier.equilibrium import ONSET, Equilibria, SlowTurn, without_dampers
+from rockbatch.pier.restraints import Stop, Tendon, symmetric
+
+Array = npt.NDArray[np.float64]
+
+_OUTER, _INNER = (np.polynomial.legendre.leggauss(n) for n in (20, 8))
+
+
+class Swings(NamedTuple):
+    """Free rocking over its amplitude [rad]: period [s], and damping ratio of the same decay as by impacts; NaN for none."""
+
+    amplitude: Array
+    period: Array
+    impact_damping: Array
+
+
+class FreeRocking:
+    """A pier that rocks freely on a base between rotations of the same size to either side.
+
+    ``even`` is False where tendons or stops on one side make the swings uneven: there is then no amplitude, and no period.
+    """
+
+    def __init__(self, pier: Pier, base: Base) -> None:
+        holding = without_dampers(base.restraints)
+        springs = ElasticBase(base.beta, kinematics=base.kinematics) if isinstance(base, ElasticBase) else base
+        self.pier, self.base, self.even = pier, base, symmetric(pier, holding)
+        self.turn = SlowTurn(pier, springs, holding)
+
+    def swings(self, amplitudes: Array) -> Swings:
+        """Return period and damping at ``amplitudes`` > 0 [rad], below the unstable equilibrium."""
+        none = np.full_like(amplitudes, math.nan)
+        if not self.even:
+            return Swings(amplitudes, none, none)
+        damping = none
+        if isinstance(self.base, RigidBase):
+            own = self.pier.restitution if self.base.restitution is None else self.base.restitution
+            damping = self.impact_damping(amplitudes, own)
+        return Swings(amplitudes, self.periods(amplitudes), damping)
+
+    @cached_property
+    def _edges(self) -> list[float]:
+        """Rotations at which the moment has a kink: lift-off, stops that are met, tendons that yield."""
+        turn, edges = self.turn, [self.turn.lift_off or 0.0]
+        for place in turn.places:
+            rises = turn.elongation(place, self._curve.theta, self._curve.depth)
+            reached = math.inf
+            if isinstance(place.device, Stop):
+                reached = place.device.gap_m
+            elif isinstance(place.device, Tendon) and place.stiffness > 0.0:
+                reached = (place.device.strength - place.device.psi) / place.stiffness
+            if reached < rises[-1]:
+                edges.append(float(np.interp(reached, rises, self._curve.theta)))
+        return sorted(edges)
+
+    @cached_property
+    def _curve(self) -> Equilibria:
+        return self.turn.curve(self.turn.unstable or 0.5 * math.pi, before=40, after=400)
+
+    @cached_property
+    def _tabulated(self) -> tuple[Array, Array, Array]:
+        """Rotations [rad] up to the unstable equilibrium, moments [m] there, and by what the toe sinks with the rotation [m]."""
+        turn, curve = self.turn, self._curve
+        parts = np.split(
+            np.arange(len(curve.theta)), [int(np.searchsorted(curve.theta, turn.lift_off or 0.0, "right"))]
+        )
+        sinking = [np.gradient(curve.depth[part], curve.theta[part]) for part in parts if len(part) > 1]
+        return curve.theta, curve.moment, np.concatenate(sinking)
+
+    def _moment(self, theta: Array) -> Array:
+        if self.turn.spring is None or not self.turn.places:
+            return self.turn.at(theta).moment
+        at, moments, _ = self._tabulated
+        return np.interp(theta, at, moments)
+
+    def _inertia(self, theta: Array) -> Array:
+        """Return the inertia that belongs to θ̇ [m²] while the centre of mass goes up and down with the rotation."""
+        turn, pier = self.turn, self.pier
+        if turn.spring is None:
+            return np.full_like(theta, pier.inertia_about_pivot)
+        on_both = theta <= (math.inf if turn.lift_off is None else turn.lift_off)
+        rising = turn.b * (np.cos(theta) if turn.finite else np.ones_like(theta))
+        if turn.places:
+            rising = rising - np.interp(theta, self._tabulated[0], self._tabulated[2])
+        else:
+            rising = np.where(on_both, 0.0, rising)
+        if not turn.finite:
+            return pier.inertia + turn.h**2 + rising * (turn.b - turn.h * theta)
+        lever = turn.h * np.cos(theta) + np.where(on_both, 0.0, turn.b * np.sin(theta))
+        return pier.inertia + lever**2 + (rising - turn.h * np.sin(theta)) ** 2
+
+    def _work(self, low: Array, high: Array) -> Array:
+        """Return the integral of the righting moment from ``low`` to ``high`` over the weight [m]; in first-order kinematics over
+        the inertia, too, whose equations have no Lagrangian."""
+        total = np.zeros_like(low)
+        for start, end in pairwise(np.clip(edge, low, high) for edge in (0.0, *self._edges, math.inf)):
+            half, nodes = 0.5 * (end - start), _INNER[0]
+            theta = np.maximum((0.5 * (end + start))[..., None] + half[..., None] * nodes, ONSET)
+            moment = self._moment(theta) if self.turn.finite else self._moment(theta) / self._inertia(theta)
+            total += half * (moment @ _INNER[1])
+        return total
+
+    def periods(self, amplitudes: Array) -> Array:
+        """Return the periods [s] at ``amplitudes`` > 0 [rad], below the unstable equilibrium: 4 ∫ dθ/θ̇ from 0 to the amplitude.
+
+        With θ = amplitude (1 − x²) the integrand is smooth at both ends; it is split where the moment has a kink.
+        """
+        quarter = np.zeros_like(amplitudes)
+        ends = (np.clip(1.0 - edge / amplitudes, 0.0, 1.0) ** 0.5 for edge in (math.inf, *self._edges[::-1], 0.0))
+        for start, end in pairwise(ends):
+            half = 0.5 * (end - start)
+            x = (0.5 * (end + start))[:, None] + half[:, None] * _OUTER[0]
+            theta = np.maximum(amplitudes[:, None] * (1.0 - x**2), ONSET)
+            energy = self.pier.gravity * self._work(theta, np.broadcast_to(amplitudes[:, None], theta.shape))
+            inertia = self._inertia(theta) if self.turn.finite else np.ones_like(theta)
+            with np.errstate(divide="ignore", invalid="ignore"):
+                slowness = np.sqrt(inertia / (2.0 * energy)) * 2.0 * amplitudes[:, None] * x
+            quarter += half * (np.where(half[:, None] > 0.0, slowness, 0.0) @ _OUTER[1])
+        return 4.0 * quarter
+
+    def impact_damping(self, amplitudes: Array, restitution: float) -> Array:
+        """Return the viscous damping ratio of the same decay over the cycle that begins at ``amplitudes`` [rad], on rigid ground.
+
+        Each of the two impacts leaves e² of the energy: the amplitude after them has e⁴ of it, and ζ = ln(θ_0/θ_2)/(2π), the
+        logarithmic decrement. Infinite if the pier stops at its first impact, e = 0.
+        """
+        kept = restitution**4 * self._work(np.zeros_like(amplitudes), amplitudes)
+        low, high = np.zeros_like(amplitudes), amplitudes
+        for _ in range(20):
+            middle = 0.5 * (low + high)
+            above = self._work(np.zeros_like(middle), middle) > kept
+            low, high = np.where(above, low, middle), np.where(above, middle, high)
+        least, most = (self._work(np.zeros_like(low), end) for end in (low, high))
+        following = low + (high - low) * (kept - least) / (most - least)
+        with np.errstate(divide="ignore"):
+            return np.log(amplitudes / (following if restitution > 0.0 else 0.0)) / (2.0 * math.pi)
