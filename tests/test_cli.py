@@ -244,7 +244,7 @@ def test_a_shell_is_told_the_commands_and_options_that_may_come_next(tmp_path):
         subprocess.run([sys.executable, "-c", code], env=os.environ | asked, check=True, capture_output=True)
         return (tmp_path / "told").read_text(encoding="utf-8").split()
 
-    assert completed("rockbatch s") == ["spectrum", "sensitivity"]
+    assert completed("rockbatch s") == ["statics", "spectrum", "sensitivity"]
     assert "--no-scipy" in completed("rockbatch accuracy --no")
 
 

@@ -1,4 +1,4 @@
-"""The statics sheet: closed forms of THEORY.md, balances of moments by other solvers, limits, and what it refuses."""
+"""The statics sheet: closed forms (THEORY.md, Statics), balances of moments by other solvers, limits, and refusals."""
 
 import dataclasses
 import math
