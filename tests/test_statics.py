@@ -330,3 +330,25 @@ def test_a_sheet_that_cannot_be_written_is_an_input_error(tmp_path, capsys):
     study = write_study(tmp_path, study_text())
     assert main(["statics", str(study), "--csv", str(tmp_path / "no" / "sheet.csv")]) == 2
     assert "cannot be written" in capsys.readouterr().err
+
+
+def test_a_stop_holds_the_pier_beyond_its_gap_and_quickens_its_swings():
+    """Beyond the gap the moment has k (e − gap) d cos(θ/2) more, e = 2 d sin(θ/2); a quarter swing by DOP853."""
+    gap, base = 0.1, RigidBase(restraints=(rb.Stop(gap_m=0.1, lam=2.0),))
+    sheet, reach, k = rb.statics(PIER, base), 2.0 * PIER.half_width, 2.0 * PIER.size / PIER.half_width**2
+
+    def moment(theta):
+        held = k * max(2.0 * reach * math.sin(theta / 2.0) - gap, 0.0) * reach * math.cos(theta / 2.0)
+        return PIER.size * math.sin(PIER.alpha - theta) + held
+
+    theta = sheet.curve["theta_rad"].to_numpy()
+    assert sheet.curve["moment_over_weight_m"].to_numpy() == pytest.approx(list(map(moment, theta)), abs=1e-8)
+    assert sheet.unstable_rad is None
+    start = 0.5 * PIER.alpha
+    upright = lambda t, y: y[0]  # noqa: E731
+    upright.terminal = True
+    fall = solve_ivp(
+        lambda t, y: [y[1], -PIER.gravity * moment(y[0]) / PIER.inertia_about_pivot], (0.0, 20.0), [start, 0.0],
+        method="DOP853", rtol=1e-10, atol=1e-12, events=upright, max_step=0.01,
+    )  # fmt: skip
+    assert FreeRocking(PIER, base).periods(np.array([start])) == pytest.approx([4.0 * fall.t_events[0][0]], rel=1e-5)
