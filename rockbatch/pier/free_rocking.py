@@ -1,7 +1,7 @@
 """Period of free rocking over its amplitude, and the damping that stands for impacts (THEORY.md, Statics).
 
 Both by the energy integral of the pier under weight, springs, tendons and stops: dampers take part in neither.
-Springs are elastic ones, as yielding ones are between landings; their vertical vibration is left out: the height follows the rotation.
+Springs are elastic, as yielding ones are between landings; their vertical vibration is left out: the height follows the rotation.
 """
 
 import math
