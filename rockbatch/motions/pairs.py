@@ -124,15 +124,21 @@ def unpaired(motions: Sequence[Motion]) -> str:
     return ""
 
 
-def station_spectrum(motions: Sequence[Motion], periods: npt.ArrayLike, damping: float, rule: str) -> Array:
-    """Return the spectral accelerations [m/s²] of a station by one of PAIR_RULES, shape (periods,).
+def station_spectra(motions: Sequence[Motion], periods: npt.ArrayLike, damping: float) -> dict[str, Array]:
+    """Return the spectral accelerations [m/s²] of a station by all of PAIR_RULES, each shape (periods,).
 
     Raises ``InputError`` as :func:`square_pair`, and for periods and damping that are out of range.
     """
     lone = motions[0]
     samples = aligned(*square_pair(motions)) if lone.across is None else (lone.horizontal, lone.across)
     both = (responses(a, lone.dt, periods, damping) for a in samples)
-    return np.array([measured(u, v)[rule] for u, v in zip(*both, strict=True)])
+    rows = [measured(u, v) for u, v in zip(*both, strict=True)]
+    return {rule: np.array([row[rule] for row in rows]) for rule in PAIR_RULES}
+
+
+def station_spectrum(motions: Sequence[Motion], periods: npt.ArrayLike, damping: float, rule: str) -> Array:
+    """Return the spectral accelerations [m/s²] of a station by one of PAIR_RULES; see :func:`station_spectra`."""
+    return station_spectra(motions, periods, damping)[rule]
 
 
 @checked

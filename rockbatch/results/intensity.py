@@ -8,8 +8,10 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from rockbatch.grouping import grouped
 from rockbatch.lazy import pd
 from rockbatch.motions import Motion, measures
+from rockbatch.motions.pairs import station_spectra, unpaired
 from rockbatch.motions.spectrum import spectral_acceleration
 from rockbatch.results import beside_peaks
 from rockbatch.results.suite_statistics import NO_PEAK
@@ -24,7 +26,8 @@ MEANING = {
     "uniform_s": "uniform duration: all the time that the acceleration exceeds g tan α [s]",
     "cav_m_s": "cumulative absolute velocity, ∫|a| dt [m/s]",
 }
-"""Measures by their columns; beside them ``sa_Ts_g`` is the spectral acceleration [g] at T seconds, 5 % damped."""
+"""Measures by their columns; beside them ``sa_Ts_g`` is the spectral acceleration [g] at T seconds, 5 % damped, and
+``sa_Ts_rotd100_g`` and the like are those of the station's pair of horizontal components, empty without one."""
 
 LEAST_RUNS = 3
 """With values, for a rank correlation or a line."""
@@ -34,7 +37,15 @@ Array = npt.NDArray[np.float64]
 
 def intensities(peaks: "pd.DataFrame", study: Study, motions: Sequence[Motion]) -> Iterator[dict[str, Any]]:
     """Yield the rows of intensity.csv, one for each run of ``peaks`` that was simulated."""
-    periods = study.output.sa_periods_s
+    periods, rules = study.output.sa_periods_s, study.output.sa_pairs
+    stations = grouped(motions, lambda motion: motion.of_station)
+
+    @cache
+    def of_pair(station: str) -> dict[str, Array]:
+        """Return spectral accelerations [m/s²] of a station's pair, by the study's rules; NaN without one."""
+        if unpaired(stations[station]):
+            return dict.fromkeys(rules, np.full(len(periods), math.nan))
+        return station_spectra(stations[station], periods, 0.05)
 
     @cache
     def of_record(motion: Motion) -> tuple[float, float, Array]:
@@ -54,11 +65,16 @@ def intensities(peaks: "pd.DataFrame", study: Study, motions: Sequence[Motion]) 
         bracketed, uniform = durations(motion, uplift / scale)
         values = (scale * motion.pga / uplift, pier.p * scale * pgv / uplift, bracketed, uniform, scale * cav)
         of_spectrum = {_column(period): scale * float(s) / pier.gravity for period, s in zip(periods, sa, strict=True)}
+        for rule in rules:
+            pair = of_pair(motion.of_station)[rule]
+            of_spectrum |= {
+                _column(period, rule): scale * float(s) / pier.gravity for period, s in zip(periods, pair, strict=True)
+            }
         yield {**row, **dict(zip(MEANING, values, strict=True)), **of_spectrum}
 
 
-def _column(period: float) -> str:
-    return f"sa_{period:g}s_g"
+def _column(period: float, rule: str = "") -> str:
+    return f"sa_{period:g}s_{rule}_g" if rule else f"sa_{period:g}s_g"
 
 
 class Order(NamedTuple):

@@ -16,6 +16,7 @@ from rockbatch.checks.reading import SUITE, read_checks
 from rockbatch.checks.rules import CHECK, Rule
 from rockbatch.errors import InputError
 from rockbatch.motions import MotionSet
+from rockbatch.motions.pairs import DIRECTIONS
 from rockbatch.motions.sequences import SEQUENCE
 from rockbatch.pier import described, symmetric
 from rockbatch.showing import Shown, several
@@ -70,6 +71,9 @@ OUTPUT = Section(("output",), "What is kept beyond the table of peaks.", {
     "sa_periods_s": Key(positive, "[0.5, 1.0, 2.0]",
         "Periods of the spectral accelerations among the intensity measures.", many=True,
         only={"intensity": (True,)}),
+    "sa_pairs": Key(choice(*DIRECTIONS), '["rotd50", "rotd100"]',
+        "Spectral accelerations of both components of a station, beside those of each: their geometric mean, and the median and "
+        "the greatest over all directions.", many=True, only={"intensity": (True,)}),
     "estimate": Key(boolean, "true",
         "Whether what the equivalent oscillators of design practice give is written beside the peaks."),
 }, homes=(Output,))  # fmt: skip

@@ -113,6 +113,7 @@ class Output:
     both_laws: bool = True
     intensity: bool = False
     sa_periods_s: tuple[float, ...] = (0.5, 1.0, 2.0, 4.0)
+    sa_pairs: tuple[str, ...] = ()
     estimate: bool = False
 
 

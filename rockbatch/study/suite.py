@@ -1,5 +1,6 @@
 """The ground motions of a study: read, selected, scaled, and pulses beside them."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 from rockbatch.errors import InputError
@@ -9,7 +10,6 @@ from rockbatch.motions.scaling import at_target, with_vertical
 from rockbatch.motions.selection import selected
 from rockbatch.motions.sequences import with_sequences
 from rockbatch.study.load import Study
-from rockbatch.study.spec import MotionSpec
 
 
 def ground_motions(study: Study) -> MotionSet:
@@ -20,7 +20,7 @@ def ground_motions(study: Study) -> MotionSet:
     anything is unusable.
     """
     spec = study.motions
-    gravity = study.cases[0].pier.gravity
+    gravity, azimuths = study.cases[0].pier.gravity, _azimuths(study)
     if isinstance(spec.instead, MotionSet):
         records = _as_given(spec.instead, spec.vertical)
     else:
@@ -31,11 +31,12 @@ def ground_motions(study: Study) -> MotionSet:
             options=ReadOptions(spec.unit, spec.dt, spec.columns, spec.sensitivity, spec.role, spec.layout),
             fema=[(record.station, record.azimuth) for record in spec.fema_p695],
             offset=spec.offset,
-            azimuths=_azimuths(spec),
+            azimuths=azimuths,
             confirmed=spec.confirm,
             confirmed_pga=spec.confirm_pga,
         )
-        records = _along_the_axis(records, spec)
+        if azimuths != spec.azimuths:
+            records = _along_the_axis(records, azimuths)
     pulses = [shape.motion(gravity) for shape in spec.pulses]
     records, pulses = with_sequences(records, spec.sequences, pulses)
     records = selected(records, spec.select, gravity)
@@ -55,18 +56,17 @@ def ground_motions(study: Study) -> MotionSet:
     return replace(records, motions=[*records.motions, *pulses])
 
 
-def _azimuths(spec: MotionSpec) -> tuple[float, ...]:
-    """Return the directions that pairs are turned to: for a target of pairs along the pier's axis and across it."""
-    if spec.target is None or spec.target.pairs not in DIRECTIONS or len(spec.azimuths) != 1:
+def _azimuths(study: Study) -> tuple[float, ...]:
+    """Return the directions that pairs are turned to: along the pier's axis and across it if the study asks for their spectra."""
+    spec = study.motions
+    of_pairs = study.output.sa_pairs or (spec.target is not None and spec.target.pairs in DIRECTIONS)
+    if not of_pairs or len(spec.azimuths) != 1:
         return spec.azimuths
     return spec.azimuths[0], (spec.azimuths[0] + 90.0) % 360.0
 
 
-def _along_the_axis(motions: MotionSet, spec: MotionSpec) -> MotionSet:
-    """Return motions with those across the pier's axis within those along it, where a target takes both."""
-    azimuths = _azimuths(spec)
-    if azimuths == spec.azimuths:
-        return motions
+def _along_the_axis(motions: MotionSet, azimuths: Sequence[float]) -> MotionSet:
+    """Return motions with those across the pier's axis, the second of two ``azimuths``, within those along it."""
     across = {motion.of_station: motion for motion in motions if motion.name.endswith(f"_az{azimuths[1]:03g}")}
     along = [motion for motion in motions if across.get(motion.of_station) is not motion]
     for i, motion in enumerate(along):

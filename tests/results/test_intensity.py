@@ -5,7 +5,8 @@ import math
 import numpy as np
 import pytest
 import scipy.stats
-from studies import COSINE, SINE, study_text, write_study
+from motion_files import wiggle, write_at2
+from studies import COSINE, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.errors import InputError
@@ -211,3 +212,60 @@ def test_a_suite_that_all_overturned_has_a_picture_too(tmp_path):
     (axes,) = found.plot_cdf().axes
     assert axes.get_xlim() == (0.0, 1.0)
     assert [line.get_marker() for line in axes.lines] == ["None", "x"] * 2
+
+
+# Of pairs
+
+
+def write_pairs(folder, lone=()):
+    for name, seed in (("RSN1_A_000", 1), ("RSN1_A_090", 2), ("RSN2_B_000", 3), ("RSN2_B_090", 4)):
+        _, station, azimuth = name.split("_")
+        if name not in lone:
+            title = f"Made-up, 1/17/1994, Station {station}, {azimuth}"
+            write_at2(folder / "records", f"{name}.AT2", 4.0 * wiggle(500, seed), title=title)
+
+
+def pairs_study(folder, **motions):
+    output = ASKED | {"sa_periods_s": [0.3], "sa_pairs": ["rotd50", "rotd100"], "estimate": False}
+    text = study_text(
+        motions={"path": "records", "scale": [1.0, 2.0], **motions}, pulses=(), output=output, cases=[RIGID]
+    )
+    return write_study(folder, text)
+
+
+def test_measures_of_pairs_are_those_of_both_components_and_nothing_where_one_is_lacking(tmp_path):
+    write_pairs(tmp_path, lone=("RSN2_B_090",))
+    rb.run(pairs_study(tmp_path), out=tmp_path / "out")
+    table = rb.open_results(tmp_path / "out").intensity
+    names = ["sa_0.3s_g", "sa_0.3s_rotd50_g", "sa_0.3s_rotd100_g"]
+    assert list(table)[-3:] == names
+    motions = rb.read_motions(tmp_path / "records")
+    spectrum = rb.pair_spectrum(motions[0], motions[1], [0.3]).iloc[0]
+    for row in table.to_dict("records"):
+        if row["record"].startswith("RSN1"):
+            assert row[names[1]] == pytest.approx(row["scale"] * spectrum["rotd50_g"], rel=1e-9)
+            assert row[names[2]] == pytest.approx(row["scale"] * spectrum["rotd100_g"], rel=1e-9)
+            assert row[names[0]] <= row[names[2]] * (1 + 1e-9)
+        else:
+            assert math.isnan(row[names[1]])
+            assert row[names[0]] > 0.0
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert "RotD100(0.3\u00a0s)" in page
+    assert "SA(0.3\u00a0s)" in page
+
+
+def test_turned_to_the_axis_a_motion_has_the_measures_of_its_pair(tmp_path):
+    write_pairs(tmp_path)
+    both = []
+    for name, motions in (("recorded", {}), ("turned", {"axis_deg": 25})):
+        rb.run(pairs_study(tmp_path, **motions), out=tmp_path / name)
+        table = rb.open_results(tmp_path / name).intensity
+        both.append(sorted({round(value, 9) for value in table["sa_0.3s_rotd100_g"]}))
+    assert both[0] == pytest.approx(both[1], rel=1e-4)
+
+
+def test_pairs_without_intensity_are_answered(tmp_path):
+    with pytest.raises(InputError, match=r"sa_pairs = .*: is for intensity = true"):
+        rb.load_study(write_study(tmp_path, study_text(output={"sa_pairs": ["rotd50"]})))
+    with pytest.raises(InputError, match=r'sa_pairs = "srss": expected one of "geomean", "rotd50", "rotd100"'):
+        rb.load_study(write_study(tmp_path, study_text(output={"intensity": True, "sa_pairs": ["srss"]})))

@@ -62,5 +62,7 @@ def _shown(value: float) -> float | str:
 
 
 def _symbol(name: object) -> str:
-    """Return the symbol of a measure: PGA/(g tan α), or S_a(0.5 s) for sa_0.5s_g."""
-    return SYMBOLS.get(str(name)) or f"SA({str(name).removeprefix('sa_').removesuffix('s_g')}\u00a0s)"
+    """Return the symbol of a measure: PGA/(g tan α), SA(0.5 s) for sa_0.5s_g, RotD100(0.5 s) for sa_0.5s_rotd100_g."""
+    period, _, rule = str(name).removeprefix("sa_").removesuffix("_g").partition("s_")
+    measure = {"geomean": "geometric mean", "rotd50": "RotD50", "rotd100": "RotD100"}.get(rule, "SA")
+    return SYMBOLS.get(str(name)) or f"{measure}({period.removesuffix('s')}\u00a0s)"

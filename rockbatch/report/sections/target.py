@@ -1,5 +1,6 @@
 """The suite against its target spectrum, its pulse-like records, and their distances from the source."""
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
@@ -71,4 +72,5 @@ def _sound(target: Mapping[str, Any]) -> bool:
     """Return whether the parts of a target fit each other, since run.json may come from anybody."""
     periods, ends = target["period_s"], target["range_s"]
     fitting = all(len(target[name]) == len(periods) > 0 for name in ("sa_g", "mean_sa_g"))
-    return len(ends) == 2 and min(ends) > 0 and fitting and min((*periods, *target["sa_g"])) > 0
+    known = fitting and all(map(math.isfinite, target["mean_sa_g"]))
+    return len(ends) == 2 and min(ends) > 0 and known and min((*periods, *target["sa_g"])) > 0
