@@ -1,6 +1,7 @@
 """Self-similar spectra (Dimitrakopoulos & DeJong 2012): blocks of all sizes, and slender ones of any α, on one curve."""
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -65,6 +66,21 @@ def test_other_piers_part_from_the_curve_as_alpha_squared():
     slender, middle, stocky = (table.xs(alpha, level="alpha")["theta_max_over_alpha"] for alpha in (1e-3, 0.1, 0.2))
     assert 0.005 < (stocky / slender - 1.0).abs().max() < 0.03
     np.testing.assert_allclose((stocky - slender) / (middle - slender), 4.0, atol=0.15)
+
+
+@pytest.mark.slow
+def test_near_fault_records_share_the_curves_as_the_page_says():
+    """docs/pages/questions/size.md: α = 0.2 over 0.05 where both stand, in the median, in 95 % of the points, and at most."""
+    runs = rb.spectrum(Path(__file__).parents[2] / "configs" / "self_similar.toml").spectrum
+    keys = ["record", "pga_over_g_tan_alpha", "omega_g_over_p"]
+    stood = runs[runs["status"] == "ok"].pivot_table("theta_max_over_alpha", keys, "alpha")
+    gaps = (stood[0.2] / stood[0.05] - 1.0).abs().dropna()
+    assert len(gaps) > 400
+    assert gaps.quantile([0.5, 0.95]).to_list() == pytest.approx([0.006, 0.044], abs=0.001)
+    assert gaps.max() == pytest.approx(4.0, abs=0.1)
+    sizes = runs.groupby("omega_g_over_p")["size_m"].agg(["min", "max"])
+    assert sizes.loc[2.0].to_list() == pytest.approx([0.2, 2.8], abs=0.05)
+    assert sizes.loc[14.0].to_list() == pytest.approx([10.6, 139.0], rel=0.01)
 
 
 STUDY = study_text(
