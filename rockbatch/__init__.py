@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from rockbatch.errors import InputError
     from rockbatch.motions import Motion, MotionSet, ReadOptions, pair_spectrum, pulse, read_motions, sequence
     from rockbatch.motions.hazard import HazardCurve
-    from rockbatch.pier import Damper, ElasticBase, Part, Pier, RigidBase, Stop, Tendon, YieldingBase
+    from rockbatch.pier import Damper, DeckSpring, ElasticBase, Part, Pier, RigidBase, Stop, Tendon, YieldingBase
     from rockbatch.pier.statics import Statics, statics
     from rockbatch.report import report
     from rockbatch.results.checking import check
@@ -34,7 +34,7 @@ _NAMES = {
     "errors": "InputError",
     "motions": "Motion MotionSet ReadOptions pair_spectrum pulse read_motions sequence",
     "motions.hazard": "HazardCurve",
-    "pier": "Damper ElasticBase Part Pier RigidBase Stop Tendon YieldingBase",
+    "pier": "Damper DeckSpring ElasticBase Part Pier RigidBase Stop Tendon YieldingBase",
     "pier.statics": "Statics statics",
     "report": "report",
     "results.checking": "check",
@@ -46,6 +46,7 @@ _HOMES = {name: f"rockbatch.{home}" for home, names in _NAMES.items() for name i
 
 __all__ = [
     "Damper",
+    "DeckSpring",
     "ElasticBase",
     "HazardCurve",
     "InputError",

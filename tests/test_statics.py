@@ -352,3 +352,39 @@ def test_a_stop_holds_the_pier_beyond_its_gap_and_quickens_its_swings():
         method="DOP853", rtol=1e-10, atol=1e-12, events=upright, max_step=0.01,
     )  # fmt: skip
     assert FreeRocking(PIER, base).periods(np.array([start])) == pytest.approx([4.0 * fall.t_events[0][0]], rel=1e-5)
+
+
+@pytest.mark.parametrize("spring", [rb.DeckSpring(0.1), rb.DeckSpring(0.4, gap_m=0.3)], ids=["linear", "gap"])
+def test_a_spring_beside_the_deck_rights_the_pier_and_quickens_its_swings(spring):
+    """The deck goes X = h_d sin θ + b (1 − cos θ); the moment has k (X − gap) dX/dθ more."""
+    base, k, b = RigidBase(restraints=(spring,)), spring.lam * PIER.size / PIER.half_width**2, PIER.half_width
+
+    def moment(theta):
+        way = PIER.deck * math.sin(theta) + b * (1.0 - math.cos(theta))
+        held = k * max(way - spring.gap_m, 0.0) * (PIER.deck * math.cos(theta) + b * math.sin(theta))
+        return PIER.size * math.sin(PIER.alpha - theta) + held
+
+    sheet = rb.statics(PIER, base)
+    theta = sheet.curve["theta_rad"].to_numpy()
+    assert sheet.curve["moment_over_weight_m"].to_numpy() == pytest.approx(list(map(moment, theta)), abs=1e-8)
+    start = 0.6 * PIER.alpha
+    work = [quad(moment, theta, start, points=[spring.gap_m / PIER.deck])[0] for theta in (0.0, 0.5 * start)]
+    assert work[0] > work[1] > 0.0
+    slowness = lambda x: (  # noqa: E731  # θ = start (1 − x²)
+        2.0 * start * x
+        / math.sqrt(2.0 * PIER.gravity / PIER.inertia_about_pivot * quad(moment, start * (1.0 - x * x), start, limit=200)[0])
+    )  # fmt: skip
+    quarter = quad(slowness, 1e-6, 1.0, limit=200)[0]
+    assert FreeRocking(PIER, base).periods(np.array([start])) == pytest.approx([4.0 * quarter], rel=1e-3)
+
+
+def test_a_linear_spring_beside_the_deck_stiffens_a_pier_on_elastic_springs():
+    """Up to lift-off M = (ω_v² b² − g h + k h_d²) θ/g, and none of the spring's force presses the supports."""
+    spring, base = rb.DeckSpring(0.3), ElasticBase(60.0)
+    held = dataclasses.replace(base, restraints=(spring,))
+    bare, tied = (SlowTurn(PIER, each) for each in (base, held))
+    theta = np.array([0.5 * bare.lift_off])
+    k = spring.lam * PIER.size / PIER.half_width**2
+    assert tied.at(theta).moment - bare.at(theta).moment == pytest.approx(k * PIER.deck**2 * theta, rel=1e-9)
+    assert tied.at(theta).toe == pytest.approx(bare.at(theta).toe, rel=1e-9)
+    assert tied.lift_off == pytest.approx(bare.lift_off, rel=1e-7)

@@ -13,7 +13,7 @@ from rockbatch.batch.plan import PlannedRun
 from rockbatch.checks.demands import FORCES
 from rockbatch.errors import InputError
 from rockbatch.lazy import pd
-from rockbatch.pier import Base, Pier, offsets, vertical_frequency
+from rockbatch.pier import Base, Pier, places, vertical_frequency
 from rockbatch.results.histories_file import HISTORIES, OF_SPRINGS, UNITS, write
 from rockbatch.results.reading import Saved
 from rockbatch.simulation.histories import histories
@@ -122,7 +122,7 @@ def history_bytes(run: PlannedRun, row: "Mapping[str, Any] | pd.Series") -> floa
     """
     pier, base = run.case.pier, run.case.base
     columns = len(UNITS) - (0 if base.on_springs else len(OF_SPRINGS))
-    columns += 2 * sum(len(offsets(pier, each)) for each in base.restraints)  # elongations and forces
+    columns += 2 * sum(len(places(pier, each)) for each in base.restraints)  # elongations and forces
     if _has(row, LEDGER):
         columns += len(TERMS)
     if _has(row, FORCES):

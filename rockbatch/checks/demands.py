@@ -68,7 +68,7 @@ class Demand:
         Key of [output] that brings the columns it takes.
     weighed : bool
         True if it takes the mass of the pier.
-    device : "", "damper", "tendon" or "stop"
+    device : "", "damper", "tendon", "stop" or "deck_spring"
         Device that the pier has to have.
     held : bool
         True if it applies on every base to a pier that dampers may hold at a tilt.
@@ -235,7 +235,7 @@ def _forces(words: str, *columns: str, times: Lever = _ONE, **more: Any) -> Dema
 def _in_kilonewtons(device: str) -> Demand:
     """Return the largest force of a device in kN, from that over the weight: earlier results have no other."""
     of = _largest(f"{device}_force_over_weight", times=_weight)
-    return Demand(f"greatest force of a {device} [kN]", of, weighed=True)
+    return Demand(f"greatest force of a {device.replace('_', ' ')} [kN]", of, weighed=True)
 
 
 def has_device(case: Case, device: str) -> bool:
@@ -318,6 +318,15 @@ _OF_DEVICES: dict[str, str | Demand] = {
     ),
     "stop_blows": "how often stops are met",
     "stop_energy_J_kg": "energy that all stops take, over the pier's mass [J/kg]",
+    "deck_spring_force_over_weight": "greatest force of a deck spring over the pier's weight",
+    "deck_spring_force_kN": _in_kilonewtons("deck_spring"),
+    "deck_spring_deflection_m": "greatest deflection of a deck spring beyond its gap [m]",
+    "deck_spring_deflection_mm": Demand(
+        "greatest deflection of a deck spring beyond its gap [mm]",
+        _largest("deck_spring_deflection_m", times=_always(1000.0)),
+    ),
+    "deck_spring_blows": "how often gaps beside the deck close",
+    "deck_spring_energy_J_kg": "energy that all deck springs take, over the pier's mass [J/kg]",
 }
 """Demands on devices, likewise."""
 

@@ -29,12 +29,15 @@ from rockbatch.pier.block import Pier as Pier
 from rockbatch.pier.block import described as described
 from rockbatch.pier.restraints import Damper as Damper
 from rockbatch.pier.restraints import DamperKind as DamperKind
+from rockbatch.pier.restraints import DeckSpring as DeckSpring
+from rockbatch.pier.restraints import Place as Place
 from rockbatch.pier.restraints import Restraint as Restraint
 from rockbatch.pier.restraints import Stop as Stop
 from rockbatch.pier.restraints import Tendon as Tendon
 from rockbatch.pier.restraints import doubt as doubt
 from rockbatch.pier.restraints import fields_of as fields_of
 from rockbatch.pier.restraints import offsets as offsets
+from rockbatch.pier.restraints import places as places
 from rockbatch.pier.restraints import recentres as recentres
 from rockbatch.pier.restraints import restraint_of as restraint_of
 from rockbatch.pier.restraints import symmetric as symmetric

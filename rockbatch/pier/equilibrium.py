@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from rockbatch.pier.bases import Base, ElasticBase, YieldingBase, static_deflection
 from rockbatch.pier.block import Pier
-from rockbatch.pier.restraints import Damper, Restraint, Stop, Tendon, offsets, prestress_over_weight
+from rockbatch.pier.restraints import Damper, DeckSpring, Restraint, Stop, Tendon, places, prestress_over_weight
 
 Array = npt.NDArray[np.float64]
 
@@ -115,7 +115,7 @@ def _share(low: Array, high: Array) -> Array:
 
 
 def without_dampers(restraints: tuple[Restraint, ...]) -> tuple[Restraint, ...]:
-    """Return tendons and stops, whose forces depend on the rotation alone."""
+    """Return tendons, stops and deck springs, whose forces depend on the rotation alone."""
     return tuple(device for device in restraints if not isinstance(device, Damper))
 
 
@@ -129,11 +129,16 @@ def spring_of(pier: Pier, base: ElasticBase) -> Spring:
 
 @dataclass(frozen=True)
 class Place:
-    """A device at one place: its ``offset`` [m] from the middle of the base towards the pivot that bears more."""
+    """A device at one place: its ``offset`` [m] from the middle of the base towards the pivot that bears more.
+
+    One at the deck has a ``height`` [m], and lengthens as the deck moves by ``way`` times towards that pivot.
+    """
 
     device: Restraint
     offset: float
-    stiffness: float  # of a tendon or stop, over the weight [1/m]
+    stiffness: float  # of a tendon, stop or deck spring, over the weight [1/m]
+    height: float = 0.0
+    way: float = 1.0
 
     def pull(self, elongation: Array, since: float) -> Array:
         """Return its tension at an ``elongation`` [m] reached steadily from ``since``, and that from 0.
@@ -143,7 +148,9 @@ class Place:
         device = self.device
         if isinstance(device, Tendon):
             return np.clip(device.psi + self.stiffness * elongation, 0.0, device.strength)
-        if isinstance(device, Stop):
+        if isinstance(device, DeckSpring) and device.linear:
+            return self.stiffness * elongation
+        if isinstance(device, Stop | DeckSpring):
             return self.stiffness * np.maximum(elongation - device.gap_m, 0.0)
         if device.kind == "friction":
             return device.f * np.sign(elongation - since)
@@ -164,7 +171,7 @@ class Equilibria:
     ----------
     weight, tendons, dampers : ndarray
         Their shares of the righting moment about the pivot that bears more, over the weight [m]; the P–Δ moment is in ``weight``,
-        and what stops bear in ``tendons``.
+        and what stops and deck springs bear in ``tendons``.
     lever : ndarray
         Height by which a horizontal ground acceleration turns the pier [m].
     toe, heel : ndarray
@@ -208,12 +215,14 @@ class SlowTurn:
         self.places = [
             Place(
                 device,
-                side * offset,
+                side * at.offset,
                 0.0 if isinstance(device, Damper) else device.lam * pier.size / pier.half_width**2,
+                at.height,
+                side * at.way or 1.0,
             )
             for device in devices
             if not (isinstance(device, Damper) and device.kind == "viscous")  # which bear nothing
-            for offset in offsets(pier, device)
+            for at in places(pier, device)
         ]
         self.spring = spring_of(pier, base) if isinstance(base, ElasticBase) else None
         self.at_rest = 0.5 * (1.0 + prestress_over_weight(pier, devices))
@@ -229,15 +238,27 @@ class SlowTurn:
 
     def elongation(self, place: Place, theta: Array, depth: Array) -> Array:
         """Return the elongation of a device [m], of a pier whose toe is at a ``depth`` [m]."""
+        if place.height:
+            if not self.finite:
+                return place.way * place.height * theta
+            return place.way * (place.height * np.sin(theta) + self._swing * (1.0 - np.cos(theta)))
         if not self.finite:
             return self.settled - depth + (self.b - place.offset) * theta
         return (self.settled - depth + (self.b - place.offset) * np.sin(theta)) / np.cos(0.5 * theta)
+
+    @property
+    def _swing(self) -> float:
+        """By how much the deck is aside of what the pier turns about [m]."""
+        return self.b if self.spring is None else 0.0
 
     def _by_v(self, theta: Array) -> Array:
         return 1.0 / np.cos(0.5 * theta) if self.finite else np.ones_like(theta)
 
     def _arm(self, place: Place, theta: Array, elongation: Array) -> Array:
         """Return the arm of a device's tension about the toe [m]."""
+        if place.height:
+            height = place.height * np.cos(theta) + self._swing * np.sin(theta) if self.finite else place.height
+            return np.full_like(theta, place.way) * height
         distance = self.b - place.offset
         if not self.finite:
             return np.full_like(theta, distance)
@@ -267,7 +288,8 @@ class SlowTurn:
     def _excess(self, theta: Array, depth: Array, pulls: list[Array], heel: Array) -> Array:
         """Return by what the supports press upwards more than weight and devices press down."""
         assert self.spring is not None
-        down = 1.0 + self._by_v(theta) * sum(pulls, start=np.zeros_like(theta))
+        vertical = (pull for place, pull in zip(self.places, pulls, strict=True) if not place.height)
+        down = 1.0 + self._by_v(theta) * sum(vertical, start=np.zeros_like(theta))
         return self.spring.force(depth) + heel - down
 
     @cached_property
@@ -342,7 +364,7 @@ class SlowTurn:
                 of_dampers += moment
             else:
                 of_tendons += moment
-            down += pull * self._by_v(theta)
+            down += 0.0 if place.height else pull * self._by_v(theta)
         width = 2.0 * self.b * (np.cos(theta) if self.finite else 1.0)
         level = self.h * np.cos(theta) if self.finite else np.full_like(theta, self.h)
         lever = level if on_both and self.spring is not None else level + self._rise(theta)

@@ -15,7 +15,7 @@ import numpy.typing as npt
 from rockbatch.pier.bases import Base, ElasticBase, RigidBase
 from rockbatch.pier.block import Pier
 from rockbatch.pier.equilibrium import ONSET, Equilibria, SlowTurn, without_dampers
-from rockbatch.pier.restraints import Stop, Tendon, symmetric
+from rockbatch.pier.restraints import DeckSpring, Stop, Tendon, symmetric
 
 Array = npt.NDArray[np.float64]
 
@@ -60,7 +60,7 @@ class FreeRocking:
         for place in turn.places:
             rises = turn.elongation(place, self._curve.theta, self._curve.depth)
             reached = math.inf
-            if isinstance(place.device, Stop):
+            if isinstance(place.device, Stop | DeckSpring):
                 reached = place.device.gap_m
             elif isinstance(place.device, Tendon) and place.stiffness > 0.0:
                 reached = (place.device.strength - place.device.psi) / place.stiffness

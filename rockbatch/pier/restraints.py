@@ -10,10 +10,14 @@ from typing import Any, ClassVar, Literal, NamedTuple, Self, get_args
 
 from rockbatch.arguments import checked
 from rockbatch.errors import InputError, remedy
-from rockbatch.pier.block import Pier
+from rockbatch.pier.block import BOUNDS as OF_PIER
+from rockbatch.pier.block import HIGHEST, Pier
 from rockbatch.units import LEAST, MOST, NOT_NEGATIVE, Bounds
 
 DamperKind = Literal["friction", "viscous", "hysteretic"]
+
+Side = Literal["both", "left", "right"]
+"""To which side a deck moves when it meets a spring."""
 
 BOUNDS = {
     "f": Bounds(0.0, 10.0, why="its force over the weight must be within 0..10"),
@@ -28,10 +32,14 @@ BOUNDS = {
 """Values of devices. Beyond ten times the weight a wrong unit is likelier than the device; fluid dampers have
 exponents of 0.15 to 1, and one of 0 is friction."""
 
+HEIGHT = OF_PIER["deck_height_m"]
+"""Heights at which a spring may act on the deck [m]."""
+
 DAMPERS = {"friction": ("f",), "hysteretic": ("f", "yield_m"), "viscous": ("nu", "exponent")}
 """By kind of damper, the fields that count."""
 
 FIELDS = DAMPERS | {"tendon": ("psi", "lam"), "stop": ("gap_m", "lam", "restitution")}
+FIELDS["deck_spring"] = FIELDS["stop"]
 """Of other devices too, but for a tendon's yield force."""
 
 SPEED = 0.1
@@ -65,8 +73,9 @@ class Damper:
         u_y of a hysteretic damper [m].
     exponent : float
         a of a viscous damper, 0.1 to 2.
-    at : float, "left", "right" or None
-        Offset from the centre of the base [m], positive to the right; None: one at each pivot.
+    at : float, "left", "right", "deck" or None
+        Offset from the centre of the base [m], positive to the right; None: one at each pivot. "deck": a horizontal one between
+        the deck, at ``Pier.deck``, and what stands beside it and goes with the ground; not of friction.
     confirm : sequence of str
         "nu" or "yield_m", if the value is right though unusual.
 
@@ -220,15 +229,73 @@ class Stop:
         return cls(**_over_weight(pier, **values), **rest)
 
 
-Restraint = Damper | Tendon | Stop
+@checked
+@dataclass(frozen=True)
+class DeckSpring:
+    """A horizontal spring between the deck and what stands beside it and goes with the ground: an abutment, a neighbouring span.
+
+    With a gap, or on one side, the deck meets it as the base does a :class:`Stop`, and it follows the same law. On both sides
+    and without a gap and a loss it is linear.
+
+    Attributes
+    ----------
+    lam : float
+        λ = k b²/(M g R0), its stiffness.
+    gap_m : float
+        By how much the deck moves until it is met [m].
+    restitution : float
+        e, 0.1 to 1; 1 takes no energy.
+    side : "both", "left" or "right"
+        To which side the deck moves when it is met; both: one on each.
+    height_m : float or None
+        Height above the pivots at which it acts [m]; that of the deck, ``Pier.deck``, by default.
+    confirm : sequence of str
+        "lam", "gap_m" or "height_m", if the value is right though unusual.
+
+    Examples
+    --------
+    >>> base = rb.RigidBase(restraints=(rb.DeckSpring(lam=0.2, gap_m=0.05, side="right"),))
+    >>> motion = rb.pulse("sine", name="one-sine", amplitude=9.81, period=0.5, dt=0.005, duration=2.0)
+    >>> response = rb.simulate(rb.Pier(alpha=0.2, p=1.0), base, motion)
+    >>> list(response.restraints)[1:]
+    ['deck spring 1 elongation', 'deck spring 1 force']
+    """
+
+    what: ClassVar[str] = "deck_spring"
+
+    lam: float
+    gap_m: float = 0.0
+    restitution: float = 1.0
+    side: Side = "both"
+    height_m: float | None = None
+    confirm: Sequence[str] = field(default=(), kw_only=True, compare=False, repr=False)
+
+    @classmethod
+    @checked
+    def of(cls, pier: Pier, stiffness_kN_m: float, gap_mm: float = 0.0, restitution: float = 1.0, **rest: Any) -> Self:
+        """Return a spring of the stiffness k [kN/m] with a gap [mm] beside the deck of ``pier``.
+
+        ``rest``: ``side``, ``height_m`` and ``confirm``. Raises ``InputError`` as :meth:`Damper.friction`.
+        """
+        values = {"stiffness_kN_m": stiffness_kN_m, "gap_mm": gap_mm, "restitution": restitution}
+        return cls(**_over_weight(pier, **values), **rest)
+
+    @property
+    def linear(self) -> bool:
+        """Whether it pulls and pushes alike."""
+        return self.side == "both" and self.gap_m == 0.0 and self.restitution == 1.0
 
 
-KINDS: dict[str, type[Damper | Tendon | Stop]] = {kind.what: kind for kind in (Damper, Tendon, Stop)}
+Restraint = Damper | Tendon | Stop | DeckSpring
+
+KINDS: dict[str, type[Restraint]] = {kind.what: kind for kind in (Damper, Tendon, Stop, DeckSpring)}
 """Devices by the names of their tables in a study."""
 
 
 def what_of(values: Mapping[str, Any]) -> str:
     """Return the kind of device, one of :data:`KINDS`, that has these fields in run.json."""
+    if "side" in values:
+        return "deck_spring"
     return "damper" if "kind" in values else "stop" if "gap_m" in values else "tendon"
 
 
@@ -284,14 +351,40 @@ def described_restraints(restraints: tuple[Restraint, ...]) -> dict[str, Any]:
     return {"restraints": devices} if devices else {}
 
 
-def offsets(pier: Pier, restraint: Restraint) -> tuple[float, ...]:
-    """Return the places at which ``restraint`` acts, from the centre of the base [m]."""
+class Place(NamedTuple):
+    """Where a device acts: at an offset from the centre of the base [m], or at a height on the deck [m].
+
+    ``way`` is −1 or 1 of a spring that a deck meets on its left or right, 0 of a device that acts both ways.
+    """
+
+    offset: float = 0.0
+    height: float = 0.0
+    way: float = 0.0
+
+
+def places(pier: Pier, restraint: Restraint) -> tuple[Place, ...]:
+    """Return the places at which ``restraint`` acts, those on the left before those on the right."""
+    if isinstance(restraint, DeckSpring):
+        height = pier.deck if restraint.height_m is None else restraint.height_m
+        if restraint.linear:
+            return (Place(height=height),)
+        return tuple(Place(0.0, height, way) for way in _WAYS.get(restraint.side, ()))
+    if restraint.at == "deck":
+        return (Place(height=pier.deck),)
     b = pier.half_width
     if restraint.at is None:
-        return -b, b
+        return Place(-b), Place(b)
     if isinstance(restraint.at, str):
-        return (-b,) if restraint.at == "left" else (b,)
-    return (float(restraint.at),)
+        return (Place(-b if restraint.at == "left" else b),)
+    return (Place(float(restraint.at)),)
+
+
+_WAYS: dict[str, tuple[float, ...]] = {"both": (-1.0, 1.0), "left": (-1.0,), "right": (1.0,)}
+
+
+def offsets(pier: Pier, restraint: Restraint) -> tuple[float, ...]:
+    """Return the places at the base at which ``restraint`` acts, from its centre [m]."""
+    return tuple(place.offset for place in places(pier, restraint) if place.height == 0.0)
 
 
 def prestress_over_weight(pier: Pier, restraints: tuple[Restraint, ...]) -> float:
@@ -321,11 +414,7 @@ def wrong_restraints(pier: Pier, restraints: tuple[Restraint, ...]) -> list[str]
 
 def wrong_device(pier: Pier, device: Restraint) -> list[str]:
     """Return what is impossible about one device under ``pier``, a sentence each; empty if nothing is."""
-    wrong = []
-    if isinstance(device.at, str) and device.at not in ("left", "right"):
-        wrong.append(f'at = "{device.at}": must be "left", "right" or an offset in m')
-    elif isinstance(device.at, float | int) and not abs(device.at) <= 2.0 * pier.half_width:
-        wrong.append(f"at = {device.at:g}: must be within the base's width either side, {2 * pier.half_width:.4g} m")
+    wrong = _wrong_place(pier, device)
     if isinstance(device, Damper) and device.kind not in DAMPERS:
         wrong.append(f'kind = "{device.kind}": must be ' + " or ".join(f'"{kind}"' for kind in get_args(DamperKind)))
     for field_ in DAMPERS.get(device.kind, ()) if isinstance(device, Damper) else FIELDS[device.what]:
@@ -334,6 +423,27 @@ def wrong_device(pier: Pier, device: Restraint) -> list[str]:
         strength = f"its yield force over the weight, {device.strength:g}"
         wrong.append(f"{strength}, must be above its prestress, {device.psi:g}")
     return [f"{device.what}: {problem}" for problem in wrong]
+
+
+def _wrong_place(pier: Pier, device: Restraint) -> list[str]:
+    if isinstance(device, DeckSpring):
+        wrong = HEIGHT.problems("height_m", device.height_m)
+        if device.side not in _WAYS:
+            wrong.append(f'side = "{device.side}": must be ' + " or ".join(f'"{side}"' for side in _WAYS))
+        return wrong
+    at, on_deck = device.at, isinstance(device, Damper)
+    if at == "deck" and isinstance(device, Damper) and device.kind == "friction":
+        return [
+            'at = "deck": friction at the deck is not solved; write kind = "hysteretic" with a small yield_mm, whose limit '
+            "friction is"
+        ]
+    if isinstance(at, str) and at not in ("left", "right", *(("deck",) if on_deck else ())):
+        return [
+            f'at = "{at}": must be "left", "right"{", " + chr(34) + "deck" + chr(34) if on_deck else ""} or an offset in m'
+        ]
+    if isinstance(at, float | int) and not abs(at) <= 2.0 * pier.half_width:
+        return [f"at = {at:g}: must be within the base's width either side, {2 * pier.half_width:.4g} m"]
+    return []
 
 
 def _wrong_friction(pier: Pier, restraints: tuple[Restraint, ...]) -> list[str]:
@@ -354,7 +464,7 @@ def recentres(pier: Pier, restraints: tuple[Restraint, ...]) -> bool:
     for corner in (-pier.half_width, pier.half_width):
         holds, rights = 0.0, 1.0
         for device in restraints:
-            arms = sum(abs(offset - corner) for offset in offsets(pier, device)) / pier.half_width
+            arms = sum(place.height or abs(place.offset - corner) for place in places(pier, device)) / pier.half_width
             holds += device.f * arms if isinstance(device, Damper) and device.kind != "viscous" else 0.0
             rights += device.psi * arms if isinstance(device, Tendon) else 0.0
         if holds >= rights:
@@ -364,8 +474,17 @@ def recentres(pier: Pier, restraints: tuple[Restraint, ...]) -> bool:
 
 def symmetric(pier: Pier, restraints: tuple[Restraint, ...]) -> bool:
     """Return whether each device has its like on the other side."""
-    placed = [(offset, replace(device, at=0.0)) for device in restraints for offset in offsets(pier, device)]
-    return all(placed.count((-offset, device)) == placed.count((offset, device)) for offset, device in placed)
+    placed = [(place, _anywhere(device)) for device in restraints for place in places(pier, device)]
+    return all(placed.count((_mirrored(place), device)) == placed.count((place, device)) for place, device in placed)
+
+
+def _anywhere(device: Restraint) -> Restraint:
+    """Return the device without its place."""
+    return replace(device, side="both") if isinstance(device, DeckSpring) else replace(device, at=0.0)
+
+
+def _mirrored(place: Place) -> Place:
+    return Place(-place.offset, place.height, -place.way)
 
 
 class Doubt(NamedTuple):
@@ -380,7 +499,7 @@ def doubt(pier: Pier, device: Restraint) -> Doubt | None:
     if isinstance(device, Damper):
         odd = _of_damper(pier, device)
     else:
-        odd = _of_tendon(pier, device) if isinstance(device, Tendon) else _of_stop(pier, device)
+        odd = _of_tendon(pier, device) if isinstance(device, Tendon) else _of_contact(pier, device)
     return None if odd is None or odd.name in device.confirm else odd
 
 
@@ -419,14 +538,26 @@ def _of_tendon(pier: Pier, tendon: Tendon) -> Doubt | None:
     return None
 
 
-def _of_stop(pier: Pier, stop: Stop) -> Doubt | None:
+def _of_contact(pier: Pier, stop: Stop | DeckSpring) -> Doubt | None:
+    name = "stop" if isinstance(stop, Stop) else "spring"
     if stop.lam == 0.0:
-        return Doubt("lam", "with no stiffness the stop is not there; give one, or leave the stop out")
+        return Doubt("lam", f"with no stiffness the {name} is not there; give one, or leave the {name} out")
     deflection = pier.half_width**2 / (stop.lam * pier.size)  # under the weight
     if deflection < FIRMEST:
         return Doubt("lam", f"it bears the pier's weight at a deflection of {1000.0 * deflection:.2g} mm")
-    if stop.gap_m > 2.0 * pier.half_width:
-        return Doubt("gap_m", f"it is met at a rise of {stop.gap_m:.3g} m, more than the pier is wide")
     if 0.0 < stop.gap_m < 5e-4:
-        return Doubt("gap_m", f"it is met at a rise of {1000.0 * stop.gap_m:.2g} mm already")
+        return Doubt("gap_m", f"it is met after {1000.0 * stop.gap_m:.2g} mm already")
+    if isinstance(stop, Stop):
+        if stop.gap_m > 2.0 * pier.half_width:
+            return Doubt("gap_m", f"it is met at a rise of {stop.gap_m:.3g} m, more than the pier is wide")
+        return None
+    height = pier.deck if stop.height_m is None else stop.height_m
+    if height > HIGHEST * 2.0 * pier.height:
+        return Doubt(
+            "height_m", f"{0.5 * height / pier.height:.3g} times the height of the pier, {2 * pier.height:.3g} m"
+        )
+    if stop.gap_m > height * math.tan(pier.alpha):
+        return Doubt(
+            "gap_m", f"the deck is only there, {stop.gap_m:.3g} m away, when the pier leans by more than alpha"
+        )
     return None

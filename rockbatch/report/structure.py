@@ -8,6 +8,7 @@ from rockbatch.errors import InputError
 from rockbatch.pier import (
     Base,
     Damper,
+    DeckSpring,
     ElasticBase,
     Pier,
     Restraint,
@@ -33,7 +34,7 @@ _WORDS = {
     "stiffness_kN_m": ("kt", "kN/m"), "yield_kN": ("Ty", "kN"), "gap_mm": ("gap", "mm"), "restitution": ("e", ""),
 }  # fmt: skip
 
-_NAMED = {"stop": "lift stop"}
+_NAMED = {"stop": "lift stop", "deck_spring": "deck spring"}
 _OF_STOP = {"stiffness_kN_m": ("k", "kN/m")}
 
 
@@ -80,7 +81,7 @@ def in_words(pier: Pier, restraint: Restraint) -> str:
             values[key] = getattr(restraint, field) * divisor
     power = values.pop("exponent", 1.0) if "coefficient_kN_s_m" in values else 1.0
     words = f"{kind} damper" if isinstance(restraint, Damper) else _NAMED.get(kind, kind)
-    names = _WORDS | _OF_STOP if restraint.what == "stop" else _WORDS
+    names = _WORDS | _OF_STOP if restraint.what in _NAMED else _WORDS
     numbers = [_number(*names[key], value, power) for key, value in values.items() if value < float("inf")]
     return ", ".join([f"{words} {_where(restraint)}", *numbers])
 
@@ -92,8 +93,13 @@ def _number(symbol: str, unit: str, value: float, power: float) -> str:
 
 
 def _where(restraint: Restraint) -> str:
+    if isinstance(restraint, DeckSpring):
+        height = "" if restraint.height_m is None else f", {restraint.height_m:g} m high"
+        return ("on both sides" if restraint.side == "both" else f"on the {restraint.side}") + height
     if restraint.at is None:
         return "at each pivot"
+    if restraint.at == "deck":
+        return "at the deck"
     if isinstance(restraint.at, str):
         return f"at the {restraint.at} pivot"
     return (

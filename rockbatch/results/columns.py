@@ -325,11 +325,14 @@ def _device(
     def has(study: Study) -> bool:
         return any(name.startswith(f"{device.what}_") for case in study.cases for device in case.base.restraints)
 
-    number: Literal["number", "count"] = "count" if of in ("tendon_slack", "stop_blows") else "number"
+    number: Literal["number", "count"] = (
+        "count" if of in ("tendon_slack", "stop_blows", "deck_spring_blows") else "number"
+    )
     return Column(name, meaning, of, unit, OnPage(head, form, factor, behind), number, sometimes=True, asked=has)
 
 
 _DAMPER, _TENDON, _STOP = (f"greatest force of a {device}" for device in ("damper", "tendon", "stop"))
+_DECK = "greatest force of a spring beside the deck"
 
 DEVICES = (
     _device("damper_force_over_weight", f"{_DAMPER} over the pier's weight", "damper_force", "1", "damper F/(M g)", ".4f"),
@@ -366,6 +369,24 @@ DEVICES = (
     _device(
         "stop_force_kN", f"{_STOP}, where the mass is known", _in_kilonewtons("stop_force"), "kN", "stop F [kN]", ".0f",
         behind="stop_force_over_weight",
+    ),
+    _device(
+        "deck_spring_force_over_weight", f"{_DECK} over the pier's weight", "deck_spring_force", "1", "deck spring F/(M g)",
+        ".4f",
+    ),
+    _device(
+        "deck_spring_deflection_m", "by how much the spring beside the deck that was pressed in most was, beyond its gap",
+        "deck_spring_depth", "m", "deck spring deflection [mm]", ".1f", 1000,
+    ),
+    _device("deck_spring_blows", "how often gaps beside the deck closed", "deck_spring_blows", "1", "closures", ".0f"),
+    _device(
+        "deck_spring_energy_J_kg",
+        "energy that all springs beside the deck take and do not give back, per unit mass of the pier", "deck_spring_energy",
+        "J/kg", "deck springs [J/kg]", ".4f",
+    ),
+    _device(
+        "deck_spring_force_kN", f"{_DECK}, where the mass is known", _in_kilonewtons("deck_spring_force"), "kN",
+        "deck spring F [kN]", ".0f", behind="deck_spring_force_over_weight",
     ),
 )  # fmt: skip
 """Columns of devices."""

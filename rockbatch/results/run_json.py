@@ -20,7 +20,7 @@ from rockbatch.motions.scaling import verticals
 from rockbatch.motions.spectrum import PERIODS, periods_over, spectral_acceleration
 from rockbatch.motions.spectrum_target import PAIRS, SpectrumTarget
 from rockbatch.motions.velocity_pulses import pulse_of
-from rockbatch.pier import Damper, Stop, Tendon, described
+from rockbatch.pier import Damper, DeckSpring, Stop, Tendon, described
 from rockbatch.pier.bases import BOUNDS, WORDS
 from rockbatch.results.columns import units
 from rockbatch.results.shape import Maybe
@@ -35,11 +35,12 @@ _VALUES = {str: (float, str)}
 _NUMBERS_OF_BASE = (*BOUNDS, "beta", "omega_v", "delta_s_m", "delta_y_m", "stiffness_kN_m", "yield_kN")
 _RESTRAINT = {
     parameter.name: Maybe(_NUMBER)
-    for parameter in (*fields(Damper), *fields(Tendon), *fields(Stop))
+    for parameter in (*fields(Damper), *fields(Tendon), *fields(Stop), *fields(DeckSpring))
     if parameter.name != "confirm"
 } | {
     "kind": Maybe(str),
     "at": Maybe((float, str)),
+    "side": Maybe(str),
 }
 _OF_FILE = {"name": str, "source": str, "reason": str}
 _SPECTRA = {

@@ -8,7 +8,7 @@ import numpy as np
 
 from rockbatch.core.block import lanes as block_lanes
 from rockbatch.core.block.model import Block
-from rockbatch.core.devices.laws import CONTACT, FRICTION, HYSTERETIC, TENDON, VISCOUS, Element
+from rockbatch.core.devices.laws import CONTACT, FRICTION, HYSTERETIC, SPRING, TENDON, VISCOUS, Element
 from rockbatch.core.ground import ground_rows
 from rockbatch.core.powers import LARGEST_WHOLE
 from rockbatch.core.springs import lanes as spring_lanes
@@ -19,15 +19,17 @@ from rockbatch.pier import (
     Base,
     Damper,
     DamperKind,
+    DeckSpring,
     ElasticBase,
     Pier,
+    Place,
     Restraint,
     RigidBase,
     SpringLaw,
-    Stop,
+    Tendon,
     YieldingBase,
     fastest,
-    offsets,
+    places,
     rocking_frequency,
     vertical_frequency,
     yield_deflection,
@@ -163,38 +165,41 @@ def line_of(
 
 def elements(pier: Pier, base: Base) -> list[Element]:
     """Return the core's numbers for the devices of ``base``: plain floats, per unit mass."""
-    return [
-        _element(pier, base, device, float(offset)) for device in base.restraints for offset in offsets(pier, device)
-    ]
+    return [_element(pier, base, device, place) for device in base.restraints for place in places(pier, device)]
 
 
-def _element(pier: Pier, base: Base, device: Restraint, offset: float) -> Element:
-    at_base = IDLE._replace(offset=offset)
+def _element(pier: Pier, base: Base, device: Restraint, place: Place) -> Element:
+    at = IDLE._replace(offset=float(place.offset))
+    if place.height != 0.0:
+        swing = 0.0 if base.on_springs else pier.half_width
+        at = IDLE._replace(height=float(place.height), swing=float(swing), way=float(place.way or 1.0))
     if isinstance(device, Damper):
-        return _damper(pier, base, device, at_base)
+        return _damper(pier, base, device, at)
     stiffness = float(device.lam * pier.gravity * pier.size / pier.half_width**2)
-    if isinstance(device, Stop):
-        returned = float(device.restitution**2)
-        quickest = math.sqrt(_lever(pier, base, offset) * stiffness / returned)
-        return at_base._replace(
-            kind=CONTACT, stiffness=stiffness, start=float(device.gap_m), returned=returned, quickest=quickest
-        )
-    strength, prestress = float(pier.gravity * device.strength), float(pier.gravity * device.psi)
-    return at_base._replace(kind=TENDON, strength=strength, stiffness=stiffness, prestress=prestress)
+    if isinstance(device, Tendon):
+        strength, prestress = float(pier.gravity * device.strength), float(pier.gravity * device.psi)
+        return at._replace(kind=TENDON, strength=strength, stiffness=stiffness, prestress=prestress)
+    if isinstance(device, DeckSpring) and device.linear:
+        return at._replace(kind=SPRING, stiffness=stiffness, linear_below=math.inf)
+    returned = float(device.restitution**2)
+    quickest = math.sqrt(_lever(pier, base, at) * stiffness / returned)
+    return at._replace(
+        kind=CONTACT, stiffness=stiffness, start=float(device.gap_m), returned=returned, quickest=quickest
+    )
 
 
 def _damper(pier: Pier, base: Base, damper: Damper, at: Element) -> Element:
     """Return the Element of a damper where ``at`` is."""
     force, coefficient = float(pier.gravity * damper.f), float(damper.nu * pier.p)
     soft = float(1.0 / damper.yield_m) if damper.kind == "hysteretic" else 0.0
-    linear_below, slope = _linear_part(pier, base, at.offset, coefficient, float(damper.exponent))
+    linear_below, slope = _linear_part(pier, base, at, coefficient, float(damper.exponent))
     return at._replace(
         kind=DAMPERS[damper.kind], strength=force, stiffness=soft, coefficient=coefficient, exponent=float(damper.exponent),
         linear_below=linear_below, slope=slope,
     )  # fmt: skip
 
 
-def _linear_part(pier: Pier, base: Base, offset: float, coefficient: float, exponent: float) -> tuple[float, float]:
+def _linear_part(pier: Pier, base: Base, at: Element, coefficient: float, exponent: float) -> tuple[float, float]:
     """Return the speed [m/s] below which a viscous damper is linear, and the slope [1/s] of its force there.
 
     For a < 1 it would damp faster there than anything else in a pier, and end small motions at once, in steps that no
@@ -204,7 +209,7 @@ def _linear_part(pier: Pier, base: Base, offset: float, coefficient: float, expo
         return 0.0, 0.0
     if exponent == 1.0:
         return math.inf, coefficient
-    speed = (coefficient * _lever(pier, base, offset) / _fastest(pier, base)) ** (1.0 / (1.0 - exponent))
+    speed = (coefficient * _lever(pier, base, at) / _fastest(pier, base)) ** (1.0 / (1.0 - exponent))
     return speed, coefficient * speed ** (exponent - 1.0)
 
 
@@ -213,11 +218,14 @@ def _fastest(pier: Pier, base: Base) -> float:
     return fastest(pier, base) if isinstance(base, ElasticBase) else STEEP * pier.p
 
 
-def _lever(pier: Pier, base: Base, offset: float) -> float:
+def _lever(pier: Pier, base: Base, at: Element) -> float:
     """Return the acceleration at a device under a force there of one per unit mass, in full contact or about a corner."""
+    if at.height != 0.0:
+        inertia = pier.inertia + pier.height**2 if base.on_springs else pier.inertia_about_pivot
+        return (at.height**2 + at.swing**2) / inertia
     if not base.on_springs:
-        return (pier.half_width + abs(offset)) ** 2 / pier.inertia_about_pivot
-    return 1.0 + offset**2 / (pier.inertia + pier.height**2)
+        return (pier.half_width + abs(at.offset)) ** 2 / pier.inertia_about_pivot
+    return 1.0 + at.offset**2 / (pier.inertia + pier.height**2)
 
 
 @lru_cache(maxsize=4096)
@@ -231,8 +239,8 @@ def fastest_rate(pier: Pier, base: Base) -> float:
     """Return the greatest rate [1/s] of a model: of the springs, of vibration against devices, of decay by linear dampers."""
     stiff, slows, steep = 0.0, 0.0, False
     for law in elements(pier, base):
-        lever = _lever(pier, base, law.offset)
-        stiff += lever * law.stiffness * (law.strength if law.kind == HYSTERETIC else law.kind == TENDON)
+        lever = _lever(pier, base, law)
+        stiff += lever * law.stiffness * (law.strength if law.kind == HYSTERETIC else law.kind in (TENDON, SPRING))
         slows += lever * law.coefficient
         steep = steep or law.exponent < 1.0
     if base.on_springs:

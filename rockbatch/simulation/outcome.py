@@ -160,6 +160,8 @@ class Outcome:
         Of tendons: greatest force over M g and plastic elongation [m] of any; how often they went slack.
     stop_force, stop_depth, stop_blows, stop_energy : float or None
         Of stops: greatest force over M g and deflection [m] of any; how often they were met; energy that all took [J/kg].
+    deck_spring_force, deck_spring_depth, deck_spring_blows, deck_spring_energy : float or None
+        Of deck springs, likewise.
     energies : mapping of str to float, or None
         Energy ledger at the end [J/kg], and the greatest ``remainder`` on the way, if asked for.
     forces : PeakForces or None
@@ -199,6 +201,10 @@ class Outcome:
     stop_depth: float | None = None
     stop_blows: int | None = None
     stop_energy: float | None = None
+    deck_spring_force: float | None = None
+    deck_spring_depth: float | None = None
+    deck_spring_blows: int | None = None
+    deck_spring_energy: float | None = None
     energies: Mapping[str, float] | None = None
     forces: PeakForces | None = None
     note: str = ""

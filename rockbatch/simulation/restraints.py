@@ -11,6 +11,7 @@ from rockbatch.core.devices.laws import (
     ELEMENT,
     FRICTION,
     HYSTERETIC,
+    SPRING,
     STICKS,
     TENDON,
     Element,
@@ -24,7 +25,7 @@ from rockbatch.core.observe.rows import state_of
 from rockbatch.core.types import Result
 from rockbatch.lazy import pd
 from rockbatch.motions.motion import Samples
-from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, offsets
+from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, places
 from rockbatch.simulation.models import elements, model, prestress, springs
 from rockbatch.simulation.starting import start_of
 
@@ -37,9 +38,9 @@ def names(pier: Pier, base: Base) -> list[str]:
     labels, counts = list[str](), Counter[str]()
     for device in base.restraints:
         counts[device.what] += 1
-        places = offsets(pier, device)
-        sides = [""] if len(places) == 1 else [" left", " right"]
-        labels += [f"{device.what} {counts[device.what]}{side}" for side in sides]
+        sides = [""] if len(places(pier, device)) == 1 else [" left", " right"]
+        name = device.what.replace("_", " ")
+        labels += [f"{name} {counts[device.what]}{side}" for side in sides]
     return labels
 
 
@@ -136,10 +137,12 @@ def rests_at(pier: Pier, base: ElasticBase, result: Result, level: float, states
     load = np.array([k * (2.0 * unstressed + left + right) - m.gravity, k * b * (left - right)])
     for law, state, holding in zip(elements(pier, base), states, holds, strict=True):
         now, soft = v - level - law.offset * theta, np.array([1.0, -law.offset])
+        if law.height != 0.0:
+            now, soft = law.way * law.height * theta, np.array([0.0, law.way * law.height])
         force, gives = _at_rest(law, now, state, k if holding else 0.0)
         # F = force + gives (u − now), which pulls down by F and turns by −s F
         stiffness += gives * np.outer(soft, soft)
-        load -= (force - gives * (now + level)) * soft
+        load -= (force - gives * (now + (level if law.height == 0.0 else 0.0))) * soft
     return float(np.linalg.solve(stiffness, load)[1])
 
 
@@ -161,11 +164,11 @@ def rests_on_rigid_base(pier: Pier, base: RigidBase, result: Result, states: Sam
         """Return the moment [m²/s²] that rights the pier at rest at ``tilt``."""
         righting = pier.gravity * pier.size * math.sin(pier.alpha - tilt)
         for law, state in zip(laws, states, strict=True):
-            distance = b - side * law.offset
-            now, then = 2.0 * distance * math.sin(0.5 * tilt), 2.0 * distance * math.sin(0.5 * abs(theta))
+            now, arm = _reach(law, b, tilt, side)
+            then, _ = _reach(law, b, abs(theta), side)
             force, gives = _at_rest(law, then, state, 0.0)
             force = stop_force(law, now, state) if law.kind == CONTACT else force + gives * (now - then)
-            righting += force * distance * math.cos(0.5 * tilt)
+            righting += force * arm
         return righting
 
     low, high = 0.0, abs(theta)
@@ -175,6 +178,17 @@ def rests_on_rigid_base(pier: Pier, base: RigidBase, result: Result, states: Sam
         middle = 0.5 * (low + high)
         low, high = (middle, high) if excess(middle) < 0.0 else (low, middle)
     return side * 0.5 * (low + high)
+
+
+def _reach(law: Element, b: float, tilt: float, side: float) -> tuple[float, float]:
+    """Return the elongation [m] of a device of a block at rest on the pivot at ``side``, and its rate over the ``tilt`` [m]."""
+    if law.height != 0.0:
+        way = side * law.way
+        return way * (law.height * math.sin(tilt) + b * (1.0 - math.cos(tilt))), way * (
+            law.height * math.cos(tilt) + b * math.sin(tilt)
+        )
+    distance = b - side * law.offset
+    return 2.0 * distance * math.sin(0.5 * tilt), distance * math.cos(0.5 * tilt)
 
 
 def _at_rest(law: Element, elongation: float, state: float, support: float) -> tuple[float, float]:
@@ -187,6 +201,8 @@ def _at_rest(law: Element, elongation: float, state: float, support: float) -> t
     if law.kind == CONTACT:
         force = stop_force(law, elongation, state)
         return force, law.stiffness / law.returned if force > 0.0 else 0.0
+    if law.kind == SPRING:
+        return law.stiffness * elongation, law.stiffness
     if law.kind != TENDON:
         return 0.0, 0.0
     pull = law.prestress + law.stiffness * (elongation - state)

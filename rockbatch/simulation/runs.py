@@ -9,7 +9,7 @@ import numpy as np
 
 from rockbatch.core import types
 from rockbatch.core.clock import ON_ITS_SIDE
-from rockbatch.core.devices.laws import STICKS
+from rockbatch.core.devices.laws import SPRING, STICKS, Element
 from rockbatch.core.devices.pull import Devices, devices_of
 from rockbatch.core.history import MOMENT
 from rockbatch.core.run import NO_ROWS, march
@@ -22,7 +22,7 @@ from rockbatch.pier import (
     ElasticBase,
     Pier,
     neglected,
-    offsets,
+    places,
     tilt_over_residual,
     vertical_frequency,
     yield_deflection,
@@ -251,8 +251,8 @@ def _held_at_rest(run: Run, result: Result, devices: Devices, outcome: Outcome) 
 
 def _use(run: Run, use: np.recarray) -> dict[str, Any]:
     """Return the demands on devices by the fields of Outcome, of the kinds that the base has."""
-    what = np.array([device.what for device in run.base.restraints for _ in offsets(run.pier, device)])
-    dampers, tendons, stops = (use[what == each].view(np.recarray) for each in ("damper", "tendon", "stop"))
+    what = np.array([device.what for device in run.base.restraints for _ in places(run.pier, device)])
+    dampers, tendons = (use[what == each].view(np.recarray) for each in ("damper", "tendon"))
     demands: dict[str, Any] = {}
     if len(dampers):
         demands["damper_force"] = float(np.maximum(dampers.most, -dampers.least).max()) / run.pier.gravity
@@ -263,13 +263,24 @@ def _use(run: Run, use: np.recarray) -> dict[str, Any]:
         demands["tendon_force"] = float(tendons.most.max()) / run.pier.gravity
         demands["tendon_yield"] = float(tendons.yielded.max())
         demands["tendon_slack"] = int(tendons.times.sum())
-    if len(stops):
-        demands["stop_force"] = float(stops.most.max()) / run.pier.gravity
-        stiffness = np.array([law.stiffness for law in elements(run.pier, run.base)])[what == "stop"]
-        demands["stop_depth"] = float((stops.most / stiffness).max())  # first loading is straight
-        demands["stop_blows"] = int(stops.times.sum())
-        demands["stop_energy"] = float(stops.lost.sum())
+    for each in ("stop", "deck_spring"):
+        if (what == each).any():
+            laws = [law for law, kind in zip(elements(run.pier, run.base), what, strict=True) if kind == each]
+            demands |= _of_contacts(laws, use[what == each].view(np.recarray), each, run.pier.gravity)
     return demands
+
+
+def _of_contacts(laws: list[Element], use: np.recarray, name: str, gravity: float) -> dict[str, Any]:
+    """Return the demands on stops or deck springs, all of which are straight on first loading."""
+    linear = np.array([law.kind == SPRING for law in laws])
+    stiffness = np.array([law.stiffness for law in laws])
+    force = np.where(linear, stiffness * use.stroke, use.most)
+    return {
+        f"{name}_force": float(force.max()) / gravity,
+        f"{name}_depth": float((force / stiffness).max()),
+        f"{name}_blows": int(use.times.sum()),
+        f"{name}_energy": float(use.lost.sum()),
+    }
 
 
 def _refused(run: Run, substeps: int, quiet_s: float) -> Trial | None:

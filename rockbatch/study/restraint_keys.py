@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from rockbatch.errors import remedy
-from rockbatch.pier import Pier, Restraint, Stop, doubt, fields_of
+from rockbatch.pier import DeckSpring, Pier, Restraint, Stop, doubt, fields_of
 from rockbatch.pier.restraints import BOUNDS, DAMPERS, KINDS, wrong_device
 from rockbatch.study.lists import Chosen, Grid
 from rockbatch.study.piers import has_mass
@@ -13,6 +13,9 @@ from rockbatch.toml.reader import Table
 from rockbatch.toml.section import CONFIRM, Clash, Key, Section
 
 _PLACE = Choice(("left", "right"), '"left", "right" or an offset from the middle of the base in m', also=number)
+_OR_DECK = Choice(
+    ("left", "right", "deck"), '"left", "right", "deck" or an offset from the middle of the base in m', also=number
+)
 _FORCE, _VISCOUS = {"kind": ("friction", "hysteretic")}, {"kind": ("viscous",)}
 
 DAMPER = Section(("case", "damper"), "A damper between the pier and the ground. Write as many as there are.", {
@@ -26,8 +29,9 @@ DAMPER = Section(("case", "damper"), "A damper between the pier and the ground. 
         "Coefficient C of a viscous damper, in kN and m/s to the power of `exponent`; or give `nu`.", many=True, only=_VISCOUS),
     "nu": Key(within(BOUNDS["nu"]), "0.5", "Coefficient of a viscous damper as C/(M p).", many=True, only=_VISCOUS),
     "exponent": Key(within(BOUNDS["exponent"]), "0.5", "Exponent of the speed of a viscous damper.", many=True, only=_VISCOUS),
-    "at": Key(_PLACE, '"left"',
-        "Where it is: a pivot, or an offset [m] from the middle of the base; one at each pivot if it is not given."),
+    "at": Key(_OR_DECK, '"left"',
+        "Where it is: a pivot, an offset [m] from the middle of the base, or between the deck and its neighbours; one at each "
+        "pivot if it is not given."),
     **CONFIRM,
 }, many=True, single=True, clashes=(
     Clash(("force_kN", "f"), "force_kN and f are given, which fix the same; keep one", at="f"),
@@ -62,13 +66,28 @@ STOP = Section(
 }, many=True, single=True, homes=(Stop,), clashes=(
     Clash(("stiffness_kN_m", "lambda"), "stiffness_kN_m and lambda are given, which fix the same; keep one", at="lambda"),
 ))  # fmt: skip
-DEVICES: dict[str, Section] = {"damper": DAMPER, "tendon": TENDON, "stop": STOP}
+DECK_SPRING = Section(
+    ("case", "deck_spring"),
+    "A horizontal spring between the deck and an abutment or a neighbouring span, which go with the ground; a damper there is a "
+    '[[case.damper]] with `at = "deck"`.', {
+    "stiffness_kN_m": Key(positive, "5.0e4", "Its stiffness k, for a pier whose mass is known; or give `lambda`.", many=True),
+    "lambda": Key(not_negative, "0.2", "Stiffness as λ = k b²/(M g R0).", many=True),
+    "gap_mm": Key(not_negative, "50.0", "By how much the deck moves until it is met.", many=True),
+    "restitution": Key(within(BOUNDS["restitution"]), "0.6",
+        "What it gives back: the speed after a blow over that before, of a mass that hits it alone.", many=True),
+    "side": Key(choice("both", "left", "right"), '"right"', "To which side the deck moves when it is met."),
+    "height_m": Key(positive, "31.5", "Height above the pivots at which it acts; that of the deck if it is not given."),
+    **CONFIRM,
+}, many=True, single=True, homes=(DeckSpring,), clashes=(
+    Clash(("stiffness_kN_m", "lambda"), "stiffness_kN_m and lambda are given, which fix the same; keep one", at="lambda"),
+))  # fmt: skip
+DEVICES: dict[str, Section] = {"damper": DAMPER, "tendon": TENDON, "stop": STOP, "deck_spring": DECK_SPRING}
 """Tables of a case's devices, by their names."""
 
 RESTRAINTS = tuple(DEVICES)
 
 IN_KN = ("force_kN", "coefficient_kN_s_m", "prestress_kN", "stiffness_kN_m", "yield_kN")
-_UNMEASURED = ("kind", "at", "confirm")
+_UNMEASURED = ("kind", "at", "side", "height_m", "confirm")
 KEYS_OF = {
     kind: tuple(
         name for name, key in DAMPER.items() if name not in _UNMEASURED and kind in key.only.get("kind", (kind,))
@@ -104,13 +123,14 @@ class Device:
     def made(self, pier: Pier, chosen: Chosen) -> Restraint:
         """Return it with the chosen values."""
         values = {key: setting.value for key, setting in self.values(chosen).items()}
-        own: dict[str, Any] = {name: values[name] for name in ("kind", "at") if name in values}
+        own: dict[str, Any] = {name: values[name] for name in ("kind", "at", "side", "height_m") if name in values}
         own |= {field: values[key] / over for key, (field, over) in fields_of(pier).items() if key in values}
         own["confirm"] = tuple(FIELD_OF.get(name, name) for name in sorted(self.table.confirmed))
         if values.get("kind") == "hysteretic":
             own.setdefault("yield_m", 0.001)  # missing, which is noted: a possible value lets the rest be checked
-        if self.what == "stop":
+        if self.what in ("stop", "deck_spring"):  # likewise
             own.setdefault("gap_m", 0.0)
+            own.setdefault("lam", 1.0)
         return KINDS[self.what](**own)
 
     def complain(self, pier: Pier, chosen: Chosen, device: Restraint) -> None:
@@ -163,6 +183,7 @@ def _tables(case: Table, what: str) -> list[Table]:
 _NEEDED = {
     "friction": ("force_kN", "f"), "hysteretic": ("force_kN", "f"), "viscous": ("coefficient_kN_s_m", "nu"),
     "tendon": ("prestress_kN", "psi", "stiffness_kN_m", "lambda"), "stop": ("stiffness_kN_m", "lambda"),
+    "deck_spring": ("stiffness_kN_m", "lambda"),
 }  # fmt: skip
 
 

@@ -101,6 +101,9 @@ _RANGES: dict[str, tuple[Mapping[str, Key], dict[str, str]]] = {
     "stop": (DEVICES["stop"], {
         "gap_mm": "[80.0, 120.0]", "stiffness_kN_m": "[2.0e5, 1.0e6]", "lambda": "[10.0, 40.0]", "restitution": "[0.4, 0.8]",
     }),
+    "deck_spring": (DEVICES["deck_spring"], {
+        "gap_mm": "[20.0, 60.0]", "stiffness_kN_m": "[2.0e4, 1.0e5]", "lambda": "[0.1, 0.5]", "restitution": "[0.4, 0.8]",
+    }),
 }  # fmt: skip
 """Keys of a pier and its case, and of its devices, that have ranges, with examples."""
 
@@ -144,7 +147,7 @@ SECTIONS = (SENSITIVITY, *SPREADS.values(), *(
         numbered=True,
     )
     for spread, within in WITHIN.items()
-    for (what, keys), first in zip(within.items(), ("f", "psi", "gap_mm"), strict=False)
+    for (what, keys), first in zip(within.items(), ("f", "psi", "gap_mm", "gap_mm"), strict=False)
 ))  # fmt: skip
 
 

@@ -14,7 +14,7 @@ from rockbatch.checks import Rule, judge
 from rockbatch.checks.demands import DEMANDS
 from rockbatch.checks.statistics import STATISTICS, quantile
 from rockbatch.errors import InputError
-from rockbatch.pier import Damper, RigidBase, Stop, Tendon, YieldingBase
+from rockbatch.pier import Damper, DeckSpring, RigidBase, Stop, Tendon, YieldingBase
 
 INF = math.inf
 
@@ -322,10 +322,14 @@ DEVICES = {
     "damper_force_over_weight": 0.05, "damper_stroke_m": 0.12, "damper_speed_m_s": 0.4, "damper_energy_J_kg": 0.8,
     "tendon_force_over_weight": 0.3, "tendon_yield_m": 0.004, "tendon_slack": 2,
     "stop_force_over_weight": 0.6, "stop_deflection_m": 0.02, "stop_blows": 3, "stop_energy_J_kg": 0.1,
+    "deck_spring_force_over_weight": 0.2, "deck_spring_deflection_m": 0.03, "deck_spring_blows": 5,
+    "deck_spring_energy_J_kg": 0.2,
 }  # fmt: skip
 FLIGHTS = {"flights": 2, "flight_duration_s": 0.05, "flight_height_m": 0.002}
 ROW |= FORCES | DEVICES | FLIGHTS | {"flight_s": 1.2, "theta_rocking_over_alpha": 0.25}
-TIED = case(base=replace(PADS, restraints=(Damper("viscous", nu=0.1), Tendon(psi=0.1), Stop(0.1, 20.0))))
+TIED = case(
+    base=replace(PADS, restraints=(Damper("viscous", nu=0.1), Tendon(psi=0.1), Stop(0.1, 20.0), DeckSpring(0.2)))
+)
 B, H = 7.3575 * math.sin(0.2), 7.3575 * math.cos(0.2)
 TILT_OVER_RESIDUAL = 1 - 9.81 * H / (50.0 * B) ** 2
 BY_HAND = {  # value and error for θ_max/α = 0.3, α = 0.2
@@ -367,6 +371,8 @@ BY_HAND = {  # value and error for θ_max/α = 0.3, α = 0.2
     "damper_stroke_mm": (120.0, 0.0),
     "stop_force_kN": (0.6 * 3000 * 9.81, 0.0),
     "stop_deflection_mm": (20.0, 0.0),
+    "deck_spring_force_kN": (0.2 * 3000 * 9.81, 0.0),
+    "deck_spring_deflection_mm": (30.0, 0.0),
 }
 
 
@@ -388,9 +394,13 @@ def test_the_error_of_forces_is_a_share_of_each_and_leaves_a_limit_within_it_und
 
 @pytest.mark.parametrize("demand", [name for name, demand in DEMANDS.items() if demand.device])
 def test_a_demand_on_a_device_does_not_apply_to_a_pier_without(demand):
-    only = {"damper": Tendon(psi=0.1), "tendon": Stop(0.1, 20.0), "stop": Damper("viscous", nu=0.1)}[
-        DEMANDS[demand].device
-    ]
+    others = {
+        "damper": Tendon(psi=0.1),
+        "tendon": Stop(0.1, 20.0),
+        "stop": DeckSpring(0.2),
+        "deck_spring": Stop(0.1, 20.0),
+    }
+    only = others[DEMANDS[demand].device]
     for restraints in ((), (only,)):
         one = case(base=replace(PADS, restraints=restraints))
         found = judged(runs([0.3]), one=one, demand=demand, at_most=100.0)

@@ -12,7 +12,7 @@ from reference_solver import OM, TH, VD, TwoSprings, V
 from stop_reference import Memory
 
 from rockbatch.motions.motion import Motion
-from rockbatch.pier import Damper, ElasticBase, Pier, Stop, Tendon, offsets
+from rockbatch.pier import Damper, DeckSpring, ElasticBase, Pier, Stop, Tendon, places
 
 FIRST = 11
 """Index of the first device's state, behind those of the springs."""
@@ -24,7 +24,8 @@ class TiedTwoSprings(TwoSprings):
     def __init__(self, pier: Pier, base: ElasticBase, motion: Motion, quiet_s: float) -> None:
         super().__init__(pier, base, motion, quiet_s)
         self.p, self.size = pier.p, math.hypot(self.b, self.h)
-        self.elements = [(device, s) for device in base.restraints for s in offsets(pier, device)]
+        self.places = [place for device in base.restraints for place in places(pier, device)]
+        self.elements = [(device, place.offset) for device in base.restraints for place in places(pier, device)]
         load = 1.0 + sum(device.psi for device, _ in self.elements if isinstance(device, Tendon))
         share = load * 0.5 * self.g / self.fy
         self.v0, self.z0 = -self.dy * self._static_integral(share), -share
@@ -37,7 +38,9 @@ class TiedTwoSprings(TwoSprings):
             if isinstance(device, Tendon) and device.psi == 0.0:
                 self.state[j] = "slack"
         scale = self.g * self.size / self.b**2
-        self.stops = {j: Memory(d, d.lam * scale) for j, (d, _) in enumerate(self.elements) if isinstance(d, Stop)}
+        self.stops = {
+            j: Memory(d, d.lam * scale) for j, (d, _) in enumerate(self.elements) if isinstance(d, Stop | DeckSpring)
+        }
 
     def shape(self, j: int, y: Sequence[float]) -> tuple[float, ...]:
         """Return the elongation e, ∂e/∂v, ∂e/∂θ, and what ë has beside v̈ ∂e/∂v + θ̈ ∂e/∂θ.
@@ -46,6 +49,11 @@ class TiedTwoSprings(TwoSprings):
         w² = 2/(1 + cos θ), so that w' = w q and q' = 1/(2 + 2 cos θ), where q = sin θ/(2 + 2 cos θ).
         """
         s, theta, turn = self.elements[j][1], y[TH], y[OM]
+        if height := self.places[j].height:
+            way = (self.places[j].way or 1.0) * height
+            if not self.finite:
+                return way * theta, 0.0, way, 0.0
+            return way * math.sin(theta), 0.0, way * math.cos(theta), -way * math.sin(theta) * turn * turn
         if not self.finite:
             return y[V] - self.v0 - s * theta, 1.0, -s, 0.0
         sine, cosine = math.sin(theta), math.cos(theta)
@@ -132,8 +140,8 @@ class TiedTwoSprings(TwoSprings):
         vdd, thdd = super().accelerations(modes, y, ah, av + down)
         if "held" in modes:
             return vdd, thdd
-        for pull, (_, _, by_theta, _) in zip(pulls, shapes, strict=True):
-            arm = by_theta if self.finite else self.h * y[TH] + by_theta  # with P–Δ
+        for pull, (_, _, by_theta, _), place in zip(pulls, shapes, self.places, strict=True):
+            arm = by_theta if self.finite or place.height else self.h * y[TH] + by_theta  # with P–Δ
             H = self.lever(modes, y)[0] if self.finite else self.h
             thdd -= pull * arm / (self.inertia + H * H)
         return vdd, thdd

@@ -9,15 +9,16 @@ from collections.abc import Callable, Sequence
 from reference_solver import Rigid, Surface
 
 from rockbatch.motions.motion import Motion
-from rockbatch.pier import Pier, RigidBase, Stop, offsets
+from rockbatch.pier import DeckSpring, Pier, Place, RigidBase, Stop, places
 
 
 class Memory:
     """Mode and greatest depth of one stop, of the stiffness ``k`` [1/s²]."""
 
-    def __init__(self, stop: Stop, k: float) -> None:
+    def __init__(self, stop: Stop | DeckSpring, k: float) -> None:
         self.gap, self.k, self.e2 = stop.gap_m, k, stop.restitution**2
-        self.mode, self.deepest = "open", 0.0
+        self.linear = isinstance(stop, DeckSpring) and stop.linear
+        self.mode, self.deepest = "first" if self.linear else "open", 0.0
         self.blows, self.most = 0, 0.0
 
     def past(self, elongation: float) -> float:
@@ -33,6 +34,8 @@ class Memory:
         self, elongation: Callable, speed: Callable, still: float, slight: float
     ) -> list[tuple[Surface, float, str]]:
         """Return what ends its mode; ``elongation`` and ``speed`` are functions of the state."""
+        if self.linear:
+            return []
         if self.mode == "first":
             return [(lambda t, y: speed(y), still, "turns back")]
         if self.mode == "elastic":
@@ -58,6 +61,8 @@ class Memory:
 
     def after_jump(self, elongation: float, speed: float) -> None:
         """Follow a jump of the velocity."""
+        if self.linear:
+            return
         if self.mode == "first" and speed < 0.0:
             self.fire("turns back", elongation)
         elif self.mode == "elastic" and speed > 0.0 and elongation - self.gap >= self.deepest:
@@ -71,12 +76,18 @@ class StoppedBlock(Rigid):
         super().__init__(pier, base, motion, quiet_s, theta0)
         self.b, self.h, self.inertia = pier.half_width, pier.height, pier.inertia_about_pivot
         scale = pier.gravity * pier.size / pier.half_width**2
-        self.stops = [(Memory(stop, stop.lam * scale), s) for stop in base.restraints for s in offsets(pier, stop)]
+        self.stops = [
+            (Memory(stop, stop.lam * scale), place) for stop in base.restraints for place in places(pier, stop)
+        ]
 
-    def reach(self, s: float, theta: float) -> tuple[float, float]:
-        """Return the elongation of a device at the offset ``s``, and its rate over θ."""
+    def reach(self, place: Place, theta: float) -> tuple[float, float]:
+        """Return the elongation of a device, and its rate over θ."""
         corner = self.b * self.side
-        x0 = s - corner
+        if place.height:
+            way, x, y = place.way or 1.0, -corner, place.height
+            moved = x * math.cos(theta) + y * math.sin(theta)
+            return way * (moved - x), way * (y * math.cos(theta) - x * math.sin(theta))
+        x0 = place.offset - corner
         apart = x0 * (math.cos(theta) - 1.0), -x0 * math.sin(theta)
         along = -x0 * math.sin(theta), -x0 * math.cos(theta)
         length = math.hypot(*apart)

@@ -8,7 +8,7 @@ from report_page import Page
 from studies import study_text, write_study
 
 import rockbatch as rb
-from rockbatch.pier import described
+from rockbatch.pier import Place, described
 from rockbatch.report.drawing import pier as drawing
 from rockbatch.report.structure import base_of, restraints_of
 from rockbatch.results.run_json import describe_case
@@ -82,7 +82,8 @@ def test_the_deck_and_the_devices_are_drawn_to_scale():
     """Read heights and places back from the picture: they are in the ratio of the pier's."""
     pier = {"alpha": 0.2, "half_width_m": 4.0, "height_m": 20.0, "top_m": 30.0, "deck_m": 33.0}
     (drawn,) = drawing.piers(
-        [pier | {"devices": (("tendon", -2.0), ("viscous damper", 4.0), ("stop", -4.0))}], {"rigid"}
+        [pier | {"devices": (("tendon", Place(-2.0)), ("viscous damper", Place(4.0)), ("stop", Place(-4.0)))}],
+        {"rigid"},
     )
     svg = ET.fromstring(re.search("<svg.*</svg>", str(drawn))[0])
     left, ground, top, right = map(float, re.search(r'd="M([\d.]+) ([\d.]+)V([\d.]+)H([\d.]+)', str(drawn)).groups())

@@ -208,7 +208,7 @@ def test_devices_that_a_wrong_unit_explains_are_refused_until_they_are_confirmed
 @pytest.mark.parametrize(
     ("keys", "key", "said"),
     [
-        ("gap_mm = 0.1\nstiffness_kN_m = 5e5", "gap_mm", "gap_mm = 0.1: it is met at a rise of 0.1 mm already"),
+        ("gap_mm = 0.1\nstiffness_kN_m = 5e5", "gap_mm", "gap_mm = 0.1: it is met after 0.1 mm already"),
         ("gap_mm = 1e5\nstiffness_kN_m = 5e5", "gap_mm", "gap_mm = 100000: it is met at a rise of 100 m, more than"),
         ("gap_mm = 100\nstiffness_kN_m = 5e9", "stiffness_kN_m", "it bears the pier's weight at a deflection of 0.0059 mm"),
         ("gap_mm = 100\nlambda = 0.0", "lambda", "lambda = 0: with no stiffness the stop is not there"),
@@ -221,6 +221,40 @@ def test_stops_that_a_wrong_unit_explains_are_refused_until_they_are_confirmed(t
     assert said in problem
     assert problem.endswith(f'if it is right, write confirm = ["{key}"] in [[case.stop]]')
     assert problems_of(written_with(tmp_path, case=f'{case}confirm = ["{key}"]\n')) == ()
+
+
+@pytest.mark.parametrize(
+    ("keys", "key", "said"),
+    [
+        ("gap_mm = 9000\nstiffness_kN_m = 5e4", "gap_mm", "gap_mm = 9000: the deck is only there"),
+        ("height_m = 3150\nstiffness_kN_m = 5e4", "height_m", "height_m = 3150: 105 times the height of the pier, 30 m"),
+        ("stiffness_kN_m = 5e9", "stiffness_kN_m", "it bears the pier's weight at a deflection of 0.0059 mm"),
+        ("lambda = 0.0", "lambda", "lambda = 0: with no stiffness the spring is not there"),
+    ],
+)  # fmt: skip
+def test_deck_springs_that_a_wrong_unit_explains_are_refused_until_they_are_confirmed(tmp_path, keys, key, said):
+    case = f'[[case]]\nname = "a"\nbase = "rigid"\n[[case.deck_spring]]\n{keys}\n'
+    (problem,) = problems_of(written_with(tmp_path, case=case))
+    assert '[[case]] "a", deck_spring 1: ' in problem
+    assert said in problem
+    assert problem.endswith(f'if it is right, write confirm = ["{key}"] in [[case.deck_spring]]')
+    assert problems_of(written_with(tmp_path, case=f'{case}confirm = ["{key}"]\n')) == ()
+
+
+@pytest.mark.parametrize(
+    ("keys", "said"),
+    [
+        ("gap_mm = 100", "stiffness_kN_m is missing; write for example stiffness_kN_m = 5.0e4, or lambda"),
+        ("lambda = 1\nstiffness_kN_m = 1e4", "stiffness_kN_m and lambda are given, which fix the same; keep one"),
+        ('lambda = 1\nside = "top"', 'side = "top"'),
+        ("lambda = 1\nheight_m = -3", "height_m"),
+        ('lambda = 1\nat = "left"', "at"),
+    ],
+)
+def test_what_is_wrong_about_a_deck_spring_is_said(tmp_path, keys, said):
+    case = f'[[case]]\nname = "a"\nbase = "rigid"\n[[case.deck_spring]]\n{keys}\n'
+    problems = problems_of(written_with(tmp_path, case=case))
+    assert any(said in problem for problem in problems), problems
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,7 @@ from rockbatch.errors import InputError
 from rockbatch.motions.baseline import Offset
 from rockbatch.motions.scaling import Target
 from rockbatch.motions.selection import Selection
-from rockbatch.pier import Damper, ElasticBase, Pier, RigidBase, Stop, Tendon, YieldingBase
+from rockbatch.pier import Damper, DeckSpring, ElasticBase, Pier, RigidBase, Stop, Tendon, YieldingBase
 from rockbatch.study import FemaSpec, Numerics, Output, PulseSpec, Reference, Study, load_study
 from rockbatch.study.cases import BASE_KEYS, CASE
 from rockbatch.study.load import NUMERICS, REFERENCE, TOP
@@ -683,9 +683,9 @@ def test_the_devices_in_comments_of_a_study_to_begin_with_have_all_their_keys_an
     devices = block.replace("#     ", "").replace("#\n", "\n")
     heavy = "[pier]\nwidth_m = 8.0\nheight_m = 30.0\nmass_t = 2000.0\n"
     (only,) = Study.from_toml(heavy + PULSE + RIGID + devices).cases
-    assert [type(device) for device in only.base.restraints] == [Damper, Damper, Tendon, Stop]
+    assert [type(device) for device in only.base.restraints] == [Damper, Damper, Tendon, Stop, DeckSpring]
     ratios = re.sub(r"(?m)^\w+ = [^#\n]*#.*\bor (\w+ = [\d.]+).*$", r"\1", devices).replace("yield_kN", "# yield_kN")
-    hysteretic, viscous, tendon, stop = Study.from_toml(PIER + PULSE + RIGID + ratios).cases[0].base.restraints
+    hysteretic, viscous, tendon, stop, beside = Study.from_toml(PIER + PULSE + RIGID + ratios).cases[0].base.restraints
     assert (hysteretic.f, hysteretic.yield_m, hysteretic.at, viscous.nu, viscous.exponent) == (
         0.02,
         0.005,
@@ -695,6 +695,7 @@ def test_the_devices_in_comments_of_a_study_to_begin_with_have_all_their_keys_an
     )
     assert (tendon.psi, tendon.lam, tendon.strength) == (0.5, 1.0, math.inf)
     assert (stop.gap_m, stop.lam, stop.restitution, stop.at) == (0.1, 20.0, 0.6, "left")
+    assert beside == DeckSpring(0.2, 0.05, 0.6, "right", 31.5)
 
 
 def test_what_the_example_leaves_out_in_comments_can_be_put_in(tmp_path):

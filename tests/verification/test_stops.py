@@ -1,34 +1,20 @@
 """Lift stops (THEORY.md, Stops and deck springs) against closed forms and solvers of their own."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from core_samples import FIG5, TOWER, broadband, pulse
 from restrained_reference import TiedTwoSprings
 from stop_reference import StoppedBlock
+from stopped_piers import BASES, BOUC_WEN, ELASTIC, SHAKEN, stopped, thrown
 
 import rockbatch as rb
-from rockbatch.core.block import lanes
-from rockbatch.core.devices.pull import devices_of
-from rockbatch.core.history import MOMENT
-from rockbatch.core.run import march
 from rockbatch.motions.motion import Motion
-from rockbatch.pier import Damper, ElasticBase, RigidBase, Stop, Tendon, YieldingBase, problems
+from rockbatch.pier import Damper, RigidBase, Stop, Tendon, problems
 from rockbatch.simulation import Run, run_fixed, run_to_tolerance, written_run
-from rockbatch.simulation.models import block, elements, first_substeps
+from rockbatch.simulation.models import first_substeps
 
-ELASTIC = ElasticBase(50.0, epsilon=0.3)
-BOUC_WEN = YieldingBase(50.0, epsilon=0.3, eta=3.0)
-FINITE = YieldingBase(60.0, eta=3.5, spring="epp", zeta=0.1, kinematics="finite", flight="guided")
-BASES = [
-    pytest.param(RigidBase(), id="rigid"),
-    pytest.param(ELASTIC, id="elastic"),
-    pytest.param(BOUC_WEN, id="bouc-wen"),
-    pytest.param(FINITE, id="finite", marks=pytest.mark.slow),
-]
-SHAKEN = pulse("sine", 0.5, 1.0, end=3.0)
 STOPS = {
     "elastic": (Stop(0.04, 20.0),),
     "crushes": (Stop(0.04, 20.0, 0.4),),
@@ -38,25 +24,9 @@ STOPS = {
 }
 
 
-def stopped(base, stops):
-    return replace(base, restraints=stops)
-
-
 def stiffness(pier, stop):
     """k over the mass [1/s²]."""
     return stop.lam * pier.gravity * pier.size / pier.half_width**2
-
-
-def thrown(pier, base, omega, dt=2e-3, samples=700, substeps=8):
-    """Rows of a block on still ground that leaves θ = 0 at the velocity ``omega``, and the use of its devices."""
-    m, ground = block(pier, base), np.zeros((samples, 4))
-    kind, line = lanes.kind_of(m), lanes.line_of(m, 0.0, omega, dt, substeps, 0, 0, samples, 0)
-    devices = devices_of(elements(pier, base))
-    history = np.zeros((80_000, len(MOMENT) + len(kind.columns) + len(devices.x) + 2))
-    flag = np.zeros(1, np.uint8)
-    result = march(kind, [line], ground, flag, substeps, every_step=True, history=history, devices=devices)[0]
-    names = [*MOMENT, *kind.columns]
-    return np.rec.fromarrays(history[: result.rows, : len(names)].T, names=names), devices.use
 
 
 @pytest.mark.parametrize("e", [1.0, 0.7, 0.2])

@@ -4,7 +4,7 @@ import math
 from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
-from rockbatch.pier import Damper, Pier, Restraint, offsets
+from rockbatch.pier import Damper, Pier, Place, Restraint, places
 from rockbatch.report.drawing.svg import line, lowered, rectangle, svg, text
 from rockbatch.report.markup import Markup, number, tag
 
@@ -36,12 +36,12 @@ def piers(all_of_them: Sequence[Mapping[str, Any]], bases: Collection[str]) -> l
     return [_pier(pier, scale, any(base != "rigid" for base in bases)) for pier in shown]
 
 
-def devices(pier: Pier, restraints: Sequence[Restraint]) -> tuple[tuple[str, float], ...]:
-    """Return kinds and places of devices, as offsets from the axis [m]."""
+def devices(pier: Pier, restraints: Sequence[Restraint]) -> tuple[tuple[str, Place], ...]:
+    """Return kinds and places of devices."""
     return tuple(
-        (f"{restraint.kind} damper" if isinstance(restraint, Damper) else restraint.what, offset)
+        (f"{restraint.kind} damper" if isinstance(restraint, Damper) else restraint.what.replace("_", " "), place)
         for restraint in restraints
-        for offset in offsets(pier, restraint)
+        for place in places(pier, restraint)
     )
 
 
@@ -87,7 +87,7 @@ def _pier(pier: Mapping[str, Any], scale: float, springs: bool) -> Markup:
         *_length(right + 26.0, ground, right + 26.0, centre, f"h = {number(pier['height_m'], '.3g')} m"),
         *(mark for x in (left, right) for mark in _support(x, ground, springs)),
         *_deck(pier, middle, b, ground, scale),
-        *(mark for kind, at in pier.get("devices", ()) for mark in _device(kind, middle, scale * at, ground, top)),
+        *(mark for kind, at in pier.get("devices", ()) for mark in _device(kind, middle, at, scale, ground, top)),
         *_length(left, ground + 32.0, right, ground + 32.0, f"2b = {number(2.0 * pier['half_width_m'], '.3g')} m"),
     ]
     what = "two springs" if springs else "rigid ground"
@@ -113,8 +113,17 @@ def _deck(pier: Mapping[str, Any], middle: float, b: float, ground: float, scale
     ]
 
 
-def _device(kind: str, middle: float, at: float, ground: float, top: float) -> list[Markup]:
-    """Draw a tendon up to the top, a stop above the base, or a damper between it and the ground, outside the support there."""
+def _device(kind: str, middle: float, place: Place, scale: float, ground: float, top: float) -> list[Markup]:
+    """Draw a tendon up to the top, a stop above the base, or a damper between it and the ground, outside the support there.
+
+    Beside the deck, a wall that the deck meets, or to which it is tied, on the side on which it is.
+    """
+    if place.height:
+        y, way = ground - scale * place.height, place.way or 1.0
+        near, far = (middle + way * reach for reach in (30.0, 30.0 + SPRING))
+        tied = line(near, y, far, y, "tendon s3", kind)
+        return [tied, line(far, y - ASIDE, far, y + ASIDE, "rigid")]
+    at = scale * place.offset
     if kind == "tendon":
         return [line(middle + at, ground + SPRING, middle + at, ground - top, "tendon s2", kind)]
     x = middle + at + math.copysign(ASIDE, at)

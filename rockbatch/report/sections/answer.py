@@ -84,6 +84,7 @@ def _of_devices(finished: Finished) -> Facts:
         ("damper", "damper_stroke_m", "stroke"),
         ("tendon", "tendon_yield_m", "plastic elongation"),
         ("stop", "stop_deflection_m", "deflection"),
+        ("deck_spring", "deck_spring_deflection_m", "deflection"),
     ):
         if way not in runs or runs[way].isna().all():
             continue
@@ -96,7 +97,7 @@ def _of_devices(finished: Finished) -> Facts:
             where = f": {finished.label(longest['record'])}, case {finished.which(longest)}"
             moved = join(f"{words} at most ", tag("strong", f"{1000 * longest[way]:,.3g} mm"), where)
         bears = join("force of one at most ", tag("strong", force), f" ({finished.which(hardest)}); ")
-        facts.append((f"{device}s", join(bears, moved)))
+        facts.append((f"{device.replace('_', ' ')}s", join(bears, moved)))
     return facts
 
 

@@ -1,0 +1,41 @@
+"""Piers and bases that the tests of stops and deck springs share, and a block that is thrown against them."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from core_samples import pulse
+
+from rockbatch.core.block import lanes
+from rockbatch.core.devices.pull import devices_of
+from rockbatch.core.history import MOMENT
+from rockbatch.core.run import march
+from rockbatch.pier import ElasticBase, RigidBase, YieldingBase
+from rockbatch.simulation.models import block, elements
+
+ELASTIC = ElasticBase(50.0, epsilon=0.3)
+BOUC_WEN = YieldingBase(50.0, epsilon=0.3, eta=3.0)
+FINITE = YieldingBase(60.0, eta=3.5, spring="epp", zeta=0.1, kinematics="finite", flight="guided")
+BASES = [
+    pytest.param(RigidBase(), id="rigid"),
+    pytest.param(ELASTIC, id="elastic"),
+    pytest.param(BOUC_WEN, id="bouc-wen"),
+    pytest.param(FINITE, id="finite", marks=pytest.mark.slow),
+]
+SHAKEN = pulse("sine", 0.5, 1.0, end=3.0)
+
+
+def stopped(base, stops):
+    return replace(base, restraints=stops)
+
+
+def thrown(pier, base, omega, dt=2e-3, samples=700, substeps=8):
+    """Rows of a block on still ground that leaves θ = 0 at the velocity ``omega``, and the use of its devices."""
+    m, ground = block(pier, base), np.zeros((samples, 4))
+    kind, line = lanes.kind_of(m), lanes.line_of(m, 0.0, omega, dt, substeps, 0, 0, samples, 0)
+    devices = devices_of(elements(pier, base))
+    history = np.zeros((80_000, len(MOMENT) + len(kind.columns) + len(devices.x) + 2))
+    flag = np.zeros(1, np.uint8)
+    result = march(kind, [line], ground, flag, substeps, every_step=True, history=history, devices=devices)[0]
+    names = [*MOMENT, *kind.columns]
+    return np.rec.fromarrays(history[: result.rows, : len(names)].T, names=names), devices.use
