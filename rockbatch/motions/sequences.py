@@ -163,9 +163,9 @@ def sequence(
         lacking = [part.name for part in parts if part.vertical is None]
         said += [f"no vertical component in {lacks}: zeros" for lacks in dict.fromkeys(lacking)]
         vertical = _joined([part.vertical if part.vertical is not None else np.zeros(part.npts) for part in parts],
-                           [Initial()] * len(parts), dt, rest, f"{name}: vertical", said)  # fmt: skip
+                           [Initial()] * len(parts), dt, rest, name, "vertical: ", said)  # fmt: skip
     initial = [part.initial or Initial() for part in parts]
-    horizontal = _joined([part.horizontal for part in parts], initial, dt, rest, name, said)
+    horizontal = _joined([part.horizontal for part in parts], initial, dt, rest, name, "", said)
     return _described(parts, name, replace(
         parts[0], name=name, dt=dt, across=None, horizontal=horizontal, vertical=vertical, notes=tuple(said),
         shocks=tuple(
@@ -215,7 +215,7 @@ def _resampled(motion: Motion, dt: float, said: list[str]) -> Motion:
 
 
 def _joined(
-    series: Sequence[Samples], initial: Sequence[Initial], dt: float, rest: int, name: str, said: list[str]
+    series: Sequence[Samples], initial: Sequence[Initial], dt: float, rest: int, name: str, what: str, said: list[str]
 ) -> Samples:
     """Return accelerations one after the other, ``rest`` steps apart, each beginning with the velocity of its ``initial``."""
     if len(series) == 1:
@@ -230,12 +230,12 @@ def _joined(
         joined += [a, height * bell if 2.0 * abs(height) > 1e-12 * np.abs(a).max() else np.zeros(rest - 1)]
     if most > MOST_IN_PAUSE:
         raise InputError(
-            f"{name}: it takes {most / GRAVITY:.2g} g to bring the ground to rest in a pause of {rest * dt:g} s, more than "
+            f"{name}: {what}it takes {most / GRAVITY:.2g} g to bring the ground to rest in a pause of {rest * dt:g} s, more than "
             f'{MOST_IN_PAUSE / GRAVITY:g} g: a record ends with a velocity, as with an offset; write offset = "mean" under '
             "[motions], or a longer pause_s"
         )
     if most > _NOTED:
-        said.append(f"{name}: the ground is brought to rest in the pauses by {most / GRAVITY:.1e} g at most")
+        said.append(f"{what}the ground is brought to rest in the pauses by {most / GRAVITY:.1e} g at most")
     return np.concatenate([*joined, series[-1]])
 
 
@@ -327,7 +327,8 @@ def _one(
             return wanted.of([by_name[name] for name in wanted.records])
         except InputError as error:
             why = list(error.problems)
-    return Unusable(wanted.name, where or "[[motions.sequence]]", "; ".join((*why, *unknown)))
+    reason = f"sequence {shown(wanted.name)}: {'; '.join((*why, *unknown))}"
+    return Unusable(wanted.name, where or "[[motions.sequence]]", reason)
 
 
 def _unknown(name: str, known: Mapping[str, Motion]) -> str:

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -165,7 +165,14 @@ class SpectrumTarget:
             "period_s": _short(self.periods),
             "sa_g": _short(self.spectrum.at(self.periods)),
             "mean_sa_g": _short(self.mean(motions, self.periods, gravity)),
+            **self._of_components(motions, gravity),
         }
+
+    def _of_components(self, motions: Sequence[Motion], gravity: float) -> dict[str, Any]:
+        """Return the mean spectrum of the components that are run, where those of pairs are fitted."""
+        if self.pairs not in DIRECTIONS or not motions:
+            return {}
+        return {"components_sa_g": _short(replace(self, pairs="apart").mean(motions, self.periods, gravity))}
 
 
 def _stations(motions: Sequence[Motion], among: Sequence[int] | None = None) -> list[list[int]]:

@@ -50,6 +50,7 @@ _SPECTRA = {
 _TARGET = {
     "spectrum": str, "range_s": [float], "factors": ("each", "suite", "both", "none"), "pairs": tuple(PAIRS),
     "alone": int, "at_least": float, "period_s": [float], "sa_g": [float], "mean_sa_g": [float],
+    "components_sa_g": Maybe([float]),
 }  # fmt: skip
 
 SHAPE = {
@@ -202,7 +203,7 @@ def _describe_motion(motion: Motion, gravity: float, with_pulse: bool) -> dict[s
         "pgv_m_s": measures.pgv(motion.horizontal, motion.dt, motion.initial),
         "pgd_m": measures.believable_pgd(motion),
         "arias_m_s": measures.arias_intensity(motion.horizontal, motion.dt, gravity),
-        "d5_95_s": measures.significant_duration(motion.horizontal, motion.dt),
+        "d5_95_s": None if len(motion.shocks) > 1 else measures.significant_duration(motion.horizontal, motion.dt),
         "azimuth_deg": motion.azimuth,
         "magnitude": motion.magnitude,
         "distance_km": motion.distance_km,

@@ -194,7 +194,7 @@ def test_a_sequence_of_what_cannot_be_used_is_a_row_with_the_reason(tmp_path):
     found = ground_motions(made)
     assert names(found.motions) == ["RSN1_A_000", "RSN1_A_090"]
     (reason,) = [each.reason for each in found.unusable if each.name == "two"]
-    assert reason.startswith("its record RSN2_B_000 cannot be used: ")
+    assert reason.startswith('sequence "two": its record RSN2_B_000 cannot be used: ')
 
 
 @pytest.mark.parametrize(
@@ -237,7 +237,7 @@ def test_a_manifest_declares_sequences_that_every_reader_of_the_folder_gets(tmp_
     assert len(found.left_out) == 2
     lone = read_motions(tmp_path / "RSN2_B_000.AT2")
     assert names(lone.motions) == ["RSN2_B_000"]
-    assert [(each.name, each.reason[:11]) for each in lone.unusable] == [("both", "records: th")]
+    assert [(each.name, each.reason[:11]) for each in lone.unusable] == [("both", 'sequence "b')]
     assert [(each.name, each.reason[:15]) for each in lone.left_out] == [("twice", "none of its rec")]
 
 

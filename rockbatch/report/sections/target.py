@@ -53,8 +53,10 @@ def _horizontal(finished: Finished, target: Mapping[str, Any], records: Sequence
     pulses = [record for record in records if record.get("pulse") == "yes"]
     known = [record["distance_km"] for record in records if record.get("distance_km") is not None]
     caption = "their mean, and the target; shaded: the range over which they are fitted."
+    own = np.array(target.get("components_sa_g", ()), dtype=np.float64)
     return render(
         "sections/target.html", target=target, records=records, **_mean_over(target),
+        run=(own / np.array(target["sa_g"], dtype=np.float64)).tolist() if len(own) == len(target["sa_g"]) else [],
         factors=[record.get("factor", 1.0) for record in records],
         picture=spectra(finished, caption, tuple(target["range_s"])),
         stations=_stations(records), pulses=pulses, with_pulse=_stations(pulses),
