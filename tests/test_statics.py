@@ -3,6 +3,7 @@
 import dataclasses
 import math
 import re
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -268,6 +269,7 @@ def test_impossible_piers_are_refused_with_the_limit():
         rb.statics(PIER, RigidBase(area_m2=0.0))
 
 
+ROOT = Path(__file__).parents[1]
 BRIDGE = {"width_m": 8.0, "height_m": 30.0, "mass_t": 2000.0, "deck_mass_t": 1000.0}
 PADS = {"name": "pads", "base": "elastic", "stiffness_kN_m": [1e6, 2e6], "zeta": 0.05, "area_m2": 6.0}
 
@@ -388,3 +390,10 @@ def test_a_linear_spring_beside_the_deck_stiffens_a_pier_on_elastic_springs():
     assert tied.at(theta).moment - bare.at(theta).moment == pytest.approx(k * PIER.deck**2 * theta, rel=1e-9)
     assert tied.at(theta).toe == pytest.approx(bare.at(theta).toe, rel=1e-9)
     assert tied.lift_off == pytest.approx(bare.lift_off, rel=1e-7)
+
+
+def test_the_page_shows_the_sheet_of_its_study(capsys):
+    page = (ROOT / "docs/pages/statics.md").read_text(encoding="utf-8")
+    assert main(["statics", str(ROOT / "configs/pier_with_dampers.toml")]) == 0
+    sheet = capsys.readouterr().out.split("\n\n")[0]
+    assert "\n".join(f"    {line}" for line in sheet.splitlines()) in page

@@ -351,9 +351,12 @@ class SlowTurn:
         if self.spring is None:
             depth, heel = np.zeros_like(theta), np.zeros_like(theta)
             pulls = self._pulls(theta, depth, since)
-        elif not self.places and self.spring.strength == math.inf:
-            heel = np.maximum(0.5 - self.spring.stiffness * self._rise(theta), 0.0) if on_both else np.zeros_like(theta)
-            depth, pulls = (1.0 - heel) / self.spring.stiffness, []
+        elif not self.places and self.spring.exponent is None:
+            spring, rise = self.spring, self._rise(theta)
+            least = max(1.0 - spring.strength, 0.0)
+            heel = np.maximum(0.5 - spring.stiffness * rise, least) if on_both else np.zeros_like(theta)
+            sunk = self.settled + 2.0 * rise - (0.5 - heel) / spring.stiffness
+            depth, pulls = sunk if on_both else np.full_like(theta, 1.0 / spring.stiffness), []
         else:
             depth, pulls, heel = self._balanced(theta, since, on_both)
         of_tendons, of_dampers = np.zeros_like(theta), np.zeros_like(theta)

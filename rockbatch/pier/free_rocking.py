@@ -70,7 +70,7 @@ class FreeRocking:
 
     @cached_property
     def _curve(self) -> Equilibria:
-        return self.turn.curve(self.turn.unstable or 0.5 * math.pi, before=40, after=400)
+        return self.turn.curve(self.turn.unstable or 0.5 * math.pi, before=20, after=200)
 
     @cached_property
     def _tabulated(self) -> tuple[Array, Array, Array]:

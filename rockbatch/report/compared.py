@@ -11,7 +11,7 @@ from rockbatch.report.finished import Finished, as_dicts, worst_first
 from rockbatch.report.labels import counted, digits_that_tell, head, symbol
 from rockbatch.report.markup import Markup, join, tag
 from rockbatch.report.pair import SIDES, Pair
-from rockbatch.report.sections import peak_rotations, statistics, studied, verdicts
+from rockbatch.report.sections import peak_rotations, statics, statistics, studied, verdicts
 from rockbatch.report.sections.answer import worst
 from rockbatch.report.sections.peaks import on_scale, outcome
 from rockbatch.report.table import MOST_ROWS, THETA, THETA_FORMAT, Head, shown_of, table
@@ -248,7 +248,7 @@ def studies(pair: Pair) -> Markup:
     ]
     for name, study in zip(SIDES, pair.studies, strict=True):
         title = tag("h3", f"{name}: {study.study['title'] or ''} ", tag("code", study.directory))
-        parts += [title, worst(study), studied.section(study, level="h4")]
+        parts += [title, worst(study), studied.section(study, level="h4"), tag("h4", "Statics"), statics.section(study)]
     return join(*parts, _other_motions(*pair.studies))
 
 

@@ -51,7 +51,7 @@ def test_the_statics_of_all_cases_stand_beside_each_other_with_their_devices(rep
     page = Page(f'<section id="statics">{part(report, "statics")}</section>')
     rows = {row[0]: [cell.replace("\u00a0", " ") for cell in row[1:-1]] for row in page.tables["statics"]}
     assert rows[""] == ["bare", "oil", "tied"]
-    assert rows["dampers and tendons"] == [
+    assert rows["devices"] == [
         "",
         "viscous damper at each pivot, C = 2000 kN (s/m)^0.3",
         "hysteretic damper at the left pivot, F = 2000 kN, uy = 5 mm; tendon on the axis, P0 = 5000 kN, kt = 20,000 kN/m",

@@ -60,6 +60,6 @@ def _table(sheets: Named, devices: Sequence[str]) -> Markup:
         [fact.heading, *(fact.written(sheet.row[fact.name]) for _, sheet in sheets), fact.meaning] for fact in FACTS
     ]
     turned = ["" if sheet.towards == "either" else f"to the {sheet.towards}" for _, sheet in sheets]
-    rows += [["direction", *turned, "the weaker one, of devices that differ"], ["dampers and tendons", *devices, ""]]
+    rows += [["direction", *turned, "the weaker one, of devices that differ"], ["devices", *devices, ""]]
     heads = [Head(""), *(Head(name) for name, _ in sheets), Head("")]
     return table(heads, [row for row in rows if any(row[1:-1])], prose=True, name="Statics")
