@@ -192,7 +192,11 @@ def test_stiff_springs_are_rigid_ground():
 def test_small_amplitudes_on_springs_have_the_linear_period_and_slender_blocks_housners():
     base = ElasticBase(beta=20.0, kinematics="finite")
     linear = 2.0 * math.pi / rocking_frequency(PIER, base)
-    assert rb.statics(PIER, base).full_contact_period_s == pytest.approx(linear)
+    assert rb.statics(PIER, base).full_contact_period_s == pytest.approx(linear, rel=1e-6)
+    tied = dataclasses.replace(base, kinematics="first-order", restraints=(rb.DeckSpring(0.3),))
+    of_spring = 0.3 * PIER.size / PIER.half_width**2 * PIER.gravity * PIER.deck**2 / (PIER.inertia + PIER.height**2)
+    stiffer = 2.0 * math.pi / math.sqrt(rocking_frequency(PIER, base) ** 2 + of_spring)
+    assert rb.statics(PIER, tied).full_contact_period_s == pytest.approx(stiffer, rel=1e-6)
     assert FreeRocking(PIER, base).periods(np.array([1e-4])) == pytest.approx([linear], rel=1e-6)
     slender = Pier(alpha=1e-3, p=2.0)
     swings = rb.statics(slender, RigidBase()).swings

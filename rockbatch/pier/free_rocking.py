@@ -53,6 +53,13 @@ class FreeRocking:
             damping = self.impact_damping(amplitudes, own)
         return Swings(amplitudes, self.periods(amplitudes), damping)
 
+    @property
+    def in_full_contact(self) -> float | None:
+        """Return the period of small rocking on both supports [s], 2π/ω_r (12) without devices; None on rigid ground."""
+        if self.turn.spring is None or not self.even:
+            return None
+        return float(self.periods(np.array([1e-3 * (self.turn.lift_off or self.pier.alpha)]))[0])
+
     @cached_property
     def _edges(self) -> list[float]:
         """Rotations at which the moment has a kink: lift-off, stops that are met, tendons that yield."""

@@ -9,7 +9,7 @@ import numpy as np
 from rockbatch.arguments import checked
 from rockbatch.errors import InputError
 from rockbatch.lazy import pd
-from rockbatch.pier.bases import Base, ElasticBase, problems, rocking_frequency, vertical_frequency
+from rockbatch.pier.bases import Base, ElasticBase, problems, vertical_frequency
 from rockbatch.pier.block import Pier
 from rockbatch.pier.equilibrium import ONSET, Array, Equilibria, SlowTurn, without_dampers
 from rockbatch.pier.free_rocking import FreeRocking, Swings
@@ -90,7 +90,8 @@ class Statics(Shown):
     settlement_m : float or None
         Of both supports at rest [m]; None on rigid ground.
     vertical_period_s, full_contact_period_s : float or None
-        Periods of small vertical vibration and of small rocking on both supports, elastic ones [s]; None on rigid ground.
+        Periods of small vertical vibration and of small rocking on both supports, elastic ones [s]; None on rigid ground. Tendons
+        and springs at the deck have a part in the latter.
     stress_at_rest_MPa, stress_on_one_MPa : float or None
         Bearing stress under a support at rest, and under that which bears all at lift-off; None without ``area_m2`` and a mass.
     equilibria : Equilibria
@@ -320,7 +321,7 @@ def sheet_of(pier: Pier, foundation: Base) -> Statics:
         moment_over_weight_m=_finite(weaker.moment),
         unstable_rad=_finite(balance), settlement_m=None if springs is None else weaker.turn.settled,
         vertical_period_s=None if springs is None else 2.0 * math.pi / vertical_frequency(pier, springs),
-        full_contact_period_s=None if springs is None else 2.0 * math.pi / rocking_frequency(pier, springs),
+        full_contact_period_s=free.in_full_contact,
         stress_at_rest_MPa=_finite(stress * weaker.turn.at_rest), stress_on_one_MPa=_finite(stress * weaker.borne_alone),
         equilibria=weaker.curve, swings_at=free.swings(amplitudes[amplitudes < 0.999 * balance]),
     )  # fmt: skip
