@@ -6,8 +6,8 @@
 Corotational beams, 10⁴ times as stiff as the springs, hold the mass above a base whose middle cannot move sideways; under both
 ends is a zeroLength element without tension: ENT, or ElasticPPGap with accumulating gap where it yields. Newmark's average
 acceleration, in steps that are halved until the peak changes by less than 10⁻⁴. Rows: case, and of θ/α the peak and its time [s],
-and how deep each pivot was pressed in, over δ_s. tests/verification/test_against_opensees.py holds rockbatch against them, and
-says what parts the two.
+and how deep each pivot was pressed in, over δ_s, all at the samples of the motion. tests/verification/test_against_opensees.py
+holds rockbatch against them, and says what parts the two.
 """
 
 import math
@@ -33,6 +33,11 @@ class Case(NamedTuple):
     motion: rb.Motion
     end: float
 
+    @property
+    def samples(self) -> int:
+        """Number of samples until the end of the comparison."""
+        return round(self.end / self.motion.dt) + 1
+
 
 def one_sine(pier: rb.Pier, amplitude: float) -> rb.Motion:
     """Return a one-sine of ``amplitude`` g tan α with ω_p/p = 5 and 200 samples, and zeros for seven times as long."""
@@ -41,9 +46,9 @@ def one_sine(pier: rb.Pier, amplitude: float) -> rb.Motion:
     return rb.pulse("sine", name="one-sine", amplitude=peak, period=period, dt=period / 200, duration=8 * period)
 
 
-def record(folder: str, name: str) -> rb.Motion:
-    """Return a component of ``motions/near_fault`` without its vertical one."""
-    motions = rb.read_motions(NEAR_FAULT / folder, vertical=False).motions
+def record(folder: str, name: str, *, vertical: bool = False) -> rb.Motion:
+    """Return a component of ``motions/near_fault``, alone or with the station's vertical one."""
+    motions = rb.read_motions(NEAR_FAULT / folder, vertical=vertical).motions
     return next(motion for motion in motions if motion.name == name)
 
 
@@ -60,6 +65,11 @@ def cases() -> dict[str, Case]:
         made[f"one-sine, yielding at {eta:g}"] = Case(blocks[0.2], base, one_sine(blocks[0.2], 1.8), 3.2)
     meloland = record("imperialvalley1979_meloland", "CHAN24")
     made["Meloland 270"] = Case(tower, rb.ElasticBase(60.0, 1.0, "finite"), meloland, 12.0)
+    both = record("imperialvalley1979_meloland", "CHAN24", vertical=True)
+    made["Meloland 270 with its vertical"] = Case(tower, rb.ElasticBase(60.0, 1.0, "finite"), both, 10.0)
+    whole = record("kaikoura2016_wtmc", "20161113_110259_WTMC_20.N28W", vertical=True)
+    strong = rb.Motion("Te Mara", whole.dt, whole.horizontal[2300:], whole.vertical[2300:])
+    made["Te Mara N28W with its vertical, flying"] = Case(tower, rb.ElasticBase(60.0, 1.0, "finite"), strong, 3.6)
     return made
 
 
@@ -112,24 +122,26 @@ def solve(integrator: str, *parameters: float) -> None:
 
 
 def history(case: Case, steps: int) -> np.ndarray:
-    """Return t, θ, v_L and v_R at each step, shape (n, 4), in ``steps`` a sample."""
+    """Return t, θ, v_L and v_R at each sample of the motion, shape (n, 4), by ``steps`` a sample."""
     import openseespy.opensees as ops
 
     model(case)
     ops.timeSeries("Path", 2, "-dt", case.motion.dt, "-values", *case.motion.horizontal.tolist())
     ops.pattern("UniformExcitation", 2, 1, "-accel", 2)
+    if case.motion.vertical is not None:
+        ops.timeSeries("Path", 3, "-dt", case.motion.dt, "-values", *case.motion.vertical.tolist())
+        ops.pattern("UniformExcitation", 3, 2, "-accel", 3)
     solve("Newmark", 0.5, 0.25)
     ops.analysis("Transient")
-    dt = case.motion.dt / steps
-    rows = np.zeros((round(case.end / dt) + 1, 4))
-    for i in range(1, len(rows)):
-        assert ops.analyze(1, dt) == 0
-        rows[i] = i * dt, -ops.nodeDisp(5, 3), ops.nodeDisp(2, 2), ops.nodeDisp(4, 2)
+    rows = np.zeros((case.samples, 4))
+    for i in range(1, case.samples):
+        assert ops.analyze(steps, case.motion.dt / steps) == 0
+        rows[i] = i * case.motion.dt, -ops.nodeDisp(5, 3), ops.nodeDisp(2, 2), ops.nodeDisp(4, 2)
     return rows
 
 
 def summary(case: Case, rows: np.ndarray) -> list[float]:
-    """Return the peak of θ/α, its time, and how deep both pivots were, over δ_s."""
+    """Return the peak of θ/α, its time, and how deep both pivots were, over δ_s, at the samples in ``rows``."""
     delta = case.pier.gravity / (case.base.beta * case.pier.p) ** 2
     theta = np.abs(rows[:, 1])
     at = int(theta.argmax())
