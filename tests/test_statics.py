@@ -246,6 +246,32 @@ def test_the_flexural_period_is_held_against_rocking_and_nothing_else_changes():
     assert "fixed at its base" not in repr(rb.statics(TALL, base))
 
 
+@pytest.mark.parametrize("phi", [0.1, 0.3])
+@pytest.mark.parametrize("ratio", [0.1, 1.0 / 3.0, 0.5])
+def test_bending_has_the_square_of_the_ratio_of_periods_of_the_drift_by_rocking(phi, ratio):
+    """THEORY.md, Statics: a mass on an elastic column on a block without mass, let go at φ α; small rotations (DOP853)."""
+    g, h, b = 9.81, 20.0, 20.0 * math.tan(0.15)
+    quarter = math.acosh(1.0 / (1.0 - phi)) * math.sqrt(math.hypot(b, h) / g)
+    stiffness, tilt = (2.0 * math.pi / (ratio * 4.0 * quarter)) ** 2, phi * 0.15
+    bent = (g * (b - h * tilt) / h + g * tilt) / (stiffness + g / h)
+
+    def rates(_t, y):
+        u, theta, u_rate, theta_rate = y
+        mass = -stiffness * u - 0.04 * math.sqrt(stiffness) * u_rate + g * theta  # its horizontal acceleration
+        turn = (-g * b + g * (u + h * theta) - h * mass) / b**2
+        return [u_rate, theta_rate, mass - h * turn, turn]
+
+    def upright(_t, y):
+        return y[1]
+
+    upright.terminal = True
+    swing = solve_ivp(
+        rates, (0.0, 60.0), [bent, tilt, 0.0, 0.0], method="DOP853", events=upright, rtol=1e-8, atol=1e-11
+    )
+    assert bent / (h * tilt) == pytest.approx(ratio**2, rel=0.13)
+    assert 1.0 < swing.t_events[0][0] / quarter < (1.03 if ratio < 0.4 else 1.06)
+
+
 def test_rows_have_every_fact_and_the_tables_their_columns():
     sheet = rb.statics(TALL, ElasticBase.from_stiffness(TALL, 2e6))
     assert list(sheet.row) == [fact.name for fact in FACTS]
