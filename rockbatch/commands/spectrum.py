@@ -12,7 +12,7 @@ from rockbatch.commands.streams import in_width, say, show
 from rockbatch.commands.summary import named
 from rockbatch.lazy import pd
 from rockbatch.study import Study
-from rockbatch.study.spectrum import SELF_SIMILAR, SpectrumSpec
+from rockbatch.study.spectrum import INTENSITY, SELF_SIMILAR, SpectrumSpec
 
 MOST_LINES = 12
 """Greatest number of lines of a table for the terminal."""
@@ -43,7 +43,8 @@ def shown(suite: "pd.DataFrame", spectrum: SpectrumSpec) -> str:
     columns: dict[str, dict[str, str]] = {}
     for names, own in suite[suite[axis].isin(lines)].groupby(keys, sort=False, dropna=False):
         values = dict(zip(keys, names, strict=True))
-        columns[f"{names[0]} {named(labels, [values[name] for name in labels])}"] = {
+        heading = f"{names[0]} {named(labels, [values[name] for name in labels])}".replace(INTENSITY, "A")
+        columns[heading] = {
             f"{value:.4g}": "" if np.isnan(median) else "∞" if np.isinf(median) else f"{median:.4f}"
             for value, median in zip(own[axis], own["median"], strict=True)
         }
@@ -54,7 +55,9 @@ def shown(suite: "pd.DataFrame", spectrum: SpectrumSpec) -> str:
     said = f"Median of theta_max/alpha{some}; ∞: overturned or ended by flight\n{in_width([axis, *columns], rows)}"
     if axis == SELF_SIMILAR and len(suite):
         sizes, scales = (f"{suite[f'least_{name}'].min():.3g} to {suite[f'greatest_{name}'].max():.3g}" for name in OWN)
-        said += f"\nomega_g = PGA/PGV of each record; piers with R0 = {sizes} m, motions scaled by {scales}"
+        said += (
+            f"\nA = PGA/(g tan alpha), omega_g = PGA/PGV of each record; piers with R0 = {sizes} m, factors {scales}"
+        )
     return said
 
 
