@@ -198,18 +198,25 @@ class NzsSpectrum:
 
 @dataclass(frozen=True)
 class TableSpectrum:
-    """A spectrum given at some periods [s], growing, in g; straight between them in logarithms."""
+    """A spectrum given at some periods [s], growing, in g; straight between them in logarithms, or in its numbers if ``linear``,
+    from 0 s on then."""
 
     periods: tuple[float, ...]
     sa_g: tuple[float, ...]
     damping: float = 0.05
     name: str = "table"
+    linear: bool = False
 
     def __post_init__(self) -> None:
         wrong = []
         if len(self.periods) < 2:
             wrong.append("a spectrum has two periods at least")
-        if any(not (0 < value < math.inf) for value in (*self.periods, *self.sa_g)):
+        from_zero = self.periods[:1] in ((0,), [0])
+        if from_zero and not self.linear:
+            wrong.append(
+                'periods must be above 0 [s] for their logarithms; write interpolation = "linear", or begin at 0.01 s'
+            )
+        if any(not (0 < value < math.inf) for value in (*self.periods[from_zero:], *self.sa_g)):
             wrong.append("periods [s] and spectral accelerations [g] must be numbers above 0")
         elif any(b <= a for a, b in zip(self.periods, self.periods[1:], strict=False)):
             wrong.append("periods must grow from line to line")
@@ -226,11 +233,13 @@ class TableSpectrum:
 
     def at(self, periods: Array) -> Array:
         """See :class:`Spectrum`."""
+        if self.linear:
+            return _within(self.limits, periods, np.interp(periods, self.periods, self.sa_g))
         logs = np.interp(np.log(np.maximum(periods, 1e-12)), np.log(self.periods), np.log(self.sa_g))
         return _within(self.limits, periods, np.exp(logs))
 
 
-def read_spectrum(path: Path, damping: float = 0.05) -> TableSpectrum:
+def read_spectrum(path: Path, damping: float = 0.05, linear: bool = False) -> TableSpectrum:
     """Return a table of a text file: a period [s] and a spectral acceleration [g] on each line, perhaps under a header.
 
     Raises ``InputError`` with the line that is no such pair.
@@ -255,7 +264,7 @@ def read_spectrum(path: Path, damping: float = 0.05) -> TableSpectrum:
             ) from None
         periods.append(period)
         values.append(value)
-    return TableSpectrum(tuple(periods), tuple(values), damping, path.name)
+    return TableSpectrum(tuple(periods), tuple(values), damping, path.name, linear)
 
 
 def _within(limits: tuple[float, float], periods: Array, values: Array) -> Array:

@@ -36,14 +36,14 @@ def _entry(value: Any) -> Any:
     if isinstance(value, list):
         if len(value) != 2:
             raise KindError(_PAIRS)
-        return tuple(map(positive, value))
+        return not_negative(value[0]), positive(value[1])
     if not isinstance(value, str):
         raise KindError(_ENTRY.words)
     return text(value)
 
 
 _PAIRS = "pairs of a period [s] and a spectral acceleration [g]"
-_PAIR_SCHEMA = {"type": "array", "items": positive.schema(), "minItems": 2, "maxItems": 2}
+_PAIR_SCHEMA = {"type": "array", "items": [not_negative.schema(), positive.schema()], "minItems": 2, "maxItems": 2}
 _ENTRY = Other(f"the name of a code or of a file, or {_PAIRS}", _entry, {"anyOf": [text.schema(), _PAIR_SCHEMA]})
 _MEASURE = {
     "pga_g": Key(positive, "0.4", "Peak ground acceleration of the horizontal component.",
@@ -112,6 +112,9 @@ _SPECTRUM = {
         "that is; not srss."),
     "at_least": Key(positive, "0.9", "Share of the target that the mean of the suite has to reach everywhere in the range."),
     "damping": _MEASURE["damping"],
+    "interpolation": Key(choice("logarithmic", "linear"), '"linear"',
+        'How a table goes between its points: straight in logarithms, or "linear", as the spectra by 22 points of ASCE 7-22 and '
+        "AASHTO do, from 0 s on.", default="logarithmic"),
 }  # fmt: skip
 _OWN = {"EN 1998-1": _EUROCODE, "ASCE 7": _ASCE, "AASHTO": _AASHTO, "NZS 1170.5": _NZS, "EN 1998-1 vertical": _VERTICAL}
 _OF_ANY_CODE = _VERTICAL | _NZS | _AASHTO | _ASCE | _EUROCODE
@@ -200,7 +203,9 @@ def _code(value: Any) -> str:
 
 
 def _spectrum(table: Table, code: str, read: dict[str, Any]) -> Spectrum | None:
-    damping = read.get("damping", 0.05)
+    damping, linear = read.get("damping", 0.05), read.get("interpolation") == "linear"
+    if code and "interpolation" in read:
+        table.complain(f"interpolation: is for tables, and {code} is none; leave it out", "interpolation")
     if code == "EN 1998-1":
         return _eurocode(table, read, damping)
     if code == "EN 1998-1 vertical":
@@ -212,11 +217,11 @@ def _spectrum(table: Table, code: str, read: dict[str, Any]) -> Spectrum | None:
     entries = read["spectrum"]
     with table.noting("spectrum"):
         if len(entries) == 1 and isinstance(entries[0], str):
-            return _of_file(table, entries[0], damping)
+            return _of_file(table, entries[0], damping, linear)
         if any(isinstance(entry, str) for entry in entries):
             raise InputError("spectrum: expected one name, or pairs of a period [s] and a spectral acceleration [g]")
         periods, values = zip(*entries, strict=True)
-        return TableSpectrum(periods, values, damping, "spectrum")
+        return TableSpectrum(periods, values, damping, "spectrum", linear)
     return None
 
 
@@ -227,14 +232,14 @@ def _is_there(path: Path) -> bool:
         return False
 
 
-def _of_file(table: Table, written: str, damping: float) -> TableSpectrum:
+def _of_file(table: Table, written: str, damping: float, linear: bool) -> TableSpectrum:
     path = table.file.path.parent / written
     if not _is_there(path):
         plain = "".join(filter(str.isalnum, written.lower()))
         meant = next((code for start, code in _ALSO_CALLED.items() if plain.startswith(start)), closest(written, CODES))
         hint = f"did you mean {shown(meant)}?" if meant else f"write {' or '.join(map(shown, CODES))}, or a file"
         raise InputError(f"spectrum = {shown(written)}: no such file ({path.resolve()}); {hint}")
-    return read_spectrum(path, damping)
+    return read_spectrum(path, damping, linear)
 
 
 def _eurocode(table: Table, read: dict[str, Any], damping: float) -> EurocodeSpectrum | None:

@@ -287,14 +287,21 @@ def test_the_aashto_spectrum_meets_its_corner_values_and_falls_without_end():
 
 def test_the_vertical_eurocode_spectrum_meets_its_corner_values(tmp_path):
     keys = {"spectrum": "EN 1998-1 vertical", "type": 1, "ag_g": 0.3, "period_range_s": [0.1, 2.0]}
-    spectrum = study_with(tmp_path, keys).spectrum
+
+    def spectrum_of(table):
+        text = study_text(motions={"vertical_target": table})
+        return load_study(write_study(tmp_path, text)).motions.vertical_target.spectrum
+
+    spectrum = spectrum_of(keys)
     t = np.array([0.0, 0.05, 0.15, 1.0, 4.0])
     top = 0.9 * 0.3 * 3.0
     assert spectrum.at(t) == pytest.approx([0.27, top, top, top * 0.15, top * 0.15 / 16.0])
     assert str(spectrum) == "EN 1998-1 vertical, a_vg = 0.27 g, 5 %"
-    other = study_with(tmp_path, {name: value for name, value in keys.items() if name != "type"} | {"avg_over_ag": 0.7})
-    assert float(other.spectrum.at(np.array([0.1]))[0]) == pytest.approx(0.63)
-    assert study_with(tmp_path, keys | {"type": 2}).spectrum.ag_g == pytest.approx(0.135)
+    other = spectrum_of({name: value for name, value in keys.items() if name != "type"} | {"avg_over_ag": 0.7})
+    assert float(other.at(np.array([0.1]))[0]) == pytest.approx(0.63)
+    assert spectrum_of(keys | {"type": 2}).ag_g == pytest.approx(0.135)
+    with pytest.raises(InputError, match=r"type is missing; write for example type = 1, or avg_over_ag = 0.9"):
+        spectrum_of({name: value for name, value in keys.items() if name != "type"})
 
 
 AASHTO_KEYS = {"spectrum": "AASHTO", "as_g": 0.4, "sds_g": 1.0, "sd1_g": 0.6, "period_range_s": [0.4, 4.0]}
@@ -319,10 +326,26 @@ def test_a_study_names_the_further_codes(tmp_path):
         (NZS_KEYS | {"hazard_factor": 4.0}, "hazard_factor = 4: more than 1 .New Zealand has 0.13 to 0.6.; "),
         (NZS_KEYS | {"period_range_s": [0.4, 5.0]}, "defined from 0 s to 4.5 s"),
         (NZS_KEYS | {"sds_g": 1.0}, 'sds_g = 1.0: is for spectrum = "ASCE 7" or "AASHTO"; leave it out'),
-        ({"spectrum": "EN 1998-1 vertical", "ag_g": 0.3, "period_range_s": [0.1, 2.0]}, "type is missing"),
         ({"spectrum": "NZS", "period_range_s": [0.4, 4]}, 'no such file.*did you mean "NZS 1170.5"'),
+        (NZS_KEYS | {"interpolation": "linear"}, "interpolation: is for tables, and NZS 1170.5 is none"),
+        (
+            {"spectrum": [[0.0, 0.4], [4.0, 0.2]], "period_range_s": [0.4, 3.0]},
+            'write interpolation = "linear", or begin at 0.01 s',
+        ),
+        ({"spectrum": [[-0.1, 0.4], [4.0, 0.2]], "period_range_s": [0.4, 3.0]}, "expected 0 or a number above it"),
     ],
 )
 def test_mistakes_about_the_further_codes_are_answered(tmp_path, target, said):
     with pytest.raises(InputError, match=said):
         study_with(tmp_path, target)
+
+
+def test_a_linear_table_is_straight_in_its_numbers_from_zero_on(tmp_path):
+    keys = {"spectrum": [[0.0, 0.4], [0.2, 1.0], [1.0, 0.5], [4.0, 0.1]], "period_range_s": [0.1, 3.0]}
+    spectrum = study_with(tmp_path, keys | {"interpolation": "linear"}).spectrum
+    assert spectrum.at(np.array([0.0, 0.1, 0.6, 2.5])) == pytest.approx([0.4, 0.7, 0.75, 0.3])
+    (tmp_path / "site.csv").write_text("T,Sa\n0.0,0.4\n0.2,1.0\n4.0,0.1\n")
+    of_file = study_with(tmp_path, keys | {"spectrum": "site.csv", "interpolation": "linear"}).spectrum
+    assert of_file == TableSpectrum((0.0, 0.2, 4.0), (0.4, 1.0, 0.1), 0.05, "site.csv", linear=True)
+    with pytest.raises(InputError, match="must be numbers above 0"):
+        TableSpectrum((0.0, 0.2), (0.4, 0.0), linear=True)
