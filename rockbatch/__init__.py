@@ -7,6 +7,7 @@ from rockbatch._version import __version__ as __version__
 if TYPE_CHECKING:
     from rockbatch.analysis.accuracy import accuracy
     from rockbatch.analysis.fragility import fragility
+    from rockbatch.analysis.release import release
     from rockbatch.analysis.sensitivity import sensitivity
     from rockbatch.analysis.spectrum import spectrum
     from rockbatch.batch.running import run
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
 _NAMES = {
     "analysis.accuracy": "accuracy",
     "analysis.fragility": "fragility",
+    "analysis.release": "release",
     "analysis.sensitivity": "sensitivity",
     "analysis.spectrum": "spectrum",
     "batch.running": "run",
@@ -71,6 +73,7 @@ __all__ = [
     "pair_spectrum",
     "pulse",
     "read_motions",
+    "release",
     "report",
     "run",
     "sensitivity",

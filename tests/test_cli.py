@@ -291,7 +291,9 @@ def test_wide_tables_fit_the_terminal(monkeypatch):
     assert all(block.splitlines()[1].split()[0] == "one" for block in blocks)  # whose numbers they are
 
 
-@pytest.mark.parametrize("name", ["run", "check", "accuracy", "fragility", "spectrum", "sensitivity", "init"])
+@pytest.mark.parametrize(
+    "name", ["run", "check", "accuracy", "fragility", "spectrum", "sensitivity", "release", "init"]
+)
 def test_help_says_which_files_come_out(name, capsys):
     with pytest.raises(SystemExit):
         main([name, "--help"])

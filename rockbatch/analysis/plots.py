@@ -171,3 +171,20 @@ def _with_legend(drawn: Figure, panels: Sequence[Axes]) -> Figure:
     }
     drawn.legend(list(entries.values()), list(entries), loc="outside lower center", ncols=3)
     return drawn
+
+
+@styled
+def release(fits: "pd.DataFrame", impacts: "pd.DataFrame", history: "pd.DataFrame", width_mm: float) -> Figure:
+    """See :meth:`rockbatch.analysis.release.Release.plot`."""
+    keys = list(fits.columns[: list(fits.columns).index("parameter")])
+    cases = [list(table.groupby(keys, sort=False, dropna=False)) for table in (impacts, history)]
+    drawn, grid = _panels(len(fits), width_mm)
+    for axes, (_, own), (names, way), fit in zip(grid, *cases, fits.to_dict("records"), strict=True):
+        axes.plot(way["t_s"], way["theta_rad"], label="computed", **line(0))
+        axes.plot(own["t_measured_s"], 0.0 * own["t_measured_s"], label="measured impacts", **marks(1))
+        at, amplitude = own["t_amplitude_computed_s"], own["amplitude_measured_rad"]
+        side = np.sign(np.interp(at, way["t_s"], way["theta_rad"]))
+        axes.plot(at, side * amplitude, label="measured amplitudes", **marks(2))
+        axes.set(xlabel="t [s]", title=f"{', '.join(map(str, names))}: {fit['parameter']} = {fit['value']:.4g}")
+    grid[0].set_ylabel(r"$\theta$ [rad]")
+    return _with_legend(drawn, grid)

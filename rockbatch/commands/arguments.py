@@ -244,5 +244,12 @@ COMMANDS = {
         "  sensitivity.csv   peaks at both ends of each parameter\n"
         "  sobol.csv, sensitivity_runs.csv, sensitivity.json, and a section of report.html",
     ),
+    "release": Command(
+        "fit restitution or damping to a release test", "rockbatch release test.toml", "release.main",
+        _STUDY,
+        "  release.csv          what was fitted, and its interval\n"
+        "  release_impacts.csv  times and amplitudes, measured and computed\n"
+        "  release_history.csv, release.json, and a section of report.html",
+    ),
 }  # fmt: skip
 """All commands, in the order of the help."""

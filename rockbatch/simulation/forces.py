@@ -22,7 +22,7 @@ from rockbatch.simulation.runs import Run
 from rockbatch.simulation.starting import start_of
 
 _UPLIFTS = (types.SEPARATION_LEFT, types.SEPARATION_RIGHT, types.LIFT_OFF)
-_LANDINGS = (types.IMPACT_LEFT, types.IMPACT_RIGHT, types.IMPACT_BOTH, types.REST)
+LANDINGS = (types.IMPACT_LEFT, types.IMPACT_RIGHT, types.IMPACT_BOTH, types.REST)
 
 
 class Impacts(NamedTuple):
@@ -94,7 +94,7 @@ def _events(rows: np.recarray, kinds: Sequence[float]) -> np.ndarray:
 
 def impacts(rows: np.recarray, forces: np.recarray) -> Impacts:
     """Return the impacts between neighbouring rows: the speed before, and by how much the momentum changes."""
-    after = _events(rows, _LANDINGS)
+    after = _events(rows, LANDINGS)
     before, kind = after - 1, rows.kind[after]
     left, right = np.abs(forces.speed_left[before]), np.abs(forces.speed_right[before])
     comes_down = np.where(kind == types.REST, np.where(left > 0.0, types.IMPACT_LEFT, types.IMPACT_RIGHT), kind)

@@ -7,9 +7,10 @@ from rockbatch.core.observe.ledger import LEDGER, ledger_on_rigid_base, ledger_o
 from rockbatch.errors import InputError
 from rockbatch.lazy import pd
 from rockbatch.motions.motion import Samples
-from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase
+from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, YieldingBase
 from rockbatch.simulation import restraints
-from rockbatch.simulation.forces import at_rows, forces_table, impacts_table, peak_forces, with_error
+from rockbatch.simulation.forces import LANDINGS, at_rows, forces_table, impacts_table, peak_forces, with_error
+from rockbatch.simulation.half_cycles import HalfCycles, Path, half_cycles
 from rockbatch.simulation.leaning import apart, may_lean, with_error_of_rocking, with_rocking
 from rockbatch.simulation.models import acceleration_at, block, ground_of, springs
 from rockbatch.simulation.outcome import TERMS, Outcome
@@ -54,6 +55,12 @@ def written(run: Run, outcome: Outcome, quiet_s: float, every_step: bool, wait: 
     if result.rows > capacity:
         result, rows = written_run(run, outcome.substeps, quiet_s, result.rows, every_step=every_step, wait=wait)
     return rows[: result.rows].view(np.recarray)
+
+
+def cycles_of(base: Base, rows: np.recarray) -> HalfCycles:
+    """Return the half cycles of a run on ``base`` from its history."""
+    landed = None if base.on_springs else np.flatnonzero(np.isin(rows.kind, LANDINGS))
+    return half_cycles(Path(rows.t, rows.theta, rows.omega), landed)
 
 
 def energies(run: Run, rows: np.recarray) -> Samples:

@@ -187,6 +187,34 @@ class Response(Shown):
         """Total energy per unit mass [J/kg], relative to the start, shape (n,)."""
         return self._history("energy")
 
+    @property
+    def half_cycles(self) -> "pd.DataFrame":
+        """Half cycles of rocking, a row each from an impact to the next, the first from the start of the run.
+
+        ``t`` [s], of the impact with which it begins; ``omega_before``, ``omega_after`` [rad/s], the angular velocity on both
+        sides of it; ``amplitude`` [rad], the greatest |θ| until the next impact, and ``t_amplitude`` [s], NaN where the run ends
+        before; ``apparent_restitution``, by which a block on rigid ground that does not move would come from the amplitude before
+        to this one. On springs a half cycle begins as the pier passes through θ = 0, where its velocity does not jump.
+
+        Examples
+        --------
+        >>> block = rb.Pier.rectangle(width_m=0.3, height_m=1.2)
+        >>> ground, still = rb.RigidBase(restitution=0.9), rb.Motion.still(2.0)
+        >>> response = rb.simulate(block, ground, still, initial_rotation_rad=0.1)
+        >>> response.half_cycles[["t", "amplitude", "apparent_restitution"]].head(3).round(4)
+                t  amplitude  apparent_restitution
+        0  0.0000     0.1000                   NaN
+        1  0.3242     0.0764                   0.9
+        2  0.8589     0.0595                   0.9
+        """
+        from rockbatch.simulation.half_cycles import COLUMNS, Path, apparent_restitution, half_cycles
+
+        landed = self.events.loc[self.events["kind"].isin(["impact", "rest"]), "after"].to_numpy()
+        cycles = half_cycles(Path(self.t, self.theta, self.omega), None if self.base.on_springs else landed)
+        return pd.DataFrame(
+            dict(zip(COLUMNS, (*cycles, apparent_restitution(self.pier, cycles.amplitude)), strict=True))
+        )
+
     def plot(self, width_mm: float = 160.0) -> "Figure":
         """Draw rotation, angular velocity, energy and ground motion against time, impacts as strokes, and the loops of supports,
         dampers and tendons: a matplotlib Figure of this width, ``response.plot().savefig("pier.pdf")``."""

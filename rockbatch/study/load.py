@@ -101,7 +101,7 @@ SECTIONS = (
 )  # fmt: skip
 """Tables that are read with the study, outer ones before inner; those of analyses are read by their own commands."""
 
-ANALYSES = ("fragility", "spectrum", "sensitivity")
+ANALYSES = ("fragility", "spectrum", "sensitivity", "release")
 
 
 @dataclass(frozen=True, repr=False)

@@ -20,12 +20,13 @@ from rockbatch.motions.sequences import SEQUENCE
 from rockbatch.study import load, sensitivity
 from rockbatch.study.fragility import FRAGILITY
 from rockbatch.study.hazard import DISPERSION, HAZARD
+from rockbatch.study.release import RELEASE
 from rockbatch.study.spectrum import MAP, SPECTRUM
 from rockbatch.study.stripes import STRIPE
 from rockbatch.toml.kinds import Schema
 from rockbatch.toml.section import Section, options
 
-STUDY = (*load.SECTIONS, FRAGILITY, HAZARD, DISPERSION, STRIPE, SPECTRUM, MAP, *sensitivity.SECTIONS)
+STUDY = (*load.SECTIONS, FRAGILITY, HAZARD, DISPERSION, STRIPE, SPECTRUM, MAP, *sensitivity.SECTIONS, RELEASE)
 """A study file."""
 
 CHECKS = (CHECKS_TOP, SUITE, replace(CHECK, required=True))

@@ -1,0 +1,124 @@
+"""Half cycles of rocking: when the pier passes through upright, how fast, and how far it turns in between."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from rockbatch.motions.motion import Samples
+from rockbatch.pier import Pier
+
+Rows = npt.NDArray[np.intp]
+"""Places of rows in a history."""
+
+HALVINGS = 50
+"""Of the interval between two rows in which the pier passes through upright."""
+
+COLUMNS = ("t", "omega_before", "omega_after", "amplitude", "t_amplitude", "apparent_restitution")
+
+
+class HalfCycles(NamedTuple):
+    """Half cycles of a run, each from an impact to the next; the first begins with the run. Shape (n,) each.
+
+    ``t`` [s] is when they begin, with the angular velocities before and after that [rad/s], NaN of the first; ``amplitude`` [rad]
+    the greatest |θ| of each, at ``t_amplitude`` [s], NaN where the run ended on the way there.
+    """
+
+    t: Samples
+    omega_before: Samples
+    omega_after: Samples
+    amplitude: Samples
+    t_amplitude: Samples
+
+
+class Path(NamedTuple):
+    """Rows of a history: time [s], rotation [rad], and its rate [rad/s]; shape (n,) each."""
+
+    t: Samples
+    theta: Samples
+    omega: Samples
+
+
+def half_cycles(path: Path, landed: Rows | None) -> HalfCycles:
+    """Return the half cycles of a run.
+
+    Parameters
+    ----------
+    path : Path
+        Rows of the run, with both sides of every event.
+    landed : ndarray of int, shape (k,), or None
+        Rows after impacts, those before being the ones before these. None on springs, where the pier lands before it is upright,
+        and each passage through θ = 0 counts instead.
+    """
+    if landed is None:
+        before, after, t, omega = _through_upright(path)
+        rates = omega, omega
+    else:
+        before, after, t = landed - 1, landed, path.t[landed]
+        rates = path.omega[before], path.omega[after]
+    ends = np.concatenate([before, [len(path.t) - 1]])
+    starts = np.concatenate([[0], after])
+    peaks = [_peak(path, int(first), int(last)) for first, last in zip(starts, ends, strict=True)]
+    amplitude, at = np.array(peaks).reshape(-1, 2).T
+    nothing = [math.nan]
+    return HalfCycles(
+        np.concatenate([path.t[:1], t]), np.concatenate([nothing, rates[0]]), np.concatenate([nothing, rates[1]]),
+        amplitude, at,
+    )  # fmt: skip
+
+
+def apparent_restitution(pier: Pier, amplitude: Samples) -> Samples:
+    """Return the factor on the angular velocity of a block on rigid ground by which each amplitude would follow from the last.
+
+    √(E(θ_n)/E(θ_n−1)), E(θ) = cos(α − θ) − cos α, which is the work against the weight over M g R0; NaN of the first.
+    """
+    alpha = pier.alpha
+    work = 2.0 * np.sin(alpha - 0.5 * amplitude) * np.sin(0.5 * amplitude)  # cos(α − θ) − cos α, to its last digit
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.concatenate([[math.nan], np.sqrt(work[1:] / work[:-1])])
+
+
+def _through_upright(path: Path) -> tuple[Rows, Rows, Samples, Samples]:
+    """Return the rows before and after each passage through θ = 0, and its time [s] and angular velocity [rad/s]."""
+    leans = np.flatnonzero(path.theta)
+    turns = np.flatnonzero(path.theta[leans[:-1]] * path.theta[leans[1:]] < 0.0)
+    before, after = leans[turns], leans[turns + 1]
+    h = np.maximum(path.t[after] - path.t[before], 1e-300)
+    low, high = np.zeros(len(h)), np.ones(len(h))
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        stays = _cubic(path, before, after, h, middle)[0] * path.theta[before] > 0.0
+        low, high = np.where(stays, middle, low), np.where(stays, high, middle)
+    return before, after, path.t[before] + h * low, _cubic(path, before, after, h, low)[1]
+
+
+def _cubic(path: Path, before: Rows, after: Rows, h: Samples, s: Samples) -> tuple[Samples, Samples]:
+    """Return θ and its rate by the cubic Hermite polynomial between two rows, at the share ``s``."""
+    start, way = path.theta[before], path.theta[after] - path.theta[before]
+    first, last = h * path.omega[before] - way, way - h * path.omega[after]
+    value = start + s * way + s * (1.0 - s) * ((1.0 - s) * first + s * last)
+    rate = way + (1.0 - s) * (1.0 - 3.0 * s) * first + s * (2.0 - 3.0 * s) * last
+    return value, rate / h
+
+
+def _peak(path: Path, first: int, last: int) -> tuple[float, float]:
+    """Return the greatest |θ| [rad] of the rows from ``first`` to ``last``, and its time [s]; NaN if θ does not turn there."""
+    theta, omega = path.theta[first : last + 1], path.omega[first : last + 1]
+    top = int(np.abs(theta).argmax())
+    best, t = abs(float(theta[top])), float(path.t[first + top])
+    turned = top == 0 and omega[0] == 0.0 and best > 0.0
+    for i in (top - 1, top):
+        if not (0 <= i < len(theta) - 1 and omega[i] * omega[i + 1] < 0.0):
+            continue
+        turned, h = True, float(path.t[first + i + 1] - path.t[first + i])
+        # θ turns where its rate, a parabola, is 0
+        way = float(theta[i + 1] - theta[i])
+        a, b = h * float(omega[i]), h * float(omega[i + 1])
+        square, linear = 3.0 * (a + b - 2.0 * way), 2.0 * (3.0 * way - 2.0 * a - b)
+        root = np.roots([square, linear, a])
+        for s in root[(np.abs(root.imag) < 1e-9) & (root.real > 0.0) & (root.real < 1.0)].real:
+            value = float(theta[i]) + s * way + s * (1 - s) * ((1 - s) * (a - way) + s * (way - b))
+            if abs(value) > best:
+                best, t = abs(value), float(path.t[first + i]) + s * h
+    return (best, t) if turned else (math.nan, math.nan)
