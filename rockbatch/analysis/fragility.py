@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from rockbatch.analysis.cloud_tables import CLOUD, cloud_table
 from rockbatch.analysis.folder import Analysis, AnalysisFolder, analysed
 from rockbatch.analysis.fragility_curves import Curve, assess, level_plan, output
 from rockbatch.analysis.fragility_tables import CAPACITIES, POINTS, RUNS, capacities, described, points
@@ -45,6 +46,8 @@ class Fragility(Analysis):
         All runs, as rows of peaks.csv.
     fragility_scales : DataFrame
         A row for each record and level, with the factor on the record, and whether it is within the limits of the study.
+    fragility_cloud : DataFrame or None
+        Of cloud analysis: a row for each limit, case and run, with its demand, and how it counts.
     fragility_risk : DataFrame or None
         Of a study with [fragility.hazard]: a row for each curve, with the mean annual rate of exceedance, its interval, and the
         probability in the years asked about.
@@ -58,7 +61,7 @@ class Fragility(Analysis):
 
     NAME: ClassVar[str] = "fragility"
     TABLES: ClassVar[tuple[str, ...]] = (
-        "fragility_scales", "fragility", "fragility_capacities", "fragility_risk", "fragility_deaggregation",
+        "fragility_scales", "fragility", "fragility_cloud", "fragility_capacities", "fragility_risk", "fragility_deaggregation",
         "fragility_runs",
     )  # fmt: skip
 
@@ -66,6 +69,7 @@ class Fragility(Analysis):
     fragility_capacities: "pd.DataFrame | None"
     fragility_runs: "pd.DataFrame"
     fragility_scales: "pd.DataFrame"
+    fragility_cloud: "pd.DataFrame | None" = None
     fragility_risk: "pd.DataFrame | None" = None
     fragility_deaggregation: "pd.DataFrame | None" = None
     curves: tuple[Curve, ...]
@@ -159,7 +163,9 @@ def _carry_out(results: AnalysisFolder, spec: FragilitySpec) -> dict[str, Any]:
     asked = results.study = replace(results.study, output=output(spec, results.study.output))
     listener, records = results.listener, results.read_motions(asked).motions
     plan = level_plan(asked, spec, records)
-    if asked.motions.scale != (1.0,):
+    if spec.method == "cloud":
+        spec = replace(spec, levels=tuple(sorted({x for own in plan.used for x in own})))
+    elif asked.motions.scale != (1.0,):
         listener.say("scale of [motions] is not used: the levels of [fragility] take its place")
     digest = digests(
         records,
@@ -170,7 +176,8 @@ def _carry_out(results: AnalysisFolder, spec: FragilitySpec) -> dict[str, Any]:
     )
     with results.journal(RUNS, columns(asked), digest) as journal:
         runs = count(sum(map(len, plan.used)) * len(asked.cases), "run")
-        levels = f"{count(len(records), 'record')} at {len(spec.levels)} levels of {spec.label}"
+        where = "as they are" if spec.method == "cloud" else f"at {len(spec.levels)} levels of {spec.label}"
+        levels = f"{count(len(records), 'record')} {where}"
         search = (
             f"; then first exceedances are hunted for and bisected to {spec.tolerance:g}"
             if spec.method == "ida"
@@ -187,6 +194,10 @@ def _carry_out(results: AnalysisFolder, spec: FragilitySpec) -> dict[str, Any]:
         results.keep_table(SCALES, scales(plan, spec, names))
         results.info["scales"] = described_scales(plan, spec, names)
         results.keep_table(POINTS, points(curves, spec, asked.varied))
+        if spec.method == "cloud":
+            results.keep_table(CLOUD, cloud_table(curves, spec, asked.varied, names))
+        else:
+            results.drop(CLOUD)
         if spec.method == "ida":
             results.keep_table(CAPACITIES, capacities(curves, spec, asked.varied, names, plan.unscaled))
         else:

@@ -10,8 +10,18 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from rockbatch.analysis import cloud
 from rockbatch.analysis.ida import Bracket, Capacity, Looks, bisect, capacity, hunt
-from rockbatch.analysis.limit_states import EXCEEDED, LEFT_OUT, UNDECIDED, WITHSTOOD, applies, states
+from rockbatch.analysis.limit_states import (
+    EXCEEDED,
+    LEFT_OUT,
+    UNDECIDED,
+    WITHSTOOD,
+    applies,
+    demands,
+    states,
+    threshold,
+)
 from rockbatch.analysis.lognormal import Capacities, Lognormal, Values, fit
 from rockbatch.batch.listening import count
 from rockbatch.batch.plan import Made, PlannedRun, scaled
@@ -81,6 +91,10 @@ def level_plan(study: Study, spec: FragilitySpec, motions: Sequence[Motion]) -> 
     """Return the levels of every motion; raises ``InputError`` if there is no run at all, or a stripe names no record."""
     unscaled = intensities(motions, spec, study.cases[0].pier.gravity)
     plan = LevelPlan(unscaled, [motion.factor for motion in motions], [{} for _ in motions], [{} for _ in motions])
+    if spec.method == "cloud":
+        for used, x in zip(plan.used, unscaled, strict=True):
+            used.update({x * scale: x * scale for scale in study.motions.scale})
+        return plan
     own = members(study.file(), spec.stripes, [motion.name for motion in motions])
     for i, level in enumerate(spec.levels):
         given = own[i] if own else dict.fromkeys(range(len(motions)))
@@ -146,24 +160,38 @@ class Undecided(NamedTuple):
         return f"{self.number} of {count(self.runs, 'run')} undecided: {parts}" if parts else ""
 
 
+Fitted = Lognormal | cloud.Cloud
+"""A fragility curve, by whatever method."""
+
+
 class Readings(NamedTuple):
     """The curves with all undecided runs counted as beyond the limit, and as within it, or why there is none."""
 
-    exceeded: Lognormal | str
-    withstood: Lognormal | str
+    exceeded: Fitted | str
+    withstood: Fitted | str
 
     @property
     def medians(self) -> tuple[float, float]:
         """Return both medians, the lower first; 0 or infinite for one without a curve."""
-        low = self.exceeded.median if isinstance(self.exceeded, Lognormal) else 0.0
-        high = self.withstood.median if isinstance(self.withstood, Lognormal) else math.inf
+        low = 0.0 if isinstance(self.exceeded, str) else self.exceeded.median
+        high = math.inf if isinstance(self.withstood, str) else self.withstood.median
         return min(low, high), max(low, high)
 
     def probability(self, x: Values) -> tuple[Values, Values]:
         """Return both P(x), the lower first, each of the shape of ``x``; 0 or 1 for one without a curve."""
-        low = self.withstood.probability(x) if isinstance(self.withstood, Lognormal) else np.zeros(len(x))
-        high = self.exceeded.probability(x) if isinstance(self.exceeded, Lognormal) else np.ones(len(x))
+        low = np.zeros(len(x)) if isinstance(self.withstood, str) else self.withstood.probability(x)
+        high = np.ones(len(x)) if isinstance(self.exceeded, str) else self.exceeded.probability(x)
         return np.minimum(low, high), np.maximum(low, high)
+
+
+class CloudPoint(NamedTuple):
+    """A run of a cloud: number of its motion, its intensity, its demand, its status, and its state."""
+
+    motion: int
+    intensity: float
+    demand: float
+    status: str
+    state: int
 
 
 @dataclass(frozen=True)
@@ -176,28 +204,31 @@ class Curve:
         Its case and its limit.
     stripes : tuple of Stripe
         Counts at every level.
-    fitted : Lognormal or str
+    fitted : Lognormal, Cloud or str
         The curve, to which undecided runs add nothing, or why there is none.
     undecided : Undecided
         Number of undecided runs.
     readings : Readings or None
         The curves between which it lies, whatever undecided runs would have come to; None without any.
     capacities : tuple of (int, Capacity)
-        Number of each motion that counts, and its capacity; empty for stripes.
+        Number of each motion that counts, and its capacity; of incremental dynamic analysis only.
+    cloud : tuple of CloudPoint
+        What each run came to; of cloud analysis only, whose ``stripes`` are these runs one by one.
     """
 
     case: Case
     limit: Rule
     stripes: tuple[Stripe, ...]
-    fitted: Lognormal | str
+    fitted: Fitted | str
     undecided: Undecided
     readings: Readings | None = None
     capacities: tuple[tuple[int, Capacity], ...] = ()
+    cloud: tuple[CloudPoint, ...] = ()
 
     @property
     def says_little(self) -> bool:
         """Return whether undecided runs leave the median more open than the number of records does."""
-        if self.readings is None or not isinstance(self.fitted, Lognormal):
+        if self.readings is None or isinstance(self.fitted, str):
             return False
         return _ratio(self.readings.medians) > _ratio(self.fitted.median_interval)
 
@@ -264,6 +295,8 @@ def assess(
     keys = [(c, rule, m) for c, rule in asked for m in range(len(motions))]
     on_levels = iter(runs.states([(rule, Point(m, x, c)) for c, rule, m in keys for x in plan.used[m].values()]))
     looks = {key: {level: next(on_levels) for level in plan.used[key[2]]} for key in keys}
+    if spec.method == "cloud":
+        return [_of_cloud(runs, spec, c, rule) for c, rule in asked]
     if spec.method == "ida":
         looks = hunt(looks, spec.levels, lambda key: spec.step_on(study.cases[key[0]].base), states_of)
         looks = bisect(looks, spec.levels, spec.tolerance, states_of)
@@ -295,6 +328,11 @@ class _Runs:
         """Return the status of the run of a motion at a level, or at an intensity between the levels."""
         return self.status[Point(motion, self.plan.used[motion].get(level, level), case)]
 
+    def demands(self, rule: Rule, points: Sequence[Point]) -> npt.NDArray[np.float64]:
+        """Return the demands of runs of the last wave of one case, shape (n,)."""
+        places, table = self._last
+        return demands(rule, table.iloc[[places[point] for point in points]], self.cases[points[0].case])
+
     def states(self, asked: Sequence[tuple[Rule, Point]]) -> list[int]:
         """Return the states of runs of the last wave with respect to limits."""
         places, table = self._last
@@ -322,6 +360,57 @@ def _curve(runs: _Runs, spec: FragilitySpec, case: int, rule: Rule, looks: Seque
         fits = _through_stripes(on_levels, spec)
     stripes = _stripes(on_levels, spec.levels, runs, case)
     return Curve(runs.study.cases[case], rule, stripes, fits[0], undecided, fits[1], capacities)
+
+
+def _of_cloud(runs: _Runs, spec: FragilitySpec, case: int, rule: Rule) -> Curve:
+    """Return the curve through the demands of all runs."""
+    points = sorted(
+        (Point(m, x, case) for m, own in enumerate(runs.plan.used) for x in own), key=lambda run: run.intensity
+    )
+    values, states = runs.demands(rule, points), runs.states([(rule, point) for point in points])
+    seen = tuple(
+        CloudPoint(point.motion, point.intensity, float(value), runs.status[point], state)
+        for point, value, state in zip(points, values, states, strict=True)
+    )
+    counting = [run for run in seen if run.state != LEFT_OUT]
+    doubtful = [run for run in counting if _is_doubtful(run)]
+    ended = Counter(run.status for run in doubtful)
+    other = len(doubtful) - ended["flight"] - ended["failed"]
+    undecided = Undecided(len(counting), ended["flight"], ended["failed"], other)
+    fitted = _through_cloud([run for run in counting if not _is_doubtful(run)], rule, spec)
+    readings = None
+    if doubtful:
+        beyond = [run._replace(status="overturned", state=EXCEEDED) if _is_doubtful(run) else run for run in counting]
+        within = [run._replace(demand=math.nan, state=WITHSTOOD) if _is_doubtful(run) else run for run in counting]
+        readings = Readings(_through_cloud(beyond, rule, spec), _through_cloud(within, rule, spec))
+    stripes = tuple(_stripe_of_one(run, runs.plan) for run in seen)
+    return Curve(runs.study.cases[case], rule, stripes, fitted, undecided, readings, (), seen)
+
+
+def _is_doubtful(run: CloudPoint) -> bool:
+    """Return whether a run is undecided for another reason than the error of its demand, which a line does not mind."""
+    return run.state == UNDECIDED and run.status != "ok"
+
+
+def _stripe_of_one(run: CloudPoint, plan: LevelPlan) -> Stripe:
+    ends = (int(run.status == status) for status in ("overturned", "flight", "failed"))
+    counts = (int(run.state != LEFT_OUT), int(run.state == EXCEEDED), int(run.state == UNDECIDED))
+    factor = plan.factor(run.motion, run.intensity)
+    return Stripe(run.intensity, *counts, *ends)._replace(scale_least=factor, scale_median=factor, scale_most=factor)
+
+
+def _through_cloud(seen: Sequence[CloudPoint], rule: Rule, spec: FragilitySpec) -> Fitted | str:
+    x, demand = np.array([[run.intensity, run.demand] for run in seen], dtype=np.float64).reshape(-1, 2).T
+    exceeded = np.array([run.state == EXCEEDED for run in seen], dtype=np.bool_)
+    if DEMANDS[rule.demand].event:
+        return cloud.fit_event(x, exceeded, spec.confidence)
+    limit = threshold(rule)
+    if not limit > 0:
+        return f"a limit of {limit:g} has no logarithm: a cloud needs one above 0"
+    overturned = exceeded & np.array([run.status == "overturned" for run in seen], dtype=np.bool_)
+    within = ~overturned & np.isnan(demand)
+    runs = cloud.Demands(x, np.where(within, 0.0, demand), overturned, within)
+    return cloud.fit(runs, limit, spec.censored_below * limit, spec.confidence)
 
 
 def _undecided(runs: _Runs, case: int, looks: Sequence[Looks]) -> Undecided:

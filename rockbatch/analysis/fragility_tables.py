@@ -8,10 +8,11 @@ from typing import Any
 
 import numpy as np
 
+from rockbatch.analysis.cloud_tables import described_cloud, note_on_cloud
 from rockbatch.analysis.fragility_curves import Curve
 from rockbatch.analysis.ida import Capacity
 from rockbatch.analysis.limit_states import words
-from rockbatch.analysis.lognormal import Lognormal, Values
+from rockbatch.analysis.lognormal import Values
 from rockbatch.analysis.risk import Risk, described_hazard
 from rockbatch.analysis.risk import described as described_risk
 from rockbatch.lazy import pd
@@ -44,7 +45,7 @@ def points(curves: Sequence[Curve], spec: FragilitySpec, varied: Sequence[str]) 
 
 def _probabilities(curve: Curve, x: Values) -> dict[str, Values]:
     """Return P(x) of a curve, and what it lies between; NaN without a curve."""
-    p = curve.fitted.probability(x) if isinstance(curve.fitted, Lognormal) else np.full(len(x), np.nan)
+    p = np.full(len(x), np.nan) if isinstance(curve.fitted, str) else curve.fitted.probability(x)
     low, high = curve.readings.probability(x) if curve.readings else (p, p)
     return {"p": p, "p_low": np.fmin(low, p), "p_high": np.fmax(high, p)}
 
@@ -167,27 +168,33 @@ def _described(curve: Curve, spec: FragilitySpec) -> dict[str, Any]:
         "looked": _looked(curve, spec) if spec.method == "ida" else [],
     }
     x = np.linspace(0.0, 1.1 * spec.levels[-1], SAMPLES + 1)[1:]
+    if curve.cloud:
+        content["cloud"] = described_cloud(curve, spec)
     if readings:
         p = _probabilities(curve, x)
         content["open"] = _rounded({"x": x, "low": p["p_low"], "high": p["p_high"]})
-    if isinstance(fitted, Lognormal):
+    if not isinstance(fitted, str):
         drawn = dict(zip(("x", "p", "low", "high"), (x, fitted.probability(x), *fitted.band(x)), strict=True))
         content |= {
-            "median": fitted.median,
+            "median": _or_none(fitted.median),
             "median_interval": _finite(fitted.median_interval),
-            "dispersion": fitted.dispersion,
+            "dispersion": _or_none(fitted.dispersion),
             "dispersion_interval": _finite(fitted.dispersion_interval),
             "curve": _rounded(drawn),
         }
         if spec.added:
             total = fitted.widened(spec.added)
-            content["dispersion_total"] = total.dispersion
+            content["dispersion_total"] = _or_none(total.dispersion)
             content["total"] = _rounded({"x": x, "p": total.probability(x)})
     return content
 
 
 def _rounded(drawn: dict[str, Values]) -> dict[str, list[float]]:
     return {name: [round(float(value), 6) for value in values] for name, values in drawn.items()}
+
+
+def _or_none(value: float) -> float | None:
+    return value if math.isfinite(value) else None
 
 
 def _finite(bounds: tuple[float, float]) -> list[float | None]:
@@ -199,13 +206,15 @@ def note(curve: Curve, spec: FragilitySpec) -> str:
     """Return remarks on a curve, or why there is none."""
     fitted = curve.fitted
     notes = [_about_undecided(curve), fitted if isinstance(fitted, str) else ""]
-    if isinstance(fitted, Lognormal):
+    if not isinstance(fitted, str):
         if fitted.median > spec.levels[-1]:
             notes.append("the median is extrapolated beyond the highest level")
         elif fitted.median < spec.levels[0]:
             notes.append("the median is extrapolated below the lowest level")
         if any(math.isinf(bound) for bound in (*fitted.median_interval, *fitted.dispersion_interval)):
             notes.append("the records leave the intervals open: more of them, or other levels, would close them")
+    if curve.cloud:
+        notes += note_on_cloud(curve, spec)
     if returning := sum(cap.returns > 0 for _, cap in curve.capacities):
         notes.append(f"{returning} of {len(curve.capacities)} records withstand a level above their first exceedance")
     return "; ".join(filter(None, notes))
@@ -219,7 +228,7 @@ def _about_undecided(curve: Curve) -> str:
     if curve.readings is None:
         return f"{remark}, above the first exceedance of their records, where they change nothing"
     beyond, within = (
-        f"a median of {fit.median:.4g}" if isinstance(fit, Lognormal) else f"no curve ({fit})" for fit in curve.readings
+        f"no curve ({fit})" if isinstance(fit, str) else f"a median of {fit.median:.4g}" for fit in curve.readings
     )
     remark += f"; they count for nothing here: as beyond the limit they would give {beyond}, as within it {within}"
     return f"says little: {remark}" if curve.says_little else remark

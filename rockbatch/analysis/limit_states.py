@@ -38,6 +38,11 @@ def words(rule: Rule) -> str:
     return rule.demand if DEMANDS[rule.demand].event and limit == 0 else f"{rule.demand} > {limit:g}"
 
 
+def demands(rule: Rule, runs: "pd.DataFrame", case: Case) -> npt.NDArray[np.float64]:
+    """Return the demand of each of the n runs of a case, shape (n,)."""
+    return of_runs(rule, runs, case)[0].value
+
+
 def states(rule: Rule, runs: "pd.DataFrame", case: Case) -> npt.NDArray[np.int8]:
     """Return the state of each of the n runs of a case, rows of peaks.csv, shape (n,)."""
     bounds, kept = of_runs(rule, runs, case)

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Sequence
-from statistics import NormalDist
 from typing import Any
 
 import numpy as np
@@ -10,7 +9,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from rockbatch.analysis.fragility_curves import Curve
-from rockbatch.analysis.lognormal import Lognormal
 from rockbatch.figures import COLOURS, figure, line, marks, styled
 from rockbatch.lazy import pd
 from rockbatch.study.spectrum import INTENSITY, SELF_SIMILAR
@@ -32,9 +30,8 @@ def fragility(table: "pd.DataFrame", curves: Sequence[Curve], width_mm: float) -
         rows = table[(table[list(chosen)] == pd.Series(chosen)).all(axis=1)]
         share = rows["exceeded"] / (rows["n"] - rows["undecided"])
         axes.plot(rows["level"], share, **marks(place), label=f"{names[place]}, records")
-        if isinstance(curve.fitted, Lognormal):
-            normal = NormalDist(math.log(curve.fitted.median), curve.fitted.dispersion)
-            axes.plot(levels, [normal.cdf(math.log(level)) for level in levels], label=names[place], **line(place))
+        if not isinstance(curve.fitted, str):
+            axes.plot(levels, curve.fitted.probability(levels), label=names[place], **line(place))
     for axes, limit in zip(grid, limits, strict=True):
         axes.set(xlabel=f"{table['measure'].iloc[0]} [{table['unit'].iloc[0]}]", ylim=(0, 1.01), title=limit)
     grid[0].set_ylabel("probability that it is exceeded")

@@ -11,9 +11,10 @@ from typing import Any
 
 import numpy as np
 
-from rockbatch.analysis.fragility_curves import Curve
-from rockbatch.analysis.lognormal import Lognormal, Values
+from rockbatch.analysis.fragility_curves import Curve, Fitted
+from rockbatch.analysis.lognormal import Values
 from rockbatch.lazy import pd
+from rockbatch.motions.hazard import MOST_RATE, HazardCurve
 from rockbatch.study.fragility import FragilitySpec
 from rockbatch.study.hazard import Hazard
 
@@ -36,7 +37,7 @@ class Risk:
     ----------
     curve : Curve
         The fragility.
-    total : Lognormal
+    total : Lognormal or Cloud
         Its curve with the added dispersion.
     rate : float
         Mean annual rate of exceedance.
@@ -55,7 +56,7 @@ class Risk:
     """
 
     curve: Curve
-    total: Lognormal
+    total: Fitted
     rate: float
     interval: tuple[float, float]
     undecided: tuple[float, float] | None
@@ -75,20 +76,25 @@ def probability(rate: float, years: float) -> float:
     return -math.expm1(-rate * years)
 
 
+def percent(p: float) -> str:
+    """Return a probability in per cent with two digits, without exponent where it is all but certain."""
+    return "100" if p >= 0.995 else f"{100.0 * p:.2g}"
+
+
 def risks(curves: Sequence[Curve], spec: FragilitySpec) -> list[Risk]:
     """Return the risk of every curve that has a fit; none without a hazard."""
     hazard = spec.hazard
     if hazard is None:
         return []
     x, rates = hazard.curve.quadrature()
-    return [
-        _risk(curve, curve.fitted, spec, hazard, x, rates) for curve in curves if isinstance(curve.fitted, Lognormal)
-    ]
+    return [_risk(curve, curve.fitted, spec, hazard, x, rates) for curve in curves if not isinstance(curve.fitted, str)]
 
 
-def _risk(curve: Curve, fitted: Lognormal, spec: FragilitySpec, hazard: Hazard, x: Values, rates: Values) -> Risk:
+def _risk(curve: Curve, fitted: Fitted, spec: FragilitySpec, hazard: Hazard, x: Values, rates: Values) -> Risk:
     total = fitted.widened(spec.added)
-    rate, *interval = total.rate(x, rates)
+    rate, least, most = total.rate(x, rates)
+    if most > _meaningful(hazard.curve):
+        most = math.inf
     each = total.probability(x) * rates
     first, last = hazard.curve.ends
     above = float(each[x > last].sum())
@@ -100,7 +106,7 @@ def _risk(curve: Curve, fitted: Lognormal, spec: FragilitySpec, hazard: Hazard, 
         curve,
         total,
         rate,
-        (interval[0], interval[1]),
+        (least, most),
         _undecided(curve, spec.added, x, rates),
         float(each[x < first].sum()),
         above,
@@ -110,13 +116,18 @@ def _risk(curve: Curve, fitted: Lognormal, spec: FragilitySpec, hazard: Hazard, 
     )
 
 
+def _meaningful(hazard: HazardCurve) -> float:
+    """Return the greatest rate that says anything: that of the lowest point of a table, below which a hazard is not known."""
+    return hazard.rates[0] if len(hazard.rates) > 1 else MOST_RATE
+
+
 def _undecided(curve: Curve, added: float, x: Values, rates: Values) -> tuple[float, float] | None:
     """Return both rates, the lower first; 0 or that of all motions for a reading without a curve."""
     if curve.readings is None:
         return None
     bounds = []
     for reading, without in ((curve.readings.withstood, 0.0), (curve.readings.exceeded, math.inf)):
-        bounds.append(reading.widened(added).rate(x, rates)[0] if isinstance(reading, Lognormal) else without)
+        bounds.append(without if isinstance(reading, str) else reading.widened(added).rate(x, rates)[0])
     return min(bounds), max(bounds)
 
 
@@ -124,7 +135,9 @@ def note(risk: Risk, spec: FragilitySpec) -> str:
     """Return what the number does not say by itself; empty if there is nothing."""
     notes = []
     if math.isinf(risk.interval[1]):
-        notes.append("the records leave the dispersion open, and with it the upper bound of the rate")
+        notes.append(
+            "the records leave the upper bound of the rate open: more often than the weakest motions of the hazard"
+        )
     if risk.rate > 0 and risk.above > NOTABLE * risk.rate:
         low, high = risk.bounds
         notes.append(
@@ -139,12 +152,12 @@ def note(risk: Risk, spec: FragilitySpec) -> str:
     weaker, stronger = risk.beyond_levels
     if risk.rate > 0 and weaker > NOTABLE * risk.rate:
         notes.append(
-            f"{_share(weaker, risk)} comes from below the lowest intensity that was run, {spec.levels[0]:g} {spec.unit}: "
+            f"{_share(weaker, risk)} comes from below the lowest intensity that was run, {spec.levels[0]:.3g} {spec.unit}: "
             "from the tail of the fitted curve, which no run has tried"
         )
     if risk.rate > 0 and stronger > NOTABLE * risk.rate:
         notes.append(
-            f"{_share(stronger, risk)} comes from above the highest that was run, {spec.levels[-1]:g} {spec.unit}"
+            f"{_share(stronger, risk)} comes from above the highest that was run, {spec.levels[-1]:.3g} {spec.unit}"
         )
     if risk.rate * max(spec.hazard.years if spec.hazard else (0.0,)) > 3.0:
         notes.append(
@@ -177,7 +190,7 @@ def _which(curve: Curve, varied: Sequence[str]) -> dict[str, Any]:
 def _row(risk: Risk, spec: FragilitySpec, varied: Sequence[str]) -> dict[str, Any]:
     curve, hazard = risk.curve, spec.hazard
     row = _which(curve, varied) | {"measure": spec.label, "unit": spec.unit, "median": risk.total.median}
-    own = curve.fitted.dispersion if isinstance(curve.fitted, Lognormal) else math.nan
+    own = math.nan if isinstance(curve.fitted, str) else curve.fitted.dispersion
     row |= {"dispersion": own, "dispersion_added": spec.added, "dispersion_total": risk.total.dispersion}
     low, high = map(_or_nothing, risk.interval)
     within, beyond = map(_or_nothing, risk.undecided or (math.nan, math.nan))

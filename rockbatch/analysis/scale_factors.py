@@ -33,6 +33,8 @@ def scales(plan: LevelPlan, spec: FragilitySpec, names: Sequence[str]) -> "pd.Da
 
 def described_scales(plan: LevelPlan, spec: FragilitySpec, names: Sequence[str]) -> dict[str, Any]:
     """Return the factors for fragility.json: for each record those at all levels, None where it is not meant for one."""
+    if spec.method == "cloud":
+        return {"records": [], "factors": [], "used": [], "limits": [None, None], "said": said(plan, spec)}
     factors, used = [], []
     for m in range(len(names)):
         meant = plan.used[m] | plan.not_used[m]
@@ -45,6 +47,8 @@ def described_scales(plan: LevelPlan, spec: FragilitySpec, names: Sequence[str])
 def said(plan: LevelPlan, spec: FragilitySpec) -> str:
     """Return in words how far records are scaled, and how many are left at each level."""
     factors = [plan.factor(m, x) for m, own in enumerate(plan.used) for x in own]
+    if min(factors) == max(factors) == 1.0:
+        return "records are taken as they were recorded"
     parts = [f"records are scaled by {min(factors):.2g} to {max(factors):.2g} (median {np.median(factors):.2g})"]
     beyond = {x: sum(x in own for own in plan.not_used) for x in spec.levels}
     if any(beyond.values()):
@@ -57,7 +61,7 @@ def said(plan: LevelPlan, spec: FragilitySpec) -> str:
         parts.append(f"factors {limits} are allowed, which leaves {', '.join(left)} {spec.unit}")
     far = [
         f"{min(own):.3g} to {max(own):.3g} at {x:g}"
-        for x in spec.levels
+        for x in (() if spec.method == "cloud" else spec.levels)
         if (own := [given[x] for given in plan.used if x in given]) and max(abs(y / x - 1.0) for y in own) > FAR
     ]
     if far:

@@ -8,8 +8,7 @@ from rockbatch.analysis.fragility import fragility
 from rockbatch.analysis.fragility_curves import Curve
 from rockbatch.analysis.fragility_tables import RUNS, looked_at, note
 from rockbatch.analysis.limit_states import words
-from rockbatch.analysis.lognormal import Lognormal
-from rockbatch.analysis.risk import Risk, probability, risks
+from rockbatch.analysis.risk import Risk, percent, probability, risks
 from rockbatch.analysis.risk import note as note_on_risk
 from rockbatch.batch.listening import count
 from rockbatch.commands.options import asked, folder, tell_files
@@ -38,7 +37,7 @@ def table(curves: Sequence[Curve], spec: FragilitySpec) -> str:
     rows, notes = [], []
     for curve in curves:
         case = _case(curve)
-        fitted = curve.fitted if isinstance(curve.fitted, Lognormal) else None
+        fitted = None if isinstance(curve.fitted, str) else curve.fitted
         rows.append([
             curve.limit.name,
             case,
@@ -55,7 +54,8 @@ def table(curves: Sequence[Curve], spec: FragilitySpec) -> str:
     if not any(curve.readings for curve in curves):
         heads, *rows = ([*line[:4], *line[5:]] for line in (heads, *rows))
     limits = [f"{limit.name}: {words(limit)}" for limit in spec.limits if words(limit)]
-    title = f"Fragility for {spec.label}, {'incremental dynamic analysis' if spec.method == 'ida' else 'stripes'}"
+    method = {"ida": "incremental dynamic analysis", "cloud": "cloud analysis"}.get(spec.method, spec.method)
+    title = f"Fragility for {spec.label}, {method}"
     if little := sum(curve.says_little for curve in curves):
         some = f"{little} of {count(len(curves), 'curve')} {'says' if little == 1 else 'say'} little"
         title += f"; {some}: too many runs are undecided"
@@ -98,8 +98,8 @@ def risk_lines(rates: Sequence[Risk], spec: FragilitySpec) -> str:
 
 
 def _chance(risk: Risk, years: float) -> str:
-    low, high = (probability(bound, years) for bound in risk.interval)
-    return f"{100 * risk.probability(years):.2g} % ({100 * low:.2g} – {100 * high:.2g})"
+    low, high = (percent(probability(bound, years)) for bound in risk.interval)
+    return f"{percent(risk.probability(years))} % ({low} – {high})"
 
 
 def _case(curve: Curve) -> str:

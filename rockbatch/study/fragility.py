@@ -51,6 +51,7 @@ class FragilitySpec:
     dispersions: tuple[Dispersion, ...] = ()
     least_scale: float = 0.0
     most_scale: float = math.inf
+    censored_below: float = 0.01
     stripes: tuple[StripeRecords, ...] = ()
 
     @property
@@ -79,29 +80,37 @@ class FragilitySpec:
 
 
 _BELOW_ONE = Number("a number, 0 or above and below 1", low=0.0, high=1.0, below=True)
-_SA, _IDA = {"measure": ("Sa",)}, {"method": ("ida",)}
+_SA, _IDA, _CLOUD = {"measure": ("Sa",)}, {"method": ("ida",)}, {"method": ("cloud",)}
+_SCALED = {"method": ("stripes", "ida")}
 FRAGILITY = Section(("fragility",), (
     "Fragility curves, by `rockbatch fragility`: how probable it is at a given intensity that a limit is exceeded."
 ), {
-    "method": Key(choice("stripes", "ida"), '"ida"',
-        '"stripes": every record at every level; "ida": also, for each record, the least intensity that exceeds a limit.',
+    "method": Key(choice("stripes", "ida", "cloud"), '"ida"',
+        '"stripes": every record at every level; "ida": also, for each record, the least intensity that exceeds a limit; '
+        '"cloud": every record as it is, in the scales of [motions], and a line through the logarithms of demand and intensity.',
         default="stripes"),
     "measure": Key(choice(*MEASURES), '"PGV"', "Intensity measure of the horizontal component.", required=True),
     "period_s": Key(positive, "1.0", "Period of the oscillator of Sa.", required=True, only=_SA),
     "damping": Key(_BELOW_ONE, "0.05", "Damping of the oscillator of Sa, as a fraction of critical damping.", only=_SA),
     "levels_g": Key(positive, "[0.2, 0.4, 0.6, 0.8]",
-        "Levels of PGA or Sa; each [[fragility.stripe]] has its own instead.", many=True, only={"measure": ("PGA", "Sa")}),
+        "Levels of PGA or Sa; each [[fragility.stripe]] has its own instead.", many=True,
+        only={"measure": ("PGA", "Sa")} | _SCALED),
     "levels_m_s": Key(positive, "[0.25, 0.5, 1.0, 1.5]",
-        "Levels of PGV; each [[fragility.stripe]] has its own instead.", many=True, only={"measure": ("PGV",)}),
+        "Levels of PGV; each [[fragility.stripe]] has its own instead.", many=True, only={"measure": ("PGV",)} | _SCALED),
     "least_scale": Key(positive, "0.25",
-        "Least factor on a record, as it was recorded: at levels that take a smaller one it is not used."),
+        "Least factor on a record, as it was recorded: at levels that take a smaller one it is not used.",
+        only=_SCALED),
     "most_scale": Key(positive, "4.0",
-        "Greatest factor on a record, as it was recorded: at levels that take a larger one it is not used."),
+        "Greatest factor on a record, as it was recorded: at levels that take a larger one it is not used.",
+        only=_SCALED),
     "tolerance": Key(Number("a number from 1e-6 to 1", low=1e-6, high=1.0), "0.01",
         "Relative width to which the least intensity is narrowed down.", only=_IDA),
     "hunt_step": Key(Number("a number from 0.001 to 1", low=1e-3, high=1.0), "0.02",
         "Relative steps in which the first exceedance is hunted between the levels, on every base; if it is not given, 0.01 "
         "on rigid ground and the levels alone elsewhere.", only=_IDA),
+    "censored_below": Key(Number("a number above 0 and below 1", low=0.0, high=1.0, above=True, below=True), "0.05",
+        "Share of a limit below which a demand counts as small, without its value: piers that hardly lift off have logarithms "
+        "that say nothing about the limit.", only=_CLOUD),
     "checks": Key(text, '["no overturning", "uplift*"]',
         "Which of the checks are limits, by name or pattern, beside overturning; all that are about records if it is not "
         "given.", many=True),
@@ -145,6 +154,8 @@ def _levels(table: Table, read: dict[str, Any], stripes: Sequence[StripeRecords]
                 f'method = {shown(read["method"])}: records of their own are for "stripes"; leave it out', "method"
             )
         return tuple(stripe.level for stripe in stripes)
+    if read.get("method") == "cloud":
+        return ()
     if not table.has(own):
         table.complain(f"{own} is missing; write for example {own} = {FRAGILITY[own].example}")
     levels = given[own]

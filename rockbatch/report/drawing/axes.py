@@ -36,6 +36,12 @@ class Scale:
         first, last = math.ceil(self.low / step - 1e-9), math.floor(self.high / step + 1e-9)
         return [i * step for i in range(first, last + 1)]
 
+    def round_ticks(self) -> list[float]:
+        """Return 1, 2 and 5 times the powers of ten within a logarithmic scale; the powers alone if it is wide."""
+        powers = range(math.floor(math.log10(self.low)), math.ceil(math.log10(self.high)) + 1)
+        steps = (1, 2, 5) if self.high < 100 * self.low else (1,)
+        return [tick for n in powers for step in steps if self.low <= (tick := step * 10.0**n) <= self.high]
+
 
 def spanning(*arrays: Array, margin: float = 0.06) -> Scale:
     """Return a scale that holds every finite value, and zero, with a margin."""

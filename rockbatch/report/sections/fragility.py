@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from rockbatch.grouping import grouped
+from rockbatch.report.drawing import cloud
 from rockbatch.report.drawing.axes import Axes, Scale
 from rockbatch.report.drawing.svg import curve, key, line, marker, style_of, svg, text
 from rockbatch.report.finished_analysis import Contents, of_files
@@ -36,7 +37,7 @@ def section(contents: Contents) -> Markup:
         "sections/fragility.html", info=info, share=share, panels=_panels(info), table=_table(info, share),
         little=[f"{entry['limit_state']}, {label(entry)}" for entry in curves if entry["says_little"]],
         open=any("open" in entry for entry in curves), looked=any(entry.get("looked") for entry in curves),
-        factors=_factors(info), own=any(None in row for row in info.get("scales", {}).get("factors", ())),
+        clouds=_clouds(info), factors=_factors(info), own=any(None in row for row in info.get("scales", {}).get("factors", ())),
         provenance=analysis.provenance(),
     )  # fmt: skip
 
@@ -47,17 +48,35 @@ def label(entry: Curve) -> str:
 
 
 def _panels(info: Mapping[str, Any]) -> Markup:
-    styles = {label: style_of(i) for i, label in enumerate(dict.fromkeys(map(label, info["curves"])))}
+    styles = _styles(info)
     drawn = []
     for name, curves in grouped(info["curves"], lambda entry: entry["limit_state"]).items():
         for first in range(0, len(curves), CASES_OF_A_PANEL):
             some = curves[first : first + CASES_OF_A_PANEL]
             title = tag("figcaption", tag("span", name), " ", tag("span", some[0]["words"], class_="muted"))
             drawn.append(tag("figure", title, _panel(info, some, styles)))
-    shown = [(join(_stroke(colour), marker(shape, 11, 7, colour=f"s{colour}")), label)
-             for label, (shape, colour) in styles.items()]  # fmt: skip
+    shown = [(join(_stroke(colour), marker(shape, 11, 7, colour=f"s{colour}")), name)
+             for name, (shape, colour) in styles.items()]  # fmt: skip
     grid = tag("div", *drawn, class_="panels", style=f"--w:{WIDTH:.0f}px", role="group", aria_label="Fragility curves")
     return join(grid, key(shown))
+
+
+def _clouds(info: Mapping[str, Any]) -> Markup:
+    styles = _styles(info)
+    shown = [entry for entry in info["curves"] if cloud.is_drawn(entry)]
+    drawn = [
+        tag(
+            "figure",
+            tag("figcaption", f"{entry['limit_state']}, {label(entry)}"),
+            cloud.panel(info, entry, *styles[label(entry)]),
+        )
+        for entry in shown
+    ]
+    return tag("div", *drawn, class_="panels", style=f"--w:{WIDTH:.0f}px") if drawn else Markup("")
+
+
+def _styles(info: Mapping[str, Any]) -> dict[str, tuple[str, int]]:
+    return {name: style_of(i) for i, name in enumerate(dict.fromkeys(map(label, info["curves"])))}
 
 
 def _stroke(colour: int) -> Markup:
@@ -162,7 +181,7 @@ def _table(info: Mapping[str, Any], share: str) -> Markup:
 def _factors(info: Mapping[str, Any]) -> Markup:
     """Return a folded table of the factors on every record at every level; those that are not used in brackets."""
     scales = info.get("scales")
-    if not scales:
+    if not scales or not scales["records"]:
         return Markup("")
     heads = [
         Head("record"),
@@ -183,7 +202,8 @@ def _factor(factor: float | None, used: bool) -> str:
 
 
 def _most(name: str) -> Callable[[Curve], object]:
-    return lambda entry: max(point[name] for point in entry["points"])
+    """Return a function to the largest number of records at a level; of a cloud to their sum."""
+    return lambda entry: (sum if "cloud" in entry else max)([point[name] for point in entry["points"]])
 
 
 def _interval(name: str) -> Callable[[Curve], object]:

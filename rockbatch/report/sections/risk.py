@@ -53,18 +53,11 @@ def _decades(values: Sequence[float]) -> Scale:
     return Scale(10.0 ** math.floor(math.log10(low)), 10.0 ** math.ceil(math.log10(high)), log=True)
 
 
-def _round_ticks(scale: Scale) -> list[float]:
-    """Return 1, 2 and 5 times the powers of ten within a logarithmic scale; powers alone if it is wide."""
-    powers = range(math.floor(math.log10(scale.low)), math.ceil(math.log10(scale.high)) + 1)
-    steps = (1, 2, 5) if scale.high < 100 * scale.low else (1,)
-    return [tick for n in powers for step in steps if scale.low <= (tick := step * 10.0**n) <= scale.high]
-
-
 def _hazard(info: Mapping[str, Any]) -> Markup:
     hazard = info["hazard"]
     x, rate = (np.array(hazard["drawn"][name]) for name in ("x", "rate"))
     axes = Axes(44, 20, WIDTH - 54, HEIGHT - 58, Scale(float(x[0]), float(x[-1]), log=True), _decades(rate.tolist()))
-    drawn = [axes.frame(_round_ticks(axes.x), axes.y.ticks(5)), curve(axes.across(x), axes.down(rate), "level")]
+    drawn = [axes.frame(axes.x.round_ticks(), axes.y.ticks(5)), curve(axes.across(x), axes.down(rate), "level")]
     for level, often in zip(hazard["levels"], hazard["rates"], strict=True):
         title = f"{level:g} {info['unit']}: {often:.3g} per year, once in {1.0 / often:.0f} years"
         drawn.append(marker("disc", float(axes.across(level)), float(axes.down(often)), colour="", title=title))
@@ -79,7 +72,7 @@ def _densities(info: Mapping[str, Any], curves: Sequence[Curve], styles: Mapping
     ends = [float(x) for density in densities for x in (density["x"][0], density["x"][-1])] or [0.1, 10.0]
     most = max((float(density["share"].max()) for density in densities), default=1.0)
     axes = Axes(32, 20, WIDTH - 42, HEIGHT - 58, Scale(min(ends), max(ends), log=True), Scale(0.0, 1.1 * most))
-    drawn = [axes.frame(_round_ticks(axes.x), axes.y.ticks(4))]
+    drawn = [axes.frame(axes.x.round_ticks(), axes.y.ticks(4))]
     for end in {info["hazard"]["levels"][0], info["hazard"]["levels"][-1]}:
         if axes.x.low <= end <= axes.x.high:
             x = float(axes.across(end))
@@ -137,10 +130,14 @@ def _pair(low: str, high: str) -> Callable[[Curve], object]:
 
 def _chance(name: str) -> Callable[[Curve], object]:
     def written(entry: Curve) -> Markup:
-        value, low, high = (f"{100.0 * entry['risk'][which]:.2g}" for which in (name, f"{name}_low", f"{name}_high"))
+        value, low, high = (_percent(entry["risk"][which]) for which in (name, f"{name}_low", f"{name}_high"))
         return Markup(f"{value}\u00a0% ({interval(low, high)})")
 
     return written
+
+
+def _percent(p: float) -> str:
+    return "100" if p >= 0.995 else f"{100.0 * p:.2g}"
 
 
 def _contributing(entry: Curve) -> Markup:
