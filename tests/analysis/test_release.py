@@ -20,7 +20,7 @@ _NODES, _WEIGHTS = leggauss(60)
 
 
 def quarter(amplitude: float) -> float:
-    """Return Q(θ) of THEORY.md, eq. 27, by Gauss–Legendre in s, θ − φ = s²."""
+    """Return Q(θ) of THEORY.md, eq. 28, by Gauss–Legendre in s, θ − φ = s²."""
     if amplitude <= 0.0:
         return 0.0
     end = math.sqrt(amplitude)
@@ -30,7 +30,7 @@ def quarter(amplitude: float) -> float:
 
 
 def passages(restitutions) -> Passages:
-    """Return the impacts of a block with these restitutions, one for each impact (eq. 27)."""
+    """Return the impacts of a block with these restitutions, one for each impact (eq. 28)."""
     t, amplitude = quarter(START), START
     times, amplitudes = [], []
     for e in restitutions:
