@@ -18,7 +18,7 @@ from rockbatch.core.springs.laws import static_deflection as series
 from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase, least_beta, rocking_frequency, static_deflection
 from rockbatch.pier.equilibrium import SlowTurn, deflection_under, first_loading
 from rockbatch.pier.free_rocking import FreeRocking
-from rockbatch.pier.statics import FACTS
+from rockbatch.pier.statics import FACTS, sheet_of
 
 PIER = Pier(alpha=0.2, p=1.0, mu=4.0)
 FRICTION, TENDON = rb.Damper("friction", f=0.05), rb.Tendon(psi=0.3, lam=0.2)
@@ -427,3 +427,25 @@ def test_the_page_shows_the_sheet_of_its_study(capsys):
     assert main(["statics", str(ROOT / "configs/pier_with_dampers.toml")]) == 0
     sheet = capsys.readouterr().out.split("\n\n")[0]
     assert "\n".join(f"    {line}" for line in sheet.splitlines()) in page
+
+
+@pytest.mark.parametrize(
+    ("pier", "base"),
+    [
+        (Pier(0.01, 0.3), ElasticBase(1e6)),
+        (Pier(1.57, 2.0, 1e6), ElasticBase(0.03, restraints=(rb.Stop(gap_m=100.0, lam=0.1), FRICTION))),
+        (
+            Pier(1.0, 0.3, 1e6),
+            YieldingBase(0.88, eta=2.5, n=1000.0, restraints=(rb.Tendon(psi=0.3, lam=0.3), FRICTION)),
+        ),
+        (Pier(0.2, 1.0), YieldingBase(30.0, eta=1.000001, n=1.0)),
+        (Pier(0.2, 1.0), YieldingBase(30.0, eta=1e6, kinematics="finite", restraints=(rb.Damper("friction", f=10.0),))),
+        (Pier(1e-4, 1e3, 1e-3), RigidBase(restraints=(rb.Tendon(psi=10.0, lam=1e6),))),
+    ],
+)
+def test_the_sheet_of_any_pier_that_stands_has_finite_numbers(pier, base):
+    """Warnings are errors here: nothing overflows or divides by 0 on the way."""
+    sheet = sheet_of(pier, base)
+    assert all(value is None or math.isfinite(value) for value in sheet.row.values())
+    assert np.isfinite(sheet.curve.to_numpy()).all()
+    assert repr(sheet).startswith("<statics")

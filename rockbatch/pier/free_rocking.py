@@ -58,7 +58,9 @@ class FreeRocking:
         """Return the period of small rocking on both supports [s], 2π/ω_r (12) without devices; None on rigid ground."""
         if self.turn.spring is None or not self.even:
             return None
-        return float(self.periods(np.array([1e-3 * (self.turn.lift_off or self.pier.alpha)]))[0])
+        theta = 1e-3 * (self.turn.lift_off or self.pier.alpha)
+        stiffness = self.pier.gravity * float(self.turn.at(np.array([theta])).moment[0]) / theta
+        return 2.0 * math.pi * math.sqrt((self.pier.inertia + self.turn.h**2) / stiffness)
 
     @cached_property
     def _edges(self) -> list[float]:
@@ -86,7 +88,10 @@ class FreeRocking:
         parts = np.split(
             np.arange(len(curve.theta)), [int(np.searchsorted(curve.theta, turn.lift_off or 0.0, "right"))]
         )
-        sinking = [np.gradient(curve.depth[part], curve.theta[part]) for part in parts if len(part) > 1]
+        sinking = [
+            np.gradient(curve.depth[part], curve.theta[part]) if len(part) > 1 else np.zeros(len(part))
+            for part in parts
+        ]
         return curve.theta, curve.moment, np.concatenate(sinking)
 
     def _moment(self, theta: Array) -> Array:
