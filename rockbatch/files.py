@@ -215,10 +215,11 @@ def naming_full_disk(path: Path, kept: str = "what was finished before is kept")
 def only_writer(folder: Path) -> Iterator[None]:
     """Keep all others from writing into ``folder`` meanwhile; ``InputError`` if another process does already.
 
-    The operating system gives the lock back when its process ends, however it ends.
+    The operating system gives the lock back when its process ends, however it ends. What is forked meanwhile does not.
     """
     from filelock import FileLock, Timeout
 
+    process = os.getpid()
     lock = FileLock(folder / LOCK)
     try:
         lock.acquire(blocking=False)
@@ -232,9 +233,10 @@ def only_writer(folder: Path) -> Iterator[None]:
                 leftover.unlink(missing_ok=True)
         yield
     finally:
-        with suppress(OSError):  # Windows keeps files that are open
-            Path(lock.lock_file).unlink()
-        lock.release()
+        if os.getpid() == process:
+            with suppress(OSError):  # Windows keeps files that are open
+                Path(lock.lock_file).unlink()
+            lock.release()
 
 
 def legible(text: str, keep: str = "") -> str:

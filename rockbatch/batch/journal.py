@@ -116,6 +116,7 @@ class Journal:
                 self._append(_sealed(self._first))
                 self._head = self._end
             self._opened = entered.pop_all()
+        self._process = os.getpid()
         return self
 
     def __exit__(
@@ -124,7 +125,7 @@ class Journal:
         with self._opened:
             empty = os.fstat(self._file.fileno()).st_size <= self._head
             self._file.close()
-            if empty or (self._written and kind is None):
+            if os.getpid() == self._process and (empty or (self._written and kind is None)):
                 self.path.unlink()
 
     def __len__(self) -> int:

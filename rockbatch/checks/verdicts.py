@@ -2,12 +2,14 @@
 
 import csv
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import MISSING, asdict, dataclass, fields
 from pathlib import Path
 from typing import Any
 
-from rockbatch.checks.rules import is_ban
+from rockbatch.checks.demands import DEMANDS
+from rockbatch.checks.rules import COUNTS, is_ban
+from rockbatch.checks.statistics import STATISTICS
 from rockbatch.errors import InputError
 from rockbatch.files import csv_plain, csv_text, legible, opened_text, write_whole
 from rockbatch.lazy import pd
@@ -93,6 +95,11 @@ class Verdict:
 
 
 _KINDS: dict[str, Any] = {field.name: field.type for field in fields(Verdict)}
+_WORDS: dict[str, Collection[str]] = {
+    "verdict": (PASS, FAIL, NOT_DECIDED, DOES_NOT_APPLY), "sense": ("at most", "at least"), "demand": DEMANDS,
+    "statistic": ("", *STATISTICS), "count": ("", *COUNTS),
+}  # fmt: skip
+"""Columns of words that readers look up."""
 _LATER = {field.name for field in fields(Verdict) if field.default is not MISSING}
 """Columns that an earlier version did not write yet."""
 
@@ -141,11 +148,9 @@ def _from_row(row: Mapping[str, str]) -> Verdict:
         for name, kind in _KINDS.items()
         if name != "columns" and (name in row or name not in _LATER)
     }
-    if values["verdict"] not in (PASS, FAIL, NOT_DECIDED, DOES_NOT_APPLY) or values["sense"] not in (
-        "at most",
-        "at least",
-    ):
-        raise ValueError(f"{values['sense']!r}, {values['verdict']!r}: no verdict")
+    for name, words in _WORDS.items():
+        if values.get(name, "") not in words:
+            raise ValueError(f"{name} = {values[name]!r}")
     return Verdict(columns={name: _value(text) for name, text in row.items() if name not in _KINDS and text}, **values)
 
 

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from rockbatch._version import __version__
 from rockbatch.arguments import checked
 from rockbatch.errors import EditedTable, InputError, MissingColumns
 from rockbatch.files import csv_plain, legible, opened, opened_text, read_text, sha256_of
@@ -77,7 +78,7 @@ def read_saved(directory: Path) -> Saved:
     with _noting(problems):
         peaks = _read_peaks(directory / PEAKS, info.get("varied", []))
     if problems:
-        raise InputError(*problems)
+        raise InputError(*problems, *_of_another_version(directory))
     if unknown := {name for case in info["cases"] for name in case["columns"]} - set(info["varied"]):
         raise InputError(
             f"{directory / INFO}: cases vary {', '.join(sorted(unknown))}, and varied does not say so; start `rockbatch run` "
@@ -99,6 +100,17 @@ def read_saved(directory: Path) -> Saved:
     if missing:
         warnings.warn(f"{directory / PEAKS}: {saved.missing_in_words}", MissingColumns, stacklevel=2)
     return saved
+
+
+def _of_another_version(directory: Path) -> list[str]:
+    """Return a sentence about the version that wrote a folder which cannot be read; none if it was this one, or nobody knows."""
+    try:
+        wrote = str(json.loads(read_text(directory / INFO))["rockbatch"])
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
+        return []
+    if wrote == __version__:
+        return []
+    return [f"{directory}: written by rockbatch {legible(wrote[:40])}, and this is {__version__}: read it with that version"]
 
 
 def edited(directory: Path, info: Mapping[str, Any]) -> str:

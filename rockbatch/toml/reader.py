@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from rockbatch.errors import InputError, remedy
-from rockbatch.files import opened_input
+from rockbatch.files import legible, opened_input
 from rockbatch.toml.kinds import KindError, closest, shown
 from rockbatch.toml.lines import At, TooDeepError, key_lines
 from rockbatch.toml.section import CONFIRM, Key, Section, options
@@ -395,7 +395,7 @@ def _syntax_error(path: Path, text: str, error: str) -> str:
     hint = next((f"; {advice}" for pattern, advice in _SLIPS if re.search(pattern, bare)), "")
     if "overwrite" in reason or "declare" in reason or "twice" in reason or "mutate" in reason:
         hint = _second_time(all_lines, number)
-    return f"{path}:{number}: not valid TOML: {reason[:1].lower()}{reason[1:]}: {line[:80]}{hint}"
+    return f"{path}:{number}: not valid TOML: {reason[:1].lower()}{reason[1:]}: {legible(line[:80])}{legible(hint)}"
 
 
 def _second_time(lines: list[str], number: int) -> str:

@@ -241,6 +241,22 @@ def test_only_one_writes_into_a_folder_at_a_time(path):
     assert list(path.parent.iterdir()) == []
 
 
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="no processes are forked here")
+def test_a_forked_process_that_leaves_takes_neither_lock_nor_journal_along(path):
+    with Journal(path, COLUMNS, DIGEST) as journal:
+        child = os.fork()
+        if not child:  # which leaves the context on its own, as an exception or sys.exit does
+            try:
+                journal.__exit__(SystemExit, SystemExit(), None)
+            finally:
+                os._exit(0)
+        os.waitpid(child, 0)
+        with pytest.raises(InputError, match="another process is writing"):
+            Journal(path, COLUMNS, DIGEST).__enter__()
+        journal.add_all(ROWS)
+    assert ended(path)[0] == TABLE
+
+
 def test_what_a_killed_process_had_not_finished_writing_is_swept_up(path):
     path.parent.mkdir()
     (path.parent / f".peaks.csv-abc{UNFINISHED}").touch()

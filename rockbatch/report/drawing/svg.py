@@ -129,9 +129,13 @@ def curve(x: Array, y: Array, class_: str, name: str | None = None) -> Markup:
     return tag("path", d=_relative(x, y), transform=f"scale({1 / FINE:g})", class_=class_, data_name=name)
 
 
+_FAR = 1e6
+"""Pixels: what lies beyond, as numbers in a table that somebody changed may, is not there."""
+
+
 def _relative(x: Array, y: Array) -> str:
     """Return points as a path of whole steps, without repeated points and those on a straight line between two others."""
-    there = np.isfinite(x) & np.isfinite(y)
+    there = (np.abs(x) < _FAR) & (np.abs(y) < _FAR)
     parts = []
     for piece in np.split(np.arange(len(x)), np.flatnonzero(np.diff(there.astype(np.int8))) + 1):
         if len(piece) == 0 or not there[piece[0]]:
