@@ -175,3 +175,11 @@ def test_a_missing_file_and_a_folder_are_told(tmp_path):
         TomlFile.read(tmp_path / "fig77.toml")
     with pytest.raises(InputError, match="cannot be read"):
         TomlFile.read(Path(tmp_path))
+
+
+def test_a_line_that_is_no_toml_is_quoted_as_it_can_be_shown(tmp_path):
+    (tmp_path / "x.toml").write_bytes(b'a = "\x1b[31m\0"\n')
+    with pytest.raises(InputError) as caught:
+        TomlFile.read(tmp_path / "x.toml")
+    assert 'a = "\\x1b[31m\\x00"' in str(caught.value)
+    assert str(caught.value).isprintable()

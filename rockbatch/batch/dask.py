@@ -32,6 +32,11 @@ MOST_RUNS_OF_A_TASK = 16 * 1024
 PATIENCE_S = 60
 """Time [s] that the scheduler and its first worker may take to appear, and for which there may be no worker later on."""
 
+MOST_DEATHS = 5
+"""Looks at which workers have died, without a result in between, for which they are waited for."""
+
+_PAUSED = ": those that are there have paused since their memory is full, give each more"
+
 GONE_S = 10
 """Time [s] for which a scheduler may not answer."""
 
@@ -170,20 +175,36 @@ class Dask:
                 self._client.cancel(list(pending))
 
     def _finished_of(self, client: "Client", pending: "Iterable[Future]") -> "list[Future]":
-        """Wait for results, one at least; raise ``OSError`` if no worker is left to finish them."""
+        """Wait for results, one at least; raise ``OSError`` if no worker is left to finish them, or one dies after the other."""
         from distributed import TimeoutError as NotYetError
         from distributed import wait
 
-        seen = time.monotonic()
+        began = seen = time.monotonic()
+        there, deaths = set(self._workers(client)), 0
         while True:
             try:
                 return list(wait(list(pending), timeout=GLANCE_S, return_when="FIRST_COMPLETED").done)
             except NotYetError:
                 patience, who = (PATIENCE_S, "worker") if client.status == "running" else (GONE_S, "scheduler")
-                if who == "worker" and client.nthreads():
-                    seen = time.monotonic()
-                if time.monotonic() - seen > patience:
-                    raise OSError(f"no {who} for {patience:g} s") from None
+                now = time.monotonic()
+                if workers := self._workers(client):
+                    seen = now
+                deaths += bool(there - workers)
+                there = workers
+                if now - seen > patience:
+                    raise OSError(
+                        f"no {who} for {patience:g} s{_PAUSED * bool(who == 'worker' and self.jobs)}"
+                    ) from None
+                if deaths >= MOST_DEATHS and now - began > PATIENCE_S:
+                    raise OSError(
+                        f"workers died {deaths} times in {now - began:.0f} s and nothing was finished; look at their logs, and "
+                        "give each more memory"
+                    ) from None
+
+    def _workers(self, client: "Client") -> set[str]:
+        """Return the addresses of the workers at present, without those that have paused."""
+        known = client.scheduler_info()["workers"] if client.status == "running" else {}
+        return {address for address, worker in known.items() if worker.get("status") != "paused"}
 
 
 def _kept(pending: "dict[Future, range]") -> Iterator[Outcomes]:

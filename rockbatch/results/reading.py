@@ -13,7 +13,7 @@ from typing import Any
 from rockbatch._version import __version__
 from rockbatch.arguments import checked
 from rockbatch.errors import EditedTable, InputError, MissingColumns
-from rockbatch.files import csv_plain, legible, opened, opened_text, read_text, sha256_of
+from rockbatch.files import CHANGED, csv_plain, legible, opened, opened_text, read_text, sha256_of
 from rockbatch.lazy import pd
 from rockbatch.results.columns import COUNTS, MORE, PEAKS, STATUSES, STAYING, TEXTS, UNBOUNDED, names
 from rockbatch.results.run_json import INFO, SHAPE
@@ -110,7 +110,9 @@ def _of_another_version(directory: Path) -> list[str]:
         return []
     if wrote == __version__:
         return []
-    return [f"{directory}: written by rockbatch {legible(wrote[:40])}, and this is {__version__}: read it with that version"]
+    return [
+        f"{directory}: written by rockbatch {legible(wrote[:40])}, and this is {__version__}: read it with that version"
+    ]
 
 
 def edited(directory: Path, info: Mapping[str, Any]) -> str:
@@ -195,7 +197,7 @@ def _read_peaks(path: Path, varied: Sequence[str]) -> "pd.DataFrame":
         bad = _bad_cells(path, head, numbers)
         raise InputError(*(bad or [f"{path}: not a table ({error}); start `rockbatch run` again"])) from None
     if not sound:
-        raise InputError(*_bad_cells(path, head, numbers))
+        raise InputError(*(_bad_cells(path, head, numbers) or [f"{path}: {CHANGED}"]))
     for name in texts:
         meant = {cell: legible(csv_plain(cell), keep="\t\r\n") for cell in table[name].unique()}
         if any(cell != text for cell, text in meant.items()):

@@ -263,6 +263,42 @@ def test_a_scheduler_that_does_not_answer_is_told(file, tmp_path, capsys, monkey
     assert "scheduler tcp://127.0.0.1:9: no workers" in capsys.readouterr().err
 
 
+class FullWorkers:
+    """A client whose workers have no memory for what they are asked, and finish nothing: they pause, or die and come again."""
+
+    status = "running"
+
+    def __init__(self, pause: bool) -> None:
+        self.pause, self.looks = pause, 0
+
+    def nthreads(self) -> dict[str, int]:
+        return dict.fromkeys(self.scheduler_info()["workers"], 1)
+
+    def scheduler_info(self) -> dict[str, dict[str, dict[str, str]]]:
+        self.looks += 1
+        worker = {"status": "paused"} if self.pause else {"status": "running"}
+        return {"workers": {"tcp://a" if self.pause else f"tcp://{self.looks}": worker}}
+
+
+@pytest.mark.parametrize(
+    ("pause", "said"),
+    [(True, "no worker for 0.2 s: those that are there have paused"), (False, "workers died [5-9] times in 0")],
+)
+def test_workers_without_memory_are_not_waited_for_for_ever(monkeypatch, pause, said):
+    import distributed
+
+    def nothing(*_, **__):
+        time.sleep(0.05)
+        raise distributed.TimeoutError
+
+    monkeypatch.setattr(distributed, "wait", nothing)
+    monkeypatch.setattr(rockbatch.batch.dask, "PATIENCE_S", 0.2)
+    engine = Dask("tcp://a")
+    engine._client = client = FullWorkers(pause)
+    with pytest.raises(OSError, match=said):
+        engine._finished_of(client, ())
+
+
 def test_without_dask_the_engine_says_how_to_get_it(monkeypatch):
     monkeypatch.setitem(sys.modules, "distributed", None)
     with pytest.raises(InputError, match=r'pip install "rockbatch\[dask\]"'):

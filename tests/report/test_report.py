@@ -506,6 +506,13 @@ def test_a_curve_that_turns_back_on_itself_keeps_its_tip():
     assert re.search(r' d="([^"]*)"', curve(x, y, "c"))[1] == "M0 0l50 0-30 0"
 
 
+@pytest.mark.filterwarnings("error")
+def test_what_lies_far_beyond_a_picture_is_not_drawn():
+    """A number of a table that somebody changed, which no pixel has."""
+    x, y = np.array([0.0, 1.0, 2.0, 3.0]), np.array([0.0, 1e300, -np.inf, 1.0])
+    assert re.search(r' d="([^"]*)"', curve(x, y, "c"))[1] == "M0 0h0M30 10h0"
+
+
 def test_the_worst_comes_first_overturned_then_ended_by_flight_then_by_rotation_and_failed_last(tmp_path):
     changes = {
         ("CPM000", "4"): {"status": "failed", "theta_max_over_alpha": ""},

@@ -1,5 +1,6 @@
 """Folders of results that somebody else has made: nothing in them leads elsewhere, and what does not fit is told in words."""
 
+import csv
 import json
 import os
 import random
@@ -14,7 +15,8 @@ from studies import RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.cli import main
-from rockbatch.files import is_plain, opened, read_text
+from rockbatch.files import csv_line, is_plain, opened, read_text
+from rockbatch.results import reading
 from rockbatch.results.run_json import SHAPE
 from rockbatch.results.shape import Maybe, fits, unfit
 
@@ -371,6 +373,40 @@ def test_a_table_that_no_run_can_have_left_is_told_with_its_line(foreign, old, n
     peaks.write_text(peaks.read_text(encoding="utf-8").replace(old, new, 1), encoding="utf-8")
     assert f"{peaks}:2: " in told(foreign)
     assert words in told(foreign)
+
+
+@pytest.mark.parametrize("word", ["demand", "statistic", "count", "sense", "verdict"])
+def test_a_verdict_of_words_that_no_check_has_is_told(foreign, word):
+    path = foreign / "checks.csv"
+    head, row = csv.reader(path.read_text(encoding="utf-8").splitlines())
+    row[head.index(word)] = "pads"
+    path.write_text(csv_line(head) + csv_line(row), encoding="utf-8")
+    assert told(foreign) == f"{path}: damaged ({word} = 'pads'); start `rockbatch check` again"
+
+
+def test_a_table_that_is_mended_between_two_looks_is_told(foreign, monkeypatch):
+    """A row that cannot be is looked for in the file again, where it may be right by then."""
+    peaks = foreign / "peaks.csv"
+    sound = peaks.read_text(encoding="utf-8")
+    peaks.write_text(sound.replace(",ok,", ",fine,", 1), encoding="utf-8")
+    plain = reading._bad_cells
+    monkeypatch.setattr(reading, "_bad_cells", lambda *where: (peaks.write_text(sound, encoding="utf-8"), plain(*where))[1])
+    assert told(foreign) == f"{peaks}: changed while it was read; read it again when nothing writes into it any more"
+
+
+@pytest.mark.parametrize("wrong", ["run.json", "peaks.csv"])
+def test_a_folder_of_another_version_that_cannot_be_read_names_it(foreign, wrong):
+    """A later version may have bases and outcomes that this one does not know."""
+    info = json.loads((foreign / "run.json").read_text(encoding="utf-8")) | {"rockbatch": "9.1\x1b"}
+    if wrong == "run.json":
+        info["cases"][0]["base"] = "rubber"
+    else:
+        peaks = foreign / "peaks.csv"
+        peaks.write_text(peaks.read_text(encoding="utf-8").replace(",ok,", ",leaning,", 1), encoding="utf-8")
+    (foreign / "run.json").write_text(json.dumps(info), encoding="utf-8")
+    ending = f"\n{foreign}: written by rockbatch 9.1\\x1b, and this is {rb.__version__}: read it with that version"
+    assert told(foreign).endswith(ending)
+    assert told(foreign, "check").endswith(ending)
 
 
 # What a terminal would obey
