@@ -1,6 +1,7 @@
-"""Damaged records of every format, and damaged manifests: how they end, and how long the slowest of them takes.
+"""Damaged records of every format, damaged manifests, and folders that change while they are read: how they end, and how
+long the slowest of them takes.
 
-    python benchmarks/broken_files.py [--records 10000] [--manifests 5000] [FORMAT ...]
+    python benchmarks/broken_files.py [--records 10000] [--manifests 5000] [--changing 500] [FORMAT ...]
 
 The files and the ways to damage them are those of the tests. A file that ends in neither components nor a reason, takes a
 second of computing time or asks for 300 MB on top ends the script with a traceback.
@@ -22,6 +23,7 @@ def main() -> None:
     parser.add_argument("format", nargs="*", help="formats, by the names that the messages give them")
     parser.add_argument("--records", type=int, default=10_000, help="damaged files of each format")
     parser.add_argument("--manifests", type=int, default=5_000, help="damaged manifests")
+    parser.add_argument("--changing", type=int, default=500, help="folders that change while they are read")
     parser.add_argument("--seed", type=int, default=3)
     asked = parser.parse_args()
     print(f"{'format':26}{'files':>8}{'components':>12}{'reasons':>9}{'slowest [ms]':>14}", flush=True)
@@ -32,6 +34,8 @@ def main() -> None:
         for name in names:
             with tempfile.TemporaryDirectory() as folder:
                 tell(name, fuzz.read_damaged_manifests(Path(folder), name, asked.manifests // len(names), asked.seed))
+        with tempfile.TemporaryDirectory() as folder:
+            tell("folders that change", fuzz.read_changing_folders(Path(folder), asked.changing, asked.seed))
 
 
 def tell(name: str, counts: "fuzz.Counts") -> None:

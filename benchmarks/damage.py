@@ -1,15 +1,17 @@
-"""Damaged studies, journals and folders of results: each ends in words or in what is right, soon, and in little memory.
+"""Damaged studies, journals, folders of results, tables of analyses and rules: each ends in words or in what is right, soon.
 
-    python benchmarks/damage.py --studies 5000 --journals 2000 --folders 2000 --seed 1
+    python benchmarks/damage.py --studies 5000 --journals 2000 --folders 2000 --analyses 1000 --rules 2000 --seed 1
 
-Whatever ends in anything but an ``InputError``, takes more than SECONDS of processor time or more than MEGABYTES, or gives a
-row that the undamaged file does not have, is a failure: it is printed with its seed, and the exit code is 1.
+Whatever ends in anything but an ``InputError``, takes more than SECONDS of processor time or more than MEGABYTES, gives a
+row that the undamaged file does not have, or a page with an element that the undamaged one does not have, is a failure: it is
+printed with its seed, and the exit code is 1. Of analyses, most are damaged by somebody who writes fitting checksums beside.
 """
 
 import argparse
 import contextlib
 import csv
 import faulthandler
+import hashlib
 import io
 import json
 import re
@@ -21,6 +23,7 @@ import traceback
 import warnings
 from collections import Counter
 from collections.abc import Callable, Iterator
+from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
 
@@ -33,6 +36,7 @@ from rockbatch.batch.journal import Journal
 from rockbatch.batch.plan import Plan
 from rockbatch.cli import main
 from rockbatch.errors import EditedTable
+from rockbatch.report.finished_analysis import digest_of
 from rockbatch.results.columns import PART, columns
 from rockbatch.simulation import first_substeps, steps_of
 from rockbatch.study import Study
@@ -87,9 +91,51 @@ reason = "a test"
 [fragility]
 measure = "PGA"
 levels_g = [0.2, 0.4, 0.8]
+[spectrum]
+alpha = [0.15, 0.2]
+size_m = [2, 20]
+points = 3
+[[spectrum.map]]
+name = "one-sine"
+shape = "sine"
+frequency = [1.0, 2.0]
+frequencies = 2
+amplitude = [1.0, 3.0]
+amplitudes = 2
+tolerance = 0.2
+width = 1.0
+[sensitivity]
+samples = 4
+[sensitivity.uniform]
+alpha = [0.18, 0.28]
+mu = [2.5, 3.5]
 [output]
 both_laws = false
 histories = "worst"
+"""
+
+RULES = """
+title = "Limits"
+[suite]
+count = "component"
+[[check]]
+name = "rotation"
+demand = "theta_max_over_alpha"
+statistic = "mean"
+at_most = 0.5
+reason = "agreed"
+[[check]]
+name = "pads"
+demand = "settlement_m"
+case = "pads*"
+scale = 1.0
+at_most = 0.01
+reason = "bearings"
+[[check]]
+name = "impacts"
+demand = "impacts"
+at_most = 20
+reason = "a test"
 """
 
 Rng = np.random.Generator
@@ -268,6 +314,50 @@ def hdf5_value(path: Path, rng: Rng) -> None:
             home[name] = changed[int(rng.integers(len(changed)))]
 
 
+CELLS = (
+    *NUMBERS, '"><script>alert(1)</script>', "</style>", "{{7*7}}", "\x1b[31m", "\u202e", "=cmd|1", "x" * 50_000, "\0", "a\nb",
+    "javascript:alert(1)", "<img src=x onerror=alert(1)>", "rigid", "sine", "1,5", "0.5",
+)  # fmt: skip
+
+
+def table_cell(data: bytes, rng: Rng) -> bytes:
+    """A cell or a column of a table becomes another, or goes; rows go, come twice, or change places."""
+    rows = list(csv.reader(io.StringIO(data.decode(errors="replace"))))
+    row, column = int(rng.integers(max(1, len(rows)))), int(rng.integers(max(1, len(rows[0]) if rows else 1)))
+    new, way = CELLS[int(rng.integers(len(CELLS)))], int(rng.integers(7))
+    if way < 4:
+        for cells in rows[row : None if way == 3 else row + 1]:
+            cells[column : column + 1] = [new]
+    elif way == 4:
+        rows = [cells[:column] + cells[column + 1 :] for cells in rows]
+    elif way == 5:
+        rows[row : row + 1] = []
+    else:
+        rows = (
+            rows[:1] + [rows[i] for i in rng.integers(1, max(2, len(rows)), len(rows) - 1)] if len(rows) > 1 else rows
+        )
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerows(rows)
+    return text.getvalue().encode()
+
+
+class Elements(HTMLParser):
+    """Elements of a page that can run or fetch something, counted, and attributes that can."""
+
+    RISKY = ("script", "style", "iframe", "img", "link", "meta", "object", "embed", "form", "base", "video", "audio")
+
+    def __init__(self, page: Path) -> None:
+        super().__init__()
+        self.found: Counter[str] = Counter()
+        self.feed(page.read_text(encoding="utf-8"))
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.found[tag] += tag in self.RISKY
+        for name, value in attrs:
+            address = (value or "").strip().lower().startswith(("javascript:", "http:", "https:", "data:", "//"))
+            self.found[f"{tag} {name}"] += name.startswith("on") or address
+
+
 # What is damaged
 
 
@@ -289,6 +379,19 @@ def changed(before: bytes, now: bytes) -> bool:
         return True
 
 
+def sealed(folder: Path) -> None:
+    """Write checksums that fit, as somebody who makes a folder can."""
+    for path in folder.glob("*.json"):
+        with contextlib.suppress(ValueError, TypeError, AttributeError, KeyError, RecursionError, OSError):
+            info = json.loads(path.read_text(encoding="utf-8"))
+            for name, noted in (*info.get("digests", {}).items(), ("peaks.csv", info.get("peaks"))):
+                if isinstance(noted, dict):
+                    noted["sha256"] = hashlib.sha256((folder / name).read_bytes()).hexdigest()
+            if path.name != "run.json":
+                info["sha256"] = digest_of(info)
+            path.write_text(json.dumps(info), encoding="utf-8")
+
+
 class Sample:
     """A study that was carried out, its folder, and its journal when all of it was finished."""
 
@@ -299,8 +402,14 @@ class Sample:
             assert main(["run", str(self.study), "--out", str(folder / "out"), "--shard", "1/1"]) == 0
             self.journal = (folder / "out" / PART).read_bytes()
             assert main(["run", str(self.study), "--out", str(folder / "out")]) == 0
-            assert main(["fragility", str(self.study), "--out", str(folder / "out")]) == 0
-        self.folder, self.scratch = folder / "out", folder / "scratch"
+            for analysis in ("fragility", "spectrum", "sensitivity"):
+                assert main([analysis, str(self.study), "--out", str(folder / "out")]) == 0
+            shutil.copytree(folder / "out", folder / "other")
+            rb.report(folder / "out", folder / "other", out=folder / "both.html")
+        self.folder, self.scratch, self.other = folder / "out", folder / "scratch", folder / "other"
+        self.pages = {name: Elements(page).found for name, page in (
+            ("one", self.folder / "report.html"), ("both", folder / "both.html")
+        )}  # fmt: skip
         loaded = rb.load_study(self.study)
         motions = ground_motions(loaded)
         self.columns, self.digest = columns(loaded), study_digests(loaded, motions)
@@ -372,6 +481,42 @@ class Sample:
         if path.name == "fragility.json" and not told and changed(before, path.read_bytes()):
             raise WrongError("what an analysis says of itself was changed, and that is not told")
         return f"{path.name}: {' and '.join(dict.fromkeys(said))}"
+
+    def damage_analysis(self, rng: Rng) -> str:
+        """Tables of analyses are damaged, most with fitting checksums; the pages that show and compare them hold no more."""
+        shutil.rmtree(self.scratch, ignore_errors=True)
+        shutil.copytree(self.folder, self.scratch)
+        tables = sorted(path.name for path in self.folder.iterdir() if path.suffix in (".csv", ".json"))
+        for name in rng.choice(tables, int(rng.integers(1, 3)), replace=False):
+            path = self.scratch / str(name)
+            own = json_value if path.suffix == ".json" else table_cell
+            path.write_bytes(damaged(path.read_bytes(), rng, (own, own, own, own, TEXT[int(rng.integers(len(TEXT)))])))
+        if rng.random() < 0.8:
+            sealed(self.scratch)
+        said = []
+        for name, folders in (
+            ("one", (self.scratch,)), ("both", (self.scratch, self.other)), ("both", (self.other, self.scratch))
+        ):  # fmt: skip
+            try:
+                with warnings.catch_warnings():
+                    warnings.simplefilter("ignore", UserWarning)
+                    page = rb.report(*folders, out=self.scratch / "page.html").path
+            except rb.InputError as error:
+                if not str(error).strip():
+                    raise WrongError("no words") from None
+                said.append("words")
+                continue
+            said.append("read")
+            if more := Elements(page).found - self.pages[name]:
+                raise WrongError(f"the page has {dict(more)}")
+        return " and ".join(dict.fromkeys(said))
+
+    def damage_rules(self, rng: Rng) -> str:
+        """A file of rules is damaged, and the results are held against what is left of it."""
+        path = self.study.with_name("rules.toml")
+        path.write_bytes(damaged(RULES.encode(), rng, (*BYTES, word, word, *6 * [number]), most=2))
+        rb.check(self.folder, path)
+        return "judged"
 
     def clear(self) -> None:
         shutil.rmtree(self.scratch, ignore_errors=True)
@@ -470,11 +615,14 @@ def run(asked: dict[str, int], seed: int, first: int = 0) -> int:
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    for what, default in (("studies", 5000), ("journals", 2000), ("folders", 2000)):
+    for what, default in (
+        ("studies", 5000), ("journals", 2000), ("folders", 2000), ("analyses", 1000), ("rules", 2000)
+    ):  # fmt: skip
         parser.add_argument(f"--{what}", type=int, default=default)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--first", type=int, default=0, help="number of the first, to look at one again")
     given = parser.parse_args()
     warnings.simplefilter("error", RuntimeWarning)
     wanted = {"journal": given.journals, "study": given.studies, "folder": given.folders}
+    wanted |= {"analysis": given.analyses, "rules": given.rules}
     sys.exit(run({name: times for name, times in wanted.items() if times}, given.seed, given.first) > 0)

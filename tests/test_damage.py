@@ -18,7 +18,9 @@ def sample(tmp_path_factory):
 
 
 @pytest.mark.filterwarnings("ignore::UserWarning")
-@pytest.mark.parametrize(("what", "times"), [("study", 150), ("journal", 150), ("folder", 20)])
+@pytest.mark.parametrize(
+    ("what", "times"), [("study", 150), ("journal", 150), ("folder", 20), ("analysis", 8), ("rules", 60)]
+)
 def test_a_damaged_one_ends_in_words_or_in_what_is_right(sample, what, times):
     ends, bad = damage.repeated(getattr(sample, f"damage_{what}"), times, seed=3)
     assert bad == []
@@ -27,7 +29,9 @@ def test_a_damaged_one_ends_in_words_or_in_what_is_right(sample, what, times):
 
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::UserWarning")
-@pytest.mark.parametrize(("what", "times"), [("study", 2000), ("journal", 2000), ("folder", 200)])
+@pytest.mark.parametrize(
+    ("what", "times"), [("study", 2000), ("journal", 2000), ("folder", 200), ("analysis", 200), ("rules", 2000)]
+)
 def test_thousands_do(sample, what, times):
     _, bad = damage.repeated(getattr(sample, f"damage_{what}"), times, seed=4)
     assert bad == []

@@ -9,6 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from rockbatch.errors import EditedTable, InputError
 from rockbatch.files import read_table, read_text, sha256_of
 from rockbatch.lazy import pd
@@ -104,9 +106,13 @@ def _warn_edited(path: Path) -> None:
 
 @contextmanager
 def of_files(name: str) -> Iterator[None]:
-    """Raise ``InputError`` if NAME.json and its tables, of which a section is drawn, do not fit each other; a decorator, too."""
+    """Raise ``InputError`` if NAME.json and its tables, of which a section is drawn, do not fit each other; a decorator, too.
+
+    Numbers of which a picture cannot be made, since arithmetic on them overflows, do not fit either.
+    """
     try:
-        yield
+        with np.errstate(divide="raise", over="raise", invalid="raise"):
+            yield
     except InputError:
         raise
     except _DAMAGE as error:

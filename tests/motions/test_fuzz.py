@@ -1,6 +1,9 @@
 """Nothing that a file holds can hurt: damaged in whatever way, it ends in components or a reason, and soon."""
 
+import contextlib
+import os
 import tempfile
+import threading
 import time
 from pathlib import Path
 from typing import NamedTuple
@@ -87,6 +90,61 @@ def test_a_damaged_file_ends_in_components_or_a_reason(name):
 def test_thousands_of_damaged_files_of_a_format_end_in_components_or_a_reason(name, count):
     """And what a count promises is not allocated."""
     read_all_ways_of_damage(name, count, seed=2)
+
+
+def read_changing_folders(folder: Path, inputs: int, seed: int) -> Counts:
+    """Read so many folders in which files are cut, removed, replaced, and made pipes or folders, while they are read."""
+    rng = np.random.default_rng(seed)
+    formats, slowest, read, refused = sorted(SAMPLES), 0.0, 0, 0
+    for i in range(inputs):
+        inside = Path(tempfile.mkdtemp(dir=folder))
+        for name in rng.choice(formats, 6, replace=False):
+            file, whole = SAMPLES[name][int(rng.integers(len(SAMPLES[name])))]
+            (inside / file).write_bytes(whole)
+        (inside / "motions.toml").write_bytes(MANIFESTS["motions.toml"].encode())
+        ended = threading.Event()
+        other = threading.Thread(target=_change, args=(inside, ended, np.random.default_rng([seed, i])))
+        other.start()
+        started = time.process_time()
+        try:
+            with bounds(SECONDS * 10, MEGABYTES):
+                found = read_motions(inside)
+            assert not [file.reason for file in found.unusable if "its reader failed" in file.reason]
+            read += 1
+        except InputError as error:
+            refused += bool(str(error).strip())
+        finally:
+            ended.set()
+            other.join()
+        slowest = max(slowest, time.process_time() - started)
+    return Counts(read, refused, slowest)
+
+
+def _change(folder: Path, ended: threading.Event, rng: np.random.Generator) -> None:
+    """Do harm to one file after the other until it has ``ended``."""
+    while not ended.wait(float(rng.random()) * 2e-3):
+        with contextlib.suppress(OSError):
+            files = sorted(folder.iterdir())
+            path, way = files[int(rng.integers(len(files)))], int(rng.integers(6))
+            if not path.is_file():
+                continue
+            if way == 0:
+                os.truncate(path, int(rng.integers(path.stat().st_size + 1)))
+            elif way == 1:
+                path.write_bytes(path.read_bytes() + b"0.1 0.2\n")
+            else:
+                path.unlink()
+            if way == 3:
+                path.mkdir()
+            elif way == 4 and hasattr(os, "mkfifo"):
+                os.mkfifo(path)
+            elif way == 5:
+                path.symlink_to("/dev/zero")
+
+
+@pytest.mark.parametrize("count", [10, pytest.param(200, marks=pytest.mark.slow)])
+def test_folders_that_change_while_they_are_read_end_in_motions_or_words(tmp_path, count):
+    assert sum(read_changing_folders(tmp_path, count, seed=1)[:2]) == count
 
 
 MANIFESTS = {

@@ -390,7 +390,9 @@ def test_a_table_that_is_mended_between_two_looks_is_told(foreign, monkeypatch):
     sound = peaks.read_text(encoding="utf-8")
     peaks.write_text(sound.replace(",ok,", ",fine,", 1), encoding="utf-8")
     plain = reading._bad_cells
-    monkeypatch.setattr(reading, "_bad_cells", lambda *where: (peaks.write_text(sound, encoding="utf-8"), plain(*where))[1])
+    monkeypatch.setattr(
+        reading, "_bad_cells", lambda *where: (peaks.write_text(sound, encoding="utf-8"), plain(*where))[1]
+    )
     assert told(foreign) == f"{peaks}: changed while it was read; read it again when nothing writes into it any more"
 
 
