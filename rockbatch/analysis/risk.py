@@ -138,13 +138,16 @@ def note(risk: Risk, spec: FragilitySpec) -> str:
         notes.append(
             "the records leave the upper bound of the rate open: more often than the weakest motions of the hazard"
         )
-    if risk.rate > 0 and risk.above > NOTABLE * risk.rate:
+    points = spec.hazard.curve.levels if spec.hazard else ()
+    if len(points) == 1:
+        notes.append("all of the rate rests on the slope through one point of the hazard")
+    elif risk.rate > 0 and risk.above > NOTABLE * risk.rate:
         low, high = risk.bounds
         notes.append(
             f"{_share(risk.above, risk)} of the rate comes from above the hazard's highest point, where its last slope goes on: "
             f"whatever the hazard is there, the rate is between {low:.3g} and {high:.3g}"
         )
-    if risk.rate > 0 and risk.below > NOTABLE * risk.rate:
+    if len(points) > 1 and risk.rate > 0 and risk.below > NOTABLE * risk.rate:
         notes.append(
             f"{_share(risk.below, risk)} comes from below its lowest point, where its first slope goes on, though hazard curves "
             "flatten there: too much, rather"

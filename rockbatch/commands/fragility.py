@@ -93,6 +93,8 @@ def risk_lines(rates: Sequence[Risk], spec: FragilitySpec) -> str:
         ])  # fmt: skip
         if remark := note_on_risk(risk, spec):
             notes.append(f"{risk.curve.limit.name}, {_case(risk.curve)}: {remark}")
+    if not rows:
+        return "No annual rates: no curve could be fitted"
     about = "Mean annual rates of exceedance; intervals are those that the fit leaves, with the hazard taken as known"
     return "\n".join([about, in_width(heads, rows, names=2), *notes])
 

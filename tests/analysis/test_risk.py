@@ -245,6 +245,16 @@ def test_a_curve_that_could_not_be_fitted_has_its_reason_in_place_of_a_rate(tmp_
     assert found.fragility_deaggregation is None
 
 
+def test_one_point_and_a_slope_are_said_to_be_that_and_no_curve_no_table(tmp_path, capsys):
+    one = {"levels_g": [0.25], "return_period_years": [475], "slope": 3.0}
+    found = rb.fragility(study(tmp_path, one))
+    assert "all of the rate rests on the slope through one point" in found.fragility_risk["note"].iloc[0]
+    assert "highest point" not in found.fragility_risk["note"].iloc[0]
+    weak = study(tmp_path, one, fragility={"measure": "PGA", "levels_g": [0.01, 0.02]}, name="weak.toml")
+    assert main(["fragility", str(weak), "--out", str(tmp_path / "weak")]) == 0
+    assert "No annual rates: no curve could be fitted" in capsys.readouterr().out
+
+
 def test_rates_under_another_hazard_need_no_run(tmp_path):
     """Twice the hazard is twice the rate, and the study's own hazard gives the table of the command."""
     found = rb.fragility(study(tmp_path, HAZARD, dispersion=ADDED))
