@@ -39,7 +39,10 @@ def rows_by_shock(
                 outcomes = [ShockOutcome("not read")] * len(motion.shocks)
         return [names | each for each in shock_rows(motion, run.pier, outcomes)]
 
-    with ThreadPoolExecutor(max(1, jobs)) as pool:
+    pool = ThreadPoolExecutor(max(1, jobs))
+    try:
         for rows in pool.map(of, sequences_of(runs)):
             yield from rows
             progress(1)
+    finally:
+        pool.shutdown(cancel_futures=True)  # an interrupt does not wait for the others
