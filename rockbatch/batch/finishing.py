@@ -11,6 +11,7 @@ from typing import Any
 
 from rockbatch._version import __version__
 from rockbatch.batch.carrying_out import to_simulate
+from rockbatch.batch.half_cycles import HALF_CYCLES, rows_of_half_cycles
 from rockbatch.batch.journal import Journal
 from rockbatch.batch.kept_histories import keep_histories, kept
 from rockbatch.batch.listening import Listener, announced_if_slow
@@ -35,7 +36,7 @@ from rockbatch.results.run_json import INFO, describe, versions, write_info
 from rockbatch.results.shocks import SHOCKS
 from rockbatch.study import Study
 
-OUTPUTS = (PEAKS, INFO, HISTORIES, INTENSITY, ESTIMATE, SHOCKS, CHECKS, REPORT, SEMICOLONS)
+OUTPUTS = (PEAKS, INFO, HISTORIES, INTENSITY, ESTIMATE, SHOCKS, HALF_CYCLES, CHECKS, REPORT, SEMICOLONS)
 """Files that a run may leave in its folder."""
 
 
@@ -156,7 +157,11 @@ def finish(
     with announced_if_slow(listener, f"holding {len(study.checks)} checks against {len(study.cases)} cases"):
         judged = verdicts(saved) if study.checks else []
         checks = write_verdicts(directory, judged) if study.checks else None
-    beside = [*_beside_peaks(saved, study, motions), *_shocks(saved, study, motions, runs, listener)]
+    beside = [
+        *_beside_peaks(saved, study, motions),
+        *_shocks(saved, study, motions, runs, listener),
+        *_half_cycles(saved, study, runs, listener),
+    ]
     with announced_if_slow(listener, f"writing {REPORT}"):
         report = write_report(directory, saved=saved)
     written = (directory / PEAKS, directory / INFO, *beside, histories, checks, report)
@@ -185,6 +190,17 @@ def _shocks(saved: Saved, study: Study, motions: MotionSet, runs: Plan, listener
     with listener.progress(len(sequences_of(runs))) as progress:
         jobs = min(int(saved.info["jobs"]) or cores(), cores())
         return [write(path, rows_by_shock(study, runs, saved.peaks, jobs, progress))]
+
+
+def _half_cycles(saved: Saved, study: Study, runs: Plan, listener: Listener) -> list[Path]:
+    """Write the table of half cycles if the study asks for it, and take away that of another time."""
+    path = saved.directory / HALF_CYCLES
+    if not study.output.half_cycles:
+        path.unlink(missing_ok=True)
+        return []
+    with listener.progress(len(to_simulate(runs, range(len(runs))))) as progress:
+        jobs = min(int(saved.info["jobs"]) or cores(), cores())
+        return [write(path, rows_of_half_cycles(study, runs, saved.peaks, jobs, progress))]
 
 
 def _keep_histories(

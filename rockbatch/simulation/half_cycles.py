@@ -17,6 +17,11 @@ HALVINGS = 50
 
 COLUMNS = ("t", "omega_before", "omega_after", "amplitude", "t_amplitude", "apparent_restitution")
 
+HALF_CYCLE_COLUMNS = (
+    "t_s", "omega_before_rad_s", "omega_after_rad_s", "amplitude_rad", "t_amplitude_s", "apparent_restitution",
+)  # fmt: skip
+"""The same in files, with their units."""
+
 
 class HalfCycles(NamedTuple):
     """Half cycles of a run, each from an impact to the next; the first begins with the run. Shape (n,) each.

@@ -115,6 +115,7 @@ class Output:
     sa_periods_s: tuple[float, ...] = (0.5, 1.0, 2.0, 4.0)
     sa_pairs: tuple[str, ...] = ()
     estimate: bool = False
+    half_cycles: bool = False
 
 
 @dataclass(frozen=True)
