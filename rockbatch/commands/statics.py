@@ -51,7 +51,8 @@ def name_of(case: Case) -> str:
 
 def table(sheets: Sheets) -> str:
     """Return the sheets side by side: a line for each number that one of them has."""
-    rows = [(fact, [sheet.row[fact.name] for _, sheet in sheets]) for fact in FACTS]
+    all_of_them = [sheet.row for _, sheet in sheets]
+    rows = [(fact, [row[fact.name] for row in all_of_them]) for fact in FACTS]
     lines = [
         [fact.heading.replace("θ", "theta").replace("α", "alpha"), *map(fact.written, values)]
         for fact, values in rows

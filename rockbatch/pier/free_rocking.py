@@ -153,7 +153,7 @@ class FreeRocking:
         """
         kept = restitution**4 * self._work(np.zeros_like(amplitudes), amplitudes)
         low, high = np.zeros_like(amplitudes), amplitudes
-        for _ in range(20):
+        for _ in range(12):
             middle = 0.5 * (low + high)
             above = self._work(np.zeros_like(middle), middle) > kept
             low, high = np.where(above, low, middle), np.where(above, middle, high)

@@ -203,8 +203,8 @@ class Statics(Shown):
 
     def _at_amplitude(self, values: Array) -> float | None:
         """Return the value at :data:`COMPARED`; None if there is none."""
-        there = values[np.isclose(self.swings_at.amplitude, COMPARED * self.pier.alpha)]
-        return float(there[0]) if len(there) and not math.isnan(there[0]) else None
+        place = AMPLITUDES.index(COMPARED)
+        return float(values[place]) if len(values) > place and not math.isnan(values[place]) else None
 
     def _facts(self) -> tuple[str, dict[str, str]]:
         """See :class:`Shown`."""

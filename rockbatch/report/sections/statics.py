@@ -56,9 +56,8 @@ def _name(case: Mapping[str, Any]) -> str:
 
 def _table(sheets: Named, devices: Sequence[str]) -> Markup:
     """Return sheets beside each other, a row for each number that one of them has."""
-    rows = [
-        [fact.heading, *(fact.written(sheet.row[fact.name]) for _, sheet in sheets), fact.meaning] for fact in FACTS
-    ]
+    values = [sheet.row for _, sheet in sheets]
+    rows = [[fact.heading, *(fact.written(row[fact.name]) for row in values), fact.meaning] for fact in FACTS]
     turned = ["" if sheet.towards == "either" else f"to the {sheet.towards}" for _, sheet in sheets]
     rows += [["direction", *turned, "the weaker one, of devices that differ"], ["devices", *devices, ""]]
     heads = [Head(""), *(Head(name) for name, _ in sheets), Head("")]
