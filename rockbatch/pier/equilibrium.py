@@ -46,9 +46,13 @@ def _curve(exponent: float) -> tuple[Array, Array, Array]:
     return np.concatenate(([0.0], np.cumsum(steps))), 1.0 - left, stiffness(left)
 
 
-def first_loading(deflection: Array, exponent: float) -> Array:
-    """Return F/F_y at a ``deflection``/δ_y ≥ 0 of a Bouc–Wen spring that is loaded for the first time."""
+def first_loading(deflection: Array, exponent: float, give: float = 0.0) -> Array:
+    """Return F/F_y at a ``deflection``/δ_y ≥ 0 of a Bouc–Wen spring that is loaded for the first time.
+
+    ``give`` is the deflection/δ_y of a brace in series with it under F_y.
+    """
     x, z, slope = _curve(exponent)
+    x, slope = x + give * z, slope / (1.0 + give * slope)
     i = np.clip(np.searchsorted(x, deflection, side="right") - 1, 0, len(x) - 2)
     step = x[i + 1] - x[i]
     s = np.clip((deflection - x[i]) / step, 0.0, 1.0)
@@ -136,7 +140,7 @@ class Place:
 
     device: Restraint
     offset: float
-    stiffness: float  # of a tendon, stop or deck spring, over the weight [1/m]
+    stiffness: float  # of a tendon, stop, deck spring or brace, over the weight [1/m]
     height: float = 0.0
     way: float = 1.0
 
@@ -154,12 +158,13 @@ class Place:
             return self.stiffness * np.maximum(elongation - device.gap_m, 0.0)
         if device.kind == "friction":
             return device.f * np.sign(elongation - since)
+        give = device.f / (self.stiffness * device.yield_m)
         total = elongation / device.yield_m
-        start = math.copysign(float(first_loading(np.array([abs(since) / device.yield_m]), EXPONENT)[0]), since)
-        back = start + (elongation - since) / device.yield_m
+        start = math.copysign(float(first_loading(np.array([abs(since) / device.yield_m]), EXPONENT, give)[0]), since)
+        back = start + (elongation - since) / (device.yield_m * (1.0 + give))
         turned = (elongation - since) * since < 0.0
         x = np.where(turned, back, total)
-        loaded = np.sign(x) * first_loading(np.abs(x), EXPONENT)
+        loaded = np.sign(x) * first_loading(np.abs(x), EXPONENT, give)
         return device.f * np.where(turned & (back * start > 0.0), back, loaded)  # unloading is elastic
 
 
@@ -216,7 +221,7 @@ class SlowTurn:
             Place(
                 device,
                 side * at.offset,
-                0.0 if isinstance(device, Damper) else device.lam * pier.size / pier.half_width**2,
+                (device.brace if isinstance(device, Damper) else device.lam) * pier.size / pier.half_width**2,
                 at.height,
                 side * at.way or 1.0,
             )

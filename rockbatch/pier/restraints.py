@@ -12,7 +12,7 @@ from rockbatch.arguments import checked
 from rockbatch.errors import InputError, remedy
 from rockbatch.pier.block import BOUNDS as OF_PIER
 from rockbatch.pier.block import HIGHEST, Pier
-from rockbatch.units import LEAST, MOST, NOT_NEGATIVE, Bounds
+from rockbatch.units import LEAST, MOST, NOT_NEGATIVE, POSITIVE, Bounds
 
 DamperKind = Literal["friction", "viscous", "hysteretic"]
 
@@ -52,6 +52,10 @@ FIRMEST = 2e-5
 """Least deflection of a stop under the weight of the whole pier [m]: a steel block of a metre gives way by a tenth of a
 millimetre."""
 
+QUICKEST = 1e4
+"""Rate [1/s] at which a damper on a brace relaxes, about that force which it has at SPEED: beyond it the brace might as well be
+rigid, and takes steps without number."""
+
 MOST_LAMBDA = 100.0
 """Greatest λ of a tendon, by which it adds the pier's weight at a hundredth of α; strands have 0.1 to 10."""
 
@@ -76,8 +80,11 @@ class Damper:
     at : float, "left", "right", "deck" or None
         Offset from the centre of the base [m], positive to the right; None: one at each pivot. "deck": a horizontal one between
         the deck, at ``Pier.deck``, and what stands beside it and goes with the ground; not of friction.
+    brace : float
+        λ = k b²/(M g R0) of the stiffness k of what the damper hangs on, in series with it; infinite if that is rigid. Of a
+        viscous damper whose exponent is 1 at most, or a hysteretic one.
     confirm : sequence of str
-        "nu" or "yield_m", if the value is right though unusual.
+        "nu", "yield_m" or "brace", if the value is right though unusual.
 
     Examples
     --------
@@ -97,6 +104,7 @@ class Damper:
     yield_m: float = 0.0
     exponent: float = 1.0
     at: float | str | None = None
+    brace: float = field(default=math.inf, kw_only=True)
     confirm: Sequence[str] = field(default=(), kw_only=True, compare=False, repr=False)
 
     @classmethod
@@ -111,23 +119,33 @@ class Damper:
 
     @classmethod
     @checked
-    def hysteretic(cls, pier: Pier, force_kN: float, yield_mm: float, **rest: Any) -> Self:
-        """Return a hysteretic damper of the yield force F_d [kN] and deflection u_y [mm]; otherwise as :meth:`friction`."""
-        return cls("hysteretic", **_over_weight(pier, force_kN=force_kN, yield_mm=yield_mm), **rest)
+    def hysteretic(
+        cls, pier: Pier, force_kN: float, yield_mm: float, *, brace_kN_m: float = math.inf, **rest: Any
+    ) -> Self:
+        """Return a hysteretic damper of the yield force F_d [kN] and deflection u_y [mm]; otherwise as :meth:`friction`.
+
+        ``brace_kN_m`` is the stiffness of the brace on which it hangs.
+        """
+        values = {"force_kN": force_kN, "yield_mm": yield_mm} | _if_finite(brace_kN_m=brace_kN_m)
+        return cls("hysteretic", **_over_weight(pier, **values), **rest)
 
     @classmethod
     @checked
-    def viscous(cls, pier: Pier, coefficient_kN_s_m: float, exponent: float = 1.0, **rest: Any) -> Self:
-        """Return a viscous damper of C [kN (s/m)^a] and the exponent a; otherwise as :meth:`friction`.
+    def viscous(
+        cls, pier: Pier, coefficient_kN_s_m: float, exponent: float = 1.0, *, brace_kN_m: float = math.inf, **rest: Any
+    ) -> Self:
+        """Return a viscous damper of C [kN (s/m)^a] and the exponent a, on a brace of the stiffness ``brace_kN_m``.
+
+        Otherwise as :meth:`friction`.
 
         Examples
         --------
         >>> tall = rb.Pier.with_deck(width_m=8, height_m=30, mass_t=2000, deck_mass_t=1000)
         >>> rb.Damper.viscous(tall, coefficient_kN_s_m=1500.0, exponent=0.3)
-        Damper(kind='viscous', f=0.0, nu=0.8057089065897499, yield_m=0.0, exponent=0.3, at=None)
+        Damper(kind='viscous', f=0.0, nu=0.8057089065897499, yield_m=0.0, exponent=0.3, at=None, brace=inf)
         """
-        values = _over_weight(pier, coefficient_kN_s_m=coefficient_kN_s_m, exponent=exponent)
-        return cls("viscous", **values, **rest)
+        values = {"coefficient_kN_s_m": coefficient_kN_s_m, "exponent": exponent} | _if_finite(brace_kN_m=brace_kN_m)
+        return cls("viscous", **_over_weight(pier, **values), **rest)
 
 
 @checked
@@ -174,8 +192,7 @@ class Tendon:
 
         ``rest``: ``at`` and ``confirm``. Raises ``InputError`` as :meth:`Damper.friction`.
         """
-        values = {"prestress_kN": prestress_kN, "stiffness_kN_m": stiffness_kN_m}
-        values |= {} if yield_kN == math.inf else {"yield_kN": yield_kN}
+        values = {"prestress_kN": prestress_kN, "stiffness_kN_m": stiffness_kN_m} | _if_finite(yield_kN=yield_kN)
         return cls(**_over_weight(pier, **values), **rest)
 
 
@@ -308,7 +325,7 @@ def restraint_of(values: Mapping[str, Any]) -> Restraint:
 
 def fields_of(pier: Pier) -> dict[str, tuple[str, float]]:
     """Return by a study's key the field of a device, and the key's value over the field's; those in kN if the mass is known."""
-    fields = {name: (name, 1.0) for name in ("f", "nu", "exponent", "psi", "restitution")}
+    fields = {name: (name, 1.0) for name in ("f", "nu", "exponent", "psi", "restitution", "brace")}
     fields |= {"yield_mm": ("yield_m", 1000.0), "lambda": ("lam", 1.0), "gap_mm": ("gap_m", 1000.0)}
     if pier.mass_t is not None:
         weight = pier.mass_t * pier.gravity
@@ -317,9 +334,15 @@ def fields_of(pier: Pier) -> dict[str, tuple[str, float]]:
             "coefficient_kN_s_m": ("nu", weight * pier.p / pier.gravity),
             "prestress_kN": ("psi", weight),
             "stiffness_kN_m": ("lam", weight * pier.size / pier.half_width**2),
+            "brace_kN_m": ("brace", weight * pier.size / pier.half_width**2),
             "yield_kN": ("strength", weight),
         }
     return fields
+
+
+def _if_finite(**values: float) -> dict[str, float]:
+    """Return those values that are not infinite, which stands for what is not there."""
+    return {name: value for name, value in values.items() if value != math.inf}
 
 
 def _over_weight(pier: Pier, **values: float) -> dict[str, Any]:
@@ -419,10 +442,25 @@ def wrong_device(pier: Pier, device: Restraint) -> list[str]:
         wrong.append(f'kind = "{device.kind}": must be ' + " or ".join(f'"{kind}"' for kind in get_args(DamperKind)))
     for field_ in DAMPERS.get(device.kind, ()) if isinstance(device, Damper) else FIELDS[device.what]:
         wrong += BOUNDS[field_].problems(field_.replace("lam", "lambda"), getattr(device, field_))
+    if isinstance(device, Damper):
+        wrong += _wrong_brace(device)
     if isinstance(device, Tendon) and not device.strength > device.psi:
         strength = f"its yield force over the weight, {device.strength:g}"
         wrong.append(f"{strength}, must be above its prestress, {device.psi:g}")
     return [f"{device.what}: {problem}" for problem in wrong]
+
+
+def _wrong_brace(damper: Damper) -> list[str]:
+    if damper.brace == math.inf:
+        return []
+    if damper.kind == "friction":
+        return [
+            f'brace = {damper.brace:g}: friction on a brace is a hysteretic damper; write kind = "hysteretic" with the '
+            "deflection of the brace under the damper's force as yield_mm"
+        ]
+    if damper.kind == "viscous" and damper.exponent > 1.0:
+        return [f"brace = {damper.brace:g}: with one the exponent must be 1 at most; leave the brace out"]
+    return POSITIVE.problems("brace", damper.brace)
 
 
 def _wrong_place(pier: Pier, device: Restraint) -> list[str]:
@@ -513,7 +551,26 @@ def unlikely_devices(pier: Pier, devices: tuple[Restraint, ...]) -> list[str]:
     ]
 
 
+def _of_brace(pier: Pier, damper: Damper) -> Doubt | None:
+    if damper.brace == math.inf:
+        return None
+    stiffness = damper.brace * pier.gravity * pier.size / pier.half_width**2
+    deflection = pier.gravity / stiffness
+    if deflection < FIRMEST:
+        gives = f"the brace gives by {1000.0 * deflection:.2g} mm under the pier's weight"
+        return Doubt("brace", f"{gives}; leave out one that is rigid")
+    if damper.kind == "viscous" and damper.nu > 0.0:
+        rate = stiffness / (damper.exponent * damper.nu * pier.p) * SPEED ** (1.0 - damper.exponent)
+        if rate > QUICKEST:
+            return Doubt(
+                "brace", f"beside this damper it is rigid, it follows within {1000.0 / rate:.2g} ms; leave it out"
+            )
+    return None
+
+
 def _of_damper(pier: Pier, damper: Damper) -> Doubt | None:
+    if odd := _of_brace(pier, damper):
+        return odd
     if damper.kind == "viscous":
         share = damper.nu * pier.p / pier.gravity  # of the weight, at 1 m/s
         if share * SPEED**damper.exponent > 1.0:

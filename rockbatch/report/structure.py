@@ -26,12 +26,19 @@ _PIER = (
     "alpha", "p", "mu", "gravity", "mass_t", "top_m", "deck_over_columns", "deck_height_m", "flexural_period_s",
     "initial_rotation_rad",
 )  # fmt: skip
-_PREFERRED = {"f": "force_kN", "nu": "coefficient_kN_s_m", "psi": "prestress_kN", "lambda": "stiffness_kN_m"}
+_PREFERRED = {
+    "brace": "brace_kN_m",
+    "f": "force_kN",
+    "nu": "coefficient_kN_s_m",
+    "psi": "prestress_kN",
+    "lambda": "stiffness_kN_m",
+}
 """Keys without units, and the equivalent ones with units, for a pier whose mass is known."""
 _WORDS = {
     "f": ("f", ""), "force_kN": ("F", "kN"), "yield_mm": ("uy", "mm"), "nu": ("ν", ""), "coefficient_kN_s_m": ("C", ""),
     "exponent": ("a", ""), "psi": ("ψ", ""), "prestress_kN": ("P0", "kN"), "lambda": ("λ", ""),
     "stiffness_kN_m": ("kt", "kN/m"), "yield_kN": ("Ty", "kN"), "gap_mm": ("gap", "mm"), "restitution": ("e", ""),
+    "brace": ("λb", ""), "brace_kN_m": ("kb", "kN/m"),
 }  # fmt: skip
 
 _NAMED = {"stop": "lift stop", "deck_spring": "deck spring"}

@@ -8,7 +8,7 @@ import numpy as np
 
 from rockbatch.core.block import lanes as block_lanes
 from rockbatch.core.block.model import Block
-from rockbatch.core.devices.laws import CONTACT, FRICTION, HYSTERETIC, SPRING, TENDON, VISCOUS, Element
+from rockbatch.core.devices.laws import CONTACT, FRICTION, HYSTERETIC, MAXWELL, SPRING, TENDON, VISCOUS, Element
 from rockbatch.core.ground import ground_rows
 from rockbatch.core.powers import LARGEST_WHOLE
 from rockbatch.core.springs import lanes as spring_lanes
@@ -190,12 +190,29 @@ def _element(pier: Pier, base: Base, device: Restraint, place: Place) -> Element
 
 def _damper(pier: Pier, base: Base, damper: Damper, at: Element) -> Element:
     """Return the Element of a damper where ``at`` is."""
+    if damper.brace < math.inf:
+        return _braced(pier, damper, at)
     force, coefficient = float(pier.gravity * damper.f), float(damper.nu * pier.p)
     soft = float(1.0 / damper.yield_m) if damper.kind == "hysteretic" else 0.0
     linear_below, slope = _linear_part(pier, base, at, coefficient, float(damper.exponent))
     return at._replace(
         kind=DAMPERS[damper.kind], strength=force, stiffness=soft, coefficient=coefficient, exponent=float(damper.exponent),
         linear_below=linear_below, slope=slope,
+    )  # fmt: skip
+
+
+def _braced(pier: Pier, damper: Damper, at: Element) -> Element:
+    """Return the Element of a damper on a brace where ``at`` is."""
+    stiffness = float(damper.brace * pier.gravity * pier.size / pier.half_width**2)
+    if damper.kind == "hysteretic":
+        force, soft = float(pier.gravity * damper.f), float(1.0 / damper.yield_m)
+        return at._replace(kind=HYSTERETIC, strength=force, stiffness=soft, give=force * soft / stiffness)
+    coefficient, exponent = float(damper.nu * pier.p), float(damper.exponent)
+    if coefficient == 0.0:
+        return at._replace(linear_below=math.inf)
+    return at._replace(
+        kind=MAXWELL, stiffness=stiffness, coefficient=coefficient, exponent=exponent,
+        linear_below=math.inf if exponent == 1.0 else 0.0, quickest=stiffness / (exponent * coefficient),
     )  # fmt: skip
 
 
@@ -237,15 +254,17 @@ def prestress(pier: Pier, base: Base) -> float:
 @lru_cache(maxsize=4096)
 def fastest_rate(pier: Pier, base: Base) -> float:
     """Return the greatest rate [1/s] of a model: of the springs, of vibration against devices, of decay by linear dampers."""
-    stiff, slows, steep = 0.0, 0.0, False
+    stiff, slows, relaxes, steep = 0.0, 0.0, 0.0, False
     for law in elements(pier, base):
         lever = _lever(pier, base, law)
-        stiff += lever * law.stiffness * (law.strength if law.kind == HYSTERETIC else law.kind in (TENDON, SPRING))
-        slows += lever * law.coefficient
-        steep = steep or law.exponent < 1.0
+        steel = law.strength / (1.0 + law.give) if law.kind == HYSTERETIC else 0.0
+        stiff += lever * law.stiffness * (steel or law.kind in (TENDON, SPRING, MAXWELL))
+        slows += lever * law.coefficient if law.kind == VISCOUS else 0.0
+        steep = steep or (law.kind == VISCOUS and law.exponent < 1.0)
+        relaxes = max(relaxes, law.quickest if law.kind == MAXWELL and law.exponent == 1.0 else 0.0)
     if base.on_springs:
-        return max(math.hypot(_fastest(pier, base), math.sqrt(stiff)), 2.0 * slows)
-    return max(math.sqrt(stiff), _fastest(pier, base) if steep else slows)
+        return max(math.hypot(_fastest(pier, base), math.sqrt(stiff)), 2.0 * slows, relaxes)
+    return max(math.sqrt(stiff), _fastest(pier, base) if steep else slows, relaxes)
 
 
 def ground_of(motion: Motion) -> Samples:

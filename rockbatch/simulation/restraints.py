@@ -197,7 +197,7 @@ def _at_rest(law: Element, elongation: float, state: float, support: float) -> t
     if law.kind == FRICTION:
         return 0.0, 1e6 * support
     if law.kind == HYSTERETIC:
-        return law.strength * state, law.strength * law.stiffness
+        return law.strength * state, law.strength * law.stiffness / (1.0 + law.give)
     if law.kind == CONTACT:
         force = stop_force(law, elongation, state)
         return force, law.stiffness / law.returned if force > 0.0 else 0.0

@@ -17,6 +17,7 @@ _OR_DECK = Choice(
     ("left", "right", "deck"), '"left", "right", "deck" or an offset from the middle of the base in m', also=number
 )
 _FORCE, _VISCOUS = {"kind": ("friction", "hysteretic")}, {"kind": ("viscous",)}
+_ON_BRACE = {"kind": ("viscous", "hysteretic")}
 
 DAMPER = Section(("case", "damper"), "A damper between the pier and the ground. Write as many as there are.", {
     "kind": Key(choice(*DAMPERS), '"friction"',
@@ -29,6 +30,10 @@ DAMPER = Section(("case", "damper"), "A damper between the pier and the ground. 
         "Coefficient C of a viscous damper, in kN and m/s to the power of `exponent`; or give `nu`.", many=True, only=_VISCOUS),
     "nu": Key(within(BOUNDS["nu"]), "0.5", "Coefficient of a viscous damper as C/(M p).", many=True, only=_VISCOUS),
     "exponent": Key(within(BOUNDS["exponent"]), "0.5", "Exponent of the speed of a viscous damper.", many=True, only=_VISCOUS),
+    "brace_kN_m": Key(positive, "2.0e5",
+        "Stiffness of what the damper hangs on, in series with it, for a pier whose mass is known; or give `brace`. It is rigid "
+        "if neither is given.", many=True, only=_ON_BRACE),
+    "brace": Key(positive, "5.0", "Stiffness of what the damper hangs on, as λ = k b²/(M g R0).", many=True, only=_ON_BRACE),
     "at": Key(_OR_DECK, '"left"',
         "Where it is: a pivot, an offset [m] from the middle of the base, or between the deck and its neighbours; one at each "
         "pivot if it is not given."),
@@ -36,6 +41,7 @@ DAMPER = Section(("case", "damper"), "A damper between the pier and the ground. 
 }, many=True, single=True, clashes=(
     Clash(("force_kN", "f"), "force_kN and f are given, which fix the same; keep one", at="f"),
     Clash(("coefficient_kN_s_m", "nu"), "coefficient_kN_s_m and nu are given, which fix the same; keep one", at="nu"),
+    Clash(("brace_kN_m", "brace"), "brace_kN_m and brace are given, which fix the same; keep one", at="brace"),
 ))  # fmt: skip
 TENDON = Section(
     ("case", "tendon"), "An unbonded tendon between the pier and the ground, which takes tension only.", {
@@ -86,7 +92,7 @@ DEVICES: dict[str, Section] = {"damper": DAMPER, "tendon": TENDON, "stop": STOP,
 
 RESTRAINTS = tuple(DEVICES)
 
-IN_KN = ("force_kN", "coefficient_kN_s_m", "prestress_kN", "stiffness_kN_m", "yield_kN")
+IN_KN = ("force_kN", "coefficient_kN_s_m", "prestress_kN", "stiffness_kN_m", "yield_kN", "brace_kN_m")
 _UNMEASURED = ("kind", "at", "side", "height_m", "confirm")
 KEYS_OF = {
     kind: tuple(

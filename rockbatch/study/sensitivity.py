@@ -92,7 +92,7 @@ _RANGES: dict[str, tuple[Mapping[str, Key], dict[str, str]]] = {
     }),
     "damper": (DEVICES["damper"], {
         "force_kN": "[300.0, 600.0]", "f": "[0.01, 0.05]", "yield_mm": "[3.0, 8.0]", "coefficient_kN_s_m": "[500.0, 2000.0]",
-        "nu": "[0.2, 0.8]", "exponent": "[0.3, 1.0]",
+        "nu": "[0.2, 0.8]", "exponent": "[0.3, 1.0]", "brace_kN_m": "[1.0e5, 4.0e5]", "brace": "[2.0, 10.0]",
     }),
     "tendon": (DEVICES["tendon"], {
         "prestress_kN": "[3000.0, 6000.0]", "psi": "[0.2, 0.8]", "stiffness_kN_m": "[2.0e4, 8.0e4]",

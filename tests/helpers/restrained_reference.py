@@ -107,6 +107,8 @@ class TiedTwoSprings(TwoSprings):
             if self.state[j] == "slack":
                 return 0.0
             return device.strength * self.g if self.state[j] == "yields" else self.tension(j, y)
+        if device.kind == "viscous" and device.brace < math.inf:
+            return y[FIRST + j]
         if device.kind == "viscous":
             return self.viscous(device, self.elements[j][1], speed)
         return device.f * self.g * y[FIRST + j]
@@ -158,9 +160,16 @@ class TiedTwoSprings(TwoSprings):
     def _rate(self, j: int, y: Sequence[float]) -> float:
         device, _ = self.elements[j]
         speed = self.speed(j, y)
+        brace = device.brace * self.g * self.size / self.b**2 if isinstance(device, Damper) else math.inf
         if isinstance(device, Damper) and device.kind == "hysteretic":
             z = y[FIRST + j]
-            return speed / device.yield_m * (1.0 - (min(abs(z), 1.0) ** 5 if self.way[j] * z > 0.0 else 0.0))
+            by_slip = (1.0 - (min(abs(z), 1.0) ** 5 if self.way[j] * z > 0.0 else 0.0)) / device.yield_m
+            if brace < math.inf:  # F_d ż = k (ė − ẇ) with ż = ẇ by_slip
+                speed *= brace / (brace + device.f * self.g * by_slip)
+            return speed * by_slip
+        if brace < math.inf:
+            pull = y[FIRST + j]
+            return brace * (speed - math.copysign((abs(pull) / (device.nu * self.p)) ** (1.0 / device.exponent), pull))
         return speed if self.state[j] == "yields" else 0.0
 
     def surfaces(self, leg):
@@ -180,6 +189,8 @@ class TiedTwoSprings(TwoSprings):
                 surfaces += [(g, tiny, j, kind) for g, tiny, kind in own]
             elif self.rubs(j) and not self.way[j]:
                 surfaces.append((lambda t, y, j=j: bears(t, y, j), slight, j, "slips"))
+            elif isinstance(device, Damper) and device.kind == "viscous" and device.brace < math.inf:
+                continue
             elif isinstance(device, Damper):
                 surfaces.append((lambda t, y, j=j: self.way[j] * self.speed(j, y), still, j, "turns"))
             elif self.state[j] == "yields":

@@ -191,6 +191,8 @@ def written_with(folder, motions="", case='[[case]]\nname = "rock"\nbase = "rigi
         ('damper]]\nkind = "viscous"\nnu = 4000', "nu", "damper 1: nu = 4000: at "),
         ('damper]]\nkind = "hysteretic"\nforce_kN = 450\nyield_mm = 0.005', "yield_mm",
          "damper 1: yield_mm = 0.005: the damper yields at 0.005 mm, where steel ones do at 1 to 20 mm"),
+        ('damper]]\nkind = "viscous"\nnu = 0.5\nbrace_kN_m = 5e9', "brace_kN_m",
+         "damper 1: brace_kN_m = 5e+09: the brace gives by 0.0059 mm under the pier's weight; leave out one that is rigid"),
         ("tendon]]\nstiffness_kN_m = 5e7", "stiffness_kN_m",
          "tendon 1: stiffness_kN_m = 5e+07: it adds 17.7 times the pier's weight at a rotation of 0.01 α"),
         ("tendon]]\npsi = 0.0", "psi", "tendon 1: psi = 0: with no prestress and no stiffness the tendon is not there"),

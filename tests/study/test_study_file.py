@@ -693,6 +693,7 @@ def test_the_devices_in_comments_of_a_study_to_begin_with_have_all_their_keys_an
         0.5,
         0.5,
     )
+    assert viscous.brace == 5.0
     assert (tendon.psi, tendon.lam, tendon.strength) == (0.5, 1.0, math.inf)
     assert (stop.gap_m, stop.lam, stop.restitution, stop.at) == (0.1, 20.0, 0.6, "left")
     assert beside == DeckSpring(0.2, 0.05, 0.6, "right", 31.5)
