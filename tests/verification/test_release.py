@@ -16,6 +16,7 @@ from scipy.integrate import quad, solve_ivp
 
 import rockbatch as rb
 from rockbatch.pier import Damper, ElasticBase, Pier, RigidBase, Tendon, YieldingBase
+from rockbatch.pier.restraints import DeckSpring, Stop
 from rockbatch.simulation import run_fixed
 from rockbatch.simulation.starting import start_of
 
@@ -182,10 +183,15 @@ def test_springs_are_held_and_let_go_as_in_the_reference(name, share):
 DEVICES = (Tendon(psi=0.1, lam=0.3), Damper("viscous", nu=0.2), Damper("hysteretic", f=0.05, yield_m=0.02))
 
 
+STOPS = (Stop(gap_m=0.1, lam=5.0, restitution=0.6), DeckSpring(lam=0.2, gap_m=0.05, restitution=0.5))
+"""Met by a pier that is held at 0.05 rad: its heel has risen by 0.15 m, its deck has moved by 0.7 m."""
+
+
 @pytest.mark.parametrize("base", [
     ElasticBase(50, 0.1, restraints=DEVICES), YieldingBase(50, 0.1, eta=2.5, restraints=(*DEVICES, Damper("friction", f=0.02))),
-    RigidBase(0.9, restraints=(*DEVICES, Damper("friction", f=0.02))),
-], ids=lambda base: base.name)  # fmt: skip
+    RigidBase(0.9, restraints=(*DEVICES, Damper("friction", f=0.02))), RigidBase(0.9, restraints=STOPS),
+    ElasticBase(50, 0.1, restraints=STOPS),
+], ids=["elastic", "yielding", "rigid", "rigid-stops", "elastic-stops"])  # fmt: skip
 def test_other_direction_is_the_mirror_image_with_devices(base):
     right, left = (rb.simulate(FIG5, base, STILL, initial_rotation_rad=theta, substeps=16) for theta in (0.05, -0.05))
     assert right.status == left.status == "ok"
