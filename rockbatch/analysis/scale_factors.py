@@ -50,6 +50,8 @@ def said(plan: LevelPlan, spec: FragilitySpec) -> str:
     if min(factors) == max(factors) == 1.0:
         return "records are taken as they were recorded"
     parts = [f"records are scaled by {min(factors):.2g} to {max(factors):.2g} (median {np.median(factors):.2g})"]
+    if spec.method == "cloud" and max(map(len, plan.used)) > 1:
+        parts.append("each counts once at every scale, as if these were records of their own: intervals are too narrow")
     beyond = {x: sum(x in own for own in plan.not_used) for x in spec.levels}
     if any(beyond.values()):
         limits = f"{spec.least_scale:g} to {spec.most_scale:g}" if spec.least_scale else f"up to {spec.most_scale:g}"

@@ -267,7 +267,8 @@ def test_the_command_runs_every_record_as_it_is_and_fits_what_its_table_shows(tm
     assert overturning.fitted.line is None
     assert overturning.fitted.median > curve.fitted.median
     html = next(path for path in found.save(tmp_path / "out") if path.suffix == ".html").read_text(encoding="utf-8")
-    assert "Cloud analysis: of the records that stand a line" in Page(html).text
+    assert "Cloud analysis of records as they are: of the records that stand a line" in Page(html).text
+    assert "each counts once at every scale, as if these were records of their own" in found.info["scales"]["said"]
     found.plot()
 
 
