@@ -490,7 +490,7 @@ class Sample:
         for name in rng.choice(tables, int(rng.integers(1, 3)), replace=False):
             path = self.scratch / str(name)
             own = json_value if path.suffix == ".json" else table_cell
-            path.write_bytes(damaged(path.read_bytes(), rng, (own, own, own, own, TEXT[int(rng.integers(len(TEXT)))])))
+            path.write_bytes(damaged(path.read_bytes(), rng, (own,) if rng.random() < 0.8 else TEXT))
         if rng.random() < 0.8:
             sealed(self.scratch)
         said = []
