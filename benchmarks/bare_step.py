@@ -42,8 +42,10 @@ from rockbatch.pier import Base, Damper, ElasticBase, Pier, RigidBase, Tendon, Y
 from rockbatch.simulation import block, ground_of, springs
 from rockbatch.simulation.models import elements, kind_of, line_of
 from rockbatch.simulation.models import model as model_of
+from rockbatch.simulation.starting import start_of
 
 BARE_STEPS = 200_000
+AT_REST = start_of(TOWER, RigidBase())
 SETTINGS = Settings(1, True, False)
 BARE_ROCKING = 1e-6  # [s]: of a bare step on the rigid base, so that the block stays on its corner
 PASSES = 10_000
@@ -116,7 +118,7 @@ def measure(law: str, motion: Motion, substeps: int, runs: int, repeats: int) ->
     """Line of the table."""
     ground, dt = ground_of(motion), float(motion.dt)
     models = [springs(TOWER, of_law(law, base)) for base in foundations(runs)]
-    kind, lines = kind_of(models[0]), [line_of(m, timing(motion, substeps), (0, 0), 0.0) for m in models]
+    kind, lines = kind_of(models[0]), [line_of(m, timing(motion, substeps), (0, 0), 0.0, AT_REST) for m in models]
     stop = np.zeros(1, np.uint8)
     ends = march(kind, lines, ground, stop, substeps)
     if (ends.status != SURVIVED).any():
@@ -150,7 +152,7 @@ def measure_rigid(motion: Motion, substeps: int, runs: int, repeats: int) -> str
     """Line of the table for the rigid base: piers of p = 0.38 … 0.5 rad/s."""
     ground, dt = ground_of(motion), float(motion.dt)
     models = [block(Pier(TOWER.alpha, TOWER.p + 0.12 * i / runs), RigidBase()) for i in range(runs)]
-    kind, lines = kind_of(models[0]), [line_of(m, timing(motion, substeps), (0, 0), 0.0) for m in models]
+    kind, lines = kind_of(models[0]), [line_of(m, timing(motion, substeps), (0, 0), 0.0, AT_REST) for m in models]
     stop = np.zeros(1, np.uint8)
     ends = march(kind, lines, ground, stop, substeps)
     if (ends.status != SURVIVED).any():
@@ -176,7 +178,7 @@ def pass_alone(motion: Motion, repeats: int) -> str:
     ground, dt = ground_of(motion), float(motion.dt)
     models = [springs(TOWER, of_law("bouc-wen", base)) for base in foundations(LANES)]
     kind = kind_of(models[0])
-    lines = [line_of(m, (dt, 100 * PASSES, 0, 0, len(ground), 0), (0, 0), 0.0) for m in models]
+    lines = [line_of(m, (dt, 100 * PASSES, 0, 0, len(ground), 0), (0, 0), 0.0, AT_REST) for m in models]
     runs = np.array(lines, record_of(kind.line)).view(np.recarray)
     static, contact = static_state(models[0], models[0].gravity), Contact(1.0, 1.0, 1.0, 1.0, 0.0)
     tasks = {
@@ -195,7 +197,7 @@ def with_devices(name: str, base: Base, motion: Motion, substeps: int, repeats: 
     laws = elements(TOWER, tied)
     m = model_of(TOWER, base)
     kind, load = kind_of(m), sum(each.prestress for each in laws)
-    plain, held = (line_of(m, timing(motion, substeps), (0, 0), each) for each in (0.0, load))
+    plain, held = (line_of(m, timing(motion, substeps), (0, 0), each, AT_REST) for each in (0.0, load))
 
     def run_plain() -> np.recarray:
         return march(kind, [plain], ground, stop, substeps)

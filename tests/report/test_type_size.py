@@ -39,7 +39,8 @@ STUDY = study_text(
     sensitivity={"samples": 4, "uniform": {"alpha": [0.18, 0.22]}, "choice": {"kinematics": ["first-order", "finite"]}},
 )  # fmt: skip
 PICTURES = {
-    "answer", "figure", "distribution", "fragility", "spectrum", "sensitivity", "histories", "studied", "records", "accuracy",
+    "answer", "figure", "distribution", "fragility", "spectrum", "sensitivity", "histories", "studied", "statics", "records",
+    "accuracy",
 }  # fmt: skip
 """Sections of the report that have one."""
 
