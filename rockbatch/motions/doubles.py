@@ -351,11 +351,11 @@ def _correlate(a: Component, b: Component) -> bool:
     """
     coarse, fine = sorted((a, b), key=lambda c: -c.dt)
     one, two = coarse.acceleration, _at_step(fine, coarse.dt)
-    found = correlation(one, two)
-    if found < _CERTAIN:
+    r = correlation(one, two)
+    if r < _CERTAIN:
         return False
     n = _independent_values(one, two)
-    return n > 3.0 and math.atanh(min(found, 1.0 - 1e-12)) * math.sqrt(n - 3.0) >= _SIGNIFICANT
+    return n > 3.0 and math.atanh(min(r, 1.0 - 1e-12)) * math.sqrt(n - 3.0) >= _SIGNIFICANT
 
 
 def _independent_values(one: Samples, two: Samples) -> float:

@@ -24,7 +24,7 @@ ANGLES = np.radians(np.arange(180.0))
 """Directions that count [rad]: a degree apart, of half a turn, which reverses a component."""
 
 SQUARE = 1.0
-"""What two components may lack of a right angle [degrees], as agencies round their azimuths."""
+"""Greatest departure of two components from a right angle [degrees]: agencies round their azimuths."""
 
 _JITTER = 0.1  # of dt: starts that differ by less from a whole number of samples count as simultaneous
 

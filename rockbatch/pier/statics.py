@@ -66,7 +66,7 @@ FACTS = (
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Statics(Shown):
-    """What a pier on its base bears and how it swings, all quasi-static or by the energy of free rocking.
+    """Forces that a pier on its base bears, and its swings: quasi-static, or by the energy of free rocking.
 
     Of devices that are not alike on both sides the weaker direction counts, ``towards``. Accelerations are steady and horizontal,
     without a vertical one; forces are over the weight, and moments about the pivot that bears more. Viscous dampers bear nothing.

@@ -248,7 +248,7 @@ class Outcome:
 
 @dataclass(frozen=True)
 class ShockOutcome:
-    """What a shock does; SI units, angles in radians, NaN where it does not apply.
+    """Effects of a shock; SI units, angles in radians, NaN where it does not apply.
 
     Attributes
     ----------

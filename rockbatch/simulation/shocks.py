@@ -1,4 +1,4 @@
-"""What each shock of a sequence does to a pier, read from the history of the run."""
+"""Effects of each shock of a sequence on a pier, read from the history of the run."""
 
 import math
 from dataclasses import replace
