@@ -58,7 +58,7 @@ class Release(Analysis):
         A row for each case: the ``parameter`` that is fitted, its ``value`` with ``low`` and ``high`` at the ``confidence``; for
         restitution also over Housner's, ``over_housner``; ``scatter``, its standard deviation from impact to impact;
         ``by_times`` and ``by_amplitudes``, fitted to these alone; ``time_stretch``, the factor on all computed times that would
-        fit best beside the value, and half of its interval; root mean squares of measured less computed values; ``remark``.
+        fit best beside the value, and its error; root mean squares of measured less computed values; ``remark``.
     release_impacts : DataFrame
         A row for each case and impact: times [s] and amplitudes [rad], measured and computed, and the apparent restitution.
     release_history : DataFrame
@@ -124,7 +124,7 @@ def release(
     >>> test = rb.release(study)
     >>> test.release[["parameter", "value", "low", "high"]].round(4)
          parameter  value     low    high
-    0  restitution    0.9  0.8997  0.9003
+    0  restitution  0.8995  0.8938  0.9043
     """
     return analysed(Release, read_release, _carry_out, study, out, motions, jobs, fresh, progress)
 

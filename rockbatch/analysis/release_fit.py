@@ -9,14 +9,16 @@ import numpy as np
 from rockbatch.motions.motion import Samples
 
 EXACT = 1e-7
-"""Of the greatest value: least scatter that measurements are taken to have, so that no weight is infinite."""
+"""Of the greatest value: least misfit of a value, so that a fit to exact ones has a logarithm."""
 
 NEAR = 1e-4
 """Of its range: change of the parameter by which slopes are taken."""
 
 ROUNDS = 6
-"""Steps of the fit with estimated scatters; a few are enough."""
+"""Steps of the fit with unknown scatters; a few are enough."""
 
+RATIOS, UNLIKELY = 24.0, 12.0
+"""Greatest ln of a ratio of variances, and what ln of the posterior density may fall short of the greatest to count."""
 
 LEAST_TIMES = 4
 """Times with which it is looked whether all of them are too long or too short."""
@@ -33,9 +35,10 @@ class Fit(NamedTuple):
     """A fitted parameter.
 
     ``low`` and ``high`` are its interval; ``scatter`` its standard deviation from impact to impact, as far as the measured values
-    show one; ``t_rms`` [s] and ``amplitude_rms`` [rad] the root mean square of measured less computed values, NaN without any;
-    ``at_end`` whether the fit lies at an end of the possible values. ``stretch`` is the factor on all computed times that would
-    describe the measured ones best, beside the parameter, and ``stretch_error`` half of its interval; NaN with few times.
+    tell it from errors of reading; ``t_rms`` [s] and ``amplitude_rms`` [rad] the root mean square of measured less computed
+    values, NaN without any; ``at_end`` whether the fit lies at an end of the possible values. ``stretch`` is the factor on all
+    computed times that would describe the measured ones best, beside the parameter, and ``stretch_error`` how far its interval
+    reaches; NaN with few times.
     """
 
     value: float
@@ -56,15 +59,14 @@ class _Linear(NamedTuple):
     """Measured less computed values, shape (m,), their slopes with what is fitted, (m, 1 or 2), and with the parameter's value
     at each impact, (m, n).
 
-    ``kinds`` is 0 for times and 1 for amplitudes, ``scales`` the greatest measured of each kind; ``shared`` says that all times
-    have the error of the first impact, from which they count.
+    ``kinds`` is 0 for times and 1 for amplitudes; ``shared`` says that all times have the error of the first impact, from which
+    they count.
     """
 
     misses: Samples
     slopes: Samples
     by_impact: Samples
     kinds: Samples
-    scales: Samples
     shared: bool
 
 
@@ -72,45 +74,40 @@ def fitted(measured: Passages, model: Model, grid: Samples, confidence: float, s
     """Return the parameter of ``model`` that makes ``measured`` values likeliest, and its interval.
 
     Times and amplitudes have errors of measurement, independent and normal, each kind with a scatter that is not known; and the
-    parameter itself scatters from impact to impact, which all later values keep (THEORY.md, Release tests). The scatters are
-    those of the greatest restricted likelihood. ``grid`` are values between which the fit begins, at that of least squares. Times
-    that count from the first impact have its error, ``shared``.
+    parameter itself scatters from impact to impact, which all later values keep (THEORY.md, Release tests). The value is the
+    median of what is then known of it, the interval holds the middle of it with a probability of ``confidence``. ``grid`` are
+    values between which the fit begins, at that of least squares. Times that count from the first impact have its error,
+    ``shared``.
     """
     bounds = float(grid[0]), float(grid[-1])
     value = _least_squares(measured, model, grid)
     for _ in range(ROUNDS):
         at = _linear(measured, model, value, bounds)._replace(shared=shared)
-        spread = _scatters(at)
-        changes, variances = _generalised(at, spread)
-        before, value = value, min(max(value + float(changes[0]), bounds[0]), bounds[1])
+        posterior, before = _posterior(at), value
+        value = min(max(before + posterior.quantile(0.5), bounds[0]), bounds[1])
         if abs(value - before) <= 1e-9 * (bounds[1] - bounds[0]):
             break
-    half = _quantile(confidence, len(at.misses) - 1) * math.sqrt(variances[0])
+    low, high = (before + posterior.quantile(0.5 + side * confidence) for side in (-0.5, 0.5))
     t_rms, amplitude_rms = (
         math.sqrt(float(np.nanmean((own - other) ** 2))) if not np.isnan(own).all() else math.nan
         for own, other in zip(measured, model(value), strict=True)
     )
     near = 1e-6 * (bounds[1] - bounds[0])
     at_end = min(value - bounds[0], bounds[1] - value) <= near
-    low, high = max(value - half, bounds[0]), min(value + half, bounds[1])
+    low, high = (min(max(end, bounds[0]), bounds[1]) for end in (low, high))
+    scatter = float(posterior.weights @ posterior.spread)
     stretch = _stretch(at, np.concatenate([model(value).t, 0.0 * measured.t]), measured, confidence)
-    return Fit(value, low, high, float(spread[2]), t_rms, amplitude_rms, at_end, *stretch)
+    return Fit(value, low, high, scatter, t_rms, amplitude_rms, at_end, *stretch)
 
 
 def _stretch(at: _Linear, t: Samples, measured: Passages, confidence: float) -> tuple[float, float]:
-    """Return the factor on all computed times, ``t``, 0 for amplitudes, that measured ones ask for, and half its interval."""
+    """Return the factor on all computed times, ``t``, 0 for amplitudes, that measured ones ask for, and its error."""
     given = ~np.isnan(np.concatenate(measured))
     if np.count_nonzero(at.kinds == 0) < LEAST_TIMES:
         return math.nan, math.nan
-    both = at._replace(slopes=np.column_stack([at.slopes, np.nan_to_num(t[given])]))
-    changes, variances = _generalised(both, _scatters(both))
-    return 1.0 + float(changes[1]), _quantile(confidence, len(at.misses) - 2) * math.sqrt(variances[1])
-
-
-def _quantile(confidence: float, freedom: int) -> float:
-    from scipy.stats import t
-
-    return float(t.ppf(0.5 + 0.5 * confidence, max(freedom, 1)))
+    posterior = _posterior(at._replace(slopes=np.column_stack([at.slopes, np.nan_to_num(t[given])])))
+    low, middle, high = (posterior.quantile(0.5 + side * confidence, 1) for side in (-0.5, 0.0, 0.5))
+    return 1.0 + middle, max(high - middle, middle - low)
 
 
 def _least_squares(measured: Passages, model: Model, grid: Samples) -> float:
@@ -150,50 +147,84 @@ def _linear(measured: Passages, model: Model, value: float, bounds: tuple[float,
     given = np.concatenate([~np.isnan(measured.t), ~np.isnan(measured.amplitude)])
     kinds = np.repeat([0, 1], n)[given]
     misses = np.concatenate([own - other for own, other in zip(measured, now, strict=True)])[given]
-    scales = np.array([np.nan_to_num(own).max(initial=0.0) for own in measured])
     both = np.concatenate([t_slopes, slopes])[given][:, None]
-    return _Linear(misses, both, np.vstack([of_times, of_amplitudes])[given], kinds, scales, False)
+    return _Linear(misses, both, np.vstack([of_times, of_amplitudes])[given], kinds, False)
 
 
-def _scatters(at: _Linear) -> Samples:
-    """Return the scatters of times [s], amplitudes [rad] and of the parameter itself, of the greatest restricted likelihood."""
-    from scipy.optimize import minimize
+class _Posterior(NamedTuple):
+    """Posterior distribution of the changes of k parameters: a mixture of Student's t with ``freedom`` degrees of freedom.
 
-    rms = np.array([np.sqrt(np.mean(at.misses[at.kinds == k] ** 2)) if (at.kinds == k).any() else 1.0 for k in (0, 1)])
-    least = np.maximum(EXACT * at.scales, 1e-300)
-    rms = np.maximum(rms, least)
-    own = np.sqrt(np.mean(at.by_impact**2, axis=1))
-    typical = float(np.median(np.abs(at.misses) / np.maximum(own, 1e-12 * own.max(initial=1e-300)))) or 1e-6
+    ``weights`` (q,), ``centres`` and ``scales`` (q, k) are of its parts, ``spread`` (q,) the scatter from impact to impact.
+    """
 
-    def unlikely(logs: Samples) -> float:
-        spread = np.exp(np.clip(logs, -40.0, 10.0)) * np.array([*rms, typical])
-        covariance = _covariance(at, np.maximum(spread, [*least, 0.0]))
-        factor = np.linalg.cholesky(covariance)
-        misses, slopes = np.linalg.solve(factor, at.misses), np.linalg.solve(factor, at.slopes)
-        information = slopes.T @ slopes
-        part = slopes.T @ misses
-        rest = float(misses @ misses) - float(part @ np.linalg.solve(information, part))
-        return 2.0 * float(np.log(np.diag(factor)).sum()) + rest + float(np.linalg.slogdet(information)[1])
+    weights: Samples
+    centres: Samples
+    scales: Samples
+    freedom: int
+    spread: Samples
 
-    starts = ([0.0, 0.0, -6.0], [-3.0, -3.0, 0.0], [-1.0, -1.0, -1.0])
-    options = {"xatol": 1e-3, "fatol": 1e-6, "maxiter": 400}
-    results = [minimize(unlikely, start, method="Nelder-Mead", options=options) for start in starts]
-    logs = min(results, key=lambda result: result.fun).x
-    return np.maximum(np.exp(np.clip(logs, -40.0, 10.0)) * np.array([*rms, typical]), [*least, 0.0])
+    def quantile(self, share: float, which: int = 0) -> float:
+        """Return what parameter ``which`` lies below with a probability of ``share``."""
+        from scipy.optimize import brentq
+        from scipy.special import stdtr
 
+        centres, scales = self.centres[:, which], self.scales[:, which]
 
-def _covariance(at: _Linear, spread: Samples) -> Samples:
-    """Return the covariance of the differences: errors of measurement, and what impacts leave to all later values."""
-    covariance = np.diag(spread[at.kinds] ** 2) + spread[2] ** 2 * at.by_impact @ at.by_impact.T
-    if at.shared:
-        times = at.kinds == 0
-        covariance += spread[0] ** 2 * np.outer(times, times)
-    return covariance
+        def excess(value: float) -> float:
+            return float(self.weights @ stdtr(self.freedom, (value - centres) / scales)) - share
+
+        low, high = float((centres - scales).min()), float((centres + scales).max())
+        while excess(low) > 0.0 or excess(high) < 0.0:
+            low, high = 2.0 * low - high, 2.0 * high - low
+        return float(brentq(excess, low, high, xtol=1e-6 * float(scales.min())))
 
 
-def _generalised(at: _Linear, spread: Samples) -> tuple[Samples, Samples]:
-    """Return the changes of what is fitted by generalised least squares, and their variances."""
-    factor = np.linalg.cholesky(_covariance(at, spread))
-    misses, slopes = np.linalg.solve(factor, at.misses), np.linalg.solve(factor, at.slopes)
-    covariance = np.linalg.inv(slopes.T @ slopes)
-    return covariance @ (slopes.T @ misses), np.diag(covariance)
+def _posterior(at: _Linear) -> _Posterior:
+    """Return the posterior distribution when nothing is known of the scatters but what the values show.
+
+    Given the ratios of the scatters it is Student's t; the ratios have Jeffreys' prior, and are summed over a grid.
+    """
+    kinds = np.unique(at.kinds)
+    ends = np.tile([-RATIOS, RATIOS], (len(kinds), 1))
+    coarse = _grid(ends, 2.0)
+    logs = _evaluated(at, kinds, coarse)[0]
+    likely = coarse[logs > logs.max() - UNLIKELY]
+    ends = np.column_stack([likely.min(axis=0) - 2.0, likely.max(axis=0) + 2.0])
+    logs, centres, scales, freedom, spread = _evaluated(at, kinds, _grid(ends, 1.0))
+    weights = np.exp(logs - logs.max())
+    return _Posterior(weights / weights.sum(), centres, scales, freedom, spread)
+
+
+def _grid(ends: Samples, step: float) -> Samples:
+    """Return the points, shape (q, k), between ends, (k, 2)."""
+    axes = [np.arange(low, high + 0.5 * step, step) for low, high in ends]
+    return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, len(axes))
+
+
+def _evaluated(at: _Linear, kinds: Samples, ratios: Samples) -> tuple[Samples, Samples, Samples, int, Samples]:
+    """Return ln of the posterior density, and the parts of :class:`_Posterior`, for ``ratios`` of scatters, shape (q, kinds).
+
+    They are ln of the variance that reading leaves over the mean of what impacts leave in values of that kind.
+    """
+    own = at.by_impact @ at.by_impact.T
+    sources = [own]
+    for kind in kinds:
+        members = (at.kinds == kind).astype(float)
+        read = np.diag(members) + (np.outer(members, members) if at.shared and kind == 0 else 0.0)
+        sources.append(read * (members @ np.diag(own) / members.sum() or 1.0))
+    logs = np.column_stack([np.zeros(len(ratios)), ratios])
+    shares = np.exp(logs - logs.max(axis=1, keepdims=True)).T[:, :, None, None]
+    parts = shares * np.stack(sources)[:, None]
+    inverse = np.linalg.inv(parts.sum(axis=0))
+    weighted = inverse @ at.slopes
+    covariance = np.linalg.inv(at.slopes.T @ weighted)
+    centres = np.einsum("qij,qmj,m->qi", covariance, weighted, at.misses)
+    unexplained = inverse - weighted @ covariance @ weighted.swapaxes(1, 2)
+    squares = np.maximum(np.einsum("i,qij,j->q", at.misses, unexplained, at.misses), np.finfo(float).tiny)
+    freedom = max(len(at.misses) - at.slopes.shape[1], 1)
+    influences = unexplained @ parts
+    information = np.einsum("aqij,bqji->qab", influences, influences)
+    density = sum(0.5 * np.linalg.slogdet(matrix)[1] for matrix in (inverse, covariance, information))
+    scale = np.sqrt(squares / freedom)
+    scales = scale[:, None] * np.sqrt(np.einsum("qii->qi", covariance))
+    return density - 0.5 * freedom * np.log(squares), centres, scales, freedom, scale * np.sqrt(shares[0, :, 0, 0])

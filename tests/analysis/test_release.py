@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from numpy.polynomial.legendre import leggauss
+from scipy.interpolate import CubicSpline
 
 import rockbatch as rb
 from rockbatch.analysis.release_fit import Passages, fitted
@@ -68,7 +69,19 @@ def test_exact_values_give_the_restitution_that_made_them(e, keys):
     assert row["over_housner"] == pytest.approx(e / BLOCK.restitution, abs=2e-6)
 
 
-def covered(spread: float, reading: tuple[float, float], seeds: int) -> float:
+@pytest.fixture(scope="module")
+def block():
+    """The block's impacts by its restitution: cubics through closed forms, 1e-8 s and rad near the values of these tests."""
+    nodes = np.concatenate([np.linspace(0.05, 0.5, 40), np.linspace(0.5, 1.0, 201)[1:]])
+    t, amplitude = (
+        CubicSpline(nodes, values) for values in zip(*(passages([e] * IMPACTS) for e in nodes), strict=True)
+    )
+    for own, other in zip(passages([0.9123] * IMPACTS), (t(0.9123), amplitude(0.9123)), strict=True):
+        np.testing.assert_allclose(own, other, atol=1e-8)
+    return lambda e: Passages(t(e), amplitude(e))
+
+
+def covered(block, spread: float, reading: tuple[float, float], seeds: int) -> float:
     """Return the share of tests whose interval of 95 % holds the mean restitution, 0.9."""
     hits = 0
     for seed in range(seeds):
@@ -78,22 +91,36 @@ def covered(spread: float, reading: tuple[float, float], seeds: int) -> float:
             exact.t + reading[0] * random.standard_normal(IMPACTS),
             exact.amplitude + reading[1] * random.standard_normal(IMPACTS),
         )
-        fit = fitted(measured, lambda e: passages([e] * IMPACTS), GRID, 0.95)
+        fit = fitted(measured, block, GRID, 0.95)
         hits += fit.low <= 0.9 <= fit.high
     return hits / seeds
 
 
-@pytest.mark.parametrize(("spread", "reading"), [(0.0, (0.003, 1e-3)), (0.02, (1e-4, 1e-4)), (0.01, (0.002, 5e-4))])
-def test_intervals_hold_the_truth_as_often_as_they_say(spread, reading):
+KINDS = [
+    (0.0, (0.003, 1e-3)),
+    (0.02, (1e-4, 1e-4)),
+    (0.01, (0.002, 5e-4)),
+    (0.005, (0.002, math.nan)),
+    (0.02, (math.nan, 5e-4)),
+]
+"""Scatter of the restitution, errors of reading of times [s] and amplitudes [rad]; NaN where nothing is measured."""
+
+
+@pytest.mark.parametrize(("spread", "reading"), KINDS)
+def test_intervals_hold_the_truth_as_often_as_they_say(block, spread, reading):
     """Of 40 tests 38 are expected, and fewer than 34 in one of 100 suites."""
-    assert covered(spread, reading, 40) >= 0.85
+    assert covered(block, spread, reading, 40) >= 0.85
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("spread", "reading"), [(0.0, (0.003, 1e-3)), (0.02, (1e-4, 1e-4)), (0.01, (0.002, 5e-4))])
-def test_intervals_hold_the_truth_in_many_tests(spread, reading):
-    """Of 400 tests 380 are expected; the estimated scatters cost a few."""
-    assert 0.90 <= covered(spread, reading, 400) <= 0.995
+@pytest.mark.parametrize(("spread", "reading"), KINDS)
+def test_intervals_hold_the_truth_in_many_tests(block, spread, reading):
+    """Of 400 tests 380 are expected, on the average over all ratios of the scatters; of each kind 360 at least.
+
+    Without any scatter of the restitution all do: ten impacts cannot exclude one, and the interval allows for it.
+    """
+    share = covered(block, spread, reading, 400)
+    assert 0.90 <= share <= (0.98 if spread else 1.0)
 
 
 def test_scatter_of_the_restitution_is_told_from_errors_of_reading():

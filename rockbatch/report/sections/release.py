@@ -49,7 +49,7 @@ def _fits(fits: "pd.DataFrame", keys: list[str]) -> Markup:
     heads = [
         Head("case", of=lambda fit: named(fit, keys)), Head("fitted", of="parameter"), Head("value", ".4g", of="value"),
         Head("interval", of=_interval),
-        Head("scatter", ".2g", "standard deviation from impact to impact, as far as the test shows one", of="scatter"),
+        Head("scatter", ".2g", "standard deviation from impact to impact, beside errors of reading", of="scatter"),
         Head("of Housner's", ".3f", "over the value that keeps the angular momentum", of="over_housner"),
     ]  # fmt: skip
     said = (f"{named(fit, keys)}: {fit['remark']}." for fit in as_dicts(fits))
