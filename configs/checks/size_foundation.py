@@ -14,7 +14,7 @@ stiff foundations (eta = 1.5) ratchet on after the record, so that nothing can b
     30.0        gij   gj    j     j     j     j     j     j
     40.0  abcdefghi    g    g  pass  pass  pass     e     e
     60.0  abcdefghi    g    g     g  pass  pass  pass     e
-    80.0  abcdefghi    g    g     g  pass  pass  pass  pass
+    80.0  abcdefghi    g    g     g     g  pass  pass  pass
         a: every run settled
         b: no overturning
         c: flight within the keys

@@ -244,7 +244,7 @@ MORE = (
     ),
     Column(
         "residual_s",
-        "when residual rotation, tilt and settlement were read, at least five vertical periods after the record",
+        "when residual rotation, tilt and settlement were read: the pier had stopped stepping, or 40/p were over",
         "t_read", "s", OnPage("read at [s]", ".2f", behind="settlement_m"), bases=YIELDING, stood=True,
     ),
     Column(

@@ -24,7 +24,7 @@ MEANING = {
     "theta_max_error": "estimated error of it over α: what halving the step still changed; empty with a fixed step",
     "t_max_s": "time of it [s]",
     "theta_res_over_alpha": "rotation over α at which the pier would rest when the next shock begins, or a pause after the last",
-    "settlement_m": "mean settlement of the supports since the start, likewise [m]; peaks.csv reads it sooner (residual_s)",
+    "settlement_m": "mean settlement of the supports since the start, likewise [m]; peaks.csv has it at rest (residual_s)",
     "moving_over_alpha": "half the range of the rotation over α in the last quarter of the pause: 0 where the pier is at rest",
 }
 """Columns behind those that name the run."""

@@ -44,6 +44,7 @@ class Waiting(NamedTuple):
     longest: float  # sample at which waiting ends
     read_wait: float  # samples between two readings; 0 where there is nothing to read twice
     decided_at: float  # sample from which on nothing can exceed the peak, UNSET before it
+    read_by: float  # sample from which on residuals are read though the pier still steps
     read: float  # sample of the first reading, UNSET before it
     read_left: float  # unstressed positions of both supports then [m], their difference a mean up to the second reading
     read_right: float
@@ -69,6 +70,7 @@ def expect(traits, lanes, i, run):
     waiting.read_wait[i] = run.read_wait
     waiting.longest[i] = max(samples, waiting.earliest[i] + run.read_wait) + run.patience
     waiting.decided_at[i] = UNSET
+    waiting.read_by[i] = waiting.earliest[i] + (run.patience if run.read_wait > 0.0 else 0.0)
     waiting.read[i], waiting.read_left[i], waiting.read_right[i] = UNSET, math.nan, math.nan
     waiting.drift_left[i], waiting.drift_right[i] = math.nan, math.nan
     waiting.last_drift_left[i], waiting.last_drift_right[i] = 0.0, 0.0
@@ -105,14 +107,26 @@ def _tilt(m, y, contact, supports):
 
 
 @inner
+def _calm_from(lanes, i, m):
+    """Return the time [s] from which on no pivot has moved for a period of rocking, and the ground has been at rest."""
+    return max(lanes.tally.moved[i], lanes.clock.npts[i] * lanes.clock.dt[i]) + rocking_period(m)
+
+
+@inner
+def _stands(lanes, i, m, contact):
+    """Return whether the pier has stood on both pivots for a period of rocking while the ground was at rest."""
+    both = contact.left != 0.0 and contact.right != 0.0
+    return both and lanes.clock.sample[i] * lanes.clock.dt[i] >= _calm_from(lanes, i, m)
+
+
+@inner
 def _overturning_bound(lanes, i, m, y, contact, supports, devices):
     """Return OPEN, DECIDED or UNSTABLE (see ``free_vibration``); OPEN while the ground moves."""
     if not ground_rests(lanes, i):
         return OPEN
     waiting, dt = lanes.waiting, lanes.clock.dt[i]
     left, right = base_of(m, y, contact, supports)
-    alone = lanes.clock.sample[i] * dt - max(lanes.tally.moved[i], lanes.clock.npts[i] * dt)
-    calm = devices is None and contact.left != 0.0 and contact.right != 0.0 and alone >= rocking_period(m)
+    calm = devices is None and _stands(lanes, i, m, contact)
     ahead = 0.5 * waiting.patience[i] * dt * (FORESEEN if ratchets(m.law) else 1.0)
     last_left, last_right = ahead * waiting.last_drift_left[i], ahead * waiting.last_drift_right[i]
     first_left, first_right = last_left, last_right
@@ -211,7 +225,12 @@ def over(traits, lanes, i, devices):
         return RUNNING if sample < samples else SURVIVED
     m = model(traits, lanes, i)
     y, contact, supports = moment(traits, lanes, i)
-    if decided:
+    legible = sample >= waiting.read_by[i] or _stands(lanes, i, m, contact)
+    if decided and waiting.read[i] < 0.0:
+        if not legible:
+            return RUNNING
+        _read_base(lanes, i, m, y, contact, supports)
+    elif decided:
         if sample == waiting.last_read[i] + wait:
             _read_base(lanes, i, m, y, contact, supports)
         elif sample < waiting.read[i] + wait:
@@ -222,8 +241,9 @@ def over(traits, lanes, i, devices):
     bound = _overturning_bound(lanes, i, m, y, contact, supports, devices)
     if bound == DECIDED and not decided:
         waiting.decided_at[i] = sample
-        _read_base(lanes, i, m, y, contact, supports)
-    if bound == DECIDED and sample >= max(samples, waiting.read[i] + wait):
+        if legible:
+            _read_base(lanes, i, m, y, contact, supports)
+    if bound == DECIDED and waiting.read[i] >= 0.0 and sample >= max(samples, waiting.read[i] + wait):
         return SURVIVED
     if sample == (samples + longest) // 2:
         waiting.midway[i], waiting.midway_tilt[i] = lanes.peak.theta[i], _tilt(m, y, contact, supports)
@@ -240,6 +260,9 @@ def next_due(traits, lanes, i):
         return sample + 1.0
     if waiting.read_wait[i] == 0.0:
         return max(lanes.clock.samples[i], sample + 1.0)
+    if waiting.read[i] < 0.0:
+        stands = math.floor(_calm_from(lanes, i, model(traits, lanes, i)) / lanes.clock.dt[i])
+        return max(min(waiting.read_by[i], stands), sample + 1.0)
     return sample + 1.0
 
 
