@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 from reference_solver import Rigid, Surface
 
 from rockbatch.motions.motion import Motion
-from rockbatch.pier import DeckSpring, Pier, Place, RigidBase, Stop, places
+from rockbatch.pier import Damper, DeckSpring, Pier, Place, RigidBase, Stop, places
 
 
 class Memory:
@@ -70,14 +70,16 @@ class Memory:
 
 
 class StoppedBlock(Rigid):
-    """Housner's block with stops."""
+    """Housner's block with stops, springs and linear dampers."""
 
     def __init__(self, pier: Pier, base: RigidBase, motion: Motion, quiet_s: float, theta0: float = 0.0) -> None:
         super().__init__(pier, base, motion, quiet_s, theta0)
         self.b, self.h, self.inertia = pier.half_width, pier.height, pier.inertia_about_pivot
         scale = pier.gravity * pier.size / pier.half_width**2
+        located = [(device, place) for device in base.restraints for place in places(pier, device)]
+        self.dampers = [(device.nu * pier.p, place) for device, place in located if isinstance(device, Damper)]
         self.stops = [
-            (Memory(stop, stop.lam * scale), place) for stop in base.restraints for place in places(pier, stop)
+            (Memory(stop, stop.lam * scale), place) for stop, place in located if not isinstance(stop, Damper)
         ]
 
     def reach(self, place: Place, theta: float) -> tuple[float, float]:
@@ -104,6 +106,8 @@ class StoppedBlock(Rigid):
             for memory, s in self.stops:
                 e, by_theta = self.reach(s, float(y[0]))
                 turning -= memory.force(e) * by_theta / self.inertia
+            for c, place in self.dampers:
+                turning -= c * self.reach(place, float(y[0]))[1] ** 2 * omega / self.inertia
             return [omega, turning]
 
         return f
