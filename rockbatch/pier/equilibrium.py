@@ -52,7 +52,8 @@ def first_loading(deflection: Array, exponent: float, give: float = 0.0) -> Arra
     ``give`` is the deflection/δ_y of a brace in series with it under F_y.
     """
     x, z, slope = _curve(exponent)
-    x, slope = x + give * z, slope / (1.0 + give * slope)
+    if give:
+        x, slope = x + give * z, slope / (1.0 + give * slope)
     i = np.clip(np.searchsorted(x, deflection, side="right") - 1, 0, len(x) - 2)
     step = x[i + 1] - x[i]
     s = np.clip((deflection - x[i]) / step, 0.0, 1.0)
@@ -67,7 +68,10 @@ def deflection_under(force: float, exponent: float) -> float:
     deflection = float(x[i] + (force - z[i]) / slope[i])
     for _ in range(20):  # Newton's method, from the side on which the curve is concave
         at = float(first_loading(np.array([deflection]), exponent)[0])
-        deflection += (force - at) / -math.expm1(exponent * math.log(at))
+        step = (force - at) / -math.expm1(exponent * math.log(at))
+        deflection += step
+        if step <= 1e-15 * deflection:
+            break
     return deflection
 
 
@@ -319,8 +323,9 @@ class SlowTurn:
             return self._excess(theta, depth, pulls, np.zeros_like(theta))
 
         limit = self.settled - risen + 2.0 * self.b * (1.0 if self.finite else 0.5 * math.pi)
-        if spring.exponent is None and not self.places:
-            depth = 1.0 / spring.stiffness if spring.strength >= 1.0 else math.inf
+        if not self.places:
+            bears = spring.strength > 1.0 or (spring.strength == 1.0 and spring.exponent is None)
+            depth = spring.depth(1.0) if bears else math.inf
         else:
             start, near = np.array([self.settled - risen]), NEAR / spring.stiffness
             low, high, share = _bracketed(excess, start, np.array([limit]), near)
@@ -330,6 +335,25 @@ class SlowTurn:
             return None
         at, theta = np.array([depth]), theta_of(np.array([depth]))
         return float(theta[0]), [float(self.elongation(place, theta, at)[0]) for place in self.places]
+
+    def _without_devices(self, theta: Array, on_both: bool) -> tuple[Array, Array]:
+        """Return depth and the heel's force of a pier without devices."""
+        assert self.spring is not None
+        spring, rise = self.spring, self._rise(theta)
+        if not on_both:
+            return np.full_like(theta, spring.depth(1.0)), np.zeros_like(theta)
+        if spring.exponent is None:
+            heel = np.maximum(0.5 - spring.stiffness * rise, max(1.0 - spring.strength, 0.0))
+            return self.settled + 2.0 * rise - (0.5 - heel) / spring.stiffness, heel
+        depth = self.settled + rise  # of an elastic toe; Newton's method from there never goes past the root
+        for _ in range(MOST_STEPS):
+            toe = spring.force(depth)
+            slope = spring.stiffness * (2.0 - (toe / spring.strength) ** spring.exponent)
+            step = (1.0 - toe - self._heel(theta, depth)) / slope
+            depth = depth + step
+            if np.abs(step).max() < NEAR * NEAR / spring.stiffness:
+                break
+        return depth, self._heel(theta, depth)
 
     def _balanced(self, theta: Array, since: list[float], heel: bool) -> tuple[Array, list[Array], Array]:
         """Return depth, pulls and the heel's force; where friction holds, its force is what the balance leaves."""
@@ -356,12 +380,8 @@ class SlowTurn:
         if self.spring is None:
             depth, heel = np.zeros_like(theta), np.zeros_like(theta)
             pulls = self._pulls(theta, depth, since)
-        elif not self.places and self.spring.exponent is None:
-            spring, rise = self.spring, self._rise(theta)
-            least = max(1.0 - spring.strength, 0.0)
-            heel = np.maximum(0.5 - spring.stiffness * rise, least) if on_both else np.zeros_like(theta)
-            sunk = self.settled + 2.0 * rise - (0.5 - heel) / spring.stiffness
-            depth, pulls = sunk if on_both else np.full_like(theta, 1.0 / spring.stiffness), []
+        elif not self.places:
+            depth, heel, pulls = *self._without_devices(theta, on_both), []
         else:
             depth, pulls, heel = self._balanced(theta, since, on_both)
         of_tendons, of_dampers = np.zeros_like(theta), np.zeros_like(theta)
