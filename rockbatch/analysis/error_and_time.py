@@ -220,7 +220,7 @@ def _ends(outcomes: Sequence[Outcome | None]) -> list[tuple[str, float]]:
 
 def _of_scipy(references: Sequence[Reference], listener: Listener, clock: Clock) -> list[dict[str, Any]]:
     """Return rows of SciPy's solvers, from the loosest tolerance on; one that takes half of the time left goes no further."""
-    from rockbatch.simulation.yardstick import OutOfTimeError, solve
+    from rockbatch.simulation.scipy_solver import OutOfTimeError, solve
 
     bases = [ref.run.case.base for ref in references]
     if any(base.restraints for base in bases):

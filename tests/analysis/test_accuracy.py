@@ -17,8 +17,8 @@ from rockbatch.cli import main
 from rockbatch.errors import InputError
 from rockbatch.motions import Motion, pulse
 from rockbatch.pier import ElasticBase, Pier, YieldingBase
-from rockbatch.simulation import run_fixed, yardstick
-from rockbatch.simulation.yardstick import solve
+from rockbatch.simulation import run_fixed, scipy_solver
+from rockbatch.simulation.scipy_solver import solve
 from rockbatch.study import load_study
 from rockbatch.study.suite import ground_motions
 
@@ -134,7 +134,7 @@ def test_runs_are_spread_over_the_study(measured):
     ],
     ids=["bouc-wen", "epp-finite-guided", "elastic-guided"],
 )
-def test_the_yardstick_solves_the_same_equations(base):
+def test_scipys_solver_solves_the_same_equations(base):
     """SciPy adapts its step over the corners of the ground motion: asked for 1e-9, it comes within 1e-6."""
     pier = Pier(alpha=0.15, p=1.0)
     motion = pulse("sine", name="sine", amplitude=0.6 * 9.81, period=0.8, dt=0.02, duration=3.0)
@@ -145,7 +145,7 @@ def test_the_yardstick_solves_the_same_equations(base):
     assert theta_max / pier.alpha == pytest.approx(ours.theta_max / pier.alpha, abs=1e-6)
 
 
-def test_the_yardstick_tells_flight():
+def test_scipys_solver_reports_flight():
     """Thrown up by 3 g of vertical acceleration, the pier leaves the ground; its rotation then is the largest."""
     pier, base = Pier(alpha=0.15, p=1.0), ElasticBase(beta=30.0, epsilon=0.1, flight="stop")
     sides = [
@@ -223,10 +223,10 @@ def test_a_solver_that_takes_too_long_is_not_asked_for_more(measured, monkeypatc
     def solved(pier, base, motion, method, tolerance, quiet_s, seconds):
         asked.append((method, tolerance))
         if method == "DOP853" and tolerance < 1e-4:
-            raise yardstick.OutOfTimeError
+            raise scipy_solver.OutOfTimeError
         return "ok", 0.0
 
-    monkeypatch.setattr(yardstick, "solve", solved)
+    monkeypatch.setattr(scipy_solver, "solve", solved)
     heard = Heard()
     table = measure(study, every, listener=heard)
     scipy = table[table["method"].str.startswith("SciPy")]
@@ -239,10 +239,10 @@ def test_a_solver_that_takes_too_long_is_not_asked_for_more(measured, monkeypatc
     assert heard.counts[0][0] == 13 * 12
 
 
-def test_the_yardstick_stops_in_time():
+def test_scipys_solver_stops_in_time():
     pier, base = Pier(alpha=0.15, p=1.0), ElasticBase(beta=30.0, epsilon=0.2)
     motion = pulse("sine", name="sine", amplitude=0.6 * 9.81, period=0.8, dt=0.02, duration=3.0)
-    with pytest.raises(yardstick.OutOfTimeError):
+    with pytest.raises(scipy_solver.OutOfTimeError):
         solve(pier, base, motion, "LSODA", 1e-9, seconds=0.0)
 
 
@@ -285,7 +285,7 @@ def test_without_results_there_is_a_table_but_no_report(study_file, tmp_path, br
     assert [file.name for file in out.iterdir()] == ["accuracy.csv"]
     with open(out / "accuracy.csv", encoding="utf-8", newline="") as file:
         methods = {row["method"] for row in csv.DictReader(file)}
-    assert methods == {"located", "not located", "study"}  # the run is on the rigid base: nothing for the yardstick
+    assert methods == {"located", "not located", "study"}  # the run is on the rigid base: nothing for SciPy's solvers
 
 
 def test_the_command_leaves_scipy_out_where_it_is_told_to(study_file, tmp_path, brief, capsys):
