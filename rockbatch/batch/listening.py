@@ -56,7 +56,7 @@ class Bars(Listener):
             warnings.simplefilter("ignore")  # of a notebook without widgets, which gets a bar in characters
             from tqdm.auto import tqdm
 
-        with tqdm(total=total, unit="run", leave=False, delay=self.delay) as bar:
+        with tqdm(total=total, unit="run", leave=False, delay=self.delay, dynamic_ncols=True) as bar:
             yield bar.update
 
 

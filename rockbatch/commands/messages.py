@@ -4,11 +4,11 @@ import io
 import os
 import sys
 import time
-from contextlib import AbstractContextManager
-from types import TracebackType
-from typing import Any, TextIO
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TextIO
 
-from rockbatch.batch.listening import Advance, Listener, count
+from rockbatch.batch.listening import Advance, Bars, Listener, count
 from rockbatch.commands.streams import give_up, say, tell
 from rockbatch.motions import MotionSet
 
@@ -35,9 +35,23 @@ class Terminal(Listener):
         """See :class:`Listener`."""
         say(text)
 
-    def progress(self, total: int) -> AbstractContextManager[Advance]:
-        """See :class:`Listener`."""
-        return Progress(total)
+    @contextmanager
+    def progress(self, total: int) -> Iterator[Advance]:
+        """Return a bar with the time remaining on a terminal, and plain lines elsewhere; see :class:`Listener`."""
+        stream = sys.stderr or io.StringIO()
+        # A terminal that a program makes may have no size
+        if not (stream.isatty() and min(os.get_terminal_size(stream.fileno())) > 0):
+            yield _lines(total, stream)
+            return
+        with Bars().progress(total) as advance:
+
+            def guarded(runs: int) -> None:
+                try:
+                    advance(runs)
+                except OSError as error:
+                    give_up(stream, error)
+
+            yield guarded
 
 
 def _twice(motions: MotionSet) -> list[tuple[str, str]]:
@@ -47,41 +61,17 @@ def _twice(motions: MotionSet) -> list[tuple[str, str]]:
     return [(name, repeat) for name, repeat in names if name != repeat]
 
 
-class Progress(AbstractContextManager["Progress"]):
-    """Progress of a batch: a bar with the time remaining on a terminal, plain lines elsewhere.
+def _lines(total: int, stream: TextIO) -> Advance:
+    """Return a function that prints a line now and then: how many runs are finished, and the time remaining."""
+    started = printed = time.monotonic()
+    done = 0
 
-    Call it with the number of runs that are finished since the last call; use it as a context.
-    """
-
-    def __init__(self, total: int, stream: TextIO | None = None) -> None:
-        self.total = total
-        self.done = 0
-        self.stream = stream or sys.stderr or io.StringIO()
-        self.started = self.last_line = time.monotonic()
-        self.bar: Any = None
-        # A terminal that a program makes may have no size
-        if self.stream.isatty() and min(os.get_terminal_size(self.stream.fileno())) > 0:
-            from tqdm import tqdm
-
-            self.bar = tqdm(total=total, unit="run", file=self.stream, dynamic_ncols=True, leave=False)
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        if self.bar is not None:
-            self.bar.close()
-
-    def __call__(self, runs: int = 1) -> None:
-        self.done += runs
-        if self.bar is not None:
-            try:
-                self.bar.update(runs)
-            except OSError as error:
-                self.bar = None
-                give_up(self.stream, error)
-            return
+    def advance(runs: int) -> None:
+        nonlocal printed, done
+        done += runs
         now = time.monotonic()
-        if now - self.last_line >= SECONDS_BETWEEN_LINES:
-            self.last_line = now
-            remaining = (now - self.started) * (self.total - self.done) / self.done
-            tell(self.stream, f"{self.done} of {count(self.total, 'run')}, {remaining:.0f} s left")
+        if now - printed >= SECONDS_BETWEEN_LINES:
+            printed = now
+            tell(stream, f"{done} of {count(total, 'run')}, {(now - started) * (total - done) / done:.0f} s left")
+
+    return advance
