@@ -9,11 +9,8 @@ from rockbatch.motions import Motion, MotionSet
 from rockbatch.simulation import core_digest
 from rockbatch.study import Study
 
-PACKAGES = ("pier", "core", "simulation", "motions", "study", "checks", "toml", "results", "batch", "analysis")
-"""Packages that decide what a row says, or which runs come next. The others only show it: commands, report."""
-
-MODULES = ("units.py", "files.py", "errors.py", "showing.py", "lazy.py", "arguments.py", "grouping.py", "figures.py")
-"""Modules at the top that do."""
+SHOW = ("commands", "examples", "report", "cli.py", "__init__.py", "__main__.py", "_version.py")
+"""Packages and modules that only show rows. All others decide what a row says, or which runs come next."""
 
 _TOP = Path(__file__).parents[1]
 
@@ -26,7 +23,7 @@ def digests(motions: Iterable[Motion], **settings: object) -> dict[str, str]:
         hashes["motions"].update(repr((motion.name, motion.station, motion.dt, motion.npts, motion.initial)).encode())
         for samples in (motion.horizontal, motion.vertical):
             hashes["motions"].update(b"none" if samples is None else samples.tobytes())
-    return {name: each.hexdigest()[:16] for name, each in hashes.items()} | {"program": program()}
+    return {name: digest.hexdigest()[:16] for name, digest in hashes.items()} | {"program": program()}
 
 
 def study_digests(study: Study, motions: MotionSet) -> dict[str, str]:
@@ -44,10 +41,9 @@ def study_digests(study: Study, motions: MotionSet) -> dict[str, str]:
 
 def sources() -> Iterator[Path]:
     """Yield the modules that take part in what a row says, in a fixed order."""
-    for name in MODULES:
-        yield _TOP / name
-    for package in PACKAGES:
-        yield from sorted((_TOP / package).rglob("*.py"))
+    for path in sorted(_TOP.rglob("*.py")):
+        if path.relative_to(_TOP).parts[0] not in SHOW:
+            yield path
 
 
 @cache

@@ -63,12 +63,9 @@ def test_every_module_that_can_change_a_row_takes_part():
     ):
         assert TOP / known in takes_part  # the walk finds its way
     missing = takes_part - set(digests.sources())
-    assert not missing, f"name their packages in rockbatch/batch/digests.py: {sorted(missing)}"
-
-
-@pytest.mark.parametrize("package", digests.PACKAGES)
-def test_no_package_is_named_that_does_not_take_part(package):
-    assert any(TOP / package in file.parents for file in reached(starts()))
+    assert not missing, (
+        f"these can change a row: strike them from SHOW in rockbatch/batch/digests.py: {sorted(missing)}"
+    )
 
 
 @pytest.mark.parametrize(
@@ -77,7 +74,9 @@ def test_no_package_is_named_that_does_not_take_part(package):
         ("core/springs/equations.py", True),
         ("analysis/ida.py", True),
         ("pier/block.py", True),
+        ("units.py", True),
         ("report/page.py", False),
+        ("cli.py", False),
     ],
 )
 def test_the_digest_is_another_where_a_module_that_takes_part_is(tmp_path, monkeypatch, module, takes_part):
