@@ -1,4 +1,4 @@
-"""Piers and bases that the tests of stops and deck springs share, and a block that is thrown against them."""
+"""Bases that the tests of stops, deck springs and braces share, and a block thrown against these."""
 
 from dataclasses import replace
 
@@ -23,6 +23,11 @@ BASES = [
     pytest.param(FINITE, id="finite", marks=pytest.mark.slow),
 ]
 SHAKEN = pulse("sine", 0.5, 1.0, end=3.0)
+
+
+def stiffness(pier, ratio):
+    """k over the mass [1/s²] of a device of the dimensionless stiffness ``ratio``."""
+    return ratio * pier.gravity * pier.size / pier.half_width**2
 
 
 def stopped(base, stops):

@@ -6,9 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from core_samples import FIG5, broadband, pulse, steady
-from restrained_reference import TiedTwoSprings
-from stop_reference import StoppedBlock
-from stopped_piers import BASES, BOUC_WEN, ELASTIC, SHAKEN, stopped, thrown
+from device_checks import SEEDS, assert_agreement, assert_balance, assert_fourth_order, reference
+from stopped_piers import BASES, BOUC_WEN, ELASTIC, SHAKEN, stiffness, stopped, thrown
 
 import rockbatch as rb
 from rockbatch.motions.motion import Motion
@@ -25,18 +24,13 @@ SPRINGS = {
 }
 
 
-def stiffness(pier, spring):
-    """k over the mass [1/s²]."""
-    return spring.lam * pier.gravity * pier.size / pier.half_width**2
-
-
 @pytest.mark.parametrize("lam", [0.05, 1.0])
 @pytest.mark.parametrize("height", [None, 5.0])
 def test_a_step_turns_a_pier_on_elastic_springs_to_twice_its_static_rotation(lam, height):
     """θ = θ_s (1 − cos ωt), θ_s = −h ü_g/(ω_v² b² − g h + k h_d²) and ω² that over I0/M + h², while both pivots bear."""
     spring, beta, pier = DeckSpring(lam, height_m=height), 50.0, FIG5
     h, b, at = pier.height, pier.half_width, height or pier.deck
-    rocking = (beta * pier.p) ** 2 * b**2 - pier.gravity * h + stiffness(pier, spring) * at**2
+    rocking = (beta * pier.p) ** 2 * b**2 - pier.gravity * h + stiffness(pier, spring.lam) * at**2
     push = 0.1 * pier.gravity * math.tan(pier.alpha)
     found, rows = written_run(
         Run(pier, ElasticBase(beta, restraints=(spring,)), steady(push, 0.0, 0.005, 400)), 16, 0.0, 5000, wait=False
@@ -60,12 +54,12 @@ def test_the_energy_of_a_blow_is_that_of_closed_forms(e, gap):
     theta = rows.theta[: upright + 1].max()
     deflection = HEIGHT * math.sin(theta) + FIG5.half_width * (1.0 - math.cos(theta)) - gap
     climbed = math.cos(alpha - theta) - math.cos(alpha)
-    stored = 0.5 * stiffness(FIG5, spring) * deflection**2 / (inertia * FIG5.p**2)
+    stored = 0.5 * stiffness(FIG5, spring.lam) * deflection**2 / (inertia * FIG5.p**2)
     assert stored > 0.02 * climbed
     assert climbed + stored == pytest.approx(0.5 * (omega / FIG5.p) ** 2, rel=1e-9)
     back = 0.5 * (omega / FIG5.p) ** 2 - (1.0 - e**2) * stored
     assert 0.5 * (rows.omega[upright] / FIG5.p) ** 2 == pytest.approx(back, rel=1e-9)
-    assert use.most[0] == pytest.approx(stiffness(FIG5, spring) * deflection, rel=1e-6)
+    assert use.most[0] == pytest.approx(stiffness(FIG5, spring.lam) * deflection, rel=1e-6)
 
 
 @pytest.mark.parametrize("base", BASES)
@@ -91,7 +85,7 @@ def test_a_linear_spring_is_two_without_a_gap(base):
 @pytest.mark.parametrize("base", BASES)
 def test_runs_agree_with_the_reference(base, springs):
     base = stopped(base, springs)
-    end = (TiedTwoSprings if base.on_springs else StoppedBlock)(FIG5, base, SHAKEN, 0.0).run()
+    end = reference(FIG5, base, SHAKEN).run()
     outcome = run_fixed(FIG5, base, SHAKEN, 32, 0.0, wait=False)
     assert outcome.impacts == end.impacts
     assert outcome.theta_max == pytest.approx(end.theta_max, rel=2e-8)
@@ -113,35 +107,18 @@ def drawn(seed):
     return springs, Motion(f"seed {seed}", 0.01, shaken + one_sine.horizontal)
 
 
-@pytest.mark.parametrize("seeds", [range(4), pytest.param(range(4, 34), marks=pytest.mark.slow)], ids=["few", "more"])
+@pytest.mark.parametrize("seeds", SEEDS)
 @pytest.mark.parametrize("base", [RigidBase(), ELASTIC, BOUC_WEN], ids=["rigid", "elastic", "bouc-wen"])
 def test_random_springs_agree_with_the_reference_within_the_reported_error(base, seeds):
-    compared = 0
-    for seed in seeds:
-        springs, motion = drawn(seed)
-        tied = stopped(base, springs)
-        assert not problems(FIG5, tied)
-        outcome = run_to_tolerance(FIG5, tied, motion, 1e-6, 0.0)
-        flies = outcome.flights and not base.on_springs  # which that reference does not follow
-        if outcome.status != "ok" or flies or outcome.theta_max_error is None:
-            continue
-        end = (TiedTwoSprings if base.on_springs else StoppedBlock)(FIG5, tied, motion, 0.0).run()
-        if end.t_end < outcome.t_max:  # reached while the run waited
-            continue
-        assert abs(outcome.theta_max - end.theta_max) <= outcome.theta_max_error + 1e-10 * FIG5.alpha, seed
-        compared += 1
-    assert compared > 0.6 * len(seeds)
+    assert_agreement([drawn(seed) for seed in seeds], base, 1e-10)
 
 
 @pytest.mark.parametrize("springs", SPRINGS.values(), ids=SPRINGS)
 @pytest.mark.parametrize("base", BASES)
 def test_the_order_is_four_and_the_ledger_closes(base, springs):
     tied = stopped(base, springs)
-    peaks = [written_run(Run(FIG5, tied, SHAKEN), k, 0.0, 1, wait=False)[0].theta_max for k in (4, 8, 16, 128)]
-    first, _, third = (abs(each - peaks[-1]) for each in peaks[:-1])
-    assert third < 1e-11 or math.log2(first / third) / 2 > 3.4
-    ledger = rb.simulate(FIG5, tied, SHAKEN, substeps=32, wait=False, quiet_s=0.0, ledger=True).ledger
-    assert ledger.remainder.abs().max() < 2e-7 * ledger.input.abs().max()
+    assert_fourth_order(tied, 1e-11)
+    assert_balance(tied)
 
 
 @pytest.mark.parametrize("base", BASES)

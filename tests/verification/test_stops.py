@@ -5,14 +5,13 @@ import math
 import numpy as np
 import pytest
 from core_samples import FIG5, TOWER, broadband, pulse
-from restrained_reference import TiedTwoSprings
-from stop_reference import StoppedBlock
-from stopped_piers import BASES, BOUC_WEN, ELASTIC, SHAKEN, stopped, thrown
+from device_checks import SEEDS, assert_agreement, assert_balance, assert_fourth_order, reference
+from stopped_piers import BASES, BOUC_WEN, ELASTIC, SHAKEN, stiffness, stopped, thrown
 
 import rockbatch as rb
 from rockbatch.motions.motion import Motion
 from rockbatch.pier import Damper, RigidBase, Stop, Tendon, problems
-from rockbatch.simulation import Run, run_fixed, run_to_tolerance, written_run
+from rockbatch.simulation import run_fixed, run_to_tolerance
 from rockbatch.simulation.models import first_substeps
 
 STOPS = {
@@ -22,11 +21,6 @@ STOPS = {
     "no gap": (Stop(0.0, 1.0, 0.5),),
     "apart": (Stop(0.03, 10.0, 0.8, at=0.5), Stop(0.05, 40.0, 0.3, at="left")),
 }
-
-
-def stiffness(pier, stop):
-    """k over the mass [1/s²]."""
-    return stop.lam * pier.gravity * pier.size / pier.half_width**2
 
 
 @pytest.mark.parametrize("e", [1.0, 0.7, 0.2])
@@ -39,7 +33,7 @@ def test_the_energy_of_a_blow_is_that_of_closed_forms(e, lam):
     """
     alpha, b, inertia = FIG5.alpha, FIG5.half_width, FIG5.inertia_about_pivot
     stop = Stop(0.04, lam, e)
-    k = stiffness(FIG5, stop)
+    k = stiffness(FIG5, stop.lam)
     omega = 0.6 * FIG5.p * math.sqrt(2.0 * (1.0 - math.cos(alpha)))
     rows, use = thrown(FIG5, RigidBase(0.05, (stop,)), omega)  # no other blow follows
     upright = np.flatnonzero(rows.kind > 0.0)[0] - 1  # again, before its impact
@@ -94,7 +88,7 @@ def test_an_elastic_stop_without_a_gap_in_the_middle_is_a_tendon_without_prestre
 @pytest.mark.parametrize("base", BASES)
 def test_runs_agree_with_the_reference(base, stops):
     base = stopped(base, stops)
-    solver = (TiedTwoSprings if base.on_springs else StoppedBlock)(FIG5, base, SHAKEN, 0.0)
+    solver = reference(FIG5, base, SHAKEN)
     end = solver.run()
     memories = list(solver.stops.values()) if base.on_springs else [memory for memory, _ in solver.stops]
     outcome = run_fixed(FIG5, base, SHAKEN, 32, 0.0, wait=False)
@@ -121,41 +115,22 @@ def drawn(seed, pier):
     return devices, Motion(f"seed {seed}", 0.01, shaken + one_sine.horizontal)
 
 
-@pytest.mark.parametrize("seeds", [range(4), pytest.param(range(4, 34), marks=pytest.mark.slow)], ids=["few", "more"])
+@pytest.mark.parametrize("seeds", SEEDS)
 @pytest.mark.parametrize("base", [RigidBase(), ELASTIC, BOUC_WEN], ids=["rigid", "elastic", "bouc-wen"])
 def test_random_stops_agree_with_the_reference_within_the_reported_error(base, seeds):
-    compared = 0
-    for seed in seeds:
-        stops, motion = drawn(seed, FIG5)
-        tied = stopped(base, stops)
-        assert not problems(FIG5, tied)
-        outcome = run_to_tolerance(FIG5, tied, motion, 1e-6, 0.0)
-        flies = outcome.flights and not base.on_springs  # which that reference does not follow
-        if outcome.status != "ok" or flies or outcome.theta_max_error is None:
-            continue
-        end = (TiedTwoSprings if base.on_springs else StoppedBlock)(FIG5, tied, motion, 0.0).run()
-        if end.t_end < outcome.t_max:  # reached while the run waited
-            continue
-        assert abs(outcome.theta_max - end.theta_max) <= outcome.theta_max_error + 1e-10 * FIG5.alpha, seed
-        compared += 1
-    assert compared > 0.6 * len(seeds)
+    assert_agreement([drawn(seed, FIG5) for seed in seeds], base, 1e-10)
 
 
 @pytest.mark.parametrize("stops", STOPS.values(), ids=STOPS)
 @pytest.mark.parametrize("base", BASES)
 def test_the_order_across_blows_is_four(base, stops):
-    steps = (4, 8, 16, 128)
-    peaks = [written_run(Run(FIG5, stopped(base, stops), SHAKEN), k, 0.0, 1, wait=False)[0].theta_max for k in steps]
-    first, _, third = (abs(each - peaks[-1]) for each in peaks[:-1])
-    assert third < 1e-11 or math.log2(first / third) / 2 > 3.4
+    assert_fourth_order(stopped(base, stops), 1e-11)
 
 
 @pytest.mark.parametrize("stops", STOPS.values(), ids=STOPS)
 @pytest.mark.parametrize("base", BASES)
 def test_the_ledger_closes_with_what_stops_take_and_store(base, stops):
-    response = rb.simulate(FIG5, stopped(base, stops), SHAKEN, substeps=32, wait=False, quiet_s=0.0, ledger=True)
-    ledger = response.ledger
-    assert ledger.remainder.abs().max() < 2e-7 * ledger.input.abs().max()
+    assert_balance(stopped(base, stops))
     lossless = all(stop.restitution == 1.0 for stop in stops)
     outcome = run_fixed(FIG5, stopped(base, stops), SHAKEN, 32, 0.0, wait=False)
     assert (outcome.stop_energy < 1e-12) == lossless
@@ -181,7 +156,9 @@ def test_forces_of_the_history_are_those_of_the_run_and_its_loop_is_what_was_los
     outcome = run_fixed(FIG5, stopped(base, stops), SHAKEN, 32, 0.0, wait=False)
     force = max(response.restraints[f"stop 1 {side} force"].max() for side in ("left", "right"))
     assert force == pytest.approx(outcome.stop_force * FIG5.gravity, rel=1e-3)  # at a row beside the peak
-    assert outcome.stop_depth == pytest.approx(outcome.stop_force * FIG5.gravity / stiffness(FIG5, stops[0]), rel=1e-12)
+    assert outcome.stop_depth == pytest.approx(
+        outcome.stop_force * FIG5.gravity / stiffness(FIG5, stops[0].lam), rel=1e-12
+    )
     work = 0.0
     for side in ("left", "right"):
         pull, way = (response.restraints[f"stop 1 {side} {what}"].to_numpy() for what in ("force", "elongation"))
