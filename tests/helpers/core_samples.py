@@ -41,6 +41,8 @@ def _log_uniform(rng: np.random.Generator, low: float, high: float) -> float:
     return math.exp(rng.uniform(math.log(low), math.log(high)))
 
 
+THOROUGH = (pytest.mark.slow, pytest.mark.thorough)
+
 EVERY_KIND = pytest.mark.parametrize(
     "every_kind", [False, pytest.param(True, marks=pytest.mark.slow)], ids=["common", "every"]
 )

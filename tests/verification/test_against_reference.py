@@ -38,8 +38,16 @@ SPRINGS = [
     pytest.param(FIG6, YieldingBase(40, 0.3, "finite", eta=1.5, spring="epp"), SHORT_COSINE, id="epp-finite"),
     pytest.param(FIG5, YieldingBase(50, 0.1, eta=2.2, spring="hardening"), SHORT_SINE, id="hardening"),
     pytest.param(
-        FIG6, YieldingBase(40, 0.3, "finite", eta=1.5, spring="hardening", n=2.5), SHORT_COSINE, id="hardening-finite"
+        FIG6,
+        YieldingBase(40, 0.3, "finite", eta=1.5, spring="hardening", n=2.5),
+        SHORT_COSINE,
+        id="hardening-finite-n2.5",
+        marks=SLOW,
     ),
+    pytest.param(
+        FIG6, YieldingBase(40, 0.3, "finite", eta=1.5, spring="hardening"), SHORT_COSINE, id="hardening-finite"
+    ),
+    pytest.param(FIG5, YieldingBase(50, 0.1, eta=2.2, spring="hardening", n=2.5), SHORT_SINE, id="hardening-n2.5"),
     pytest.param(FIG5, ElasticBase(50, 0.4), SHORT_SINE, id="elastic"),
     pytest.param(FIG5, ElasticBase(50, 1.0, "finite"), SHORT_SINE, id="elastic-epsilon1-finite"),
     pytest.param(FIG5, ElasticBase(50, 1.0), SHORT_SINE, id="elastic-epsilon1"),
@@ -81,6 +89,20 @@ SPRINGS = [
     pytest.param(
         FIG5,
         YieldingBase(50, kinematics="finite", zeta=0.1, eta=3.0, spring="hardening", n=2.0),
+        with_vertical(SHORT_SINE, 25.0),
+        id="damped-guided-flight-hardening-finite-n2",
+        marks=[SLOW, pytest.mark.thorough],
+    ),
+    pytest.param(
+        FIG5,
+        YieldingBase(50, kinematics="finite", zeta=0.1, eta=3.0, spring="hardening"),
+        with_vertical(SHORT_SINE, 25.0),
+        id="damped-guided-flight-hardening-finite",
+        marks=SLOW,
+    ),
+    pytest.param(
+        FIG5,
+        YieldingBase(50, zeta=0.1, eta=3.0, spring="hardening"),
         with_vertical(SHORT_SINE, 25.0),
         id="damped-guided-flight-hardening",
     ),
@@ -210,7 +232,9 @@ def test_rigid_block_comes_to_rest_and_lifts_off_again():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("block", range(12))
+@pytest.mark.parametrize(
+    "block", [*range(4), *(pytest.param(block, marks=pytest.mark.thorough) for block in range(4, 12))]
+)
 def test_random_hard_cases_agree_with_the_reference(block):
     """With the steps at which the error control is satisfied to 1e-6 α the run until a second after the record is right
     to that tolerance: outcome and peak. (What comes later is held in test_outcomes_against_independent.py.)
