@@ -256,29 +256,29 @@ def _line(log_x: Values, log_d: Values, censored_x: Values, bounds: Values) -> L
     xc = np.column_stack((np.ones(len(censored_x)), censored_x - centre))
     beta = np.linalg.lstsq(x, log_d, rcond=None)[0]
     sigma = max(float(np.sqrt(np.mean((log_d - x @ beta) ** 2))), 1e-9)
-    at = np.append(beta, 1.0) / sigma
+    point = np.append(beta, 1.0) / sigma
 
-    def value(at: Values) -> float:
-        if at[2] <= 0:
+    def value(point: Values) -> float:
+        if point[2] <= 0:
             return -math.inf
-        z = at[2] * log_d - x @ at[:2]
-        return float(len(z) * math.log(at[2]) - 0.5 * z @ z + log_ndtr(at[2] * bounds - xc @ at[:2]).sum())
+        z = point[2] * log_d - x @ point[:2]
+        return float(len(z) * math.log(point[2]) - 0.5 * z @ z + log_ndtr(point[2] * bounds - xc @ point[:2]).sum())
 
     for _ in range(100):
-        score, hessian = _derivatives(at, x, log_d, xc, bounds)
-        step, now = np.linalg.solve(-hessian, score), value(at)
-        while value(at + step) < now and np.abs(step).max() > 1e-14 * np.abs(at).max():
+        score, hessian = _derivatives(point, x, log_d, xc, bounds)
+        step, now = np.linalg.solve(-hessian, score), value(point)
+        while value(point + step) < now and np.abs(step).max() > 1e-14 * np.abs(point).max():
             step = 0.5 * step
-        at = at + step
-        if np.abs(step).max() < 1e-12 * np.abs(at).max():
+        point = point + step
+        if np.abs(step).max() < 1e-12 * np.abs(point).max():
             break
-    _, hessian = _derivatives(at, x, log_d, xc, bounds)
+    _, hessian = _derivatives(point, x, log_d, xc, bounds)
     # From δ, γ to β and ln σ: at the maximum information changes by the Jacobian alone
-    turned = np.column_stack((np.vstack((np.eye(2), np.zeros(2))) * at[2], -at))
+    turned = np.column_stack((np.vstack((np.eye(2), np.zeros(2))) * point[2], -point))
     covariance = np.linalg.inv(-turned.T @ hessian @ turned)[:2, :2]
     free = max(len(log_x) - 2, 1)
     grown = len(log_x) / free
-    beta, sigma = at[:2] / at[2], math.sqrt(grown) / at[2]
+    beta, sigma = point[:2] / point[2], math.sqrt(grown) / point[2]
     rng = np.random.default_rng(SEED)
     sigmas = sigma * np.sqrt(free / rng.chisquare(free, DRAWS))
     spread = rng.standard_normal((DRAWS, 2)) @ np.linalg.cholesky(covariance * grown).T
@@ -287,17 +287,17 @@ def _line(log_x: Values, log_d: Values, censored_x: Values, bounds: Values) -> L
     return Line(float(beta[0] - beta[1] * centre), float(beta[1]), float(sigma), draws)
 
 
-def _derivatives(at: Values, x: Values, log_d: Values, xc: Values, bounds: Values) -> tuple[Values, Values]:
+def _derivatives(point: Values, x: Values, log_d: Values, xc: Values, bounds: Values) -> tuple[Values, Values]:
     """Return score, shape (3,), and Hessian, shape (3, 3), over δ and γ."""
     rows = np.column_stack((-x, log_d))
-    z = rows @ at
+    z = rows @ point
     score = -rows.T @ z
-    score[2] += len(z) / at[2]
+    score[2] += len(z) / point[2]
     hessian = -rows.T @ rows
-    hessian[2, 2] -= len(z) / at[2] ** 2
+    hessian[2, 2] -= len(z) / point[2] ** 2
     if len(bounds):
         rows = np.column_stack((-xc, bounds))
-        w = rows @ at
+        w = rows @ point
         ratio = np.exp(-0.5 * w**2 - 0.5 * math.log(2.0 * math.pi) - log_ndtr(w))
         score += rows.T @ ratio
         hessian -= rows.T @ (rows * (ratio * (w + ratio))[:, None])
@@ -308,23 +308,23 @@ def _logistic(log_x: Values, happened: npt.NDArray[np.bool_]) -> Logistic:
     """Return Firth's logistic regression, by Newton's method on its penalised score."""
     centre, width = log_x.mean(), log_x.std()
     x = np.column_stack((np.ones(len(log_x)), (log_x - centre) / width))
-    at = np.zeros(2)
+    coefficients = np.zeros(2)
     for _ in range(200):
-        p = expit(x @ at)
+        p = expit(x @ coefficients)
         weight = p * (1.0 - p)
         covariance = np.linalg.inv(x.T @ (x * weight[:, None]))
         leverage = weight * np.einsum("ij,jk,ik->i", x, covariance, x)
         step = covariance @ (x.T @ (happened - p + leverage * (0.5 - p)))
-        at = at + step * min(1.0, 2.0 / max(np.abs(step).max(), 1e-300))
+        coefficients = coefficients + step * min(1.0, 2.0 / max(np.abs(step).max(), 1e-300))
         if np.abs(step).max() < 1e-11:
             break
-    draws = np.vstack((at, _posterior(at, covariance, x, happened)))
+    draws = np.vstack((coefficients, _posterior(coefficients, covariance, x, happened)))
     slopes = draws[:, 1] / width
     plain = np.column_stack((draws[:, 0] - slopes * centre, slopes))
     return Logistic(float(plain[0, 0]), float(plain[0, 1]), plain[1:])
 
 
-def _posterior(at: Values, covariance: Values, x: Values, happened: npt.NDArray[np.bool_]) -> Values:
+def _posterior(mode: Values, covariance: Values, x: Values, happened: npt.NDArray[np.bool_]) -> Values:
     """Return draws, shape (DRAWS, 2), from the penalised likelihood, which is the posterior with Jeffreys' prior.
 
     They are chosen by their weights from many of Student's distribution with three degrees of freedom about the maximum: a normal
@@ -333,7 +333,7 @@ def _posterior(at: Values, covariance: Values, x: Values, happened: npt.NDArray[
     rng = np.random.default_rng(SEED + 1)
     normal = rng.standard_normal((PROPOSALS, 2))
     far = rng.chisquare(3, PROPOSALS) / 3
-    proposed = at + normal @ np.linalg.cholesky(covariance).T * (WIDER / np.sqrt(far))[:, None]
+    proposed = mode + normal @ np.linalg.cholesky(covariance).T * (WIDER / np.sqrt(far))[:, None]
     z = proposed @ x.T
     p = expit(z)
     weight = p * (1.0 - p)

@@ -116,7 +116,7 @@ def described(
         "records": records,
         "polarities": study.motions.polarity,
         "looked_at": looked_at(curves, spec),
-        "dispersions": [asdict(each) for each in spec.dispersions],
+        "dispersions": [asdict(dispersion) for dispersion in spec.dispersions],
         "hazard": described_hazard(spec),
         "curves": [_described(curve, spec) | {"risk": of_curves.get(id(curve))} for curve in curves],
     }

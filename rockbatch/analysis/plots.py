@@ -141,8 +141,8 @@ def accuracy(table: "pd.DataFrame", width_mm: float) -> Figure:
     drawn = figure(width_mm, 0.65 * width_mm + 12.0)
     axes = drawn.subplots()
     for place, (method, rows) in enumerate(table.groupby("method", sort=False)):
-        look = marks(place) | {"linestyle": line(place)["linestyle"]}
-        axes.loglog(1000.0 * rows["seconds_per_run"], rows["error_95"].clip(lower=1e-16), label=str(method), **look)
+        style = marks(place) | {"linestyle": line(place)["linestyle"]}
+        axes.loglog(1000.0 * rows["seconds_per_run"], rows["error_95"].clip(lower=1e-16), label=str(method), **style)
         for steps, seconds, error in rows[["substeps", "seconds_per_run", "error_95"]].dropna().to_numpy().tolist():
             axes.annotate(
                 f"{steps:g}", (1000.0 * seconds, error), xytext=(4, 4), textcoords="offset points", fontsize=6.0
@@ -179,9 +179,9 @@ def release(fits: "pd.DataFrame", impacts: "pd.DataFrame", history: "pd.DataFram
     for axes, (_, own), (names, way), fit in zip(grid, *cases, fits.to_dict("records"), strict=True):
         axes.plot(way["t_s"], way["theta_rad"], label="computed", **line(0))
         axes.plot(own["t_measured_s"], 0.0 * own["t_measured_s"], label="measured impacts", **marks(1))
-        at, amplitude = own["t_amplitude_computed_s"], own["amplitude_measured_rad"]
-        side = np.sign(np.interp(at, way["t_s"], way["theta_rad"]))
-        axes.plot(at, side * amplitude, label="measured amplitudes", **marks(2))
+        t_computed, amplitude = own["t_amplitude_computed_s"], own["amplitude_measured_rad"]
+        side = np.sign(np.interp(t_computed, way["t_s"], way["theta_rad"]))
+        axes.plot(t_computed, side * amplitude, label="measured amplitudes", **marks(2))
         axes.set(xlabel="t [s]", title=f"{', '.join(map(str, names))}: {fit['parameter']} = {fit['value']:.4g}")
     grid[0].set_ylabel(r"$\theta$ [rad]")
     return _with_legend(drawn, grid)

@@ -95,12 +95,12 @@ def _risk(curve: Curve, fitted: Fitted, spec: FragilitySpec, hazard: Hazard, x: 
     rate, least, most = total.rate(x, rates)
     if most > _meaningful(hazard.curve):
         most = math.inf
-    each = total.probability(x) * rates
+    yearly = total.probability(x) * rates
     first, last = hazard.curve.ends
-    above = float(each[x > last].sum())
+    above = float(yearly[x > last].sum())
     beyond = float(hazard.curve.rate([last])[0])
     at_least = rate - above + beyond * float(total.probability(np.array([last]))[0])
-    passed = np.cumsum(each) / rate if rate > 0 else np.linspace(0.0, 1.0, len(x))
+    passed = np.cumsum(yearly) / rate if rate > 0 else np.linspace(0.0, 1.0, len(x))
     low, high = (float(np.exp(np.interp(share, passed, np.log(x)))) for share in MIDDLE)
     return Risk(
         curve,
@@ -108,10 +108,10 @@ def _risk(curve: Curve, fitted: Fitted, spec: FragilitySpec, hazard: Hazard, x: 
         rate,
         (least, most),
         _undecided(curve, spec.added, x, rates),
-        float(each[x < first].sum()),
+        float(yearly[x < first].sum()),
         above,
         (at_least, rate - above + beyond),
-        (float(each[x < spec.levels[0]].sum()), float(each[x > spec.levels[-1]].sum())),
+        (float(yearly[x < spec.levels[0]].sum()), float(yearly[x > spec.levels[-1]].sum())),
         (low, high),
     )
 

@@ -132,5 +132,5 @@ def of_suite(table: "pd.DataFrame", varied: Sequence[str]) -> "pd.DataFrame":
 def _sizes(runs: "pd.DataFrame", varied: Sequence[str]) -> dict[str, float]:
     """Return the size of the pier of these runs, or the ends of those of a self-similar spectrum."""
     if SELF_SIMILAR in varied:
-        return {f"{end}_{name}": getattr(runs[name], of)() for name in OWN for end, of in ENDS.items()}
+        return {f"{end}_{name}": getattr(runs[name], method)() for name in OWN for end, method in ENDS.items()}
     return {name: runs[name].iloc[0] if len(runs) else math.nan for name in SIZE}

@@ -67,12 +67,12 @@ def carry_out(
     with closing(engine.outcomes(some_of(runs, left), numerics, output)) as groups:
         for group in groups:
             images = (image for place, outcome in group for image in _images(runs, left[place], outcome))
-            news = [image for image in images if image[0] in wanted and first + image[0] not in journal]
+            missing = [image for image in images if image[0] in wanted and first + image[0] not in journal]
             if row is not None:
-                journal.add_all({first + i: row(run, outcome) for i, run, outcome in news})
-            elif news:
-                columns = cells([run.ran(outcome) for _, run, outcome in news], journal.columns)
-                journal.add_columns([first + i for i, _, _ in news], columns)
+                journal.add_all({first + i: row(run, outcome) for i, run, outcome in missing})
+            elif missing:
+                columns = cells([run.ran(outcome) for _, run, outcome in missing], journal.columns)
+                journal.add_columns([first + i for i, _, _ in missing], columns)
             progress(len(group))
 
 

@@ -25,7 +25,7 @@ def rows_of_half_cycles(
     """
     quiet_s = study.numerics.quiet_s
 
-    def of(number: int) -> list[dict[str, Any]]:
+    def rows_of(number: int) -> list[dict[str, Any]]:
         row, run = peaks.iloc[number], runs[number].run
         if row["status"] == "failed":
             return []
@@ -43,6 +43,6 @@ def rows_of_half_cycles(
 
     numbers = [number for number, run in enumerate(runs) if not run.mirror_of]
     with ThreadPoolExecutor(max(1, jobs)) as pool:
-        for rows in pool.map(of, numbers):
+        for rows in pool.map(rows_of, numbers):
             yield from rows
             progress(1)

@@ -171,9 +171,9 @@ class Journal:
             for number in other:
                 if number in self and other._row(number) != self._row(number):
                     raise InputError(f"{path}: run {number} has come to something else than elsewhere; leave one out")
-            news = [number for number in other if number not in self]
-            for first in range(0, len(news), ROWS_AT_ONCE):
-                self._add((number, other._row(number)) for number in news[first : first + ROWS_AT_ONCE])
+            missing = [number for number in other if number not in self]
+            for first in range(0, len(missing), ROWS_AT_ONCE):
+                self._add((number, other._row(number)) for number in missing[first : first + ROWS_AT_ONCE])
 
     def write_in_order(self, path: Path, extra_rows: Iterable[Mapping[str, Any]] = ()) -> Written:
         """Write the table, whole or not at all: finished runs by their numbers, then rows that belong to no run.
@@ -331,7 +331,7 @@ def _unsealed(line: bytes, seed: int = 0) -> bytes | None:
 def _unfolded(body: bytes) -> bytes:
     if b"\\" not in body:
         return body
-    return re.sub(rb"\\(.)", lambda found: b"\n" if found[1] == b"n" else found[1], body)
+    return re.sub(rb"\\(.)", lambda escape: b"\n" if escape[1] == b"n" else escape[1], body)
 
 
 def _size_of_cells(line: bytes) -> int:

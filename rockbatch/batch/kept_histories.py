@@ -122,7 +122,7 @@ def history_bytes(run: PlannedRun, row: "Mapping[str, Any] | pd.Series") -> floa
     """
     pier, base = run.case.pier, run.case.base
     columns = len(UNITS) - (0 if base.on_springs else len(OF_SPRINGS))
-    columns += 2 * sum(len(places(pier, each)) for each in base.restraints)  # elongations and forces
+    columns += 2 * sum(len(places(pier, device)) for device in base.restraints)  # elongations and forces
     if _has(row, LEDGER):
         columns += len(TERMS)
     if _has(row, FORCES):

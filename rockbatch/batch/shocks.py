@@ -26,7 +26,7 @@ def rows_by_shock(
     """Yield the rows of shocks.csv of finished ``runs``, whose rows of peaks.csv are the first of ``peaks``."""
     quiet_s, error = study.numerics.quiet_s, study.numerics.substeps is None
 
-    def of(number: int) -> list[dict[str, Any]]:
+    def rows_of(number: int) -> list[dict[str, Any]]:
         planned, row = runs[number], peaks.iloc[number]
         names = {name: row[name] for name in ("record", "case", "polarity", "scale", *study.varied)}
         run, motion = planned.run, planned.motion
@@ -41,7 +41,7 @@ def rows_by_shock(
 
     pool = ThreadPoolExecutor(max(1, jobs))
     try:
-        for rows in pool.map(of, sequences_of(runs)):
+        for rows in pool.map(rows_of, sequences_of(runs)):
             yield from rows
             progress(1)
     finally:

@@ -16,7 +16,7 @@ def is_about(rule: Rule, case: str) -> bool:
 
 def chooses(rule: Rule, case: str, scale: float) -> bool:
     """Return whether the rule is about the case of this name at this scale."""
-    return is_about(rule, case) and (not rule.scale or any(math.isclose(scale, one) for one in rule.scale))
+    return is_about(rule, case) and (not rule.scale or any(math.isclose(scale, factor) for factor in rule.scale))
 
 
 def unmet(
@@ -38,8 +38,8 @@ def unmet(
             instead = f"did you mean {shown(meant)}?" if meant else f"there is {', '.join(map(shown, cases))}"
             yield f"case = {shown(pattern)}: there is no such case; {instead}"
     for scale in rule.scale:
-        if not any(math.isclose(scale, one) for one in scales):
-            yield f"scale = {scale:g}: the motions are scaled by {', '.join(f'{one:g}' for one in scales)} only"
+        if not any(math.isclose(scale, factor) for factor in scales):
+            yield f"scale = {scale:g}: the motions are scaled by {', '.join(f'{factor:g}' for factor in scales)} only"
     if rule.polarity and rule.polarity not in polarities:
         yield f"polarity = {shown(rule.polarity)}: the motions have {shown(next(iter(polarities)))} only; leave it out"
     if rule.other_law and not other_law:

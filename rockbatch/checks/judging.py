@@ -155,19 +155,19 @@ def _of_suite(rule: Rule, suite: "pd.DataFrame", case: Case, none: Verdict) -> V
     count = "component" if unknown else none.count
     verdict, why = _decide(rule, low, high, count, n)
     remark = STATISTICS[rule.statistic or "max"].remark
-    at = governing(runs, kept, by_bound=verdict == NOT_DECIDED and low <= rule.limit < high)
+    deciding = governing(runs, kept, by_bound=verdict == NOT_DECIDED and low <= rule.limit < high)
     notes = [
         why,
         remark(bounds.high) if remark and n else "",
         unknown,
         "" if none.count == "component" else _directions(lacking(kept, counted_as)),
-        _laws(rule, suite, case, at),
+        _laws(rule, suite, case, deciding),
         "" if bounds.estimated or DEMANDS[rule.demand].event else "no error estimate",
     ]
     run: dict[str, Any] = {}
-    if at is not None:
-        run = {name: str(suite.iloc[at][name]) for name in ("station", "record", "polarity")}
-        run["governing"] = float(runs.value[at])
+    if deciding is not None:
+        run = {name: str(suite.iloc[deciding][name]) for name in ("station", "record", "polarity")}
+        run["governing"] = float(runs.value[deciding])
     return replace(
         none,
         **_bounded(rule, value, low, high),
@@ -179,15 +179,15 @@ def _of_suite(rule: Rule, suite: "pd.DataFrame", case: Case, none: Verdict) -> V
     )
 
 
-def _laws(rule: Rule, suite: "pd.DataFrame", case: Case, at: int | None) -> str:
-    """Return the remark that the worse of two spring laws counts, with the demands of the run ``at`` by both."""
+def _laws(rule: Rule, suite: "pd.DataFrame", case: Case, deciding: int | None) -> str:
+    """Return the remark that the worse of two spring laws counts, with the demands of the run ``deciding`` by both."""
     other = by_other_law(rule, suite, case)
     if other is None:
         return ""
     remark = "the worse of two spring laws counts"
-    if at is not None and np.isfinite(other[at]):
-        own = float(DEMANDS[rule.demand].of(suite, case).value[at])
-        remark += f": {own:.4g} by that of the case, {other[at]:.4g} by the other"
+    if deciding is not None and np.isfinite(other[deciding]):
+        own = float(DEMANDS[rule.demand].of(suite, case).value[deciding])
+        remark += f": {own:.4g} by that of the case, {other[deciding]:.4g} by the other"
     missing = int((np.isnan(other) & (suite["status"] == "ok").to_numpy()).sum())
     return remark + (f"; by the other {missing} of the runs did not go through" if missing else "")
 

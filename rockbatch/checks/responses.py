@@ -81,9 +81,9 @@ def worst_of_cases(suites: "Iterable[tuple[Case, pd.DataFrame]]") -> list[Worst]
 def worst_of_all(worst: Iterable[Worst]) -> dict[str, Worst]:
     """Return the worst of all cases for each demand, in the order of :data:`RESPONSES`."""
     greatest: dict[str, Worst] = {}
-    for one in worst:
-        if one.demand not in greatest or one.value > greatest[one.demand].value:
-            greatest[one.demand] = one
+    for peak in worst:
+        if peak.demand not in greatest or peak.value > greatest[peak.demand].value:
+            greatest[peak.demand] = peak
     return {name: greatest[name] for name in RESPONSES if name in greatest}
 
 
@@ -94,13 +94,15 @@ def unlimited(worst: Sequence[Worst], verdicts: Sequence[Verdict]) -> list[Worst
     residual rotation where dampers hold the pier at one on rigid ground.
     ``worst`` and ``verdicts`` are those of the case.
     """
-    checked = {one.demand for one in verdicts if one.verdict != DOES_NOT_APPLY}
-    yielded = any(one.demand == "ductility" and one.value > 1.0 for one in worst)
+    checked = {verdict.demand for verdict in verdicts if verdict.verdict != DOES_NOT_APPLY}
+    yielded = any(peak.demand == "ductility" and peak.value > 1.0 for peak in worst)
     governing = ["theta_max_over_alpha", *(("settlement_m", "base_tilt_rad", "ductility") if yielded else ())]
     governing += [
-        one.demand for one in worst if one.demand == "theta_res_rad" and one.value > _HELD * one.case["pier"]["alpha"]
+        peak.demand
+        for peak in worst
+        if peak.demand == "theta_res_rad" and peak.value > _HELD * peak.case["pier"]["alpha"]
     ]
-    return [one for one in worst if one.demand in governing and not checked & RESPONSES[one.demand].bounded_by]
+    return [peak for peak in worst if peak.demand in governing and not checked & RESPONSES[peak.demand].bounded_by]
 
 
 def in_words(worst: Worst) -> str:

@@ -121,7 +121,9 @@ def _blocks(verdicts: Sequence[Verdict], notes: Notes) -> list[str]:
     many_scales = len({verdict.scale for verdict in verdicts}) > 1
     blocks = []
     of_verdicts = zip(verdicts, lines, strict=True)
-    for (case, columns, scale), block in groupby(of_verdicts, key=lambda of: (of[0].case, of[0].columns, of[0].scale)):
+    for (case, columns, scale), block in groupby(
+        of_verdicts, key=lambda pair: (pair[0].case, pair[0].columns, pair[0].scale)
+    ):
         values = columns | ({"scale": scale} if many_scales else {})
         parts = [f"{case}  {named(values, values.values())}".rstrip(), head]
         for verdict, line in block:

@@ -65,7 +65,7 @@ def table(curves: Sequence[Curve], spec: FragilitySpec) -> str:
 
 def added(spec: FragilitySpec) -> str:
     """Return the dispersion that the study adds, in words; empty if it adds none."""
-    parts = ", ".join(f"{each.name} {each.value:g}" for each in spec.dispersions)
+    parts = ", ".join(f"{dispersion.name} {dispersion.value:g}" for dispersion in spec.dispersions)
     return f"added to the dispersion of the records, for rates: {parts}; together {spec.added:.3g}" if parts else ""
 
 

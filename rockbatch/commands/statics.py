@@ -64,24 +64,24 @@ def table(sheets: Sheets) -> str:
 def rotations(sheet: Statics) -> str:
     """Return the moment–rotation curve and the swings of a sheet at some rotations, for a terminal."""
     curve, swings, alpha = sheet.equilibria, sheet.swings_at, sheet.pier.alpha
-    at = np.unique([*curve.theta[[0, -1]], sheet.lift_off_rad or 0.0, sheet.strength_rad or 0.0, *swings.amplitude])
+    angles = np.unique([*curve.theta[[0, -1]], sheet.lift_off_rad or 0.0, sheet.strength_rad or 0.0, *swings.amplitude])
     size, unit = (1.0, "m") if sheet.weight_kN is None else (sheet.weight_kN, "kN m")
 
-    def of(values: Any, form: str, scale: float = 1.0) -> list[str]:
-        return [format(scale * value, form) for value in np.interp(at, curve.theta, values)]
+    def cells_of(values: Any, form: str, scale: float = 1.0) -> list[str]:
+        return [format(scale * value, form) for value in np.interp(angles, curve.theta, values)]
 
     def of_swings(values: Any, form: str) -> list[str]:
         known = dict(zip(swings.amplitude, values, strict=True))
-        return ["" if np.isnan(known.get(theta, np.nan)) else format(known[theta], form) for theta in at]
+        return ["" if np.isnan(known.get(theta, np.nan)) else format(known[theta], form) for theta in angles]
 
     form = "z.4f" if sheet.weight_kN is None else "z,.0f"
     columns = {
-        "theta/alpha": [f"{theta / alpha:.4g}" for theta in at],
-        "theta [rad]": [f"{theta:.4g}" for theta in at],
-        "held by [g]": of(curve.acceleration, "z.4f"),
-        f"moment [{unit}]": of(curve.moment, form, size),
-        "of tendons": of(curve.tendons, form, size) if curve.tendons.any() else [],
-        "of dampers": of(curve.dampers, form, size) if curve.dampers.any() else [],
+        "theta/alpha": [f"{theta / alpha:.4g}" for theta in angles],
+        "theta [rad]": [f"{theta:.4g}" for theta in angles],
+        "held by [g]": cells_of(curve.acceleration, "z.4f"),
+        f"moment [{unit}]": cells_of(curve.moment, form, size),
+        "of tendons": cells_of(curve.tendons, form, size) if curve.tendons.any() else [],
+        "of dampers": cells_of(curve.dampers, form, size) if curve.dampers.any() else [],
         "period [s]": of_swings(swings.period, ".3g"),
         "damping": of_swings(swings.impact_damping, ".2%"),
     }

@@ -52,14 +52,14 @@ def _worst(runs: "pd.DataFrame", varied: tuple[str, ...]) -> str:
 def warnings(table: "pd.DataFrame", varied: Sequence[str]) -> list[str]:
     """Return what to know about the runs as a whole, a sentence each."""
 
-    def of(runs: "pd.Series[bool]", one: str, several: str) -> str:
+    def warning(runs: "pd.Series[bool]", one: str, several: str) -> str:
         """Return the number of these runs within one sentence or the other; empty for none."""
         n = int(runs.sum())
         return "" if n == 0 else one if n == 1 else several.format(n)
 
-    rotate = of(table["note"].str.contains(LINEARISED), "1 run rotates", "{} runs rotate")
-    lean = of(table["theta_max_is"] == LEANS, "of 1 run, marked lean, is", "of {} runs, marked lean, is")
-    slide = of(table["note"].str.contains(WOULD_SLIDE), "1 run asks", "{} runs ask")
+    rotate = warning(table["note"].str.contains(LINEARISED), "1 run rotates", "{} runs rotate")
+    lean = warning(table["theta_max_is"] == LEANS, "of 1 run, marked lean, is", "of {} runs, marked lean, is")
+    slide = warning(table["note"].str.contains(WOULD_SLIDE), "1 run asks", "{} runs ask")
     sentences = [
         _other_law(table, varied),
         rotate and f'{rotate} further than {LINEARISED} holds; see the column note, and run kinematics = "finite"',

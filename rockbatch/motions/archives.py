@@ -193,11 +193,11 @@ def _opened(archive: Path) -> Iterator[zipfile.ZipFile]:
 
 def _refuse_long_lists(tail: bytes) -> None:
     """Raise ``InputError`` where the end of an archive says that it lists more than any of records does, or is none."""
-    at = tail.rfind(_END)
-    if at < 0:
+    start = tail.rfind(_END)
+    if start < 0:
         raise InputError("not a zip archive, or a cut one; fetch it again")
-    listing = int.from_bytes(tail[at + 12 : at + 16], "little")
-    if listing > _LISTING or _END_64 in tail[max(0, at - 20) : at]:
+    listing = int.from_bytes(tail[start + 12 : start + 16], "little")
+    if listing > _LISTING or _END_64 in tail[max(0, start - 20) : start]:
         raise InputError(_TOO_MANY)
 
 

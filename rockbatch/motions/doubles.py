@@ -121,13 +121,13 @@ def _pairs(components: Sequence[Component]) -> tuple[Pairs, list[tuple[int, int]
         for j in (*table.copies(i), *table.same_by_headers(i)):
             join(i, j)
     for i, j in table.alike():
-        one, two = components[i], components[j]
-        if j in pairs.get(i, ()) or one.seat.is_other(two.seat):
+        first, second = components[i], components[j]
+        if j in pairs.get(i, ()) or first.seat.is_other(second.seat):
             continue
-        factor = _factor(one, two)
+        factor = _factor(first, second)
         if factor is not None and abs(abs(factor) - 1.0) > _NO_FACTOR:
             scaled.append((i, j))
-        elif _correlate(one, two):
+        elif _correlate(first, second):
             join(i, j)
     return pairs, sorted(scaled)
 
@@ -253,12 +253,12 @@ class _Table:
         j = i + 1 + np.flatnonzero(self.samples[i + 1 :] == self.samples[i])
         j = j[~self._differ(self.event, i, j)]
         alike = dict(zip(j.tolist(), self._pointing_alike(i, j), strict=True))
-        of = self.components
+        parts = self.components
         return [
             k
             for k in alike
-            if (NOWHERE in (of[i].seat, of[k].seat) or of[i].seat.is_that_of(of[k].seat))
-            and (alike[k] or UNKNOWN in (of[i].orientation, of[k].orientation))
+            if (NOWHERE in (parts[i].seat, parts[k].seat) or parts[i].seat.is_that_of(parts[k].seat))
+            and (alike[k] or UNKNOWN in (parts[i].orientation, parts[k].orientation))
         ]
 
     def same_by_headers(self, i: int) -> list[int]:
@@ -273,12 +273,12 @@ class _Table:
         same_event = (self.event[i] >= 0) & (self.event[j] == self.event[i])
         same_event = np.where(self.dated[i] & self.dated[j], self._overlap(i, j), same_event)
         other = (self.file[j] == self.file[i]) | self._differ(self.numbered, i, j)
-        one, of = self.components[i], self.components
+        first, parts = self.components[i], self.components
         return [
             k
             for k in j[same_event & ~other & self._pointing_alike(i, j)].tolist()
-            if one.seat.is_that_of(of[k].seat)
-            and not (self.whole_file[i] and self.whole_file[k] and _are_parts(one, of[k]))
+            if first.seat.is_that_of(parts[k].seat)
+            and not (self.whole_file[i] and self.whole_file[k] and _are_parts(first, parts[k]))
         ]
 
     def alike(self) -> Iterator[tuple[int, int]]:
@@ -350,11 +350,11 @@ def _correlate(a: Component, b: Component) -> bool:
     correlation by chance has a standard deviation of 1/√(n − 3) (Fisher), and what is found has to be far above that.
     """
     coarse, fine = sorted((a, b), key=lambda c: -c.dt)
-    one, two = coarse.acceleration, _at_step(fine, coarse.dt)
-    r = correlation(one, two)
+    first, second = coarse.acceleration, _at_step(fine, coarse.dt)
+    r = correlation(first, second)
     if r < _CERTAIN:
         return False
-    n = _independent_values(one, two)
+    n = _independent_values(first, second)
     return n > 3.0 and math.atanh(min(r, 1.0 - 1e-12)) * math.sqrt(n - 3.0) >= _SIGNIFICANT
 
 
@@ -388,25 +388,25 @@ def _at_step(component: Component, dt: float) -> Samples:
     return np.interp(times, np.arange(len(a)) * component.dt, np.fft.irfft(spectrum, len(a)))
 
 
-def correlation(one: Samples, two: Samples) -> float:
+def correlation(first: Samples, second: Samples) -> float:
     """Return the largest correlation of two series of one step, either way up, over all shifts of one against the other.
 
     Shifts are by quarters of a step. It is 1 where one of them never moves.
     """
-    one, two = ((x - x.mean()) / (np.abs(x).max() or 1.0) for x in (one, two))
-    n = len(one) + len(two)
-    shifted = 4.0 * np.fft.irfft(np.fft.rfft(one, n) * np.conj(np.fft.rfft(two, n)), 4 * n)
-    norm = float(np.linalg.norm(one) * np.linalg.norm(two))
+    first, second = ((x - x.mean()) / (np.abs(x).max() or 1.0) for x in (first, second))
+    n = len(first) + len(second)
+    shifted = 4.0 * np.fft.irfft(np.fft.rfft(first, n) * np.conj(np.fft.rfft(second, n)), 4 * n)
+    norm = float(np.linalg.norm(first) * np.linalg.norm(second))
     return float(np.abs(shifted).max()) / norm if norm > 0 else 1.0
 
 
 def _factor(a: Component, b: Component) -> float | None:
     """Return how many times larger ``a`` is than ``b``, if their samples are the same but for that; ``None`` if not."""
-    one, two = a.acceleration, b.acceleration
-    if len(one) != len(two) or abs(a.dt - b.dt) > _SAME_STEP * a.dt or not two.any():
+    first, second = a.acceleration, b.acceleration
+    if len(first) != len(second) or abs(a.dt - b.dt) > _SAME_STEP * a.dt or not second.any():
         return None
-    factor = float(one @ two) / float(two @ two)
-    if abs(factor - 1.0) <= _NO_FACTOR or np.abs(one - factor * two).max() > _SAME_SHAPE * np.abs(one).max():
+    factor = float(first @ second) / float(second @ second)
+    if abs(factor - 1.0) <= _NO_FACTOR or np.abs(first - factor * second).max() > _SAME_SHAPE * np.abs(first).max():
         return None
     return factor or None
 

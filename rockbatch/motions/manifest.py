@@ -110,7 +110,7 @@ class Manifest:
     def _take(self, file: TomlFile) -> None:
         self.files.append(file)
         Table(file, (), "", file.data).read({}, other=("record", "sequence"))
-        self.sequences += [(str(file.path), each) for each in read_sequences(file, "sequence")]
+        self.sequences += [(str(file.path), sequence) for sequence in read_sequences(file, "sequence")]
         folder = Path(os.path.realpath(file.path.parent))
         seen: set[tuple[Path, str | None]] = set()
         for table in file.tables("record", title="file"):
@@ -311,12 +311,12 @@ def _from_csv(path: Path) -> TomlFile:
                 instead = f"did you mean {meant}?" if meant else "write one of " + ", ".join(RECORD)
                 file.complain(("header",), f"{shown(name)}: unknown column; {instead}")
         for cells in rows:
-            at: tuple[str | int, ...] = ("record", len(records))
+            key_path: tuple[str | int, ...] = ("record", len(records))
             given = {name: cell.strip() for name, cell in zip(names, cells, strict=False) if cell.strip()}
             if any(cell.strip() for cell in cells):
-                file.lines.update({key: rows.line_num for key in (at, *((*at, name) for name in given))})
+                file.lines.update({key: rows.line_num for key in (key_path, *((*key_path, name) for name in given))})
                 if len(cells) > len(names):
-                    file.complain(at, f"found {len(cells)} cells; the first line names {len(names)} columns")
+                    file.complain(key_path, f"found {len(cells)} cells; the first line names {len(names)} columns")
                 records.append({name: _value(name, given[name], delimiter) for name in given if name in RECORD})
     except csv.Error as error:
         raise InputError(f"{path}:{rows.line_num}: not a line of a CSV file: {error}") from None

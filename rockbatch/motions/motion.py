@@ -294,7 +294,7 @@ class Motion(Shown):
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Motion):
             return NotImplemented
-        return all(np.array_equal(getattr(self, each.name), getattr(other, each.name)) for each in fields(self))
+        return all(np.array_equal(getattr(self, field.name), getattr(other, field.name)) for field in fields(self))
 
     def __hash__(self) -> int:
         return hash((self.name, self.dt, self.npts))
@@ -383,9 +383,9 @@ class Motion(Shown):
 
         Raises ``InputError`` for periods and damping that cannot be.
         """
-        at = PERIODS if periods is None else np.asarray(periods, dtype=np.float64)
-        sa = spectral_acceleration(self.horizontal, self.dt, at, damping) / GRAVITY
-        return pd.Series(sa, index=pd.Index(at, name="period_s"), name="sa_g")
+        undamped = PERIODS if periods is None else np.asarray(periods, dtype=np.float64)
+        sa = spectral_acceleration(self.horizontal, self.dt, undamped, damping) / GRAVITY
+        return pd.Series(sa, index=pd.Index(undamped, name="period_s"), name="sa_g")
 
     def plot(self, width_mm: float = 160.0) -> "Figure":
         """Draw the acceleration of its components against time: a matplotlib Figure of this width."""

@@ -96,9 +96,9 @@ def _believed(judged: Iterable[Judged], patterns: Mapping[str, Sequence[str]], r
     is ``required``, as unusable. ``patterns``: of the names that each key confirms."""
     motions: list[Motion] = []
     unusable: list[Unusable] = []
-    for each in judged:
-        motion, odd = each.motion, findings(each)
-        keys = {*each.component.confirmed, *(key for key, names in patterns.items() if fits(motion.name, names))}
+    for station in judged:
+        motion, odd = station.motion, findings(station)
+        keys = {*station.component.confirmed, *(key for key, names in patterns.items() if fits(motion.name, names))}
         if motion.lacks_vertical and required:
             unusable.append(Unusable(motion.name, motion.files, f"{motion.label} {_NO_VERTICAL}"))
         elif why := doubt(motion.name, odd, keys):

@@ -174,8 +174,8 @@ def pair_spectrum(
     0.5         0.589     0.641   0.871      0.615     0.666      0.763
     1.0         0.419     0.365   0.556      0.391     0.392      0.547
     """
-    at = PERIODS if periods is None else np.asarray(periods, dtype=np.float64)
-    histories = [responses(a, first.dt, at, damping) for a in aligned(first, second)]
+    undamped = PERIODS if periods is None else np.asarray(periods, dtype=np.float64)
+    histories = [responses(a, first.dt, undamped, damping) for a in aligned(first, second)]
     rows = [[_most(u), _most(v), *measured(u, v).values()] for u, v in zip(*histories, strict=True)]
     names = [f"{name}_g" for name in ("first", "second", *PAIR_RULES)]
-    return pd.DataFrame(np.array(rows) / GRAVITY, columns=names, index=pd.Index(at, name="period_s"))
+    return pd.DataFrame(np.array(rows) / GRAVITY, columns=names, index=pd.Index(undamped, name="period_s"))

@@ -156,7 +156,7 @@ def unequal_horizontals(judged: Judged) -> Finding | None:
     """Find a horizontal component many times the other one of its station."""
     if len(judged.peaks) != 2:
         return None
-    (low, least), (high, most) = sorted(judged.peaks, key=lambda each: each[1])
+    (low, least), (high, most) = sorted(judged.peaks, key=lambda peak: peak[1])
     if not most > UNEQUAL * least:
         return None
     text = f"PGA of {high.name} is {most / max(least, 1e-300):.3g} times that of {low.name}: check their gains"
@@ -208,7 +208,7 @@ JUDGES: tuple[Callable[[Judged], Finding | None], ...] = (
 
 def findings(judged: Judged) -> tuple[Finding, ...]:
     """Return all that is odd about a motion."""
-    findings_or_none = (judge(judged) for judge in JUDGES)
+    findings_or_none = (check(judged) for check in JUDGES)
     return tuple(finding for finding in findings_or_none if finding is not None)
 
 

@@ -48,8 +48,8 @@ class Target:
 
     def __str__(self) -> str:
         if self.sa_g is not None:
-            of = "" if self.pairs == "apart" else f" of {WORDS[self.pairs]}"
-            return f"SA({self.period_s:g} s, {100 * self.damping:g} %){of} = {self.sa_g:g} g"
+            of_pairs = "" if self.pairs == "apart" else f" of {WORDS[self.pairs]}"
+            return f"SA({self.period_s:g} s, {100 * self.damping:g} %){of_pairs} = {self.sa_g:g} g"
         return f"PGA = {self.pga_g:g} g" if self.pga_g is not None else f"PGV = {self.pgv_m_s:g} m/s"
 
     def factors_of(self, motions: Sequence[Motion], gravity: float) -> list[float]:
@@ -63,8 +63,8 @@ class Target:
         assert self.period_s is not None
         stations = grouped(motions, lambda motion: motion.of_station)
         measured = {
-            name: station_spectrum(each, [self.period_s], self.damping, self.pairs)[0]
-            for name, each in stations.items()
+            name: station_spectrum(station, [self.period_s], self.damping, self.pairs)[0]
+            for name, station in stations.items()
         }
         return [
             self.sa_g * gravity / float(sa) if (sa := measured[motion.of_station]) > 0 else math.inf
@@ -97,7 +97,7 @@ def at_target(
     """
     motions: list[Motion] = []
     unusable = _lone(motion_set.motions, target)
-    lone = {each.name for each in unusable}
+    lone = {file.name for file in unusable}
     paired = [motion for motion in motion_set.motions if motion.name not in lone]
     for motion, factor in zip(paired, target.factors_of(paired, gravity), strict=True):
         if math.isinf(factor):
@@ -151,7 +151,7 @@ def with_vertical(
         named = [motion.of_station for motion in motion_set.motions if fits(motion.name, confirmed)]
         scaled = at_target(MotionSet(verticals(as_recorded)), target, gravity, named)
         factors = {motion.name: motion.factor for motion in scaled}
-        reasons = {each.name: each.reason for each in scaled.unusable}
+        reasons = {file.name: file.reason for file in scaled.unusable}
     motions: list[Motion] = []
     unusable: list[Unusable] = []
     for motion in motion_set.motions:

@@ -91,7 +91,7 @@ def read_sequences(file: TomlFile, *at: str) -> tuple[ShockSequence, ...]:
     sequences: list[ShockSequence] = []
     for table in file.tables(*at, title="name"):
         read = table.read(SEQUENCE)
-        if any(each.name == read.get("name") for each in sequences):
+        if any(sequence.name == read.get("name") for sequence in sequences):
             table.complain(f"name = {shown(read['name'])}: given twice; give each sequence its own name", "name")
         elif {"name", "records"} <= read.keys():
             with table.noting("records"):
@@ -209,9 +209,12 @@ def _resampled(motion: Motion, dt: float, said: list[str]) -> Motion:
     if abs(motion.dt - dt) <= _SAME * dt:
         return motion
     said.append(f"{motion.name} interpolated linearly from dt = {motion.dt:g} s to {dt:g} s")
-    at, samples = np.arange(math.floor(motion.duration / dt * (1 + _SAME)) + 1) * dt / motion.dt, np.arange(motion.npts)
-    vertical = None if motion.vertical is None else np.interp(at, samples, motion.vertical)
-    return replace(motion, dt=dt, horizontal=np.interp(at, samples, motion.horizontal), vertical=vertical)
+    positions, samples = (
+        np.arange(math.floor(motion.duration / dt * (1 + _SAME)) + 1) * dt / motion.dt,
+        np.arange(motion.npts),
+    )
+    vertical = None if motion.vertical is None else np.interp(positions, samples, motion.vertical)
+    return replace(motion, dt=dt, horizontal=np.interp(positions, samples, motion.horizontal), vertical=vertical)
 
 
 def _joined(
@@ -276,26 +279,26 @@ def with_sequences(
         return motions, list(pulses)
     by_name = {motion.name: motion for motion in (*motions.motions, *pulses)}
     without: tuple[Unusable | LeftOut, ...] = (*motions.unusable, *motions.left_out)
-    reasons = {each.name: each.reason for each in without}
+    reasons = {file.name: file.reason for file in without}
     made: list[Motion] = []
     others: list[Unusable | LeftOut] = []
     wrong = [
-        f"{where}{each.name}: a record has this name; give the sequence one of its own"
-        for each in wanted
-        if each.name in by_name
+        f"{where}{entry.name}: a record has this name; give the sequence one of its own"
+        for entry in wanted
+        if entry.name in by_name
     ]
-    for each in wanted:
+    for entry in wanted:
         try:
-            one = _one(each, by_name, reasons, where)
+            joined = _one(entry, by_name, reasons, where)
         except InputError as error:
             wrong += error.problems
         else:
-            (made if isinstance(one, Motion) else others).append(one)  # type: ignore[arg-type]
+            (made if isinstance(joined, Motion) else others).append(joined)  # type: ignore[arg-type]
     if wrong:
         raise InputError(*wrong)
     there = {motion.name for motion in made}
-    parts = {name: each.name for each in reversed(wanted) if each.name in there for name in each.records}
-    alone = {name for each in wanted if each.alone for name in each.records}
+    parts = {name: entry.name for entry in reversed(wanted) if entry.name in there for name in entry.records}
+    alone = {name for entry in wanted if entry.alone for name in entry.records}
     for name, whole in parts.items():
         if name not in alone:
             reason = f"a shock of the sequence {shown(whole)}; alone = true there runs it on its own, too"
@@ -305,8 +308,8 @@ def with_sequences(
     as_pulses = [motion for motion in made if of_pulses.issuperset(shock.name for shock in motion.shocks)]
     records = [motion for motion in motions.motions if motion.name not in gone]
     records += [motion for motion in made if motion not in as_pulses]
-    unusable = [*motions.unusable, *(each for each in others if isinstance(each, Unusable))]
-    left_out = [*motions.left_out, *(each for each in others if isinstance(each, LeftOut))]
+    unusable = [*motions.unusable, *(file for file in others if isinstance(file, Unusable))]
+    left_out = [*motions.left_out, *(file for file in others if isinstance(file, LeftOut))]
     kept = [pulse for pulse in pulses if pulse.name not in gone]
     return replace(motions, motions=records, unusable=unusable, left_out=left_out), kept + as_pulses
 

@@ -95,8 +95,8 @@ def _sampled(
     for count in np.unique(parts):
         finer = acceleration
         if count > 1:
-            at = np.arange((len(acceleration) - 1) * count + 1) / count
-            finer = np.interp(at, np.arange(len(acceleration)), acceleration)
+            positions = np.arange((len(acceleration) - 1) * count + 1) / count
+            finer = np.interp(positions, np.arange(len(acceleration)), acceleration)
         yield parts == count, finer, dt / count
 
 

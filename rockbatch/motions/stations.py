@@ -98,7 +98,7 @@ def _may_join(station: Sequence[Component], group: Sequence[Component]) -> bool:
     """Return whether two sets of one name may be one: not if both are whole, nor if they share no time."""
     if _is_whole(station) and _is_whole(group):
         return False
-    return any(overlap(one, other) for one in station for other in group)
+    return any(overlap(member, other) for member in station for other in group)
 
 
 def _is_whole(station: Sequence[Component]) -> bool:
@@ -169,18 +169,18 @@ def _together(a: Component, b: Component) -> bool:
         return a.site == b.site
     if a.station and (a.folder, a.station) == (b.folder, b.station):
         return in_one_event(a, b) or (bool(a.source) and file_of(a.source) == file_of(b.source))
-    one, two = a.seat, b.seat
-    if not one.number or one.number.upper() != two.number.upper():
+    first, second = a.seat, b.seat
+    if not first.number or first.number.upper() != second.number.upper():
         return False
-    return not (one.network and two.network and one.network != two.network) and in_one_event(a, b)
+    return not (first.network and second.network and first.network != second.network) and in_one_event(a, b)
 
 
 def _copies(a: Component, b: Component) -> bool:
     """Return whether the samples of both are the same but for a factor."""
-    one, two = a.acceleration, b.acceleration
-    if len(one) != len(two) or abs(a.dt - b.dt) > 1e-6 * a.dt:
+    first, second = a.acceleration, b.acceleration
+    if len(first) != len(second) or abs(a.dt - b.dt) > 1e-6 * a.dt:
         return False
-    i = int(np.abs(one).argmax())
-    if one[i] == 0 or two[i] == 0:
+    i = int(np.abs(first).argmax())
+    if first[i] == 0 or second[i] == 0:
         return False
-    return bool(np.abs(one / one[i] - two / two[i]).max() <= _SAME_SHAPE)
+    return bool(np.abs(first / first[i] - second / second[i]).max() <= _SAME_SHAPE)

@@ -84,7 +84,7 @@ def _largest(v: Samples, dt: float) -> tuple[float, int]:
     peaks = [transform.largest(scale) for scale in scales]
     best = int(np.argmax([height for height, _ in peaks]))
     about = np.linspace(scales[max(best - 1, 0)], scales[min(best + 1, _SCALES - 1)], _BETWEEN)
-    (_, place), scale = max(((transform.largest(scale), scale) for scale in about), key=lambda found: found[0][0])
+    (_, place), scale = max(((transform.largest(scale), scale) for scale in about), key=lambda pair: pair[0][0])
     return float(scale), place
 
 

@@ -401,7 +401,7 @@ def problems(pier: Pier, base: Base) -> list[str]:
             'write base = "rigid", or leave columns out for a single pier'
         ]
     wrong = [] if isinstance(base, RigidBase) else _wrong_stiffness(pier, base)
-    for name in (each.name for each in fields(base)):
+    for name in (own.name for own in fields(base)):
         value = getattr(base, name)
         if name in BOUNDS:
             wrong += BOUNDS[name].problems(name, value)

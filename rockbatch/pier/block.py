@@ -151,7 +151,7 @@ class Pier:
     flexural_period_s: float | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
-        wrong = out_of_bounds(**{each.name: getattr(self, each.name) for each in fields(self)})
+        wrong = out_of_bounds(**{field.name: getattr(self, field.name) for field in fields(self)})
         _refuse(wrong or _falls(self.alpha, self.initial_rotation_rad))
 
     @classmethod

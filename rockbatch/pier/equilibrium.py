@@ -67,8 +67,8 @@ def deflection_under(force: float, exponent: float) -> float:
     i = int(np.searchsorted(z, force, side="right")) - 1
     deflection = float(x[i] + (force - z[i]) / slope[i])
     for _ in range(20):  # Newton's method, from the side on which the curve is concave
-        at = float(first_loading(np.array([deflection]), exponent)[0])
-        step = (force - at) / -math.expm1(exponent * math.log(at))
+        loading = float(first_loading(np.array([deflection]), exponent)[0])
+        step = (force - loading) / -math.expm1(exponent * math.log(loading))
         deflection += step
         if step <= 1e-15 * deflection:
             break
@@ -224,14 +224,14 @@ class SlowTurn:
         self.places = [
             Place(
                 device,
-                side * at.offset,
+                side * place.offset,
                 (device.brace if isinstance(device, Damper) else device.lam) * pier.size / pier.half_width**2,
-                at.height,
-                side * at.way or 1.0,
+                place.height,
+                side * place.way or 1.0,
             )
             for device in devices
             if not (isinstance(device, Damper) and device.kind == "viscous")  # which bear nothing
-            for at in places(pier, device)
+            for place in places(pier, device)
         ]
         self.spring = spring_of(pier, base) if isinstance(base, ElasticBase) else None
         self.at_rest = 0.5 * (1.0 + prestress_over_weight(pier, devices))
@@ -333,8 +333,8 @@ class SlowTurn:
             depth = depth if float(excess(np.array([limit]))[0]) > 0.0 else math.inf
         if not depth < limit:
             return None
-        at, theta = np.array([depth]), theta_of(np.array([depth]))
-        return float(theta[0]), [float(self.elongation(place, theta, at)[0]) for place in self.places]
+        depths, theta = np.array([depth]), theta_of(np.array([depth]))
+        return float(theta[0]), [float(self.elongation(place, theta, depths)[0]) for place in self.places]
 
     def _without_devices(self, theta: Array, on_both: bool) -> tuple[Array, Array]:
         """Return depth and the heel's force of a pier without devices."""
@@ -442,8 +442,8 @@ class SlowTurn:
 
     def _from_rest(self, grid: Sequence[float]) -> Equilibria:
         """Return the equilibria at rotations in order, each once, of which the first may be 0."""
-        at = self.at(np.unique(np.maximum(grid, ONSET)))
-        return replace(at, theta=np.where(at.theta > ONSET, at.theta, 0.0))
+        equilibria = self.at(np.unique(np.maximum(grid, ONSET)))
+        return replace(equilibria, theta=np.where(equilibria.theta > ONSET, equilibria.theta, 0.0))
 
     def strongest(self, quantity: str, curve: Equilibria) -> tuple[float, float]:
         """Return the greatest value of "moment" or "acceleration" along the curve, and the rotation there [rad]."""

@@ -97,8 +97,8 @@ class FreeRocking:
     def _moment(self, theta: Array) -> Array:
         if self.turn.spring is None or not self.turn.places:
             return self.turn.at(theta).moment
-        at, moments, _ = self._tabulated
-        return np.interp(theta, at, moments)
+        angles, moments, _ = self._tabulated
+        return np.interp(theta, angles, moments)
 
     def _inertia(self, theta: Array) -> Array:
         """Return the inertia that belongs to θ̇ [m²] while the centre of mass goes up and down with the rotation."""

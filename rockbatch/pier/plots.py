@@ -9,7 +9,7 @@ from rockbatch.pier.free_rocking import Swings
 
 
 @styled
-def statics(pier: Pier, at: Equilibria, swings: Swings, width_mm: float) -> Figure:
+def statics(pier: Pier, equilibria: Equilibria, swings: Swings, width_mm: float) -> Figure:
     """See :meth:`rockbatch.pier.statics.Statics.plot`."""
     alpha = pier.alpha
     wide = width_mm >= 120.0
@@ -18,10 +18,10 @@ def statics(pier: Pier, at: Equilibria, swings: Swings, width_mm: float) -> Figu
     size, unit = (
         (1.0, "moment/weight [m]") if pier.mass_t is None else (1e-3 * pier.mass_t * pier.gravity, "moment [MN m]")
     )
-    shares = {"weight and supports": at.weight, "tendons": at.tendons, "dampers": at.dampers}
+    shares = {"weight and supports": equilibria.weight, "tendons": equilibria.tendons, "dampers": equilibria.dampers}
     shown = {name: values for name, values in shares.items() if values.any()}
-    for place, (name, values) in enumerate({"all": at.moment, **(shown if len(shown) > 1 else {})}.items()):
-        left.plot(at.theta / alpha, size * values, label=name, **line(place))
+    for place, (name, values) in enumerate({"all": equilibria.moment, **(shown if len(shown) > 1 else {})}.items()):
+        left.plot(equilibria.theta / alpha, size * values, label=name, **line(place))
     left.set(xlabel=r"$\theta/\alpha$", ylabel=unit, title="righting moment", xlim=(0.0, None), ylim=(0.0, None))
     if len(shown) > 1:
         left.legend()

@@ -165,20 +165,20 @@ class Statics(Shown):
         the shares of weight with supports, of tendons with stops, and of dampers; ``toe_over_weight`` and ``heel_over_weight``,
         the forces of the two supports; ``moment_kN_m`` if the mass is known.
         """
-        at = self.equilibria
+        equilibria = self.equilibria
         columns = {
-            "theta_rad": at.theta,
-            "theta_over_alpha": at.theta / self.pier.alpha,
-            "acceleration_g": at.acceleration,
-            "moment_over_weight_m": at.moment,
-            "of_weight_m": at.weight,
-            "of_tendons_m": at.tendons,
-            "of_dampers_m": at.dampers,
-            "toe_over_weight": at.toe,
-            "heel_over_weight": at.heel,
+            "theta_rad": equilibria.theta,
+            "theta_over_alpha": equilibria.theta / self.pier.alpha,
+            "acceleration_g": equilibria.acceleration,
+            "moment_over_weight_m": equilibria.moment,
+            "of_weight_m": equilibria.weight,
+            "of_tendons_m": equilibria.tendons,
+            "of_dampers_m": equilibria.dampers,
+            "toe_over_weight": equilibria.toe,
+            "heel_over_weight": equilibria.heel,
         }
         if self.weight_kN is not None:
-            columns["moment_kN_m"] = at.moment * self.weight_kN
+            columns["moment_kN_m"] = equilibria.moment * self.weight_kN
         return pd.DataFrame({name: np.round(values, 9) for name, values in columns.items()})
 
     @property
@@ -189,10 +189,10 @@ class Statics(Shown):
         on one side make it uneven; ``impact_damping``, the viscous damping ratio of the same decay as by impacts, NaN where it
         has no closed form: on springs, on which landings lose what ε, ζ and vertical vibration take.
         """
-        at = self.swings_at
+        swings = self.swings_at
         return pd.DataFrame({
-            "amplitude_rad": at.amplitude, "amplitude_over_alpha": at.amplitude / self.pier.alpha,
-            "period_s": at.period, "impact_damping": at.impact_damping,
+            "amplitude_rad": swings.amplitude, "amplitude_over_alpha": swings.amplitude / self.pier.alpha,
+            "period_s": swings.period, "impact_damping": swings.impact_damping,
         })  # fmt: skip
 
     def plot(self, width_mm: float = 160.0) -> "Figure":

@@ -135,7 +135,7 @@ def _rows(
 ) -> list[dots.Row]:
     """Return a row for each record or foundation in ``single``, and one for those of ``all_`` that have none of their own."""
     places = [(runs[SHOWN], runs.groupby(by).indices) for _, runs in columns]
-    rows = [dots.Row(*label(one), [runs.iloc[index.get(one, [])] for runs, index in places]) for one in single]
+    rows = [dots.Row(*label(group), [runs.iloc[index.get(group, [])] for runs, index in places]) for group in single]
     if len(single) < all_ or always:
         what = {"record": "records", "series": "foundations"}[by]
         rest = [runs.loc[~runs[by].isin(single), SHOWN] for _, runs in columns]

@@ -68,7 +68,7 @@ def restraints_of(case: Mapping[str, Any]) -> tuple[Restraint, ...]:
 def base_of(case: Mapping[str, Any], pier: Pier) -> Base | None:
     """Return the base of a case with its devices; None if its values are impossible under ``pier``."""
     kind: type[Base] = {kind.name: kind for kind in (RigidBase, ElasticBase, YieldingBase)}[case["base"]]
-    values, names = case["parameters"], [each.name for each in fields(kind) if each.name != "restraints"]
+    values, names = case["parameters"], [field.name for field in fields(kind) if field.name != "restraints"]
     try:
         base = kind(**{name: values[name] for name in names if values.get(name) is not None})
         base = replace(base, restraints=restraints_of(case))

@@ -322,13 +322,13 @@ def _device(
 ) -> Column:  # fmt: skip
     """Return a column of studies that have devices of the kind with which its name begins."""
 
-    def has(study: Study) -> bool:
+    def in_study(study: Study) -> bool:
         return any(name.startswith(f"{device.what}_") for case in study.cases for device in case.base.restraints)
 
     number: Literal["number", "count"] = (
         "count" if of in ("tendon_slack", "stop_blows", "deck_spring_blows") else "number"
     )
-    return Column(name, meaning, of, unit, OnPage(head, form, factor, behind), number, sometimes=True, asked=has)
+    return Column(name, meaning, of, unit, OnPage(head, form, factor, behind), number, sometimes=True, asked=in_study)
 
 
 _DAMPER, _TENDON, _STOP = (f"greatest force of a {device}" for device in ("damper", "tendon", "stop"))

@@ -62,14 +62,14 @@ class _Panels:
         for group, of_group in runs.groupby("group", sort=False):
             place = self.groups.index(str(group))
             beside = SPREAD * ((place + 0.5) / len(self.groups) - 0.5)
-            look = marks(place)
+            style = marks(place)
             stood = of_group[of_group["status"] == "ok"]
             springs = stood[~stood["rigid"]]
             x, error = (
                 springs["foundation"].map(self.places) + beside,
                 springs["theta_max_error"].fillna(0.0),
             )
-            axes.errorbar(x, springs["theta_max_over_alpha"], error, label=group or None, **look)
+            axes.errorbar(x, springs["theta_max_over_alpha"], error, label=group or None, **style)
             for name, theta in stood[stood["rigid"]][["foundation", "theta_max_over_alpha"]].itertuples(index=False):
                 label = ", ".join(filter(None, (name, str(group))))
                 axes.axhline(theta, label=label, **line(self.lines.index(name) * len(self.groups) + place))
@@ -77,7 +77,7 @@ class _Panels:
                 places = of_group["foundation"][of_group["status"] == status].map(self.places).fillna(-0.6) + beside
                 if len(places):
                     height = [1.07 * self.top] * len(places)
-                    axes.plot(places, height, **look | {"marker": marker}, label=words)
+                    axes.plot(places, height, **style | {"marker": marker}, label=words)
 
 
 @styled
@@ -189,10 +189,10 @@ def plot_cdf(peaks: "pd.DataFrame", varied: Sequence[str], count: str, width_mm:
         )
         label = ", ".join(filter(None, map(_named, keys, values)))
         reached = [0.0, *share, share[-1] if len(share) else 0.0]
-        look = line(place)
-        axes.step([0.0, *theta, right], reached, where="post", label=label, **look)
+        style = line(place)
+        axes.step([0.0, *theta, right], reached, where="post", label=label, **style)
         if same["status"].isin(NO_PEAK).any():
-            axes.plot(right, reached[-1], "x", color=look["color"], clip_on=False)
+            axes.plot(right, reached[-1], "x", color=style["color"], clip_on=False)
     share_of = "share of the records\nthat do not exceed it"
     axes.set(xlabel=r"$\theta_{\max}/\alpha$", ylabel=share_of, xlim=(0, right), ylim=(0, 1.01))
     drawn.legend(loc="outside lower center", ncols=2)

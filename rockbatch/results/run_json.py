@@ -248,10 +248,10 @@ def suite_spectra(
 ) -> dict[str, Any]:
     """Return horizontal spectra of motions, as run.json has them: ``damping``, ``period_s`` and, in the order of the motions,
     ``sa_g``."""
-    at = np.asarray(periods, dtype=np.float64)
-    spectra = [spectral_acceleration(m.horizontal, m.dt, at, damping) / gravity for m in motions]
+    undamped = np.asarray(periods, dtype=np.float64)
+    spectra = [spectral_acceleration(m.horizontal, m.dt, undamped, damping) / gravity for m in motions]
     return {
         "damping": damping,
-        "period_s": [float(f"{period:.4g}") for period in at],
+        "period_s": [float(f"{period:.4g}") for period in undamped],
         "sa_g": [[float(f"{value:.4g}") for value in spectrum] for spectrum in spectra],
     }

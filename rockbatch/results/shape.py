@@ -46,37 +46,37 @@ def fits(value: Any, shape: Any) -> bool:
     return next(unfit(value, shape), None) is None
 
 
-def _unfit(value: Any, shape: Any, at: str) -> Iterator[Problem]:
+def _unfit(value: Any, shape: Any, place: str) -> Iterator[Problem]:
     if isinstance(shape, dict):
-        yield from _unfit_object(value, shape, at)
+        yield from _unfit_object(value, shape, place)
     elif isinstance(shape, list):
         if not isinstance(value, list):
-            yield Problem(at, "a list")
+            yield Problem(place, "a list")
             return
         for number, item in enumerate(value):
-            yield from _unfit(item, shape[0], f"{at}[{number}]")
+            yield from _unfit(item, shape[0], f"{place}[{number}]")
     elif isinstance(shape, tuple):
-        if not any(fits(value, one) if isinstance(one, list | dict) else _is(value, one) for one in shape):
-            yield Problem(at, " or ".join(map(_words, shape)))
+        if not any(fits(value, choice) if isinstance(choice, list | dict) else _is(value, choice) for choice in shape):
+            yield Problem(place, " or ".join(map(_words, shape)))
     elif not _is(value, shape):
-        yield Problem(at, _words(shape))
+        yield Problem(place, _words(shape))
 
 
-def _unfit_object(value: Any, shape: dict[Any, Any], at: str) -> Iterator[Problem]:
+def _unfit_object(value: Any, shape: dict[Any, Any], place: str) -> Iterator[Problem]:
     if not isinstance(value, dict):
-        yield Problem(at, "an object")
+        yield Problem(place, "an object")
         return
     if str in shape:
         for key, item in value.items():
-            yield from _unfit(item, shape[str], f"{at}.{key[:40]}")
+            yield from _unfit(item, shape[str], f"{place}.{key[:40]}")
         return
     for key, wanted in shape.items():
         if key in value:
             wanted = wanted.shape if isinstance(wanted, Maybe) else wanted
             if not _soon(value[key], wanted):
-                yield from _unfit(value[key], wanted, f"{at}.{key}" if at else key)
+                yield from _unfit(value[key], wanted, f"{place}.{key}" if place else key)
         elif not isinstance(wanted, Maybe):
-            yield Problem(f"{at}.{key}" if at else key, "", missing=True)
+            yield Problem(f"{place}.{key}" if place else key, "", missing=True)
 
 
 def _soon(value: Any, shape: Any) -> bool:

@@ -35,13 +35,13 @@ TEXTS = ("shock_record", "shock_status")
 def shock_rows(motion: Motion, pier: Pier, outcomes: Sequence[ShockOutcome]) -> list[dict[str, Any]]:
     """Return a row for each shock of ``motion`` as it was run."""
     rows = []
-    for place, (shock, of) in enumerate(zip(motion.shocks, outcomes, strict=True), 1):
+    for place, (shock, outcome) in enumerate(zip(motion.shocks, outcomes, strict=True), 1):
         first, last = round(shock.start / motion.dt), round(shock.end / motion.dt)
         pga = float(abs(motion.horizontal[first : last + 1]).max()) / pier.gravity
         alpha = pier.alpha
         values = (
-            place, shock.name, shock.start, shock.end, pga, of.status, of.theta_max / alpha, of.theta_max_error / alpha, of.t_max,
-            of.theta_res / alpha, of.settlement, of.moving / alpha,
+            place, shock.name, shock.start, shock.end, pga, outcome.status, outcome.theta_max / alpha,
+            outcome.theta_max_error / alpha, outcome.t_max, outcome.theta_res / alpha, outcome.settlement, outcome.moving / alpha,
         )  # fmt: skip
         rows.append(dict(zip(MEANING, values, strict=True)))
     return rows

@@ -101,8 +101,8 @@ def suites(
     values: Values, status: Sequence[str], counted_as: Sequence[str] | None, group: npt.NDArray[np.int64], groups: int
 ) -> list[Suite]:
     """Return the statistics of each of ``groups`` groups of runs; ``group``, shape (n,), is the place of that of each run."""
-    of = records(values, status, counted_as, group)
-    known, which = of.worst[of.known], of.group[of.known]
+    data = records(values, status, counted_as, group)
+    known, which = data.worst[data.known], data.group[data.known]
     ordered = known[np.lexsort((known, which))]
     n = np.bincount(which, minlength=groups)
     first = np.cumsum(n) - n
@@ -110,9 +110,12 @@ def suites(
     standing = np.bincount(which[stood], minlength=groups)
     total = np.bincount(which[stood], known[stood], groups)
     mean = np.where(standing > 0, total / np.maximum(standing, 1), math.nan)
-    at = [quantiles(ordered, first, n, q) for q in (0.16, 0.5, 0.84, 1.0)]
-    counts = [np.bincount(of.group[ended], minlength=groups) for ended in (of.overturned, of.flight, of.failed)]
-    return [Suite(*row) for row in zip(*(column.tolist() for column in (n, standing, mean, *at, *counts)), strict=True)]
+    fractiles = [quantiles(ordered, first, n, q) for q in (0.16, 0.5, 0.84, 1.0)]
+    counts = [np.bincount(data.group[ended], minlength=groups) for ended in (data.overturned, data.flight, data.failed)]
+    return [
+        Suite(*row)
+        for row in zip(*(column.tolist() for column in (n, standing, mean, *fractiles, *counts)), strict=True)
+    ]
 
 
 def distribution(
@@ -126,7 +129,7 @@ def distribution(
         The value of each record that stood, in order, and the share of all records with an outcome that do not exceed it:
         those under which the pier overturned, or that were ended by flight, exceed all of them.
     """
-    of = records(values, status, counted_as)
-    known = np.sort(of.worst[of.known])
+    data = records(values, status, counted_as)
+    known = np.sort(data.worst[data.known])
     stood = known[np.isfinite(known)]
     return stood, np.arange(1, len(stood) + 1) / max(len(known), 1)

@@ -65,11 +65,11 @@ def half_cycles(path: Path, landed: Rows | None) -> HalfCycles:
     ends = np.concatenate([before, [len(path.t) - 1]])
     starts = np.concatenate([[0], after])
     peaks = [_peak(path, int(first), int(last)) for first, last in zip(starts, ends, strict=True)]
-    amplitude, at = np.array(peaks).reshape(-1, 2).T
+    amplitude, times = np.array(peaks).reshape(-1, 2).T
     nothing = [math.nan]
     return HalfCycles(
         np.concatenate([path.t[:1], t]), np.concatenate([nothing, rates[0]]), np.concatenate([nothing, rates[1]]),
-        amplitude, at,
+        amplitude, times,
     )  # fmt: skip
 
 

@@ -169,54 +169,54 @@ def elements(pier: Pier, base: Base) -> list[Element]:
 
 
 def _element(pier: Pier, base: Base, device: Restraint, place: Place) -> Element:
-    at = IDLE._replace(offset=float(place.offset))
+    element = IDLE._replace(offset=float(place.offset))
     if place.height != 0.0:
         swing = 0.0 if base.on_springs else pier.half_width
-        at = IDLE._replace(height=float(place.height), swing=float(swing), way=float(place.way or 1.0))
+        element = IDLE._replace(height=float(place.height), swing=float(swing), way=float(place.way or 1.0))
     if isinstance(device, Damper):
-        return _damper(pier, base, device, at)
+        return _damper(pier, base, device, element)
     stiffness = float(device.lam * pier.gravity * pier.size / pier.half_width**2)
     if isinstance(device, Tendon):
         strength, prestress = float(pier.gravity * device.strength), float(pier.gravity * device.psi)
-        return at._replace(kind=TENDON, strength=strength, stiffness=stiffness, prestress=prestress)
+        return element._replace(kind=TENDON, strength=strength, stiffness=stiffness, prestress=prestress)
     if isinstance(device, DeckSpring) and device.linear:
-        return at._replace(kind=SPRING, stiffness=stiffness, linear_below=math.inf)
+        return element._replace(kind=SPRING, stiffness=stiffness, linear_below=math.inf)
     returned = float(device.restitution**2)
-    quickest = math.sqrt(_lever(pier, base, at) * stiffness / returned)
-    return at._replace(
+    quickest = math.sqrt(_lever(pier, base, element) * stiffness / returned)
+    return element._replace(
         kind=CONTACT, stiffness=stiffness, start=float(device.gap_m), returned=returned, quickest=quickest
     )
 
 
-def _damper(pier: Pier, base: Base, damper: Damper, at: Element) -> Element:
-    """Return the Element of a damper where ``at`` is."""
+def _damper(pier: Pier, base: Base, damper: Damper, element: Element) -> Element:
+    """Return the Element of a damper where ``element`` is."""
     if damper.brace < math.inf:
-        return _braced(pier, damper, at)
+        return _braced(pier, damper, element)
     force, coefficient = float(pier.gravity * damper.f), float(damper.nu * pier.p)
     soft = float(1.0 / damper.yield_m) if damper.kind == "hysteretic" else 0.0
-    linear_below, slope = _linear_part(pier, base, at, coefficient, float(damper.exponent))
-    return at._replace(
+    linear_below, slope = _linear_part(pier, base, element, coefficient, float(damper.exponent))
+    return element._replace(
         kind=DAMPERS[damper.kind], strength=force, stiffness=soft, coefficient=coefficient, exponent=float(damper.exponent),
         linear_below=linear_below, slope=slope,
     )  # fmt: skip
 
 
-def _braced(pier: Pier, damper: Damper, at: Element) -> Element:
-    """Return the Element of a damper on a brace where ``at`` is."""
+def _braced(pier: Pier, damper: Damper, element: Element) -> Element:
+    """Return the Element of a damper on a brace where ``element`` is."""
     stiffness = float(damper.brace * pier.gravity * pier.size / pier.half_width**2)
     if damper.kind == "hysteretic":
         force, soft = float(pier.gravity * damper.f), float(1.0 / damper.yield_m)
-        return at._replace(kind=HYSTERETIC, strength=force, stiffness=soft, give=force * soft / stiffness)
+        return element._replace(kind=HYSTERETIC, strength=force, stiffness=soft, give=force * soft / stiffness)
     coefficient, exponent = float(damper.nu * pier.p), float(damper.exponent)
     if coefficient == 0.0:
-        return at._replace(linear_below=math.inf)
-    return at._replace(
+        return element._replace(linear_below=math.inf)
+    return element._replace(
         kind=MAXWELL, stiffness=stiffness, coefficient=coefficient, exponent=exponent,
         linear_below=math.inf if exponent == 1.0 else 0.0, quickest=stiffness / (exponent * coefficient),
     )  # fmt: skip
 
 
-def _linear_part(pier: Pier, base: Base, at: Element, coefficient: float, exponent: float) -> tuple[float, float]:
+def _linear_part(pier: Pier, base: Base, element: Element, coefficient: float, exponent: float) -> tuple[float, float]:
     """Return the speed [m/s] below which a viscous damper is linear, and the slope [1/s] of its force there.
 
     For a < 1 it would damp faster there than anything else in a pier, and end small motions at once, in steps that no
@@ -226,7 +226,7 @@ def _linear_part(pier: Pier, base: Base, at: Element, coefficient: float, expone
         return 0.0, 0.0
     if exponent == 1.0:
         return math.inf, coefficient
-    speed = (coefficient * _lever(pier, base, at) / _fastest(pier, base)) ** (1.0 / (1.0 - exponent))
+    speed = (coefficient * _lever(pier, base, element) / _fastest(pier, base)) ** (1.0 / (1.0 - exponent))
     return speed, coefficient * speed ** (exponent - 1.0)
 
 
@@ -235,14 +235,14 @@ def _fastest(pier: Pier, base: Base) -> float:
     return fastest(pier, base) if isinstance(base, ElasticBase) else STEEP * pier.p
 
 
-def _lever(pier: Pier, base: Base, at: Element) -> float:
+def _lever(pier: Pier, base: Base, element: Element) -> float:
     """Return the acceleration at a device under a force there of one per unit mass, in full contact or about a corner."""
-    if at.height != 0.0:
+    if element.height != 0.0:
         inertia = pier.inertia + pier.height**2 if base.on_springs else pier.inertia_about_pivot
-        return (at.height**2 + at.swing**2) / inertia
+        return (element.height**2 + element.swing**2) / inertia
     if not base.on_springs:
-        return (pier.half_width + abs(at.offset)) ** 2 / pier.inertia_about_pivot
-    return 1.0 + at.offset**2 / (pier.inertia + pier.height**2)
+        return (pier.half_width + abs(element.offset)) ** 2 / pier.inertia_about_pivot
+    return 1.0 + element.offset**2 / (pier.inertia + pier.height**2)
 
 
 @lru_cache(maxsize=4096)

@@ -70,10 +70,10 @@ def _follow(m, devices, rows, moves, elongation, pull, energy):  # type: ignore[
     """
     for i in range(len(rows)):
         y = state_of(m, rows[i])
-        at = attitude(m, y, devices.level)
+        pose = attitude(m, y, devices.level)
         for j in range(len(devices.elements)):
             law, state = devices.elements[j], devices.states[i, j]
-            here = gap_of(m, law, at, y)
+            here = gap_of(m, law, pose, y)
             goes = math.copysign(1.0, here.speed) if abs(here.speed) > moves else STICKS
             pull[i, j] = recorded_force(law, here, state, goes)
             elongation[i, j], energy[i, j] = here.elongation, stored_in(law, here.elongation, state)

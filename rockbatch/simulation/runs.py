@@ -252,7 +252,7 @@ def _held_at_rest(run: Run, result: Result, devices: Devices, outcome: Outcome) 
 def _use(run: Run, use: np.recarray) -> dict[str, Any]:
     """Return the demands on devices by the fields of Outcome, of the kinds that the base has."""
     what = np.array([device.what for device in run.base.restraints for _ in places(run.pier, device)])
-    dampers, tendons = (use[what == each].view(np.recarray) for each in ("damper", "tendon"))
+    dampers, tendons = (use[what == stop_kind].view(np.recarray) for stop_kind in ("damper", "tendon"))
     demands: dict[str, Any] = {}
     if len(dampers):
         demands["damper_force"] = float(np.maximum(dampers.most, -dampers.least).max()) / run.pier.gravity
@@ -263,10 +263,10 @@ def _use(run: Run, use: np.recarray) -> dict[str, Any]:
         demands["tendon_force"] = float(tendons.most.max()) / run.pier.gravity
         demands["tendon_yield"] = float(tendons.yielded.max())
         demands["tendon_slack"] = int(tendons.times.sum())
-    for each in ("stop", "deck_spring"):
-        if (what == each).any():
-            laws = [law for law, kind in zip(elements(run.pier, run.base), what, strict=True) if kind == each]
-            demands |= _of_contacts(laws, use[what == each].view(np.recarray), each, run.pier.gravity)
+    for stop_kind in ("stop", "deck_spring"):
+        if (what == stop_kind).any():
+            laws = [law for law, kind in zip(elements(run.pier, run.base), what, strict=True) if kind == stop_kind]
+            demands |= _of_contacts(laws, use[what == stop_kind].view(np.recarray), stop_kind, run.pier.gravity)
     return demands
 
 

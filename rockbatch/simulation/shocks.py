@@ -65,7 +65,7 @@ def _read(run: Run, outcome: Outcome, rows: np.recarray) -> list[ShockOutcome]:
     of_run = max(i for i, shock in enumerate(shocks) if shock.start <= outcome.t_max + _AT_ONCE)
     peaks[of_run] = outcome.theta_max, outcome.t_max  # of all steps, not only of rows
     ended = outcome.t_end if outcome.status in ("overturned", "flight") else math.inf
-    lean, settled = _base(run, rows)
+    lean, settlement = _base(run, rows)
     outcomes = []
     for shock, (theta, t) in zip(shocks, peaks, strict=True):
         if ended < shock.start - _AT_ONCE:
@@ -80,7 +80,7 @@ def _read(run: Run, outcome: Outcome, rows: np.recarray) -> list[ShockOutcome]:
             rest = 0.5 * (high + low) if run.base.has_residual else math.nan
             outcomes.append(ShockOutcome(
                 "ok", theta, t, theta_res=rest if lean is None else float(lean[last]),
-                settlement=math.nan if settled is None else float(settled[last]), moving=0.5 * (high - low),
+                settlement=math.nan if settlement is None else float(settlement[last]), moving=0.5 * (high - low),
             ))  # fmt: skip
     return outcomes
 

@@ -132,9 +132,9 @@ def _bouc_wen(n: float) -> Curve:
         curved = min(w, _STRAIGHT)
         parts = max(1, math.ceil(curved / 0.5))
         half = 0.5 * curved / parts
-        at = half * (2.0 * np.arange(parts)[:, None] + 1.0 + _NODES)
-        left = np.exp(-at)  # 1 − z
-        stiffness = -np.expm1(n * np.log1p(-left)) if w > 0.0 else np.ones_like(at)  # 1 − zⁿ
+        points = half * (2.0 * np.arange(parts)[:, None] + 1.0 + _NODES)
+        left = np.exp(-points)  # 1 − z
+        stiffness = -np.expm1(n * np.log1p(-left)) if w > 0.0 else np.ones_like(points)  # 1 − zⁿ
         return float(half * (left / stiffness @ _WEIGHTS).sum()) + (w - curved) / n, -math.expm1(-w)
 
     return curve

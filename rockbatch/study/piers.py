@@ -200,6 +200,6 @@ def _check_one_size(table: Table) -> None:
     if not sides and not table.has("alpha"):
         table.complain("alpha is missing; write for example alpha = 0.13 (slenderness, rad)")
     if sides and ways == 1:
-        of = "the parts" if parts else "width_m and height_m (of a solid rectangle)"
+        instead_of = "the parts" if parts else "width_m and height_m (of a solid rectangle)"
         for name in {"alpha", "mu"} & table.data.keys():
-            table.complain(f"{name} follows from {of}; leave it out", name)
+            table.complain(f"{name} follows from {instead_of}; leave it out", name)

@@ -179,9 +179,9 @@ def read_devices(case: Table) -> tuple[list[Device], Grid]:
 
 def _tables(case: Table, what: str) -> list[Table]:
     """Return one table, or several, called by their place in the case."""
-    one = case.data.get(what)
-    if isinstance(one, dict):
-        return [Table(case.file, (*case.at, what), f"{case.label}, {what}", one)]
+    single = case.data.get(what)
+    if isinstance(single, dict):
+        return [Table(case.file, (*case.at, what), f"{case.label}, {what}", single)]
     tables = case.file.tables(*case.at, what, title="kind")
     return [replace(table, label=f"{case.label}, {what} {n}") for n, table in enumerate(tables, 1)]
 

@@ -303,7 +303,7 @@ def _check_corners(table: Table, inputs: Sequence[Input], case: Case) -> None:
             if name in reported:
                 continue
             reported.add(name)
-            at = name if name in places else next((other for other in OF_PIER if other in places), "")
+            named = name if name in places else next((other for other in OF_PIER if other in places), "")
             which = ", ".join(f"{key} = {shown(values[key])}" for key in OF_PIER if key in values)
             where = f" (at {which})" if which and name not in OF_PIER else ""
-            table.complain(f'case "{case.name}"{where}: {problem}', *(places[at] if at else ()))
+            table.complain(f'case "{case.name}"{where}: {problem}', *(places[named] if named else ()))

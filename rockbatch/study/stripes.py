@@ -114,9 +114,10 @@ def members(file: TomlFile, stripes: Sequence[StripeRecords], names: Sequence[st
                 wrong = "its record is in this stripe already; name it once"
             if wrong:
                 key = "records" if file.value(("fragility", "stripe", n, "records")) is not None else "file"
-                at = ("fragility", "stripe", n, key)
+                key_path = ("fragility", "stripe", n, key)
                 file.complain(
-                    (*at, place) if key == "records" else at, f"[[fragility.stripe]] {shown(pattern)}: {wrong}"
+                    (*key_path, place) if key == "records" else key_path,
+                    f"[[fragility.stripe]] {shown(pattern)}: {wrong}",
                 )
             own |= dict.fromkeys(fitting, stripe.scales[place] if stripe.scales else None)
         chosen.append(own)

@@ -46,8 +46,8 @@ _WIDEST = 40  # characters of a number; longer ones are no numbers, and would co
 def looks_like_at2(head: bytes) -> bool:
     """Return whether the first bytes are an AT2 header: a count with a time step, below a unit or PEER's name."""
     lines = _first_lines(head)
-    at = next((i for i, line in enumerate(lines) if _count_and_step(line)), 0)
-    above = " ".join(lines[:at]).upper()
+    index = next((i for i, line in enumerate(lines) if _count_and_step(line)), 0)
+    above = " ".join(lines[:index]).upper()
     return "UNITS OF" in above or "PEER" in above
 
 
@@ -81,9 +81,9 @@ def _parse(text: str) -> list[Recording]:
     PEER's own records are corrected ones.
     """
     lines = text[:_HEADER_CHARACTERS].splitlines(keepends=True)[:_HEADER_LINES]
-    at = next((i for i, line in enumerate(lines) if _count_and_step(line)), None)
-    said = None if at is None else _count_and_step(lines[at])
-    if at is None or said is None:
+    first = next((i for i, line in enumerate(lines) if _count_and_step(line)), None)
+    said = None if first is None else _count_and_step(lines[first])
+    if first is None or said is None:
         raise InputError(
             f"lines 1–{len(lines)}: no number of points and time step found; "
             'expected a line such as "NPTS= 4316, DT= .0100 SEC"'
@@ -91,21 +91,21 @@ def _parse(text: str) -> list[Recording]:
     npts, dt = int(said["npts"]), float(_plain(said["dt"]))
     if not 1 <= npts <= MOST_SAMPLES or not is_step(dt):
         raise InputError(
-            f'line {at + 1}: found "{lines[at].strip()[:80]}"; expected a count from 1 to {MOST_SAMPLES:,}, and a time step of '
-            f"{STEPS}"
+            f'line {first + 1}: found "{lines[first].strip()[:80]}"; expected a count from 1 to {MOST_SAMPLES:,}, and a time '
+            f"step of {STEPS}"
         )
-    header = " ".join(lines[:at])
+    header = " ".join(lines[:first])
     if quantity := re.search(r"\b(?:VELOCITY|DISPLACEMENT) TIME\b", header, re.IGNORECASE):
         raise NoRecordError(
             f'header: found "{quantity[0]}…"; expected accelerations: take the .AT2 file of this record'
         )
-    unit = _UNIT.search(header) or _IN_G.search(" ".join(lines[: at + 1]))
-    event, date, station, component = _title(lines[1].strip()) if at > 1 else ("", "", "", "")
+    unit = _UNIT.search(header) or _IN_G.search(" ".join(lines[: first + 1]))
+    event, date, station, component = _title(lines[1].strip()) if first > 1 else ("", "", "", "")
     return [
         Recording(
             label=component,
             dt=dt,
-            values=_values(text, sum(map(len, lines[: at + 1])), npts),
+            values=_values(text, sum(map(len, lines[: first + 1])), npts),
             unit=unit[1] if unit else "",
             station=", ".join(part.upper() for part in (event, date, station)) if station and date else "",
             seat=Seat(station.upper()),
@@ -129,15 +129,15 @@ def _title(line: str) -> tuple[str, str, str, str]:
     …)".
     """
     fields = [field.strip() for field in re.sub(r"\(.*", "", line).split(",")]
-    at = next((i for i, field in enumerate(fields) if _DATE.search(field)), None)
-    if at is None:
+    place = next((i for i, field in enumerate(fields) if _DATE.search(field)), None)
+    if place is None:
         return ("", "", "", fields[-1] if len(fields) > 1 and orientation_of(fields[-1]) else "")
-    start = _DATE.search(fields[at])
+    start = _DATE.search(fields[place])
     assert start is not None
-    event = ", ".join(filter(None, [*fields[:at], fields[at][: start.start()].strip()]))
-    component = fields[-1] if len(fields) > at + 1 and orientation_of(fields[-1]) else ""
-    station = ", ".join(fields[at + 1 : -1] if component else fields[at + 1 :])
-    return event, fields[at][start.start() :], station, component
+    event = ", ".join(filter(None, [*fields[:place], fields[place][: start.start()].strip()]))
+    component = fields[-1] if len(fields) > place + 1 and orientation_of(fields[-1]) else ""
+    station = ", ".join(fields[place + 1 : -1] if component else fields[place + 1 :])
+    return event, fields[place][start.start() :], station, component
 
 
 def _values(text: str, start: int, npts: int) -> Samples:
@@ -183,7 +183,11 @@ def _touching_or_double(text: str, start: int, npts: int) -> tuple[Samples, list
     first = text.count("\n", 0, start)
 
     def fields(line: str) -> list[str]:
-        return line.split() if width is None else [line[at : at + width].strip() for at in range(0, len(line), width)]
+        return (
+            line.split()
+            if width is None
+            else [line[column : column + width].strip() for column in range(0, len(line), width)]
+        )
 
     values = (_number(field, first + i) for i, line in enumerate(lines) for field in fields(line))
     return np.fromiter(values, float), [field for line in body[-LOOKED_AT:] for field in fields(line)][-LOOKED_AT:]
@@ -194,11 +198,11 @@ def _plain(number: str) -> str:
     return number.upper().replace("D", "E")
 
 
-def _number(field: str, at: int) -> float:
-    """Return a field of the line with index ``at`` as a number, or raise ``InputError``."""
+def _number(field: str, index: int) -> float:
+    """Return a field of the line with index ``index`` as a number, or raise ``InputError``."""
     if not (len(field) <= _WIDEST and _SIGNED.fullmatch(field)) and not _NOT_FINITE.fullmatch(field):
         raise InputError(
-            f'line {at + 1}: found "{field[:40]}"; expected numbers separated by blanks, or in equal columns'
+            f'line {index + 1}: found "{field[:40]}"; expected numbers separated by blanks, or in equal columns'
         )
     return float(_plain(field)) if _SIGNED.fullmatch(field) else float(field)
 
@@ -215,7 +219,7 @@ def _width(lines: list[str], npts: int) -> int | None:
         if longest % width or not per_line * full < npts <= per_line * (full + 1):
             continue
         if sum(-(-len(line) // width) for line in lines) == npts and all(
-            _SIGNED.fullmatch(line[at : at + width].strip()) for line in lines for at in range(0, len(line), width)
+            _SIGNED.fullmatch(line[i : i + width].strip()) for line in lines for i in range(0, len(line), width)
         ):
             return width
     return None

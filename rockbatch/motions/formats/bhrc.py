@@ -40,21 +40,21 @@ def parse(text: str) -> list[Recording]:
     return one_after_another(text, _channel)
 
 
-def _channel(lines: list[str], at: int) -> tuple[Recording, int]:
-    """Return the channel whose title is ``lines[at]``, and where the next one begins."""
-    title = read_header(lines, at, [(0, _TITLE, "* VOL1DS FILE: …, after the last declared value")])
+def _channel(lines: list[str], start: int) -> tuple[Recording, int]:
+    """Return the channel whose title is ``lines[start]``, and where the next one begins."""
+    title = read_header(lines, start, [(0, _TITLE, "* VOL1DS FILE: …, after the last declared value")])
     if title["volume"] != "1":
-        raise InputError(f"line {at + 1}: Volume {title['volume']}, whose layout is not known; take the .V1 file")
-    said = read_header(lines, at, _TEXT)
-    label, npts, duration = said["label"], int(said["npts"]), number_in(said["duration"], at + 10)
-    rate = number_in(line_at(lines, at + _RATE)[:_WIDTH], at + _RATE)
+        raise InputError(f"line {start + 1}: Volume {title['volume']}, whose layout is not known; take the .V1 file")
+    said = read_header(lines, start, _TEXT)
+    label, npts, duration = said["label"], int(said["npts"]), number_in(said["duration"], start + 10)
+    rate = number_in(line_at(lines, start + _RATE)[:_WIDTH], start + _RATE)
     if npts < 2 or not 0.1 <= rate <= 1e5 or abs(npts / rate - duration) > 2 / rate:
         raise InputError(
-            f"line {at + 11} says {npts} points in {duration:g} s, line {at + _RATE + 1} {rate:g} samples per second; "
+            f"line {start + 11} says {npts} points in {duration:g} s, line {start + _RATE + 1} {rate:g} samples per second; "
             "expected them to agree"
         )
-    values, end = fixed_numbers(lines, at + _HEADER, npts, _WIDTH, _PER_LINE)
-    station, event = said["name"].strip(), line_at(lines, at + 2).strip()
+    values, end = fixed_numbers(lines, start + _HEADER, npts, _WIDTH, _PER_LINE)
+    station, event = said["name"].strip(), line_at(lines, start + 2).strip()
     azimuth = float(said[label]) % 360.0 if said.get(label) else None
     recording = Recording(
         label=label,

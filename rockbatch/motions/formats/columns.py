@@ -148,8 +148,8 @@ def _completed(i: int, said: Column, stated: str) -> Column:
             and by_header.down == by_study.down
             and (None in (by_header.azimuth, by_study.azimuth) or same_azimuth(by_header.azimuth, by_study.azimuth))
         )
-        settled = by_header.vertical or by_header.azimuth is not None or not by_study.known
-        column = said if by_header.known and settled else Column(stated, said.unit)
+        unchanged = by_header.vertical or by_header.azimuth is not None or not by_study.known
+        column = said if by_header.known and unchanged else Column(stated, said.unit)
     if not agree:
         raise InputError(
             f'column {i + 1}: the header says "{said.label}", but columns states "{stated}"; what a file says goes '

@@ -76,25 +76,27 @@ def parse(text: str) -> list[Recording]:
     recordings: list[tuple[Recording, _Header]] = []
     others: list[str] = []
     header: _Header | None = None
-    at = 0
-    while at < len(lines):
-        if not lines[at].strip():
-            at += 1
+    index = 0
+    while index < len(lines):
+        if not lines[index].strip():
+            index += 1
             continue
-        if header is None or _TITLE.match(line_at(lines, at)):
-            header = _header(lines, at)
-            at = header.end
-        series = match_line(_VALUES, lines, at, "… acceleration pts, approx … secs, units=cm/sec2(04),Format=(8F10.5)")
-        values, end = _values(lines, at, series)
+        if header is None or _TITLE.match(line_at(lines, index)):
+            header = _header(lines, index)
+            index = header.end
+        series = match_line(
+            _VALUES, lines, index, "… acceleration pts, approx … secs, units=cm/sec2(04),Format=(8F10.5)"
+        )
+        values, end = _values(lines, index, series)
         if series["what"].lower().startswith("accel"):
-            recordings.append((_recording(header, series, values, at), header))
+            recordings.append((_recording(header, series, values, index), header))
         else:
             others.append(series["what"])
             if recordings and all(
                 line_at(recordings[-1][1].text, i) == line_at(header.text, i) for i in (_STATION, _SENSOR)
             ):
                 recordings[-1] = (_beside(recordings[-1][0], series, values), header)
-        at = end
+        index = end
     if not recordings:
         raise NoRecordError(
             f"holds {' and '.join(others) or 'nothing'}; expected accelerations: take the file that has them"
@@ -110,13 +112,13 @@ def _beside(recording: Recording, series: re.Match[str], values: Samples) -> Rec
     return replace(recording, displacements=given) if what.startswith("dis") else recording
 
 
-def _header(lines: list[str], at: int) -> _Header:
-    """Return the header that begins at ``lines[at]``."""
-    title = match_line(_TITLE, lines, at, "Corrected acceleration    (Format v01.20 with 13 text lines)")
+def _header(lines: list[str], start: int) -> _Header:
+    """Return the header that begins at ``lines[start]``."""
+    title = match_line(_TITLE, lines, start, "Corrected acceleration    (Format v01.20 with 13 text lines)")
     if "spectr" in title["what"].lower():
-        raise NoRecordError(f"line {at + 1}: spectra; expected accelerations: take the V2 file of this record")
-    end = at + int(title["lines"])
-    text = [line_at(lines, i) for i in range(at, end)]
+        raise NoRecordError(f"line {start + 1}: spectra; expected accelerations: take the V2 file of this record")
+    end = start + int(title["lines"])
+    text = [line_at(lines, i) for i in range(start, end)]
     numbers = []
     for what in ("Integer", "Real"):
         said = match_line(_NUMBERS, lines, end, f"100 {what}-header values follow on … lines, Format= …")
@@ -134,38 +136,38 @@ def _header(lines: list[str], at: int) -> _Header:
         integers=[int(value) for value in numbers[0]],
         reals=[float(value) for value in numbers[1]],
         comments="\n".join(lines[end + 1 : end + 1 + comments]),
-        unknown=number_in(unknown["real"], at + len(text) - 1) if unknown else -999.0,
+        unknown=number_in(unknown["real"], start + len(text) - 1) if unknown else -999.0,
         end=end + 1 + comments,
     )
 
 
-def _layout(text: str, at: int) -> tuple[int, int]:
+def _layout(text: str, index: int) -> tuple[int, int]:
     """Return width and numbers per line of a Fortran format such as 8F10.5 or 1PE15.6."""
     match = _FORMAT.fullmatch(text)
     width, per_line = (int(match["width"]), int(match["per_line"] or 1)) if match else (0, 0)
     if width < 1 or per_line < 1:
-        raise InputError(f'line {at + 1}: found the format "({text[:20]})"; expected one such as (8F10.5)')
+        raise InputError(f'line {index + 1}: found the format "({text[:20]})"; expected one such as (8F10.5)')
     return width, per_line
 
 
-def _values(lines: list[str], at: int, series: re.Match[str]) -> tuple[Samples, int]:
-    """Return the values that ``lines[at]`` declares, and where the lines after their end begin."""
+def _values(lines: list[str], index: int, series: re.Match[str]) -> tuple[Samples, int]:
+    """Return the values that ``lines[index]`` declares, and where the lines after their end begin."""
     npts = int(series["npts"])
     if npts < 1:
-        raise InputError(f"line {at + 1}: found {npts} values; expected some")
-    values, end = fixed_numbers(lines, at + 1, npts, *_layout(series["format"], at))
+        raise InputError(f"line {index + 1}: found {npts} values; expected some")
+    values, end = fixed_numbers(lines, index + 1, npts, *_layout(series["format"], index))
     match_line(_END, lines, end, f"End-of-data … after {npts} values; fetch it again")
     return values, end + 1
 
 
-def _recording(header: _Header, series: re.Match[str], values: Samples, at: int) -> Recording:
-    """Return the accelerations that ``lines[at]`` declares, with what their header says; ``InputError`` if it contradicts."""
+def _recording(header: _Header, series: re.Match[str], values: Samples, index: int) -> Recording:
+    """Return the accelerations that ``lines[index]`` declares, with what their header says; ``InputError`` if it contradicts."""
     interval = header.reals[61]
     dt = float(f"{interval / 1000:.12g}")
     seconds = int(series["seconds"])
     if not 0 < interval < 1e5 or abs(len(values) * dt - seconds) > 1 + 0.01 * seconds:
         raise InputError(
-            f"line {at + 1}: {len(values)} values in approximately {seconds} s, but an interval of {interval:g} ms "
+            f"line {index + 1}: {len(values)} values in approximately {seconds} s, but an interval of {interval:g} ms "
             "(real number 62 of the header); expected both to agree"
         )
     peak = header.reals[63]
@@ -188,7 +190,7 @@ def _recording(header: _Header, series: re.Match[str], values: Samples, at: int)
         label=_label(header, channel),
         dt=dt,
         values=values,
-        unit=_unit(header, series, at),
+        unit=_unit(header, series, index),
         station=f"{network}-{station}, {where}" if station else "",
         codes=(network, station, location, channel),
         start=moment(year, month, day, hour, minute, header.reals[29]),
@@ -213,13 +215,13 @@ def _initial(header: _Header) -> Initial | None:
     return Initial(velocity / 100, 0.0 if displacement == header.unknown else displacement / 100)
 
 
-def _unit(header: _Header, series: re.Match[str], at: int) -> str:
+def _unit(header: _Header, series: re.Match[str], index: int) -> str:
     """Return the unit of the accelerations, by its code, which the header and the text must confirm."""
     code, text = int(series["code"]), series["unit"]
     unit = _UNITS.get(code)
     if unit is None:
         raise InputError(
-            f'line {at + 1}: found the unit "{text}({code:02d})"; expected cm/sec2(04), g(02) or gal(10): '
+            f'line {index + 1}: found the unit "{text}({code:02d})"; expected cm/sec2(04), g(02) or gal(10): '
             "take the V1 or V2 file of this record"
         )
     try:
@@ -228,7 +230,7 @@ def _unit(header: _Header, series: re.Match[str], at: int) -> str:
         as_said = False
     if not as_said or header.integers[2] not in (code, int(header.unknown)):
         raise InputError(
-            f'line {at + 1}: found the unit "{text}({code:02d})", and code {header.integers[2]} as integer 3 of the '
+            f'line {index + 1}: found the unit "{text}({code:02d})", and code {header.integers[2]} as integer 3 of the '
             "header; expected them to agree"
         )
     return unit

@@ -59,28 +59,30 @@ def parse(text: str) -> list[Recording]:
     return one_after_another(text, _channel)
 
 
-def _volume(lines: list[str], at: int) -> int | None:
-    """Return the volume of the channel that begins at ``lines[at]``: each has one title more above that of Volume 1."""
-    return next((i + 1 for i in range(3) if _TITLE.match(line_at(lines, at + i))), None)
+def _volume(lines: list[str], first: int) -> int | None:
+    """Return the volume of the channel that begins at ``lines[first]``: each has one title more above that of Volume 1."""
+    return next((i + 1 for i in range(3) if _TITLE.match(line_at(lines, first + i))), None)
 
 
-def _channel(lines: list[str], at: int) -> tuple[Recording, int]:
-    """Return the channel whose title is ``lines[at]``, and where the next one begins."""
-    volume = _volume(lines, at)
+def _channel(lines: list[str], first: int) -> tuple[Recording, int]:
+    """Return the channel whose title is ``lines[first]``, and where the next one begins."""
+    volume = _volume(lines, first)
     if volume is None:
-        raise InputError(f'line {at + 1}: found "{lines[at].strip()[:60]}"; expected "Uncorrected accelerogram data"')
+        raise InputError(
+            f'line {first + 1}: found "{lines[first].strip()[:60]}"; expected "Uncorrected accelerogram data"'
+        )
     if volume == 3:
         raise NoRecordError(
-            f"line {at + 1}: Volume 3, spectra; expected accelerations: take the .V2 file of this record"
+            f"line {first + 1}: Volume 3, spectra; expected accelerations: take the .V2 file of this record"
         )
-    header = at + volume - 1
-    said, peak = read_header(lines, header, _TEXT), read_header(lines, at, _PEAK[volume])
+    header = first + volume - 1
+    said, peak = read_header(lines, header, _TEXT), read_header(lines, first, _PEAK[volume])
     station, place, coded = said["station"], said["place"], bool(said["code"])
     location = said["location"].strip("-")
     record = line_at(lines, header + 3).split("  ")[0].strip()
-    dt, series, end = declared_series(lines, at + _DATA[volume])
+    dt, series, end = declared_series(lines, first + _DATA[volume])
     values, unit = series["acc"]
-    _check_again(lines, at, volume, len(values), dt)
+    _check_again(lines, first, volume, len(values), dt)
     event, date, name = (line_at(lines, header + i) for i in (1, 2, 5))
     return (
         Recording(
@@ -116,17 +118,17 @@ def _left(line: str) -> str:
     return re.split(r"   |\(", line)[0]
 
 
-def _check_again(lines: list[str], at: int, volume: int, npts: int, dt: float) -> None:
+def _check_again(lines: list[str], first: int, volume: int, npts: int, dt: float) -> None:
     """Raise ``InputError`` where the header's text contradicts the line that declares the data."""
     for offset, pattern, _ in _AGAIN[volume]:
-        said = pattern.search(line_at(lines, at + offset))
+        said = pattern.search(line_at(lines, first + offset))
         if said is None:
             continue
         key, text = next(iter(said.groupdict().items()))
         declared = {"npts": npts, "rate": 1.0 / dt, "dt": dt}[key]
-        if abs(number_in(text, at + offset) - declared) > 1e-6 * declared:
+        if abs(number_in(text, first + offset) - declared) > 1e-6 * declared:
             raise InputError(
-                f'line {at + offset + 1}: "{said[0].strip()}" contradicts line {at + _DATA[volume] + 1}: '
+                f'line {first + offset + 1}: "{said[0].strip()}" contradicts line {first + _DATA[volume] + 1}: '
                 f"{npts} points at intervals of {dt:g} s"
             )
 

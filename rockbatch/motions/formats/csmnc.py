@@ -42,12 +42,12 @@ def parse(text: str) -> list[Recording]:
         raise NoRecordError(f'found "{kind["what"]}"; expected accelerations: take the file that has them')
     label = line_with(_COMPONENT, lines, _MOST, "COMP. EW")[1]["label"]
     station = line_with(_STATION, lines, _MOST, "STATION: …")[1]["code"]
-    at, count = line_with(_COUNT, lines, _MOST, "NO. OF POINTS: … EQUALLY SPACED INTERVALS OF: … SEC")
-    npts, dt = int(count["npts"]), number_in(count["dt"], at)
+    index, count = line_with(_COUNT, lines, _MOST, "NO. OF POINTS: … EQUALLY SPACED INTERVALS OF: … SEC")
+    npts, dt = int(count["npts"]), number_in(count["dt"], index)
     if npts < 2 or not 0 < dt < 10:
-        raise InputError(f'line {at + 1}: found "{count[0].strip()}"; expected two points or more and an interval')
-    first = next((i for i in range(at + 1, min(len(lines), _MOST + 1)) if _NUMBERS.fullmatch(lines[i])), at + 1)
-    peak, place = search_lines(_PEAK, lines[at:first]), search_lines(_POINT, lines[:_MOST])
+        raise InputError(f'line {index + 1}: found "{count[0].strip()}"; expected two points or more and an interval')
+    first = next((i for i in range(index + 1, min(len(lines), _MOST + 1)) if _NUMBERS.fullmatch(lines[i])), index + 1)
+    peak, place = search_lines(_PEAK, lines[index:first]), search_lines(_POINT, lines[:_MOST])
     return [
         Recording(
             label=label,

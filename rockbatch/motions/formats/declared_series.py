@@ -23,13 +23,13 @@ _WORDS = {"acc": "accel", "vel": "veloc", "dis": "displ"}
 _FORMAT = re.compile(r"\((?P<per_line>[0-9]{1,2})f(?P<width>[0-9]{1,2})\.[0-9]{1,2}\)", re.IGNORECASE)
 
 
-def declared_series(lines: list[str], at: int) -> tuple[float, dict[str, Series], int]:
+def declared_series(lines: list[str], start: int) -> tuple[float, dict[str, Series], int]:
     """Return the interval [s], the series by kind ("acc", "vel", "dis"), and where the lines after them begin.
 
-    ``lines[at]`` declares the accelerations; the others are there if their lines follow. Raises ``InputError`` with the
+    ``lines[start]`` declares the accelerations; the others are there if their lines follow. Raises ``InputError`` with the
     line where one is not whole.
     """
-    _, dt, accelerations, end = _block(lines, at, ("acc",))
+    _, dt, accelerations, end = _block(lines, start, ("acc",))
     series = {"acc": accelerations}
     while _SPACING.match(line_at(lines, end)):
         what, _, values, end = _block(lines, end, ("vel", "dis"))
@@ -37,26 +37,28 @@ def declared_series(lines: list[str], at: int) -> tuple[float, dict[str, Series]
     return dt, series, end
 
 
-def _block(lines: list[str], at: int, expected: tuple[str, ...]) -> tuple[str, float, Series, int]:
-    """Return what the series that ``lines[at]`` declares is, its interval [s], the values with their unit, and its end.
+def _block(lines: list[str], start: int, expected: tuple[str, ...]) -> tuple[str, float, Series, int]:
+    """Return what the series that ``lines[start]`` declares is, its interval [s], the values with their unit, and its end.
 
     Raises ``InputError`` where it is not one of those ``expected``.
     """
-    line = match_line(_SPACING, lines, at, "… points of accel data equally spaced at … sec. (units: …)")
+    line = match_line(_SPACING, lines, start, "… points of accel data equally spaced at … sec. (units: …)")
     what = (line["what"] or "acc").lower()
     unit, layout = _UNIT.search(line["rest"]), _FORMAT.search(line["rest"])
     npts = int(line["npts"])
-    step = number_in(line["rate"] or line["dt"], at)
+    step = number_in(line["rate"] or line["dt"], start)
     if what not in expected or unit is None or npts < 1 or not 1e-6 < step < 1e6:
         raise InputError(
-            f'line {at + 1}: found "{line[0].strip()[:75]}"; expected a count, an interval and a unit of '
+            f'line {start + 1}: found "{line[0].strip()[:75]}"; expected a count, an interval and a unit of '
             f"{' or '.join(_WORDS[word] for word in expected)}"
         )
     if layout:
         per_line, width = int(layout["per_line"]), int(layout["width"])
     else:  # before formats were declared: 8F9.6 or 8F10.3, which the first line tells
-        per_line, width = _PER_LINE, len(line_at(lines, at + 1).rstrip()) // min(_PER_LINE, npts)
+        per_line, width = _PER_LINE, len(line_at(lines, start + 1).rstrip()) // min(_PER_LINE, npts)
     if per_line < 1 or width < 2:
-        raise InputError(f'line {at + 2}: found "{line_at(lines, at + 1)[:40]}"; expected numbers in equal columns')
-    values, end = fixed_numbers(lines, at + 1, npts, width, per_line)
+        raise InputError(
+            f'line {start + 2}: found "{line_at(lines, start + 1)[:40]}"; expected numbers in equal columns'
+        )
+    values, end = fixed_numbers(lines, start + 1, npts, width, per_line)
     return what, float(f"{1.0 / step:.12g}") if line["rate"] else step, (values, unit["unit"]), end

@@ -42,13 +42,13 @@ def one_after_another(text: str, channel: Callable[[list[str], int], tuple[T, in
     """
     lines = lines_of(text)
     channels = []
-    at = 0
-    while at < len(lines):
-        if lines[at].strip():
-            one, at = channel(lines, at)
-            channels.append(one)
+    index = 0
+    while index < len(lines):
+        if lines[index].strip():
+            recording, index = channel(lines, index)
+            channels.append(recording)
         else:
-            at += 1
+            index += 1
     if not channels:
         raise InputError("the file is empty")
     return channels
@@ -67,11 +67,11 @@ def fixed_numbers(lines: Sequence[str], first: int, count: int, width: int, per_
             "it is cut; fetch it again"
         )
 
-    def fields(line: str, at: int, expected: int) -> list[str]:
+    def fields(line: str, index: int, expected: int) -> list[str]:
         line = line.rstrip()
         if len(line) != expected * width:
             raise InputError(
-                f'line {at + 1}: found "{line[:40]}…", {len(line)} characters; '
+                f'line {index + 1}: found "{line[:40]}…", {len(line)} characters; '
                 f"expected {expected} values of {width} characters each"
             )
         return [line[k : k + width] for k in range(0, len(line), width)]
@@ -85,9 +85,9 @@ def _numbers(
     """Return the numbers of lines that begin with number ``first``; ``fields`` takes a line, its index, and how many it has."""
     values = np.empty(count)
     for i, line in enumerate(lines):
-        at = i * per_line
-        row = fields(line, first + i, min(per_line, count - at))
-        values[at : at + per_line] = [number_in(field, first + i) for field in row]
+        place = i * per_line
+        row = fields(line, first + i, min(per_line, count - place))
+        values[place : place + per_line] = [number_in(field, first + i) for field in row]
     return values
 
 
@@ -112,22 +112,22 @@ def spaced_numbers(lines: Sequence[str], first: int, count: int, per_line: int) 
             "fetch the file again"
         )
 
-    def fields(line: str, at: int, expected: int) -> list[str]:
+    def fields(line: str, index: int, expected: int) -> list[str]:
         row = line.split()
         if len(row) != expected:
-            raise InputError(f"line {at + 1}: found {len(row)} numbers; expected {expected}")
+            raise InputError(f"line {index + 1}: found {len(row)} numbers; expected {expected}")
         return row
 
     values = _numbers(lines[first:end], first, count, per_line, fields)
-    if is_cut_short(field for at in range(end - 1, first - 1, -1) for field in reversed(lines[at].split())):
+    if is_cut_short(field for index in range(end - 1, first - 1, -1) for field in reversed(lines[index].split())):
         raise InputError(
             f'line {end}: found "{lines[end - 1].split()[-1][:40]}", shorter than all others: the file is cut'
         )
     return values
 
 
-def number_in(field: str, at: int) -> float:
-    """Return the number in a field of the line with index ``at``, Fortran's D exponents included; else ``InputError``."""
+def number_in(field: str, index: int) -> float:
+    """Return the number in a field of the line with index ``index``, Fortran's D exponents included; else ``InputError``."""
     try:
         if "_" in field:  # Python would read 1_0 as ten
             raise ValueError
@@ -135,7 +135,7 @@ def number_in(field: str, at: int) -> float:
     except ValueError:
         value = np.nan
     if not abs(value) < HUGE:
-        raise InputError(f'line {at + 1}: found "{field.strip()[:40]}"; expected a number')
+        raise InputError(f'line {index + 1}: found "{field.strip()[:40]}"; expected a number')
     return value
 
 

@@ -50,31 +50,31 @@ def parse(text: str) -> list[Recording]:
     return one_after_another(text, _component)
 
 
-def _component(lines: list[str], at: int) -> tuple[Recording, int]:
-    """Return the component whose title is ``lines[at]``, and where the next one begins.
+def _component(lines: list[str], first_line: int) -> tuple[Recording, int]:
+    """Return the component whose title is ``lines[first_line]``, and where the next one begins.
 
     The header has the time of the recorder's first sample, the year to the hour at the end of its first two lines of
     integers, minute and ms at the end of the fourth. Corrected data begin some s of padding earlier.
     """
-    said = read_header(lines, at, _TEXT)
-    integers = [int(n) for n in fixed_numbers(lines, at + _INTEGERS, 40, _WIDTH, _PER_LINE)[0]]
-    reals, _ = fixed_numbers(lines, at + _REALS + 2, 10, _WIDTH, _PER_LINE)
-    npts, duration, dt = int(said["npts"]), number_in(said["duration"], at + 9), float(reals[5])
+    said = read_header(lines, first_line, _TEXT)
+    integers = [int(n) for n in fixed_numbers(lines, first_line + _INTEGERS, 40, _WIDTH, _PER_LINE)[0]]
+    reals, _ = fixed_numbers(lines, first_line + _REALS + 2, 10, _WIDTH, _PER_LINE)
+    npts, duration, dt = int(said["npts"]), number_in(said["duration"], first_line + 9), float(reals[5])
     counts = integers[33:36]
     if npts < 1 or counts[0] != npts or min(counts) < 0:
         raise InputError(
-            f"line {at + 10} says {npts} points, line {at + _INTEGERS + 4} {counts} accelerations, velocities and "
-            "displacements; expected the same number above 0"
+            f"line {first_line + 10} says {npts} points, line {first_line + _INTEGERS + 4} {counts} accelerations, velocities "
+            "and displacements; expected the same number above 0"
         )
     if not dt > 0 or abs(npts * dt - duration) > dt + 0.01:
         raise InputError(
-            f"line {at + 10} says {npts} points in {duration:g} s, line {at + _REALS + 3} an interval of {dt:g} s"
+            f"line {first_line + 10} says {npts} points in {duration:g} s, line {first_line + _REALS + 3} an interval of {dt:g} s"
         )
     factor, unit = 1.0, said["of_peak"]
     if said["un"]:
-        raw = read_header(lines, at, _OF_RAW)
-        factor, unit = number_in(raw["factor"], at + 10), raw["unit"]
-    blocks, end = [], at + _DATA
+        raw = read_header(lines, first_line, _OF_RAW)
+        factor, unit = number_in(raw["factor"], first_line + 10), raw["unit"]
+    blocks, end = [], first_line + _DATA
     for n in counts:
         block, end = fixed_numbers(lines, end, n, _WIDTH, _PER_LINE)
         blocks.append(block)
@@ -90,11 +90,11 @@ def _component(lines: list[str], at: int) -> tuple[Recording, int]:
         processed=not said["un"],
         seat=Seat(site, "NZ", said["id"].rpartition("_")[2][:2]),
         event=said["id"],
-        origin=origin_of(line_at(lines, at + 6), lines[at + 2] or site, line_at(lines, at + 7)),
+        origin=origin_of(line_at(lines, first_line + 6), lines[first_line + 2] or site, line_at(lines, first_line + 7)),
         velocities=(blocks[1], said["velocity"]) if said["velocity"] and len(blocks[1]) else None,
         displacements=(blocks[2], said["displacement"]) if said["displacement"] and len(blocks[2]) else None,
         stated_peak=(said["peak"], said["of_peak"]),
-        header={"accelerogram": said["id"], "site": lines[at + 2].strip()},
+        header={"accelerogram": said["id"], "site": lines[first_line + 2].strip()},
     )
     return recording, end
 

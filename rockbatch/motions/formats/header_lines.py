@@ -17,17 +17,17 @@ _MONTHS = {name: i for i, names in enumerate(
 ) for name in names.split()}  # fmt: skip
 
 
-def match_line(pattern: re.Pattern[str], lines: Sequence[str], at: int, expected: str) -> re.Match[str]:
-    """Return the match of ``pattern`` in ``lines[at]``; ``InputError`` where the line is another one, or none."""
-    match = pattern.search(line_at(lines, at))
+def match_line(pattern: re.Pattern[str], lines: Sequence[str], index: int, expected: str) -> re.Match[str]:
+    """Return the match of ``pattern`` in ``lines[index]``; ``InputError`` where the line is another one, or none."""
+    match = pattern.search(line_at(lines, index))
     if match is None:
-        raise _other(lines, at, f'"{expected}"')
+        raise _other(lines, index, f'"{expected}"')
     return match
 
 
-def _other(lines: Sequence[str], at: int, expected: str) -> InputError:
-    what = f'"{line_at(lines, at).strip()[:60]}"' if at < len(lines) else "the end of the file"
-    return InputError(f"line {at + 1}: found {what}; expected {expected}")
+def _other(lines: Sequence[str], index: int, expected: str) -> InputError:
+    what = f'"{line_at(lines, index).strip()[:60]}"' if index < len(lines) else "the end of the file"
+    return InputError(f"line {index + 1}: found {what}; expected {expected}")
 
 
 Line = tuple[int, re.Pattern[str], str]
@@ -38,30 +38,30 @@ def layout(*lines: tuple[int, str, str]) -> tuple[Line, ...]:
 
     The look is an example for messages; a line without one may be any other.
     """
-    return tuple((offset, re.compile(pattern), look) for offset, pattern, look in lines)
+    return tuple((offset, re.compile(pattern), example) for offset, pattern, example in lines)
 
 
-def read_header(lines: Sequence[str], at: int, layout: Sequence[Line]) -> dict[str, str]:
-    """Return the groups of the lines of a header that begins at ``lines[at]``, "" for those that are not in them.
+def read_header(lines: Sequence[str], start: int, layout: Sequence[Line]) -> dict[str, str]:
+    """Return the groups of the lines of a header that begins at ``lines[start]``, "" for those that are not in them.
 
     Raises ``InputError`` with the line where one that is needed is another one, or none.
     """
     groups: dict[str, str] = {}
     for offset, pattern, expected in layout:
         match = (
-            match_line(pattern, lines, at + offset, expected)
+            match_line(pattern, lines, start + offset, expected)
             if expected
-            else pattern.search(line_at(lines, at + offset))
+            else pattern.search(line_at(lines, start + offset))
         )
         groups |= {name: (match[name] or "" if match else "") for name in pattern.groupindex}
     return groups
 
 
-def past_mark(lines: Sequence[str], at: int, after: str) -> int:
-    """Return where the lines behind the mark "/&" at ``lines[at]`` begin; ``InputError`` where it is not ``after`` its data."""
-    if not line_at(lines, at).startswith("/&"):
-        raise _other(lines, at, f'"/&" after {after}; fetch it again')
-    return at + 1
+def past_mark(lines: Sequence[str], start: int, after: str) -> int:
+    """Return the index behind the mark "/&" at ``lines[start]``; ``InputError`` unless it stands there, ``after`` its data."""
+    if not line_at(lines, start).startswith("/&"):
+        raise _other(lines, start, f'"/&" after {after}; fetch it again')
+    return start + 1
 
 
 def search_lines(pattern: re.Pattern[str], lines: Sequence[str]) -> re.Match[str] | None:
@@ -71,17 +71,17 @@ def search_lines(pattern: re.Pattern[str], lines: Sequence[str]) -> re.Match[str
 
 def line_with(pattern: re.Pattern[str], lines: Sequence[str], most: int, expected: str) -> tuple[int, re.Match[str]]:
     """Return index and match of the first of ``most`` lines that ``pattern`` is in; ``InputError`` where it is in none."""
-    for at in range(min(most, len(lines))):
-        if match := pattern.search(line_at(lines, at)):
-            return at, match
+    for index in range(min(most, len(lines))):
+        if match := pattern.search(line_at(lines, index)):
+            return index, match
     raise InputError(f'no line "{expected}" in the first {most} lines')
 
 
 def keys_of(lines: Sequence[str]) -> dict[str, str]:
     """Return the values of header lines ``KEY : value``, the first of each key; other lines are skipped."""
     header: dict[str, str] = {}
-    for at in range(len(lines)):
-        key, colon, value = line_at(lines, at).partition(":")
+    for index in range(len(lines)):
+        key, colon, value = line_at(lines, index).partition(":")
         if colon and key.strip():
             header.setdefault(key.strip(), value.strip())
     return header
@@ -113,9 +113,9 @@ def count_and_step(header: Mapping[str, str], count: str, step: str) -> tuple[in
     return int(npts), dt
 
 
-def line_at(lines: Sequence[str], at: int) -> str:
-    """Return ``lines[at]`` as far as a header goes; empty after the last line."""
-    return lines[at][:_LONGEST_OF_HEADER] if at < len(lines) else ""
+def line_at(lines: Sequence[str], index: int) -> str:
+    """Return ``lines[index]`` as far as a header goes; empty after the last line."""
+    return lines[index][:_LONGEST_OF_HEADER] if index < len(lines) else ""
 
 
 def date_in(text: str) -> tuple[int, int, int] | None:

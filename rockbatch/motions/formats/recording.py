@@ -92,7 +92,7 @@ def _component(file: RecordFile, recording: Recording, name: str, source: str) -
     except ValueError as error:
         raise InputError(f'component "{recording.label}": {error}') from None
     acceleration = recording.values * factor
-    series = [_in_metres(each) for each in (recording.velocities, recording.displacements)]
+    series = [_in_metres(samples) for samples in (recording.velocities, recording.displacements)]
     return Component(
         name=name,
         dt=recording.dt,

@@ -50,18 +50,18 @@ def parse(text: str) -> list[Recording]:
     return recordings
 
 
-def _channel(lines: list[str], at: int) -> tuple[tuple[Recording, float], int]:
-    """Return the channel whose title is ``lines[at]``, its first time [s], and where the next one begins."""
-    said = read_header(lines, at, _TEXT)
+def _channel(lines: list[str], start: int) -> tuple[tuple[Recording, float], int]:
+    """Return the channel whose title is ``lines[start]``, its first time [s], and where the next one begins."""
+    said = read_header(lines, start, _TEXT)
     npts, label = int(said["npts"]), said["label"]
     if npts < 2:
-        raise InputError(f"line {at + 11}: found {npts} points; expected at least two")
-    numbers, end = fixed_numbers(lines, at + _HEADER, 2 * npts, _WIDTH, _PER_LINE)
+        raise InputError(f"line {start + 11}: found {npts} points; expected at least two")
+    numbers, end = fixed_numbers(lines, start + _HEADER, 2 * npts, _WIDTH, _PER_LINE)
     end, pairs = past_mark(lines, end, f"{npts} pairs"), numbers.reshape(npts, 2)
-    dt, values, notes = from_pairs(pairs, f"channel {label} from line {at + 1} on")
+    dt, values, notes = from_pairs(pairs, f"channel {label} from line {start + 1} on")
     first, trigger = float(pairs[0, 0]), moment_of(said)
     known = trigger is not None and "-".join(said[part].lstrip("0") for part in ("year", "month", "day")) != _NOT_SET
-    event, station = lines[at + 1], lines[at + 5].strip()
+    event, station = lines[start + 1], lines[start + 5].strip()
     recording = Recording(
         label=label,
         dt=dt,
@@ -72,7 +72,7 @@ def _channel(lines: list[str], at: int) -> tuple[tuple[Recording, float], int]:
         processed=False,
         seat=Seat(station.upper()),
         event=event,
-        origin=origin_of(event, lines[at + 5]),
+        origin=origin_of(event, lines[start + 5]),
         stated_peak=(said["peak"], "g"),
         as_read=pairs[:, 1],
         notes=notes,

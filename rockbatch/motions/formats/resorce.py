@@ -26,10 +26,10 @@ def is_resorce(head: bytes) -> bool:
 def parse(text: str) -> list[Recording]:
     """Return the recording of a file; ``InputError`` with the line, or the key, where it is not whole."""
     lines = lines_of(text)
-    at, unit = line_with(_UNIT, lines, 20, "Acceleration time series in m/s/s")
-    header = keys_of(lines[:at])
+    index, unit = line_with(_UNIT, lines, 20, "Acceleration time series in m/s/s")
+    header = keys_of(lines[:index])
     npts, dt = count_and_step(header, *_NEEDED[:2])
-    values, end = fixed_numbers(lines, at + 1, npts, _WIDTH, _PER_LINE)
+    values, end = fixed_numbers(lines, index + 1, npts, _WIDTH, _PER_LINE)
     refuse_more(lines, end, f"the {npts} declared values")
     if "Orientation" not in header:
         raise InputError("the header lacks Orientation")

@@ -36,7 +36,7 @@ def read_table(text: str, wrapped: bool = False) -> tuple[list[str], Samples]:
     """
     header: list[str] = []
     rest: list[float] = []
-    rows, at, width, end = array("d"), array("q"), 0, 0
+    rows, row_lines, width, end = array("d"), array("q"), 0, 0
     lines = lines_of(text)
     separators = _separators(text, lines)
     for i, line in enumerate(lines):
@@ -50,7 +50,7 @@ def read_table(text: str, wrapped: bool = False) -> tuple[list[str], Samples]:
             width = len(row)
             end = i + 1 + len(block) // width
             rows.extend(chain(row, block))
-            at.extend(range(i, end))
+            row_lines.extend(range(i, end))
         elif row and len(row) < width and not any(map(str.strip, lines[i + 1 :])):
             rest = row
         elif row:
@@ -70,11 +70,11 @@ def read_table(text: str, wrapped: bool = False) -> tuple[list[str], Samples]:
     table = np.array(rows).reshape(-1, width)
     wild = ~(np.abs(table) < HUGE).all(axis=1)
     if wild.any():
-        i = at[int(wild.argmax())]
+        i = row_lines[int(wild.argmax())]
         raise InputError(f'line {i + 1}: found "{lines[i].strip()[:60]}"; expected finite numbers')
-    if is_cut_short(lines[i].split()[-1].replace(",", ".") for i in reversed(at)):
+    if is_cut_short(lines[i].split()[-1].replace(",", ".") for i in reversed(row_lines)):
         raise InputError(
-            f"line {at[-1] + 1}: its last number is shorter than all others: the file is cut; fetch it again"
+            f"line {row_lines[-1] + 1}: its last number is shorter than all others: the file is cut; fetch it again"
         )
     return header, np.append(table.ravel(), rest).reshape(-1, 1) if wrapped else table
 

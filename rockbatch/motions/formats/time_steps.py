@@ -39,15 +39,15 @@ def on_even_steps(t: Samples, values: Samples) -> tuple[float, Samples, tuple[st
             f"(t = {t[odd]:g}); a gap is not filled, cut the record there or repair it"
         )
     for step in _candidates(t, usual):
-        at = np.concatenate([[0.0], np.cumsum(np.rint(steps / step))])
-        if at[-1] > _GROWTH * len(t) or np.diff(at).min() < 1:
+        counts = np.concatenate([[0.0], np.cumsum(np.rint(steps / step))])
+        if counts[-1] > _GROWTH * len(t) or np.diff(counts).min() < 1:
             continue
-        dt = _on_grid(t, at)
-        if dt is not None and len(at) == at[-1] + 1:
+        dt = _on_grid(t, counts)
+        if dt is not None and len(counts) == counts[-1] + 1:
             return dt, values, ()
         if dt is not None:
-            added = int(at[-1]) + 1 - len(t)
-            even = _interpolated(np.arange(at[-1] + 1), at, values)
+            added = int(counts[-1]) + 1 - len(t)
+            even = _interpolated(np.arange(counts[-1] + 1), counts, values)
             return dt, even, (_said(shortest, longest, dt, f"{added} samples put between, none lost"),)
     count = int(np.ceil((t[-1] - t[0]) / shortest * (1 - 1e-9)))
     if count > _GROWTH * len(t):
@@ -88,12 +88,12 @@ def _candidates(t: Samples, usual: float) -> list[float]:
     return steps
 
 
-def _on_grid(t: Samples, at: Samples) -> float | None:
+def _on_grid(t: Samples, counts: Samples) -> float | None:
     """Return the step of the even grid on which sample i has the number at[i]; ``None`` where the times are off it."""
-    dt = float(t[-1] - t[0]) / float(at[-1])
+    dt = float(t[-1] - t[0]) / float(counts[-1])
     printed = _resolution(t)
     allowed = _EVEN * dt if printed > _COARSEST * dt else max(_EVEN * dt, printed)
-    off = float(np.abs(t - (t[0] + dt * at)).max())
+    off = float(np.abs(t - (t[0] + dt * counts)).max())
     return float(f"{dt:.12g}") if off <= allowed else None
 
 
@@ -107,9 +107,9 @@ def _resolution(t: Samples) -> float:
     return 0.0
 
 
-def _interpolated(where: Samples, at: Samples, values: Samples) -> Samples:
-    """Return ``values`` of samples ``at``, linearly at ``where``, channel by channel."""
-    return np.column_stack([np.interp(where, at, channel) for channel in values.T])
+def _interpolated(where: Samples, counts: Samples, values: Samples) -> Samples:
+    """Return ``values`` of samples ``counts``, linearly at ``where``, channel by channel."""
+    return np.column_stack([np.interp(where, counts, channel) for channel in values.T])
 
 
 def _said(shortest: float, longest: float, dt: float, effect: str) -> str:

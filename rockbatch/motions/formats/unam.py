@@ -49,8 +49,8 @@ def is_unam(head: bytes) -> bool:
 def parse(text: str) -> list[Recording]:
     """Return the channels; ``InputError`` with the line, or the key, where the file is not whole."""
     lines = lines_of(text)
-    at, _ = line_with(_DATA, lines, _MOST, "DATOS DE ACELERACION:")
-    header = _header(lines[:at])
+    index, _ = line_with(_DATA, lines, _MOST, "DATOS DE ACELERACION:")
+    header = _header(lines[:index])
     channels = number_of(header, "NUMERO DE CANALES")
     if not 1 <= channels <= _MOST_CHANNELS or channels != int(channels):
         raise InputError(f"the header says NUMERO DE CANALES: {channels:g}; expected 1 to {_MOST_CHANNELS}")
@@ -59,7 +59,7 @@ def parse(text: str) -> list[Recording]:
     count = int(channels)
     ways = [way.partition(";")[::2] for way in _each(header, "ORIENTACION C1-C6", count)]
     npts, dt = count_and_step({key: _same(header, key, count) for key in (_COUNT, _STEP)}, _COUNT, _STEP)
-    first = _first(lines, at, [way.strip() for way, _ in ways])
+    first = _first(lines, index, [way.strip() for way, _ in ways])
     values, more = _values(lines, first, npts, count, header["FORMATO DATOS"])
     peaks = header["ACEL. MAX.(Gal), C1-C6"].strip("/ ").split("/")
     station, date, name = (header[key] for key in ("CLAVE DE LA ESTACION", "FECHA DEL SISMO", "NOMBRE DE LA ESTACION"))
@@ -117,16 +117,16 @@ def _same(header: dict[str, str], key: str, count: int) -> str:
     return texts.pop()
 
 
-def _first(lines: list[str], at: int, ways: list[str]) -> int:
+def _first(lines: list[str], start: int, ways: list[str]) -> int:
     """Return the index of the first sample's line, behind rulers and the directions, which must be those of the header."""
     named = False
-    for i in range(at + 1, min(at + _BEHIND, len(lines))):
+    for i in range(start + 1, min(start + _BEHIND, len(lines))):
         words = [word.partition(";")[0] for word in lines[i].split()]
         if words == ways:
             named = True
         elif named and words and lines[i].strip("-+= "):
             return i
-    raise InputError(f"line {at + 4}: expected the directions {' '.join(ways)}, as the header has them, and samples")
+    raise InputError(f"line {start + 4}: expected the directions {' '.join(ways)}, as the header has them, and samples")
 
 
 def _values(lines: list[str], first: int, npts: int, channels: int, layout: str) -> tuple[Samples, int]:
@@ -141,19 +141,21 @@ def _values(lines: list[str], first: int, npts: int, channels: int, layout: str)
             f"{npts} samples from line {first + 1} on, but the file ends with line {len(lines)}: it is cut; fetch it again"
         )
     if len(rows) > npts + _MOST_MORE:
-        at = rows[npts]
-        raise InputError(f'line {at + 1}: found "{lines[at][:40]}" after the {npts} declared samples')
+        index = rows[npts]
+        raise InputError(f'line {index + 1}: found "{lines[index][:40]}" after the {npts} declared samples')
     values = [_row(lines[i].rstrip(), i, width, channels) for i in rows]
     return np.array(values[:npts]), len(rows) - npts
 
 
-def _row(line: str, at: int, width: int, channels: int) -> list[float]:
+def _row(line: str, index: int, width: int, channels: int) -> list[float]:
     """Return the numbers of a line, in columns of the declared width, or else between blanks."""
     in_columns = len(line) == width * channels
     fields = [line[k : k + width] for k in range(0, len(line), width)] if in_columns else line.split()
     if len(fields) != channels:
-        raise InputError(f'line {at + 1}: found "{line[:40]}"; expected {channels} values of {width} characters each')
-    return [number_in(field, at) for field in fields]
+        raise InputError(
+            f'line {index + 1}: found "{line[:40]}"; expected {channels} values of {width} characters each'
+        )
+    return [number_in(field, index) for field in fields]
 
 
 def _start(header: dict[str, str]) -> float | None:

@@ -55,12 +55,12 @@ def parse(text: str) -> list[Recording]:
     return one_after_another(text, _channel)
 
 
-def _channel(lines: list[str], at: int) -> tuple[Recording, int]:
-    """Return the channel whose title is ``lines[at]``, and where the next one begins."""
-    corrected = _CORRECTED.search(line_at(lines, at)) is not None
-    header = at + corrected
+def _channel(lines: list[str], start: int) -> tuple[Recording, int]:
+    """Return the channel whose title is ``lines[start]``, and where the next one begins."""
+    corrected = _CORRECTED.search(line_at(lines, start)) is not None
+    header = start + corrected
     said = read_header(lines, header, _TEXT)
-    series, end = (_corrected if corrected else _uncorrected)(lines, at, said)
+    series, end = (_corrected if corrected else _uncorrected)(lines, start, said)
     event, date, name = (line_at(lines, header + i)[:70].strip() for i in (1, 2, 5))
     recording = Recording(
         label=said["label"],
@@ -76,30 +76,30 @@ def _channel(lines: list[str], at: int) -> tuple[Recording, int]:
     return recording, end + line_at(lines, end).startswith("/&")
 
 
-def _uncorrected(lines: list[str], at: int, said: dict[str, str]) -> tuple[dict[str, Any], int]:
+def _uncorrected(lines: list[str], start: int, said: dict[str, str]) -> tuple[dict[str, Any], int]:
     """Return the samples of a channel of Volume I as fields of its recording, and where they end."""
-    npts, duration = int(said["npts"]), number_in(said["duration"], at + 10)
+    npts, duration = int(said["npts"]), number_in(said["duration"], start + 10)
     if npts < 2:
-        raise InputError(f"line {at + 11}: found {npts} points; expected at least two")
-    pairs, end = _pairs(lines, at + _HEADER[1], npts)
+        raise InputError(f"line {start + 11}: found {npts} points; expected at least two")
+    pairs, end = _pairs(lines, start + _HEADER[1], npts)
     if abs(pairs[-1, 0] - duration) > _LATE:
-        raise InputError(f"line {at + 11} says {duration:g} s, but the last time is {pairs[-1, 0]:g} s")
-    dt, values, notes = from_pairs(pairs, f"channel {said['label']} from line {at + 1} on")
+        raise InputError(f"line {start + 11} says {duration:g} s, but the last time is {pairs[-1, 0]:g} s")
+    dt, values, notes = from_pairs(pairs, f"channel {said['label']} from line {start + 1} on")
     return {"dt": dt, "values": values, "unit": said["unit"], "notes": notes}, end
 
 
-def _corrected(lines: list[str], at: int, _said: dict[str, str]) -> tuple[dict[str, Any], int]:
+def _corrected(lines: list[str], start: int, _said: dict[str, str]) -> tuple[dict[str, Any], int]:
     """Return likewise those of Volume II, which its text has to agree with."""
-    again = read_header(lines, at, _AGAIN)
-    dt, series, end = declared_series(lines, at + _HEADER[2])
+    repeated = read_header(lines, start, _AGAIN)
+    dt, series, end = declared_series(lines, start + _HEADER[2])
     values, unit = series["acc"]
-    if int(again["npts"]) != len(values) or abs(number_in(again["dt"], at + 16) - dt) > 1e-6 * dt:
+    if int(repeated["npts"]) != len(values) or abs(number_in(repeated["dt"], start + 16) - dt) > 1e-6 * dt:
         raise InputError(
-            f"lines {at + 16} and {at + 17} say {again['npts']} points at {again['dt']} s, but line {at + _HEADER[2] + 1} "
-            f"{len(values)} at {dt:g} s"
+            f"lines {start + 16} and {start + 17} say {repeated['npts']} points at {repeated['dt']} s, "
+            f"but line {start + _HEADER[2] + 1} {len(values)} at {dt:g} s"
         )
     velocities, displacements = series.get("vel"), series.get("dis")
-    peak = (again["peak"], again["unit"].replace("CMS", "CM"))
+    peak = (repeated["peak"], repeated["unit"].replace("CMS", "CM"))
     fields = {"velocities": velocities, "displacements": displacements, "stated_peak": peak}
     return {"dt": dt, "values": values, "unit": unit} | fields, end
 

@@ -56,8 +56,8 @@ def sac(data: bytes) -> bytes:
     """Return a binary SAC file whose other header words, such as event and distance, are undefined."""
     if len(data) < _SAC_HEADER:
         raise InputError(f"holds {len(data)} bytes; a SAC header alone has {_SAC_HEADER}: the file is cut")
-    at = 4 * _SAC_INTEGERS["NVHDR"][0]
-    order = "<" if int.from_bytes(data[at : at + 4], "little") in (6, 7) else ">"
+    offset = 4 * _SAC_INTEGERS["NVHDR"][0]
+    order = "<" if int.from_bytes(data[offset : offset + 4], "little") in (6, 7) else ">"
     floats = np.frombuffer(data, f"{order}f4", _FLOATS)
     integers = np.frombuffer(data, f"{order}i4", _INTEGERS, 4 * _FLOATS)
     texts = np.frombuffer(data, "S8", 24, 4 * (_FLOATS + _INTEGERS))
@@ -82,7 +82,7 @@ def mseed(data: bytes) -> bytes:
     start = 0
     if data[6:7] in _CONTROL:
         length = 2 ** _volume_exponent(data)
-        kinds = (data[at + 6 : at + 7] for at in range(0, len(data), length))
+        kinds = (data[offset + 6 : offset + 7] for offset in range(0, len(data), length))
         start = length * next((i for i, kind in enumerate(kinds) if kind and kind in _DATA), len(data))
     _data_record(data[start : start + 2 ** max(_LENGTHS)])
     return data
@@ -90,17 +90,17 @@ def mseed(data: bytes) -> bytes:
 
 def _volume_exponent(data: bytes) -> int:
     """Return the power of 2 that is the length of a volume's records, by its first blockettes."""
-    at = 8
-    while _BLOCKETTE.match(data, at):
-        kind, length = data[at : at + 3], int(data[at + 3 : at + 7])
+    offset = 8
+    while _BLOCKETTE.match(data, offset):
+        kind, length = data[offset : offset + 3], int(data[offset + 3 : offset + 7])
         if kind in _LENGTH_IN:
-            said = data[at + 11 : at + 13]
+            said = data[offset + 11 : offset + 13]
             if not said.isdigit() or int(said) not in _LENGTHS:
                 raise InputError(f'SEED volume: records of 2^"{said.decode("latin-1")}" bytes; expected 07 to 20')
             return int(said)
         if length <= 7:
             raise InputError(f"SEED volume: a blockette of {length} bytes; expected more than 7: it is damaged")
-        at += length
+        offset += length
     raise InputError("SEED volume: no blockette tells the length of its records; fetch MiniSEED instead")
 
 
@@ -113,16 +113,16 @@ def _data_record(record: bytes) -> None:
     hour, minute, second = record[24:27]
     if hour > 23 or minute > 59 or second > 60 or not 1 <= header[11] <= 366:
         raise InputError(f"MiniSEED header: day {header[11]}, {hour}:{minute}:{second} is no time: it is damaged")
-    at, seen = int(header[23]), 0
-    while at:
-        if at < max(_FIXED, seen + 4) or at + 7 > len(record):
-            raise InputError(f"MiniSEED header: a blockette at byte {at}, after one at {seen}: it is damaged")
-        kind, following = (int(word) for word in np.frombuffer(record[at : at + 4], f"{order}u2"))
-        if kind == 1000 and record[at + 6] not in _LENGTHS:
+    offset, seen = int(header[23]), 0
+    while offset:
+        if offset < max(_FIXED, seen + 4) or offset + 7 > len(record):
+            raise InputError(f"MiniSEED header: a blockette at byte {offset}, after one at {seen}: it is damaged")
+        kind, following = (int(word) for word in np.frombuffer(record[offset : offset + 4], f"{order}u2"))
+        if kind == 1000 and record[offset + 6] not in _LENGTHS:
             raise InputError(
-                f"MiniSEED header: records of 2^{record[at + 6]} bytes; expected 2^7 to 2^20: it is damaged"
+                f"MiniSEED header: records of 2^{record[offset + 6]} bytes; expected 2^7 to 2^20: it is damaged"
             )
-        at, seen = following, at
+        offset, seen = following, offset
 
 
 CHECKS: dict[str, Callable[[bytes], bytes]] = {"SAC": sac, "MSEED": mseed}

@@ -54,9 +54,9 @@ def _panel(words: str, runs: "pd.DataFrame", series: Sequence[Series], count: st
         drawn.append(curve(axes.across(np.minimum(x, right)), axes.down(y), _style(own), own.label))
         if reached < 1.0 and same["status"].isin(["overturned", "flight"]).any():
             said = f"{own.label}: {100 * (1 - reached):.0f} % overturned, or ended by flight"
-            at = 0.5 * (edge + axes.left + axes.width)
-            drawn.append(line(at, float(axes.down(reached)), at, float(axes.down(1.0)), _style(own)))
-            drawn.append(marker("overturned", at, float(axes.down(0.5 * (1.0 + reached))), colour="alarm", title=said))
+            mid = 0.5 * (edge + axes.left + axes.width)
+            drawn.append(line(mid, float(axes.down(reached)), mid, float(axes.down(1.0)), _style(own)))
+            drawn.append(marker("overturned", mid, float(axes.down(0.5 * (1.0 + reached))), colour="alarm", title=said))
     drawn.append(text(axes.left + axes.width / 2, HEIGHT - 6, lowered("θ", "max", "/α"), class_="m q"))
     drawn.append(text(axes.left - 26, 11, "share of the records", class_="q"))
     return svg(WIDTH, HEIGHT, *drawn, description=f"Distribution of θmax/α{', ' + words if words else ''}")

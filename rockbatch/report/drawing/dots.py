@@ -127,9 +127,7 @@ def _strip(runs: "pd.DataFrame", top: float, grid: Sequence[Markup], marks: Mark
     first: dict[tuple[object, float], int] = {}
     for which, theta, place in zip(series, thetas, order.tolist(), strict=True):
         first.setdefault((which, _across(theta, top)), place)  # others would lie under it
-    seen = [
-        _mark(run, at, marks) for (_, at), run in zip(first, as_dicts(runs.iloc[list(first.values())]), strict=True)
-    ]
+    seen = [_mark(run, x, marks) for (_, x), run in zip(first, as_dicts(runs.iloc[list(first.values())]), strict=True)]
     low, high = (number(theta, THETA_FORMAT) for theta in (thetas[-1:] + thetas[:1] or [math.nan, math.nan]))
     said = f"{words}: θmax/α {low} to {high}" if len(thetas) > 1 else f"{words}: θmax/α {high}"
     return tag(
@@ -157,7 +155,7 @@ def _without_peak(runs: "pd.DataFrame", marks: Marks) -> Markup:
         some = runs[runs["status"] == status]
         if status in statuses:
             series = [] if marks.series is None else [marks.series[place] for place in dict.fromkeys(some["series"])]
-            names = ", ".join(one.label if one.rigid else one.tick for one in series)
+            names = ", ".join(strip.label if strip.rigid else strip.tick for strip in series)
             names = names if 0 < len(names) <= MOST_LETTERS else str(len(some))
             sign = tag("svg", sign_of(status, 11, 7), class_="plot", viewBox="4 0 14 14", width=14, height=14,
                        aria_hidden="true")  # fmt: skip

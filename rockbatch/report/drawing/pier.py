@@ -87,7 +87,7 @@ def _pier(pier: Mapping[str, Any], scale: float, springs: bool) -> Markup:
         *_length(right + 26.0, ground, right + 26.0, centre, f"h = {number(pier['height_m'], '.3g')} m"),
         *(mark for x in (left, right) for mark in _support(x, ground, springs)),
         *_deck(pier, middle, b, ground, scale),
-        *(mark for kind, at in pier.get("devices", ()) for mark in _device(kind, middle, at, scale, ground, top)),
+        *(mark for kind, place in pier.get("devices", ()) for mark in _device(kind, middle, place, scale, ground, top)),
         *_length(left, ground + 32.0, right, ground + 32.0, f"2b = {number(2.0 * pier['half_width_m'], '.3g')} m"),
     ]
     what = "two springs" if springs else "rigid ground"
@@ -121,18 +121,18 @@ def _device(kind: str, middle: float, place: Place, scale: float, ground: float,
     if place.height:
         y, way = ground - scale * place.height, place.way or 1.0
         near, far = (middle + way * reach for reach in (30.0, 30.0 + SPRING))
-        tied = line(near, y, far, y, "tendon s3", kind)
-        return [tied, line(far, y - ASIDE, far, y + ASIDE, "rigid")]
-    at = scale * place.offset
+        bar = line(near, y, far, y, "tendon s3", kind)
+        return [bar, line(far, y - ASIDE, far, y + ASIDE, "rigid")]
+    offset = scale * place.offset
     if kind == "tendon":
-        return [line(middle + at, ground + SPRING, middle + at, ground - top, "tendon s2", kind)]
-    x = middle + at + math.copysign(ASIDE, at)
+        return [line(middle + offset, ground + SPRING, middle + offset, ground - top, "tendon s2", kind)]
+    x = middle + offset + math.copysign(ASIDE, offset)
     if kind == "stop":
         over = ground - ASIDE
-        return [line(x, ground + SPRING, x, over, "rigid", kind), line(x, over, middle + at, over, "rigid")]
+        return [line(x, ground + SPRING, x, over, "rigid", kind), line(x, over, middle + offset, over, "rigid")]
     body = rectangle(x - 3.0, ground + 5.0, 6.0, 9.0, "damper s3")
     return [
-        line(middle + at, ground, x, ground, "tendon s3"),
+        line(middle + offset, ground, x, ground, "tendon s3"),
         line(x, ground, x, ground + SPRING, "tendon s3", kind),
         body,
     ]
@@ -142,7 +142,7 @@ def _support(x: float, ground: float, spring: bool) -> list[Markup]:
     """Draw the support of a pivot: a spring on the ground, or the ground."""
     below = ground + (SPRING if spring else 0.0)
     parts = [line(x - 9.0, below, x + 9.0, below, "rigid")]
-    parts += [line(x + at, below, x + at - 4.0, below + 5.0, "edge") for at in (-5.0, 0.0, 5.0, 9.0)]
+    parts += [line(x + offset, below, x + offset - 4.0, below + 5.0, "edge") for offset in (-5.0, 0.0, 5.0, 9.0)]
     if spring:
         turns = "".join(
             f"L{x + side:.1f} {ground + (i + 1) * SPRING / 6:.1f}" for i, side in enumerate((4, -4, 4, -4, 4))

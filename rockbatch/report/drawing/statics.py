@@ -29,25 +29,25 @@ def draw(sheets: Sequence[tuple[str, Statics]]) -> Markup:
 
 
 def _held(sheet: Statics) -> tuple[Array, Array]:
-    at = sheet.equilibria
-    return at.theta / sheet.pier.alpha, at.acceleration
+    equilibria = sheet.equilibria
+    return equilibria.theta / sheet.pier.alpha, equilibria.acceleration
 
 
 def _period(sheet: Statics) -> tuple[Array, Array]:
-    at = sheet.swings_at
-    return at.amplitude / sheet.pier.alpha, at.period
+    swings = sheet.swings_at
+    return swings.amplitude / sheet.pier.alpha, swings.period
 
 
-def _picture(sheets: Sequence[tuple[str, Statics]], of: Line, across: str) -> tuple[Markup, list[Entry]]:
-    lines = [of(sheet) for _, sheet in sheets]
+def _picture(sheets: Sequence[tuple[str, Statics]], line_of: Line, across: str) -> tuple[Markup, list[Entry]]:
+    lines = [line_of(sheet) for _, sheet in sheets]
     right = max((float(x.max()) for x, _ in lines if len(x)), default=1.0)
     top = max((float(np.nanmax(y, initial=0.0)) for _, y in lines), default=1.0)
     axes = Axes(36, 10, WIDTH - 48, HEIGHT - 48, Scale(0.0, right or 1.0), Scale(0.0, 1.06 * top or 1.0))
     drawn = [axes.frame(axes.x.ticks(8), axes.y.ticks(6))]
     entries: list[Entry] = []
     for place, ((name, _), (x, y)) in enumerate(zip(sheets, lines, strict=True)):
-        look = f"level s{place % COLOURS + 1}" + f" d{place // COLOURS}" * (place >= COLOURS)
-        drawn.append(curve(axes.across(x), axes.down(y), look, name))
-        entries.append((line(0, 7, 22, 7, look), name))
+        style = f"level s{place % COLOURS + 1}" + f" d{place // COLOURS}" * (place >= COLOURS)
+        drawn.append(curve(axes.across(x), axes.down(y), style, name))
+        entries.append((line(0, 7, 22, 7, style), name))
     drawn.append(text(axes.left + axes.width / 2, HEIGHT - 6, across, class_="m q"))
     return svg(WIDTH, HEIGHT, *drawn, description=f"Statics over {across}"), entries

@@ -68,8 +68,8 @@ def _responses(finished: Finished) -> Facts:
         if first.setdefault(run.name, words) != words:
             where = f", in the run of the greatest {first[run.name]}"
         lean = " (mostly the lean of a base that has yielded)" if rotation and run["theta_max_is"] else ""
-        of = {"top_drift_m": ", of a rigid shaft", "heel_uplift_m": ", above the toe"}.get(name, "")
-        facts.append((words, join(tag("strong", in_words(worst)), lean, of, where)))
+        qualifier = {"top_drift_m": ", of a rigid shaft", "heel_uplift_m": ", above the toe"}.get(name, "")
+        facts.append((words, join(tag("strong", in_words(worst)), lean, qualifier, where)))
     if all(worst.case["base"] == "rigid" for worst in finished.worst):
         held = "" if "theta_res_rad" in largest else "; nothing holds the pier at a tilt"
         facts.append(("of the supports", join(f"no settlement: the ground is rigid{held}")))

@@ -130,14 +130,14 @@ def _drawn(axes: Axes, entry: Curve, shape: str, colour: int) -> Iterator[Markup
     for point in entry["points"]:
         if not point["records"]:
             continue
-        at = float(axes.across(point["level"]))
+        across = float(axes.across(point["level"]))
         exceeded, undecided, records = point["exceeded"], point["undecided"], point["records"]
         if undecided:
             least, most = (float(axes.down(k / records)) for k in (exceeded, exceeded + undecided))
-            yield line(at, least, at, most, class_, _said(entry, point))
+            yield line(across, least, across, most, class_, _said(entry, point))
         if records > undecided:
             share = float(axes.down(exceeded / (records - undecided)))
-            yield marker(shape, at, share, colour=class_, title=_said(entry, point))
+            yield marker(shape, across, share, colour=class_, title=_said(entry, point))
 
 
 def _said(entry: Curve, point: Mapping[str, Any]) -> str:

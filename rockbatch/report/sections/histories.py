@@ -34,8 +34,8 @@ def section(finished: Finished) -> Markup:
     if not len(finished.responses):
         return Markup("")
     words = list(map(str, finished.info["command"]))
-    again = not any(word.endswith(FROM_PYTHON) for word in words)
-    command = shlex.join([*words, "--history", "RECORD"]) if again else ""
+    from_command = not any(word.endswith(FROM_PYTHON) for word in words)
+    command = shlex.join([*words, "--history", "RECORD"]) if from_command else ""
     return render("sections/histories.html", pictures=_pictures(finished, finished.responses), command=command)
 
 

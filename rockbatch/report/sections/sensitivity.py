@@ -73,12 +73,12 @@ def _tornado(both: "pd.DataFrame") -> Markup:
     for place, row in enumerate(as_dicts(both)):
         middle = TOP + ROW * (place + 0.5)
         for colour, end, answer in (("s1", row["low"], row["answer_low"]), ("s2", row["high"], row["answer_high"])):
-            at = float(axes.across(answer))
-            left, right = sorted((base, at))
+            x = float(axes.across(answer))
+            left, right = sorted((base, x))
             shift = -BAR if colour == "s1" else 0
             drawn.append(rectangle(left, middle + shift, right - left, BAR, f"filled {colour}"))
-            side, anchor = (3, "") if at >= base else (-3, " e")
-            drawn.append(text(at + side, middle + shift + BAR - 2, _written(end), class_=colour + anchor))
+            side, anchor = (3, "") if x >= base else (-3, " e")
+            drawn.append(text(x + side, middle + shift + BAR - 2, _written(end), class_=colour + anchor))
     drawn.append(line(base, TOP, base, TOP + axes.height, "edge", f"as in the study: {ends[0, 1]:.4f}"))
     drawn.append(text(LEFT - 2, 12, lowered("θ", "max", "/α"), class_="q e"))
     ends_in_words = "at the low end of the range, or the first choice", "at the high end, or the second choice"
@@ -96,8 +96,8 @@ def _bars(both: "pd.DataFrame") -> Markup:
             if np.isnan(row[name]):
                 continue
             y, value, error = TOP + ROW * (place + 0.5) + shift, row[name], row[f"{name}_error"]
-            at, low, high = (float(x) for x in axes.across(np.array([value, value - error, value + error])))
-            left, right = sorted((zero, at))
+            middle, low, high = (float(x) for x in axes.across(np.array([value, value - error, value + error])))
+            left, right = sorted((zero, middle))
             drawn.append(rectangle(left, y, right - left, BAR, f"filled {colour}"))
             drawn.append(line(low, y + BAR / 2, high, y + BAR / 2, "bar", f"{value:.3f} ± {error:.3f}"))
     drawn.append(line(zero, TOP, zero, TOP + axes.height, "edge"))

@@ -89,9 +89,9 @@ def tables(
         of_sides = []
         for (runs, rows), records in zip(grouped, counted_as, strict=True):
             values = column.page.factor * runs[column.name].to_numpy(dtype=np.float64)
-            has = np.bincount(rows, ~np.isnan(values), len(names)) > 0
+            known = np.bincount(rows, ~np.isnan(values), len(names)) > 0
             of_rows = suites(values, runs["status"].to_list(), records, rows, len(names))
-            of_sides.append([suite if any_ else None for suite, any_ in zip(of_rows, has, strict=True)])
+            of_sides.append([suite if any_ else None for suite, any_ in zip(of_rows, known, strict=True)])
         cells = [
             [*words, *(_cell(suite, name, form) for name in _COLUMNS for suite in own)]
             for words, *own in zip(names.values(), *of_sides, strict=True)
