@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from core_samples import FIG5
+from core_samples import FIG5, THOROUGH
 from restrained_reference import TiedTwoSprings
 from stop_reference import StoppedBlock
 from stopped_piers import SHAKEN, stopped
@@ -12,7 +12,11 @@ import rockbatch as rb
 from rockbatch.pier import problems
 from rockbatch.simulation import Run, run_to_tolerance, written_run
 
-SEEDS = [pytest.param(range(4), id="few"), pytest.param(range(4, 34), id="more", marks=pytest.mark.slow)]
+SEEDS = [
+    pytest.param(range(4), id="few"),
+    pytest.param(range(4, 14), id="more", marks=pytest.mark.slow),
+    pytest.param(range(14, 34), id="most", marks=THOROUGH),
+]
 
 
 def reference(pier, base, motion):

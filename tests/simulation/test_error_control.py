@@ -225,15 +225,24 @@ def test_a_run_under_way_is_stopped_too(base):
     timer.join()
 
 
+CHAOTIC = (6, 238, 247)
+"""Seeds of hard cases whose runs take two thirds of the time of 400."""
+
+
 @pytest.mark.slow
-def test_what_is_called_settled_is_what_steps_eight_times_finer_find():
+@pytest.mark.parametrize(
+    "seeds",
+    [[seed for seed in range(400) if seed not in CHAOTIC], pytest.param(range(400), marks=pytest.mark.thorough)],
+    ids=["most", "all"],
+)
+def test_what_is_called_settled_is_what_steps_eight_times_finer_find(seeds):
     """Elastic and rigid bases at the default tolerance, where nothing but the counts watches what follows the peak.
 
     400 hard cases; of those whose finer runs agree with each other, none may end otherwise or be off by more than
     the tolerance. (Before the counts were compared, one in a pool of 424 overturned that was called "ok".)
     """
     wrong, compared = [], 0
-    for seed in range(400):
+    for seed in seeds:
         pier, hard, motion = hard_case(seed)
         rng = np.random.default_rng(seed)
         base = RigidBase() if seed % 4 == 0 else ElasticBase(hard.beta, hard.epsilon, hard.kinematics, hard.flight)
