@@ -1,7 +1,37 @@
 """What holds for all tests."""
 
 import gc
+import sys
+
+import pytest
 
 # Compiled kernels leave hundreds of megabytes of objects that live on: with Python's own thresholds a tenth of the time of
 # tests, and more of a compilation's, goes into looking through them.
 gc.set_threshold(50_000, 20, 100)
+
+KNOWN = set()
+"""Kernels that this process has looked at."""
+
+PHYSICS = ("core", "simulation", "verification")
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_call(item):
+    """Fail a fast test of the physics that needs a kernel of its own: each takes 20 s to compile (CONTRIBUTING.md)."""
+    result = yield
+    run = sys.modules.get("rockbatch.core.run")
+    for kernel in getattr(getattr(run, "_march", None), "signatures", ()):
+        if kernel not in KNOWN:
+            KNOWN.add(kernel)
+            fast = item.path.parent.name in PHYSICS and not item.get_closest_marker("slow")
+            assert not fast or is_shared(kernel), (
+                f"mark as slow; it compiles {kernel[0]} with devices {str(kernel[4])[:20]}"
+            )
+    return result
+
+
+def is_shared(kernel):
+    """Return whether fast tests share a kernel: that of a rigid base, or of springs with one thing beside them at most."""
+    traits, devices = kernel[0], kernel[4]
+    beside = [*traits, devices] if traits.instance_class.__name__ == "SpringTraits" else []
+    return sum(str(each) != "none" for each in beside) <= 1

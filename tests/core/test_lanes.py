@@ -26,7 +26,7 @@ def crowd(every_kind):
     for seed in hard_seeds(range(5 * LANES), every_kind)[: 3 * LANES]:
         pier, base, motion = hard_case(seed, npts=60 + 17 * (seed % 11))
         if seed % 4 == 0 and isinstance(base, YieldingBase):
-            base = replace(base, spring="hardening")
+            base = replace(base, spring="hardening", n=base.n if base.has_exponent else 5.0)
         runs.append(Run(pier, base, replace(motion, dt=(0.005, 0.01, 0.004)[seed % 3])))
     return runs, [4 + 4 * (seed % 4) for seed in range(3 * LANES)]
 

@@ -61,7 +61,13 @@ def test_settlement_per_cycle_is_the_known_number(eta, percent):
 
 @pytest.mark.parametrize(
     ("eta", "n", "kinematics"),
-    [(2.5, 5.0, "first-order"), (3.0, 5.0, "finite"), (2.5, 2.0, "first-order"), (2.5, 1.0, "finite")],
+    [
+        (2.5, 5.0, "first-order"),
+        (3.0, 5.0, "finite"),
+        (2.5, 2.0, "first-order"),
+        (2.5, 1.0, "first-order"),
+        pytest.param(2.5, 1.0, "finite", marks=pytest.mark.slow),  # compiled by itself, like the one below
+    ],
 )
 @pytest.mark.parametrize("cycles", [1, 5])
 def test_settlement_converges_to_the_integral_as_the_cycles_slow_down(eta, n, kinematics, cycles):
@@ -83,7 +89,15 @@ def test_an_elastic_plastic_spring_does_not_ratchet():
         assert settlement(YieldingBase(BETA, eta=eta, spring="epp"), 10, 50) == pytest.approx(0.0, abs=1e-12)
 
 
-@pytest.mark.parametrize(("eta", "n", "kinematics"), [(2.5, 5.0, "first-order"), (1.5, 2.0, "finite")])
+@pytest.mark.parametrize(
+    ("eta", "n", "kinematics"),
+    [
+        (2.5, 5.0, "first-order"),
+        (1.5, 2.0, "first-order"),
+        (1.5, 5.0, "finite"),
+        pytest.param(1.5, 2.0, "finite", marks=pytest.mark.slow),
+    ],
+)
 def test_a_hardening_spring_yields_in_its_first_loading_only(eta, n, kinematics):
     """Loaded to 130 % of the weight it sinks by the integral from 100 to 130 %, as a Bouc–Wen spring does then; the cycles after
     it add the rounding of the position. Inertia overshoots by 4e-5 of the force's change at this slowness."""
