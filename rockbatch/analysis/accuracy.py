@@ -99,7 +99,7 @@ def accuracy(
     runs : int
         Number of runs measured, spread over the study; fewer if there is no time for more.
     seconds : float
-        How long it may take [s], once the kernels are compiled. What there is no time for is left out: runs, the longest of
+        Time allowed [s], once the kernels are compiled. What does not fit is left out: runs, the longest of
         the fixed steps, repetitions, the tightest of SciPy's tolerances.
     scipy : bool
         Measure SciPy's solvers too, on springs without dampers and tendons; they are slow.

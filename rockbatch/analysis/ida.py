@@ -108,7 +108,7 @@ def _between(levels: Sequence[float], step: float) -> list[float]:
 
 
 def _take(states: Mapping[K, dict[float, int]], wanted: list[tuple[K, float]], states_of: Look[K]) -> None:
-    """Add to ``states`` those that are ``wanted``; nothing is left out there, a run that would be is undecided."""
+    """Add the ``wanted`` states to ``states``; a run that would be left out counts as undecided."""
     for (key, x), state in zip(wanted, states_of(wanted) if wanted else (), strict=True):
         states[key][x] = UNDECIDED if state == LEFT_OUT else state
 

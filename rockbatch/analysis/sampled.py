@@ -102,12 +102,12 @@ class Suite:
         return varied(self.cases[point.case], point.values)
 
     def some_cases(self) -> tuple[Case, ...]:
-        """Return cases all over the design, which between them need every kernel that the others need."""
+        """Return cases spread over the design, enough to compile every kernel that the others need."""
         return tuple(map(self.case, self.points.all[:: 1 + len(self.points) // 64]))
 
 
 def row_of(run: PlannedRun, outcome: Outcome) -> dict[str, Any]:
-    """Return what is kept of a run."""
+    """Return a row of the table of runs: how the run ended, and its peak."""
     return {
         "record": run.motion.name,
         "polarity": run.polarity,

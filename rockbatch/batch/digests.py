@@ -48,7 +48,7 @@ def sources() -> Iterator[Path]:
 
 @cache
 def program() -> str:
-    """Return the digest of what outcomes depend on beside their runs: the modules that take part, and the compiler."""
+    """Return the digest of the modules that can change an outcome, and of the compiler."""
     digest = hashlib.sha256(core_digest().encode())
     for path in sources():
         digest.update(path.relative_to(_TOP).as_posix().encode() + b"\0" + path.read_bytes() + b"\0")

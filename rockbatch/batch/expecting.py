@@ -1,4 +1,4 @@
-"""Estimate of what a batch would take: runs, time and disk, from running a few of them."""
+"""Estimate of the cost of a batch: runs, time and disk, measured on a few of its runs."""
 
 import time
 from collections.abc import Sequence
@@ -36,7 +36,7 @@ BYTES_OF_A_CELL = 9.0
 
 @dataclass(frozen=True)
 class Expected:
-    """Estimate of what a batch would take.
+    """Estimate of the cost of a batch.
 
     Attributes
     ----------

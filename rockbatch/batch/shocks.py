@@ -1,4 +1,4 @@
-"""The table of what each shock does, for the runs of a study that are sequences: each is run once more, and read."""
+"""The table of shocks in the sequences of a study: each sequence is run once more, and read shock by shock."""
 
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor

@@ -99,7 +99,7 @@ class Demand:
 
     @property
     def of_runs(self) -> bool:
-        """True for a quantity that every run has, and for which a run that was cut short is a question."""
+        """Whether every run has this quantity, so that it is uncertain for a run that was cut short."""
         return not (self.event or self.of_the_case)
 
 

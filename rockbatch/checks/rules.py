@@ -187,7 +187,7 @@ CHECK = Section(("check",), (
         "Scales of the motions to check, each a suite of its own; all if it is not given.", many=True),
     "polarity": Key(choice("+", "-"), '"+"', "The only polarity to look at."),
     "overturned": Key(choice(*COUNTING), '"infinite"',
-        'How a run counts that overturned: "infinite", beyond any limit; "unknown", anything from what is known upwards; '
+        'How an overturned run counts: "infinite", beyond any limit; "unknown", any value from the known one upwards; '
         '"value", as the table has it; "left out". "infinite" if it is not given.'),
     "flight": Key(choice(*COUNTING), '"unknown"', 'How a run counts that was ended by flight; "unknown" if it is not given.'),
     "failed": Key(choice(*COUNTING), '"unknown"',

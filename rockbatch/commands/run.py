@@ -60,7 +60,7 @@ def in_words(seconds: float) -> str:
 
 
 def _finished(finished: FinishedBatch, study: Study, separator: str | None) -> int:
-    """Print the table of peaks and the verdicts, and the paths of what is in the folder; return the exit code."""
+    """Print the table of peaks and the verdicts, and the paths of the files in the folder; return the exit code."""
     saved, code = finished.saved, 0
     if finished.without:
         say(str(finished.without))

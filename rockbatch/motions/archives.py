@@ -111,7 +111,7 @@ def archive_of(path: Path) -> Path | None:
 
 
 def state(path: Path) -> tuple[int, ...]:
-    """Return the :func:`state_of` the file of the disk that a path leads to, or goes on within; none if it is gone."""
+    """Return the :func:`state_of` the file on the disk that a path names or lies within; none if it is gone."""
     try:
         return state_of((archive_of(path) or path).stat())
     except OSError:

@@ -36,7 +36,7 @@ class Offset:
 
 
 def corrected(component: Component, offset: Offset) -> Component:
-    """``component`` with its offset off, and a note of how much; ``InputError`` where the window lies outside."""
+    """Return ``component`` less its offset, with a note of how much; raise ``InputError`` for a window outside the record."""
     if offset.rule == "keep":
         if not component.raw:
             return component

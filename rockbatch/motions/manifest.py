@@ -23,7 +23,7 @@ from rockbatch.motions.motion import Unusable
 from rockbatch.motions.orientation import Orientation
 from rockbatch.motions.sequences import ShockSequence, read_sequences
 from rockbatch.toml.kinds import boolean, choice, closest, not_negative, number, positive, shown, text
-from rockbatch.toml.reader import Table, TomlFile
+from rockbatch.toml.reader import Table, TomlFile, nearby
 from rockbatch.toml.section import Key, Section
 from rockbatch.units import acceleration_factor
 
@@ -125,7 +125,7 @@ class Manifest:
                     f"file = {shown(values['file'])}: lies outside this folder; put a manifest there", "file"
                 )
             elif not _is_there(path):
-                hint = _nearby(path, folder) if len(file.problems) < _MOST_HINTS else ""
+                hint = nearby(path, path.relative_to(folder).as_posix()) if len(file.problems) < _MOST_HINTS else ""
                 table.complain(f"file = {shown(values['file'])}: no such file in {folder}{hint}", "file")
             elif (path, values.get("component")) in seen:
                 table.complain(f"file = {shown(values['file'])}: given twice; write one table for it", "file")
@@ -158,16 +158,6 @@ def _is_there(path: Path) -> bool:
         return path.is_file() or is_member(path)
     except OSError:  # a name that is too long, a folder that is closed
         return False
-
-
-def _nearby(path: Path, folder: Path) -> str:
-    """Return the hint at a file of a similar name; empty if there is none."""
-    try:
-        names = os.listdir(path.parent)
-    except OSError:
-        return ""
-    meant = closest(path.name, sorted(names))
-    return f"; did you mean {(path.parent / meant).relative_to(folder).as_posix()}?" if meant else ""
 
 
 def options_of(entries: Sequence[Entry], options: ReadOptions) -> ReadOptions:

@@ -68,7 +68,7 @@ def directed(origin: Origin, orientation: Orientation) -> Origin:
 
 
 def _event(text: str, date: str) -> str:
-    """Return the name of an event with its year, without what all headers say of all events; the date where it has no name."""
+    """Return the name of an event with its year, without words that every header has; its date if it has no name."""
     year = _year(date) or _year(text)
     name = _CLOCK.sub("", _QUAKE.sub("", _RECORD_OF.sub("", " ".join(text.split())))).strip(" ,-")
     name = _in_words(_STATE.sub("", name))

@@ -317,7 +317,7 @@ def with_sequences(
 def _one(
     wanted: ShockSequence, by_name: Mapping[str, Motion], reasons: Mapping[str, str], where: str
 ) -> Motion | Unusable | LeftOut:
-    """Return a sequence, or why there is none; ``reasons`` are those of what cannot be used."""
+    """Return a sequence, or why there is none; ``reasons`` says by name why records cannot be used."""
     missing = [name for name in wanted.records if name not in by_name]
     why = [f"its record {name} cannot be used: {reasons[name]}" for name in missing if name in reasons]
     unknown = [_unknown(name, by_name) for name in missing if name not in reasons]

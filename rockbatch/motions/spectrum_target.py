@@ -115,7 +115,7 @@ class SpectrumTarget:
         return factors.tolist()
 
     def mean(self, motions: Sequence[Motion], periods: Array, gravity: float, spectra: Array | None = None) -> Array:
-        """Return the mean [g] of what counts of ``motions``, shape (periods,), at these ``periods`` [s]; NaN without any.
+        """Return the mean [g] of the spectra that count of ``motions``, shape (periods,), at ``periods`` [s]; NaN without any.
 
         ``spectra``, shape (motions, periods), are those of the components, if they are at hand.
         """

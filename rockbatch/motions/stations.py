@@ -95,7 +95,7 @@ def _by_file(record: list[Component]) -> Iterator[list[Component]]:
 
 
 def _may_join(station: Sequence[Component], group: Sequence[Component]) -> bool:
-    """Return whether two sets of one name may be one: not if both are whole, nor if they share no time."""
+    """Return whether two sets of one name may be one recording: not if both are complete, nor if they do not overlap in time."""
     if _is_whole(station) and _is_whole(group):
         return False
     return any(overlap(member, other) for member in station for other in group)

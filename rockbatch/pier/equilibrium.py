@@ -257,7 +257,7 @@ class SlowTurn:
 
     @property
     def _swing(self) -> float:
-        """By how much the deck is aside of what the pier turns about [m]."""
+        """Horizontal distance [m] of the deck's axis from the pivot about which the pier turns."""
         return self.b if self.spring is None else 0.0
 
     def _by_v(self, theta: Array) -> Array:

@@ -216,7 +216,7 @@ _DISSIPATED = "plastic work of each support, per unit mass"
 MORE = (
     Column(
         "theta_res_error",
-        "estimated error of the residual rotation over α, with what it went on changing by while it was read; empty with a "
+        "estimated error of the residual rotation over α, including its drift while it was read; empty with a "
         "fixed step",
         "theta_res_error", page=OnPage("±", ".0e", behind="theta_res_over_alpha"), over_alpha=True, bases=TILTS,
         stood=True,

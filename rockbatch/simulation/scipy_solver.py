@@ -68,7 +68,7 @@ class _SmoothPart:
         return _terminal(event)
 
     def handle(self, t: float, number: int) -> None:
-        """Go on behind an event."""
+        """Continue after an event."""
         ground = self.horizontal(t), self.vertical(t)
         now = handle(self.m, self.state, self.contact, self.supports, number, self.rest, *ground)
         self.state, self.contact, self.supports, _ = now

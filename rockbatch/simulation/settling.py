@@ -115,7 +115,7 @@ def _look_for_chaos(
     quiet_s: float,
     stop: Stop,
 ) -> None:
-    """Claim no error of ``doubtful`` runs whose θ_max depends on digits that no record has: their agreement is chance."""
+    """Drop the errors of ``doubtful`` runs whose θ_max depends on digits that no record has: their agreement is chance."""
     checked = [(i, now) for i in doubtful if (now := outcomes[i]) is not None and now.theta_max_error is not None]
     if not checked:
         return

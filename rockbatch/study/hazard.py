@@ -46,7 +46,7 @@ HAZARD = Section(("fragility", "hazard"), (
     "levels_g": Key(positive, "[0.1, 0.2, 0.4]", "Intensities of the points, of PGA or Sa.", many=True),
     "levels_m_s": Key(positive, "[0.1, 0.2, 0.4]", "Intensities of the points, of PGV.", many=True),
     "rate_per_year": Key(positive, "[0.01, 0.0021, 0.0004]", "Mean annual rates at which they are exceeded.", many=True),
-    "return_period_years": Key(positive, "[100, 475, 2475]", "One over these rates, in their place.", many=True),
+    "return_period_years": Key(positive, "[100, 475, 2475]", "Reciprocals of these rates, to be given instead.", many=True),
     "file": Key(text, '"hazard.csv"',
         "A CSV file with the points, relative to the study: columns levels_g or levels_m_s, and rate_per_year or "
         "return_period_years."),

@@ -31,9 +31,9 @@ DAMPER = Section(("case", "damper"), "A damper between the pier and the ground. 
     "nu": Key(within(BOUNDS["nu"]), "0.5", "Coefficient of a viscous damper as C/(M p).", many=True, only=_VISCOUS),
     "exponent": Key(within(BOUNDS["exponent"]), "0.5", "Exponent of the speed of a viscous damper.", many=True, only=_VISCOUS),
     "brace_kN_m": Key(positive, "2.0e5",
-        "Stiffness of what the damper hangs on, in series with it, for a pier whose mass is known; or give `brace`. It is rigid "
+        "Stiffness of the brace in series with the damper, for a pier whose mass is known; or give `brace`. It is rigid "
         "if neither is given.", many=True, only=_ON_BRACE),
-    "brace": Key(positive, "5.0", "Stiffness of what the damper hangs on, as λ = k b²/(M g R0).", many=True, only=_ON_BRACE),
+    "brace": Key(positive, "5.0", "Stiffness of its brace as λ = k b²/(M g R0).", many=True, only=_ON_BRACE),
     "at": Key(_OR_DECK, '"left"',
         "Where it is: a pivot, an offset [m] from the middle of the base, or between the deck and its neighbours; one at each "
         "pivot if it is not given."),

@@ -359,13 +359,13 @@ def _unreadable(path: Path, error: OSError) -> str:
 
 
 def nearby(path: Path, written: str) -> str:
-    """Return what was meant by ``written``, if the folder of ``path`` holds a similar name; else empty."""
+    """Return the hint at a file of a similar name in the folder of ``path``, as ``written`` would have it; else empty."""
     try:
         names = os.listdir(path.parent)
     except OSError:
         return ""
     meant = closest(path.name, sorted(names))
-    return f"; did you mean {Path(written).parent / meant}?" if meant else ""
+    return f"; did you mean {(Path(written).parent / meant).as_posix()}?" if meant else ""
 
 
 _LONGEST = 200  # characters of a line that are looked at: the patterns below take the square of their number

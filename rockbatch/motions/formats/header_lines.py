@@ -34,7 +34,7 @@ Line = tuple[int, re.Pattern[str], str]
 
 
 def layout(*lines: tuple[int, str, str]) -> tuple[Line, ...]:
-    """Return the layout of a header's text: how many lines after the first each of ``lines`` stands, its pattern, its look.
+    """Return the layout of a header's text: of each line its offset from the first, its pattern and an example.
 
     The look is an example for messages; a line without one may be any other.
     """

@@ -1,4 +1,4 @@
-"""From printed times to an even sampling interval: rounding is not unevenness, unevenness is interpolated and said."""
+"""From printed times to an even sampling interval: rounding counts as even; uneven steps are interpolated, with a note."""
 
 import numpy as np
 
@@ -23,8 +23,8 @@ def on_even_steps(t: Samples, values: Samples) -> tuple[float, Samples, tuple[st
     """Return the sampling interval, in the unit of ``t``, values on it, and notes on what was done to them.
 
     ``t`` has shape (npts,), ``values`` shape (npts, channels). Uneven times get an even grid that keeps every
-    sample, of a part of their usual step (lost samples) or of their greatest common step (film, digitised in
-    whole ms); where there is none, the shortest step. What lies between is linear, as a motion is between its samples. Raises
+    sample, of a part of their usual step (lost samples), of their greatest common step (film, digitised in
+    whole ms), or else of their shortest step. Values between are linear, as a motion is between its samples. Raises
     ``InputError`` for times that do not grow, and for gaps.
     """
     if not _is_growing(t):

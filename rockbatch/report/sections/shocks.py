@@ -15,7 +15,7 @@ AT_REST = 0.001
 
 
 def section(finished: Finished) -> Markup:
-    """Report what each shock does; empty if no motion is a sequence."""
+    """Report the response to each shock; empty if no motion is a sequence."""
     path = finished.directory / SHOCKS
     rows = as_dicts(read_shocks(path, finished.info["varied"])) if path.exists() else []
     if not rows:
