@@ -187,6 +187,8 @@ def include_height(lanes, i, m, supports, y, end, h):
 
     The lower of two cubics is highest at an end, where the lower one turns, or where they meet.
     """
+    if h == 0.0:
+        return
     left, right, left_rate, right_rate = clearances(m, y, supports)
     left_end, right_end, left_end_rate, right_end_rate = clearances(m, end, supports)
     highest = max(min(left, right), min(left_end, right_end))

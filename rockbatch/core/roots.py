@@ -103,18 +103,24 @@ def _extremes(f0, d0, f1, d1, h):
     return h * highest if 0.0 < highest < 1.0 else -1.0, h * lowest if 0.0 < lowest < 1.0 else -1.0
 
 
-@kernel
+@inlined
 def falls(f0, d0, f1, d1, h):
     """Return when, in [0, h], an event function falls through zero, by the cubic through both ends; −1 if never.
 
     One that starts on its own surface, or a rounding below it, counts once it has left it. Where the cubic does
     not show that it has, half of the time is the guess. One that falls and rises again within the step has fallen.
     """
+    if f0 > 0.0 and excess(d0, d1, h) < min(f0, f1):
+        return -1.0
+    return _falls(f0, d0, f1, d1, h)
+
+
+@kernel
+def _falls(f0, d0, f1, d1, h):
+    """Return what :func:`falls` does, of an event function that a bound does not keep above zero."""
     if f0 > 0.0 and f1 <= 0.0:
         return _root(f0, d0, f1, d1, h, 0.0, h)
     if f0 > 0.0:
-        if excess(d0, d1, h) < min(f0, f1):
-            return -1.0
         _, lowest = _extremes(f0, d0, f1, d1, h)
         if lowest > 0.0 and hermite(f0, d0, f1, d1, h, lowest) <= 0.0:
             return _root(f0, d0, f1, d1, h, 0.0, lowest)

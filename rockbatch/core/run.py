@@ -193,7 +193,7 @@ def _happen(traits, lanes, i, m, devices, now, which, x, ground, history):
     return (_in_flight(traits, lanes, i, m, y, ground) if flies else SURVIVED), Moment(y, after, supports)
 
 
-@inner
+@inlined
 def _through(traits, lanes, i, devices, marks, substep, settings, ground, history):
     """Take lane ``i`` through a sub-step event by event: status (SURVIVED while it goes on), and time [s]."""
     h, start, dt, rest = lanes.clock.step[i], substep * lanes.clock.step[i], lanes.clock.dt[i], lanes.clock.rest[i]

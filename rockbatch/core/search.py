@@ -89,7 +89,7 @@ def start_rates(m, devices, y, contact, ground):
     return rates_with(devices, m, y, contact, ground.horizontal, ground.vertical, START)
 
 
-@inner
+@inlined
 def first_event(m, devices, marks, start, k, rest, ground, h, locate):
     """Take a step of ``h`` [s] from the Moment ``start``, whose rates are ``k``, or to the first event before its end.
 
@@ -107,9 +107,11 @@ def first_event(m, devices, marks, start, k, rest, ground, h, locate):
             if marks.now[i] <= 0.0:
                 return h, i, end, k_end
         return h, NO_EVENT, end, k_end
+    which, at = _earliest(marks.early, marks.early_slopes, marks.now, marks.now_slopes, h)
+    if which == NO_EVENT:
+        return h, which, end, k_end
     _copy(marks.now, marks.late)
     _copy(marks.now_slopes, marks.late_slopes)
-    which, at = _earliest(marks.early, marks.early_slopes, marks.late, marks.late_slopes, h)
     a, b, t, last = 0.0, h, h, False
     for trial in range(TRIALS + 1):
         if which == NO_EVENT and t == b:

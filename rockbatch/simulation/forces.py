@@ -10,7 +10,7 @@ import numpy as np
 from rockbatch.core import types
 from rockbatch.core.devices.laws import FRICTION
 from rockbatch.core.observe.forces import FORCES, Body, Forces, Hold, Outline
-from rockbatch.core.observe.peaks import NEVER, NOTED, Limits, Noted, forces_of_run
+from rockbatch.core.observe.peaks import NEVER, NOTED, Limits, Noted, RecordedRun, forces_of_run
 from rockbatch.lazy import pd
 from rockbatch.motions.motion import Samples
 from rockbatch.pier import Pier, RigidBase, YieldingBase
@@ -57,9 +57,9 @@ def _observe(run: Run, rows: np.recarray, least_normal: float, forces: np.recarr
     limits = Limits(most, least_normal * float(pier.gravity), start_of(pier, base).unstressed)
     body = Body(_outline(pier), _hold(pier, base)) if isinstance(base, RigidBase) else float(pier.deck)
     plain, pulls = apart(base, rows)
-    devices = recorded(pier, base, rows) if base.restraints else None
+    recording = RecordedRun(plain, pulls, recorded(pier, base, rows) if base.restraints else None)
     ground, dt = ground_of(run.motion), float(run.motion.dt)
-    forces_of_run(model(pier, base), body, plain, pulls, devices, ground, dt, limits, forces, extremes, noted)
+    forces_of_run(model(pier, base), body, recording, ground, dt, limits, forces, extremes, noted)
     return noted[0]
 
 

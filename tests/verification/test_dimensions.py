@@ -287,12 +287,10 @@ def test_a_device_has_a_force_and_the_rate_of_its_state(kind, unit):
     of = of._replace(stiffness=40.0 / M) if kind == HYSTERETIC else of
     inner = {TENDON: 0.001 * M, CONTACT: 0.001 * M, SPRING: 0.0 * M, MAXWELL: 0.4 * ACCELERATION}.get(kind, 0.4 * ONE)
     for mode in (device_laws.TAUT, device_laws.YIELDING):
-        one = device_laws.force(of, 0.02 * M, 0.1 * SPEED, inner, mode, 1.0)
-        rate = device_laws.state_rate(of, 0.1 * SPEED, inner, mode, 1.0)
-        assert_units([one], [ACCELERATION])
-        assert rate == 0.0 or U.Quantity(rate).check(unit)
-        lost = device_laws.loss_rate(of, 0.1 * SPEED, one, device_laws.YIELDING)
-        assert kind == SPRING or U.Quantity(lost).check(ACCELERATION * SPEED)
+        law = device_laws.response(of, 0.02 * M, 0.1 * SPEED, inner, mode, 1.0)
+        assert_units([law.force], [ACCELERATION])
+        assert law.state_rate == 0.0 or U.Quantity(law.state_rate).check(unit)
+        assert law.loss_rate == 0.0 or U.Quantity(law.loss_rate).check(ACCELERATION * SPEED)
         kept = device_laws.stored(of, 0.02 * M, inner)
         assert kept == 0.0 or U.Quantity(kept).check(ACCELERATION * M)
 

@@ -12,7 +12,10 @@ import numpy as np
 import pytest
 from core_samples import FIG5, broadband, pulse
 
-from rockbatch.core.springs.lanes import static_state
+from rockbatch.core.clock import include_height
+from rockbatch.core.springs.lanes import LANE, static_state
+from rockbatch.core.springs.model import State, Supports
+from rockbatch.core.table import table
 from rockbatch.core.types import (
     IMPACT_LEFT,
     IMPACT_RIGHT,
@@ -27,6 +30,7 @@ from rockbatch.core.types import (
 from rockbatch.motions.motion import Motion
 from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase
 from rockbatch.simulation import Run, written_run
+from rockbatch.simulation.models import model
 
 DT = 0.02
 SINE = pulse("sine", 0.5, dt=DT, end=1.6)
@@ -60,6 +64,10 @@ def results() -> dict[str, Any]:
             "end": list(rows[-1]),
             "held": not isinstance(base, RigidBase) and bool(rows.held.any()),
         }
+    if not found["compiled"]:
+        lanes, y = table(LANE)[0][0], State(0.01, 0.0, 0.1, 0.0, 0.0, 0.0)
+        include_height(lanes, 0, model(FIG5, ElasticBase(50.0)), Supports(0.0, 0.0, -1.0, -1.0), y, y, 0.0)
+        found["height without time"] = float(lanes.tally.flight_height[0])
     return found
 
 
@@ -92,3 +100,7 @@ def test_a_run_without_the_compiler_gives_the_same_results(name, interpreted, us
     assert found["held"] == plain["held"] == (name == "elastic-epsilon0-guided")
     assert found["end"] == pytest.approx(plain["end"], rel=1e-9, abs=1e-12)
     assert found["run"] == pytest.approx(plain["run"], rel=1e-9, abs=1e-12, nan_ok=True)
+
+
+def test_a_part_of_a_flight_that_takes_no_time_adds_no_height(interpreted):
+    assert interpreted["height without time"] == 0.0

@@ -21,7 +21,7 @@ from rockbatch.core.devices.laws import (
     YIELDING,
     mode_of,
     past_release,
-    state_rate,
+    response,
     tension,
 )
 from rockbatch.core.devices.pull import BESIDE, START, device_rates, sticking, under_devices, way_of_opening
@@ -93,7 +93,7 @@ def _of_device(devices, j, at, state, acceleration, rest, rounding, values, slop
         _of_stop(devices, j, at, state, acceleration, rest, rounding, values, slopes)
         return
     if of.kind == MAXWELL:
-        rate = goes * state_rate(of, at.speed, state, TAUT, goes)
+        rate = goes * response(of, at.elongation, at.speed, state, TAUT, goes).state_rate
         values[turns], slopes[turns] = goes * state, rate
         if abs(state) <= of.stiffness * rounding and rate >= 0.0:
             values[turns] = of.stiffness * rounding

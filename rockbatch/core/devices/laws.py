@@ -6,7 +6,7 @@ Forces are positive in tension, over the pier's mass [m/s²].
 import math
 from typing import NamedTuple
 
-from rockbatch.core.kernel import kernel
+from rockbatch.core.kernel import inlined, kernel
 from rockbatch.core.powers import power
 from rockbatch.core.table import record
 
@@ -51,6 +51,14 @@ class Element(NamedTuple):
     way: float  # 1, or −1 of a device that lengthens as the deck moves to the left
 
 
+class Response(NamedTuple):
+    """Response of an element to its elongation and its rate, by its constitutive model."""
+
+    force: float  # [m/s²]
+    state_rate: float  # of z [1/s], of a tendon's permanent elongation [m/s], of a braced damper's force [m/s³]
+    loss_rate: float  # power that is not stored in a tendon, a spring, a stop or a brace [W/kg]
+
+
 class Use(NamedTuple):
     """Extremes of an element in a run: greatest and least force [m/s²], elongation [m], speed [m/s], energy [J/kg]."""
 
@@ -92,55 +100,75 @@ def slip_rate(of, pull):
     return math.copysign((abs(pull) / of.coefficient) ** (1.0 / of.exponent), pull)
 
 
-@kernel
-def force(of, elongation, speed, state, mode, goes):
-    """Return the force [m/s²] of an element that ``goes`` out or in.
+@inlined
+def _viscous(of, speed):
+    """Return the Response of a viscous damper."""
+    if abs(speed) < of.linear_below:
+        pull = of.slope * speed
+    else:
+        pull = math.copysign(of.coefficient * abs(speed) ** of.exponent, speed) if speed != 0.0 else 0.0
+    return Response(pull, 0.0, pull * speed)
+
+
+@inlined
+def _hysteretic(of, speed, z, goes):
+    """Return the Response of a hysteretic damper: two-sided Bouc–Wen, n = 5."""
+    pull, share = of.strength * z, 1.0 - (power(min(abs(z), 1.0), None) if goes * z > 0.0 else 0.0)
+    return Response(pull, speed * of.stiffness * share / (1.0 + of.give * share), pull * speed)
+
+
+@inlined
+def _tendon(of, elongation, speed, slack, mode):
+    """Return the Response of a tendon, which lengthens while it yields."""
+    if mode == TAUT:
+        return Response(tension(of, elongation, slack), 0.0, 0.0)
+    return Response(0.0, 0.0, 0.0) if mode == SLACK else Response(of.strength, speed, of.strength * speed)
+
+
+@inlined
+def _braced(of, speed, pull):
+    """Return the Response of a viscous damper behind a brace, whose force is its state."""
+    slips = slip_rate(of, pull)
+    return Response(pull, of.stiffness * (speed - slips), pull * slips)
+
+
+@inlined
+def _stop(of, elongation, speed, deepest, mode):
+    """Return the Response of a stop."""
+    if mode == TAUT:
+        return Response(of.stiffness / of.returned * past_release(of, elongation, deepest), 0.0, 0.0)
+    if mode == SLACK:
+        return Response(0.0, 0.0, 0.0)
+    pull = of.stiffness * (elongation - of.start)
+    return Response(pull, 0.0, (1.0 - of.returned) * pull * speed)
+
+
+@inlined
+def response(of, elongation, speed, state, mode, goes):
+    """Return the Response of an element that ``goes`` out or in.
 
     ``state``: z of a hysteretic damper, u_0 [m] of a tendon, the force [m/s²] of a braced viscous damper, by how much a stop has
     been pressed in [m].
     """
-    if of.kind == FRICTION:
-        return of.strength * goes
-    if of.kind == VISCOUS and abs(speed) < of.linear_below:
-        return of.slope * speed
     if of.kind == VISCOUS:
-        return math.copysign(of.coefficient * abs(speed) ** of.exponent, speed) if speed != 0.0 else 0.0
+        return _viscous(of, speed)
+    if of.kind == TENDON:
+        return _tendon(of, elongation, speed, state, mode)
     if of.kind == HYSTERETIC:
-        return of.strength * state
+        return _hysteretic(of, speed, state, goes)
+    if of.kind == FRICTION:
+        return Response(of.strength * goes, 0.0, of.strength * goes * speed)
     if of.kind == MAXWELL:
-        return state
+        return _braced(of, speed, state)
     if of.kind == CONTACT:
-        if mode == TAUT:
-            return of.stiffness / of.returned * past_release(of, elongation, state)
-        return 0.0 if mode == SLACK else of.stiffness * (elongation - of.start)
-    if mode == TAUT:
-        return tension(of, elongation, state)
-    return 0.0 if mode == SLACK else of.strength
+        return _stop(of, elongation, speed, state, mode)
+    return Response(tension(of, elongation, state), 0.0, 0.0)
 
 
 @kernel
-def state_rate(of, speed, state, mode, goes):
-    """Return the rate of an element's state: two-sided Bouc–Wen, n = 5 [1/s]; a tendon lengthens while it yields [m/s]; the
-    force of a damper and its brace [m/s³]."""
-    if of.kind == HYSTERETIC:
-        loads = goes * state > 0.0
-        share = 1.0 - (power(min(abs(state), 1.0), None) if loads else 0.0)
-        return speed * of.stiffness * share / (1.0 + of.give * share)
-    if of.kind == MAXWELL:
-        return of.stiffness * (speed - slip_rate(of, state))
-    return speed if of.kind == TENDON and mode == YIELDING else 0.0
-
-
-@kernel
-def loss_rate(of, speed, pull, mode):
-    """Return the power [W/kg] that goes into an element and is not stored in a tendon, a spring, a stop or a brace."""
-    if of.kind == SPRING:
-        return 0.0
-    if of.kind == CONTACT:
-        return (1.0 - of.returned) * pull * speed if mode == YIELDING else 0.0
-    if of.kind == MAXWELL:
-        return pull * slip_rate(of, pull)
-    return 0.0 if of.kind == TENDON and mode != YIELDING else pull * speed
+def force(of, elongation, speed, state, mode, goes):
+    """Return the force [m/s²] of an element; arguments are those of :func:`response`."""
+    return response(of, elongation, speed, state, mode, goes).force
 
 
 @kernel

@@ -25,10 +25,9 @@ from rockbatch.core.devices.laws import (
     USE,
     VISCOUS,
     force,
-    loss_rate,
     mode_of,
+    response,
     slip_rate,
-    state_rate,
 )
 from rockbatch.core.ground import later
 from rockbatch.core.kernel import inlined, inner, question
@@ -144,10 +143,8 @@ def _held_by_friction(m, first, second, y, contact, horizontal, vertical, streng
 @inner
 def _with_friction(m, devices, gaps, y, contact, horizontal, vertical):
     """Return the pier ``m``, under all else, under friction that holds too; and forces [m/s²] of the first two such dampers."""
-    first = sticking(devices, NO_EVENT)
-    if first == NO_EVENT:
-        return m, 0.0, 0.0
-    second, elements = sticking(devices, first), devices.elements
+    first, elements = sticking(devices, NO_EVENT), devices.elements
+    second = sticking(devices, first)
     other = second if second != NO_EVENT else first
     here, there = gaps[first], gaps[other]
     strengths = elements[first].strength, elements[other].strength
@@ -163,22 +160,19 @@ def device_rates(m, devices, y, x, contact, horizontal, vertical, place):
     Return the pier ``m`` under all devices, and the forces [m/s²] of the first two friction dampers that do not move.
     """
     n, k, at = len(devices.elements), devices.rates[place], attitude(m, y, devices.level[0])
-    total, moment = 0.0, 0.0
+    total, moment, one, two, holds = 0.0, 0.0, 0.0, 0.0, False
     for j in range(n):
-        of = devices.elements[j]
+        of, goes = devices.elements[j], devices.goes[j]
         here = gap_of(m, of, at, y)
         put_gap(devices.gaps[place, j], here)
-        k[j], k[n + j] = 0.0, 0.0
-        if of.kind == FRICTION and devices.goes[j] == STICKS:
-            continue
-        pull = force(of, here.elongation, here.speed, x[j], devices.modes[j], devices.goes[j])
-        total += pull * here.by_v
-        moment += pull * here.arm
-        k[j] = state_rate(of, here.speed, x[j], devices.modes[j], devices.goes[j])
-        k[n + j] = loss_rate(of, here.speed, pull, devices.modes[j])
-    under, one, two = _with_friction(
-        pulled(m, total, moment), devices, devices.gaps[place], y, contact, horizontal, vertical
-    )
+        law = response(of, here.elongation, here.speed, x[j], devices.modes[j], goes)
+        k[j], k[n + j] = law.state_rate, law.loss_rate
+        total += law.force * here.by_v
+        moment += law.force * here.arm
+        holds = holds or (goes == STICKS and of.kind == FRICTION)
+    under = pulled(m, total, moment)
+    if holds:
+        under, one, two = _with_friction(under, devices, devices.gaps[place], y, contact, horizontal, vertical)
     k[2 * n] = -horizontal * lever(m, y, contact) * y.omega - vertical * y.v_rate
     k[2 * n + 1] = 0.0 if m.finite is not None else -m.height * y.theta * under.pull.force * y.omega
     return under, one, two

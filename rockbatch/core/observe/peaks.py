@@ -19,7 +19,7 @@ from rockbatch.core.devices.laws import (
     TAUT,
     TENDON,
     force,
-    state_rate,
+    response,
     stop_force,
 )
 from rockbatch.core.kernel import entry, kernel, question
@@ -76,15 +76,23 @@ class RecordedDevices(NamedTuple):
     level: float  # v of the pier at rest [m]
 
 
+class RecordedRun(NamedTuple):
+    """A run as it was recorded."""
+
+    rows: np.recarray  # of recording.Row, shape (n,): the history; for the greatest forces, with every step
+    pulls: np.ndarray  # shape (n, 2): force [m/s²] and moment [m²/s²] of devices at every row
+    devices: RecordedDevices | None
+
+
 @kernel
 def _state_within(m, of, was, now, level, step, s):
     """Return the state of an element at the share ``s`` of a step, from its states ``was`` and ``now`` at the ends."""
     if of.kind not in (HYSTERETIC, MAXWELL):
         return was + s * (now - was)
-    speed = gap_of(m, of, attitude(m, step.start, level), step.start).speed
-    speed_end = gap_of(m, of, attitude(m, step.end, level), step.end).speed
-    rate = state_rate(of, speed, was, TAUT, math.copysign(1.0, speed))
-    rate_end = state_rate(of, speed_end, now, TAUT, math.copysign(1.0, speed_end))
+    start = gap_of(m, of, attitude(m, step.start, level), step.start)
+    end = gap_of(m, of, attitude(m, step.end, level), step.end)
+    rate = response(of, start.elongation, start.speed, was, TAUT, math.copysign(1.0, start.speed)).state_rate
+    rate_end = response(of, end.elongation, end.speed, now, TAUT, math.copysign(1.0, end.speed)).state_rate
     return cubic(was, rate, now, rate_end, step.length, s)
 
 
@@ -292,7 +300,7 @@ def _put(out, i, forces):
 
 
 @entry
-def forces_of_run(m, body, rows, pulls, devices, ground, dt, limits, out, greatest, noted):
+def forces_of_run(m, body, run, ground, dt, limits, out, greatest, noted):
     """Compute the forces of a run at every row, or the greatest of the whole run.
 
     Parameters
@@ -300,12 +308,8 @@ def forces_of_run(m, body, rows, pulls, devices, ground, dt, limits, out, greate
     m : Springs or Block
     body : float or Body
         Of Springs the height of the deck above the pivots [m].
-    rows : recarray of recording.Row, shape (n,)
-        History as the run wrote it, with both sides of every event; for the greatest, with every step.
-    pulls : ndarray, shape (n, 2)
-        Force [m/s²] and moment [m²/s²] of dampers and tendons at every row.
-    devices : RecordedDevices or None
-        These dampers and tendons.
+    run : RecordedRun
+        With both sides of every event.
     ground : ndarray, shape (npts, 4)
         The motion of the run, of :func:`rockbatch.core.ground.ground_rows`.
     dt : float
@@ -318,6 +322,7 @@ def forces_of_run(m, body, rows, pulls, devices, ground, dt, limits, out, greate
     noted : recarray of Noted, shape (1,)
         Filled beside ``greatest``.
     """
+    rows, pulls, devices = run.rows, run.pulls, run.devices
     supports, aloft = Supports(limits.unstressed, limits.unstressed, -1.0, -1.0), 0.0
     was = contact_of(m, rows[0])
     under = pulled(m, pulls[0, 0], pulls[0, 1])
