@@ -10,14 +10,9 @@ from typing import Any, ClassVar, Literal, Self, get_args
 from rockbatch.arguments import checked
 from rockbatch.errors import InputError
 from rockbatch.pier.block import Pier
-from rockbatch.pier.restraints import (
-    Restraint,
-    described_restraints,
-    holds_a_tilt,
-    prestress_over_weight,
-    wrong_on_springs,
-    wrong_restraints,
-)
+from rockbatch.pier.places import holds_a_tilt, prestress_over_weight
+from rockbatch.pier.plausibility import wrong_on_springs, wrong_restraints
+from rockbatch.pier.restraints import Restraint, described_restraints
 from rockbatch.units import LEAST, MOST, POSITIVE, Bounds
 
 LEAST_ETA = 1.000001

@@ -14,7 +14,8 @@ import numpy.typing as npt
 
 from rockbatch.pier.bases import Base, ElasticBase, YieldingBase, static_deflection
 from rockbatch.pier.block import Pier
-from rockbatch.pier.restraints import Damper, DeckSpring, Restraint, Stop, Tendon, places, prestress_over_weight
+from rockbatch.pier.places import places, prestress_over_weight
+from rockbatch.pier.restraints import Damper, DeckSpring, Restraint, Stop, Tendon
 
 Array = npt.NDArray[np.float64]
 

@@ -15,7 +15,8 @@ import numpy.typing as npt
 from rockbatch.pier.bases import Base, ElasticBase, RigidBase
 from rockbatch.pier.block import Pier
 from rockbatch.pier.equilibrium import ONSET, Equilibria, SlowTurn, without_dampers
-from rockbatch.pier.restraints import DeckSpring, Stop, Tendon, symmetric
+from rockbatch.pier.places import symmetric
+from rockbatch.pier.restraints import DeckSpring, Stop, Tendon
 
 Array = npt.NDArray[np.float64]
 

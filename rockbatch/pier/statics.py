@@ -13,7 +13,8 @@ from rockbatch.pier.bases import Base, ElasticBase, problems, vertical_frequency
 from rockbatch.pier.block import Pier
 from rockbatch.pier.equilibrium import ONSET, Array, Equilibria, SlowTurn, without_dampers
 from rockbatch.pier.free_rocking import FreeRocking, Swings
-from rockbatch.pier.restraints import symmetric, unlikely_devices
+from rockbatch.pier.places import symmetric
+from rockbatch.pier.plausibility import unlikely_devices
 from rockbatch.showing import Shown
 
 if TYPE_CHECKING:

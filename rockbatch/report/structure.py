@@ -18,7 +18,7 @@ from rockbatch.pier import (
     problems,
     restraint_of,
 )
-from rockbatch.pier.restraints import wrong_restraints
+from rockbatch.pier.plausibility import wrong_restraints
 from rockbatch.report.labels import plain
 from rockbatch.study.restraint_keys import KEYS_OF
 

@@ -21,7 +21,7 @@ from rockbatch.pier import (
     static_deflection,
 )
 from rockbatch.pier.bases import BOUNDS, WORDS
-from rockbatch.pier.restraints import wrong_device
+from rockbatch.pier.plausibility import wrong_device
 from rockbatch.study.lists import Chosen, Grid, complain_where_due, too_many
 from rockbatch.study.piers import PIER, Values, has_mass
 from rockbatch.study.restraint_keys import RESTRAINTS, Device, read_devices

@@ -5,7 +5,8 @@ from typing import Any
 
 from rockbatch.errors import remedy
 from rockbatch.pier import DeckSpring, Pier, Restraint, Stop, doubt, fields_of
-from rockbatch.pier.restraints import BOUNDS, DAMPERS, KINDS, wrong_device
+from rockbatch.pier.plausibility import wrong_device
+from rockbatch.pier.restraints import BOUNDS, DAMPERS, KINDS
 from rockbatch.study.lists import Chosen, Grid
 from rockbatch.study.piers import has_mass
 from rockbatch.toml.kinds import Choice, choice, not_negative, number, positive, within

@@ -1,0 +1,84 @@
+"""Places of devices under a pier and beside its deck, and what follows from them: symmetry and re-centring."""
+
+from dataclasses import replace
+from typing import NamedTuple
+
+from rockbatch.pier.block import Pier
+from rockbatch.pier.restraints import Damper, DeckSpring, Restraint, Tendon
+
+WAYS: dict[str, tuple[float, ...]] = {"both": (-1.0, 1.0), "left": (-1.0,), "right": (1.0,)}
+"""Directions in which a deck meets a spring, by its side."""
+
+
+class Place(NamedTuple):
+    """Where a device acts: at an offset from the centre of the base [m], or at a height on the deck [m].
+
+    ``way`` is −1 or 1 of a spring that a deck meets on its left or right, 0 of a device that acts both ways.
+    """
+
+    offset: float = 0.0
+    height: float = 0.0
+    way: float = 0.0
+
+
+def places(pier: Pier, restraint: Restraint) -> tuple[Place, ...]:
+    """Return the places at which ``restraint`` acts, those on the left before those on the right."""
+    if isinstance(restraint, DeckSpring):
+        height = pier.deck if restraint.height_m is None else restraint.height_m
+        if restraint.linear:
+            return (Place(height=height),)
+        return tuple(Place(0.0, height, way) for way in WAYS.get(restraint.side, ()))
+    if restraint.at == "deck":
+        return (Place(height=pier.deck),)
+    b = pier.half_width
+    if restraint.at is None:
+        return Place(-b), Place(b)
+    if isinstance(restraint.at, str):
+        return (Place(-b if restraint.at == "left" else b),)
+    return (Place(float(restraint.at)),)
+
+
+def offsets(pier: Pier, restraint: Restraint) -> tuple[float, ...]:
+    """Return the places at the base at which ``restraint`` acts, from its centre [m]."""
+    return tuple(place.offset for place in places(pier, restraint) if place.height == 0.0)
+
+
+def prestress_over_weight(pier: Pier, restraints: tuple[Restraint, ...]) -> float:
+    """Return ψ of all tendons together."""
+    return sum(tendon.psi * len(offsets(pier, tendon)) for tendon in restraints if isinstance(tendon, Tendon))
+
+
+def holds_a_tilt(restraints: tuple[Restraint, ...]) -> bool:
+    """Return whether a damper among them may hold the pier at a tilt: it keeps a force at rest, as friction does."""
+    return any(isinstance(device, Damper) and device.kind != "viscous" and device.f > 0 for device in restraints)
+
+
+def recentres(pier: Pier, restraints: tuple[Restraint, ...]) -> bool:
+    """Return whether weight and prestress overcome friction at small rotations, about either corner.
+
+    That is 2 f < 1 + ψ with dampers at both. Dampers count alike with and without a yield deflection.
+    """
+    for corner in (-pier.half_width, pier.half_width):
+        holds, rights = 0.0, 1.0
+        for device in restraints:
+            arms = sum(place.height or abs(place.offset - corner) for place in places(pier, device)) / pier.half_width
+            holds += device.f * arms if isinstance(device, Damper) and device.kind != "viscous" else 0.0
+            rights += device.psi * arms if isinstance(device, Tendon) else 0.0
+        if holds >= rights:
+            return False
+    return True
+
+
+def symmetric(pier: Pier, restraints: tuple[Restraint, ...]) -> bool:
+    """Return whether each device has its like on the other side."""
+    placed = [(place, _anywhere(device)) for device in restraints for place in places(pier, device)]
+    return all(placed.count((_mirrored(place), device)) == placed.count((place, device)) for place, device in placed)
+
+
+def _anywhere(device: Restraint) -> Restraint:
+    """Return the device without its place."""
+    return replace(device, side="both") if isinstance(device, DeckSpring) else replace(device, at=0.0)
+
+
+def _mirrored(place: Place) -> Place:
+    return Place(-place.offset, place.height, -place.way)
