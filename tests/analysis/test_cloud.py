@@ -8,7 +8,7 @@ import pytest
 from report_page import Page
 from scipy.optimize import brentq, minimize
 from scipy.stats import linregress, norm, t
-from studies import SINE, study_text, write_study
+from studies import seven_pulses, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.analysis.cloud import Cloud, Demands, Line, Logistic, fit, fit_event
@@ -214,22 +214,10 @@ def test_events_without_a_curve_say_why():
 
 
 def study(tmp_path, fragility=None, motions=None, check=0.5, **more):
-    shapes = [
-        ("sine", 0.4),
-        ("sine", 0.6),
-        ("sine", 1.0),
-        ("cosine", 0.5),
-        ("cosine", 0.8),
-        ("ricker", 0.9),
-        ("ricker", 1.3),
-    ]
     text = study_text(
         pier={"alpha": 0.2, "p": 2.0},
         motions=motions or {"scale": [0.6, 1.0, 1.7, 2.6]},
-        pulses=[
-            SINE | {"name": f"{shape}_{t}", "shape": shape, "amplitude_g": 0.3, "period_s": t, "duration_s": 4.0}
-            for shape, t in shapes
-        ],
+        pulses=seven_pulses(0.3),
         cases=({"name": "rigid", "base": "rigid"},),
         numerics={"tolerance": 1e-3},
         check=[{"name": "rotation", "demand": "theta_max_over_alpha", "at_most": check, "reason": "margin"}],

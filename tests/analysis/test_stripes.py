@@ -8,7 +8,7 @@ import pytest
 from report_page import Page
 from scipy.optimize import minimize
 from scipy.stats import binom, norm
-from studies import SINE, study_text, write_study
+from studies import seven_pulses, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.analysis.fragility_curves import level_plan
@@ -17,15 +17,6 @@ from rockbatch.study import load_study
 from rockbatch.study.fragility import read_fragility
 from rockbatch.study.suite import ground_motions
 
-SHAPES = [
-    ("sine", 0.4),
-    ("sine", 0.6),
-    ("sine", 1.0),
-    ("cosine", 0.5),
-    ("cosine", 0.8),
-    ("ricker", 0.9),
-    ("ricker", 1.3),
-]
 PGA = 0.4
 LEVELS = {"levels_g": [0.2, 0.4, 0.6, 1.2]}
 
@@ -34,10 +25,7 @@ def study(tmp_path, fragility, motions=None):
     text = study_text(
         pier={"alpha": 0.2, "p": 2.0},
         motions=motions or {},
-        pulses=[
-            SINE | {"name": f"{shape}_{t}", "shape": shape, "amplitude_g": PGA, "period_s": t, "duration_s": 4.0}
-            for shape, t in SHAPES
-        ],
+        pulses=seven_pulses(PGA),
         cases=({"name": "rigid", "base": "rigid"},),
         numerics={"tolerance": 1e-3},
         fragility={"measure": "PGA"} | fragility,

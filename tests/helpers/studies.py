@@ -26,6 +26,24 @@ COSINE = {
 }
 RIGID = {"name": "rigid", "base": "rigid"}
 PADS = {"name": "pads", "base": "yielding", "beta": 50, "eta": 2.5}
+SEVEN = [
+    ("sine", 0.4),
+    ("sine", 0.6),
+    ("sine", 1.0),
+    ("cosine", 0.5),
+    ("cosine", 0.8),
+    ("ricker", 0.9),
+    ("ricker", 1.3),
+]
+"""Shapes of pulses and their periods [s]."""
+
+
+def seven_pulses(amplitude_g: float) -> list[Table]:
+    """Return a [[motions.pulse]] of 4 s for each of SEVEN."""
+    return [
+        SINE | {"name": f"{shape}_{t}", "shape": shape, "amplitude_g": amplitude_g, "period_s": t, "duration_s": 4.0}
+        for shape, t in SEVEN
+    ]
 
 
 def toml(table: Table, header: str = "", name: str = "") -> str:
