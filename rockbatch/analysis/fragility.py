@@ -116,14 +116,9 @@ class Fragility(Analysis):
 
 @checked
 def fragility(
-    study: str | os.PathLike[str] | Study,
-    out: str | os.PathLike[str] | None = None,
-    *,
-    motions: Motions = None,
-    jobs: int | Engine | None = None,
-    fresh: bool = False,
-    progress: Progress = None,
-) -> Fragility:
+    study: str | os.PathLike[str] | Study, out: str | os.PathLike[str] | None = None, *, motions: Motions = None,
+    jobs: int | Engine | None = None, fresh: bool = False, progress: Progress = None,
+) -> Fragility:  # fmt: skip
     """Compute how probable overturning, and every limit of a check, is at a given intensity: [fragility] of a study.
 
     Every horizontal component is a record here, whatever [suite] says: a probability is that of a motion along the pier. Those

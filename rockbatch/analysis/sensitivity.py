@@ -67,14 +67,9 @@ class Sensitivity(Analysis):
 
 @checked
 def sensitivity(
-    study: str | os.PathLike[str] | Study,
-    out: str | os.PathLike[str] | None = None,
-    *,
-    motions: Motions = None,
-    jobs: int | Engine | None = None,
-    fresh: bool = False,
-    progress: Progress = None,
-) -> Sensitivity:
+    study: str | os.PathLike[str] | Study, out: str | os.PathLike[str] | None = None, *, motions: Motions = None,
+    jobs: int | Engine | None = None, fresh: bool = False, progress: Progress = None,
+) -> Sensitivity:  # fmt: skip
     """Compute what the peak rotation depends on, one at a time and by Sobol's indices: [sensitivity] of a study.
 
     Parameters

@@ -74,14 +74,9 @@ class Spectrum(Analysis):
 
 @checked
 def spectrum(
-    study: str | os.PathLike[str] | Study,
-    out: str | os.PathLike[str] | None = None,
-    *,
-    motions: Motions = None,
-    jobs: int | Engine | None = None,
-    fresh: bool = False,
-    progress: Progress = None,
-) -> Spectrum:
+    study: str | os.PathLike[str] | Study, out: str | os.PathLike[str] | None = None, *, motions: Motions = None,
+    jobs: int | Engine | None = None, fresh: bool = False, progress: Progress = None,
+) -> Spectrum:  # fmt: skip
     """Compute rocking spectra over the size of the pier, and maps of the pulses that overturn it: [spectrum] of a study.
 
     Parameters

@@ -37,14 +37,9 @@ from rockbatch.toml.kinds import closest
 
 @checked
 def run(
-    study: str | os.PathLike[str] | Study,
-    out: str | os.PathLike[str] | None = None,
-    *,
-    motions: Motions = None,
-    jobs: int | Engine | None = None,
-    fresh: bool = False,
-    progress: Progress = None,
-) -> "pd.DataFrame":
+    study: str | os.PathLike[str] | Study, out: str | os.PathLike[str] | None = None, *, motions: Motions = None,
+    jobs: int | Engine | None = None, fresh: bool = False, progress: Progress = None,
+) -> "pd.DataFrame":  # fmt: skip
     """Run every record of a study in every case.
 
     Parameters

@@ -176,12 +176,7 @@ def run_fixed(
 
 
 def run_all_fixed(
-    runs: Sequence[Run],
-    substeps: Sequence[int],
-    quiet_s: float,
-    stop: Stop,
-    locate: bool = True,
-    wait: bool = True,
+    runs: Sequence[Run], substeps: Sequence[int], quiet_s: float, stop: Stop, locate: bool = True, wait: bool = True
 ) -> list[Outcome | None]:
     """Run with given steps per sample, side by side; return outcomes in the order of ``runs``, ``None`` for stopped ones.
 
@@ -193,12 +188,7 @@ def run_all_fixed(
 
 
 def try_all(
-    runs: Sequence[Run],
-    substeps: Sequence[int],
-    quiet_s: float,
-    stop: Stop,
-    locate: bool = True,
-    wait: bool = True,
+    runs: Sequence[Run], substeps: Sequence[int], quiet_s: float, stop: Stop, locate: bool = True, wait: bool = True
 ) -> list[Trial | None]:
     """Run as :func:`run_all_fixed`, and return the trajectories in short, too."""
     trials: list[Trial | None] = [_refused(run, steps, quiet_s) for run, steps in zip(runs, substeps, strict=True)]

@@ -4,10 +4,8 @@ Values of motions and landings for α = 0.2, p = 1, μ = 3, g = 9.81 come from a
 of the highest of many samples, too low by 1e-8 m, which are replaced by those of its maxima (S1: in closed form).
 """
 
-import importlib
 import math
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -59,14 +57,6 @@ def rows_of(motion: Motion, substeps: int, base: RigidBase | None = None):
 
 
 # Known motions
-
-
-@pytest.fixture(scope="module")
-def outcomes():
-    """The benchmark, imported as a script beside it would be."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.syspath_prepend(str(Path(__file__).parents[2] / "benchmarks"))
-        yield importlib.import_module("outcomes")
 
 
 @pytest.mark.parametrize(

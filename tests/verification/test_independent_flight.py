@@ -5,7 +5,6 @@ Values of motions and landings for α = 0.2, p = 1, μ = 3, g = 9.81 come from a
 
 import importlib
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,19 +13,10 @@ from rockbatch.motions import Motion
 from rockbatch.pier import Pier, RigidBase
 from rockbatch.simulation.outcome import Outcome
 
-BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
 PIER = Pier(alpha=0.2, p=1.0)
 G = PIER.gravity
 SIDES = {"L": -1, "R": 1, "rest": 0}
 FIELDS = ("t_flight", "flight_duration", "flight_height", "theta_max", "t_max")
-
-
-@pytest.fixture(scope="module")
-def outcomes():
-    """The benchmark, imported as a script beside it would be."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.syspath_prepend(str(BENCHMARKS))
-        yield importlib.import_module("outcomes")
 
 
 @pytest.fixture(scope="module")

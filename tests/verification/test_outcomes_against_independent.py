@@ -1,9 +1,7 @@
 """Outcomes of random hard cases are those of an independent reference of order 8 (benchmarks/outcomes.py)."""
 
-import importlib
 import math
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,18 +11,9 @@ from core_samples import broadband, is_common
 from rockbatch.motions import Motion, pulse
 from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase
 
-BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
 PIER = Pier(alpha=0.20, p=1.0)
 G = PIER.gravity
 SINE = pulse("sine", name="sine", amplitude=G, period=0.5, dt=0.01, duration=2.0)
-
-
-@pytest.fixture(scope="module")
-def outcomes():
-    """The benchmark, imported as a script beside it would be."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.syspath_prepend(str(BENCHMARKS))
-        yield importlib.import_module("outcomes")
 
 
 @pytest.fixture(scope="module")
