@@ -5,11 +5,11 @@ from dataclasses import replace
 
 from rockbatch.batch.plan import PlannedRun
 from rockbatch.errors import InputError
+from rockbatch.simulation.error_control import run_all_to_tolerance
 from rockbatch.simulation.histories import rocking_from_lean, with_observed
 from rockbatch.simulation.models import first_substeps
 from rockbatch.simulation.outcome import Outcome
 from rockbatch.simulation.runs import Run, Stop, run_all_fixed, steps_of
-from rockbatch.simulation.settling import run_all_to_tolerance
 from rockbatch.study import Numerics, Output
 
 MOST_STEPS_OF_A_LEDGER = 1_000_000

@@ -11,12 +11,12 @@ from rockbatch.motions.plausible import unlikely_samples
 from rockbatch.pier import Base, Pier, problems, unlikely_devices
 from rockbatch.results.columns import Ran, as_series, row
 from rockbatch.results.shocks import as_table, shock_rows
+from rockbatch.simulation.error_control import run_to_tolerance
 from rockbatch.simulation.histories import histories, rocking_from_lean, with_observed
 from rockbatch.simulation.models import least_substeps
 from rockbatch.simulation.outcome import Outcome
 from rockbatch.simulation.response import Response
 from rockbatch.simulation.runs import Run, run_fixed
-from rockbatch.simulation.settling import run_to_tolerance
 from rockbatch.simulation.shocks import by_shock
 from rockbatch.study import Case, Numerics
 from rockbatch.study.spec import LEAST_NORMAL_SHARE, LEAST_TOLERANCE

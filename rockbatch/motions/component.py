@@ -14,8 +14,8 @@ FIRST_YEAR = 365 * 86400.0
 
 
 @dataclass(frozen=True)
-class Seat:
-    """The place of a sensor, as far as the header says it; empty or None where it does not."""
+class Sensor:
+    """A sensor and its place, as far as the header states them; empty or None where it does not."""
 
     station: str = ""  # code, number or name
     network: str | None = None
@@ -28,12 +28,12 @@ class Seat:
         """The station, without the zeros that some agencies put in front."""
         return self.station.lstrip("0")
 
-    def is_that_of(self, other: "Seat") -> bool:
-        """Return whether both may be the same sensor, of a station that both name."""
-        return bool(self.number) and self.number == other.number and not self._differs(other)
+    def may_be_same_as(self, other: "Sensor") -> bool:
+        """Return whether both may be one sensor, of a station that both name."""
+        return bool(self.number) and self.number == other.number and not self._codes_differ(other)
 
-    def is_other(self, other: "Seat") -> bool:
-        """Return whether both are other sensors, of one station or of one network; stations may be called otherwise elsewhere.
+    def is_distinct_from(self, other: "Sensor") -> bool:
+        """Return whether both are known to be distinct sensors, of one station or of one network; names differ between networks.
 
         Where a channel has a number, the words for its place, which differ from format to format, do not matter.
         """
@@ -41,11 +41,11 @@ class Seat:
             return False
         if self.number == other.number:
             unplaced = None not in (self.channel, other.channel) or self.channel != other.channel
-            return (replace(self, place=None) if unplaced else self)._differs(other)
+            return (replace(self, place=None) if unplaced else self)._codes_differ(other)
         return bool(self.network) and self.network == other.network
 
-    def _differs(self, other: "Seat") -> bool:
-        mine, others = ((seat.network, seat.location, seat.place, seat.channel) for seat in (self, other))
+    def _codes_differ(self, other: "Sensor") -> bool:
+        mine, others = ((sensor.network, sensor.location, sensor.place, sensor.channel) for sensor in (self, other))
         return any(None not in (a, b) and _bare(str(a)) != _bare(str(b)) for a, b in zip(mine, others, strict=True))
 
 
@@ -59,8 +59,8 @@ def file_of(source: str) -> str:
     return re.sub(r" \([^()]*\)$", "", source)
 
 
-NOWHERE = Seat()
-"""Of a file that says nothing of its sensor."""
+UNKNOWN_SENSOR = Sensor()
+"""The sensor of a file that does not state it."""
 
 
 @dataclass(frozen=True)
@@ -86,7 +86,7 @@ class Component:
     distance_km: float | None = None  # of the site from the event, likewise
     confirmed: tuple[str, ...] = ()  # what a manifest confirms: "confirm", "confirm_pga" (see motion.Finding)
     wanted: bool = False  # whether a manifest says that it is used, whatever else there is of the same recording
-    seat: Seat = NOWHERE
+    sensor: Sensor = UNKNOWN_SENSOR
     event: str = ""  # what the header says of it, to tell recordings of one sensor apart where start is not known
     processed: bool | None = None  # whether the agency has corrected it; None where the file does not say
     initial: Initial | None = None  # the ground's state at the first sample, where the file has it

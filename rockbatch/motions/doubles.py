@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from rockbatch.grouping import grouped
 from rockbatch.motions.archives import bare
-from rockbatch.motions.component import NOWHERE, Component, file_of
+from rockbatch.motions.component import UNKNOWN_SENSOR, Component, file_of
 from rockbatch.motions.formats import is_usual
 from rockbatch.motions.motion import Finding, LeftOut, Samples
 from rockbatch.motions.orientation import SAME_AZIMUTH, UNKNOWN
@@ -48,12 +48,12 @@ Truths = npt.NDArray[np.bool_]
 
 def without_boreholes(components: Sequence[Component]) -> tuple[list[Component], list[LeftOut]]:
     """Return the components without those in boreholes below a sensor at the surface that recorded the same earthquake."""
-    surface = [c for c in components if c.seat.number and not in_a_borehole(c)]
-    at_surface = grouped(surface, lambda c: c.seat.number)
+    surface = [c for c in components if c.sensor.number and not in_a_borehole(c)]
+    at_surface = grouped(surface, lambda c: c.sensor.number)
     kept: list[Component] = []
     left_out: list[LeftOut] = []
     for component in components:
-        above = at_surface.get(component.seat.number, []) if in_a_borehole(component) and not component.wanted else []
+        above = at_surface.get(component.sensor.number, []) if in_a_borehole(component) and not component.wanted else []
         used = next((other for other in above if in_one_event(component, other)), None)
         if used is None:
             kept.append(component)
@@ -122,7 +122,7 @@ def _pairs(components: Sequence[Component]) -> tuple[Pairs, list[tuple[int, int]
             join(i, j)
     for i, j in table.alike():
         first, second = components[i], components[j]
-        if j in pairs.get(i, ()) or first.seat.is_other(second.seat):
+        if j in pairs.get(i, ()) or first.sensor.is_distinct_from(second.sensor):
             continue
         factor = _factor(first, second)
         if factor is not None and abs(abs(factor) - 1.0) > _NO_FACTOR:
@@ -175,7 +175,7 @@ def _sets(components: Sequence[Component]) -> Iterator[list[int]]:
 
     def place(i: int) -> Hashable:
         c = components[i]
-        return c.folder, c.station or c.seat.station or c.site, c.event, c.processed, f"{c.dt:.3g}"
+        return c.folder, c.station or c.sensor.station or c.site, c.event, c.processed, f"{c.dt:.3g}"
 
     files = grouped(range(len(components)), lambda i: _file(components[i])).values()
     yield from (members for members in files if len(members) > 1)
@@ -222,7 +222,7 @@ class _Table:
         self.components = components
         self.file, self.suffix = _codes(map(_file, components)), _codes(map(_suffix, components))
         self.numbered = _codes(c.site if is_numbered(c.site) else "" for c in components)
-        self.sensor, self.event = _codes(c.seat.number for c in components), _codes(c.event for c in components)
+        self.sensor, self.event = _codes(c.sensor.number for c in components), _codes(c.event for c in components)
         self.samples = _codes(map(_samples, components))
         self.way = _codes(map(_way, components))
         self.azimuth = np.array([c.orientation.azimuth for c in components], dtype=float)
@@ -257,7 +257,7 @@ class _Table:
         return [
             k
             for k in alike
-            if (NOWHERE in (parts[i].seat, parts[k].seat) or parts[i].seat.is_that_of(parts[k].seat))
+            if (UNKNOWN_SENSOR in (parts[i].sensor, parts[k].sensor) or parts[i].sensor.may_be_same_as(parts[k].sensor))
             and (alike[k] or UNKNOWN in (parts[i].orientation, parts[k].orientation))
         ]
 
@@ -277,7 +277,7 @@ class _Table:
         return [
             k
             for k in j[same_event & ~other & self._pointing_alike(i, j)].tolist()
-            if first.seat.is_that_of(parts[k].seat)
+            if first.sensor.may_be_same_as(parts[k].sensor)
             and not (self.whole_file[i] and self.whole_file[k] and _are_parts(first, parts[k]))
         ]
 

@@ -16,10 +16,10 @@ from pathlib import Path
 from rockbatch.errors import InputError
 from rockbatch.grouping import grouped
 from rockbatch.lazy import h5py
+from rockbatch.motions.azimuths import resolved
 from rockbatch.motions.component import Component
 from rockbatch.motions.orientation import Orientation, orientation_of
 from rockbatch.motions.origin import Origin
-from rockbatch.motions.turning import resolved
 from rockbatch.units import GRAVITY
 
 SETS = ("farfield", "nearfield_pulse", "nearfield_no_pulse")

@@ -193,7 +193,7 @@ def _with_progress(files: Sequence[Found]) -> Iterable[Found]:
 def _without_companions(readings: Sequence[Reading]) -> list[Reading]:
     """Return the readings with files left out that are no records (spectra, velocities, notes), if records lie beside them."""
     components = [reading for reading in readings if isinstance(reading, Component)]
-    folders = {(_folder(component), station) for component in components for station in ("", component.seat.number)}
+    folders = {(_folder(component), station) for component in components for station in ("", component.sensor.number)}
     return [
         LeftOut(reading.name, reading.source, f"no record: {reading.reason}")
         if isinstance(reading, Unusable) and (_folder(reading), reading.companion) in folders

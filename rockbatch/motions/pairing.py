@@ -10,6 +10,7 @@ from typing import Literal
 import numpy as np
 
 from rockbatch.grouping import distinct, grouped
+from rockbatch.motions.azimuths import rotated_to
 from rockbatch.motions.common_span import on_common_samples, overlap, too_unlike
 from rockbatch.motions.component import Component
 from rockbatch.motions.measures import state_at
@@ -19,7 +20,6 @@ from rockbatch.motions.orientation import same_azimuth
 from rockbatch.motions.origin import directed
 from rockbatch.motions.plausible import ANY, Judged, doubt, findings, fits
 from rockbatch.motions.stations import by_station, station_names
-from rockbatch.motions.turning import turned_to
 from rockbatch.toml.kinds import shown
 from rockbatch.units import GRAVITY
 
@@ -144,7 +144,7 @@ def _turned(
     turned: list[tuple[int, Component]] = []
     unusable: list[Unusable] = []
     for station, group in grouped([pair for pair in horizontals if pair[1].folder], lambda pair: pair[0]).items():
-        along, refused = turned_to([component for _, component in group], azimuths)
+        along, refused = rotated_to([component for _, component in group], azimuths)
         turned += [(station, component) for component in along]
         unusable += refused
     return turned + [pair for pair in horizontals if not pair[1].folder], unusable

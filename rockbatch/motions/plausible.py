@@ -167,7 +167,7 @@ def in_a_structure(judged: Judged) -> Finding | None:
     """Return that a sensor is on an upper floor, a deck or a crest, or in a borehole, by its place or its station's name."""
     if depth := in_a_borehole(judged.component):
         return Finding("borehole", f'"{depth}" is in a borehole, and not at the surface', gross=True)
-    for text, words in ((judged.component.seat.place or "", _STRUCTURE), (judged.component.origin.station, _IN_NAME)):
+    for text, words in ((judged.component.sensor.place or "", _STRUCTURE), (judged.component.origin.station, _IN_NAME)):
         if words.search(text.lower()) and not _GROUND.search(text.lower()):
             return Finding("structure", f'"{text}" is in a structure, and not on the ground', gross=True)
     return None
@@ -175,7 +175,7 @@ def in_a_structure(judged: Judged) -> Finding | None:
 
 def in_a_borehole(component: Component) -> str:
     """Return the place, or the station's name, that says that a sensor is in a borehole; empty if none does."""
-    texts = (component.seat.place or "", component.origin.station)
+    texts = (component.sensor.place or "", component.origin.station)
     return next((text for text in texts if _BOREHOLE.search(text.lower()) and "surface" not in text.lower()), "")
 
 

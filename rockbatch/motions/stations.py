@@ -131,7 +131,7 @@ def station_names(stations: Sequence[Sequence[Component]]) -> list[str]:
     records = list(dict.fromkeys(map(first_of, root)))
     firsts = [stations[i][0] for i in records]
     names = distinct(
-        [c.site if is_numbered(c.site) else c.seat.station.strip() or c.site or c.station or c.name for c in firsts],
+        [c.site if is_numbered(c.site) else c.sensor.station.strip() or c.site or c.station or c.name for c in firsts],
         lambda i, name: f"{name} {firsts[i].event}".strip(),
         lambda i, name: f"{name} {firsts[i].folder.rsplit('/', 1)[-1]}".strip(),
     )
@@ -145,7 +145,7 @@ def _keys(component: Component) -> Iterator[Hashable]:
     At a station that is an event, or an hour, in which both recorded, or their file.
     """
     places: list[Hashable] = [(component.folder, component.station)] if component.station else []
-    places += [component.seat.number.upper()] if component.seat.number else []
+    places += [component.sensor.number.upper()] if component.sensor.number else []
     for place in places:
         if component.event:
             yield place, component.event
@@ -169,7 +169,7 @@ def _together(a: Component, b: Component) -> bool:
         return a.site == b.site
     if a.station and (a.folder, a.station) == (b.folder, b.station):
         return in_one_event(a, b) or (bool(a.source) and file_of(a.source) == file_of(b.source))
-    first, second = a.seat, b.seat
+    first, second = a.sensor, b.sensor
     if not first.number or first.number.upper() != second.number.upper():
         return False
     return not (first.network and second.network and first.network != second.network) and in_one_event(a, b)

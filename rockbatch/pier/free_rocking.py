@@ -65,7 +65,7 @@ class FreeRocking:
 
     @cached_property
     def _edges(self) -> list[float]:
-        """Rotations at which the moment has a kink: lift-off, stops that are met, tendons that yield."""
+        """Rotations at which the moment changes its slope: lift-off, stops that are met, tendons that yield."""
         turn, edges = self.turn, [self.turn.lift_off or 0.0]
         for place in turn.places:
             rises = turn.elongation(place, self._curve.theta, self._curve.depth)
@@ -131,7 +131,7 @@ class FreeRocking:
     def periods(self, amplitudes: Array) -> Array:
         """Return the periods [s] at ``amplitudes`` > 0 [rad], below the unstable equilibrium: 4 ∫ dθ/θ̇ from 0 to the amplitude.
 
-        With θ = amplitude (1 − x²) the integrand is smooth at both ends; it is split where the moment has a kink.
+        With θ = amplitude (1 − x²) the integrand is smooth at both ends; it is split where the moment changes its slope.
         """
         quarter = np.zeros_like(amplitudes)
         ends = (np.clip(1.0 - edge / amplitudes, 0.0, 1.0) ** 0.5 for edge in (math.inf, *self._edges[::-1], 0.0))

@@ -7,7 +7,7 @@ _HOMES = {
     "rockbatch.core.kernel": ("core_digest",),
     "rockbatch.simulation.models": ("block", "first_substeps", "ground_of", "least_substeps", "springs"),
     "rockbatch.simulation.runs": ("Run", "Stop", "run_all_fixed", "run_fixed", "steps_of", "written_run"),
-    "rockbatch.simulation.settling": ("run_all_to_tolerance", "run_to_tolerance"),
+    "rockbatch.simulation.error_control": ("run_all_to_tolerance", "run_to_tolerance"),
 }
 
 

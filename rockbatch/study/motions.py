@@ -9,12 +9,12 @@ from typing import Any
 
 from rockbatch.errors import InputError, remedy
 from rockbatch.motions import Motion, MotionSet, kinds
+from rockbatch.motions.azimuths import azimuths_every
 from rockbatch.motions.baseline import RULES, Offset
 from rockbatch.motions.formats import LAYOUTS, ROLES, ReadOptions
 from rockbatch.motions.pulses import SHAPES, unlikely
 from rockbatch.motions.selection import Selection
 from rockbatch.motions.sequences import read_sequences
-from rockbatch.motions.turning import every
 from rockbatch.study.spec import FemaSpec, MotionSpec, PulseSpec
 from rockbatch.study.target import read_target
 from rockbatch.toml.kinds import (
@@ -187,7 +187,7 @@ def _read_motions(table: Table) -> dict[str, Any]:
     read["offset"] = _offset(table, read)
     axis, step = read.pop("axis_deg", None), read.pop("every_deg", None)
     if axis is not None or step is not None:
-        read["azimuths"] = every(step) if axis is None else (axis,)
+        read["azimuths"] = azimuths_every(step) if axis is None else (axis,)
     if read.pop("select", None) is not None and (inner := table.file.table(*table.at, "select")):
         read["select"] = Selection(**inner.read(SELECT))
     if read.pop("target", None) is not None and (inner := table.file.table(*table.at, "target")):

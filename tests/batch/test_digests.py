@@ -56,7 +56,7 @@ def test_every_module_that_can_change_a_row_takes_part():
     takes_part = reached(starts())
     for known in (
         "core/springs/equations.py",
-        "simulation/settling.py",
+        "simulation/error_control.py",
         "pier/block.py",
         "motions/pulses.py",
         "analysis/ida.py",

@@ -327,12 +327,12 @@ def test_uscs_second_volume_has_corrected_samples_with_the_peak_and_the_initial_
         np.testing.assert_allclose(component.acceleration, values / 100, atol=5.1e-6)
     assert east.initial.velocity == pytest.approx(0.008344, abs=6e-6)
     (before,) = {component.station for component in read(usc_text(), "x.s0a")}
-    assert (east.station, east.seat, east.event) == (f"{before}, Volume II", *seat_and_event(usc_text()))
+    assert (east.station, east.sensor, east.event) == (f"{before}, Volume II", *sensor_and_event(usc_text()))
 
 
-def seat_and_event(text: str):
+def sensor_and_event(text: str):
     component = read(text, "x.s0a")[0]
-    return component.seat, component.event
+    return component.sensor, component.event
 
 
 def test_a_second_volume_of_usc_with_another_peak_is_not_used():

@@ -13,7 +13,7 @@ from motion_files import RECORDS, at2_text, needs_records, wiggle, write_at2
 from national_files import afad_text, bhrc_text, csmnc_text, unam_text, usc_text
 
 from rockbatch.motions import read_motions
-from rockbatch.motions.component import Component, Seat
+from rockbatch.motions.component import Component, Sensor
 from rockbatch.motions.doubles import correlation, without_doubles
 from rockbatch.motions.folder import read_files
 from rockbatch.motions.formats import RecordFile, read_record
@@ -187,18 +187,18 @@ def test_an_smc_file_beside_its_uncorrected_one(tmp_path):
 @pytest.mark.parametrize(
     ("one", "two", "same"),
     [
-        (Seat("1336", place="FREEFIELD"), Seat("01336", "CE", "", "Free field", "15"), True),
-        (Seat("CCC", "CI", ""), Seat("CCC", "CI", "00"), False),
-        (Seat("CCC", "CI"), Seat("CCC", "NP"), False),
-        (Seat("CCC", "CI", "00"), Seat("CCC"), True),
-        (Seat("24386", place="ROOF"), Seat("24386", place="GROUND"), False),
-        (Seat("24386", channel="1"), Seat("24386", channel="2"), False),
-        (Seat(""), Seat(""), False),
-        (Seat("A"), Seat("B"), False),
+        (Sensor("1336", place="FREEFIELD"), Sensor("01336", "CE", "", "Free field", "15"), True),
+        (Sensor("CCC", "CI", ""), Sensor("CCC", "CI", "00"), False),
+        (Sensor("CCC", "CI"), Sensor("CCC", "NP"), False),
+        (Sensor("CCC", "CI", "00"), Sensor("CCC"), True),
+        (Sensor("24386", place="ROOF"), Sensor("24386", place="GROUND"), False),
+        (Sensor("24386", channel="1"), Sensor("24386", channel="2"), False),
+        (Sensor(""), Sensor(""), False),
+        (Sensor("A"), Sensor("B"), False),
     ],
 )
 def test_a_sensor_is_told_by_what_both_headers_say_of_it(one, two, same):
-    assert one.is_that_of(two) == two.is_that_of(one) == same
+    assert one.may_be_same_as(two) == two.may_be_same_as(one) == same
 
 
 def test_of_a_csmnc_record_the_corrected_file_is_used_and_another_point_is_another_record(tmp_path):
@@ -288,12 +288,15 @@ def test_real_files_of_one_recording_correlate_and_those_of_other_records_do_not
     of_one = [
         correlation(one.acceleration, two.acceleration)
         for one, two in combinations(components, 2)
-        if one.seat.is_that_of(two.seat) and way(one) == way(two) and one.dt == two.dt and one.source != two.source
+        if one.sensor.may_be_same_as(two.sensor)
+        and way(one) == way(two)
+        and one.dt == two.dt
+        and one.source != two.source
     ]
     of_others = [
         correlation(one.acceleration, two.acceleration)
         for one, two in combinations(short, 2)
-        if not one.seat.is_that_of(two.seat) and one.folder != two.folder and one.dt == two.dt
+        if not one.sensor.may_be_same_as(two.sensor) and one.folder != two.folder and one.dt == two.dt
     ]
     halves = [(c.acceleration[: len(c.acceleration) // 2], c.acceleration[len(c.acceleration) // 2 :]) for c in short]
     assert len(of_one) > 15

@@ -8,7 +8,7 @@ import pytest
 
 import rockbatch as rb
 from rockbatch.motions import ReadOptions, stations
-from rockbatch.motions.component import Component, Seat
+from rockbatch.motions.component import Component, Sensor
 from rockbatch.motions.orientation import Orientation
 from rockbatch.motions.stations import station_names
 
@@ -64,10 +64,10 @@ def test_a_scaled_copy_is_of_the_station_that_it_copies(tmp_path):
 
 def test_two_formats_of_one_recording_are_one_record_by_their_headers():
     """Corrected and uncorrected files name stations differently, and lie in folders of their own."""
-    v1 = component("v1", station="LGPC, uncorrected", folder="/v1", seat=Seat("LGPC"), event="1989", samples=480)
-    v2 = component("v2", station="LGPC, corrected", folder="/v2", seat=Seat("lgpc", "CI"), event="1989")
-    sac = component("sac", station="CI.LGPC.00", folder="/sac", seat=Seat("LGPC", "CI"), start=5.0)
-    later = component("later", station="CI.LGPC.00", folder="/sac", seat=Seat("LGPC", "CI"), start=500.0)
+    v1 = component("v1", station="LGPC, uncorrected", folder="/v1", sensor=Sensor("LGPC"), event="1989", samples=480)
+    v2 = component("v2", station="LGPC, corrected", folder="/v2", sensor=Sensor("lgpc", "CI"), event="1989")
+    sac = component("sac", station="CI.LGPC.00", folder="/sac", sensor=Sensor("LGPC", "CI"), start=5.0)
+    later = component("later", station="CI.LGPC.00", folder="/sac", sensor=Sensor("LGPC", "CI"), start=500.0)
     names = station_names([[v1], [v2], [sac], [later]])
     assert names[0] == names[1]
     assert len(set(names)) == 3, "without a time in common nothing says that they are of one event"
@@ -82,12 +82,18 @@ def test_two_formats_of_one_recording_are_one_record_by_their_headers():
             [{"site": "LGPC", "folder": "/a"}, {"site": "LGPC", "folder": "/b"}],
             2,
         ),  # by name alone: two earthquakes, maybe
-        ([{"seat": Seat("LGPC"), "event": "A"}, {"seat": Seat("LGPC"), "event": "B"}], 2),
-        ([{"seat": Seat("7", "CI"), "event": "A"}, {"seat": Seat("7", "NC"), "event": "A"}], 2),
+        ([{"sensor": Sensor("LGPC"), "event": "A"}, {"sensor": Sensor("LGPC"), "event": "B"}], 2),
+        ([{"sensor": Sensor("7", "CI"), "event": "A"}, {"sensor": Sensor("7", "NC"), "event": "A"}], 2),
         # Parts of a long recording, and sensors of a structure, shake in one earthquake
         ([{"station": "S", "folder": "/a", "event": "1994"}, {"station": "S", "folder": "/a", "event": "1994"}], 1),
         ([{"station": "S", "folder": "/a"}, {"station": "S", "folder": "/a"}], 2),  # at times that nobody knows
-        ([{"seat": Seat("S", location="00"), "event": "A"}, {"seat": Seat("S", location="10"), "event": "A"}], 1),
+        (
+            [
+                {"sensor": Sensor("S", location="00"), "event": "A"},
+                {"sensor": Sensor("S", location="10"), "event": "A"},
+            ],
+            1,
+        ),
     ],
 )
 def test_what_headers_and_names_say_decides(more, stations):
@@ -100,13 +106,13 @@ def test_records_of_one_station_in_many_earthquakes_are_not_all_compared_to_each
     compared = []
     together = stations._together
     monkeypatch.setattr(stations, "_together", lambda a, b: compared.append(1) or together(a, b))
-    records = [[component(f"c{i}", station="S", folder="/a", seat=Seat("7"), **when(i))] for i in range(200)]
+    records = [[component(f"c{i}", station="S", folder="/a", sensor=Sensor("7"), **when(i))] for i in range(200)]
     assert len(set(station_names(records))) == 200
     assert len(compared) < 1000
 
 
 def test_several_records_of_one_station_are_told_apart_by_event_or_folder():
-    kobe, niigata = ([component("c", seat=Seat("TAK"), event=event)] for event in ("1995", "2004"))
+    kobe, niigata = ([component("c", sensor=Sensor("TAK"), event=event)] for event in ("1995", "2004"))
     assert station_names([kobe, niigata]) == ["TAK 1995", "TAK 2004"]
     one, two = ([component("c", site="LGP", folder=f"/{folder}")] for folder in ("loma", "other"))
     assert station_names([one, two]) == ["LGP loma", "LGP other"]

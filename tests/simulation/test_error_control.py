@@ -13,12 +13,12 @@ from rockbatch.motions.motion import Motion
 from rockbatch.pier import Damper, ElasticBase, Pier, RigidBase, Tendon, YieldingBase
 from rockbatch.simulation import (
     Run,
+    error_control,
     first_substeps,
     least_substeps,
     run_all_to_tolerance,
     run_fixed,
     run_to_tolerance,
-    settling,
 )
 from rockbatch.simulation.outcome import Outcome
 from rockbatch.simulation.runs import LEFT_ALONE, Trial
@@ -44,7 +44,7 @@ def scripted(monkeypatch, *outcomes):
         extremes[: len(windows)] = windows
         return [Trial(Outcome(**told), extremes)]
 
-    monkeypatch.setattr(settling, "try_all", run)
+    monkeypatch.setattr(error_control, "try_all", run)
     return asked
 
 
@@ -74,7 +74,7 @@ def test_counts_that_have_not_settled_are_a_note_with_their_spread_and_no_failur
     asked = scripted(monkeypatch, ok(0.1, 700), ok(0.1, 784))
     outcome = run_to_tolerance(FIG5, RigidBase(), SINE, 1e-4)
     assert len(asked) == 2
-    assert (outcome.status, outcome.theta_max_error) == ("ok", settling.ROUNDING * FIG5.alpha)
+    assert (outcome.status, outcome.theta_max_error) == ("ok", error_control.ROUNDING * FIG5.alpha)
     assert outcome.note == "impacts not settled: 700 or 784; separations not settled: 700 or 784"
 
 
@@ -92,7 +92,7 @@ def test_what_has_not_settled_far_below_the_peak_takes_one_more_halving_and_is_n
     outcome = run_to_tolerance(FIG5, RigidBase(), SINE, 1e-4)
     assert (outcome.status, len(asked)) == ("ok", 3)
     assert outcome.note == "lesser rotations, up to 0.012 rad, have not settled"
-    assert outcome.theta_max_error == settling.ROUNDING * FIG5.alpha
+    assert outcome.theta_max_error == error_control.ROUNDING * FIG5.alpha
 
 
 def test_no_error_is_claimed_where_rotations_before_the_peak_have_not_settled(monkeypatch):
@@ -120,7 +120,7 @@ def test_the_time_of_overturning_has_to_agree(monkeypatch):
     over = {"status": "overturned", "theta_max": math.pi / 2, "impacts": 9, "separations": 9, "windows": [0.1]}
     asked = scripted(monkeypatch, *(over | {"t_end": 60.0 + i} for i in range(9)))
     outcome = run_to_tolerance(FIG5, RigidBase(), SINE, 1e-4)
-    assert (outcome.status, len(asked)) == ("failed", settling.HALVINGS + 1)
+    assert (outcome.status, len(asked)) == ("failed", error_control.HALVINGS + 1)
     assert "the time of overturning, from 67.00 to 68.00 s" in outcome.reason
 
 
@@ -128,7 +128,7 @@ def test_the_rotations_before_a_pier_overturns_have_to_agree(monkeypatch):
     over = {"status": "overturned", "theta_max": math.pi / 2, "impacts": 9, "separations": 9}
     asked = scripted(monkeypatch, *(over | {"windows": [0.05 + 0.01 * (i % 2), 0.19, 1.5]} for i in range(9)))
     assert run_to_tolerance(FIG5, RigidBase(), SINE, 1e-4).status == "failed"
-    assert len(asked) == settling.HALVINGS + 1
+    assert len(asked) == error_control.HALVINGS + 1
 
 
 def test_the_time_of_flight_has_to_agree(monkeypatch):
@@ -154,7 +154,7 @@ def test_outcomes_that_differ_are_never_settled(monkeypatch):
 def test_a_run_that_does_not_settle_fails_with_its_best_values_and_says_what_still_changed(monkeypatch):
     asked = scripted(monkeypatch, *(ok(0.1 + 0.01 * (-1) ** i) for i in range(50)))
     outcome = run_to_tolerance(FIG5, RigidBase(), SINE, 1e-4)
-    assert len(asked) == settling.HALVINGS + 1
+    assert len(asked) == error_control.HALVINGS + 1
     assert outcome.status == "failed"
     assert "not settled" in outcome.reason
     assert "theta_max by 2.0e-02 rad" in outcome.reason
@@ -164,12 +164,12 @@ def test_a_run_that_does_not_settle_fails_with_its_best_values_and_says_what_sti
 
 def test_no_error_below_rounding_is_ever_claimed(monkeypatch):
     scripted(monkeypatch, ok(0.1))
-    assert run_to_tolerance(FIG5, RigidBase(), SINE, 1e-4).theta_max_error == settling.ROUNDING * FIG5.alpha
+    assert run_to_tolerance(FIG5, RigidBase(), SINE, 1e-4).theta_max_error == error_control.ROUNDING * FIG5.alpha
 
 
 def test_with_a_damper_whose_force_is_a_root_of_the_speed_less_is_claimed(monkeypatch):
     scripted(monkeypatch, ok(0.1))
-    for exponent, least in ((0.5, settling.ROUGH), (1.0, settling.ROUNDING), (1.5, settling.ROUNDING)):
+    for exponent, least in ((0.5, error_control.ROUGH), (1.0, error_control.ROUNDING), (1.5, error_control.ROUNDING)):
         base = RigidBase(restraints=(Damper("viscous", nu=0.1, exponent=exponent), Tendon(psi=0.1)))
         assert run_to_tolerance(FIG5, base, SINE, 1e-4).theta_max_error == least * FIG5.alpha
 

@@ -7,7 +7,7 @@ beside their peaks, "RAW PGA VALUES (gal)", which the columns must bear out. The
 import re
 
 from rockbatch.errors import InputError
-from rockbatch.motions.component import Seat
+from rockbatch.motions.component import Sensor
 from rockbatch.motions.formats.fixed_width import lines_of, spaced_numbers
 from rockbatch.motions.formats.header_lines import count_and_step, keys_of, moment_in
 from rockbatch.motions.formats.obspy_plugin import plugin
@@ -53,7 +53,7 @@ def parse(text: str) -> list[Recording]:
             station=f"{station}, {began}" if station else "",
             start=moment_in(_MOMENT, began),
             processed=False,
-            seat=Seat(station, "TK"),
+            sensor=Sensor(station, "TK"),
             event=header.get("EARTHQUAKE DATE", ""),
             origin=origin_of(date=header.get("EARTHQUAKE DATE", ""), station=header.get("PLACE") or station),
             stated_peak=(peaks[label], said["unit"]),

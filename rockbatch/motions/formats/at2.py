@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from rockbatch.errors import InputError, NoRecordError, UnstatedError
-from rockbatch.motions.component import Component, Seat
+from rockbatch.motions.component import Component, Sensor
 from rockbatch.motions.formats.fixed_width import LOOKED_AT, is_cut_short
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.record_file import RecordFile
@@ -108,7 +108,7 @@ def _parse(text: str) -> list[Recording]:
             values=_values(text, sum(map(len, lines[: first + 1])), npts),
             unit=unit[1] if unit else "",
             station=", ".join(part.upper() for part in (event, date, station)) if station and date else "",
-            seat=Seat(station.upper()),
+            sensor=Sensor(station.upper()),
             event=f"{event} {date}" if date else "",
             processed="PEER" in header.upper() or None,
             origin=origin_of(event, station, date),

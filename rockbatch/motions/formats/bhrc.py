@@ -8,7 +8,7 @@ that of the Center's own files. What is corrected, or pairs of time and value as
 import re
 
 from rockbatch.errors import InputError
-from rockbatch.motions.component import Seat
+from rockbatch.motions.component import Sensor
 from rockbatch.motions.formats.fixed_width import fixed_numbers, number_in, one_after_another
 from rockbatch.motions.formats.header_lines import layout, line_at, past_mark, read_header
 from rockbatch.motions.formats.obspy_plugin import plugin
@@ -65,7 +65,7 @@ def _channel(lines: list[str], start: int) -> tuple[Recording, int]:
         station=f"{title['file']}, {station}, {event}",
         codes=("I1", title["file"].partition("/")[0][:5], "", label),
         processed=False,
-        seat=Seat(station.upper()),
+        sensor=Sensor(station.upper()),
         event=title["file"],
         origin=origin_of(date=event.removeprefix("Origin Time :"), station=station),
         header={"station": station, "event": event},

@@ -13,7 +13,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from rockbatch.errors import InputError, NoRecordError
-from rockbatch.motions.component import Seat
+from rockbatch.motions.component import Sensor
 from rockbatch.motions.formats.fixed_width import fixed_numbers, lines_of, number_in
 from rockbatch.motions.formats.header_lines import layout, line_at, match_line, moment, read_header, search_lines
 from rockbatch.motions.formats.obspy_plugin import plugin
@@ -195,7 +195,7 @@ def _recording(header: _Header, series: re.Match[str], values: Samples, index: i
         codes=(network, station, location, channel),
         start=moment(year, month, day, hour, minute, header.reals[29]),
         processed=corrected,
-        seat=Seat(
+        sensor=Sensor(
             station, network, location if seed else None, place.upper() or None, said["number"].strip("?") or None
         ),
         event=event,

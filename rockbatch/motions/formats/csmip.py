@@ -10,7 +10,7 @@ that declares the data. Pairs of time and value, as digitised from film, are rea
 import re
 
 from rockbatch.errors import InputError, NoRecordError
-from rockbatch.motions.component import Seat
+from rockbatch.motions.component import Sensor
 from rockbatch.motions.formats.declared_series import declared_series
 from rockbatch.motions.formats.fixed_width import number_in, one_after_another
 from rockbatch.motions.formats.header_lines import layout, line_at, moment_of, past_mark, read_header
@@ -94,7 +94,7 @@ def _channel(lines: list[str], first: int) -> tuple[Recording, int]:
             codes=(said["network"], said["code"] or station[:5], location, said["label"].upper()),
             start=_start(said),
             processed=volume == 2,
-            seat=Seat(
+            sensor=Sensor(
                 station=said["code"] or station,
                 network=said["network"] if coded else None,
                 location=location if coded else None,

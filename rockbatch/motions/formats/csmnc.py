@@ -8,7 +8,7 @@ description of them; lines in between differ from year to year.
 import re
 
 from rockbatch.errors import InputError, NoRecordError
-from rockbatch.motions.component import Seat
+from rockbatch.motions.component import Sensor
 from rockbatch.motions.formats.fixed_width import lines_of, number_in, spaced_numbers
 from rockbatch.motions.formats.header_lines import line_with, search_lines
 from rockbatch.motions.formats.obspy_plugin import plugin
@@ -56,7 +56,7 @@ def parse(text: str) -> list[Recording]:
             unit=kind["unit"],
             station=f"{station}, {lines[1].strip()[:60]}, {'un' if kind['un'] else ''}corrected",
             processed=not kind["un"],
-            seat=Seat(station, "CN", place=place["place"].strip().upper() if place else None),
+            sensor=Sensor(station, "CN", place=place["place"].strip().upper() if place else None),
             event=lines[1][:60],
             origin=origin_of(lines[2], station, lines[1]),
             stated_peak=(peak["peak"] if peak else "", ""),

@@ -3,7 +3,7 @@
 import re
 
 from rockbatch.errors import InputError
-from rockbatch.motions.component import Seat
+from rockbatch.motions.component import Sensor
 from rockbatch.motions.formats.header_lines import moment_in
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording
@@ -52,7 +52,7 @@ def parse(text: str) -> list[Recording]:
             start=start - _TAIPEI if start is not None and local else start,
             raw="corr" not in offset.lower(),
             processed=False,
-            seat=Seat(station, "TW"),
+            sensor=Sensor(station, "TW"),
             event=began,
             origin=origin_of(date=began.partition("-")[0], station=station),
             notes=notes,

@@ -7,7 +7,7 @@ files; empty ones are unknown.
 import re
 
 from rockbatch.errors import InputError, NoRecordError
-from rockbatch.motions.component import Seat
+from rockbatch.motions.component import Sensor
 from rockbatch.motions.formats.fixed_width import lines_of, spaced_numbers
 from rockbatch.motions.formats.header_lines import count_and_step, moment_in, number_if_any
 from rockbatch.motions.formats.obspy_plugin import plugin
@@ -51,7 +51,7 @@ def parse(text: str) -> list[Recording]:
             start=moment_in(_MOMENT, header.get("DATE_TIME_FIRST_SAMPLE_YYYYMMDD_HHMMSS", "")),
             raw="NOT REMOVED" in header.get("BASELINE_CORRECTION", "").upper(),
             processed=filtered.upper() != "NONE" if filtered else None,
-            seat=Seat(codes[1], codes[0], codes[2]),
+            sensor=Sensor(codes[1], codes[0], codes[2]),
             event=event,
             origin=origin_of(header["EVENT_NAME"], header.get("STATION_NAME") or codes[1], year),
             stated_peak=(header.get("PGA_CM/S^2", ""), "cm/s^2"),

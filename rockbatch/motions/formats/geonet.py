@@ -7,7 +7,7 @@ its velocities and displacements, ten to a line of 8 characters each. The layout
 import re
 
 from rockbatch.errors import InputError
-from rockbatch.motions.component import Seat
+from rockbatch.motions.component import Sensor
 from rockbatch.motions.formats.fixed_width import fixed_numbers, number_in, one_after_another
 from rockbatch.motions.formats.header_lines import layout, line_at, moment, read_header
 from rockbatch.motions.formats.obspy_plugin import plugin
@@ -88,7 +88,7 @@ def _component(lines: list[str], first_line: int) -> tuple[Recording, int]:
         station=f"{site} {said['id']}, {'uncorrected' if said['un'] else 'corrected'}",
         start=None if start is None else start - float(reals[1]),
         processed=not said["un"],
-        seat=Seat(site, "NZ", said["id"].rpartition("_")[2][:2]),
+        sensor=Sensor(site, "NZ", said["id"].rpartition("_")[2][:2]),
         event=said["id"],
         origin=origin_of(line_at(lines, first_line + 6), lines[first_line + 2] or site, line_at(lines, first_line + 7)),
         velocities=(blocks[1], said["velocity"]) if said["velocity"] and len(blocks[1]) else None,

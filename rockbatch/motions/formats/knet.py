@@ -7,7 +7,7 @@ the recorders, and nine hours ahead of UTC. The stated peak is that without the 
 from datetime import UTC, datetime
 
 from rockbatch.errors import InputError
-from rockbatch.motions.component import Seat
+from rockbatch.motions.component import Sensor
 from rockbatch.motions.formats.fixed_width import lines_of, spaced_numbers
 from rockbatch.motions.formats.header_lines import layout, moment_of, read_header
 from rockbatch.motions.formats.recording import Recording
@@ -62,7 +62,7 @@ def parse(text: str) -> list[Recording]:
             start=None if start is None else start - _JAPAN - _DELAY,
             processed=False,
             origin=origin_of(date=day, station=station),
-            seat=Seat(station, location=level, place=_PLACES.get(level)),
+            sensor=Sensor(station, location=level, place=_PLACES.get(level)),
             stated_peak=(header["peak"], "gal"),
             notes=(_LEVELS[level],) if level in _LEVELS else (),
         )

@@ -6,7 +6,7 @@ import numpy as np
 
 from rockbatch.errors import InputError
 from rockbatch.lazy import obspy
-from rockbatch.motions.component import Component, Seat
+from rockbatch.motions.component import Component, Sensor
 from rockbatch.motions.formats import stationxml
 from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.formats.with_obspy import read_stream
@@ -133,7 +133,7 @@ def _component(
         origin=origin_of(
             date=stats.starttime.strftime("%Y-%m-%d"), station=f"{stats.network}.{stats.station}".strip(".")
         ),
-        seat=Seat(stats.station, stats.network, stats.location),
+        sensor=Sensor(stats.station, stats.network, stats.location),
         notes=(origin,),
     )
 

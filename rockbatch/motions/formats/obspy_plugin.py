@@ -71,9 +71,9 @@ def plugin(
 
 def _trace(name: str, recording: Recording, headonly: bool) -> "obspy.Trace":
     """Return one channel as ObsPy has it."""
-    seat = recording.seat
-    by_seat = (seat.network or "", letters(seat.station), seat.location or "", recording.label.upper())
-    network, station, location, channel = recording.codes or by_seat
+    sensor = recording.sensor
+    by_sensor = (sensor.network or "", letters(sensor.station), sensor.location or "", recording.label.upper())
+    network, station, location, channel = recording.codes or by_sensor
     header = {
         "delta": recording.dt,
         "network": network,

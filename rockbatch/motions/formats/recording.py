@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from rockbatch.errors import InputError
-from rockbatch.motions.component import NOWHERE, Component, Seat
+from rockbatch.motions.component import UNKNOWN_SENSOR, Component, Sensor
 from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.measures import initial_of
 from rockbatch.motions.motion import Finding, Initial, Samples, Unusable
@@ -33,11 +33,11 @@ class Recording:
     unit: str  # as units.acceleration_factor understands it
     station: str = ""  # what the channels of one station share, other versions of the same record not included
     orientation: Orientation | None = None  # where it is not what the label says
-    codes: tuple[str, str, str, str] | None = None  # network, station, location, channel for ObsPy; else of the seat
+    codes: tuple[str, str, str, str] | None = None  # network, station, location, channel for ObsPy; else of the sensor
     start: float | None = None  # time of the first sample [s since 1970, UTC]
     processed: bool | None = None  # whether the agency has corrected it; None where the file does not say
     raw: bool | None = None  # whether the instrument's offset may still be in it; None: if it is not processed
-    seat: Seat = NOWHERE  # the sensor, by what the header says
+    sensor: Sensor = UNKNOWN_SENSOR  # as the header states it
     event: str = ""  # what the header says of it
     initial: Initial | None = None  # the ground's state at the first sample, where the header has it
     velocities: Series | None = None  # beside the accelerations
@@ -103,7 +103,7 @@ def _component(file: RecordFile, recording: Recording, name: str, source: str) -
         start=recording.start,
         unit="" if recording.counts else recording.unit,
         raw=recording.processed is False if recording.raw is None else recording.raw,
-        seat=recording.seat,
+        sensor=recording.sensor,
         event=" ".join(recording.event.upper().split()),
         processed=recording.processed,
         origin=recording.origin,

@@ -6,7 +6,7 @@ same words in line 12, digitised from film at uneven times, are read as well.
 """
 
 from rockbatch.errors import InputError
-from rockbatch.motions.component import Seat
+from rockbatch.motions.component import Sensor
 from rockbatch.motions.formats.fixed_width import fixed_numbers, one_after_another
 from rockbatch.motions.formats.header_lines import layout, moment_of, past_mark, read_header
 from rockbatch.motions.formats.obspy_plugin import plugin
@@ -70,7 +70,7 @@ def _channel(lines: list[str], start: int) -> tuple[tuple[Recording, float], int
         station=f"{station}, {event.strip()}, uncorrected",
         start=trigger + first if trigger is not None and known else None,
         processed=False,
-        seat=Seat(station.upper()),
+        sensor=Sensor(station.upper()),
         event=event,
         origin=origin_of(event, lines[start + 5]),
         stated_peak=(said["peak"], "g"),

@@ -7,7 +7,7 @@ touch. The layout is that of the database's own files.
 import re
 
 from rockbatch.errors import InputError
-from rockbatch.motions.component import Seat
+from rockbatch.motions.component import Sensor
 from rockbatch.motions.formats.fixed_width import fixed_numbers, lines_of, refuse_more
 from rockbatch.motions.formats.header_lines import count_and_step, keys_of, line_with
 from rockbatch.motions.formats.recording import Recording
@@ -44,7 +44,7 @@ def parse(text: str) -> list[Recording]:
             station=f"{code}, {event}" if code else "",
             processed=True,
             stated_peak=(header.get("PGA (m/s/s)", ""), "m/s/s"),
-            seat=Seat(code),
+            sensor=Sensor(code),
             event=event,
             origin=origin_of(date=event, station=name or code),
         )

@@ -6,7 +6,7 @@ import numpy as np
 
 from rockbatch.errors import InputError, UnstatedError
 from rockbatch.lazy import obspy
-from rockbatch.motions.component import FIRST_YEAR, Component, Seat
+from rockbatch.motions.component import FIRST_YEAR, Component, Sensor
 from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.formats.with_obspy import read_stream
 from rockbatch.motions.motion import Unusable
@@ -61,7 +61,7 @@ def read_sac(file: RecordFile) -> list[Component | Unusable]:
             station=".".join(codes) if stats.station else "",
             source=file.source,
             start=start,
-            seat=Seat(stats.station if start >= FIRST_YEAR else "", stats.network, stats.location),
+            sensor=Sensor(stats.station if start >= FIRST_YEAR else "", stats.network, stats.location),
             unit=options.unit or "m/s2",
             raw=True,
             origin=_origin(stats, start),

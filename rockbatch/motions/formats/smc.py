@@ -9,7 +9,7 @@ Source: USGS National Strong-Motion Program, "SMC-format data files" (2001).
 import re
 
 from rockbatch.errors import InputError, NoRecordError
-from rockbatch.motions.component import Seat
+from rockbatch.motions.component import Sensor
 from rockbatch.motions.formats.fixed_width import fixed_numbers, lines_of, number_in, refuse_more
 from rockbatch.motions.formats.header_lines import layout, line_at, moment, read_header
 from rockbatch.motions.formats.obspy_plugin import plugin
@@ -75,7 +75,7 @@ def parse(text: str) -> list[Recording]:
             codes=("", letters(line_at(lines, 2)), "", ""),
             start=None if start is None else start + _DAY * (day - 1) + ms / 1000,
             processed=title["kind"] == "2",
-            seat=Seat(number, place=name.upper()),
+            sensor=Sensor(number, place=name.upper()),
             event="" if unknown in (year, day, hour, minute) else f"{year}-{day:03d} {hour}:{minute}",
             origin=origin_of(origin_line[25:], name, origin_line[:25]),
             stated_peak=(max(peaks, key=lambda peak: abs(number_in(peak, 22)), default=""), ""),

@@ -12,7 +12,7 @@ import re
 import numpy as np
 
 from rockbatch.errors import InputError
-from rockbatch.motions.component import Seat
+from rockbatch.motions.component import Sensor
 from rockbatch.motions.formats.fixed_width import lines_of, number_in
 from rockbatch.motions.formats.header_lines import count_and_step, date_in, keys_of, line_with, moment, number_of
 from rockbatch.motions.formats.obspy_plugin import plugin
@@ -76,7 +76,7 @@ def parse(text: str) -> list[Recording]:
             codes=("MG", station[:5], "", way.strip().upper()),
             start=start,
             processed=False,
-            seat=Seat(station),
+            sensor=Sensor(station),
             event=event,
             origin=origin_of("", name or station, date),
             stated_peak=(peaks[i] if len(peaks) == count else "", "gal"),

@@ -10,7 +10,7 @@ import re
 from typing import Any
 
 from rockbatch.errors import InputError
-from rockbatch.motions.component import Seat
+from rockbatch.motions.component import Sensor
 from rockbatch.motions.formats.declared_series import declared_series
 from rockbatch.motions.formats.fixed_width import fixed_numbers, number_in, one_after_another
 from rockbatch.motions.formats.header_lines import layout, line_at, read_header
@@ -67,7 +67,7 @@ def _channel(lines: list[str], start: int) -> tuple[Recording, int]:
         station=", ".join([said["station"], event, date, *(["Volume II"] if corrected else [])]),
         codes=("LA", said["station"][:5], "", said["label"].upper()),
         processed=corrected,
-        seat=Seat(said["station"]),
+        sensor=Sensor(said["station"]),
         event=f"{event}, {date}",
         origin=origin_of(event, name, date),
         header={"station": name, "event": event},

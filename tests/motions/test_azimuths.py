@@ -7,7 +7,7 @@ import pytest
 from motion_files import wiggle, write_at2
 
 from rockbatch.motions import read_motions
-from rockbatch.motions.turning import every, resolved
+from rockbatch.motions.azimuths import azimuths_every, resolved
 
 
 def write_pair(folder, north, east, *, second: str = "090", **more) -> None:
@@ -27,10 +27,10 @@ def test_a_motion_along_one_line_is_given_back_along_it_and_vanishes_across(firs
 
 
 def test_every_angle_below_half_a_turn_comes_once():
-    assert every(45.0) == (0.0, 45.0, 90.0, 135.0)
-    assert every(90.0) == (0.0, 90.0)
-    assert every(70.0) == (0.0, 70.0, 140.0)
-    assert len(every(180.0 / 7.0)) == 7  # 7 · (180/7) may be a little below 180 in floating point
+    assert azimuths_every(45.0) == (0.0, 45.0, 90.0, 135.0)
+    assert azimuths_every(90.0) == (0.0, 90.0)
+    assert azimuths_every(70.0) == (0.0, 70.0, 140.0)
+    assert len(azimuths_every(180.0 / 7.0)) == 7  # 7 · (180/7) may be a little below 180 in floating point
 
 
 def test_a_pair_becomes_one_motion_along_the_axis_with_the_vertical_of_its_station(tmp_path):
@@ -49,7 +49,7 @@ def test_a_pair_becomes_one_motion_along_the_axis_with_the_vertical_of_its_stati
 
 def test_pairs_are_turned_to_every_direction_that_is_asked_for(tmp_path):
     write_pair(tmp_path, wiggle(50, 1), wiggle(50, 2))
-    found = read_motions(tmp_path, azimuths=every(60.0))
+    found = read_motions(tmp_path, azimuths=azimuths_every(60.0))
     assert [m.name for m in found.motions] == ["RSN7_X_STA_az000", "RSN7_X_STA_az060", "RSN7_X_STA_az120"]
 
 

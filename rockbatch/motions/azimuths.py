@@ -22,12 +22,12 @@ def resolved(first: Samples, azimuth1: float, second: Samples, azimuth2: float, 
     return first * math.cos(math.radians(azimuth - azimuth1)) + second * math.cos(math.radians(azimuth - azimuth2))
 
 
-def every(step: float) -> tuple[float, ...]:
+def azimuths_every(step: float) -> tuple[float, ...]:
     """Return azimuths 0, step, 2 step … below 180°: half a turn reverses a component, which is what a polarity is for."""
     return tuple(i * step for i in range(math.ceil(180.0 / step - 1e-9)))
 
 
-def turned_to(horizontals: Sequence[Component], azimuths: Sequence[float]) -> tuple[list[Component], list[Unusable]]:
+def rotated_to(horizontals: Sequence[Component], azimuths: Sequence[float]) -> tuple[list[Component], list[Unusable]]:
     """Return components along ``azimuths`` [degrees] in place of the horizontals of a station, and what cannot be turned.
 
     Two that are square to each other are turned; a single one goes on as it is if it points along the only azimuth asked for.
