@@ -24,6 +24,7 @@ from rockbatch.checks.suite import (
     of_runs,
     simulated,
     suites,
+    with_case,
 )
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, Verdict
 from rockbatch.errors import InputError
@@ -64,7 +65,7 @@ def judge(
     InputError
         Where a rule asks for a case, scale, polarity or column that the results do not have.
     """
-    runs = peaks[peaks["case"] != ""]
+    runs = with_case(peaks)
     if runs.empty:
         raise InputError("there is no run to check")
     stations = dict(records or _stations(runs))

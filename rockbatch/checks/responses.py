@@ -48,13 +48,8 @@ class Worst(NamedTuple):
     demand: str
     value: float
     case: Case
-    runs: "pd.DataFrame"
-    place: int
-
-    @property
-    def run(self) -> "pd.Series[Any]":
-        """Row of peaks.csv of the run, which is at ``place`` among ``runs``."""
-        return self.runs.iloc[self.place]
+    run: "pd.Series[Any]"
+    """Row of peaks.csv of the run."""
 
 
 def worst_of_cases(suites: "Iterable[tuple[Case, pd.DataFrame]]") -> list[Worst]:
@@ -74,7 +69,7 @@ def worst_of_cases(suites: "Iterable[tuple[Case, pd.DataFrame]]") -> list[Worst]
             values = np.where(stood, DEMANDS[name].of(runs, case).value, np.nan)
             if np.isfinite(values).any():
                 place = int(np.nanargmax(values))
-                worst.append(Worst(name, float(values[place]), case, runs, place))
+                worst.append(Worst(name, float(values[place]), case, runs.iloc[place]))
     return worst
 
 

@@ -37,6 +37,12 @@ class Bounds(NamedTuple):
     estimated: bool
 
 
+def with_case(peaks: "pd.DataFrame") -> "pd.DataFrame":
+    """Return the rows of runs, without those of files that could not be used; no copy where there are none of these."""
+    of_runs = peaks["case"] != ""
+    return peaks if of_runs.all() else peaks[of_runs]
+
+
 def simulated(runs: "pd.DataFrame") -> "pd.DataFrame":
     """Return the rows of peaks.csv without mirror images, which say nothing more: each run counts once."""
     return runs[runs[MIRROR_OF] == ""] if MIRROR_OF in runs else runs
@@ -44,14 +50,22 @@ def simulated(runs: "pd.DataFrame") -> "pd.DataFrame":
 
 def suites(runs: "pd.DataFrame", cases: Iterable[Case]) -> "Iterator[tuple[Case, pd.DataFrame]]":
     """Yield every case with its rows of peaks.csv."""
-    by_name = dict(iter(runs.groupby("case", sort=False)))
+    cases = list(cases)
+    keys = list(dict.fromkeys(["case", *(name for case in cases for name in case["columns"])]))
+    kinds = runs.groupby(keys, sort=False, dropna=False).ngroup().to_numpy()
+    order = np.argsort(kinds, kind="stable")
+    ends = np.cumsum(np.bincount(kinds))
+    rows = np.split(order, ends[:-1])
+    firsts = runs[keys].iloc[[own[0] for own in rows if len(own)]].reset_index(drop=True)
+    by_name = dict(iter(firsts.groupby("case", sort=False)))
     for case in cases:
-        own = by_name.get(case["case"], runs[:0])
-        yield case, own[_has(own, case["columns"])]
+        own = by_name.get(case["case"], firsts[:0])
+        of_case = [rows[kind] for kind in own.index[_has(own, case["columns"])]]
+        yield case, runs.iloc[np.sort(np.concatenate(of_case)) if of_case else []]
 
 
 def _has(runs: "pd.DataFrame", columns: Mapping[str, float | str]) -> npt.NDArray[np.bool_]:
-    """Return True for each run with these values of the varied keys, shape (n,)."""
+    """Return True for each row with these values of the varied keys, shape (n,)."""
     same = np.ones(len(runs), dtype=bool)
     for name, value in columns.items():
         if isinstance(value, str):

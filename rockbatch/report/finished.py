@@ -2,15 +2,15 @@
 
 import math
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rockbatch.checks import Verdict, read_verdicts
 from rockbatch.checks.responses import Worst, worst_of_cases
-from rockbatch.checks.suite import counts_as, simulated
+from rockbatch.checks.suite import counts_as, simulated, with_case
 from rockbatch.errors import InputError
 from rockbatch.lazy import pd
 from rockbatch.report.finished_analysis import Contents
@@ -20,6 +20,9 @@ from rockbatch.results.opened import Results, open_results
 from rockbatch.results.reading import Saved
 from rockbatch.simulation.response import Response
 from rockbatch.study import PIER_KEYS
+
+if TYPE_CHECKING:
+    from pandas.core.groupby import DataFrameGroupBy
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,9 +89,8 @@ class Finished(Contents):
     @cached_property
     def worst(self) -> list[Worst]:
         """Return the worst responses of every case."""
-        by_case = [runs for _, runs in self.runs.groupby(["series", "pier"])]
-        places = ((int(runs["series"].iloc[0]), int(runs["pier"].iloc[0])) for runs in by_case)
-        return worst_of_cases(zip(map(self.cases.__getitem__, places), by_case, strict=True))
+        rows: dict[Any, Any] = self.runs.groupby(["series", "pier"]).indices
+        return worst_of_cases((self.cases[places], self.runs.iloc[rows[places]]) for places in sorted(rows))
 
     @cached_property
     def both_directions(self) -> bool:
@@ -115,17 +117,21 @@ class Finished(Contents):
         """Return ``names`` of records in order of peak ground acceleration, the weakest first."""
         return sorted(names, key=lambda name: (self.records.get(name, {}).get("pga_g", math.inf), name))
 
-    def groups(self) -> "list[tuple[str, pd.DataFrame]]":
-        """Group runs by scale, pier and vertical component; each group comes with the words that identify it."""
-        keys = ["scale", "pier", "with_vertical"]
+    @cached_property
+    def grouped(self) -> "DataFrameGroupBy":
+        """Return the runs grouped by scale, pier and vertical component."""
+        return self.runs.groupby(["scale", "pier", "with_vertical"])
+
+    def groups(self) -> "Iterator[tuple[str, pd.DataFrame]]":
+        """Yield each group of runs, with the words that identify it; one at a time, as together they are a second table."""
+        rows: dict[Any, Any] = self.grouped.indices
         scaled = self.runs["scale"].nunique() > 1
-        groups = []
-        for _, runs in self.runs.groupby(keys):
+        for group in sorted(rows):
+            runs = self.runs.iloc[rows[group]] if len(rows) > 1 else self.runs
             first = runs.iloc[0]
             scale = f"motions scaled by {number(float(first['scale']))}" if scaled else ""
             words = [self.piers[first["pier"]], scale, first["with_vertical"]]
-            groups.append((", ".join(filter(None, words)), runs))
-        return groups
+            yield ", ".join(filter(None, words)), runs
 
     def which(self, run: "pd.Series[Any] | dict[str, Any]") -> str:
         """Describe a run among those of the same record: its foundation, and whatever else identifies it."""
@@ -173,7 +179,7 @@ def read(directory: Path, responses: Sequence[Response] | None = None, saved: Re
     series = named(grouped, [key for key in varied if _of_foundation(key)], _given(info["study"]["text"]))
     places = {key: place for place, key in enumerate(series)}
 
-    runs = simulated(saved.peaks[saved.peaks["case"] != ""]).copy()
+    runs = simulated(with_case(saved.peaks)).copy(deep=False)
     kinds = runs.groupby(["case", *varied], sort=False, dropna=False).ngroup() if len(runs) else runs["scale"]
     piers: dict[Key, int] = {}
     facts: dict[int, tuple[int, int, float]] = {}

@@ -109,12 +109,11 @@ def ceiling(runs: "pd.DataFrame") -> float:
 
 def _columns(finished: Finished) -> "list[tuple[str, pd.DataFrame]]":
     """Return the runs of each pier and scale, or all of them together if those are many."""
-    groups = finished.groups()
-    return groups if len(groups) <= MOST_COLUMNS else [("", finished.runs)]
+    return list(finished.groups()) if finished.grouped.ngroups <= MOST_COLUMNS else [("", finished.runs)]
 
 
 def _all(finished: Finished) -> str:
-    return "." if len(finished.groups()) <= MOST_COLUMNS else ", of all piers and scales."
+    return "." if finished.grouped.ngroups <= MOST_COLUMNS else ", of all piers and scales."
 
 
 def worst_first(runs: "pd.DataFrame", by: str) -> list[Any]:

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from rockbatch.checks import Rule, judge
 from rockbatch.checks.demands import DEMANDS
 from rockbatch.checks.statistics import STATISTICS, quantile
+from rockbatch.checks.suite import suites
 from rockbatch.errors import InputError
 from rockbatch.pier import Damper, DeckSpring, RigidBase, Stop, Tendon, YieldingBase
 
@@ -27,6 +28,25 @@ def judged(table, *, one=None, records=(), demand="theta_max_over_alpha", at_mos
         [Rule("check", demand, at_most, **asked)], table, [one or case()], dict.fromkeys(records, "") or None
     )
     return verdict
+
+
+# Suites
+
+
+def test_each_case_has_the_rows_with_its_values_in_their_order():
+    rows = [("a", 40.0, "5"), ("b", 40.0, "finite"), ("a", 40.00000000001, "5"), ("a", math.nan, "5"), ("b", 40.0, "5")]
+    table = pd.DataFrame(rows, columns=["case", "beta", "n"])[["n", "beta", "case"]].iloc[[0, 1, 2, 3, 4, 0]]
+    table.index = range(6)
+    asked = [
+        ("a", {"beta": 40.0}),
+        ("a", {"n": 5.0}),
+        ("b", {"beta": 40.0, "n": "finite"}),
+        ("b", {}),
+        ("c", {"beta": 1.0}),
+    ]
+    cases = [case(name=name) | {"columns": columns} for name, columns in asked]
+    chosen = [own.index.tolist() for _, own in suites(table, cases)]
+    assert chosen == [[0, 2, 5], [0, 2, 3, 5], [1], [1, 4], []]
 
 
 # Statistics

@@ -312,6 +312,14 @@ def test_of_many_responses_the_worst_of_each_case_is_drawn(tmp_path):
     assert shown <= worst
 
 
+def test_a_page_holds_the_table_once_whatever_the_number_of_runs(tmp_path):
+    write_results(tmp_path)
+    finished = read(tmp_path)
+    table = finished.saved.peaks["theta_max_over_alpha"].to_numpy()
+    ((_, runs),) = finished.groups()
+    assert all(np.shares_memory(table, own["theta_max_over_alpha"].to_numpy()) for own in (finished.runs, runs))
+
+
 def test_straight_stretches_and_repeated_points_cost_nothing_and_turns_are_kept():
     x = np.array([0.0, 1, 2, 3, 3, 3.01, 4, 5, np.nan, 7, 8])
     y = np.array([0.0, 1, 2, 3, 3, 3.01, 2, 1, np.nan, 0, 0])

@@ -33,12 +33,9 @@ def section(finished: Finished) -> Markup:
 def worst(finished: Finished) -> Markup:
     """Return the worst responses, and how the runs ended, first those that did not end standing."""
     runs = finished.runs
-    stood, failed, unread = (
-        runs[runs["status"] == "ok"],
-        runs[runs["status"] == "failed"],
-        len(finished.info["unusable"]),
-    )
-    guided = stood[stood["flight_s"].notna()]
+    stood, unread = runs["status"] == "ok", len(finished.info["unusable"])
+    failed = runs.loc[runs["status"] == "failed", "reason"].astype(str)
+    guided = runs.loc[stood & runs["flight_s"].notna(), "flight_height_m"]
     lost = [f"{counted(unread, 'file')} could not be used"] if unread else []
     return render(
         "sections/answer.html", finished=finished, runs=runs, guided=guided,
@@ -47,11 +44,11 @@ def worst(finished: Finished) -> Markup:
         over=runs[runs["status"] == "overturned"],
         flown=runs[runs["status"] == "flight"].sort_values("flight_s", kind="stable"),
         lost=lost + ([f"{counted(len(failed), 'run')} failed"] if len(failed) else []),
-        reasons=failed["reason"].astype(str).str.split("[:;]", n=1).str[0].value_counts().head(MOST_REASONS).to_dict(),
+        reasons=failed.str.split("[:;]", n=1).str[0].value_counts().head(MOST_REASONS).to_dict(),
         responses=[] if runs.empty else [*_responses(finished), *_of_devices(finished), *_by_case(finished)],
         went="every peak converged" if finished.info["numerics"].get("tolerance") else "none failed",
-        without_peak=runs["status"].isin(NO_PEAK).any() and len(stood),
-        height=float(guided["flight_height_m"].max()), error=_error(finished), noted=int((stood["note"] != "").sum()),
+        without_peak=runs["status"].isin(NO_PEAK).any() and stood.any(),
+        height=float(guided.max()), error=_error(finished), noted=int((runs.loc[stood, "note"] != "").sum()),
     )  # fmt: skip
 
 
@@ -78,7 +75,7 @@ def _responses(finished: Finished) -> Facts:
 
 def _of_devices(finished: Finished) -> Facts:
     """Return the greatest force of devices, in kN if the mass is known, and the greatest stroke, yield or deflection."""
-    runs = finished.runs[finished.runs["status"] == "ok"]
+    stood = finished.runs["status"] == "ok"
     facts: Facts = []
     for device, way, words in (
         ("damper", "damper_stroke_m", "stroke"),
@@ -86,8 +83,9 @@ def _of_devices(finished: Finished) -> Facts:
         ("stop", "stop_deflection_m", "deflection"),
         ("deck_spring", "deck_spring_deflection_m", "deflection"),
     ):
-        if way not in runs or runs[way].isna().all():
+        if way not in finished.runs or finished.runs.loc[stood, way].isna().all():
             continue
+        runs = finished.runs[stood]
         weighed = f"{device}_force_kN" in runs and runs[f"{device}_force_kN"].notna().any()
         forces = runs[f"{device}_force_kN" if weighed else f"{device}_force_over_weight"]
         hardest, longest = (runs.iloc[int(np.nanargmax(values))] for values in (forces, runs[way]))

@@ -1,5 +1,7 @@
 """The distribution of the largest rotations over the suite, and what a single record can tell."""
 
+from itertools import islice
+
 from rockbatch.checks.suite import counts_as
 from rockbatch.report.drawing import distribution
 from rockbatch.report.finished import Finished
@@ -13,6 +15,8 @@ MOST_CURVES = 21
 """Most curves of a panel: three times seven colours; more cannot be distinguished."""
 BEST = 7
 """Foundations that are drawn if there are more."""
+SHOWN = ["record", "station", "series", "status", "theta_max_over_alpha"]
+"""Columns that the curves are made of."""
 LEAST_RECORDS = 3
 """Least number of records for a distribution."""
 
@@ -21,13 +25,13 @@ def section(finished: Finished) -> Markup:
     """Return the caution that belongs to every peak, and a curve for each case if there are enough records."""
     if finished.runs.empty:
         return Markup("")
-    groups, picture = finished.groups(), Markup("")
-    shown, places = groups[:MOST_PANELS], worst_first(finished.runs, "series")[::-1]
-    if len(places) > MOST_CURVES:
-        shown = [(words, runs[runs["series"].isin(places[:BEST])]) for words, runs in shown]
+    picture, places = Markup(""), worst_first(finished.runs, "series")[::-1]
+    drawn = places if len(places) <= MOST_CURVES else places[:BEST]
+    groups = islice(finished.groups(), MOST_PANELS)
+    shown = [(words, runs.loc[runs["series"].isin(drawn), SHOWN]) for words, runs in groups]
     if counts_as(finished.runs, finished.count)[0].nunique() >= LEAST_RECORDS:
         picture = distribution.draw(shown, finished.series, finished.count)
     return render(
-        "sections/distribution.html", picture=picture, records=RECORDS[finished.count], groups=len(groups), shown=len(shown),
-        foundations=len(places), best=BEST if len(places) > MOST_CURVES else None,
+        "sections/distribution.html", picture=picture, records=RECORDS[finished.count], shown=len(shown),
+        groups=finished.grouped.ngroups, foundations=len(places), best=BEST if len(places) > MOST_CURVES else None,
     )  # fmt: skip

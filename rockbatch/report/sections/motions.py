@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from rockbatch.report.drawing import response_spectra
-from rockbatch.report.finished import Finished
+from rockbatch.report.finished import Finished, as_dicts
 from rockbatch.report.markup import Markup, figure, join, tag
-from rockbatch.report.table import Head, listed, table
+from rockbatch.report.table import MOST_ROWS, Head, listed, table
 
 PULSE_LIKE = (
     "by the criterion of Baker (2007), of the record before scaling; late, weak: no, because the pulse arrives late or PGV is "
@@ -90,7 +90,9 @@ def unusable(finished: Finished) -> Markup:
     """List files and runs that gave no result, and files and records that were left out on purpose, with reasons."""
     rows = [[entry["name"], "", entry["source"], entry["reason"]] for entry in finished.info["unusable"]]
     failed = finished.runs[finished.runs["status"] == "failed"]
-    rows += [[finished.shown(run["record"]), finished.which(run), "", run["reason"]] for _, run in failed.iterrows()]
+    most = max(MOST_ROWS - len(rows), 0)
+    rows += [[finished.shown(run["record"]), finished.which(run), "", run["reason"]] for run in as_dicts(failed[:most])]
+    rows += [[]] * (len(failed) - most)  # not shown
     heads = [Head("record"), Head("case"), Head("file"), Head("why")]
     drawn = table(heads, rows, prose=True, name="Not used") if rows else Markup("")
     left = finished.info.get("left_out")

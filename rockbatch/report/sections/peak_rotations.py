@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from itertools import islice
 
 from rockbatch.lazy import pd
 from rockbatch.report.drawing.panels import draw
@@ -35,7 +36,7 @@ def section(finished: Finished) -> Markup:
         "; lines: rigid base" if any(series.rigid for series in finished.series) else "",
         "; open markers and dashed lines: horizontal component reversed" if finished.both_directions else "", ".",
     ]  # fmt: skip
-    if max(group["series"].nunique() for _, group in finished.groups()) > MOST_SERIES:
+    if finished.grouped["series"].nunique().max() > MOST_SERIES:
         return by_foundation(finished)
     drawn = figures(finished, caption)
     stood = runs[runs["status"] == "ok"]
@@ -78,12 +79,12 @@ def figures(finished: Finished, caption: Sequence[object], *, side: str = "polar
 
     Runs whose column ``side`` has the second of two values are drawn with open markers.
     """
-    groups = finished.groups()
+    groups = finished.grouped.ngroups
     shown = []
-    for words, runs in groups[:MOST_FIGURES]:
+    for words, runs in islice(finished.groups(), MOST_FIGURES):
         # Piers are compared on one axis; larger motions have their own
         top = ceiling(finished.runs[finished.runs["scale"] == runs["scale"].iloc[0]])
-        records = chosen(finished, runs, min(len(groups), MOST_FIGURES))
+        records = chosen(finished, runs, min(groups, MOST_FIGURES))
         quiet = _quiet(runs, records, top)
         records = [name for name in records if name not in quiet]
         every, all_of_them = runs["record"].nunique() - len(quiet), len(runs)
@@ -103,6 +104,6 @@ def figures(finished: Finished, caption: Sequence[object], *, side: str = "polar
         shown.append(
             at_a_glance(finished, runs, finished.by_pga([*records, *quiet])) if side == "polarity" else Markup("")
         )
-    if len(groups) > MOST_FIGURES:
-        shown.append(tag("p", f"The first {MOST_FIGURES} of {len(groups)} combinations of pier and scale are shown."))
+    if groups > MOST_FIGURES:
+        shown.append(tag("p", f"The first {MOST_FIGURES} of {groups} combinations of pier and scale are shown."))
     return join(*shown)
