@@ -153,6 +153,20 @@ def test_bouc_wen_supports_are_balanced_as_another_solver_balances_them(eta):
         assert here.moment == pytest.approx([toe * (b - h * theta) - (1.0 - toe) * (b + h * theta)], rel=1e-6)
 
 
+@pytest.mark.parametrize("eta", [1.2, 2.0, 3.0])
+def test_supports_bear_the_weight_together_at_every_rotation_however_weak_they_are(eta):
+    turn = SlowTurn(PIER, YieldingBase(beta=1000.0, eta=eta))
+    theta = np.linspace(0.0, turn.lift_off or PIER.alpha, 9)[1:]
+    at = turn.at(theta)
+    strength, stiffness = 0.5 * eta, turn.spring.stiffness
+    for depth, toe, heel in zip(at.depth, at.toe, at.heel, strict=True):
+        if toe < 0.999 * strength:  # first loading, by quadrature: the deflection under the toe's force
+            under = quad(lambda z: 1.0 / (1.0 - z**5), 0.0, toe / strength, epsabs=0.0, epsrel=1e-12)[0]
+            assert depth == pytest.approx(under * strength / stiffness, rel=1e-9)
+        assert toe <= strength * (1.0 + 1e-9)
+        assert toe + heel == pytest.approx(1.0, abs=1e-12)
+
+
 def test_a_hysteretic_damper_between_middle_and_toe_unloads_at_lift_off():
     """It is pushed in before lift-off and drawn out after it: F follows Bouc–Wen's law along that way (DOP853)."""
     place, f, u = 1.0, 0.1, 0.002

@@ -346,13 +346,15 @@ class SlowTurn:
         if spring.exponent is None:
             heel = np.maximum(0.5 - spring.stiffness * rise, max(1.0 - spring.strength, 0.0))
             return self.settled + 2.0 * rise - (0.5 - heel) / spring.stiffness, heel
+        bears = self.settled + 2.0 * rise - self.at_rest / spring.stiffness  # the depth from which on the heel does
         depth = self.settled + rise  # of an elastic toe; Newton's method from there never goes past the root
         for _ in range(MOST_STEPS):
-            toe = spring.force(depth)
-            slope = spring.stiffness * (2.0 - (toe / spring.strength) ** spring.exponent)
-            step = (1.0 - toe - self._heel(theta, depth)) / slope
-            depth = depth + step
-            if np.abs(step).max() < NEAR * NEAR / spring.stiffness:
+            toe, lifted = spring.force(depth), depth < bears
+            slope = np.where(lifted, 1.0, 2.0) - (toe / spring.strength) ** spring.exponent
+            excess = 1.0 - toe - self._heel(theta, depth)
+            step = excess / (spring.stiffness * np.maximum(slope, NEAR))
+            depth, before = np.where(lifted, np.minimum(depth + step, bears), depth + step), depth
+            if ((np.abs(excess) < BALANCED) | (np.abs(depth - before) < BALANCED * np.abs(depth))).all():
                 break
         return depth, self._heel(theta, depth)
 
