@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from rockbatch.checks.demands import DEMANDS, Case
-from rockbatch.checks.suite import OTHER_LAW, creeps
+from rockbatch.checks.suite import OTHER_LAW, creeps, rows_of_cases
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, Verdict
 from rockbatch.lazy import pd
 
@@ -38,6 +38,12 @@ RESPONSES = {
 """By their demands, in the order of the answer. The settlement of the toe is that of the pier and its tilt, and on springs the
 residual rotation follows from the tilt."""
 
+_TAKEN = (
+    "theta_max_over_alpha", "theta_max_error", "theta_res_over_alpha", "theta_res_error", "settlement_m", "base_tilt_rad",
+    "ductility_left", "ductility_right",
+)  # fmt: skip
+"""Columns of peaks.csv that they are made of."""
+
 _HELD = 1e-4
 """Least residual rotation over α on rigid ground that counts."""
 
@@ -48,28 +54,38 @@ class Worst(NamedTuple):
     demand: str
     value: float
     case: Case
-    run: "pd.Series[Any]"
-    """Row of peaks.csv of the run."""
+    runs: "pd.DataFrame"
+    place: int
+
+    @property
+    def run(self) -> "pd.Series[Any]":
+        """Row of peaks.csv of the run, which is at ``place`` among ``runs``."""
+        return self.runs.iloc[self.place]
 
 
-def worst_of_cases(suites: "Iterable[tuple[Case, pd.DataFrame]]") -> list[Worst]:
+def worst_of_cases(runs: "pd.DataFrame", cases: Sequence[Case]) -> list[Worst]:
     """Return the worst response of every case for each of :data:`RESPONSES` that it has.
 
     Parameters
     ----------
-    suites : iterable of (case, DataFrame)
-        Cases as run.json has them, with their rows of peaks.csv.
+    runs : DataFrame
+        Rows of peaks.csv, of all cases.
+    cases : sequence of mappings
+        Cases as run.json has them.
     """
     worst = []
-    for case, runs in suites:
-        stood = ((runs["status"] == "ok") & runs["theta_max_over_alpha"].notna()).to_numpy()
-        for name in RESPONSES:
+    stood = ((runs["status"] == "ok") & runs["theta_max_over_alpha"].notna()).to_numpy()
+    numbers = pd.DataFrame({name: runs[name].to_numpy(np.float64, na_value=np.nan) for name in _TAKEN if name in runs})
+    for case, rows in rows_of_cases(runs, cases):
+        rows = rows[stood[rows]]
+        own = numbers.iloc[rows]
+        for name in RESPONSES if len(rows) else ():
             if not DEMANDS[name].on(case) or (name == "theta_res_rad" and case["base"] != "rigid"):
                 continue
-            values = np.where(stood, DEMANDS[name].of(runs, case).value, np.nan)
+            values = DEMANDS[name].of(own, case).value
             if np.isfinite(values).any():
                 place = int(np.nanargmax(values))
-                worst.append(Worst(name, float(values[place]), case, runs.iloc[place]))
+                worst.append(Worst(name, float(values[place]), case, runs, int(rows[place])))
     return worst
 
 

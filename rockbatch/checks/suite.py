@@ -50,7 +50,11 @@ def simulated(runs: "pd.DataFrame") -> "pd.DataFrame":
 
 def suites(runs: "pd.DataFrame", cases: Iterable[Case]) -> "Iterator[tuple[Case, pd.DataFrame]]":
     """Yield every case with its rows of peaks.csv."""
-    cases = list(cases)
+    return ((case, runs.iloc[rows]) for case, rows in rows_of_cases(runs, list(cases)))
+
+
+def rows_of_cases(runs: "pd.DataFrame", cases: Sequence[Case]) -> Iterator[tuple[Case, npt.NDArray[np.intp]]]:
+    """Yield every case with the places of its rows in ``runs``, in order."""
     keys = list(dict.fromkeys(["case", *(name for case in cases for name in case["columns"])]))
     kinds = runs.groupby(keys, sort=False, dropna=False).ngroup().to_numpy()
     order = np.argsort(kinds, kind="stable")
@@ -61,7 +65,7 @@ def suites(runs: "pd.DataFrame", cases: Iterable[Case]) -> "Iterator[tuple[Case,
     for case in cases:
         own = by_name.get(case["case"], firsts[:0])
         of_case = [rows[kind] for kind in own.index[_has(own, case["columns"])]]
-        yield case, runs.iloc[np.sort(np.concatenate(of_case)) if of_case else []]
+        yield case, np.sort(np.concatenate(of_case)) if of_case else order[:0]
 
 
 def _has(runs: "pd.DataFrame", columns: Mapping[str, float | str]) -> npt.NDArray[np.bool_]:

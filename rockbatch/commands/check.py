@@ -10,7 +10,7 @@ from pathlib import Path
 from rockbatch.checks import Verdict, wording, write_verdicts
 from rockbatch.checks.answer import answer
 from rockbatch.checks.responses import RESPONSES, in_words, worst_of_all, worst_of_cases
-from rockbatch.checks.suite import simulated, suites, with_case
+from rockbatch.checks.suite import simulated, with_case
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS
 from rockbatch.checks.wording import SIGNS, Notes
 from rockbatch.commands.streams import aligned, coloured, say, show, shown, width
@@ -78,8 +78,7 @@ def answered(verdicts: Sequence[Verdict], saved: Saved) -> str:
         values = verdict.columns | ({"scale": verdict.scale} if scaled else {})
         return f"{verdict.case} {named(values, values.values())}".rstrip()
 
-    runs = simulated(with_case(saved.peaks))
-    worst = worst_of_cases(suites(runs, saved.info["cases"]))
+    worst = worst_of_cases(simulated(with_case(saved.peaks)), saved.info["cases"])
     lines = []
     for line in answer(verdicts, worst, case_of, lambda verdict: labels.get(verdict.record, verdict.record)):
         words = f"{line.says}: {line.which}." if line.which else f"{line.says}."

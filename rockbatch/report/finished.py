@@ -89,8 +89,7 @@ class Finished(Contents):
     @cached_property
     def worst(self) -> list[Worst]:
         """Return the worst responses of every case."""
-        rows: dict[Any, Any] = self.runs.groupby(["series", "pier"]).indices
-        return worst_of_cases((self.cases[places], self.runs.iloc[rows[places]]) for places in sorted(rows))
+        return worst_of_cases(self.runs, [self.cases[places] for places in sorted(self.cases)])
 
     @cached_property
     def both_directions(self) -> bool:

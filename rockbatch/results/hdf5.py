@@ -30,14 +30,16 @@ def array_in(
     Texts come as ``str``. ``length`` is the number of values that there have to be; ``finite`` ones unless they may be infinite.
     """
     member = _member(group, name)
-    if not isinstance(member, h5py.Dataset) or member.ndim != 1 or member.dtype.kind != kind:
+    if not isinstance(member, h5py.Dataset) or member.ndim != 1 or (dtype := member.dtype).kind != kind:
         raise ValueError(f"{name} is no list of {'texts' if kind == 'S' else 'numbers'}")
-    if member.external or member.is_virtual or member.chunks:
+    made = member.id.get_create_plist()
+    if made.get_external_count() or made.get_layout() in (h5py.h5d.VIRTUAL, h5py.h5d.CHUNKED):
         raise ValueError(f"the bytes of {name} are not where `rockbatch` writes them")
-    if member.id.get_storage_size() != member.nbytes or member.nbytes > _size(group):
-        raise ValueError(f"{name} has {member.size} values, and no room for them in the file")
-    if length is not None and len(member) != length:
-        raise ValueError(f"{name} has {len(member)} values instead of {length}")
+    (size,) = member.shape
+    if member.id.get_storage_size() != size * dtype.itemsize or size * dtype.itemsize > _size(group):
+        raise ValueError(f"{name} has {size} values, and no room for them in the file")
+    if length is not None and size != length:
+        raise ValueError(f"{name} has {size} values instead of {length}")
     values = member.asstr()[:] if kind == "S" else member[:]
     if kind == "f" and finite and np.isinf(values).any():
         raise ValueError(f"{name} has infinite values")
@@ -73,4 +75,4 @@ def _member(group: "h5py.Group", name: str) -> Any:
 
 
 def _size(group: "h5py.Group") -> int:
-    return int(group.file.id.get_filesize())
+    return int(h5py.h5i.get_file_id(group.id).get_filesize())

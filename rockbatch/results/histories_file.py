@@ -263,10 +263,12 @@ def _table(group: "h5py.Group", kinds: Mapping[str, str], rows: int | None = Non
 def _row_of(response: Response, peaks: "pd.DataFrame") -> "pd.Series[Any] | None":
     """Return the row of a response: that with its names, whose numbers have ten digits there; None without one."""
     names = {name: getattr(response, name) for name in ("record", "case", "polarity", "scale")} | response.columns
-    same = peaks
+    same = np.ones(len(peaks), dtype=bool)
     for name, value in names.items():
-        same = same[same[name] == (float(f"{value:.10g}") if isinstance(value, float) else value)]
-    return None if same.empty else same.iloc[0].rename(response.record)
+        same &= (peaks[name] == (float(f"{value:.10g}") if isinstance(value, float) else value)).to_numpy(
+            bool, na_value=False
+        )
+    return peaks.iloc[int(same.argmax())].rename(response.record) if same.any() else None
 
 
 def _run(group: "h5py.Group") -> dict[str, Any]:

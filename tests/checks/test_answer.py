@@ -21,7 +21,7 @@ def lines(verdicts, worst=()):
 
 
 def worst(name="pads", **cells):
-    return worst_of_cases([(case(name), runs(name=name, **cells))])
+    return worst_of_cases(runs(name=name, **cells), [case(name)])
 
 
 def test_the_worst_of_every_response_is_found_whatever_is_checked():
@@ -45,7 +45,7 @@ def test_the_worst_settlement_of_springs_that_creep_is_a_range():
 
 
 def test_a_run_that_overturned_has_no_worst_response():
-    fell = worst_of_cases([(RIGID, runs((0.1, 40.0), name="rigid", status=["ok", "overturned"]))])
+    fell = worst_of_cases(runs((0.1, 40.0), name="rigid", status=["ok", "overturned"]), [RIGID])
     assert worst_of_all(fell)["theta_max_over_alpha"].value == 0.1
 
 
@@ -73,7 +73,7 @@ def test_a_support_that_does_not_yield_needs_no_limit_of_its_settlement():
 
 def test_a_ban_on_overturning_alone_limits_no_rotation():
     ban = verdict("rigid", "pass", demand="overturned", statistic="max", limit=0.0)
-    rocking = worst_of_cases([(RIGID, runs(name="rigid"))])
+    rocking = worst_of_cases(runs(name="rigid"), [RIGID])
     assert [line.verdict for line in lines([ban], rocking)] == [NOT_DECIDED]
 
 
@@ -110,7 +110,7 @@ def test_what_is_not_asked_of_a_case_is_told_beside_its_passing_or_failing():
 
 def test_a_residual_rotation_that_dampers_hold_on_rigid_ground_needs_a_limit():
     held = case("rigid", base=RigidBase(restraints=(Damper("friction", f=0.6),)))
-    leans = worst_of_cases([(held, runs((0.3, 0.2), name="rigid", theta_res_over_alpha=[0.0, -0.05]))])
+    leans = worst_of_cases(runs((0.3, 0.2), name="rigid", theta_res_over_alpha=[0.0, -0.05]), [held])
     assert (
         in_words(worst_of_all(leans)["theta_res_rad"])
         == f"{50 * PIER.alpha:.3g} mrad ({math.degrees(0.05 * PIER.alpha):.2g}°)"
@@ -121,7 +121,7 @@ def test_a_residual_rotation_that_dampers_hold_on_rigid_ground_needs_a_limit():
     )
     assert [line.verdict for line in lines([rotation], leans)] == [NOT_DECIDED]
     assert [line.verdict for line in lines([rotation, residual], leans)] == [PASS]
-    back = worst_of_cases([(held, runs((0.3, 0.2), name="rigid", theta_res_over_alpha=0.0))])
+    back = worst_of_cases(runs((0.3, 0.2), name="rigid", theta_res_over_alpha=0.0), [held])
     assert [line.verdict for line in lines([rotation], back)] == [PASS]
 
 
